@@ -1,0 +1,46 @@
+# The two commands of the README are `make region` and `make test`; both set up a virtual environment first.
+PYTHON ?= python3
+BIN := .venv/bin
+
+.PHONY: region figures test test-slow test-oldest lint bench clean
+
+region: .venv/installed  ## draw where B4 is stable, into this directory
+	$(BIN)/bezstab region --method B4
+
+figures: .venv/installed  ## draw what the README shows, into figures/
+	$(BIN)/bezstab region --method B2 --method B3 --method B4 --table none -o figures
+	$(BIN)/bezstab region --compare --method B3 --method B4 --method AB3 --method AB4 --table none -o figures
+	$(BIN)/bezstab region --compare --method B4 --method AB4 --method RK4@5 --h 0.001 --table none -o figures
+
+test: .venv/tested lint  ## what CI runs
+	$(BIN)/python -m pytest -m "not slow" -n 2
+
+test-slow: .venv/tested  ## the checks that take minutes
+	$(BIN)/python -m pytest -m slow -n 2
+
+test-oldest:  ## the same tests with the oldest versions that pyproject.toml allows
+	$(PYTHON) -m venv .venv-oldest
+	.venv-oldest/bin/python -c 'import tomllib; p = tomllib.load(open("pyproject.toml", "rb"))["project"]; \
+	    print("\n".join(p["dependencies"]).replace(">=", "=="))' > .venv-oldest/oldest.txt
+	.venv-oldest/bin/pip install --quiet --editable '.[test]' --constraint .venv-oldest/oldest.txt
+	.venv-oldest/bin/python -m pytest -m "not slow" -n 2
+
+lint: .venv/tested  ## style, format and types
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+bench: .venv/tested  ## speed, as ratios measured in one run
+	$(BIN)/python tests/bench.py
+
+clean:  ## remove the virtual environments
+	rm -rf .venv .venv-oldest
+
+.venv/installed: pyproject.toml
+	$(PYTHON) -m venv .venv
+	$(BIN)/pip install --quiet --editable .
+	touch $@
+
+.venv/tested: .venv/installed
+	$(BIN)/pip install --quiet --editable '.[test,lint]'
+	touch $@

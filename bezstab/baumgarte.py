@@ -1,0 +1,19 @@
+"""Units: Baumgarte's alpha and beta (1/s), the step h (s), and the dimensionless alpha_hat and beta_hat."""
+
+from fractions import Fraction
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+Number = TypeVar("Number", float, NDArray[np.float64])
+
+
+def dimensionless(alpha: Fraction, beta: Fraction, h: Fraction) -> tuple[Fraction, Fraction]:
+    """Return (alpha_hat, beta_hat) = (2 alpha h, beta^2 h^2); alpha and beta in 1/s, h in s (paper Eq. 16)."""
+    return 2 * alpha * h, beta * beta * h * h
+
+
+def gains(alpha_hat: Number, beta_hat: Number, h: float) -> tuple[Number, Number]:
+    """Return (2 alpha, beta^2) in 1/s and 1/s^2, the coefficients of paper Eq. 6, for a step of h seconds."""
+    return alpha_hat / h, beta_hat / h**2

@@ -1,0 +1,317 @@
+"""The command line: parse, call, show, save, exit status."""
+
+import os
+import re
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, NoReturn, TypeVar
+
+import click
+
+from bezstab import __version__
+from bezstab.baumgarte import dimensionless
+from bezstab.errors import InputError, NumericalError
+from bezstab.files import output_directory, write_whole
+from bezstab.methods import REGISTRY, Method, lookup, rational
+from bezstab.paper import FASTER_LEVEL
+
+if TYPE_CHECKING:
+    import numpy as np
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from bezstab.optimum import Optimum
+    from bezstab.poles import ComplexArray
+    from bezstab.tables import Columns, Format, Row
+
+TABLE_5 = ("B2", "B3", "B4", "AB2", "AB3", "AB4", "RK4@5", "SIE")
+
+Command = TypeVar("Command", bound=Callable[..., object])
+
+
+class Commands(click.Group):
+    """A command group whose errors take one line: exit status 2 for a user's mistake, 3 for numerical trouble."""
+
+    def main(self, *args: Any, **kwargs: Any) -> NoReturn:
+        """Run the command line and exit."""
+        try:
+            status = super().main(*args, **{**kwargs, "standalone_mode": False})
+        except (click.ClickException, InputError) as error:
+            text = error.format_message() if isinstance(error, click.ClickException) else str(error)
+            click.echo(f"bezstab: {' '.join(text.split())}", err=True)
+            sys.exit(2)
+        except NumericalError as error:
+            click.echo(f"bezstab: {error}", err=True)
+            sys.exit(3)
+        except click.Abort:
+            click.echo("bezstab: interrupted", err=True)
+            sys.exit(130)
+        except BrokenPipeError:  # the reader, such as `head`, has seen enough
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            sys.exit(1)
+        sys.exit(status if isinstance(status, int) else 0)
+
+
+class Rational(click.ParamType):  # type: ignore[type-arg]  # generic since click 8.3
+    """A finite decimal or fraction, read exactly."""
+
+    name = "number"
+
+    def __init__(self, positive: bool = False) -> None:
+        self.positive = positive
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Fraction:
+        """Return the exact value; fails, naming the option, on anything else."""
+        try:
+            number = value if isinstance(value, Fraction) else rational(value)
+        except InputError as error:
+            self.fail(str(error), param, ctx)
+        if self.positive and number <= 0:
+            self.fail(f"{value} is not positive", param, ctx)
+        return number
+
+
+class MethodName(click.ParamType):  # type: ignore[type-arg]
+    """A built-in method or a TOML file, either with @m."""
+
+    name = "method"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Method:
+        """Return the method; fails, with the nearest name, if there is none."""
+        try:
+            return value if isinstance(value, Method) else lookup(value)
+        except InputError as error:
+            self.fail(str(error), param, ctx)
+
+
+def _method_option(*default: str) -> Callable[[Command], Command]:
+    text = "A method, as listed by `bezstab methods`, or a .toml file; @m for a step of m h. Repeatable."
+    return click.option(
+        "--method", "methods", type=MethodName(), multiple=True, default=default, show_default=True, help=text
+    )
+
+
+_format_option = click.option(
+    "--format",
+    "form",
+    type=click.Choice(["text", "json", "csv", "markdown"]),
+    default="text",
+    show_default=True,
+    help="What to print on standard output.",
+)
+
+
+@click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__)
+def main() -> None:
+    """Which Baumgarte parameters are safe, and best, for an explicit integrator at its step size?
+
+    Everywhere α̂ = 2αh and β̂ = β²h² (dimensionless) for the feedback c̈ + 2αċ + β²c = 0 and a step of h seconds.
+    """
+
+
+@main.command()
+@_method_option(*TABLE_5)
+@click.option(
+    "--alpha", type=Rational(), required=True, help="α̂, a decimal or fraction, read exactly; α with --physical."
+)
+@click.option(
+    "--beta", type=Rational(), required=True, help="β̂, a decimal or fraction, read exactly; β with --physical."
+)
+@click.option("--h", type=Rational(positive=True), help="Step size in s, for --physical.")
+@click.option("--physical", is_flag=True, help="Take --alpha and --beta as α and β in 1/s; needs --h.")
+@click.option("--all-poles", is_flag=True, help="Every root, not only the dominant one.")
+@_format_option
+def poles(
+    methods: Sequence[Method],
+    alpha: Fraction,
+    beta: Fraction,
+    h: Fraction | None,
+    physical: bool,
+    all_poles: bool,
+    form: "Format",
+) -> None:
+    """Print the dominant pole of each method at one point, and the proven verdict.
+
+    converges: every |z| < 1. marginal: bounded without decay. diverges: a root outside the unit circle, or a repeated
+    one on it. Proven by a Schur-Cohn test in exact arithmetic on the numbers as typed.
+
+    Example: bezstab poles --alpha 0.5 --beta 0.1
+    """
+    from bezstab import poles as closed_loop
+    from bezstab import tables
+
+    if physical != (h is not None):
+        raise click.UsageError("--physical and --h go together: α and β in 1/s need the step in s")
+    if h is not None:
+        alpha, beta = dimensionless(alpha, beta, h)
+    rows: list[Row] = []
+    for method in methods:
+        z = closed_loop.poles if all_poles else closed_loop.dominant_pole
+        found = z(method, float(alpha), float(beta)).reshape(-1)
+        rows += tables.pole_rows(method, float(alpha), float(beta), found, closed_loop.verdict(method, alpha, beta))
+    _show(rows, tables.POLES, form, heading=f"α̂ = {float(alpha):.10g}, β̂ = {float(beta):.10g}")
+
+
+@main.command()
+@click.argument("methods", metavar="[NAME]...", type=MethodName(), nargs=-1)
+@click.option("--latex", is_flag=True, help="Formulas as LaTeX.")
+@_format_option
+def methods(methods: Sequence[Method], latex: bool, form: "Format") -> None:
+    """List the methods; with NAME show that one whole.
+
+    Steps, evaluations of f per step, order of accuracy and error constant, computed from the coefficients; for one
+    method also its recursion, s→z mapping, characteristic polynomial and stability region (the paper's Tables 1, 2).
+
+    Example: bezstab methods B4
+    """
+    from bezstab import tables
+
+    if not methods:
+        _show([tables.method_row(lookup(name)) for name in REGISTRY], tables.METHODS, form)
+        return
+    from bezstab.optimum import optimum
+    from bezstab.region import region
+
+    rows: list[Row] = [tables.whole_row(method, region(method), optimum(method), latex) for method in methods]
+    if form in ("json", "csv"):
+        _show(rows, tables.METHODS, form)
+        return
+    for row in rows:
+        _show(tables.transposed(row), tables.PROPERTIES, form)
+
+
+@main.command()
+@_method_option("B4")
+@click.option("-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory for figure and table.")
+@click.option("--figure", type=click.Choice(["png", "svg", "pdf", "none"]), default="png", show_default=True)
+@click.option("--table", type=click.Choice(["csv", "npz", "none"]), default="csv", show_default=True)
+@click.option(
+    "--grid", type=click.IntRange(2, 4000), default=200, show_default=True, help="Points per axis of the map."
+)
+@click.option("--alpha-range", type=Rational(), nargs=2, help="Window in α̂; by default all of the region.")
+@click.option("--beta-range", type=Rational(), nargs=2, help="Window in β̂; by default all of the region.")
+@click.option(
+    "--level",
+    "levels",
+    type=Rational(positive=True),
+    multiple=True,
+    help="Draw |z_p| < LEVEL, below 1. Repeatable. Default: region H of the paper's Fig. 1 for B2, B3, B4; "
+    "else a quarter of the way from the least |z_p| to 1.",
+)
+@click.option("--compare", is_flag=True, help="One figure with the boundaries of all methods (default level 1).")
+@click.option("--h", type=Rational(positive=True), help="Step size in s: axes become 2α (1/s) and β² (1/s²).")
+@_format_option
+def region(
+    methods: Sequence[Method],
+    output: Path,
+    figure: Literal["png", "svg", "pdf", "none"],
+    table: Literal["csv", "npz", "none"],
+    grid: int,
+    alpha_range: tuple[Fraction, Fraction] | None,
+    beta_range: tuple[Fraction, Fraction] | None,
+    levels: Sequence[Fraction],
+    compare: bool,
+    h: Fraction | None,
+    form: "Format",
+) -> None:
+    """Draw where each method is stable, exactly, and tabulate |z_p| there.
+
+    Writes region_METHOD.png and region_METHOD.csv and prints the axis limits of the exact region, its area, the
+    smallest |z_p| and where. The table holds α̂, β̂, |z_p| and ∠z_p; with --compare, the boundary curves.
+
+    Example: bezstab region --method B4
+    """
+    import numpy as np
+
+    from bezstab import region as exact
+    from bezstab import tables
+    from bezstab.optimum import optimum
+
+    for name, window in (("--alpha-range", alpha_range), ("--beta-range", beta_range)):
+        if window and not window[0] < window[1]:
+            raise InputError(f"{name} {float(window[0]):g} {float(window[1]):g}: the first must be the smaller")
+    for level in levels:
+        if level > 1:
+            raise InputError(f"--level {float(level):g}: must be at most 1, the stability boundary")
+    if figure != "none" or table != "none":
+        output_directory(output)
+    step = None if h is None else float(h)
+    if compare:
+        regions = [exact.region(method, float(levels[0]) if levels else 1.0) for method in methods]
+        _show([tables.region_row(each, optimum(each.method)) for each in regions], tables.REGIONS, form)
+        name = "_".join(["compare", *map(_file_name, methods)])
+        _write_table(output / f"{name}.{table}", tables.boundary_columns(regions, step), table)
+        if figure != "none":
+            from bezstab import figures
+
+            _write_figure(output / f"{name}.{figure}", figures.comparison_figure(regions, step), figure)
+        return
+    rows: list[Row] = []
+    for method in methods:
+        stable, best = exact.region(method), optimum(method)
+        rows.append(tables.region_row(stable, best))
+        ranges = (
+            given or fitting for given, fitting in zip((alpha_range, beta_range), exact.window(stable), strict=True)
+        )
+        alpha_hat, beta_hat = (np.linspace(float(low), float(high), grid) for low, high in ranges)
+        if figure == table == "none":
+            continue
+        blocks = exact.pole_map(method, alpha_hat, beta_hat)
+        z = np.concatenate(list(_progress(blocks, grid, method.name)))
+        name = f"region_{_file_name(method)}"
+        _write_table(output / f"{name}.{table}", tables.map_columns(alpha_hat, beta_hat, z, step), table)
+        if figure != "none":
+            from bezstab import figures
+
+            chosen = map(float, levels) if levels else [_faster_level(method, best)] if best else []
+            faster = [exact.region(method, level) for level in chosen]
+            drawn = figures.region_figure(stable, faster, best, alpha_hat, beta_hat, np.abs(z), step)
+            _write_figure(output / f"{name}.{figure}", drawn, figure)
+    _show(rows, tables.REGIONS, form)
+
+
+def _faster_level(method: Method, best: "Optimum") -> float:
+    """Return the level of the faster region H: the paper's, else a quarter of the way from the least |z_p| to 1."""
+    return FASTER_LEVEL.get(method.name, round(best.z_abs + (1 - best.z_abs) / 4, 2))
+
+
+def _file_name(method: Method) -> str:
+    return re.sub(r"[^\w@.+-]", "_", method.name)
+
+
+def _progress(blocks: Iterable["ComplexArray"], length: int, label: str) -> Iterator["ComplexArray"]:
+    """Yield the blocks of rows, with a progress bar on standard error where that is a terminal."""
+    if not sys.stderr.isatty():
+        yield from blocks
+        return
+    with click.progressbar(length=length, label=label, file=sys.stderr) as bar:
+        for block in blocks:
+            yield block
+            bar.update(len(block))
+
+
+def _write_table(path: Path, columns: "Mapping[str, NDArray[np.generic]]", form: Literal["csv", "npz", "none"]) -> None:
+    from bezstab import tables
+
+    if form != "none":
+        write_whole(path, lambda file: tables.write_columns(columns, form, file))
+        click.echo(f"wrote {path}", err=True)
+
+
+def _write_figure(path: Path, figure: "Figure", form: Literal["png", "svg", "pdf"]) -> None:
+    from bezstab import figures
+
+    write_whole(path, lambda file: figures.save(figure, form, file))
+    click.echo(f"wrote {path}", err=True)
+
+
+def _show(rows: "Sequence[Row]", columns: "Columns", form: "Format", heading: str = "") -> None:
+    """Print rows on standard output, below a heading where people read them."""
+    from bezstab import tables
+
+    if heading and form in ("text", "markdown"):
+        click.echo(f"{heading}\n")
+    click.echo(tables.render(rows, columns, form))

@@ -1,0 +1,134 @@
+"""Results as matplotlib figures: readable in grey, at column width, byte-identical when drawn twice."""
+
+import re
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
+from typing import Any, BinaryIO, Literal
+
+import numpy as np
+from matplotlib import style
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
+
+from bezstab.baumgarte import gains
+from bezstab.methods import Method
+from bezstab.optimum import Optimum
+from bezstab.poles import FloatArray
+from bezstab.region import Region
+
+COLUMN_WIDTH = 85 / 25.4  # inches
+STYLE: dict[str, Any] = {
+    "font.size": 8,
+    "axes.titlesize": 8,
+    "legend.fontsize": 7,
+    "lines.linewidth": 1.2,
+    "savefig.dpi": 300,
+    "svg.hashsalt": "bezstab",
+    "mathtext.fontset": "dejavusans",
+}
+FAMILIES = {  # by prefix: colours of Okabe & Ito that differ in lightness too, so that grey keeps them apart
+    "ABM": "#cc79a7",
+    "AB": "#e69f00",
+    "B": "#00395c",
+    "RK": "#009e73",
+    "SIE": "#56b4e9",
+    "SYM": "#d55e00",
+}
+DASHES: list[str | tuple[int, tuple[float, ...]]] = ["-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (5, 1.5, 1.2, 1.5))]
+
+
+def region_figure(
+    region: Region,
+    faster: Sequence[Region],
+    best: Optimum | None,
+    alpha_hat: FloatArray,
+    beta_hat: FloatArray,
+    z_abs: FloatArray,
+    h: float | None = None,
+) -> Figure:
+    """Return the |z_p| map with exact boundary, faster regions, best point and critical damping (paper Fig. 1).
+
+    z_abs has shape (beta_hat.size, alpha_hat.size). With h (s) the axes are 2 alpha (1/s) and beta^2 (1/s^2), else
+    alpha_hat and beta_hat.
+    """
+    with _style():
+        figure, axes = _axes(region.method.name, h)
+        alpha, beta = gains(alpha_hat, beta_hat, h or 1.0)
+        half_a, half_b = (alpha[1] - alpha[0]) / 2, (beta[1] - beta[0]) / 2
+        image = axes.imshow(
+            np.ma.masked_greater_equal(z_abs, region.level),
+            origin="lower",
+            extent=(alpha[0] - half_a, alpha[-1] + half_a, beta[0] - half_b, beta[-1] + half_b),
+            aspect="auto",
+            interpolation="nearest",
+            cmap="cividis",
+            vmax=region.level,
+        )
+        figure.colorbar(image, label="$|z_p|$")
+        _curves(axes, region, h, color="black", label=rf"$|z_p| = {region.level:g}$")
+        for number, inner in enumerate(faster, start=1):
+            _curves(axes, inner, h, color="white", linestyle=DASHES[number % 4], label=rf"$|z_p| = {inner.level:g}$")
+        parabola = np.linspace(alpha_hat[0], alpha_hat[-1], 400)
+        outline = withStroke(linewidth=2.4, foreground="black")  # white alone is lost outside the region
+        critical = gains(parabola, parabola**2 / 4, h or 1.0)
+        axes.plot(
+            *critical, color="white", linestyle=DASHES[2], label=r"$\hat\beta = \hat\alpha^2/4$", path_effects=[outline]
+        )
+        if best:
+            label = f"least $|z_p|$: {best.z_abs:.4f}"
+            point = gains(best.alpha_hat, best.beta_hat, h or 1.0)
+            axes.plot(*point, "*", color="white", markeredgecolor="black", markersize=8, label=label)
+        axes.set(xlim=(alpha[0], alpha[-1]), ylim=(beta[0], beta[-1]), facecolor="0.93")
+        figure.legend(loc="outside lower center", ncols=2, facecolor="0.75")
+        return figure
+
+
+def comparison_figure(regions: Sequence[Region], h: float | None = None) -> Figure:
+    """Return the boundaries of several methods in one plane (paper Fig. 2; with h in s, at equal h, Fig. 3)."""
+    with _style():
+        figure, axes = _axes(rf"$|z_p| = {regions[0].level:g}$", h)
+        for region in regions:
+            _curves(axes, region, h, label=region.method.name, **_line(region.method))
+        axes.grid(color="0.9")
+        figure.legend(loc="outside lower center", ncols=3)
+        return figure
+
+
+def save(figure: Figure, form: Literal["png", "svg", "pdf"], file: BinaryIO) -> None:
+    """Write the figure without dates, versions or random names, so that equal figures are equal bytes."""
+    metadata = {"png": {"Software": None}, "svg": {"Date": None}, "pdf": {"CreationDate": None, "Producer": None}}
+    with _style():
+        figure.savefig(file, format=form, metadata=metadata[form])
+
+
+def _style() -> AbstractContextManager[None]:
+    """Return a context in which matplotlib's defaults and STYLE hold, whatever the user's own settings."""
+    return style.context(["default", STYLE])
+
+
+def _axes(title: str, h: float | None) -> tuple[Figure, Axes]:
+    """Return a figure of column width with axes alpha_hat, beta_hat, or 2 alpha, beta^2 for a step of h seconds."""
+    figure = Figure(figsize=(COLUMN_WIDTH, COLUMN_WIDTH), layout="constrained")
+    axes = figure.add_subplot()
+    if h is None:
+        axes.set(title=title, xlabel=r"$\hat\alpha = 2\alpha h$ (dimensionless)")
+        axes.set_ylabel(r"$\hat\beta = \beta^2 h^2$ (dimensionless)")
+    else:
+        axes.set(title=f"{title}, h = {h:g} s", xlabel=r"$2\alpha$ (1/s)", ylabel=r"$\beta^2$ (1/s$^2$)")
+        axes.ticklabel_format(scilimits=(-3, 4))
+    return figure, axes
+
+
+def _curves(axes: Axes, region: Region, h: float | None, label: str, **line: Any) -> None:
+    """Draw a region's boundary, its closed curves as one line."""
+    if region.boundary:
+        gap = np.full((1, 2), np.nan)
+        points = np.concatenate([part for curve in region.boundary for part in (curve, gap)])
+        axes.plot(*gains(points[:, 0], points[:, 1], h or 1.0), label=label, **line)
+
+
+def _line(method: Method) -> dict[str, Any]:
+    """Return colour and dashes by the method's family and number, the same in every figure."""
+    family, number = re.fullmatch(r"(\D*)(\d*).*", method.name, re.DOTALL).groups()  # type: ignore[union-attr]
+    return {"color": FAMILIES.get(family, "0.4"), "linestyle": DASHES[-int(number or 0) % 4]}

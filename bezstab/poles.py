@@ -1,0 +1,254 @@
+"""Closed-loop poles over any broadcastable alpha_hat and beta_hat, and the proven verdict at one exact point.
+
+The poles are the roots of pi(z, mu) at the two roots mu of the feedback. Compared with eigenvalues of P's companion
+that halves the degree, needs one solve where the mu are conjugate, and keeps all digits on beta_hat = alpha_hat^2/4,
+where the roots of P pair up.
+"""
+
+from fractions import Fraction
+from functools import cache
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from bezstab import schur
+from bezstab.derivation import closed_loop_at, coefficient_table, effective_parameters
+from bezstab.errors import NumericalError
+from bezstab.methods import Method
+from bezstab.schur import Verdict
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+CHUNK = 16384  # points at a time: all the work arrays of one chunk stay in a core's cache
+STRIDE = 16  # of a chunk's points one in so many is solved from scratch, the others start from its roots
+ITERATIONS = 200  # Aberth's iteration needs about ten; a multiple root, where it is linear, about sixty
+NUDGE = 1e-3  # about a step of a map's grid, so it costs no iteration
+CONVERGED = 1e-9  # relative correction after which a cubically convergent iterate is exact to rounding
+
+
+def verdict(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> Verdict:
+    """Return 'converges', 'marginal' or 'diverges', proven by the Schur-Cohn test on P in exact arithmetic."""
+    return schur.verdict(closed_loop_at(method, alpha_hat, beta_hat))
+
+
+def poles(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexArray:
+    """Return all closed-loop poles; complex, shape of alpha_hat and beta_hat broadcast plus (2 n,), dimensionless.
+
+    Descending by modulus. Roots of paper Eq. 17. NumericalError if a root leaves the range of float64.
+    """
+    alpha_hat, beta_hat = np.broadcast_arrays(np.asarray(alpha_hat, float), np.asarray(beta_hat, float))
+    mu = np.stack(_mu(method, alpha_hat.ravel(), beta_hat.ravel()))
+    z = roots_in_z(method, mu.ravel()).reshape(-1, *mu.shape)
+    z = np.moveaxis(z, -1, 0).reshape(*alpha_hat.shape, -1)
+    order = np.lexsort((-z.imag, -np.abs(z)), axis=-1)
+    descending: ComplexArray = np.take_along_axis(z, order, axis=-1)
+    return descending
+
+
+def dominant_pole(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexArray:
+    """Return the pole z_p of largest modulus; complex, Im >= 0, shape of alpha_hat and beta_hat broadcast.
+
+    Of poles equal in modulus to rounding, one is taken. NumericalError if a root leaves the range of float64.
+    """
+    alpha_hat, beta_hat = np.broadcast_arrays(np.asarray(alpha_hat, float), np.asarray(beta_hat, float))
+    flat_alpha, flat_beta = alpha_hat.ravel(), beta_hat.ravel()
+    dominant = np.empty(alpha_hat.size, complex)
+    for start in range(0, alpha_hat.size, CHUNK):
+        chunk = slice(start, start + CHUNK)
+        first, second = _mu(method, flat_alpha[chunk], flat_beta[chunk])
+        largest = dominant_root(method, first)
+        real = np.flatnonzero(first.imag == 0)
+        if real.size:
+            other = dominant_root(method, second[real])
+            larger = np.abs(other) > np.abs(largest[real])
+            largest[real[larger]] = other[larger]
+        dominant[chunk] = largest
+    dominant.imag = np.abs(dominant.imag)
+    return dominant.reshape(alpha_hat.shape)
+
+
+def spectral_radius(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> FloatArray:
+    """Return |z_p|; shape of alpha_hat and beta_hat broadcast, dimensionless; below one the constraint error decays."""
+    return np.abs(dominant_pole(method, alpha_hat, beta_hat))
+
+
+def dominant_root(method: Method, mu: ComplexArray) -> ComplexArray:
+    """Return the root of pi(., mu) of largest modulus for each of a row of mu."""
+    z = roots_in_z(method, mu)
+    largest: ComplexArray = z[np.argmax(np.abs(z), axis=0), np.arange(mu.size)]
+    return largest
+
+
+def roots_in_z(method: Method, mu: ComplexArray) -> ComplexArray:
+    """Return all z with pi(z, mu) = 0; complex, shape (n, mu.size) for a row of mu.
+
+    NumericalError if one leaves the range of float64.
+    """
+    z = _roots(float_table(method), mu)
+    if not np.isfinite(z).all():
+        worst = mu[~np.isfinite(z).all(axis=0)][0]
+        raise NumericalError(f"{method.name}: at mu = {worst:.6g} a pole leaves the range of float64")
+    return z
+
+
+def roots_in_mu(method: Method, z: ComplexArray) -> ComplexArray:
+    """Return all mu with pi(z, mu) = 0, the locus of a root at z; shape (degree of pi in mu, z.size) for a row of z.
+
+    Not finite where one of them is at infinity.
+    """
+    return _roots(float_table(method).T, z)
+
+
+@cache
+def float_table(method: Method) -> FloatArray:
+    """Return C with pi(z, mu) = sum_kj C[k, j] z^k mu^j: the one place where exact coefficients become float64."""
+    return np.array(coefficient_table(method), float)
+
+
+def _roots(table: FloatArray, x: ComplexArray) -> ComplexArray:
+    """Return the roots y of sum_kj table[k, j] y^k x^j for each x, by chunks that fit a core's cache."""
+    with np.errstate(all="ignore"):  # whatever is not finite is for the caller to judge
+        blocks = [_polynomial_roots(table, x[i : i + CHUNK]) for i in range(0, x.size, CHUNK)]
+    return np.concatenate(blocks, axis=1) if blocks else np.empty((len(table) - 1, 0), complex)
+
+
+def _horner(ascending: FloatArray, x: ComplexArray) -> ComplexArray:
+    total = np.full_like(x, ascending[-1])
+    for c in ascending[-2::-1]:
+        total *= x
+        total += c
+    return total
+
+
+def _polynomial_roots(table: FloatArray, x: ComplexArray) -> ComplexArray:
+    """Return the roots as _roots does, the polynomials scaled by x^-d where |x| > 1."""
+    if len(table) == 2 and table[1, 0] == 1 and not table[1, 1:].any():  # y = R(x)
+        return -_horner(table[0], x)[np.newaxis]
+    large = np.abs(x) > 1
+    small, inverse = np.where(large, 0, x), np.divide(1, x, out=np.zeros_like(x), where=large)
+    a = np.stack([np.where(large, _horner(row[::-1], inverse), _horner(row, small)) for row in table])
+    if len(table) == 2:
+        single: ComplexArray = -a[:1] / a[1]
+        return single
+    coarse = _aberth(a[:, ::STRIDE], _newton_polygon_starts(a[:, ::STRIDE]))
+    # Nudged apart: coinciding starts would never part, and real ones never leave the axis of a real polynomial.
+    coarse += NUDGE * np.abs(coarse).max(axis=0) * _spread(len(coarse))
+    return _aberth(a, np.repeat(coarse, STRIDE, axis=1)[:, : x.size])
+
+
+def _spread(n: int) -> ComplexArray:
+    """Return n directions around the circle, none the conjugate of another; shape (n, 1)."""
+    directions: ComplexArray = np.exp(1j * (2 * np.pi * np.arange(n) / n + 0.7))[:, np.newaxis]
+    return directions
+
+
+def _newton_polygon_starts(a: ComplexArray) -> ComplexArray:
+    """Return starting points on circles whose radii are the slopes of the upper hull of (k, log|a_k|).
+
+    Shape (n, points). D. A. Bini, Numer. Algorithms 13, 1996: so every root, however small, has a start of its size.
+    """
+    n = len(a) - 1
+    size = np.maximum(np.log(np.abs(a)), -1e300)  # a finite stand-in for log 0
+    radii = np.empty((n, a.shape[1]))
+    for i in range(n):  # minus the hull's slope between i and i + 1, by its max-min characterisation
+        below = [
+            np.min([(size[lower] - size[upper]) / (upper - lower) for upper in range(i + 1, n + 1)], axis=0)
+            for lower in range(i + 1)
+        ]
+        radii[i] = np.exp(np.max(below, axis=0))
+    return radii * _spread(n)
+
+
+def _aberth(a: ComplexArray, z: ComplexArray) -> ComplexArray:
+    """Return the roots of sum_k a[k] z^k, a of shape (n + 1, points), from starts z of shape (n, points).
+
+    Aberth's simultaneous Newton iteration (O. Aberth, Math. Comp. 27, 1973), cubic at simple roots; points leave as
+    they converge. At a multiple root the last digits cannot settle: there ITERATIONS ends the walk.
+    """
+    solution, active = z.copy(), np.arange(z.shape[1])
+    for _ in range(ITERATIONS):
+        step = _aberth_step(a, z)
+        settled = np.all(np.abs(step) <= CONVERGED * np.abs(z), axis=0)
+        z = z - step
+        solution[:, active[settled]] = z[:, settled]
+        if settled.all():
+            return solution
+        if settled.any():
+            keep = ~settled
+            a, z, active = a[:, keep], z[:, keep], active[keep]
+    solution[:, active] = z
+    return solution
+
+
+def _aberth_step(a: ComplexArray, z: ComplexArray) -> ComplexArray:
+    n = len(z)
+    repulsion = np.zeros_like(z)
+    for i in range(n):
+        for j in range(i):
+            difference = z[i] - z[j]
+            reciprocal = np.divide(1, difference, out=np.zeros_like(difference), where=difference != 0)
+            repulsion[i] += reciprocal
+            repulsion[j] -= reciprocal
+    value, slope = np.broadcast_to(a[n], z.shape).copy(), np.zeros_like(z)
+    for k in range(n - 1, -1, -1):
+        slope *= z
+        slope += value
+        value *= z
+        value += a[k]
+    # Newton's correction N = p/p' repelled by the other roots: N / (1 - N sum 1/(z_i - z_j))
+    step: ComplexArray = np.divide(value, slope - value * repulsion, out=np.zeros_like(z), where=value != 0)
+    return step
+
+
+def _mu(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+    """Return both roots mu of the feedback mu^2 + p mu + q: a conjugate pair, upper first, or two real numbers.
+
+    The discriminant is exact until rounded: in plain float64 it would cost half the digits on alpha_hat^2 = 4 beta_hat.
+    """
+    (a, b), (c, d) = effective_parameters(method)
+    with np.errstate(over="ignore", under="ignore", invalid="ignore"):
+        (p, p_low), (q, q_low) = _combination(a, alpha_hat, b, beta_hat), _combination(c, alpha_hat, d, beta_hat)
+        exponent = np.maximum(np.frexp(p)[1], (np.frexp(q)[1] + 1) // 2)  # so that no square over- or underflows
+        half, half_low = np.ldexp(p, -exponent - 1), np.ldexp(p_low, -exponent - 1)
+        q, q_low = np.ldexp(q, -2 * exponent), np.ldexp(q_low, -2 * exponent)
+        square, square_low = _two_product(half, half)
+        high, low = _two_sum(square, -q)
+        discriminant = high + (low + (square_low + 2 * half * half_low - q_low))
+        root, real = np.sqrt(np.abs(discriminant)), discriminant >= 0
+        far = -(half + np.copysign(root, half))
+        near = np.divide(q, far, out=np.zeros_like(far), where=far != 0)
+        first, second = np.empty_like(p, complex), np.empty_like(p, complex)
+        first.real, second.real = (np.ldexp(np.where(real, x, -half), exponent) for x in (far, near))
+        first.imag = np.where(real, 0, np.ldexp(root, exponent))
+        second.imag = -first.imag
+    return first, second
+
+
+def _combination(a: Fraction, x: FloatArray, b: Fraction, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return a x + b y as an unevaluated sum of two float64."""
+    (ax, ax_low), (by, by_low) = _two_product(float(a), x), _two_product(float(b), y)
+    total, total_low = _two_sum(ax, by)
+    rounded = float(a - Fraction(float(a))) * x + float(b - Fraction(float(b))) * y
+    return total, total_low + (ax_low + by_low + rounded)
+
+
+def _two_sum(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return x + y rounded, and its rounding error, exactly (D. E. Knuth, TAOCP 2, Theorem 4.2.2B)."""
+    total = x + y
+    virtual = total - x
+    return total, (x - (total - virtual)) + (y - virtual)
+
+
+def _two_product(x: FloatArray | float, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return x y rounded, and its rounding error, exactly (T. J. Dekker, Numer. Math. 18, 1971)."""
+    product = x * y
+    (x_high, x_low), (y_high, y_low) = _halves(x), _halves(y)
+    return product, x_low * y_low - (((product - x_high * y_high) - x_low * y_high) - x_high * y_low)
+
+
+def _halves(x: FloatArray | float) -> tuple[FloatArray | float, FloatArray | float]:
+    """Return two numbers of at most 26 bits with sum x."""
+    shifted = 134217729.0 * x  # 2^27 + 1
+    high = shifted - (shifted - x)
+    return high, x - high

@@ -1,0 +1,250 @@
+"""The exact region |z_p| < r of the alpha_hat-beta_hat plane: its boundary, area and extent, without a grid.
+
+Both mu must lie in S_r = {mu : all roots of pi(., mu) inside |z| < r}. The region therefore splits into conjugate
+pairs mu = x +- iy, the image of S_r's upper half under (alpha_hat, beta_hat) = (-2x, x^2 + y^2), and pairs of real mu
+from S_r's real intervals. Its edges are images of the boundary locus pi(r e^(i theta), mu) = 0, as far as no other
+root lies outside, and straight lines: one mu held at the end of a real interval (theory: paper Eq. 17 on |z| = r).
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from itertools import chain, combinations, pairwise
+
+import numpy as np
+from numpy.polynomial.legendre import leggauss
+from numpy.polynomial.polynomial import polyder, polyval2d
+from numpy.typing import NDArray
+
+from bezstab.derivation import effective_parameters
+from bezstab.methods import Method
+from bezstab.poles import ComplexArray, FloatArray, dominant_pole, dominant_root, float_table, roots_in_mu, roots_in_z
+
+BLOCK = 65536  # points between two looks at the progress bar
+BISECTIONS = 60  # halves a bracket of 1e-3 rad below float64's spacing
+ARC_POINTS = 400  # drawn per arc: chords stay within 1e-5 of the curve
+QUADRATURE = 1e-14  # of |mu|^3: a panel is split until its halves agree to this, a hundredfold above rounding
+SPLITS = 40  # halvings of a panel at most: towards a corner of the locus they end at rounding
+EXTENT_DECIMALS = 14  # beyond them -1e-16 for an exact 0 is rounding
+NARROWINGS = 8  # each by 1/16: from a sample's spacing to where a smooth extreme is flat to rounding
+REAL = 1e-9  # an imaginary part below this times |mu| is rounding where a branch is known to cross the real axis
+
+
+@dataclass(frozen=True)
+class Region:
+    """The set |z_p| < level for one method, in alpha_hat and beta_hat.
+
+    `boundary` holds closed curves as arrays of shape (points, 2); `extent` is ((alpha_hat_min, alpha_hat_max),
+    (beta_hat_min, beta_hat_max)), None if the set is empty.
+    """
+
+    method: Method
+    level: float
+    area: float
+    boundary: tuple[FloatArray, ...]
+    extent: tuple[tuple[float, float], tuple[float, float]] | None
+
+
+@cache
+def region(method: Method, level: float = 1.0) -> Region:
+    """Return the region |z_p| < level, 0 < level <= 1; area and extent are good to about 1e-12."""
+    arcs = list(_arcs(method, level))
+    intervals = _real_intervals(method, level, arcs)
+    to_user = np.linalg.inv(np.array(effective_parameters(method), float))
+    edges = [_pair(arc.mu, arc.mu.conj()) @ to_user.T for arc in arcs]
+    for fixed in chain(*intervals):
+        edges += [_pair(np.full(3, fixed), np.linspace(*interval, 3)) @ to_user.T for interval in intervals]
+    area = sum(arc.area() for arc in arcs) + sum((end - start) ** 3 / 6 for start, end in intervals)
+    for (a, b), (c, d) in combinations(intervals, 2):
+        area += (b - a) * (d - c) * ((c + d) - (a + b)) / 2
+    extent = None
+    if edges:
+        corners = np.concatenate(edges)
+        furthest = {
+            (row, sign): max([(sign * corners[:, row]).max(), *(arc.furthest(sign * to_user[row]) for arc in arcs)])
+            for row in (0, 1)
+            for sign in (-1, 1)
+        }
+        (low_a, high_a), (low_b, high_b) = (
+            np.round([[-furthest[row, -1], furthest[row, 1]] for row in (0, 1)], EXTENT_DECIMALS) + 0.0
+        )  # no negative zero
+        extent = (float(low_a), float(high_a)), (float(low_b), float(high_b))
+    return Region(method, level, float(area * np.linalg.det(to_user)), tuple(_closed_curves(edges)), extent)
+
+
+def window(region: Region) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return ranges of alpha_hat and beta_hat that show the whole region, the origin and a margin of 5 %."""
+    (alpha_min, alpha_max), (beta_min, beta_max) = region.extent or ((0.0, 1.0), (0.0, 1.0))
+    low = np.minimum(0, [alpha_min, beta_min])
+    high = np.maximum(0, [alpha_max, beta_max])
+    margin = 0.05 * (high - low)
+    low, high = np.where(low < 0, low - margin, 0), high + margin
+    return (float(low[0]), float(high[0])), (float(low[1]), float(high[1]))
+
+
+def pole_map(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> Iterator[ComplexArray]:
+    """Yield the dominant pole over the grid of two axes, a block of rows (constant beta_hat) at a time.
+
+    Stacked, the blocks have shape (beta_hat.size, alpha_hat.size).
+    """
+    rows = max(1, BLOCK // alpha_hat.size)
+    for start in range(0, beta_hat.size, rows):
+        yield dominant_pole(method, alpha_hat, beta_hat[start : start + rows, np.newaxis])
+
+
+def _pair(first: NDArray[np.inexact], second: NDArray[np.inexact]) -> FloatArray:
+    """Return (-(mu_1 + mu_2), mu_1 mu_2), the coefficients of the feedback; shape (points, 2)."""
+    return np.stack([-(first + second).real, (first * second).real], axis=-1)
+
+
+@dataclass(frozen=True)
+class _Arc:
+    """One branch mu(theta) of the locus where it bounds S_r's upper half, sampled from end to end."""
+
+    method: Method
+    level: float
+    theta: FloatArray
+    mu: ComplexArray
+
+    def at(self, theta: FloatArray) -> ComplexArray:
+        """Return mu(theta): the point of the locus next to the interpolated samples."""
+        near = np.interp(theta, self.theta, self.mu.real) + 1j * np.interp(theta, self.theta, self.mu.imag)
+        return _nearest(roots_in_mu(self.method, self.level * np.exp(1j * theta)), near)
+
+    def area(self) -> float:
+        """Return the contribution -int 2 y^2 dx to the image's area (Green), by adaptive Gauss-Legendre panels."""
+        nodes, weights = leggauss(16)
+
+        def integrals(panels: FloatArray) -> FloatArray:
+            half = np.diff(panels) / 2
+            theta = panels[:, :1] + half + half * nodes
+            return np.asarray(half[:, 0] * (self._density(theta.ravel()).reshape(theta.shape) @ weights))
+
+        panels = self.theta[[0, -1]][np.newaxis]
+        whole, total = integrals(panels), 0.0
+        for _ in range(SPLITS):
+            middle = panels.mean(axis=1)
+            halves = np.stack([panels[:, 0], middle, middle, panels[:, 1]], axis=1).reshape(-1, 2)
+            parts = integrals(halves)
+            rough = np.abs(parts[::2] + parts[1::2] - whole) > QUADRATURE * np.abs(self.mu).max() ** 3
+            total += float(np.sum((parts[::2] + parts[1::2])[~rough]))
+            panels, whole = halves[np.repeat(rough, 2)], parts[np.repeat(rough, 2)]
+        return total + float(whole.sum())
+
+    def _density(self, theta: FloatArray) -> FloatArray:
+        """Return -2 y^2 dx/dtheta."""
+        z, mu, table = self.level * np.exp(1j * theta), self.at(theta), float_table(self.method)
+        by_z, by_mu = (polyval2d(z, mu, polyder(table, axis=axis)) for axis in (0, 1))
+        return np.asarray(-2 * mu.imag**2 * (-1j * z * by_z / by_mu).real)
+
+    def furthest(self, direction: FloatArray) -> float:
+        """Return the largest direction . (-2x, x^2 + y^2) on the arc, by narrowing in on the best sample."""
+        theta = self.theta
+        for _ in range(NARROWINGS):
+            mu = self.at(theta)
+            values = _pair(mu, mu.conj()) @ direction
+            k = int(np.argmax(values))
+            theta = np.linspace(theta[max(k - 1, 0)], theta[min(k + 1, len(theta) - 1)], 33)
+        return float(values[k])
+
+
+def _nearest(candidates: ComplexArray, targets: ComplexArray) -> ComplexArray:
+    """Return from each column of candidates the one closest to that column's target."""
+    distance = np.abs(candidates - targets)
+    k = np.argmin(np.where(np.isnan(distance), np.inf, distance), axis=0)
+    nearest: ComplexArray = candidates[k, np.arange(len(targets))]
+    return nearest
+
+
+def _locus(method: Method, level: float, theta: FloatArray) -> tuple[ComplexArray, NDArray[np.bool_]]:
+    """Return every mu with a root at level e^(i theta), and which of them bound S_r's upper half.
+
+    Both of shape (branches, theta.size). A mu bounds S_r if no other root of pi(., mu) lies on or outside the circle.
+    """
+    z = level * np.exp(1j * theta)
+    mu = roots_in_mu(method, z)
+    upper = np.isfinite(mu) & (mu.imag > 0)
+    active = np.zeros(mu.shape, bool)
+    modulus = np.abs(others := roots_in_z(method, mu[upper]))
+    own = np.argmin(np.abs(others - np.broadcast_to(z, mu.shape)[upper]), axis=0)
+    np.put_along_axis(modulus, own[np.newaxis], 0, axis=0)
+    active[upper] = np.all(modulus < level, axis=0)
+    return mu, active
+
+
+def _arcs(method: Method, level: float) -> Iterator[_Arc]:
+    """Yield the arcs of the locus that bound S_r's upper half, cut where their number changes."""
+    graded = np.geomspace(1e-5, 1e-2, 30)  # near a kink S_r is a lens whose arcs lie close to theta = 0 and pi
+    half = np.unique(np.concatenate([[0], graded, np.linspace(1e-2, np.pi - 1e-2, 1024), np.pi - graded, [np.pi]]))
+
+    def count(theta: FloatArray) -> NDArray[np.int_]:
+        return np.asarray(_locus(method, level, theta)[1].sum(axis=0))
+
+    for start, end, edges in ((-np.pi, 0.0, -half[::-1]), (0.0, np.pi, half)):
+        theta = (edges[1:] + edges[:-1]) / 2
+        counts = count(theta)
+        change = np.flatnonzero(np.diff(counts))
+        low, high = theta[change], theta[change + 1]
+        for _ in range(BISECTIONS):
+            middle = (low + high) / 2
+            same = count(middle) == counts[change]
+            low, high = np.where(same, middle, low), np.where(same, high, middle)
+        present = counts[np.append(change, len(theta) - 1)]
+        for (a, b), branches in zip(pairwise([start, *((low + high) / 2), end]), present, strict=True):
+            if branches:
+                yield from _traced(method, level, a, b)
+
+
+def _traced(method: Method, level: float, start: float, end: float) -> Iterator[_Arc]:
+    """Yield the branches that bound S_r between two values of theta, followed from the middle to both ends."""
+    theta = start + (end - start) * (1 - np.cos(np.linspace(0, np.pi, ARC_POINTS))) / 2
+    mu, active = _locus(method, level, theta)
+    middle = ARC_POINTS // 2
+    for first in mu[active[:, middle], middle]:
+        curve = np.full(ARC_POINTS, first)
+        for ahead, behind in ((range(middle + 1, ARC_POINTS), -1), (range(middle - 1, -1, -1), 1)):
+            for k in ahead:
+                curve[k] = _nearest(mu[:, k : k + 1], curve[k + behind : k + behind + 1])[0]
+        if np.abs(curve - first).max() > REAL * np.abs(first):  # else rounding, where several roots meet on the circle
+            yield _Arc(method, level, theta, curve)
+
+
+def _real_intervals(method: Method, level: float, arcs: list[_Arc]) -> list[tuple[float, float]]:
+    """Return the open intervals that S_r cuts from the real axis, ascending.
+
+    Their ends have a root at z = level or -level, or a conjugate pair on the circle, where an arc meets the axis.
+    """
+    at_real_z = roots_in_mu(method, np.array([level, -level], complex)).ravel()
+    candidates = np.concatenate([at_real_z, *(arc.mu[[0, -1]] for arc in arcs)])
+    real = np.isfinite(candidates) & (np.abs(candidates.imag) <= REAL * np.abs(candidates))
+    points = np.sort(candidates[real].real)
+    apart = np.diff(points, append=np.inf) > REAL * np.abs(points)
+    points = points[apart]
+    middle = (points[1:] + points[:-1]) / 2
+    inside = np.abs(dominant_root(method, middle.astype(complex))) < level
+    intervals = [pair for pair, kept in zip(pairwise(points.tolist()), inside, strict=True) if kept]
+    through = np.abs(dominant_root(method, points.astype(complex))) < level * (1 - REAL)
+    merged: list[tuple[float, float]] = []
+    for start, end in intervals:
+        if merged and merged[-1][1] == start and through[points == start].all():
+            merged[-1] = (merged[-1][0], end)
+        else:
+            merged.append((start, end))
+    return merged
+
+
+def _closed_curves(edges: list[FloatArray]) -> list[FloatArray]:
+    """Return the edges joined end to end, each time with the nearest free end, into closed curves."""
+    curves, free = [], list(edges)
+    while free:
+        curve = free.pop()
+        while free:
+            ends = np.array([[edge[0], edge[-1]] for edge in free])
+            gaps = np.abs(ends - curve[-1]).max(axis=-1)
+            k, reverse = np.unravel_index(np.argmin(gaps), gaps.shape)
+            if gaps[k, reverse] > np.abs(curve[-1] - curve[0]).max():
+                break
+            edge = free.pop(int(k))
+            curve = np.concatenate([curve, edge[::-1] if reverse else edge])
+        curves.append(np.concatenate([curve, curve[:1]]))
+    return curves

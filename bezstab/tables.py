@@ -1,0 +1,220 @@
+"""Results as rows, and rows as text, Markdown, CSV, JSON or NPZ."""
+
+import csv
+import io
+import json
+import unicodedata
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import BinaryIO, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bezstab.baumgarte import gains
+from bezstab.derivation import accuracy
+from bezstab.formulas import characteristic_text, mapping_text, recursion
+from bezstab.methods import Method, evaluations, steps
+from bezstab.optimum import Optimum
+from bezstab.paper import LEAST_Z_ABS
+from bezstab.poles import FloatArray
+from bezstab.region import Region
+from bezstab.schur import Verdict
+
+Value = str | float | int | None
+Row = Mapping[str, Value]
+Columns = Mapping[str, Callable[[Row], str]]
+Format = Literal["text", "json", "csv", "markdown"]
+
+
+def render(rows: Sequence[Row], columns: Columns, form: Format) -> str:
+    """Return the rows in the given form: every key for json and csv, the chosen columns for text and markdown."""
+    if form == "json":
+        return json.dumps(rows, indent=2, ensure_ascii=False, allow_nan=False)
+    if form == "csv":
+        text = io.StringIO()
+        writer = csv.DictWriter(text, list(rows[0]) if rows else [], lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+        return text.getvalue().rstrip("\n")
+    cells = [list(columns), *([show(row) for show in columns.values()] for row in rows)]
+    widths = [max(map(_width, column)) for column in zip(*cells, strict=True)]
+    lines = [[cell + " " * (width - _width(cell)) for cell, width in zip(row, widths, strict=True)] for row in cells]
+    if form == "markdown":
+        lines.insert(1, ["-" * width for width in widths])
+        return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+    return "\n".join("  ".join(line).rstrip() for line in lines)
+
+
+def _width(text: str) -> int:
+    """Return the number of character cells; the hat of alpha-hat is a combining character and takes none."""
+    return sum(not unicodedata.combining(character) for character in text)
+
+
+def _number(key: str, form: str) -> Callable[[Row], str]:
+    """Return what shows row[key] in the given format, and a missing value as a dash."""
+
+    def show(row: Row) -> str:
+        value = row[key]
+        return "-" if value is None else format(value + 0.0 if isinstance(value, float) else value, form)
+
+    return show
+
+
+def _complex(row: Row) -> str:
+    real, imaginary = row["z_real"], row["z_imag"]
+    assert isinstance(real, float)
+    assert isinstance(imaginary, float)
+    return f"{real:.6f} ± {imaginary:.6f}i" if round(imaginary, 6) else f"{real:.6f}"
+
+
+POLES: Columns = {
+    "method": lambda row: str(row["method"]),
+    "pole z": _complex,
+    "|z|": _number("z_abs", ".6f"),
+    "∠z (deg)": _number("z_angle_deg", ".3f"),
+    "verdict": lambda row: str(row["verdict"]),
+}
+
+METHODS: Columns = {
+    "method": lambda row: str(row["method"]),
+    "steps": _number("steps", "d"),
+    "evaluations": _number("evaluations", "d"),
+    "order of accuracy": _number("order", "d"),
+    "error constant": lambda row: str(row["error_constant"]),
+    "source": lambda row: str(row["source"]),
+}
+
+PROPERTIES: Columns = {key: lambda row, key=key: str(row[key]) for key in ("property", "value")}  # type: ignore[misc]
+
+REGIONS: Columns = {
+    "method": lambda row: str(row["method"]),
+    "area": _number("area", ".10g"),
+    "α̂ from": _number("alpha_hat_min", ".6g"),
+    "α̂ to": _number("alpha_hat_max", ".8g"),
+    "β̂ to": _number("beta_hat_max", ".8g"),
+    "least |z_p|": _number("best_z_abs", ".8f"),
+    "at α̂": _number("best_alpha_hat", ".8f"),
+    "at β̂": _number("best_beta_hat", ".8f"),
+    "paper": _number("paper_z_abs", ".2f"),
+    "there": lambda row: str(row["best_where"] or "-"),
+}
+
+
+def pole_rows(
+    method: Method, alpha_hat: float, beta_hat: float, poles: Iterable[complex], verdict: Verdict
+) -> list[Row]:
+    """Return a row for each pole of one method at one point, angles in degrees."""
+    return [
+        {
+            "method": method.name,
+            "alpha_hat": alpha_hat,
+            "beta_hat": beta_hat,
+            "z_real": float(z.real),
+            "z_imag": float(z.imag),
+            "z_abs": float(abs(z)),
+            "z_angle_deg": float(np.degrees(np.angle(z))),
+            "verdict": verdict,
+        }
+        for z in poles
+    ]
+
+
+def method_row(method: Method) -> Row:
+    """Return steps, evaluations per step, order of accuracy, error constant (exact, as text) and source."""
+    order, constant = accuracy(method)
+    return {
+        "method": method.name,
+        "steps": steps(method),
+        "evaluations": evaluations(method),
+        "order": order,
+        "error_constant": str(constant),
+        "source": method.source,
+    }
+
+
+def whole_row(method: Method, region: Region, best: Optimum | None, latex: bool) -> Row:
+    """Return all that is known of one method; formulas as text or LaTeX."""
+    return {
+        **method_row(method),
+        "recursion": recursion(method, latex),
+        "mapping": mapping_text(method, latex),
+        "characteristic_polynomial": characteristic_text(method, latex),
+        **region_row(region, best),
+    }
+
+
+def transposed(row: Row) -> list[Row]:
+    """Return one row per property, for reading a long row as text."""
+    shown = {
+        key: "-" if value is None else f"{value:.10g}" if isinstance(value, float) else str(value)
+        for key, value in row.items()
+    }
+    return [{"property": key.replace("_", " "), "value": value} for key, value in shown.items()]
+
+
+def region_row(region: Region, best: Optimum | None) -> Row:
+    """Return area, axis limits and best point, with what the paper has for it; None where the region is empty."""
+    (alpha_min, alpha_max), (_, beta_max) = region.extent or ((None, None), (None, None))
+    return {
+        "method": region.method.name,
+        "area": region.area,
+        "alpha_hat_min": alpha_min,
+        "alpha_hat_max": alpha_max,
+        "beta_hat_max": beta_max,
+        "best_z_abs": best.z_abs if best else None,
+        "best_alpha_hat": best.alpha_hat if best else None,
+        "best_beta_hat": best.beta_hat if best else None,
+        "best_where": where(best) if best else None,
+        "paper_z_abs": LEAST_Z_ABS.get(region.method.name),
+    }
+
+
+def where(best: Optimum) -> str:
+    """Return in words which poles meet at the best point, and where else |z_p| is as small."""
+    if best.z_abs == 0:
+        words = "deadbeat: every pole is 0"
+    else:
+        poles = " and ".join(f"{z.real:+.6f}{f' ± {z.imag:.6f}i' if z.imag else ''}" for z in best.meeting)
+        words = f"z = {poles}{' meet' if len(best.meeting) > 1 else ''}"
+        words += ", each double, on β̂ = α̂²/4" if best.double else ""
+    points = " and ".join(f"({a:.6f}, {b:.6f})" for a, b in best.elsewhere)
+    if best.arc:
+        return f"{words}; the same |z_p| on a whole arc, to {points}"
+    return f"{words}; also at {points}" if points else words
+
+
+def map_columns(
+    alpha_hat: FloatArray, beta_hat: FloatArray, z: NDArray[np.complex128], h: float | None
+) -> dict[str, NDArray[np.generic]]:
+    """Return a pole map as columns, alpha_hat running fastest; with h (s) also 2 alpha and beta^2 in 1/s and 1/s^2."""
+    a, b = np.meshgrid(alpha_hat, beta_hat)
+    columns = {"alpha_hat": a, "beta_hat": b, "z_abs": np.abs(z), "z_angle_deg": np.degrees(np.angle(z))}
+    return {key: column.ravel() for key, column in {**columns, **_physical(a, b, h)}.items()}
+
+
+def boundary_columns(regions: Sequence[Region], h: float | None) -> dict[str, NDArray[np.generic]]:
+    """Return the boundary curves as columns: method, number of the closed curve, the point; with h as above."""
+    curves = [(region.method.name, number, curve) for region in regions for number, curve in enumerate(region.boundary)]
+    names = np.array([name for name, _, curve in curves for _ in curve], dtype=np.str_)
+    numbers = np.array([number for _, number, curve in curves for _ in curve], dtype=np.int64)
+    a, b = np.concatenate([np.empty((0, 2)), *(curve for *_, curve in curves)]).T
+    return {"method": names, "curve": numbers, "alpha_hat": a, "beta_hat": b, **_physical(a, b, h)}
+
+
+def _physical(alpha_hat: FloatArray, beta_hat: FloatArray, h: float | None) -> dict[str, FloatArray]:
+    if h is None:
+        return {}
+    two_alpha, beta_squared = gains(alpha_hat, beta_hat, h)
+    return {"two_alpha": two_alpha, "beta_squared": beta_squared}
+
+
+def write_columns(columns: Mapping[str, NDArray[np.generic]], form: Literal["csv", "npz"], file: BinaryIO) -> None:
+    """Write equally long columns: CSV with every digit of float64, or NPZ with one array per name."""
+    if form == "npz":
+        np.savez_compressed(file, allow_pickle=False, **columns)
+        return
+    text = io.TextIOWrapper(file, encoding="utf-8", newline="", write_through=True)
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(columns)
+    writer.writerows(zip(*(column.tolist() for column in columns.values()), strict=True))
+    text.detach()
