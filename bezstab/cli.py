@@ -231,7 +231,7 @@ def region(
     from bezstab.optimum import optimum
 
     for name, window in (("--alpha-range", alpha_range), ("--beta-range", beta_range)):
-        if window and not window[0] < window[1]:
+        if window and not float(window[0]) < float(window[1]):
             raise InputError(f"{name} {float(window[0]):g} {float(window[1]):g}: the first must be the smaller")
     for level in levels:
         if level > 1:
@@ -240,14 +240,18 @@ def region(
         output_directory(output)
     step = None if h is None else float(h)
     if compare:
-        regions = [exact.region(method, float(levels[0]) if levels else 1.0) for method in methods]
+        if len(levels) > 1:
+            raise InputError(f"--compare takes one --level, but {len(levels)} were given")
+        regions = [exact.region(method, *map(float, levels)) for method in methods]
         _show([tables.region_row(each, optimum(each.method)) for each in regions], tables.REGIONS, form)
         name = "_".join(["compare", *map(_file_name, methods)])
         _write_table(output / f"{name}.{table}", tables.boundary_columns(regions, step), table)
         if figure != "none":
             from bezstab import figures
 
-            _write_figure(output / f"{name}.{figure}", figures.comparison_figure(regions, step), figure)
+            _write_figure(
+                output / f"{name}.{figure}", figures.comparison_figure(regions, alpha_range, beta_range, step), figure
+            )
         return
     rows: list[Row] = []
     for method in methods:

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
-from typing import Any, BinaryIO, Literal
+from typing import Any, BinaryIO, Literal, SupportsFloat
 
 import numpy as np
 from matplotlib import style
@@ -16,6 +16,8 @@ from bezstab.methods import Method
 from bezstab.optimum import Optimum
 from bezstab.poles import FloatArray
 from bezstab.region import Region
+
+Range = tuple[SupportsFloat, SupportsFloat]
 
 COLUMN_WIDTH = 85 / 25.4  # inches
 STYLE: dict[str, Any] = {
@@ -84,14 +86,23 @@ def region_figure(
         return figure
 
 
-def comparison_figure(regions: Sequence[Region], h: float | None = None) -> Figure:
-    """Return the boundaries of several methods in one plane (paper Fig. 2; with h in s, at equal h, Fig. 3)."""
+def comparison_figure(
+    regions: Sequence[Region], alpha_range: Range | None = None, beta_range: Range | None = None, h: float | None = None
+) -> Figure:
+    """Return the boundaries of several methods in one plane (paper Fig. 2; with h in s, at equal h, Fig. 3).
+
+    The ranges are in alpha_hat and beta_hat whatever the axes; without them all of every region shows.
+    """
     with _style():
         figure, axes = _axes(rf"$|z_p| = {regions[0].level:g}$", h)
         for region in regions:
             _curves(axes, region, h, label=region.method.name, **_line(region.method))
         axes.grid(color="0.9")
-        figure.legend(loc="outside lower center", ncols=3)
+        if alpha_range:
+            axes.set_xlim(*(gains(float(end), 0.0, h or 1.0)[0] for end in alpha_range))
+        if beta_range:
+            axes.set_ylim(*(gains(0.0, float(end), h or 1.0)[1] for end in beta_range))
+        figure.legend(loc="outside lower center", ncols=4)
         return figure
 
 

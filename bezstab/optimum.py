@@ -49,8 +49,11 @@ def optimum(method: Method) -> Optimum | None:
     NumericalError if no solution of the defining equations is as small as a sampled |z_p|.
     """
     if len(float_table(method)) == 2:  # one step: z = R(mu), and the zeros of R are deadbeat
-        zeros = {_upper(complex(mu)) for mu in roots_in_mu(method, np.zeros(1, complex))[:, 0]}
-        return _described(method, 0.0, sorted(zeros, key=lambda mu: mu.real), arc=False)  # the most damped first
+        zeros: list[complex] = []
+        for mu in map(_upper, np.sort_complex(roots_in_mu(method, np.zeros(1, complex))[:, 0])):  # most damped first
+            if all(abs(mu - other) > DOUBLE * abs(mu) for other in zeros):
+                zeros.append(mu)
+        return _described(method, 0.0, zeros, arc=False)
     if not region(method).boundary:
         return None
     z_abs, mu = _smallest(method)

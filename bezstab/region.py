@@ -6,7 +6,7 @@ from S_r's real intervals. Its edges are images of the boundary locus pi(r e^(i 
 root lies outside, and straight lines: one mu held at the end of a real interval (theory: paper Eq. 17 on |z| = r).
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import chain, combinations, pairwise
@@ -25,9 +25,13 @@ BISECTIONS = 60  # halves a bracket of 1e-3 rad below float64's spacing
 ARC_POINTS = 400  # drawn per arc: chords stay within 1e-5 of the curve
 QUADRATURE = 1e-14  # of |mu|^3: a panel is split until its halves agree to this, a hundredfold above rounding
 SPLITS = 40  # halvings of a panel at most: towards a corner of the locus they end at rounding
-EXTENT_DECIMALS = 14  # beyond them -1e-16 for an exact 0 is rounding
+ROUNDING = 1e-13  # of a range: an end this close to an axis lies on it
 NARROWINGS = 8  # each by 1/16: from a sample's spacing to where a smooth extreme is flat to rounding
+MARGIN = 1e-13  # of the level: rounding of a simple root's modulus, a hundredfold
+EMPTY = 1e-9  # of its box: a region with less area is the noise of roots that stay on the circle together
 REAL = 1e-9  # an imaginary part below this times |mu| is rounding where a branch is known to cross the real axis
+
+Extent = tuple[tuple[float, float], tuple[float, float]]
 
 
 @dataclass(frozen=True)
@@ -42,7 +46,7 @@ class Region:
     level: float
     area: float
     boundary: tuple[FloatArray, ...]
-    extent: tuple[tuple[float, float], tuple[float, float]] | None
+    extent: Extent | None
 
 
 @cache
@@ -57,22 +61,29 @@ def region(method: Method, level: float = 1.0) -> Region:
     area = sum(arc.area() for arc in arcs) + sum((end - start) ** 3 / 6 for start, end in intervals)
     for (a, b), (c, d) in combinations(intervals, 2):
         area += (b - a) * (d - c) * ((c + d) - (a + b)) / 2
-    extent = None
-    if edges:
-        corners = np.concatenate(edges)
-        furthest = {
-            (row, sign): max([(sign * corners[:, row]).max(), *(arc.furthest(sign * to_user[row]) for arc in arcs)])
-            for row in (0, 1)
+    area *= float(np.linalg.det(to_user))
+    extent = _extent(edges, arcs, to_user)
+    if extent is None or area <= EMPTY * np.prod(np.diff(extent)):
+        return Region(method, level, 0.0, (), None)
+    return Region(method, level, area, tuple(_closed_curves(edges)), extent)
+
+
+def _extent(edges: list[FloatArray], arcs: Sequence["_Arc"], to_user: FloatArray) -> Extent | None:
+    """Return the ranges of alpha_hat and beta_hat: of the straight edges' ends, and of each arc's furthest points."""
+    if not edges:
+        return None
+    corners, ranges = np.concatenate(edges), []
+    for axis in (0, 1):
+        low, high = (
+            max([float((sign * corners[:, axis]).max()), *(arc.furthest(sign * to_user[axis]) for arc in arcs)])
             for sign in (-1, 1)
-        }
-        (low_a, high_a), (low_b, high_b) = (
-            np.round([[-furthest[row, -1], furthest[row, 1]] for row in (0, 1)], EXTENT_DECIMALS) + 0.0
-        )  # no negative zero
-        extent = (float(low_a), float(high_a)), (float(low_b), float(high_b))
-    return Region(method, level, float(area * np.linalg.det(to_user)), tuple(_closed_curves(edges)), extent)
+        )
+        negligible = ROUNDING * (low + high)
+        ranges.append((0.0 if abs(low) < negligible else -low, 0.0 if abs(high) < negligible else high))
+    return ranges[0], ranges[1]
 
 
-def window(region: Region) -> tuple[tuple[float, float], tuple[float, float]]:
+def window(region: Region) -> Extent:
     """Return ranges of alpha_hat and beta_hat that show the whole region, the origin and a margin of 5 %."""
     (alpha_min, alpha_max), (beta_min, beta_max) = region.extent or ((0.0, 1.0), (0.0, 1.0))
     low = np.minimum(0, [alpha_min, beta_min])
@@ -168,7 +179,7 @@ def _locus(method: Method, level: float, theta: FloatArray) -> tuple[ComplexArra
     modulus = np.abs(others := roots_in_z(method, mu[upper]))
     own = np.argmin(np.abs(others - np.broadcast_to(z, mu.shape)[upper]), axis=0)
     np.put_along_axis(modulus, own[np.newaxis], 0, axis=0)
-    active[upper] = np.all(modulus < level, axis=0)
+    active[upper] = np.all(modulus < level * (1 - MARGIN), axis=0)
     return mu, active
 
 
