@@ -1,0 +1,59 @@
+import re
+import shlex
+import tomllib
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from bezstab.cli import main
+from bezstab.methods import read
+
+ROOT = Path(__file__).parent.parent
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+SESSIONS = re.findall(r"```console\n(.*?)```", README, re.DOTALL)
+INLINE = sorted(set(re.findall(r"`bezstab ((?:poles|region|methods)[^`|…]*)`", README)))
+
+
+@pytest.mark.parametrize("session", SESSIONS)
+def test_a_session_prints_what_the_readme_shows(session: str) -> None:
+    prompt, _, shown = session.partition("\n")
+    command = prompt.removeprefix("$ bezstab ")
+    result = CliRunner().invoke(main, shlex.split(command))
+    assert result.exit_code == 0
+    assert result.stdout.strip() == shown.strip()
+
+
+@pytest.mark.parametrize("command", INLINE)
+def test_a_command_in_the_text_runs(command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    result = CliRunner().invoke(main, shlex.split(command))
+    assert result.exit_code == 0, result.stderr
+
+
+def test_there_is_something_to_check() -> None:
+    assert SESSIONS
+    assert INLINE
+
+
+def test_the_sample_in_the_readme_is_a_method(tmp_path: Path) -> None:
+    (sample,) = re.findall(r"```toml\n(.*?)```", README, re.DOTALL)
+    (path := tmp_path / "sample.toml").write_text(sample, encoding="utf-8")
+    assert read(path).scheme == read(ROOT / "configs" / "methods" / "ebdf2.toml").scheme
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "configs" / "methods").glob("*.toml")), ids=lambda path: path.name)
+def test_every_shipped_method_is_accepted(path: Path) -> None:
+    assert read(path).name == tomllib.loads(path.read_text(encoding="utf-8"))["name"]
+
+
+def test_every_picture_and_link_is_there() -> None:
+    for target in re.findall(r"\]\(([^)#]+)\)", README):
+        assert (ROOT / target).exists(), target
+
+
+def test_the_layout_names_every_module() -> None:
+    table = README[README.index("| module | owns |") :]
+    named = set(re.findall(r"`(\w+)`", " ".join(re.findall(r"^\| (`.*?) \|", table, re.MULTILINE))))
+    modules = {path.stem for path in (ROOT / "bezstab").glob("*.py")}
+    assert named == modules - {"__init__", "__main__"}
