@@ -186,8 +186,16 @@ def methods(methods: Sequence[Method], latex: bool, form: "Format") -> None:
 @main.command()
 @_method_option("B4")
 @click.option("-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory for figure and table.")
-@click.option("--figure", type=click.Choice(["png", "svg", "pdf", "none"]), default="png", show_default=True)
-@click.option("--table", type=click.Choice(["csv", "npz", "none"]), default="csv", show_default=True)
+@click.option(
+    "--figure",
+    type=click.Choice(["png", "svg", "pdf", "none"]),
+    default="png",
+    show_default=True,
+    help="Format of the figure.",
+)
+@click.option(
+    "--table", type=click.Choice(["csv", "npz", "none"]), default="csv", show_default=True, help="Format of the table."
+)
 @click.option(
     "--grid", type=click.IntRange(2, 4000), default=200, show_default=True, help="Points per axis of the map."
 )

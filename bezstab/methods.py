@@ -274,10 +274,9 @@ def read(path: Path) -> Method:
             tableau = tuple(_vector({"A": row}, "A") for row in rows)
             return Method(name, RungeKutta(tableau, _vector(data, "b")), source)
         raise InputError(f"expected the keys rho and sigma, or A and b, but found {', '.join(sorted(keys)) or 'none'}")
-    except OSError as error:
-        raise InputError(f"method file {path}: {error.strerror}") from None
-    except (InputError, tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"method file {path}: {error}") from None
+    except (OSError, ValueError, RecursionError) as error:  # InputError and what tomllib raises are ValueErrors
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise InputError(" ".join(f"method file {path}: {reason}".split())) from None
 
 
 def _text(data: dict[str, object], key: str, default: str) -> str:

@@ -23,6 +23,7 @@ ComplexArray = NDArray[np.complex128]
 CHUNK = 16384  # points at a time: all the work arrays of one chunk stay in a core's cache
 STRIDE = 16  # of a chunk's points one in so many is solved from scratch, the others start from its roots
 ITERATIONS = 200  # Aberth's iteration needs about ten; a multiple root, where it is linear, about sixty
+NEAR = 0.2  # relative distance of x within which the roots of a neighbour are better starts than the polygon's
 NUDGE = 1e-3  # about a step of a map's grid, so it costs no iteration
 CONVERGED = 1e-9  # relative correction after which a cubically convergent iterate is exact to rounding
 
@@ -134,7 +135,11 @@ def _polynomial_roots(table: FloatArray, x: ComplexArray) -> ComplexArray:
     coarse = _aberth(a[:, ::STRIDE], _newton_polygon_starts(a[:, ::STRIDE]))
     # Nudged apart: coinciding starts would never part, and real ones never leave the axis of a real polynomial.
     coarse += NUDGE * np.abs(coarse).max(axis=0) * _spread(len(coarse))
-    return _aberth(a, np.repeat(coarse, STRIDE, axis=1)[:, : x.size])
+    starts = np.repeat(coarse, STRIDE, axis=1)[:, : x.size]
+    solved = np.repeat(x[::STRIDE], STRIDE)[: x.size]
+    alone = (np.abs(x - solved) >= NEAR * np.abs(x)) | (a[0] == 0)  # an exact zero starts, and stays, at 0
+    starts[:, alone] = _newton_polygon_starts(a[:, alone])
+    return _aberth(a, starts)
 
 
 def _spread(n: int) -> ComplexArray:

@@ -1,0 +1,228 @@
+import csv
+import io
+import json
+import os
+import re
+import shlex
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import click
+import numpy as np
+import pytest
+from click.testing import CliRunner, Result
+
+from bezstab.cli import main
+
+
+def run(*arguments: str) -> Result:
+    return CliRunner().invoke(main, list(arguments))
+
+
+def rows(*arguments: str) -> list[dict[str, object]]:
+    result = run(*arguments, "--format", "json")
+    assert result.exit_code == 0, result.stderr
+    data = json.loads(result.stdout)
+    assert isinstance(data, list)
+    return data
+
+
+@pytest.fixture(autouse=True)
+def _in_an_empty_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def test_poles_prints_the_default_methods_and_keys() -> None:
+    found = rows("poles", "--alpha", "0.5", "--beta", "0.1")
+    assert [row["method"] for row in found] == ["B2", "B3", "B4", "AB2", "AB3", "AB4", "RK4@5", "SIE"]
+    assert list(found[0]) == ["method", "alpha_hat", "beta_hat", "z_real", "z_imag", "z_abs", "z_angle_deg", "verdict"]
+    assert {row["verdict"] for row in found} == {"converges"}
+
+
+@pytest.mark.parametrize(
+    ("name", "alpha", "beta", "verdict"),
+    [
+        ("SYM", "1", "2", "marginal"),
+        ("SYM", "1", "2.00000000000000000001", "diverges"),
+        ("SYM", "1", "1.99999999999999999999", "converges"),
+        ("AB2", "1.5", "0.5", "marginal"),
+        ("AB2", "2", "1", "diverges"),
+        ("RK1", "2", "2", "marginal"),
+        ("RK1", "2.00000000000000000002", "2", "converges"),
+        ("B4", "0", "0", "diverges"),
+        ("B4", "-0.1", "0.1", "diverges"),
+        ("RK1", "6/11", "3/11", "converges"),
+        ("RK1", "6/11", "6/11", "marginal"),
+    ],
+)
+def test_the_verdict_is_proven_on_the_numbers_as_typed(name: str, alpha: str, beta: str, verdict: str) -> None:
+    (row,) = rows("poles", "--method", name, "--alpha", alpha, "--beta", beta)
+    assert row["verdict"] == verdict
+
+
+def test_physical_units_and_all_poles() -> None:
+    physical = rows(
+        "poles", "--alpha", "50", "--beta", "50", "--h", "0.002", "--physical", "--method", "B3", "--all-poles"
+    )
+    assert physical == rows("poles", "--alpha", "0.2", "--beta", "0.01", "--method", "B3", "--all-poles")
+    assert len(physical) == 6
+
+
+def test_methods_lists_and_shows() -> None:
+    assert {row["method"] for row in rows("methods")} >= {"B12", "AB8", "ABM4", "RK4", "SIE", "SYM"}
+    (row,) = rows("methods", "B4")
+    assert row["order"] == 2
+    assert row["recursion"] == "y_{k+1} = y_k + h/108 (175 f_k - 81 f_{k-1} + 15 f_{k-2} - f_{k-3})"
+    assert r"\hat{\alpha}" in run("methods", "B4", "--latex").stdout
+    text = run("methods", "B4").stdout
+    for piece in ("175 z^3 - 81 z^2 + 15 z - 1", "11664 z^8", "0.8096847184", "11/36", "0.625883502", "1.588235294"):
+        assert piece in text
+
+
+def test_region_needs_no_option_and_writes_two_files(tmp_path: Path) -> None:
+    result = run("region", "--method", "B4")
+    assert result.exit_code == 0
+    assert {path.name for path in tmp_path.iterdir()} == {"region_B4.png", "region_B4.csv"}
+    assert "0.8096847184" in result.stdout
+    assert "wrote" not in result.stdout
+    assert result.stderr.count("wrote") == 2
+    table = list(csv.DictReader(io.StringIO((tmp_path / "region_B4.csv").read_text(encoding="utf-8"))))
+    assert list(table[0]) == ["alpha_hat", "beta_hat", "z_abs", "z_angle_deg"]
+    assert len(table) == 200**2
+
+
+def test_region_prints_the_promised_keys(tmp_path: Path) -> None:
+    (row, other) = rows("region", "--method", "B4", "--method", "AB4", "--figure", "none", "--table", "none")
+    assert (row["method"], other["method"]) == ("B4", "AB4")
+    assert {"area", "alpha_hat_max", "beta_hat_max", "best_z_abs", "best_alpha_hat", "best_beta_hat"} <= set(row)
+    assert not list(tmp_path.iterdir())
+
+
+def test_region_options(tmp_path: Path) -> None:
+    options = (
+        "-o out --figure svg --table npz --grid 11 --alpha-range -0.1 0.5 --beta-range 1/10 2/10 --level 0.8 --h 0.001"
+    )
+    assert run("region", "--method", "B3", *options.split()).exit_code == 0
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {"region_B3.svg", "region_B3.npz"}
+    table = np.load(tmp_path / "out" / "region_B3.npz")
+    assert table["alpha_hat"][:11] == pytest.approx(np.linspace(-0.1, 0.5, 11))
+    assert table["beta_hat"][::11] == pytest.approx(np.linspace(0.1, 0.2, 11))
+    assert table["two_alpha"] == pytest.approx(table["alpha_hat"] * 1e3)
+    assert "0.8" in (tmp_path / "out" / "region_B3.svg").read_text(encoding="utf-8")
+
+
+def test_compare_overlays_boundaries(tmp_path: Path) -> None:
+    assert run("region", "--compare", "--method", "B4", "--method", "RK4@5", "--h", "0.001").exit_code == 0
+    assert {path.suffix for path in tmp_path.iterdir()} == {".png", ".csv"}
+    table = list(csv.DictReader(io.StringIO(next(tmp_path.glob("*.csv")).read_text(encoding="utf-8"))))
+    assert {row["method"] for row in table} == {"B4", "RK4@5"}
+
+
+def test_a_users_method(tmp_path: Path) -> None:
+    Path("mine.toml").write_text('name = "a/b"\nrho = ["1", "-1"]\nsigma = ["0", "1"]', encoding="utf-8")
+    assert run("region", "--method", "mine.toml", "--grid", "5").exit_code == 0
+    assert (tmp_path / "region_a_b.png").exists()
+    assert rows("poles", "--alpha", "1", "--beta", "1/2", "--method", "mine.toml@2")[0]["method"] == "a/b@2"
+
+
+@pytest.mark.parametrize(
+    ("command", "named"),
+    [
+        ("poles --alpha nan --beta 1", "--alpha"),
+        ("poles --alpha 1 --beta inf", "--beta"),
+        ("poles --alpha 1e999 --beta 1", "--alpha"),
+        ("poles --alpha 1/0 --beta 1", "--alpha"),
+        ("poles --alpha 1", "--beta"),
+        ("poles --alpha 1 --beta 1 --physical", "--h"),
+        ("poles --alpha 1 --beta 1 --h 0.1", "--physical"),
+        ("poles --alpha 1 --beta 1 --h -1 --physical", "--h"),
+        ("poles --alpha 1 --beta 1 --method B99", "did you mean B9"),
+        ("poles --alpha 1 --beta 1 --method missing.toml", "missing.toml"),
+        ("poles --alpha 1 --beta 1 --method RK4@0", "RK4@0"),
+        ("poles --alpha 1 --beta 1 --format yaml", "--format"),
+        ("poles --alpha 1 --beta 1 --frmat csv", "--frmat"),
+        ("region --grid -5", "--grid"),
+        ("region --grid 1000000", "--grid"),
+        ("region --grid 1.5", "--grid"),
+        ("region --alpha-range 1 0", "--alpha-range"),
+        ("region --beta-range 1 1", "--beta-range"),
+        ("region --beta-range 1 1.00000000000000000000001", "--beta-range"),
+        ("region --level 2", "--level"),
+        ("region --level 0", "--level"),
+        ("region --compare --level 0.5 --level 0.7", "--level"),
+        ("region -o file/below", "file/below"),
+        ("region --figure jpg", "--figure"),
+        ("methods B99", "B99"),
+        ("foo", "foo"),
+    ],
+)
+def test_a_mistake_takes_one_line_status_two_and_no_file(command: str, named: str, tmp_path: Path) -> None:
+    Path("file").touch()
+    result = run(*shlex.split(command))
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    assert result.stderr.count("\n") == 1
+    assert named in result.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+def test_numerical_trouble_is_status_three(tmp_path: Path) -> None:
+    result = run("region", "--alpha-range", "0", "1e307")
+    assert result.exit_code == 3
+    assert result.stderr.count("\n") == 1
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("form", ["text", "json", "csv", "markdown"])
+@pytest.mark.parametrize(
+    "command",
+    ["poles --alpha 1 --beta 1", "methods", "methods B3 SYM", "region --method B3 --figure none --table none"],
+)
+def test_every_command_prints_in_every_format(command: str, form: str) -> None:
+    result = run(*command.split(), "--format", form)
+    assert result.exit_code == 0
+    assert result.stderr == ""
+    if form == "csv":
+        assert len(list(csv.DictReader(io.StringIO(result.stdout)))) >= 1
+    if form == "json":
+        assert isinstance(json.loads(result.stdout), list)
+
+
+@pytest.mark.parametrize("name", main.commands)
+def test_the_example_in_the_help_runs(name: str) -> None:
+    shown = run(name, "--help").stdout
+    example = re.search(r"Example: bezstab ((?:[^\n]|\n  \S)*)", shown)
+    assert example, shown
+    assert run(*shlex.split(example[1])).exit_code == 0
+
+
+@pytest.mark.parametrize("command", main.commands.values(), ids=str)
+def test_every_option_explains_itself(command: click.Command) -> None:
+    assert all(option.help for option in command.params if isinstance(option, click.Option))
+
+
+def bezstab(*arguments: str) -> list[str]:
+    return [sys.executable, "-m", "bezstab", *arguments]
+
+
+def test_a_closed_pipe_is_no_error_to_read() -> None:
+    with subprocess.Popen(bezstab("methods"), stdout=subprocess.PIPE, stderr=subprocess.PIPE) as source:
+        assert source.stdout
+        assert source.stderr
+        source.stdout.close()
+        assert source.stderr.read() == b""
+
+
+def test_an_interrupt_stops_cleanly(tmp_path: Path) -> None:
+    long = bezstab("region", "--grid", "4000", "--method", "B12")
+    running = subprocess.Popen(long, stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=tmp_path)
+    time.sleep(5)
+    assert running.poll() is None
+    os.kill(running.pid, signal.SIGINT)
+    _, errors = running.communicate(timeout=60)
+    assert running.returncode == 130
+    assert errors.decode().split() == ["bezstab:", "interrupted"]
+    assert not list(tmp_path.iterdir())

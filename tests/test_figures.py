@@ -1,0 +1,106 @@
+import io
+import subprocess
+import sys
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from bezstab.figures import comparison_figure, region_figure, save
+from bezstab.methods import lookup
+from bezstab.optimum import optimum
+from bezstab.poles import FloatArray, spectral_radius
+from bezstab.region import region, window
+
+
+def drawn(name: str = "B4", h: float | None = None) -> tuple[Figure, FloatArray, FloatArray, FloatArray]:
+    method = lookup(name)
+    alpha_hat, beta_hat = (np.linspace(low, high, 41) for low, high in window(region(method)))
+    z_abs = spectral_radius(method, alpha_hat, beta_hat[:, None])
+    faster = [region(method, 0.75), region(method, 0.9)]
+    return (
+        region_figure(region(method), faster, optimum(method), alpha_hat, beta_hat, z_abs, h),
+        alpha_hat,
+        beta_hat,
+        z_abs,
+    )
+
+
+@pytest.mark.parametrize("h", [None, 0.001])
+def test_the_figure_draws_what_it_is_given(h: float | None) -> None:
+    figure, alpha_hat, beta_hat, z_abs = drawn(h=h)
+    axes, scale = figure.axes[0], np.array([1 / (h or 1), 1 / (h or 1) ** 2])
+    (image,) = axes.images
+    shown = image.get_array()
+    assert shown is not None
+    assert (np.ma.getmaskarray(shown) == (z_abs >= 1)).all()
+    assert np.asarray(shown)[z_abs < 1].tolist() == z_abs[z_abs < 1].tolist()
+    left, right, bottom, top = image.get_extent()
+    step = (alpha_hat[1] - alpha_hat[0]) * scale[0]
+    assert (left + step / 2, right - step / 2) == pytest.approx((0, alpha_hat[-1] * scale[0]))  # nodes at pixel centres
+    assert (bottom + top) / 2 == pytest.approx(beta_hat[[0, -1]].mean() * scale[1])
+    lines = {str(line.get_label()): np.array(line.get_xydata()) for line in axes.lines}
+    for label, level in (("$|z_p| = 1$", 1.0), ("$|z_p| = 0.75$", 0.75), ("$|z_p| = 0.9$", 0.9)):
+        (curve,) = region(lookup("B4"), level).boundary
+        assert lines[label][:-1] == pytest.approx(curve * scale)
+    parabola = lines[r"$\hat\beta = \hat\alpha^2/4$"]
+    assert parabola[:, 1] == pytest.approx(parabola[:, 0] ** 2 / 4)  # beta^2 = (2 alpha)^2/4 in either unit
+    best = optimum(lookup("B4"))
+    assert best is not None
+    assert lines["least $|z_p|$: 0.6259"][0] == pytest.approx(np.array([best.alpha_hat, best.beta_hat]) * scale)
+    assert r"\alpha" in axes.get_xlabel()
+    assert r"\beta" in axes.get_ylabel()
+    assert ("1/s" in axes.get_xlabel()) == (h is not None)
+
+
+def test_an_empty_region_can_be_drawn() -> None:
+    axis = np.linspace(0, 1, 5)
+    figure = region_figure(region(lookup("AB4"), 0.5), [], None, axis, axis, np.full((5, 5), 2.0))
+    save(figure, "png", io.BytesIO())
+
+
+def test_a_method_has_the_same_colour_everywhere_and_its_own_line() -> None:
+    names = ["B3", "B4", "AB3", "AB4", "RK4@5", "SYM", "SIE", "ABM4"]
+    looks = []
+    for order in (names, names[::-1]):
+        axes = comparison_figure([region(lookup(name)) for name in order]).axes[0]
+        looks.append({str(line.get_label()): (line.get_color(), line.get_linestyle()) for line in axes.lines})
+    assert looks[0] == looks[1]
+    assert len(set(map(str, looks[0].values()))) == len(names)
+
+
+def test_a_comparison_draws_each_boundary_and_keeps_a_given_window() -> None:
+    regions = [region(lookup(name)) for name in ("B4", "RK4@5")]
+    axes = comparison_figure(regions, (0.0, 1.0), (0.0, 0.5), h=0.001).axes[0]
+    for line, shape in zip(axes.lines, regions, strict=True):
+        assert np.array(line.get_xydata())[:-1] == pytest.approx(shape.boundary[0] * [1e3, 1e6])
+    assert (*axes.get_xlim(), *axes.get_ylim()) == pytest.approx((0, 1e3, 0, 0.5e6))
+
+
+@pytest.mark.parametrize("form", ["png", "svg", "pdf"])
+def test_equal_figures_are_equal_bytes_whatever_the_users_settings(form: str) -> None:
+    outputs = []
+    own: dict[str, Any] = {"font.size": 20, "lines.linewidth": 9, "savefig.dpi": 10, "svg.hashsalt": "x"}
+    for settings in ({}, own):
+        with mpl.rc_context(settings):  # type: ignore[arg-type,unused-ignore]
+            save(drawn()[0], form, file := io.BytesIO())  # type: ignore[arg-type]
+        outputs.append(file.getvalue())
+    assert outputs[0] == outputs[1]
+
+
+def test_two_processes_draw_the_same_bytes() -> None:
+    code = (
+        "import sys; from bezstab.figures import *; from bezstab.methods import lookup;"
+        "from bezstab.region import region;"
+        "save(comparison_figure([region(lookup('B4'))]), 'svg', sys.stdout.buffer)"
+    )
+    runs = [
+        subprocess.run(
+            [sys.executable, "-c", code], capture_output=True, check=True, env={"PYTHONHASHSEED": seed}
+        ).stdout
+        for seed in ("1", "2")
+    ]
+    assert runs[0] == runs[1]
+    assert b"<svg" in runs[0]

@@ -1,0 +1,41 @@
+from pathlib import Path
+from typing import BinaryIO
+
+import pytest
+
+from bezstab.errors import InputError
+from bezstab.files import output_directory, write_whole
+
+
+def test_a_file_is_written_whole(tmp_path: Path) -> None:
+    write_whole(tmp_path / "a.bin", lambda file: file.write(b"whole"))
+    assert (tmp_path / "a.bin").read_bytes() == b"whole"
+
+
+@pytest.mark.parametrize("error", [RuntimeError, KeyboardInterrupt])
+def test_an_interruption_leaves_what_was_there(tmp_path: Path, error: type[BaseException]) -> None:
+    (path := tmp_path / "a.bin").write_bytes(b"old")
+
+    def half(file: BinaryIO) -> None:
+        file.write(b"ne")
+        raise error
+
+    with pytest.raises(error):
+        write_whole(path, half)
+    assert [entry.read_bytes() for entry in tmp_path.iterdir()] == [b"old"]
+
+
+def test_what_cannot_be_written_is_the_users_mistake(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    with pytest.raises(InputError, match="cannot write"):
+        output_directory(tmp_path / "file" / "below")
+    with pytest.raises(InputError, match="cannot write"):
+        write_whole(tmp_path / "missing" / "a.bin", lambda file: file.write(b""))
+    (tmp_path / "taken").mkdir()
+    with pytest.raises(InputError, match="cannot write"):
+        write_whole(tmp_path / "taken", lambda file: file.write(b""))
+    assert {entry.name for entry in tmp_path.iterdir()} == {"file", "taken"}
+
+
+def test_a_missing_directory_is_made(tmp_path: Path) -> None:
+    assert list(output_directory(tmp_path / "a" / "b").iterdir()) == []
