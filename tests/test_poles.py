@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from bezstab.derivation import closed_loop_at, coefficient_table, effective_parameters
 from bezstab.errors import NumericalError
-from bezstab.methods import REGISTRY, Method, lookup
+from bezstab.methods import REGISTRY, LinearMultistep, Method, lookup
 from bezstab.poles import dominant_pole, poles, spectral_radius, verdict
 
 F = Fraction
@@ -66,6 +66,7 @@ def test_the_preset_points_of_the_engines(point: tuple[float, float]) -> None:
 POINTS = [
     (0.5, 0.1), (1e-12, 1e-12), (1e-12, 1e12), (1e12, 1e-12), (1e12, 1e12), (1e6, 1e-6), (0.0, 0.3), (0.3, 0.0),
     (1.0, 0.25), (0.1, 0.0025), (0.7, 0.1225), (1e-6, 2.5e-13), (-0.3, 0.2), (0.2, -0.4), (2.0, 2.0), (0.0, 0.0),
+    (1.0, 2.0), (1.5, 0.5), (2.0, 1.0), (1.0, 0.0), (27 / 17, (27 / 34) ** 2),  # on one boundary or another
 ]  # fmt: skip
 
 
@@ -158,6 +159,21 @@ def test_the_verdict_is_right_on_the_boundary_itself(name: str, alpha_hat: Fract
     for da, db in ((tiny, F(0)), (F(0), tiny)):
         sides = {verdict(method, alpha_hat + sign * da, beta_hat + sign * db) for sign in (-1, 1)}
         assert sides == {"converges", "diverges"}
+
+
+@pytest.mark.parametrize("name", [name for name in REGISTRY if isinstance(lookup(name).scheme, LinearMultistep)])
+@given(st.fractions(F(1, 100), F(99, 100), max_denominator=1000), st.booleans())
+@settings(max_examples=10, deadline=None)
+def test_only_the_exact_verdict_knows_the_straight_edges(name: str, part: Fraction, along_alpha: bool) -> None:
+    scheme, tiny = lookup(name).scheme, F(1, 10**20)
+    assert isinstance(scheme, LinearMultistep)
+    # one mu where z = -1, the other further in: P(-1) = 0 exactly, and that root is simple
+    edge = sum(c * (-1) ** k for k, c in enumerate(scheme.rho)) / sum(c * (-1) ** k for k, c in enumerate(scheme.sigma))
+    a, b = -(edge + part * edge), edge * part * edge
+    step = (tiny, F(0)) if along_alpha else (F(0), tiny)
+    verdicts = [verdict(lookup(name), a + sign * step[0], b + sign * step[1]) for sign in (-1, 0, 1)]
+    assert verdicts[1] == "marginal"
+    assert {verdicts[0], verdicts[2]} == {"converges", "diverges"}
 
 
 def test_a_repeated_root_on_the_circle_diverges() -> None:
