@@ -211,7 +211,7 @@ def _physical(alpha_hat: FloatArray, beta_hat: FloatArray, h: float | None) -> d
 def write_columns(columns: Mapping[str, NDArray[np.generic]], form: Literal["csv", "npz"], file: BinaryIO) -> None:
     """Write equally long columns: CSV with every digit of float64, or NPZ with one array per name."""
     if form == "npz":
-        np.savez_compressed(file, allow_pickle=False, **columns)
+        np.savez_compressed(file, **columns)  # type: ignore[arg-type]  # its options have other names
         return
     text = io.TextIOWrapper(file, encoding="utf-8", newline="", write_through=True)
     writer = csv.writer(text, lineterminator="\n")
