@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, NoReturn, TypeVar
 import click
 
 from bezstab import __version__
-from bezstab.baumgarte import dimensionless
+from bezstab.baumgarte import dimensionless, gains
 from bezstab.errors import InputError, NumericalError
 from bezstab.files import output_directory, write_whole
 from bezstab.methods import REGISTRY, Method, lookup, rational
@@ -24,9 +24,12 @@ if TYPE_CHECKING:
 
     from bezstab.optimum import Optimum
     from bezstab.poles import ComplexArray
+    from bezstab.simulate import Start
     from bezstab.tables import Columns, Format, Row
 
 TABLE_5 = ("B2", "B3", "B4", "AB2", "AB3", "AB4", "RK4@5", "SIE")
+
+MOST_STEPS = 10**8  # a run keeps its whole history: 10 GB and an hour for the slider-crank
 
 Command = TypeVar("Command", bound=Callable[..., object])
 
@@ -100,6 +103,19 @@ _format_option = click.option(
     default="text",
     show_default=True,
     help="What to print on standard output.",
+)
+
+
+_figure_option = click.option(
+    "--figure",
+    type=click.Choice(["png", "svg", "pdf", "none"]),
+    default="png",
+    show_default=True,
+    help="Format of the figure.",
+)
+
+_table_option = click.option(
+    "--table", type=click.Choice(["csv", "npz", "none"]), default="csv", show_default=True, help="Format of the table."
 )
 
 
@@ -186,16 +202,8 @@ def methods(methods: Sequence[Method], latex: bool, form: "Format") -> None:
 @main.command()
 @_method_option("B4")
 @click.option("-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory for figure and table.")
-@click.option(
-    "--figure",
-    type=click.Choice(["png", "svg", "pdf", "none"]),
-    default="png",
-    show_default=True,
-    help="Format of the figure.",
-)
-@click.option(
-    "--table", type=click.Choice(["csv", "npz", "none"]), default="csv", show_default=True, help="Format of the table."
-)
+@_figure_option
+@_table_option
 @click.option(
     "--grid", type=click.IntRange(2, 4000), default=200, show_default=True, help="Points per axis of the map."
 )
@@ -252,7 +260,7 @@ def region(
             raise InputError(f"--compare takes one --level, but {len(levels)} were given")
         regions = [exact.region(method, *map(float, levels)) for method in methods]
         _show([tables.region_row(each, optimum(each.method)) for each in regions], tables.REGIONS, form)
-        name = "_".join(["compare", *map(_file_name, methods)])
+        name = "_".join(["compare", *(_file_name(method.name) for method in methods)])
         _write_table(output / f"{name}.{table}", tables.boundary_columns(regions, step), table)
         if figure != "none":
             from bezstab import figures
@@ -273,7 +281,7 @@ def region(
             continue
         blocks = exact.pole_map(method, alpha_hat, beta_hat)
         z = np.concatenate(list(_progress(blocks, grid, method.name)))
-        name = f"region_{_file_name(method)}"
+        name = f"region_{_file_name(method.name)}"
         _write_table(output / f"{name}.{table}", tables.map_columns(alpha_hat, beta_hat, z, step), table)
         if figure != "none":
             from bezstab import figures
@@ -285,13 +293,89 @@ def region(
     _show(rows, tables.REGIONS, form)
 
 
+@main.command()
+@click.option("--scene", default="slider_crank", show_default=True, help="A shipped scene's name, or a .toml file.")
+@click.option("--method", type=MethodName(), default="B4", show_default=True, help="As for the other commands.")
+@click.option("--alpha", type=Rational(), default="0.5", show_default=True, help="α̂; α in 1/s with --physical.")
+@click.option("--beta", type=Rational(), default="0.1", show_default=True, help="β̂; β in 1/s with --physical.")
+@click.option("--physical", is_flag=True, help="Take --alpha and --beta as α and β in 1/s.")
+@click.option("--no-stabilization", is_flag=True, help="No feedback: α = β = 0.")
+@click.option("--h", type=Rational(positive=True), default="0.001", show_default=True, help="Step size in s.")
+@click.option("--time", type=Rational(positive=True), default="10", show_default=True, help="Duration in s.")
+@click.option("--perturb", type=Rational(), default="0", help="Initial error of the first constraint, in its unit.")
+@click.option(
+    "--start",
+    type=click.Choice(["rk4", "ramp", "euler"]),
+    default="rk4",
+    show_default=True,
+    help="What provides a multistep method's first values: RK4, its family's shorter members, or explicit Euler.",
+)
+@click.option("-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory for figure and table.")
+@_figure_option
+@_table_option
+@_format_option
+def simulate(
+    scene: str,
+    method: Method,
+    alpha: Fraction,
+    beta: Fraction,
+    physical: bool,
+    no_stabilization: bool,
+    h: Fraction,
+    time: Fraction,
+    perturb: Fraction,
+    start: "Start",
+    output: Path,
+    figure: Literal["png", "svg", "pdf", "none"],
+    table: Literal["csv", "npz", "none"],
+    form: "Format",
+) -> None:
+    """Run a mechanism and see what its constraint error does.
+
+    Prints largest |c| and |ċ|, energy drift and evaluations, and writes the history and a figure of the first
+    constraint and its derivative. Exit status 3 if the run broke down; what came before is kept.
+
+    Example: bezstab simulate --method AB4 --alpha 0.5 --beta 0.101 --time 2
+    """
+    from bezstab import simulate as running
+    from bezstab import tables
+    from bezstab.mechanism import mechanism, observe, perturbed
+    from bezstab.scene import load
+
+    if physical:
+        alpha, beta = dimensionless(alpha, beta, h)
+    if no_stabilization:
+        alpha = beta = Fraction(0)
+    steps = time / (h * method.step_multiple)
+    if not 1 <= steps <= MOST_STEPS:
+        raise InputError(
+            f"--time {float(time):g}: {float(steps):g} steps of {method.name}, expected 1 to {MOST_STEPS:g}"
+        )
+    if figure != "none" or table != "none":
+        output_directory(output)
+    moving = mechanism(load(scene))
+    two_alpha, beta_squared = gains(float(alpha), float(beta), float(h))
+    state = perturbed(moving, float(perturb))
+    run = running.simulate(moving, method, float(h), float(time), (two_alpha, beta_squared), state, start)
+    seen = observe(moving, run.t, run.q, run.v, two_alpha, beta_squared)
+    name = f"simulate_{_file_name(Path(scene).stem)}_{_file_name(method.name)}"
+    _write_table(output / f"{name}.{table}", tables.history_columns(run, seen), table)
+    if figure != "none":
+        from bezstab import figures
+
+        _write_figure(output / f"{name}.{figure}", figures.history_figure(run, seen), figure)
+    _show([tables.simulation_row(run, seen, float(alpha), float(beta), float(h))], tables.SIMULATIONS, form)
+    if run.failure:
+        raise NumericalError(run.failure)
+
+
 def _faster_level(method: Method, best: "Optimum") -> float:
     """Return the level of the faster region H: the paper's, else a quarter of the way from the least |z_p| to 1."""
     return FASTER_LEVEL.get(method.name, round(best.z_abs + (1 - best.z_abs) / 4, 2))
 
 
-def _file_name(method: Method) -> str:
-    return re.sub(r"[^\w@.+-]", "_", method.name)
+def _file_name(name: str) -> str:
+    return re.sub(r"[^\w@.+-]", "_", name)
 
 
 def _progress(blocks: Iterable["ComplexArray"], length: int, label: str) -> Iterator["ComplexArray"]:

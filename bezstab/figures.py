@@ -12,10 +12,12 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
 from bezstab.baumgarte import gains
+from bezstab.mechanism import Observation
 from bezstab.methods import Method
 from bezstab.optimum import Optimum
 from bezstab.poles import FloatArray
 from bezstab.region import Region
+from bezstab.simulate import Trajectory
 
 Range = tuple[SupportsFloat, SupportsFloat]
 
@@ -103,6 +105,23 @@ def comparison_figure(
         if beta_range:
             axes.set_ylim(*(gains(0.0, float(end), h or 1.0)[1] for end in beta_range))
         figure.legend(loc="outside lower center", ncols=4)
+        return figure
+
+
+def history_figure(run: Trajectory, seen: Observation) -> Figure:
+    """Return the first constraint and its derivative against time (paper Figs. 5-9)."""
+    with _style():
+        figure = Figure(figsize=(COLUMN_WIDTH, COLUMN_WIDTH), layout="constrained")
+        upper, lower = figure.subplots(2, 1, sharex=True)
+        colour = _line(run.method)["color"]
+        upper.plot(run.t, seen.c[:, 0], color=colour)
+        lower.plot(run.t, seen.cdot[:, 0], color=colour)
+        title = f"{run.mechanism.scene.name}, {run.method.name}"
+        upper.set(title=f"{title}\n{run.failure}" if run.failure else title, ylabel="$c_1$ (SI)")
+        lower.set(xlabel="t (s)", ylabel=r"$\dot c_1$ (SI)")
+        for axes in (upper, lower):
+            axes.grid(color="0.9")
+            axes.ticklabel_format(axis="y", scilimits=(-2, 3))
         return figure
 
 

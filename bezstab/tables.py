@@ -13,12 +13,14 @@ from numpy.typing import NDArray
 from bezstab.baumgarte import gains
 from bezstab.derivation import accuracy
 from bezstab.formulas import characteristic_text, mapping_text, recursion
+from bezstab.mechanism import Observation
 from bezstab.methods import Method, evaluations, steps
 from bezstab.optimum import Optimum
 from bezstab.paper import LEAST_Z_ABS
 from bezstab.poles import FloatArray
 from bezstab.region import Region
 from bezstab.schur import Verdict
+from bezstab.simulate import Trajectory
 
 Value = str | float | int | None
 Row = Mapping[str, Value]
@@ -85,6 +87,20 @@ METHODS: Columns = {
 }
 
 PROPERTIES: Columns = {key: lambda row, key=key: str(row[key]) for key in ("property", "value")}  # type: ignore[misc]
+
+SIMULATIONS: Columns = {
+    "scene": lambda row: str(row["scene"]),
+    "method": lambda row: str(row["method"]),
+    "α̂": _number("alpha_hat", ".6g"),
+    "β̂": _number("beta_hat", ".6g"),
+    "h (s)": _number("h", "g"),
+    "until (s)": _number("time", ".6g"),
+    "largest |c|": _number("c_max", ".3e"),
+    "largest |ċ|": _number("cdot_max", ".3e"),
+    "energy drift (J)": _number("energy_drift", ".3e"),
+    "evaluations": _number("evaluations", "d"),
+    "failure": lambda row: str(row["failure"] or "-"),
+}
 
 REGIONS: Columns = {
     "method": lambda row: str(row["method"]),
@@ -181,6 +197,33 @@ def where(best: Optimum) -> str:
     if best.arc:
         return f"{words}; the same |z_p| on a whole arc, to {points}"
     return f"{words}; also at {points}" if points else words
+
+
+def simulation_row(run: Trajectory, seen: Observation, alpha_hat: float, beta_hat: float, h: float) -> Row:
+    """Return the summary of one run: largest |c| and |cdot|, energy drift (J), evaluations, when and why it failed."""
+    return {
+        "scene": run.mechanism.scene.name,
+        "method": run.method.name,
+        "alpha_hat": alpha_hat,
+        "beta_hat": beta_hat,
+        "h": h,
+        "time": float(run.t[-1]),
+        "c_max": float(np.abs(seen.c).max()),
+        "cdot_max": float(np.abs(seen.cdot).max()),
+        "energy_drift": float(seen.energy[-1] - seen.energy[0]),
+        "evaluations": run.evaluations,
+        "failure": run.failure,
+    }
+
+
+def history_columns(run: Trajectory, seen: Observation) -> dict[str, NDArray[np.generic]]:
+    """Return t, q, qdot, c, cdot, lambda and energy as columns, SI units."""
+    columns: dict[str, NDArray[np.generic]] = {"t": run.t}
+    for prefix, rows in (("", run.q), ("d/dt ", run.v)):
+        columns |= {f"{prefix}{name}": rows[:, i] for i, name in enumerate(run.mechanism.scene.coordinates)}
+    for name, rows in (("c", seen.c), ("cdot", seen.cdot), ("lambda", seen.multipliers)):
+        columns |= {f"{name}_{i}": column for i, column in enumerate(rows.T, start=1)}
+    return {**columns, "energy": seen.energy}
 
 
 def map_columns(

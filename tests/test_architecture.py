@@ -10,15 +10,15 @@ MODULES = sorted(path.stem for path in PACKAGE.glob("*.py") if path.stem not in 
 FLOORS = {
     **dict.fromkeys(("errors",), 0),
     **dict.fromkeys(("files", "schur", "paper"), 1),
-    **dict.fromkeys(("methods", "baumgarte"), 2),
-    "derivation": 3,
-    **dict.fromkeys(("formulas", "poles"), 4),
+    **dict.fromkeys(("methods", "baumgarte", "scene"), 2),
+    **dict.fromkeys(("derivation", "mechanism"), 3),
+    **dict.fromkeys(("formulas", "poles", "simulate"), 4),
     "region": 5,
     "optimum": 6,
     **dict.fromkeys(("tables", "figures"), 7),
     "cli": 8,
 }
-ONLY_IN = {"sympy": {"derivation", "formulas"}, "matplotlib": {"figures"}, "click": {"cli"}}
+ONLY_IN = {"sympy": {"derivation", "formulas", "mechanism"}, "matplotlib": {"figures"}, "click": {"cli"}}
 ALLOWED_FOR_TYPES = {("cli", "matplotlib")}  # imported under TYPE_CHECKING only, see test_help_is_light
 
 

@@ -128,9 +128,48 @@ def test_a_users_method(tmp_path: Path) -> None:
     assert rows("poles", "--alpha", "1", "--beta", "1/2", "--method", "mine.toml@2")[0]["method"] == "a/b@2"
 
 
+def test_simulate_writes_history_and_figure(tmp_path: Path) -> None:
+    (row,) = rows("simulate", "--time", "0.05", "--perturb", "1e-4", "--table", "npz")
+    assert {path.name for path in tmp_path.iterdir()} == {
+        "simulate_slider_crank_B4.npz",
+        "simulate_slider_crank_B4.png",
+    }
+    history = np.load(tmp_path / "simulate_slider_crank_B4.npz")
+    assert history["t"][-1] == pytest.approx(0.05)
+    assert history["c_1"][0] == pytest.approx(1e-4, rel=1e-2)  # to first order in the perturbation
+    assert row["c_max"] == pytest.approx(max(np.abs(history[f"c_{i}"]).max() for i in range(1, 5)))
+    assert {"crank.theta", "d/dt slider.x", "cdot_4", "lambda_1", "energy"} <= set(history)
+
+
+def test_without_stabilisation_the_parameters_do_not_count() -> None:
+    plain = rows("simulate", "--time", "0.02", "--no-stabilization", "--figure", "none", "--table", "none")
+    assert (plain[0]["alpha_hat"], plain[0]["beta_hat"]) == (0, 0)
+
+
+def test_physical_parameters_are_the_same_run() -> None:
+    common = ("simulate", "--time", "0.02", "--figure", "none", "--table", "none", "--h", "0.002")
+    assert rows(*common, "--alpha", "50", "--beta", "50", "--physical") == rows(
+        *common, "--alpha", "0.2", "--beta", "0.01"
+    )
+
+
+def test_a_blow_up_is_status_three_and_keeps_the_history(tmp_path: Path) -> None:
+    result = run("simulate", "--alpha", "1.7", "--beta", "0.8", "--time", "1", "--format", "json")
+    assert result.exit_code == 3
+    assert "blow-up" in json.loads(result.stdout)[0]["failure"]
+    assert "at t = 0.1" in result.stderr.splitlines()[-1]
+    assert len(list(tmp_path.iterdir())) == 2
+
+
 @pytest.mark.parametrize(
     ("command", "named"),
     [
+        ("simulate --scene pendulm", "did you mean pendulum"),
+        ("simulate --scene missing.toml", "missing.toml"),
+        ("simulate --h 0", "--h"),
+        ("simulate --time 1e-9", "--time"),
+        ("simulate --time 1e9", "--time"),
+        ("simulate --start late", "--start"),
         ("poles --alpha nan --beta 1", "--alpha"),
         ("poles --alpha 1 --beta inf", "--beta"),
         ("poles --alpha 1e999 --beta 1", "--alpha"),
@@ -179,7 +218,13 @@ def test_numerical_trouble_is_status_three(tmp_path: Path) -> None:
 @pytest.mark.parametrize("form", ["text", "json", "csv", "markdown"])
 @pytest.mark.parametrize(
     "command",
-    ["poles --alpha 1 --beta 1", "methods", "methods B3 SYM", "region --method B3 --figure none --table none"],
+    [
+        "poles --alpha 1 --beta 1",
+        "methods",
+        "methods B3 SYM",
+        "region --method B3 --figure none --table none",
+        "simulate --time 0.01 --figure none --table none",
+    ],
 )
 def test_every_command_prints_in_every_format(command: str, form: str) -> None:
     result = run(*command.split(), "--format", form)
