@@ -44,8 +44,8 @@ class Equations:
 
 def equations(scene: Scene) -> Equations:
     """Return the equations of motion, paper Eqs 1-5: C_q qddot = gamma, M qddot + C_q^T lambda = g."""
-    names = [name.replace(".", "_") for name in scene.coordinates]
-    q, v = [sp.Symbol(f"q_{name}") for name in names], [sp.Symbol(f"v_{name}") for name in names]
+    # Not called after the bodies: a scene's names must never get into generated code.
+    q, v = ([sp.Symbol(name) for name in names(prefix, len(scene.coordinates))] for prefix in ("q", "v"))
     symbols = dict(zip(scene.coordinates, q, strict=True))
     mass = [sp.Float(body.inertia if axis == "theta" else body.mass) for body in scene.bodies for axis in body.free]
     frames = {body.name: _frame(body, symbols) for body in scene.bodies}
@@ -233,7 +233,6 @@ def _acceleration_code(symbolic: Equations) -> list[str]:
     Common subexpressions once; S and its factors L and D entry by entry, structural zeros left out.
     """
     n, m = len(symbolic.q), len(symbolic.constraints)
-    rename = dict(zip((*symbolic.q, *symbolic.v), sp.symbols([*names("q", n), *names("v", n)]), strict=True))
     wanted = {
         **{f"C{i}_{k}": symbolic.jacobian[i, k] for i in range(m) for k in range(n)},
         **{f"gamma{i}": symbolic.gamma[i] for i in range(m)},
@@ -241,7 +240,7 @@ def _acceleration_code(symbolic: Equations) -> list[str]:
         **{f"ct{i}": symbolic.constraints_t[i] for i in range(m)},
         **{f"g{k}": symbolic.forces[k] for k in range(n)},
     }
-    present = {name: expression.xreplace(rename) for name, expression in wanted.items() if expression != 0}
+    present = {name: expression for name, expression in wanted.items() if expression != 0}
     shared, expressions = sp.cse(list(present.values()), symbols=sp.numbered_symbols("x"))
     printed = [(str(name), sp.pycode(e, fully_qualified_modules=False)) for name, e in shared]
     printed += [

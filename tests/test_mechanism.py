@@ -112,6 +112,19 @@ def test_states_that_do_not_fit_are_refused(initial: dict[str, dict[str, float]]
         initial_state(mechanism(parse(pendulum(initial=initial))))
 
 
+def test_names_never_reach_the_generated_code() -> None:
+    hostile = "(__import__('os').abort())"
+    initial = {
+        "position": {f"{hostile}.x": 0.6},
+        "velocity": {f"{hostile}.x": 0.0},
+        "guess": {f"{hostile}.y": 0.5},
+    }
+    changes = {"body__name": hostile, "joint__bodies": ["ground", hostile], "initial": initial}
+    moving = mechanism(parse(pendulum(**changes)))
+    assert not any("import" in line for line in moving.acceleration_code)
+    assert initial_state(moving)[0] == pytest.approx([0.6, 0.8])
+
+
 def test_redundant_constraints_are_refused() -> None:
     joint = {"type": "distance", "bodies": ["ground", "bob"], "points": [[0, 0], [0, 0]], "length": 1.0}
     with pytest.raises(InputError, match="redundant"):
