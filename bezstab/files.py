@@ -1,12 +1,28 @@
-"""Output files that are written whole or not at all."""
+"""Input files that are read or refused in one line; output files that are written whole or not at all."""
 
 import os
 import tempfile
+import tomllib
 from collections.abc import Callable
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO, TypeVar
 
 from bezstab.errors import InputError
+
+Parsed = TypeVar("Parsed")
+
+
+def read_toml(kind: str, path: Path, parse: Callable[[dict[str, Any]], Parsed]) -> Parsed:
+    """Return what `parse` makes of a TOML file's data.
+
+    InputError, in one line with the kind and the path in front, for whatever the system, TOML or `parse` refuses.
+    """
+    try:
+        with path.open("rb") as file:
+            return parse(tomllib.load(file))
+    except (OSError, ValueError, RecursionError) as error:  # InputError and what tomllib raises are ValueErrors
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise InputError(" ".join(f"{kind} {path}: {reason}".split())) from None
 
 
 def output_directory(path: Path) -> Path:

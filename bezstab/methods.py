@@ -1,8 +1,6 @@
 """Explicit integration methods as exact, frozen data that checks itself at birth; families, names and files."""
 
-import difflib
 import re
-import tomllib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -10,7 +8,8 @@ from functools import cache, partial
 from math import comb, prod
 from pathlib import Path
 
-from bezstab.errors import InputError
+from bezstab.errors import InputError, unknown
+from bezstab.files import read_toml
 from bezstab.schur import verdict
 
 Coefficients = tuple[Fraction, ...]
@@ -231,10 +230,7 @@ def lookup(text: str) -> Method:
     elif name in REGISTRY:
         method = REGISTRY[name]()
     else:
-        near = difflib.get_close_matches(name.upper(), REGISTRY, n=1, cutoff=0)[0]
-        raise InputError(
-            f"unknown method {text!r}: did you mean {near}? (names: {', '.join(REGISTRY)}; or a .toml file)"
-        )
+        raise unknown("method", name or text, REGISTRY)
     if not at:
         return method
     try:
@@ -262,9 +258,8 @@ def read(path: Path) -> Method:
 
     Nothing in the file is executed. InputError, naming the file and the key, for anything else.
     """
-    try:
-        with path.open("rb") as file:
-            data = tomllib.load(file)
+
+    def parse(data: dict[str, object]) -> Method:
         keys = set(data) - {"name", "source"}
         name, source = (_text(data, key, default) for key, default in (("name", path.stem), ("source", str(path))))
         if keys == {"rho", "sigma"}:
@@ -274,9 +269,8 @@ def read(path: Path) -> Method:
             tableau = tuple(_vector({"A": row}, "A") for row in rows)
             return Method(name, RungeKutta(tableau, _vector(data, "b")), source)
         raise InputError(f"expected the keys rho and sigma, or A and b, but found {', '.join(sorted(keys)) or 'none'}")
-    except (OSError, ValueError, RecursionError) as error:  # InputError and what tomllib raises are ValueErrors
-        reason = error.strerror if isinstance(error, OSError) else error
-        raise InputError(" ".join(f"method file {path}: {reason}".split())) from None
+
+    return read_toml("method file", path, parse)
 
 
 def _text(data: dict[str, object], key: str, default: str) -> str:

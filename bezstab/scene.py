@@ -3,15 +3,15 @@
 Nothing in a scene is ever executed: every entry is a number, a name or a list of them.
 """
 
-import difflib
 import math
-import tomllib
+import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from bezstab.errors import InputError
+from bezstab.errors import InputError, unknown
+from bezstab.files import read_toml
 
 Point = tuple[float, float]
 
@@ -190,7 +190,7 @@ class Table:
 
 
 def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= sys.float_info.max
 
 
 def _is_point(value: object) -> bool:
@@ -210,22 +210,13 @@ def load(name: str) -> Scene:
         return read(Path(name))
     shipped = shipped_scenes()
     if name not in shipped:
-        near = difflib.get_close_matches(name, shipped, n=1, cutoff=0)[0]
-        raise InputError(
-            f"unknown scene {name!r}: did you mean {near}? (shipped: {', '.join(sorted(shipped))}; or a .toml file)"
-        )
+        raise unknown("scene", name, shipped)
     return read(shipped[name])
 
 
 def read(path: Path) -> Scene:
     """Return the scene in a TOML file; InputError, naming the file and the key, for anything malformed."""
-    try:
-        with path.open("rb") as file:
-            return parse(tomllib.load(file))
-    except OSError as error:
-        raise InputError(f"scene {path}: {error.strerror}") from None
-    except (InputError, tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"scene {path}: {error}") from None
+    return read_toml("scene", path, parse)
 
 
 def parse(data: dict[str, Any]) -> Scene:
@@ -339,12 +330,13 @@ def _four_bar_chain(table: Table) -> tuple[tuple[Body, ...], tuple[Joint, ...], 
     mass = table.number("mass", positive=True)
     if count != int(count) or count > 100:
         raise InputError(f"{table.where}: count = {count:g}: expected a whole number from 1 to 100")
+    inertia = mass * length * length  # length**2 raises where this is infinite
+    if not 0 < inertia < math.inf:
+        raise InputError(f"{table.where}: mass {mass:g} and length {length:g}: an inertia outside the range of float64")
     table.done()
     n, half = int(count), length / 2
-    rods = [
-        Body(f"rod{i}", ("theta",), mass, mass * length**2 / 3, {"x": i * length}, (half, 0.0)) for i in range(n + 1)
-    ]
-    couplers = [Body(f"coupler{i}", COORDINATES, mass, mass * length**2 / 12, {}, (0.0, 0.0)) for i in range(n)]
+    rods = [Body(f"rod{i}", ("theta",), mass, inertia / 3, {"x": i * length}, (half, 0.0)) for i in range(n + 1)]
+    couplers = [Body(f"coupler{i}", COORDINATES, mass, inertia / 12, {}, (0.0, 0.0)) for i in range(n)]
     joints: list[Joint] = []
     for i in range(n):
         joints.append(Revolute((f"rod{i}", f"coupler{i}"), ((length, 0.0), (-half, 0.0))))

@@ -1,10 +1,10 @@
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 import pytest
 
 from bezstab.errors import InputError
-from bezstab.files import output_directory, write_whole
+from bezstab.files import output_directory, read_toml, write_whole
 
 
 def test_a_file_is_written_whole(tmp_path: Path) -> None:
@@ -39,3 +39,21 @@ def test_what_cannot_be_written_is_the_users_mistake(tmp_path: Path) -> None:
 
 def test_a_missing_directory_is_made(tmp_path: Path) -> None:
     assert list(output_directory(tmp_path / "a" / "b").iterdir()) == []
+
+
+def test_a_toml_file_is_parsed_and_named_when_refused(tmp_path: Path) -> None:
+    (path := tmp_path / "a.toml").write_text("b = 3", encoding="utf-8")
+    assert read_toml("thing", path, lambda data: data["b"]) == 3
+
+    def refuse(_data: dict[str, Any]) -> None:
+        raise InputError("b is\nodd")
+
+    with pytest.raises(InputError) as caught:
+        read_toml("thing", path, refuse)
+    assert str(caught.value) == f"thing {path}: b is odd"
+
+
+def test_a_fault_of_the_program_is_not_called_the_users(tmp_path: Path) -> None:
+    (path := tmp_path / "a.toml").touch()
+    with pytest.raises(KeyError):
+        read_toml("thing", path, lambda data: data["b"])

@@ -343,6 +343,11 @@ def test_an_unknown_name_is_refused_in_one_line_that_names_it(text: str) -> None
     assert repr(text.rpartition("@")[0] or text) in str(caught.value) or repr(text) in str(caught.value)
 
 
+def test_a_suggestion_heeds_the_name_and_not_the_step_multiple() -> None:
+    with pytest.raises(InputError, match=r"did you mean B5\?"):
+        lookup("b5@12")
+
+
 # Method files
 
 EBDF2 = 'rho = ["1", "-4/3", "1/3"]\nsigma = ["0", "4/3", "-2/3"]\n'
