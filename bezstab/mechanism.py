@@ -6,7 +6,7 @@ unrolled L D L^T that knows which entries of C_q are zero.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -173,12 +173,8 @@ def initial_state(mechanism: Mechanism) -> tuple[FloatArray, FloatArray]:
 
     InputError, naming the key, where they do not close, are redundant or, given whole, are inconsistent.
     """
-    scene, symbolic, m = mechanism.scene, mechanism.equations, mechanism.constraints
-    arguments = (symbolic.q, T)
-    constraints, jacobian, c_t = (
-        sp.lambdify(arguments, matrix, "numpy")
-        for matrix in (symbolic.constraints, symbolic.jacobian, symbolic.constraints_t)
-    )
+    scene, m = mechanism.scene, mechanism.constraints
+    constraints, jacobian, c_t = _geometry(mechanism)
     coordinates, n = scene.coordinates, mechanism.size
     q = np.array([scene.position.get(name, scene.guess.get(name, 0.0)) for name in coordinates])
     free = _unknown(scene.position, coordinates, m, "position")
@@ -207,8 +203,16 @@ def initial_state(mechanism: Mechanism) -> tuple[FloatArray, FloatArray]:
 def perturbed(mechanism: Mechanism, error: float) -> tuple[FloatArray, FloatArray]:
     """Return the initial state moved, by the smallest change of q, so that c_1 = error to first order."""
     q, v = initial_state(mechanism)
-    jacobian = sp.lambdify((mechanism.equations.q, T), mechanism.equations.jacobian, "numpy")(q, 0.0)
-    return q + np.linalg.lstsq(jacobian, error * np.eye(mechanism.constraints)[0], rcond=None)[0], v
+    _, jacobian, _ = _geometry(mechanism)
+    return q + np.linalg.lstsq(jacobian(q, 0.0), error * np.eye(mechanism.constraints)[0], rcond=None)[0], v
+
+
+@cache
+def _geometry(mechanism: Mechanism) -> tuple[Callable[[FloatArray, float], FloatArray], ...]:
+    """Return c (shape (m, 1)), C_q (m, n) and c_t (m, 1) as functions of q and t."""
+    symbolic = mechanism.equations
+    matrices = (symbolic.constraints, symbolic.jacobian, symbolic.constraints_t)
+    return tuple(sp.lambdify((symbolic.q, T), matrix, "numpy") for matrix in matrices)
 
 
 def _unknown(given: Mapping[str, float], coordinates: Sequence[str], m: int, key: str) -> list[int]:
