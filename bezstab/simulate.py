@@ -6,10 +6,11 @@ run, on numpy arrays a whole batch advances at once.
 
 import math
 import re
-from collections.abc import Callable, Generator, Iterable
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
+from itertools import islice
 from typing import Any, Literal
 
 import numpy as np
@@ -31,6 +32,8 @@ from bezstab.methods import (
 
 Start = Literal["rk4", "ramp", "euler"]
 State = tuple[Any, ...]
+Gains = tuple[Any, Any]  # 2 alpha (1/s) and beta^2 (1/s^2): floats or arrays
+Step = tuple[State, State, Any]
 Term = tuple[Fraction, str]
 FloatArray = NDArray[np.float64]
 
@@ -89,9 +92,11 @@ def stepper_code(mechanism: Mechanism, method: Method) -> str:
             for i in range(n):
                 lines.append(f"v{i} = y{n + i} + h * ({float(velocity.sigma[1])!r} * a{i})")
                 lines.append(f"q{i} = y{i} + h * ({old!r} * y{n + i} + {new!r} * v{i})")
+    body = "\n".join(lines)
+    used = [kind for kind in ("y", "f") if any(f" {kind}_{j}_" in body for j in back)]  # Adams: no past y
     for j in reversed(back):
         newer = f"_{j - 1}_" if j > 1 else ""
-        lines += [f"{kind}_{j}_{i} = {kind}{newer}{i}" for kind in ("y", "f") for i in range(2 * n)]
+        lines += [f"{kind}_{j}_{i} = {kind}{newer}{i}" for kind in used for i in range(2 * n)]
     lines += ["k = k + 1", f"yield {_tuple(y)}, {_tuple(names('f', 2 * n))}, worst_pivot"]
     head = ["def run(start, h, two_alpha, beta_squared, state, past):", " k = 0", f" {_tuple(y)} = state"]
     head += [f" {_tuple(names(f'y_{j}_', 2 * n))}, {_tuple(names(f'f_{j}_', 2 * n))} = past[{j - 1}]" for j in back]
@@ -137,29 +142,60 @@ def simulate(
     total = round(duration / h)
     q, v = initial_state(mechanism) if state is None else state
     history: list[State] = [(*q.tolist(), *v.tolist())]
-    slopes: list[State] = []
+    spent = [evaluations(starter) for starter, number in _starters(method, start) for _ in range(number)]
+    run = march(mechanism, method, h, gains, history[0], start, math)
     count, failure = 0, None
-    for starter, number in [*_starters(method, start), (method, total)]:
-        back = steps(starter) - 1
-        past = [(history[-2 - j], slopes[-1 - j]) for j in range(back)]
-        run = _compiled_stepper(mechanism, starter, math)((len(history) - 1) * h, h, *gains, history[-1], past)
-        for _ in range(min(number, total + 1 - len(history))):
-            count += evaluations(starter)
-            try:
-                y, slope, worst = next(run)
-                failure = _failure(y, worst)
-            except (OverflowError, ValueError, ZeroDivisionError) as error:
-                failure = f"arithmetic broke down ({error})"
-            if failure:
-                failure = f"at t = {len(history) * h:.6g} s: {failure}"
-                break
-            history.append(y)
-            slopes.append(slope)
+    while not failure and len(history) <= total:
+        count += (spent[len(history) - 1 :] or [evaluations(method)])[0]
+        try:
+            y, _, worst = next(run)
+            failure = _failure(y, worst)
+        except (OverflowError, ValueError, ZeroDivisionError) as error:
+            failure = f"arithmetic broke down ({error})"
         if failure:
-            break
+            failure = f"at t = {len(history) * h:.6g} s: {failure}"
+        else:
+            history.append(y)
     rows = np.array(history, dtype=np.float64)
     t = np.arange(len(rows), dtype=np.float64) * h
     return Trajectory(mechanism, method, t, rows[:, : mechanism.size], rows[:, mechanism.size :], count, failure)
+
+
+def march(
+    mechanism: Mechanism, method: Method, h: float, gains: Gains, state: State, start: Start, library: Any
+) -> Iterator[Step]:
+    """Yield step after step from `state` on, as `stepper_code` does; h (s) is the whole step of the method.
+
+    With `library` math on floats; with numpy on arrays of any broadcastable shapes, gains included.
+    """
+    history, slopes = [state], list[State]()
+    for starter, number in _starters(method, start):
+        for y, slope, worst in islice(resume(mechanism, starter, h, gains, history, slopes, library), number):
+            history.append(y)
+            slopes.append(slope)
+            yield y, slope, worst
+    yield from resume(mechanism, method, h, gains, history, slopes, library)
+
+
+def resume(
+    mechanism: Mechanism,
+    method: Method,
+    h: float,
+    gains: Gains,
+    history: Sequence[State],
+    slopes: Sequence[State],
+    library: Any,
+) -> Iterator[Step]:
+    """Yield the steps after `history`, which starts at t = 0 and whose last state may have been tampered with."""
+    past = [(history[-2 - j], slopes[-1 - j]) for j in range(steps(method) - 1)]
+    stepper = _compiled_stepper(mechanism, method, library)
+    return stepper((len(history) - 1) * h, h, *gains, history[-1], past)
+
+
+@cache
+def _compiled_stepper(mechanism: Mechanism, method: Method, library: Any) -> Callable[..., Iterator[Step]]:
+    run: Callable[..., Iterator[Step]] = compiled(stepper_code(mechanism, method), library)["run"]
+    return run
 
 
 def _failure(y: State, worst: float) -> str | None:
@@ -178,9 +214,3 @@ def _starters(method: Method, start: Start) -> list[tuple[Method, int]]:
         family = bezier if re.fullmatch(r"B\d+.*", method.name) else adams_bashforth
         return [(family(n), 1) for n in range(1, needed + 1)]
     return [(lookup("RK4" if start == "rk4" else "RK1"), needed)] if needed else []
-
-
-@cache
-def _compiled_stepper(mechanism: Mechanism, method: Method, library: Any) -> Callable[..., Generator[Any, Any, None]]:
-    run: Callable[..., Generator[Any, Any, None]] = compiled(stepper_code(mechanism, method), library)["run"]
-    return run
