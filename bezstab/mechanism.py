@@ -201,14 +201,23 @@ def initial_state(mechanism: Mechanism) -> tuple[FloatArray, FloatArray]:
 
 
 def perturbed(mechanism: Mechanism, error: float) -> tuple[FloatArray, FloatArray]:
-    """Return the initial state moved, by the smallest change of q, so that c_1 = error to first order."""
+    """Return the initial state moved so that c_1 = error to first order and no other constraint changes.
+
+    The change is along M^-1 C_q^T, as the constraint forces are: they undo it and leave the motion as it was.
+    """
     q, v = initial_state(mechanism)
-    _, jacobian, _ = _geometry(mechanism)
-    return q + np.linalg.lstsq(jacobian(q, 0.0), error * np.eye(mechanism.constraints)[0], rcond=None)[0], v
+    rows = _geometry(mechanism)[1](q, 0.0)
+    weighted = rows.T / np.array(mechanism.equations.mass, float)[:, np.newaxis]
+    return q + weighted @ np.linalg.solve(rows @ weighted, error * np.eye(mechanism.constraints)[0]), v
+
+
+def constraint_errors(mechanism: Mechanism, t: float, q: Sequence[FloatArray]) -> FloatArray:
+    """Return c at time t (s) for a batch, one array of q per coordinate; shape (constraints, *shape of these)."""
+    return _geometry(mechanism)[0](q, t)[:, 0]
 
 
 @cache
-def _geometry(mechanism: Mechanism) -> tuple[Callable[[FloatArray, float], FloatArray], ...]:
+def _geometry(mechanism: Mechanism) -> tuple[Callable[..., FloatArray], ...]:
     """Return c (shape (m, 1)), C_q (m, n) and c_t (m, 1) as functions of q and t."""
     symbolic = mechanism.equations
     matrices = (symbolic.constraints, symbolic.jacobian, symbolic.constraints_t)
