@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from bezstab.optimum import Optimum
-    from bezstab.poles import ComplexArray
     from bezstab.simulate import Start
     from bezstab.tables import Columns, Format, Row
 
@@ -32,6 +31,7 @@ TABLE_5 = ("B2", "B3", "B4", "AB2", "AB3", "AB4", "RK4@5", "SIE")
 MOST_STEPS = 10**8  # a run keeps its whole history: 10 GB and an hour for the slider-crank
 
 Command = TypeVar("Command", bound=Callable[..., object])
+Item = TypeVar("Item")
 
 
 class Commands(click.Group):
@@ -280,7 +280,7 @@ def region(
         if figure == table == "none":
             continue
         blocks = exact.pole_map(method, alpha_hat, beta_hat)
-        z = np.concatenate(list(_progress(blocks, grid, method.name)))
+        z = np.concatenate(list(_progress(blocks, grid, method.name, len)))
         name = f"region_{_file_name(method.name)}"
         _write_table(output / f"{name}.{table}", tables.map_columns(alpha_hat, beta_hat, z, step), table)
         if figure != "none":
@@ -369,6 +369,79 @@ def simulate(
         raise NumericalError(run.failure)
 
 
+@main.command()
+@click.option("--scene", default="slider_crank", show_default=True, help="A shipped scene's name, or a .toml file.")
+@_method_option("B4")
+@click.option("--alpha", type=Rational(), help="α̂ of a single point; with --beta, instead of --points.")
+@click.option("--beta", type=Rational(), help="β̂ of a single point.")
+@click.option("--points", type=click.IntRange(1, 10000), help="That many points over region and surroundings [20].")
+@click.option("--map", "cells", type=click.IntRange(2, 500), help="Simulated verdicts of N×N points instead of poles.")
+@click.option("--h", type=Rational(positive=True), default="0.001", show_default=True, help="Step size in s.")
+@click.option("-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory of --map's files.")
+@_figure_option
+@_table_option
+@_format_option
+def verify(
+    scene: str,
+    methods: Sequence[Method],
+    alpha: Fraction | None,
+    beta: Fraction | None,
+    points: int | None,
+    cells: int | None,
+    h: Fraction,
+    output: Path,
+    figure: Literal["png", "svg", "pdf", "none"],
+    table: Literal["csv", "npz", "none"],
+    form: "Format",
+) -> None:
+    """Compare predicted poles with poles measured in a simulated mechanism.
+
+    Two runs, one kicked up and one down, differ by what the linear recursion alone does; its dominant pole is fitted to
+    that difference. What cannot be measured is said so. --map draws simulated verdicts under the exact boundary.
+
+    Example: bezstab verify --method AB4 --points 20
+    """
+    import numpy as np
+
+    from bezstab import tables
+    from bezstab import verify as measuring
+    from bezstab.mechanism import mechanism
+    from bezstab.scene import load
+
+    if (alpha is None) != (beta is None):
+        raise click.UsageError("--alpha and --beta go together: they are one point")
+    if sum(choice is not None for choice in (alpha, points, cells)) > 1:
+        raise click.UsageError("choose one of --alpha with --beta, --points and --map")
+    moving = mechanism(load(scene))
+    rows: list[Row] = []
+    if cells is None:
+        summaries = []
+        for method in methods:
+            point = None if alpha is None or beta is None else (np.array([float(alpha)]), np.array([float(beta)]))
+            alpha_hat, beta_hat = point or measuring.random_points(method, points or 20)
+            measured = measuring.measure(moving, method, float(h), alpha_hat, beta_hat, _steps_shown(method.name))
+            rows += (found := [tables.measurement_row(moving.scene.name, each) for each in measured])
+            summaries.append(tables.summary_row(found))
+        _show(rows, tables.MEASUREMENTS, form)
+        if form in ("text", "markdown"):
+            click.echo()
+            _show(summaries, tables.SUMMARIES, form)
+        return
+    if figure != "none" or table != "none":
+        output_directory(output)
+    for method in methods:
+        verdicts = measuring.verdict_map(moving, method, float(h), cells, _steps_shown(method.name))
+        rows.append(tables.verdict_map_row(verdicts))
+        name = f"verify_{_file_name(Path(scene).stem)}_{_file_name(method.name)}"
+        _write_table(output / f"{name}.{table}", tables.verdict_columns(verdicts), table)
+        if figure != "none":
+            from bezstab import figures
+            from bezstab.region import region
+
+            _write_figure(output / f"{name}.{figure}", figures.verdict_figure(verdicts, region(method)), figure)
+    _show(rows, tables.VERDICT_MAPS, form)
+
+
 def _faster_level(method: Method, best: "Optimum") -> float:
     """Return the level of the faster region H: the paper's, else a quarter of the way from the least |z_p| to 1."""
     return FASTER_LEVEL.get(method.name, round(best.z_abs + (1 - best.z_abs) / 4, 2))
@@ -378,15 +451,19 @@ def _file_name(name: str) -> str:
     return re.sub(r"[^\w@.+-]", "_", name)
 
 
-def _progress(blocks: Iterable["ComplexArray"], length: int, label: str) -> Iterator["ComplexArray"]:
-    """Yield the blocks of rows, with a progress bar on standard error where that is a terminal."""
+def _progress(items: Iterable[Item], length: int, label: str, size: Callable[[Item], int]) -> Iterator[Item]:
+    """Yield the items, with a progress bar on standard error where that is a terminal; `length` is all their sizes."""
     if not sys.stderr.isatty():
-        yield from blocks
+        yield from items
         return
     with click.progressbar(length=length, label=label, file=sys.stderr) as bar:
-        for block in blocks:
-            yield block
-            bar.update(len(block))
+        for item in items:
+            yield item
+            bar.update(size(item))
+
+
+def _steps_shown(label: str) -> Callable[[Sequence[int]], Iterator[int]]:
+    return lambda steps: _progress(steps, len(steps), label, lambda _: 1)
 
 
 def _write_table(path: Path, columns: "Mapping[str, NDArray[np.generic]]", form: Literal["csv", "npz", "none"]) -> None:

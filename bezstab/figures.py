@@ -8,6 +8,7 @@ from typing import Any, BinaryIO, Literal, SupportsFloat
 import numpy as np
 from matplotlib import style
 from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
@@ -18,6 +19,7 @@ from bezstab.optimum import Optimum
 from bezstab.poles import FloatArray
 from bezstab.region import Region
 from bezstab.simulate import Trajectory
+from bezstab.verify import VerdictMap
 
 Range = tuple[SupportsFloat, SupportsFloat]
 
@@ -39,6 +41,7 @@ FAMILIES = {  # by prefix: colours of Okabe & Ito that differ in lightness too, 
     "SIE": "#56b4e9",
     "SYM": "#d55e00",
 }
+CONVERGES, DIVERGES = "#9ecae1", "0.45"
 DASHES: list[str | tuple[int, tuple[float, ...]]] = ["-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (5, 1.5, 1.2, 1.5))]
 
 
@@ -122,6 +125,36 @@ def history_figure(run: Trajectory, seen: Observation) -> Figure:
         for axes in (upper, lower):
             axes.grid(color="0.9")
             axes.ticklabel_format(axis="y", scilimits=(-2, 3))
+        return figure
+
+
+def verdict_figure(verdicts: VerdictMap, region: Region) -> Figure:
+    """Return the simulated verdicts as cells under the exact boundary; cells that disagree are crossed."""
+    with _style():
+        alpha_hat, beta_hat = verdicts.alpha_hat, verdicts.beta_hat
+        half_a, half_b = (alpha_hat[1] - alpha_hat[0]) / 2, (beta_hat[1] - beta_hat[0]) / 2
+        agreeing = 1 - verdicts.disagrees.sum() / max(1, (~verdicts.broken).sum())
+        title = f"{verdicts.mechanism.scene.name}, {verdicts.method.name}, h = {verdicts.h:g} s\n"
+        figure, axes = _axes(f"{title}{verdicts.run} steps: {agreeing:.2%} of {verdicts.broken.size} runs agree", None)
+        axes.imshow(
+            np.ma.masked_array(verdicts.diverges, verdicts.broken),
+            origin="lower",
+            extent=(alpha_hat[0] - half_a, alpha_hat[-1] + half_a, beta_hat[0] - half_b, beta_hat[-1] + half_b),
+            aspect="auto",
+            interpolation="nearest",
+            cmap=ListedColormap([CONVERGES, DIVERGES]),
+            vmin=0,
+            vmax=1,
+        )
+        axes.set_facecolor("white")
+        for colour, label in ((CONVERGES, "run converges"), (DIVERGES, "run diverges"), ("white", "run breaks down")):
+            if colour != "white" or verdicts.broken.any():
+                axes.plot([], [], "s", color=colour, markeredgecolor="0.5", label=label)
+        _curves(axes, region, None, color="black", label=r"$|z_p| = 1$")
+        rows, columns = np.nonzero(verdicts.disagrees)
+        if rows.size:
+            axes.plot(alpha_hat[columns], beta_hat[rows], "x", color=FAMILIES["SYM"], markersize=3, label="disagree")
+        figure.legend(loc="outside lower center", ncols=2)
         return figure
 
 

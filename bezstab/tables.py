@@ -21,6 +21,7 @@ from bezstab.poles import FloatArray
 from bezstab.region import Region
 from bezstab.schur import Verdict
 from bezstab.simulate import Trajectory
+from bezstab.verify import Measurement, VerdictMap
 
 Value = str | float | int | None
 Row = Mapping[str, Value]
@@ -100,6 +101,42 @@ SIMULATIONS: Columns = {
     "energy drift (J)": _number("energy_drift", ".3e"),
     "evaluations": _number("evaluations", "d"),
     "failure": lambda row: str(row["failure"] or "-"),
+}
+
+MEASUREMENTS: Columns = {
+    "method": lambda row: str(row["method"]),
+    "α̂": _number("alpha_hat", ".6f"),
+    "β̂": _number("beta_hat", ".6f"),
+    "predicted |z|": _number("predicted_abs", ".6f"),
+    "measured |z|": _number("measured_abs", ".6f"),
+    "difference": _number("difference_abs", "+.1e"),
+    "predicted ∠z (deg)": _number("predicted_angle_deg", ".3f"),
+    "measured ∠z (deg)": _number("measured_angle_deg", ".3f"),
+    "predicted": lambda row: str(row["predicted_verdict"]),
+    "measured": lambda row: str(row["measured_verdict"]),
+    "not measurable because": lambda row: str(row["reason"] or "-"),
+}
+
+SUMMARIES: Columns = {
+    "method": lambda row: str(row["method"]),
+    "points": _number("points", "d"),
+    "measured": _number("measured", "d"),
+    "median error of |z|": _number("median_error", ".1e"),
+    "largest": _number("largest_error", ".1e"),
+    "verdicts called": _number("called", "d"),
+    "of which wrong": _number("wrong", "d"),
+}
+
+VERDICT_MAPS: Columns = {
+    "scene": lambda row: str(row["scene"]),
+    "method": lambda row: str(row["method"]),
+    "runs": _number("runs", "d"),
+    "steps": _number("steps", "d"),
+    "broke down": _number("broken", "d"),
+    "agreement": _number("agreement", ".2%"),
+    "too close to call: | |z_p| - 1 | below": _number("band", "g"),
+    "largest | |z_p| - 1 | that disagrees": _number("farthest", ".2e"),
+    "disagreeing beyond": _number("disagreeing", "d"),
 }
 
 REGIONS: Columns = {
@@ -214,6 +251,69 @@ def simulation_row(run: Trajectory, seen: Observation, alpha_hat: float, beta_ha
         "evaluations": run.evaluations,
         "failure": run.failure,
     }
+
+
+def measurement_row(scene: str, measurement: Measurement) -> Row:
+    """Return predicted and measured dominant pole at one point, angles in degrees."""
+    z, measured = measurement.predicted, measurement.measured
+    return {
+        "scene": scene,
+        "method": measurement.method.name,
+        "alpha_hat": measurement.alpha_hat,
+        "beta_hat": measurement.beta_hat,
+        "predicted_abs": abs(z),
+        "predicted_angle_deg": float(np.degrees(np.angle(z))),
+        "measured_abs": None if measured is None else abs(measured),
+        "measured_angle_deg": None if measured is None else float(np.degrees(np.angle(measured))),
+        "difference_abs": None if measured is None else abs(measured) - abs(z),
+        "measurable": measured is not None,
+        "reason": measurement.reason,
+        "predicted_verdict": measurement.predicted_verdict,
+        "measured_verdict": measurement.measured_verdict,
+    }
+
+
+def summary_row(rows: Sequence[Row]) -> Row:
+    """Return how well the measured poles of one method agree: errors of |z|, and verdicts that contradict theory."""
+    errors = [abs(row["difference_abs"]) for row in rows if isinstance(row["difference_abs"], float)]
+    called = [row for row in rows if row["measured_verdict"] != "too close to call"]
+    return {
+        "method": rows[0]["method"],
+        "points": len(rows),
+        "measured": len(errors),
+        "median_error": float(np.median(errors)) if errors else None,
+        "largest_error": max(errors, default=None),
+        "called": len(called),
+        "wrong": sum(
+            (row["predicted_verdict"] == "diverges") != (row["measured_verdict"] == "diverges") for row in called
+        ),
+    }
+
+
+def verdict_map_row(verdicts: VerdictMap) -> Row:
+    """Return how far simulated verdicts agree with |z_p| < 1, and how near to one those lie that do not."""
+    distance = np.abs(verdicts.z_abs - 1)[verdicts.disagrees]
+    judged = verdicts.broken.size - int(verdicts.broken.sum())
+    return {
+        "scene": verdicts.mechanism.scene.name,
+        "method": verdicts.method.name,
+        "h": verdicts.h,
+        "runs": verdicts.broken.size,
+        "steps": verdicts.run,
+        "broken": int(verdicts.broken.sum()),
+        "agreement": 1 - distance.size / judged if judged else None,
+        "band": verdicts.band,
+        "farthest": float(distance.max()) if distance.size else None,
+        "disagreeing": int((distance > verdicts.band).sum()),
+    }
+
+
+def verdict_columns(verdicts: VerdictMap) -> dict[str, NDArray[np.generic]]:
+    """Return a map of verdicts as columns, alpha_hat running fastest; 1 for diverges, 1 for broken."""
+    a, b = np.meshgrid(verdicts.alpha_hat, verdicts.beta_hat)
+    columns = {"alpha_hat": a, "beta_hat": b, "z_abs": verdicts.z_abs}
+    masks = {"diverges": verdicts.diverges.astype(int), "broken": verdicts.broken.astype(int)}
+    return {key: column.ravel() for key, column in {**columns, **masks}.items()}
 
 
 def history_columns(run: Trajectory, seen: Observation) -> dict[str, NDArray[np.generic]]:

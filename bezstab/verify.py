@@ -30,7 +30,7 @@ Progress = Callable[[Sequence[int]], Iterable[int]]
 RUN = 1000  # steps after the kick
 KICKS = (1e-4, 1e-6, 1e-8, 1e-11)  # SI: decay is seen longest after the largest, growth after the smallest
 LINEAR = (1e-3, 1e-4, 1e-5)  # largest |c| of a window, SI: up to here a mechanism of about a metre answers linearly
-ABOVE_FORCED = (1e2, 1e3, 1e4, 1e5, 1e6)  # least |d| of a window, in units of the largest in the run's second half
+ABOVE_FORCED = (1e2, 1e3, 1e4, 1e5, 1e6)  # least |d| of a window, in units of the largest in the second half of the run
 SETTLED = 1e-3  # of the largest |d|: what remains at the end is forced, not still decaying
 SKIPPED = (0.5, 0.3, 0.0)  # part of a window left to the fast poles
 SAMPLES = 400  # of a window at most: the mechanism moves on meanwhile
@@ -135,19 +135,14 @@ def measure(
     return measurements
 
 
-def verdict_map(
-    mechanism: Mechanism,
-    method: Method,
-    h: float,
-    alpha_hat: FloatArray,
-    beta_hat: FloatArray,
-    progress: Progress = iter,
-) -> VerdictMap:
-    """Return the simulated verdicts over the grid of two axes, all runs as one batch.
+def verdict_map(mechanism: Mechanism, method: Method, h: float, count: int, progress: Progress = iter) -> VerdictMap:
+    """Return the simulated verdicts over count x count cells of the window that shows the region, as one batch.
 
     A run diverges if the difference after the kick grows until c leaves the linear range, or is larger in the last
     eighth of the run than in the eighth before its middle without having decayed to what is forced.
     """
+    centres = (np.arange(count) + 0.5) / count
+    alpha_hat, beta_hat = (low + (high - low) * centres for low, high in window(region(method)))
     a, b = (axis.ravel() for axis in np.meshgrid(alpha_hat, beta_hat))
     eighth = MAP_RUN // 8
     largest, linear = np.zeros((9, a.size)), np.full(a.size, True)
@@ -212,11 +207,14 @@ def _measured(difference: FloatArray, size: FloatArray, order: int) -> tuple[com
 
 def _windows(d: FloatArray, size: FloatArray) -> Iterator[slice]:
     """Yield the stretches of one response that lie within the linear range and above what is forced."""
-    beyond = [np.flatnonzero(~(size < limit)) for limit in LINEAR]
-    ends = {int(far[0]) if far.size else len(d) for far in beyond}
-    tail, peak = np.abs(d[len(d) // 2 :]).max(), np.abs(d).max()
-    if not beyond[0].size and tail < SETTLED * peak:
-        ends = {int(np.flatnonzero(np.abs(d) > factor * tail).max(initial=-1)) + 1 for factor in ABOVE_FORCED}
+    ends = set()
+    for limit in LINEAR:
+        within = np.abs(d[: np.append(np.flatnonzero(~(size < limit)), len(d))[0]])
+        tail = within[len(within) // 2 :].max(initial=0.0)
+        if tail < SETTLED * within.max(initial=0.0):
+            ends |= {int(np.flatnonzero(within > factor * tail).max(initial=-1)) + 1 for factor in ABOVE_FORCED}
+        else:
+            ends.add(len(within))
     for end in sorted(ends):
         for skipped in SKIPPED:
             yield slice(int(skipped * end), min(end, int(skipped * end) + SAMPLES))
@@ -240,10 +238,9 @@ def _fit(d: FloatArray, order: int) -> tuple[float, complex] | None:
         residual = float(error / np.linalg.norm(rows[:, p]))
         if residual < RESIDUAL:
             z = np.roots([1.0, *-coefficients[::-1]])
-            relative = z / np.abs(z).max()
-            k = np.arange(len(d))
-            powers = relative ** k[:, np.newaxis]
-            amplitudes = np.abs(np.linalg.lstsq(powers, d / np.abs(z).max() ** k, rcond=None)[0])
+            k, growth = np.arange(len(d)), np.abs(z).max()
+            powers = (z / growth) ** k[:, np.newaxis]  # scaled, and so is d: neither overflows
+            amplitudes = np.abs(np.linalg.lstsq(powers, d * np.exp(-k * np.log(growth)), rcond=None)[0])
             carrying = z[amplitudes > CARRIES * amplitudes.max()]
             dominant = carrying[np.argmax(np.abs(carrying))]
             return residual, complex(dominant.real, abs(dominant.imag))
