@@ -374,7 +374,7 @@ def simulate(
 @_method_option("B4")
 @click.option("--alpha", type=Rational(), help="α̂ of a single point; with --beta, instead of --points.")
 @click.option("--beta", type=Rational(), help="β̂ of a single point.")
-@click.option("--points", type=click.IntRange(1, 10000), help="That many points over region and surroundings [20].")
+@click.option("--points", type=click.IntRange(1, 1000), help="That many points over region and surroundings [20].")
 @click.option("--map", "cells", type=click.IntRange(2, 500), help="Simulated verdicts of N×N points instead of poles.")
 @click.option("--h", type=Rational(positive=True), default="0.001", show_default=True, help="Step size in s.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory of --map's files.")

@@ -14,7 +14,7 @@ FLOORS = {
     **dict.fromkeys(("derivation", "mechanism"), 3),
     **dict.fromkeys(("formulas", "poles", "simulate"), 4),
     "region": 5,
-    "optimum": 6,
+    **dict.fromkeys(("optimum", "verify"), 6),
     **dict.fromkeys(("tables", "figures"), 7),
     "cli": 8,
 }

@@ -161,6 +161,32 @@ def test_a_blow_up_is_status_three_and_keeps_the_history(tmp_path: Path) -> None
     assert len(list(tmp_path.iterdir())) == 2
 
 
+def test_verify_prints_predicted_and_measured_pole(tmp_path: Path) -> None:
+    (row,) = rows("verify", "--alpha", "0.5", "--beta", "0.1", "--method", "AB4")
+    assert row["scene"] == "slider-crank"
+    assert row["measurable"] is True
+    assert row["predicted_abs"] == pytest.approx(0.998848, abs=1e-6)
+    assert row["measured_abs"] == pytest.approx(row["predicted_abs"], abs=1e-4)
+    assert row["measured_angle_deg"] == pytest.approx(row["predicted_angle_deg"], abs=0.01)
+    assert row["predicted_verdict"] == row["measured_verdict"] == "converges"
+    (gone,) = rows("verify", "--alpha", "2", "--beta", "2", "--method", "RK2")  # deadbeat: nothing is left to measure
+    assert gone["measurable"] is False
+    assert gone["measured_abs"] is None
+    assert gone["reason"]
+    assert gone["measured_verdict"] == "converges"
+    assert len(rows("verify", "--points", "3", "--method", "B4", "--method", "SYM")) == 6
+    assert not list(tmp_path.iterdir())
+
+
+def test_verify_map_writes_verdicts_and_figure(tmp_path: Path) -> None:
+    (row,) = rows("verify", "--map", "5", "--scene", "pendulum", "--method", "SYM", "--table", "npz")
+    assert (row["runs"], row["agreement"], row["disagreeing"]) == (25, 1, 0)
+    assert row["band"] == 0.005
+    assert sorted(path.suffix for path in tmp_path.iterdir()) == [".npz", ".png"]
+    columns = np.load(tmp_path / "verify_pendulum_SYM.npz")
+    assert (columns["diverges"] == (columns["z_abs"] >= 1)).all()
+
+
 @pytest.mark.parametrize(
     ("command", "named"),
     [
@@ -170,6 +196,13 @@ def test_a_blow_up_is_status_three_and_keeps_the_history(tmp_path: Path) -> None
         ("simulate --time 1e-9", "--time"),
         ("simulate --time 1e9", "--time"),
         ("simulate --start late", "--start"),
+        ("verify --scene pendulm", "did you mean pendulum"),
+        ("verify --alpha 1", "--beta"),
+        ("verify --alpha 1 --beta 1 --points 3", "--points"),
+        ("verify --map 8 --points 3", "--map"),
+        ("verify --map 1", "--map"),
+        ("verify --points 0", "--points"),
+        ("verify --map 4 -o file/below", "file/below"),
         ("poles --alpha nan --beta 1", "--alpha"),
         ("poles --alpha 1 --beta inf", "--beta"),
         ("poles --alpha 1e999 --beta 1", "--alpha"),
@@ -224,6 +257,8 @@ def test_numerical_trouble_is_status_three(tmp_path: Path) -> None:
         "methods B3 SYM",
         "region --method B3 --figure none --table none",
         "simulate --time 0.01 --figure none --table none",
+        "verify --points 2",
+        "verify --map 3 --figure none --table none",
     ],
 )
 def test_every_command_prints_in_every_format(command: str, form: str) -> None:
@@ -261,9 +296,11 @@ def test_a_closed_pipe_is_no_error_to_read() -> None:
         assert source.stderr.read() == b""
 
 
-def test_an_interrupt_stops_cleanly(tmp_path: Path) -> None:
-    long = bezstab("region", "--grid", "4000", "--method", "B12")
-    running = subprocess.Popen(long, stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=tmp_path)
+@pytest.mark.parametrize(
+    "command", ["region --grid 4000 --method B12", "simulate --time 10000", "verify --points 1000 --method B12"]
+)
+def test_an_interrupt_stops_cleanly(command: str, tmp_path: Path) -> None:
+    running = subprocess.Popen(bezstab(*command.split()), stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=tmp_path)
     time.sleep(5)
     assert running.poll() is None
     os.kill(running.pid, signal.SIGINT)

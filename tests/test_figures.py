@@ -1,6 +1,7 @@
 import io
 import subprocess
 import sys
+from dataclasses import replace
 from typing import Any
 
 import matplotlib as mpl
@@ -8,11 +9,14 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from bezstab.figures import comparison_figure, region_figure, save
+from bezstab.figures import comparison_figure, region_figure, save, verdict_figure
+from bezstab.mechanism import mechanism
 from bezstab.methods import lookup
 from bezstab.optimum import optimum
 from bezstab.poles import FloatArray, spectral_radius
 from bezstab.region import region, window
+from bezstab.scene import load
+from bezstab.verify import verdict_map
 
 
 def drawn(name: str = "B4", h: float | None = None) -> tuple[Figure, FloatArray, FloatArray, FloatArray]:
@@ -53,6 +57,26 @@ def test_the_figure_draws_what_it_is_given(h: float | None) -> None:
     assert r"\alpha" in axes.get_xlabel()
     assert r"\beta" in axes.get_ylabel()
     assert ("1/s" in axes.get_xlabel()) == (h is not None)
+
+
+def test_the_verdict_figure_shows_cells_boundary_and_disagreement() -> None:
+    method = lookup("SYM")
+    cells = verdict_map(mechanism(load("pendulum")), method, 1e-3, 6)
+    wrong = cells.diverges.copy()
+    wrong[2, 3] ^= True
+    broken = np.zeros_like(wrong)
+    broken[0, 5] = True
+    figure = verdict_figure(replace(cells, diverges=wrong, broken=broken), region(method))
+    (axes,) = figure.axes
+    shown = axes.images[0].get_array()
+    assert shown is not None
+    assert (np.ma.getmaskarray(shown) == broken).all()
+    assert (np.asarray(shown)[~broken] == wrong[~broken]).all()
+    lines = {str(line.get_label()): np.array(line.get_xydata()) for line in axes.lines}
+    assert lines["disagree"].tolist() == [[cells.alpha_hat[3], cells.beta_hat[2]]]
+    (curve,) = region(method).boundary
+    assert lines["$|z_p| = 1$"][:-1] == pytest.approx(curve)
+    assert "97.14%" in axes.get_title()  # 34 of 35
 
 
 def test_an_empty_region_can_be_drawn() -> None:
