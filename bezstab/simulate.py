@@ -142,20 +142,20 @@ def simulate(
     total = round(duration / h)
     q, v = initial_state(mechanism) if state is None else state
     history: list[State] = [(*q.tolist(), *v.tolist())]
-    spent = [evaluations(starter) for starter, number in _starters(method, start) for _ in range(number)]
-    run = march(mechanism, method, h, gains, history[0], start, math)
-    count, failure = 0, None
-    while not failure and len(history) <= total:
-        count += (spent[len(history) - 1 :] or [evaluations(method)])[0]
-        try:
-            y, _, worst = next(run)
-            failure = _failure(y, worst)
-        except (OverflowError, ValueError, ZeroDivisionError) as error:
-            failure = f"arithmetic broke down ({error})"
-        if failure:
-            failure = f"at t = {len(history) * h:.6g} s: {failure}"
-        else:
+    failure = None
+    try:
+        for y, _, worst in islice(march(mechanism, method, h, gains, history[0], start, math), total):
+            if not (sum(map(abs, y)) < BLOWN_UP and worst > SINGULAR):  # not a number included
+                failure = _failure(worst)
+                break
             history.append(y)
+    except (OverflowError, ValueError, ZeroDivisionError) as error:
+        failure = f"arithmetic broke down ({error})"
+    taken = len(history) - 1
+    if failure:
+        failure, taken = f"at t = {len(history) * h:.6g} s: {failure}", taken + 1
+    spent = [evaluations(starter) for starter, number in _starters(method, start) for _ in range(number)][:taken]
+    count = sum(spent) + (taken - len(spent)) * evaluations(method)
     rows = np.array(history, dtype=np.float64)
     t = np.arange(len(rows), dtype=np.float64) * h
     return Trajectory(mechanism, method, t, rows[:, : mechanism.size], rows[:, mechanism.size :], count, failure)
@@ -198,13 +198,11 @@ def _compiled_stepper(mechanism: Mechanism, method: Method, library: Any) -> Cal
     return run
 
 
-def _failure(y: State, worst: float) -> str | None:
-    """Return why a run cannot go on, if it cannot."""
-    if not sum(map(abs, y)) < BLOWN_UP:
-        return f"blow-up: the coordinates and velocities exceed {BLOWN_UP:g} in sum, or are not finite"
-    if not worst > SINGULAR:
+def _failure(worst: float) -> str:
+    """Return why a run cannot go on: its least relative pivot of S was `worst`."""
+    if worst <= SINGULAR:
         return f"singular configuration: C_q M^-1 C_q^T has lost its rank (relative pivot {worst:.2g})"
-    return None
+    return f"blow-up: the coordinates and velocities exceed {BLOWN_UP:g} in sum, or are not finite"
 
 
 def _starters(method: Method, start: Start) -> list[tuple[Method, int]]:

@@ -19,7 +19,7 @@ from bezstab.methods import LinearMultistep, Method, RungeKutta, lookup, steps
 from bezstab.poles import FloatArray, roots_in_z, spectral_radius
 from bezstab.region import region, window
 from bezstab.scene import load
-from bezstab.simulate import _compiled_stepper, simulate
+from bezstab.simulate import march, simulate
 
 POINTS = 1000  # per axis
 REPEATS = 3  # the fastest of so many: what disturbs a run only ever slows it
@@ -134,14 +134,9 @@ def batch_run(method: Method, moving: Mechanism) -> FloatArray:
     """Return the states (INSTANCES, 2n) after STEPS steps of mechanisms that start alike and differ in their gains."""
     spread = np.linspace(1, 0.5, INSTANCES)  # the first has GAINS themselves
     gains = (GAINS[0] * spread, GAINS[1] * spread)
-    history = [tuple(np.full(INSTANCES, x) for x in np.concatenate(initial_state(moving)))]
-    slopes: list[tuple[FloatArray, ...]] = []
-    for scheme, number in ((lookup("RK4"), steps(method) - 1), (method, STEPS - steps(method) + 1)):
-        past = list(zip(history[-2::-1], slopes[::-1], strict=True))[: steps(scheme) - 1]
-        run = _compiled_stepper(moving, scheme, np)((len(history) - 1) * STEP, STEP, *gains, history[-1], past)
-        for y, slope, _ in islice(run, number):
-            history, slopes = [*history, y][-steps(method) :], [*slopes, slope][1 - steps(method) :]
-    return np.stack(history[-1], axis=-1)
+    state = tuple(np.full(INSTANCES, x) for x in np.concatenate(initial_state(moving)))
+    *_, (end, _, _) = islice(march(moving, method, STEP, gains, state, "rk4", np), STEPS)
+    return np.stack(end, axis=-1)
 
 
 def runs() -> bool:
