@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import click
 import numpy as np
@@ -20,6 +21,11 @@ from bezstab.cli import main
 
 def run(*arguments: str) -> Result:
     return CliRunner().invoke(main, list(arguments))
+
+
+def arrays(path: Path) -> dict[str, Any]:
+    with np.load(path) as file:
+        return dict(file)
 
 
 def rows(*arguments: str) -> list[dict[str, object]]:
@@ -107,7 +113,7 @@ def test_region_options(tmp_path: Path) -> None:
     )
     assert run("region", "--method", "B3", *options.split()).exit_code == 0
     assert {path.name for path in (tmp_path / "out").iterdir()} == {"region_B3.svg", "region_B3.npz"}
-    table = np.load(tmp_path / "out" / "region_B3.npz")
+    table = arrays(tmp_path / "out" / "region_B3.npz")
     assert table["alpha_hat"][:11] == pytest.approx(np.linspace(-0.1, 0.5, 11))
     assert table["beta_hat"][::11] == pytest.approx(np.linspace(0.1, 0.2, 11))
     assert table["two_alpha"] == pytest.approx(table["alpha_hat"] * 1e3)
@@ -134,7 +140,7 @@ def test_simulate_writes_history_and_figure(tmp_path: Path) -> None:
         "simulate_slider_crank_B4.npz",
         "simulate_slider_crank_B4.png",
     }
-    history = np.load(tmp_path / "simulate_slider_crank_B4.npz")
+    history = arrays(tmp_path / "simulate_slider_crank_B4.npz")
     assert history["t"][-1] == pytest.approx(0.05)
     assert history["c_1"][0] == pytest.approx(1e-4, rel=1e-2)  # to first order in the perturbation
     assert row["c_max"] == pytest.approx(max(np.abs(history[f"c_{i}"]).max() for i in range(1, 5)))
@@ -183,7 +189,7 @@ def test_verify_map_writes_verdicts_and_figure(tmp_path: Path) -> None:
     assert (row["runs"], row["agreement"], row["disagreeing"]) == (25, 1, 0)
     assert row["band"] == 0.005
     assert sorted(path.suffix for path in tmp_path.iterdir()) == [".npz", ".png"]
-    columns = np.load(tmp_path / "verify_pendulum_SYM.npz")
+    columns = arrays(tmp_path / "verify_pendulum_SYM.npz")
     assert (columns["diverges"] == (columns["z_abs"] >= 1)).all()
 
 
