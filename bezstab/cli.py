@@ -376,6 +376,7 @@ def simulate(
 @click.option("--beta", type=Rational(), help="β̂ of a single point.")
 @click.option("--points", type=click.IntRange(1, 1000), help="That many points over region and surroundings [20].")
 @click.option("--map", "cells", type=click.IntRange(2, 500), help="Simulated verdicts of N×N points instead of poles.")
+@click.option("--witness", type=click.Choice(["mujoco"]), help="Another engine's own integrators instead of --method.")
 @click.option("--h", type=Rational(positive=True), default="0.001", show_default=True, help="Step size in s.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory of --map's files.")
 @_figure_option
@@ -388,6 +389,7 @@ def verify(
     beta: Fraction | None,
     points: int | None,
     cells: int | None,
+    witness: Literal["mujoco"] | None,
     h: Fraction,
     output: Path,
     figure: Literal["png", "svg", "pdf", "none"],
@@ -398,6 +400,7 @@ def verify(
 
     Two runs, one kicked up and one down, differ by what the linear recursion alone does; its dominant pole is fitted to
     that difference. What cannot be measured is said so. --map draws simulated verdicts under the exact boundary.
+    --witness mujoco runs the scene in MuJoCo, at 0.9 and 1.1 times the boundary of what its integrators are.
 
     Example: bezstab verify --method AB4 --points 20
     """
@@ -410,10 +413,16 @@ def verify(
 
     if (alpha is None) != (beta is None):
         raise click.UsageError("--alpha and --beta go together: they are one point")
-    if sum(choice is not None for choice in (alpha, points, cells)) > 1:
-        raise click.UsageError("choose one of --alpha with --beta, --points and --map")
+    if sum(choice is not None for choice in (alpha, points, cells, witness)) > 1:
+        raise click.UsageError("choose one of --alpha with --beta, --points, --map and --witness")
     moving = mechanism(load(scene))
     rows: list[Row] = []
+    if witness:
+        from bezstab.witness import count, interrogate
+
+        heard = _progress(interrogate(moving, float(h)), count(), "MuJoCo", lambda _: 1)
+        _show([tables.witnessed_row(moving.scene.name, each) for each in heard], tables.WITNESSED, form)
+        return
     if cells is None:
         summaries = []
         for method in methods:

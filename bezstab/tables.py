@@ -22,6 +22,7 @@ from bezstab.region import Region
 from bezstab.schur import Verdict
 from bezstab.simulate import Trajectory
 from bezstab.verify import Measurement, VerdictMap
+from bezstab.witness import Witnessed
 
 Value = str | float | int | None
 Row = Mapping[str, Value]
@@ -137,6 +138,20 @@ VERDICT_MAPS: Columns = {
     "too close to call: | |z_p| - 1 | below": _number("band", "g"),
     "largest | |z_p| - 1 | that disagrees": _number("farthest", ".2e"),
     "disagreeing beyond": _number("disagreeing", "d"),
+}
+
+WITNESSED: Columns = {
+    "scene": lambda row: str(row["scene"]),
+    "MuJoCo's": lambda row: str(row["integrator"]),
+    "method": lambda row: str(row["method"]),
+    "α̂": _number("alpha_hat", ".4f"),
+    "β̂": _number("beta_hat", ".4f"),
+    "times the boundary": _number("times_boundary", "g"),
+    "predicted |z|": _number("predicted_abs", ".4f"),
+    "predicted": lambda row: str(row["predicted_verdict"]),
+    "seen": lambda row: str(row["measured_verdict"]),
+    "largest |c| at the end (m)": _number("remaining", ".1e"),
+    "after steps": _number("steps", "d"),
 }
 
 REGIONS: Columns = {
@@ -305,6 +320,23 @@ def verdict_map_row(verdicts: VerdictMap) -> Row:
         "band": verdicts.band,
         "farthest": float(distance.max()) if distance.size else None,
         "disagreeing": int((distance > verdicts.band).sum()),
+    }
+
+
+def witnessed_row(scene: str, witnessed: Witnessed) -> Row:
+    """Return what another engine's integrator did at one point, and what |z_p| says."""
+    return {
+        "scene": scene,
+        "integrator": witnessed.integrator,
+        "method": witnessed.method.name,
+        "alpha_hat": witnessed.alpha_hat,
+        "beta_hat": witnessed.beta_hat,
+        "times_boundary": witnessed.times_boundary,
+        "predicted_abs": witnessed.z_abs,
+        "predicted_verdict": "converges" if witnessed.z_abs < 1 else "diverges",
+        "measured_verdict": witnessed.outcome,
+        "remaining": witnessed.remaining,
+        "steps": witnessed.steps,
     }
 
 

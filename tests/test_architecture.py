@@ -14,11 +14,16 @@ FLOORS = {
     **dict.fromkeys(("derivation", "mechanism"), 3),
     **dict.fromkeys(("formulas", "poles", "simulate"), 4),
     "region": 5,
-    **dict.fromkeys(("optimum", "verify"), 6),
+    **dict.fromkeys(("optimum", "verify", "witness"), 6),
     **dict.fromkeys(("tables", "figures"), 7),
     "cli": 8,
 }
-ONLY_IN = {"sympy": {"derivation", "formulas", "mechanism"}, "matplotlib": {"figures"}, "click": {"cli"}}
+ONLY_IN = {
+    "sympy": {"derivation", "formulas", "mechanism"},
+    "matplotlib": {"figures"},
+    "click": {"cli"},
+    "mujoco": {"witness"},
+}
 ALLOWED_FOR_TYPES = {("cli", "matplotlib")}  # imported under TYPE_CHECKING only, see test_help_is_light
 
 
@@ -62,6 +67,7 @@ def test_computation_neither_prints_nor_exits_nor_filters_warnings(module: str) 
 
 @pytest.mark.parametrize("code", ["import bezstab", "from bezstab.cli import main; main(['--help'])"])
 def test_import_and_help_are_light(code: str) -> None:
-    probe = "import atexit, sys; atexit.register(lambda: print('heavy:', {'sympy', 'matplotlib'} & set(sys.modules)))\n"
+    heavy = "{'sympy', 'matplotlib', 'mujoco'}"
+    probe = f"import atexit, sys; atexit.register(lambda: print('heavy:', {heavy} & set(sys.modules)))\n"
     run = subprocess.run([sys.executable, "-c", probe + code], capture_output=True, text=True, check=True)
     assert run.stdout.rstrip().endswith("heavy: set()")

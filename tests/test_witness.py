@@ -1,0 +1,87 @@
+import sys
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from bezstab.errors import InputError
+from bezstab.mechanism import mechanism, observe, perturbed
+from bezstab.poles import spectral_radius
+from bezstab.scene import Force, Revolute, load, parse
+from bezstab.witness import TIMES, count, interrogate, model_xml
+from tests.test_scene import pendulum
+
+H = 1e-3
+mujoco: Any = pytest.importorskip("mujoco")
+
+
+def model(scene: str, alpha_hat: float = 0.5, beta_hat: float = 0.1) -> Any:
+    return mujoco.MjModel.from_xml_string(model_xml(load(scene), "Euler", H, alpha_hat, beta_hat))
+
+
+@pytest.mark.parametrize("scene", ["slider_crank", "slider_crank_light", "four_bar", "n_four_bar"])
+def test_mujoco_settles_and_diverges_where_the_map_says(scene: str) -> None:
+    heard = list(interrogate(mechanism(load(scene)), H))
+    assert len(heard) == count()
+    assert {each.integrator for each in heard} == {"Euler", "RK4"}
+    for each in heard:
+        assert each.outcome == ("converges" if each.times_boundary < 1 else "diverges")
+        boundary = np.array([each.alpha_hat, each.beta_hat]) / each.times_boundary
+        assert spectral_radius(each.method, *boundary) == pytest.approx(1, abs=1e-9)
+        assert (each.z_abs < 1) == (each.times_boundary == TIMES[0])
+
+
+def test_no_file_is_left_where_a_run_diverges(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert any(each.outcome == "diverges" for each in interrogate(mechanism(load("four_bar")), H))
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("scene", ["slider_crank", "four_bar", "n_four_bar"])
+def test_the_model_has_the_scenes_masses_and_accelerations(scene: str) -> None:
+    moving = mechanism(load(scene))
+    built = model(scene)
+    assert built.nq == built.nv == moving.size
+    data = mujoco.MjData(built)
+    state = perturbed(moving, 1e-4)
+    data.qpos[:], data.qvel[:] = state
+    mujoco.mj_forward(built, data)
+    mass = np.zeros((moving.size, moving.size))
+    for column, unit in zip(mass, np.eye(moving.size), strict=True):  # symmetric: rows are columns
+        mujoco.mj_mulM(built, data, column, unit)
+    assert mass == pytest.approx(np.diag(np.array(moving.equations.mass, float)), abs=1e-12)
+    two_alpha, beta_squared = 0.5 / H, 0.1 / H**2
+    q, v = state
+    seen = observe(moving, np.zeros(1), q[np.newaxis], v[np.newaxis], two_alpha, beta_squared)
+    jacobian = np.array(moving.equations.jacobian.subs(dict(zip(moving.equations.q, q, strict=True))), float)
+    forces = np.array(moving.equations.forces.subs(dict(zip(moving.equations.q, q, strict=True))), float)[:, 0]
+    ours = (forces - jacobian.T @ seen.multipliers[0]) / np.diag(mass)
+    # what leaks: 1 - 0.9999 of the difference between constrained and unconstrained acceleration, and its coupling
+    assert data.qacc == pytest.approx(ours, abs=2e-3 * np.abs(ours).max())
+
+
+def test_names_never_reach_the_model() -> None:
+    hostile = '"/><script>'
+    scene = replace(load("four_bar"), name=hostile)
+    renamed = {body.name: f"{hostile}{body.name}" for body in scene.bodies}
+    bodies = tuple(replace(body, name=renamed[body.name]) for body in scene.bodies)
+    joints = tuple(
+        replace(joint, bodies=(renamed.get(joint.bodies[0], "ground"), renamed.get(joint.bodies[1], "ground")))
+        for joint in scene.joints
+        if isinstance(joint, Revolute)
+    )
+    assert "script" not in model_xml(replace(scene, bodies=bodies, joints=joints), "Euler", H, 0.5, 0.1)
+
+
+def test_what_the_model_cannot_hold_is_refused() -> None:
+    pushed = replace(load("four_bar"), forces=(Force("crank", (0.0, 0.0), (1.0, 0.0), 0.0),))
+    for scene in (parse(pendulum()), pushed):
+        with pytest.raises(InputError, match="revolute"):
+            model_xml(scene, "Euler", H, 0.5, 0.1)
+
+
+def test_without_mujoco_the_message_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "mujoco", None)
+    with pytest.raises(InputError, match=r"bezstab\[mujoco\]"):
+        next(interrogate(mechanism(load("slider_crank")), H))
