@@ -6,7 +6,7 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, NoReturn, TypeVar
+from typing import TYPE_CHECKING, Any, BinaryIO, Literal, NoReturn, TypeVar
 
 import click
 
@@ -15,7 +15,7 @@ from bezstab.baumgarte import dimensionless, gains
 from bezstab.errors import InputError, NumericalError
 from bezstab.files import output_directory, write_whole
 from bezstab.methods import REGISTRY, Method, lookup, rational
-from bezstab.paper import FASTER_LEVEL
+from bezstab.paper import FASTER_LEVEL, PARTS
 
 if TYPE_CHECKING:
     import numpy as np
@@ -451,6 +451,41 @@ def verify(
     _show(rows, tables.VERDICT_MAPS, form)
 
 
+@main.command()
+@click.option("--only", type=click.Choice(PARTS), multiple=True, help="This part alone. Repeatable.")
+@click.option("-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory for figures and tables.")
+@_figure_option
+@_format_option
+def paper(only: Sequence[str], output: Path, figure: Literal["png", "svg", "pdf", "none"], form: "Format") -> None:
+    """Repeat the paper's experiments with the slider-crank: Tables 4 to 6, Figures 5 to 9.
+
+    Writes paper_fig5.png, ..., paper_table6.md, and prints what agrees with the paper and what does not.
+
+    Example: bezstab paper --only table4
+    """
+    from bezstab import report, tables
+
+    chosen = set(only or PARTS)
+    output_directory(output)
+    rows: list[Row] = []
+    for parts, make in report.REPORTS.items():
+        if not chosen & set(parts):
+            continue
+        made = make(lambda runs, length: _progress(runs, length, parts[0], lambda _: 1))  # noqa: B023
+        for name in (part for part in made.tables if part in chosen):
+            _write(output / f"paper_{name}.md", lambda file: file.write(made.tables[name].encode()))  # noqa: B023
+        if figure != "none":
+            for name in (part for part in made.figures if part in chosen):
+                _write_figure(output / f"paper_{name}.{figure}", made.figures[name], figure)
+        if made.aside and form in ("text", "markdown"):
+            click.echo(f"{made.aside}\n")
+        rows += map(tables.finding_row, made.findings)
+    if form == "text":
+        click.echo("\n\n".join(tables.render(tables.transposed(row), tables.PROPERTIES, form) for row in rows))
+    else:
+        _show(rows, tables.FINDINGS, form)
+
+
 def _faster_level(method: Method, best: "Optimum") -> float:
     """Return the level of the faster region H: the paper's, else a quarter of the way from the least |z_p| to 1."""
     return FASTER_LEVEL.get(method.name, round(best.z_abs + (1 - best.z_abs) / 4, 2))
@@ -475,19 +510,22 @@ def _steps_shown(label: str) -> Callable[[Sequence[int]], Iterator[int]]:
     return lambda steps: _progress(steps, len(steps), label, lambda _: 1)
 
 
+def _write(path: Path, write: Callable[[BinaryIO], object]) -> None:
+    write_whole(path, write)
+    click.echo(f"wrote {path}", err=True)
+
+
 def _write_table(path: Path, columns: "Mapping[str, NDArray[np.generic]]", form: Literal["csv", "npz", "none"]) -> None:
     from bezstab import tables
 
     if form != "none":
-        write_whole(path, lambda file: tables.write_columns(columns, form, file))
-        click.echo(f"wrote {path}", err=True)
+        _write(path, lambda file: tables.write_columns(columns, form, file))
 
 
 def _write_figure(path: Path, figure: "Figure", form: Literal["png", "svg", "pdf"]) -> None:
     from bezstab import figures
 
-    write_whole(path, lambda file: figures.save(figure, form, file))
-    click.echo(f"wrote {path}", err=True)
+    _write(path, lambda file: figures.save(figure, form, file))
 
 
 def _show(rows: "Sequence[Row]", columns: "Columns", form: "Format", heading: str = "") -> None:

@@ -1,7 +1,32 @@
 """What the paper prints, as data to compare with."""
 
+PARTS = ("fig5", "fig6", "table4", "fig7", "fig8", "table5", "fig9", "table6")
+"""The experiments with the slider-crank, section 5.2."""
+
 FASTER_LEVEL = {"B2": 0.65, "B3": 0.70, "B4": 0.75}
 """|z_p| below which Fig. 1 and section 5.1 call the region H."""
 
 LEAST_Z_ABS = {"B2": 0.58, "B3": 0.62, "B4": 0.65}
 """The smallest |z_p| that section 5.1 found."""
+
+TABLE_5 = {
+    ("0.1", "0.1"): {
+        "B4": ("0.898", "0.299", "0.947", "18.45"),
+        "AB4": ("0.906", "0.291", "0.952", "17.83"),
+        "RK4@5": ("0.074", "0.740", "0.744", "84.27"),
+        "SIE": ("0.855", "0.281", "0.9", "18.19"),
+    },
+    ("0.5", "0.1"): {
+        "B4": ("0.763", "0.142", "0.776", "10.55"),
+        "AB4": ("-0.903", "0.428", "0.999", "154.6"),
+        "RK4@5": ("0.095", "0.237", "0.255", "68.15"),
+        "SIE": ("0.775", "0.097", "0.781", "7.12"),
+    },
+    ("0.5", "0.101"): {
+        "B4": ("0.762", "0.144", "0.776", "10.69"),
+        "AB4": ("-0.903", "0.433", "1.001", "154.4"),
+        "RK4@5": ("0.090", "0.241", "0.258", "69.45"),
+        "SIE": ("0.774", "0.098", "0.780", "7.22"),
+    },
+}
+"""By (alpha_hat, beta_hat) and method: Re z, Im z, |z| and angle (degrees) of the dominant pole, as printed."""

@@ -5,6 +5,7 @@ import io
 import json
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import asdict
 from typing import BinaryIO, Literal
 
 import numpy as np
@@ -12,11 +13,12 @@ from numpy.typing import NDArray
 
 from bezstab.baumgarte import gains
 from bezstab.derivation import accuracy
+from bezstab.experiments import Behaviour, Cost, Experiment, Finding
 from bezstab.formulas import characteristic_text, mapping_text, recursion
 from bezstab.mechanism import Observation
 from bezstab.methods import Method, evaluations, steps
 from bezstab.optimum import Optimum
-from bezstab.paper import LEAST_Z_ABS
+from bezstab.paper import LEAST_Z_ABS, TABLE_5
 from bezstab.poles import FloatArray
 from bezstab.region import Region
 from bezstab.schur import Verdict
@@ -41,6 +43,8 @@ def render(rows: Sequence[Row], columns: Columns, form: Format) -> str:
         writer.writerows(rows)
         return text.getvalue().rstrip("\n")
     cells = [list(columns), *([show(row) for show in columns.values()] for row in rows)]
+    if form == "markdown":
+        cells = [[cell.replace("|", "\\|") for cell in line] for line in cells]
     widths = [max(map(_width, column)) for column in zip(*cells, strict=True)]
     lines = [[cell + " " * (width - _width(cell)) for cell, width in zip(row, widths, strict=True)] for row in cells]
     if form == "markdown":
@@ -154,6 +158,42 @@ WITNESSED: Columns = {
     "after steps": _number("steps", "d"),
 }
 
+BEHAVIOURS: Columns = {
+    "case": _number("case", "d"),
+    "described as": lambda row: str(row["described"]),
+    "α̂": _number("alpha_hat", "g"),
+    "β̂": _number("beta_hat", "g"),
+    "dominant pole": _complex,
+    "|z_p|": _number("z_abs", ".4f"),
+    "∠z_p (deg)": _number("z_angle_deg", ".2f"),
+    "seen: |z|": _number("rate", ".4f"),
+    "zero crossings of c₁": _number("crossings", "d"),
+}
+
+PRINTED_POLES: Columns = {
+    "α̂": _number("alpha_hat", "g"),
+    "β̂": _number("beta_hat", "g"),
+    "method": lambda row: str(row["method"]),
+    "dominant pole": _complex,
+    "|z_p|": _number("z_abs", ".4f"),
+    "∠z_p (deg)": _number("z_angle_deg", ".3f"),
+    "as printed": lambda row: str(row["printed"]),
+    "largest |c₁| of 6 to 8 s (m)": _number("before", ".0e"),
+    "of 8 to 10 s": _number("after", ".0e"),
+}
+
+COSTS: Columns = {
+    "method": lambda row: str(row["method"]),
+    "evaluations of f in 10 s": _number("evaluations", "d"),
+}
+
+TIMED: Columns = {**COSTS, "processor time / B4's": _number("time_ratio", ".2f")}
+
+FINDINGS: Columns = {
+    key: lambda row, key=key: str(row[key])  # type: ignore[misc]
+    for key in ("where", "claim", "paper", "here", "agreement")
+}
+
 REGIONS: Columns = {
     "method": lambda row: str(row["method"]),
     "area": _number("area", ".10g"),
@@ -172,19 +212,7 @@ def pole_rows(
     method: Method, alpha_hat: float, beta_hat: float, poles: Iterable[complex], verdict: Verdict
 ) -> list[Row]:
     """Return a row for each pole of one method at one point, angles in degrees."""
-    return [
-        {
-            "method": method.name,
-            "alpha_hat": alpha_hat,
-            "beta_hat": beta_hat,
-            "z_real": float(z.real),
-            "z_imag": float(z.imag),
-            "z_abs": float(abs(z)),
-            "z_angle_deg": float(np.degrees(np.angle(z))),
-            "verdict": verdict,
-        }
-        for z in poles
-    ]
+    return [{"method": method.name, **_pole(alpha_hat, beta_hat, complex(z)), "verdict": verdict} for z in poles]
 
 
 def method_row(method: Method) -> Row:
@@ -337,6 +365,55 @@ def witnessed_row(scene: str, witnessed: Witnessed) -> Row:
         "measured_verdict": witnessed.outcome,
         "remaining": witnessed.remaining,
         "steps": witnessed.steps,
+    }
+
+
+def finding_row(finding: Finding) -> Row:
+    """Return a sentence of the paper, what it says, what came out, and whether they agree."""
+    return asdict(finding)
+
+
+def behaviour_rows(behaviours: Sequence[Behaviour]) -> list[Row]:
+    """Return the cases of Table 4: prediction, and what the runs did."""
+    return [
+        {
+            "case": number,
+            "described": case.described,
+            "rate": case.rate,
+            "crossings": case.crossings,
+            **_pole(case.alpha_hat, case.beta_hat, case.pole),
+        }
+        for number, case in enumerate(behaviours, start=1)
+    ]
+
+
+def comparison_rows(runs: Sequence[Experiment]) -> list[Row]:
+    """Return Table 5: dominant poles, the paper's beside them, and how large c_1 still is at the end."""
+    return [
+        {
+            "method": run.run.method.name,
+            "printed": " ".join(TABLE_5[str(run.alpha_hat), str(run.beta_hat)][run.run.method.name]),
+            "before": run.envelope(6, 8),
+            "after": run.envelope(8, 10),
+            **_pole(run.alpha_hat, run.beta_hat, run.pole),
+        }
+        for run in runs
+    ]
+
+
+def cost_rows(costs: Sequence[Cost]) -> list[Row]:
+    """Return Table 6: evaluations of f, and processor time as a ratio."""
+    return [{**asdict(cost), "method": cost.method.name} for cost in costs]
+
+
+def _pole(alpha_hat: float, beta_hat: float, z: complex) -> Row:
+    return {
+        "alpha_hat": alpha_hat,
+        "beta_hat": beta_hat,
+        "z_real": z.real,
+        "z_imag": z.imag,
+        "z_abs": abs(z),
+        "z_angle_deg": float(np.degrees(np.angle(z))),
     }
 
 

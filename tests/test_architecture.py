@@ -13,10 +13,11 @@ FLOORS = {
     **dict.fromkeys(("methods", "baumgarte", "scene"), 2),
     **dict.fromkeys(("derivation", "mechanism"), 3),
     **dict.fromkeys(("formulas", "poles", "simulate"), 4),
-    "region": 5,
+    **dict.fromkeys(("region", "experiments"), 5),
     **dict.fromkeys(("optimum", "verify", "witness"), 6),
     **dict.fromkeys(("tables", "figures"), 7),
-    "cli": 8,
+    "report": 8,
+    "cli": 9,
 }
 ONLY_IN = {
     "sympy": {"derivation", "formulas", "mechanism"},
@@ -24,7 +25,10 @@ ONLY_IN = {
     "click": {"cli"},
     "mujoco": {"witness"},
 }
-ALLOWED_FOR_TYPES = {("cli", "matplotlib")}  # imported under TYPE_CHECKING only, see test_help_is_light
+ALLOWED_FOR_TYPES = {
+    ("cli", "matplotlib"),
+    ("report", "matplotlib"),
+}  # imported under TYPE_CHECKING only, see test_help_is_light
 
 
 def imports(module: str) -> set[str]:
