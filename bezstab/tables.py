@@ -117,8 +117,10 @@ MEASUREMENTS: Columns = {
     "difference": _number("difference_abs", "+.1e"),
     "predicted ∠z (deg)": _number("predicted_angle_deg", ".3f"),
     "measured ∠z (deg)": _number("measured_angle_deg", ".3f"),
+    "difference (deg)": _number("difference_angle_deg", "+.0e"),
     "predicted": lambda row: str(row["predicted_verdict"]),
     "measured": lambda row: str(row["measured_verdict"]),
+    "verdicts agree": lambda row: {True: "yes", False: "NO", None: "-"}[row["verdicts_agree"]],  # type: ignore[index]
     "not measurable because": lambda row: str(row["reason"] or "-"),
 }
 
@@ -299,37 +301,40 @@ def simulation_row(run: Trajectory, seen: Observation, alpha_hat: float, beta_ha
 def measurement_row(scene: str, measurement: Measurement) -> Row:
     """Return predicted and measured dominant pole at one point, angles in degrees."""
     z, measured = measurement.predicted, measurement.measured
+    predicted_angle, measured_angle = (None if w is None else float(np.degrees(np.angle(w))) for w in (z, measured))
+    diverges = [v == "diverges" for v in (measurement.predicted_verdict, measurement.measured_verdict)]
     return {
         "scene": scene,
         "method": measurement.method.name,
         "alpha_hat": measurement.alpha_hat,
         "beta_hat": measurement.beta_hat,
         "predicted_abs": abs(z),
-        "predicted_angle_deg": float(np.degrees(np.angle(z))),
+        "predicted_angle_deg": predicted_angle,
         "measured_abs": None if measured is None else abs(measured),
-        "measured_angle_deg": None if measured is None else float(np.degrees(np.angle(measured))),
+        "measured_angle_deg": measured_angle,
         "difference_abs": None if measured is None else abs(measured) - abs(z),
+        "difference_angle_deg": None
+        if predicted_angle is None or measured_angle is None
+        else measured_angle - predicted_angle,
         "measurable": measured is not None,
         "reason": measurement.reason,
         "predicted_verdict": measurement.predicted_verdict,
         "measured_verdict": measurement.measured_verdict,
+        "verdicts_agree": None if measurement.measured_verdict == "too close to call" else diverges[0] == diverges[1],
     }
 
 
 def summary_row(rows: Sequence[Row]) -> Row:
     """Return how well the measured poles of one method agree: errors of |z|, and verdicts that contradict theory."""
     errors = [abs(row["difference_abs"]) for row in rows if isinstance(row["difference_abs"], float)]
-    called = [row for row in rows if row["measured_verdict"] != "too close to call"]
     return {
         "method": rows[0]["method"],
         "points": len(rows),
         "measured": len(errors),
         "median_error": float(np.median(errors)) if errors else None,
         "largest_error": max(errors, default=None),
-        "called": len(called),
-        "wrong": sum(
-            (row["predicted_verdict"] == "diverges") != (row["measured_verdict"] == "diverges") for row in called
-        ),
+        "called": sum(row["verdicts_agree"] is not None for row in rows),
+        "wrong": sum(row["verdicts_agree"] is False for row in rows),
     }
 
 
