@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
+    from bezstab.choose import Goal
     from bezstab.optimum import Optimum
     from bezstab.simulate import Start
     from bezstab.tables import Columns, Format, Row
@@ -449,6 +450,90 @@ def verify(
 
             _write_figure(output / f"{name}.{figure}", figures.verdict_figure(verdicts, region(method)), figure)
     _show(rows, tables.VERDICT_MAPS, form)
+
+
+@main.command()
+@_method_option("B4")
+@click.option("--h", type=Rational(positive=True), required=True, help="Step size in s.")
+@click.option(
+    "--goal",
+    type=click.Choice(["robust", "fastest", "critical", "gentle"]),
+    default="robust",
+    show_default=True,
+    help="robust: fastest at worst over smaller steps and the spread; fastest: least |z_p|; critical: fastest without "
+    "oscillation; gentle: the mildest α = β that settles in time.",
+)
+@click.option("--h-max", type=Rational(positive=True), help="robust: the largest step in s that may occur [--h].")
+@click.option("--spread", type=Rational(), default="0.1", show_default=True, help="By what share α and β may be off.")
+@click.option("--settle", type=Rational(positive=True), help="gentle: the time in s in which c falls a thousandfold.")
+@click.option("--keep", type=click.Choice(["alpha=beta"]), help="Only points with α = β.")
+@_format_option
+def choose(
+    methods: Sequence[Method],
+    h: Fraction,
+    goal: "Goal",
+    h_max: Fraction | None,
+    spread: Fraction,
+    settle: Fraction | None,
+    keep: str | None,
+    form: "Format",
+) -> None:
+    """Recommend α and β for an integrator and its step size, with the margins that remain.
+
+    The answer is proven stable. The fastest point is a kink: towards more damping |z_p| rises like a square root. Hence
+    robust is the default. "within the spread" is the largest |z_p| with α and β off by --spread.
+
+    Example: bezstab choose --method B4 --h 0.001
+    """
+    from bezstab import choose as choosing
+    from bezstab import tables
+
+    if not 0 <= spread < 1:
+        raise InputError(f"--spread {float(spread):g}: expected a share from 0 to 1")
+    if h_max is not None and (goal != "robust" or h_max < h):
+        raise InputError(f"--h-max {float(h_max):g}: only for --goal robust, and at least --h {float(h):g}")
+    if (settle is not None) != (goal == "gentle"):
+        raise click.UsageError("--settle and --goal gentle go together")
+    share = h / (h_max or h)
+    rows: list[Row] = []
+    for method in methods:
+        rate = choosing.THOUSANDFOLD ** float(h * method.step_multiple / settle) if settle else None
+        found = choosing.choose(method, goal, float(spread), rate, equal=keep is not None)
+        if share != 1:
+            point = Fraction(repr(found.alpha_hat)) * share, Fraction(repr(found.beta_hat)) * share**2
+            found = choosing.describe(method, goal, *point, float(spread))
+        rows.append(tables.choice_row(found, float(h)))
+    _show(rows, tables.CHOICES, form)
+
+
+@main.command()
+@_method_option("B4")
+@click.option("--alpha", type=Rational(), required=True, help="α̂; α in 1/s with --physical.")
+@click.option("--beta", type=Rational(), required=True, help="β̂; β in 1/s with --physical.")
+@click.option("--h", type=Rational(positive=True), help="Step size in s; needed with --physical.")
+@click.option("--physical", is_flag=True, help="Take --alpha and --beta as α and β in 1/s.")
+@_format_option
+def check(
+    methods: Sequence[Method], alpha: Fraction, beta: Fraction, h: Fraction | None, physical: bool, form: "Format"
+) -> int:
+    """Tell whether a choice is safe: exit status 0 if it is proven stable for every method, 1 if not.
+
+    Prints the verdict, the margins and the largest stable step, and what `choose` would give instead.
+
+    Example: bezstab check --method RK2 --h 0.002 --alpha 50 --beta 50 --physical
+    """
+    from bezstab import choose as choosing
+    from bezstab import tables
+
+    if physical:
+        if h is None:
+            raise click.UsageError("--physical needs --h: α and β in 1/s need the step in s")
+        alpha, beta = dimensionless(alpha, beta, h)
+    given = [choosing.describe(method, "as given", alpha, beta) for method in methods]
+    step = None if h is None else float(h)
+    rows = [tables.choice_row(each, step) for one in given for each in (one, choosing.choose(one.method, "robust"))]
+    _show(rows, tables.CHOICES, form)
+    return 0 if all(each.verdict == "converges" for each in given) else 1
 
 
 @main.command()

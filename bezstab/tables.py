@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import math
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict
@@ -12,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.baumgarte import gains
+from bezstab.choose import Choice
 from bezstab.derivation import accuracy
 from bezstab.experiments import Behaviour, Cost, Experiment, Finding
 from bezstab.formulas import characteristic_text, mapping_text, recursion
@@ -106,6 +108,24 @@ SIMULATIONS: Columns = {
     "energy drift (J)": _number("energy_drift", ".3e"),
     "evaluations": _number("evaluations", "d"),
     "failure": lambda row: str(row["failure"] or "-"),
+}
+
+CHOICES: Columns = {
+    "method": lambda row: str(row["method"]),
+    "goal": lambda row: str(row["goal"]),
+    "α̂": _number("alpha_hat", ".6f"),
+    "β̂": _number("beta_hat", ".6f"),
+    "α (1/s)": _number("alpha", ".6g"),
+    "β (1/s)": _number("beta", ".6g"),
+    "verdict": lambda row: str(row["verdict"]),
+    "|z_p|": _number("z_abs", ".4f"),
+    "∠z_p (deg)": _number("z_angle_deg", ".1f"),
+    "within the spread": _number("worst_z_abs", ".4f"),
+    "steps to 1/1000": _number("settle_steps", "d"),
+    "s": _number("settle_seconds", ".3g"),
+    "stable for h (s) to": _number("h_max", ".4g"),
+    "α times": lambda row: _range(row, "alpha"),
+    "β times": lambda row: _range(row, "beta"),
 }
 
 MEASUREMENTS: Columns = {
@@ -371,6 +391,43 @@ def witnessed_row(scene: str, witnessed: Witnessed) -> Row:
         "remaining": witnessed.remaining,
         "steps": witnessed.steps,
     }
+
+
+def choice_row(choice: Choice, h: float | None) -> Row:
+    """Return a point, in 1/s too with h (s), how fast it settles and by what it may be off; None for no limit."""
+    margins, step = choice.margins, (h or 1.0) * float(choice.method.step_multiple)
+    two_alpha, beta_squared = gains(choice.alpha_hat, choice.beta_hat, h or 1.0)
+    factors = (math.inf, (math.inf, math.inf), (math.inf, math.inf))
+    if margins:
+        factors = (margins.h, margins.alpha, margins.beta)
+    settle = choice.settle_steps
+    row: dict[str, Value] = {
+        "method": choice.method.name,
+        "h": h,
+        "goal": choice.goal,
+        "alpha_hat": choice.alpha_hat,
+        "beta_hat": choice.beta_hat,
+        "alpha": two_alpha / 2 if h else None,
+        "beta": math.sqrt(beta_squared) if h and beta_squared >= 0 else None,
+        "verdict": choice.verdict,
+        "z_abs": abs(choice.pole),
+        "z_angle_deg": float(np.degrees(np.angle(choice.pole))),
+        "worst_z_abs": choice.worst,
+        "settle_steps": settle,
+        "settle_seconds": settle * step if settle is not None and h else None,
+        "h_factor": factors[0],
+        "h_max": factors[0] * h if h else None,
+        "alpha_factor_min": factors[1][0],
+        "alpha_factor_max": factors[1][1],
+        "beta_factor_min": factors[2][0],
+        "beta_factor_max": factors[2][1],
+    }
+    return {key: None if value == math.inf else value for key, value in row.items()}
+
+
+def _range(row: Row, name: str) -> str:
+    low, high = row[f"{name}_factor_min"], row[f"{name}_factor_max"]
+    return "-" if low is None else f"{low:.3g} to {'any' if high is None else format(high, '.3g')}"
 
 
 def finding_row(finding: Finding) -> Row:

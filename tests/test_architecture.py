@@ -15,9 +15,10 @@ FLOORS = {
     **dict.fromkeys(("formulas", "poles", "simulate"), 4),
     **dict.fromkeys(("region", "experiments"), 5),
     **dict.fromkeys(("optimum", "verify", "witness"), 6),
-    **dict.fromkeys(("tables", "figures"), 7),
-    "report": 8,
-    "cli": 9,
+    "choose": 7,
+    **dict.fromkeys(("tables", "figures"), 8),
+    "report": 9,
+    "cli": 10,
 }
 ONLY_IN = {
     "sympy": {"derivation", "formulas", "mechanism"},

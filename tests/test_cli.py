@@ -193,6 +193,36 @@ def test_verify_map_writes_verdicts_and_figure(tmp_path: Path) -> None:
     assert (columns["diverges"] == (columns["z_abs"] >= 1)).all()
 
 
+def test_choose_prints_what_to_set() -> None:
+    (row,) = rows("choose", "--h", "0.001", "--goal", "fastest")
+    keys = "method h goal alpha_hat beta_hat alpha beta z_abs z_angle_deg settle_steps settle_seconds h_max"
+    assert set(keys.split()) <= set(row)
+    assert row["z_abs"] == pytest.approx(0.625883502027, abs=1e-7)  # a double mu: half the digits
+    assert row["alpha"] == pytest.approx(1000 * 1.0126978003 / 2)
+    assert row["beta"] == pytest.approx(1000 * 0.2563892087**0.5)
+    assert row["h_max"] == pytest.approx(0.0015683, rel=1e-4)
+    (gentle,) = rows("choose", "--h", "0.001", "--goal", "gentle", "--settle", "0.5")
+    assert gentle["settle_steps"] == 500
+    assert gentle["alpha"] == pytest.approx(gentle["beta"])
+    (finer,) = rows("choose", "--h", "0.001", "--h-max", "0.002", "--method", "SYM")
+    (coarse,) = rows("choose", "--h", "0.002", "--method", "SYM")
+    assert (finer["alpha"], finer["beta"], finer["h_max"]) == pytest.approx(
+        (coarse["alpha"], coarse["beta"], coarse["h_max"])
+    )
+
+
+@pytest.mark.parametrize(("name", "verdict"), [("RK2", "converges"), ("RK1", "marginal"), ("SYM", "diverges")])
+def test_check_judges_the_textbook_rule(name: str, verdict: str) -> None:
+    rule = ("--h", "0.001", "--alpha", "1000", "--beta", "1414.2135623730951", "--physical")  # alpha = 1/h, sqrt(2)/h
+    assert rows("check", "--method", "RK2", *rule)[0]["z_abs"] == pytest.approx(0, abs=1e-6)  # as above
+    result = run("check", "--method", name, "--alpha", "2", "--beta", "2", "--format", "json")
+    assert result.exit_code == (0 if verdict == "converges" else 1)
+    given, instead = json.loads(result.stdout)
+    assert given["verdict"] == verdict
+    assert (given["h_factor"] is None) == (verdict != "converges")
+    assert (instead["goal"], instead["verdict"]) == ("robust", "converges")
+
+
 def test_paper_writes_the_chosen_parts_and_prints_findings(tmp_path: Path) -> None:
     found = rows("paper", "--only", "table5", "--only", "fig7", "--figure", "svg", "-o", "out")
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["paper_fig7.svg", "paper_table5.md"]
@@ -209,6 +239,14 @@ def test_paper_writes_the_chosen_parts_and_prints_findings(tmp_path: Path) -> No
 @pytest.mark.parametrize(
     ("command", "named"),
     [
+        ("choose --method B4", "--h"),
+        ("choose --h 0.001 --goal quick", "--goal"),
+        ("choose --h 0.001 --spread 1", "--spread"),
+        ("choose --h 0.001 --h-max 0.0001", "--h-max"),
+        ("choose --h 0.001 --h-max 0.01 --goal fastest", "--h-max"),
+        ("choose --h 0.001 --goal gentle", "--settle"),
+        ("choose --h 0.001 --goal gentle --settle 0.005", "--settle"),
+        ("check --alpha 1 --beta 1 --physical", "--h"),
         ("paper --only fig4", "--only"),
         ("paper -o file/below", "file/below"),
         ("simulate --scene pendulm", "did you mean pendulum"),
@@ -283,6 +321,8 @@ def test_numerical_trouble_is_status_three(tmp_path: Path) -> None:
         "simulate --time 0.01 --figure none --table none",
         "verify --points 2",
         "paper --only fig7 --figure none",
+        "choose --method SYM --h 0.01",
+        "check --method RK1 --alpha 1 --beta 0.25",
         "verify --map 3 --figure none --table none",
     ],
 )

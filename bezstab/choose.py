@@ -1,0 +1,234 @@
+"""Which feedback to choose: by goal, with proven stability and the margins that are left to the boundary."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Literal
+
+import numpy as np
+
+from bezstab.derivation import effective_parameters
+from bezstab.errors import InputError, NumericalError
+from bezstab.methods import Method, steps
+from bezstab.optimum import optimum
+from bezstab.poles import FloatArray, dominant_pole, dominant_root, spectral_radius, verdict
+from bezstab.region import region
+from bezstab.schur import Verdict
+
+Goal = Literal["robust", "fastest", "critical", "gentle"]
+
+THOUSANDFOLD = 1e-3  # what "settled" means for the constraint error
+SAMPLES = 4000  # along a line: |z_p| has no features as narrow as that
+BISECTIONS = 60
+GRID = 13  # points per axis of a zoom
+ZOOM = 0.75  # from one grid to the next, once the best point lies within it
+ZOOMS = 90  # 0.6^40 = 1e-9 of the region, where the objective is flat to rounding
+SHARES = 24  # of the largest step, besides the limit of small steps
+ASIDE = 1e-7  # of mu: a double mu splits by 1e-8 in float64, which must not let a rival of equal modulus win
+DEADBEAT = 1e-6  # a double pole at zero, as far as float64 tells it
+FURTHEST = 1e4  # factor on h, alpha or beta beyond which nobody asks
+NEAREST = 1e-4  # and below which |z_p| is one to rounding
+
+
+@dataclass(frozen=True)
+class Margins:
+    """The factors by which h (up), alpha and beta (down, up) can be scaled alone before |z_p| = 1."""
+
+    h: float
+    alpha: tuple[float, float]
+    beta: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A point, its proven verdict and dominant pole, and the largest |z_p| when alpha and beta are off by the spread.
+
+    `margins` is None unless the point is stable.
+    """
+
+    method: Method
+    goal: str
+    alpha_hat: float
+    beta_hat: float
+    verdict: Verdict
+    pole: complex
+    worst: float
+    margins: Margins | None
+
+    @property
+    def settle_steps(self) -> int | None:
+        """Steps until |z_p|^k is a thousandth; if every pole is zero, those that clear the method's memory."""
+        if self.margins is None:
+            return None
+        if abs(self.pole) < DEADBEAT:
+            return 2 * steps(self.method)
+        return math.ceil(math.log(THOUSANDFOLD) / math.log(abs(self.pole)))
+
+
+def choose(method: Method, goal: Goal, spread: float = 0.1, rate: float | None = None, equal: bool = False) -> Choice:
+    """Return the point that a goal asks for, proven stable.
+
+    fastest: the smallest |z_p|. critical: the fastest whose dominant pole is real and positive. robust: the fastest at
+    worst over every smaller step at the same alpha, beta, and alpha and beta off by the spread (a share), where
+    fast means decay per second. gentle: the smallest alpha = beta with |z_p| <= rate. `equal` keeps alpha = beta.
+    InputError if nothing stable meets the goal.
+    """
+    if not region(method).boundary:
+        raise InputError(f"{method.name} is stable for no parameters at all")
+    if goal == "gentle":
+        point = _gentle(method, 0.0 if rate is None else rate)
+    elif goal == "critical":
+        point = _critical(method)
+    elif goal == "fastest" and not equal:
+        best = optimum(method)
+        assert best
+        point = best.alpha_hat, best.beta_hat
+    else:
+        point = _least(method, _slowest(method, spread) if goal == "robust" else _plain(method), equal)
+    choice = describe(method, goal, Fraction(repr(point[0])), Fraction(repr(point[1])), spread)
+    if choice.verdict != "converges":
+        raise NumericalError(f"{method.name}: the point {point} found for {goal} is not stable")
+    return choice
+
+
+def describe(method: Method, goal: str, alpha_hat: Fraction, beta_hat: Fraction, spread: float = 0.1) -> Choice:
+    """Return what there is to say of a point."""
+    a, b = float(alpha_hat), float(beta_hat)
+    proven = verdict(method, alpha_hat, beta_hat)
+    offsets = 1 + spread * np.linspace(-1, 1, 9)
+    near = (x.ravel() for x in np.meshgrid(a * offsets, b * offsets**2))
+    worst = float(spectral_radius(method, *near).max())
+    pole = complex(dominant_pole(method, a, b))
+    return Choice(method, goal, a, b, proven, pole, worst, margins(method, a, b) if proven == "converges" else None)
+
+
+def margins(method: Method, alpha_hat: float, beta_hat: float) -> Margins:
+    """Return how far a stable point is from |z_p| = 1 along three lines; an end without one is infinite, or zero."""
+
+    def end(path: Callable[[FloatArray], tuple[FloatArray, FloatArray]], furthest: float) -> float:
+        def unstable(factor: FloatArray) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+            return np.asarray(spectral_radius(method, *path(factor)) >= 1)
+
+        factors = np.geomspace(1, furthest, SAMPLES)
+        beyond = unstable(factors)
+        if not beyond.any():
+            return math.inf if furthest > 1 else 0.0
+        first = int(np.argmax(beyond))
+        inside, outside = factors[max(0, first - 1)], factors[first]
+        for _ in range(BISECTIONS):
+            middle = (inside + outside) / 2
+            inside, outside = (inside, middle) if unstable(np.array([middle]))[0] else (middle, outside)
+        return float(inside)
+
+    def alone(alpha: float, beta: float) -> tuple[float, float]:
+        def path(s: FloatArray) -> tuple[FloatArray, FloatArray]:
+            return alpha_hat * s**alpha, beta_hat * s ** (2 * beta)
+
+        return end(path, NEAREST), end(path, FURTHEST)
+
+    return Margins(alone(1, 1)[1], alone(1, 0), alone(0, 1))
+
+
+Objective = Callable[[FloatArray, FloatArray], FloatArray]
+
+
+def _plain(method: Method) -> Objective:
+    return lambda a, b: spectral_radius(method, a, b)
+
+
+def _slowest(method: Method, spread: float) -> Objective:
+    """Return the objective of `robust`: the largest decay factor per largest step, over smaller steps and the spread.
+
+    A step of share s of the largest turns (alpha_hat, beta_hat) into (s alpha_hat, s^2 beta_hat) and takes 1/s steps;
+    in the limit of small steps what remains is exp(Re mu), the continuous decay.
+    """
+    shares = np.linspace(0, 1, SHARES + 1)[1:, np.newaxis]
+    offsets = 1 + spread * np.array([-1.0, 0.0, 1.0])
+
+    def objective(a: FloatArray, b: FloatArray) -> FloatArray:
+        worst = np.zeros(a.shape)
+        for first in offsets:
+            for second in offsets:
+                off_a, off_b = first * a, second**2 * b
+                slow = -off_a / 2 + np.sqrt(np.maximum(0, off_a**2 / 4 - off_b))
+                per_share = spectral_radius(method, shares * off_a, shares**2 * off_b) ** (1 / shares)
+                worst = np.maximum(worst, np.maximum(np.exp(slow), per_share.max(axis=0)))
+        return worst
+
+    return objective
+
+
+def _least(method: Method, objective: Objective, equal: bool) -> tuple[float, float]:
+    """Return where the objective is least, by grids that zoom in on the best point; with `equal` on alpha = beta."""
+    extent = region(method).extent
+    assert extent
+    high = np.array([extent[0][1] / 2, math.sqrt(extent[1][1])])  # of alpha h and beta h
+    low = np.zeros(2)
+    centre, width = (low + high) / 2, high - low
+    if equal:
+        centre, width = centre.min() * np.ones(1), width.min() * np.ones(1)
+    count = SAMPLES if equal else GRID * 4
+    for k in range(ZOOMS):
+        offsets = np.meshgrid(*[np.linspace(-0.5, 0.5, count)] * len(width))
+        grid = np.stack([x.ravel() for x in offsets])
+        if k and not equal:  # turned by the golden angle each time, so that no valley stays diagonal
+            cosine, sine = math.cos(2.4 * k), math.sin(2.4 * k)
+            grid = np.array([[cosine, -sine], [sine, cosine]]) @ grid
+        points = centre[:, np.newaxis] + width[:, np.newaxis] * grid
+        points = points[:, (points > 0).all(axis=0)]
+        best = points[:, np.argmin(objective(2 * points[0], points[-1] ** 2))]
+        inner = (np.abs(best - centre) < 0.4 * width).all()  # else the valley leads on
+        centre, width, count = best, width * (ZOOM if inner else 1), GRID
+    return 2 * float(centre[0]), float(centre[-1]) ** 2
+
+
+def _critical(method: Method) -> tuple[float, float]:
+    """Return the double mu < 0 with the smallest dominant root that is real and positive.
+
+    A single mu is the slower of two, so the other may as well be there too.
+    """
+    extent = region(method).extent
+    assert extent
+    to_user = np.linalg.inv(np.array(effective_parameters(method), float))
+
+    def dominant(mu: FloatArray) -> FloatArray:
+        z = dominant_root(method, mu.astype(complex))
+        real = (np.abs(z.imag) < 1e-9 * np.abs(z)) & (
+            z.real > 0
+        )  # a pair splits by the square root of a small distance
+        return np.where(real, z.real, np.inf)
+
+    mu = -np.linspace(0, 2 * math.sqrt(extent[1][1]) + extent[0][1], SAMPLES)[1:]
+    first = int(np.append(np.flatnonzero(np.isinf(dominant(mu))), len(mu))[0])
+    inside, outside = mu[first - 1], mu[min(first, len(mu) - 1)]
+    for _ in range(BISECTIONS):
+        middle = (inside + outside) / 2
+        inside, outside = (middle, outside) if np.isfinite(dominant(np.array([middle])))[0] else (inside, middle)
+    candidates = np.append(mu[:first], inside)
+    best = int(np.argmin(dominant(candidates)))
+    centre, width = candidates[best], abs(mu[0])
+    for _ in range(ZOOMS):
+        near = np.clip(centre + width * np.linspace(-1, 1, GRID), inside, 0)
+        centre, width = near[np.argmin(dominant(near))], width * ZOOM
+    centre = max(inside * (1 - ASIDE), centre)
+    a, b = to_user @ np.array([-2 * centre, centre**2])
+    return float(a), float(b)
+
+
+def _gentle(method: Method, rate: float) -> tuple[float, float]:
+    """Return the smallest alpha = beta with |z_p| <= rate."""
+    extent = region(method).extent
+    assert extent
+    t = np.linspace(0, extent[0][1] / 2, SAMPLES)[1:]
+    z_abs = spectral_radius(method, 2 * t, t**2)
+    if not (z_abs <= rate).any():
+        raise InputError(
+            f"--settle: with alpha = beta {method.name} has at best |z_p| = {z_abs.min():.6g}, needed {rate:.6g}"
+        )
+    first = int(np.argmax(z_abs <= rate))
+    slow, fast = t[first - 1] if first else 0.0, t[first]
+    for _ in range(BISECTIONS):
+        middle = (slow + fast) / 2
+        slow, fast = (slow, middle) if spectral_radius(method, 2 * middle, middle**2) <= rate else (middle, fast)
+    return 2 * float(fast), float(fast) ** 2
