@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, Literal, NoReturn, TypeVar
 import click
 
 from bezstab import __version__
-from bezstab.baumgarte import dimensionless, gains
+from bezstab.baumgarte import ENGINES, Engine, dimensionless, gains
 from bezstab.errors import InputError, NumericalError
 from bezstab.files import output_directory, write_whole
 from bezstab.methods import REGISTRY, Method, lookup, rational
@@ -75,6 +75,24 @@ class Rational(click.ParamType):  # type: ignore[type-arg]  # generic since clic
         if self.positive and number <= 0:
             self.fail(f"{value} is not positive", param, ctx)
         return number
+
+
+class EngineValues(click.ParamType):  # type: ignore[type-arg]
+    """An engine's name and values of its parameters, as in mujoco=0.02,1."""
+
+    name = "name=values"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Return the engine and its values; fails, naming the option, on anything else."""
+        if isinstance(value, tuple):
+            return value
+        name, _, numbers = value.partition("=")
+        if name not in ENGINES:
+            self.fail(f"unknown engine {name!r} (known: {', '.join(ENGINES)})", param, ctx)
+        try:
+            return ENGINES[name], tuple(map(rational, numbers.split(",")))
+        except InputError as error:
+            self.fail(f"{error}: expected {name}={','.join(ENGINES[name].parameters)}", param, ctx)
 
 
 class MethodName(click.ParamType):  # type: ignore[type-arg]
@@ -220,6 +238,7 @@ def methods(methods: Sequence[Method], latex: bool, form: "Format") -> None:
 )
 @click.option("--compare", is_flag=True, help="One figure with the boundaries of all methods (default level 1).")
 @click.option("--h", type=Rational(positive=True), help="Step size in s: axes become 2α (1/s) and β² (1/s²).")
+@click.option("--engine", type=click.Choice(list(ENGINES)), help="Mark that engine's defaults and rules; needs --h.")
 @_format_option
 def region(
     methods: Sequence[Method],
@@ -232,6 +251,7 @@ def region(
     levels: Sequence[Fraction],
     compare: bool,
     h: Fraction | None,
+    engine: str | None,
     form: "Format",
 ) -> None:
     """Draw where each method is stable, exactly, and tabulate |z_p| there.
@@ -253,6 +273,7 @@ def region(
     for level in levels:
         if level > 1:
             raise InputError(f"--level {float(level):g}: must be at most 1, the stability boundary")
+    marks = _marks(engine, h, compare)
     if figure != "none" or table != "none":
         output_directory(output)
     step = None if h is None else float(h)
@@ -289,7 +310,7 @@ def region(
 
             chosen = map(float, levels) if levels else [_faster_level(method, best)] if best else []
             faster = [exact.region(method, level) for level in chosen]
-            drawn = figures.region_figure(stable, faster, best, alpha_hat, beta_hat, np.abs(z), step)
+            drawn = figures.region_figure(stable, faster, best, alpha_hat, beta_hat, np.abs(z), step, marks)
             _write_figure(output / f"{name}.{figure}", drawn, figure)
     _show(rows, tables.REGIONS, form)
 
@@ -467,8 +488,11 @@ def verify(
 @click.option("--spread", type=Rational(), default="0.1", show_default=True, help="By what share α and β may be off.")
 @click.option("--settle", type=Rational(positive=True), help="gentle: the time in s in which c falls a thousandfold.")
 @click.option("--keep", type=click.Choice(["alpha=beta"]), help="Only points with α = β.")
+@click.option("--engine", type=click.Choice(list(ENGINES)), help="Also print what to paste into that engine.")
 @_format_option
+@click.pass_context
 def choose(
+    context: click.Context,
     methods: Sequence[Method],
     h: Fraction,
     goal: "Goal",
@@ -476,12 +500,14 @@ def choose(
     spread: Fraction,
     settle: Fraction | None,
     keep: str | None,
+    engine: str | None,
     form: "Format",
 ) -> None:
     """Recommend α and β for an integrator and its step size, with the margins that remain.
 
     The answer is proven stable. The fastest point is a kink: towards more damping |z_p| rises like a square root. Hence
-    robust is the default. "within the spread" is the largest |z_p| with α and β off by --spread.
+    robust is the default. "within the spread" is the largest |z_p| with α and β off by --spread. With --engine the
+    method is SYM unless given: that is how engines step.
 
     Example: bezstab choose --method B4 --h 0.001
     """
@@ -495,6 +521,8 @@ def choose(
     if (settle is not None) != (goal == "gentle"):
         raise click.UsageError("--settle and --goal gentle go together")
     share = h / (h_max or h)
+    if engine and context.get_parameter_source("methods") == click.core.ParameterSource.DEFAULT:
+        methods = [lookup("SYM")]
     rows: list[Row] = []
     for method in methods:
         rate = choosing.THOUSANDFOLD ** float(h * method.step_multiple / settle) if settle else None
@@ -502,19 +530,29 @@ def choose(
         if share != 1:
             point = Fraction(repr(found.alpha_hat)) * share, Fraction(repr(found.beta_hat)) * share**2
             found = choosing.describe(method, goal, *point, float(spread))
-        rows.append(tables.choice_row(found, float(h)))
-    _show(rows, tables.CHOICES, form)
+        row = dict(tables.choice_row(found, float(h)))
+        if engine:
+            row["engine"] = ENGINES[engine].write((Fraction(found.alpha_hat), Fraction(found.beta_hat)), h)
+        rows.append(row)
+    _show(rows, {**tables.CHOICES, **(tables.PASTE if engine else {})}, form)
 
 
 @main.command()
 @_method_option("B4")
-@click.option("--alpha", type=Rational(), required=True, help="α̂; α in 1/s with --physical.")
-@click.option("--beta", type=Rational(), required=True, help="β̂; β in 1/s with --physical.")
-@click.option("--h", type=Rational(positive=True), help="Step size in s; needed with --physical.")
+@click.option("--alpha", type=Rational(), help="α̂; α in 1/s with --physical.")
+@click.option("--beta", type=Rational(), help="β̂; β in 1/s with --physical.")
+@click.option("--h", type=Rational(positive=True), help="Step size in s; needed with --physical and --engine.")
 @click.option("--physical", is_flag=True, help="Take --alpha and --beta as α and β in 1/s.")
+@click.option("--engine", type=EngineValues(), help="An engine's own values, such as mujoco=0.02,1, instead.")
 @_format_option
 def check(
-    methods: Sequence[Method], alpha: Fraction, beta: Fraction, h: Fraction | None, physical: bool, form: "Format"
+    methods: Sequence[Method],
+    alpha: Fraction | None,
+    beta: Fraction | None,
+    h: Fraction | None,
+    physical: bool,
+    engine: tuple[Engine, tuple[Fraction, ...]] | None,
+    form: "Format",
 ) -> int:
     """Tell whether a choice is safe: exit status 0 if it is proven stable for every method, 1 if not.
 
@@ -525,15 +563,44 @@ def check(
     from bezstab import choose as choosing
     from bezstab import tables
 
-    if physical:
-        if h is None:
-            raise click.UsageError("--physical needs --h: α and β in 1/s need the step in s")
+    if (physical or engine) and h is None:
+        raise click.UsageError("--physical and --engine need --h: the step in s")
+    if engine and h:
+        if alpha is not None or beta is not None or physical:
+            raise click.UsageError("--engine takes the place of --alpha, --beta and --physical")
+        alpha, beta = engine[0].point(engine[1], h)
+        if engine[0].level == "velocity" and [method.name for method in methods] != ["SYM"]:
+            raise click.UsageError(f"{engine[0].name} works at velocity level: only with --method SYM")
+    if alpha is None or beta is None:
+        raise click.UsageError("--alpha and --beta are needed, or --engine")
+    if physical and h:
         alpha, beta = dimensionless(alpha, beta, h)
     given = [choosing.describe(method, "as given", alpha, beta) for method in methods]
     step = None if h is None else float(h)
     rows = [tables.choice_row(each, step) for one in given for each in (one, choosing.choose(one.method, "robust"))]
     _show(rows, tables.CHOICES, form)
     return 0 if all(each.verdict == "converges" for each in given) else 1
+
+
+@main.command()
+@click.option("--h", type=Rational(positive=True), default="0.001", show_default=True, help="Step size in s.")
+@click.option("--alpha", type=Rational(), help="α̂: with --beta, say what to set for this point.")
+@click.option("--beta", type=Rational(), help="β̂.")
+@_format_option
+def engines(h: Fraction, alpha: Fraction | None, beta: Fraction | None, form: "Format") -> None:
+    """List what other engines call the feedback, and what each must be set to for a given point.
+
+    acceleration: true Baumgarte feedback, where the integrator decides. velocity: an impulse engine, which is SYM at an
+    equivalent point. Each row says what the conversion leaves out.
+
+    Example: bezstab engines --alpha 1 --beta 0.2 --h 0.002
+    """
+    from bezstab import tables
+
+    if (alpha is None) != (beta is None):
+        raise click.UsageError("--alpha and --beta go together: they are one point")
+    point = None if alpha is None or beta is None else (alpha, beta)
+    _show([tables.engine_row(each, point, h) for each in ENGINES.values()], tables.ENGINES_LISTED, form)
 
 
 @main.command()
@@ -569,6 +636,16 @@ def paper(only: Sequence[str], output: Path, figure: Literal["png", "svg", "pdf"
         click.echo("\n\n".join(tables.render(tables.transposed(row), tables.PROPERTIES, form) for row in rows))
     else:
         _show(rows, tables.FINDINGS, form)
+
+
+def _marks(engine: str | None, h: Fraction | None, compare: bool) -> list[tuple[str, float, float]]:
+    """Return the engine's defaults and rules of thumb as labelled points of the plane."""
+    if engine is None:
+        return []
+    if h is None or compare:
+        raise click.UsageError("--engine marks one map and needs --h: the step in s")
+    points = ((label, point(h)) for label, point in ENGINES[engine].marks)
+    return [(label, float(a), float(b)) for label, (a, b) in points]
 
 
 def _faster_level(method: Method, best: "Optimum") -> float:

@@ -56,6 +56,7 @@ def region_figure(
     beta_hat: FloatArray,
     z_abs: FloatArray,
     h: float | None = None,
+    marks: Sequence[tuple[str, float, float]] = (),
 ) -> Figure:
     """Return the |z_p| map with exact boundary, faster regions, best point and critical damping (paper Fig. 1).
 
@@ -89,6 +90,9 @@ def region_figure(
             label = f"least $|z_p|$: {best.z_abs:.4f}"
             point = gains(best.alpha_hat, best.beta_hat, h or 1.0)
             axes.plot(*point, "*", color="white", markeredgecolor="black", markersize=8, label=label)
+        for marker, (text, *place) in zip("oDs^v", marks, strict=False):
+            point = gains(place[0], place[1], h or 1.0)
+            axes.plot(*point, marker, color="white", markeredgecolor="black", markersize=5, label=text)
         axes.set(xlim=(alpha[0], alpha[-1]), ylim=(beta[0], beta[-1]), facecolor="0.93")
         figure.legend(loc="outside lower center", ncols=2, facecolor="0.75")
         return figure

@@ -7,14 +7,16 @@ import math
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict
+from fractions import Fraction
 from typing import BinaryIO, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.baumgarte import gains
+from bezstab.baumgarte import Engine, gains
 from bezstab.choose import Choice
 from bezstab.derivation import accuracy
+from bezstab.errors import InputError
 from bezstab.experiments import Behaviour, Cost, Experiment, Finding
 from bezstab.formulas import characteristic_text, mapping_text, recursion
 from bezstab.mechanism import Observation
@@ -126,6 +128,16 @@ CHOICES: Columns = {
     "stable for h (s) to": _number("h_max", ".4g"),
     "α times": lambda row: _range(row, "alpha"),
     "β times": lambda row: _range(row, "beta"),
+}
+
+PASTE: Columns = {"to paste": lambda row: str(row["engine"])}
+
+ENGINES_LISTED: Columns = {
+    "engine": lambda row: str(row["engine"]),
+    "level": lambda row: str(row["level"]),
+    "parameters": lambda row: str(row["parameters"]),
+    "for this point": lambda row: str(row["set"] or "-"),
+    "left out": lambda row: str(row["excludes"]),
 }
 
 MEASUREMENTS: Columns = {
@@ -423,6 +435,24 @@ def choice_row(choice: Choice, h: float | None) -> Row:
         "beta_factor_max": factors[2][1],
     }
     return {key: None if value == math.inf else value for key, value in row.items()}
+
+
+def engine_row(engine: Engine, point: tuple[Fraction, Fraction] | None, h: Fraction) -> Row:
+    """Return an engine's words, and what to set for a point at a step of h (s), or why nothing will do."""
+    setting = None
+    if point:
+        try:
+            setting = engine.write(point, h)
+        except InputError as error:
+            setting = str(error)
+    return {
+        "engine": engine.name,
+        "level": engine.level,
+        "parameters": ", ".join(engine.parameters),
+        "set": setting,
+        "excludes": engine.excludes,
+        "source": engine.source,
+    }
 
 
 def _range(row: Row, name: str) -> str:

@@ -211,6 +211,21 @@ def test_choose_prints_what_to_set() -> None:
     )
 
 
+def test_an_engines_own_words_are_read_and_printed(tmp_path: Path) -> None:
+    (given, _) = rows("check", "--engine", "mujoco=0.004,1", "--h", "0.002", "--method", "SYM")
+    assert (given["alpha_hat"], given["beta_hat"], given["z_abs"]) == (1, 0.25, 0.75)
+    (row,) = rows("choose", "--engine", "mujoco", "--h", "0.002")
+    assert row["method"] == "SYM"
+    k, c = re.findall(r"-([\d.]+)", str(row["engine"]))
+    assert (float(c) * 0.002, float(k) * 0.002**2) == pytest.approx((row["alpha_hat"], row["beta_hat"]))
+    listed = {str(row["engine"]): row for row in rows("engines", "--alpha", "1", "--beta", "0.2", "--h", "0.002")}
+    assert listed["ode"]["set"] == "ERP = 0.2"
+    assert "reaches" in str(listed["box2d"]["set"])
+    assert all(row["excludes"] and row["source"] for row in listed.values())
+    rows("region", "--method", "SYM", "--engine", "mujoco", "--h", "0.002", "--figure", "svg", "--table", "none")
+    assert "timeconst" in (tmp_path / "region_SYM.svg").read_text(encoding="utf-8")
+
+
 @pytest.mark.parametrize(("name", "verdict"), [("RK2", "converges"), ("RK1", "marginal"), ("SYM", "diverges")])
 def test_check_judges_the_textbook_rule(name: str, verdict: str) -> None:
     rule = ("--h", "0.001", "--alpha", "1000", "--beta", "1414.2135623730951", "--physical")  # alpha = 1/h, sqrt(2)/h
@@ -247,6 +262,16 @@ def test_paper_writes_the_chosen_parts_and_prints_findings(tmp_path: Path) -> No
         ("choose --h 0.001 --goal gentle", "--settle"),
         ("choose --h 0.001 --goal gentle --settle 0.005", "--settle"),
         ("check --alpha 1 --beta 1 --physical", "--h"),
+        ("check --alpha 1", "--beta"),
+        ("check --engine mujoco=0.02,1", "--h"),
+        ("check --engine mujoco=0.02 --h 0.002", "solref[1]"),
+        ("check --engine havok=1 --h 0.002", "mujoco"),
+        ("check --engine mujoco=a,b --h 0.002", "mujoco=solref[0],solref[1]"),
+        ("check --engine bullet=0.2 --h 0.002", "SYM"),
+        ("check --engine bullet=0.2 --alpha 1 --h 0.002 --method SYM", "--alpha"),
+        ("choose --engine bullet --h 0.002", "bullet"),
+        ("region --engine mujoco", "--h"),
+        ("engines --alpha 1", "--beta"),
         ("paper --only fig4", "--only"),
         ("paper -o file/below", "file/below"),
         ("simulate --scene pendulm", "did you mean pendulum"),
@@ -322,6 +347,7 @@ def test_numerical_trouble_is_status_three(tmp_path: Path) -> None:
         "verify --points 2",
         "paper --only fig7 --figure none",
         "choose --method SYM --h 0.01",
+        "engines --alpha 0.5 --beta 0.25",
         "check --method RK1 --alpha 1 --beta 0.25",
         "verify --map 3 --figure none --table none",
     ],

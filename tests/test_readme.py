@@ -12,7 +12,9 @@ from bezstab.methods import read
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 SESSIONS = re.findall(r"```console\n(.*?)```", README, re.DOTALL)
-INLINE = sorted(set(re.findall(r"`bezstab ((?:poles|region|methods|simulate|verify|paper|choose)[^`|…]*)`", README)))
+INLINE = sorted(
+    set(re.findall(r"`bezstab ((?:poles|region|methods|simulate|verify|paper|choose|check\s|engines)[^`|…]*)`", README))
+)
 
 
 @pytest.mark.parametrize("session", SESSIONS)

@@ -1,10 +1,13 @@
+import re
 import sys
 from dataclasses import replace
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
 import pytest
 
+from bezstab.baumgarte import ENGINES
 from bezstab.errors import InputError
 from bezstab.mechanism import mechanism, observe, perturbed
 from bezstab.poles import spectral_radius
@@ -85,3 +88,21 @@ def test_without_mujoco_the_message_says_how_to_get_it(monkeypatch: pytest.Monke
     monkeypatch.setitem(sys.modules, "mujoco", None)
     with pytest.raises(InputError, match=r"bezstab\[mujoco\]"):
         next(interrogate(mechanism(load("slider_crank")), H))
+
+
+@pytest.mark.parametrize("solref", ["0.02 1", "0.004 0.5", "0.1 3", "-3000 -40", "-1e5 -700"])
+def test_solref_means_what_the_conversion_says(solref: str) -> None:
+    values = tuple(map(Fraction, solref.split()))
+    alpha_hat, beta_hat = map(float, ENGINES["mujoco"].point(values, Fraction(1, 1000)))
+    moving = mechanism(load("slider_crank"))
+    xml = re.sub(r'solref="[^"]*"', f'solref="{solref}"', model_xml(moving.scene, "Euler", H, 1.0, 1.0))
+    built = mujoco.MjModel.from_xml_string(xml)
+    data = mujoco.MjData(built)
+    data.qpos[:], _ = perturbed(moving, 1e-4)
+    data.qvel[:] = np.random.default_rng(3).normal(0, 1e-4, moving.size)  # small: newer versions add gamma, its square
+    mujoco.mj_forward(built, data)
+    damping, stiffness = (alpha_hat / H) * data.efc_vel, (beta_hat / H**2) * data.efc_pos
+    # MuJoCo divides by dmax = 0.9999 here, and multiplies by it in the equation that it solves
+    bound = 2e-4 * (np.abs(damping) + np.abs(stiffness)) + 1e-9
+    assert (np.abs(data.efc_aref + damping + stiffness) <= bound).all()
+    assert np.abs(data.efc_aref).max() > 1e3 * bound.min()
