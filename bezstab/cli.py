@@ -604,6 +604,46 @@ def engines(h: Fraction, alpha: Fraction | None, beta: Fraction | None, form: "F
 
 
 @main.command()
+@click.argument("name", metavar="bezier|adams-bashforth", type=click.Choice(["bezier", "adams-bashforth"]))
+@click.option("--from", "first", type=click.IntRange(min=1), default=2, show_default=True, help="Smallest n.")
+@click.option("--to", "last", type=click.IntRange(min=1), help="Largest n [12 for bezier, 8 for adams-bashforth].")
+@click.option("-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory for the figure.")
+@_figure_option
+@_format_option
+def family(
+    name: str,
+    first: int,
+    last: int | None,
+    output: Path,
+    figure: Literal["png", "svg", "pdf", "none"],
+    form: "Format",
+) -> None:
+    """Show what becomes of a family as its number of steps n grows: region, least |z_p|, error constant.
+
+    The Bézier methods tend to a limit with a region of its own; the regions of Adams and Bashforth shrink to nothing,
+    but each step gains an order. The figure has both.
+
+    Example: bezstab family bezier --from 2 --to 5
+    """
+    from bezstab import family as families
+    from bezstab import tables
+
+    most = {each: largest for each, (_, largest) in families.FAMILIES.items()}
+    last = most[name] if last is None else last
+    if not first <= last <= most[name]:
+        raise InputError(f"--from {first} --to {last}: expected 1 <= from <= to <= {most[name]} for {name}")
+    if figure != "none":
+        output_directory(output)
+    shown, limit = families.members(name, first, last), families.bezier_limit()
+    _show(tables.family_rows(shown, limit if name == "bezier" else None), tables.FAMILY, form)
+    if figure != "none":
+        from bezstab import figures
+
+        all_members = {each: shown if each == name else families.members(each, 2, most[each]) for each in most}
+        _write_figure(output / f"family_{name}.{figure}", figures.family_figure(all_members, limit), figure)
+
+
+@main.command()
 @click.option("--only", type=click.Choice(PARTS), multiple=True, help="This part alone. Repeatable.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory for figures and tables.")
 @_figure_option

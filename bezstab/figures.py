@@ -1,7 +1,7 @@
 """Results as matplotlib figures: readable in grey, at column width, byte-identical when drawn twice."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager
 from typing import Any, BinaryIO, Literal, SupportsFloat
 
@@ -14,6 +14,7 @@ from matplotlib.patheffects import withStroke
 
 from bezstab.baumgarte import gains
 from bezstab.experiments import Experiment
+from bezstab.family import Limit, Member
 from bezstab.mechanism import Observation
 from bezstab.methods import Method, steps
 from bezstab.optimum import Optimum
@@ -232,6 +233,38 @@ def comparison_of_methods_figure(runs: Sequence[Experiment]) -> Figure:
         figure.legend(
             handles=[line for axes in figure.axes[:2] for line in axes.lines], loc="outside lower center", ncols=4
         )
+        return figure
+
+
+def family_figure(families: Mapping[str, Sequence[Member]], limit: Limit) -> Figure:
+    """Return area, least |z_p| and error constant against n, and the Bezier regions with their limit."""
+    with _style():
+        figure = Figure(figsize=(COLUMN_WIDTH, 1.3 * COLUMN_WIDTH), layout="constrained")
+        (area, fastest), (constant, regions) = figure.subplots(2, 2)
+        for name, members in families.items():
+            order = members[0].order if members[0].order == members[-1].order else "n"
+            line = {**_line(members[-1].method), "linestyle": "-", "marker": ".", "label": f"{name} (order {order})"}
+            n = [member.n for member in members]
+            area.plot(n, [member.region.area for member in members], **line)
+            fastest.plot(n, [np.nan if member.z_abs is None else member.z_abs for member in members], **line)
+            constant.plot(n, [float(member.error_constant) for member in members], **line)
+            if name == "bezier":
+                for number, member in enumerate(members[:: max(1, len(members) // 3)]):
+                    style = {"color": line["color"], "linestyle": DASHES[number % 4]}
+                    _curves(regions, member.region, None, label=member.method.name, **style)
+        ends = ((area, limit.area), (fastest, limit.z_abs), (constant, float(limit.error_constant)))
+        for axes, value in ends:
+            axes.axhline(value, color=FAMILIES["SYM"], linestyle=DASHES[1], label="Bézier limit")
+        regions.plot(*limit.boundary.T, color=FAMILIES["SYM"], linestyle=DASHES[1])
+        area.set(ylabel="area of the region", yscale="log", xlabel="n")
+        fastest.set(ylabel="least $|z_p|$", xlabel="n")
+        constant.set(ylabel="error constant", xlabel="n")
+        regions.set(xlabel=r"$\hat\alpha$", ylabel=r"$\hat\beta$")
+        regions.set_ylim(top=1.4 * regions.get_ylim()[1])  # room above the curves
+        regions.legend(fontsize=6, loc="upper center", ncols=2)
+        for axes in figure.axes:
+            axes.grid(color="0.9")
+        figure.legend(*area.get_legend_handles_labels(), loc="outside lower center", ncols=2)
         return figure
 
 

@@ -18,6 +18,7 @@ from bezstab.choose import Choice
 from bezstab.derivation import accuracy
 from bezstab.errors import InputError
 from bezstab.experiments import Behaviour, Cost, Experiment, Finding
+from bezstab.family import Limit, Member
 from bezstab.formulas import characteristic_text, mapping_text, recursion
 from bezstab.mechanism import Observation
 from bezstab.methods import Method, evaluations, steps
@@ -128,6 +129,17 @@ CHOICES: Columns = {
     "stable for h (s) to": _number("h_max", ".4g"),
     "α times": lambda row: _range(row, "alpha"),
     "β times": lambda row: _range(row, "beta"),
+}
+
+FAMILY: Columns = {
+    "n": lambda row: str(row["n"] or "limit"),
+    "method": lambda row: str(row["method"]),
+    "area": _number("area", ".10g"),
+    "α̂ to": _number("alpha_hat_max", ".8g"),
+    "β̂ to": _number("beta_hat_max", ".8g"),
+    "least |z_p|": _number("best_z_abs", ".8f"),
+    "order of accuracy": _number("order", "d"),
+    "error constant": _number("error_constant", ".6f"),
 }
 
 PASTE: Columns = {"to paste": lambda row: str(row["engine"])}
@@ -435,6 +447,30 @@ def choice_row(choice: Choice, h: float | None) -> Row:
         "beta_factor_max": factors[2][1],
     }
     return {key: None if value == math.inf else value for key, value in row.items()}
+
+
+def family_rows(members: Sequence[Member], limit: Limit | None) -> list[Row]:
+    """Return what becomes of a family as its number of steps grows; the limit, if given, has n = None."""
+    rows: list[Row] = [
+        {
+            "n": member.n,
+            "method": member.method.name,
+            "area": member.region.area,
+            "alpha_hat_max": member.region.extent[0][1] if member.region.extent else None,
+            "beta_hat_max": member.region.extent[1][1] if member.region.extent else None,
+            "best_z_abs": member.z_abs,
+            "order": member.order,
+            "error_constant": float(member.error_constant),
+        }
+        for member in members
+    ]
+    if limit:
+        end = {"area": limit.area, "alpha_hat_max": limit.alpha_hat_max, "beta_hat_max": limit.beta_hat_max}
+        constant = float(limit.error_constant)
+        rows.append(
+            {"n": None, "method": "B∞", **end, "best_z_abs": limit.z_abs, "order": 2, "error_constant": constant}
+        )
+    return rows
 
 
 def engine_row(engine: Engine, point: tuple[Fraction, Fraction] | None, h: Fraction) -> Row:

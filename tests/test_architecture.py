@@ -15,7 +15,7 @@ FLOORS = {
     **dict.fromkeys(("formulas", "poles", "simulate"), 4),
     **dict.fromkeys(("region", "experiments"), 5),
     **dict.fromkeys(("optimum", "verify", "witness"), 6),
-    "choose": 7,
+    **dict.fromkeys(("choose", "family"), 7),
     **dict.fromkeys(("tables", "figures"), 8),
     "report": 9,
     "cli": 10,

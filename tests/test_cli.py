@@ -211,6 +211,15 @@ def test_choose_prints_what_to_set() -> None:
     )
 
 
+def test_family_ends_with_its_limit(tmp_path: Path) -> None:
+    found = rows("family", "bezier", "--from", "3", "--to", "5")
+    assert [row["n"] for row in found] == [3, 4, 5, None]
+    assert [row["method"] for row in found] == ["B3", "B4", "B5", "B∞"]
+    assert [path.name for path in tmp_path.iterdir()] == ["family_bezier.png"]
+    found = rows("family", "adams-bashforth", "--figure", "none")
+    assert [row["order"] for row in found] == list(range(2, 9))
+
+
 def test_an_engines_own_words_are_read_and_printed(tmp_path: Path) -> None:
     (given, _) = rows("check", "--engine", "mujoco=0.004,1", "--h", "0.002", "--method", "SYM")
     assert (given["alpha_hat"], given["beta_hat"], given["z_abs"]) == (1, 0.25, 0.75)
@@ -272,6 +281,10 @@ def test_paper_writes_the_chosen_parts_and_prints_findings(tmp_path: Path) -> No
         ("choose --engine bullet --h 0.002", "bullet"),
         ("region --engine mujoco", "--h"),
         ("engines --alpha 1", "--beta"),
+        ("family bezier --from 5 --to 4", "--from 5 --to 4"),
+        ("family adams-bashforth --to 9", "--to 9"),
+        ("family bezier --from 0", "--from"),
+        ("family gauss", "gauss"),
         ("paper --only fig4", "--only"),
         ("paper -o file/below", "file/below"),
         ("simulate --scene pendulm", "did you mean pendulum"),
@@ -348,6 +361,7 @@ def test_numerical_trouble_is_status_three(tmp_path: Path) -> None:
         "paper --only fig7 --figure none",
         "choose --method SYM --h 0.01",
         "engines --alpha 0.5 --beta 0.25",
+        "family bezier --from 3 --to 4 --figure none",
         "check --method RK1 --alpha 1 --beta 0.25",
         "verify --map 3 --figure none --table none",
     ],

@@ -10,9 +10,11 @@ import pytest
 from matplotlib.figure import Figure
 
 from bezstab.experiments import COMPARED, experiment, influence, unstabilized
+from bezstab.family import bezier_limit, members
 from bezstab.figures import (
     comparison_figure,
     comparison_of_methods_figure,
+    family_figure,
     influence_figure,
     region_figure,
     save,
@@ -124,6 +126,25 @@ def test_the_figure_of_table_5_keeps_the_papers_panels() -> None:
     shown = ["".join(sorted(str(line.get_label()) for line in axes.lines)) for axes in figure.axes]
     assert shown == ["RK4@5SIE", "AB4B4", "RK4@5SIE", "AB4B4", "AB4B4", "RK4@5SIE"]
     assert [axes.get_title()[0] for axes in figure.axes] == list("abcdef")
+
+
+def test_the_family_figure_has_a_point_per_method_and_the_limit() -> None:
+    families, limit = (
+        {"bezier": members("bezier", 2, 5), "adams-bashforth": members("adams-bashforth", 2, 4)},
+        bezier_limit(),
+    )
+    area, fastest, constant, regions = family_figure(families, limit).axes
+    for axes, of in (
+        (area, lambda m: m.region.area),
+        (fastest, lambda m: m.z_abs),
+        (constant, lambda m: float(m.error_constant)),
+    ):
+        lines = {str(line.get_label()): line for line in axes.lines}
+        for name, found in families.items():
+            order = {"bezier": 2, "adams-bashforth": "n"}[name]
+            assert np.array(lines[f"{name} (order {order})"].get_xydata()).tolist() == [[m.n, of(m)] for m in found]
+    assert [np.array(axes.lines[-1].get_ydata())[0] for axes in (area, fastest)] == [limit.area, limit.z_abs]
+    assert np.array(regions.lines[-1].get_xydata()) == pytest.approx(limit.boundary)
 
 
 def test_an_empty_region_can_be_drawn() -> None:
