@@ -80,6 +80,10 @@ def choose(method: Method, goal: Goal, spread: float = 0.1, rate: float | None =
         point = _gentle(method, 0.0 if rate is None else rate)
     elif goal == "critical":
         point = _critical(method)
+        if equal and not math.isclose(point[1], point[0] ** 2 / 4):
+            raise InputError(
+                f"--keep alpha=beta: the double mu of {method.name} is not at alpha = beta; no --goal critical"
+            )
     elif goal == "fastest" and not equal:
         best = optimum(method)
         assert best

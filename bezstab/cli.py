@@ -604,6 +604,21 @@ def engines(h: Fraction, alpha: Fraction | None, beta: Fraction | None, form: "F
 
 
 @main.command()
+@_method_option(*TABLE_5)
+@click.option("--h", type=Rational(positive=True), default="0.001", show_default=True, help="Step size in s.")
+def explore(methods: Sequence[Method], h: Fraction) -> None:
+    """Open a window: move over the region and see poles, decay and numbers.
+
+    A click proves the verdict; n shows the next method; p prints the point as options for the other commands.
+
+    Example: bezstab explore --method B4 --method AB4
+    """
+    from bezstab.explore import show
+
+    show(methods, float(h), click.echo)
+
+
+@main.command()
 @click.argument("name", metavar="bezier|adams-bashforth", type=click.Choice(["bezier", "adams-bashforth"]))
 @click.option("--from", "first", type=click.IntRange(min=1), default=2, show_default=True, help="Smallest n.")
 @click.option("--to", "last", type=click.IntRange(min=1), help="Largest n [12 for bezier, 8 for adams-bashforth].")

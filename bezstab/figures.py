@@ -64,7 +64,7 @@ def region_figure(
     z_abs has shape (beta_hat.size, alpha_hat.size). With h (s) the axes are 2 alpha (1/s) and beta^2 (1/s^2), else
     alpha_hat and beta_hat.
     """
-    with _style():
+    with styled():
         figure, axes = _axes(region.method.name, h)
         alpha, beta = gains(alpha_hat, beta_hat, h or 1.0)
         half_a, half_b = (alpha[1] - alpha[0]) / 2, (beta[1] - beta[0]) / 2
@@ -78,9 +78,9 @@ def region_figure(
             vmax=region.level,
         )
         figure.colorbar(image, label="$|z_p|$")
-        _curves(axes, region, h, color="black", label=rf"$|z_p| = {region.level:g}$")
+        curves(axes, region, h, color="black", label=rf"$|z_p| = {region.level:g}$")
         for number, inner in enumerate(faster, start=1):
-            _curves(axes, inner, h, color="white", linestyle=DASHES[number % 4], label=rf"$|z_p| = {inner.level:g}$")
+            curves(axes, inner, h, color="white", linestyle=DASHES[number % 4], label=rf"$|z_p| = {inner.level:g}$")
         parabola = np.linspace(alpha_hat[0], alpha_hat[-1], 400)
         outline = withStroke(linewidth=2.4, foreground="black")  # white alone is lost outside the region
         critical = gains(parabola, parabola**2 / 4, h or 1.0)
@@ -106,10 +106,10 @@ def comparison_figure(
 
     The ranges are in alpha_hat and beta_hat whatever the axes; without them all of every region shows.
     """
-    with _style():
+    with styled():
         figure, axes = _axes(rf"$|z_p| = {regions[0].level:g}$", h)
         for region in regions:
-            _curves(axes, region, h, label=region.method.name, **_line(region.method))
+            curves(axes, region, h, label=region.method.name, **_line(region.method))
         axes.grid(color="0.9")
         if alpha_range:
             axes.set_xlim(*(gains(float(end), 0.0, h or 1.0)[0] for end in alpha_range))
@@ -121,7 +121,7 @@ def comparison_figure(
 
 def history_figure(run: Trajectory, seen: Observation) -> Figure:
     """Return the first constraint and its derivative against time (paper Figs. 5-9)."""
-    with _style():
+    with styled():
         figure = Figure(figsize=(COLUMN_WIDTH, COLUMN_WIDTH), layout="constrained")
         upper, lower = figure.subplots(2, 1, sharex=True)
         colour = _line(run.method)["color"]
@@ -138,7 +138,7 @@ def history_figure(run: Trajectory, seen: Observation) -> Figure:
 
 def verdict_figure(verdicts: VerdictMap, region: Region) -> Figure:
     """Return the simulated verdicts as cells under the exact boundary; cells that disagree are crossed."""
-    with _style():
+    with styled():
         alpha_hat, beta_hat = verdicts.alpha_hat, verdicts.beta_hat
         half_a, half_b = (alpha_hat[1] - alpha_hat[0]) / 2, (beta_hat[1] - beta_hat[0]) / 2
         agreeing = 1 - verdicts.disagrees.sum() / max(1, (~verdicts.broken).sum())
@@ -158,7 +158,7 @@ def verdict_figure(verdicts: VerdictMap, region: Region) -> Figure:
         for colour, label in ((CONVERGES, "run converges"), (DIVERGES, "run diverges"), ("white", "run breaks down")):
             if colour != "white" or verdicts.broken.any():
                 axes.plot([], [], "s", color=colour, markeredgecolor="0.5", label=label)
-        _curves(axes, region, None, color="black", label=r"$|z_p| = 1$")
+        curves(axes, region, None, color="black", label=r"$|z_p| = 1$")
         rows, columns = np.nonzero(verdicts.disagrees)
         if rows.size:
             axes.plot(alpha_hat[columns], beta_hat[rows], "x", color=FAMILIES["SYM"], markersize=3, label="disagree")
@@ -168,7 +168,7 @@ def verdict_figure(verdicts: VerdictMap, region: Region) -> Figure:
 
 def unstabilized_figure(runs: Sequence[Experiment]) -> Figure:
     """Return the growth of |c_1| without stabilisation, a panel for each start (paper Figs. 5 and 6)."""
-    with _style():
+    with styled():
         figure = Figure(figsize=(COLUMN_WIDTH, 1.3 * COLUMN_WIDTH), layout="constrained")
         starts = list(dict.fromkeys(run.start for run in runs))
         steps = list(dict.fromkeys(run.h for run in runs))
@@ -192,7 +192,7 @@ def unstabilized_figure(runs: Sequence[Experiment]) -> Figure:
 
 def influence_figure(runs: Sequence[Experiment], derivative: bool) -> Figure:
     """Return c_1, or its derivative, against time for the cases of Table 4 (paper Figs. 7 and 8)."""
-    with _style():
+    with styled():
         figure = Figure(figsize=(COLUMN_WIDTH, 1.3 * COLUMN_WIDTH), layout="constrained")
         panels = figure.subplots(len(runs) // 2, 2).flat
         for number, (axes, run) in enumerate(zip(panels, runs, strict=True), start=1):
@@ -210,7 +210,7 @@ def influence_figure(runs: Sequence[Experiment], derivative: bool) -> Figure:
 
 def comparison_of_methods_figure(runs: Sequence[Experiment]) -> Figure:
     """Return c_1 against time for the cases of Table 5, one-step and multistep methods apart (paper Fig. 9)."""
-    with _style():
+    with styled():
         figure = Figure(figsize=(COLUMN_WIDTH, 1.5 * COLUMN_WIDTH), layout="constrained")
         points = list(dict.fromkeys((run.alpha_hat, run.beta_hat) for run in runs))
         for row, point in enumerate(points):
@@ -238,7 +238,7 @@ def comparison_of_methods_figure(runs: Sequence[Experiment]) -> Figure:
 
 def family_figure(families: Mapping[str, Sequence[Member]], limit: Limit) -> Figure:
     """Return area, least |z_p| and error constant against n, and the Bezier regions with their limit."""
-    with _style():
+    with styled():
         figure = Figure(figsize=(COLUMN_WIDTH, 1.3 * COLUMN_WIDTH), layout="constrained")
         (area, fastest), (constant, regions) = figure.subplots(2, 2)
         for name, members in families.items():
@@ -251,7 +251,7 @@ def family_figure(families: Mapping[str, Sequence[Member]], limit: Limit) -> Fig
             if name == "bezier":
                 for number, member in enumerate(members[:: max(1, len(members) // 3)]):
                     style = {"color": line["color"], "linestyle": DASHES[number % 4]}
-                    _curves(regions, member.region, None, label=member.method.name, **style)
+                    curves(regions, member.region, None, label=member.method.name, **style)
         ends = ((area, limit.area), (fastest, limit.z_abs), (constant, float(limit.error_constant)))
         for axes, value in ends:
             axes.axhline(value, color=FAMILIES["SYM"], linestyle=DASHES[1], label="Bézier limit")
@@ -271,11 +271,11 @@ def family_figure(families: Mapping[str, Sequence[Member]], limit: Limit) -> Fig
 def save(figure: Figure, form: Literal["png", "svg", "pdf"], file: BinaryIO) -> None:
     """Write the figure without dates, versions or random names, so that equal figures are equal bytes."""
     metadata = {"png": {"Software": None}, "svg": {"Date": None}, "pdf": {"CreationDate": None, "Producer": None}}
-    with _style():
+    with styled():
         figure.savefig(file, format=form, metadata=metadata[form])
 
 
-def _style() -> AbstractContextManager[None]:
+def styled() -> AbstractContextManager[None]:
     """Return a context in which matplotlib's defaults and STYLE hold, whatever the user's own settings."""
     return style.context(["default", STYLE])
 
@@ -293,7 +293,7 @@ def _axes(title: str, h: float | None) -> tuple[Figure, Axes]:
     return figure, axes
 
 
-def _curves(axes: Axes, region: Region, h: float | None, label: str, **line: Any) -> None:
+def curves(axes: Axes, region: Region, h: float | None, label: str, **line: Any) -> None:
     """Draw a region's boundary, its closed curves as one line."""
     if region.boundary:
         gap = np.full((1, 2), np.nan)

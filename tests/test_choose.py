@@ -100,6 +100,9 @@ def test_the_gentle_choice_solves_for_mu(name: str, rate: float) -> None:
 
 
 def test_a_goal_out_of_reach_is_refused() -> None:
+    with pytest.raises(InputError, match="--keep"):
+        choose(lookup("SYM"), "critical", equal=True)
+    assert choose(lookup("B4"), "critical", equal=True) == choose(lookup("B4"), "critical")
     with pytest.raises(InputError, match="settle"):
         choose(lookup("B4"), "gentle", rate=0.5)
 
