@@ -27,6 +27,7 @@ ZOOMS = 90  # 0.6^40 = 1e-9 of the region, where the objective is flat to roundi
 SHARES = 24  # of the largest step, besides the limit of small steps
 ASIDE = 1e-7  # of mu: a double mu splits by 1e-8 in float64, which must not let a rival of equal modulus win
 DEADBEAT = 1e-6  # a double pole at zero, as far as float64 tells it
+REAL = 1e-9  # of |z|: an imaginary part below it is rounding
 FURTHEST = 1e4  # factor on h, alpha or beta beyond which nobody asks
 NEAREST = 1e-4  # and below which |z_p| is one to rounding
 
@@ -148,14 +149,14 @@ def _slowest(method: Method, spread: float) -> Objective:
     in the limit of small steps what remains is exp(Re mu), the continuous decay.
     """
     shares = np.linspace(0, 1, SHARES + 1)[1:, np.newaxis]
-    offsets = 1 + spread * np.array([-1.0, 0.0, 1.0])
+    offsets, multiple = 1 + spread * np.array([-1.0, 0.0, 1.0]), float(method.step_multiple)
 
     def objective(a: FloatArray, b: FloatArray) -> FloatArray:
         worst = np.zeros(a.shape)
         for first in offsets:
             for second in offsets:
                 off_a, off_b = first * a, second**2 * b
-                slow = -off_a / 2 + np.sqrt(np.maximum(0, off_a**2 / 4 - off_b))
+                slow = multiple * (-off_a / 2 + np.sqrt(np.maximum(0, off_a**2 / 4 - off_b)))
                 per_share = spectral_radius(method, shares * off_a, shares**2 * off_b) ** (1 / shares)
                 worst = np.maximum(worst, np.maximum(np.exp(slow), per_share.max(axis=0)))
         return worst
@@ -198,10 +199,7 @@ def _critical(method: Method) -> tuple[float, float]:
 
     def dominant(mu: FloatArray) -> FloatArray:
         z = dominant_root(method, mu.astype(complex))
-        real = (np.abs(z.imag) < 1e-9 * np.abs(z)) & (
-            z.real > 0
-        )  # a pair splits by the square root of a small distance
-        return np.where(real, z.real, np.inf)
+        return np.where((np.abs(z.imag) < REAL * np.abs(z)) & (z.real > 0), z.real, np.inf)
 
     mu = -np.linspace(0, 2 * math.sqrt(extent[1][1]) + extent[0][1], SAMPLES)[1:]
     first = int(np.append(np.flatnonzero(np.isinf(dominant(mu))), len(mu))[0])

@@ -99,6 +99,16 @@ def test_the_gentle_choice_solves_for_mu(name: str, rate: float) -> None:
     assert np.abs(z).max() == pytest.approx(rate)
 
 
+@pytest.mark.parametrize("goal", ["robust", "fastest", "critical"])
+def test_a_step_of_five_h_scales_the_choice(goal: Goal) -> None:
+    plain, fivefold = (choose(lookup(name), goal) for name in ("RK2", "RK2@5"))
+    # the objective is flat to rounding within the square root of it
+    assert (5 * fivefold.alpha_hat, 25 * fivefold.beta_hat) == pytest.approx(
+        (plain.alpha_hat, plain.beta_hat), rel=1e-4
+    )
+    assert abs(fivefold.pole) == pytest.approx(abs(plain.pole), abs=1e-6)
+
+
 def test_a_goal_out_of_reach_is_refused() -> None:
     with pytest.raises(InputError, match="--keep"):
         choose(lookup("SYM"), "critical", equal=True)
