@@ -134,6 +134,7 @@ ENGINES = {
         _direct("drake", "Drake documentation, constraint stabilization (the older constraint solver)"),
         _erp("bullet", "0.2", "Bullet source, btContactSolverInfo.h"),
         _erp("ode", "0.2", "ODE wiki, Manual: Concepts"),
+        _erp("dart", "0.01", "DART issue 317"),
         Engine(
             "box2d",
             "velocity",
@@ -146,4 +147,4 @@ ENGINES = {
         ),
     )
 }
-"""Those whose formula has a source. RBDL and Pinocchio are left out: their sources do not settle sign or order."""
+"""Those whose formula has a source. RBDL and Pinocchio are left out: their sources do not settle sign and order."""
