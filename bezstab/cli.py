@@ -524,7 +524,7 @@ def choose(
     if engine and context.get_parameter_source("methods") == click.core.ParameterSource.DEFAULT:
         methods = [lookup("SYM")]
     rows: list[Row] = []
-    for method in methods:
+    for method in _progress(methods, len(methods), goal, lambda _: 1):
         rate = choosing.THOUSANDFOLD ** float(h * method.step_multiple / settle) if settle else None
         found = choosing.choose(method, goal, float(spread), rate, equal=keep is not None)
         if share != 1:
