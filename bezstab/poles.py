@@ -9,6 +9,7 @@ from fractions import Fraction
 from functools import cache
 
 import numpy as np
+from numpy.polynomial.polynomial import polyder
 from numpy.typing import ArrayLike, NDArray
 
 from bezstab import schur
@@ -21,11 +22,13 @@ FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 CHUNK = 16384  # points at a time: all the work arrays of one chunk stay in a core's cache
-STRIDE = 16  # of a chunk's points one in so many is solved from scratch, the others start from its roots
+STRIDE = 16  # of a row of points one in so many has all its roots solved for, the others start from them
 ITERATIONS = 200  # Aberth's iteration needs about ten; a multiple root, where it is linear, about sixty
 NEAR = 0.2  # relative distance of x within which the roots of a neighbour are better starts than the polygon's
 NUDGE = 1e-3  # about a step of a map's grid, so it costs no iteration
-CONVERGED = 1e-9  # relative correction after which a cubically convergent iterate is exact to rounding
+CONVERGED = 1e-9  # relative correction after which a quadratically convergent iterate is exact to rounding
+FOLLOWED = 4  # Newton steps: from a start that is off by the square of a map's spacing two suffice
+SAFETY = 3.0  # times its slope: within a block a root moves less, towards a branch point (a square root) too
 
 
 def verdict(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> Verdict:
@@ -55,16 +58,18 @@ def dominant_pole(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> 
     alpha_hat, beta_hat = np.broadcast_arrays(np.asarray(alpha_hat, float), np.asarray(beta_hat, float))
     flat_alpha, flat_beta = alpha_hat.ravel(), beta_hat.ravel()
     dominant = np.empty(alpha_hat.size, complex)
-    for start in range(0, alpha_hat.size, CHUNK):
-        chunk = slice(start, start + CHUNK)
-        first, second = _mu(method, flat_alpha[chunk], flat_beta[chunk])
-        largest = dominant_root(method, first)
-        real = np.flatnonzero(first.imag == 0)
+    for start in range(0, alpha_hat.size, STRIDE * CHUNK):
+        part = dominant[start : start + STRIDE * CHUNK]
+        second = np.empty_like(part)
+        for i in range(0, part.size, CHUNK):
+            here, there = slice(i, i + CHUNK), slice(start + i, start + min(i + CHUNK, part.size))
+            part[here], second[here] = _mu(method, flat_alpha[there], flat_beta[there])
+        real = np.flatnonzero(part.imag == 0)
+        part[:] = dominant_root(method, part)
         if real.size:
             other = dominant_root(method, second[real])
-            larger = np.abs(other) > np.abs(largest[real])
-            largest[real[larger]] = other[larger]
-        dominant[chunk] = largest
+            larger = np.abs(other) > np.abs(part[real])
+            part[real[larger]] = other[larger]
     dominant.imag = np.abs(dominant.imag)
     return dominant.reshape(alpha_hat.shape)
 
@@ -75,10 +80,69 @@ def spectral_radius(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -
 
 
 def dominant_root(method: Method, mu: ComplexArray) -> ComplexArray:
-    """Return the root of pi(., mu) of largest modulus for each of a row of mu."""
-    z = roots_in_z(method, mu)
-    largest: ComplexArray = z[np.argmax(np.abs(z), axis=0), np.arange(mu.size)]
+    """Return the root of pi(., mu) of largest modulus for each of a row of mu.
+
+    Where neighbours in the row are close, as on a map, the dominant root of one is followed to the others by Newton's
+    method, unless another root could overtake it on the way. NumericalError as for roots_in_z.
+    """
+    if len(table := float_table(method)) == 2 or mu.size < STRIDE**2:
+        return _largest(roots_in_z(method, mu))
+    blocks = mu[: mu.size - mu.size % STRIDE].reshape(-1, STRIDE)
+    found = np.full(mu.size, np.nan, complex)
+    followed = found[: blocks.size].reshape(blocks.shape)
+    centre = blocks[:, STRIDE // 2]
+    z = roots_in_z(method, centre)
+    with np.errstate(all="ignore"):  # what is not finite is not followed
+        by_z, by_mu = (_polynomial(polyder(table, axis=axis), z, centre) for axis in (0, 1))
+        slope, modulus = -by_mu / by_z, np.abs(z)
+        lead = np.argmax(modulus, axis=0)[np.newaxis]
+        first, drift = (np.take_along_axis(x, lead, axis=0)[0] for x in (z, slope))
+        moved = SAFETY * np.abs(slope) * np.abs(blocks - centre[:, np.newaxis]).max(axis=1)
+        bound = modulus + moved
+        twin = np.abs(z - first.conj()) < CONVERGED * np.abs(first)  # as large throughout, where it stays a twin
+        twin &= (blocks.imag == 0).all(axis=1) & (np.abs(z.imag) > moved)
+        np.put_along_axis(bound, lead, 0, axis=0)
+        bound = np.where(twin, 0, bound).max(axis=0)
+        alone = np.flatnonzero(bound < np.abs(first))
+        for i in range(0, alone.size, CHUNK // STRIDE):
+            chosen = alone[i : i + CHUNK // STRIDE]
+            near, least = blocks[chosen], bound[chosen, np.newaxis]
+            start = first[chosen, np.newaxis] + drift[chosen, np.newaxis] * (near - centre[chosen, np.newaxis])
+            followed[chosen] = _followed(table, near, start, least)
+    rest = np.flatnonzero(np.isnan(found))
+    found[rest] = _largest(roots_in_z(method, mu[rest]))
+    return found
+
+
+def _largest(z: ComplexArray) -> ComplexArray:
+    """Return the entry of largest modulus along the first axis."""
+    largest: ComplexArray = np.take_along_axis(z, np.argmax(np.abs(z), axis=0)[np.newaxis], axis=0)[0]
     return largest
+
+
+def _polynomial(table: FloatArray, z: ComplexArray, mu: ComplexArray) -> ComplexArray:
+    """Return sum_kj table[k, j] z^k mu^j; mu's shape broadcast with z's."""
+    total = np.zeros(z.shape, complex)
+    for row in table[::-1]:
+        total *= z
+        total += _horner(row, mu)
+    return total
+
+
+def _followed(table: FloatArray, mu: ComplexArray, z: ComplexArray, bound: FloatArray) -> ComplexArray:
+    """Return the roots that Newton's method reaches from z; nan where it has not settled, or not above the bound."""
+    a = [_horner(row, mu) if row[1:].any() else row[0] for row in table]
+    for _ in range(FOLLOWED):
+        value, slope = a[-1] * z + a[-2], a[-1]
+        for c in a[-3::-1]:
+            slope = slope * z + value
+            value = value * z + c
+        step = value / slope
+        z = z - step
+        settled = np.abs(step) <= CONVERGED * np.abs(z)
+        if settled.all():
+            break
+    return np.where(settled & (np.abs(z) > bound), z, np.nan)
 
 
 def roots_in_z(method: Method, mu: ComplexArray) -> ComplexArray:

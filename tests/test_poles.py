@@ -208,3 +208,14 @@ def test_away_from_the_boundary_the_proof_agrees_with_the_number(name: str, a: F
 def test_overflow_is_reported_never_returned(name: str, point: tuple[float, float]) -> None:
     with contextlib.suppress(NumericalError):
         assert np.isfinite(poles(lookup(name), *point)).all()
+
+
+@pytest.mark.parametrize("name", REGISTRY)
+def test_a_map_follows_the_pole_that_is_largest_everywhere(name: str) -> None:
+    method = lookup(name)
+    for low, high in (((-3, -2), (5, 6)), ((0, 0), (40, 900))):  # kinks and branch points; far outside
+        alpha_hat, beta_hat = np.linspace(low, high, 120).T
+        grid = (alpha_hat, beta_hat[:, np.newaxis])
+        every = np.abs(poles(method, *grid)).max(axis=-1)
+        # of ABM four roots meet at z = 1 along a curve of the plane, and float64 keeps a quarter of the digits there
+        assert np.allclose(spectral_radius(method, *grid), every, rtol=1e-4 if "ABM" in name else 1e-12, atol=0)
