@@ -9,7 +9,7 @@ from fractions import Fraction
 from functools import cache
 
 import numpy as np
-from numpy.polynomial.polynomial import polyder
+from numpy.polynomial.polynomial import polyder, polyval2d
 from numpy.typing import ArrayLike, NDArray
 
 from bezstab import schur
@@ -92,8 +92,9 @@ def dominant_root(method: Method, mu: ComplexArray) -> ComplexArray:
     followed = found[: blocks.size].reshape(blocks.shape)
     centre = blocks[:, STRIDE // 2]
     z = roots_in_z(method, centre)
+    same = np.broadcast_to(centre, z.shape)
     with np.errstate(all="ignore"):  # what is not finite is not followed
-        by_z, by_mu = (_polynomial(polyder(table, axis=axis), z, centre) for axis in (0, 1))
+        by_z, by_mu = (polyval2d(z, same, polyder(table, axis=axis)) for axis in (0, 1))
         slope, modulus = -by_mu / by_z, np.abs(z)
         lead = np.argmax(modulus, axis=0)[np.newaxis]
         first, drift = (np.take_along_axis(x, lead, axis=0)[0] for x in (z, slope))
@@ -118,15 +119,6 @@ def _largest(z: ComplexArray) -> ComplexArray:
     """Return the entry of largest modulus along the first axis."""
     largest: ComplexArray = np.take_along_axis(z, np.argmax(np.abs(z), axis=0)[np.newaxis], axis=0)[0]
     return largest
-
-
-def _polynomial(table: FloatArray, z: ComplexArray, mu: ComplexArray) -> ComplexArray:
-    """Return sum_kj table[k, j] z^k mu^j; mu's shape broadcast with z's."""
-    total = np.zeros(z.shape, complex)
-    for row in table[::-1]:
-        total *= z
-        total += _horner(row, mu)
-    return total
 
 
 def _followed(table: FloatArray, mu: ComplexArray, z: ComplexArray, bound: FloatArray) -> ComplexArray:
