@@ -27,6 +27,7 @@ QUADRATURE = 1e-14  # of |mu|^3: a panel is split until its halves agree to this
 SPLITS = 40  # halvings of a panel at most: towards a corner of the locus they end at rounding
 ROUNDING = 1e-13  # of a range: an end this close to an axis lies on it
 NARROWINGS = 8  # each by 1/16: from a sample's spacing to where a smooth extreme is flat to rounding
+FALSE_POSITIONS = 10  # from 1/400 of an arc: the sixth is exact to rounding but where the line nearly touches it
 MARGIN = 1e-13  # of the level: rounding of a simple root's modulus, a hundredfold
 EMPTY = 1e-9  # of its box: a region with less area is the noise of roots that stay on the circle together
 REAL = 1e-9  # an imaginary part below this times |mu| is rounding where a branch is known to cross the real axis
@@ -52,12 +53,8 @@ class Region:
 @cache
 def region(method: Method, level: float = 1.0) -> Region:
     """Return the region |z_p| < level, 0 < level <= 1; area and extent are good to about 1e-12."""
-    arcs = list(_arcs(method, level))
-    intervals = _real_intervals(method, level, arcs)
-    to_user = np.linalg.inv(np.array(effective_parameters(method), float))
-    edges = [_pair(arc.mu, arc.mu.conj()) @ to_user.T for arc in arcs]
-    for fixed in chain(*intervals):
-        edges += [_pair(np.full(3, fixed), np.linspace(*interval, 3)) @ to_user.T for interval in intervals]
+    arcs, intervals, to_user = _bounds(method, level)
+    edges = [arc.plane() @ to_user.T for arc in arcs] + [np.array(line) for line in _lines(method, level)]
     area = sum(arc.area() for arc in arcs) + sum((end - start) ** 3 / 6 for start, end in intervals)
     for (a, b), (c, d) in combinations(intervals, 2):
         area += (b - a) * (d - c) * ((c + d) - (a + b)) / 2
@@ -66,6 +63,24 @@ def region(method: Method, level: float = 1.0) -> Region:
     if extent is None or area <= EMPTY * np.prod(np.diff(extent)):
         return Region(method, level, 0.0, (), None)
     return Region(method, level, area, tuple(_closed_curves(edges)), extent)
+
+
+@cache
+def _bounds(method: Method, level: float) -> tuple[list["_Arc"], list[tuple[float, float]], FloatArray]:
+    """Return S_r's bounding arcs and real intervals, and the matrix from the feedback's coefficients to the user's."""
+    arcs = list(_arcs(method, level))
+    return arcs, _real_intervals(method, level, arcs), np.linalg.inv(np.array(effective_parameters(method), float))
+
+
+def _lines(method: Method, level: float) -> Iterator[FloatArray]:
+    """Yield the ends of the straight edges in the user's plane: one mu held at an interval's end, the other along one.
+
+    Shape (2, 2).
+    """
+    _, intervals, to_user = _bounds(method, level)
+    for fixed in chain(*intervals):
+        for interval in intervals:
+            yield _pair(np.full(2, fixed), np.array(interval)) @ to_user.T
 
 
 def _extent(edges: list[FloatArray], arcs: Sequence["_Arc"], to_user: FloatArray) -> Extent | None:
@@ -103,6 +118,45 @@ def pole_map(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> Ite
         yield dominant_pole(method, alpha_hat, beta_hat[start : start + rows, np.newaxis])
 
 
+def stable_mask(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, level: float = 1.0) -> NDArray[np.bool_]:
+    """Return where |z_p| < level over the grid of two ascending axes; shape (beta_hat.size, alpha_hat.size).
+
+    Scan line by scan line between the crossings of the exact boundary: no pole is computed. A point on a slanted or
+    curved edge itself, where |z_p| = level, falls to either side by rounding.
+    """
+    mask = np.zeros((beta_hat.size, alpha_hat.size + 1), np.uint8)  # one more for what lies beyond the last column
+    if region(method, level).boundary:
+        rows, crossings = scan(method, beta_hat, level)
+        columns = np.searchsorted(alpha_hat, crossings)
+        np.bitwise_xor.at(mask, (rows, columns), 1)
+        np.bitwise_xor.accumulate(mask, axis=1, out=mask)
+        touched = np.append(alpha_hat, np.inf)[columns] == crossings  # |z_p| is level on the boundary itself
+        mask[rows[touched], columns[touched]] = 0
+        for (a, b), (c, d) in _lines(method, level):
+            if b == d:
+                mask[np.ix_(beta_hat == b, np.append((alpha_hat >= min(a, c)) & (alpha_hat <= max(a, c)), False))] = 0
+    return mask[:, :-1].view(bool)
+
+
+def scan(method: Method, beta_hat: FloatArray, level: float = 1.0) -> tuple[NDArray[np.int_], FloatArray]:
+    """Return where lines of constant beta_hat (ascending) cross the boundary: their numbers, and alpha_hat there."""
+    arcs, _, to_user = _bounds(method, level)
+    found = [arc.crossings(beta_hat, to_user) for arc in arcs]
+    for (a, b), (c, d) in _lines(method, level):
+        rows, _ = _crossed(beta_hat, np.array([b, d]))
+        found.append((rows, a + (c - a) * (beta_hat[rows] - b) / (d - b)))
+    return np.concatenate([rows for rows, _ in found]), np.concatenate([crossings for _, crossings in found])
+
+
+def _crossed(levels: FloatArray, values: FloatArray) -> tuple[NDArray[np.int_], NDArray[np.int_]]:
+    """Return every (i, k) such that the step from values[k] to values[k + 1] crosses levels[i]."""
+    below = np.searchsorted(levels, values)  # how many levels lie below each value
+    number = np.abs(np.diff(below))
+    step = np.repeat(np.arange(len(number)), number)
+    first = np.repeat(np.minimum(below[:-1], below[1:]) - np.cumsum(number) + number, number)
+    return first + np.arange(number.sum()), step
+
+
 def _pair(first: NDArray[np.inexact], second: NDArray[np.inexact]) -> FloatArray:
     """Return (-(mu_1 + mu_2), mu_1 mu_2), the coefficients of the feedback; shape (points, 2)."""
     return np.stack([-(first + second).real, (first * second).real], axis=-1)
@@ -121,6 +175,47 @@ class _Arc:
         """Return mu(theta): the point of the locus next to the interpolated samples."""
         near = np.interp(theta, self.theta, self.mu.real) + 1j * np.interp(theta, self.theta, self.mu.imag)
         return _nearest(roots_in_mu(self.method, self.level * np.exp(1j * theta)), near)
+
+    def plane(self) -> FloatArray:
+        """Return the samples in the plane of the feedback's coefficients; shape (samples, 2)."""
+        return _pair(self.mu, self.mu.conj())
+
+    def crossings(self, beta_hat: FloatArray, to_user: FloatArray) -> tuple[NDArray[np.int_], FloatArray]:
+        """Return the numbers of the levels beta_hat that the arc crosses, and alpha_hat there, by false position."""
+
+        theta = np.sort(np.append(self.theta, self.turns(to_user[1])))
+        rows, step = _crossed(beta_hat, (values := self._values(theta, to_user[1])))
+        low, high, target = theta[step], theta[step + 1], beta_hat[rows]
+        below, above = values[step] - target, values[step + 1] - target
+        beyond = np.full(len(rows), False)
+        for k in range(FALSE_POSITIONS):
+            middle = low - below * (high - low) / (above - below)
+            off = self._values(middle, to_user[1]) - target
+            last, beyond = beyond, np.sign(off) == np.sign(above)
+            stays = 0.5 if k else 1.0  # Illinois: the value of an end that stays twice is halved, lest it stay for ever
+            high, low = np.where(beyond, middle, high), np.where(beyond, low, middle)
+            above, below = (
+                np.where(beyond, off, np.where(last == beyond, stays * above, above)),
+                np.where(beyond, np.where(last == beyond, stays * below, below), off),
+            )
+        return rows, self._values(middle, to_user[0])
+
+    def _values(self, theta: FloatArray, direction: FloatArray) -> FloatArray:
+        """Return direction . (-2x, x^2 + y^2), a coordinate of the plane, along the arc."""
+        mu = self.at(theta)
+        return np.asarray(_pair(mu, mu.conj()) @ direction)
+
+    def turns(self, direction: FloatArray) -> FloatArray:
+        """Return every theta where that coordinate turns, by narrowing in on the samples where it does."""
+        values = self.plane() @ direction
+        found = []
+        for k in (np.flatnonzero(np.diff(np.sign(np.diff(values)))) + 1).tolist():
+            theta, sign = self.theta, 1 if values[k] > values[k - 1] else -1
+            for _ in range(NARROWINGS):
+                theta = np.linspace(theta[max(k - 1, 0)], theta[min(k + 1, len(theta) - 1)], 33)
+                k = int(np.argmax(sign * self._values(theta, direction)))  # noqa: PLW2901
+            found.append(theta[k])
+        return np.array(found)
 
     def area(self) -> float:
         """Return the contribution -int 2 y^2 dx to the image's area (Green), by adaptive Gauss-Legendre panels."""
@@ -149,14 +244,8 @@ class _Arc:
         return np.asarray(-2 * mu.imag**2 * (-1j * z * by_z / by_mu).real)
 
     def furthest(self, direction: FloatArray) -> float:
-        """Return the largest direction . (-2x, x^2 + y^2) on the arc, by narrowing in on the best sample."""
-        theta = self.theta
-        for _ in range(NARROWINGS):
-            mu = self.at(theta)
-            values = _pair(mu, mu.conj()) @ direction
-            k = int(np.argmax(values))
-            theta = np.linspace(theta[max(k - 1, 0)], theta[min(k + 1, len(theta) - 1)], 33)
-        return float(values[k])
+        """Return the largest direction . (-2x, x^2 + y^2) on the arc."""
+        return float(self._values(np.append(self.theta[[0, -1]], self.turns(direction)), direction).max())
 
 
 def _nearest(candidates: ComplexArray, targets: ComplexArray) -> ComplexArray:

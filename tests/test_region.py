@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from bezstab.derivation import closed_loop
 from bezstab.methods import REGISTRY, LinearMultistep, Method, RungeKutta, lookup, rational
 from bezstab.poles import ComplexArray, FloatArray, dominant_pole, spectral_radius
-from bezstab.region import Extent, Region, pole_map, region, window
+from bezstab.region import Extent, Region, pole_map, region, stable_mask, window
 
 BoolArray = NDArray[np.bool_]
 
@@ -540,3 +540,20 @@ def test_the_map_is_the_dominant_pole_on_the_mesh(name: str, columns: int, rows:
     assert stacked.shape == (rows, columns)
     assert np.abs(stacked - dominant_pole(method, a, b[:, None])).max() < 1e-9  # other starts of the iteration
     assert (np.abs(stacked[::97, ::7]) - radius(method, *np.meshgrid(a, b))[::97, ::7]).max() < 1e-6
+
+
+@pytest.mark.parametrize("name", [*REGISTRY, "RK4@5"])
+def test_the_mask_is_where_the_largest_pole_is_below_the_level(name: str) -> None:
+    method = lookup(name)
+    for level in (1.0, 0.9):
+        (left, right), (low, high) = window(region(method, level))
+        alpha_hat, beta_hat = np.linspace(left - 0.1, right, 151), np.linspace(low - 0.1, high, 149)
+        z_abs = spectral_radius(method, alpha_hat, beta_hat[:, np.newaxis])
+        mask = stable_mask(method, alpha_hat, beta_hat, level)
+        clear = np.abs(z_abs - level) > 1e-9  # nearer, the pole itself is rounded; ABM's fourfold root at z = 1 more so
+        clear &= (np.abs(z_abs - 1) > 1e-3) if "ABM" in name else True
+        assert np.array_equal(mask[clear], (z_abs < level)[clear])
+
+
+def test_the_mask_leaves_out_the_axis_where_errors_never_decay() -> None:
+    assert not stable_mask(lookup("B4"), np.linspace(0, 1, 50), np.array([0.0])).any()
