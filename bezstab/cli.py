@@ -4,6 +4,7 @@ import os
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, Literal, NoReturn, TypeVar
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from bezstab.choose import Goal
+    from bezstab.chunks import Arrays
     from bezstab.optimum import Optimum
     from bezstab.simulate import Start
     from bezstab.tables import Columns, Format, Row
@@ -136,6 +138,13 @@ _figure_option = click.option(
 _table_option = click.option(
     "--table", type=click.Choice(["csv", "npz", "none"]), default="csv", show_default=True, help="Format of the table."
 )
+
+
+_workers_option = click.option(
+    "--workers", type=click.IntRange(1, 1000), help="Number of processes [one for each core]."
+)
+_scheduler_option = click.option("--scheduler", help="Address of a Dask scheduler, tcp://host:port, instead.")
+_resume_option = click.option("--resume", is_flag=True, help="Go on with what a killed run of the same job has left.")
 
 
 @click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
@@ -397,10 +406,15 @@ def simulate(
 @click.option("--alpha", type=Rational(), help="α̂ of a single point; with --beta, instead of --points.")
 @click.option("--beta", type=Rational(), help="β̂ of a single point.")
 @click.option("--points", type=click.IntRange(1, 1000), help="That many points over region and surroundings [20].")
-@click.option("--map", "cells", type=click.IntRange(2, 500), help="Simulated verdicts of N×N points instead of poles.")
+@click.option(
+    "--map", "cells", type=click.IntRange(2, 10000), help="Simulated verdicts of N×N points instead of poles."
+)
 @click.option("--witness", type=click.Choice(["mujoco"]), help="Another engine's own integrators instead of --method.")
 @click.option("--h", type=Rational(positive=True), default="0.001", show_default=True, help="Step size in s.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory of --map's files.")
+@_workers_option
+@_scheduler_option
+@_resume_option
 @_figure_option
 @_table_option
 @_format_option
@@ -414,6 +428,9 @@ def verify(
     witness: Literal["mujoco"] | None,
     h: Fraction,
     output: Path,
+    workers: int | None,
+    scheduler: str | None,
+    resume: bool,
     figure: Literal["png", "svg", "pdf", "none"],
     table: Literal["csv", "npz", "none"],
     form: "Format",
@@ -421,7 +438,8 @@ def verify(
     """Compare predicted poles with poles measured in a simulated mechanism.
 
     Two runs, one kicked up and one down, differ by what the linear recursion alone does; its dominant pole is fitted to
-    that difference. What cannot be measured is said so. --map draws simulated verdicts under the exact boundary.
+    that difference. What cannot be measured is said so. --map draws simulated verdicts under the exact boundary, by
+    chunks that --workers or --scheduler share and a killed run keeps for --resume.
     --witness mujoco runs the scene in MuJoCo, at 0.9 and 1.1 times the boundary of what its integrators are.
 
     Example: bezstab verify --method AB4 --points 20
@@ -458,18 +476,19 @@ def verify(
             click.echo()
             _show(summaries, tables.SUMMARIES, form)
         return
-    if figure != "none" or table != "none":
-        output_directory(output)
     for method in methods:
-        verdicts = measuring.verdict_map(moving, method, float(h), cells, _steps_shown(method.name))
-        rows.append(tables.verdict_map_row(verdicts))
+        chunks = measuring.map_rows(moving.scene, method, float(h), cells)
         name = f"verify_{_file_name(Path(scene).stem)}_{_file_name(method.name)}"
-        _write_table(output / f"{name}.{table}", tables.verdict_columns(verdicts), table)
-        if figure != "none":
-            from bezstab import figures
-            from bezstab.region import region
+        job = f"--map {cells} --h {h} {method} {moving.scene}"
+        with _in_chunks(measuring.simulated_verdicts, chunks, output / name, job, workers, scheduler, resume) as masks:
+            verdicts = measuring.verdict_map(chunks, masks)
+            _write_table(output / f"{name}.{table}", tables.verdict_columns(verdicts), table)
+            if figure != "none":
+                from bezstab import figures
+                from bezstab.region import region
 
-            _write_figure(output / f"{name}.{figure}", figures.verdict_figure(verdicts, region(method)), figure)
+                _write_figure(output / f"{name}.{figure}", figures.verdict_figure(verdicts, region(method)), figure)
+        rows.append(tables.verdict_map_row(verdicts))
     _show(rows, tables.VERDICT_MAPS, form)
 
 
@@ -725,6 +744,31 @@ def _progress(items: Iterable[Item], length: int, label: str, size: Callable[[It
 
 def _steps_shown(label: str) -> Callable[[Sequence[int]], Iterator[int]]:
     return lambda steps: _progress(steps, len(steps), label, lambda _: 1)
+
+
+@contextmanager
+def _in_chunks(
+    work: "Callable[[Any], Arrays]",
+    chunks: Sequence[Any],
+    path: Path,
+    job: str,
+    workers: int | None,
+    scheduler: str | None,
+    resume: bool,
+) -> "Iterator[list[Arrays]]":
+    """Give the results of independent chunks, in order; those kept beside `path` go once the caller has used them."""
+    from bezstab import chunks as spread
+
+    kept = spread.store(path.with_name(f"{path.name}.chunks"), job, resume)
+    try:
+        with spread.workers(workers, scheduler) as hands:
+            arriving = spread.completed(work, chunks, hands, kept)
+            found = dict(_progress(arriving, len(chunks), path.name, lambda _: 1))
+    except KeyboardInterrupt:
+        click.echo(f"bezstab: what is finished lies in {kept.path}: --resume goes on from there", err=True)
+        raise
+    yield [found[number] for number in range(len(chunks))]
+    kept.discard()
 
 
 def _write(path: Path, write: Callable[[BinaryIO], object]) -> None:

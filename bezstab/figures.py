@@ -142,7 +142,7 @@ def verdict_figure(verdicts: VerdictMap, region: Region) -> Figure:
         alpha_hat, beta_hat = verdicts.alpha_hat, verdicts.beta_hat
         half_a, half_b = (alpha_hat[1] - alpha_hat[0]) / 2, (beta_hat[1] - beta_hat[0]) / 2
         agreeing = 1 - verdicts.disagrees.sum() / max(1, (~verdicts.broken).sum())
-        title = f"{verdicts.mechanism.scene.name}, {verdicts.method.name}, h = {verdicts.h:g} s\n"
+        title = f"{verdicts.scene.name}, {verdicts.method.name}, h = {verdicts.h:g} s\n"
         figure, axes = _axes(f"{title}{verdicts.run} steps: {agreeing:.2%} of {verdicts.broken.size} runs agree", None)
         axes.imshow(
             np.ma.masked_array(verdicts.diverges, verdicts.broken),

@@ -387,7 +387,7 @@ def verdict_map_row(verdicts: VerdictMap) -> Row:
     distance = np.abs(verdicts.z_abs - 1)[verdicts.disagrees]
     judged = verdicts.broken.size - int(verdicts.broken.sum())
     return {
-        "scene": verdicts.mechanism.scene.name,
+        "scene": verdicts.scene.name,
         "method": verdicts.method.name,
         "h": verdicts.h,
         "runs": verdicts.broken.size,

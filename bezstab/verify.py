@@ -5,7 +5,7 @@ histories of c_1 is followed: in it the forcing by truncation errors and everyth
 the linear recursion whose characteristic polynomial is P(z) remains. Linear prediction (Prony) finds its poles.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import islice
@@ -16,10 +16,11 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from bezstab.baumgarte import gains
-from bezstab.mechanism import Mechanism, constraint_errors, initial_state, perturbed
+from bezstab.mechanism import Mechanism, constraint_errors, initial_state, mechanism, perturbed
 from bezstab.methods import Method, steps
-from bezstab.poles import FloatArray, dominant_pole, poles, spectral_radius, verdict
-from bezstab.region import region, window
+from bezstab.poles import FloatArray, dominant_pole, poles, verdict
+from bezstab.region import pole_map, region, window
+from bezstab.scene import Scene
 from bezstab.schur import Verdict
 from bezstab.simulate import march, resume
 
@@ -41,6 +42,7 @@ GROWN = 10.0  # times the kick, well before c leaves the linear range; else the 
 CLOSE = 1e-3  # of |z|: nearer to the circle than the bias of a moving mechanism (0.01 omega h) no verdict is given
 
 MAP_RUN = 2000  # steps after the kick
+BATCH = 2000  # cells at a time: more make no step cheaper
 MAP_KICK = 1e-6
 TOO_CLOSE = 10.0  # over the number of steps: with | |z| - 1 | below this growth or decay may not show in a run
 
@@ -69,7 +71,7 @@ class VerdictMap:
     `broken` is where the mechanism itself left the linear range, whatever the kick: no verdict.
     """
 
-    mechanism: Mechanism
+    scene: Scene
     method: Method
     h: float
     run: int
@@ -101,7 +103,7 @@ def random_points(method: Method, count: int) -> tuple[FloatArray, FloatArray]:
 
 
 def measure(
-    mechanism: Mechanism,
+    moving: Mechanism,
     method: Method,
     h: float,
     alpha_hat: FloatArray,
@@ -115,7 +117,7 @@ def measure(
     shape = (RUN + 1, len(KICKS), alpha_hat.size)
     difference, size = np.full(shape, np.nan), np.full(shape, np.inf)
     with np.errstate(all="ignore"):  # what diverges runs into infinity, and is cut off there
-        kicked = _kicked(mechanism, method, h, alpha_hat, beta_hat, KICKS)
+        kicked = _kicked(moving, method, h, alpha_hat, beta_hat, KICKS)
         for k, c in zip(progress(range(RUN + 1)), kicked, strict=False):
             difference[k] = (c[0, 0] - c[0, 1]) / 2
             size[k] = np.abs(c).max(axis=(0, 1))
@@ -135,32 +137,56 @@ def measure(
     return measurements
 
 
-def verdict_map(mechanism: Mechanism, method: Method, h: float, count: int, progress: Progress = iter) -> VerdictMap:
-    """Return the simulated verdicts over count x count cells of the window that shows the region, as one batch.
+@dataclass(frozen=True)
+class MapRows:
+    """Some rows of a map of simulated verdicts, to be run as one batch."""
+
+    scene: Scene
+    method: Method
+    h: float
+    alpha_hat: FloatArray
+    beta_hat: FloatArray
+
+
+def map_rows(scene: Scene, method: Method, h: float, count: int) -> list[MapRows]:
+    """Return the count x count cells of the window that shows the region, by rows (constant beta_hat)."""
+    centres = (np.arange(count) + 0.5) / count
+    alpha_hat, beta_hat = (low + (high - low) * centres for low, high in window(region(method)))
+    each = max(1, BATCH // count)
+    return [MapRows(scene, method, h, alpha_hat, beta_hat[k : k + each]) for k in range(0, count, each)]
+
+
+def simulated_verdicts(rows: MapRows) -> dict[str, BoolArray]:
+    """Return where runs diverge, and where they broke down; shape (beta_hat.size, alpha_hat.size).
 
     A run diverges if the difference after the kick grows until c leaves the linear range, or is larger in the last
     eighth of the run than in the eighth before its middle without having decayed to what is forced.
     """
-    centres = (np.arange(count) + 0.5) / count
-    alpha_hat, beta_hat = (low + (high - low) * centres for low, high in window(region(method)))
-    a, b = (axis.ravel() for axis in np.meshgrid(alpha_hat, beta_hat))
+    a, b = (axis.ravel() for axis in np.meshgrid(rows.alpha_hat, rows.beta_hat))
     eighth = MAP_RUN // 8
     largest, linear = np.zeros((9, a.size)), np.full(a.size, True)
     with np.errstate(all="ignore"):
-        kicked = _kicked(mechanism, method, h, a, b, (MAP_KICK,))
-        for k, c in zip(progress(range(MAP_RUN + 1)), kicked, strict=False):
+        kicked = _kicked(mechanism(rows.scene), rows.method, rows.h, a, b, (MAP_KICK,))
+        for k, c in zip(range(MAP_RUN + 1), kicked, strict=False):
             linear &= np.abs(c).max(axis=(0, 1, 2)) < LINEAR[0]  # not so where it is not a number
             part = largest[k // eighth]
             np.maximum(part, np.abs(c[0, 0, 0] - c[0, 1, 0]) / 2, out=part, where=linear)
     peak = largest.max(axis=0)
     grows = np.where(linear, (largest[7] > largest[3]) & (largest[7] > SETTLED * peak), peak > GROWN * MAP_KICK)
-    z_abs = spectral_radius(method, alpha_hat, beta_hat[:, np.newaxis])
-    diverges, broken = (mask.reshape(z_abs.shape) for mask in (grows, ~linear & ~grows))
-    return VerdictMap(mechanism, method, h, MAP_RUN, alpha_hat, beta_hat, z_abs, diverges, broken)
+    shape = (rows.beta_hat.size, rows.alpha_hat.size)
+    return {"diverges": grows.reshape(shape), "broken": (~linear & ~grows).reshape(shape)}
+
+
+def verdict_map(chunks: Sequence[MapRows], found: Sequence[Mapping[str, NDArray[np.generic]]]) -> VerdictMap:
+    """Return the map that these rows make up, with what is predicted."""
+    first, beta_hat = chunks[0], np.concatenate([rows.beta_hat for rows in chunks])
+    z_abs = np.concatenate([np.abs(block) for block in pole_map(first.method, first.alpha_hat, beta_hat)])
+    diverges, broken = (np.concatenate([each[key] for each in found]) for key in ("diverges", "broken"))
+    return VerdictMap(first.scene, first.method, first.h, MAP_RUN, first.alpha_hat, beta_hat, z_abs, diverges, broken)
 
 
 def _kicked(
-    mechanism: Mechanism, method: Method, h: float, alpha_hat: FloatArray, beta_hat: FloatArray, kicks: Sequence[float]
+    moving: Mechanism, method: Method, h: float, alpha_hat: FloatArray, beta_hat: FloatArray, kicks: Sequence[float]
 ) -> Iterator[FloatArray]:
     """Yield c at each step from the kick on; shape (constraints, 2 for up and down, kicks, points).
 
@@ -168,19 +194,19 @@ def _kicked(
     """
     h_step = h * float(method.step_multiple)
     feedback = gains(alpha_hat, beta_hat, h)
-    q, v = initial_state(mechanism)
-    direction = (*(perturbed(mechanism, 1.0)[0] - q), *np.zeros_like(v))  # linear in the error
+    q, v = initial_state(moving)
+    direction = (*(perturbed(moving, 1.0)[0] - q), *np.zeros_like(v))  # linear in the error
     amounts = np.multiply.outer([1.0, -1.0], kicks)[..., np.newaxis]
     history = [tuple(np.full(alpha_hat.shape, value) for value in (*q, *v))]
     slopes = []
-    for y, slope, _ in islice(march(mechanism, method, h_step, feedback, history[0], "rk4", np), steps(method)):
+    for y, slope, _ in islice(march(moving, method, h_step, feedback, history[0], "rk4", np), steps(method)):
         history.append(y)
         slopes.append(slope)
     y = history[-1] = tuple(value + amounts * step for value, step in zip(history[-1], direction, strict=True))
-    run = resume(mechanism, method, h_step, feedback, history, slopes, np)
+    run = resume(moving, method, h_step, feedback, history, slopes, np)
     k = len(history) - 1
     while True:
-        yield constraint_errors(mechanism, k * h_step, y[: mechanism.size])
+        yield constraint_errors(moving, k * h_step, y[: moving.size])
         y, _, _ = next(run)
         k += 1
 

@@ -10,7 +10,7 @@ MODULES = sorted(path.stem for path in PACKAGE.glob("*.py") if path.stem not in 
 FLOORS = {
     **dict.fromkeys(("errors",), 0),
     **dict.fromkeys(("files", "schur", "paper"), 1),
-    **dict.fromkeys(("methods", "baumgarte", "scene"), 2),
+    **dict.fromkeys(("methods", "baumgarte", "scene", "chunks"), 2),
     **dict.fromkeys(("derivation", "mechanism"), 3),
     **dict.fromkeys(("formulas", "poles", "simulate"), 4),
     **dict.fromkeys(("region", "experiments"), 5),
@@ -25,6 +25,7 @@ ONLY_IN = {
     "matplotlib": {"figures", "explore"},
     "click": {"cli"},
     "mujoco": {"witness"},
+    "distributed": {"chunks"},
 }
 ALLOWED_FOR_TYPES = {
     ("cli", "matplotlib"),
@@ -73,7 +74,7 @@ def test_computation_neither_prints_nor_exits_nor_filters_warnings(module: str) 
 
 @pytest.mark.parametrize("code", ["import bezstab", "from bezstab.cli import main; main(['--help'])"])
 def test_import_and_help_are_light(code: str) -> None:
-    heavy = "{'sympy', 'matplotlib', 'mujoco'}"
+    heavy = "{'sympy', 'matplotlib', 'mujoco', 'distributed'}"
     probe = f"import atexit, sys; atexit.register(lambda: print('heavy:', {heavy} & set(sys.modules)))\n"
     run = subprocess.run([sys.executable, "-c", probe + code], capture_output=True, text=True, check=True)
     assert run.stdout.rstrip().endswith("heavy: set()")

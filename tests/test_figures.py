@@ -21,13 +21,12 @@ from bezstab.figures import (
     unstabilized_figure,
     verdict_figure,
 )
-from bezstab.mechanism import mechanism
 from bezstab.methods import lookup
 from bezstab.optimum import optimum
 from bezstab.poles import FloatArray, spectral_radius
 from bezstab.region import region, window
 from bezstab.scene import load
-from bezstab.verify import verdict_map
+from bezstab.verify import map_rows, simulated_verdicts, verdict_map
 
 
 def drawn(name: str = "B4", h: float | None = None) -> tuple[Figure, FloatArray, FloatArray, FloatArray]:
@@ -72,7 +71,8 @@ def test_the_figure_draws_what_it_is_given(h: float | None) -> None:
 
 def test_the_verdict_figure_shows_cells_boundary_and_disagreement() -> None:
     method = lookup("SYM")
-    cells = verdict_map(mechanism(load("pendulum")), method, 1e-3, 6)
+    rows = map_rows(load("pendulum"), method, 1e-3, 6)
+    cells = verdict_map(rows, [simulated_verdicts(each) for each in rows])
     wrong = cells.diverges.copy()
     wrong[2, 3] ^= True
     broken = np.zeros_like(wrong)

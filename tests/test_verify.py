@@ -16,17 +16,25 @@ from bezstab.verify import (
     LINEAR,
     SPREAD,
     Measurement,
+    VerdictMap,
     _fit,
     _judged,
     _measured,
+    map_rows,
     measure,
     random_points,
+    simulated_verdicts,
     verdict_map,
 )
 
 H = 1e-3
 # The feedback that AB7 and AB8 bear is hardly faster than the falling pendulum: their poles move during the fit.
 SLOW_FEEDBACK = ("AB7", "AB8")
+
+
+def whole_map(scene: str, name: str, h: float, count: int) -> VerdictMap:
+    chunks = map_rows(load(scene), lookup(name), h, count)
+    return verdict_map(chunks, [simulated_verdicts(each) for each in chunks])
 
 
 def measurements(scene: str, name: str, count: int) -> list[Measurement]:
@@ -149,7 +157,7 @@ def test_a_breakdown_of_the_mechanism_is_no_divergence() -> None:
 
 @pytest.mark.parametrize("name", ["B4", "AB4", "SYM"])
 def test_simulated_verdicts_agree_outside_the_band(name: str) -> None:
-    verdicts = verdict_map(mechanism(load("slider_crank")), lookup(name), H, 16)
+    verdicts = whole_map("slider_crank", name, H, 16)
     assert not verdicts.broken.any()
     distance = np.abs(verdicts.z_abs - 1)[verdicts.disagrees]
     assert distance.max(initial=0) < verdicts.band
@@ -160,7 +168,7 @@ def test_simulated_verdicts_agree_outside_the_band(name: str) -> None:
 
 def test_runs_that_break_down_whatever_the_kick_give_no_verdict() -> None:
     # a hundredth of a second is too coarse for the four-bar: the truncation error alone leaves the linear range
-    verdicts = verdict_map(mechanism(load("four_bar")), lookup("SYM"), 1e-2, 6)
+    verdicts = whole_map("four_bar", "SYM", 1e-2, 6)
     assert verdicts.broken.all()
     assert not verdicts.disagrees.any()
 
