@@ -114,28 +114,33 @@ def test_a_scheduler_that_does_not_answer_is_one_line() -> None:
         pass
 
 
-def bezstab(*arguments: str, cwd: Path) -> "subprocess.Popen[bytes]":
-    return subprocess.Popen([sys.executable, "-m", "bezstab", *arguments], cwd=cwd, stderr=subprocess.PIPE)
-
-
 def test_a_killed_map_resumes_to_the_same_bytes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parent.parent))
     whole, killed = tmp_path / "whole", tmp_path / "killed"
     for folder in (whole, killed):
         folder.mkdir()
-    command = ["verify", "--map", "80", "--method", "SYM", "--scene", "pendulum", "--workers", "1"]
-    first = bezstab(*command, cwd=whole)
-    assert first.wait(timeout=120) == 0, first.stderr.read() if first.stderr else b""
-    second = bezstab(*command, cwd=killed)
+    command = [
+        sys.executable,
+        "-m",
+        "bezstab",
+        "verify",
+        "--map",
+        "80",
+        "--method",
+        "SYM",
+        "--scene",
+        "pendulum",
+        "--workers",
+        "1",
+    ]
+    subprocess.run(command, cwd=whole, check=True, capture_output=True, timeout=120)
     kept = killed / "verify_pendulum_SYM.chunks"
-    while not list(kept.glob("[0-9]*.npz")):
-        assert second.poll() is None
-        time.sleep(0.01)
-    second.kill()
-    second.wait()
-    assert list(kept.glob("*.npz"))
-    third = bezstab(*command, "--resume", cwd=killed)
-    assert third.wait(timeout=120) == 0
+    with subprocess.Popen(command, cwd=killed, stderr=subprocess.DEVNULL) as running:
+        while not list(kept.glob("[0-9]*.npz")):
+            assert running.poll() is None
+            time.sleep(0.01)
+        running.kill()
+    subprocess.run([*command, "--resume"], cwd=killed, check=True, capture_output=True, timeout=120)
+    assert sorted(path.name for path in killed.iterdir()) == sorted(path.name for path in whole.iterdir())
     for path in whole.iterdir():
         assert (killed / path.name).read_bytes() == path.read_bytes()
-    assert sorted(path.name for path in killed.iterdir()) == sorted(path.name for path in whole.iterdir())
