@@ -14,6 +14,7 @@ figures: .venv/installed  ## draw what the README shows, into figures/
 	$(BIN)/bezstab verify --map 60 --method AB4 --table none -o figures
 	$(BIN)/bezstab family bezier -o figures
 	$(BIN)/bezstab paper -o figures
+	$(BIN)/bezstab tradeoff --table none -o figures
 
 test: .venv/tested lint  ## what CI runs
 	$(BIN)/python -m pytest -m "not slow" -n 2

@@ -233,8 +233,13 @@ def methods(methods: Sequence[Method], latex: bool, form: "Format") -> None:
 @_figure_option
 @_table_option
 @click.option(
-    "--grid", type=click.IntRange(2, 4000), default=200, show_default=True, help="Points per axis of the map."
+    "--quality",
+    type=click.Choice(["fast", "balanced", "fine"]),
+    default="balanced",
+    show_default=True,
+    help="Points per axis of the map: 50, 200 or 1000; see `bezstab tradeoff --maps`.",
 )
+@click.option("--grid", type=click.IntRange(2, 4000), help="Points per axis, instead.")
 @click.option("--alpha-range", type=Rational(), nargs=2, help="Window in α̂; by default all of the region.")
 @click.option("--beta-range", type=Rational(), nargs=2, help="Window in β̂; by default all of the region.")
 @click.option(
@@ -254,7 +259,8 @@ def region(
     output: Path,
     figure: Literal["png", "svg", "pdf", "none"],
     table: Literal["csv", "npz", "none"],
-    grid: int,
+    quality: str,
+    grid: int | None,
     alpha_range: tuple[Fraction, Fraction] | None,
     beta_range: tuple[Fraction, Fraction] | None,
     levels: Sequence[Fraction],
@@ -282,7 +288,7 @@ def region(
     for level in levels:
         if level > 1:
             raise InputError(f"--level {float(level):g}: must be at most 1, the stability boundary")
-    marks = _marks(engine, h, compare)
+    marks, grid = _marks(engine, h, compare), grid or exact.QUALITY[quality]
     if figure != "none" or table != "none":
         output_directory(output)
     step = None if h is None else float(h)
@@ -490,6 +496,96 @@ def verify(
                 _write_figure(output / f"{name}.{figure}", figures.verdict_figure(verdicts, region(method)), figure)
         rows.append(tables.verdict_map_row(verdicts))
     _show(rows, tables.VERDICT_MAPS, form)
+
+
+@main.command()
+@click.option(
+    "--scene", default="slider_crank_light", show_default=True, help="A shipped scene's name, or a .toml file."
+)
+@_method_option("B2", "B3", "B4", "AB2", "AB4", "ABM4", "RK4", "SIE", "SYM")
+@click.option("--h", "steps", type=Rational(positive=True), multiple=True, help="Step in s [ten from 0.0001 to 0.02].")
+@click.option("--time", type=Rational(positive=True), default="2", show_default=True, help="Duration in s.")
+@click.option("--alpha", type=Rational(), help="α̂ of every run; by default the robust choice for each method.")
+@click.option("--beta", type=Rational(), help="β̂ of every run.")
+@click.option("--physical", is_flag=True, help="Take --alpha and --beta as α and β in 1/s, the same at every step.")
+@click.option("--tolerance", type=Rational(positive=True), default="1e-6", show_default=True, help="In m and rad.")
+@click.option("--repeats", type=click.IntRange(1, 100), default=3, show_default=True, help="Of each timing.")
+@click.option("--maps", is_flag=True, help="The trade of the |z_p| map instead: points against error, time and memory.")
+@click.option("-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory of figures and table.")
+@_workers_option
+@_scheduler_option
+@_resume_option
+@_figure_option
+@_table_option
+@_format_option
+@click.pass_context
+def tradeoff(
+    context: click.Context,
+    scene: str,
+    methods: Sequence[Method],
+    steps: Sequence[Fraction],
+    time: Fraction,
+    alpha: Fraction | None,
+    beta: Fraction | None,
+    physical: bool,
+    tolerance: Fraction,
+    repeats: int,
+    maps: bool,
+    output: Path,
+    workers: int | None,
+    scheduler: str | None,
+    resume: bool,
+    figure: Literal["png", "svg", "pdf", "none"],
+    table: Literal["csv", "npz", "none"],
+    form: "Format",
+) -> None:
+    """Measure what accuracy costs: each method at each step, against a reference of known accuracy.
+
+    Prints errors, evaluations, processor time (median and range) and the order observed, and in words the cheapest run
+    within --tolerance and where the Bézier methods win and lose. Writes the table, without times, and two figures. A
+    run that fails is marked as diverged.
+
+    Example: bezstab tradeoff --method B4 --method AB4 --h 0.002 --h 0.004 --time 1
+    """
+    from bezstab import tables
+    from bezstab import tradeoff as trading
+    from bezstab.scene import load
+
+    if maps:
+        if context.get_parameter_source("methods") == click.core.ParameterSource.DEFAULT:
+            methods = [lookup("B4"), lookup("AB4")]
+        costs = (trading.map_cost(method, count) for method in methods for count in trading.MAP_POINTS)
+        shown = _progress(costs, len(methods) * len(trading.MAP_POINTS), "maps", lambda _: 1)
+        _show([tables.map_cost_row(cost) for cost in shown], tables.MAP_COSTS, form)
+        return
+    if (alpha is None) != (beta is None) or (physical and alpha is None):
+        raise click.UsageError("--alpha and --beta go together, and --physical needs them")
+    point = None if alpha is None or beta is None else (float(alpha), float(beta))
+    chosen = sorted(set(map(float, steps or map(Fraction, trading.STEPS))))
+    longest = chosen[-1] * float(max(method.step_multiple for method in methods))
+    if not longest <= float(time) <= MOST_STEPS * chosen[0]:
+        raise InputError(f"--time {float(time):g}: expected one step ({longest:g} s) to {MOST_STEPS * chosen[0]:g} s")
+    moving = load(scene)
+    true = trading.reference(moving, chosen[0], float(time))
+    each = (moving, tuple(chosen), float(time), point, physical, repeats, true)
+    sweeps = [trading.Sweep(method, *each) for method in dict.fromkeys(methods)]
+    name = f"tradeoff_{_file_name(Path(scene).stem)}"
+    job = f"{methods} {each[:-1]}"
+    with _in_chunks(trading.measured, sweeps, output / name, job, workers, scheduler, resume) as found:
+        pairs = zip(sweeps, found, strict=True)
+        swept = [run for sweep, arrays in pairs for run in trading.runs(sweep, arrays)]
+        rows = tables.run_rows(swept)
+        _write_table(output / f"{name}.{table}", tables.untimed(rows), table)
+        if figure != "none":
+            from bezstab import figures
+
+            for kind, floor in (("trajectory", true.error), ("constraint", 0.0)):
+                drawn = figures.work_precision_figure(swept, moving.name, kind == "constraint", floor)
+                _write_figure(output / f"{name}_{kind}.{figure}", drawn, figure)
+    _show(rows, tables.RUNS, form)
+    if form in ("text", "markdown"):
+        said = [f"The reference is known to {true.error:.0e} (m, rad)."]
+        click.echo("\n" + "\n".join(said + trading.words(swept, float(tolerance), physical)))
 
 
 @main.command()
@@ -759,14 +855,14 @@ def _in_chunks(
     """Give the results of independent chunks, in order; those kept beside `path` go once the caller has used them."""
     from bezstab import chunks as spread
 
-    kept = spread.store(path.with_name(f"{path.name}.chunks"), job, resume)
-    try:
-        with spread.workers(workers, scheduler) as hands:
+    with spread.workers(workers, scheduler) as hands:
+        kept = spread.store(path.with_name(f"{path.name}.chunks"), job, resume)
+        try:
             arriving = spread.completed(work, chunks, hands, kept)
             found = dict(_progress(arriving, len(chunks), path.name, lambda _: 1))
-    except KeyboardInterrupt:
-        click.echo(f"bezstab: what is finished lies in {kept.path}: --resume goes on from there", err=True)
-        raise
+        except KeyboardInterrupt:
+            click.echo(f"bezstab: what is finished lies in {kept.path}: --resume goes on from there", err=True)
+            raise
     yield [found[number] for number in range(len(chunks))]
     kept.discard()
 

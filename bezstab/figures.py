@@ -21,6 +21,7 @@ from bezstab.optimum import Optimum
 from bezstab.poles import FloatArray
 from bezstab.region import Region
 from bezstab.simulate import Trajectory
+from bezstab.tradeoff import Run, front
 from bezstab.verify import VerdictMap
 
 Range = tuple[SupportsFloat, SupportsFloat]
@@ -45,6 +46,7 @@ FAMILIES = {  # by prefix: colours of Okabe & Ito that differ in lightness too, 
     "SIE": "#56b4e9",
     "SYM": "#d55e00",
 }
+MARKERS = "osD^v<>ph*"
 CONVERGES, DIVERGES = "#9ecae1", "0.45"
 DASHES: list[str | tuple[int, tuple[float, ...]]] = ["-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (5, 1.5, 1.2, 1.5))]
 
@@ -163,6 +165,35 @@ def verdict_figure(verdicts: VerdictMap, region: Region) -> Figure:
         if rows.size:
             axes.plot(alpha_hat[columns], beta_hat[rows], "x", color=FAMILIES["SYM"], markersize=3, label="disagree")
         figure.legend(loc="outside lower center", ncols=2)
+        return figure
+
+
+def work_precision_figure(swept: Sequence[Run], scene: str, constraint: bool, floor: float = 0.0) -> Figure:
+    """Return the error of each run against its evaluations, the Pareto front ringed, failed runs on top.
+
+    The trajectory's error (SI), not drawn below `floor`, that of the reference; or with `constraint` the largest |c|.
+    """
+    with styled():
+        figure = Figure(figsize=(COLUMN_WIDTH, 1.15 * COLUMN_WIDTH), layout="constrained")
+        axes = figure.add_subplot()
+        errors = [None if run.failure else run.c_max if constraint else run.trajectory_error for run in swept]
+        top = 10 * max((error for error in errors if error is not None), default=1.0)
+        for number, method in enumerate(dict.fromkeys(run.method for run in swept)):
+            own = [k for k, run in enumerate(swept) if run.method == method]
+            ended = [(swept[k].evaluations, error) for k in own if (error := errors[k]) is not None and error > floor]
+            line = {**_line(method), "marker": MARKERS[number % len(MARKERS)], "markersize": 3, "linewidth": 0.8}
+            axes.plot(*np.reshape(ended, (-1, 2)).T, **line, label=method.name)
+            failed = [swept[k].evaluations for k in own if errors[k] is None]
+            axes.plot(failed, [top] * len(failed), "x", color=line["color"], markersize=4)
+        ringed = front(zip((run.evaluations for run in swept), errors, strict=True))
+        best = [(swept[k].evaluations, error) for k in ringed if (error := errors[k]) is not None and error > floor]
+        axes.plot(*np.reshape(best, (-1, 2)).T, "o", color="none", markeredgecolor="0.3", markersize=7, label="front")
+        if any(error is None for error in errors):
+            axes.plot([], [], "x", color="0.4", label="diverged")
+        axes.set(xscale="log", yscale="log", xlabel="evaluations of f", title=scene)
+        axes.set_ylabel("largest $|c|$ (SI)" if constraint else "trajectory error (m, rad)")
+        axes.grid(color="0.9")
+        figure.legend(loc="outside lower center", ncols=4)
         return figure
 
 

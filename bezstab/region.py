@@ -32,6 +32,9 @@ MARGIN = 1e-13  # of the level: rounding of a simple root's modulus, a hundredfo
 EMPTY = 1e-9  # of its box: a region with less area is the noise of roots that stay on the circle together
 REAL = 1e-9  # an imaginary part below this times |mu| is rounding where a branch is known to cross the real axis
 
+QUALITY = {"fast": 50, "balanced": 200, "fine": 1000}
+"""Points per axis of a map, see `bezstab tradeoff --maps`: B4's boundary is read off to 1e-4, 4e-6, 2e-7."""
+
 Extent = tuple[tuple[float, float], tuple[float, float]]
 
 

@@ -6,7 +6,7 @@ import json
 import math
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from fractions import Fraction
 from typing import BinaryIO, Literal
 
@@ -25,9 +25,10 @@ from bezstab.methods import Method, evaluations, steps
 from bezstab.optimum import Optimum
 from bezstab.paper import LEAST_Z_ABS, TABLE_5
 from bezstab.poles import FloatArray
-from bezstab.region import Region
+from bezstab.region import QUALITY, Region
 from bezstab.schur import Verdict
 from bezstab.simulate import Trajectory
+from bezstab.tradeoff import MapCost, Run, front
 from bezstab.verify import Measurement, VerdictMap
 from bezstab.witness import Witnessed
 
@@ -202,6 +203,36 @@ WITNESSED: Columns = {
     "seen": lambda row: str(row["measured_verdict"]),
     "largest |c| at the end (m)": _number("remaining", ".1e"),
     "after steps": _number("steps", "d"),
+}
+
+RUNS: Columns = {
+    "method": lambda row: str(row["method"]),
+    "h (s)": _number("h", "g"),
+    "α̂": _number("alpha_hat", ".4g"),
+    "β̂": _number("beta_hat", ".4g"),
+    "|z_p|": _number("z_abs", ".4f"),
+    "trajectory error": lambda row: _number("trajectory_error", ".1e")(row) if not row["failure"] else "diverged",
+    "order": _number("order", ".2f"),
+    "largest |c|": _number("c_max", ".1e"),
+    "rms": _number("c_rms", ".1e"),
+    "largest |ċ|": _number("cdot_max", ".1e"),
+    "rms ċ": _number("cdot_rms", ".1e"),
+    "energy drift (J)": _number("energy_drift", ".1e"),
+    "evaluations": _number("evaluations", "d"),
+    "time (ms)": lambda row: _milliseconds(row),  # noqa: PLW0108  # defined below
+    "front": _number("front", "s"),
+    "failure": lambda row: str(row["failure"] or "-"),
+}
+
+MAP_COSTS: Columns = {
+    "method": lambda row: str(row["method"]),
+    "N": _number("count", "d"),
+    "quality": lambda row: str(row["quality"] or "-"),
+    "time (s)": _number("seconds", ".3g"),
+    "memory (MB)": _number("megabytes", ".3g"),
+    "error of the area": _number("area_error", ".1e"),
+    "error of the boundary in α̂": _number("boundary_error", ".1e"),
+    "largest": _number("boundary_error_max", ".1e"),
 }
 
 BEHAVIOURS: Columns = {
@@ -415,6 +446,47 @@ def witnessed_row(scene: str, witnessed: Witnessed) -> Row:
         "remaining": witnessed.remaining,
         "steps": witnessed.steps,
     }
+
+
+def run_rows(swept: Sequence[Run]) -> list[Row]:
+    """Return the runs of a sweep, with the fronts each is on: T by trajectory error, c by constraint error."""
+    fronts = {
+        "T": set(front((run.evaluations, run.trajectory_error) for run in swept)),
+        "c": set(front((run.evaluations, None if run.failure else run.c_max) for run in swept)),
+    }
+    return [
+        {
+            **{each.name: getattr(run, each.name) for each in fields(run)},
+            "method": run.method.name,
+            "front": " ".join(name for name, on_it in fronts.items() if k in on_it),
+        }
+        for k, run in enumerate(swept)
+    ]
+
+
+def map_cost_row(cost: MapCost) -> Row:
+    """Return what a map of N x N points costs and how far its area (relative) and boundary are off."""
+    quality = next((name for name, count in QUALITY.items() if count == cost.count), None)
+    return {
+        **{each.name: getattr(cost, each.name) for each in fields(cost)},
+        "method": cost.method.name,
+        "quality": quality,
+    }
+
+
+def untimed(rows: Sequence[Row]) -> dict[str, NDArray[np.generic]]:
+    """Return rows as columns without processor times, which no two runs share; what is missing is nan or empty."""
+    keys = [key for key in rows[0] if not key.startswith("seconds")]
+    return {key: np.array([_present(key, row[key]) for row in rows]) for key in keys}
+
+
+def _present(key: str, value: Value) -> Value:
+    return ("" if key in ("failure", "front") else math.nan) if value is None else value
+
+
+def _milliseconds(row: Row) -> str:
+    median, low, high = (row[key] for key in ("seconds", "seconds_min", "seconds_max"))
+    return f"{1e3 * median:.3g} ({1e3 * low:.3g} to {1e3 * high:.3g})"  # type: ignore[operator]
 
 
 def choice_row(choice: Choice, h: float | None) -> Row:

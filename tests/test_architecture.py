@@ -16,9 +16,10 @@ FLOORS = {
     **dict.fromkeys(("region", "experiments"), 5),
     **dict.fromkeys(("optimum", "verify", "witness"), 6),
     **dict.fromkeys(("choose", "family"), 7),
-    **dict.fromkeys(("tables", "figures"), 8),
-    **dict.fromkeys(("report", "explore"), 9),
-    "cli": 10,
+    "tradeoff": 8,
+    **dict.fromkeys(("tables", "figures"), 9),
+    **dict.fromkeys(("report", "explore"), 10),
+    "cli": 11,
 }
 ONLY_IN = {
     "sympy": {"derivation", "formulas", "mechanism"},

@@ -193,6 +193,37 @@ def test_verify_map_writes_verdicts_and_figure(tmp_path: Path) -> None:
     assert (columns["diverges"] == (columns["z_abs"] >= 1)).all()
 
 
+def test_tradeoff_writes_a_table_without_times_and_two_figures(tmp_path: Path) -> None:
+    command = "--method B2 --method AB4 --h 0.004 --h 0.02 --time 0.6 --alpha 50 --beta 50 --physical"
+    options = command.split()
+    found = rows("tradeoff", *options)
+    name = "tradeoff_slider_crank_light"
+    assert {path.name for path in tmp_path.iterdir()} == {
+        f"{name}.csv", f"{name}_trajectory.png", f"{name}_constraint.png"
+    }  # fmt: skip
+    table = list(csv.DictReader(io.StringIO((tmp_path / f"{name}.csv").read_text(encoding="utf-8"))))
+    assert [(row["method"], row["h"]) for row in table] == [(row["method"], str(row["h"])) for row in found]
+    assert not any("second" in key for key in table[0])
+    assert all(float(str(row["seconds"])) > 0 for row in found)
+    (failed,) = [row for row in found if row["failure"]]
+    assert (failed["method"], failed["h"], failed["trajectory_error"]) == ("AB4", 0.02, None)
+    first = (tmp_path / f"{name}.csv").read_bytes()
+    assert "diverged" in run("tradeoff", *options, "--workers", "1").stdout
+    assert (tmp_path / f"{name}.csv").read_bytes() == first
+
+
+def test_tradeoff_of_maps_needs_no_scene(tmp_path: Path) -> None:
+    found = rows("tradeoff", "--maps", "--method", "SYM")
+    assert [row["count"] for row in found] == [50, 100, 200, 500, 1000, 2000]
+    assert [row["quality"] for row in found] == ["fast", None, "balanced", None, "fine", None]
+    assert not list(tmp_path.iterdir())
+
+
+def test_quality_is_points_per_axis(tmp_path: Path) -> None:
+    run("region", "--quality", "fast", "--figure", "none", "--table", "npz")
+    assert len(arrays(tmp_path / "region_B4.npz")["z_abs"]) == 50**2
+
+
 def test_choose_prints_what_to_set() -> None:
     (row,) = rows("choose", "--h", "0.001", "--goal", "fastest")
     keys = "method h goal alpha_hat beta_hat alpha beta z_abs z_angle_deg settle_steps settle_seconds h_max"
@@ -306,6 +337,18 @@ def test_paper_writes_the_chosen_parts_and_prints_findings(tmp_path: Path) -> No
         ("verify --witness ode", "--witness"),
         ("verify --points 0", "--points"),
         ("verify --map 4 -o file/below", "file/below"),
+        ("verify --map 4 --workers 0", "--workers"),
+        ("verify --map 4 --scheduler nonsense://x", "--scheduler nonsense://x"),
+        ("tradeoff --scene pendulm", "did you mean pendulum"),
+        ("tradeoff --alpha 1", "--beta"),
+        ("tradeoff --physical", "--physical"),
+        ("tradeoff --time 0.01", "--time"),
+        ("tradeoff --time 1e9", "--time"),
+        ("tradeoff --h 0", "--h"),
+        ("tradeoff --tolerance 0", "--tolerance"),
+        ("tradeoff --repeats 0", "--repeats"),
+        ("tradeoff --time 0.1 -o file/below", "file/below"),
+        ("region --quality best", "--quality"),
         ("poles --alpha nan --beta 1", "--alpha"),
         ("poles --alpha 1 --beta inf", "--beta"),
         ("poles --alpha 1e999 --beta 1", "--alpha"),
@@ -367,6 +410,7 @@ def test_numerical_trouble_is_status_three(tmp_path: Path) -> None:
         "family bezier --from 3 --to 4 --figure none",
         "check --method RK1 --alpha 1 --beta 0.25",
         "verify --map 3 --figure none --table none",
+        "tradeoff --method SYM --h 0.01 --h 0.02 --time 0.1 --figure none --table none",
     ],
 )
 def test_every_command_prints_in_every_format(command: str, form: str) -> None:
@@ -417,3 +461,17 @@ def test_an_interrupt_stops_cleanly(command: str, tmp_path: Path) -> None:
     assert running.returncode == 130
     assert errors.decode().split() == ["bezstab:", "interrupted"]
     assert not list(tmp_path.iterdir())
+
+
+def test_an_interrupted_map_says_how_to_go_on(tmp_path: Path) -> None:
+    command = bezstab("verify", "--map", "300", "--workers", "1")
+    running = subprocess.Popen(command, stderr=subprocess.PIPE, cwd=tmp_path, start_new_session=True)
+    while not list(tmp_path.glob("*.chunks/[0-9]*.npz")):
+        assert running.poll() is None
+        time.sleep(0.1)
+    os.killpg(running.pid, signal.SIGINT)  # as a terminal does, to the workers too
+    _, errors = running.communicate(timeout=60)
+    assert running.returncode == 130
+    advice, interrupted = filter(None, errors.decode().splitlines())  # click breaks the line of ^C
+    assert "--resume" in advice
+    assert interrupted == "bezstab: interrupted"

@@ -1,6 +1,7 @@
 import io
 import subprocess
 import sys
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -20,12 +21,14 @@ from bezstab.figures import (
     save,
     unstabilized_figure,
     verdict_figure,
+    work_precision_figure,
 )
 from bezstab.methods import lookup
 from bezstab.optimum import optimum
 from bezstab.poles import FloatArray, spectral_radius
 from bezstab.region import region, window
 from bezstab.scene import load
+from bezstab.tradeoff import Run, Sweep, front, measured, reference, runs
 from bezstab.verify import map_rows, simulated_verdicts, verdict_map
 
 
@@ -88,6 +91,34 @@ def test_the_verdict_figure_shows_cells_boundary_and_disagreement() -> None:
     (curve,) = region(method).boundary
     assert lines["$|z_p| = 1$"][:-1] == pytest.approx(curve)
     assert "97.14%" in axes.get_title()  # 34 of 35
+
+
+@pytest.mark.parametrize("constraint", [False, True])
+def test_the_work_precision_figure_has_every_run_and_rings_the_front(constraint: bool) -> None:
+    scene, steps, point = load("slider_crank_light"), (0.004, 0.008, 0.0125), (50.0, 50.0)
+    true = reference(scene, min(steps), 1.0)
+    sweeps = [Sweep(lookup(name), scene, steps, 1.0, point, True, 1, true) for name in ("B2", "AB4")]
+    swept = [run for sweep in sweeps for run in runs(sweep, measured(sweep))]
+    failed = [run for run in swept if run.failure]
+    assert failed  # AB4 at the largest step
+    figure = work_precision_figure(swept, scene.name, constraint)
+    (axes,) = figure.axes
+    lines = {str(line.get_label()): np.array(line.get_xydata()) for line in axes.lines}
+
+    def expected(these: Sequence[Run]) -> list[tuple[float, float | None]]:
+        return [(run.evaluations, run.c_max if constraint else run.trajectory_error) for run in these]
+
+    for name in ("B2", "AB4"):
+        own = [run for run in swept if run.method.name == name and not run.failure]
+        assert lines[name].tolist() == [list(point) for point in expected(own)]
+    ended = [run for run in swept if not run.failure]
+    assert lines["front"].tolist() == [list(expected(ended)[k]) for k in front(expected(ended))]
+    crosses = [line for line in axes.lines if line.get_marker() == "x" and len(np.array(line.get_xydata()))]
+    assert sorted(x for line in crosses for x, _ in np.array(line.get_xydata())) == sorted(
+        r.evaluations for r in failed
+    )
+    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
+    assert "diverged" in lines
 
 
 def test_the_growth_figure_shows_the_largest_error_so_far_by_start_and_step() -> None:

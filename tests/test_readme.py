@@ -13,7 +13,11 @@ ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 SESSIONS = re.findall(r"```console\n(.*?)```", README, re.DOTALL)
 INLINE = sorted(
-    set(re.findall(r"`bezstab ((?:poles|region|methods|simulate|verify|paper|choose|check\s|engines)[^`|…]*)`", README))
+    set(
+        re.findall(
+            r"`bezstab ((?:poles|region|methods|simulate|verify|paper|choose|check\s|engines|tradeoff)[^`|…]*)`", README
+        )
+    )
 )
 
 
