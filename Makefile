@@ -2,7 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: region figures test test-slow test-oldest lint bench clean
+.PHONY: region figures test test-slow test-oldest extremes lint bench clean
 
 region: .venv/installed  ## draw where B4 is stable, into this directory
 	$(BIN)/bezstab region --method B4
@@ -28,6 +28,9 @@ test-oldest:  ## the same tests with the oldest versions that pyproject.toml all
 	    print("\n".join(p["dependencies"]).replace(">=", "=="))' > .venv-oldest/oldest.txt
 	.venv-oldest/bin/pip install --quiet --editable '.[test]' --constraint .venv-oldest/oldest.txt
 	.venv-oldest/bin/python -m pytest -m "not slow" -n 2
+
+extremes: .venv/installed  ## what holds at the extremes, in minutes; the tests run the short form
+	$(BIN)/bezstab extremes
 
 lint: .venv/tested  ## style, format and types
 	$(BIN)/ruff check .

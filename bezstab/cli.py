@@ -774,6 +774,26 @@ def family(
 
 
 @main.command()
+@click.option("--short", is_flag=True, help="Fewer methods and runs of 1e5 steps, in seconds instead of minutes.")
+@_format_option
+def extremes(short: bool, form: "Format") -> int:
+    """Measure what holds at the extremes, against what was stated beforehand; exit status 1 if something does not.
+
+    Poles from 1e-300 to 1e300 and at multiple roots against 50 digits and more, runs of 1e7 steps, steps around the
+    largest stable one, a singular configuration, crank speeds, mass ratios.
+
+    Example: bezstab extremes --short
+    """
+    from bezstab import tables
+    from bezstab.extremes import checks
+
+    each = list(checks(not short))
+    found = [check() for check in _progress(each, len(each), "extremes", lambda _: 1)]
+    _show([tables.plain_row(check) for check in found], tables.CHECKS, form)
+    return 0 if all(check.held for check in found) else 1
+
+
+@main.command()
 @click.option("--only", type=click.Choice(PARTS), multiple=True, help="This part alone. Repeatable.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory for figures and tables.")
 @_figure_option
@@ -801,7 +821,7 @@ def paper(only: Sequence[str], output: Path, figure: Literal["png", "svg", "pdf"
                 _write_figure(output / f"paper_{name}.{figure}", made.figures[name], figure)
         if made.aside and form in ("text", "markdown"):
             click.echo(f"{made.aside}\n")
-        rows += map(tables.finding_row, made.findings)
+        rows += map(tables.plain_row, made.findings)
     if form == "text":
         click.echo("\n\n".join(tables.render(tables.transposed(row), tables.PROPERTIES, form) for row in rows))
     else:

@@ -24,7 +24,10 @@ ComplexArray = NDArray[np.complex128]
 CHUNK = 16384  # points at a time: all the work arrays of one chunk stay in a core's cache
 STRIDE = 16  # of a row of points one in so many has all its roots solved for, the others start from them
 ITERATIONS = 200  # Aberth's iteration needs about ten; a multiple root, where it is linear, about sixty
+HUGE = 1e280  # beyond, exact products would overflow on the way to a result that fits
+FAR = 1e15  # |z| whose 16th power still fits float64
 NEAR = 0.2  # relative distance of x within which the roots of a neighbour are better starts than the polygon's
+EPS = float(np.finfo(float).eps)
 NUDGE = 1e-3  # about a step of a map's grid, so it costs no iteration
 CONVERGED = 1e-9  # relative correction after which a quadratically convergent iterate is exact to rounding
 FOLLOWED = 4  # Newton steps: from a start that is off by the square of a map's spacing two suffice
@@ -46,8 +49,7 @@ def poles(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexA
     z = roots_in_z(method, mu.ravel()).reshape(-1, *mu.shape)
     z = np.moveaxis(z, -1, 0).reshape(*alpha_hat.shape, -1)
     order = np.lexsort((-z.imag, -np.abs(z)), axis=-1)
-    descending: ComplexArray = np.take_along_axis(z, order, axis=-1)
-    return descending
+    return _tidy(np.take_along_axis(z, order, axis=-1))
 
 
 def dominant_pole(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexArray:
@@ -71,7 +73,13 @@ def dominant_pole(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> 
             larger = np.abs(other) > np.abs(part[real])
             part[real[larger]] = other[larger]
     dominant.imag = np.abs(dominant.imag)
-    return dominant.reshape(alpha_hat.shape)
+    return _tidy(dominant).reshape(alpha_hat.shape)
+
+
+def _tidy(z: ComplexArray) -> ComplexArray:
+    """Return z with the imaginary parts that are its rounding taken off."""
+    z.imag[np.abs(z.imag) < EPS * np.abs(z.real)] = 0
+    return z
 
 
 def spectral_radius(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> FloatArray:
@@ -190,7 +198,7 @@ def _polynomial_roots(table: FloatArray, x: ComplexArray) -> ComplexArray:
         return single
     coarse = _aberth(a[:, ::STRIDE], _newton_polygon_starts(a[:, ::STRIDE]))
     # Nudged apart: coinciding starts would never part, and real ones never leave the axis of a real polynomial.
-    coarse += NUDGE * np.abs(coarse).max(axis=0) * _spread(len(coarse))
+    coarse += NUDGE * np.abs(coarse) * _spread(len(coarse))
     starts = np.repeat(coarse, STRIDE, axis=1)[:, : x.size]
     solved = np.repeat(x[::STRIDE], STRIDE)[: x.size]
     alone = (np.abs(x - solved) >= NEAR * np.abs(x)) | (a[0] == 0)  # an exact zero starts, and stays, at 0
@@ -228,8 +236,9 @@ def _aberth(a: ComplexArray, z: ComplexArray) -> ComplexArray:
     they converge. At a multiple root the last digits cannot settle: there ITERATIONS ends the walk.
     """
     solution, active = z.copy(), np.arange(z.shape[1])
+    step_of = _far_aberth_step if np.abs(z).max(initial=0.0) > FAR else _aberth_step
     for _ in range(ITERATIONS):
-        step = _aberth_step(a, z)
+        step = step_of(a, z)
         settled = np.all(np.abs(step) <= CONVERGED * np.abs(z), axis=0)
         z = z - step
         solution[:, active[settled]] = z[:, settled]
@@ -243,23 +252,45 @@ def _aberth(a: ComplexArray, z: ComplexArray) -> ComplexArray:
 
 
 def _aberth_step(a: ComplexArray, z: ComplexArray) -> ComplexArray:
-    n = len(z)
+    value, slope = np.broadcast_to(a[-1], z.shape).copy(), np.zeros_like(z)
+    for c in a[-2::-1]:
+        slope *= z
+        slope += value
+        value *= z
+        value += c
+    # Newton's correction N = p/p' repelled by the other roots: N / (1 - N sum 1/(z_i - z_j))
+    return _quotient(value, slope - value * _repulsion(z))
+
+
+def _far_aberth_step(a: ComplexArray, z: ComplexArray) -> ComplexArray:
+    """Return the same step where powers of z may overflow: for |z| > 1 by q with p(z) = z^n q(1/z), relative to z."""
+    n, far = len(z), np.abs(z) > 1
+    w = np.divide(1, z, out=z.copy(), where=far)
+    value, slope = np.zeros_like(z), np.zeros_like(z)
+    for c, reverse in zip(a[::-1], a, strict=True):
+        slope = slope * w + value
+        value = value * w + np.where(far, reverse, c)
+    repulsion = _repulsion(z)
+    near_step = _quotient(value, slope - value * repulsion)
+    return np.where(far, z * _quotient(value, n * value - w * slope - value * (z * repulsion)), near_step)
+
+
+def _quotient(x: ComplexArray, y: ComplexArray) -> ComplexArray:
+    """Return x / y, and 0 where x is 0."""
+    quotient: ComplexArray = np.divide(x, y, out=np.zeros_like(x), where=x != 0)
+    return quotient
+
+
+def _repulsion(z: ComplexArray) -> ComplexArray:
+    """Return the sums of 1 / (z_i - z_j) over the other roots j, coinciding ones left out."""
     repulsion = np.zeros_like(z)
-    for i in range(n):
+    for i in range(len(z)):
         for j in range(i):
             difference = z[i] - z[j]
             reciprocal = np.divide(1, difference, out=np.zeros_like(difference), where=difference != 0)
             repulsion[i] += reciprocal
             repulsion[j] -= reciprocal
-    value, slope = np.broadcast_to(a[n], z.shape).copy(), np.zeros_like(z)
-    for k in range(n - 1, -1, -1):
-        slope *= z
-        slope += value
-        value *= z
-        value += a[k]
-    # Newton's correction N = p/p' repelled by the other roots: N / (1 - N sum 1/(z_i - z_j))
-    step: ComplexArray = np.divide(value, slope - value * repulsion, out=np.zeros_like(z), where=value != 0)
-    return step
+    return repulsion
 
 
 def _mu(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> tuple[ComplexArray, ComplexArray]:
@@ -269,18 +300,23 @@ def _mu(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> tuple[Co
     """
     (a, b), (c, d) = effective_parameters(method)
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):
+        shift = 64 if max(np.abs(alpha_hat).max(), np.abs(beta_hat).max()) > HUGE else 0
+        if shift:
+            alpha_hat, beta_hat = np.ldexp(alpha_hat, -shift), np.ldexp(beta_hat, -shift)
         (p, p_low), (q, q_low) = _combination(a, alpha_hat, b, beta_hat), _combination(c, alpha_hat, d, beta_hat)
-        exponent = np.maximum(np.frexp(p)[1], (np.frexp(q)[1] + 1) // 2)  # so that no square over- or underflows
-        half, half_low = np.ldexp(p, -exponent - 1), np.ldexp(p_low, -exponent - 1)
-        q, q_low = np.ldexp(q, -2 * exponent), np.ldexp(q_low, -2 * exponent)
+        exponent = np.maximum(np.frexp(p)[1] + shift, (np.frexp(q)[1] + (shift + 1)) // 2)  # no square leaves the range
+        half, half_low = np.ldexp(p, shift - exponent - 1), np.ldexp(p_low, shift - exponent - 1)
+        single = np.ldexp(q, shift - exponent)  # where q scaled twice underflows, the nearer mu need not
+        q, q_low = np.ldexp(q, shift - 2 * exponent), np.ldexp(q_low, shift - 2 * exponent)
         square, square_low = _two_product(half, half)
         high, low = _two_sum(square, -q)
         discriminant = high + (low + (square_low + 2 * half * half_low - q_low))
         root, real = np.sqrt(np.abs(discriminant)), discriminant >= 0
         far = -(half + np.copysign(root, half))
-        near = np.divide(q, far, out=np.zeros_like(far), where=far != 0)
+        near = np.divide(single, far, out=np.zeros_like(far), where=far != 0)
         first, second = np.empty_like(p, complex), np.empty_like(p, complex)
-        first.real, second.real = (np.ldexp(np.where(real, x, -half), exponent) for x in (far, near))
+        pair = np.ldexp(-half, exponent)
+        first.real, second.real = np.where(real, np.ldexp(far, exponent), pair), np.where(real, near, pair)
         first.imag = np.where(real, 0, np.ldexp(root, exponent))
         second.imag = -first.imag
     return first, second

@@ -112,6 +112,8 @@ class Trajectory:
     """A run: t (s, shape (steps + 1,)), q and v (shape (steps + 1, n), SI), and why it ended early, if it did.
 
     `evaluations` counts right-hand sides. `failure` says when and why in one line; the history ends before it.
+    `least_pivot` is the least relative pivot of S = C_q M^-1 C_q^T that was met, in the step from `pivot_time` (s):
+    where it is small a singular configuration is near, and multipliers have lost about that factor of their digits.
     """
 
     mechanism: Mechanism
@@ -121,6 +123,8 @@ class Trajectory:
     v: FloatArray
     evaluations: int
     failure: str | None
+    least_pivot: float
+    pivot_time: float
 
 
 def simulate(
@@ -142,12 +146,14 @@ def simulate(
     total = round(duration / h)
     q, v = initial_state(mechanism) if state is None else state
     history: list[State] = [(*q.tolist(), *v.tolist())]
-    failure = None
+    failure, pivot, pivot_step = None, 1.0, 0
     try:
         for y, _, worst in islice(march(mechanism, method, h, gains, history[0], start, math), total):
             if not (sum(map(abs, y)) < BLOWN_UP and worst > SINGULAR):  # not a number included
                 failure = _failure(worst)
                 break
+            if worst < pivot:
+                pivot, pivot_step = worst, len(history) - 1
             history.append(y)
     except (OverflowError, ValueError, ZeroDivisionError) as error:
         failure = f"arithmetic broke down ({error})"
@@ -158,7 +164,8 @@ def simulate(
     count = sum(spent) + (taken - len(spent)) * evaluations(method)
     rows = np.array(history, dtype=np.float64)
     t = np.arange(len(rows), dtype=np.float64) * h
-    return Trajectory(mechanism, method, t, rows[:, : mechanism.size], rows[:, mechanism.size :], count, failure)
+    q, v = rows[:, : mechanism.size], rows[:, mechanism.size :]
+    return Trajectory(mechanism, method, t, q, v, count, failure, pivot, pivot_step * h)
 
 
 def march(

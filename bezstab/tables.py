@@ -18,6 +18,7 @@ from bezstab.choose import Choice
 from bezstab.derivation import accuracy
 from bezstab.errors import InputError
 from bezstab.experiments import Behaviour, Cost, Experiment, Finding
+from bezstab.extremes import Check
 from bezstab.family import Limit, Member
 from bezstab.formulas import characteristic_text, mapping_text, recursion
 from bezstab.mechanism import Observation
@@ -78,13 +79,14 @@ def _complex(row: Row) -> str:
     real, imaginary = row["z_real"], row["z_imag"]
     assert isinstance(real, float)
     assert isinstance(imaginary, float)
-    return f"{real:.6f} ± {imaginary:.6f}i" if round(imaginary, 6) else f"{real:.6f}"
+    form = ".6f" if max(abs(real), imaginary) < 1e6 else ".6e"
+    return f"{real:{form}} ± {imaginary:{form}}i" if round(imaginary / max(1, abs(real)), 6) else f"{real:{form}}"
 
 
 POLES: Columns = {
     "method": lambda row: str(row["method"]),
     "pole z": _complex,
-    "|z|": _number("z_abs", ".6f"),
+    "|z|": lambda row: _number("z_abs", ".6f" if float(row["z_abs"] or 0) < 1e6 else ".6e")(row),
     "∠z (deg)": _number("z_angle_deg", ".3f"),
     "verdict": lambda row: str(row["verdict"]),
 }
@@ -111,6 +113,8 @@ SIMULATIONS: Columns = {
     "largest |ċ|": _number("cdot_max", ".3e"),
     "energy drift (J)": _number("energy_drift", ".3e"),
     "evaluations": _number("evaluations", "d"),
+    "least pivot": _number("least_pivot", ".1e"),
+    "at (s)": _number("pivot_time", ".6g"),
     "failure": lambda row: str(row["failure"] or "-"),
 }
 
@@ -266,6 +270,11 @@ COSTS: Columns = {
 
 TIMED: Columns = {**COSTS, "processor time / B4's": _number("time_ratio", ".2f")}
 
+CHECKS: Columns = {
+    **{key: lambda row, key=key: str(row[key]) for key in ("group", "case", "expected", "seen")},  # type: ignore[misc]
+    "held": lambda row: "yes" if row["held"] else "NO",
+}
+
 FINDINGS: Columns = {
     key: lambda row, key=key: str(row[key])  # type: ignore[misc]
     for key in ("where", "claim", "paper", "here", "agreement")
@@ -369,6 +378,8 @@ def simulation_row(run: Trajectory, seen: Observation, alpha_hat: float, beta_ha
         "cdot_max": float(np.abs(seen.cdot).max()),
         "energy_drift": float(seen.energy[-1] - seen.energy[0]),
         "evaluations": run.evaluations,
+        "least_pivot": run.least_pivot,
+        "pivot_time": run.pivot_time,
         "failure": run.failure,
     }
 
@@ -568,9 +579,9 @@ def _range(row: Row, name: str) -> str:
     return "-" if low is None else f"{low:.3g} to {'any' if high is None else format(high, '.3g')}"
 
 
-def finding_row(finding: Finding) -> Row:
-    """Return a sentence of the paper, what it says, what came out, and whether they agree."""
-    return asdict(finding)
+def plain_row(result: Finding | Check) -> Row:
+    """Return a result that has nothing but text, as it is."""
+    return asdict(result)
 
 
 def behaviour_rows(behaviours: Sequence[Behaviour]) -> list[Row]:

@@ -16,7 +16,7 @@ FLOORS = {
     **dict.fromkeys(("region", "experiments"), 5),
     **dict.fromkeys(("optimum", "verify", "witness"), 6),
     **dict.fromkeys(("choose", "family"), 7),
-    "tradeoff": 8,
+    **dict.fromkeys(("tradeoff", "extremes"), 8),
     **dict.fromkeys(("tables", "figures"), 9),
     **dict.fromkeys(("report", "explore"), 10),
     "cli": 11,
@@ -27,6 +27,7 @@ ONLY_IN = {
     "click": {"cli"},
     "mujoco": {"witness"},
     "distributed": {"chunks"},
+    "mpmath": {"extremes"},
 }
 ALLOWED_FOR_TYPES = {
     ("cli", "matplotlib"),
