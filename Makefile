@@ -37,7 +37,7 @@ lint: .venv/tested  ## style, format and types
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
-bench: .venv/tested  ## speed, as ratios measured in one run
+bench: .venv/benched  ## speed, as ratios measured in one run, into figures/bench.md
 	$(BIN)/python tests/bench.py
 
 clean:  ## remove the virtual environments
@@ -46,6 +46,10 @@ clean:  ## remove the virtual environments
 .venv/installed: pyproject.toml
 	$(PYTHON) -m venv .venv
 	$(BIN)/pip install --quiet --editable .
+	touch $@
+
+.venv/benched: .venv/installed
+	$(BIN)/pip install --quiet --editable '.[bench]'
 	touch $@
 
 .venv/tested: .venv/installed

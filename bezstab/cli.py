@@ -574,7 +574,7 @@ def tradeoff(
     with _in_chunks(trading.measured, sweeps, output / name, job, workers, scheduler, resume) as found:
         pairs = zip(sweeps, found, strict=True)
         swept = [run for sweep, arrays in pairs for run in trading.runs(sweep, arrays)]
-        rows = tables.run_rows(swept)
+        rows = tables.run_rows(swept, trading.fronts(swept))
         _write_table(output / f"{name}.{table}", tables.untimed(rows), table)
         if figure != "none":
             from bezstab import figures

@@ -88,12 +88,26 @@ def closed_loop(method: Method) -> sp.Poly:
 
 
 def closed_loop_at(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> list[Fraction]:
-    """Return the exact coefficients of P(z), in descending powers, at one point."""
-    coefficients = (sp.Poly(c, ALPHA_HAT, BETA_HAT, domain="QQ") for c in closed_loop(method).all_coeffs())
-    return [
-        sum((_fraction(c) * alpha_hat**i * beta_hat**j for (i, j), c in coefficient.terms()), Fraction(0))
-        for coefficient in coefficients
+    """Return the exact coefficients of P(z), in descending powers, at one point.
+
+    There the resultant is the norm A^2 - p A B + q B^2 of pi = A(z) + B(z) mu modulo the feedback mu^2 + p mu + q.
+    """
+    p, q = (a * alpha_hat + b * beta_hat for a, b in effective_parameters(method))
+    table = coefficient_table(method)[::-1]
+    powers = [(Fraction(1), Fraction(0))]  # (u, v) with mu^j = u + v mu
+    for _ in table[0][1:]:
+        u, v = powers[-1]
+        powers.append((-q * v, u - p * v))
+    reduced = [
+        [sum((c * power[i] for c, power in zip(row, powers, strict=True)), Fraction(0)) for row in table]
+        for i in (0, 1)
     ]
+    n = len(table)
+    norm = [Fraction(0)] * (2 * n - 1)
+    for i, (a, b) in enumerate(zip(*reduced, strict=True)):
+        for k, (c, d) in enumerate(zip(*reduced, strict=True)):
+            norm[i + k] += a * c - p * a * d + q * b * d
+    return norm
 
 
 def effective_parameters(method: Method) -> Table:

@@ -22,6 +22,7 @@ FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 CHUNK = 16384  # points at a time: all the work arrays of one chunk stay in a core's cache
+BLOCK = 8 * CHUNK  # points whose roots are followed in one go: enough to outweigh the calls for one in STRIDE
 STRIDE = 16  # of a row of points one in so many has all its roots solved for, the others start from them
 ITERATIONS = 200  # Aberth's iteration needs about ten; a multiple root, where it is linear, about sixty
 HUGE = 1e280  # beyond, exact products would overflow on the way to a result that fits
@@ -58,22 +59,22 @@ def dominant_pole(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> 
     Of poles equal in modulus to rounding, one is taken. NumericalError if a root leaves the range of float64.
     """
     alpha_hat, beta_hat = np.broadcast_arrays(np.asarray(alpha_hat, float), np.asarray(beta_hat, float))
-    flat_alpha, flat_beta = alpha_hat.ravel(), beta_hat.ravel()
     dominant = np.empty(alpha_hat.size, complex)
-    for start in range(0, alpha_hat.size, STRIDE * CHUNK):
-        part = dominant[start : start + STRIDE * CHUNK]
+    for start in range(0, alpha_hat.size, BLOCK):
+        part = dominant[start : start + BLOCK]
         second = np.empty_like(part)
         for i in range(0, part.size, CHUNK):
             here, there = slice(i, i + CHUNK), slice(start + i, start + min(i + CHUNK, part.size))
-            part[here], second[here] = _mu(method, flat_alpha[there], flat_beta[there])
+            part[here], second[here] = _mu(method, alpha_hat.flat[there], beta_hat.flat[there])
         real = np.flatnonzero(part.imag == 0)
         part[:] = dominant_root(method, part)
         if real.size:
             other = dominant_root(method, second[real])
             larger = np.abs(other) > np.abs(part[real])
             part[real[larger]] = other[larger]
-    dominant.imag = np.abs(dominant.imag)
-    return _tidy(dominant).reshape(alpha_hat.shape)
+        part.imag = np.abs(part.imag)
+        _tidy(part)
+    return dominant.reshape(alpha_hat.shape)
 
 
 def _tidy(z: ComplexArray) -> ComplexArray:

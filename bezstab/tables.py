@@ -1,5 +1,7 @@
 """Results as rows, and rows as text, Markdown, CSV, JSON or NPZ."""
 
+from __future__ import annotations
+
 import csv
 import io
 import json
@@ -7,31 +9,36 @@ import math
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, fields
-from fractions import Fraction
-from typing import BinaryIO, Literal
+from typing import TYPE_CHECKING, BinaryIO, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from bezstab.baumgarte import Engine, gains
-from bezstab.choose import Choice
+from bezstab.baumgarte import gains
 from bezstab.derivation import accuracy
 from bezstab.errors import InputError
-from bezstab.experiments import Behaviour, Cost, Experiment, Finding
-from bezstab.extremes import Check
-from bezstab.family import Limit, Member
 from bezstab.formulas import characteristic_text, mapping_text, recursion
-from bezstab.mechanism import Observation
 from bezstab.methods import Method, evaluations, steps
-from bezstab.optimum import Optimum
 from bezstab.paper import LEAST_Z_ABS, TABLE_5
-from bezstab.poles import FloatArray
-from bezstab.region import QUALITY, Region
-from bezstab.schur import Verdict
-from bezstab.simulate import Trajectory
-from bezstab.tradeoff import MapCost, Run, front
-from bezstab.verify import Measurement, VerdictMap
-from bezstab.witness import Witnessed
+
+if TYPE_CHECKING:  # so that a small table does not load what makes the large ones
+    from fractions import Fraction
+
+    from numpy.typing import NDArray
+
+    from bezstab.baumgarte import Engine
+    from bezstab.choose import Choice
+    from bezstab.experiments import Behaviour, Cost, Experiment, Finding
+    from bezstab.extremes import Check
+    from bezstab.family import Limit, Member
+    from bezstab.mechanism import Observation
+    from bezstab.optimum import Optimum
+    from bezstab.poles import FloatArray
+    from bezstab.region import Region
+    from bezstab.schur import Verdict
+    from bezstab.simulate import Trajectory
+    from bezstab.tradeoff import MapCost, Run
+    from bezstab.verify import Measurement, VerdictMap
+    from bezstab.witness import Witnessed
 
 Value = str | float | int | None
 Row = Mapping[str, Value]
@@ -459,30 +466,17 @@ def witnessed_row(scene: str, witnessed: Witnessed) -> Row:
     }
 
 
-def run_rows(swept: Sequence[Run]) -> list[Row]:
-    """Return the runs of a sweep, with the fronts each is on: T by trajectory error, c by constraint error."""
-    fronts = {
-        "T": set(front((run.evaluations, run.trajectory_error) for run in swept)),
-        "c": set(front((run.evaluations, None if run.failure else run.c_max) for run in swept)),
-    }
+def run_rows(swept: Sequence[Run], fronts: Sequence[str]) -> list[Row]:
+    """Return the runs of a sweep, with the fronts each is on."""
     return [
-        {
-            **{each.name: getattr(run, each.name) for each in fields(run)},
-            "method": run.method.name,
-            "front": " ".join(name for name, on_it in fronts.items() if k in on_it),
-        }
-        for k, run in enumerate(swept)
+        {**{each.name: getattr(run, each.name) for each in fields(run)}, "method": run.method.name, "front": on}
+        for run, on in zip(swept, fronts, strict=True)
     ]
 
 
 def map_cost_row(cost: MapCost) -> Row:
     """Return what a map of N x N points costs and how far its area (relative) and boundary are off."""
-    quality = next((name for name, count in QUALITY.items() if count == cost.count), None)
-    return {
-        **{each.name: getattr(cost, each.name) for each in fields(cost)},
-        "method": cost.method.name,
-        "quality": quality,
-    }
+    return {**{each.name: getattr(cost, each.name) for each in fields(cost)}, "method": cost.method.name}
 
 
 def untimed(rows: Sequence[Row]) -> dict[str, NDArray[np.generic]]:

@@ -17,7 +17,7 @@ from bezstab.errors import NumericalError
 from bezstab.mechanism import mechanism, observe
 from bezstab.methods import Method, evaluations, lookup, steps
 from bezstab.poles import FloatArray, spectral_radius
-from bezstab.region import pole_map, region, scan, window
+from bezstab.region import QUALITY, pole_map, region, scan, window
 from bezstab.scene import Scene
 from bezstab.simulate import simulate
 
@@ -178,6 +178,13 @@ def front(points: Iterable[tuple[float, float | None]]) -> list[int]:
     return on_it
 
 
+def fronts(swept: Sequence[Run]) -> list[str]:
+    """Return for each run on which fronts it is: T by trajectory error, c by constraint error, over evaluations."""
+    by_trajectory = front((run.evaluations, run.trajectory_error) for run in swept)
+    by_constraint = front((run.evaluations, None if run.failure else run.c_max) for run in swept)
+    return [" ".join(["T"] * (k in by_trajectory) + ["c"] * (k in by_constraint)) for k in range(len(swept))]
+
+
 @dataclass(frozen=True)
 class Summary:
     """What a sweep says of one method; None where it says nothing.
@@ -283,6 +290,7 @@ class MapCost:
 
     method: Method
     count: int
+    quality: str | None
     seconds: float
     megabytes: float
     area_error: float
@@ -311,4 +319,5 @@ def map_cost(method: Method, count: int) -> MapCost:
     alike = seen == there  # else the grid has missed a crossing, or rounding on an edge has made one up
     off = np.abs(read[alike[rows]] - true[order][alike[true_rows[order]]])
     area_error = float(abs(cell * np.count_nonzero(z_abs < 1) / exact.area - 1))
-    return MapCost(method, count, seconds, megabytes, area_error, float(np.median(off)), float(off.max()))
+    quality = next((name for name, points in QUALITY.items() if points == count), None)
+    return MapCost(method, count, quality, seconds, megabytes, area_error, float(np.median(off)), float(off.max()))
