@@ -8,9 +8,7 @@ region: .venv/installed  ## draw where B4 is stable, into this directory
 	$(BIN)/bezstab region --method B4
 
 figures: .venv/installed  ## draw what the README shows, into figures/
-	$(BIN)/bezstab region --method B2 --method B3 --method B4 --table none -o figures
-	$(BIN)/bezstab region --compare --method B3 --method B4 --method AB3 --method AB4 --table none -o figures
-	$(BIN)/bezstab region --compare --method B4 --method AB4 --method RK4@5 --h 0.001 --table none -o figures
+	$(BIN)/bezstab region --method B4 --table none -o figures
 	$(BIN)/bezstab verify --map 60 --method AB4 --table none -o figures
 	$(BIN)/bezstab family bezier -o figures
 	$(BIN)/bezstab paper -o figures

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
     from bezstab.choose import Goal
     from bezstab.chunks import Arrays
+    from bezstab.experiments import Finding
     from bezstab.optimum import Optimum
     from bezstab.simulate import Start
     from bezstab.tables import Columns, Format, Row
@@ -799,9 +800,10 @@ def extremes(short: bool, form: "Format") -> int:
 @_figure_option
 @_format_option
 def paper(only: Sequence[str], output: Path, figure: Literal["png", "svg", "pdf", "none"], form: "Format") -> None:
-    """Repeat the paper's experiments with the slider-crank: Tables 4 to 6, Figures 5 to 9.
+    """Regenerate the paper: Tables 1 to 6, Figures 1 to 9, and a ledger of what holds.
 
-    Writes paper_fig5.png, ..., paper_table6.md, and prints what agrees with the paper and what does not.
+    Writes paper_table1.md, ..., paper_fig9.png and, unless --only asks for parts, LEDGER.md, and prints what agrees
+    with the paper and what does not.
 
     Example: bezstab paper --only table4
     """
@@ -809,7 +811,7 @@ def paper(only: Sequence[str], output: Path, figure: Literal["png", "svg", "pdf"
 
     chosen = set(only or PARTS)
     output_directory(output)
-    rows: list[Row] = []
+    findings: list[Finding] = []
     for parts, make in report.REPORTS.items():
         if not chosen & set(parts):
             continue
@@ -817,11 +819,14 @@ def paper(only: Sequence[str], output: Path, figure: Literal["png", "svg", "pdf"
         for name in (part for part in made.tables if part in chosen):
             _write(output / f"paper_{name}.md", lambda file: file.write(made.tables[name].encode()))  # noqa: B023
         if figure != "none":
-            for name in (part for part in made.figures if part in chosen):
+            for name in (part for part in made.figures if part.rstrip("abc") in chosen):
                 _write_figure(output / f"paper_{name}.{figure}", made.figures[name], figure)
         if made.aside and form in ("text", "markdown"):
             click.echo(f"{made.aside}\n")
-        rows += map(tables.plain_row, made.findings)
+        findings += made.findings
+    if not only:
+        _write(output / "LEDGER.md", lambda file: file.write(report.ledger(findings).encode()))
+    rows = [tables.plain_row(finding) for finding in findings]
     if form == "text":
         click.echo("\n\n".join(tables.render(tables.transposed(row), tables.PROPERTIES, form) for row in rows))
     else:

@@ -16,7 +16,7 @@ from bezstab.poles import FloatArray, dominant_pole, verdict
 from bezstab.scene import load
 from bezstab.simulate import Start, Trajectory, simulate
 
-Agreement = Literal["confirmed", "confirmed with a correction", "not confirmed"]
+Agreement = Literal["confirmed", "confirmed with a correction", "not confirmed", "cannot be tested"]
 
 H = 1e-3  # s
 DURATION = 10.0  # s, of Tables 5 and 6

@@ -20,6 +20,7 @@ from bezstab.methods import Method, steps
 from bezstab.optimum import Optimum
 from bezstab.poles import FloatArray
 from bezstab.region import Region
+from bezstab.scene import COORDINATES, Scene
 from bezstab.simulate import Trajectory
 from bezstab.tradeoff import Run, front
 from bezstab.verify import VerdictMap
@@ -118,6 +119,37 @@ def comparison_figure(
         if beta_range:
             axes.set_ylim(*(gains(0.0, float(end), h or 1.0)[1] for end in beta_range))
         figure.legend(loc="outside lower center", ncols=4)
+        return figure
+
+
+def scene_figure(scene: Scene, q: FloatArray) -> Figure:
+    """Return a scene's bodies in a state q, each a line through the points of its joints, in m (paper Fig. 4)."""
+    with styled():
+        figure = Figure(figsize=(COLUMN_WIDTH, 0.6 * COLUMN_WIDTH), layout="constrained")
+        axes = figure.add_subplot()
+        free = dict(zip(scene.coordinates, q.tolist(), strict=True))
+        frames = {
+            body.name: [free.get(f"{body.name}.{axis}", body.locked.get(axis, 0.0)) for axis in COORDINATES]
+            for body in scene.bodies
+        }
+        joined: dict[str, list[tuple[float, float]]] = {name: [] for name in frames}
+        for joint in scene.joints:
+            for name, point in zip(getattr(joint, "bodies", ()), getattr(joint, "points", ()), strict=True):
+                x, y, theta = frames.get(name, (0.0, 0.0, 0.0))
+                at = complex(x, y) + complex(*point) * np.exp(1j * theta)
+                joined.setdefault(name, []).append((at.real, at.imag))
+        for number, (name, points) in enumerate(joined.items()):
+            ends = sorted({(0.0, 0.0), *points} if name in frames and frames[name][:2] == [0, 0] else set(points))
+            axes.plot(*np.transpose(ends), color=f"{0.15 * number:g}", linewidth=3, solid_capstyle="round", label=name)
+            axes.plot(*np.transpose(ends), "o", color="white", markeredgecolor="black", markersize=4)
+            if len(ends) == 1 and name in frames:
+                axes.plot(*ends[0], "s", color="0.8", markeredgecolor="black", markersize=12, zorder=1.5)
+            middle = np.mean(ends, axis=0)
+            paper = {"facecolor": "white", "edgecolor": "none", "pad": 0.5}
+            axes.annotate(name, middle, xytext=(0, 14), textcoords="offset points", ha="center", bbox=paper)
+        axes.set(xlabel="x (m)", ylabel="y (m)", aspect="equal", title=scene.name)
+        axes.margins(0.15, 0.35)
+        axes.grid(color="0.9")
         return figure
 
 

@@ -1,13 +1,32 @@
 """What the paper prints, as data to compare with."""
 
-PARTS = ("fig5", "fig6", "table4", "fig7", "fig8", "table5", "fig9", "table6")
-"""The experiments with the slider-crank, section 5.2."""
+PARTS = (
+    "table1",
+    "table2",
+    "fig1",
+    "fig2",
+    "fig3",
+    "fig4",
+    "table3",
+    "fig5",
+    "fig6",
+    "table4",
+    "fig7",
+    "fig8",
+    "table5",
+    "fig9",
+    "table6",
+)
+"""Every table and figure."""
 
 FASTER_LEVEL = {"B2": 0.65, "B3": 0.70, "B4": 0.75}
 """|z_p| below which Fig. 1 and section 5.1 call the region H."""
 
 LEAST_Z_ABS = {"B2": 0.58, "B3": 0.62, "B4": 0.65}
 """The smallest |z_p| that section 5.1 found."""
+
+TABLE_3 = {"l1": 0.2, "m1": 20.0, "J1": 45.0, "l2": 0.35, "m2": 3.5, "J2": 3.5, "m3": 2.5, "J3": 0.02}
+"""Lengths in m, masses in kg, moments of inertia in kg m2."""
 
 TABLE_5 = {
     ("0.1", "0.1"): {

@@ -1,11 +1,21 @@
 """Which figures, tables and findings answer which part of the paper."""
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, get_args
 
-from bezstab import experiments, figures, tables
-from bezstab.experiments import Experiment, Finding
+import numpy as np
+
+from bezstab import claims, experiments, figures, tables
+from bezstab.experiments import Agreement, Experiment, Finding
+from bezstab.mechanism import initial_state
+from bezstab.mechanism import mechanism as moving
+from bezstab.methods import lookup
+from bezstab.optimum import optimum
+from bezstab.paper import FASTER_LEVEL
+from bezstab.region import QUALITY, pole_map, region, window
+from bezstab.scene import load
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -24,6 +34,48 @@ class Report:
     tables: Mapping[str, str] = field(default_factory=dict)
     findings: Sequence[Finding] = ()
     aside: str = ""
+
+
+def methods(_: Progress) -> Report:
+    """Return Tables 1 and 2, and what the equations come to."""
+    rows = [tables.formula_row(lookup(name)) for name in ("B2", "B3", "B4")]
+    return Report(
+        tables={
+            "table1": _table("Table 1: the Bézier methods and their s→z mappings.", rows, tables.MAPPINGS),
+            "table2": _table("Table 2: their characteristic polynomials.", rows, tables.CHARACTERISTIC),
+        },
+        findings=claims.equation_findings(),
+    )
+
+
+def regions(_: Progress) -> Report:
+    """Return Figs. 1 (in three parts), 2 and 3."""
+    drawn = {}
+    for panel, name in zip("abc", FASTER_LEVEL, strict=True):
+        stable, best = region(lookup(name)), optimum(lookup(name))
+        alpha_hat, beta_hat = (np.linspace(low, high, QUALITY["balanced"]) for low, high in window(stable))
+        z_abs = np.abs(np.concatenate(list(pole_map(stable.method, alpha_hat, beta_hat))))
+        faster = [region(stable.method, FASTER_LEVEL[name])]
+        drawn[f"fig1{panel}"] = figures.region_figure(stable, faster, best, alpha_hat, beta_hat, z_abs)
+    compared, equal_cost = (
+        [region(lookup(name)) for name in names] for names in (("B3", "B4", "AB3", "AB4"), ("B4", "AB4", "RK4@5"))
+    )
+    drawn["fig2"] = figures.comparison_figure(compared)
+    drawn["fig3"] = figures.comparison_figure(equal_cost, h=experiments.H)
+    return Report(drawn, findings=claims.region_findings())
+
+
+def mechanism(_: Progress) -> Report:
+    """Return Fig. 4 and Table 3."""
+    scene = load("slider_crank")
+    caption = (
+        "Table 3: the slider-crank. m1 and J3 do not enter: the crank turns about its pivot, the slider not at all."
+    )
+    return Report(
+        {"fig4": figures.scene_figure(scene, initial_state(moving(scene))[0])},
+        {"table3": _table(caption, tables.body_rows(scene), tables.BODIES)},
+        [*claims.mechanism_findings(), *claims.lost_findings()],
+    )
 
 
 def collapse(progress: Progress) -> Report:
@@ -83,6 +135,9 @@ def cost(_: Progress) -> Report:
 
 
 REPORTS: Mapping[tuple[str, ...], Callable[[Progress], Report]] = {
+    ("table1", "table2"): methods,
+    ("fig1", "fig2", "fig3"): regions,
+    ("table3", "fig4"): mechanism,
     ("fig5",): collapse,
     ("fig6",): growth,
     ("table4", "fig7", "fig8"): influence,
@@ -90,6 +145,14 @@ REPORTS: Mapping[tuple[str, ...], Callable[[Progress], Report]] = {
     ("table6",): cost,
 }
 """By the parts that come together."""
+
+
+def ledger(findings: Sequence[Finding]) -> str:
+    """Return every claim with what came out, as Markdown."""
+    counts = Counter(finding.agreement for finding in findings)
+    total = ", ".join(f"{counts[agreement]} {agreement}" for agreement in get_args(Agreement))
+    rows = tables.render([tables.plain_row(finding) for finding in findings], tables.FINDINGS, "markdown")
+    return f"# What the paper claims, and what came out\n\nWritten by `bezstab paper`: {total}.\n\n{rows}\n"
 
 
 def _table(caption: str, rows: Sequence[tables.Row], columns: tables.Columns) -> str:

@@ -34,6 +34,7 @@ if TYPE_CHECKING:  # so that a small table does not load what makes the large on
     from bezstab.optimum import Optimum
     from bezstab.poles import FloatArray
     from bezstab.region import Region
+    from bezstab.scene import Scene
     from bezstab.schur import Verdict
     from bezstab.simulate import Trajectory
     from bezstab.tradeoff import MapCost, Run
@@ -270,6 +271,24 @@ PRINTED_POLES: Columns = {
     "of 8 to 10 s": _number("after", ".0e"),
 }
 
+MAPPINGS: Columns = {
+    "method": lambda row: str(row["method"]),
+    "step": lambda row: str(row["recursion"]),
+    "s→z mapping": lambda row: str(row["mapping"]),
+}
+
+CHARACTERISTIC: Columns = {
+    "method": lambda row: str(row["method"]),
+    "characteristic polynomial": lambda row: str(row["characteristic_polynomial"]),
+}
+
+BODIES: Columns = {
+    "body": lambda row: str(row["body"]),
+    "length (m)": _number("length", "g"),
+    "mass (kg)": _number("mass", "g"),
+    "moment of inertia (kg m²)": _number("inertia", "g"),
+}
+
 COSTS: Columns = {
     "method": lambda row: str(row["method"]),
     "evaluations of f in 10 s": _number("evaluations", "d"),
@@ -325,11 +344,38 @@ def whole_row(method: Method, region: Region, best: Optimum | None, latex: bool)
     """Return all that is known of one method; formulas as text or LaTeX."""
     return {
         **method_row(method),
+        **formula_row(method, latex),
+        **region_row(region, best),
+    }
+
+
+def formula_row(method: Method, latex: bool = False) -> Row:
+    """Return one method's recursion, s->z mapping and characteristic polynomial (paper Tables 1 and 2)."""
+    return {
+        "method": method.name,
         "recursion": recursion(method, latex),
         "mapping": mapping_text(method, latex),
         "characteristic_polynomial": characteristic_text(method, latex),
-        **region_row(region, best),
     }
+
+
+def body_rows(scene: Scene) -> list[Row]:
+    """Return each body's length between its joints, mass and moment of inertia; None where there is or enters none."""
+    lengths: dict[str, list[float]] = {body.name: [] for body in scene.bodies}
+    for joint in scene.joints:
+        for name, point in zip(getattr(joint, "bodies", ()), getattr(joint, "points", ()), strict=True):
+            if name in lengths:
+                lengths[name].append(point[0])
+    spans = {name: max([*x, 0.0]) - min([*x, 0.0]) for name, x in lengths.items()}
+    return [
+        {
+            "body": body.name,
+            "length": spans[body.name] or None,
+            "mass": body.mass or None,
+            "inertia": body.inertia or None,
+        }
+        for body in scene.bodies
+    ]
 
 
 def transposed(row: Row) -> list[Row]:

@@ -15,7 +15,7 @@ FLOORS = {
     **dict.fromkeys(("formulas", "poles", "simulate"), 4),
     **dict.fromkeys(("region", "experiments"), 5),
     **dict.fromkeys(("optimum", "verify", "witness"), 6),
-    **dict.fromkeys(("choose", "family"), 7),
+    **dict.fromkeys(("choose", "family", "claims"), 7),
     **dict.fromkeys(("tradeoff", "extremes"), 8),
     **dict.fromkeys(("tables", "figures"), 9),
     **dict.fromkeys(("report", "explore"), 10),

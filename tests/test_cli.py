@@ -319,7 +319,7 @@ def test_paper_writes_the_chosen_parts_and_prints_findings(tmp_path: Path) -> No
         ("family adams-bashforth --to 9", "--to 9"),
         ("family bezier --from 0", "--from"),
         ("family gauss", "gauss"),
-        ("paper --only fig4", "--only"),
+        ("paper --only fig10", "--only"),
         ("paper -o file/below", "file/below"),
         ("simulate --scene pendulm", "did you mean pendulum"),
         ("simulate --scene missing.toml", "missing.toml"),

@@ -19,10 +19,12 @@ from bezstab.figures import (
     influence_figure,
     region_figure,
     save,
+    scene_figure,
     unstabilized_figure,
     verdict_figure,
     work_precision_figure,
 )
+from bezstab.mechanism import initial_state, mechanism
 from bezstab.methods import lookup
 from bezstab.optimum import optimum
 from bezstab.poles import FloatArray, spectral_radius
@@ -91,6 +93,18 @@ def test_the_verdict_figure_shows_cells_boundary_and_disagreement() -> None:
     (curve,) = region(method).boundary
     assert lines["$|z_p| = 1$"][:-1] == pytest.approx(curve)
     assert "97.14%" in axes.get_title()  # 34 of 35
+
+
+def test_the_scene_figure_joins_the_bodies_where_their_joints_are() -> None:
+    scene = load("slider_crank")
+    q = initial_state(mechanism(scene))[0]
+    (axes,) = scene_figure(scene, q).axes
+    lines = {str(line.get_label()): np.array(line.get_xydata()) for line in axes.lines}
+    tip = 0.2 * np.array([np.cos(np.pi / 4), np.sin(np.pi / 4)])
+    assert lines["crank"] == pytest.approx(np.array([[0, 0], tip]))
+    assert lines["rod"] == pytest.approx(np.array([tip, [q[4], 0]]))
+    assert lines["slider"] == pytest.approx(np.array([[q[4], 0]]))
+    assert {text.get_text() for text in axes.texts} == {"crank", "rod", "slider"}
 
 
 @pytest.mark.parametrize("constraint", [False, True])

@@ -1,5 +1,12 @@
+from pathlib import Path
+
+from click.testing import CliRunner
+
+from bezstab.cli import main
 from bezstab.paper import PARTS
 from bezstab.report import REPORTS
+
+FIGURES = Path(__file__).parent.parent / "figures"
 
 
 def test_every_part_is_made_by_one_report() -> None:
@@ -16,3 +23,13 @@ def test_a_report_makes_the_parts_it_promises_and_keeps_times_out_of_its_tables(
     assert {*influenced.tables, *influenced.figures} == {"table4", "fig7", "fig8"}
     assert seen == [6]
     assert influenced.findings
+
+
+def test_the_committed_tables_and_ledger_are_those_of_a_fresh_run(tmp_path: Path) -> None:
+    assert CliRunner().invoke(main, ["paper", "--figure", "none", "-o", str(tmp_path)]).exit_code == 0
+    fresh = {path.name: path.read_text(encoding="utf-8") for path in tmp_path.iterdir()}
+    assert set(fresh) == {"LEDGER.md", *(f"paper_table{number}.md" for number in range(1, 7))}
+    for name, text in fresh.items():
+        assert (FIGURES / name).read_text(encoding="utf-8") == text, name
+    rows = [line for line in fresh["LEDGER.md"].splitlines() if line.startswith("| ")][2:]
+    assert len(rows) > 40
