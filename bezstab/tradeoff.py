@@ -30,6 +30,7 @@ ROUNDED = 4.0  # RK4's error falls sixteenfold with each; where it falls less, r
 ABOVE = 30.0  # times the reference's own error: below, an observed order is noise
 LOST = 0.5  # of an order: below the stated one by more, it has fallen
 MAP_POINTS = (50, 100, 200, 500, 1000, 2000)  # per axis
+ALIKE = 1.05  # ratios nearer to one are neither won nor lost
 LINE = 4000  # points on alpha = beta, where the largest stable step is looked for
 
 
@@ -269,15 +270,24 @@ def _cheapest(swept: Sequence[Run], tolerance: float) -> str:
 
 
 def _against(bezier: Summary, other: Summary) -> str:
-    """Return where a Bezier method wins and loses against another, with the numbers."""
-    said = [f"region {bezier.area / other.area:.2g} times as large"]
+    """Return where a Bezier method wins and where it loses against another, with the numbers."""
+    points = []  # how many times better, and what is said
+    ratio = bezier.area / other.area
+    points.append((ratio, f"region {ratio:.2g} times as large"))
     if other.alpha_step:
-        said.append(f"stable at one α = β with {other.alpha_step / bezier.alpha_step:.2g} times the evaluations")
-    if bezier.coarsest and other.coarsest and bezier.coarsest != other.coarsest:
-        said.append(f"runs through up to h = {bezier.coarsest:g} s, the other to {other.coarsest:g} s")
+        ratio = other.alpha_step / bezier.alpha_step
+        points.append((1 / ratio, f"stable at one α = β with {ratio:.2g} times the evaluations"))
+    if bezier.coarsest and other.coarsest:
+        ends = f"runs through up to h = {bezier.coarsest:g} s, the other up to {other.coarsest:g} s"
+        points.append((bezier.coarsest / other.coarsest, ends))
     if bezier.needed and other.needed:
-        said.append(f"a trajectory error of {FINE:g} with {bezier.needed / other.needed:.2g} times the evaluations")
-    return f"{bezier.method.name} against {other.method.name}: {'; '.join(said)}."
+        ratio = bezier.needed / other.needed
+        points.append((1 / ratio, f"a trajectory error of {FINE:g} with {ratio:.2g} times the evaluations"))
+    said = []
+    for verb, of in (("wins", 1), ("loses", -1)):
+        found = [text for better, text in points if of * np.log(better) > np.log(ALIKE)]
+        said += [f"{verb}: {', '.join(found)}"] * bool(found)
+    return f"{bezier.method.name} against {other.method.name} {'; '.join(said) or 'does as well'}."
 
 
 @dataclass(frozen=True)

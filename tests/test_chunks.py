@@ -104,6 +104,12 @@ def test_a_cluster_does_the_same_work(cluster: str, tmp_path: Path) -> None:
                 break
         assert time.monotonic() < deadline, "the workers did not come up"
         time.sleep(0.2)
+    command = [sys.executable, "-m", "bezstab", "verify", "--map", "4", "--method", "SYM", "--scene", "pendulum"]
+    maps = {}
+    for name, more in (("here", ["--workers", "1"]), ("there", ["--scheduler", cluster])):
+        subprocess.run([*command, "-o", name, *more], cwd=tmp_path, check=True, capture_output=True, timeout=120)
+        maps[name] = (tmp_path / name / "verify_pendulum_SYM.csv").read_bytes()
+    assert maps["here"] == maps["there"]
     assert squares(arrived) == [number**2 for number in range(6)]
     assert (tmp_path / "died").exists()  # one worker was lost, and replaced, on the way
     assert os.getpid() not in {int(arrays["by"]) for arrays in arrived.values()}
@@ -112,6 +118,34 @@ def test_a_cluster_does_the_same_work(cluster: str, tmp_path: Path) -> None:
 def test_a_scheduler_that_does_not_answer_is_one_line() -> None:
     with pytest.raises(InputError, match="--scheduler nonsense"), workers(scheduler="nonsense://x"):
         pass
+
+
+def test_a_resumed_sweep_writes_the_same_bytes(tmp_path: Path) -> None:
+    command = [
+        sys.executable,
+        "-m",
+        "bezstab",
+        "tradeoff",
+        "--h",
+        "0.01",
+        "--time",
+        "0.2",
+        "--alpha",
+        "50",
+        "--beta",
+        "50",
+    ]
+    command += ["--physical", "--method", "SYM", "--method", "RK4", "--workers", "1"]
+    kept = tmp_path / "tradeoff_slider_crank_light.chunks"
+    with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as running:
+        while not list(kept.glob("0.npz")) and running.poll() is None:
+            time.sleep(0.001)
+        running.kill()
+    subprocess.run([*command, "--resume"], cwd=tmp_path, check=True, capture_output=True, timeout=120)
+    resumed = {path.name: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()}
+    subprocess.run(command, cwd=tmp_path, check=True, capture_output=True, timeout=120)
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()} == resumed
+    assert len(resumed) == 3
 
 
 def test_a_killed_map_resumes_to_the_same_bytes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

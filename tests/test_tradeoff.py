@@ -101,7 +101,9 @@ def test_the_words_name_the_cheapest_run_and_the_numbers() -> None:
     assert f"{best.method.name} at h = {best.h:g} s" in cheapest
     assert "kept: B4 2.0 (of 2), AB4 4.0 (of 4)" in orders.replace("AB4 3.9", "AB4 4.0")
     ratio = region(lookup("B4")).area / region(lookup("AB4")).area
-    assert f"region {ratio:.2g} times as large" in against
+    won, lost = against.split("; loses: ")
+    assert won.startswith(f"B4 against AB4 wins: region {ratio:.2g} times as large")
+    assert "a trajectory error of 1e-08" in lost
     assert words(both, 1e-20, physical=True)[0].startswith("No run meets")
 
 
