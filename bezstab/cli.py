@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
 TABLE_5 = ("B2", "B3", "B4", "AB2", "AB3", "AB4", "RK4@5", "SIE")
 
+MOST_DRAWN = 1e100  # of a window's ends: their squares are drawn as well
 MOST_STEPS = 10**8  # a run keeps its whole history: 10 GB and an hour for the slider-crank
 
 Command = TypeVar("Command", bound=Callable[..., object])
@@ -286,6 +287,8 @@ def region(
     for name, window in (("--alpha-range", alpha_range), ("--beta-range", beta_range)):
         if window and not float(window[0]) < float(window[1]):
             raise InputError(f"{name} {float(window[0]):g} {float(window[1]):g}: the first must be the smaller")
+        if window and not max(map(abs, window)) <= MOST_DRAWN:
+            raise InputError(f"{name} {float(window[0]):g} {float(window[1]):g}: expected at most {MOST_DRAWN:g}")
     for level in levels:
         if level > 1:
             raise InputError(f"--level {float(level):g}: must be at most 1, the stability boundary")

@@ -9,6 +9,7 @@ import math
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, fields
+from functools import partial
 from typing import TYPE_CHECKING, BinaryIO, Literal
 
 import numpy as np
@@ -73,17 +74,27 @@ def _width(text: str) -> int:
     return sum(not unicodedata.combining(character) for character in text)
 
 
-def _number(key: str, form: str) -> Callable[[Row], str]:
-    """Return what shows row[key] in the given format, and a missing value as a dash."""
+def _columns(text: str) -> Columns:
+    """Return the columns named by `heading = key form; ...`, the form a format, one of FORMS, or none for text."""
+    columns: dict[str, Callable[[Row], str]] = {}
+    for column in text.split(";"):
+        heading, _, what = column.strip().partition(" = ")
+        key, _, form = what.partition(" ")
+        columns[heading] = partial(_cell, key, form)
+    return columns
 
-    def show(row: Row) -> str:
-        value = row[key]
-        return "-" if value is None else format(value + 0.0 if isinstance(value, float) else value, form)
 
-    return show
+def _cell(key: str, form: str, row: Row) -> str:
+    """Return what shows row[key], and a missing value as a dash."""
+    if form in FORMS:
+        return FORMS[form](row, key)
+    value = row[key]
+    if value is None or value == "":
+        return "-"
+    return format(value + 0.0 if isinstance(value, float) else value, form)
 
 
-def _complex(row: Row) -> str:
+def _pole_shown(row: Row, _: str) -> str:
     real, imaginary = row["z_real"], row["z_imag"]
     assert isinstance(real, float)
     assert isinstance(imaginary, float)
@@ -91,233 +102,104 @@ def _complex(row: Row) -> str:
     return f"{real:{form}} ± {imaginary:{form}}i" if round(imaginary / max(1, abs(real)), 6) else f"{real:{form}}"
 
 
-POLES: Columns = {
-    "method": lambda row: str(row["method"]),
-    "pole z": _complex,
-    "|z|": lambda row: _number("z_abs", ".6f" if float(row["z_abs"] or 0) < 1e6 else ".6e")(row),
-    "∠z (deg)": _number("z_angle_deg", ".3f"),
-    "verdict": lambda row: str(row["verdict"]),
+def _range(row: Row, key: str) -> str:
+    low, high = row[f"{key}_factor_min"], row[f"{key}_factor_max"]
+    return "-" if low is None else f"{low:.3g} to {'any' if high is None else format(high, '.3g')}"
+
+
+def _milliseconds(row: Row, key: str) -> str:
+    median, low, high = (row[name] for name in (key, f"{key}_min", f"{key}_max"))
+    return f"{1e3 * median:.3g} ({1e3 * low:.3g} to {1e3 * high:.3g})"  # type: ignore[operator]
+
+
+FORMS: Mapping[str, Callable[[Row, str], str]] = {
+    "pole": _pole_shown,
+    "modulus": lambda row, key: _cell(key, ".6f" if float(row[key] or 0) < 1e6 else ".6e", row),
+    "range": _range,
+    "limit": lambda row, key: str(row[key] or "limit"),
+    "yes": lambda row, key: {True: "yes", False: "NO", None: "-"}[row[key]],  # type: ignore[index]
+    "diverged": lambda row, key: "diverged" if row["failure"] else _cell(key, ".1e", row),
+    "milliseconds": _milliseconds,
 }
 
-METHODS: Columns = {
-    "method": lambda row: str(row["method"]),
-    "steps": _number("steps", "d"),
-    "evaluations": _number("evaluations", "d"),
-    "order of accuracy": _number("order", "d"),
-    "error constant": lambda row: str(row["error_constant"]),
-    "source": lambda row: str(row["source"]),
-}
-
-PROPERTIES: Columns = {key: lambda row, key=key: str(row[key]) for key in ("property", "value")}  # type: ignore[misc]
-
-SIMULATIONS: Columns = {
-    "scene": lambda row: str(row["scene"]),
-    "method": lambda row: str(row["method"]),
-    "α̂": _number("alpha_hat", ".6g"),
-    "β̂": _number("beta_hat", ".6g"),
-    "h (s)": _number("h", "g"),
-    "until (s)": _number("time", ".6g"),
-    "largest |c|": _number("c_max", ".3e"),
-    "largest |ċ|": _number("cdot_max", ".3e"),
-    "energy drift (J)": _number("energy_drift", ".3e"),
-    "evaluations": _number("evaluations", "d"),
-    "least pivot": _number("least_pivot", ".1e"),
-    "at (s)": _number("pivot_time", ".6g"),
-    "failure": lambda row: str(row["failure"] or "-"),
-}
-
-CHOICES: Columns = {
-    "method": lambda row: str(row["method"]),
-    "goal": lambda row: str(row["goal"]),
-    "α̂": _number("alpha_hat", ".6f"),
-    "β̂": _number("beta_hat", ".6f"),
-    "α (1/s)": _number("alpha", ".6g"),
-    "β (1/s)": _number("beta", ".6g"),
-    "verdict": lambda row: str(row["verdict"]),
-    "|z_p|": _number("z_abs", ".4f"),
-    "∠z_p (deg)": _number("z_angle_deg", ".1f"),
-    "within the spread": _number("worst_z_abs", ".4f"),
-    "steps to 1/1000": _number("settle_steps", "d"),
-    "s": _number("settle_seconds", ".3g"),
-    "stable for h (s) to": _number("h_max", ".4g"),
-    "α times": lambda row: _range(row, "alpha"),
-    "β times": lambda row: _range(row, "beta"),
-}
-
-FAMILY: Columns = {
-    "n": lambda row: str(row["n"] or "limit"),
-    "method": lambda row: str(row["method"]),
-    "area": _number("area", ".10g"),
-    "α̂ to": _number("alpha_hat_max", ".8g"),
-    "β̂ to": _number("beta_hat_max", ".8g"),
-    "least |z_p|": _number("best_z_abs", ".8f"),
-    "order of accuracy": _number("order", "d"),
-    "error constant": _number("error_constant", ".6f"),
-}
-
-PASTE: Columns = {"to paste": lambda row: str(row["engine"])}
-
-ENGINES_LISTED: Columns = {
-    "engine": lambda row: str(row["engine"]),
-    "level": lambda row: str(row["level"]),
-    "parameters": lambda row: str(row["parameters"]),
-    "for this point": lambda row: str(row["set"] or "-"),
-    "left out": lambda row: str(row["excludes"]),
-}
-
-MEASUREMENTS: Columns = {
-    "method": lambda row: str(row["method"]),
-    "α̂": _number("alpha_hat", ".6f"),
-    "β̂": _number("beta_hat", ".6f"),
-    "predicted |z|": _number("predicted_abs", ".6f"),
-    "measured |z|": _number("measured_abs", ".6f"),
-    "difference": _number("difference_abs", "+.1e"),
-    "predicted ∠z (deg)": _number("predicted_angle_deg", ".3f"),
-    "measured ∠z (deg)": _number("measured_angle_deg", ".3f"),
-    "difference (deg)": _number("difference_angle_deg", "+.0e"),
-    "predicted": lambda row: str(row["predicted_verdict"]),
-    "measured": lambda row: str(row["measured_verdict"]),
-    "verdicts agree": lambda row: {True: "yes", False: "NO", None: "-"}[row["verdicts_agree"]],  # type: ignore[index]
-    "not measurable because": lambda row: str(row["reason"] or "-"),
-}
-
-SUMMARIES: Columns = {
-    "method": lambda row: str(row["method"]),
-    "points": _number("points", "d"),
-    "measured": _number("measured", "d"),
-    "median error of |z|": _number("median_error", ".1e"),
-    "largest": _number("largest_error", ".1e"),
-    "verdicts called": _number("called", "d"),
-    "of which wrong": _number("wrong", "d"),
-}
-
-VERDICT_MAPS: Columns = {
-    "scene": lambda row: str(row["scene"]),
-    "method": lambda row: str(row["method"]),
-    "runs": _number("runs", "d"),
-    "steps": _number("steps", "d"),
-    "broke down": _number("broken", "d"),
-    "agreement": _number("agreement", ".2%"),
-    "too close to call: | |z_p| - 1 | below": _number("band", "g"),
-    "largest | |z_p| - 1 | that disagrees": _number("farthest", ".2e"),
-    "disagreeing beyond": _number("disagreeing", "d"),
-}
-
-WITNESSED: Columns = {
-    "scene": lambda row: str(row["scene"]),
-    "MuJoCo's": lambda row: str(row["integrator"]),
-    "method": lambda row: str(row["method"]),
-    "α̂": _number("alpha_hat", ".4f"),
-    "β̂": _number("beta_hat", ".4f"),
-    "times the boundary": _number("times_boundary", "g"),
-    "predicted |z|": _number("predicted_abs", ".4f"),
-    "predicted": lambda row: str(row["predicted_verdict"]),
-    "seen": lambda row: str(row["measured_verdict"]),
-    "largest |c| at the end (m)": _number("remaining", ".1e"),
-    "after steps": _number("steps", "d"),
-}
-
-RUNS: Columns = {
-    "method": lambda row: str(row["method"]),
-    "h (s)": _number("h", "g"),
-    "α̂": _number("alpha_hat", ".4g"),
-    "β̂": _number("beta_hat", ".4g"),
-    "|z_p|": _number("z_abs", ".4f"),
-    "trajectory error": lambda row: _number("trajectory_error", ".1e")(row) if not row["failure"] else "diverged",
-    "order": _number("order", ".2f"),
-    "largest |c|": _number("c_max", ".1e"),
-    "rms": _number("c_rms", ".1e"),
-    "largest |ċ|": _number("cdot_max", ".1e"),
-    "rms ċ": _number("cdot_rms", ".1e"),
-    "energy drift (J)": _number("energy_drift", ".1e"),
-    "evaluations": _number("evaluations", "d"),
-    "time (ms)": lambda row: _milliseconds(row),  # noqa: PLW0108  # defined below
-    "front": _number("front", "s"),
-    "failure": lambda row: str(row["failure"] or "-"),
-}
-
-MAP_COSTS: Columns = {
-    "method": lambda row: str(row["method"]),
-    "N": _number("count", "d"),
-    "quality": lambda row: str(row["quality"] or "-"),
-    "time (s)": _number("seconds", ".3g"),
-    "memory (MB)": _number("megabytes", ".3g"),
-    "error of the area": _number("area_error", ".1e"),
-    "error of the boundary in α̂": _number("boundary_error", ".1e"),
-    "largest": _number("boundary_error_max", ".1e"),
-}
-
-BEHAVIOURS: Columns = {
-    "case": _number("case", "d"),
-    "described as": lambda row: str(row["described"]),
-    "α̂": _number("alpha_hat", "g"),
-    "β̂": _number("beta_hat", "g"),
-    "dominant pole": _complex,
-    "|z_p|": _number("z_abs", ".4f"),
-    "∠z_p (deg)": _number("z_angle_deg", ".2f"),
-    "seen: |z|": _number("rate", ".4f"),
-    "zero crossings of c₁": _number("crossings", "d"),
-}
-
-PRINTED_POLES: Columns = {
-    "α̂": _number("alpha_hat", "g"),
-    "β̂": _number("beta_hat", "g"),
-    "method": lambda row: str(row["method"]),
-    "dominant pole": _complex,
-    "|z_p|": _number("z_abs", ".4f"),
-    "∠z_p (deg)": _number("z_angle_deg", ".3f"),
-    "as printed": lambda row: str(row["printed"]),
-    "largest |c₁| of 6 to 8 s (m)": _number("before", ".0e"),
-    "of 8 to 10 s": _number("after", ".0e"),
-}
-
-MAPPINGS: Columns = {
-    "method": lambda row: str(row["method"]),
-    "step": lambda row: str(row["recursion"]),
-    "s→z mapping": lambda row: str(row["mapping"]),
-}
-
-CHARACTERISTIC: Columns = {
-    "method": lambda row: str(row["method"]),
-    "characteristic polynomial": lambda row: str(row["characteristic_polynomial"]),
-}
-
-BODIES: Columns = {
-    "body": lambda row: str(row["body"]),
-    "length (m)": _number("length", "g"),
-    "mass (kg)": _number("mass", "g"),
-    "moment of inertia (kg m²)": _number("inertia", "g"),
-}
-
-COSTS: Columns = {
-    "method": lambda row: str(row["method"]),
-    "evaluations of f in 10 s": _number("evaluations", "d"),
-}
-
-TIMED: Columns = {**COSTS, "processor time / B4's": _number("time_ratio", ".2f")}
-
-CHECKS: Columns = {
-    **{key: lambda row, key=key: str(row[key]) for key in ("group", "case", "expected", "seen")},  # type: ignore[misc]
-    "held": lambda row: "yes" if row["held"] else "NO",
-}
-
-FINDINGS: Columns = {
-    key: lambda row, key=key: str(row[key])  # type: ignore[misc]
-    for key in ("where", "claim", "paper", "here", "agreement")
-}
-
-REGIONS: Columns = {
-    "method": lambda row: str(row["method"]),
-    "area": _number("area", ".10g"),
-    "α̂ from": _number("alpha_hat_min", ".6g"),
-    "α̂ to": _number("alpha_hat_max", ".8g"),
-    "β̂ to": _number("beta_hat_max", ".8g"),
-    "least |z_p|": _number("best_z_abs", ".8f"),
-    "at α̂": _number("best_alpha_hat", ".8f"),
-    "at β̂": _number("best_beta_hat", ".8f"),
-    "paper": _number("paper_z_abs", ".2f"),
-    "there": lambda row: str(row["best_where"] or "-"),
-}
+POLES = _columns("method = method; pole z = z pole; |z| = z_abs modulus; ∠z (deg) = z_angle_deg .3f; verdict = verdict")
+METHODS = _columns(
+    "method = method; steps = steps d; evaluations = evaluations d; order of accuracy = order d; "
+    "error constant = error_constant; source = source"
+)
+PROPERTIES = _columns("property = property; value = value")
+SIMULATIONS = _columns(
+    "scene = scene; method = method; α̂ = alpha_hat .6g; β̂ = beta_hat .6g; h (s) = h g; until (s) = time .6g; "
+    "largest |c| = c_max .3e; largest |ċ| = cdot_max .3e; energy drift (J) = energy_drift .3e; "
+    "evaluations = evaluations d; least pivot = least_pivot .1e; at (s) = pivot_time .6g; failure = failure"
+)
+CHOICES = _columns(
+    "method = method; goal = goal; α̂ = alpha_hat .6f; β̂ = beta_hat .6f; α (1/s) = alpha .6g; β (1/s) = beta .6g; "
+    "verdict = verdict; |z_p| = z_abs .4f; ∠z_p (deg) = z_angle_deg .1f; within the spread = worst_z_abs .4f; "
+    "steps to 1/1000 = settle_steps d; s = settle_seconds .3g; stable for h (s) to = h_max .4g; α times = alpha range; "
+    "β times = beta range"
+)
+FAMILY = _columns(
+    "n = n limit; method = method; area = area .10g; α̂ to = alpha_hat_max .8g; β̂ to = beta_hat_max .8g; "
+    "least |z_p| = best_z_abs .8f; order of accuracy = order d; error constant = error_constant .6f"
+)
+PASTE = _columns("to paste = engine")
+ENGINES_LISTED = _columns(
+    "engine = engine; level = level; parameters = parameters; for this point = set; left out = excludes"
+)
+MEASUREMENTS = _columns(
+    "method = method; α̂ = alpha_hat .6f; β̂ = beta_hat .6f; predicted |z| = predicted_abs .6f; "
+    "measured |z| = measured_abs .6f; difference = difference_abs +.1e; predicted ∠z (deg) = predicted_angle_deg .3f; "
+    "measured ∠z (deg) = measured_angle_deg .3f; difference (deg) = difference_angle_deg +.0e; "
+    "predicted = predicted_verdict; measured = measured_verdict; verdicts agree = verdicts_agree yes; "
+    "not measurable because = reason"
+)
+SUMMARIES = _columns(
+    "method = method; points = points d; measured = measured d; median error of |z| = median_error .1e; "
+    "largest = largest_error .1e; verdicts called = called d; of which wrong = wrong d"
+)
+VERDICT_MAPS = _columns(
+    "scene = scene; method = method; runs = runs d; steps = steps d; broke down = broken d; agreement = agreement .2%; "
+    "too close to call: | |z_p| - 1 | below = band g; largest | |z_p| - 1 | that disagrees = farthest .2e; "
+    "disagreeing beyond = disagreeing d"
+)
+WITNESSED = _columns(
+    "scene = scene; MuJoCo's = integrator; method = method; α̂ = alpha_hat .4f; β̂ = beta_hat .4f; "
+    "times the boundary = times_boundary g; predicted |z| = predicted_abs .4f; predicted = predicted_verdict; "
+    "seen = measured_verdict; largest |c| at the end (m) = remaining .1e; after steps = steps d"
+)
+RUNS = _columns(
+    "method = method; h (s) = h g; α̂ = alpha_hat .4g; β̂ = beta_hat .4g; |z_p| = z_abs .4f; "
+    "trajectory error = trajectory_error diverged; order = order .2f; largest |c| = c_max .1e; rms = c_rms .1e; "
+    "largest |ċ| = cdot_max .1e; rms ċ = cdot_rms .1e; energy drift (J) = energy_drift .1e; "
+    "evaluations = evaluations d; time (ms) = seconds milliseconds; front = front s; failure = failure"
+)
+MAP_COSTS = _columns(
+    "method = method; N = count d; quality = quality; time (s) = seconds .3g; memory (MB) = megabytes .3g; "
+    "error of the area = area_error .1e; error of the boundary in α̂ = boundary_error .1e; "
+    "largest = boundary_error_max .1e"
+)
+BEHAVIOURS = _columns(
+    "case = case d; described as = described; α̂ = alpha_hat g; β̂ = beta_hat g; dominant pole = z pole; "
+    "|z_p| = z_abs .4f; ∠z_p (deg) = z_angle_deg .2f; seen: |z| = rate .4f; zero crossings of c₁ = crossings d"
+)
+PRINTED_POLES = _columns(
+    "α̂ = alpha_hat g; β̂ = beta_hat g; method = method; dominant pole = z pole; |z_p| = z_abs .4f; "
+    "∠z_p (deg) = z_angle_deg .3f; as printed = printed; largest |c₁| of 6 to 8 s (m) = before .0e; "
+    "of 8 to 10 s = after .0e"
+)
+MAPPINGS = _columns("method = method; step = recursion; s→z mapping = mapping")
+CHARACTERISTIC = _columns("method = method; characteristic polynomial = characteristic_polynomial")
+BODIES = _columns("body = body; length (m) = length g; mass (kg) = mass g; moment of inertia (kg m²) = inertia g")
+COSTS = _columns("method = method; evaluations of f in 10 s = evaluations d")
+TIMED: Columns = {**COSTS, **_columns("processor time / B4's = time_ratio .2f")}
+CHECKS = _columns("group = group; case = case; expected = expected; seen = seen; held = held yes")
+FINDINGS = _columns("where = where; claim = claim; paper = paper; here = here; agreement = agreement")
+REGIONS = _columns(
+    "method = method; area = area .10g; α̂ from = alpha_hat_min .6g; α̂ to = alpha_hat_max .8g; "
+    "β̂ to = beta_hat_max .8g; least |z_p| = best_z_abs .8f; at α̂ = best_alpha_hat .8f; at β̂ = best_beta_hat .8f; "
+    "paper = paper_z_abs .2f; there = best_where"
+)
 
 
 def pole_rows(
@@ -535,11 +417,6 @@ def _present(key: str, value: Value) -> Value:
     return ("" if key in ("failure", "front") else math.nan) if value is None else value
 
 
-def _milliseconds(row: Row) -> str:
-    median, low, high = (row[key] for key in ("seconds", "seconds_min", "seconds_max"))
-    return f"{1e3 * median:.3g} ({1e3 * low:.3g} to {1e3 * high:.3g})"  # type: ignore[operator]
-
-
 def choice_row(choice: Choice, h: float | None) -> Row:
     """Return a point, in 1/s too with h (s), how fast it settles and by what it may be off; None for no limit."""
     margins, step = choice.margins, (h or 1.0) * float(choice.method.step_multiple)
@@ -612,11 +489,6 @@ def engine_row(engine: Engine, point: tuple[Fraction, Fraction] | None, h: Fract
         "excludes": engine.excludes,
         "source": engine.source,
     }
-
-
-def _range(row: Row, name: str) -> str:
-    low, high = row[f"{name}_factor_min"], row[f"{name}_factor_max"]
-    return "-" if low is None else f"{low:.3g} to {'any' if high is None else format(high, '.3g')}"
 
 
 def plain_row(result: Finding | Check) -> Row:
