@@ -34,6 +34,7 @@ TABLE_5 = ("B2", "B3", "B4", "AB2", "AB3", "AB4", "RK4@5", "SIE")
 
 MOST_DRAWN = 1e100  # of a window's ends: their squares are drawn as well
 MOST_STEPS = 10**8  # a run keeps its whole history: 10 GB and an hour for the slider-crank
+MOST_SWEPT = 10**6  # the reference takes up to 32 times as many
 
 Command = TypeVar("Command", bound=Callable[..., object])
 Item = TypeVar("Item")
@@ -567,8 +568,9 @@ def tradeoff(
     point = None if alpha is None or beta is None else (float(alpha), float(beta))
     chosen = sorted(set(map(float, steps or map(Fraction, trading.STEPS))))
     longest = chosen[-1] * float(max(method.step_multiple for method in methods))
-    if not longest <= float(time) <= MOST_STEPS * chosen[0]:
-        raise InputError(f"--time {float(time):g}: expected one step ({longest:g} s) to {MOST_STEPS * chosen[0]:g} s")
+    most = MOST_SWEPT * chosen[0]
+    if not longest <= float(time) <= most:
+        raise InputError(f"--time {float(time):g}: expected one step ({longest:g} s) to {MOST_SWEPT:g} ({most:g} s)")
     moving = load(scene)
     true = trading.reference(moving, chosen[0], float(time))
     each = (moving, tuple(chosen), float(time), point, physical, repeats, true)

@@ -105,6 +105,9 @@ def measured(sweep: Sweep) -> dict[str, NDArray[np.generic]]:
 def _measured(sweep: Sweep, h: float, point: tuple[float, float]) -> dict[str, float | str]:
     moving, method = mechanism(sweep.scene), sweep.method
     feedback, seconds = gains(*point, h), []
+    simulate(
+        moving, method, h, (steps(method) + 1) * h * float(method.step_multiple), feedback
+    )  # compiles all it needs
     for _ in range(sweep.repeats):
         begin = time.process_time()
         run = simulate(moving, method, h, sweep.duration, feedback)
