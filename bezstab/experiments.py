@@ -27,6 +27,7 @@ COLLAPSE = ((0.02, 0.05, 0.1), 2000.0)  # until the runs blow up
 COMPARED = ("B4", "AB4", "RK4@5", "SIE")
 KICK = 1e-3  # m: Table 4 is about decay and growth, so there must be something that decays or grows
 KICKED = 0.4  # s
+ROUNDED = 1e-13  # m: below, c_1 is rounding amplified by beta^2 h^2 / |1 - z|, and differs between machines
 REPEATS = 5
 
 # The numbers of Table 4 are lost; these points are ours and fit what the paper says of each case.
@@ -132,21 +133,21 @@ def growth_findings(runs: Sequence[Experiment]) -> list[Finding]:
             "Fig. 6",
             "without stabilisation the violation grows linearly with time",
             "linear",
-            f"|c_1| like t to the power of {min(slopes):.2f} to {max(slopes):.2f}",
+            f"|c_1| like t to the power of {min(slopes):.1f} to {max(slopes):.1f}",
             _agreement(0.7 < slope < 1.3 for slope in slopes),
         ),
         Finding(
             "Fig. 6",
             "both methods have the same order of error",
             "same order",
-            _by_start(lambda s: f"B4 {orders[s, 'B4']:.2f}, AB4 {orders[s, 'AB4']:.2f}"),
+            _by_start(lambda s: f"B4 {orders[s, 'B4']:.0f}, AB4 {orders[s, 'AB4']:.0f}"),
             _agreement(abs(orders[start, "B4"] - orders[start, "AB4"]) < 0.25 for start in STARTS),
         ),
         Finding(
             "Fig. 6",
             "B4's error is slightly below AB4's",
             "slightly less",
-            _by_start(lambda s: f"B4 / AB4 = {min(ratio[s]):.2g} to {max(ratio[s]):.2g}"),
+            _by_start(lambda s: f"B4 / AB4 = {_times(min(ratio[s]))} to {_times(max(ratio[s]))}"),
             _agreement(max(ratio[start]) < 1 for start in STARTS),
         ),
     ]
@@ -244,9 +245,10 @@ def comparison_findings(runs: Sequence[Experiment]) -> list[Finding]:
     growth = {case: ends[(*case, "AB4")][1] / ends[(*case, "AB4")][0] for case in TABLE_5}
     proven = {case: verdict(lookup("AB4"), *map(Fraction, case)) for case in TABLE_5}
     moduli = [abs(cases[(*first, name)].pole) for name in ("B4", "AB4")]
-    both = steady["B4"] / steady["AB4"]
+    both = steady["B4"] / max(steady["AB4"], ROUNDED)
     still_falling = [ends[(*first, name)][1] < ends[(*first, name)][0] / 2 for name in ("B4", "AB4")]
-    amplitudes = ", ".join(f"{name} {value:.0e}" for name, value in steady.items())
+    shown = {name: f"{value:.0e}" if value > ROUNDED else f"below {ROUNDED:g}" for name, value in steady.items()}
+    amplitudes = ", ".join(f"{name} {text}" for name, text in shown.items())
     constant = [
         0.5 < ends[(*case, name)][1] / ends[(*case, name)][0] < 2 for case in TABLE_5 for name in ("RK4@5", "SIE")
     ]
@@ -262,7 +264,7 @@ def comparison_findings(runs: Sequence[Experiment]) -> list[Finding]:
             "Fig. 9b",
             "well inside the region B4 and AB4 behave almost identically",
             "almost identical",
-            f"|z_p| {moduli[0]:.3f} and {moduli[1]:.3f}; but after 8 s |c_1| of B4 is {both:.0e} times AB4's",
+            f"|z_p| {moduli[0]:.3f} and {moduli[1]:.3f}; but after 8 s |c_1| of B4 is at least {both:.0e} times AB4's",
             _agreement([abs(moduli[0] - moduli[1]) < 0.01, 0.1 < both < 10]),
         ),
         Finding(
@@ -276,15 +278,15 @@ def comparison_findings(runs: Sequence[Experiment]) -> list[Finding]:
             "Fig. 9b",
             "the oscillation of B4 and AB4 is damped out",
             "damped out",
-            f"far below RK4's, but to the level of the truncation error, not to zero: {steady['B4']:.0e} and "
-            f"{steady['AB4']:.0e} m",
+            f"far below RK4's, but to the level of the truncation error, not to zero: {shown['B4']} and "
+            f"{shown['AB4']} m",
             _agreement([max(steady["B4"], steady["AB4"]) < 0.01 * steady["RK4@5"], all(still_falling)]),
         ),
         Finding(
             "Fig. 9d",
             "case 2: AB4's oscillation decreases gradually",
             "|z_p| = 0.999, converges",
-            f"{proven[second]}; |c_1| of 8 to 10 s over that of 6 to 8 s: {growth[second]:.2g}",
+            f"{proven[second]}; |c_1| of 8 to 10 s {'below' if growth[second] < 1 else 'above'} that of 6 to 8 s",
             _agreement([proven[second] == "converges", growth[second] < 1]),
         ),
         Finding(
@@ -342,6 +344,11 @@ def _agreement(holds: Iterable[bool]) -> Agreement:
 
 def _by_start(text: Callable[[Start], str]) -> str:
     return "; ".join(f"{'explicit Euler' if start == 'euler' else 'RK4'} start: {text(start)}" for start in STARTS)
+
+
+def _times(ratio: float) -> str:
+    """Return a ratio to the digits that are the same on every machine: of large ones, over rounding, only the first."""
+    return f"{ratio:.2g}" if ratio < 100 else f"{ratio:.0e}"
 
 
 def _slope(x: FloatArray, y: Callable[[float], float]) -> float:

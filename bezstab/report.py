@@ -113,7 +113,7 @@ def comparison(progress: Progress) -> Report:
     runs = list(progress(experiments.comparison(), 3 * len(experiments.COMPARED)))
     caption = (
         "Table 5: dominant poles, with Re z, Im z, |z| and ∠z as the paper prints them, and what is left of c₁ in the "
-        "simulation (h = 1 ms, RK4 at 5 ms, consistent initial state)."
+        "simulation (h = 1 ms, RK4 at 5 ms, consistent initial state; 0: below 1e-13 m, which is rounding)."
     )
     return Report(
         {"fig9": figures.comparison_of_methods_figure(runs)},

@@ -511,13 +511,15 @@ def behaviour_rows(behaviours: Sequence[Behaviour]) -> list[Row]:
 
 
 def comparison_rows(runs: Sequence[Experiment]) -> list[Row]:
-    """Return Table 5: dominant poles, the paper's beside them, and how large c_1 still is at the end."""
+    """Return Table 5: dominant poles, the paper's beside them, and how large c_1 still is at the end, 0 if rounding."""
+    from bezstab.experiments import ROUNDED
+
+    spans = {"before": (6.0, 8.0), "after": (8.0, 10.0)}
     return [
         {
             "method": run.run.method.name,
             "printed": " ".join(TABLE_5[str(run.alpha_hat), str(run.beta_hat)][run.run.method.name]),
-            "before": run.envelope(6, 8),
-            "after": run.envelope(8, 10),
+            **{key: value if (value := run.envelope(*times)) > ROUNDED else 0.0 for key, times in spans.items()},
             **_pole(run.alpha_hat, run.beta_hat, run.pole),
         }
         for run in runs
