@@ -9,11 +9,10 @@ from typing import Any
 import numpy as np
 
 from bezstab.derivation import accuracy, closed_loop_at
-from bezstab.experiments import Agreement, Finding
 from bezstab.mechanism import equations, initial_state, mechanism
 from bezstab.methods import LinearMultistep, Method, bezier, evaluations, lookup
 from bezstab.optimum import optimum
-from bezstab.paper import FASTER_LEVEL, LEAST_Z_ABS, TABLE_3, TABLE_5
+from bezstab.paper import FASTER_LEVEL, LEAST_Z_ABS, TABLE_3, TABLE_5, Finding, finding
 from bezstab.poles import FloatArray, dominant_pole, spectral_radius, verdict
 from bezstab.region import region, window
 from bezstab.scene import load
@@ -37,55 +36,41 @@ def equation_findings() -> list[Finding]:
     still = {verdict(lookup(name), Fraction(0), Fraction(0)) for name in ("B2", "B3", "B4", "AB2", "AB3", "AB4")}
     weights = ", ".join(map(str, b2.sigma[1:]))
     return [
-        _finding(
-            "Eq. 12",
-            "B2: y' = y + h/2 (3 f - f')",
-            "3/2, -1/2",
+        finding(
+            "Eq. 12 | B2: y' = y + h/2 (3 f - f') | 3/2, -1/2",
             weights,
             b2.sigma[1:] == (Fraction(3, 2), Fraction(-1, 2)),
         ),
-        _finding(
-            "Eq. 14",
-            "B2: s = (2/h) z (z - 1) / (3 z - 1)",
-            "ρ = z² - z, σ = (3 z - 1)/2",
+        finding(
+            "Eq. 14 | B2: s = (2/h) z (z - 1) / (3 z - 1) | ρ = z² - z, σ = (3 z - 1)/2",
             f"ρ = {_ints(b2.rho)}, σ = {_ints(b2.sigma)}",
             b2.rho == (Fraction(1), Fraction(-1), Fraction(0)) and b2.sigma[0] == 0 and b2.sigma[1] == -3 * b2.sigma[2],
         ),
-        _finding(
-            "Eqs 15, 17",
-            "characteristic polynomial of B2",
-            "4 z⁴ + (-8 + 6 α̂) z³ + …",
+        finding(
+            "Eqs 15, 17 | characteristic polynomial of B2 | 4 z⁴ + (-8 + 6 α̂) z³ + …",
             f"the same at {sum(agree)} of {len(agree)} rational points",
             all(agree),
         ),
-        _finding(
-            "Section 3",
-            "c̈ = 0 is unstable",
-            "does not converge",
+        finding(
+            "Section 3 | c̈ = 0 is unstable | does not converge",
             f"at α̂ = β̂ = 0: {', '.join(sorted(still))}",
             still == {"diverges"},
         ),
-        _finding(
-            "Section 4",
-            "positive α and β do not guarantee convergence",
-            "integrator decides",
+        finding(
+            "Section 4 | positive α and β do not guarantee convergence | integrator decides",
             "at (2, 2): " + ", ".join(f"{name} {v}" for name, v in positive),
             any(v == "diverges" for _, v in positive),
         ),
-        _finding(
-            "Section 5.1",
-            "second order of both families is the same method",
-            "same",
+        finding(
+            "Section 5.1 | second order of both families is the same method | same",
             "same weights" if b2 == ab2 else "differ",
             b2 == ab2,
         ),
-        _finding(
-            "Table 1",
-            "“n-th order Bézier” is of order n",
-            "2, 3, 4",
+        finding(
+            "Table 1 | “n-th order Bézier” is of order n | 2, 3, 4",
             ", ".join(f"B{n}: {orders[f'B{n}']}" for n in (2, 3, 4)) + "; AB3 and AB4: 3 and 4",
             all(orders[f"B{n}"] == n for n in (2, 3, 4)),
-            correction=orders["B2"] == 2,
+            orders["B2"] == 2,
         ),
     ]
 
@@ -106,73 +91,55 @@ def region_findings() -> list[Finding]:
     reverse = {name: _counterexample(lookup(name), lookup("B4")) for name in others}
     ratio = {name: evaluations(lookup(name)) / evaluations(lookup("B4")) for name in ("AB4", "RK4")}
     return [
-        _finding(
-            "Fig. 1",
-            "|z_p| below 0.65, 0.70, 0.75 in regions H",
-            "regions exist",
+        finding(
+            "Fig. 1 | |z_p| below 0.65, 0.70, 0.75 in regions H | regions exist",
             ", ".join(f"{name}: {100 * part:.1f} % of the area" for name, part in high.items()),
             all(high.values()),
         ),
-        _finding(
-            "Section 5.1",
-            "smallest |z_p| of B2, B3, B4",
-            ", ".join(f"{x:.2f}" for x in LEAST_Z_ABS.values()),
+        finding(
+            f"Section 5.1 | smallest |z_p| of B2, B3, B4 | {', '.join(f'{x:.2f}' for x in LEAST_Z_ABS.values())}",
             ", ".join(f"{x:.5f}" for x in least.values()),
             all(right),
-            correction=any(right),
+            any(right),
         ),
-        _finding(
-            "Section 5.1",
-            "Bézier regions shrink slightly with order",
-            "slightly",
+        finding(
+            "Section 5.1 | Bézier regions shrink slightly with order | slightly",
             f"area B2 to B3 times {shrink['B2 to B3']:.3f}, B3 to B4 times {shrink['B3 to B4']:.3f}",
             all(1 - MODEST < shrink[key] < 1 for key in ("B2 to B3", "B3 to B4")),
-            correction=shrink["B3 to B4"] < 1,
+            shrink["B3 to B4"] < 1,
         ),
-        _finding(
-            "Fig. 2",
-            "B3 and B4 have larger regions than AB3 and AB4",
-            "larger",
+        finding(
+            "Fig. 2 | B3 and B4 have larger regions than AB3 and AB4 | larger",
             f"{area['B3'] / area['AB3']:.2f} and {area['B4'] / area['AB4']:.2f} times",
             area["B3"] > area["AB3"] and area["B4"] > area["AB4"],
         ),
-        _finding(
-            "Fig. 2, section 6",
-            "from order 3 to 4 AB loses more than Bézier",
-            "considerably more",
+        finding(
+            "Fig. 2, section 6 | from order 3 to 4 AB loses more than Bézier | considerably more",
             f"AB3 to AB4 keeps {100 * shrink['AB3 to AB4']:.0f} %, B3 to B4 {100 * shrink['B3 to B4']:.0f} %",
             shrink["AB3 to AB4"] < shrink["B3 to B4"],
         ),
-        _finding(
-            "Section 5.1",
-            "RK4 costs 5 times, AB4 as much as B4",
-            "about 5, 1",
+        finding(
+            "Section 5.1 | RK4 costs 5 times, AB4 as much as B4 | about 5, 1",
             f"evaluations: {ratio['RK4']:g} and {ratio['AB4']:g} times",
             ratio["RK4"] == 5,
-            correction=ratio["AB4"] == 1,
+            ratio["AB4"] == 1,
         ),
-        _finding(
-            "Fig. 3",
-            "at equal cost (RK4 at 5h) B4 has the largest region, AB4 the smallest",
-            "B4 > RK4 > AB4",
+        finding(
+            "Fig. 3 | at equal cost (RK4 at 5h) B4 has the largest region, AB4 the smallest | B4 > RK4 > AB4",
             f"B4 {area['B4']:.4f}, RK4@5 {area['RK4@5']:.4f}, AB4 {area['AB4']:.4f}",
             area["B4"] > area["RK4@5"] > area["AB4"],
         ),
-        _finding(
-            "Fig. 3",
-            "the same with RK4 at 4h, its true cost",
-            "(not said)",
+        finding(
+            "Fig. 3 | the same with RK4 at 4h, its true cost | (not said)",
             f"RK4@4 {area['RK4@4']:.4f}",
             area["B4"] > area["RK4@4"] > area["AB4"],
         ),
         *(
-            _finding(
-                "Section 6",
-                f"for certain parameters {name} is unstable and B4 stable",
-                "such parameters exist",
+            finding(
+                f"Section 6 | for certain parameters {name} is unstable and B4 stable | such parameters exist",
                 f"{_point(fails[name])}; but the other way round at {_point(reverse[name])}",
                 fails[name] is not None and reverse[name] is None,
-                correction=fails[name] is not None,
+                fails[name] is not None,
             )
             for name in others
         ),
@@ -220,37 +187,27 @@ def mechanism_findings() -> list[Finding]:
     same = {key: _up_to_row_signs(ours, theirs) for key, (ours, theirs) in rows.items()}
     found = [f"{x:g}" for x in forces]
     return [
-        _finding(
-            "Table 3",
-            "J1, m2, J2, m3",
-            ", ".join(f"{TABLE_3[k]:g}" for k in ("J1", "m2", "J2", "m3")),
+        finding(
+            f"Table 3 | J1, m2, J2, m3 | {', '.join(f'{TABLE_3[k]:g}' for k in ('J1', 'm2', 'J2', 'm3'))}",
             ", ".join(f"{x:g}" for x in data) + "; m1 and J3 do not enter",
             data == tuple(TABLE_3[k] for k in ("J1", "m2", "J2", "m3")),
         ),
-        _finding(
-            "Eq. 20",
-            "M = diag(J1, m2, m2, J2, m3)",
-            "diagonal",
-            ", ".join(f"{m:g}" for m in mass),
-            mass == expected_mass,
+        finding(
+            "Eq. 20 | M = diag(J1, m2, m2, J2, m3) | diagonal", ", ".join(f"{m:g}" for m in mass), mass == expected_mass
         ),
         *(
-            _finding(
-                f"Eq. {key}",
-                f"{what} of the slider-crank",
-                "as printed",
+            finding(
+                f"Eq. {key} | {what} of the slider-crank | as printed",
                 "same to rounding" if same[key] else "differs",
                 same[key],
             )
             for key, what in (("19", "constraints c"), ("21", "Jacobian C_q"), ("22", "vector γ"))
         ),
-        _finding(
-            "Eq. 23",
-            "g = [0 0 m2 g 0 0]",
-            "six entries, plus sign",
+        finding(
+            "Eq. 23 | g = [0 0 m2 g 0 0] | six entries, plus sign",
             f"[{', '.join(found)}]: five entries, minus with y up",
             len(found) == 6 and forces[2] > 0,
-            correction=abs(abs(forces[2]) - TABLE_3["m2"] * 9.81) < SAME and sign != 0,
+            abs(abs(forces[2]) - TABLE_3["m2"] * 9.81) < SAME and sign != 0,
         ),
     ]
 
@@ -258,28 +215,10 @@ def mechanism_findings() -> list[Finding]:
 def lost_findings() -> list[Finding]:
     """Return what cannot be tested, and why."""
     return [
-        Finding(
-            "Table 6",
-            "seconds of processor time",
-            "8.34 to 8.63 s",
-            "machine and program are not known",
-            "cannot be tested",
-        ),
-        Finding(
-            "Table 4",
-            "the six parameters and their poles",
-            "lost in the scan",
-            "ours fit what the text says",
-            "cannot be tested",
-        ),
-        Finding(
-            "Figs 1 to 3, 5 to 9",
-            "the curves themselves",
-            "lost in the scan",
-            "only sentences about them remain",
-            "cannot be tested",
-        ),
-        Finding("Section 5.2", "initial angle of the crank", "not stated", "45 degrees here", "cannot be tested"),
+        finding("Table 6 | seconds of processor time | 8.34 to 8.63 s", "machine and program are not known"),
+        finding("Table 4 | the six parameters and their poles | lost in the scan", "ours fit what the text says"),
+        finding("Figs 1 to 3, 5 to 9 | the curves themselves | lost in the scan", "only sentences about them remain"),
+        finding("Section 5.2 | initial angle of the crank | not stated", "45 degrees here"),
     ]
 
 
@@ -296,13 +235,11 @@ def _what_sie_is() -> Finding:
         matches[name] = sum(close)
     seen = f"1 + μ + μ² (Euler, corrected once): {matches['SIE']} of 3 poles; symplectic Euler: {matches['SYM']} of 3"
     fits = matches["SIE"] == len(TABLE_5)
-    return _finding(
-        "Table 5",
-        "a method called “Euler semi-implicit”",
-        "semi-implicit Euler",
+    return finding(
+        "Table 5 | a method called “Euler semi-implicit” | semi-implicit Euler",
         seen,
         fits and matches["SYM"] == fits,
-        correction=fits,
+        fits,
     )
 
 
@@ -333,11 +270,6 @@ def _up_to_row_signs(ours: FloatArray, theirs: FloatArray) -> bool:
 
 def _ints(coefficients: Sequence[Fraction]) -> str:
     return f"[{', '.join(map(str, coefficients))}]"
-
-
-def _finding(where: str, claim: str, paper: str, here: str, holds: bool, correction: bool = False) -> Finding:
-    agreement: Agreement = "confirmed" if holds else "confirmed with a correction" if correction else "not confirmed"
-    return Finding(where, claim, paper, here, agreement)
 
 
 FINDINGS: tuple[Callable[[], list[Finding]], ...] = (

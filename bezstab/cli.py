@@ -16,7 +16,7 @@ from bezstab.baumgarte import ENGINES, Engine, dimensionless, gains
 from bezstab.errors import InputError, NumericalError
 from bezstab.files import output_directory, write_whole
 from bezstab.methods import REGISTRY, Method, lookup, rational
-from bezstab.paper import FASTER_LEVEL, PARTS
+from bezstab.paper import FASTER_LEVEL, PARTS, Finding
 
 if TYPE_CHECKING:
     import numpy as np
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
     from bezstab.choose import Goal
     from bezstab.chunks import Arrays
-    from bezstab.experiments import Finding
     from bezstab.optimum import Optimum
     from bezstab.simulate import Start
     from bezstab.tables import Columns, Format, Row

@@ -4,19 +4,16 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Literal
 
 import numpy as np
 
 from bezstab.baumgarte import gains
 from bezstab.mechanism import Observation, mechanism, observe, perturbed
 from bezstab.methods import Method, lookup
-from bezstab.paper import TABLE_5
+from bezstab.paper import TABLE_5, Finding, finding
 from bezstab.poles import FloatArray, dominant_pole, verdict
 from bezstab.scene import load
 from bezstab.simulate import Start, Trajectory, simulate
-
-Agreement = Literal["confirmed", "confirmed with a correction", "not confirmed", "cannot be tested"]
 
 H = 1e-3  # s
 DURATION = 10.0  # s, of Tables 5 and 6
@@ -66,17 +63,6 @@ class Experiment:
     def envelope(self, begin: float, end: float) -> float:
         """Return the largest |c_1| (m) between two times (s)."""
         return float(np.abs(self.c[(self.run.t >= begin) & (self.run.t <= end)]).max())
-
-
-@dataclass(frozen=True)
-class Finding:
-    """A sentence of the paper, what it says, what came out here, and whether they agree."""
-
-    where: str
-    claim: str
-    paper: str
-    here: str
-    agreement: Agreement
 
 
 def experiment(
@@ -129,26 +115,20 @@ def growth_findings(runs: Sequence[Experiment]) -> list[Finding]:
         for name in UNSTABILIZED
     }
     return [
-        Finding(
-            "Fig. 6",
-            "without stabilisation the violation grows linearly with time",
-            "linear",
+        finding(
+            "Fig. 6 | without stabilisation the violation grows linearly with time | linear",
             f"|c_1| like t to the power of {min(slopes):.1f} to {max(slopes):.1f}",
-            _agreement(0.7 < slope < 1.3 for slope in slopes),
+            *(0.7 < slope < 1.3 for slope in slopes),
         ),
-        Finding(
-            "Fig. 6",
-            "both methods have the same order of error",
-            "same order",
+        finding(
+            "Fig. 6 | both methods have the same order of error | same order",
             _by_start(lambda s: f"B4 {orders[s, 'B4']:.0f}, AB4 {orders[s, 'AB4']:.0f}"),
-            _agreement(abs(orders[start, "B4"] - orders[start, "AB4"]) < 0.25 for start in STARTS),
+            *(abs(orders[start, "B4"] - orders[start, "AB4"]) < 0.25 for start in STARTS),
         ),
-        Finding(
-            "Fig. 6",
-            "B4's error is slightly below AB4's",
-            "slightly less",
+        finding(
+            "Fig. 6 | B4's error is slightly below AB4's | slightly less",
             _by_start(lambda s: f"B4 / AB4 = {_times(min(ratio[s]))} to {_times(max(ratio[s]))}"),
-            _agreement(max(ratio[start]) < 1 for start in STARTS),
+            *(max(ratio[start]) < 1 for start in STARTS),
         ),
     ]
 
@@ -166,7 +146,7 @@ def collapse_findings(runs: Sequence[Experiment]) -> list[Finding]:
         return f"B4 / AB4 after {', '.join(each)} s at {', '.join(f'{1e3 * h:g}' for h in steps)} ms"
 
     later = (all(ends[start, "B4", h] > ends[start, "AB4", h] for h in steps) for start in STARTS)
-    return [Finding("Fig. 5", "B4 collapses later than AB4", "for all steps", _by_start(pairs), _agreement(later))]
+    return [finding("Fig. 5 | B4 collapses later than AB4 | for all steps", _by_start(pairs), *(later))]
 
 
 @dataclass(frozen=True)
@@ -205,28 +185,21 @@ def influence_findings(rows: Sequence[Behaviour]) -> list[Finding]:
         return "; ".join(f"|z_p| {z:.3f} at {angle:.1f} deg, seen {x:.3f}, {n} crossings" for z, angle, x, n in each)
 
     return [
-        Finding(
-            "Table 4",
-            "cases 1 and 6 diverge: α̂ < 0, or outside the region",
-            "|z_p| > 1",
+        finding(
+            "Table 4 | cases 1 and 6 diverge: α̂ < 0, or outside the region | |z_p| > 1",
             shown(negative, outside),
-            _agreement([all(abs(r.pole) > 1 and (r.rate > 1 or r.failure is not None) for r in (negative, outside))]),
+            all(abs(r.pole) > 1 and (r.rate > 1 or r.failure is not None) for r in (negative, outside)),
         ),
-        Finding(
-            "Table 4",
-            "cases 2 and 3 converge slowly; 3 oscillates, 2 does not significantly",
+        finding(
+            "Table 4 | cases 2 and 3 converge slowly; 3 oscillates, 2 does not significantly | "
             "|z_p| near 1; small, large angle",
             shown(calm, waving),
-            _agreement([all(0.95 < r.rate < 1 for r in (calm, waving)) and waving.crossings > 10 > calm.crossings]),
+            all(0.95 < r.rate < 1 for r in (calm, waving)) and waving.crossings > 10 > calm.crossings,
         ),
-        Finding(
-            "Table 4",
-            "cases 4 and 5 converge fast; 5 oscillates, 4 hardly",
-            "|z_p| well below 1; small, large angle",
+        finding(
+            "Table 4 | cases 4 and 5 converge fast; 5 oscillates, 4 hardly | |z_p| well below 1; small, large angle",
             shown(fast_calm, fast_waving),
-            _agreement(
-                [all(r.rate < 0.85 for r in (fast_calm, fast_waving)) and fast_waving.crossings > fast_calm.crossings]
-            ),
+            all(r.rate < 0.85 for r in (fast_calm, fast_waving)) and fast_waving.crossings > fast_calm.crossings,
         ),
     ]
 
@@ -253,48 +226,43 @@ def comparison_findings(runs: Sequence[Experiment]) -> list[Finding]:
         0.5 < ends[(*case, name)][1] / ends[(*case, name)][0] < 2 for case in TABLE_5 for name in ("RK4@5", "SIE")
     ]
     return [
-        Finding(
-            "Table 5",
-            "dominant poles of four methods at three points",
-            "48 numbers",
+        finding(
+            "Table 5 | dominant poles of four methods at three points | 48 numbers",
             "all as printed" if not misprints else "; ".join(misprints),
-            _agreement([not misprints, len(misprints) < len(TABLE_5) * len(COMPARED)]),
+            not misprints,
+            len(misprints) < len(TABLE_5) * len(COMPARED),
         ),
-        Finding(
-            "Fig. 9b",
-            "well inside the region B4 and AB4 behave almost identically",
-            "almost identical",
+        finding(
+            "Fig. 9b | well inside the region B4 and AB4 behave almost identically | almost identical",
             f"|z_p| {moduli[0]:.3f} and {moduli[1]:.3f}; but after 8 s |c_1| of B4 is at least {both:.0e} times AB4's",
-            _agreement([abs(moduli[0] - moduli[1]) < 0.01, 0.1 < both < 10]),
+            abs(moduli[0] - moduli[1]) < 0.01,
+            0.1 < both < 10,
         ),
-        Finding(
-            "Fig. 9a, c, f",
-            "RK4 and Euler oscillate constantly about zero, Euler with a much larger amplitude",
+        finding(
+            "Fig. 9a, c, f | RK4 and Euler oscillate constantly about zero, Euler with a much larger amplitude | "
             "constant oscillation, much larger for Euler",
             f"case 1 after 8 s, |c_1| in m: {amplitudes}; Euler / RK4 = {steady['SIE'] / steady['RK4@5']:.1f}",
-            _agreement([all(constant), steady["SIE"] > 3 * steady["RK4@5"]]),
+            all(constant),
+            steady["SIE"] > 3 * steady["RK4@5"],
         ),
-        Finding(
-            "Fig. 9b",
-            "the oscillation of B4 and AB4 is damped out",
-            "damped out",
+        finding(
+            "Fig. 9b | the oscillation of B4 and AB4 is damped out | damped out",
             f"far below RK4's, but to the level of the truncation error, not to zero: {shown['B4']} and "
             f"{shown['AB4']} m",
-            _agreement([max(steady["B4"], steady["AB4"]) < 0.01 * steady["RK4@5"], all(still_falling)]),
+            max(steady["B4"], steady["AB4"]) < 0.01 * steady["RK4@5"],
+            all(still_falling),
         ),
-        Finding(
-            "Fig. 9d",
-            "case 2: AB4's oscillation decreases gradually",
-            "|z_p| = 0.999, converges",
+        finding(
+            "Fig. 9d | case 2: AB4's oscillation decreases gradually | |z_p| = 0.999, converges",
             f"{proven[second]}; |c_1| of 8 to 10 s {'below' if growth[second] < 1 else 'above'} that of 6 to 8 s",
-            _agreement([proven[second] == "converges", growth[second] < 1]),
+            proven[second] == "converges",
+            growth[second] < 1,
         ),
-        Finding(
-            "Fig. 9e",
-            "case 3: AB4 diverges gradually",
-            "|z_p| = 1.001, diverges",
+        finding(
+            "Fig. 9e | case 3: AB4 diverges gradually | |z_p| = 1.001, diverges",
             f"{proven[third]}; |c_1| of 8 to 10 s over that of 6 to 8 s: {growth[third]:.2g}",
-            _agreement([proven[third] == "diverges", growth[third] > 1]),
+            proven[third] == "diverges",
+            growth[third] > 1,
         ),
     ]
 
@@ -326,20 +294,12 @@ def cost_findings(rows: Sequence[Cost]) -> list[Finding]:
     counts = ", ".join(f"{row.method.name} {row.evaluations}" for row in rows)
     spread = max(row.evaluations for row in rows) / min(row.evaluations for row in rows) - 1
     return [
-        Finding(
-            "Table 6",
-            "the four methods cost the same (RK4 at 5 ms, the others at 1 ms)",
-            "within 4 %",
+        finding(
+            "Table 6 | the four methods cost the same (RK4 at 5 ms, the others at 1 ms) | within 4 %",
             f"evaluations of f: {counts}; the largest is {spread:.0%} above the smallest",
-            _agreement([spread < 0.04]),
+            spread < 0.04,
         )
     ]
-
-
-def _agreement(holds: Iterable[bool]) -> Agreement:
-    """Return confirmed if the claim holds under every condition, with a correction if under some."""
-    each = list(holds)
-    return "confirmed" if all(each) else "confirmed with a correction" if any(each) else "not confirmed"
 
 
 def _by_start(text: Callable[[Start], str]) -> str:

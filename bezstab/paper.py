@@ -1,4 +1,33 @@
-"""What the paper prints, as data to compare with."""
+"""What the paper prints, as data to compare with, and what can come of a comparison."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+Agreement = Literal["confirmed", "confirmed with a correction", "not confirmed", "cannot be tested"]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A sentence of the paper, what it says, what came out here, and whether they agree."""
+
+    where: str
+    claim: str
+    paper: str
+    here: str
+    agreement: Agreement
+
+
+def finding(sentence: str, here: str, *holds: bool) -> Finding:
+    """Return what came of `where | claim | what the paper says`, which holds under every, some or none of conditions.
+
+    Under every one it is confirmed, under some with a correction; without a condition it cannot be tested.
+    """
+    where, claim, paper = sentence.split(" | ")
+    agreement: Agreement = (
+        "confirmed" if all(holds) else "confirmed with a correction" if any(holds) else "not confirmed"
+    )
+    return Finding(where, claim, paper, here, agreement if holds else "cannot be tested")
+
 
 PARTS = (
     "table1",

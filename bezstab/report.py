@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, get_args
 import numpy as np
 
 from bezstab import claims, experiments, figures, tables
-from bezstab.experiments import Agreement, Experiment, Finding
+from bezstab.experiments import Experiment
 from bezstab.mechanism import initial_state
 from bezstab.mechanism import mechanism as moving
 from bezstab.methods import lookup
 from bezstab.optimum import optimum
-from bezstab.paper import FASTER_LEVEL
+from bezstab.paper import FASTER_LEVEL, Agreement, Finding
 from bezstab.region import QUALITY, pole_map, region, window
 from bezstab.scene import load
 

@@ -19,7 +19,7 @@ from bezstab.derivation import accuracy
 from bezstab.errors import InputError
 from bezstab.formulas import characteristic_text, mapping_text, recursion
 from bezstab.methods import Method, evaluations, steps
-from bezstab.paper import LEAST_Z_ABS, TABLE_5
+from bezstab.paper import LEAST_Z_ABS, TABLE_5, Finding
 
 if TYPE_CHECKING:  # so that a small table does not load what makes the large ones
     from fractions import Fraction
@@ -28,7 +28,7 @@ if TYPE_CHECKING:  # so that a small table does not load what makes the large on
 
     from bezstab.baumgarte import Engine
     from bezstab.choose import Choice
-    from bezstab.experiments import Behaviour, Cost, Experiment, Finding
+    from bezstab.experiments import Behaviour, Cost, Experiment
     from bezstab.extremes import Check
     from bezstab.family import Limit, Member
     from bezstab.mechanism import Observation

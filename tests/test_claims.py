@@ -5,9 +5,8 @@ import pytest
 
 from bezstab import claims
 from bezstab.claims import FINDINGS
-from bezstab.experiments import Agreement, Finding
 from bezstab.methods import lookup
-from bezstab.paper import TABLE_3
+from bezstab.paper import TABLE_3, Agreement, Finding
 from bezstab.poles import spectral_radius
 
 FOUND = [finding for find in FINDINGS for finding in find()]

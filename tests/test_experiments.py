@@ -9,7 +9,6 @@ from bezstab.experiments import (
     GROWTH,
     TABLE_4,
     Experiment,
-    Finding,
     _misprinted,
     behaviours,
     collapse_findings,
@@ -23,7 +22,7 @@ from bezstab.experiments import (
     unstabilized,
 )
 from bezstab.methods import evaluations, lookup
-from bezstab.paper import TABLE_5
+from bezstab.paper import TABLE_5, Finding
 from bezstab.poles import poles
 from bezstab.region import region
 
