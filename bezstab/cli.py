@@ -471,7 +471,7 @@ def verify(
         from bezstab.witness import count, interrogate
 
         heard = _progress(interrogate(moving, float(h)), count(), "MuJoCo", lambda _: 1)
-        _show([tables.witnessed_row(moving.scene.name, each) for each in heard], tables.WITNESSED, form)
+        _show([tables.row(each, scene=moving.scene.name) for each in heard], tables.WITNESSED, form)
         return
     if cells is None:
         summaries = []
@@ -560,7 +560,7 @@ def tradeoff(
             methods = [lookup("B4"), lookup("AB4")]
         costs = (trading.map_cost(method, count) for method in methods for count in trading.MAP_POINTS)
         shown = _progress(costs, len(methods) * len(trading.MAP_POINTS), "maps", lambda _: 1)
-        _show([tables.map_cost_row(cost) for cost in shown], tables.MAP_COSTS, form)
+        _show([tables.row(cost) for cost in shown], tables.MAP_COSTS, form)
         return
     if (alpha is None) != (beta is None) or (physical and alpha is None):
         raise click.UsageError("--alpha and --beta go together, and --physical needs them")
@@ -579,7 +579,7 @@ def tradeoff(
     with _in_chunks(trading.measured, sweeps, output / name, job, workers, scheduler, resume) as found:
         pairs = zip(sweeps, found, strict=True)
         swept = [run for sweep, arrays in pairs for run in trading.runs(sweep, arrays)]
-        rows = tables.run_rows(swept, trading.fronts(swept))
+        rows = [tables.row(run, front=on) for run, on in zip(swept, trading.fronts(swept), strict=True)]
         _write_table(output / f"{name}.{table}", tables.untimed(rows), table)
         if figure != "none":
             from bezstab import figures
@@ -650,7 +650,7 @@ def choose(
         if share != 1:
             point = Fraction(repr(found.alpha_hat)) * share, Fraction(repr(found.beta_hat)) * share**2
             found = choosing.describe(method, goal, *point, float(spread))
-        row = dict(tables.choice_row(found, float(h)))
+        row = tables.choice_row(found, float(h))
         if engine:
             row["engine"] = ENGINES[engine].write((Fraction(found.alpha_hat), Fraction(found.beta_hat)), h)
         rows.append(row)
@@ -770,7 +770,8 @@ def family(
     if figure != "none":
         output_directory(output)
     shown, limit = families.members(name, first, last), families.bezier_limit()
-    _show(tables.family_rows(shown, limit if name == "bezier" else None), tables.FAMILY, form)
+    rows = list(map(tables.family_row, shown)) + ([tables.family_row(limit)] if name == "bezier" else [])
+    _show(rows, tables.FAMILY, form)
     if figure != "none":
         from bezstab import figures
 
@@ -794,7 +795,7 @@ def extremes(short: bool, form: "Format") -> int:
 
     each = list(checks(not short))
     found = [check() for check in _progress(each, len(each), "extremes", lambda _: 1)]
-    _show([tables.plain_row(check) for check in found], tables.CHECKS, form)
+    _show([tables.row(check) for check in found], tables.CHECKS, form)
     return 0 if all(check.held for check in found) else 1
 
 
@@ -830,7 +831,7 @@ def paper(only: Sequence[str], output: Path, figure: Literal["png", "svg", "pdf"
         findings += made.findings
     if not only:
         _write(output / "LEDGER.md", lambda file: file.write(report.ledger(findings).encode()))
-    rows = [tables.plain_row(finding) for finding in findings]
+    rows = [tables.row(finding) for finding in findings]
     if form == "text":
         click.echo("\n\n".join(tables.render(tables.transposed(row), tables.PROPERTIES, form) for row in rows))
     else:

@@ -103,7 +103,11 @@ def influence(progress: Progress) -> Report:
             "fig7": figures.influence_figure(runs, derivative=False),
             "fig8": figures.influence_figure(runs, derivative=True),
         },
-        {"table4": _table(caption, tables.behaviour_rows(behaviours), tables.BEHAVIOURS)},
+        {
+            "table4": _table(
+                caption, [tables.row(case, case=n) for n, case in enumerate(behaviours, 1)], tables.BEHAVIOURS
+            )
+        },
         experiments.influence_findings(behaviours),
     )
 
@@ -117,7 +121,7 @@ def comparison(progress: Progress) -> Report:
     )
     return Report(
         {"fig9": figures.comparison_of_methods_figure(runs)},
-        {"table5": _table(caption, tables.comparison_rows(runs), tables.PRINTED_POLES)},
+        {"table5": _table(caption, [tables.comparison_row(run) for run in runs], tables.PRINTED_POLES)},
         experiments.comparison_findings(runs),
     )
 
@@ -125,7 +129,7 @@ def comparison(progress: Progress) -> Report:
 def cost(_: Progress) -> Report:
     """Return Table 6."""
     costs = experiments.costs()
-    rows = tables.cost_rows(costs)
+    rows = [tables.row(each) for each in costs]
     caption = "Table 6: what 10 s of simulation cost (h = 1 ms, RK4 at 5 ms)."
     return Report(
         tables={"table6": _table(caption, rows, tables.COSTS)},
@@ -151,7 +155,7 @@ def ledger(findings: Sequence[Finding]) -> str:
     """Return every claim with what came out, as Markdown."""
     counts = Counter(finding.agreement for finding in findings)
     total = ", ".join(f"{counts[agreement]} {agreement}" for agreement in get_args(Agreement))
-    rows = tables.render([tables.plain_row(finding) for finding in findings], tables.FINDINGS, "markdown")
+    rows = tables.render([tables.row(finding) for finding in findings], tables.FINDINGS, "markdown")
     return f"# What the paper claims, and what came out\n\nWritten by `bezstab paper`: {total}.\n\n{rows}\n"
 
 

@@ -8,7 +8,8 @@ import json
 import math
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import asdict, fields
+from dataclasses import fields
+from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING, BinaryIO, Literal
 
@@ -19,17 +20,15 @@ from bezstab.derivation import accuracy
 from bezstab.errors import InputError
 from bezstab.formulas import characteristic_text, mapping_text, recursion
 from bezstab.methods import Method, evaluations, steps
-from bezstab.paper import LEAST_Z_ABS, TABLE_5, Finding
+from bezstab.paper import LEAST_Z_ABS, TABLE_5
 
 if TYPE_CHECKING:  # so that a small table does not load what makes the large ones
-    from fractions import Fraction
-
+    from _typeshed import DataclassInstance
     from numpy.typing import NDArray
 
     from bezstab.baumgarte import Engine
     from bezstab.choose import Choice
-    from bezstab.experiments import Behaviour, Cost, Experiment
-    from bezstab.extremes import Check
+    from bezstab.experiments import Experiment
     from bezstab.family import Limit, Member
     from bezstab.mechanism import Observation
     from bezstab.optimum import Optimum
@@ -38,9 +37,7 @@ if TYPE_CHECKING:  # so that a small table does not load what makes the large on
     from bezstab.scene import Scene
     from bezstab.schur import Verdict
     from bezstab.simulate import Trajectory
-    from bezstab.tradeoff import MapCost, Run
     from bezstab.verify import Measurement, VerdictMap
-    from bezstab.witness import Witnessed
 
 Value = str | float | int | None
 Row = Mapping[str, Value]
@@ -135,17 +132,17 @@ SIMULATIONS = _columns(
 )
 CHOICES = _columns(
     "method = method; goal = goal; α̂ = alpha_hat .6f; β̂ = beta_hat .6f; α (1/s) = alpha .6g; β (1/s) = beta .6g; "
-    "verdict = verdict; |z_p| = z_abs .4f; ∠z_p (deg) = z_angle_deg .1f; within the spread = worst_z_abs .4f; "
+    "verdict = verdict; |z_p| = z_abs .4f; ∠z_p (deg) = z_angle_deg .1f; within the spread = worst .4f; "
     "steps to 1/1000 = settle_steps d; s = settle_seconds .3g; stable for h (s) to = h_max .4g; α times = alpha range; "
     "β times = beta range"
 )
 FAMILY = _columns(
     "n = n limit; method = method; area = area .10g; α̂ to = alpha_hat_max .8g; β̂ to = beta_hat_max .8g; "
-    "least |z_p| = best_z_abs .8f; order of accuracy = order d; error constant = error_constant .6f"
+    "least |z_p| = z_abs .8f; order of accuracy = order d; error constant = error_constant .6f"
 )
 PASTE = _columns("to paste = engine")
 ENGINES_LISTED = _columns(
-    "engine = engine; level = level; parameters = parameters; for this point = set; left out = excludes"
+    "engine = name; level = level; parameters = parameters; for this point = set; left out = excludes"
 )
 MEASUREMENTS = _columns(
     "method = method; α̂ = alpha_hat .6f; β̂ = beta_hat .6f; predicted |z| = predicted_abs .6f; "
@@ -159,7 +156,7 @@ SUMMARIES = _columns(
     "largest = largest_error .1e; verdicts called = called d; of which wrong = wrong d"
 )
 VERDICT_MAPS = _columns(
-    "scene = scene; method = method; runs = runs d; steps = steps d; broke down = broken d; agreement = agreement .2%; "
+    "scene = scene; method = method; runs = runs d; steps = run d; broke down = broken d; agreement = agreement .2%; "
     "too close to call: | |z_p| - 1 | below = band g; largest | |z_p| - 1 | that disagrees = farthest .2e; "
     "disagreeing beyond = disagreeing d"
 )
@@ -202,11 +199,27 @@ REGIONS = _columns(
 )
 
 
+def row(result: DataclassInstance, **more: Value) -> dict[str, Value]:
+    """Return a result's numbers, texts and names, a complex number by its parts, angles in degrees, and more."""
+    cells: dict[str, Value] = {}
+    for each in fields(result):
+        value = getattr(result, each.name)
+        named = getattr(value, "name", value)
+        if isinstance(value, complex):
+            cells |= _parts("z_" if each.name == "pole" else f"{each.name}_", value)
+        elif isinstance(value, Fraction):
+            cells[each.name] = float(value)
+        elif isinstance(named, str | float | int | None):
+            cells[each.name] = named
+    return {**cells, **more}
+
+
 def pole_rows(
     method: Method, alpha_hat: float, beta_hat: float, poles: Iterable[complex], verdict: Verdict
 ) -> list[Row]:
     """Return a row for each pole of one method at one point, angles in degrees."""
-    return [{"method": method.name, **_pole(alpha_hat, beta_hat, complex(z)), "verdict": verdict} for z in poles]
+    point: Row = {"method": method.name, "alpha_hat": alpha_hat, "beta_hat": beta_hat}
+    return [{**point, **_parts("z_", complex(z)), "verdict": verdict} for z in poles]
 
 
 def method_row(method: Method) -> Row:
@@ -224,11 +237,7 @@ def method_row(method: Method) -> Row:
 
 def whole_row(method: Method, region: Region, best: Optimum | None, latex: bool) -> Row:
     """Return all that is known of one method; formulas as text or LaTeX."""
-    return {
-        **method_row(method),
-        **formula_row(method, latex),
-        **region_row(region, best),
-    }
+    return {**method_row(method), **formula_row(method, latex), **region_row(region, best)}
 
 
 def formula_row(method: Method, latex: bool = False) -> Row:
@@ -249,15 +258,8 @@ def body_rows(scene: Scene) -> list[Row]:
             if name in lengths:
                 lengths[name].append(point[0])
     spans = {name: max([*x, 0.0]) - min([*x, 0.0]) for name, x in lengths.items()}
-    return [
-        {
-            "body": body.name,
-            "length": spans[body.name] or None,
-            "mass": body.mass or None,
-            "inertia": body.inertia or None,
-        }
-        for body in scene.bodies
-    ]
+    cells = ((body.name, spans[body.name] or None, body.mass or None, body.inertia or None) for body in scene.bodies)
+    return [dict(zip(("body", "length", "mass", "inertia"), cell, strict=True)) for cell in cells]
 
 
 def transposed(row: Row) -> list[Row]:
@@ -304,43 +306,22 @@ def simulation_row(run: Trajectory, seen: Observation, alpha_hat: float, beta_ha
     """Return the summary of one run: largest |c| and |cdot|, energy drift (J), evaluations, when and why it failed."""
     return {
         "scene": run.mechanism.scene.name,
-        "method": run.method.name,
-        "alpha_hat": alpha_hat,
-        "beta_hat": beta_hat,
-        "h": h,
-        "time": float(run.t[-1]),
+        **row(run, alpha_hat=alpha_hat, beta_hat=beta_hat, h=h, time=float(run.t[-1])),
         "c_max": float(np.abs(seen.c).max()),
         "cdot_max": float(np.abs(seen.cdot).max()),
         "energy_drift": float(seen.energy[-1] - seen.energy[0]),
-        "evaluations": run.evaluations,
-        "least_pivot": run.least_pivot,
-        "pivot_time": run.pivot_time,
-        "failure": run.failure,
     }
 
 
 def measurement_row(scene: str, measurement: Measurement) -> Row:
     """Return predicted and measured dominant pole at one point, angles in degrees."""
-    z, measured = measurement.predicted, measurement.measured
-    predicted_angle, measured_angle = (None if w is None else float(np.degrees(np.angle(w))) for w in (z, measured))
+    predicted = _parts("", measurement.predicted)
+    measured = None if measurement.measured is None else _parts("", measurement.measured)
     diverges = [v == "diverges" for v in (measurement.predicted_verdict, measurement.measured_verdict)]
     return {
-        "scene": scene,
-        "method": measurement.method.name,
-        "alpha_hat": measurement.alpha_hat,
-        "beta_hat": measurement.beta_hat,
-        "predicted_abs": abs(z),
-        "predicted_angle_deg": predicted_angle,
-        "measured_abs": None if measured is None else abs(measured),
-        "measured_angle_deg": measured_angle,
-        "difference_abs": None if measured is None else abs(measured) - abs(z),
-        "difference_angle_deg": None
-        if predicted_angle is None or measured_angle is None
-        else measured_angle - predicted_angle,
-        "measurable": measured is not None,
-        "reason": measurement.reason,
-        "predicted_verdict": measurement.predicted_verdict,
-        "measured_verdict": measurement.measured_verdict,
+        **row(measurement, scene=scene, measurable=measured is not None),
+        **{f"measured_{key}": measured[key] if measured else None for key in predicted},
+        **{f"difference_{key}": measured[key] - predicted[key] if measured else None for key in predicted},
         "verdicts_agree": None if measurement.measured_verdict == "too close to call" else diverges[0] == diverges[1],
     }
 
@@ -363,48 +344,15 @@ def verdict_map_row(verdicts: VerdictMap) -> Row:
     """Return how far simulated verdicts agree with |z_p| < 1, and how near to one those lie that do not."""
     distance = np.abs(verdicts.z_abs - 1)[verdicts.disagrees]
     judged = verdicts.broken.size - int(verdicts.broken.sum())
-    return {
-        "scene": verdicts.scene.name,
-        "method": verdicts.method.name,
-        "h": verdicts.h,
-        "runs": verdicts.broken.size,
-        "steps": verdicts.run,
-        "broken": int(verdicts.broken.sum()),
-        "agreement": 1 - distance.size / judged if judged else None,
-        "band": verdicts.band,
-        "farthest": float(distance.max()) if distance.size else None,
-        "disagreeing": int((distance > verdicts.band).sum()),
-    }
-
-
-def witnessed_row(scene: str, witnessed: Witnessed) -> Row:
-    """Return what another engine's integrator did at one point, and what |z_p| says."""
-    return {
-        "scene": scene,
-        "integrator": witnessed.integrator,
-        "method": witnessed.method.name,
-        "alpha_hat": witnessed.alpha_hat,
-        "beta_hat": witnessed.beta_hat,
-        "times_boundary": witnessed.times_boundary,
-        "predicted_abs": witnessed.z_abs,
-        "predicted_verdict": "converges" if witnessed.z_abs < 1 else "diverges",
-        "measured_verdict": witnessed.outcome,
-        "remaining": witnessed.remaining,
-        "steps": witnessed.steps,
-    }
-
-
-def run_rows(swept: Sequence[Run], fronts: Sequence[str]) -> list[Row]:
-    """Return the runs of a sweep, with the fronts each is on."""
-    return [
-        {**{each.name: getattr(run, each.name) for each in fields(run)}, "method": run.method.name, "front": on}
-        for run, on in zip(swept, fronts, strict=True)
-    ]
-
-
-def map_cost_row(cost: MapCost) -> Row:
-    """Return what a map of N x N points costs and how far its area (relative) and boundary are off."""
-    return {**{each.name: getattr(cost, each.name) for each in fields(cost)}, "method": cost.method.name}
+    return row(
+        verdicts,
+        runs=verdicts.broken.size,
+        broken=int(verdicts.broken.sum()),
+        agreement=1 - distance.size / judged if judged else None,
+        band=verdicts.band,
+        farthest=float(distance.max()) if distance.size else None,
+        disagreeing=int((distance > verdicts.band).sum()),
+    )
 
 
 def untimed(rows: Sequence[Row]) -> dict[str, NDArray[np.generic]]:
@@ -417,129 +365,60 @@ def _present(key: str, value: Value) -> Value:
     return ("" if key in ("failure", "front") else math.nan) if value is None else value
 
 
-def choice_row(choice: Choice, h: float | None) -> Row:
+def choice_row(choice: Choice, h: float | None) -> dict[str, Value]:
     """Return a point, in 1/s too with h (s), how fast it settles and by what it may be off; None for no limit."""
-    margins, step = choice.margins, (h or 1.0) * float(choice.method.step_multiple)
+    margins, settle = choice.margins, choice.settle_steps
     two_alpha, beta_squared = gains(choice.alpha_hat, choice.beta_hat, h or 1.0)
-    factors = (math.inf, (math.inf, math.inf), (math.inf, math.inf))
-    if margins:
-        factors = (margins.h, margins.alpha, margins.beta)
-    settle = choice.settle_steps
-    row: dict[str, Value] = {
-        "method": choice.method.name,
-        "h": h,
-        "goal": choice.goal,
-        "alpha_hat": choice.alpha_hat,
-        "beta_hat": choice.beta_hat,
-        "alpha": two_alpha / 2 if h else None,
-        "beta": math.sqrt(beta_squared) if h and beta_squared >= 0 else None,
-        "verdict": choice.verdict,
-        "z_abs": abs(choice.pole),
-        "z_angle_deg": float(np.degrees(np.angle(choice.pole))),
-        "worst_z_abs": choice.worst,
-        "settle_steps": settle,
-        "settle_seconds": settle * step if settle is not None and h else None,
-        "h_factor": factors[0],
-        "h_max": factors[0] * h if h else None,
-        "alpha_factor_min": factors[1][0],
-        "alpha_factor_max": factors[1][1],
-        "beta_factor_min": factors[2][0],
-        "beta_factor_max": factors[2][1],
-    }
-    return {key: None if value == math.inf else value for key, value in row.items()}
+    (a_min, a_max), (b_min, b_max) = (margins.alpha, margins.beta) if margins else ((math.inf,) * 2,) * 2
+    cells = row(
+        choice,
+        h=h,
+        alpha=two_alpha / 2 if h else None,
+        beta=math.sqrt(beta_squared) if h and beta_squared >= 0 else None,
+        settle_steps=settle,
+        settle_seconds=settle * h * float(choice.method.step_multiple) if settle is not None and h else None,
+        h_factor=margins.h if margins else None,
+        h_max=margins.h * h if margins and h else None,
+        alpha_factor_min=a_min,
+        alpha_factor_max=a_max,
+        beta_factor_min=b_min,
+        beta_factor_max=b_max,
+    )
+    return {key: None if value == math.inf else value for key, value in cells.items()}
 
 
-def family_rows(members: Sequence[Member], limit: Limit | None) -> list[Row]:
-    """Return what becomes of a family as its number of steps grows; the limit, if given, has n = None."""
-    rows: list[Row] = [
-        {
-            "n": member.n,
-            "method": member.method.name,
-            "area": member.region.area,
-            "alpha_hat_max": member.region.extent[0][1] if member.region.extent else None,
-            "beta_hat_max": member.region.extent[1][1] if member.region.extent else None,
-            "best_z_abs": member.z_abs,
-            "order": member.order,
-            "error_constant": float(member.error_constant),
-        }
-        for member in members
-    ]
-    if limit:
-        end = {"area": limit.area, "alpha_hat_max": limit.alpha_hat_max, "beta_hat_max": limit.beta_hat_max}
-        constant = float(limit.error_constant)
-        rows.append(
-            {"n": None, "method": "B∞", **end, "best_z_abs": limit.z_abs, "order": 2, "error_constant": constant}
-        )
-    return rows
+def family_row(member: Member | Limit) -> Row:
+    """Return what has become of a family at its number of steps, or in its limit, which has no n."""
+    from bezstab.family import Limit
+
+    if isinstance(member, Limit):
+        return row(member, n=None, method="B∞", order=2)
+    (_, alpha_max), (_, beta_max) = member.region.extent or ((None, None), (None, None))
+    return row(member, area=member.region.area, alpha_hat_max=alpha_max, beta_hat_max=beta_max)
 
 
 def engine_row(engine: Engine, point: tuple[Fraction, Fraction] | None, h: Fraction) -> Row:
     """Return an engine's words, and what to set for a point at a step of h (s), or why nothing will do."""
-    setting = None
-    if point:
-        try:
-            setting = engine.write(point, h)
-        except InputError as error:
-            setting = str(error)
-    return {
-        "engine": engine.name,
-        "level": engine.level,
-        "parameters": ", ".join(engine.parameters),
-        "set": setting,
-        "excludes": engine.excludes,
-        "source": engine.source,
-    }
+    try:
+        setting = engine.write(point, h) if point else None
+    except InputError as error:
+        setting = str(error)
+    return row(engine, parameters=", ".join(engine.parameters), set=setting)
 
 
-def plain_row(result: Finding | Check) -> Row:
-    """Return a result that has nothing but text, as it is."""
-    return asdict(result)
-
-
-def behaviour_rows(behaviours: Sequence[Behaviour]) -> list[Row]:
-    """Return the cases of Table 4: prediction, and what the runs did."""
-    return [
-        {
-            "case": number,
-            "described": case.described,
-            "rate": case.rate,
-            "crossings": case.crossings,
-            **_pole(case.alpha_hat, case.beta_hat, case.pole),
-        }
-        for number, case in enumerate(behaviours, start=1)
-    ]
-
-
-def comparison_rows(runs: Sequence[Experiment]) -> list[Row]:
-    """Return Table 5: dominant poles, the paper's beside them, and how large c_1 still is at the end, 0 if rounding."""
+def comparison_row(run: Experiment) -> Row:
+    """Return a line of Table 5: a dominant pole, the paper's beside it, and how large c_1 still is, 0 if rounding."""
     from bezstab.experiments import ROUNDED
 
     spans = {"before": (6.0, 8.0), "after": (8.0, 10.0)}
-    return [
-        {
-            "method": run.run.method.name,
-            "printed": " ".join(TABLE_5[str(run.alpha_hat), str(run.beta_hat)][run.run.method.name]),
-            **{key: value if (value := run.envelope(*times)) > ROUNDED else 0.0 for key, times in spans.items()},
-            **_pole(run.alpha_hat, run.beta_hat, run.pole),
-        }
-        for run in runs
-    ]
+    left = {key: value if (value := run.envelope(*times)) > ROUNDED else 0.0 for key, times in spans.items()}
+    printed = TABLE_5[str(run.alpha_hat), str(run.beta_hat)][run.run.method.name]
+    return row(run, method=run.run.method.name, printed=" ".join(printed), **left, **_parts("z_", run.pole))
 
 
-def cost_rows(costs: Sequence[Cost]) -> list[Row]:
-    """Return Table 6: evaluations of f, and processor time as a ratio."""
-    return [{**asdict(cost), "method": cost.method.name} for cost in costs]
-
-
-def _pole(alpha_hat: float, beta_hat: float, z: complex) -> Row:
-    return {
-        "alpha_hat": alpha_hat,
-        "beta_hat": beta_hat,
-        "z_real": z.real,
-        "z_imag": z.imag,
-        "z_abs": abs(z),
-        "z_angle_deg": float(np.degrees(np.angle(z))),
-    }
+def _parts(name: str, z: complex) -> dict[str, float]:
+    parts = {"real": z.real, "imag": z.imag, "abs": abs(z), "angle_deg": float(np.degrees(np.angle(z)))}
+    return {f"{name}{key}": value for key, value in parts.items()}
 
 
 def verdict_columns(verdicts: VerdictMap) -> dict[str, NDArray[np.generic]]:

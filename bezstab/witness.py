@@ -43,8 +43,9 @@ class Witnessed:
     alpha_hat: float
     beta_hat: float
     times_boundary: float
-    z_abs: float
-    outcome: Outcome
+    predicted_abs: float
+    predicted_verdict: Outcome
+    measured_verdict: Outcome
     remaining: float
     steps: int
 
@@ -63,9 +64,11 @@ def interrogate(mechanism: Mechanism, h: float) -> Iterator[Witnessed]:
                 model = mujoco.MjModel.from_xml_string(model_xml(mechanism.scene, integrator, h, alpha_hat, beta_hat))
                 c = _run(mujoco, model, mechanism)
                 remaining = float(c[-RUN // 10 :].max())
-                outcome: Outcome = "diverges" if len(c) < RUN else "converges" if remaining < KICK else "neither"
+                seen: Outcome = "diverges" if len(c) < RUN else "converges" if remaining < KICK else "neither"
                 z_abs = float(spectral_radius(method, alpha_hat, beta_hat))
-                yield Witnessed(integrator, method, alpha_hat, beta_hat, times, z_abs, outcome, remaining, len(c))
+                predicted: Outcome = "converges" if z_abs < 1 else "diverges"
+                outcome = (z_abs, predicted, seen, remaining, len(c))
+                yield Witnessed(integrator, method, alpha_hat, beta_hat, times, *outcome)
 
 
 def count() -> int:

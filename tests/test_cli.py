@@ -258,7 +258,7 @@ def test_an_engines_own_words_are_read_and_printed(tmp_path: Path) -> None:
     assert row["method"] == "SYM"
     k, c = re.findall(r"-([\d.]+)", str(row["engine"]))
     assert (float(c) * 0.002, float(k) * 0.002**2) == pytest.approx((row["alpha_hat"], row["beta_hat"]))
-    listed = {str(row["engine"]): row for row in rows("engines", "--alpha", "1", "--beta", "0.2", "--h", "0.002")}
+    listed = {str(row["name"]): row for row in rows("engines", "--alpha", "1", "--beta", "0.2", "--h", "0.002")}
     assert listed["ode"]["set"] == "ERP = 0.2"
     assert "reaches" in str(listed["box2d"]["set"])
     assert all(row["excludes"] and row["source"] for row in listed.values())

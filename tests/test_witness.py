@@ -29,15 +29,15 @@ def test_mujoco_settles_and_diverges_where_the_map_says(scene: str) -> None:
     assert len(heard) == count()
     assert {each.integrator for each in heard} == {"Euler", "RK4"}
     for each in heard:
-        assert each.outcome == ("converges" if each.times_boundary < 1 else "diverges")
+        assert each.measured_verdict == ("converges" if each.times_boundary < 1 else "diverges")
         boundary = np.array([each.alpha_hat, each.beta_hat]) / each.times_boundary
         assert spectral_radius(each.method, *boundary) == pytest.approx(1, abs=1e-9)
-        assert (each.z_abs < 1) == (each.times_boundary == TIMES[0])
+        assert (each.predicted_abs < 1) == (each.times_boundary == TIMES[0])
 
 
 def test_no_file_is_left_where_a_run_diverges(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    assert any(each.outcome == "diverges" for each in interrogate(mechanism(load("four_bar")), H))
+    assert any(each.measured_verdict == "diverges" for each in interrogate(mechanism(load("four_bar")), H))
     assert not list(tmp_path.iterdir())
 
 
