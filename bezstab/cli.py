@@ -119,29 +119,15 @@ def _method_option(*default: str) -> Callable[[Command], Command]:
     )
 
 
-_format_option = click.option(
-    "--format",
-    "form",
-    type=click.Choice(["text", "json", "csv", "markdown"]),
-    default="text",
-    show_default=True,
-    help="What to print on standard output.",
-)
+def _choice(name: str, values: str, text: str) -> Callable[[Command], Command]:
+    """Return an option that takes one of some words, the first unless given."""
+    words = values.split()
+    return click.option(*name.split(), type=click.Choice(words), default=words[0], show_default=True, help=text)
 
 
-_figure_option = click.option(
-    "--figure",
-    type=click.Choice(["png", "svg", "pdf", "none"]),
-    default="png",
-    show_default=True,
-    help="Format of the figure.",
-)
-
-_table_option = click.option(
-    "--table", type=click.Choice(["csv", "npz", "none"]), default="csv", show_default=True, help="Format of the table."
-)
-
-
+_format_option = _choice("--format form", "text json csv markdown", "What to print on standard output.")
+_figure_option = _choice("--figure", "png svg pdf none", "Format of the figure.")
+_table_option = _choice("--table", "csv npz none", "Format of the table.")
 _workers_option = click.option(
     "--workers", type=click.IntRange(1, 1000), help="Number of processes [one for each core]."
 )
@@ -234,12 +220,10 @@ def methods(methods: Sequence[Method], latex: bool, form: "Format") -> None:
 @click.option("-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory for figure and table.")
 @_figure_option
 @_table_option
-@click.option(
+@_choice(
     "--quality",
-    type=click.Choice(["fast", "balanced", "fine"]),
-    default="balanced",
-    show_default=True,
-    help="Points per axis of the map: 50, 200 or 1000; see `bezstab tradeoff --maps`.",
+    "balanced fast fine",
+    "Points per axis of the map: fast 50, balanced 200, fine 1000; see `bezstab tradeoff --maps`.",
 )
 @click.option("--grid", type=click.IntRange(2, 4000), help="Points per axis, instead.")
 @click.option("--alpha-range", type=Rational(), nargs=2, help="Window in α̂; by default all of the region.")
@@ -344,12 +328,10 @@ def region(
 @click.option("--h", type=Rational(positive=True), default="0.001", show_default=True, help="Step size in s.")
 @click.option("--time", type=Rational(positive=True), default="10", show_default=True, help="Duration in s.")
 @click.option("--perturb", type=Rational(), default="0", help="Initial error of the first constraint, in its unit.")
-@click.option(
+@_choice(
     "--start",
-    type=click.Choice(["rk4", "ramp", "euler"]),
-    default="rk4",
-    show_default=True,
-    help="What provides a multistep method's first values: RK4, its family's shorter members, or explicit Euler.",
+    "rk4 ramp euler",
+    "What provides a multistep method's first values: RK4, its family's shorter members, or explicit Euler.",
 )
 @click.option("-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory for figure and table.")
 @_figure_option
@@ -596,12 +578,10 @@ def tradeoff(
 @main.command()
 @_method_option("B4")
 @click.option("--h", type=Rational(positive=True), required=True, help="Step size in s.")
-@click.option(
+@_choice(
     "--goal",
-    type=click.Choice(["robust", "fastest", "critical", "gentle"]),
-    default="robust",
-    show_default=True,
-    help="robust: fastest at worst over smaller steps and the spread; fastest: least |z_p|; critical: fastest without "
+    "robust fastest critical gentle",
+    "robust: fastest at worst over smaller steps and the spread; fastest: least |z_p|; critical: fastest without "
     "oscillation; gentle: the mildest α = β that settles in time.",
 )
 @click.option("--h-max", type=Rational(positive=True), help="robust: the largest step in s that may occur [--h].")
