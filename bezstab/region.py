@@ -17,6 +17,7 @@ from numpy.polynomial.polynomial import polyder, polyval2d
 from numpy.typing import NDArray
 
 from bezstab.derivation import effective_parameters
+from bezstab.errors import NumericalError
 from bezstab.methods import Method
 from bezstab.poles import ComplexArray, FloatArray, dominant_pole, dominant_root, float_table, roots_in_mu, roots_in_z
 
@@ -29,7 +30,7 @@ ROUNDING = 1e-13  # of a range: an end this close to an axis lies on it
 NARROWINGS = 8  # each by 1/16: from a sample's spacing to where a smooth extreme is flat to rounding
 FALSE_POSITIONS = 10  # from 1/400 of an arc: the sixth is exact to rounding but where the line nearly touches it
 MARGIN = 1e-13  # of the level: rounding of a simple root's modulus, a hundredfold
-EMPTY = 1e-9  # of its box: a region with less area is the noise of roots that stay on the circle together
+GAP = 1e-6  # of a curve's size: where two arcs meet in a double mu, each ends within the root of rounding
 REAL = 1e-9  # an imaginary part below this times |mu| is rounding where a branch is known to cross the real axis
 
 QUALITY = {"fast": 50, "balanced": 200, "fine": 1000}
@@ -55,7 +56,10 @@ class Region:
 
 @cache
 def region(method: Method, level: float = 1.0) -> Region:
-    """Return the region |z_p| < level, 0 < level <= 1; area and extent are good to about 1e-12."""
+    """Return the region |z_p| < level, 0 < level <= 1; area and extent are good to about 1e-12.
+
+    NumericalError if its edges leave a gap: an edge that several roots reach |z| = level on together is not found.
+    """
     arcs, intervals, to_user = _bounds(method, level)
     edges = [arc.plane() @ to_user.T for arc in arcs] + [np.array(line) for line in _lines(method, level)]
     area = sum(arc.area() for arc in arcs) + sum((end - start) ** 3 / 6 for start, end in intervals)
@@ -63,9 +67,14 @@ def region(method: Method, level: float = 1.0) -> Region:
         area += (b - a) * (d - c) * ((c + d) - (a + b)) / 2
     area *= float(np.linalg.det(to_user))
     extent = _extent(edges, arcs, to_user)
-    if extent is None or area <= EMPTY * np.prod(np.diff(extent)):
+    if extent is None or not 0 < area <= np.prod(np.diff(extent)):  # else noise, where two roots on the circle meet
         return Region(method, level, 0.0, (), None)
-    return Region(method, level, area, tuple(_closed_curves(edges)), extent)
+    curves = _closed_curves(edges)
+    if any(np.abs(curve[-1] - curve[-2]).max() > GAP * np.abs(curve).max() for curve in curves):
+        raise NumericalError(
+            f"{method.name}: several roots reach |z| = {level:g} together, along an edge of the region"
+        )
+    return Region(method, level, area, tuple(curves), extent)
 
 
 @cache
@@ -142,13 +151,19 @@ def stable_mask(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, lev
 
 
 def scan(method: Method, beta_hat: FloatArray, level: float = 1.0) -> tuple[NDArray[np.int_], FloatArray]:
-    """Return where lines of constant beta_hat (ascending) cross the boundary: their numbers, and alpha_hat there."""
+    """Return where lines of constant beta_hat (ascending) cross the boundary: their numbers, and alpha_hat there.
+
+    Lines outside the open region's extent cross nothing, though the first may touch it all along.
+    """
     arcs, _, to_user = _bounds(method, level)
-    found = [arc.crossings(beta_hat, to_user) for arc in arcs]
+    _, (low, high) = region(method, level).extent or ((0, 0), (0, 0))
+    first, last = np.searchsorted(beta_hat, low, "right"), np.searchsorted(beta_hat, high)
+    lines = beta_hat[first:last]
+    found = [arc.crossings(lines, to_user) for arc in arcs]
     for (a, b), (c, d) in _lines(method, level):
-        rows, _ = _crossed(beta_hat, np.array([b, d]))
-        found.append((rows, a + (c - a) * (beta_hat[rows] - b) / (d - b)))
-    return np.concatenate([rows for rows, _ in found]), np.concatenate([crossings for _, crossings in found])
+        rows, _ = _crossed(lines, np.array([b, d]))
+        found.append((rows, a + (c - a) * (lines[rows] - b) / (d - b)))
+    return first + np.concatenate([rows for rows, _ in found]), np.concatenate([crossings for _, crossings in found])
 
 
 def _crossed(levels: FloatArray, values: FloatArray) -> tuple[NDArray[np.int_], NDArray[np.int_]]:
@@ -324,7 +339,7 @@ def _real_intervals(method: Method, level: float, arcs: list[_Arc]) -> list[tupl
     apart = np.diff(points, append=np.inf) > REAL * np.abs(points)
     points = points[apart]
     middle = (points[1:] + points[:-1]) / 2
-    inside = np.abs(dominant_root(method, middle.astype(complex))) < level
+    inside = np.abs(dominant_root(method, middle.astype(complex))) < level * (1 - MARGIN)
     intervals = [pair for pair, kept in zip(pairwise(points.tolist()), inside, strict=True) if kept]
     through = np.abs(dominant_root(method, points.astype(complex))) < level * (1 - REAL)
     merged: list[tuple[float, float]] = []

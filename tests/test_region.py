@@ -11,6 +11,7 @@ from numpy.polynomial import chebyshev, polynomial
 from numpy.typing import NDArray
 
 from bezstab.derivation import closed_loop
+from bezstab.errors import NumericalError
 from bezstab.methods import REGISTRY, LinearMultistep, Method, RungeKutta, lookup, rational
 from bezstab.poles import ComplexArray, FloatArray, dominant_pole, spectral_radius
 from bezstab.region import Extent, Region, pole_map, region, stable_mask, window
@@ -374,6 +375,38 @@ def test_a_region_is_empty_exactly_below_the_least_modulus(name: str) -> None:
     assert above.area > 0
     (a_low, a_high), (b_low, b_high) = found_extent(above)
     assert radius(method, np.array([(a_low + a_high) / 2]), np.array([(b_low + b_high) / 2])) < least + 1e-5
+
+
+def test_an_edge_that_several_roots_reach_together_is_reported() -> None:
+    """With mu = rho/sigma of equal modulus in three places of the circle, every arc has other roots on it."""
+    method = multistep("together", "1 -1 1 -1", "0 1 -2 3")
+    assert radius(method, np.array([0.6]), np.array([0.08])) < 0.8  # there is a region
+    with pytest.raises(NumericalError, match="together"):
+        region(method)
+
+
+def test_two_roots_that_meet_on_the_circle_outside_every_region_leave_none() -> None:
+    assert region(multistep("meet", "1 0 -1", "0 6 -4")).area == 0
+
+
+def test_the_first_row_of_a_mask_touches_the_region_and_is_outside() -> None:
+    method = multistep("touching", "1 -1/2 1/2 -1", "0 5/2 -5 5")  # whose arc starts at mu = 0 only to rounding
+    alpha_hat = np.linspace(0, 0.48, 301)
+    assert not stable_mask(method, alpha_hat, np.array([0.0])).any()
+    assert stable_mask(method, alpha_hat, np.array([1e-4])).any()
+
+
+def test_a_region_of_which_a_strip_lies_far_away_is_not_empty() -> None:
+    """|R| < 1 also near -4000: with a mu there beta_hat exceeds 1e7, and the area is 2e-10 of the region's box."""
+    shape = region(runge_kutta("far", "1/4000;0 87/50;0 0 3/250", "0 0 0 1"))
+    r, one = np.array([[0.012 * 1.74 / 4000, 0.012 * 1.74, 0.012, 1, 1], [0, 0, 0, 0, 1]])
+    far, near = sorted(float(z.real) for z in np.roots(r + one) if z.imag == 0)  # R = -1; 1 there and at 0
+    width = far - min(float(z.real) for z in np.roots(r - one))
+    x, y = (np.arange(1000) + 0.5) / 200 - 3, (np.arange(2000)[:, np.newaxis] + 0.5) / 200
+    conjugate = 4 * (y * (np.abs(np.polyval(r, x + 1j * y)) < 1)).sum() / 200**2
+    strip = width * -near * (near / 2 - far)
+    assert shape.area == pytest.approx(conjugate - near**3 / 6 + strip, rel=1e-4)  # pixels of 1/200
+    assert found_extent(shape)[1][1] > 1e7
 
 
 @pytest.mark.parametrize("name", NAMES)
