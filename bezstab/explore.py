@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from bezstab.baumgarte import gains
 from bezstab.errors import InputError
-from bezstab.figures import curves, styled
+from bezstab.figures import cells, curves, styled
 from bezstab.methods import Method
 from bezstab.poles import FloatArray, dominant_pole, poles, spectral_radius, verdict
 from bezstab.region import region, window
@@ -51,14 +51,7 @@ class Explorer:
         (left, right), (bottom, top) = window(stable)
         a, b = (low + (high - low) * (np.arange(POINTS) + 0.5) / POINTS for low, high in ((left, right), (bottom, top)))
         z_abs = spectral_radius(self.method, a, b[:, np.newaxis])
-        axes.imshow(
-            np.ma.masked_greater_equal(z_abs, 1),
-            origin="lower",
-            extent=(left, right, bottom, top),
-            aspect="auto",
-            cmap="cividis",
-            vmax=1,
-        )
+        cells(axes, a, b, np.ma.masked_greater_equal(z_abs, 1), cmap="cividis", vmax=1)
         curves(axes, stable, None, label="", color="black")
         axes.set(xlim=(left, right), ylim=(bottom, top), facecolor="0.93", title=self.method.name)
         axes.set(xlabel=r"$\hat\alpha = 2\alpha h$", ylabel=r"$\hat\beta = \beta^2 h^2$")

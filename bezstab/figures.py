@@ -10,6 +10,7 @@ from matplotlib import style
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
+from matplotlib.image import AxesImage
 from matplotlib.patheffects import withStroke
 
 from bezstab.baumgarte import gains
@@ -37,6 +38,8 @@ STYLE: dict[str, Any] = {
     "lines.linewidth": 1.2,
     "savefig.dpi": 300,
     "svg.hashsalt": "bezstab",
+    "axes.grid": True,
+    "grid.color": "0.9",
     "mathtext.fontset": "dejavusans",
 }
 FAMILIES = {  # by prefix: colours of Okabe & Ito that differ in lightness too, so that grey keeps them apart
@@ -70,17 +73,8 @@ def region_figure(
     with styled():
         figure, axes = _axes(region.method.name, h)
         alpha, beta = gains(alpha_hat, beta_hat, h or 1.0)
-        half_a, half_b = (alpha[1] - alpha[0]) / 2, (beta[1] - beta[0]) / 2
-        image = axes.imshow(
-            np.ma.masked_greater_equal(z_abs, region.level),
-            origin="lower",
-            extent=(alpha[0] - half_a, alpha[-1] + half_a, beta[0] - half_b, beta[-1] + half_b),
-            aspect="auto",
-            interpolation="nearest",
-            cmap="cividis",
-            vmax=region.level,
-        )
-        figure.colorbar(image, label="$|z_p|$")
+        inside = np.ma.masked_greater_equal(z_abs, region.level)
+        figure.colorbar(cells(axes, alpha, beta, inside, cmap="cividis", vmax=region.level), label="$|z_p|$")
         curves(axes, region, h, color="black", label=rf"$|z_p| = {region.level:g}$")
         for number, inner in enumerate(faster, start=1):
             curves(axes, inner, h, color="white", linestyle=DASHES[number % 4], label=rf"$|z_p| = {inner.level:g}$")
@@ -113,7 +107,6 @@ def comparison_figure(
         figure, axes = _axes(rf"$|z_p| = {regions[0].level:g}$", h)
         for region in regions:
             curves(axes, region, h, label=region.method.name, **_line(region.method))
-        axes.grid(color="0.9")
         if alpha_range:
             axes.set_xlim(*(gains(float(end), 0.0, h or 1.0)[0] for end in alpha_range))
         if beta_range:
@@ -125,7 +118,7 @@ def comparison_figure(
 def scene_figure(scene: Scene, q: FloatArray) -> Figure:
     """Return a scene's bodies in a state q, each a line through the points of its joints, in m (paper Fig. 4)."""
     with styled():
-        figure = Figure(figsize=(COLUMN_WIDTH, 0.6 * COLUMN_WIDTH), layout="constrained")
+        figure = _figure(0.6)
         axes = figure.add_subplot()
         free = dict(zip(scene.coordinates, q.tolist(), strict=True))
         frames = {
@@ -149,14 +142,13 @@ def scene_figure(scene: Scene, q: FloatArray) -> Figure:
             axes.annotate(name, middle, xytext=(0, 14), textcoords="offset points", ha="center", bbox=paper)
         axes.set(xlabel="x (m)", ylabel="y (m)", aspect="equal", title=scene.name)
         axes.margins(0.15, 0.35)
-        axes.grid(color="0.9")
         return figure
 
 
 def history_figure(run: Trajectory, seen: Observation) -> Figure:
     """Return the first constraint and its derivative against time (paper Figs. 5-9)."""
     with styled():
-        figure = Figure(figsize=(COLUMN_WIDTH, COLUMN_WIDTH), layout="constrained")
+        figure = _figure()
         upper, lower = figure.subplots(2, 1, sharex=True)
         colour = _line(run.method)["color"]
         upper.plot(run.t, seen.c[:, 0], color=colour)
@@ -165,7 +157,6 @@ def history_figure(run: Trajectory, seen: Observation) -> Figure:
         upper.set(title=f"{title}\n{run.failure}" if run.failure else title, ylabel="$c_1$ (SI)")
         lower.set(xlabel="t (s)", ylabel=r"$\dot c_1$ (SI)")
         for axes in (upper, lower):
-            axes.grid(color="0.9")
             axes.ticklabel_format(axis="y", scilimits=(-2, 3))
         return figure
 
@@ -174,20 +165,11 @@ def verdict_figure(verdicts: VerdictMap, region: Region) -> Figure:
     """Return the simulated verdicts as cells under the exact boundary; cells that disagree are crossed."""
     with styled():
         alpha_hat, beta_hat = verdicts.alpha_hat, verdicts.beta_hat
-        half_a, half_b = (alpha_hat[1] - alpha_hat[0]) / 2, (beta_hat[1] - beta_hat[0]) / 2
         agreeing = 1 - verdicts.disagrees.sum() / max(1, (~verdicts.broken).sum())
         title = f"{verdicts.scene.name}, {verdicts.method.name}, h = {verdicts.h:g} s\n"
         figure, axes = _axes(f"{title}{verdicts.run} steps: {agreeing:.2%} of {verdicts.broken.size} runs agree", None)
-        axes.imshow(
-            np.ma.masked_array(verdicts.diverges, verdicts.broken),
-            origin="lower",
-            extent=(alpha_hat[0] - half_a, alpha_hat[-1] + half_a, beta_hat[0] - half_b, beta_hat[-1] + half_b),
-            aspect="auto",
-            interpolation="nearest",
-            cmap=ListedColormap([CONVERGES, DIVERGES]),
-            vmin=0,
-            vmax=1,
-        )
+        seen = np.ma.masked_array(verdicts.diverges, verdicts.broken)
+        cells(axes, alpha_hat, beta_hat, seen, cmap=ListedColormap([CONVERGES, DIVERGES]), vmin=0, vmax=1)
         axes.set_facecolor("white")
         for colour, label in ((CONVERGES, "run converges"), (DIVERGES, "run diverges"), ("white", "run breaks down")):
             if colour != "white" or verdicts.broken.any():
@@ -206,7 +188,7 @@ def work_precision_figure(swept: Sequence[Run], scene: str, constraint: bool, fl
     The trajectory's error (SI), not drawn below `floor`, that of the reference; or with `constraint` the largest |c|.
     """
     with styled():
-        figure = Figure(figsize=(COLUMN_WIDTH, 1.15 * COLUMN_WIDTH), layout="constrained")
+        figure = _figure(1.15)
         axes = figure.add_subplot()
         errors = [None if run.failure else run.c_max if constraint else run.trajectory_error for run in swept]
         top = 10 * max((error for error in errors if error is not None), default=1.0)
@@ -224,7 +206,6 @@ def work_precision_figure(swept: Sequence[Run], scene: str, constraint: bool, fl
             axes.plot([], [], "x", color="0.4", label="diverged")
         axes.set(xscale="log", yscale="log", xlabel="evaluations of f", title=scene)
         axes.set_ylabel("largest $|c|$ (SI)" if constraint else "trajectory error (m, rad)")
-        axes.grid(color="0.9")
         figure.legend(loc="outside lower center", ncols=4)
         return figure
 
@@ -232,7 +213,7 @@ def work_precision_figure(swept: Sequence[Run], scene: str, constraint: bool, fl
 def unstabilized_figure(runs: Sequence[Experiment]) -> Figure:
     """Return the growth of |c_1| without stabilisation, a panel for each start (paper Figs. 5 and 6)."""
     with styled():
-        figure = Figure(figsize=(COLUMN_WIDTH, 1.3 * COLUMN_WIDTH), layout="constrained")
+        figure = _figure(1.3)
         starts = list(dict.fromkeys(run.start for run in runs))
         steps = list(dict.fromkeys(run.h for run in runs))
         for axes, start in zip(figure.subplots(len(starts), 1, sharex=True), starts, strict=True):
@@ -247,7 +228,6 @@ def unstabilized_figure(runs: Sequence[Experiment]) -> Figure:
             axes.set(
                 title=f"start: {'explicit Euler' if start == 'euler' else 'RK4'}", ylabel="largest $|c_1|$ so far (m)"
             )
-            axes.grid(color="0.9")
         axes.set_xlabel("t (s)")
         figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=2)
         return figure
@@ -256,7 +236,7 @@ def unstabilized_figure(runs: Sequence[Experiment]) -> Figure:
 def influence_figure(runs: Sequence[Experiment], derivative: bool) -> Figure:
     """Return c_1, or its derivative, against time for the cases of Table 4 (paper Figs. 7 and 8)."""
     with styled():
-        figure = Figure(figsize=(COLUMN_WIDTH, 1.3 * COLUMN_WIDTH), layout="constrained")
+        figure = _figure(1.3)
         panels = figure.subplots(len(runs) // 2, 2).flat
         for number, (axes, run) in enumerate(zip(panels, runs, strict=True), start=1):
             history = run.seen.cdot[:, 0] if derivative else run.c
@@ -265,7 +245,6 @@ def influence_figure(runs: Sequence[Experiment], derivative: bool) -> Figure:
             axes.set_xlim(0, 1e3 * run.run.t[visible[-1]])
             axes.set_title(rf"{number}: $\hat\alpha = {run.alpha_hat:g}$, $\hat\beta = {run.beta_hat:g}$", fontsize=7)
             axes.ticklabel_format(axis="y", scilimits=(-2, 3))
-            axes.grid(color="0.9")
         figure.supxlabel("t (ms)", fontsize=8)
         figure.supylabel(r"$\dot c_1$ (m/s)" if derivative else "$c_1$ (m)", fontsize=8)
         return figure
@@ -274,7 +253,7 @@ def influence_figure(runs: Sequence[Experiment], derivative: bool) -> Figure:
 def comparison_of_methods_figure(runs: Sequence[Experiment]) -> Figure:
     """Return c_1 against time for the cases of Table 5, one-step and multistep methods apart (paper Fig. 9)."""
     with styled():
-        figure = Figure(figsize=(COLUMN_WIDTH, 1.5 * COLUMN_WIDTH), layout="constrained")
+        figure = _figure(1.5)
         points = list(dict.fromkeys((run.alpha_hat, run.beta_hat) for run in runs))
         for row, point in enumerate(points):
             for column in (0, 1):
@@ -289,7 +268,6 @@ def comparison_of_methods_figure(runs: Sequence[Experiment]) -> Figure:
                 title = rf"{'abcdef'[2 * row + column]}: $\hat\alpha = {point[0]:g}$, $\hat\beta = {point[1]:g}$"
                 axes.set_title(title, fontsize=7)
                 axes.ticklabel_format(axis="y", scilimits=(-2, 3))
-                axes.grid(color="0.9")
         for axes in figure.axes[-2:]:
             axes.set_xlabel("t (s)")
         figure.supylabel("$c_1$ (m)", fontsize=8)
@@ -302,7 +280,7 @@ def comparison_of_methods_figure(runs: Sequence[Experiment]) -> Figure:
 def family_figure(families: Mapping[str, Sequence[Member]], limit: Limit) -> Figure:
     """Return area, least |z_p| and error constant against n, and the Bezier regions with their limit."""
     with styled():
-        figure = Figure(figsize=(COLUMN_WIDTH, 1.3 * COLUMN_WIDTH), layout="constrained")
+        figure = _figure(1.3)
         (area, fastest), (constant, regions) = figure.subplots(2, 2)
         for name, members in families.items():
             order = members[0].order if members[0].order == members[-1].order else "n"
@@ -325,8 +303,6 @@ def family_figure(families: Mapping[str, Sequence[Member]], limit: Limit) -> Fig
         regions.set(xlabel=r"$\hat\alpha$", ylabel=r"$\hat\beta$")
         regions.set_ylim(top=1.4 * regions.get_ylim()[1])  # room above the curves
         regions.legend(fontsize=6, loc="upper center", ncols=2)
-        for axes in figure.axes:
-            axes.grid(color="0.9")
         figure.legend(*area.get_legend_handles_labels(), loc="outside lower center", ncols=2)
         return figure
 
@@ -343,9 +319,14 @@ def styled() -> AbstractContextManager[None]:
     return style.context(["default", STYLE])
 
 
+def _figure(height: float = 1.0) -> Figure:
+    """Return an empty figure of column width, its height in column widths."""
+    return Figure(figsize=(COLUMN_WIDTH, height * COLUMN_WIDTH), layout="constrained")
+
+
 def _axes(title: str, h: float | None) -> tuple[Figure, Axes]:
     """Return a figure of column width with axes alpha_hat, beta_hat, or 2 alpha, beta^2 for a step of h seconds."""
-    figure = Figure(figsize=(COLUMN_WIDTH, COLUMN_WIDTH), layout="constrained")
+    figure = _figure()
     axes = figure.add_subplot()
     if h is None:
         axes.set(title=title, xlabel=r"$\hat\alpha = 2\alpha h$ (dimensionless)")
@@ -362,6 +343,14 @@ def curves(axes: Axes, region: Region, h: float | None, label: str, **line: Any)
         gap = np.full((1, 2), np.nan)
         points = np.concatenate([part for curve in region.boundary for part in (curve, gap)])
         axes.plot(*gains(points[:, 0], points[:, 1], h or 1.0), label=label, **line)
+
+
+def cells(axes: Axes, x: FloatArray, y: FloatArray, values: "np.ma.MaskedArray[Any, Any]", **colours: Any) -> AxesImage:
+    """Draw values of shape (y.size, x.size) as cells around the points of an even grid."""
+    (left, right), (low, high) = ((end[0] - (end[1] - end[0]) / 2, end[-1] + (end[1] - end[0]) / 2) for end in (x, y))
+    extent = (left, right, low, high)
+    axes.grid(visible=False)
+    return axes.imshow(values, origin="lower", extent=extent, aspect="auto", interpolation="nearest", **colours)
 
 
 def _line(method: Method) -> dict[str, Any]:
