@@ -124,6 +124,13 @@ def coefficient_table(method: Method) -> Table:
     return _table(characteristic_polynomial(method))
 
 
+def branch_polynomial(method: Method) -> tuple[Fraction, ...]:
+    """Return the polynomial in z, ascending, that is zero wherever two roots of pi(., mu) meet: Res_mu(pi, d pi/dz)."""
+    pi = characteristic_polynomial(method)
+    meeting = sp.Poly(sp.resultant(pi.as_expr(), pi.diff(Z).as_expr(), MU), Z)
+    return tuple(map(_fraction, reversed(meeting.all_coeffs())))
+
+
 def _table(pi: sp.Poly) -> Table:
     return tuple(
         tuple(_fraction(pi.coeff_monomial(Z**k * MU**j)) for j in range(pi.degree(MU) + 1))

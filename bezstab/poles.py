@@ -9,11 +9,11 @@ from fractions import Fraction
 from functools import cache
 
 import numpy as np
-from numpy.polynomial.polynomial import polyder, polyval2d
+from numpy.polynomial.polynomial import polyder, polyroots, polyval2d
 from numpy.typing import ArrayLike, NDArray
 
 from bezstab import schur
-from bezstab.derivation import closed_loop_at, coefficient_table, effective_parameters
+from bezstab.derivation import branch_polynomial, closed_loop_at, coefficient_table, effective_parameters
 from bezstab.errors import NumericalError
 from bezstab.methods import Method
 from bezstab.schur import Verdict
@@ -32,7 +32,6 @@ EPS = float(np.finfo(float).eps)
 NUDGE = 1e-3  # about a step of a map's grid, so it costs no iteration
 CONVERGED = 1e-9  # relative correction after which a quadratically convergent iterate is exact to rounding
 FOLLOWED = 4  # Newton steps: from a start that is off by the square of a map's spacing two suffice
-SAFETY = 3.0  # times its slope: within a block a root moves less, towards a branch point (a square root) too
 
 
 def verdict(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> Verdict:
@@ -92,7 +91,9 @@ def dominant_root(method: Method, mu: ComplexArray) -> ComplexArray:
     """Return the root of pi(., mu) of largest modulus for each of a row of mu.
 
     Where neighbours in the row are close, as on a map, the dominant root of one is followed to the others by Newton's
-    method, unless another root could overtake it on the way. NumericalError as for roots_in_z.
+    method, unless another root could overtake it on the way. That a root z(mu) stays within |z'| r / (1 - r/R)^2 of
+    where it is, up to r below the distance R of the next branch point, is Koebe's distortion theorem, as mu is a
+    function of z (for PECE, where it is one of two, an estimate). NumericalError as for roots_in_z.
     """
     if len(table := float_table(method)) == 2 or mu.size < STRIDE**2:
         return _largest(roots_in_z(method, mu))
@@ -107,7 +108,9 @@ def dominant_root(method: Method, mu: ComplexArray) -> ComplexArray:
         slope, modulus = -by_mu / by_z, np.abs(z)
         lead = np.argmax(modulus, axis=0)[np.newaxis]
         first, drift = (np.take_along_axis(x, lead, axis=0)[0] for x in (z, slope))
-        moved = SAFETY * np.abs(slope) * np.abs(blocks - centre[:, np.newaxis]).max(axis=1)
+        spread = np.abs(blocks - centre[:, np.newaxis]).max(axis=1)
+        share = spread / np.abs(centre[:, np.newaxis] - branch_points(method)).min(axis=1, initial=np.inf)
+        moved = np.abs(slope) * np.where(share < 1, spread / (1 - share) ** 2, np.inf)
         bound = modulus + moved
         twin = np.abs(z - first.conj()) < CONVERGED * np.abs(first)  # as large throughout, where it stays a twin
         twin &= (blocks.imag == 0).all(axis=1) & (np.abs(z.imag) > moved)
@@ -170,6 +173,17 @@ def roots_in_mu(method: Method, z: ComplexArray) -> ComplexArray:
 def float_table(method: Method) -> FloatArray:
     """Return C with pi(z, mu) = sum_kj C[k, j] z^k mu^j: the one place where exact coefficients become float64."""
     return np.array(coefficient_table(method), float)
+
+
+@cache
+def branch_points(method: Method) -> ComplexArray:
+    """Return every mu at which two roots z of pi(., mu) meet; beyond the nearest a root's power series diverges."""
+    z = polyroots(np.trim_zeros(np.array(branch_polynomial(method), float), "b"))
+    table = float_table(method)
+    mu = roots_in_mu(method, z)
+    slope = np.abs(polyval2d(np.broadcast_to(z, mu.shape), mu, polyder(table)))
+    met: ComplexArray = np.take_along_axis(mu, np.argmin(slope, axis=0)[np.newaxis], axis=0)[0]
+    return met[np.isfinite(met)]
 
 
 def _roots(table: FloatArray, x: ComplexArray) -> ComplexArray:

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from bezstab.derivation import closed_loop_at, coefficient_table, effective_parameters
 from bezstab.errors import NumericalError
 from bezstab.methods import REGISTRY, LinearMultistep, Method, lookup
-from bezstab.poles import dominant_pole, poles, spectral_radius, verdict
+from bezstab.poles import branch_points, dominant_pole, poles, roots_in_z, spectral_radius, verdict
 
 F = Fraction
 NAMES = [*REGISTRY, "RK4@5"]
@@ -219,3 +219,21 @@ def test_a_map_follows_the_pole_that_is_largest_everywhere(name: str) -> None:
         every = np.abs(poles(method, *grid)).max(axis=-1)
         # of ABM four roots meet at z = 1 along a curve of the plane, and float64 keeps a quarter of the digits there
         assert np.allclose(spectral_radius(method, *grid), every, rtol=1e-4 if "ABM" in name else 1e-12, atol=0)
+
+
+def test_a_map_whose_rows_leap_over_branch_points_follows_no_pole_across_them() -> None:
+    """From the end of one row, mu = -85, to the start of the next, mu = -5, the slopes at the former mean nothing."""
+    weights = (tuple(map(Fraction, text.split())) for text in ("1 -1 0 1/3 -1/3", "0 4/5 1 2/5 -13/15"))
+    method = Method("leap", LinearMultistep(*weights), "")
+    grid = (np.linspace(8.673741, 86.61854885, 211), np.linspace(-28.26979122, 65.9313013, 197)[:, np.newaxis])
+    every = np.abs(poles(method, *grid)).max(axis=-1)
+    assert np.allclose(spectral_radius(method, *grid), every, rtol=1e-12, atol=0)
+
+
+@pytest.mark.parametrize("name", ["B2", "B4", "AB3", "AB4", "ABM2"])
+def test_two_roots_meet_at_a_branch_point(name: str) -> None:
+    found = branch_points(lookup(name))
+    assert len(found)
+    z = roots_in_z(lookup(name), found)
+    apart = np.abs(z[:, np.newaxis] - z)[np.triu_indices(len(z), 1)].min(axis=0)
+    assert apart.max() < 1e-3  # where three or four meet, float64 keeps a third or a quarter of its digits
