@@ -58,7 +58,8 @@ class Region:
 def region(method: Method, level: float = 1.0) -> Region:
     """Return the region |z_p| < level, 0 < level <= 1; area and extent are good to about 1e-12.
 
-    NumericalError if its edges leave a gap: an edge that several roots reach |z| = level on together is not found.
+    NumericalError if its edges leave a gap: not found is an edge on which several roots have |z| = level, or one so
+    short, where the level is hardly above the least |z_p|, that it lies between two samples of the locus.
     """
     arcs, intervals, to_user = _bounds(method, level)
     edges = [arc.plane() @ to_user.T for arc in arcs] + [np.array(line) for line in _lines(method, level)]
@@ -72,7 +73,7 @@ def region(method: Method, level: float = 1.0) -> Region:
     curves = _closed_curves(edges)
     if any(np.abs(curve[-1] - curve[-2]).max() > GAP * np.abs(curve).max() for curve in curves):
         raise NumericalError(
-            f"{method.name}: several roots reach |z| = {level:g} together, along an edge of the region"
+            f"{method.name}: an edge of |z_p| < {level:g} was not found: it is very short, or several roots share it"
         )
     return Region(method, level, area, tuple(curves), extent)
 
