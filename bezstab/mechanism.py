@@ -143,7 +143,9 @@ def observe(
 ) -> Observation:
     """Return what the constraints do along a history of shape (times,), (times, n), (times, n)."""
     symbolic, m = mechanism.equations, mechanism.constraints
-    variables = {f"{name}{i}": column for name, rows in (("q", q), ("v", v)) for i, column in enumerate(rows.T)}
+    # contiguous: numpy may round the sine of a strided column by where it lies in memory
+    columns = {"q": np.ascontiguousarray(q.T), "v": np.ascontiguousarray(v.T)}
+    variables = {f"{name}{i}": column for name, rows in columns.items() for i, column in enumerate(rows)}
     wanted = [f"{name}{i}" for name in ("c", "cdot", "l") for i in range(m)]
     body = "\n".join(f" {line}" for line in mechanism.acceleration_code)
     observed = compiled(
@@ -153,7 +155,7 @@ def observe(
         np.stack([np.broadcast_to(x, t.shape) for x in observed], axis=-1).reshape(-1, 3, m).swapaxes(0, 1)
     )
     kinetic = v**2 @ np.array(symbolic.mass, float) / 2
-    potential = sp.lambdify((symbolic.q,), symbolic.potential, "numpy")(q.T)
+    potential = sp.lambdify((symbolic.q,), symbolic.potential, "numpy")(columns["q"])
     return Observation(c, cdot, multipliers, kinetic + potential)
 
 
