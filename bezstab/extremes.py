@@ -122,10 +122,8 @@ def _digits(method: Method, alpha_hat: float, beta_hat: float) -> tuple[float, f
             for seen, z in pairs:
                 error = abs(seen - z) / max(abs(z), mp.mpf(len(table) == 2))
                 terms = (abs(c) * abs(z) ** k * abs(mu) ** j for k, row in enumerate(table) for j, c in enumerate(row))
-                condition = (
-                    1 if len(table) == 2 else sum(terms) / abs(z * mp.polyval(polynomial, z, derivative=True)[1])
-                )
-                lost = mp.log10(max(condition, 1))
+                slope = mp.polyval(polynomial, z, derivative=True)[1]
+                lost = mp.log10(max(1 if len(table) == 2 else sum(terms) / abs(z * slope), 1))
                 found_out.append((float(-mp.log10(max(error, mp.mpf(10) ** -17))), AT_BEST - float(lost)))
         return min(digits for digits, _ in found_out), min(digits - needed for digits, needed in found_out)
 
@@ -240,18 +238,11 @@ def _step(name: str, times: float) -> Check:
     kicked, forced = (constraint_errors(moving, 0.0, each.q[end].tolist()) for each in (run, calm))
     left = float(np.abs(kicked - forced).max())
     seen = run.failure or f"what the kick of {KICK:g} m changes in c: {left:.0e} m"
+    case = f"{name}, {times:g} of the largest"
     if times < 1:
-        return Check(
-            "steps",
-            f"{name}, {times:g} of the largest",
-            "the kick's effect on c falls below a hundredth",
-            seen,
-            left < KICK / 100,
-        )
+        return Check("steps", case, "the kick's effect on c falls below a hundredth", seen, left < KICK / 100)
     held = run.failure is not None or left > 100 * KICK
-    return Check(
-        "steps", f"{name}, {times:g} of the largest", "it grows a hundredfold, or failure reported", seen, held
-    )
+    return Check("steps", case, "it grows a hundredfold, or failure reported", seen, held)
 
 
 def _passage(h: float) -> Check:
@@ -274,16 +265,12 @@ def _on_the_singularity() -> Check:
 
 
 def _speed(rpm: int) -> Check:
-    scene, h = load("slider_crank"), 1e-4
-    rate = rpm * np.pi / 30
-    run_of = replace(scene, velocity={"crank.theta": rate})
-    moving = mechanism(run_of)
+    h, rate = 1e-4, rpm * np.pi / 30
+    moving = mechanism(replace(load("slider_crank"), velocity={"crank.theta": rate}))
     feedback = gains(*POINT, h)
     run = simulate(moving, lookup("B4"), h, 0.5, feedback)
     c = float(np.abs(observe(moving, run.t, run.q, run.v, *feedback).c).max())
-    allowed = (
-        100 * (h * max(rate, 10.0)) ** 3
-    )  # m: forced by local errors of order three, amplified by 1 / beta_hat = 25
+    allowed = 100 * (h * max(rate, 10.0)) ** 3  # m: local errors of order three, amplified by 1 / beta_hat = 25
     expected = f"no failure, |c| at most {allowed:.0e} m"
     seen = run.failure or f"|c| at most {c:.0e} m"
     return Check("crank speeds", f"{rpm} rpm, h = {h:g} s", expected, seen, run.failure is None and c <= allowed)

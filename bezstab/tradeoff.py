@@ -105,9 +105,8 @@ def measured(sweep: Sweep) -> dict[str, NDArray[np.generic]]:
 def _measured(sweep: Sweep, h: float, point: tuple[float, float]) -> dict[str, float | str]:
     moving, method = mechanism(sweep.scene), sweep.method
     feedback, seconds = gains(*point, h), []
-    simulate(
-        moving, method, h, (steps(method) + 1) * h * float(method.step_multiple), feedback
-    )  # compiles all it needs
+    first = (steps(method) + 1) * h * float(method.step_multiple)
+    simulate(moving, method, h, first, feedback)  # compiles all it needs
     for _ in range(sweep.repeats):
         begin = time.process_time()
         run = simulate(moving, method, h, sweep.duration, feedback)
@@ -262,9 +261,8 @@ def _cheapest(swept: Sequence[Run], tolerance: float) -> str:
     within = [run for run in swept if run.trajectory_error is not None and run.trajectory_error <= tolerance]
     if not within:
         least = min((run.trajectory_error for run in swept if run.trajectory_error is not None), default=None)
-        return (
-            f"No run meets the tolerance {tolerance:g}; the least error is {'-' if least is None else f'{least:.1e}'}."
-        )
+        known = "-" if least is None else f"{least:.1e}"
+        return f"No run meets the tolerance {tolerance:g}; the least error is {known}."
     best = min(within, key=lambda run: run.evaluations)
     return (
         f"Cheapest for a trajectory error of {tolerance:g}: {best.method.name} at h = {best.h:g} s, error "
