@@ -31,6 +31,7 @@ NARROWINGS = 8  # each by 1/16: from a sample's spacing to where a smooth extrem
 FALSE_POSITIONS = 10  # from 1/400 of an arc: the sixth is exact to rounding but where the line nearly touches it
 MARGIN = 1e-13  # of the level: rounding of a simple root's modulus, a hundredfold
 GAP = 1e-6  # of a curve's size: where two arcs meet in a double mu, each ends within the root of rounding
+AXIS = 1e-7  # of |mu|: an arc that runs into the real axis ends this far from it, its conjugate root within MARGIN
 REAL = 1e-9  # an imaginary part below this times |mu| is rounding where a branch is known to cross the real axis
 
 QUALITY = {"fast": 50, "balanced": 200, "fine": 1000}
@@ -275,20 +276,20 @@ def _nearest(candidates: ComplexArray, targets: ComplexArray) -> ComplexArray:
     return nearest
 
 
-def _locus(method: Method, level: float, theta: FloatArray) -> tuple[ComplexArray, NDArray[np.bool_]]:
-    """Return every mu with a root at level e^(i theta), and which of them bound S_r's upper half.
+def _locus(method: Method, level: float, theta: FloatArray) -> tuple[ComplexArray, FloatArray]:
+    """Return every mu with a root at level e^(i theta), and by what share of it the largest other root lies outside.
 
-    Both of shape (branches, theta.size). A mu bounds S_r if no other root of pi(., mu) lies on or outside the circle.
+    Both of shape (branches, theta.size). A mu of the upper half bounds S_r if that is below -MARGIN; inf elsewhere.
     """
     z = level * np.exp(1j * theta)
     mu = roots_in_mu(method, z)
     upper = np.isfinite(mu) & (mu.imag > 0)
-    active = np.zeros(mu.shape, bool)
+    outside = np.full(mu.shape, np.inf)
     modulus = np.abs(others := roots_in_z(method, mu[upper]))
     own = np.argmin(np.abs(others - np.broadcast_to(z, mu.shape)[upper]), axis=0)
     np.put_along_axis(modulus, own[np.newaxis], 0, axis=0)
-    active[upper] = np.all(modulus < level * (1 - MARGIN), axis=0)
-    return mu, active
+    outside[upper] = modulus.max(axis=0) / level - 1
+    return mu, outside
 
 
 def _arcs(method: Method, level: float) -> Iterator[_Arc]:
@@ -297,10 +298,10 @@ def _arcs(method: Method, level: float) -> Iterator[_Arc]:
     half = np.unique(np.concatenate([[0], graded, np.linspace(1e-2, np.pi - 1e-2, 1024), np.pi - graded, [np.pi]]))
 
     def count(theta: FloatArray) -> NDArray[np.int_]:
-        return np.asarray(_locus(method, level, theta)[1].sum(axis=0))
+        return np.asarray((_locus(method, level, theta)[1] < -MARGIN).sum(axis=0))
 
     for start, end, edges in ((-np.pi, 0.0, -half[::-1]), (0.0, np.pi, half)):
-        theta = (edges[1:] + edges[:-1]) / 2
+        theta = _with_dips(method, level, (edges[1:] + edges[:-1]) / 2)
         counts = count(theta)
         change = np.flatnonzero(np.diff(counts))
         low, high = theta[change], theta[change + 1]
@@ -314,12 +315,30 @@ def _arcs(method: Method, level: float) -> Iterator[_Arc]:
                 yield from _traced(method, level, a, b)
 
 
+def _with_dips(method: Method, level: float, theta: FloatArray) -> FloatArray:
+    """Return theta with a sample more in each arc so short that it lies between two: where |z_p| comes near level."""
+
+    def least(theta: FloatArray) -> FloatArray:
+        return np.asarray(_locus(method, level, theta.ravel())[1].min(axis=0).reshape(theta.shape))
+
+    outside = least(theta)
+    before, here, after = outside[:-2], outside[1:-1], outside[2:]
+    dip = 1 + np.flatnonzero((here < before) & (here <= after) & (here >= -MARGIN))
+    low, high = theta[dip - 1], theta[dip + 1]
+    for _ in range(NARROWINGS // 2):
+        fine = np.linspace(low, high, 33)
+        lowest = np.argmin(outside := least(fine), axis=0)
+        low, high = (np.take_along_axis(fine, np.clip(lowest + side, 0, 32)[np.newaxis], axis=0)[0] for side in (-1, 1))
+    found = np.take_along_axis(fine, lowest[np.newaxis], axis=0)[0]
+    return np.sort(np.append(theta, found[outside.min(axis=0) < -MARGIN]))
+
+
 def _traced(method: Method, level: float, start: float, end: float) -> Iterator[_Arc]:
     """Yield the branches that bound S_r between two values of theta, followed from the middle to both ends."""
     theta = start + (end - start) * (1 - np.cos(np.linspace(0, np.pi, ARC_POINTS))) / 2
-    mu, active = _locus(method, level, theta)
+    mu, outside = _locus(method, level, theta)
     middle = ARC_POINTS // 2
-    for first in mu[active[:, middle], middle]:
+    for first in mu[outside[:, middle] < -MARGIN, middle]:
         curve = np.full(ARC_POINTS, first)
         for ahead, behind in ((range(middle + 1, ARC_POINTS), -1), (range(middle - 1, -1, -1), 1)):
             for k in ahead:
@@ -335,7 +354,7 @@ def _real_intervals(method: Method, level: float, arcs: list[_Arc]) -> list[tupl
     """
     at_real_z = roots_in_mu(method, np.array([level, -level], complex)).ravel()
     candidates = np.concatenate([at_real_z, *(arc.mu[[0, -1]] for arc in arcs)])
-    real = np.isfinite(candidates) & (np.abs(candidates.imag) <= REAL * np.abs(candidates))
+    real = np.isfinite(candidates) & (np.abs(candidates.imag) <= AXIS * np.abs(candidates))
     points = np.sort(candidates[real].real)
     apart = np.diff(points, append=np.inf) > REAL * np.abs(points)
     points = points[apart]

@@ -385,6 +385,21 @@ def test_an_edge_that_several_roots_reach_together_is_reported() -> None:
         region(method)
 
 
+def test_an_arc_shorter_than_the_sampling_is_found() -> None:
+    """Just above the least |z_p| = 0.79880 the region is a sliver between two arcs, of 2e-3 and 5e-3 rad."""
+    method, level = multistep("sliver", "1 -7/8 13/24 -2/3 -1/4 1/4", "0 -7/2 9/2 -1 5/2 -23/24"), 0.8
+    shape = region(method, level)
+    alpha_hat, beta_hat = (np.linspace(low, high, 1200) for low, high in found_extent(shape))
+    inside = (spectral_radius(method, alpha_hat, beta_hat[:, np.newaxis]) < level).sum()
+    pixel = (alpha_hat[1] - alpha_hat[0]) * (beta_hat[1] - beta_hat[0])
+    assert shape.area == pytest.approx(inside * pixel, rel=0.1)  # some 800 pixels, most of them at an edge
+
+
+def test_an_arc_that_ends_just_short_of_the_real_axis_bounds_an_interval() -> None:
+    method = multistep("short of it", "1 -1 0 -3/8 3/8 1/4 -1/4", "0 1/4 5/3 -1 9/5 -1/4 -191/120")
+    assert region(method).area == pytest.approx(sliced_area(method, 1.0), rel=1e-8)  # it ends 4e-9 of |mu| from it
+
+
 def test_two_roots_that_meet_on_the_circle_outside_every_region_leave_none() -> None:
     assert region(multistep("meet", "1 0 -1", "0 6 -4")).area == 0
 
