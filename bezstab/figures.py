@@ -126,11 +126,10 @@ def scene_figure(scene: Scene, q: FloatArray) -> Figure:
             for body in scene.bodies
         }
         joined: dict[str, list[tuple[float, float]]] = {name: [] for name in frames}
-        for joint in scene.joints:
-            for name, point in zip(getattr(joint, "bodies", ()), getattr(joint, "points", ()), strict=True):
-                x, y, theta = frames.get(name, (0.0, 0.0, 0.0))
-                at = complex(x, y) + complex(*point) * np.exp(1j * theta)
-                joined.setdefault(name, []).append((at.real, at.imag))
+        for name, point in scene.attachments:
+            x, y, theta = frames.get(name, (0.0, 0.0, 0.0))
+            at = complex(x, y) + complex(*point) * np.exp(1j * theta)
+            joined.setdefault(name, []).append((at.real, at.imag))
         for number, (name, points) in enumerate(joined.items()):
             ends = sorted({(0.0, 0.0), *points} if name in frames and frames[name][:2] == [0, 0] else set(points))
             axes.plot(*np.transpose(ends), color=f"{0.15 * number:g}", linewidth=3, solid_capstyle="round", label=name)

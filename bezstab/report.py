@@ -14,7 +14,8 @@ from bezstab.mechanism import mechanism as moving
 from bezstab.methods import lookup
 from bezstab.optimum import optimum
 from bezstab.paper import FASTER_LEVEL, Agreement, Finding
-from bezstab.region import QUALITY, pole_map, region, window
+from bezstab.poles import spectral_radius
+from bezstab.region import QUALITY, region, window
 from bezstab.scene import load
 
 if TYPE_CHECKING:
@@ -54,7 +55,7 @@ def regions(_: Progress) -> Report:
     for panel, name in zip("abc", FASTER_LEVEL, strict=True):
         stable, best = region(lookup(name)), optimum(lookup(name))
         alpha_hat, beta_hat = (np.linspace(low, high, QUALITY["balanced"]) for low, high in window(stable))
-        z_abs = np.abs(np.concatenate(list(pole_map(stable.method, alpha_hat, beta_hat))))
+        z_abs = spectral_radius(stable.method, alpha_hat, beta_hat[:, np.newaxis])
         faster = [region(stable.method, FASTER_LEVEL[name])]
         drawn[f"fig1{panel}"] = figures.region_figure(stable, faster, best, alpha_hat, beta_hat, z_abs)
     compared, equal_cost = (

@@ -105,6 +105,12 @@ class Scene:
         """The free coordinates, in order."""
         return tuple(f"{body.name}.{axis}" for body in self.bodies for axis in body.free)
 
+    @property
+    def attachments(self) -> tuple[tuple[str, Point], ...]:
+        """Each body's or the ground's name, and the point in its frame (m), wherever a joint holds it."""
+        joined = (joint for joint in self.joints if not isinstance(joint, Driver))
+        return tuple(end for joint in joined for end in zip(joint.bodies, joint.points, strict=True))
+
 
 class Table:
     """One TOML table that hands out checked entries and, at the end, names the keys that nobody asked for."""

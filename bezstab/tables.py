@@ -252,12 +252,10 @@ def formula_row(method: Method, latex: bool = False) -> Row:
 
 def body_rows(scene: Scene) -> list[Row]:
     """Return each body's length between its joints, mass and moment of inertia; None where there is or enters none."""
-    lengths: dict[str, list[float]] = {body.name: [] for body in scene.bodies}
-    for joint in scene.joints:
-        for name, point in zip(getattr(joint, "bodies", ()), getattr(joint, "points", ()), strict=True):
-            if name in lengths:
-                lengths[name].append(point[0])
-    spans = {name: max([*x, 0.0]) - min([*x, 0.0]) for name, x in lengths.items()}
+    along = {body.name: [0.0] for body in scene.bodies}
+    for name, (x, _) in scene.attachments:
+        along.setdefault(name, []).append(x)
+    spans = {name: max(x) - min(x) for name, x in along.items()}
     cells = ((body.name, spans[body.name] or None, body.mass or None, body.inertia or None) for body in scene.bodies)
     return [dict(zip(("body", "length", "mass", "inertia"), cell, strict=True)) for cell in cells]
 
