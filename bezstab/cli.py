@@ -1,11 +1,15 @@
 """The command line: parse, call, show, save, exit status."""
 
+from __future__ import annotations
+
+import inspect
 import os
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from fractions import Fraction
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, Literal, NoReturn, TypeVar
 
@@ -35,7 +39,10 @@ MOST_DRAWN = 1e100  # of a window's ends: their squares are drawn as well
 MOST_STEPS = 10**8  # a run keeps its whole history: 10 GB and an hour for the slider-crank
 MOST_SWEPT = 10**6  # the reference takes up to 32 times as many
 
-Command = TypeVar("Command", bound=Callable[..., object])
+FigureForm = Literal["png", "svg", "pdf", "none"]
+TableForm = Literal["csv", "npz", "none"]
+Window = tuple[Fraction, Fraction] | None
+Setting = tuple[Engine, tuple[Fraction, ...]]
 Item = TypeVar("Item")
 
 
@@ -112,30 +119,37 @@ class MethodName(click.ParamType):  # type: ignore[type-arg]
             self.fail(str(error), param, ctx)
 
 
-def _method_option(*default: str) -> Callable[[Command], Command]:
-    text = "A method, as listed by `bezstab methods`, or a .toml file; @m for a step of m h. Repeatable."
-    return click.option(
-        "--method", "methods", type=MethodName(), multiple=True, default=default, show_default=True, help=text
-    )
+NUMBER, POSITIVE, METHOD, ENGINE = Rational(), Rational(positive=True), MethodName(), click.Choice(list(ENGINES))
+option: Callable[..., Any] = click.option  # Any: in a command it stands as the default of the parameter it fills
 
 
-def _choice(name: str, values: str, text: str) -> Callable[[Command], Command]:
+def _choice(name: str, words: str, text: str) -> Any:
     """Return an option that takes one of some words, the first unless given."""
-    words = values.split()
-    return click.option(*name.split(), type=click.Choice(words), default=words[0], show_default=True, help=text)
+    known = words.split()
+    return option(*name.split(), type=click.Choice(known), default=known[0], help=text)
 
 
-_format_option = _choice("--format form", "text json csv markdown", "What to print on standard output.")
-_figure_option = _choice("--figure", "png svg pdf none", "Format of the figure.")
-_table_option = _choice("--table", "csv npz none", "Format of the table.")
-_workers_option = click.option(
-    "--workers", type=click.IntRange(1, 1000), help="Number of processes [one for each core]."
-)
-_scheduler_option = click.option("--scheduler", help="Address of a Dask scheduler, tcp://host:port, instead.")
-_resume_option = click.option("--resume", is_flag=True, help="Go on with what a killed run of the same job has left.")
+def _methods(*default: str) -> Any:
+    text = "A method, as listed by `bezstab methods`, or a .toml file; @m for a step of m h. Repeatable."
+    return option("--method", "methods", type=METHOD, multiple=True, default=default, help=text)
 
 
-@click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
+def _scene(default: str) -> Any:
+    return option("--scene", default=default, help="A shipped scene's name, or a .toml file.")
+
+
+_physical = option("--physical", is_flag=True, help="Take --alpha and --beta as α and β in 1/s; goes with --h.")
+_step = option("--h", type=POSITIVE, default="0.001", help="Step size in s.")
+_output = option("-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory for what is written.")
+_figure = _choice("--figure", "png svg pdf none", "Format of the figure.")
+_table = _choice("--table", "csv npz none", "Format of the table.")
+_form = _choice("--format form", "text json csv markdown", "What to print on standard output.")
+_workers = option("--workers", type=click.IntRange(1, 1000), help="Number of processes [one for each core].")
+_scheduler = option("--scheduler", help="Address of a Dask scheduler, tcp://host:port, instead.")
+_resume = option("--resume", is_flag=True, help="Go on with what a killed run of the same job has left.")
+
+
+@click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"], "show_default": True})
 @click.version_option(__version__)
 def main() -> None:
     """Which Baumgarte parameters are safe, and best, for an explicit integrator at its step size?
@@ -144,26 +158,22 @@ def main() -> None:
     """
 
 
-@main.command()
-@_method_option(*TABLE_5)
-@click.option(
-    "--alpha", type=Rational(), required=True, help="α̂, a decimal or fraction, read exactly; α with --physical."
-)
-@click.option(
-    "--beta", type=Rational(), required=True, help="β̂, a decimal or fraction, read exactly; β with --physical."
-)
-@click.option("--h", type=Rational(positive=True), help="Step size in s, for --physical.")
-@click.option("--physical", is_flag=True, help="Take --alpha and --beta as α and β in 1/s; needs --h.")
-@click.option("--all-poles", is_flag=True, help="Every root, not only the dominant one.")
-@_format_option
+def command(function: Callable[..., Any]) -> click.Command:
+    """Make a command of a function; the default of each of its parameters is the option that fills it."""
+    for parameter in reversed(list(inspect.signature(function).parameters.values())):
+        function = parameter.default(function)
+    return main.command()(function)
+
+
+@command
 def poles(
-    methods: Sequence[Method],
-    alpha: Fraction,
-    beta: Fraction,
-    h: Fraction | None,
-    physical: bool,
-    all_poles: bool,
-    form: "Format",
+    methods: Sequence[Method] = _methods(*TABLE_5),
+    alpha: Fraction = option("--alpha", type=NUMBER, required=True, help="α̂, a decimal or fraction, read exactly."),
+    beta: Fraction = option("--beta", type=NUMBER, required=True, help="β̂, a decimal or fraction, read exactly."),
+    h: Fraction | None = option("--h", type=POSITIVE, help="Step size in s, for --physical."),
+    physical: bool = _physical,
+    all_poles: bool = option("--all-poles", is_flag=True, help="Every root, not only the dominant one."),
+    form: Format = _form,
 ) -> None:
     """Print the dominant pole of each method at one point, and the proven verdict.
 
@@ -187,11 +197,12 @@ def poles(
     _show(rows, tables.POLES, form, heading=f"α̂ = {float(alpha):.10g}, β̂ = {float(beta):.10g}")
 
 
-@main.command()
-@click.argument("methods", metavar="[NAME]...", type=MethodName(), nargs=-1)
-@click.option("--latex", is_flag=True, help="Formulas as LaTeX.")
-@_format_option
-def methods(methods: Sequence[Method], latex: bool, form: "Format") -> None:
+@command
+def methods(
+    methods: Sequence[Method] = click.argument("methods", metavar="[NAME]...", type=METHOD, nargs=-1),  # type: ignore[assignment]
+    latex: bool = option("--latex", is_flag=True, help="Formulas as LaTeX."),
+    form: Format = _form,
+) -> None:
     """List the methods; with NAME show that one whole.
 
     Steps, evaluations of f per step, order of accuracy and error constant, computed from the coefficients; for one
@@ -207,7 +218,7 @@ def methods(methods: Sequence[Method], latex: bool, form: "Format") -> None:
     from bezstab.optimum import optimum
     from bezstab.region import region
 
-    rows: list[Row] = [tables.whole_row(method, region(method), optimum(method), latex) for method in methods]
+    rows = [tables.whole_row(method, region(method), optimum(method), latex) for method in methods]
     if form in ("json", "csv"):
         _show(rows, tables.METHODS, form)
         return
@@ -215,45 +226,34 @@ def methods(methods: Sequence[Method], latex: bool, form: "Format") -> None:
         _show(tables.transposed(row), tables.PROPERTIES, form)
 
 
-@main.command()
-@_method_option("B4")
-@click.option("-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory for figure and table.")
-@_figure_option
-@_table_option
-@_choice(
-    "--quality",
-    "balanced fast fine",
-    "Points per axis of the map: fast 50, balanced 200, fine 1000; see `bezstab tradeoff --maps`.",
-)
-@click.option("--grid", type=click.IntRange(2, 4000), help="Points per axis, instead.")
-@click.option("--alpha-range", type=Rational(), nargs=2, help="Window in α̂; by default all of the region.")
-@click.option("--beta-range", type=Rational(), nargs=2, help="Window in β̂; by default all of the region.")
-@click.option(
-    "--level",
-    "levels",
-    type=Rational(positive=True),
-    multiple=True,
-    help="Draw |z_p| < LEVEL, below 1. Repeatable. Default: region H of the paper's Fig. 1 for B2, B3, B4; "
-    "else a quarter of the way from the least |z_p| to 1.",
-)
-@click.option("--compare", is_flag=True, help="One figure with the boundaries of all methods (default level 1).")
-@click.option("--h", type=Rational(positive=True), help="Step size in s: axes become 2α (1/s) and β² (1/s²).")
-@click.option("--engine", type=click.Choice(list(ENGINES)), help="Mark that engine's defaults and rules; needs --h.")
-@_format_option
+@command
 def region(
-    methods: Sequence[Method],
-    output: Path,
-    figure: Literal["png", "svg", "pdf", "none"],
-    table: Literal["csv", "npz", "none"],
-    quality: str,
-    grid: int | None,
-    alpha_range: tuple[Fraction, Fraction] | None,
-    beta_range: tuple[Fraction, Fraction] | None,
-    levels: Sequence[Fraction],
-    compare: bool,
-    h: Fraction | None,
-    engine: str | None,
-    form: "Format",
+    methods: Sequence[Method] = _methods("B4"),
+    output: Path = _output,
+    figure: FigureForm = _figure,
+    table: TableForm = _table,
+    quality: str = _choice(
+        "--quality",
+        "balanced fast fine",
+        "Points per axis of the map: fast 50, balanced 200, fine 1000; see `bezstab tradeoff --maps`.",
+    ),
+    grid: int | None = option("--grid", type=click.IntRange(2, 4000), help="Points per axis, instead."),
+    alpha_range: Window = option("--alpha-range", type=NUMBER, nargs=2, help="Window in α̂ [all of the region]."),
+    beta_range: Window = option("--beta-range", type=NUMBER, nargs=2, help="Window in β̂ [all of the region]."),
+    levels: Sequence[Fraction] = option(
+        "--level",
+        "levels",
+        type=POSITIVE,
+        multiple=True,
+        help="Draw |z_p| < LEVEL, below 1. Repeatable. Default: region H of the paper's Fig. 1 for B2, B3, B4; "
+        "else a quarter of the way from the least |z_p| to 1.",
+    ),
+    compare: bool = option(
+        "--compare", is_flag=True, help="One figure with the boundaries of all methods (default level 1)."
+    ),
+    h: Fraction | None = option("--h", type=POSITIVE, help="Step size in s: axes become 2α (1/s) and β² (1/s²)."),
+    engine: str | None = option("--engine", type=ENGINE, help="Mark that engine's defaults and rules; needs --h."),
+    form: Format = _form,
 ) -> None:
     """Draw where each method is stable, exactly, and tabulate |z_p| there.
 
@@ -273,85 +273,58 @@ def region(
             raise InputError(f"{name} {float(window[0]):g} {float(window[1]):g}: the first must be the smaller")
         if window and not max(map(abs, window)) <= MOST_DRAWN:
             raise InputError(f"{name} {float(window[0]):g} {float(window[1]):g}: expected at most {MOST_DRAWN:g}")
-    for level in levels:
-        if level > 1:
-            raise InputError(f"--level {float(level):g}: must be at most 1, the stability boundary")
-    marks, grid = _marks(engine, h, compare), grid or exact.QUALITY[quality]
+    if any(level > 1 for level in levels):
+        raise InputError(f"--level {float(max(levels)):g}: must be at most 1, the stability boundary")
+    marks, grid, step = _marks(engine, h, compare), grid or exact.QUALITY[quality], None if h is None else float(h)
     if figure != "none" or table != "none":
         output_directory(output)
-    step = None if h is None else float(h)
     if compare:
         if len(levels) > 1:
             raise InputError(f"--compare takes one --level, but {len(levels)} were given")
         regions = [exact.region(method, *map(float, levels)) for method in methods]
         _show([tables.region_row(each, optimum(each.method)) for each in regions], tables.REGIONS, form)
-        name = "_".join(["compare", *(_file_name(method.name) for method in methods)])
-        _write_table(output / f"{name}.{table}", tables.boundary_columns(regions, step), table)
-        if figure != "none":
-            from bezstab import figures
-
-            _write_figure(
-                output / f"{name}.{figure}", figures.comparison_figure(regions, alpha_range, beta_range, step), figure
-            )
+        path = output / "_".join(["compare", *(_file_name(method.name) for method in methods)])
+        _write_table(path, tables.boundary_columns(regions, step), table)
+        _write_figure(path, lambda draw: draw.comparison_figure(regions, alpha_range, beta_range, step), figure)
         return
     rows: list[Row] = []
     for method in methods:
-        stable, best = exact.region(method), optimum(method)
+        stable, best, path = exact.region(method), optimum(method), output / f"region_{_file_name(method.name)}"
         rows.append(tables.region_row(stable, best))
-        ranges = (
-            given or fitting for given, fitting in zip((alpha_range, beta_range), exact.window(stable), strict=True)
-        )
-        alpha_hat, beta_hat = (np.linspace(float(low), float(high), grid) for low, high in ranges)
         if figure == table == "none":
             continue
+        windows = zip((alpha_range, beta_range), exact.window(stable), strict=True)
+        ends = (map(float, given or fitting) for given, fitting in windows)
+        alpha_hat, beta_hat = (np.linspace(low, high, grid) for low, high in ends)
         blocks = exact.pole_map(method, alpha_hat, beta_hat)
         z = np.concatenate(list(_progress(blocks, grid, method.name, len)))
-        name = f"region_{_file_name(method.name)}"
-        _write_table(output / f"{name}.{table}", tables.map_columns(alpha_hat, beta_hat, z, step), table)
-        if figure != "none":
-            from bezstab import figures
-
-            chosen = map(float, levels) if levels else [_faster_level(method, best)] if best else []
-            faster = [exact.region(method, level) for level in chosen]
-            drawn = figures.region_figure(stable, faster, best, alpha_hat, beta_hat, np.abs(z), step, marks)
-            _write_figure(output / f"{name}.{figure}", drawn, figure)
+        _write_table(path, tables.map_columns(alpha_hat, beta_hat, z, step), table)
+        chosen = map(float, levels) if levels else [_faster_level(method, best)] if best else []
+        drawn = stable, [exact.region(method, level) for level in chosen], best, alpha_hat, beta_hat, np.abs(z)
+        _write_figure(path, lambda draw: draw.region_figure(*drawn, step, marks), figure)  # noqa: B023
     _show(rows, tables.REGIONS, form)
 
 
-@main.command()
-@click.option("--scene", default="slider_crank", show_default=True, help="A shipped scene's name, or a .toml file.")
-@click.option("--method", type=MethodName(), default="B4", show_default=True, help="As for the other commands.")
-@click.option("--alpha", type=Rational(), default="0.5", show_default=True, help="α̂; α in 1/s with --physical.")
-@click.option("--beta", type=Rational(), default="0.1", show_default=True, help="β̂; β in 1/s with --physical.")
-@click.option("--physical", is_flag=True, help="Take --alpha and --beta as α and β in 1/s.")
-@click.option("--no-stabilization", is_flag=True, help="No feedback: α = β = 0.")
-@click.option("--h", type=Rational(positive=True), default="0.001", show_default=True, help="Step size in s.")
-@click.option("--time", type=Rational(positive=True), default="10", show_default=True, help="Duration in s.")
-@click.option("--perturb", type=Rational(), default="0", help="Initial error of the first constraint, in its unit.")
-@_choice(
-    "--start",
-    "rk4 ramp euler",
-    "What provides a multistep method's first values: RK4, its family's shorter members, or explicit Euler.",
-)
-@click.option("-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory for figure and table.")
-@_figure_option
-@_table_option
-@_format_option
+@command
 def simulate(
-    scene: str,
-    method: Method,
-    alpha: Fraction,
-    beta: Fraction,
-    physical: bool,
-    no_stabilization: bool,
-    h: Fraction,
-    time: Fraction,
-    perturb: Fraction,
-    start: "Start",
-    output: Path,
-    figure: Literal["png", "svg", "pdf", "none"],
-    table: Literal["csv", "npz", "none"],
-    form: "Format",
+    scene: str = _scene("slider_crank"),
+    method: Method = option("--method", type=METHOD, default="B4", help="As for the other commands."),
+    alpha: Fraction = option("--alpha", type=NUMBER, default="0.5", help="α̂; α in 1/s with --physical."),
+    beta: Fraction = option("--beta", type=NUMBER, default="0.1", help="β̂; β in 1/s with --physical."),
+    physical: bool = _physical,
+    no_stabilization: bool = option("--no-stabilization", is_flag=True, help="No feedback: α = β = 0."),
+    h: Fraction = _step,
+    time: Fraction = option("--time", type=POSITIVE, default="10", help="Duration in s."),
+    perturb: Fraction = option("--perturb", type=NUMBER, default="0", help="Initial error of the first constraint."),
+    start: Start = _choice(
+        "--start",
+        "rk4 ramp euler",
+        "What gives a multistep method's first values: RK4, its family's shorter members, or explicit Euler.",
+    ),
+    output: Path = _output,
+    figure: FigureForm = _figure,
+    table: TableForm = _table,
+    form: Format = _form,
 ) -> None:
     """Run a mechanism and see what its constraint error does.
 
@@ -371,61 +344,42 @@ def simulate(
         alpha = beta = Fraction(0)
     steps = time / (h * method.step_multiple)
     if not 1 <= steps <= MOST_STEPS:
-        raise InputError(
-            f"--time {float(time):g}: {float(steps):g} steps of {method.name}, expected 1 to {MOST_STEPS:g}"
-        )
+        taken = f"{float(steps):g} steps of {method.name}"
+        raise InputError(f"--time {float(time):g}: {taken}, expected 1 to {MOST_STEPS:g}")
     if figure != "none" or table != "none":
         output_directory(output)
-    moving = mechanism(load(scene))
-    two_alpha, beta_squared = gains(float(alpha), float(beta), float(h))
-    state = perturbed(moving, float(perturb))
-    run = running.simulate(moving, method, float(h), float(time), (two_alpha, beta_squared), state, start)
-    seen = observe(moving, run.t, run.q, run.v, two_alpha, beta_squared)
-    name = f"simulate_{_file_name(Path(scene).stem)}_{_file_name(method.name)}"
-    _write_table(output / f"{name}.{table}", tables.history_columns(run, seen), table)
-    if figure != "none":
-        from bezstab import figures
-
-        _write_figure(output / f"{name}.{figure}", figures.history_figure(run, seen), figure)
+    moving, feedback = mechanism(load(scene)), gains(float(alpha), float(beta), float(h))
+    run = running.simulate(moving, method, float(h), float(time), feedback, perturbed(moving, float(perturb)), start)
+    seen = observe(moving, run.t, run.q, run.v, *feedback)
+    path = output / f"simulate_{_file_name(Path(scene).stem)}_{_file_name(method.name)}"
+    _write_table(path, tables.history_columns(run, seen), table)
+    _write_figure(path, lambda draw: draw.history_figure(run, seen), figure)
     _show([tables.simulation_row(run, seen, float(alpha), float(beta), float(h))], tables.SIMULATIONS, form)
     if run.failure:
         raise NumericalError(run.failure)
 
 
-@main.command()
-@click.option("--scene", default="slider_crank", show_default=True, help="A shipped scene's name, or a .toml file.")
-@_method_option("B4")
-@click.option("--alpha", type=Rational(), help="α̂ of a single point; with --beta, instead of --points.")
-@click.option("--beta", type=Rational(), help="β̂ of a single point.")
-@click.option("--points", type=click.IntRange(1, 1000), help="That many points over region and surroundings [20].")
-@click.option(
-    "--map", "cells", type=click.IntRange(2, 10000), help="Simulated verdicts of N×N points instead of poles."
-)
-@click.option("--witness", type=click.Choice(["mujoco"]), help="Another engine's own integrators instead of --method.")
-@click.option("--h", type=Rational(positive=True), default="0.001", show_default=True, help="Step size in s.")
-@click.option("-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory of --map's files.")
-@_workers_option
-@_scheduler_option
-@_resume_option
-@_figure_option
-@_table_option
-@_format_option
+@command
 def verify(
-    scene: str,
-    methods: Sequence[Method],
-    alpha: Fraction | None,
-    beta: Fraction | None,
-    points: int | None,
-    cells: int | None,
-    witness: Literal["mujoco"] | None,
-    h: Fraction,
-    output: Path,
-    workers: int | None,
-    scheduler: str | None,
-    resume: bool,
-    figure: Literal["png", "svg", "pdf", "none"],
-    table: Literal["csv", "npz", "none"],
-    form: "Format",
+    scene: str = _scene("slider_crank"),
+    methods: Sequence[Method] = _methods("B4"),
+    alpha: Fraction | None = option("--alpha", type=NUMBER, help="α̂ of one point; with --beta, instead of --points."),
+    beta: Fraction | None = option("--beta", type=NUMBER, help="β̂ of one point."),
+    points: int | None = option(
+        "--points", type=click.IntRange(1, 1000), help="So many, over region and surroundings [20]."
+    ),
+    cells: int | None = option(
+        "--map", "cells", type=click.IntRange(2, 10000), help="Simulated verdicts of N×N points."
+    ),
+    witness: str | None = option("--witness", type=click.Choice(["mujoco"]), help="Its own integrators."),
+    h: Fraction = _step,
+    output: Path = _output,
+    workers: int | None = _workers,
+    scheduler: str | None = _scheduler,
+    resume: bool = _resume,
+    figure: FigureForm = _figure,
+    table: TableForm = _table,
+    form: Format = _form,
 ) -> None:
     """Compare predicted poles with poles measured in a simulated mechanism.
 
@@ -441,89 +395,68 @@ def verify(
     from bezstab import tables
     from bezstab import verify as measuring
     from bezstab.mechanism import mechanism
+    from bezstab.region import region
     from bezstab.scene import load
 
-    if (alpha is None) != (beta is None):
-        raise click.UsageError("--alpha and --beta go together: they are one point")
-    if sum(choice is not None for choice in (alpha, points, cells, witness)) > 1:
+    point = _point(alpha, beta)
+    if sum(choice is not None for choice in (point, points, cells, witness)) > 1:
         raise click.UsageError("choose one of --alpha with --beta, --points, --map and --witness")
     moving = mechanism(load(scene))
     rows: list[Row] = []
     if witness:
         from bezstab.witness import count, interrogate
 
-        heard = _progress(interrogate(moving, float(h)), count(), "MuJoCo", lambda _: 1)
+        heard = _progress(interrogate(moving, float(h)), count(), "MuJoCo")
         _show([tables.row(each, scene=moving.scene.name) for each in heard], tables.WITNESSED, form)
-        return
-    if cells is None:
+    elif cells is None:
         summaries = []
         for method in methods:
-            point = None if alpha is None or beta is None else (np.array([float(alpha)]), np.array([float(beta)]))
-            alpha_hat, beta_hat = point or measuring.random_points(method, points or 20)
-            measured = measuring.measure(moving, method, float(h), alpha_hat, beta_hat, _steps_shown(method.name))
+            a, b = np.array(point, float)[:, np.newaxis] if point else measuring.random_points(method, points or 20)
+            bar = partial(_progress, length=measuring.RUN + 1, label=method.name)
+            measured = measuring.measure(moving, method, float(h), a, b, bar)
             rows += (found := [tables.measurement_row(moving.scene.name, each) for each in measured])
             summaries.append(tables.summary_row(found))
         _show(rows, tables.MEASUREMENTS, form)
         if form in ("text", "markdown"):
             click.echo()
             _show(summaries, tables.SUMMARIES, form)
-        return
-    for method in methods:
-        chunks = measuring.map_rows(moving.scene, method, float(h), cells)
-        name = f"verify_{_file_name(Path(scene).stem)}_{_file_name(method.name)}"
-        job = f"--map {cells} --h {h} {method} {moving.scene}"
-        with _in_chunks(measuring.simulated_verdicts, chunks, output / name, job, workers, scheduler, resume) as masks:
-            verdicts = measuring.verdict_map(chunks, masks)
-            _write_table(output / f"{name}.{table}", tables.verdict_columns(verdicts), table)
-            if figure != "none":
-                from bezstab import figures
-                from bezstab.region import region
-
-                _write_figure(output / f"{name}.{figure}", figures.verdict_figure(verdicts, region(method)), figure)
-        rows.append(tables.verdict_map_row(verdicts))
-    _show(rows, tables.VERDICT_MAPS, form)
+    else:
+        for method in methods:
+            chunks = measuring.map_rows(moving.scene, method, float(h), cells)
+            path = output / f"verify_{_file_name(Path(scene).stem)}_{_file_name(method.name)}"
+            job = f"--map {cells} --h {h} {method} {moving.scene}"
+            with _in_chunks(measuring.simulated_verdicts, chunks, path, job, (workers, scheduler), resume) as masks:
+                verdicts = measuring.verdict_map(chunks, masks)
+                _write_table(path, tables.verdict_columns(verdicts), table)
+                drawn = verdicts, region(method)
+                _write_figure(path, lambda draw: draw.verdict_figure(*drawn), figure)  # noqa: B023
+            rows.append(tables.verdict_map_row(verdicts))
+        _show(rows, tables.VERDICT_MAPS, form)
 
 
-@main.command()
-@click.option(
-    "--scene", default="slider_crank_light", show_default=True, help="A shipped scene's name, or a .toml file."
-)
-@_method_option("B2", "B3", "B4", "AB2", "AB4", "ABM4", "RK4", "SIE", "SYM")
-@click.option("--h", "steps", type=Rational(positive=True), multiple=True, help="Step in s [ten from 0.0001 to 0.02].")
-@click.option("--time", type=Rational(positive=True), default="2", show_default=True, help="Duration in s.")
-@click.option("--alpha", type=Rational(), help="α̂ of every run; by default the robust choice for each method.")
-@click.option("--beta", type=Rational(), help="β̂ of every run.")
-@click.option("--physical", is_flag=True, help="Take --alpha and --beta as α and β in 1/s, the same at every step.")
-@click.option("--tolerance", type=Rational(positive=True), default="1e-6", show_default=True, help="In m and rad.")
-@click.option("--repeats", type=click.IntRange(1, 100), default=3, show_default=True, help="Of each timing.")
-@click.option("--maps", is_flag=True, help="The trade of the |z_p| map instead: points against error, time and memory.")
-@click.option("-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory of figures and table.")
-@_workers_option
-@_scheduler_option
-@_resume_option
-@_figure_option
-@_table_option
-@_format_option
-@click.pass_context
+@command
 def tradeoff(
-    context: click.Context,
-    scene: str,
-    methods: Sequence[Method],
-    steps: Sequence[Fraction],
-    time: Fraction,
-    alpha: Fraction | None,
-    beta: Fraction | None,
-    physical: bool,
-    tolerance: Fraction,
-    repeats: int,
-    maps: bool,
-    output: Path,
-    workers: int | None,
-    scheduler: str | None,
-    resume: bool,
-    figure: Literal["png", "svg", "pdf", "none"],
-    table: Literal["csv", "npz", "none"],
-    form: "Format",
+    scene: str = _scene("slider_crank_light"),
+    methods: Sequence[Method] = _methods("B2", "B3", "B4", "AB2", "AB4", "ABM4", "RK4", "SIE", "SYM"),
+    steps: Sequence[Fraction] = option(
+        "--h", "steps", type=POSITIVE, multiple=True, help="Step in s [ten from 0.0001 to 0.02]."
+    ),
+    time: Fraction = option("--time", type=POSITIVE, default="2", help="Duration in s."),
+    alpha: Fraction | None = option("--alpha", type=NUMBER, help="α̂ of every run [each method's robust choice]."),
+    beta: Fraction | None = option("--beta", type=NUMBER, help="β̂ of every run."),
+    physical: bool = _physical,
+    tolerance: Fraction = option("--tolerance", type=POSITIVE, default="1e-6", help="In m and rad."),
+    repeats: int = option("--repeats", type=click.IntRange(1, 100), default=3, help="Of each timing."),
+    maps: bool = option(
+        "--maps", is_flag=True, help="The trade of the |z_p| map instead: points against error, time and memory."
+    ),
+    output: Path = _output,
+    workers: int | None = _workers,
+    scheduler: str | None = _scheduler,
+    resume: bool = _resume,
+    figure: FigureForm = _figure,
+    table: TableForm = _table,
+    form: Format = _form,
 ) -> None:
     """Measure what accuracy costs: each method at each step, against a reference of known accuracy.
 
@@ -538,15 +471,14 @@ def tradeoff(
     from bezstab.scene import load
 
     if maps:
-        if context.get_parameter_source("methods") == click.core.ParameterSource.DEFAULT:
-            methods = [lookup("B4"), lookup("AB4")]
+        methods = [lookup("B4"), lookup("AB4")] if _by_default("methods") else methods
         costs = (trading.map_cost(method, count) for method in methods for count in trading.MAP_POINTS)
-        shown = _progress(costs, len(methods) * len(trading.MAP_POINTS), "maps", lambda _: 1)
+        shown = _progress(costs, len(methods) * len(trading.MAP_POINTS), "maps")
         _show([tables.row(cost) for cost in shown], tables.MAP_COSTS, form)
         return
-    if (alpha is None) != (beta is None) or (physical and alpha is None):
-        raise click.UsageError("--alpha and --beta go together, and --physical needs them")
-    point = None if alpha is None or beta is None else (float(alpha), float(beta))
+    point = _point(alpha, beta)
+    if physical and point is None:
+        raise click.UsageError("--physical needs --alpha and --beta")
     chosen = sorted(set(map(float, steps or map(Fraction, trading.STEPS))))
     longest = chosen[-1] * float(max(method.step_multiple for method in methods))
     most = MOST_SWEPT * chosen[0]
@@ -554,54 +486,45 @@ def tradeoff(
         raise InputError(f"--time {float(time):g}: expected one step ({longest:g} s) to {MOST_SWEPT:g} ({most:g} s)")
     moving = load(scene)
     true = trading.reference(moving, chosen[0], float(time))
-    each = (moving, tuple(chosen), float(time), point, physical, repeats, true)
+    given = point and (float(point[0]), float(point[1]))
+    each = (moving, tuple(chosen), float(time), given, physical, repeats, true)
     sweeps = [trading.Sweep(method, *each) for method in dict.fromkeys(methods)]
     name = f"tradeoff_{_file_name(Path(scene).stem)}"
     job = f"{methods} {each[:-1]}"
-    with _in_chunks(trading.measured, sweeps, output / name, job, workers, scheduler, resume) as found:
+    with _in_chunks(trading.measured, sweeps, output / name, job, (workers, scheduler), resume) as found:
         pairs = zip(sweeps, found, strict=True)
         swept = [run for sweep, arrays in pairs for run in trading.runs(sweep, arrays)]
         rows = [tables.row(run, front=on) for run, on in zip(swept, trading.fronts(swept), strict=True)]
-        _write_table(output / f"{name}.{table}", tables.untimed(rows), table)
-        if figure != "none":
-            from bezstab import figures
-
-            for kind, floor in (("trajectory", true.error), ("constraint", 0.0)):
-                drawn = figures.work_precision_figure(swept, moving.name, kind == "constraint", floor)
-                _write_figure(output / f"{name}_{kind}.{figure}", drawn, figure)
+        _write_table(output / name, tables.untimed(rows), table)
+        for kind, floor in (("trajectory", true.error), ("constraint", 0.0)):
+            of = swept, moving.name, kind == "constraint", floor
+            _write_figure(output / f"{name}_{kind}", lambda draw: draw.work_precision_figure(*of), figure)  # noqa: B023
     _show(rows, tables.RUNS, form)
     if form in ("text", "markdown"):
         said = [f"The reference is known to {true.error:.0e} (m, rad)."]
         click.echo("\n" + "\n".join(said + trading.words(swept, float(tolerance), physical)))
 
 
-@main.command()
-@_method_option("B4")
-@click.option("--h", type=Rational(positive=True), required=True, help="Step size in s.")
-@_choice(
-    "--goal",
-    "robust fastest critical gentle",
-    "robust: fastest at worst over smaller steps and the spread; fastest: least |z_p|; critical: fastest without "
-    "oscillation; gentle: the mildest α = β that settles in time.",
-)
-@click.option("--h-max", type=Rational(positive=True), help="robust: the largest step in s that may occur [--h].")
-@click.option("--spread", type=Rational(), default="0.1", show_default=True, help="By what share α and β may be off.")
-@click.option("--settle", type=Rational(positive=True), help="gentle: the time in s in which c falls a thousandfold.")
-@click.option("--keep", type=click.Choice(["alpha=beta"]), help="Only points with α = β.")
-@click.option("--engine", type=click.Choice(list(ENGINES)), help="Also print what to paste into that engine.")
-@_format_option
-@click.pass_context
+@command
 def choose(
-    context: click.Context,
-    methods: Sequence[Method],
-    h: Fraction,
-    goal: "Goal",
-    h_max: Fraction | None,
-    spread: Fraction,
-    settle: Fraction | None,
-    keep: str | None,
-    engine: str | None,
-    form: "Format",
+    methods: Sequence[Method] = _methods("B4"),
+    h: Fraction = option("--h", type=POSITIVE, required=True, help="Step size in s."),
+    goal: Goal = _choice(
+        "--goal",
+        "robust fastest critical gentle",
+        "robust: fastest at worst over smaller steps and the spread; fastest: least |z_p|; critical: fastest without "
+        "oscillation; gentle: the mildest α = β that settles in time.",
+    ),
+    h_max: Fraction | None = option(
+        "--h-max", type=POSITIVE, help="robust: the largest step in s that may occur [--h]."
+    ),
+    spread: Fraction = option("--spread", type=NUMBER, default="0.1", help="By what share α and β may be off."),
+    settle: Fraction | None = option(
+        "--settle", type=POSITIVE, help="gentle: the time in s in which c falls a thousandfold."
+    ),
+    keep: str | None = option("--keep", type=click.Choice(["alpha=beta"]), help="Only points with α = β."),
+    engine: str | None = option("--engine", type=ENGINE, help="Also print what to paste into that engine."),
+    form: Format = _form,
 ) -> None:
     """Recommend α and β for an integrator and its step size, with the margins that remain.
 
@@ -621,10 +544,10 @@ def choose(
     if (settle is not None) != (goal == "gentle"):
         raise click.UsageError("--settle and --goal gentle go together")
     share = h / (h_max or h)
-    if engine and context.get_parameter_source("methods") == click.core.ParameterSource.DEFAULT:
+    if engine and _by_default("methods"):
         methods = [lookup("SYM")]
     rows: list[Row] = []
-    for method in _progress(methods, len(methods), goal, lambda _: 1):
+    for method in _progress(methods, len(methods), goal):
         rate = choosing.THOUSANDFOLD ** float(h * method.step_multiple / settle) if settle else None
         found = choosing.choose(method, goal, float(spread), rate, equal=keep is not None)
         if share != 1:
@@ -637,22 +560,17 @@ def choose(
     _show(rows, {**tables.CHOICES, **(tables.PASTE if engine else {})}, form)
 
 
-@main.command()
-@_method_option("B4")
-@click.option("--alpha", type=Rational(), help="α̂; α in 1/s with --physical.")
-@click.option("--beta", type=Rational(), help="β̂; β in 1/s with --physical.")
-@click.option("--h", type=Rational(positive=True), help="Step size in s; needed with --physical and --engine.")
-@click.option("--physical", is_flag=True, help="Take --alpha and --beta as α and β in 1/s.")
-@click.option("--engine", type=EngineValues(), help="An engine's own values, such as mujoco=0.02,1, instead.")
-@_format_option
+@command
 def check(
-    methods: Sequence[Method],
-    alpha: Fraction | None,
-    beta: Fraction | None,
-    h: Fraction | None,
-    physical: bool,
-    engine: tuple[Engine, tuple[Fraction, ...]] | None,
-    form: "Format",
+    methods: Sequence[Method] = _methods("B4"),
+    alpha: Fraction | None = option("--alpha", type=NUMBER, help="α̂; α in 1/s with --physical."),
+    beta: Fraction | None = option("--beta", type=NUMBER, help="β̂; β in 1/s with --physical."),
+    h: Fraction | None = option("--h", type=POSITIVE, help="Step size in s; needed with --physical and --engine."),
+    physical: bool = _physical,
+    engine: Setting | None = option(
+        "--engine", type=EngineValues(), help="An engine's own values, such as mujoco=0.02,1, instead."
+    ),
+    form: Format = _form,
 ) -> int:
     """Tell whether a choice is safe: exit status 0 if it is proven stable for every method, 1 if not.
 
@@ -682,12 +600,13 @@ def check(
     return 0 if all(each.verdict == "converges" for each in given) else 1
 
 
-@main.command()
-@click.option("--h", type=Rational(positive=True), default="0.001", show_default=True, help="Step size in s.")
-@click.option("--alpha", type=Rational(), help="α̂: with --beta, say what to set for this point.")
-@click.option("--beta", type=Rational(), help="β̂.")
-@_format_option
-def engines(h: Fraction, alpha: Fraction | None, beta: Fraction | None, form: "Format") -> None:
+@command
+def engines(
+    h: Fraction = _step,
+    alpha: Fraction | None = option("--alpha", type=NUMBER, help="α̂: with --beta, say what to set for this point."),
+    beta: Fraction | None = option("--beta", type=NUMBER, help="β̂."),
+    form: Format = _form,
+) -> None:
     """List what other engines call the feedback, and what each must be set to for a given point.
 
     acceleration: true Baumgarte feedback, where the integrator decides. velocity: an impulse engine, which is SYM at an
@@ -697,16 +616,12 @@ def engines(h: Fraction, alpha: Fraction | None, beta: Fraction | None, form: "F
     """
     from bezstab import tables
 
-    if (alpha is None) != (beta is None):
-        raise click.UsageError("--alpha and --beta go together: they are one point")
-    point = None if alpha is None or beta is None else (alpha, beta)
+    point = _point(alpha, beta)
     _show([tables.engine_row(each, point, h) for each in ENGINES.values()], tables.ENGINES_LISTED, form)
 
 
-@main.command()
-@_method_option(*TABLE_5)
-@click.option("--h", type=Rational(positive=True), default="0.001", show_default=True, help="Step size in s.")
-def explore(methods: Sequence[Method], h: Fraction) -> None:
+@command
+def explore(methods: Sequence[Method] = _methods(*TABLE_5), h: Fraction = _step) -> None:
     """Open a window: move over the region and see poles, decay and numbers.
 
     A click proves the verdict; n shows the next method; p prints the point as options for the other commands.
@@ -718,20 +633,18 @@ def explore(methods: Sequence[Method], h: Fraction) -> None:
     show(methods, float(h), click.echo)
 
 
-@main.command()
-@click.argument("name", metavar="bezier|adams-bashforth", type=click.Choice(["bezier", "adams-bashforth"]))
-@click.option("--from", "first", type=click.IntRange(min=1), default=2, show_default=True, help="Smallest n.")
-@click.option("--to", "last", type=click.IntRange(min=1), help="Largest n [12 for bezier, 8 for adams-bashforth].")
-@click.option("-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory for the figure.")
-@_figure_option
-@_format_option
+@command
 def family(
-    name: str,
-    first: int,
-    last: int | None,
-    output: Path,
-    figure: Literal["png", "svg", "pdf", "none"],
-    form: "Format",
+    name: str = click.argument(
+        "name", metavar="bezier|adams-bashforth", type=click.Choice(["bezier", "adams-bashforth"])
+    ),  # type: ignore[assignment]
+    first: int = option("--from", "first", type=click.IntRange(min=1), default=2, help="Smallest n."),
+    last: int | None = option(
+        "--to", "last", type=click.IntRange(min=1), help="Largest n [12 for bezier, 8 for adams-bashforth]."
+    ),
+    output: Path = _output,
+    figure: FigureForm = _figure,
+    form: Format = _form,
 ) -> None:
     """Show what becomes of a family as its number of steps n grows: region, least |z_p|, error constant.
 
@@ -753,16 +666,17 @@ def family(
     rows = list(map(tables.family_row, shown)) + ([tables.family_row(limit)] if name == "bezier" else [])
     _show(rows, tables.FAMILY, form)
     if figure != "none":
-        from bezstab import figures
-
-        all_members = {each: shown if each == name else families.members(each, 2, most[each]) for each in most}
-        _write_figure(output / f"family_{name}.{figure}", figures.family_figure(all_members, limit), figure)
+        both = {each: shown if each == name else families.members(each, 2, most[each]) for each in most}
+        _write_figure(output / f"family_{name}", lambda draw: draw.family_figure(both, limit), figure)
 
 
-@main.command()
-@click.option("--short", is_flag=True, help="Fewer methods and runs of 1e5 steps, in seconds instead of minutes.")
-@_format_option
-def extremes(short: bool, form: "Format") -> int:
+@command
+def extremes(
+    short: bool = option(
+        "--short", is_flag=True, help="Fewer methods and runs of 1e5 steps, in seconds instead of minutes."
+    ),
+    form: Format = _form,
+) -> int:
     """Measure what holds at the extremes, against what was stated beforehand; exit status 1 if something does not.
 
     Poles from 1e-300 to 1e300 and at multiple roots against 50 digits and more, runs of 1e7 steps, steps around the
@@ -774,17 +688,20 @@ def extremes(short: bool, form: "Format") -> int:
     from bezstab.extremes import checks
 
     each = list(checks(not short))
-    found = [check() for check in _progress(each, len(each), "extremes", lambda _: 1)]
+    found = [check() for check in _progress(each, len(each), "extremes")]
     _show([tables.row(check) for check in found], tables.CHECKS, form)
     return 0 if all(check.held for check in found) else 1
 
 
-@main.command()
-@click.option("--only", type=click.Choice(PARTS), multiple=True, help="This part alone. Repeatable.")
-@click.option("-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory for figures and tables.")
-@_figure_option
-@_format_option
-def paper(only: Sequence[str], output: Path, figure: Literal["png", "svg", "pdf", "none"], form: "Format") -> None:
+@command
+def paper(
+    only: Sequence[str] = option(
+        "--only", type=click.Choice(PARTS), multiple=True, help="This part alone. Repeatable."
+    ),
+    output: Path = _output,
+    figure: FigureForm = _figure,
+    form: Format = _form,
+) -> None:
     """Regenerate the paper: Tables 1 to 6, Figures 1 to 9, and a ledger of what holds.
 
     Writes paper_table1.md, ..., paper_fig9.png and, unless --only asks for parts, LEDGER.md, and prints what agrees
@@ -800,12 +717,11 @@ def paper(only: Sequence[str], output: Path, figure: Literal["png", "svg", "pdf"
     for parts, make in report.REPORTS.items():
         if not chosen & set(parts):
             continue
-        made = make(lambda runs, length: _progress(runs, length, parts[0], lambda _: 1))  # noqa: B023
+        made = make(lambda runs, length: _progress(runs, length, parts[0]))  # noqa: B023
         for name in (part for part in made.tables if part in chosen):
             _write(output / f"paper_{name}.md", lambda file: file.write(made.tables[name].encode()))  # noqa: B023
-        if figure != "none":
-            for name in (part for part in made.figures if part.rstrip("abc") in chosen):
-                _write_figure(output / f"paper_{name}.{figure}", made.figures[name], figure)
+        for name in (part for part in made.figures if part.rstrip("abc") in chosen):
+            _write_figure(output / f"paper_{name}", lambda _: made.figures[name], figure)  # noqa: B023
         if made.aside and form in ("text", "markdown"):
             click.echo(f"{made.aside}\n")
         findings += made.findings
@@ -818,6 +734,17 @@ def paper(only: Sequence[str], output: Path, figure: Literal["png", "svg", "pdf"
         _show(rows, tables.FINDINGS, form)
 
 
+def _point(alpha: Fraction | None, beta: Fraction | None) -> tuple[Fraction, Fraction] | None:
+    """Return the point that --alpha and --beta are, None without them."""
+    if (alpha is None) != (beta is None):
+        raise click.UsageError("--alpha and --beta go together: they are one point")
+    return None if alpha is None or beta is None else (alpha, beta)
+
+
+def _by_default(name: str) -> bool:
+    return click.get_current_context().get_parameter_source(name) == click.core.ParameterSource.DEFAULT
+
+
 def _marks(engine: str | None, h: Fraction | None, compare: bool) -> list[tuple[str, float, float]]:
     """Return the engine's defaults and rules of thumb as labelled points of the plane."""
     if engine is None:
@@ -828,7 +755,7 @@ def _marks(engine: str | None, h: Fraction | None, compare: bool) -> list[tuple[
     return [(label, float(a), float(b)) for label, (a, b) in points]
 
 
-def _faster_level(method: Method, best: "Optimum") -> float:
+def _faster_level(method: Method, best: Optimum) -> float:
     """Return the level of the faster region H: the paper's, else a quarter of the way from the least |z_p| to 1."""
     return FASTER_LEVEL.get(method.name, round(best.z_abs + (1 - best.z_abs) / 4, 2))
 
@@ -837,7 +764,9 @@ def _file_name(name: str) -> str:
     return re.sub(r"[^\w@.+-]", "_", name)
 
 
-def _progress(items: Iterable[Item], length: int, label: str, size: Callable[[Item], int]) -> Iterator[Item]:
+def _progress(
+    items: Iterable[Item], length: int, label: str, size: Callable[[Item], int] = lambda _: 1
+) -> Iterator[Item]:
     """Yield the items, with a progress bar on standard error where that is a terminal; `length` is all their sizes."""
     if not sys.stderr.isatty():
         yield from items
@@ -848,28 +777,23 @@ def _progress(items: Iterable[Item], length: int, label: str, size: Callable[[It
             bar.update(size(item))
 
 
-def _steps_shown(label: str) -> Callable[[Sequence[int]], Iterator[int]]:
-    return lambda steps: _progress(steps, len(steps), label, lambda _: 1)
-
-
 @contextmanager
 def _in_chunks(
-    work: "Callable[[Any], Arrays]",
+    work: Callable[[Any], Arrays],
     chunks: Sequence[Any],
     path: Path,
     job: str,
-    workers: int | None,
-    scheduler: str | None,
+    hands: tuple[int | None, str | None],
     resume: bool,
-) -> "Iterator[list[Arrays]]":
+) -> Iterator[list[Arrays]]:
     """Give the results of independent chunks, in order; those kept beside `path` go once the caller has used them."""
     from bezstab import chunks as spread
 
-    with spread.workers(workers, scheduler) as hands:
+    with spread.workers(*hands) as executors:
         kept = spread.store(path.with_name(f"{path.name}.chunks"), job, resume)
         try:
-            arriving = spread.completed(work, chunks, hands, kept)
-            found = dict(_progress(arriving, len(chunks), path.name, lambda _: 1))
+            arriving = spread.completed(work, chunks, executors, kept)
+            found = dict(_progress(arriving, len(chunks), path.name))
         except KeyboardInterrupt:
             click.echo(f"bezstab: what is finished lies in {kept.path}: --resume goes on from there", err=True)
             raise
@@ -882,20 +806,23 @@ def _write(path: Path, write: Callable[[BinaryIO], object]) -> None:
     click.echo(f"wrote {path}", err=True)
 
 
-def _write_table(path: Path, columns: "Mapping[str, NDArray[np.generic]]", form: Literal["csv", "npz", "none"]) -> None:
+def _write_table(path: Path, columns: Mapping[str, NDArray[np.generic]], form: TableForm) -> None:
     from bezstab import tables
 
     if form != "none":
-        _write(path, lambda file: tables.write_columns(columns, form, file))
+        _write(path.with_name(f"{path.name}.{form}"), lambda file: tables.write_columns(columns, form, file))
 
 
-def _write_figure(path: Path, figure: "Figure", form: Literal["png", "svg", "pdf"]) -> None:
-    from bezstab import figures
+def _write_figure(path: Path, draw: Callable[[Any], Figure], form: FigureForm) -> None:
+    """Write what `draw` makes of the module `figures`, which is loaded for no other purpose."""
+    if form != "none":
+        from bezstab import figures
 
-    _write(path, lambda file: figures.save(figure, form, file))
+        drawn = draw(figures)
+        _write(path.with_name(f"{path.name}.{form}"), lambda file: figures.save(drawn, form, file))
 
 
-def _show(rows: "Sequence[Row]", columns: "Columns", form: "Format", heading: str = "") -> None:
+def _show(rows: Sequence[Row], columns: Columns, form: Format, heading: str = "") -> None:
     """Print rows on standard output, below a heading where people read them."""
     from bezstab import tables
 
