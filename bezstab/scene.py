@@ -5,10 +5,10 @@ Nothing in a scene is ever executed: every entry is a number, a name or a list o
 
 import math
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeGuard
 
 from bezstab.errors import InputError, unknown
 from bezstab.files import read_toml
@@ -17,6 +17,7 @@ Point = tuple[float, float]
 
 GROUND = "ground"
 COORDINATES = ("x", "y", "theta")
+NOWHERE = (0.0, 0.0)  # no displacement, direction or force
 
 
 @dataclass(frozen=True)
@@ -121,57 +122,36 @@ class Table:
         self.data: dict[str, Any] = data
         self.where = where
         self.unread = set(data)
+        self.within: list[Table] = []
 
-    def _take(self, key: str, default: object) -> Any:
+    def get(self, key: str, valid: Callable[[Any], bool], expected: str, default: object = None) -> Any:
+        """Return a valid entry; InputError, with what was expected, if it is not, or missing without a default."""
         self.unread.discard(key)
         if key not in self.data and default is None:
             raise InputError(f"{self.where}: {key} is missing")
-        return self.data.get(key, default)
-
-    def _refuse(self, key: str, expected: str) -> InputError:
-        return InputError(f"{self.where}: {key} = {self.data[key]!r}: expected {expected}")
-
-    def text(self, key: str, default: str | None = None) -> str:
-        """Return one line of text."""
-        value = self._take(key, default)
-        if not isinstance(value, str) or not value or not value.isprintable():
-            raise self._refuse(key, "a name")
+        value = self.data.get(key, default)
+        if not valid(value):
+            raise InputError(f"{self.where}: {key} = {value!r}: expected {expected}")
         return value
+
+    def text(self, key: str) -> str:
+        """Return one line of text."""
+        return str(self.get(key, lambda x: isinstance(x, str) and x != "" and x.isprintable(), "a name"))
 
     def number(self, key: str, default: float | None = None, positive: bool = False) -> float:
         """Return a finite number."""
-        value = self._take(key, default)
-        if not _is_number(value) or (positive and value <= 0):
-            raise self._refuse(key, "a positive number" if positive else "a finite number")
-        return float(value)
+        if positive:
+            return float(self.get(key, lambda x: _is_number(x) and x > 0, "a positive number", default))
+        return float(self.get(key, _is_number, "a finite number", default))
 
     def point(self, key: str, default: Point | None = None) -> Point:
         """Return a pair of finite numbers."""
-        value = self._take(key, default)
-        if not _is_point(value):
-            raise self._refuse(key, "two finite numbers")
-        return float(value[0]), float(value[1])
-
-    def points(self, key: str) -> tuple[Point, Point]:
-        """Return two pairs of finite numbers."""
-        value = self._take(key, None)
-        if not isinstance(value, list) or len(value) != 2 or not all(map(_is_point, value)):
-            raise self._refuse(key, "two points [x, y]")
-        (a, b), (c, d) = value
-        return (float(a), float(b)), (float(c), float(d))
-
-    def names(self, key: str) -> tuple[str, ...]:
-        """Return a list of names."""
-        value = self._take(key, None)
-        if not isinstance(value, list) or not all(isinstance(entry, str) for entry in value):
-            raise self._refuse(key, "a list of names")
-        return tuple(value)
+        x, y = self.get(key, _is_point, "two finite numbers", default)
+        return float(x), float(y)
 
     def numbers(self, key: str, allowed: Sequence[str]) -> dict[str, float]:
         """Return a table of finite numbers, none if absent, with keys among the allowed ones."""
-        value = self._take(key, {})
-        if not isinstance(value, dict) or not all(map(_is_number, value.values())):
-            raise self._refuse(key, "a table of finite numbers")
+        value = self.get(key, _are_numbers, "a table of finite numbers", {})
         unknown = [name for name in value if name not in allowed]
         if unknown:
             raise InputError(f"{self.where}: {key} names {unknown[0]!r}, which is not among {', '.join(allowed)}")
@@ -179,18 +159,20 @@ class Table:
 
     def tables(self, key: str) -> list["Table"]:
         """Return an array of tables, none if absent."""
-        value = self._take(key, [])
-        if not isinstance(value, list):
-            raise self._refuse(key, "an array of tables")
-        return [Table(entry, f"{key} {number}") for number, entry in enumerate(value, start=1)]
+        value = self.get(key, lambda value: isinstance(value, list), "an array of tables", [])
+        made = [Table(entry, f"{key} {number}") for number, entry in enumerate(value, start=1)]
+        self.within += made
+        return made
 
-    def table(self, key: str) -> "Table | None":
-        """Return a table, None if absent."""
-        value = self._take(key, {})
-        return Table(value, key) if key in self.data else None
+    def table(self, key: str) -> "Table":
+        """Return a table, an empty one if absent."""
+        self.within.append(made := Table(self.get(key, lambda _: True, "", {}), key))
+        return made
 
     def done(self) -> None:
-        """Raise InputError if a key was not asked for."""
+        """Raise InputError if a key, here or in a table within, was not asked for."""
+        for table in self.within:
+            table.done()
         if self.unread:
             raise InputError(f"{self.where}: unknown key {min(self.unread)!r}")
 
@@ -200,7 +182,19 @@ def _is_number(value: object) -> bool:
 
 
 def _is_point(value: object) -> bool:
-    return isinstance(value, list | tuple) and len(value) == 2 and all(map(_is_number, value))
+    return _is_pair(value) and all(map(_is_number, value))
+
+
+def _is_pair(value: object) -> TypeGuard[Sequence[object]]:
+    return isinstance(value, list | tuple) and len(value) == 2
+
+
+def _are_texts(value: object) -> bool:
+    return isinstance(value, list) and all(isinstance(entry, str) for entry in value)
+
+
+def _are_numbers(value: object) -> bool:
+    return isinstance(value, dict) and all(map(_is_number, value.values()))
 
 
 def shipped_scenes() -> dict[str, Path]:
@@ -228,10 +222,8 @@ def read(path: Path) -> Scene:
 def parse(data: dict[str, Any]) -> Scene:
     """Return the scene described by TOML data."""
     top = Table(data, "scene")
-    bodies = tuple(_body(table) for table in top.tables("body"))
-    chain = top.table("four_bar_chain")
-    chain_parts = _four_bar_chain(chain) if chain else ((), (), {})
-    bodies += chain_parts[0]
+    bodies, joints, guess = _four_bar_chain(top.table("four_bar_chain")) if "four_bar_chain" in data else ((), (), {})
+    bodies = (*map(_body, top.tables("body")), *bodies)
     names = [body.name for body in bodies]
     duplicate = next((name for number, name in enumerate(names) if name in [GROUND, *names[:number]]), None)
     if duplicate is not None:
@@ -239,54 +231,30 @@ def parse(data: dict[str, Any]) -> Scene:
     coordinates = tuple(f"{body.name}.{axis}" for body in bodies for axis in body.free)
     if not coordinates:
         raise InputError("scene: no body has a free coordinate")
-    joints = tuple(_joint(table, names, coordinates) for table in top.tables("joint")) + chain_parts[1]
+    joints = (*(_joint(table, names, coordinates) for table in top.tables("joint")), *joints)
     if not joints:
         raise InputError("scene: no joint, hence no constraint to stabilise")
     forces = tuple(_force(table, names) for table in top.tables("force"))
-    initial = top.table("initial") or Table({}, "initial")
-    scene = Scene(
-        top.text("name"),
-        top.point("gravity", (0.0, 0.0)),
-        bodies,
-        joints,
-        forces,
-        initial.numbers("position", coordinates),
-        initial.numbers("velocity", coordinates),
-        {**chain_parts[2], **initial.numbers("guess", coordinates)},
-    )
-    initial.done()
+    initial = top.table("initial")
+    position, velocity, guessed = (initial.numbers(key, coordinates) for key in ("position", "velocity", "guess"))
+    name, gravity = top.text("name"), top.point("gravity", NOWHERE)
     top.done()
-    return scene
+    return Scene(name, gravity, bodies, joints, forces, position, velocity, guess | guessed)
 
 
 def _body(table: Table) -> Body:
-    name, free = table.text("name"), table.names("free")
+    name, free = table.text("name"), table.get("free", _are_texts, "a list of names")
     table.where = f"body {name!r}"
     if not free or any(axis not in COORDINATES for axis in free) or len(set(free)) != len(free):
-        raise InputError(f"{table.where}: free = {list(free)}: expected some of {', '.join(COORDINATES)}")
-    ordered = tuple(axis for axis in COORDINATES if axis in free)
+        raise InputError(f"{table.where}: free = {free}: expected some of {', '.join(COORDINATES)}")
     at_pivot = not {"x", "y"} & set(free)
-    body = Body(
-        name,
-        ordered,
-        table.number("mass", 0.0 if at_pivot else None, positive="mass" in table.data),
-        table.number("inertia", None if "theta" in free else 0.0, positive="theta" in free),
-        table.numbers("locked", [axis for axis in COORDINATES if axis not in free]),
-        table.point("center", (0.0, 0.0)),
-    )
-    if body.center != (0.0, 0.0) and not at_pivot:
+    mass = table.number("mass", 0.0 if at_pivot else None, positive="mass" in table.data)
+    inertia = table.number("inertia", None if "theta" in free else 0.0, positive="theta" in free)
+    locked = table.numbers("locked", [axis for axis in COORDINATES if axis not in free])
+    center = table.point("center", NOWHERE)
+    if center != NOWHERE and not at_pivot:
         raise InputError(f"{table.where}: center: only for a body with x and y locked; else its frame's origin is it")
-    table.done()
-    return body
-
-
-def _pair(table: Table, names: Sequence[str]) -> tuple[str, str]:
-    pair = table.names("bodies")
-    if len(pair) != 2 or pair[0] == pair[1]:
-        raise InputError(f"{table.where}: bodies = {list(pair)}: expected two different names")
-    for name in pair:
-        _known(name, names, table)
-    return pair[0], pair[1]
+    return Body(name, tuple(axis for axis in COORDINATES if axis in free), mass, inertia, locked, center)
 
 
 def _known(name: str, names: Sequence[str], table: Table) -> str:
@@ -298,33 +266,31 @@ def _known(name: str, names: Sequence[str], table: Table) -> str:
 def _joint(table: Table, names: Sequence[str], coordinates: Sequence[str]) -> Joint:
     kind = table.text("type")
     table.where += f" ({kind})"
-    joint: Joint
-    if kind == "revolute":
-        joint = Revolute(_pair(table, names), table.points("points"))
-    elif kind == "point-on-line":
-        joint = PointOnLine(_pair(table, names), table.points("points"), table.point("direction"))
-        if joint.direction == (0.0, 0.0):
-            raise InputError(f"{table.where}: direction = [0, 0]: expected a direction")
-    elif kind == "distance":
-        joint = Distance(_pair(table, names), table.points("points"), table.number("length", positive=True))
-    elif kind == "driver":
+    if kind == "driver":
         coordinate = table.text("coordinate")
         if coordinate not in coordinates:
             raise InputError(f"{table.where}: coordinate {coordinate!r} is not among {', '.join(coordinates)}")
         terms = ("offset", "rate", "acceleration", "amplitude", "frequency", "phase")
-        joint = Driver(coordinate, *(table.number(term, 0.0) for term in terms))
-    else:
+        return Driver(coordinate, *(table.number(term, 0.0) for term in terms))
+    if kind not in ("revolute", "point-on-line", "distance"):
         raise InputError(f"{table.where}: type: expected revolute, point-on-line, distance or driver")
-    table.done()
-    return joint
+    one, other = table.get("bodies", lambda x: _are_texts(x) and len(set(x)) == len(x) == 2, "two different names")
+    bodies = _known(one, names, table), _known(other, names, table)
+    (a, b), (c, d) = table.get("points", lambda x: _is_pair(x) and all(map(_is_point, x)), "two points [x, y]")
+    points = (float(a), float(b)), (float(c), float(d))
+    if kind == "revolute":
+        return Revolute(bodies, points)
+    if kind == "distance":
+        return Distance(bodies, points, table.number("length", positive=True))
+    direction = table.point("direction")
+    if direction == NOWHERE:
+        raise InputError(f"{table.where}: direction = [0, 0]: expected a direction")
+    return PointOnLine(bodies, points, direction)
 
 
 def _force(table: Table, names: Sequence[str]) -> Force:
-    body = _known(table.text("body"), names, table)
-    zero = (0.0, 0.0)
-    force = Force(body, table.point("point", zero), table.point("force", zero), table.number("torque", 0.0))
-    table.done()
-    return force
+    body, point = _known(table.text("body"), names, table), table.point("point", NOWHERE)
+    return Force(body, point, table.point("force", NOWHERE), table.number("torque", 0.0))
 
 
 def _four_bar_chain(table: Table) -> tuple[tuple[Body, ...], tuple[Joint, ...], dict[str, float]]:
@@ -332,14 +298,12 @@ def _four_bar_chain(table: Table) -> tuple[tuple[Body, ...], tuple[Joint, ...], 
 
     The benchmark of Gonzalez et al. (N-four-bar): equal rods of `length` (m) and `mass` (kg), a length apart.
     """
-    count, length = table.number("count", positive=True), table.number("length", positive=True)
-    mass = table.number("mass", positive=True)
+    count, length, mass = (table.number(key, positive=True) for key in ("count", "length", "mass"))
     if count != int(count) or count > 100:
         raise InputError(f"{table.where}: count = {count:g}: expected a whole number from 1 to 100")
     inertia = mass * length * length  # length**2 raises where this is infinite
     if not 0 < inertia < math.inf:
         raise InputError(f"{table.where}: mass {mass:g} and length {length:g}: an inertia outside the range of float64")
-    table.done()
     n, half = int(count), length / 2
     rods = [Body(f"rod{i}", ("theta",), mass, inertia / 3, {"x": i * length}, (half, 0.0)) for i in range(n + 1)]
     couplers = [Body(f"coupler{i}", COORDINATES, mass, inertia / 12, {}, (0.0, 0.0)) for i in range(n)]
