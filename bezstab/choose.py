@@ -13,14 +13,13 @@ from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method, steps
 from bezstab.optimum import optimum
 from bezstab.poles import FloatArray, dominant_pole, dominant_root, spectral_radius, verdict
-from bezstab.region import region
+from bezstab.region import first_where, region
 from bezstab.schur import Verdict
 
 Goal = Literal["robust", "fastest", "critical", "gentle"]
 
 THOUSANDFOLD = 1e-3  # what "settled" means for the constraint error
 SAMPLES = 4000  # along a line: |z_p| has no features as narrow as that
-BISECTIONS = 60
 GRID = 13  # points per axis of a zoom
 ZOOM = 0.75  # from one grid to the next, once the best point lies within it
 ZOOMS = 90  # 0.6^40 = 1e-9 of the region, where the objective is flat to rounding
@@ -112,19 +111,9 @@ def margins(method: Method, alpha_hat: float, beta_hat: float) -> Margins:
     """Return how far a stable point is from |z_p| = 1 along three lines; an end without one is infinite, or zero."""
 
     def end(path: Callable[[FloatArray], tuple[FloatArray, FloatArray]], furthest: float) -> float:
-        def unstable(factor: FloatArray) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-            return np.asarray(spectral_radius(method, *path(factor)) >= 1)
-
         factors = np.geomspace(1, furthest, SAMPLES)
-        beyond = unstable(factors)
-        if not beyond.any():
-            return math.inf if furthest > 1 else 0.0
-        first = int(np.argmax(beyond))
-        inside, outside = factors[max(0, first - 1)], factors[first]
-        for _ in range(BISECTIONS):
-            middle = (inside + outside) / 2
-            inside, outside = (inside, middle) if unstable(np.array([middle]))[0] else (middle, outside)
-        return float(inside)
+        found = first_where(lambda factor: spectral_radius(method, *path(factor)) >= 1, factors)
+        return found[0] if found else math.inf if furthest > 1 else 0.0
 
     def alone(alpha: float, beta: float) -> tuple[float, float]:
         def path(s: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -203,12 +192,8 @@ def _critical(method: Method) -> tuple[float, float]:
         return np.where((np.abs(z.imag) < REAL * np.abs(z)) & (z.real > 0), z.real, np.inf)
 
     mu = -np.linspace(0, 2 * math.sqrt(extent[1][1]) + extent[0][1], SAMPLES)[1:]
-    first = int(np.append(np.flatnonzero(np.isinf(dominant(mu))), len(mu))[0])
-    inside, outside = mu[first - 1], mu[min(first, len(mu) - 1)]
-    for _ in range(BISECTIONS):
-        middle = (inside + outside) / 2
-        inside, outside = (middle, outside) if np.isfinite(dominant(np.array([middle])))[0] else (inside, middle)
-    candidates = np.append(mu[:first], inside)
+    inside, _ = first_where(lambda mu: np.isinf(dominant(mu)), mu) or mu[[-1, -1]]
+    candidates = np.append(mu[mu > inside], inside)
     best = int(np.argmin(dominant(candidates)))
     centre, width = candidates[best], abs(mu[0])
     for _ in range(ZOOMS):
@@ -223,15 +208,9 @@ def _gentle(method: Method, rate: float) -> tuple[float, float]:
     """Return the smallest alpha = beta with |z_p| <= rate."""
     extent = region(method).extent
     assert extent
-    t = np.linspace(0, extent[0][1] / 2, SAMPLES)[1:]
-    z_abs = spectral_radius(method, 2 * t, t**2)
-    if not (z_abs <= rate).any():
-        raise InputError(
-            f"--settle: with alpha = beta {method.name} has at best |z_p| = {z_abs.min():.6g}, needed {rate:.6g}"
-        )
-    first = int(np.argmax(z_abs <= rate))
-    slow, fast = t[first - 1] if first else 0.0, t[first]
-    for _ in range(BISECTIONS):
-        middle = (slow + fast) / 2
-        slow, fast = (slow, middle) if spectral_radius(method, 2 * middle, middle**2) <= rate else (middle, fast)
-    return 2 * float(fast), float(fast) ** 2
+    t = np.linspace(0, extent[0][1] / 2, SAMPLES)
+    found = first_where(lambda t: spectral_radius(method, 2 * t, t**2) <= rate, t)
+    if found is None:
+        best = spectral_radius(method, 2 * t, t**2).min()
+        raise InputError(f"--settle: with alpha = beta {method.name} has at best |z_p| = {best:.6g}, needed {rate:.6g}")
+    return 2 * found[1], found[1] ** 2

@@ -11,7 +11,7 @@ from bezstab.derivation import accuracy
 from bezstab.methods import Method, adams_bashforth, bezier
 from bezstab.optimum import optimum
 from bezstab.poles import ComplexArray, FloatArray
-from bezstab.region import Region, region
+from bezstab.region import Region, first_where, region
 
 FAMILIES: dict[str, tuple[Callable[[int], Method], int]] = {
     "bezier": (bezier, 12),
@@ -20,7 +20,6 @@ FAMILIES: dict[str, tuple[Callable[[int], Method], int]] = {
 """What makes a member, and the largest number of steps."""
 
 NODES = 400  # of Gauss and Legendre on half the circle: the integrand is analytic, a fourth of them is enough
-BISECTIONS = 60
 
 
 @dataclass(frozen=True)
@@ -75,14 +74,11 @@ def bezier_limit() -> Limit:
     arc = np.stack([-2 * fine.real, np.abs(fine) ** 2], axis=-1)[::100]
     edge = np.linspace(length, 0, 3)[:, np.newaxis]
     upper = np.concatenate([edge + length, edge * length], axis=1)  # one mu held at mu(-1)
-    low, high = 0.1, 0.9
-    for _ in range(BISECTIONS):
-        r = (low + high) / 2
-        plus, minus = _mu(np.array([r, -r], complex)).real
-        low, high = (r, high) if plus < minus else (low, r)
+    met = first_where(lambda r: _mu(r.astype(complex)).real >= _mu(-r.astype(complex)).real, np.array([0.1, 0.9]))
+    assert met
     boundary = np.concatenate([[[0.0, 0.0]], arc, upper, [[0.0, 0.0]]])
     furthest = float(max(2 * length, -2 * fine.real.min()))
-    return Limit(float(area), furthest, float((np.abs(fine) ** 2).max()), (low + high) / 2, Fraction(1, 4), boundary)
+    return Limit(float(area), furthest, float((np.abs(fine) ** 2).max()), met[1], Fraction(1, 4), boundary)
 
 
 def _mu(z: ComplexArray) -> ComplexArray:

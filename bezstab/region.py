@@ -6,7 +6,7 @@ from S_r's real intervals. Its edges are images of the boundary locus pi(r e^(i 
 root lies outside, and straight lines: one mu held at the end of a real interval (theory: paper Eq. 17 on |z| = r).
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import chain, combinations, pairwise
@@ -120,6 +120,21 @@ def window(region: Region) -> Extent:
     margin = 0.05 * (high - low)
     low, high = np.where(low < 0, low - margin, 0), high + margin
     return (float(low[0]), float(high[0])), (float(low[1]), float(high[1]))
+
+
+def first_where(holds: Callable[[FloatArray], NDArray[np.bool_]], samples: FloatArray) -> tuple[float, float] | None:
+    """Return two numbers next to each other between which a condition first comes to hold along the samples, or None.
+
+    At the first it does not hold yet (unless at all), at the second it does.
+    """
+    found = np.flatnonzero(holds(samples))
+    if not found.size:
+        return None
+    before, after = samples[max(0, found[0] - 1)], samples[found[0]]
+    for _ in range(BISECTIONS):
+        middle = (before + after) / 2
+        before, after = (before, middle) if holds(np.array([middle]))[0] else (middle, after)
+    return float(before), float(after)
 
 
 def pole_map(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> Iterator[ComplexArray]:

@@ -16,7 +16,7 @@ from bezstab.errors import InputError
 from bezstab.mechanism import Mechanism, constraint_errors, perturbed
 from bezstab.methods import Method, lookup
 from bezstab.poles import FloatArray, spectral_radius
-from bezstab.region import region
+from bezstab.region import first_where, region
 from bezstab.scene import GROUND, Body, Revolute, Scene
 
 Outcome = Literal["converges", "diverges", "neither"]
@@ -24,7 +24,6 @@ Outcome = Literal["converges", "diverges", "neither"]
 INTEGRATORS = {"Euler": "SYM", "RK4": "RK4"}
 RAYS = (15.0, 30.0, 45.0, 60.0, 75.0)  # degrees, in the plane scaled by the region's extent
 TIMES = (0.9, 1.1)  # the boundary: nearer, growth takes thousands of steps
-BISECTIONS = 50
 IMPEDANCE = 0.9999  # the most that MuJoCo takes: the rest of the unconstrained acceleration leaks into the constraint
 RUN = 3000  # steps
 KICK = 1e-3  # m: |z_p| <= 0.9 leaves nothing of it; what remains is truncation error and the leak
@@ -130,15 +129,11 @@ def _boundary_points(method: Method) -> Iterator[FloatArray]:
     """Yield the first point with |z_p| = 1 on each ray from the origin."""
     extent = region(method).extent
     assert extent
-    for degrees in RAYS:
-        direction = np.array([np.cos(np.radians(degrees)), np.sin(np.radians(degrees))]) * np.array(extent)[:, 1]
-        along = np.linspace(0, 2, 400)[1:, np.newaxis] * direction
-        first = int(np.argmax(spectral_radius(method, *along.T) >= 1))
-        inside, outside = along[first - 1], along[first]
-        for _ in range(BISECTIONS):
-            middle = (inside + outside) / 2
-            inside, outside = (inside, middle) if spectral_radius(method, *middle) >= 1 else (middle, outside)
-        yield inside
+    for angle in np.radians(RAYS):
+        ray = np.array([np.cos(angle), np.sin(angle)]) * np.array(extent)[:, 1]
+        met = first_where(lambda s: spectral_radius(method, *np.outer(ray, s)) >= 1, np.linspace(0, 2, 400)[1:])  # noqa: B023
+        assert met
+        yield met[0] * ray
 
 
 def _run(mujoco: types.ModuleType, model: object, mechanism: Mechanism) -> FloatArray:
