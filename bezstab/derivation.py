@@ -20,17 +20,9 @@ Table = tuple[Coefficients, ...]
 Tree = tuple["Tree", ...]
 
 
-def _exact(value: Fraction) -> sp.Rational:
-    return sp.Rational(value.numerator, value.denominator)
-
-
-def _fraction(value: sp.Rational) -> Fraction:
-    return Fraction(int(value.p), int(value.q))
-
-
 def _in_z(coefficients: Coefficients) -> sp.Expr:
     """Return the polynomial in z with these coefficients in descending powers."""
-    return sp.Add(*(_exact(a) * Z**i for i, a in enumerate(reversed(coefficients))))
+    return sp.Add(*(a * Z**i for i, a in enumerate(reversed(coefficients))))
 
 
 def _multistep(scheme: LinearMultistep) -> sp.Expr:
@@ -48,13 +40,13 @@ def characteristic_polynomial(method: Method) -> sp.Poly:
         case LinearMultistep() as scheme:
             expression = _multistep(scheme)
         case PredictorCorrector(predictor, corrector):
-            expression = _multistep(corrector) + _exact(corrector.sigma[0]) * MU * _multistep(predictor)
+            expression = _multistep(corrector) + corrector.sigma[0] * MU * _multistep(predictor)
         case RungeKutta(tableau, weights):
             stages: list[sp.Expr] = []
             for row in tableau:
                 known = zip(row, stages, strict=False)
-                stages.append(sp.expand(1 + MU * sp.Add(*(_exact(a) * stage for a, stage in known))))
-            expression = Z - 1 - MU * sp.Add(*(_exact(b) * stage for b, stage in zip(weights, stages, strict=True)))
+                stages.append(sp.expand(1 + MU * sp.Add(*(a * stage for a, stage in known))))
+            expression = Z - 1 - MU * sp.Add(*(b * stage for b, stage in zip(weights, stages, strict=True)))
         case Partitioned(velocity=velocity):
             expression = _multistep(velocity)
     return sp.Poly(expression, Z, MU, domain="QQ")
@@ -71,7 +63,7 @@ def feedback(method: Method) -> sp.Poly:
     if isinstance(method.scheme, Partitioned):
         rho, sigma = _in_z(method.scheme.position.rho), _in_z(method.scheme.position.sigma)
         position = sp.resultant(_multistep(method.scheme.velocity), rho * (MU + ALPHA_HAT) + BETA_HAT * sigma, Z)
-    m = _exact(method.step_multiple)
+    m = method.step_multiple
     scaled = position.subs({ALPHA_HAT: m * ALPHA_HAT, BETA_HAT: m**2 * BETA_HAT}, simultaneous=True)
     return sp.Poly(sp.expand(scaled), MU, domain=sp.QQ[ALPHA_HAT, BETA_HAT]).monic()
 
@@ -116,7 +108,7 @@ def effective_parameters(method: Method) -> Table:
     The identity for most; it holds the step multiple, and for a partitioned method the difference of its two maps.
     """
     _, *coefficients = (sp.Poly(c, ALPHA_HAT, BETA_HAT) for c in feedback(method).all_coeffs())
-    return tuple(tuple(_fraction(c.coeff_monomial(x)) for x in (ALPHA_HAT, BETA_HAT)) for c in coefficients)
+    return tuple(tuple(Fraction(c.coeff_monomial(x)) for x in (ALPHA_HAT, BETA_HAT)) for c in coefficients)
 
 
 def coefficient_table(method: Method) -> Table:
@@ -128,12 +120,12 @@ def branch_polynomial(method: Method) -> tuple[Fraction, ...]:
     """Return the polynomial in z, ascending, that is zero wherever two roots of pi(., mu) meet: Res_mu(pi, d pi/dz)."""
     pi = characteristic_polynomial(method)
     meeting = sp.Poly(sp.resultant(pi.as_expr(), pi.diff(Z).as_expr(), MU), Z)
-    return tuple(map(_fraction, reversed(meeting.all_coeffs())))
+    return tuple(map(Fraction, reversed(meeting.all_coeffs())))
 
 
 def _table(pi: sp.Poly) -> Table:
     return tuple(
-        tuple(_fraction(pi.coeff_monomial(Z**k * MU**j)) for j in range(pi.degree(MU) + 1))
+        tuple(Fraction(pi.coeff_monomial(Z**k * MU**j)) for j in range(pi.degree(MU) + 1))
         for k in range(pi.degree(Z) + 1)
     )
 
@@ -144,7 +136,7 @@ def mapping(method: Method) -> list[sp.Equality]:
     One equation solved for s for a multistep method, for z for a Runge-Kutta method, left implicit for PECE, and two
     (position, then velocity) for a partitioned method.
     """
-    h = _exact(method.step_multiple) * H
+    h = method.step_multiple * H
 
     def solved(scheme: LinearMultistep) -> sp.Equality:
         scale, numerator = sp.factor(_in_z(scheme.rho)).as_content_primitive()
