@@ -69,57 +69,39 @@ class Commands(click.Group):
         sys.exit(status if isinstance(status, int) else 0)
 
 
-class Rational(click.ParamType):  # type: ignore[type-arg]  # generic since click 8.3
-    """A finite decimal or fraction, read exactly."""
+class Read(click.ParamType):  # type: ignore[type-arg]  # generic since click 8.3
+    """What a function makes of the text that was typed; its InputError names the option, too."""
 
-    name = "number"
-
-    def __init__(self, positive: bool = False) -> None:
-        self.positive = positive
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Fraction:
-        """Return the exact value; fails, naming the option, on anything else."""
-        try:
-            number = value if isinstance(value, Fraction) else rational(value)
-        except InputError as error:
-            self.fail(str(error), param, ctx)
-        if self.positive and number <= 0:
-            self.fail(f"{value} is not positive", param, ctx)
-        return number
-
-
-class EngineValues(click.ParamType):  # type: ignore[type-arg]
-    """An engine's name and values of its parameters, as in mujoco=0.02,1."""
-
-    name = "name=values"
+    def __init__(self, name: str, read: Callable[[str], object]) -> None:
+        self.name, self.read = name, read
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Return the engine and its values; fails, naming the option, on anything else."""
-        if isinstance(value, tuple):
-            return value
-        name, _, numbers = value.partition("=")
-        if name not in ENGINES:
-            self.fail(f"unknown engine {name!r} (known: {', '.join(ENGINES)})", param, ctx)
+        """Return what was read; fails, naming the option, where nothing can be."""
         try:
-            return ENGINES[name], tuple(map(rational, numbers.split(",")))
-        except InputError as error:
-            self.fail(f"{error}: expected {name}={','.join(ENGINES[name].parameters)}", param, ctx)
-
-
-class MethodName(click.ParamType):  # type: ignore[type-arg]
-    """A built-in method or a TOML file, either with @m."""
-
-    name = "method"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Method:
-        """Return the method; fails, with the nearest name, if there is none."""
-        try:
-            return value if isinstance(value, Method) else lookup(value)
+            return self.read(value) if isinstance(value, str) else value
         except InputError as error:
             self.fail(str(error), param, ctx)
 
 
-NUMBER, POSITIVE, METHOD, ENGINE = Rational(), Rational(positive=True), MethodName(), click.Choice(list(ENGINES))
+def _positive(text: str) -> Fraction:
+    if (number := rational(text)) <= 0:
+        raise InputError(f"{text} is not positive")
+    return number
+
+
+def _setting(text: str) -> Setting:
+    """Return an engine and values of its parameters from text such as mujoco=0.02,1."""
+    name, _, numbers = text.partition("=")
+    if name not in ENGINES:
+        raise InputError(f"unknown engine {name!r} (known: {', '.join(ENGINES)})")
+    try:
+        return ENGINES[name], tuple(map(rational, numbers.split(",")))
+    except InputError as error:
+        raise InputError(f"{error}: expected {name}={','.join(ENGINES[name].parameters)}") from None
+
+
+NUMBER, POSITIVE, METHOD = Read("number", rational), Read("number", _positive), Read("method", lookup)
+ENGINE, SETTING = click.Choice(list(ENGINES)), Read("name=values", _setting)
 option: Callable[..., Any] = click.option  # Any: in a command it stands as the default of the parameter it fills
 
 
@@ -568,7 +550,7 @@ def check(
     h: Fraction | None = option("--h", type=POSITIVE, help="Step size in s; needed with --physical and --engine."),
     physical: bool = _physical,
     engine: Setting | None = option(
-        "--engine", type=EngineValues(), help="An engine's own values, such as mujoco=0.02,1, instead."
+        "--engine", type=SETTING, help="An engine's own values, such as mujoco=0.02,1, instead."
     ),
     form: Format = _form,
 ) -> int:
