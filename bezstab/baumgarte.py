@@ -11,14 +11,17 @@ from typing import Literal, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.errors import InputError
+from bezstab.errors import InputError, within_float64
 
 Number = TypeVar("Number", float, NDArray[np.float64])
 
 
 def dimensionless(alpha: Fraction, beta: Fraction, h: Fraction) -> tuple[Fraction, Fraction]:
-    """Return (alpha_hat, beta_hat) = (2 alpha h, beta^2 h^2); alpha and beta in 1/s, h in s (paper Eq. 16)."""
-    return 2 * alpha * h, beta * beta * h * h
+    """Return (alpha_hat, beta_hat) = (2 alpha h, beta^2 h^2); alpha and beta in 1/s, h in s (paper Eq. 16).
+
+    InputError where they leave the range of float64.
+    """
+    return within_float64(2 * alpha * h, "α̂ = 2αh"), within_float64(beta * beta * h * h, "β̂ = β²h²")
 
 
 def gains(alpha_hat: Number, beta_hat: Number, h: float) -> tuple[Number, Number]:
@@ -34,7 +37,7 @@ class Engine:
     """An engine's own constraint parameters and what they mean in (alpha_hat, beta_hat) at a step of h seconds.
 
     acceleration: true Baumgarte feedback, so that the integrator decides. velocity: an impulse engine, whose update of
-    one constraint is symplectic Euler's at that point. `write` raises InputError where no value gives the point.
+    one constraint is symplectic Euler's at that point. `read` and `write` raise InputError where the other has nothing.
     """
 
     name: str
@@ -50,7 +53,19 @@ class Engine:
         """Return (alpha_hat, beta_hat) for values of the parameters, in their order."""
         if len(values) != len(self.parameters):
             raise InputError(f"--engine {self.name}: {len(values)} values, expected {', '.join(self.parameters)}")
-        return self.read(h, *values)
+        a, b = self.read(h, *values)
+        return within_float64(a, f"--engine {self.name}: α̂"), within_float64(b, f"--engine {self.name}: β̂")
+
+    def setting(self, point: Point, h: Fraction) -> str:
+        """Return what to write in the engine's own words for a point; InputError where there is nothing."""
+        if min(point) < 0:
+            raise InputError(
+                f"{self.name}: negative feedback ({float(point[0]):g}, {float(point[1]):g}) is not to be had"
+            )
+        try:
+            return self.write(point, h)
+        except OverflowError:
+            raise InputError(f"{self.name}: its parameters would leave the range of float64") from None
 
 
 def _mujoco(h: Fraction, first: Fraction, second: Fraction) -> Point:
@@ -62,6 +77,10 @@ def _mujoco(h: Fraction, first: Fraction, second: Fraction) -> Point:
 
 
 def _box2d(h: Fraction, hertz: Fraction, zeta: Fraction) -> Point:
+    if hertz < 0 or zeta < 0:
+        raise InputError(
+            f"--engine box2d: hertz = {float(hertz):g}, dampingRatio = {float(zeta):g}: expected none below 0"
+        )
     turn = Fraction(2 * math.pi) * hertz * h
     x = turn * (2 * zeta + turn)
     return x / (1 + x), turn**2 / (1 + x)
@@ -72,7 +91,9 @@ def _write_box2d(point: Point, h: Fraction) -> str:
     if not 0 < b <= a < 1:
         raise InputError(f"box2d reaches 0 < β̂ <= α̂ < 1 only, not ({a:g}, {b:g})")
     turn = math.sqrt(b / (1 - a))
-    return f"hertz = {turn / (2 * math.pi * float(h)):.9g}, dampingRatio = {(a / (1 - a) / turn - turn) / 2:.9g}"
+    return (
+        f"hertz = {turn / (2 * math.pi * float(h)):.9g}, dampingRatio = {max(0.0, a / (1 - a) / turn - turn) / 2:.9g}"
+    )
 
 
 def _write_erp(name: str) -> Callable[[Point, Fraction], str]:

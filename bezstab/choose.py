@@ -26,6 +26,7 @@ ZOOMS = 90  # 0.6^40 = 1e-9 of the region, where the objective is flat to roundi
 SHARES = 8  # of the largest step, besides the limit of small ones: in practice either end is the slowest
 ASIDE = 1e-7  # of mu: a double mu splits by 1e-8 in float64, which must not let a rival of equal modulus win
 DEADBEAT = 1e-6  # a double pole at zero, as far as float64 tells it
+SLOW = 1e-12  # 1 - |z_p| of which rounding leaves three digits: the decay takes 1e13 steps
 REAL = 1e-9  # of |z|: an imaginary part below it is rounding
 FURTHEST = 1e4  # factor on h, alpha or beta beyond which nobody asks
 NEAREST = 1e-4  # and below which |z_p| is one to rounding
@@ -58,11 +59,16 @@ class Choice:
 
     @property
     def settle_steps(self) -> int | None:
-        """Steps until |z_p|^k is a thousandth; if every pole is zero, those that clear the method's memory."""
+        """Steps until |z_p|^k is a thousandth; if every pole is zero, those that clear the method's memory.
+
+        None if the point is unstable, or so near to it that rounding leaves no digits.
+        """
         if self.margins is None:
             return None
         if abs(self.pole) < DEADBEAT:
             return 2 * steps(self.method)
+        if 1 - abs(self.pole) < SLOW:
+            return None
         return math.ceil(math.log(THOUSANDFOLD) / math.log(abs(self.pole)))
 
 

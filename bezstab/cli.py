@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 
 TABLE_5 = ("B2", "B3", "B4", "AB2", "AB3", "AB4", "RK4@5", "SIE")
 
+SHORTEST = Fraction("1e-100")  # s, and the longest time's inverse: their squares are within float64
 MOST_DRAWN = 1e100  # of a window's ends: their squares are drawn as well
 MOST_STEPS = 10**8  # a run keeps its whole history: 10 GB and an hour for the slider-crank
 MOST_SWEPT = 10**6  # the reference takes up to 32 times as many
@@ -89,6 +90,12 @@ def _positive(text: str) -> Fraction:
     return number
 
 
+def _seconds(text: str) -> Fraction:
+    if not SHORTEST <= (number := _positive(text)) <= 1 / SHORTEST:
+        raise InputError(f"{text} s: expected {float(SHORTEST):g} to {float(1 / SHORTEST):g} s")
+    return number
+
+
 def _setting(text: str) -> Setting:
     """Return an engine and values of its parameters from text such as mujoco=0.02,1."""
     name, _, numbers = text.partition("=")
@@ -100,8 +107,8 @@ def _setting(text: str) -> Setting:
         raise InputError(f"{error}: expected {name}={','.join(ENGINES[name].parameters)}") from None
 
 
-NUMBER, POSITIVE, METHOD = Read("number", rational), Read("number", _positive), Read("method", lookup)
-ENGINE, SETTING = click.Choice(list(ENGINES)), Read("name=values", _setting)
+NUMBER, POSITIVE, SECONDS = Read("number", rational), Read("number", _positive), Read("seconds", _seconds)
+METHOD, ENGINE, SETTING = Read("method", lookup), click.Choice(list(ENGINES)), Read("name=values", _setting)
 option: Callable[..., Any] = click.option  # Any: in a command it stands as the default of the parameter it fills
 
 
@@ -121,7 +128,7 @@ def _scene(default: str) -> Any:
 
 
 _physical = option("--physical", is_flag=True, help="Take --alpha and --beta as α and β in 1/s; goes with --h.")
-_step = option("--h", type=POSITIVE, default="0.001", help="Step size in s.")
+_step = option("--h", type=SECONDS, default="0.001", help="Step size in s.")
 _output = option("-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory for what is written.")
 _figure = _choice("--figure", "png svg pdf none", "Format of the figure.")
 _table = _choice("--table", "csv npz none", "Format of the table.")
@@ -152,7 +159,7 @@ def poles(
     methods: Sequence[Method] = _methods(*TABLE_5),
     alpha: Fraction = option("--alpha", type=NUMBER, required=True, help="α̂, a decimal or fraction, read exactly."),
     beta: Fraction = option("--beta", type=NUMBER, required=True, help="β̂, a decimal or fraction, read exactly."),
-    h: Fraction | None = option("--h", type=POSITIVE, help="Step size in s, for --physical."),
+    h: Fraction | None = option("--h", type=SECONDS, help="Step size in s, for --physical."),
     physical: bool = _physical,
     all_poles: bool = option("--all-poles", is_flag=True, help="Every root, not only the dominant one."),
     form: Format = _form,
@@ -233,7 +240,7 @@ def region(
     compare: bool = option(
         "--compare", is_flag=True, help="One figure with the boundaries of all methods (default level 1)."
     ),
-    h: Fraction | None = option("--h", type=POSITIVE, help="Step size in s: axes become 2α (1/s) and β² (1/s²)."),
+    h: Fraction | None = option("--h", type=SECONDS, help="Step size in s: axes become 2α (1/s) and β² (1/s²)."),
     engine: str | None = option("--engine", type=ENGINE, help="Mark that engine's defaults and rules; needs --h."),
     form: Format = _form,
 ) -> None:
@@ -296,7 +303,7 @@ def simulate(
     physical: bool = _physical,
     no_stabilization: bool = option("--no-stabilization", is_flag=True, help="No feedback: α = β = 0."),
     h: Fraction = _step,
-    time: Fraction = option("--time", type=POSITIVE, default="10", help="Duration in s."),
+    time: Fraction = option("--time", type=SECONDS, default="10", help="Duration in s."),
     perturb: Fraction = option("--perturb", type=NUMBER, default="0", help="Initial error of the first constraint."),
     start: Start = _choice(
         "--start",
@@ -421,9 +428,9 @@ def tradeoff(
     scene: str = _scene("slider_crank_light"),
     methods: Sequence[Method] = _methods("B2", "B3", "B4", "AB2", "AB4", "ABM4", "RK4", "SIE", "SYM"),
     steps: Sequence[Fraction] = option(
-        "--h", "steps", type=POSITIVE, multiple=True, help="Step in s [ten from 0.0001 to 0.02]."
+        "--h", "steps", type=SECONDS, multiple=True, help="Step in s [ten from 0.0001 to 0.02]."
     ),
-    time: Fraction = option("--time", type=POSITIVE, default="2", help="Duration in s."),
+    time: Fraction = option("--time", type=SECONDS, default="2", help="Duration in s."),
     alpha: Fraction | None = option("--alpha", type=NUMBER, help="α̂ of every run [each method's robust choice]."),
     beta: Fraction | None = option("--beta", type=NUMBER, help="β̂ of every run."),
     physical: bool = _physical,
@@ -490,7 +497,7 @@ def tradeoff(
 @command
 def choose(
     methods: Sequence[Method] = _methods("B4"),
-    h: Fraction = option("--h", type=POSITIVE, required=True, help="Step size in s."),
+    h: Fraction = option("--h", type=SECONDS, required=True, help="Step size in s."),
     goal: Goal = _choice(
         "--goal",
         "robust fastest critical gentle",
@@ -498,11 +505,11 @@ def choose(
         "oscillation; gentle: the mildest α = β that settles in time.",
     ),
     h_max: Fraction | None = option(
-        "--h-max", type=POSITIVE, help="robust: the largest step in s that may occur [--h]."
+        "--h-max", type=SECONDS, help="robust: the largest step in s that may occur [--h]."
     ),
     spread: Fraction = option("--spread", type=NUMBER, default="0.1", help="By what share α and β may be off."),
     settle: Fraction | None = option(
-        "--settle", type=POSITIVE, help="gentle: the time in s in which c falls a thousandfold."
+        "--settle", type=SECONDS, help="gentle: the time in s in which c falls a thousandfold."
     ),
     keep: str | None = option("--keep", type=click.Choice(["alpha=beta"]), help="Only points with α = β."),
     engine: str | None = option("--engine", type=ENGINE, help="Also print what to paste into that engine."),
@@ -537,7 +544,7 @@ def choose(
             found = choosing.describe(method, goal, *point, float(spread))
         row = tables.choice_row(found, float(h))
         if engine:
-            row["engine"] = ENGINES[engine].write((Fraction(found.alpha_hat), Fraction(found.beta_hat)), h)
+            row["engine"] = ENGINES[engine].setting((Fraction(found.alpha_hat), Fraction(found.beta_hat)), h)
         rows.append(row)
     _show(rows, {**tables.CHOICES, **(tables.PASTE if engine else {})}, form)
 
@@ -547,7 +554,7 @@ def check(
     methods: Sequence[Method] = _methods("B4"),
     alpha: Fraction | None = option("--alpha", type=NUMBER, help="α̂; α in 1/s with --physical."),
     beta: Fraction | None = option("--beta", type=NUMBER, help="β̂; β in 1/s with --physical."),
-    h: Fraction | None = option("--h", type=POSITIVE, help="Step size in s; needed with --physical and --engine."),
+    h: Fraction | None = option("--h", type=SECONDS, help="Step size in s; needed with --physical and --engine."),
     physical: bool = _physical,
     engine: Setting | None = option(
         "--engine", type=SETTING, help="An engine's own values, such as mujoco=0.02,1, instead."

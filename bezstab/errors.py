@@ -2,6 +2,7 @@
 
 import difflib
 from collections.abc import Iterable
+from fractions import Fraction
 
 
 class InputError(ValueError):
@@ -10,6 +11,13 @@ class InputError(ValueError):
 
 class NumericalError(ArithmeticError):
     """A computation that broke down, said in one line that names when and where."""
+
+
+def within_float64(value: Fraction, said: str) -> Fraction:
+    """Return a number that is zero or in float64's normal range; else InputError, with what is said of it."""
+    if value and not Fraction("1e-307") < abs(value) < Fraction("1e308"):
+        raise InputError(f"{said} is outside the range of float64 (1e-307 to 1e308)")
+    return value
 
 
 def unknown(kind: str, name: str, known: Iterable[str]) -> InputError:

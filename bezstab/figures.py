@@ -337,11 +337,10 @@ def _axes(title: str, h: float | None) -> tuple[Figure, Axes]:
 
 
 def curves(axes: Axes, region: Region, h: float | None, label: str, **line: Any) -> None:
-    """Draw a region's boundary, its closed curves as one line."""
-    if region.boundary:
-        gap = np.full((1, 2), np.nan)
-        points = np.concatenate([part for curve in region.boundary for part in (curve, gap)])
-        axes.plot(*gains(points[:, 0], points[:, 1], h or 1.0), label=label, **line)
+    """Draw a region's boundary, its closed curves as one line; of an empty region only the label shows."""
+    gap = np.full((1, 2), np.nan)
+    points = np.concatenate([part for curve in region.boundary for part in (curve, gap)] or [gap])
+    axes.plot(*gains(points[:, 0], points[:, 1], h or 1.0), label=label, **line)
 
 
 def cells(axes: Axes, x: FloatArray, y: FloatArray, values: "np.ma.MaskedArray[Any, Any]", **colours: Any) -> AxesImage:

@@ -8,7 +8,7 @@ from functools import cache, partial
 from math import comb, prod
 from pathlib import Path
 
-from bezstab.errors import InputError, unknown
+from bezstab.errors import InputError, unknown, within_float64
 from bezstab.files import read_toml
 from bezstab.schur import verdict
 
@@ -114,8 +114,8 @@ class Method:
     def __post_init__(self) -> None:
         if isinstance(self.scheme, LinearMultistep) and self.scheme.implicit:
             raise InputError("implicit: the leading coefficient of sigma is not 0")
-        if self.step_multiple <= 0:
-            raise InputError(f"step multiple {self.step_multiple}: must be positive")
+        if not Fraction("1e-6") <= self.step_multiple <= Fraction("1e6"):
+            raise InputError(f"step multiple {float(self.step_multiple):g}: expected 1e-6 to 1e6")
 
 
 def steps(method: Method) -> int:
@@ -247,10 +247,7 @@ def rational(text: str) -> Fraction:
     number = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,4})?"
     if not re.fullmatch(rf"{number}|[-+]?\d+/0*[1-9]\d*", text.strip(), re.ASCII) or len(text) > 1000:
         raise InputError(f"{text[:50]!r} is not a finite decimal or fraction")
-    value = Fraction(text.strip())
-    if value and not Fraction("1e-307") < abs(value) < Fraction("1e308"):
-        raise InputError(f"{text!r} is outside the range of float64 (1e-307 to 1e308)")
-    return value
+    return within_float64(Fraction(text.strip()), repr(text))
 
 
 def read(path: Path) -> Method:

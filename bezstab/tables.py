@@ -398,7 +398,7 @@ def family_row(member: Member | Limit) -> Row:
 def engine_row(engine: Engine, point: tuple[Fraction, Fraction] | None, h: Fraction) -> Row:
     """Return an engine's words, and what to set for a point at a step of h (s), or why nothing will do."""
     try:
-        setting = engine.write(point, h) if point else None
+        setting = engine.setting(point, h) if point else None
     except InputError as error:
         setting = str(error)
     return row(engine, parameters=", ".join(engine.parameters), set=setting)

@@ -102,4 +102,15 @@ def test_values_that_mean_nothing_are_refused(name: str, given_values: tuple[int
 def test_a_point_that_an_engine_cannot_reach_is_refused() -> None:
     for name, point in (("bullet", (Fraction(1, 2), Fraction(1, 2))), ("box2d", (Fraction(1), Fraction(1, 5)))):
         with pytest.raises(InputError, match="α̂"):
-            ENGINES[name].write(point, Fraction(1, 100))
+            ENGINES[name].setting(point, Fraction(1, 100))
+
+
+@pytest.mark.parametrize("name", ENGINES)
+@given(st.floats(-1e300, 1e300), st.floats(-1e300, 1e300), st.sampled_from(["1e-100", "0.01", "1e100"]))
+def test_every_point_has_a_setting_or_is_refused(name: str, a: float, b: float, step: str) -> None:
+    try:
+        setting = ENGINES[name].setting((Fraction(a), Fraction(b)), Fraction(step))
+    except InputError:
+        return
+    assert min(a, b) >= 0
+    assert all(abs(float(value)) < math.inf for value in values(setting))

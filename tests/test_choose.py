@@ -145,3 +145,5 @@ def test_a_choice_is_proven_and_described() -> None:
     assert describe(lookup("SYM"), "as given", Fraction(1), Fraction(2)).verdict == "marginal"
     deadbeat = describe(lookup("RK2"), "as given", Fraction(2), Fraction(2))
     assert deadbeat.settle_steps == 2
+    slow = describe(lookup("B4"), "", Fraction("1e-17"), Fraction("1e-34"))  # |z_p| = 1 - 5e-18 is 1 in float64
+    assert (slow.verdict, slow.settle_steps) == ("converges", None)

@@ -15,6 +15,8 @@ import click
 import numpy as np
 import pytest
 from click.testing import CliRunner, Result
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from bezstab.cli import main
 
@@ -374,7 +376,14 @@ def test_paper_writes_the_chosen_parts_and_prints_findings(tmp_path: Path) -> No
         ("region --compare --level 0.5 --level 0.7", "--level"),
         ("region -o file/below", "file/below"),
         ("region --figure jpg", "--figure"),
+        ("region --h 1e300", "--h"),
         ("methods B99", "B99"),
+        ("methods RK1@1e300", "RK1@1e300"),
+        ("methods RK4@1e-300", "RK4@1e-300"),
+        ("check --alpha 1 --beta 1e300 --h 1 --physical", "β̂"),
+        ("check --engine mujoco=1e-200,1 --h 1", "mujoco"),
+        ("choose --h 0.1 --h-max 1e300", "--h-max"),
+        ("choose --h 0.1 --goal gentle --settle 1e-300", "--settle"),
         ("foo", "foo"),
     ],
 )
@@ -386,6 +395,41 @@ def test_a_mistake_takes_one_line_status_two_and_no_file(command: str, named: st
     assert result.stderr.count("\n") == 1
     assert named in result.stderr
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+NUMBERS = ["0", "-0.1", "0.5", "1", "2", "1e-17", "-1e-30", "1e-300", "1e100", "1e300", "6/11", "nan", "1e999", "x"]
+STEPS = ["1e-100", "0.001", "1", "1e100", "0", "1e300"]
+TYPED: dict[str, dict[str, list[str] | None]] = {
+    "poles": {"--alpha": NUMBERS, "--beta": NUMBERS, "--h": STEPS, "--physical": None, "--all-poles": None},
+    "check": {
+        "--alpha": NUMBERS,
+        "--beta": NUMBERS,
+        "--h": STEPS,
+        "--physical": None,
+        "--engine": ["mujoco=0.02,1", "mujoco=0,0", "bullet=0.2", "box2d=60,-2", "drake=1e300,1", "ode=", "x=1"],
+    },
+    "engines": {"--alpha": NUMBERS, "--beta": NUMBERS, "--h": STEPS},
+    "methods": {"--latex": None},
+    "region --figure none --table none": {"--level": NUMBERS, "--h": STEPS, "--compare": None, "--engine": ["mujoco"]},
+}
+
+
+@settings(deadline=None)  # the first region takes its time
+@given(st.data())
+def test_whatever_is_typed_ends_in_an_answer_or_one_line(data: st.DataObject) -> None:
+    command = data.draw(st.sampled_from(sorted(TYPED)))
+    options = TYPED[command]
+    words = command.split()
+    for name in data.draw(st.lists(st.sampled_from(sorted(options)), unique=True)):
+        words += [name, *(data.draw(st.sampled_from(option)) for option in [options[name]] if option)]
+    named = data.draw(
+        st.lists(st.sampled_from(["B2", "AB4", "RK4@5", "SYM", "B4@1e-6", "RK1@1e300", "b4"]), max_size=2)
+    )
+    words += [word for name in named for word in (["--method", name] if command != "methods" else [name])]
+    result = run(*words, "--format", data.draw(st.sampled_from(["text", "json"])))
+    assert isinstance(result.exception, SystemExit | None)
+    assert result.exit_code in (0, 1, 2, 3)
+    assert result.stderr.count("\n") == (result.exit_code > 1)
 
 
 def test_numerical_trouble_is_status_three(tmp_path: Path) -> None:

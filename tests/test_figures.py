@@ -216,6 +216,13 @@ def test_a_comparison_draws_each_boundary_and_keeps_a_given_window() -> None:
     assert (*axes.get_xlim(), *axes.get_ylim()) == pytest.approx((0, 1e3, 0, 0.5e6))
 
 
+def test_an_empty_region_has_its_label_only() -> None:
+    figure = comparison_figure([region(lookup("B4"), 0.5)])
+    (line,) = figure.axes[0].lines
+    assert line.get_label() == "B4"
+    assert np.isnan(line.get_xydata()).all()
+
+
 @pytest.mark.parametrize("form", ["png", "svg", "pdf"])
 def test_equal_figures_are_equal_bytes_whatever_the_users_settings(form: str) -> None:
     outputs = []
