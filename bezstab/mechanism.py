@@ -15,7 +15,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from bezstab.errors import InputError
+from bezstab.errors import InputError, NumericalError
 from bezstab.scene import GROUND, Body, Distance, Driver, Joint, PointOnLine, Revolute, Scene
 
 FloatArray = NDArray[np.float64]
@@ -148,9 +148,9 @@ def observe(
     variables = {f"{name}{i}": column for name, rows in columns.items() for i, column in enumerate(rows)}
     wanted = [f"{name}{i}" for name in ("c", "cdot", "l") for i in range(m)]
     body = "\n".join(f" {line}" for line in mechanism.acceleration_code)
-    observed = compiled(
-        f"def observed(t, two_alpha, beta_squared, {', '.join(variables)}):\n{body}\n return {', '.join(wanted)}", np
-    )["observed"](t, two_alpha, beta_squared, *variables.values())
+    source = f"def observed(t, two_alpha, beta_squared, {', '.join(variables)}):\n{body}\n return {', '.join(wanted)}"
+    with np.errstate(all="ignore"):  # where a run broke down its last multipliers may not be finite
+        observed = compiled(source, np)["observed"](t, two_alpha, beta_squared, *variables.values())
     c, cdot, multipliers = (
         np.stack([np.broadcast_to(x, t.shape) for x in observed], axis=-1).reshape(-1, 3, m).swapaxes(0, 1)
     )
@@ -206,11 +206,15 @@ def perturbed(mechanism: Mechanism, error: float) -> tuple[FloatArray, FloatArra
     """Return the initial state moved so that c_1 = error to first order and no other constraint changes.
 
     The change is along M^-1 C_q^T, as the constraint forces are: they undo it and leave the motion as it was.
+    NumericalError where C_q M^-1 C_q^T has no inverse in float64.
     """
     q, v = initial_state(mechanism)
     rows = _geometry(mechanism)[1](q, 0.0)
     weighted = rows.T / np.array(mechanism.equations.mass, float)[:, np.newaxis]
-    return q + weighted @ np.linalg.solve(rows @ weighted, error * np.eye(mechanism.constraints)[0]), v
+    try:
+        return q + weighted @ np.linalg.solve(rows @ weighted, error * np.eye(mechanism.constraints)[0]), v
+    except np.linalg.LinAlgError:
+        raise NumericalError("at t = 0 s: C_q M^-1 C_q^T is singular to rounding: masses too far apart?") from None
 
 
 def constraint_errors(mechanism: Mechanism, t: float, q: Sequence[FloatArray]) -> FloatArray:

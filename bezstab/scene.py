@@ -4,7 +4,6 @@ Nothing in a scene is ever executed: every entry is a number, a name or a list o
 """
 
 import math
-import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -17,6 +16,8 @@ Point = tuple[float, float]
 
 GROUND = "ground"
 COORDINATES = ("x", "y", "theta")
+LEAST = 1e-100  # of a number that is not 0, and of the inverse of the largest: so their squares are within float64
+SIZE = "0 or of size 1e-100 to 1e100"
 NOWHERE = (0.0, 0.0)  # no displacement, direction or force
 
 
@@ -139,19 +140,21 @@ class Table:
         return str(self.get(key, lambda x: isinstance(x, str) and x != "" and x.isprintable(), "a name"))
 
     def number(self, key: str, default: float | None = None, positive: bool = False) -> float:
-        """Return a finite number."""
+        """Return a number."""
         if positive:
-            return float(self.get(key, lambda x: _is_number(x) and x > 0, "a positive number", default))
-        return float(self.get(key, _is_number, "a finite number", default))
+            return float(
+                self.get(key, lambda x: _is_number(x) and x > 0, "a positive number, 1e-100 to 1e100", default)
+            )
+        return float(self.get(key, _is_number, f"a number, {SIZE}", default))
 
     def point(self, key: str, default: Point | None = None) -> Point:
-        """Return a pair of finite numbers."""
-        x, y = self.get(key, _is_point, "two finite numbers", default)
+        """Return a pair of numbers."""
+        x, y = self.get(key, _is_point, f"two numbers, {SIZE}", default)
         return float(x), float(y)
 
     def numbers(self, key: str, allowed: Sequence[str]) -> dict[str, float]:
-        """Return a table of finite numbers, none if absent, with keys among the allowed ones."""
-        value = self.get(key, _are_numbers, "a table of finite numbers", {})
+        """Return a table of numbers, none if absent, with keys among the allowed ones."""
+        value = self.get(key, _are_numbers, f"a table of numbers, {SIZE}", {})
         unknown = [name for name in value if name not in allowed]
         if unknown:
             raise InputError(f"{self.where}: {key} names {unknown[0]!r}, which is not among {', '.join(allowed)}")
@@ -178,7 +181,9 @@ class Table:
 
 
 def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= sys.float_info.max
+    if not isinstance(value, int | float) or isinstance(value, bool):
+        return False
+    return value == 0 or LEAST <= abs(value) <= 1 / LEAST
 
 
 def _is_point(value: object) -> bool:
@@ -299,11 +304,9 @@ def _four_bar_chain(table: Table) -> tuple[tuple[Body, ...], tuple[Joint, ...], 
     The benchmark of Gonzalez et al. (N-four-bar): equal rods of `length` (m) and `mass` (kg), a length apart.
     """
     count, length, mass = (table.number(key, positive=True) for key in ("count", "length", "mass"))
-    if count != int(count) or count > 100:
+    if count > 100 or count != int(count):
         raise InputError(f"{table.where}: count = {count:g}: expected a whole number from 1 to 100")
-    inertia = mass * length * length  # length**2 raises where this is infinite
-    if not 0 < inertia < math.inf:
-        raise InputError(f"{table.where}: mass {mass:g} and length {length:g}: an inertia outside the range of float64")
+    inertia = mass * length**2
     n, half = int(count), length / 2
     rods = [Body(f"rod{i}", ("theta",), mass, inertia / 3, {"x": i * length}, (half, 0.0)) for i in range(n + 1)]
     couplers = [Body(f"coupler{i}", COORDINATES, mass, inertia / 12, {}, (0.0, 0.0)) for i in range(n)]

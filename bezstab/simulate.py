@@ -16,6 +16,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from bezstab.errors import InputError
 from bezstab.mechanism import SINGULAR, Mechanism, compiled, initial_state, names
 from bezstab.methods import (
     LinearMultistep,
@@ -140,12 +141,14 @@ def simulate(
 
     A step of the method lasts h (s) times its step multiple. The first values of a multistep method come from RK4, from
     its family's members of fewer steps ("ramp") or from explicit Euler. A blow-up, a singular S or a number that is
-    not finite ends the run.
+    not finite ends the run. InputError for a start that has blown up before.
     """
     h = h * float(method.step_multiple)
     total = round(duration / h)
     q, v = initial_state(mechanism) if state is None else state
     history: list[State] = [(*q.tolist(), *v.tolist())]
+    if not sum(map(abs, history[0])) < BLOWN_UP:
+        raise InputError(f"the start has coordinates and velocities that exceed {BLOWN_UP:g} in sum, or are not finite")
     failure, pivot, pivot_step = None, 1.0, 0
     try:
         for y, _, worst in islice(march(mechanism, method, h, gains, history[0], start, math), total):

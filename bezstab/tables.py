@@ -46,7 +46,11 @@ Format = Literal["text", "json", "csv", "markdown"]
 
 
 def render(rows: Sequence[Row], columns: Columns, form: Format) -> str:
-    """Return the rows in the given form: every key for json and csv, the chosen columns for text and markdown."""
+    """Return the rows in the given form: every key for json and csv, the chosen columns for text and markdown.
+
+    What is infinite or not a number is missing: null, an empty cell, a dash.
+    """
+    rows = [{k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in row.items()} for row in rows]
     if form == "json":
         return json.dumps(rows, indent=2, ensure_ascii=False, allow_nan=False)
     if form == "csv":
@@ -368,7 +372,7 @@ def choice_row(choice: Choice, h: float | None) -> dict[str, Value]:
     margins, settle = choice.margins, choice.settle_steps
     two_alpha, beta_squared = gains(choice.alpha_hat, choice.beta_hat, h or 1.0)
     (a_min, a_max), (b_min, b_max) = (margins.alpha, margins.beta) if margins else ((math.inf,) * 2,) * 2
-    cells = row(
+    return row(
         choice,
         h=h,
         alpha=two_alpha / 2 if h else None,
@@ -382,7 +386,6 @@ def choice_row(choice: Choice, h: float | None) -> dict[str, Value]:
         beta_factor_min=b_min,
         beta_factor_max=b_max,
     )
-    return {key: None if value == math.inf else value for key, value in cells.items()}
 
 
 def family_row(member: Member | Limit) -> Row:

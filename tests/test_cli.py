@@ -329,6 +329,7 @@ def test_paper_writes_the_chosen_parts_and_prints_findings(tmp_path: Path) -> No
         ("simulate --time 1e-9", "--time"),
         ("simulate --time 1e9", "--time"),
         ("simulate --start late", "--start"),
+        ("simulate --perturb 1e300", "start"),
         ("verify --scene pendulm", "did you mean pendulum"),
         ("verify --alpha 1", "--beta"),
         ("verify --alpha 1 --beta 1 --points 3", "--points"),

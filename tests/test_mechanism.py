@@ -1,8 +1,10 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import sympy as sp
 
-from bezstab.errors import InputError
+from bezstab.errors import InputError, NumericalError
 from bezstab.mechanism import T, equations, initial_state, mechanism, observe, perturbed
 from bezstab.scene import load, parse
 from tests.test_scene import SHIPPED, pendulum
@@ -76,6 +78,13 @@ def test_a_perturbation_moves_the_first_constraint_alone() -> None:
     q, v = perturbed(moving, 1e-5)
     (c,) = observe(moving, np.zeros(1), q[np.newaxis], v[np.newaxis], 0.0, 0.0).c
     assert c == pytest.approx([1e-5, 0, 0, 0], abs=1e-9)  # the square of the perturbation
+
+
+def test_masses_too_far_apart_are_reported() -> None:
+    scene = load("slider_crank")
+    crank, rod, slider = scene.bodies
+    with pytest.raises(NumericalError, match="singular"):
+        perturbed(mechanism(replace(scene, bodies=(crank, replace(rod, mass=1e30), slider))), 1e-5)
 
 
 def test_a_driver_makes_the_constraint_depend_on_time() -> None:

@@ -1,6 +1,7 @@
 import csv
 import io
 import json
+import math
 from typing import Literal
 
 import numpy as np
@@ -33,9 +34,12 @@ def test_json_and_csv_keep_every_digit() -> None:
     }
 
 
-def test_json_has_no_nan() -> None:
-    with pytest.raises(ValueError, match="JSON"):
-        render([{"z_abs": float("nan")}], POLES, "json")
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+def test_what_is_not_finite_is_missing(value: float) -> None:
+    rows = [{**ROWS[0], "z_abs": value}]
+    assert json.loads(render(rows, POLES, "json")) == [{**ROWS[0], "z_abs": None}]
+    assert next(csv.DictReader(io.StringIO(render(rows, POLES, "csv"))))["z_abs"] == ""
+    assert " -  " in render(rows, POLES, "text")
 
 
 def test_columns_line_up_under_hats() -> None:
