@@ -5,6 +5,7 @@ that halves the degree, needs one solve where the mu are conjugate, and keeps al
 where the roots of P pair up.
 """
 
+from collections.abc import Sequence
 from fractions import Fraction
 from functools import cache
 
@@ -171,14 +172,22 @@ def roots_in_mu(method: Method, z: ComplexArray) -> ComplexArray:
 
 @cache
 def float_table(method: Method) -> FloatArray:
-    """Return C with pi(z, mu) = sum_kj C[k, j] z^k mu^j: the one place where exact coefficients become float64."""
-    return np.array(coefficient_table(method), float)
+    """Return C with pi(z, mu) = sum_kj C[k, j] z^k mu^j; NumericalError if that leaves the range of float64."""
+    return _floats(method, coefficient_table(method))
+
+
+def _floats(method: Method, exact: Sequence[Fraction | Sequence[Fraction]]) -> FloatArray:
+    """Return exact coefficients as float64: the one place where they become so."""
+    try:
+        return np.array(exact, float)
+    except OverflowError:
+        raise NumericalError(f"{method.name}: products of its coefficients leave the range of float64") from None
 
 
 @cache
 def branch_points(method: Method) -> ComplexArray:
     """Return every mu at which two roots z of pi(., mu) meet; beyond the nearest a root's power series diverges."""
-    z = polyroots(np.trim_zeros(np.array(branch_polynomial(method), float), "b"))
+    z = polyroots(np.trim_zeros(_floats(method, branch_polynomial(method)), "b")).astype(complex)
     table = float_table(method)
     mu = roots_in_mu(method, z)
     slope = np.abs(polyval2d(np.broadcast_to(z, mu.shape), mu, polyder(table)))

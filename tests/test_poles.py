@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from bezstab.derivation import closed_loop_at, coefficient_table, effective_parameters
 from bezstab.errors import NumericalError
-from bezstab.methods import REGISTRY, LinearMultistep, Method, lookup
+from bezstab.methods import REGISTRY, LinearMultistep, Method, RungeKutta, lookup
 from bezstab.poles import branch_points, dominant_pole, poles, roots_in_z, spectral_radius, verdict
 
 F = Fraction
@@ -237,3 +237,10 @@ def test_two_roots_meet_at_a_branch_point(name: str) -> None:
     z = roots_in_z(lookup(name), found)
     apart = np.abs(z[:, np.newaxis] - z)[np.triu_indices(len(z), 1)].min(axis=0)
     assert apart.max() < 1e-3  # where three or four meet, float64 keeps a third or a quarter of its digits
+
+
+def test_coefficients_beyond_float64_are_reported() -> None:
+    huge = Fraction(10) ** 200
+    method = Method("huge", RungeKutta(((Fraction(0),) * 2, (huge, Fraction(0))), (1 - huge, huge)), "constructed")
+    with pytest.raises(NumericalError, match="huge: products of its coefficients"):
+        poles(method, 0.5, 0.1)
