@@ -64,6 +64,10 @@ class Experiment:
         """Return the largest |c_1| (m) between two times (s)."""
         return float(np.abs(self.c[(self.run.t >= begin) & (self.run.t <= end)]).max())
 
+    def left(self, begin: float, end: float) -> float:
+        """Return the same, but 0 where it is rounding."""
+        return largest if (largest := self.envelope(begin, end)) > ROUNDED else 0.0
+
 
 def experiment(
     method: Method,

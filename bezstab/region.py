@@ -317,7 +317,7 @@ def _arcs(method: Method, level: float) -> Iterator[_Arc]:
 
     for start, end, edges in ((-np.pi, 0.0, -half[::-1]), (0.0, np.pi, half)):
         theta = _with_dips(method, level, (edges[1:] + edges[:-1]) / 2)
-        counts = count(theta)
+        counts = count(theta)  # all in one go again: dips judged alone may be noise, and would pass for arcs
         change = np.flatnonzero(np.diff(counts))
         low, high = theta[change], theta[change + 1]
         for _ in range(BISECTIONS):

@@ -409,10 +409,7 @@ def engine_row(engine: Engine, point: tuple[Fraction, Fraction] | None, h: Fract
 
 def comparison_row(run: Experiment) -> Row:
     """Return a line of Table 5: a dominant pole, the paper's beside it, and how large c_1 still is, 0 if rounding."""
-    from bezstab.experiments import ROUNDED
-
-    spans = {"before": (6.0, 8.0), "after": (8.0, 10.0)}
-    left = {key: value if (value := run.envelope(*times)) > ROUNDED else 0.0 for key, times in spans.items()}
+    left = {"before": run.left(6.0, 8.0), "after": run.left(8.0, 10.0)}
     printed = TABLE_5[str(run.alpha_hat), str(run.beta_hat)][run.run.method.name]
     return row(run, method=run.run.method.name, printed=" ".join(printed), **left, **_parts("z_", run.pole))
 
