@@ -206,15 +206,18 @@ def perturbed(mechanism: Mechanism, error: float) -> tuple[FloatArray, FloatArra
     """Return the initial state moved so that c_1 = error to first order and no other constraint changes.
 
     The change is along M^-1 C_q^T, as the constraint forces are: they undo it and leave the motion as it was.
-    NumericalError where C_q M^-1 C_q^T has no inverse in float64.
+    NumericalError where C_q M^-1 C_q^T, its rows and columns scaled alike, has lost its rank in float64.
     """
     q, v = initial_state(mechanism)
     rows = _geometry(mechanism)[1](q, 0.0)
     weighted = rows.T / np.array(mechanism.equations.mass, float)[:, np.newaxis]
-    try:
-        return q + weighted @ np.linalg.solve(rows @ weighted, error * np.eye(mechanism.constraints)[0]), v
-    except np.linalg.LinAlgError:
-        raise NumericalError("at t = 0 s: C_q M^-1 C_q^T is singular to rounding: masses too far apart?") from None
+    with np.errstate(all="ignore"):
+        effective = rows @ weighted
+        size = np.sqrt(np.diag(effective))
+        scaled = effective / np.outer(size, size)
+    if not (np.isfinite(scaled).all() and np.linalg.eigvalsh(scaled)[0] > SINGULAR):
+        raise NumericalError("at t = 0 s: C_q M^-1 C_q^T is singular to rounding: masses too far apart?")
+    return q + weighted @ np.linalg.solve(effective, error * np.eye(mechanism.constraints)[0]), v
 
 
 def constraint_errors(mechanism: Mechanism, t: float, q: Sequence[FloatArray]) -> FloatArray:
