@@ -20,6 +20,7 @@ from bezstab.region import region
 
 ROUNDING = 1e-9  # relative; a solved kink's moduli agree to about 1e-15, neighbouring candidates differ far more
 DOUBLE = 1e-6  # relative; two roots closer than this are one double root, which float64 splits by sqrt(eps) = 1e-8
+REACH = 1e150  # of mu, whose square is beta_hat; one zero of R is always within its degree, as R(0) = R'(0) = 1
 NEWTON_STEPS = 30
 STARTS = 6  # local minima of the sampled f that are followed up
 
@@ -51,7 +52,7 @@ def optimum(method: Method) -> Optimum | None:
     if len(float_table(method)) == 2:  # one step: z = R(mu), and the zeros of R are deadbeat
         zeros: list[complex] = []
         for mu in map(_upper, np.sort_complex(roots_in_mu(method, np.zeros(1, complex))[:, 0])):  # most damped first
-            if all(abs(mu - other) > DOUBLE * abs(mu) for other in zeros):
+            if abs(mu) < REACH and all(abs(mu - other) > DOUBLE * abs(mu) for other in zeros):
                 zeros.append(mu)
         return _described(method, 0.0, zeros, arc=False)
     if not region(method).boundary:

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bezstab.methods import REGISTRY, LinearMultistep, Method, lookup
+from bezstab.methods import REGISTRY, LinearMultistep, Method, RungeKutta, lookup
 from bezstab.optimum import Optimum, optimum
 from bezstab.poles import spectral_radius
 from bezstab.region import region, window
@@ -112,3 +112,11 @@ def test_random_two_step_methods(root: Fraction, b: Fraction) -> None:
         (a_low, a_high), (b_low, b_high) = window(region(method))
         a, c = np.meshgrid(np.linspace(a_low, a_high, 200), np.linspace(b_low, b_high, 200))
         assert spectral_radius(method, a, c).min() >= found.z_abs - 1e-9
+
+
+def test_a_zero_of_r_beyond_float64s_squares_is_out_of_reach() -> None:
+    tableau = ((Fraction(0),) * 2, (Fraction(1, 10**200), Fraction(0)))
+    far = Method("far", RungeKutta(tableau, (Fraction(0), Fraction(1))), "constructed")  # R = 1 + mu + 1e-200 mu^2
+    best = optimum(far)
+    assert best
+    assert (best.z_abs, best.alpha_hat, best.beta_hat, best.elsewhere) == (0.0, 2.0, 1.0, ())
