@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from fractions import Fraction
 from functools import partial
+from operator import length_hint
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, Literal, NoReturn, TypeVar
 
@@ -110,6 +111,7 @@ def _setting(text: str) -> Setting:
 NUMBER, POSITIVE, SECONDS = Read("number", rational), Read("number", _positive), Read("seconds", _seconds)
 METHOD, ENGINE, SETTING = Read("method", lookup), click.Choice(list(ENGINES)), Read("name=values", _setting)
 option: Callable[..., Any] = click.option  # Any: in a command it stands as the default of the parameter it fills
+argument: Callable[..., Any] = click.argument
 
 
 def _choice(name: str, words: str, text: str) -> Any:
@@ -188,7 +190,7 @@ def poles(
 
 @command
 def methods(
-    methods: Sequence[Method] = click.argument("methods", metavar="[NAME]...", type=METHOD, nargs=-1),  # type: ignore[assignment]
+    methods: Sequence[Method] = argument("methods", metavar="[NAME]...", type=METHOD, nargs=-1),
     latex: bool = option("--latex", is_flag=True, help="Formulas as LaTeX."),
     form: Format = _form,
 ) -> None:
@@ -286,10 +288,11 @@ def region(
         ends = (map(float, given or fitting) for given, fitting in windows)
         alpha_hat, beta_hat = (np.linspace(low, high, grid) for low, high in ends)
         blocks = exact.pole_map(method, alpha_hat, beta_hat)
-        z = np.concatenate(list(_progress(blocks, grid, method.name, len)))
+        z = np.concatenate(list(_progress(blocks, method.name, grid, len)))
         _write_table(path, tables.map_columns(alpha_hat, beta_hat, z, step), table)
         chosen = map(float, levels) if levels else [_faster_level(method, best)] if best else []
-        drawn = stable, [exact.region(method, level) for level in chosen], best, alpha_hat, beta_hat, np.abs(z)
+        faster = map(partial(exact.region, method), chosen)  # made only if they are drawn
+        drawn = stable, faster, best, alpha_hat, beta_hat, np.abs(z)
         _write_figure(path, lambda draw: draw.region_figure(*drawn, step, marks), figure)  # noqa: B023
     _show(rows, tables.REGIONS, form)
 
@@ -395,14 +398,13 @@ def verify(
     if witness:
         from bezstab.witness import count, interrogate
 
-        heard = _progress(interrogate(moving, float(h)), count(), "MuJoCo")
+        heard = _progress(interrogate(moving, float(h)), "MuJoCo", count())
         _show([tables.row(each, scene=moving.scene.name) for each in heard], tables.WITNESSED, form)
     elif cells is None:
         summaries = []
         for method in methods:
             a, b = np.array(point, float)[:, np.newaxis] if point else measuring.random_points(method, points or 20)
-            bar = partial(_progress, length=measuring.RUN + 1, label=method.name)
-            measured = measuring.measure(moving, method, float(h), a, b, bar)
+            measured = measuring.measure(moving, method, float(h), a, b, partial(_progress, label=method.name))
             rows += (found := [tables.measurement_row(moving.scene.name, each) for each in measured])
             summaries.append(tables.summary_row(found))
         _show(rows, tables.MEASUREMENTS, form)
@@ -462,7 +464,7 @@ def tradeoff(
     if maps:
         methods = [lookup("B4"), lookup("AB4")] if _by_default("methods") else methods
         costs = (trading.map_cost(method, count) for method in methods for count in trading.MAP_POINTS)
-        shown = _progress(costs, len(methods) * len(trading.MAP_POINTS), "maps")
+        shown = _progress(costs, "maps", len(methods) * len(trading.MAP_POINTS))
         _show([tables.row(cost) for cost in shown], tables.MAP_COSTS, form)
         return
     point = _point(alpha, beta)
@@ -536,7 +538,7 @@ def choose(
     if engine and _by_default("methods"):
         methods = [lookup("SYM")]
     rows: list[Row] = []
-    for method in _progress(methods, len(methods), goal):
+    for method in _progress(methods, goal):
         rate = choosing.THOUSANDFOLD ** float(h * method.step_multiple / settle) if settle else None
         found = choosing.choose(method, goal, float(spread), rate, equal=keep is not None)
         if share != 1:
@@ -624,9 +626,7 @@ def explore(methods: Sequence[Method] = _methods(*TABLE_5), h: Fraction = _step)
 
 @command
 def family(
-    name: str = click.argument(
-        "name", metavar="bezier|adams-bashforth", type=click.Choice(["bezier", "adams-bashforth"])
-    ),  # type: ignore[assignment]
+    name: str = argument("name", metavar="bezier|adams-bashforth", type=click.Choice(["bezier", "adams-bashforth"])),
     first: int = option("--from", "first", type=click.IntRange(min=1), default=2, help="Smallest n."),
     last: int | None = option(
         "--to", "last", type=click.IntRange(min=1), help="Largest n [12 for bezier, 8 for adams-bashforth]."
@@ -676,8 +676,7 @@ def extremes(
     from bezstab import tables
     from bezstab.extremes import checks
 
-    each = list(checks(not short))
-    found = [check() for check in _progress(each, len(each), "extremes")]
+    found = [check() for check in _progress(list(checks(not short)), "extremes")]
     _show([tables.row(check) for check in found], tables.CHECKS, form)
     return 0 if all(check.held for check in found) else 1
 
@@ -706,7 +705,7 @@ def paper(
     for parts, make in report.REPORTS.items():
         if not chosen & set(parts):
             continue
-        made = make(lambda runs, length: _progress(runs, length, parts[0]))  # noqa: B023
+        made = make(lambda runs, length: _progress(runs, parts[0], length))  # noqa: B023
         for name in (part for part in made.tables if part in chosen):
             _write(output / f"paper_{name}.md", lambda file: file.write(made.tables[name].encode()))  # noqa: B023
         for name in (part for part in made.figures if part.rstrip("abc") in chosen):
@@ -754,13 +753,16 @@ def _file_name(name: str) -> str:
 
 
 def _progress(
-    items: Iterable[Item], length: int, label: str, size: Callable[[Item], int] = lambda _: 1
+    items: Iterable[Item], label: str, length: int = 0, size: Callable[[Item], int] = lambda _: 1
 ) -> Iterator[Item]:
-    """Yield the items, with a progress bar on standard error where that is a terminal; `length` is all their sizes."""
+    """Yield the items, with a progress bar on standard error where that is a terminal.
+
+    `length` is the sum of their sizes; without it their number.
+    """
     if not sys.stderr.isatty():
         yield from items
         return
-    with click.progressbar(length=length, label=label, file=sys.stderr) as bar:
+    with click.progressbar(length=length or length_hint(items), label=label, file=sys.stderr) as bar:
         for item in items:
             yield item
             bar.update(size(item))
@@ -782,7 +784,7 @@ def _in_chunks(
         kept = spread.store(path.with_name(f"{path.name}.chunks"), job, resume)
         try:
             arriving = spread.completed(work, chunks, executors, kept)
-            found = dict(_progress(arriving, len(chunks), path.name))
+            found = dict(_progress(arriving, path.name, len(chunks)))
         except KeyboardInterrupt:
             click.echo(f"bezstab: what is finished lies in {kept.path}: --resume goes on from there", err=True)
             raise

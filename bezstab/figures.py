@@ -1,7 +1,7 @@
 """Results as matplotlib figures: readable in grey, at column width, byte-identical when drawn twice."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from typing import Any, BinaryIO, Literal, SupportsFloat
 
@@ -57,7 +57,7 @@ DASHES: list[str | tuple[int, tuple[float, ...]]] = ["-", (0, (5, 1.5)), (0, (1.
 
 def region_figure(
     region: Region,
-    faster: Sequence[Region],
+    faster: Iterable[Region],
     best: Optimum | None,
     alpha_hat: FloatArray,
     beta_hat: FloatArray,

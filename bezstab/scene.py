@@ -169,7 +169,7 @@ class Table:
 
     def table(self, key: str) -> "Table":
         """Return a table, an empty one if absent."""
-        self.within.append(made := Table(self.get(key, lambda _: True, "", {}), key))
+        self.within.append(made := Table(self.get(key, lambda value: isinstance(value, dict), "a table", {}), key))
         return made
 
     def done(self) -> None:

@@ -148,7 +148,7 @@ def simulate(
     q, v = initial_state(mechanism) if state is None else state
     history: list[State] = [(*q.tolist(), *v.tolist())]
     if not sum(map(abs, history[0])) < BLOWN_UP:
-        raise InputError(f"the start has coordinates and velocities that exceed {BLOWN_UP:g} in sum, or are not finite")
+        raise InputError(f"the start: {_failure(1.0)}")
     failure, pivot, pivot_step = None, 1.0, 0
     try:
         for y, _, worst in islice(march(mechanism, method, h, gains, history[0], start, math), total):

@@ -371,7 +371,7 @@ def choice_row(choice: Choice, h: float | None) -> dict[str, Value]:
     """Return a point, in 1/s too with h (s), how fast it settles and by what it may be off; None for no limit."""
     margins, settle = choice.margins, choice.settle_steps
     two_alpha, beta_squared = gains(choice.alpha_hat, choice.beta_hat, h or 1.0)
-    (a_min, a_max), (b_min, b_max) = (margins.alpha, margins.beta) if margins else ((math.inf,) * 2,) * 2
+    (a_min, a_max), (b_min, b_max) = (margins.alpha, margins.beta) if margins else ((None, None), (None, None))
     return row(
         choice,
         h=h,
