@@ -36,7 +36,7 @@ lint: .venv/tested  ## style, format and types
 	$(BIN)/mypy
 
 bench: .venv/benched  ## speed, as ratios measured in one run, into figures/bench.md
-	$(BIN)/python tests/bench.py
+	$(BIN)/python tests/bench/bench.py
 
 clean:  ## remove the virtual environments
 	rm -rf .venv .venv-oldest

@@ -2,7 +2,6 @@
 
 import difflib
 from collections.abc import Iterable
-from fractions import Fraction
 
 
 class InputError(ValueError):
@@ -13,14 +12,7 @@ class NumericalError(ArithmeticError):
     """A computation that broke down, said in one line that names when and where."""
 
 
-def within_float64(value: Fraction, said: str) -> Fraction:
-    """Return a number that is zero or in float64's normal range; else InputError, with what is said of it."""
-    if value and not Fraction("1e-307") < abs(value) < Fraction("1e308"):
-        raise InputError(f"{said} is outside the range of float64 (1e-307 to 1e308)")
-    return value
-
-
-def unknown(kind: str, name: str, known: Iterable[str]) -> InputError:
+def unknown_name(kind: str, name: str, known: Iterable[str]) -> InputError:
     """Return the error of a name that is neither known nor a TOML file's; it suggests the nearest, in any case."""
     names = {other.casefold(): other for other in known}
     near = names[difflib.get_close_matches(name.casefold(), names, n=1, cutoff=0)[0]]

@@ -1,3 +1,18 @@
+r"""The house: floors (a room imports only from below), doors (through a room's __init__), walls (nobody enters paper).
+
+cli      paper           paper is an extension: nothing imports it; the main group finds its command by name
+  |        |
+  api ---- show          what people type, and what they see
+         |
+      evidence           the only place where stability and mechanism meet
+      /      |
+stability  mechanism     neither knows of the other
+      \      |
+      methods            schemes as exact data
+         |
+errors, rationals, files, units, engines
+"""
+
 import ast
 import subprocess
 import sys
@@ -6,72 +21,34 @@ from pathlib import Path
 import pytest
 
 PACKAGE = Path(__file__).parent.parent / "bezstab"
-MODULES = sorted(path.stem for path in PACKAGE.glob("*.py") if path.stem not in ("__init__", "__main__"))
-FLOORS = {
-    **dict.fromkeys(("errors",), 0),
-    **dict.fromkeys(("files", "schur", "paper"), 1),
-    **dict.fromkeys(("methods", "baumgarte", "scene", "chunks"), 2),
-    **dict.fromkeys(("derivation", "mechanism"), 3),
-    **dict.fromkeys(("formulas", "poles", "simulate"), 4),
-    **dict.fromkeys(("region", "experiments"), 5),
-    **dict.fromkeys(("optimum", "verify", "witness"), 6),
-    **dict.fromkeys(("choose", "family", "claims"), 7),
-    **dict.fromkeys(("tradeoff", "extremes"), 8),
-    **dict.fromkeys(("tables", "figures"), 9),
-    **dict.fromkeys(("report", "explore"), 10),
-    "cli": 11,
+ROOMS = ("methods", "stability", "mechanism", "evidence", "show", "cli", "paper")
+FOUNDATIONS = {"lazy", "errors", "rationals", "files", "units", "engines"}
+BELOW = {
+    "methods": FOUNDATIONS,
+    "stability": FOUNDATIONS | {"methods"},
+    "mechanism": FOUNDATIONS | {"methods"},
+    "evidence": FOUNDATIONS | {"methods", "stability", "mechanism"},
+    "show": FOUNDATIONS | {"methods", "stability", "mechanism", "evidence"},
+    "cli": FOUNDATIONS | {"methods", "stability", "mechanism", "evidence", "show"},
+    "paper": FOUNDATIONS | {"methods", "stability", "mechanism", "evidence", "show", "cli"},
 }
-ONLY_IN = {
-    "sympy": {"derivation", "formulas", "mechanism"},
-    "matplotlib": {"figures", "explore"},
-    "click": {"cli"},
-    "mujoco": {"witness"},
-    "distributed": {"chunks"},
-    "mpmath": {"extremes"},
-}
-ALLOWED_FOR_TYPES = {
-    ("cli", "matplotlib"),
-    ("report", "matplotlib"),
-}  # imported under TYPE_CHECKING only, see test_help_is_light
+FILES = sorted(path.relative_to(PACKAGE) for path in PACKAGE.rglob("*.py") if path.parent != PACKAGE)
 
 
-def imports(module: str) -> set[str]:
-    """Return every module that one imports, inside functions too."""
+def imported(path: Path) -> set[str]:
+    """Return every module of the package that a file imports, inside functions too, as dotted names."""
     names = set()
-    for node in ast.walk(ast.parse((PACKAGE / f"{module}.py").read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Import):
-            names |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom) and node.module:
-            names |= (
-                {f"{node.module}.{alias.name}" for alias in node.names} if node.module == "bezstab" else {node.module}
-            )
+    for node in ast.walk(ast.parse((PACKAGE / path).read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and node.module and node.module.split(".")[0] == "bezstab":
+            names.add(node.module.removeprefix("bezstab").removeprefix("."))
     return names
 
 
-def test_every_module_has_a_floor_and_a_test() -> None:
-    assert set(FLOORS) == set(MODULES)
-    assert {f"test_{module}.py" for module in MODULES} <= {path.name for path in Path(__file__).parent.glob("*.py")}
-
-
-@pytest.mark.parametrize("module", MODULES)
-def test_a_module_imports_only_from_lower_floors(module: str) -> None:
-    own = {name.split(".")[1] for name in imports(module) if name.startswith("bezstab.")} & set(MODULES)
-    assert all(FLOORS[other] < FLOORS[module] for other in own)
-
-
-@pytest.mark.parametrize("module", MODULES)
-def test_only_the_appointed_modules_see_a_library(module: str) -> None:
-    for library in {name.split(".")[0] for name in imports(module)} & set(ONLY_IN):
-        assert module in ONLY_IN[library] or (module, library) in ALLOWED_FOR_TYPES
-
-
-@pytest.mark.parametrize("module", sorted(set(MODULES) - {"cli"}))
-def test_computation_neither_prints_nor_exits_nor_filters_warnings(module: str) -> None:
-    tree = ast.parse((PACKAGE / f"{module}.py").read_text(encoding="utf-8"))
-    called = {ast.unparse(node.func) for node in ast.walk(tree) if isinstance(node, ast.Call)}
-    assert not called & {"print", "exit", "sys.exit", "warnings.filterwarnings", "warnings.simplefilter", "np.seterr"}
-    windows = {"explore"}  # pyplot is what opens one
-    assert not imports(module) & ({"warnings"} if module in windows else {"warnings", "matplotlib.pyplot"})
+@pytest.mark.parametrize("path", FILES, ids=str)
+def test_a_room_imports_only_from_below(path: Path) -> None:
+    room = path.parts[0]
+    others = {name.split(".")[0] for name in imported(path) if name} - {room}
+    assert others <= BELOW[room]
 
 
 @pytest.mark.parametrize("code", ["import bezstab", "from bezstab.cli import main; main(['--help'])"])

@@ -1,6 +1,6 @@
 import pytest
 
-from bezstab.errors import InputError, NumericalError, unknown
+from bezstab.errors import InputError, NumericalError, unknown_name
 
 
 def test_bad_news_comes_in_two_kinds_that_python_knows() -> None:
@@ -10,6 +10,6 @@ def test_bad_news_comes_in_two_kinds_that_python_knows() -> None:
 
 @pytest.mark.parametrize("name", ["Alpah", "ALPHA", "alpha\n", "alp"])
 def test_an_unknown_name_suggests_the_nearest_in_one_line(name: str) -> None:
-    message = str(unknown("letter", name, ["Alpha", "Omega"]))
+    message = str(unknown_name("letter", name, ["Alpha", "Omega"]))
     assert message.startswith(f"unknown letter {name!r}: did you mean Alpha? (names: Alpha, Omega; ")
     assert len(message.splitlines()) == 1

@@ -7,7 +7,7 @@ import pytest
 from click.testing import CliRunner
 
 from bezstab.cli import main
-from bezstab.methods import read
+from bezstab.methods import read_method
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -45,12 +45,12 @@ def test_there_is_something_to_check() -> None:
 def test_the_sample_in_the_readme_is_a_method(tmp_path: Path) -> None:
     (sample,) = re.findall(r"```toml\n(.*?)```", README, re.DOTALL)
     (path := tmp_path / "sample.toml").write_text(sample, encoding="utf-8")
-    assert read(path).scheme == read(ROOT / "configs" / "methods" / "ebdf2.toml").scheme
+    assert read_method(path).scheme == read_method(ROOT / "configs" / "methods" / "ebdf2.toml").scheme
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "configs" / "methods").glob("*.toml")), ids=lambda path: path.name)
 def test_every_shipped_method_is_accepted(path: Path) -> None:
-    assert read(path).name == tomllib.loads(path.read_text(encoding="utf-8"))["name"]
+    assert read_method(path).name == tomllib.loads(path.read_text(encoding="utf-8"))["name"]
 
 
 def test_every_picture_and_link_is_there() -> None:

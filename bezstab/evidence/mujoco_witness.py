@@ -1,0 +1,149 @@
+"""A witness from outside: the same mechanism in MuJoCo, whose own integrators must settle and diverge where P(z) says.
+
+MuJoCo's constraint reference is aref = -b cdot - k c, Baumgarte's feedback, with k and b given as solref = (-k, -b)
+(MuJoCo documentation, Modeling, Constraint parameters). Its Euler integrator is symplectic Euler, its RK4 Kutta's.
+"""
+
+import types
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from bezstab.errors import InputError
+from bezstab.mechanism import GROUND, Body, Mechanism, Revolute, Scene, constraint_errors, perturbed_state
+from bezstab.methods import Method, lookup
+from bezstab.stability import FloatArray, first_where, region, spectral_radius
+from bezstab.units import feedback_gains
+
+Outcome = Literal["converges", "diverges", "neither"]
+
+INTEGRATORS = {"Euler": "SYM", "RK4": "RK4"}
+RAYS = (15.0, 30.0, 45.0, 60.0, 75.0)  # degrees, in the plane scaled by the region's extent
+TIMES = (0.9, 1.1)  # the boundary: nearer, growth takes thousands of steps
+IMPEDANCE = 0.9999  # the most that MuJoCo takes: the rest of the unconstrained acceleration leaks into the constraint
+RUN = 3000  # steps
+KICK = 1e-3  # m: |z_p| <= 0.9 leaves nothing of it; what remains is truncation error and the leak
+LEFT = 1.0  # m: |z_p| >= 1.1 takes the kick there within a hundred steps
+
+
+@dataclass(frozen=True)
+class Witnessed:
+    """What MuJoCo's integrator did at a multiple of the boundary, and |z_p| of the method it implements there.
+
+    `remaining` is the largest |c| (m) in the last tenth of the run.
+    """
+
+    integrator: str
+    method: Method
+    alpha_hat: float
+    beta_hat: float
+    times_boundary: float
+    predicted_abs: float
+    predicted_verdict: Outcome
+    measured_verdict: Outcome
+    remaining: float
+    steps: int
+
+
+def mujoco_witnesses(mechanism: Mechanism, h: float) -> Iterator[Witnessed]:
+    """Yield what each of MuJoCo's integrators does at 0.9 and 1.1 times the boundary along several rays; h in s.
+
+    InputError without MuJoCo, or for a scene that is not made of revolute joints alone.
+    """
+    mujoco = _mujoco()
+    for integrator, name in INTEGRATORS.items():
+        method = lookup(name)
+        for boundary in _boundary_points(method):
+            for times in TIMES:
+                alpha_hat, beta_hat = (times * boundary).tolist()
+                model = mujoco.MjModel.from_xml_string(model_xml(mechanism.scene, integrator, h, alpha_hat, beta_hat))
+                c = _run(mujoco, model, mechanism)
+                remaining = float(c[-RUN // 10 :].max())
+                seen: Outcome = "diverges" if len(c) < RUN else "converges" if remaining < KICK else "neither"
+                z_abs = float(spectral_radius(method, alpha_hat, beta_hat))
+                predicted: Outcome = "converges" if z_abs < 1 else "diverges"
+                outcome = (z_abs, predicted, seen, remaining, len(c))
+                yield Witnessed(integrator, method, alpha_hat, beta_hat, times, *outcome)
+
+
+def witness_count() -> int:
+    """Return how many answers there are."""
+    return len(INTEGRATORS) * len(RAYS) * len(TIMES)
+
+
+def model_xml(scene: Scene, integrator: str, h: float, alpha_hat: float, beta_hat: float) -> str:
+    """Return the scene as MuJoCo's XML: a joint per free coordinate, in their order, and a connection per revolute.
+
+    It holds numbers and names made here, nothing else of the scene.
+    """
+    if scene.forces or not all(isinstance(joint, Revolute) for joint in scene.joints):
+        raise InputError(f"--witness mujoco: {scene.name} has more than revolute joints and gravity: not supported")
+    two_alpha, beta_squared = feedback_gains(alpha_hat, beta_hat, h)
+    feedback = f'solref="{-beta_squared!r} {-two_alpha!r}" solimp="{IMPEDANCE} {IMPEDANCE} 1 0.5 1"'
+    sites: dict[str, str] = dict.fromkeys([GROUND, *(body.name for body in scene.bodies)], "")
+    connections = ""
+    for number, joint in enumerate(scene.joints):
+        assert isinstance(joint, Revolute)
+        for end, (name, (x, y)) in enumerate(zip(joint.bodies, joint.points, strict=True)):
+            sites[name] += f'<site name="point{number}_{end}" pos="{x!r} {y!r} 0"/>'
+        connections += f'<connect site1="point{number}_0" site2="point{number}_1" {feedback}/>'
+    bodies = "".join(_body_xml(body, sites[body.name]) for body in scene.bodies)
+    gx, gy = scene.gravity
+    return f"""<mujoco>
+        <compiler angle="radian"/>
+        <option timestep="{h!r}" integrator="{integrator}" gravity="{gx!r} {gy!r} 0" tolerance="0" iterations="100">
+          <flag contact="disable" refsafe="disable" autoreset="disable"/>
+        </option>
+        <worldbody>{sites[GROUND]}{bodies}</worldbody>
+        <equality>{connections}</equality>
+    </mujoco>"""
+
+
+def _body_xml(body: Body, sites: str) -> str:
+    axes = {"x": 'type="slide" axis="1 0 0"', "y": 'type="slide" axis="0 1 0"', "theta": 'type="hinge" axis="0 0 1"'}
+    x, y, theta = (body.locked.get(axis, 0.0) for axis in axes)
+    u, w = body.center
+    mass = body.mass or 1.0  # of a body about its centre on a fixed pivot, where it does not matter
+    inertia = body.inertia - body.mass * (u * u + w * w) if "theta" in body.free else 1.0  # about the centre of mass
+    joints = "".join(f"<joint {axes[axis]}/>" for axis in body.free)
+    return f"""<body pos="{x!r} {y!r} 0" euler="0 0 {theta!r}">
+        <inertial pos="{u!r} {w!r} 0" mass="{mass!r}" diaginertia="{inertia!r} {inertia!r} {inertia!r}"/>
+        {joints}{sites}
+    </body>"""
+
+
+def _mujoco() -> types.ModuleType:
+    try:
+        import mujoco
+    except ImportError:
+        raise InputError("--witness mujoco needs an optional package: pip install 'bezstab[mujoco]'") from None
+    module: types.ModuleType = mujoco
+    return module
+
+
+def _boundary_points(method: Method) -> Iterator[FloatArray]:
+    """Yield the first point with |z_p| = 1 on each ray from the origin."""
+    extent = region(method).extent
+    assert extent
+    for angle in np.radians(RAYS):
+        ray = np.array([np.cos(angle), np.sin(angle)]) * np.array(extent)[:, 1]
+        met = first_where(lambda s: spectral_radius(method, *np.outer(ray, s)) >= 1, np.linspace(0, 2, 400)[1:])  # noqa: B023
+        assert met
+        yield met[0] * ray
+
+
+def _run(mujoco: types.ModuleType, model: object, mechanism: Mechanism) -> FloatArray:
+    """Return the largest |c| after each step from a kicked state, up to where it exceeds LEFT or is not a number."""
+    data = mujoco.MjData(model)
+    data.qpos[:], data.qvel[:] = perturbed_state(mechanism, KICK)
+    c: list[float] = []
+    mujoco.set_mju_user_warning(lambda _: None)  # it would print, and write a file, where a run diverges
+    try:
+        while len(c) < RUN and (not c or c[-1] < LEFT):
+            mujoco.mj_step(model, data)
+            c.append(float(np.abs(constraint_errors(mechanism, 0.0, list(data.qpos))).max()))
+    finally:
+        mujoco.set_mju_user_warning(None)
+    return np.array(c)

@@ -1,0 +1,77 @@
+"""The Schur-Cohn (Jury) test in exact rational arithmetic: where a polynomial's roots lie in the unit disc.
+
+Polynomials are sequences of Fraction in descending powers of z.
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from itertools import zip_longest
+from typing import Literal
+
+Verdict = Literal["converges", "marginal", "diverges"]
+Polynomial = Sequence[Fraction]
+
+
+def recursion_verdict(polynomial: Polynomial) -> Verdict:
+    """Return what the linear recursion with this characteristic polynomial does, proven.
+
+    converges: every root has |z| < 1; marginal: bounded without decay, that is the roots on the unit circle are
+    simple and none lies outside; diverges: a root outside, or a repeated one on the circle.
+    The polynomial is real, with a non-zero leading coefficient; ZeroDivisionError if it is zero.
+
+    Roots on the circle are shared with the reciprocal polynomial, so they all sit, with their multiplicity, in
+    G = gcd(P, P*). A reciprocal G has all its roots on the circle, and simple, if and only if every root of G'
+    has |z| < 1 (A. Cohn, Math. Z. 14, 1922); what is left of P must have its roots inside.
+    """
+    p = _trimmed(polynomial)
+    if is_schur(p):
+        return "converges"
+    if abs(p[-1]) > abs(p[0]):  # the product of all |z| exceeds one
+        return "diverges"
+    shared = _gcd(p, _trimmed(p[::-1]))
+    rest, _ = _divmod(p, shared)
+    return "marginal" if is_schur(_derivative(shared)) and is_schur(rest) else "diverges"
+
+
+def is_schur(polynomial: Polynomial) -> bool:
+    """Return whether every root has |z| < 1, by Schur's recursion p <- (p - k p*) / z with k = p(0) / lead(p).
+
+    True for a constant. The recursion goes on as long as |k| < 1 (I. Schur, J. reine angew. Math. 147, 1917).
+    """
+    p = _trimmed(polynomial)
+    while len(p) > 1:
+        k = p[-1] / p[0]
+        if abs(k) >= 1:
+            return False
+        p = [(a - k * b) / (1 - k * k) for a, b in zip(p, p[::-1], strict=True)][:-1]
+    return True
+
+
+def _trimmed(polynomial: Polynomial) -> list[Fraction]:
+    """Return the monic polynomial with the same roots, leading zeros dropped."""
+    p = list(polynomial)
+    while len(p) > 1 and p[0] == 0:
+        del p[0]
+    return [a / p[0] for a in p]
+
+
+def _derivative(p: Polynomial) -> list[Fraction]:
+    degree = len(p) - 1
+    return [(degree - i) * a for i, a in enumerate(p[:-1])] or [Fraction(1)]
+
+
+def _divmod(p: Polynomial, divisor: Polynomial) -> tuple[list[Fraction], list[Fraction]]:
+    """Return quotient and remainder of polynomial long division; the divisor's leading coefficient is not zero."""
+    remainder, quotient = list(p), []
+    while len(remainder) >= len(divisor):
+        factor = remainder[0] / divisor[0]
+        quotient.append(factor)
+        remainder = [a - factor * b for a, b in zip_longest(remainder, divisor, fillvalue=Fraction(0))][1:]
+    return quotient, remainder
+
+
+def _gcd(p: Polynomial, q: Polynomial) -> list[Fraction]:
+    """Return the monic greatest common divisor by Euclid's algorithm."""
+    while any(q):
+        p, q = (monic := _trimmed(q)), _divmod(p, monic)[1]
+    return _trimmed(p)

@@ -1,0 +1,1 @@
+"""The paper this tool grew from: what it prints, its runs, its claims, its figures."""

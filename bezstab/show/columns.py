@@ -1,0 +1,99 @@
+"""Rows of results, typed columns that show them, and both as text, Markdown, CSV or JSON."""
+
+import csv
+import io
+import json
+import math
+import unicodedata
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+Value = str | float | int | None
+Row = Mapping[str, Value]
+Format = Literal["text", "json", "csv", "markdown"]
+
+MISSING = "-"
+
+
+@dataclass(frozen=True)
+class Column:
+    """What a table shows of each row: the heading above it, and the text made of a row."""
+
+    heading: str
+    text: Callable[[Row], str]
+
+
+def column(heading: str, key: str, form: str = "") -> Column:
+    """Return the column that shows row[key] in a format such as '.6f'; what is missing or empty is a dash."""
+    return Column(heading, lambda row: formatted(row[key], form))
+
+
+def formatted(value: Value, form: str = "") -> str:
+    """Return a value in a format, minus zero as zero; a dash for None and for an empty text."""
+    if value is None or value == "":
+        return MISSING
+    return format(value + 0.0 if isinstance(value, float) else value, form)
+
+
+def pole_column(heading: str) -> Column:
+    """Return the column of a complex pole, from z_real and z_imag: 0.762694 ± 0.142074i."""
+
+    def text(row: Row) -> str:
+        real, imaginary = row["z_real"], row["z_imag"]
+        assert isinstance(real, float)
+        assert isinstance(imaginary, float)
+        form = ".6f" if max(abs(real), imaginary) < 1e6 else ".6e"
+        visible = round(imaginary / max(1, abs(real)), 6) != 0
+        return f"{real:{form}} ± {imaginary:{form}}i" if visible else f"{real:{form}}"
+
+    return Column(heading, text)
+
+
+def yes_no_column(heading: str, key: str) -> Column:
+    """Return the column of a truth value: yes, NO, or a dash where it is None."""
+    words: Mapping[Value, str] = {True: "yes", False: "NO", None: MISSING}
+    return Column(heading, lambda row: words[row[key]])
+
+
+def render(rows: Sequence[Row], columns: Sequence[Column], form: Format) -> str:
+    """Return the rows in the given form: every key for json and csv, the chosen columns for text and markdown.
+
+    What is infinite or not a number is missing: null, an empty cell, a dash.
+    """
+    rows = [{k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in row.items()} for row in rows]
+    if form == "json":
+        return json.dumps(rows, indent=2, ensure_ascii=False, allow_nan=False)
+    if form == "csv":
+        return _comma_separated(rows)
+    lines = [[each.heading for each in columns], *([each.text(row) for each in columns] for row in rows)]
+    return _markdown(lines) if form == "markdown" else _aligned(lines)
+
+
+def _comma_separated(rows: Sequence[Row]) -> str:
+    text = io.StringIO()
+    writer = csv.DictWriter(text, list(rows[0]) if rows else [], lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    return text.getvalue().rstrip("\n")
+
+
+def _aligned(lines: Sequence[Sequence[str]]) -> str:
+    return "\n".join("  ".join(line).rstrip() for line in _padded(lines))
+
+
+def _markdown(lines: Sequence[Sequence[str]]) -> str:
+    padded = _padded([[cell.replace("|", "\\|") for cell in line] for line in lines])
+    rule = ["-" * _width(cell) for cell in padded[0]]
+    return "\n".join(f"| {' | '.join(line)} |" for line in (padded[0], rule, *padded[1:]))
+
+
+def _padded(lines: Sequence[Sequence[str]]) -> list[list[str]]:
+    """Return the cells filled up with spaces to the width of their column."""
+    widths = [max(map(_width, column)) for column in zip(*lines, strict=True)]
+    return [[cell + " " * (width - _width(cell)) for cell, width in zip(line, widths, strict=True)] for line in lines]
+
+
+def _width(text: str) -> int:
+    """Return the number of character cells; the hat of alpha-hat is a combining character and takes none."""
+    return sum(not unicodedata.combining(character) for character in text)

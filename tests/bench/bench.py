@@ -1,0 +1,483 @@
+"""Speed as ratios measured in one run: `make bench` writes figures/bench.md.
+
+Promises are ratios of times. A ratio below its promise, or below two thirds of the one in bench.json, fails the run;
+ `--accept` makes the measured ratios the new ones to compare with.
+"""
+
+import json
+import os
+import subprocess
+import sys
+import time
+import tracemalloc
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import islice
+from pathlib import Path
+from typing import TypeVar
+
+import mpmath as mp
+import numpy as np
+import sympy as sp
+
+from bezstab.evidence import model_xml
+from bezstab.mechanism import Mechanism, T, compiled_mechanism, initial_state, load_scene, march, parse_scene, simulate
+from bezstab.methods import (
+    ALPHA_HAT,
+    BETA_HAT,
+    LinearMultistep,
+    Method,
+    RungeKutta,
+    bezier,
+    closed_loop_polynomial,
+    lookup,
+    steps,
+)
+from bezstab.stability import FloatArray, region, roots_in_z, spectral_radius, stable_mask, window
+
+HERE = Path(__file__).parent
+BASELINE, REPORT = HERE / "bench.json", HERE.parent.parent / "figures" / "bench.md"
+FALLEN = 2 / 3  # of the ratio in BASELINE
+
+POINTS = 1000  # per axis
+REPEATS = 5  # the fastest of so many: what disturbs a run only ever slows it
+CLOSE = 1e-12  # the promised agreement with 50 digits at ordinary points
+MULTIPLE = 1e-3  # roots closer than this are no ordinary points
+REFERENCES = 200  # ordinary points compared with 50 digits
+SAMPLED = 2000  # points for which NodePy is timed; it takes them one by one
+MEMORY = 50.0  # MB, the promise beyond the result
+
+STEP, GAINS = 1e-3, (500.0, 1e5)  # s; 2 alpha, beta^2 in 1/s, 1/s^2: alpha_hat = 0.5, beta_hat = 0.1
+STEPS = 200  # of a run
+RUNS = 10  # the fastest of so many: runs are short
+INSTANCES = 10_000
+SAME = 1e-12  # SI units: rounding; less, even 0, where h times a slope's rounding is under half a digit of the state
+ENGINE_STEPS = 20_000  # of a run of MuJoCo, of Exudyn and of ours beside them
+
+
+Measured = TypeVar("Measured")
+
+
+@dataclass(frozen=True)
+class Line:
+    """What was compared, how many times faster we are, what is promised (None: nothing), and a remark."""
+
+    section: str
+    what: str
+    ratio: float
+    promise: float | None
+    note: str
+
+
+@dataclass(frozen=True)
+class Growth:
+    """The exponent of the power law that the cost of something follows in a size, and where it was fitted."""
+
+    what: str
+    exponent: float
+    sizes: str
+
+
+def by_eigenvalues(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
+    """Return |z_p| by numpy's batched eigenvalues of the companion matrices of P."""
+    leading, *rest = (sp.lambdify((ALPHA_HAT, BETA_HAT), c) for c in closed_loop_polynomial(method).all_coeffs())
+    companion = np.zeros((*alpha_hat.shape, len(rest), len(rest)))
+    for column, coefficient in enumerate(rest):
+        companion[..., 0, column] = -coefficient(alpha_hat, beta_hat) / leading(alpha_hat, beta_hat)
+    companion[..., range(1, len(rest)), range(len(rest) - 1)] = 1
+    largest: FloatArray = np.abs(np.linalg.eigvals(companion)).max(axis=-1)
+    return largest
+
+
+def away_from_multiple_roots(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
+    """Return where no two poles of P lie within MULTIPLE of each other; boolean."""
+    discriminant = np.emath.sqrt(alpha_hat**2 / 4 - beta_hat)
+    mus = (-alpha_hat / 2 + discriminant, -alpha_hat / 2 - discriminant)
+    z = np.concatenate([roots_in_z(method, mu.ravel().astype(complex)) for mu in mus])
+    gaps = [np.abs(z[i] - z[j]) for i in range(len(z)) for j in range(i)]
+    return np.asarray(np.min(gaps, axis=0) > MULTIPLE).reshape(alpha_hat.shape)
+
+
+def fastest(call: Callable[[], Measured], repeats: int) -> tuple[float, Measured]:
+    """Return the shortest time of several calls (s) and the result."""
+    times = []
+    for _ in range(repeats):
+        start = time.perf_counter()
+        result = call()
+        times.append(time.perf_counter() - start)
+    return min(times), result
+
+
+def axes(method: Method, points: int = POINTS) -> tuple[FloatArray, FloatArray]:
+    """Return both axes of the window that shows the region."""
+    alpha_hat, beta_hat = (np.linspace(low, high, points) for low, high in window(region(method)))
+    return alpha_hat, beta_hat
+
+
+def rows_of(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
+    """Return |z_p| over some rows of the map: what one process does."""
+    return spectral_radius(method, alpha_hat, beta_hat[:, np.newaxis])
+
+
+def by_two_processes(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
+    """Return the map from two processes, their start included."""
+    with ProcessPoolExecutor(2) as pool:
+        return np.concatenate(list(pool.map(partial(rows_of, method, alpha_hat), np.array_split(beta_hat, 2))))
+
+
+def by_nodepy(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
+    """Return |z_p| of a row of points from NodePy's characteristic polynomials, whose roots it takes point by point."""
+    from nodepy.linear_multistep_method import LinearMultistepMethod
+
+    scheme = method.scheme
+    assert isinstance(scheme, LinearMultistep)
+    ascending = (
+        np.array([sp.Rational(c.numerator, c.denominator) for c in part[::-1]]) for part in (scheme.rho, scheme.sigma)
+    )
+    rho, sigma = LinearMultistepMethod(*ascending).__num__().characteristic_polynomials()
+    discriminant = np.emath.sqrt(alpha_hat**2 / 4 - beta_hat)
+    pairs = np.stack([-alpha_hat / 2 + discriminant, -alpha_hat / 2 - discriminant], axis=-1)
+    return np.array([max(float(np.abs((rho - mu * sigma).roots).max()) for mu in pair) for pair in pairs])
+
+
+def with_fifty_digits(method: Method, alpha_hat: float, beta_hat: float) -> float:
+    """Return |z_p| from the roots of rho - mu sigma in mpmath."""
+    scheme = method.scheme
+    assert isinstance(scheme, LinearMultistep)
+    with mp.workdps(50):
+        half, square = mp.mpf(alpha_hat) / 2, mp.mpf(beta_hat)
+        mus = (-half + mp.sqrt(half**2 - square), -half - mp.sqrt(half**2 - square))
+        pairs = [
+            (mp.mpf(r.numerator) / r.denominator, mp.mpf(s.numerator) / s.denominator)
+            for r, s in zip(scheme.rho, scheme.sigma, strict=True)
+        ]
+        roots = [mp.polyroots([r - mu * s for r, s in pairs], maxsteps=200, extraprec=200) for mu in mus]
+        return float(max(abs(z) for each in roots for z in each))
+
+
+def maps() -> Iterator[Line]:
+    """Yield the comparisons of the |z_p| map and of the mask."""
+    random = np.random.default_rng(1)
+    for name, promise in (("B4", 18.0), ("AB4", 18.0), ("B8", 5.0), ("AB8", 5.0)):
+        method, (a, b) = lookup(name), axes(lookup(name))
+        grid = np.meshgrid(a, b)
+        ours, z_abs = fastest(partial(rows_of, method, a, b), REPEATS)
+        theirs, _ = fastest(partial(by_eigenvalues, method, *grid), 1)
+        tracemalloc.start()
+        spectral_radius(method, a, b[:, np.newaxis])
+        memory = (tracemalloc.get_traced_memory()[1] - z_abs.nbytes) / 1e6
+        tracemalloc.stop()
+        chosen = random.choice(np.flatnonzero(away_from_multiple_roots(method, *grid)), REFERENCES, replace=False)
+        points = [grid[0].ravel()[chosen], grid[1].ravel()[chosen]]
+        exact = np.array([with_fifty_digits(method, x, y) for x, y in zip(*points, strict=True)])
+        error = float(np.abs(z_abs.ravel()[chosen] - exact).max())
+        kept = error < CLOSE and memory < MEMORY
+        note = f"{ours:.2f} s; error {error:.0e} at {REFERENCES} points; {memory:.0f} MB beyond the result"
+        shown = note if kept else f"BROKEN: {CLOSE:g}, {MEMORY:g} MB: {note}"
+        yield Line("map", f"{name}: batched eigenvalues, one core", theirs / ours, promise if kept else np.inf, shown)
+        if name in ("B4", "AB4"):
+            both, same = fastest(partial(by_two_processes, method, a, b), REPEATS)
+            assert np.allclose(same, z_abs, rtol=1e-12, atol=0)  # other neighbours are followed, so rounding differs
+            yield Line(
+                "map",
+                f"{name}: batched eigenvalues, two processes",
+                theirs / both,
+                30.0,
+                f"{both:.2f} s, their start included",
+            )
+            some = random.choice(POINTS**2, SAMPLED)
+            slow, _ = fastest(partial(by_nodepy, method, grid[0].ravel()[some], grid[1].ravel()[some]), 1)
+            ratio = slow / SAMPLED * POINTS**2 / ours
+            yield Line("map", f"{name}: NodePy 1.1.1", ratio, 200.0, f"NodePy timed at {SAMPLED} of the points")
+            mask, stable = fastest(partial(stable_mask, method, a, b), REPEATS)
+            clear = np.abs(z_abs - 1) > CLOSE
+            assert np.array_equal(stable[clear], (z_abs < 1)[clear])
+            region.cache_clear()
+            whole, _ = fastest(lambda: np.array(region(method).area), 1)  # noqa: B023
+            total = mask + whole
+            note = f"{1e3 * mask:.1f} ms; {theirs / total:.0f} times with what the boundary takes, {1e3 * total:.0f} ms"
+            yield Line("map", f"{name}: batched eigenvalues, stable or not", theirs / mask, 500.0, note)
+
+
+def starts() -> Iterator[Line]:
+    """Yield how far start-up is from that of the packages it cannot do without: 1 / 1.5 at least."""
+    python, bezstab = sys.executable, [sys.executable, "-m", "bezstab"]
+    poles = [*bezstab, "poles", "--alpha", "0.5", "--beta", "0.1"]
+    for what, command, packages in (
+        ("bezstab --help", [*bezstab, "--help"], "numpy, click"),
+        ("bezstab poles", poles, "numpy, click, sympy"),
+    ):
+        least = [np.inf, np.inf]
+        for _ in range(15):  # interleaved
+            for k, each in enumerate(([python, "-c", f"import {packages}"], command)):
+                begin = time.perf_counter()
+                subprocess.run(each, check=True, stdout=subprocess.DEVNULL)
+                least[k] = min(least[k], time.perf_counter() - begin)
+        note = f"{least[1]:.2f} s, {least[1] / least[0]:.2f} times as long"
+        yield Line("start-up", f"{what}: import {packages}", least[0] / least[1], 1 / 1.5, note)
+
+
+Slope = Callable[[float, FloatArray], FloatArray]
+
+
+def literal_slope(mechanism: Mechanism) -> Slope:
+    """Return (q, v)' at a time by the paper's Eq. 9 as it stands: its matrices evaluated, put together and solved."""
+    symbolic, n, m = mechanism.equations, mechanism.size, mechanism.constraints
+    parts = (symbolic.jacobian, symbolic.constraints, symbolic.constraints_t, symbolic.gamma, symbolic.forces)
+    mass_of, *others = (
+        sp.lambdify((T, symbolic.q, symbolic.v), part, "numpy") for part in (sp.diag(*symbolic.mass), *parts)
+    )
+
+    def slope(t: float, y: FloatArray) -> FloatArray:
+        q, v = y[:n], y[n:]
+        mass = mass_of(t, q, v)
+        jacobian, c, c_t, gamma, forces = (part(t, q, v) for part in others)
+        cdot = jacobian @ v + c_t[:, 0]
+        matrix = np.block([[mass, jacobian.T], [jacobian, np.zeros((m, m))]])
+        right = np.concatenate((forces[:, 0], gamma[:, 0] - GAINS[0] * cdot - GAINS[1] * c[:, 0]))
+        return np.concatenate((v, np.linalg.solve(matrix, right)[:n]))
+
+    return slope
+
+
+def tuned_slope(mechanism: Mechanism) -> Slope:
+    """Return the same with what helps: one function for all parts, M kept, the matrix filled in place."""
+    symbolic, n, m = mechanism.equations, mechanism.size, mechanism.constraints
+    columns = (symbolic.constraints, symbolic.constraints_t, symbolic.gamma, symbolic.forces)
+    parts = [symbolic.jacobian, *(column.T for column in columns)]
+    evaluated = sp.lambdify((T, symbolic.q, symbolic.v), parts, "numpy", cse=True)
+    matrix, right = np.zeros((n + m, n + m)), np.empty(n + m)
+    matrix[:n, :n] = np.diag(np.array(symbolic.mass, float))
+
+    def slope(t: float, y: FloatArray) -> FloatArray:
+        v = y[n:]
+        jacobian, (c,), (c_t,), (gamma,), (forces,) = evaluated(t, y[:n].tolist(), v.tolist())
+        matrix[n:, :n], matrix[:n, n:] = jacobian, jacobian.T
+        right[:n], right[n:] = forces, gamma - GAINS[0] * (jacobian @ v + c_t) - GAINS[1] * c
+        return np.concatenate((v, np.linalg.solve(matrix, right)[:n]))
+
+    return slope
+
+
+def literal_run(method: Method, slope: Slope, y: FloatArray) -> FloatArray:
+    """Return the state after STEPS steps of RK4, or of a multistep method with rho = z^n - z^(n-1) that RK4 starts."""
+    rk4 = lookup("RK4").scheme
+    assert isinstance(rk4, RungeKutta)
+    tableau, weights = np.array(rk4.tableau, float), np.array(rk4.weights, float)
+    sigma = np.array(method.scheme.sigma[1:], float) if isinstance(method.scheme, LinearMultistep) else None
+    slopes: list[FloatArray] = []  # newest first
+    for k in range(STEPS):
+        t = k * STEP
+        slopes = [slope(t, y), *slopes[: steps(method) - 1]]
+        if sigma is not None and len(slopes) == steps(method):
+            y = y + STEP * (sigma @ np.array(slopes))
+            continue
+        stages = np.zeros((len(weights), len(y)))
+        stages[0] = slopes[0]
+        for s in range(1, len(weights)):
+            stages[s] = slope(t + tableau[s].sum() * STEP, y + STEP * (tableau[s] @ stages))
+        y = y + STEP * (weights @ stages)
+    return y
+
+
+def batch_run(method: Method, moving: Mechanism) -> FloatArray:
+    """Return the states (INSTANCES, 2n) after STEPS steps of mechanisms that start alike and differ in their gains."""
+    spread = np.linspace(1, 0.5, INSTANCES)  # the first has GAINS themselves
+    gains = (GAINS[0] * spread, GAINS[1] * spread)
+    state = tuple(np.full(INSTANCES, x) for x in np.concatenate(initial_state(moving)))
+    *_, (end, _, _) = islice(march(moving, method, STEP, gains, state, "rk4", np), STEPS)
+    return np.stack(end, axis=-1)
+
+
+def alone(moving: Mechanism, method: Method, state: tuple[FloatArray, FloatArray], count: int = STEPS) -> FloatArray:
+    """Return the state after `count` steps of our run."""
+    run = simulate(moving, method, STEP, count * STEP, GAINS, state)
+    return np.concatenate((run.q[-1], run.v[-1]))
+
+
+def runs() -> Iterator[Line]:
+    """Yield the comparisons of a single run and of a batch with the paper's Eq. 9 on the slider-crank."""
+    moving = compiled_mechanism(load_scene("slider_crank"))
+    state, literal, tuned = initial_state(moving), literal_slope(moving), tuned_slope(moving)
+    for name in ("B4", "RK4"):
+        method = lookup(name)
+        ours, end = fastest(partial(alone, moving, method, state), RUNS)
+        for kind, slope, promise in (("literal Eq. 9", literal, 8.0), ("Eq. 9 tuned by hand", tuned, None)):
+            theirs, other = fastest(partial(literal_run, method, slope, np.concatenate(state)), RUNS)
+            assert np.abs(other - end).max() < SAME
+            yield Line(
+                "run",
+                f"{name}: {kind}",
+                theirs / ours,
+                promise,
+                f"{STEPS / ours:.0f} steps/s against {STEPS / theirs:.0f}",
+            )
+        together, ends = fastest(partial(batch_run, method, moving), 3)
+        assert np.abs(ends[0] - end).max() < SAME
+        each = together / INSTANCES
+        note = f"{1e9 * each / STEPS:.0f} ns a step and instance"
+        yield Line("run", f"{name}: one run alone, an instance of {INSTANCES}", ours / each, 10.0, note)
+        theirs, _ = fastest(partial(literal_run, method, literal, np.concatenate(state)), 1)
+        yield Line("run", f"{name}: literal Eq. 9, an instance of {INSTANCES}", theirs / each, None, "")
+
+
+def engines() -> Iterator[Line]:
+    """Yield the comparisons with other engines on the same slider-crank, all stepping inside one call."""
+    import mujoco
+
+    moving = compiled_mechanism(load_scene("slider_crank"))
+    state = initial_state(moving)
+    for name, integrator in (("SYM", "Euler"), ("RK4", "RK4")):
+        ours, end = fastest(partial(alone, moving, lookup(name), state, ENGINE_STEPS), 2)
+        model = mujoco.MjModel.from_xml_string(model_xml(moving.scene, integrator, STEP, 0.5, 0.1))
+
+        def stepped(model: object = model) -> FloatArray:
+            data = mujoco.MjData(model)
+            data.qpos[:], data.qvel[:] = state
+            mujoco.mj_step(model, data, nstep=ENGINE_STEPS)
+            return np.array(data.qpos)
+
+        theirs, angles = fastest(stepped, 2)
+        assert abs(angles[0] - end[0]) < 0.1  # rad, after 20 s: the same mechanism; MuJoCo's constraints are soft
+        note = f"{ENGINE_STEPS / ours:.1e} steps/s against {ENGINE_STEPS / theirs:.1e}, in C"
+        yield Line("engine", f"{name}: MuJoCo's {integrator}", theirs / ours, None, note)
+    ours, end = fastest(partial(alone, moving, lookup("B4"), state, ENGINE_STEPS), 2)
+    theirs, angles = fastest(by_exudyn, 2)
+    assert abs(angles[2] - end[0]) < 1e-2
+    note = f"{ENGINE_STEPS / ours:.1e} steps/s against {ENGINE_STEPS / theirs:.1e}, in C++"
+    yield Line("engine", "B4: Exudyn's generalized-alpha (implicit)", theirs / ours, None, note)
+
+
+def by_exudyn() -> FloatArray:
+    """Return the crank's x, y and angle after ENGINE_STEPS steps of Exudyn, on the paper's slider-crank."""
+    import exudyn
+    from exudyn import itemInterface as items  # noqa: N813
+
+    system = exudyn.SystemContainer()
+    mbs = system.AddSystem()
+    q, v = initial_state(compiled_mechanism(load_scene("slider_crank")))
+    ground = mbs.AddObject(items.ObjectGround())
+
+    def body(mass: float, inertia: float, at: Iterable[float], rates: Iterable[float]) -> tuple[int, int]:
+        node = mbs.AddNode(items.NodeRigidBody2D(initialCoordinates=list(at), initialVelocities=list(rates)))
+        number = mbs.AddObject(items.ObjectRigidBody2D(mass=mass, inertia=inertia, nodeNumber=node))
+        marker = mbs.AddMarker(items.MarkerBodyMass(bodyNumber=number))
+        mbs.AddLoad(items.LoadMassProportional(markerNumber=marker, loadVector=[0, -9.81, 0]))
+        return node, number
+
+    crank_node, crank = body(20, 45, (0, 0, q[0]), (0, 0, v[0]))
+    _, rod = body(3.5, 3.5, q[1:4], v[1:4])
+    slider_node, slider = body(2.5, 0.02, (q[4], 0, 0), (v[4], 0, 0))
+    for one, there, other, here in (
+        (ground, 0.0, crank, 0.0),
+        (crank, 0.2, rod, -0.175),
+        (rod, 0.175, slider, 0.0),
+    ):
+        ends = [
+            mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=b, localPosition=[x, 0, 0]))
+            for b, x in ((one, there), (other, here))
+        ]
+        mbs.AddObject(items.ObjectJointRevolute2D(markerNumbers=ends))
+    fixed = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=mbs.AddNode(items.NodePointGround()), coordinate=0))
+    for coordinate in (1, 2):  # the slider neither rises nor turns
+        marker = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=slider_node, coordinate=coordinate))
+        mbs.AddObject(items.CoordinateConstraint(markerNumbers=[fixed, marker]))
+    mbs.Assemble()
+    settings = exudyn.SimulationSettings()
+    settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = ENGINE_STEPS, ENGINE_STEPS * STEP
+    settings.solution.file.write = settings.solution.sensors.active = False
+    mbs.SolveDynamic(settings)
+    return np.array(mbs.GetNodeOutput(crank_node, exudyn.OutputVariableType.Coordinates))
+
+
+def growth() -> Iterator[Growth]:
+    """Yield how cost grows with the points per axis, the steps of a method, the batch, and the number of bodies."""
+
+    def fitted(what: str, sizes: Sequence[int], cost: Callable[[int], Callable[[], object]], unit: str) -> Growth:
+        times = []
+        for size in sizes:
+            call = cost(size)
+            call()
+            times.append(fastest(call, 3)[0])
+        exponent = float(np.polyfit(np.log(sizes), np.log(times), 1)[0])
+        return Growth(what, exponent, f"{sizes[0]} to {sizes[-1]} {unit}")
+
+    b4 = lookup("B4")
+    moving = compiled_mechanism(load_scene("slider_crank"))
+
+    def map_of(method: Method, points: int = 500) -> Callable[[], object]:
+        a, b = axes(method, points)
+        return lambda: rows_of(method, a, b)
+
+    def batch_of(size: int) -> Callable[[], object]:
+        state = tuple(np.full(size, x) for x in np.concatenate(initial_state(moving)))
+        two_alpha = np.full(size, GAINS[0])
+        return lambda: list(islice(march(moving, b4, STEP, (two_alpha, GAINS[1]), state, "rk4", np), 50))
+
+    def chain(count: int) -> Mechanism:
+        table = {"count": count, "length": 1.0, "mass": 1.0}
+        initial = {"velocity": {"rod0.theta": -1.0}, "position": {"rod0.theta": 1.5}}
+        return compiled_mechanism(
+            parse_scene(
+                {"name": f"{count} four-bars", "gravity": [0.0, -9.81], "four_bar_chain": table, "initial": initial}
+            )
+        )
+
+    def run_of(count: int) -> Callable[[], object]:
+        bars = chain(count)
+        return lambda: simulate(bars, b4, STEP, 100 * STEP, GAINS)
+
+    def derived(count: int) -> Callable[[], object]:
+        scene = chain(count).scene
+        return lambda: compiled_mechanism.__wrapped__(replace(scene, name="again"))
+
+    yield fitted("map, in points per axis", (500, 1000, 2000), lambda n: map_of(b4, n), "points")
+    yield fitted("map, in steps n of B_n", (3, 4, 6, 8, 12), lambda n: map_of(bezier(n)), "steps")
+    yield fitted("batch, in instances", (1000, 10_000, 100_000), batch_of, "instances")
+    yield fitted("run, in four-bars of a chain", (1, 2, 4, 8, 16), run_of, "four-bars")
+    yield fitted("derivation, in four-bars of a chain", (1, 2, 4, 8), derived, "four-bars")
+
+
+def report(lines: Sequence[Line], grown: Sequence[Growth], before: dict[str, float]) -> str:
+    """Return the Markdown report."""
+    rows = ["# Speed", "", "Written by `make bench`, from one run. A ratio is the other's time over ours.", ""]
+    rows += ["| | against | ratio | promised | last accepted | |", "| - | - | - | - | - | - |"]
+    for line in lines:
+        promise = "" if line.promise is None else f"{line.promise:.3g}"
+        last = f"{before[line.what]:.3g}" if line.what in before else ""
+        rows.append(f"| {line.section} | {line.what} | {line.ratio:.3g} | {promise} | {last} | {line.note} |")
+    rows += ["", "Cost grows as a power of", "", "| cost | exponent | fitted over |", "| - | - | - |"]
+    rows += [f"| {each.what} | {each.exponent:.2f} | {each.sizes} |" for each in grown]
+    return "\n".join([*rows, ""])
+
+
+def main() -> int:
+    """Measure, print and write everything; return 1 if a promise is broken or a ratio has fallen by a third."""
+    before: dict[str, float] = json.loads(BASELINE.read_text(encoding="utf-8")) if BASELINE.exists() else {}
+    lines = []
+    for section in (maps, starts, runs, engines):
+        for line in section():
+            lines.append(line)
+            print(f"{line.section:9} {line.what:50} {line.ratio:8.3g}  {line.note}", flush=True)
+    grown = list(growth())
+    for each in grown:
+        print(f"growth    {each.what:50} {each.exponent:8.2f}  {each.sizes}")
+    REPORT.write_text(report(lines, grown, before), encoding="utf-8")
+    if "--accept" in sys.argv:
+        BASELINE.write_text(
+            json.dumps({line.what: round(line.ratio, 3) for line in lines}, indent=1) + "\n", encoding="utf-8"
+        )
+    broken = [line.what for line in lines if line.promise is not None and line.ratio < line.promise]
+    fallen = [line.what for line in lines if line.ratio < FALLEN * before.get(line.what, 0.0)]
+    for what in broken:
+        print(f"below the promise: {what}")
+    for what in fallen:
+        print(f"fallen by a third: {what}")
+    return 1 if broken or fallen else 0
+
+
+if __name__ == "__main__":
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    sys.exit(main())

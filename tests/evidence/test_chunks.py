@@ -1,0 +1,185 @@
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from bezstab.errors import InputError, NumericalError
+from bezstab.evidence import ATTEMPTS, Arrays, chunk_store, completed_chunks, worker_pool
+
+
+@dataclass(frozen=True)
+class Job:
+    """What a worker is to do: square a number, after having killed itself once for each file it still finds missing."""
+
+    number: int
+    deaths: tuple[Path, ...] = ()
+
+
+def square(job: Job) -> Arrays:
+    for death in job.deaths:
+        if not death.exists():
+            death.touch()
+            os.kill(os.getpid(), signal.SIGKILL)
+    return {"square": np.array(job.number**2), "by": np.array(os.getpid())}
+
+
+def squares(found: dict[int, Arrays]) -> list[int]:
+    return [int(found[number]["square"]) for number in sorted(found)]
+
+
+def test_every_chunk_is_done_once_and_kept(tmp_path: Path) -> None:
+    kept = chunk_store(tmp_path / "job", "squares", resume=False)
+    with worker_pool(2) as hands:
+        arrived = list(completed_chunks(square, [Job(number) for number in range(7)], hands, kept))
+    assert sorted(number for number, _ in arrived) == list(range(7))
+    assert squares(dict(arrived)) == [number**2 for number in range(7)]
+    assert list(kept.finished()) == list(range(7))
+    assert len({int(arrays["by"]) for _, arrays in arrived}) <= 2
+    assert os.getpid() not in {int(arrays["by"]) for _, arrays in arrived}
+    kept.discard()
+    assert not kept.path.exists()
+
+
+def test_a_resumed_job_does_only_what_is_missing(tmp_path: Path) -> None:
+    kept = chunk_store(tmp_path / "job", "squares", resume=False)
+    kept.keep(1, {"square": np.array(-1)})
+    again = chunk_store(tmp_path / "job", "squares", resume=True)
+    with worker_pool(1) as hands:
+        arrived = dict(completed_chunks(square, [Job(number) for number in range(3)], hands, again))
+    assert squares(arrived) == [0, -1, 4]  # the second was not done again
+    with pytest.raises(InputError, match=r"--resume: .* other options"):
+        chunk_store(tmp_path / "job", "cubes", resume=True)
+    assert not chunk_store(tmp_path / "job", "cubes", resume=False).finished()
+
+
+def test_a_lost_worker_costs_its_chunk_alone(tmp_path: Path) -> None:
+    jobs = [Job(number, (tmp_path / "died",) if number == 2 else ()) for number in range(5)]
+    with worker_pool(2) as hands:
+        arrived = dict(completed_chunks(square, jobs, hands, chunk_store(tmp_path / "job", "squares", resume=False)))
+    assert squares(arrived) == [0, 1, 4, 9, 16]
+    assert (tmp_path / "died").exists()
+
+
+def test_a_chunk_that_kills_every_worker_is_reported(tmp_path: Path) -> None:
+    deaths = tuple(tmp_path / f"death {number}" for number in range(ATTEMPTS))
+    kept = chunk_store(tmp_path / "job", "squares", resume=False)
+    with worker_pool(1) as hands, pytest.raises(NumericalError, match="chunk 1 lost its worker 3 times"):
+        list(completed_chunks(square, [Job(0), Job(1, deaths)], hands, kept))
+    assert 0 in kept.finished()
+
+
+@pytest.fixture
+def cluster() -> Iterator[str]:
+    """Run a real scheduler and two workers, each a process of its own, on loopback."""
+    python = [sys.executable, "-m"]
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    environment = {
+        **os.environ,
+        "PYTHONPATH": str(Path(__file__).parent.parent.parent),
+    }  # where the workers find this file
+    port = 20000 + os.getpid() % 20000
+    address = f"tcp://127.0.0.1:{port}"
+    serve = [*python, "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", str(port), "--no-dashboard"]
+    work = [*python, "distributed.cli.dask_worker", address, "--nworkers", "2", "--nthreads", "1", "--no-dashboard"]
+    running = [subprocess.Popen(each, env=environment, **quiet) for each in (serve, work)]  # type: ignore[call-overload]
+    try:
+        yield address
+    finally:
+        for process in reversed(running):
+            process.terminate()
+            process.wait(timeout=30)
+
+
+def test_a_cluster_does_the_same_work(cluster: str, tmp_path: Path) -> None:
+    jobs = [Job(number, (tmp_path / "died",) if number == 2 else ()) for number in range(6)]
+    deadline = time.monotonic() + 60
+    while True:
+        with worker_pool(scheduler=cluster) as hands:
+            if hands.count == 2:
+                arrived = dict(
+                    completed_chunks(square, jobs, hands, chunk_store(tmp_path / "job", "squares", resume=False))
+                )
+                break
+        assert time.monotonic() < deadline, "the workers did not come up"
+        time.sleep(0.2)
+    command = [sys.executable, "-m", "bezstab", "verify", "--map", "4", "--method", "SYM", "--scene", "pendulum"]
+    maps = {}
+    for name, more in (("here", ["--workers", "1"]), ("there", ["--scheduler", cluster])):
+        subprocess.run([*command, "-o", name, *more], cwd=tmp_path, check=True, capture_output=True, timeout=120)
+        maps[name] = (tmp_path / name / "verify_pendulum_SYM.csv").read_bytes()
+    assert maps["here"] == maps["there"]
+    assert squares(arrived) == [number**2 for number in range(6)]
+    assert (tmp_path / "died").exists()  # one worker was lost, and replaced, on the way
+    assert os.getpid() not in {int(arrays["by"]) for arrays in arrived.values()}
+
+
+def test_a_scheduler_that_does_not_answer_is_one_line() -> None:
+    with pytest.raises(InputError, match="--scheduler nonsense"), worker_pool(scheduler="nonsense://x"):
+        pass
+
+
+def test_a_resumed_sweep_writes_the_same_bytes(tmp_path: Path) -> None:
+    command = [
+        sys.executable,
+        "-m",
+        "bezstab",
+        "tradeoff",
+        "--h",
+        "0.01",
+        "--time",
+        "0.2",
+        "--alpha",
+        "50",
+        "--beta",
+        "50",
+    ]
+    command += ["--physical", "--method", "SYM", "--method", "RK4", "--workers", "1"]
+    kept = tmp_path / "tradeoff_slider_crank_light.chunks"
+    with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as running:
+        while not list(kept.glob("0.npz")) and running.poll() is None:
+            time.sleep(0.001)
+        running.kill()
+    subprocess.run([*command, "--resume"], cwd=tmp_path, check=True, capture_output=True, timeout=120)
+    resumed = {path.name: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()}
+    subprocess.run(command, cwd=tmp_path, check=True, capture_output=True, timeout=120)
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()} == resumed
+    assert len(resumed) == 3
+
+
+def test_a_killed_map_resumes_to_the_same_bytes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parent.parent.parent))
+    whole, killed = tmp_path / "whole", tmp_path / "killed"
+    for folder in (whole, killed):
+        folder.mkdir()
+    command = [
+        sys.executable,
+        "-m",
+        "bezstab",
+        "verify",
+        "--map",
+        "80",
+        "--method",
+        "SYM",
+        "--scene",
+        "pendulum",
+        "--workers",
+        "1",
+    ]
+    subprocess.run(command, cwd=whole, check=True, capture_output=True, timeout=120)
+    kept = killed / "verify_pendulum_SYM.chunks"
+    with subprocess.Popen(command, cwd=killed, stderr=subprocess.DEVNULL) as running:
+        while not list(kept.glob("[0-9]*.npz")):
+            assert running.poll() is None
+            time.sleep(0.01)
+        running.kill()
+    subprocess.run([*command, "--resume"], cwd=killed, check=True, capture_output=True, timeout=120)
+    assert sorted(path.name for path in killed.iterdir()) == sorted(path.name for path in whole.iterdir())
+    for path in whole.iterdir():
+        assert (killed / path.name).read_bytes() == path.read_bytes()

@@ -1,0 +1,100 @@
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.backend_bases import KeyEvent, MouseButton, MouseEvent
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from bezstab.errors import InputError
+from bezstab.methods import lookup
+from bezstab.show.explorer import STEPS, Explorer, _answer, show
+from bezstab.stability import dominant_pole, poles
+
+
+def window(*names: str) -> tuple[Explorer, Any, list[str]]:
+    figure, said = Figure(figsize=(9, 5)), list[str]()
+    canvas: Any = FigureCanvasAgg(figure)
+    explorer = Explorer(figure, [lookup(name) for name in names], 0.001, said.append)
+    canvas.draw()
+    return explorer, canvas, said
+
+
+def mouse(explorer: Explorer, canvas: Any, name: str, alpha_hat: float, beta_hat: float) -> None:
+    x, y = explorer.map.transData.transform((alpha_hat, beta_hat))
+    canvas.callbacks.process(name, MouseEvent(name, canvas, x, y, MouseButton.LEFT if "button" in name else None))
+
+
+def key(canvas: Any, letter: str) -> None:
+    canvas.callbacks.process("key_press_event", KeyEvent("key_press_event", canvas, letter))
+
+
+def test_moving_shows_poles_decay_and_numbers() -> None:
+    explorer, canvas, _ = window("B4")
+    for point in ((0.5, 0.1), (1.2, 0.3)):
+        mouse(explorer, canvas, "motion_notify_event", *point)
+        assert explorer.point == pytest.approx(point, abs=1e-6)
+        drawn = np.array(explorer.poles.get_xydata())
+        z = poles(lookup("B4"), *explorer.point)
+        assert drawn == pytest.approx(np.stack([z.real, z.imag], axis=1))
+        decay = np.array(explorer.decay.get_ydata())
+        assert len(decay) == STEPS + 1
+        slope = (decay[90:].max() / decay[40:50].max()) ** (1 / 50)
+        assert slope == pytest.approx(abs(complex(dominant_pole(lookup("B4"), *explorer.point))), rel=0.01)
+        assert f"{explorer.point[0]:.6f}" in explorer.text.get_text()
+    assert "stable" in explorer.text.get_text()
+
+
+def test_the_decay_is_the_linear_recursion() -> None:
+    assert _answer(np.array([1.0, -0.5])) == pytest.approx(0.5 ** np.arange(STEPS + 1))
+    two = _answer(np.array([1.0, -0.9, 0.2]))  # roots 0.4 and 0.5
+    k = np.arange(STEPS + 1)
+    assert two == pytest.approx(5 * 0.5**k - 4 * 0.4**k)
+
+
+def test_a_click_proves() -> None:
+    explorer, canvas, _ = window("SYM")
+    mouse(explorer, canvas, "motion_notify_event", 1.0, 0.5)
+    assert "proven" not in explorer.text.get_text()
+    mouse(explorer, canvas, "button_press_event", 1.0, 0.5)
+    assert "converges (proven)" in explorer.text.get_text()
+    mouse(explorer, canvas, "button_press_event", 1.9, 3.0)
+    assert "diverges (proven)" in explorer.text.get_text()
+
+
+def test_outside_the_map_nothing_changes() -> None:
+    explorer, canvas, _ = window("B4")
+    before = explorer.point
+    canvas.callbacks.process("motion_notify_event", MouseEvent("motion_notify_event", canvas, 1, 1))
+    assert explorer.point == before
+
+
+def test_keys_switch_the_method_and_print_the_point() -> None:
+    explorer, canvas, said = window("B4", "AB4")
+    mouse(explorer, canvas, "motion_notify_event", 0.25, 0.05)
+    key(canvas, "n")
+    canvas.draw()
+    assert explorer.method == lookup("AB4")
+    assert explorer.map.get_title() == "AB4"
+    assert len(explorer.map.images) == 1
+    key(canvas, "p")
+    assert said == [f"--method AB4 --alpha {explorer.point[0]} --beta {explorer.point[1]}"]
+    key(canvas, "n")
+    assert explorer.method == lookup("B4")
+    key(canvas, "x")
+
+
+def test_only_what_moves_is_drawn_again() -> None:
+    explorer, canvas, _ = window("B4")
+    drawn: list[Any] = []
+    canvas.mpl_connect("draw_event", drawn.append)
+    before = bytes(canvas.buffer_rgba())
+    mouse(explorer, canvas, "motion_notify_event", 0.2, 0.3)
+    assert not drawn  # no whole redraw
+    assert bytes(canvas.buffer_rgba()) != before
+
+
+def test_without_a_window_one_line_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("MPLBACKEND", "Agg")
+    with pytest.raises(InputError, match="window"):
+        show([lookup("B4")], 0.001, print)

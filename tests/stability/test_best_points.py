@@ -1,0 +1,120 @@
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bezstab.methods import REGISTRY, LinearMultistep, Method, RungeKutta, lookup
+from bezstab.stability import BestPoint, best_point, region, spectral_radius, window
+
+F = Fraction
+KINKS = [f"B{n}" for n in range(3, 13)] + [f"AB{n}" for n in range(3, 9)]
+
+
+def best(name: str) -> BestPoint:
+    found = best_point(lookup(name))
+    assert found is not None
+    return found
+
+
+@pytest.mark.parametrize("name", KINKS)
+def test_the_kink_where_two_opposite_real_roots_meet(name: str) -> None:
+    scheme = lookup(name).scheme
+    assert isinstance(scheme, LinearMultistep)
+    rho, sigma = ([mpmath.mpf(c.numerator) / c.denominator for c in p] for p in (scheme.rho, scheme.sigma))
+    with mpmath.workdps(30):
+
+        def gap(r: mpmath.mpf) -> mpmath.mpf:
+            return mpmath.polyval(rho, r) * mpmath.polyval(sigma, -r) - mpmath.polyval(rho, -r) * mpmath.polyval(
+                sigma, r
+            )
+
+        r = mpmath.findroot(gap, best(name).z_abs)
+        mu = mpmath.polyval(rho, r) / mpmath.polyval(sigma, r)
+    found = best(name)
+    assert found.z_abs == pytest.approx(float(r), rel=1e-12)
+    assert found.alpha_hat == pytest.approx(float(-2 * mu), rel=1e-10)
+    assert found.beta_hat == pytest.approx(float(mu**2), rel=1e-10)
+    assert found.double
+    assert sorted(z.real for z in found.meeting) == pytest.approx([-found.z_abs, found.z_abs])
+    assert not found.arc
+
+
+def test_the_values_beside_the_papers() -> None:
+    exact = {"B2": 0.57735, "B3": 0.60698, "B4": 0.62588}
+    assert {name: round(best(name).z_abs, 5) for name in exact} == exact
+
+
+@pytest.mark.parametrize("name", ["B2", "AB2"])
+def test_two_steps_have_a_whole_arc(name: str) -> None:
+    found = best(name)
+    assert found.arc
+    assert found.z_abs == pytest.approx(3**-0.5, rel=1e-13)
+    ends = sorted([(found.alpha_hat, found.beta_hat), *found.elsewhere])
+    assert np.array(ends) == pytest.approx(np.array([(4 / 9, 4 / 9), (4 / 3, 4 / 9)]), abs=1e-10)
+    along = spectral_radius(lookup(name), np.linspace(4 / 9, 4 / 3, 50)[1:-1], 4 / 9)
+    assert along == pytest.approx(3**-0.5, abs=1e-9)  # both roots simple away from the ends
+
+
+@pytest.mark.parametrize(
+    ("name", "points"),
+    [
+        ("RK1", [(2, 1)]),
+        ("RK2", [(2, 2)]),
+        ("SIE", [(1, 1)]),
+        ("SYM", [(1, 1)]),
+        ("RK3", [(3.19214327596, 2.54744467359), (1.40392836202, 3.75922975962)]),
+        ("RK4", [(3.45888846213, 3.78125278982), (0.541111537865, 6.34710275518)]),
+        ("RK4@5", [(3.45888846213 / 5, 3.78125278982 / 25), (0.541111537865 / 5, 6.34710275518 / 25)]),
+    ],
+)
+def test_one_step_methods_are_deadbeat_at_the_zeros_of_r(name: str, points: list[tuple[float, float]]) -> None:
+    found = best(name)
+    assert found.z_abs == 0
+    assert np.array([(found.alpha_hat, found.beta_hat), *found.elsewhere]) == pytest.approx(np.array(points), abs=1e-10)
+    assert float(spectral_radius(lookup(name), found.alpha_hat, found.beta_hat)) < 1e-7  # R has simple zeros; rounding
+
+
+def test_a_double_root_of_pi_at_one_third() -> None:
+    found = best("ABM2")
+    assert (found.z_abs, found.alpha_hat, found.beta_hat) == pytest.approx((1 / 3, 4 / 3, 4 / 9), rel=1e-9)
+
+
+@pytest.mark.parametrize("name", [*REGISTRY, "B4@2"])
+def test_nothing_in_the_plane_is_faster(name: str) -> None:
+    method, found, random = lookup(name), best(name), np.random.default_rng(5)
+    (a_low, a_high), (b_low, b_high) = window(region(method))
+    far = random.uniform((a_low, b_low), (a_high, b_high), (20000, 2))
+    near = (found.alpha_hat, found.beta_hat) * (1 + random.normal(0, 1e-3, (5000, 2)))
+    points = np.concatenate([far, near])
+    assert spectral_radius(method, *points.T).min() >= found.z_abs - 1e-9
+    # the square root of eps: at a double mu a rounding of the point moves the poles by 1e-8, at ABM2's double z more
+    here = float(spectral_radius(method, found.alpha_hat, found.beta_hat))
+    assert here == pytest.approx(found.z_abs, abs=1e-3 if name == "ABM2" else 1e-6)
+
+
+def test_without_a_stable_region_there_is_no_best_point() -> None:
+    scheme = LinearMultistep((F(1), F(0), F(-1)), (F(0), F(2), F(0)))
+    assert best_point(Method("leapfrog", scheme, "")) is None
+
+
+@given(st.fractions(-F(9, 10), F(9, 10), max_denominator=20), st.fractions(-1, 2, max_denominator=20))
+@settings(max_examples=8, deadline=None)
+def test_random_two_step_methods(root: Fraction, b: Fraction) -> None:
+    scheme = LinearMultistep((F(1), -1 - root, root), (F(0), 1 - root - b, b))
+    method = Method("random", scheme, "")
+    found = best_point(method)
+    if found is not None:
+        (a_low, a_high), (b_low, b_high) = window(region(method))
+        a, c = np.meshgrid(np.linspace(a_low, a_high, 200), np.linspace(b_low, b_high, 200))
+        assert spectral_radius(method, a, c).min() >= found.z_abs - 1e-9
+
+
+def test_a_zero_of_r_beyond_float64s_squares_is_out_of_reach() -> None:
+    tableau = ((Fraction(0),) * 2, (Fraction(1, 10**200), Fraction(0)))
+    far = Method("far", RungeKutta(tableau, (Fraction(0), Fraction(1))), "constructed")  # R = 1 + mu + 1e-200 mu^2
+    best = best_point(far)
+    assert best
+    assert (best.z_abs, best.alpha_hat, best.beta_hat, best.elsewhere) == (0.0, 2.0, 1.0, ())

@@ -1,0 +1,157 @@
+import math
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bezstab.errors import InputError
+from bezstab.methods import lookup
+from bezstab.stability import (
+    FloatArray,
+    Goal,
+    best_point,
+    choose,
+    describe_point,
+    float_table,
+    roots_in_z,
+    spectral_radius,
+    stability_margins,
+)
+
+METHODS = ["B2", "B4", "AB4", "ABM3", "RK1", "RK4", "SIE", "SYM"]
+
+
+def decay(name: str, a: float, b: float, shares: FloatArray, spread: float) -> float:
+    """Return the largest |z_p|^(1/share) over the shares of the step and over the square of the spread, corners in."""
+    offsets = 1 + spread * np.linspace(-1, 1, 5)
+    first, second, share = (x.ravel() for x in np.meshgrid(offsets, offsets, shares))
+    z_abs = spectral_radius(lookup(name), a * first * share, b * (second * share) ** 2)
+    return float((z_abs ** (1 / share)).max())
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_no_point_is_more_robust(name: str) -> None:
+    """Second route: compass search from random points, on other shares of the step and other offsets."""
+    chosen = choose(lookup(name), "robust", 0.1)
+    shares = np.concatenate([np.geomspace(1e-6, 1, 50), np.linspace(0.5, 1, 50)])
+    best = decay(name, chosen.alpha_hat, chosen.beta_hat, shares, 0.1)
+    random = np.random.default_rng(5)
+    for size in (0.3, 0.1, 0.03, 0.01, 1e-3, 1e-4):
+        for a, b in random.normal(1, size, (60, 2)) * (chosen.alpha_hat, chosen.beta_hat):
+            if a > 0 and b > 0:
+                # six digits; that small steps end at a millionth here costs as much again
+                assert decay(name, a, b, shares, 0.1) > best * (1 - 2e-6)
+
+
+@pytest.mark.parametrize("name", ["B2", "B4", "AB4", "RK4"])
+def test_the_robust_choice_bears_the_spread_better_than_the_fastest(name: str) -> None:
+    robust, fastest = choose(lookup(name), "robust", 0.1), choose(lookup(name), "fastest", 0.1)
+    assert abs(fastest.pole) <= abs(robust.pole)
+    assert robust.worst < fastest.worst
+    assert robust.margins
+    assert robust.margins.h > 1.1
+
+
+@pytest.mark.parametrize("name", ["B3", "B4", "AB4"])
+def test_the_fastest_point_is_a_kink_with_a_square_root_on_its_overdamped_side(name: str) -> None:
+    best = best_point(lookup(name))
+    assert best
+
+    def rise(size: float, angle: float) -> float:
+        a, b = best.alpha_hat + size * np.cos(angle), best.beta_hat + size * np.sin(angle)
+        return float(spectral_radius(lookup(name), a, b)) - best.z_abs
+
+    tangent = math.atan(best.alpha_hat / 2)  # of the parabola of critical damping
+    for offset in np.linspace(0.3, np.pi - 0.3, 6):
+        for angle, order in ((tangent - offset, 0.5), (tangent + offset, 1.0)):  # two real mu; two complex
+            assert math.log(rise(1e-6, angle) / rise(1e-8, angle)) / math.log(100) == pytest.approx(order, abs=0.02)
+
+
+@pytest.mark.parametrize("name", ["B3", "B4", "B8", "AB3", "AB4"])
+def test_the_critical_choice_is_where_a_parasitic_root_catches_up(name: str) -> None:
+    chosen = choose(lookup(name), "critical")
+    assert chosen.pole.real > 0
+    assert abs(chosen.pole.imag) < 1e-6 * chosen.pole.real
+    mu = -chosen.alpha_hat / 2
+    assert chosen.beta_hat == pytest.approx(mu * mu, rel=1e-12)
+    table = float_table(lookup(name))  # z and -z both solve pi(., mu) = 0
+    r = chosen.pole.real
+    signs = np.array([(-1.0) ** k for k in range(len(table))])
+    both = [np.polynomial.polynomial.polyval(s, table @ [1, mu]) for s in (r,)]
+    other = np.polynomial.polynomial.polyval(r, signs * (table @ [1, mu]))
+    assert abs(both[0]) < 1e-6
+    assert abs(other) < 1e-6
+
+
+def test_the_critical_choice_of_rk4_is_the_minimum_of_its_stability_function() -> None:
+    mu = np.roots([1 / 6, 1 / 2, 1, 1])
+    (real,) = mu[np.abs(mu.imag) < 1e-12].real
+    chosen = choose(lookup("RK4"), "critical")
+    assert abs(chosen.pole) == pytest.approx(1 + real + real**2 / 2 + real**3 / 6 + real**4 / 24, abs=1e-7)
+    assert chosen.alpha_hat == pytest.approx(-2 * real, rel=1e-3)  # flat there
+
+
+@pytest.mark.parametrize("name", ["B4", "AB4", "RK4", "SIE"])
+@pytest.mark.parametrize("rate", [0.999, 0.95, 0.85])
+def test_the_gentle_choice_solves_for_mu(name: str, rate: float) -> None:
+    chosen = choose(lookup(name), "gentle", rate=rate)
+    mu = np.roots(
+        (np.vander([rate], len(float_table(lookup(name))), increasing=True) @ float_table(lookup(name)))[0][::-1]
+    )
+    nearest = max(mu[(np.abs(mu.imag) < 1e-9) & (mu.real < 0)].real)
+    assert chosen.alpha_hat == pytest.approx(-2 * nearest, rel=1e-7)  # a double mu: half the digits
+    assert chosen.beta_hat == pytest.approx(nearest**2, rel=1e-7)
+    z = roots_in_z(lookup(name), np.array([nearest], complex))
+    assert np.abs(z).max() == pytest.approx(rate)
+
+
+@pytest.mark.parametrize("goal", ["robust", "fastest", "critical"])
+def test_a_step_of_five_h_scales_the_choice(goal: Goal) -> None:
+    plain, fivefold = (choose(lookup(name), goal) for name in ("RK2", "RK2@5"))
+    # the objective is flat to rounding within the square root of it
+    assert (5 * fivefold.alpha_hat, 25 * fivefold.beta_hat) == pytest.approx(
+        (plain.alpha_hat, plain.beta_hat), rel=1e-4
+    )
+    assert abs(fivefold.pole) == pytest.approx(abs(plain.pole), abs=1e-6)
+
+
+def test_a_goal_out_of_reach_is_refused() -> None:
+    with pytest.raises(InputError, match="--keep"):
+        choose(lookup("SYM"), "critical", equal=True)
+    assert choose(lookup("B4"), "critical", equal=True) == choose(lookup("B4"), "critical")
+    with pytest.raises(InputError, match="settle"):
+        choose(lookup("B4"), "gentle", rate=0.5)
+
+
+@pytest.mark.parametrize("goal", ["robust", "fastest"])
+def test_alpha_and_beta_can_be_kept_equal(goal: Goal) -> None:
+    chosen = choose(lookup("RK4"), goal, equal=True)
+    assert chosen.beta_hat == pytest.approx(chosen.alpha_hat**2 / 4, rel=1e-12)
+    t = np.linspace(0.01, 2.7, 2000)
+    if goal == "fastest":
+        assert abs(chosen.pole) <= spectral_radius(lookup("RK4"), 2 * t, t**2).min() + 1e-9
+
+
+@given(st.floats(0.05, 1.9), st.floats(0.05, 0.95))
+def test_margins_of_symplectic_euler_are_those_of_its_triangle(a: float, share: float) -> None:
+    b = share * (4 - 2 * a)
+    found = stability_margins(lookup("SYM"), a, b)
+    exact = pytest.approx  # 0 < alpha_hat < 2 and 0 < beta_hat < 4 - 2 alpha_hat
+    assert found.h == exact(min((-2 * a + math.sqrt(4 * a * a + 16 * b)) / (2 * b), 2 / a), rel=1e-9)
+    assert found.alpha[1] == exact((4 - b) / (2 * a), rel=1e-9)
+    assert found.beta[1] == exact(math.sqrt((4 - 2 * a) / b), rel=1e-9)
+    assert (found.alpha[0], found.beta[0]) == (0, 0)
+
+
+def test_a_choice_is_proven_and_described() -> None:
+    for name in METHODS:
+        assert choose(lookup(name), "fastest").verdict == "converges"
+    unsafe = describe_point(lookup("SYM"), "as given", Fraction(2), Fraction(2))
+    assert (unsafe.verdict, unsafe.margins, unsafe.settle_steps) == ("diverges", None, None)
+    assert describe_point(lookup("SYM"), "as given", Fraction(1), Fraction(2)).verdict == "marginal"
+    deadbeat = describe_point(lookup("RK2"), "as given", Fraction(2), Fraction(2))
+    assert deadbeat.settle_steps == 2
+    slow = describe_point(lookup("B4"), "", Fraction("1e-17"), Fraction("1e-34"))  # |z_p| = 1 - 5e-18 is 1 in float64
+    assert (slow.verdict, slow.settle_steps) == ("converges", None)

@@ -1,0 +1,254 @@
+import contextlib
+from decimal import ROUND_DOWN, ROUND_HALF_EVEN, Decimal
+from fractions import Fraction
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from bezstab.errors import NumericalError
+from bezstab.methods import (
+    REGISTRY,
+    LinearMultistep,
+    Method,
+    RungeKutta,
+    closed_loop_at,
+    coefficient_table,
+    feedback_matrix,
+    lookup,
+)
+from bezstab.stability import branch_points, dominant_pole, poles, roots_in_z, spectral_radius, verdict
+
+F = Fraction
+NAMES = [*REGISTRY, "RK4@5"]
+EPS = 2.0**-52
+
+TABLE_5 = {  # paper, as printed: real, imaginary part, modulus, angle
+    ("B4", "0.1", "0.1"): "0.898 0.299 0.947 18.45",
+    ("B4", "0.5", "0.1"): "0.763 0.142 0.776 10.55",
+    ("B4", "0.5", "0.101"): "0.762 0.144 0.776 10.69",
+    ("AB4", "0.1", "0.1"): "0.906 0.291 0.952 17.83",
+    ("AB4", "0.5", "0.1"): "-0.903 0.428 0.999 154.6",
+    ("AB4", "0.5", "0.101"): "-0.903 0.433 1.001 154.4",
+    ("RK4@5", "0.1", "0.1"): "0.074 0.740 0.744 84.27",
+    ("RK4@5", "0.5", "0.1"): "0.095 0.237 0.255 68.15",
+    ("RK4@5", "0.5", "0.101"): "0.090 0.241 0.258 69.45",
+    ("SIE", "0.1", "0.1"): "0.855 0.281 0.9 18.19",
+    ("SIE", "0.5", "0.1"): "0.775 0.097 0.781 7.12",
+    ("SIE", "0.5", "0.101"): "0.774 0.098 0.780 7.22",
+}
+
+PRESETS = {  # shared derivation of each engine's preset: spectral radius for SYM RK1 RK2 RK3 RK4 AB2 AB3 AB4
+    (2, 2): "2.4142 1.0000 0.0000 0.4714 0.3727 1.6801 2.5147 3.3330",
+    (2, 1): "1.6180 0.0000 0.5000 0.3333 0.3750 1.0000 1.7910 2.5283",
+    (1, 0.25): "0.7500 0.5000 0.6250 0.6042 0.6068 0.6404 0.9239 1.4373",
+    (1, 0.2): "0.8000 0.7236 0.7618 0.7583 0.7585 0.7659 1.3041 1.9231",
+    (0.2, 0.01): "0.9270 0.9000 0.9050 0.9048 0.9048 0.9052 0.9048 0.9048",
+    (0.01, 2.5e-5): "0.9953 0.9950 0.9950 0.9950 0.9950 0.9950 0.9950 0.9950",
+}
+
+
+@pytest.mark.parametrize("case", TABLE_5, ids=str)
+def test_the_papers_table_5_comes_out_to_every_digit_it_prints(case: tuple[str, str, str]) -> None:
+    name, alpha_hat, beta_hat = case
+    z = complex(dominant_pole(lookup(name), float(alpha_hat), float(beta_hat)))
+    computed = (z.real, z.imag, abs(z), np.degrees(np.angle(z)))
+    for value, printed in zip(computed, TABLE_5[case].split(), strict=True):
+        unit = Decimal(1).scaleb(-len(printed.partition(".")[2]))
+        roundings = [Decimal(float(value)).quantize(unit, way) for way in (ROUND_DOWN, ROUND_HALF_EVEN)]
+        assert Decimal(printed) in roundings  # the paper rounds some digits and truncates others
+
+
+@pytest.mark.parametrize("point", PRESETS, ids=str)
+def test_the_preset_points_of_the_engines(point: tuple[float, float]) -> None:
+    names = ["SYM", "RK1", "RK2", "RK3", "RK4", "AB2", "AB3", "AB4"]
+    for name, printed in zip(names, PRESETS[point].split(), strict=True):
+        assert float(spectral_radius(lookup(name), *point)) == pytest.approx(
+            float(printed), abs=5.1e-5
+        )  # four decimals
+
+
+POINTS = [
+    (0.5, 0.1), (1e-12, 1e-12), (1e-12, 1e12), (1e12, 1e-12), (1e12, 1e12), (1e6, 1e-6), (0.0, 0.3), (0.3, 0.0),
+    (1.0, 0.25), (0.1, 0.0025), (0.7, 0.1225), (1e-6, 2.5e-13), (-0.3, 0.2), (0.2, -0.4), (2.0, 2.0), (0.0, 0.0),
+    (1.0, 2.0), (1.5, 0.5), (2.0, 1.0), (1.0, 0.0), (27 / 17, (27 / 34) ** 2),  # on one boundary or another
+]  # fmt: skip
+
+
+def reference_poles(method: Method, alpha_hat: float, beta_hat: float) -> list[tuple[Any, Any]]:
+    """Return each pole to 50 digits with the error that float64 cannot avoid: rounding times its condition.
+
+    Rounding the coefficients of pi, mu and the evaluation by a few eps moves a root of multiplicity k by the k-th
+    root of (rounding / |k-th derivative|).
+    """
+    (a, b), (c, d) = ([mpmath.mpf(x.numerator) / x.denominator for x in row] for row in feedback_matrix(method))
+    p, q = a * mpmath.mpf(alpha_hat) + b * mpmath.mpf(beta_hat), c * mpmath.mpf(alpha_hat) + d * mpmath.mpf(beta_hat)
+    root = mpmath.sqrt(p * p / 4 - q)
+    pairs = []
+    for mu in (-p / 2 + root, -p / 2 - root):
+        table = [[mpmath.mpf(x.numerator) / x.denominator for x in row] for row in coefficient_table(method)]
+        coefficients = [sum(x * mu**j for j, x in enumerate(row)) for row in table]
+        sizes = [sum(abs(x * mu**j) for j, x in enumerate(row)) for row in table]
+        while coefficients[0] == 0:  # exact zeros, which polyroots would only approach
+            pairs.append((mpmath.mpf(0), mpmath.mpf(0)))
+            coefficients, sizes = coefficients[1:], sizes[1:]
+        for z in mpmath.polyroots(coefficients[::-1], maxsteps=500, extraprec=200):
+            rounding = 50 * EPS * sum(size * abs(z) ** k for k, size in enumerate(sizes))
+            derivative, error = coefficients, mpmath.inf
+            for k in range(1, len(coefficients)):
+                derivative = [i * x for i, x in enumerate(derivative)][1:]
+                slope = abs(mpmath.polyval(derivative[::-1], z)) / mpmath.factorial(k)
+                if slope:
+                    error = min(error, (len(coefficients) * rounding / slope) ** (mpmath.mpf(1) / k))
+            pairs.append((z, error))
+    return pairs
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_poles_agree_with_fifty_digits(name: str) -> None:
+    method = lookup(name)
+    with mpmath.workdps(50):
+        for alpha_hat, beta_hat in POINTS:
+            found = list(poles(method, alpha_hat, beta_hat))
+            for exact, allowed in sorted(reference_poles(method, alpha_hat, beta_hat), key=lambda pair: pair[1]):
+                k = min(range(len(found)), key=lambda i: abs(found[i] - exact))
+                assert abs(found.pop(k) - exact) <= allowed, (alpha_hat, beta_hat, complex(exact))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_pole_does_not_depend_on_its_neighbours_in_the_array(name: str) -> None:
+    method, random = lookup(name), np.random.default_rng(1)
+    axis = np.concatenate([[0.0], np.geomspace(1e-12, 1e12, 13), np.linspace(-2, 4, 27)])
+    a, b = (x.ravel() for x in np.meshgrid(axis, axis))
+    shuffle = random.permutation(a.size)
+    together = spectral_radius(method, a, b)
+    assert np.isfinite(together).all()
+    # 1e-4: the fourth root of eps, for ABM4 has a quadruple root at z = 1
+    assert spectral_radius(method, a[shuffle], b[shuffle]) == pytest.approx(together[shuffle], rel=1e-3, abs=1e-3)
+    few = random.permutation(a.size)[:40]
+    alone = [float(spectral_radius(method, a[i], b[i])) for i in few]
+    assert together[few] == pytest.approx(alone, rel=1e-3, abs=1e-3)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_poles_satisfy_vieta(name: str) -> None:
+    z = poles(lookup(name), 0.37, 0.21)
+    exact = [float(c) for c in closed_loop_at(lookup(name), F(0.37), F(0.21))]
+    assert np.poly(z).real == pytest.approx(exact, abs=1e-12 * max(map(abs, exact)))  # sums of products, rounded
+
+
+def test_shapes_broadcast_with_the_root_axis_last() -> None:
+    method = lookup("B3")
+    assert poles(method, np.zeros((4, 1)), np.zeros(5)).shape == (4, 5, 6)
+    assert dominant_pole(method, np.zeros((4, 1)), np.zeros(5)).shape == (4, 5)
+    assert poles(method, 0.1, 0.1).shape == (6,)
+    assert spectral_radius(method, np.empty((0, 3)), 0.1).shape == (0, 3)
+
+
+@pytest.mark.parametrize("name", NAMES)
+@given(st.floats(-1, 4), st.floats(-1, 4))
+@settings(max_examples=25, deadline=None)
+def test_the_dominant_pole_is_the_largest_and_in_the_upper_half(name: str, alpha_hat: float, beta_hat: float) -> None:
+    z = complex(dominant_pole(lookup(name), alpha_hat, beta_hat))
+    assert z.imag >= 0
+    # 1e-3: two paths to the same roots, which near multiple ones agree to the fourth root of eps only
+    assert abs(z) == pytest.approx(np.abs(poles(lookup(name), alpha_hat, beta_hat)).max(), abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("name", "alpha_hat", "beta_hat"), [("SYM", F(1), F(2)), ("AB2", F(3, 2), F(1, 2)), ("RK1", F(2), F(2))]
+)
+def test_the_verdict_is_right_on_the_boundary_itself(name: str, alpha_hat: Fraction, beta_hat: Fraction) -> None:
+    method, tiny = lookup(name), F(1, 10**20)
+    assert verdict(method, alpha_hat, beta_hat) == "marginal"
+    for da, db in ((tiny, F(0)), (F(0), tiny)):
+        sides = {verdict(method, alpha_hat + sign * da, beta_hat + sign * db) for sign in (-1, 1)}
+        assert sides == {"converges", "diverges"}
+
+
+@pytest.mark.parametrize("name", [name for name in REGISTRY if isinstance(lookup(name).scheme, LinearMultistep)])
+@given(st.fractions(F(1, 100), F(99, 100), max_denominator=1000), st.booleans())
+@settings(max_examples=10, deadline=None)
+def test_only_the_exact_verdict_knows_the_straight_edges(name: str, part: Fraction, along_alpha: bool) -> None:
+    scheme, tiny = lookup(name).scheme, F(1, 10**20)
+    assert isinstance(scheme, LinearMultistep)
+    # one mu where z = -1, the other further in: P(-1) = 0 exactly, and that root is simple
+    edge = sum(c * (-1) ** k for k, c in enumerate(scheme.rho)) / sum(c * (-1) ** k for k, c in enumerate(scheme.sigma))
+    a, b = -(edge + part * edge), edge * part * edge
+    step = (tiny, F(0)) if along_alpha else (F(0), tiny)
+    verdicts = [verdict(lookup(name), a + sign * step[0], b + sign * step[1]) for sign in (-1, 0, 1)]
+    assert verdicts[1] == "marginal"
+    assert {verdicts[0], verdicts[2]} == {"converges", "diverges"}
+
+
+def test_a_repeated_root_on_the_circle_diverges() -> None:
+    assert verdict(lookup("AB2"), F(2), F(1)) == "diverges"
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_without_feedback_the_constraint_error_grows(name: str) -> None:
+    assert verdict(lookup(name), F(0), F(0)) == "diverges"
+    assert verdict(lookup(name), F(1, 100), F(0)) == "marginal"
+    assert verdict(lookup(name), F(1, 100), F(-1, 1000)) == "diverges"
+    assert verdict(lookup(name), F(-1, 100), F(1, 1000)) == "diverges"
+
+
+def test_the_taylor_rule_is_deadbeat_for_midpoint() -> None:
+    assert verdict(lookup("RK2"), F(2), F(2)) == "converges"
+    assert float(spectral_radius(lookup("RK2"), 2, 2)) == 0
+
+
+@pytest.mark.parametrize("name", NAMES)
+@given(st.fractions(-1, 6, max_denominator=1000), st.fractions(-1, 9, max_denominator=1000))
+@settings(max_examples=25, deadline=None)
+def test_away_from_the_boundary_the_proof_agrees_with_the_number(name: str, a: Fraction, b: Fraction) -> None:
+    z_abs = float(spectral_radius(lookup(name), float(a), float(b)))
+    assume(abs(z_abs - 1) > 1e-3)  # ABM4's quadruple root at z = 1 keeps a quarter of the digits
+    assert verdict(lookup(name), a, b) == ("converges" if z_abs < 1 else "diverges")
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("point", [(1e300, 1e300), (-1e300, 1e-300), (1e-300, 1e300), (1e160, -1e307)])
+def test_overflow_is_reported_never_returned(name: str, point: tuple[float, float]) -> None:
+    with contextlib.suppress(NumericalError):
+        assert np.isfinite(poles(lookup(name), *point)).all()
+
+
+@pytest.mark.parametrize("name", REGISTRY)
+def test_a_map_follows_the_pole_that_is_largest_everywhere(name: str) -> None:
+    method = lookup(name)
+    for low, high in (((-3, -2), (5, 6)), ((0, 0), (40, 900))):  # kinks and branch points; far outside
+        alpha_hat, beta_hat = np.linspace(low, high, 120).T
+        grid = (alpha_hat, beta_hat[:, np.newaxis])
+        every = np.abs(poles(method, *grid)).max(axis=-1)
+        # of ABM four roots meet at z = 1 along a curve of the plane, and float64 keeps a quarter of the digits there
+        assert np.allclose(spectral_radius(method, *grid), every, rtol=1e-4 if "ABM" in name else 1e-12, atol=0)
+
+
+def test_a_map_whose_rows_leap_over_branch_points_follows_no_pole_across_them() -> None:
+    """From the end of one row, mu = -85, to the start of the next, mu = -5, the slopes at the former mean nothing."""
+    weights = (tuple(map(Fraction, text.split())) for text in ("1 -1 0 1/3 -1/3", "0 4/5 1 2/5 -13/15"))
+    method = Method("leap", LinearMultistep(*weights), "")
+    grid = (np.linspace(8.673741, 86.61854885, 211), np.linspace(-28.26979122, 65.9313013, 197)[:, np.newaxis])
+    every = np.abs(poles(method, *grid)).max(axis=-1)
+    assert np.allclose(spectral_radius(method, *grid), every, rtol=1e-12, atol=0)
+
+
+@pytest.mark.parametrize("name", ["B2", "B4", "AB3", "AB4", "ABM2"])
+def test_two_roots_meet_at_a_branch_point(name: str) -> None:
+    found = branch_points(lookup(name))
+    assert len(found)
+    z = roots_in_z(lookup(name), found)
+    apart = np.abs(z[:, np.newaxis] - z)[np.triu_indices(len(z), 1)].min(axis=0)
+    assert apart.max() < 1e-3  # where three or four meet, float64 keeps a third or a quarter of its digits
+
+
+def test_coefficients_beyond_float64_are_reported() -> None:
+    huge = Fraction(10) ** 200
+    method = Method("huge", RungeKutta(((Fraction(0),) * 2, (huge, Fraction(0))), (1 - huge, huge)), "constructed")
+    with pytest.raises(NumericalError, match="huge: products of its coefficients"):
+        poles(method, 0.5, 0.1)

@@ -1,0 +1,66 @@
+from fractions import Fraction
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+from bezstab.methods import REGISTRY, LinearMultistep, accuracy, bezier, lookup
+from bezstab.stability import FAMILIES, bezier_limit, family_members
+
+
+def test_members_are_the_registered_methods_with_their_known_areas() -> None:
+    found = family_members("bezier", 2, 4) + family_members("adams-bashforth", 3, 4)
+    assert [member.method for member in found] == [lookup(name) for name in ("B2", "B3", "B4", "AB3", "AB4")]
+    areas = (1.0792066831172, 0.8867074265353, 0.8096847183719, 0.3822792180494, 0.0649115455705)
+    assert [member.region.area for member in found] == pytest.approx(areas, abs=1e-12)
+    assert [(member.order, member.error_constant) for member in found] == [accuracy(member.method) for member in found]
+    prefixes = {"bezier": "B", "adams-bashforth": "AB"}
+    assert all(f"{prefixes[name]}{largest}" in REGISTRY for name, (_, largest) in FAMILIES.items())
+
+
+def extrapolated(values: list[float], n: list[int]) -> float:
+    """Return the limit of a sequence that is a series in 1/n, by a polynomial through all of it."""
+    return float(np.polynomial.Polynomial.fit(1 / np.array(n), values, len(n) - 1)(0))
+
+
+def test_the_limit_is_where_the_family_tends() -> None:
+    """Second route: the exact areas and optima of B5 to B12, extrapolated in 1/n."""
+    found, limit = family_members("bezier", 5, 12), bezier_limit()
+    n = [member.n for member in found]
+    # eight terms of the series: 12^-8 is 2e-9, times what the polynomial amplifies
+    assert extrapolated([member.region.area for member in found], n) == pytest.approx(limit.area, abs=1e-6)
+    assert extrapolated([member.z_abs or 0 for member in found], n) == pytest.approx(limit.z_abs, abs=1e-6)
+    ends = [member.region.extent for member in found]
+    assert extrapolated([end[0][1] for end in ends if end], n) == pytest.approx(limit.alpha_hat_max, abs=1e-6)
+    assert extrapolated([end[1][1] for end in ends if end], n) == pytest.approx(limit.beta_hat_max, abs=1e-5)
+    constants = [float(member.error_constant) for member in found]
+    assert extrapolated(constants, n) == pytest.approx(float(limit.error_constant), abs=1e-6)
+
+
+def test_the_weights_tend_to_those_of_the_limits_mapping() -> None:
+    scheme = bezier(400).scheme
+    assert isinstance(scheme, LinearMultistep)
+    with mp.workdps(30):
+        for j in range(4):
+            weight = mp.quad(lambda x, j=j: mp.e**x * (-x) ** j / mp.factorial(j), [0, 1])
+            assert float(scheme.sigma[1 + j]) == pytest.approx(float(weight), abs=5 / 400)
+
+
+def test_the_limits_numbers_to_thirty_digits() -> None:
+    limit = bezier_limit()
+    with mp.workdps(30):
+
+        def mu(z: mp.mpc) -> mp.mpc:
+            return (z - 1) ** 2 / (z * mp.expm1((z - 1) / z))
+
+        length = -mp.re(mu(mp.mpc(-1)))
+        assert limit.alpha_hat_max == pytest.approx(float(2 * length), abs=1e-14)
+
+        def density(theta: mp.mpf) -> mp.mpf:
+            return 2 * mp.im(mu(mp.expj(theta))) ** 2 * mp.diff(lambda t: mp.re(mu(mp.expj(t))), theta)
+
+        area = abs(mp.quad(density, mp.linspace(0, mp.pi, 9))) + length**3 / 6
+        assert limit.area == pytest.approx(float(area), abs=1e-12)
+        r = mp.findroot(lambda r: mu(mp.mpc(r)).real - mu(mp.mpc(-r)).real, 0.687)
+        assert limit.z_abs == pytest.approx(float(r), abs=1e-14)
+    assert limit.error_constant == Fraction(1, 4)
