@@ -1,24 +1,32 @@
 """Integration methods as exact data, and what follows from their coefficients.
 
+    schemes            what a method is; steps and evaluations
+    families           Bezier, Adams-Bashforth, Adams-Bashforth-Moulton: how their weights come about
+    one_step_methods   RK1 to RK4, SIE, SYM
+    registry           all of them by name; lookup
+    method_files       a user's own method
+    derivation         characteristic and closed-loop polynomial, s->z mapping
+    orders             order of accuracy
+    formulas           all of these as text or LaTeX
+    schur              where a polynomial's roots lie, proven
+
 What needs sympy is loaded when first used: naming a method, or proving a verdict, does not.
 """
 
 from typing import TYPE_CHECKING
 
 from bezstab.lazy import lazy_names
-from bezstab.methods.registry import (
-    REGISTRY,
+from bezstab.methods.families import adams_bashforth, adams_bashforth_moulton, bezier
+from bezstab.methods.method_files import read_method
+from bezstab.methods.registry import REGISTRY, lookup
+from bezstab.methods.schemes import (
+    Family,
     LinearMultistep,
     Method,
     Partitioned,
     PredictorCorrector,
     RungeKutta,
-    adams_bashforth,
-    adams_bashforth_moulton,
-    bezier,
     evaluations,
-    lookup,
-    read_method,
     steps,
 )
 from bezstab.methods.schur import Polynomial, Verdict, is_schur, recursion_verdict
@@ -31,7 +39,6 @@ if TYPE_CHECKING:
         H,
         S,
         Z,
-        accuracy,
         branch_polynomial,
         characteristic_polynomial,
         closed_loop_at,
@@ -42,6 +49,7 @@ if TYPE_CHECKING:
         mapping_equations,
     )
     from bezstab.methods.formulas import characteristic_text, mapping_text, recursion_text
+    from bezstab.methods.orders import accuracy
 
 DERIVED = {
     "derivation": (
@@ -51,7 +59,6 @@ DERIVED = {
         "H",
         "S",
         "Z",
-        "accuracy",
         "branch_polynomial",
         "characteristic_polynomial",
         "closed_loop_at",
@@ -62,6 +69,7 @@ DERIVED = {
         "mapping_equations",
     ),
     "formulas": ("characteristic_text", "mapping_text", "recursion_text"),
+    "orders": ("accuracy",),
 }
 """What is loaded when first used, by module."""
 
@@ -72,6 +80,7 @@ __all__ = [
     "BETA_HAT",
     "MU",
     "REGISTRY",
+    "Family",
     "H",
     "LinearMultistep",
     "Method",

@@ -7,7 +7,7 @@ from math import lcm
 import sympy as sp
 
 from bezstab.methods.derivation import ALPHA_HAT, BETA_HAT, MU, Z, closed_loop_polynomial, mapping_equations
-from bezstab.methods.registry import LinearMultistep, Method, Partitioned, PredictorCorrector, RungeKutta
+from bezstab.methods.schemes import LinearMultistep, Method, Partitioned, PredictorCorrector, RungeKutta
 
 LATEX = {ALPHA_HAT: r"\hat{\alpha}", BETA_HAT: r"\hat{\beta}", MU: r"\mu"}
 TEXT = {"alpha_hat": "α̂", "beta_hat": "β̂", "**": "^", "*": " "}

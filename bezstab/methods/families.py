@@ -1,0 +1,87 @@
+"""Families of multistep methods by their number of steps, and how their weights come about.
+
+All replace f(t, y(t)) beyond t_k by a curve through or along its last n values and integrate that curve over one
+step, from t_k to t_{k+1}; they differ in the curve. Time is counted in steps from t_k: the known values sit at
+0, -1, ..., 1 - n.
+
+    Adams-Bashforth   the polynomial through the values
+    Adams-Moulton     the polynomial through the values and the new one at 1, without the oldest
+    Bezier            the Bernstein curve with the values as control points, extended past its end
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from math import comb, prod
+
+from bezstab.methods.schemes import ONE, ZERO, Family, LinearMultistep, Method, PredictorCorrector
+
+
+def bezier(n: int) -> Method:
+    """Return the n-step Bezier method, n >= 1: f is replaced by the Bernstein curve on its last n values.
+
+    b_j = m C(m, j) int_1^{1+1/m} tau^(m-j) (1-tau)^j dtau, m = n - 1; B1 is explicit Euler
+    (Aghdam et al.'s multistep method, paper Table 1; theory: the curve extended past its end over one step).
+    """
+    weights = [_bezier_weight(n - 1, j) for j in range(n)] if n > 1 else [ONE]
+    return Method(f"B{n}", _explicit_adams(weights), "paper Table 1 (Bezier)", family=Family("Bezier", n))
+
+
+def _bezier_weight(degree: int, j: int) -> Fraction:
+    """Return the weight of f_{k-j}: its Bernstein polynomial integrated over the step past the end of the curve.
+
+    On the curve of degree m the parameter tau runs from 0 (oldest value) to 1 (newest), so a step is 1/m long and the
+    next one ends at (m + 1)/m. (1 - tau)^j is multiplied out, so that only powers of tau are integrated.
+    """
+    end = Fraction(degree + 1, degree)
+    integral = ZERO
+    for i in range(j + 1):
+        coefficient = comb(j, i) * (-1) ** i
+        power = degree - j + i + 1  # of tau, after integration
+        integral += coefficient * (end**power - 1) / power
+    return degree * comb(degree, j) * integral
+
+
+def adams_bashforth(n: int) -> Method:
+    """Return the n-step Adams-Bashforth method, of order n >= 1 (Hairer, Norsett & Wanner I, section III.1)."""
+    source = "Hairer, Norsett & Wanner I, Eq. III.1.5 (Adams-Bashforth)"
+    return Method(f"AB{n}", _adams_bashforth_scheme(n), source, family=Family("Adams-Bashforth", n))
+
+
+def _adams_bashforth_scheme(n: int) -> LinearMultistep:
+    return _explicit_adams(_interpolatory_weights([-j for j in range(n)]))
+
+
+def adams_bashforth_moulton(n: int) -> Method:
+    """Return the PECE pair of order n >= 2: AB of order n predicts, Adams-Moulton of order n corrects.
+
+    Both keep n past values; the corrector gives the oldest the weight 0, as the new value takes its place
+    (Hairer, Norsett & Wanner I, section III.1).
+    """
+    predictor = _adams_bashforth_scheme(n)
+    corrector = LinearMultistep(predictor.rho, (*_interpolatory_weights([1 - j for j in range(n)]), ZERO))
+    source = "Hairer, Norsett & Wanner I, section III.1 (Adams-Bashforth-Moulton, PECE)"
+    family = Family("Adams-Bashforth-Moulton", n)
+    return Method(f"ABM{n}", PredictorCorrector(predictor, corrector), source, family=family)
+
+
+def _explicit_adams(weights: Sequence[Fraction]) -> LinearMultistep:
+    """Return y_{k+1} = y_k + h sum_j weights[j] f_{k-j}."""
+    rho = (ONE, -ONE, *[ZERO] * (len(weights) - 1))
+    sigma = (ZERO, *weights)
+    return LinearMultistep(rho, sigma)
+
+
+def _interpolatory_weights(nodes: Sequence[int]) -> list[Fraction]:
+    """Return the integrals over [0, 1] of the Lagrange polynomials on `nodes`, in their order."""
+    return [_lagrange_integral(node, [other for other in nodes if other != node]) for node in nodes]
+
+
+def _lagrange_integral(node: int, others: Sequence[int]) -> Fraction:
+    """Return the integral over [0, 1] of the polynomial that is 1 at `node` and 0 at the others."""
+    numerator = [ONE]  # of prod (x - other), coefficients in ascending powers of x
+    for other in others:
+        times_x = [ZERO, *numerator]
+        unchanged = [*numerator, ZERO]
+        numerator = [a - other * b for a, b in zip(times_x, unchanged, strict=True)]
+    integral = sum((a / (power + 1) for power, a in enumerate(numerator)), ZERO)
+    return integral / prod(node - other for other in others)

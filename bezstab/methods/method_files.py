@@ -1,0 +1,63 @@
+"""Methods in TOML files; configs/methods/README.md documents the format."""
+
+from pathlib import Path
+from typing import Any
+
+from bezstab.errors import InputError
+from bezstab.files import read_toml
+from bezstab.methods.families import adams_bashforth, bezier
+from bezstab.methods.one_step_methods import runge_kutta, semi_implicit_euler
+from bezstab.methods.schemes import Family, LinearMultistep, Method, RungeKutta, Scheme
+from bezstab.toml_tables import TomlTable
+
+MOST_STEPS_COMPARED = 12  # as in the largest built-in member; the weights of n steps take n^3 exact operations
+
+
+def read_method(path: Path) -> Method:
+    """Return the method in a TOML file: rho and sigma, or A and b, as rational strings; name and source if given.
+
+    Its family is the one that has a member with the same coefficients, whatever the file calls it, else None.
+    Nothing in the file is executed. InputError, naming the file and the key, for anything else.
+    """
+    return read_toml("method file", path, lambda data: _parse_method(data, path))
+
+
+def _parse_method(data: dict[str, Any], path: Path) -> Method:
+    table = TomlTable(data)
+    name = table.text("name", default=path.stem)
+    source = table.text("source", default=str(path))
+    scheme = _parse_scheme(table)
+    return Method(name, scheme, source, family=_family_of(scheme))
+
+
+def _parse_scheme(table: TomlTable) -> Scheme:
+    """Return the scheme by whichever pair of keys the file has; every other key is refused."""
+    found = set(table.data) - {"name", "source"}
+    if {"rho", "sigma"} <= found and not {"A", "b"} & found:
+        rho, sigma = table.rationals("rho"), table.rationals("sigma")
+        table.refuse_unknown_keys()
+        return LinearMultistep(rho, sigma)
+    if {"A", "b"} <= found and not {"rho", "sigma"} & found:
+        tableau, weights = table.rational_rows("A"), table.rationals("b")
+        table.refuse_unknown_keys()
+        return RungeKutta(tableau, weights)
+    listed = ", ".join(sorted(found)) or "none"
+    raise InputError(f"expected the keys rho and sigma, or A and b, but found {listed}")
+
+
+def _family_of(scheme: Scheme) -> Family | None:
+    """Return the family with a member that has this very scheme: compared with those of as many steps or stages.
+
+    B1 is AB1 and B2 is AB2: there Adams-Bashforth wins, under whose name everybody knows them. No result depends on
+    it, as the members of fewer steps, with which either family would start, are the same too.
+    """
+    members: list[Method] = []
+    match scheme:
+        case LinearMultistep() if scheme.steps <= MOST_STEPS_COMPARED:
+            members = [adams_bashforth(scheme.steps), bezier(scheme.steps)]
+        case RungeKutta():
+            members = [runge_kutta(1), runge_kutta(2), runge_kutta(3), runge_kutta(4), semi_implicit_euler()]
+    for member in members:
+        if member.scheme == scheme:
+            return member.family
+    return None

@@ -1,0 +1,175 @@
+"""Explicit integration methods as exact, frozen data that checks itself at birth.
+
+A scheme is a formula, a method a scheme with its name, source, family and step:
+
+    LinearMultistep      rho(E) y = h sigma(E) f                          B4, AB4, explicit Euler
+    PredictorCorrector   two of them: predict, evaluate, correct          ABM4
+    RungeKutta           stages by a Butcher tableau A, weights b         RK4, SIE
+    Partitioned          one map for velocities, one for positions        SYM
+"""
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+from bezstab.errors import InputError
+from bezstab.methods.schur import recursion_verdict
+
+Coefficients = tuple[Fraction, ...]
+
+ONE, ZERO = Fraction(1), Fraction(0)
+
+LEAST_STEP_MULTIPLE = Fraction("1e-6")
+LARGEST_STEP_MULTIPLE = Fraction("1e6")  # six orders either way: beyond any use, and powers of it stay within float64
+
+
+@dataclass(frozen=True)
+class LinearMultistep:
+    """rho(E) y = h sigma(E) f: coefficients in descending powers of z, rho monic after construction.
+
+    InputError unless the method is consistent (rho(1) = 0, sigma(1) = rho'(1)) and zero-stable (the roots of rho in
+    the closed unit disc, those on the circle simple): Hairer, Norsett & Wanner I, section III.2-3.
+    """
+
+    rho: Coefficients
+    sigma: Coefficients
+
+    def __post_init__(self) -> None:
+        if len(self.rho) != len(self.sigma) or len(self.rho) < 2:
+            raise InputError("rho and sigma must have the same number of coefficients, at least two")
+        if self.rho[0] == 0:
+            raise InputError("the leading coefficient of rho is 0")
+        if sum(self.rho) != 0:
+            raise InputError(f"inconsistent: rho(1) = {sum(self.rho)}, not 0")
+        slope = sum(((self.steps - i) * a for i, a in enumerate(self.rho)), ZERO)
+        if sum(self.sigma) != slope:
+            raise InputError(f"inconsistent: sigma(1) = {sum(self.sigma)}, but rho'(1) = {slope}")
+        if recursion_verdict(self.rho) == "diverges":
+            raise InputError("zero-unstable: rho has a root outside the unit circle, or a repeated one on it")
+        leading = self.rho[0]
+        object.__setattr__(self, "rho", tuple(a / leading for a in self.rho))
+        object.__setattr__(self, "sigma", tuple(b / leading for b in self.sigma))
+
+    @property
+    def steps(self) -> int:
+        """The number of past values one step uses."""
+        return len(self.rho) - 1
+
+    @property
+    def implicit(self) -> bool:
+        """Whether f at the new point enters the step."""
+        return self.sigma[0] != 0
+
+
+@dataclass(frozen=True)
+class PredictorCorrector:
+    """PECE: the explicit predictor's value is evaluated once for the implicit corrector, whose value is evaluated.
+
+    InputError unless the predictor is explicit, the corrector implicit, and both use the same number of past values.
+    """
+
+    predictor: LinearMultistep
+    corrector: LinearMultistep
+
+    def __post_init__(self) -> None:
+        if self.predictor.implicit or not self.corrector.implicit or self.predictor.steps != self.corrector.steps:
+            raise InputError("a predictor-corrector needs an explicit predictor, an implicit corrector, equal steps")
+
+
+@dataclass(frozen=True)
+class RungeKutta:
+    """An explicit Runge-Kutta method by its Butcher tableau (A strictly lower triangular, weights b).
+
+        0    |
+        a_21 | 0             K_i = f(y_k + h sum_j a_ij K_j)
+        a_31 | a_32  0       y_{k+1} = y_k + h sum_i b_i K_i
+        -----+-----------
+             | b_1 b_2 b_3
+
+    InputError unless it is explicit and consistent (the weights sum to one).
+    """
+
+    tableau: tuple[Coefficients, ...]
+    weights: Coefficients
+
+    def __post_init__(self) -> None:
+        stages = len(self.weights)
+        if stages == 0 or len(self.tableau) != stages or any(len(row) != stages for row in self.tableau):
+            raise InputError(f"A must be square with a row for each of the {stages} weights b")
+        if any(a != 0 for i, row in enumerate(self.tableau) for a in row[i:]):
+            raise InputError("implicit: A has an entry on or above its diagonal")
+        if sum(self.weights) != 1:
+            raise InputError(f"inconsistent: the weights b sum to {sum(self.weights)}, not 1")
+
+
+@dataclass(frozen=True)
+class Partitioned:
+    """One-step maps for velocity (explicit, taken first) and position (which may use the new velocity).
+
+    InputError unless both are one-step maps and that of the velocity is explicit.
+    """
+
+    position: LinearMultistep
+    velocity: LinearMultistep
+
+    def __post_init__(self) -> None:
+        if self.velocity.implicit or (self.position.steps, self.velocity.steps) != (1, 1):
+            raise InputError("a partitioned method needs one-step maps, that of the velocity explicit")
+
+
+Scheme = LinearMultistep | PredictorCorrector | RungeKutta | Partitioned
+
+
+@dataclass(frozen=True)
+class Family:
+    """What a method is by its coefficients, whatever it is called: B4 is number 4 of the family "Bezier".
+
+    name: "Bezier", "Adams-Bashforth", "Adams-Bashforth-Moulton", "Runge-Kutta", "SIE" or "symplectic Euler".
+    number: which member; 0 where a method is alone in its family.
+    """
+
+    name: str
+    number: int
+
+
+@dataclass(frozen=True)
+class Method:
+    """A scheme with its name and source; each of its steps spans `step_multiple` of the user's h (RK4@5: five).
+
+    `family` is None for a scheme that belongs to no family known here. It takes part in equality, as what is
+    remembered for a method (a start, a colour) may depend on it.
+    InputError for an implicit multistep scheme and for a step multiple outside 1e-6 to 1e6.
+    """
+
+    name: str
+    scheme: Scheme
+    source: str
+    step_multiple: Fraction = ONE
+    family: Family | None = None
+
+    def __post_init__(self) -> None:
+        if isinstance(self.scheme, LinearMultistep) and self.scheme.implicit:
+            raise InputError("implicit: the leading coefficient of sigma is not 0")
+        if not LEAST_STEP_MULTIPLE <= self.step_multiple <= LARGEST_STEP_MULTIPLE:
+            raise InputError(f"step multiple {float(self.step_multiple):g}: expected 1e-6 to 1e6")
+
+
+def steps(method: Method) -> int:
+    """Return the number of past points the method uses: n for an n-step method, 1 for a one-step method."""
+    match method.scheme:
+        case LinearMultistep() as scheme:
+            return scheme.steps
+        case PredictorCorrector(predictor=scheme):
+            return scheme.steps
+        case RungeKutta() | Partitioned():
+            return 1
+
+
+def evaluations(method: Method) -> int:
+    """Return the number of right-hand-side evaluations in one step of the method, whatever its step multiple."""
+    match method.scheme:
+        case LinearMultistep() | Partitioned():
+            return 1
+        case PredictorCorrector():
+            return 2
+        case RungeKutta(weights=weights):
+            return len(weights)
