@@ -1,4 +1,7 @@
-"""What engines call the feedback, and what their parameters mean in alpha_hat and beta_hat."""
+"""What engines call the feedback, and what their parameters mean in alpha_hat and beta_hat.
+
+Each engine is a pair of conversions, `read` from its parameters to a point and `write` back, and where they come from.
+"""
 
 import math
 from collections.abc import Callable
@@ -8,9 +11,10 @@ from typing import Literal
 
 from bezstab.errors import InputError
 from bezstab.rationals import within_float64
-from bezstab.units import to_dimensionless
+from bezstab.units import feedback_gains, from_dimensionless, from_feedback_gains, to_dimensionless
 
 Point = tuple[Fraction, Fraction]
+"""alpha_hat and beta_hat."""
 
 
 @dataclass(frozen=True)
@@ -18,7 +22,8 @@ class Engine:
     """An engine's own constraint parameters and what they mean in (alpha_hat, beta_hat) at a step of h seconds.
 
     acceleration: true Baumgarte feedback, so that the integrator decides. velocity: an impulse engine, whose update of
-    one constraint is symplectic Euler's at that point. `read` and `write` raise InputError where the other has nothing.
+    one constraint is symplectic Euler's at that point. `read(h, *values)` and `write(point, h)` raise InputError where
+    the other has nothing. `marks` are the settings everybody meets: a label, and the point as a function of h.
     """
 
     name: str
@@ -31,17 +36,22 @@ class Engine:
     excludes: str
 
     def point(self, values: tuple[Fraction, ...], h: Fraction) -> Point:
-        """Return (alpha_hat, beta_hat) for values of the parameters, in their order."""
+        """Return (alpha_hat, beta_hat) for values of the parameters, in their order and the engine's units; h in s.
+
+        InputError for another number of values, for those that mean nothing and for a point outside float64's range.
+        """
+        option = f"--engine {self.name}"
         if len(values) != len(self.parameters):
-            raise InputError(f"--engine {self.name}: {len(values)} values, expected {', '.join(self.parameters)}")
-        a, b = self.read(h, *values)
-        return within_float64(a, f"--engine {self.name}: α̂"), within_float64(b, f"--engine {self.name}: β̂")
+            raise InputError(f"{option}: {len(values)} values, expected {', '.join(self.parameters)}")
+        alpha_hat, beta_hat = self.read(h, *values)
+        return within_float64(alpha_hat, f"{option}: α̂"), within_float64(beta_hat, f"{option}: β̂")
 
     def setting(self, point: Point, h: Fraction) -> str:
-        """Return what to write in the engine's own words for a point; InputError where there is nothing."""
-        if min(point) < 0:
+        """Return what to write in the engine's own words for a point, h in s; InputError where there is nothing."""
+        alpha_hat, beta_hat = point
+        if alpha_hat < 0 or beta_hat < 0:
             raise InputError(
-                f"{self.name}: negative feedback ({float(point[0]):g}, {float(point[1]):g}) is not to be had"
+                f"{self.name}: negative feedback ({float(alpha_hat):g}, {float(beta_hat):g}) is not to be had"
             )
         try:
             return self.write(point, h)
@@ -49,15 +59,126 @@ class Engine:
             raise InputError(f"{self.name}: its parameters would leave the range of float64") from None
 
 
-def _mujoco(h: Fraction, first: Fraction, second: Fraction) -> Point:
-    if first > 0 and second > 0:  # time constant and damping ratio
-        return 2 * h / first, (h / (first * second)) ** 2
-    if first <= 0 and second <= 0:  # minus stiffness, minus damping
-        return -second * h, -first * h * h
+# Engines whose parameters are the coefficients of c'' + 2 alpha c' + beta^2 c = 0, or alpha and beta themselves
+
+
+def _read_gains(h: Fraction, stiffness: Fraction, damping: Fraction) -> Point:
+    """Stiffness is beta^2 (1/s^2), damping 2 alpha (1/s)."""
+    return from_feedback_gains(damping, stiffness, h)
+
+
+def _write_gains(point: Point, h: Fraction) -> str:
+    damping, stiffness = feedback_gains(*point, h)
+    return f"gains = [{float(stiffness):.9g}, {float(damping):.9g}]"
+
+
+CROCODDYL = Engine(
+    name="crocoddyl",
+    level="acceleration",
+    parameters=("gains[0]", "gains[1]"),
+    read=_read_gains,
+    write=_write_gains,
+    marks=(),
+    source="Crocoddyl source, contact-3d.hxx",
+    excludes="friction cones and impulses",
+)
+
+
+def _read_alpha_beta(h: Fraction, alpha: Fraction, beta: Fraction) -> Point:
+    return to_dimensionless(alpha, beta, h)
+
+
+def _write_alpha_beta(point: Point, h: Fraction) -> str:
+    alpha, beta = from_dimensionless(float(point[0]), float(point[1]), float(h))
+    return f"alpha = {alpha:.9g}, beta = {beta:.9g}"
+
+
+def _engine_with_alpha_and_beta(name: str, source: str) -> Engine:
+    return Engine(
+        name=name,
+        level="acceleration",
+        parameters=("alpha", "beta"),
+        read=_read_alpha_beta,
+        write=_write_alpha_beta,
+        marks=(),
+        source=source,
+        excludes="nothing: these are the coefficients of c'' + 2 alpha c' + beta^2 c = 0",
+    )
+
+
+# MuJoCo
+
+
+def _read_solref(h: Fraction, first: Fraction, second: Fraction) -> Point:
+    """Return the point of MuJoCo's solref: two positive numbers or two that are not mean different things."""
+    if first > 0 and second > 0:
+        time_constant, damping_ratio = first, second  # s, -: alpha = 1 / T and beta = 1 / (T zeta)
+        alpha, beta = 1 / time_constant, 1 / (time_constant * damping_ratio)
+        return from_feedback_gains(2 * alpha, beta**2, h)
+    if first <= 0 and second <= 0:
+        return _read_gains(h, stiffness=-first, damping=-second)
     raise InputError(f"--engine mujoco: solref = {float(first):g} {float(second):g}: expected two of one sign")
 
 
-def _box2d(h: Fraction, hertz: Fraction, zeta: Fraction) -> Point:
+def _write_solref(point: Point, h: Fraction) -> str:
+    damping, stiffness = feedback_gains(*point, h)
+    return f'solref="{-float(stiffness):.9g} {-float(damping):.9g}"'
+
+
+def _least_time_constant(h: Fraction) -> Point:
+    return _read_solref(h, 2 * h, Fraction(1))
+
+
+def _default_solref(h: Fraction) -> Point:
+    return _read_solref(h, Fraction("0.02"), Fraction(1))
+
+
+MUJOCO = Engine(
+    name="mujoco",
+    level="acceleration",
+    parameters=("solref[0]", "solref[1]"),
+    read=_read_solref,
+    write=_write_solref,
+    marks=(("MuJoCo: timeconst = 2h", _least_time_constant), ("MuJoCo: solref = 0.02 1", _default_solref)),
+    source="MuJoCo documentation, Modeling, Constraint parameters: Reference",
+    excludes="solimp with d0 = dmax (else r = d0 / dmax, 0.947 by default, scales damping and r^2 stiffness); the soft "
+    "bias of 1 - d; contacts; refsafe, which raises a timeconst below 2h",
+)
+
+
+# Impulse engines: ERP is the share of the error that one step removes, so with CFM = 0 the point is (1, ERP)
+
+
+def _engine_with_erp(name: str, default: str, source: str) -> Engine:
+    def read(h: Fraction, erp: Fraction) -> Point:
+        return Fraction(1), erp
+
+    def write(point: Point, h: Fraction) -> str:
+        alpha_hat, beta_hat = point
+        if alpha_hat != 1:
+            raise InputError(f"{name} with CFM = 0 is α̂ = 1, not {float(alpha_hat):g}")
+        return f"ERP = {float(beta_hat):.9g}"
+
+    def default_point(h: Fraction) -> Point:
+        return read(h, Fraction(default))
+
+    return Engine(
+        name=name,
+        level="velocity",
+        parameters=("ERP",),
+        read=read,
+        write=write,
+        marks=((f"{name}: ERP = {default}", default_point),),
+        source=source,
+        excludes="CFM = 0; contacts, clamps, warm starts and the error of iterative solvers are left out",
+    )
+
+
+# Box2D: a soft constraint, implicit in its spring and damper. With its turn per step, t = 2 pi hertz h, and
+# x = t (2 zeta + t), its velocity update is symplectic Euler's at alpha_hat = x / (1 + x), beta_hat = t^2 / (1 + x)
+
+
+def _read_box2d(h: Fraction, hertz: Fraction, zeta: Fraction) -> Point:
     if hertz < 0 or zeta < 0:
         raise InputError(
             f"--engine box2d: hertz = {float(hertz):g}, dampingRatio = {float(zeta):g}: expected none below 0"
@@ -68,85 +189,42 @@ def _box2d(h: Fraction, hertz: Fraction, zeta: Fraction) -> Point:
 
 
 def _write_box2d(point: Point, h: Fraction) -> str:
-    a, b = map(float, point)
-    if not 0 < b <= a < 1:
-        raise InputError(f"box2d reaches 0 < β̂ <= α̂ < 1 only, not ({a:g}, {b:g})")
-    turn = math.sqrt(b / (1 - a))
-    return (
-        f"hertz = {turn / (2 * math.pi * float(h)):.9g}, dampingRatio = {max(0.0, a / (1 - a) / turn - turn) / 2:.9g}"
-    )
+    alpha_hat, beta_hat = float(point[0]), float(point[1])
+    if not 0 < beta_hat <= alpha_hat < 1:
+        raise InputError(f"box2d reaches 0 < β̂ <= α̂ < 1 only, not ({alpha_hat:g}, {beta_hat:g})")
+    turn = math.sqrt(beta_hat / (1 - alpha_hat))  # as 1 + x = 1 / (1 - alpha_hat)
+    x = alpha_hat / (1 - alpha_hat)
+    hertz = turn / (2 * math.pi * float(h))
+    zeta = max(0.0, x / turn - turn) / 2  # where beta_hat = alpha_hat rounding may leave less than 0
+    return f"hertz = {hertz:.9g}, dampingRatio = {zeta:.9g}"
 
 
-def _write_erp(name: str) -> Callable[[Point, Fraction], str]:
-    def write(point: Point, h: Fraction) -> str:
-        if point[0] != 1:
-            raise InputError(f"{name} with CFM = 0 is α̂ = 1, not {float(point[0]):g}")
-        return f"ERP = {float(point[1]):.9g}"
-
-    return write
+def _default_joint(h: Fraction) -> Point:
+    return _read_box2d(h, Fraction(60), Fraction(2))
 
 
-def _erp(name: str, default: str, source: str) -> Engine:
-    marks = ((f"{name}: ERP = {default}", lambda h: (Fraction(1), Fraction(default))),)
-    excludes = "CFM = 0; contacts, clamps, warm starts and the error of iterative solvers are left out"
-    return Engine(
-        name, "velocity", ("ERP",), lambda h, erp: (Fraction(1), erp), _write_erp(name), marks, source, excludes
-    )
+BOX2D = Engine(
+    name="box2d",
+    level="velocity",
+    parameters=("hertz", "dampingRatio"),
+    read=_read_box2d,
+    write=_write_box2d,
+    marks=(("Box2D joints: 60 Hz, 2", _default_joint),),
+    source="Box2D v3 source, solver.h: b2MakeSoft; types.c",
+    excludes="contacts, warm starts, relaxation and the error of Gauss-Seidel sweeps",
+)
 
 
-def _direct(name: str, source: str) -> Engine:
-    def read(h: Fraction, alpha: Fraction, beta: Fraction) -> Point:
-        return to_dimensionless(alpha, beta, h)
+ALL_ENGINES = (
+    MUJOCO,
+    CROCODDYL,
+    _engine_with_alpha_and_beta("maplesim", "MapleSim documentation, Multibody Dynamic Exports: SetBaumgarte"),
+    _engine_with_alpha_and_beta("drake", "Drake documentation, constraint stabilization (the older constraint solver)"),
+    _engine_with_erp("bullet", default="0.2", source="Bullet source, btContactSolverInfo.h"),
+    _engine_with_erp("ode", default="0.2", source="ODE wiki, Manual: Concepts"),
+    _engine_with_erp("dart", default="0.01", source="DART issue 317"),
+    BOX2D,
+)
 
-    def write(point: Point, h: Fraction) -> str:
-        return f"alpha = {float(point[0] / h) / 2:.9g}, beta = {math.sqrt(point[1]) / float(h):.9g}"
-
-    excludes = "nothing: these are the coefficients of c'' + 2 alpha c' + beta^2 c = 0"
-    return Engine(name, "acceleration", ("alpha", "beta"), read, write, (), source, excludes)
-
-
-ENGINES = {
-    engine.name: engine
-    for engine in (
-        Engine(
-            "mujoco",
-            "acceleration",
-            ("solref[0]", "solref[1]"),
-            _mujoco,
-            lambda point, h: f'solref="{-float(point[1] / h**2):.9g} {-float(point[0] / h):.9g}"',
-            (
-                ("MuJoCo: timeconst = 2h", lambda h: (Fraction(1), Fraction(1, 4))),
-                ("MuJoCo: solref = 0.02 1", lambda h: _mujoco(h, Fraction("0.02"), Fraction(1))),
-            ),
-            "MuJoCo documentation, Modeling, Constraint parameters: Reference",
-            "solimp with d0 = dmax (else r = d0 / dmax, 0.947 by default, scales damping and r^2 stiffness); the soft "
-            "bias of 1 - d; contacts; refsafe, which raises a timeconst below 2h",
-        ),
-        Engine(
-            "crocoddyl",
-            "acceleration",
-            ("gains[0]", "gains[1]"),
-            lambda h, stiffness, damping: (damping * h, stiffness * h * h),
-            lambda point, h: f"gains = [{float(point[1] / h**2):.9g}, {float(point[0] / h):.9g}]",
-            (),
-            "Crocoddyl source, contact-3d.hxx",
-            "friction cones and impulses",
-        ),
-        _direct("maplesim", "MapleSim documentation, Multibody Dynamic Exports: SetBaumgarte"),
-        _direct("drake", "Drake documentation, constraint stabilization (the older constraint solver)"),
-        _erp("bullet", "0.2", "Bullet source, btContactSolverInfo.h"),
-        _erp("ode", "0.2", "ODE wiki, Manual: Concepts"),
-        _erp("dart", "0.01", "DART issue 317"),
-        Engine(
-            "box2d",
-            "velocity",
-            ("hertz", "dampingRatio"),
-            _box2d,
-            _write_box2d,
-            (("Box2D joints: 60 Hz, 2", lambda h: _box2d(h, Fraction(60), Fraction(2))),),
-            "Box2D v3 source, solver.h: b2MakeSoft; types.c",
-            "contacts, warm starts, relaxation and the error of Gauss-Seidel sweeps",
-        ),
-    )
-}
+ENGINES = {engine.name: engine for engine in ALL_ENGINES}
 """Those whose formula has a source. RBDL and Pinocchio are left out: their sources do not settle sign and order."""

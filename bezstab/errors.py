@@ -1,21 +1,35 @@
-"""The two kinds of bad news: a user's mistake, and numerical trouble."""
+"""The two kinds of bad news: a user's mistake, and numerical trouble.
+
+ValueError
+ └── InputError          something given cannot be; exit status 2 on the command line
+ArithmeticError
+ └── NumericalError      something computed broke down; exit status 3
+"""
 
 import difflib
 from collections.abc import Iterable
 
 
 class InputError(ValueError):
-    """A user's mistake, said in one line that names what was given and what is accepted."""
+    """A user's mistake: one line that names what was given, its value and what is accepted.
+
+    Names that do not exist, values out of range, TOML files that are not as documented and methods that cannot be
+    (implicit, inconsistent, unstable already at h = 0) all end here.
+    """
 
 
 class NumericalError(ArithmeticError):
-    """A computation that broke down, said in one line that names when and where."""
+    """Numerical trouble: one line that says when and where a computation broke down.
+
+    The input was acceptable. A run that blows up raises nothing: its trajectory ends early and says when and why.
+    """
 
 
 def unknown_name(kind: str, name: str, known: Iterable[str]) -> InputError:
     """Return the error of a name that is neither known nor a TOML file's; it suggests the nearest, in any case."""
-    names = {other.casefold(): other for other in known}
-    near = names[difflib.get_close_matches(name.casefold(), names, n=1, cutoff=0)[0]]
+    by_folded_name = {other.casefold(): other for other in known}
+    (nearest,) = difflib.get_close_matches(name.casefold(), by_folded_name, n=1, cutoff=0)
+    listed = ", ".join(by_folded_name.values())
     return InputError(
-        f"unknown {kind} {name!r}: did you mean {near}? (names: {', '.join(names.values())}; or a .toml file)"
+        f"unknown {kind} {name!r}: did you mean {by_folded_name[nearest]}? (names: {listed}; or a .toml file)"
     )

@@ -5,12 +5,22 @@ from fractions import Fraction
 
 from bezstab.errors import InputError
 
+# Within float64's normal range, with room for the rounding of its ends.
+SMALLEST = Fraction("1e-307")
+LARGEST = Fraction("1e308")
 
-def within_float64(value: Fraction, said: str) -> Fraction:
-    """Return a number that is zero or in float64's normal range; else InputError, with what is said of it."""
-    if value and not Fraction("1e-307") < abs(value) < Fraction("1e308"):
-        raise InputError(f"{said} is outside the range of float64 (1e-307 to 1e308)")
-    return value
+DECIMAL = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,4})?"  # four digits of exponent: enough to be out of range
+QUOTIENT = r"[-+]?\d+/0*[1-9]\d*"
+LONGEST = 1000  # characters: beyond any number somebody means, far below what takes time to read
+
+
+def exact(value: float) -> Fraction:
+    """Return the rational that a float shows when printed: 0.1 is 1/10, not the binary fraction next to it.
+
+    What a user typed as a decimal of up to 15 digits comes back as typed; what was computed becomes the shortest
+    decimal that rounds to it. No unit is changed. ValueError for nan and the infinities, which show no number.
+    """
+    return Fraction(repr(float(value)))
 
 
 def rational(text: str) -> Fraction:
@@ -18,12 +28,16 @@ def rational(text: str) -> Fraction:
 
     InputError unless it is finite and, if not zero, within float64's normal range, so that no exponent is absurd.
     """
-    number = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,4})?"
-    if not re.fullmatch(rf"{number}|[-+]?\d+/0*[1-9]\d*", text.strip(), re.ASCII) or len(text) > 1000:
+    if len(text) > LONGEST or not re.fullmatch(f"{DECIMAL}|{QUOTIENT}", text.strip(), re.ASCII):
         raise InputError(f"{text[:50]!r} is not a finite decimal or fraction")
     return within_float64(Fraction(text.strip()), repr(text))
 
 
-def exact(value: float) -> Fraction:
-    """Return the rational that a float shows when printed: 0.1 is 1/10, not the binary fraction next to it."""
-    return Fraction(repr(value))
+def within_float64(value: Fraction, name: str) -> Fraction:
+    """Return a number that is zero or in float64's normal range (1e-307 to 1e308 in size).
+
+    InputError for any other, which begins with `name`, what the number is called.
+    """
+    if value != 0 and not SMALLEST < abs(value) < LARGEST:
+        raise InputError(f"{name} is outside the range of float64 (1e-307 to 1e308)")
+    return value

@@ -104,6 +104,11 @@ class TomlTable:
         self.inner.append(table)
         return table
 
+    def optional_table(self, key: str) -> "TomlTable | None":
+        """Return a table, None if absent."""
+        table = self.table(key)
+        return table if key in self.data else None
+
     def refuse_unknown_keys(self) -> None:
         """Raise InputError, listing the known ones, if a key here or in a table handed out was not asked for."""
         for table in self.inner:

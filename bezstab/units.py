@@ -1,24 +1,67 @@
-"""Units: Baumgarte's alpha and beta (1/s) and the step h (s) against the dimensionless alpha_hat and beta_hat."""
+"""Units: Baumgarte's alpha and beta (1/s) and the step h (s) against the dimensionless alpha_hat and beta_hat.
+
+    alpha_hat = 2 alpha h          c'' + 2 alpha c' + beta^2 c = 0        (paper Eqs 6 and 16)
+    beta_hat  = beta^2 h^2
+
+This is the only place where the two meet. On the way in everything is exact; on the way out it is float64.
+"""
 
 from fractions import Fraction
-from typing import TypeVar
+from typing import Any, TypeVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
+from bezstab.errors import InputError
 from bezstab.rationals import within_float64
 
-Number = TypeVar("Number", float, NDArray[np.float64])
+LEAST_STEP = 1e-100  # s, and the inverse of the longest: so their squares are within float64
+LONGEST_STEP = 1e100
+
+FloatOrArray = TypeVar("FloatOrArray", float, NDArray[np.float64])
 
 
 def to_dimensionless(alpha: Fraction, beta: Fraction, h: Fraction) -> tuple[Fraction, Fraction]:
-    """Return (alpha_hat, beta_hat) = (2 alpha h, beta^2 h^2); alpha and beta in 1/s, h in s (paper Eq. 16).
+    """Return (alpha_hat, beta_hat) = (2 alpha h, beta^2 h^2), exact; alpha and beta in 1/s, h in s (paper Eq. 16).
 
     InputError where they leave the range of float64.
     """
-    return within_float64(2 * alpha * h, "α̂ = 2αh"), within_float64(beta * beta * h * h, "β̂ = β²h²")
+    alpha_hat, beta_hat = from_feedback_gains(2 * alpha, beta * beta, h)
+    return within_float64(alpha_hat, "α̂ = 2αh"), within_float64(beta_hat, "β̂ = β²h²")
 
 
-def feedback_gains(alpha_hat: Number, beta_hat: Number, h: float) -> tuple[Number, Number]:
-    """Return (2 alpha, beta^2) in 1/s and 1/s^2, the coefficients of paper Eq. 6, for a step of h seconds."""
+def from_dimensionless(alpha_hat: FloatOrArray, beta_hat: FloatOrArray, h: float) -> tuple[FloatOrArray, FloatOrArray]:
+    """Return (alpha, beta) = (alpha_hat / 2h, sqrt(beta_hat) / h) in 1/s, floats or arrays as given; h in s.
+
+    InputError where a beta_hat is negative: it is the beta^2 of no real beta, and only `feedback_gains` has a value
+    there. InputError, too, for h outside 1e-100 to 1e100 s and where a result leaves float64's range. Paper Eq. 16.
+    """
+    if not LEAST_STEP <= h <= LONGEST_STEP:
+        raise InputError(f"h = {h:g} s: expected {LEAST_STEP:g} to {LONGEST_STEP:g} s")
+    imaginary = ~(np.asarray(beta_hat) >= 0)  # not a number included
+    if imaginary.any():
+        first = np.asarray(beta_hat)[imaginary][0]
+        raise InputError(f"β̂ = {first:g}: expected 0 or more, as β = √β̂/h is real")
+    with np.errstate(over="ignore"):  # found and named below
+        two_alpha, beta_squared = feedback_gains(alpha_hat, beta_hat, h)
+    if not (np.isfinite(two_alpha).all() and np.isfinite(beta_squared).all()):
+        raise InputError(f"α̂/h or β̂/h² is outside the range of float64 for h = {h:g} s")
+    beta = np.sqrt(beta_squared)
+    return two_alpha / 2, beta if isinstance(beta_squared, np.ndarray) else float(beta)
+
+
+@overload
+def feedback_gains(alpha_hat: Fraction, beta_hat: Fraction, h: Fraction) -> tuple[Fraction, Fraction]: ...
+@overload
+def feedback_gains(alpha_hat: FloatOrArray, beta_hat: FloatOrArray, h: float) -> tuple[FloatOrArray, FloatOrArray]: ...
+def feedback_gains(alpha_hat: Any, beta_hat: Any, h: Any) -> tuple[Any, Any]:
+    """Return (2 alpha, beta^2) in 1/s and 1/s^2, the coefficients of paper Eq. 6, for a step of h seconds.
+
+    Floats or arrays as given, or exact numbers if all three are; beta^2 is negative where beta_hat is.
+    """
     return alpha_hat / h, beta_hat / h**2
+
+
+def from_feedback_gains(two_alpha: Fraction, beta_squared: Fraction, h: Fraction) -> tuple[Fraction, Fraction]:
+    """Return (alpha_hat, beta_hat) for the coefficients 2 alpha (1/s) and beta^2 (1/s^2) of paper Eq. 6, exact."""
+    return two_alpha * h, beta_squared * h * h

@@ -11,24 +11,6 @@ from bezstab.engines import ENGINES
 from bezstab.errors import InputError
 from bezstab.methods import lookup
 from bezstab.stability import poles, spectral_radius
-from bezstab.units import feedback_gains, to_dimensionless
-
-positive = st.fractions(Fraction(1, 10**6), 10**6)
-
-
-@given(positive, positive, positive)
-def test_paper_equation_16(alpha: Fraction, beta: Fraction, h: Fraction) -> None:
-    assert to_dimensionless(alpha, beta, h) == (2 * alpha * h, beta**2 * h**2)
-
-
-def test_gains_are_the_coefficients_of_equation_6() -> None:
-    assert feedback_gains(0.5, 0.25, 0.5) == (1.0, 1.0)
-
-
-def test_the_taylor_rule_is_the_point_two_two() -> None:
-    h = Fraction(1, 1000)
-    assert to_dimensionless(1 / h, Fraction(0), h)[0] == 2
-    assert round(float(to_dimensionless(1 / h, Fraction(2**0.5) / h, h)[1]), 12) == 2
 
 
 def values(text: str) -> tuple[Fraction, ...]:

@@ -13,18 +13,8 @@ from bezstab.mechanism.equations import (
     perturbed_state,
 )
 from bezstab.mechanism.runner import Start, Trajectory, march, resume, simulate, stepper_code
-from bezstab.mechanism.scenes import (
-    COORDINATES,
-    GROUND,
-    Body,
-    Force,
-    Revolute,
-    Scene,
-    load_scene,
-    parse_scene,
-    read_scene,
-    shipped_scenes,
-)
+from bezstab.mechanism.scene_files import load_scene, parse_scene, read_scene, shipped_scenes
+from bezstab.mechanism.scenes import COORDINATES, GROUND, Body, Force, Revolute, Scene
 
 __all__ = [
     "COORDINATES",

@@ -1,0 +1,227 @@
+"""Scenes in TOML files; configs/scenes/README.md documents the format.
+
+Nothing in a scene is ever executed: every entry is a number, a name or a list of them.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from bezstab.errors import InputError, unknown_name
+from bezstab.files import read_toml
+from bezstab.mechanism.scenes import (
+    COORDINATES,
+    GROUND,
+    Body,
+    Distance,
+    Driver,
+    Force,
+    Joint,
+    Point,
+    PointOnLine,
+    Revolute,
+    Scene,
+)
+from bezstab.toml_tables import TomlTable, is_pair, is_point
+
+NOWHERE = (0.0, 0.0)  # no displacement, direction or force
+MOST_FOUR_BARS = 100  # in a chain: beyond any benchmark, so that a slip is refused rather than worked on for hours
+
+
+def shipped_scenes() -> dict[str, Path]:
+    """Return the scene files that come with the package, by name; in a source tree they are those of configs/scenes."""
+    package = Path(__file__).parent.parent
+    folder = package / "scenes" if (package / "scenes").is_dir() else package.parent / "configs" / "scenes"
+    return {path.stem: path for path in sorted(folder.glob("*.toml"))}
+
+
+def load_scene(name: str) -> Scene:
+    """Return the shipped scene of that name, or the one in a .toml file; InputError, with the nearest name, if none."""
+    if name.endswith(".toml"):
+        return read_scene(Path(name))
+    shipped = shipped_scenes()
+    if name not in shipped:
+        raise unknown_name("scene", name, shipped)
+    return read_scene(shipped[name])
+
+
+def read_scene(path: Path) -> Scene:
+    """Return the scene in a TOML file; InputError, naming the file and the key, for anything malformed."""
+    return read_toml("scene", path, parse_scene)
+
+
+def parse_scene(data: dict[str, Any]) -> Scene:
+    """Return the scene described by TOML data; InputError, naming the place and the key, for anything malformed."""
+    top = TomlTable(data, "scene")
+    name = top.text("name")
+    gravity = top.point("gravity", default=NOWHERE)
+    chain = _four_bar_chain(top)
+
+    bodies = (*(_body(table) for table in top.tables("body")), *chain.bodies)
+    body_names = [body.name for body in bodies]
+    _refuse_taken_names(body_names)
+    coordinates = tuple(f"{body.name}.{axis}" for body in bodies for axis in body.free)
+    if not coordinates:
+        raise top.mistake("no body has a free coordinate")
+
+    joints = (*(_joint(table, body_names, coordinates) for table in top.tables("joint")), *chain.joints)
+    if not joints:
+        raise top.mistake("no joint, hence no constraint to stabilise")
+    forces = tuple(_force(table, body_names) for table in top.tables("force"))
+
+    initial = top.table("initial")
+    position = initial.numbers("position", allowed=coordinates)
+    velocity = initial.numbers("velocity", allowed=coordinates)
+    guess = initial.numbers("guess", allowed=coordinates)
+    top.refuse_unknown_keys()
+    return Scene(name, gravity, bodies, joints, forces, position, velocity, {**chain.guess, **guess})
+
+
+def _refuse_taken_names(body_names: Sequence[str]) -> None:
+    taken = {GROUND}
+    for name in body_names:
+        if name in taken:
+            raise InputError(f"body: the name {name!r} is taken")
+        taken.add(name)
+
+
+def _body(table: TomlTable) -> Body:
+    name = table.text("name")
+    table.where = f"body {name!r}"
+    free = table.texts("free")
+    if not free or any(axis not in COORDINATES for axis in free) or len(set(free)) != len(free):
+        raise table.mistake(f"free = {free}: expected some of {', '.join(COORDINATES)}")
+    locked = table.numbers("locked", allowed=[axis for axis in COORDINATES if axis not in free])
+    on_fixed_pivot = "x" not in free and "y" not in free
+
+    # What moves needs a positive mass, what turns a positive inertia. A body on a fixed pivot may go without a mass
+    # (0, it then has no weight either), and the inertia of what does not turn does not enter.
+    if on_fixed_pivot and "mass" not in table.data:
+        mass = table.number("mass", default=0.0)
+    else:
+        mass = table.positive_number("mass")
+    inertia = table.positive_number("inertia") if "theta" in free else table.number("inertia", default=0.0)
+
+    center = table.point("center", default=NOWHERE)
+    if center != NOWHERE and not on_fixed_pivot:
+        raise table.mistake("center: only for a body with x and y locked; else its frame's origin is it")
+    in_order = tuple(axis for axis in COORDINATES if axis in free)
+    return Body(name, in_order, mass, inertia, locked, center)
+
+
+def _joint(table: TomlTable, body_names: Sequence[str], coordinates: Sequence[str]) -> Joint:
+    kind = table.text("type")
+    table.where += f" ({kind})"
+    match kind:
+        case "revolute":
+            return Revolute(_two_bodies(table, body_names), _two_points(table))
+        case "distance":
+            return Distance(_two_bodies(table, body_names), _two_points(table), table.positive_number("length"))
+        case "point-on-line":
+            direction = table.point("direction")
+            if direction == NOWHERE:
+                raise table.mistake("direction = [0, 0]: expected a direction")
+            return PointOnLine(_two_bodies(table, body_names), _two_points(table), direction)
+        case "driver":
+            return _driver(table, coordinates)
+        case _:
+            raise table.mistake("type: expected revolute, point-on-line, distance or driver")
+
+
+def _driver(table: TomlTable, coordinates: Sequence[str]) -> Driver:
+    coordinate = table.text("coordinate")
+    if coordinate not in coordinates:
+        raise table.mistake(f"coordinate {coordinate!r} is not among {', '.join(coordinates)}")
+    return Driver(
+        coordinate,
+        offset=table.number("offset", default=0.0),
+        rate=table.number("rate", default=0.0),
+        acceleration=table.number("acceleration", default=0.0),
+        amplitude=table.number("amplitude", default=0.0),
+        frequency=table.number("frequency", default=0.0),
+        phase=table.number("phase", default=0.0),
+    )
+
+
+def _two_bodies(table: TomlTable, body_names: Sequence[str]) -> tuple[str, str]:
+    names = table.texts("bodies")
+    if len(names) != 2 or names[0] == names[1]:
+        raise table.mistake(f"bodies = {names!r}: expected two different names")
+    return _known_body(names[0], body_names, table), _known_body(names[1], body_names, table)
+
+
+def _known_body(name: str, body_names: Sequence[str], table: TomlTable) -> str:
+    if name not in body_names and name != GROUND:
+        raise table.mistake(f"there is no body {name!r}")
+    return name
+
+
+def _two_points(table: TomlTable) -> tuple[Point, Point]:
+    first, second = table.entry("points", _are_two_points, "two points [x, y]")
+    return (float(first[0]), float(first[1])), (float(second[0]), float(second[1]))
+
+
+def _are_two_points(value: Any) -> bool:
+    return is_pair(value) and is_point(value[0]) and is_point(value[1])
+
+
+def _force(table: TomlTable, body_names: Sequence[str]) -> Force:
+    return Force(
+        body=_known_body(table.text("body"), body_names, table),
+        point=table.point("point", default=NOWHERE),
+        force=table.point("force", default=NOWHERE),
+        torque=table.number("torque", default=0.0),
+    )
+
+
+@dataclass(frozen=True)
+class Chain:
+    """The part of a scene that a chain of four-bars makes; the guess stands it upright."""
+
+    bodies: tuple[Body, ...]
+    joints: tuple[Joint, ...]
+    guess: Mapping[str, float]
+
+
+def _four_bar_chain(top: TomlTable) -> Chain:
+    """Return the chain of the table four_bar_chain, an empty one without such a table."""
+    table = top.optional_table("four_bar_chain")
+    if table is None:
+        return Chain((), (), {})
+    count = table.positive_number("count")
+    length = table.positive_number("length")
+    mass = table.positive_number("mass")
+    if count > MOST_FOUR_BARS or count != int(count):
+        raise table.mistake(f"count = {count:g}: expected a whole number from 1 to {MOST_FOUR_BARS}")
+    return _parallel_four_bars(int(count), length, mass)
+
+
+def _parallel_four_bars(count: int, length: float, mass: float) -> Chain:
+    """Return parallel four-bars in a row: count + 1 rods pivoted on the ground, couplers between their tips.
+
+        o---coupler0---o---coupler1---o
+        |              |              |
+      rod0           rod1           rod2        all of `length` (m) and `mass` (kg)
+        |              |              |
+      --o--------------o--------------o--       the pivots a length apart on the ground
+
+    The N-four-bar benchmark of Gonzalez et al.
+    """
+    inertia = mass * length**2
+    half = length / 2
+    rods = [
+        Body(f"rod{i}", ("theta",), mass, inertia / 3, locked={"x": i * length}, center=(half, 0.0))
+        for i in range(count + 1)
+    ]
+    couplers = [Body(f"coupler{i}", COORDINATES, mass, inertia / 12, locked={}, center=NOWHERE) for i in range(count)]
+    tip = (length, 0.0)
+    joints: list[Joint] = []
+    for i in range(count):
+        joints.append(Revolute((f"rod{i}", f"coupler{i}"), (tip, (-half, 0.0))))
+        joints.append(Revolute((f"coupler{i}", f"rod{i + 1}"), ((half, 0.0), tip)))
+    upright = {f"rod{i}.theta": math.pi / 2 for i in range(count + 1)}
+    middle_x = {f"coupler{i}.x": (i + 0.5) * length for i in range(count)}
+    middle_y = {f"coupler{i}.y": length for i in range(count)}
+    return Chain((*rods, *couplers), tuple(joints), guess={**upright, **middle_x, **middle_y})

@@ -1,0 +1,136 @@
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from bezstab.errors import InputError
+from bezstab.mechanism import load_scene, parse_scene, read_scene, shipped_scenes
+from tests.mechanism.test_scenes import SHIPPED, pendulum
+
+LINE = {"type": "point-on-line", "bodies": ["ground", "bob"], "points": [[0, 0], [0, 0]]}
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_every_shipped_scene_is_read(name: str) -> None:
+    assert load_scene(name).coordinates
+
+
+def test_the_chain_grows_with_its_count() -> None:
+    data = {"name": "chain", "four_bar_chain": {"count": 7, "length": 1.0, "mass": 1.0}}
+    assert len(parse_scene(data).coordinates) == 8 + 3 * 7
+
+
+@pytest.mark.parametrize(
+    ("changes", "named"),
+    [
+        ({"surprise": 1}, "surprise"),
+        ({"body__surprise": 1}, "surprise"),
+        ({"joint__surprise": 1}, "surprise"),
+        ({"initial__surprise": 1}, "surprise"),
+        ({"body__mass": 0.0}, "mass"),
+        ({"body__mass": -1.0}, "mass"),
+        ({"body__mass": float("nan")}, "mass"),
+        ({"body__mass": float("inf")}, "mass"),
+        ({"body__mass": True}, "mass"),
+        ({"body__mass": 10**400}, "mass"),
+        ({"body__mass": "__import__('os').system('true')"}, "mass"),
+        ({"body__free": ["x", "y", "theta"]}, "inertia"),
+        ({"body__mass": 1e300}, "mass"),
+        ({"gravity": [0.0, 1e-300]}, "gravity"),
+        ({"body__free": ["z"]}, "free"),
+        ({"body__free": []}, "free"),
+        ({"body__free": ["x", "x"]}, "free"),
+        ({"body__name": "ground"}, "ground"),
+        ({"body__center": [1.0, 0.0]}, "center"),
+        ({"joint__bodies": ["ground", "ghost"]}, "ghost"),
+        ({"joint__bodies": ["bob", "bob"]}, "bodies"),
+        ({"joint__points": [[0, 0]]}, "points"),
+        ({"joint__length": 0}, "length"),
+        ({"joint__type": "weld"}, "type"),
+        ({"joint": {"type": "driver", "coordinate": "bob.theta"}}, "bob.theta"),
+        ({"joint": {**LINE, "direction": [0, 0]}}, "direction"),
+        ({"gravity": [0.0]}, "gravity"),
+        ({"initial__position": {"ghost.x": 1.0}}, "ghost.x"),
+        ({"initial": 3}, "initial"),
+        ({"force": [{"body": "ghost", "force": [0, 1]}]}, "ghost"),
+    ],
+)  # fmt: skip
+def test_a_bad_scene_takes_one_line_that_names_the_key(changes: dict[str, Any], named: str) -> None:
+    with pytest.raises(InputError) as caught:
+        parse_scene(pendulum(**changes))
+    assert named in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_an_unknown_scene_suggests_a_near_one(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="did you mean pendulum"):
+        load_scene("pendulm")
+    for bad in (tmp_path / "missing.toml", tmp_path):
+        with pytest.raises(InputError):
+            read_scene(bad)
+
+
+PENDULUM = (shipped_scenes()["pendulum"]).read_bytes()
+HOSTILE: dict[str, bytes] = {
+    "a number of 5000 digits": b"name = " + b"1" * 5000,
+    "a hexadecimal number of 5000 digits": b"gravity = 0x" + b"f" * 5000,
+    "a mass beyond float64": PENDULUM.replace(b"mass = 1.0", b"mass = 1" + b"0" * 400),
+    "deep nesting": b"body = " + b"[" * 20000 + b"]" * 20000,
+    "deep nesting of tables": b"[" + b".".join([b"a"] * 20000) + b"]",
+    "undecodable bytes": PENDULUM + bytes(range(128, 256)),
+    "UTF-16": PENDULUM.decode().encode("utf-16"),
+    "NUL": b"\0" * 64,
+    "not TOML": b"name: pendulum",
+    "a duplicate key": PENDULUM + PENDULUM,
+    "an unclosed string": b'name = "a\n\n',
+    "a line break in a key": b'"a\\nb" = 1\n' + PENDULUM,
+    "a line break in a name": PENDULUM.replace(b'"bob"', b'"b\\u2028ob"'),
+    "no chain at all": b'name = "chain"\n[four_bar_chain]\ncount = 1e300\nlength = 1\nmass = 1',
+    "a chain too long": b'name = "chain"\n[four_bar_chain]\ncount = 2\nlength = 1e200\nmass = 1',
+    "a chain of no inertia": b'name = "chain"\n[four_bar_chain]\ncount = 2\nlength = 1e-200\nmass = 1',
+    "nothing": b"",
+}
+
+
+def refusal(path: Path) -> str:
+    with pytest.raises(InputError) as caught:
+        read_scene(path)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize("content", HOSTILE.values(), ids=HOSTILE.keys())
+def test_a_hostile_file_is_refused_in_one_line_that_names_it(content: bytes, tmp_path: Path) -> None:
+    (path := tmp_path / "scene.toml").write_bytes(content)
+    message = refusal(path)
+    assert len(message.splitlines()) == 1
+    assert str(path) in message
+
+
+@pytest.mark.parametrize("name", ["a\nb.toml", "a\0b.toml", "x" * 300 + ".toml", "missing.toml", "."])
+def test_a_path_that_cannot_be_read_is_refused_in_one_line(name: str, tmp_path: Path) -> None:
+    assert len(refusal(tmp_path / name).splitlines()) == 1
+
+
+@settings(deadline=None)  # the file system has no bounded time
+@given(
+    st.binary(max_size=200)
+    | st.builds(
+        lambda cut, new, rest: PENDULUM[:cut] + new + PENDULUM[cut + rest :],
+        st.integers(0, len(PENDULUM)),
+        st.binary(max_size=6) | st.text(alphabet='[]{}"=,.-0123456789einfa \n\\u', max_size=12).map(str.encode),
+        st.integers(0, 30),
+    )
+)
+@example(PENDULUM)
+def test_any_bytes_are_a_scene_or_one_line_of_refusal(tmp_path_factory: pytest.TempPathFactory, content: bytes) -> None:
+    (path := tmp_path_factory.getbasetemp() / "scene.toml").write_bytes(content)
+    try:
+        scene = read_scene(path)
+    except InputError:
+        message = refusal(path)
+        assert len(message.splitlines()) == 1
+        assert str(path) in message
+    else:
+        assert scene.coordinates

@@ -1,0 +1,18 @@
+import pytest
+
+from bezstab.lazy import lazy_names
+
+load = lazy_names("bezstab", {"rationals": ("exact",), "bezstab.methods.schur": ("is_schur",)})
+
+
+def test_a_name_is_that_of_the_module_that_defines_it() -> None:
+    from bezstab.methods.schur import is_schur
+    from bezstab.rationals import exact
+
+    assert load("exact") is exact
+    assert load("is_schur") is is_schur
+
+
+def test_any_other_name_is_an_attribute_error_that_names_both() -> None:
+    with pytest.raises(AttributeError, match="module 'bezstab' has no attribute 'rational'"):
+        load("rational")

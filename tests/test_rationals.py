@@ -1,0 +1,104 @@
+"""The exact reading of numbers: texts, and floats as they are printed."""
+
+import math
+from decimal import Decimal
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bezstab.errors import InputError
+from bezstab.rationals import exact, rational, within_float64
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False))
+def test_a_float_is_exactly_the_decimal_it_shows(x: float) -> None:
+    assert exact(x) == Fraction(Decimal(repr(x)))
+    assert float(exact(x)) == x
+
+
+@given(st.decimals(-1000, 1000, places=6))
+def test_a_typed_decimal_comes_back_as_typed(typed: Decimal) -> None:
+    assert exact(float(typed)) == Fraction(typed)
+
+
+def test_a_tenth_is_a_tenth_whatever_kind_of_float_it_is() -> None:
+    assert exact(0.1) == exact(np.float64(0.1)) == Fraction(1, 10) != Fraction(0.1)
+
+
+@pytest.mark.parametrize("x", [math.nan, math.inf, -math.inf])
+def test_what_is_no_number_shows_none(x: float) -> None:
+    with pytest.raises(ValueError, match="Invalid literal"):
+        exact(x)
+
+
+@pytest.mark.parametrize("size", ["1e-307", "1e-400", "1e308", "1e400"])
+def test_what_float64_cannot_hold_is_refused_by_name(size: str) -> None:
+    for value in (Fraction(size), -Fraction(size)):
+        with pytest.raises(InputError, match=r"^h is outside the range of float64"):
+            within_float64(value, "h")
+
+
+@pytest.mark.parametrize("value", [Fraction(0), Fraction("1.1e-307"), Fraction(-1, 3), Fraction("-9.9e307")])
+def test_what_float64_can_hold_is_returned(value: Fraction) -> None:
+    assert within_float64(value, "h") is value
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("0.1", Fraction(1, 10)),
+        ("6/11", Fraction(6, 11)),
+        ("-.5", Fraction(-1, 2)),
+        ("1e-3", Fraction(1, 1000)),
+        ("+2.50E+1", Fraction(25)),
+        ("5.", Fraction(5)),
+        ("-0", Fraction(0)),
+        ("0e-999", Fraction(0)),
+        ("007/0010", Fraction(7, 10)),
+        (" 3 ", Fraction(3)),
+        ("0." + "3" * 100, Fraction(int("3" * 100), 10**100)),
+        ("9.9e307", Fraction(99 * 10**306)),
+    ],
+)
+def test_a_number_is_read_exactly(text: str, value: Fraction) -> None:
+    assert rational(text) == value
+
+
+@given(st.integers(-(10**15), 10**15), st.integers(1, 10**15))
+def test_a_printed_fraction_reads_back_as_itself(p: int, q: int) -> None:
+    assert rational(str(Fraction(p, q))) == Fraction(p, q)
+
+
+@given(st.floats(1e-300, 1e300) | st.floats(-1e300, -1e-300))
+def test_a_printed_float_is_read_as_the_decimal_it_shows(x: float) -> None:
+    assert rational(repr(x)) == Fraction(Decimal(repr(x)))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        *("nan", "inf", "-inf", "1e999", "-1e999", "1e-999", "1e308", "1e-400", "1e99999", "1e999999999"),
+        *("1/0", "0/0", "1/-2", "1/2.0", "1.0/2", "1/2/3", "1/", "/2", "1 / 2"),
+        *("", " ", ".", "-", "+", "e5", "1e", "1e+", ".e1", "--1", "+-1", "1 2", "1,5", "1.2.3"),
+        *("0x10", "0b1", "1_000", "1j", "1f", "1e3.5", "True", "pi", "1+1", "2**3", "1\n2", "1\0"),
+        *("１", "٣", "1²", "½", "−1", "1e٣"),
+        *("1" * 400, "1" * 1001, "1" * 100_000, "1/" + "1" * 100_000, "0." + "0" * 100_000 + "1"),
+    ],
+)
+def test_what_is_no_finite_number_of_ordinary_size_is_refused_in_one_line(text: str) -> None:
+    with pytest.raises(InputError) as caught:
+        rational(text)
+    assert len(str(caught.value).splitlines()) == 1
+
+
+@given(st.text(alphabet="0123456789+-./eE_ naif٣", max_size=12))
+def test_any_text_is_an_exact_number_or_refused(text: str) -> None:
+    try:
+        value = rational(text)
+    except InputError:
+        return
+    assert value == Fraction(text.strip())
+    assert value == 0 or 1e-307 < abs(value) < 1e308

@@ -1,0 +1,119 @@
+"""What a TOML table hands out, and what it says of what it does not."""
+
+import math
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bezstab.errors import InputError
+from bezstab.toml_tables import TomlTable
+
+
+def refusal(ask: Callable[[], object]) -> str:
+    with pytest.raises(InputError) as caught:
+        ask()
+    return str(caught.value)
+
+
+def test_entries_are_handed_out_as_what_they_are() -> None:
+    table = TomlTable({"name": "bob", "free": ["x", "y"], "mass": 2, "at": [1, 0.5], "q": {"bob.x": 1}})
+    assert table.text("name") == "bob"
+    assert table.texts("free") == ["x", "y"]
+    assert table.positive_number("mass") == table.number("mass") == 2.0
+    assert table.point("at") == (1.0, 0.5)
+    assert table.numbers("q", allowed=["bob.x", "bob.y"]) == {"bob.x": 1.0}
+    table.refuse_unknown_keys()
+
+
+def test_rationals_are_exact() -> None:
+    table = TomlTable({"b": ["175/108", "-0.1"], "A": [["0", "0"], ["1/3", "0"]]})
+    assert table.rationals("b") == (Fraction(175, 108), Fraction(-1, 10))
+    assert table.rational_rows("A") == ((Fraction(0), Fraction(0)), (Fraction(1, 3), Fraction(0)))
+
+
+def test_what_is_absent_takes_its_default() -> None:
+    table = TomlTable({})
+    assert table.text("name", default="own") == "own"
+    assert table.number("torque", default=0.0) == 0.0
+    assert table.point("point", default=(0.0, 0.0)) == (0.0, 0.0)
+    assert table.numbers("q", allowed=[]) == {}
+    assert table.tables("body") == []
+    assert table.table("initial").data == {}
+    assert table.optional_table("chain") is None
+
+
+def test_what_is_absent_without_a_default_is_missing() -> None:
+    assert refusal(lambda: TomlTable({}, "body 'bob'").positive_number("mass")) == "body 'bob': mass is missing"
+
+
+def test_a_message_has_the_place_the_key_the_value_and_what_is_expected() -> None:
+    table = TomlTable({"mass": -1.0}, "body 'bob'")
+    expected = "body 'bob': mass = -1.0: expected a positive number, 1e-100 to 1e100"
+    assert refusal(lambda: table.positive_number("mass")) == expected
+
+
+def test_the_only_table_of_a_file_has_no_place() -> None:
+    assert refusal(lambda: TomlTable({"name": 4}).text("name")) == "name = 4: expected one line of text"
+
+
+@pytest.mark.parametrize("value", [True, "1", None, math.nan, math.inf, 1e101, 1e-101, 10**400, [1.0], {}])
+def test_what_is_no_number_of_ordinary_size_is_refused(value: Any) -> None:
+    assert "expected a number, 0 or of size 1e-100 to 1e100" in refusal(lambda: TomlTable({"x": value}).number("x"))
+
+
+@given(st.floats(1e-100, 1e100) | st.floats(-1e100, -1e-100) | st.just(0.0))
+def test_every_number_of_ordinary_size_is_handed_out(value: float) -> None:
+    assert TomlTable({"x": value}).number("x") == value
+
+
+@pytest.mark.parametrize("value", ["", " ", "a\nb", "a\u2028b", 4, ["a"]])
+def test_a_text_is_one_line_and_not_blank(value: Any) -> None:
+    assert "expected one line of text" in refusal(lambda: TomlTable({"name": value}).text("name"))
+
+
+@pytest.mark.parametrize("value", [[1.0], ["1", 2], "1", {"a": "1"}])
+def test_a_rational_is_written_as_a_text(value: Any) -> None:
+    assert 'expected a list of rational strings like "175/108"' in refusal(
+        lambda: TomlTable({"b": value}).rationals("b")
+    )
+    assert "rational strings" in refusal(lambda: TomlTable({"A": [value]}).rational_rows("A"))
+
+
+def test_a_text_that_is_no_rational_is_named_with_its_key() -> None:
+    assert refusal(lambda: TomlTable({"b": ["1", "nan"]}).rationals("b")).startswith("b: 'nan' is not")
+
+
+@pytest.mark.parametrize("value", [[1.0], [1.0, 2.0, 3.0], [1.0, "2"], 1.0, "ab"])
+def test_a_point_is_two_numbers(value: Any) -> None:
+    assert "expected two numbers" in refusal(lambda: TomlTable({"at": value}).point("at"))
+
+
+def test_a_name_that_is_not_allowed_is_refused_with_those_that_are() -> None:
+    table = TomlTable({"q": {"ghost.x": 1.0}}, "initial")
+    said = "initial: q names 'ghost.x', which is not among bob.x, bob.y"
+    assert refusal(lambda: table.numbers("q", allowed=["bob.x", "bob.y"])) == said
+
+
+def test_a_key_nobody_asked_for_is_unknown_and_the_known_ones_are_listed() -> None:
+    table = TomlTable({"name": "bob", "mas": 1.0}, "body 'bob'")
+    table.text("name")
+    table.number("mass", default=0.0)
+    assert refusal(table.refuse_unknown_keys) == "body 'bob': unknown key 'mas': known are name, mass"
+
+
+def test_an_unknown_key_of_a_table_within_is_found_from_outside() -> None:
+    top = TomlTable({"body": [{}, {"mas": 1.0}], "initial": {}})
+    for body in top.tables("body"):
+        body.number("mass", default=0.0)
+    top.table("initial")
+    assert refusal(top.refuse_unknown_keys) == "body 2: unknown key 'mas': known are mass"
+
+
+def test_what_should_be_a_table_is_one() -> None:
+    assert refusal(lambda: TomlTable({"body": [3]}).tables("body")) == "body 1: expected a table"
+    assert "expected an array of tables" in refusal(lambda: TomlTable({"body": {}}).tables("body"))
+    assert "expected a table" in refusal(lambda: TomlTable({"initial": 3}).table("initial"))

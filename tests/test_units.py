@@ -1,0 +1,88 @@
+"""alpha, beta and h against alpha_hat and beta_hat: paper Eqs 6 and 16, both ways."""
+
+import math
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bezstab.errors import InputError
+from bezstab.units import feedback_gains, from_dimensionless, from_feedback_gains, to_dimensionless
+
+positive = st.fractions(Fraction(1, 10**6), 10**6)
+anything = st.fractions(-(10**6), 10**6)
+
+
+@given(positive, positive, positive)
+def test_paper_equation_16(alpha: Fraction, beta: Fraction, h: Fraction) -> None:
+    assert to_dimensionless(alpha, beta, h) == (2 * alpha * h, beta**2 * h**2)
+
+
+def test_the_taylor_rule_is_the_point_two_two() -> None:
+    h = Fraction(1, 1000)
+    assert to_dimensionless(1 / h, Fraction(0), h)[0] == 2
+    assert round(float(to_dimensionless(1 / h, Fraction(2**0.5) / h, h)[1]), 12) == 2
+
+
+def test_what_leaves_float64_is_refused_by_name() -> None:
+    huge = Fraction(10) ** 200
+    with pytest.raises(InputError, match="β̂ = β²h² is outside the range of float64"):
+        to_dimensionless(Fraction(1), huge, Fraction(1))
+    with pytest.raises(InputError, match="α̂ = 2αh is outside the range of float64"):
+        to_dimensionless(huge, Fraction(0), huge)
+
+
+def test_gains_are_the_coefficients_of_equation_6() -> None:
+    assert feedback_gains(0.5, 0.25, 0.5) == (1.0, 1.0)
+
+
+@given(anything, anything, positive)
+def test_exact_gains_come_back_exactly(alpha_hat: Fraction, beta_hat: Fraction, h: Fraction) -> None:
+    assert from_feedback_gains(*feedback_gains(alpha_hat, beta_hat, h), h) == (alpha_hat, beta_hat)
+
+
+@given(st.floats(-1e6, 1e6), st.floats(0, 1e6), st.floats(1e-6, 1e6))
+def test_alpha_and_beta_are_those_of_the_gains(alpha_hat: float, beta_hat: float, h: float) -> None:
+    alpha, beta = from_dimensionless(alpha_hat, beta_hat, h)
+    assert (type(alpha), type(beta)) == (float, float)
+    assert (2 * alpha, beta**2) == pytest.approx(feedback_gains(alpha_hat, beta_hat, h), rel=1e-15)
+
+
+@given(positive, positive, positive)
+def test_there_and_back(alpha: Fraction, beta: Fraction, h: Fraction) -> None:
+    alpha_hat, beta_hat = to_dimensionless(alpha, beta, h)
+    back = from_dimensionless(float(alpha_hat), float(beta_hat), float(h))
+    assert back == pytest.approx((float(alpha), float(beta)), rel=1e-14)
+
+
+def test_arrays_go_element_by_element() -> None:
+    alpha_hat, beta_hat = np.array([0.0, 0.5, 2.0]), np.array([0.0, 0.1, 1.0])
+    alpha, beta = from_dimensionless(alpha_hat, beta_hat, 0.01)
+    pairs = [from_dimensionless(a, b, 0.01) for a, b in zip(alpha_hat.tolist(), beta_hat.tolist(), strict=True)]
+    assert list(zip(alpha.tolist(), beta.tolist(), strict=True)) == pairs
+    assert from_dimensionless(np.array([]), np.array([]), 0.01)[1].shape == (0,)
+
+
+@pytest.mark.parametrize("beta_hat", [-0.1, -1e-300, math.nan])
+def test_a_negative_beta_hat_has_gains_but_no_beta(beta_hat: float) -> None:
+    with pytest.raises(InputError, match="expected 0 or more"):
+        from_dimensionless(0.5, beta_hat, 0.01)
+    with pytest.raises(InputError, match="expected 0 or more"):
+        from_dimensionless(np.array([0.5, 0.5]), np.array([0.1, beta_hat]), 0.01)
+    assert feedback_gains(0.5, -0.25, 0.5) == (1.0, -1.0)
+
+
+@pytest.mark.parametrize("h", [0.0, -0.01, 1e-200, 1e200, math.nan, math.inf])
+def test_a_step_that_is_none_is_refused(h: float) -> None:
+    with pytest.raises(InputError, match=r"h = .* s: expected 1e-100 to 1e\+100 s"):
+        from_dimensionless(0.5, 0.1, h)
+
+
+@pytest.mark.parametrize("point", [(1e300, 0.0), (0.0, 1e300), (math.nan, 0.0)])
+def test_no_result_is_infinite_or_not_a_number(point: tuple[float, float]) -> None:
+    with pytest.raises(InputError, match="outside the range of float64"):
+        from_dimensionless(*point, 1e-100)
+    with pytest.raises(InputError, match="outside the range of float64"):
+        from_dimensionless(np.array([point[0]]), np.array([point[1]]), 1e-100)
