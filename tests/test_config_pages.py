@@ -1,0 +1,83 @@
+"""The pages of configs/ document exactly the keys that the parsers know, and their examples run."""
+
+import re
+import tomllib
+from collections import defaultdict
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from bezstab.mechanism import compiled_mechanism, parse_scene, simulate
+from bezstab.methods import closed_loop_polynomial, lookup, read_method, steps
+from bezstab.toml_tables import TomlTable
+
+CONFIGS = Path(__file__).parent.parent / "configs"
+METHODS_PAGE = (CONFIGS / "methods" / "README.md").read_text(encoding="utf-8")
+SCENES_PAGE = (CONFIGS / "scenes" / "README.md").read_text(encoding="utf-8")
+
+
+def examples(page: str) -> list[str]:
+    return re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
+
+
+def documented_keys(text: str) -> set[str]:
+    """Return the keys that begin a row of a table with the head `key`."""
+    tables = re.findall(r"^\| key \|.*\n((?:\|.*\n)+)", text, re.MULTILINE)
+    return set(re.findall(r"^\| `(\w+)` \|", "".join(tables), re.MULTILINE))
+
+
+def section(page: str, heading: str) -> str:
+    match = re.search(rf"^## {heading}\n(.*?)(?=^## |\Z)", page, re.MULTILINE | re.DOTALL)
+    assert match, heading
+    return match[1]
+
+
+@pytest.fixture
+def asked_keys(monkeypatch: pytest.MonkeyPatch) -> dict[str, set[str]]:
+    """What the parsers ask for from here on, by the first word of the place."""
+    asked: dict[str, set[str]] = defaultdict(set)
+    entry = TomlTable.entry
+
+    def noted(table: TomlTable, key: str, *arguments: Any, **options: Any) -> Any:
+        asked[table.where.partition(" ")[0]].add(key)
+        return entry(table, key, *arguments, **options)
+
+    monkeypatch.setattr(TomlTable, "entry", noted)
+    return asked
+
+
+@pytest.mark.parametrize("example", examples(METHODS_PAGE))
+def test_an_example_of_a_method_has_a_closed_loop(example: str, tmp_path: Path) -> None:
+    (path := tmp_path / "own.toml").write_text(example, encoding="utf-8")
+    method = read_method(path)
+    assert closed_loop_polynomial(method).degree() == 2 * steps(method)
+
+
+@pytest.mark.parametrize("example", examples(SCENES_PAGE))
+def test_an_example_of_a_scene_takes_a_step(example: str) -> None:
+    mechanism = compiled_mechanism(parse_scene(tomllib.loads(example)))
+    run = simulate(mechanism, lookup("RK4"), h=1e-3, duration=1e-3, gains=(0.0, 0.0))
+    assert run.failure is None
+    assert len(run.t) == 2
+
+
+def test_the_page_of_methods_has_every_key_and_no_other(asked_keys: dict[str, set[str]], tmp_path: Path) -> None:
+    for example in examples(METHODS_PAGE):
+        (path := tmp_path / "own.toml").write_text(example, encoding="utf-8")
+        read_method(path)
+    assert documented_keys(METHODS_PAGE) == asked_keys[""] == {"name", "source", "rho", "sigma", "A", "b"}
+
+
+def test_the_page_of_scenes_has_every_key_of_every_table_and_no_other(asked_keys: dict[str, set[str]]) -> None:
+    for example in examples(SCENES_PAGE):
+        parse_scene(tomllib.loads(example))
+    assert set(asked_keys) == {"scene", "body", "joint", "force", "initial", "four_bar_chain"}
+    for place, keys in asked_keys.items():
+        assert documented_keys(section(SCENES_PAGE, place)) == keys
+
+
+def test_the_example_of_a_scene_has_every_kind_of_joint() -> None:
+    page_kinds = set(re.findall(r'^\| `"([\w-]+)"` \|', section(SCENES_PAGE, "joint"), re.MULTILINE))
+    example_kinds = {joint["type"] for joint in tomllib.loads(examples(SCENES_PAGE)[0])["joint"]}
+    assert page_kinds == example_kinds == {"revolute", "point-on-line", "distance", "driver"}
