@@ -1,0 +1,249 @@
+"""Method files: read exactly, or refused in one line; a family by coefficients, whatever the name."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from bezstab.errors import InputError
+from bezstab.methods import (
+    REGISTRY,
+    Family,
+    LinearMultistep,
+    Method,
+    RungeKutta,
+    adams_bashforth,
+    bezier,
+    lookup,
+    read_method,
+    steps,
+)
+from tests.methods.exact_lists import fractions
+
+NAMES = list(REGISTRY)
+
+
+EBDF2 = 'rho = ["1", "-4/3", "1/3"]\nsigma = ["0", "4/3", "-2/3"]\n'
+
+
+HEUN = 'A = [["0", "0"], ["1", "0"]]\nb = ["1/2", "1/2"]\n'
+
+
+def written(folder: Path, content: str | bytes, name: str = "own.toml") -> Path:
+    path = folder / name
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    return path
+
+
+def test_a_multistep_file_is_read_exactly(tmp_path: Path) -> None:
+    path = written(tmp_path, 'name = "mine"\nsource = "me, 2020"\n' + EBDF2)
+    method = read_method(path)
+    assert method == Method("mine", LinearMultistep(fractions("1 -4/3 1/3"), fractions("0 4/3 -2/3")), "me, 2020")
+
+
+def test_a_butcher_file_is_read_exactly(tmp_path: Path) -> None:
+    method = read_method(written(tmp_path, HEUN))
+    assert method.scheme == RungeKutta((fractions("0 0"), fractions("1 0")), fractions("1/2 1/2"))
+
+
+def test_a_file_without_name_and_source_takes_both_from_its_path(tmp_path: Path) -> None:
+    path = written(tmp_path, HEUN)
+    assert (read_method(path).name, read_method(path).source) == ("own", str(path))
+
+
+def listed(coefficients: Sequence[Fraction]) -> str:
+    return "[" + ", ".join(f'"{c}"' for c in coefficients) + "]"
+
+
+def file_content(scheme: LinearMultistep | RungeKutta) -> str:
+    match scheme:
+        case LinearMultistep(rho, sigma):
+            return f"rho = {listed(rho)}\nsigma = {listed(sigma)}\n"
+        case RungeKutta(tableau, b):
+            return f"A = [{', '.join(listed(row) for row in tableau)}]\nb = {listed(b)}\n"
+
+
+WRITABLE = [name for name in NAMES if isinstance(lookup(name).scheme, LinearMultistep | RungeKutta)]
+
+
+@pytest.mark.parametrize("name", WRITABLE)
+def test_every_multistep_and_runge_kutta_method_survives_a_file(name: str, tmp_path: Path) -> None:
+    scheme = lookup(name).scheme
+    assert isinstance(scheme, LinearMultistep | RungeKutta)
+    assert read_method(written(tmp_path, file_content(scheme))).scheme == scheme
+
+
+# Families: identity, not names
+
+
+@pytest.mark.parametrize("name", WRITABLE)
+@pytest.mark.parametrize("called", ["B4", "AB4", "RK4", "mine"])
+def test_a_file_is_of_the_family_of_its_coefficients_whatever_it_is_called(
+    name: str, called: str, tmp_path: Path
+) -> None:
+    scheme = lookup(name).scheme
+    assert isinstance(scheme, LinearMultistep | RungeKutta)
+    method = read_method(written(tmp_path, f'name = "{called}"\n{file_content(scheme)}'))
+    # B1 is AB1 and B2 is AB2, under whose names everybody knows them
+    known = {"B1": "AB1", "B2": "AB2"}.get(name, name)
+    assert method.family == lookup(known).family
+    assert method.name == called
+
+
+def test_a_file_with_ab4_called_b4_is_adams_bashforth_of_four_steps(tmp_path: Path) -> None:
+    scheme = adams_bashforth(4).scheme
+    assert isinstance(scheme, LinearMultistep)
+    method = read_method(written(tmp_path, 'name = "B4"\n' + file_content(scheme)))
+    assert method.family == Family("Adams-Bashforth", 4)
+
+
+def test_where_two_families_share_a_member_they_share_those_of_fewer_steps() -> None:
+    assert bezier(1).scheme == adams_bashforth(1).scheme
+    assert bezier(2).scheme == adams_bashforth(2).scheme
+    assert all(bezier(n).scheme != adams_bashforth(n).scheme for n in range(3, 13))
+
+
+@pytest.mark.parametrize("content", [EBDF2, HEUN])
+def test_a_method_of_its_own_has_no_family(content: str, tmp_path: Path) -> None:
+    assert read_method(written(tmp_path, content)).family is None
+
+
+def test_a_file_of_many_steps_is_read_at_once(tmp_path: Path) -> None:
+    """Explicit Euler, its weight followed by 99 zeros: no family's weights are derived for so many steps."""
+    zeros = [Fraction(0)] * 99
+    rho = listed([Fraction(1), Fraction(-1), *zeros])
+    sigma = listed([Fraction(0), Fraction(1), *zeros])
+    content = f"rho = {rho}\nsigma = {sigma}"
+    assert steps(read_method(written(tmp_path, content))) == 100
+
+
+# What is refused
+
+
+DIGITS = "1" * 5000
+
+
+REFUSED: dict[str, str | bytes] = {
+    "inconsistent: rho(1)": 'rho = ["1", "-1/2"]\nsigma = ["0", "1/2"]',
+    "inconsistent: sigma(1)": 'rho = ["1", "-1"]\nsigma = ["0", "2"]',
+    "inconsistent: b": 'A = [["0"]]\nb = ["2"]',
+    "zero-unstable: 2": 'rho = ["1", "-3", "2"]\nsigma = ["0", "0", "-1"]',
+    "zero-unstable: double 1": 'rho = ["1", "-2", "1"]\nsigma = ["0", "1", "-1"]',
+    "implicit sigma": 'rho = ["1", "-1"]\nsigma = ["1/2", "1/2"]',
+    "implicit tableau": 'A = [["0", "0"], ["1/2", "1/2"]]\nb = ["1/2", "1/2"]',
+    "lengths of rho and sigma": 'rho = ["1", "-1"]\nsigma = ["0", "1", "0"]',
+    "lengths of A and b": 'A = [["0"]]\nb = ["1/2", "1/2"]',
+    "ragged A": 'A = [["0"], ["1", "0"]]\nb = ["1/2", "1/2"]',
+    "empty rho": "rho = []\nsigma = []",
+    "empty A": "A = []\nb = []",
+    "leading zero": 'rho = ["0", "1", "-1"]\nsigma = ["0", "0", "1"]',
+    "floats": "rho = [1.0, -1.0]\nsigma = [0.0, 1.0]",
+    "integers": "rho = [1, -1]\nsigma = [0, 1]",
+    "TOML nan": "rho = [nan, -1.0]\nsigma = [0.0, inf]",
+    "float in A": 'A = [["0", "0"], [0.5, "0"]]\nb = ["0", "1"]',
+    "string for a list": 'rho = "1 -1"\nsigma = "0 1"',
+    "string for A": 'A = "0"\nb = ["1"]',
+    "flat A": 'A = ["0"]\nb = ["1"]',
+    "number for A": 'A = 0\nb = ["1"]',
+    "table for rho": '[rho]\nz = "1"\n[sigma]\nz = "1"',
+    "nan": 'rho = ["nan", "-1"]\nsigma = ["0", "1"]',
+    "inf": 'rho = ["1", "-1"]\nsigma = ["0", "inf"]',
+    "1/0": 'rho = ["1", "-1"]\nsigma = ["0", "1/0"]',
+    "code": 'rho = ["__import__(\'os\')", "-1"]\nsigma = ["0", "1"]',
+    "newline in a number": 'rho = ["1\\n2", "-1"]\nsigma = ["0", "1"]',
+    "huge digits": f'rho = ["{DIGITS}", "-{DIGITS}"]\nsigma = ["0", "{DIGITS}"]',
+    "huge exponent": 'rho = ["1e999999999", "-1"]\nsigma = ["0", "1"]',
+    "huge TOML integer": f"rho = [{DIGITS}]\nsigma = [1]",
+    "deep nesting": "rho = " + "[" * 20000 + "]" * 20000 + "\nsigma = []",
+    "unknown key": EBDF2 + 'order = "2"',
+    "unknown key with a line break": EBDF2 + '"a\\nb" = "2"',
+    "both kinds": EBDF2 + HEUN,
+    "half a kind": 'rho = ["1", "-1"]',
+    "A with sigma": 'A = [["0"]]\nsigma = ["1"]',
+    "no keys": "",
+    "only a name": 'name = "mine"',
+    "name is no text": "name = 4\n" + EBDF2,
+    "name is empty": 'name = ""\n' + EBDF2,
+    "name of two lines": 'name = "a\\nb"\n' + EBDF2,
+    "source of two lines": 'source = "a\\u2028b"\n' + EBDF2,
+    "not TOML": "rho: [1, -1]\nsigma: [0, 1]",
+    "duplicate key": EBDF2 + EBDF2,
+    "unclosed": 'rho = ["1", "-1"\n\n',
+    "raw line break in a string": 'rho = ["1\n", "-1"]',
+    "impossible date": "rho = 2023-02-30",
+    "binary": bytes(range(256)),
+    "NUL": b"\0" * 64,
+    "UTF-16": EBDF2.encode("utf-16"),
+}
+
+
+def refusal(path: Path) -> str:
+    with pytest.raises(InputError) as caught:
+        read_method(path)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize("content", REFUSED.values(), ids=REFUSED.keys())
+def test_a_bad_file_is_refused_in_one_line_that_names_it(content: str | bytes, tmp_path: Path) -> None:
+    path = written(tmp_path, content)
+    message = refusal(path)
+    assert len(message.splitlines()) == 1
+    assert str(path) in message
+
+
+@pytest.mark.parametrize(
+    ("case", "why"),
+    [
+        ("inconsistent: rho(1)", r"rho\(1\) = 1/2"),
+        ("inconsistent: b", "sum to 2"),
+        ("zero-unstable: 2", "zero-unstable"),
+        ("zero-unstable: double 1", "zero-unstable"),
+        ("implicit sigma", "implicit"),
+        ("implicit tableau", "implicit"),
+        ("floats", "rho = .*rational strings"),
+        ("float in A", "A = .*rational strings"),
+        ("nan", "rho: 'nan'"),
+        ("1/0", "sigma: '1/0'"),
+        ("unknown key", "order"),
+        ("half a kind", "found rho"),
+        ("no keys", "found none"),
+        ("name is empty", "name"),
+    ],
+)
+def test_a_refusal_says_what_is_wrong(case: str, why: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=why):
+        read_method(written(tmp_path, REFUSED[case]))
+
+
+def test_a_missing_file_or_a_folder_is_refused_in_one_line_that_names_it(tmp_path: Path) -> None:
+    (folder := tmp_path / "folder.toml").mkdir()
+    below_a_file = written(tmp_path, HEUN) / "below.toml"
+    for path in (tmp_path / "missing.toml", folder, below_a_file, tmp_path / ("x" * 300 + ".toml")):
+        message = refusal(path)
+        assert len(message.splitlines()) == 1
+        assert str(path) in message
+
+
+@pytest.mark.parametrize("name", ["a\nb.toml", "a\0b.toml"])
+def test_a_path_with_a_control_character_is_refused_in_one_line(name: str, tmp_path: Path) -> None:
+    assert len(refusal(tmp_path / name).splitlines()) == 1
+
+
+@settings(deadline=None)  # the file system has no bounded time
+@given(st.binary(max_size=200) | st.text(alphabet='rhosigmaAb[]"=/.-0123456789eEn \n\\u', max_size=80).map(str.encode))
+@example(b'rho = ["1", "-1"]\nsigma = ["0", "1"]')
+def test_any_bytes_are_a_method_or_one_line_of_refusal(
+    tmp_path_factory: pytest.TempPathFactory, content: bytes
+) -> None:
+    path = written(tmp_path_factory.getbasetemp(), content)
+    try:
+        method = read_method(path)
+    except InputError:
+        message = refusal(path)
+        assert len(message.splitlines()) == 1
+        assert str(path) in message
+    else:
+        assert steps(method) >= 1
