@@ -28,22 +28,28 @@ def recursion_verdict(polynomial: Polynomial) -> Verdict:
         return "converges"
     if abs(p[-1]) > abs(p[0]):  # the product of all |z| exceeds one
         return "diverges"
-    shared = _gcd(p, _trimmed(p[::-1]))
+    reciprocal = _trimmed(p[::-1])
+    shared = _gcd(p, reciprocal)
     rest, _ = _divmod(p, shared)
-    return "marginal" if is_schur(_derivative(shared)) and is_schur(rest) else "diverges"
+    if is_schur(_derivative(shared)) and is_schur(rest):
+        return "marginal"
+    return "diverges"
 
 
 def is_schur(polynomial: Polynomial) -> bool:
-    """Return whether every root has |z| < 1, by Schur's recursion p <- (p - k p*) / z with k = p(0) / lead(p).
+    """Return whether every root has |z| < 1; True for a constant, which has none.
 
-    True for a constant. The recursion goes on as long as |k| < 1 (I. Schur, J. reine angew. Math. 147, 1917).
+    By Schur's recursion p <- (p - k p*) / z with k = p(0) / lead(p), p* the coefficients in reverse: as long as
+    |k| < 1 it takes a polynomial with all roots inside to one of a degree less with all roots inside, and back
+    (I. Schur, J. reine angew. Math. 147, 1917). The polynomial is as in `recursion_verdict`.
     """
     p = _trimmed(polynomial)
     while len(p) > 1:
         k = p[-1] / p[0]
         if abs(k) >= 1:
             return False
-        p = [(a - k * b) / (1 - k * k) for a, b in zip(p, p[::-1], strict=True)][:-1]
+        difference = [(a - k * b) / (1 - k * k) for a, b in zip(p, p[::-1], strict=True)]  # monic again
+        p = difference[:-1]  # whose last coefficient, p(0) - k lead(p), is 0
     return True
 
 
@@ -56,6 +62,7 @@ def _trimmed(polynomial: Polynomial) -> list[Fraction]:
 
 
 def _derivative(p: Polynomial) -> list[Fraction]:
+    """Return the derivative; 1 in place of the 0 of a constant, as neither has a root outside."""
     degree = len(p) - 1
     return [(degree - i) * a for i, a in enumerate(p[:-1])] or [Fraction(1)]
 
@@ -66,12 +73,15 @@ def _divmod(p: Polynomial, divisor: Polynomial) -> tuple[list[Fraction], list[Fr
     while len(remainder) >= len(divisor):
         factor = remainder[0] / divisor[0]
         quotient.append(factor)
-        remainder = [a - factor * b for a, b in zip_longest(remainder, divisor, fillvalue=Fraction(0))][1:]
+        difference = [a - factor * b for a, b in zip_longest(remainder, divisor, fillvalue=Fraction(0))]
+        remainder = difference[1:]  # the leading coefficient has become 0
     return quotient, remainder
 
 
 def _gcd(p: Polynomial, q: Polynomial) -> list[Fraction]:
     """Return the monic greatest common divisor by Euclid's algorithm."""
     while any(q):
-        p, q = (monic := _trimmed(q)), _divmod(p, monic)[1]
+        divisor = _trimmed(q)
+        _, remainder = _divmod(p, divisor)
+        p, q = divisor, remainder
     return _trimmed(p)

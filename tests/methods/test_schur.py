@@ -1,85 +1,37 @@
 """The exact Schur-Cohn verdict, on polynomials multiplied together from roots that are known exactly."""
 
-from collections import Counter
 from fractions import Fraction
-from functools import reduce
 
 import pytest
 import sympy as sp
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from bezstab.methods import Polynomial, Verdict, is_schur, recursion_verdict
+from bezstab.methods import is_schur, recursion_verdict
+from tests.reference.known_roots import (
+    ONE,
+    Factor,
+    inside,
+    on_circle,
+    outside,
+    product,
+    reciprocal,
+    scaled,
+    several,
+    small_rationals,
+    squared_modulus,
+    verdict_by_roots,
+)
 
-Factor = tuple[
-    Fraction, ...
-]  # monic, irreducible over the reals: z - r, or z^2 - 2 a z + a^2 + b^2 for the pair a +- ib
-
-ONE = Fraction(1)
 TINY = Fraction(1, 10**20)
 
 exactly = settings(deadline=None, max_examples=60)  # exact arithmetic has no bounded time per example
 
 
-def real(r: Fraction) -> Factor:
-    return ONE, -r
-
-
-def pair(a: Fraction, b: Fraction) -> Factor:
-    return ONE, -2 * a, a * a + b * b
-
-
-def squared_modulus(factor: Factor) -> Fraction:
-    return factor[-1] ** 2 if len(factor) == 2 else factor[-1]
-
-
-def product(factors: list[Factor]) -> list[Fraction]:
-    def times(p: list[Fraction], q: Factor) -> list[Fraction]:
-        return [
-            sum((p[i] * q[k - i] for i in range(len(p)) if 0 <= k - i < len(q)), Fraction(0))
-            for k in range(len(p) + len(q) - 1)
-        ]
-
-    return reduce(times, factors, [ONE])
-
-
-def scaled(p: Polynomial, s: Fraction) -> list[Fraction]:
-    """The polynomial whose roots are s times those of p."""
-    return [a * s**k for k, a in enumerate(p)]
-
-
-def reciprocal(factor: Factor) -> Factor:
-    """The factor with the roots 1/z."""
-    return tuple(a / factor[-1] for a in factor[::-1])
-
-
-def expected(factors: list[Factor]) -> Verdict:
-    """Whatever the definition says of the known roots: irreducible factors share a root only if they are equal."""
-    if any(squared_modulus(f) > 1 or (squared_modulus(f) == 1 and n > 1) for f, n in Counter(factors).items()):
-        return "diverges"
-    return "marginal" if any(squared_modulus(f) == 1 for f in factors) else "converges"
-
-
-rationals = st.fractions(-2, 2, max_denominator=12)
-anywhere = st.builds(real, rationals) | st.builds(pair, rationals, rationals.filter(bool))
-inside = anywhere.filter(lambda f: squared_modulus(f) < 1)
-outside = anywhere.filter(lambda f: squared_modulus(f) > 1)
-# t = tan(theta/2) rational gives every rational point of the circle but -1: Pythagorean triples
-on_circle = st.sampled_from([real(ONE), real(-ONE)]) | st.fractions(-3, 3, max_denominator=9).filter(bool).map(
-    lambda t: pair((1 - t * t) / (1 + t * t), 2 * t / (1 + t * t))
-)
-
-
-def several(factors: st.SearchStrategy[Factor], least: int = 0) -> st.SearchStrategy[list[Factor]]:
-    """Up to four draws, each of multiplicity one to three."""
-    repeated = st.tuples(factors, st.integers(1, 3)).map(lambda drawn: [drawn[0]] * drawn[1])
-    return st.lists(repeated, min_size=least, max_size=4).map(lambda lists: [f for fs in lists for f in fs])
-
-
 @exactly
 @given(several(inside | on_circle | outside))
 def test_verdict_is_that_of_the_known_roots(factors: list[Factor]) -> None:
-    assert recursion_verdict(product(factors)) == expected(factors)
+    assert recursion_verdict(product(factors)) == verdict_by_roots(factors)
 
 
 @exactly
@@ -118,17 +70,17 @@ def test_roots_in_pairs_z_and_one_over_z_diverge(inner: list[Factor], circle: li
 
 
 @exactly
-@given(several(inside | on_circle | outside), rationals.filter(bool), st.integers(0, 3))
+@given(several(inside | on_circle | outside), small_rationals.filter(bool), st.integers(0, 3))
 def test_a_constant_factor_and_leading_zeros_change_nothing(factors: list[Factor], c: Fraction, zeros: int) -> None:
     p = [Fraction(0)] * zeros + [c * a for a in product(factors)]
-    assert recursion_verdict(p) == expected(factors)
-    assert is_schur(p) == (expected(factors) == "converges")
+    assert recursion_verdict(p) == verdict_by_roots(factors)
+    assert is_schur(p) == (verdict_by_roots(factors) == "converges")
 
 
 @exactly
 @given(several(inside | on_circle | outside), st.integers(1, 4))
 def test_roots_at_zero_change_nothing(factors: list[Factor], zeros: int) -> None:
-    assert recursion_verdict(product(factors) + [Fraction(0)] * zeros) == expected(factors)
+    assert recursion_verdict(product(factors) + [Fraction(0)] * zeros) == verdict_by_roots(factors)
 
 
 @pytest.mark.parametrize("c", [Fraction(1), Fraction(-7, 3), TINY])
