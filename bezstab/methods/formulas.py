@@ -13,31 +13,32 @@ LATEX = {ALPHA_HAT: r"\hat{\alpha}", BETA_HAT: r"\hat{\beta}", MU: r"\mu"}
 TEXT = {"alpha_hat": "α̂", "beta_hat": "β̂", "**": "^", "*": " "}
 
 Terms = Iterable[tuple[Fraction, str]]
+"""Coefficients and the names of what they multiply."""
 
 
 def recursion_text(method: Method, latex: bool = False) -> str:
-    """Return the step from y_k to y_{k+1} (paper Eq. 12, Table 1), f_k = f(t_k, y_k)."""
-    m = method.step_multiple
+    """Return the step from y_k to y_{k+1} (paper Eq. 12, Table 1), f_k = f(t_k, y_k), as text or LaTeX.
+
+    Several formulas, in the order in which they are taken, are separated by "; ".
+    """
+    multiple = method.step_multiple
     match method.scheme:
         case LinearMultistep() as scheme:
-            lines = [_multistep("y_{k+1}", scheme, "y", "f", m, latex)]
+            lines = [_multistep("y_{k+1}", scheme, "y", "f", multiple, latex)]
         case PredictorCorrector(predictor, corrector):
-            lines = [
-                _multistep("p", predictor, "y", "f", m, latex),
-                _multistep("y_{k+1}", corrector, "y", "f", m, latex, new="f(p)"),
-            ]
+            predict = _multistep("p", predictor, "y", "f", multiple, latex)
+            correct = _multistep("y_{k+1}", corrector, "y", "f", multiple, latex, new_slope="f(p)")
+            lines = [predict, correct]
         case Partitioned(position, velocity):
-            lines = [
-                _multistep("v_{k+1}", velocity, "v", "a", m, latex),
-                _multistep("x_{k+1}", position, "x", "v", m, latex),
-            ]
+            velocity_step = _multistep("v_{k+1}", velocity, "v", "a", multiple, latex)
+            position_step = _multistep("x_{k+1}", position, "x", "v", multiple, latex)
+            lines = [velocity_step, position_step]
         case RungeKutta(tableau, weights):
-            names = [f"K_{i}" for i in range(1, len(weights) + 1)]
-            lines = [
-                f"{name} = f(y_k{_increment(zip(row, names, strict=True), m, latex)})"
-                for name, row in zip(names, tableau, strict=True)
-            ]
-            lines.append(f"y_{{k+1}} = y_k{_increment(zip(weights, names, strict=True), m, latex)}")
+            stages = [f"K_{i}" for i in range(1, len(weights) + 1)]
+            lines = []
+            for stage, row in zip(stages, tableau, strict=True):
+                lines.append(f"{stage} = f(y_k{_increment(zip(row, stages, strict=True), multiple, latex)})")
+            lines.append(f"y_{{k+1}} = y_k{_increment(zip(weights, stages, strict=True), multiple, latex)}")
     return "; ".join(lines)
 
 
@@ -57,13 +58,21 @@ def characteristic_text(method: Method, latex: bool = False) -> str:
     _, whole = sp.Poly(polynomial.as_expr(), Z, ALPHA_HAT, BETA_HAT, domain="QQ").clear_denoms(convert=True)
     terms = []
     for (power,), coefficient in sp.Poly(whole.as_expr(), Z).terms():
-        power_text = {0: "", 1: "z"}.get(power, _written(Z**power, latex))
-        text = _written(coefficient, latex)
-        if isinstance(coefficient, sp.Add) and power_text:
-            text = f"({text})"
-        terms.append("" if text == "1" and power_text else text)
-        terms[-1] = f"{terms[-1]} {power_text}".strip()
+        terms.append(_power_term(coefficient, power, latex))
     return " + ".join(terms).replace("+ -", "- ") + " = 0"
+
+
+def _power_term(coefficient: sp.Expr, power: int, latex: bool) -> str:
+    """Return coefficient z^power: a sum in parentheses, a factor 1 left out."""
+    number = _written(coefficient, latex)
+    if power == 0:
+        return number
+    power_text = "z" if power == 1 else _written(Z**power, latex)
+    if number == "1":
+        return power_text
+    if isinstance(coefficient, sp.Add):
+        number = f"({number})"
+    return f"{number} {power_text}"
 
 
 def _written(expression: sp.Expr, latex: bool) -> str:
@@ -76,18 +85,30 @@ def _written(expression: sp.Expr, latex: bool) -> str:
 
 
 def _multistep(
-    left: str, scheme: LinearMultistep, y: str, f: str, m: Fraction, latex: bool, new: str | None = None
+    left: str,
+    scheme: LinearMultistep,
+    value: str,
+    slope: str,
+    multiple: Fraction,
+    latex: bool,
+    new_slope: str | None = None,
 ) -> str:
-    """Return one multistep formula; `new` is the name of f at the new point, f_{k+1} unless given."""
-    past = [(-a, f"{y}_{_index(j)}") for j, a in enumerate(scheme.rho[1:])]
-    slopes = [(b, f"{f}_{_index(j - 1)}" if j or new is None else new) for j, b in enumerate(scheme.sigma)]
+    """Return `left` = one multistep formula in value_k, value_{k-1}, ... and slope_{k+1}, slope_k, ...
+
+    `new_slope` is what the slope at the new point is called, slope_{k+1} unless given.
+    """
+    past = [(-a, f"{value}_{_index(j)}") for j, a in enumerate(scheme.rho[1:])]
+    slopes = [(b, f"{slope}_{_index(j - 1)}") for j, b in enumerate(scheme.sigma)]
+    if new_slope is not None:
+        slopes[0] = scheme.sigma[0], new_slope
     denominator, sum_of_past = _combination(past)
     if denominator > 1:
         sum_of_past = f"\\frac{{1}}{{{denominator}}}({sum_of_past})" if latex else f"({sum_of_past})/{denominator}"
-    return f"{left} = {sum_of_past}{_increment(slopes, m, latex)}"
+    return f"{left} = {sum_of_past}{_increment(slopes, multiple, latex)}"
 
 
 def _index(j: int) -> str:
+    """Return the index j steps before k: k, {k-1}, {k+1}."""
     return "k" if j == 0 else f"{{k{-j:+d}}}"
 
 
@@ -100,18 +121,23 @@ def _combination(terms: Terms) -> tuple[int, str]:
         multiple = abs(c * denominator)
         parts.append(("- " if c < 0 else "+ ") + (name if multiple == 1 else f"{multiple} {name}"))
     text = " ".join(parts)
-    return denominator, text[2:] if text.startswith("+ ") else text.replace("- ", "-", 1)
+    if text.startswith("+ "):
+        return denominator, text.removeprefix("+ ")
+    return denominator, text.replace("- ", "-", 1)
 
 
-def _increment(terms: Terms, m: Fraction, latex: bool) -> str:
+def _increment(terms: Terms, multiple: Fraction, latex: bool) -> str:
     """Return ' + m h (sum)', the denominator with the step; nothing if all coefficients are 0."""
     terms = list(terms)
-    if not any(c for c, _ in terms):
+    if all(c == 0 for c, _ in terms):
         return ""
-    denominator, text = _combination((c * m.numerator, name) for c, name in terms)
-    denominator *= m.denominator
-    step = "h" if denominator == 1 else rf"\frac{{h}}{{{denominator}}}" if latex else f"h/{denominator}"
+    denominator, text = _combination((c * multiple.numerator, name) for c, name in terms)
+    step = _step_over(denominator * multiple.denominator, latex)
     single = " " not in text and not text.startswith("-")
-    if single:
-        return f" + {step} {text}"
-    return f" + {step} ({text})"
+    return f" + {step} {text}" if single else f" + {step} ({text})"
+
+
+def _step_over(denominator: int, latex: bool) -> str:
+    if denominator == 1:
+        return "h"
+    return rf"\frac{{h}}{{{denominator}}}" if latex else f"h/{denominator}"
