@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from bezstab.lazy import lazy_names
 from bezstab.methods.registry import (
     REGISTRY,
+    Family,
     LinearMultistep,
     Method,
     Partitioned,
@@ -72,6 +73,7 @@ __all__ = [
     "BETA_HAT",
     "MU",
     "REGISTRY",
+    "Family",
     "H",
     "LinearMultistep",
     "Method",

@@ -103,6 +103,14 @@ Scheme = LinearMultistep | PredictorCorrector | RungeKutta | Partitioned
 
 
 @dataclass(frozen=True)
+class Family:
+    """A family of methods ("Bezier", "Adams-Bashforth") and a member's number in it."""
+
+    name: str
+    number: int
+
+
+@dataclass(frozen=True)
 class Method:
     """A scheme with its name and source; each of its steps spans `step_multiple` of the user's h (RK4@5: five)."""
 
@@ -110,6 +118,7 @@ class Method:
     scheme: Scheme
     source: str
     step_multiple: Fraction = ONE
+    family: Family | None = None
 
     def __post_init__(self) -> None:
         if isinstance(self.scheme, LinearMultistep) and self.scheme.implicit:
@@ -152,13 +161,15 @@ def bezier(n: int) -> Method:
         powers = ((comb(j, i) * (-1) ** i, m - j + i + 1) for i in range(j + 1))  # of tau^(m-j) (1-tau)^j, integrated
         return m * comb(m, j) * sum((c * (Fraction(n, m) ** p - 1) / p for c, p in powers), ZERO)
 
-    return Method(f"B{n}", _explicit([weight(j) for j in range(n)] if m else [ONE]), "paper Table 1 (Bezier)")
+    scheme = _explicit([weight(j) for j in range(n)] if m else [ONE])
+    return Method(f"B{n}", scheme, "paper Table 1 (Bezier)", family=Family("Bezier", n))
 
 
 def adams_bashforth(n: int) -> Method:
     """Return the n-step Adams-Bashforth method, of order n (Hairer, Norsett & Wanner I, section III.1)."""
     weights = _interpolatory_weights([-j for j in range(n)])
-    return Method(f"AB{n}", _explicit(weights), "Hairer, Norsett & Wanner I, Eq. III.1.5 (Adams-Bashforth)")
+    source = "Hairer, Norsett & Wanner I, Eq. III.1.5 (Adams-Bashforth)"
+    return Method(f"AB{n}", _explicit(weights), source, family=Family("Adams-Bashforth", n))
 
 
 def adams_bashforth_moulton(n: int) -> Method:

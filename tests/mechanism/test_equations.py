@@ -140,7 +140,7 @@ def test_names_never_reach_the_generated_code() -> None:
     }
     changes = {"body__name": hostile, "joint__bodies": ["ground", hostile], "initial": initial}
     moving = compiled_mechanism(parse_scene(pendulum(**changes)))
-    assert not any("import" in line for line in moving.acceleration_code)
+    assert not any("import" in line for line in moving.acceleration_code.lines)
     assert initial_state(moving)[0] == pytest.approx([0.6, 0.8])
 
 
