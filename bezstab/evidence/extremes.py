@@ -17,11 +17,11 @@ import numpy as np
 from bezstab.errors import NumericalError
 from bezstab.mechanism import (
     compiled_mechanism,
-    compiled_source,
     constraint_errors,
     initial_state,
     load_scene,
     march,
+    multipliers_function,
     observe,
     perturbed_state,
     simulate,
@@ -285,23 +285,33 @@ def _masses(ratio: float) -> Check:
     """Multipliers in float64 against the same elimination in a hundred digits."""
     scene = load_scene("slider_crank")
     *others, slider = scene.bodies
-    moving = compiled_mechanism(replace(scene, bodies=(*others, replace(slider, mass=ratio * others[-1].mass))))
-    names = [f"{kind}{i}" for kind in ("q", "v") for i in range(moving.size)]
-    wanted = ", ".join(f"l{i}" for i in range(moving.constraints))
-    body = "\n".join(f" {line}" for line in moving.acceleration_code[:-1])  # the last is about pivots only
-    source = f"def multipliers(t, two_alpha, beta_squared, {', '.join(names)}):\n{body}\n return ({wanted},)"
-    state = np.concatenate(initial_state(moving)).tolist()
+    mechanism = compiled_mechanism(replace(scene, bodies=(*others, replace(slider, mass=ratio * others[-1].mass))))
+    two_alpha, beta_squared = feedback_gains(*POINT, H)
+    q, v = initial_state(mechanism)
+    state = np.concatenate((q, v)).tolist()
+    elimination = multipliers_function(mechanism, mp.mp)
+
+    def precise_multipliers(entries: Sequence[mp.mpf]) -> Sequence[mp.mpf]:
+        precise = [mp.mpf(entry) for entry in entries]
+        return elimination(
+            mp.mpf(0), mp.mpf(two_alpha), mp.mpf(beta_squared), precise[: mechanism.size], precise[mechanism.size :]
+        )
+
+    def shown_digits(relative_error: mp.mpf) -> float:
+        return float(-mp.log10(max(relative_error, mp.mpf(10) ** -17)))
+
     with mp.workdps(DIGITS):
-        elimination = compiled_source(source, mp.mp)["multipliers"]
-        exact = elimination(*map(mp.mpf, (0.0, *feedback_gains(*POINT, H), *state)))
-        largest, moved = max(map(abs, exact)), mp.mpf(0)
+        exact = precise_multipliers(state)
+        largest = max(abs(multiplier) for multiplier in exact)
+        moved = mp.mpf(0)
         for k, value in enumerate(state):  # by one rounding
             nearby = [*state[:k], value * (1 + EPS), *state[k + 1 :]]
-            other = elimination(*map(mp.mpf, (0.0, *feedback_gains(*POINT, H), *nearby)))
+            other = precise_multipliers(nearby)
             moved += max(abs(a - b) for a, b in zip(other, exact, strict=True))
-        q, v = (np.array([part]) for part in np.split(np.array(state), 2))
-        floats = observe(moving, np.zeros(1), q, v, *feedback_gains(*POINT, H)).multipliers[0].tolist()
-        error = max(abs(a - b) for a, b in zip(floats, exact, strict=True)) / largest
-        digits, needed = (float(-mp.log10(max(x, mp.mpf(10) ** -17))) for x in (error, 10 * moved / largest))
+        seen = observe(mechanism, np.zeros(1), q[np.newaxis], v[np.newaxis], two_alpha, beta_squared)
+        floats = seen.multipliers[0].tolist()
+        error = max(abs(a - b) for a, b in zip(floats, exact, strict=True))
+        digits = shown_digits(error / largest)
+        needed = shown_digits(10 * moved / largest)
     expected = f"{needed:.1f} digits of λ: what ten roundings of the state leave"
     return Check("mass ratios", f"slider {ratio:g} of the rod", expected, f"{digits:.1f}", digits >= needed)

@@ -1,28 +1,50 @@
-"""Planar mechanisms: scenes as data, their equations of motion, and runs with feedback."""
+"""Planar mechanisms: scenes as data, their equations of motion, and runs with feedback.
 
-from bezstab.mechanism.equations import (
+    scene (TOML data) -> equations_of_motion (sympy) -> compiled_mechanism -> initial_state -> simulate -> observe
+
+`scenes` is the data, `equations` the mechanics, `generated_code` writes and compiles the Python that runs, `compiled`
+keeps it with its scene, `start`, `runner` and `observation` use it.
+"""
+
+from bezstab.mechanism.compiled import (
+    SINGULAR,
     Mechanism,
-    Observation,
-    T,
     compiled_mechanism,
-    compiled_source,
-    constraint_errors,
-    equations_of_motion,
-    initial_state,
-    observe,
-    perturbed_state,
+    multipliers_function,
+    stepper_code,
 )
-from bezstab.mechanism.runner import Start, Trajectory, march, resume, simulate, stepper_code
+from bezstab.mechanism.equations import Equations, T, equations_of_motion
+from bezstab.mechanism.generated_code import compiled_source
+from bezstab.mechanism.observation import Observation, observe
+from bezstab.mechanism.runner import Start, Trajectory, march, resume, simulate
 from bezstab.mechanism.scene_files import load_scene, parse_scene, read_scene, shipped_scenes
-from bezstab.mechanism.scenes import COORDINATES, GROUND, Body, Force, Revolute, Scene
+from bezstab.mechanism.scenes import (
+    COORDINATES,
+    GROUND,
+    Body,
+    Distance,
+    Driver,
+    Force,
+    Joint,
+    PointOnLine,
+    Revolute,
+    Scene,
+)
+from bezstab.mechanism.start import constraint_errors, initial_state, perturbed_state
 
 __all__ = [
     "COORDINATES",
     "GROUND",
+    "SINGULAR",
     "Body",
+    "Distance",
+    "Driver",
+    "Equations",
     "Force",
+    "Joint",
     "Mechanism",
     "Observation",
+    "PointOnLine",
     "Revolute",
     "Scene",
     "Start",
@@ -35,6 +57,7 @@ __all__ = [
     "initial_state",
     "load_scene",
     "march",
+    "multipliers_function",
     "observe",
     "parse_scene",
     "perturbed_state",

@@ -1,0 +1,94 @@
+"""A mechanism: a scene with its equations of motion, and the functions that are generated and compiled from them."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+from bezstab.mechanism.equations import Equations, equations_of_motion
+from bezstab.mechanism.generated_code import (
+    AccelerationCode,
+    acceleration_code,
+    compiled_source,
+    multipliers_source,
+    observation_source,
+    stepper_source,
+)
+from bezstab.mechanism.scenes import Scene
+from bezstab.methods import Method
+
+State = tuple[Any, ...]
+"""q then v, 2n numbers of any kind: floats, arrays over a batch, numbers of mpmath."""
+Step = tuple[State, State, Any]
+"""A new state, the slope before it (the derivatives of its entries) and the least relative pivot of S on the way."""
+StateFunction = Callable[[Any, Any, Any, Any, Any], tuple[Any, ...]]
+"""A function of t, 2 alpha, beta^2, q and v."""
+
+SINGULAR = 1e-12  # of a row's own size: a pivot of S = C_q M^-1 C_q^T this small has lost all digits to cancellation
+
+
+@dataclass(frozen=True, eq=False, repr=False)  # one per scene: compared by identity
+class Mechanism:
+    """A scene, its equations of motion and the code generated from them: all that a run needs, made once."""
+
+    scene: Scene
+    equations: Equations
+    acceleration_code: AccelerationCode
+
+    @property
+    def size(self) -> int:
+        """The number n of coordinates."""
+        return len(self.equations.q)
+
+    @property
+    def constraints(self) -> int:
+        """The number m of constraints."""
+        return len(self.equations.constraints)
+
+    def __repr__(self) -> str:
+        return f"Mechanism({self.scene.name}, {self.size} coordinates, {self.constraints} constraints)"
+
+
+@cache
+def compiled_mechanism(scene: Scene) -> Mechanism:
+    """Return the scene's mechanism (paper Eqs 1 to 9), the same one each time it is asked for."""
+    equations = equations_of_motion(scene)
+    return Mechanism(scene, equations, acceleration_code(equations))
+
+
+def stepper_code(mechanism: Mechanism, method: Method) -> str:
+    """Return the source of a generator function run(start, h, two_alpha, beta_squared, state, past).
+
+    It starts from `state` (q then v, SI units) at time `start` (s) and takes steps of h (s, the whole step of the
+    method) with the gains 2 alpha (1/s) and beta^2 (1/s^2). `past` holds the earlier (state, slope) pairs, newest
+    first, one less than the method has steps. After each step it yields the new state, the slope before it and the
+    least relative pivot of S = C_q M^-1 C_q^T met on the way.
+    """
+    return stepper_source(mechanism.acceleration_code, method)
+
+
+@cache
+def compiled_stepper(mechanism: Mechanism, method: Method, library: Any) -> Callable[..., Iterator[Step]]:
+    """Return the function whose source `stepper_code` returns, in the arithmetic of math, numpy or mpmath."""
+    run: Callable[..., Iterator[Step]] = compiled_source(stepper_code(mechanism, method), library)["run"]
+    return run
+
+
+@cache
+def observation_function(mechanism: Mechanism, library: Any) -> StateFunction:
+    """Return the function of (t, two_alpha, beta_squared, q, v) that gives all c, then all cdot, then all lambda."""
+    source = observation_source(mechanism.acceleration_code)
+    observation: StateFunction = compiled_source(source, library)["observation"]
+    return observation
+
+
+@cache
+def multipliers_function(mechanism: Mechanism, library: Any) -> StateFunction:
+    """Return the multipliers lambda as a function of (t, two_alpha, beta_squared, q, v): paper Eq. 9.
+
+    `library` (math, numpy or mpmath) says on what numbers it works; q and v hold n of them, what is returned m (N along
+    a constraint whose c is in m). t is in s, the gains 2 alpha and beta^2 in 1/s and 1/s^2, q and v in SI units.
+    """
+    source = multipliers_source(mechanism.acceleration_code)
+    multipliers: StateFunction = compiled_source(source, library)["multipliers"]
+    return multipliers

@@ -1,0 +1,411 @@
+"""Generated source: accelerations, multipliers, observations and time steps as Python text, and its compilation.
+
+All of it is plain arithmetic on numbered variables, one assignment a line, with `sin`, `cos` and `least` as the only
+functions. What they are is decided when the text is compiled, so one source serves three kinds of numbers:
+
+- floats with `math`: a single run, without the overhead of arrays of four or five entries;
+- numpy arrays: a batch of runs, each variable one array over the batch, each line one operation on all of it;
+- mpmath numbers: references of as many digits as asked for.
+
+The names: q0, q1, ... coordinates, v0, ... their rates, a0, ... their accelerations, l0, ... multipliers; C1_2, the
+entry of C_q in row 1 and column 2; two_alpha and beta_squared, the gains. The text holds nothing of a scene or a method
+but numbers and these names; least of all the names that a user gave to bodies.
+"""
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from bezstab.mechanism.equations import Equations, variable_names
+from bezstab.methods import LinearMultistep, Method, Partitioned, PredictorCorrector, RungeKutta, steps
+
+AT_THE_START = Fraction(0)  # of a step
+AT_THE_END = Fraction(1)
+
+
+def compiled_source(source: str, library: Any) -> dict[str, Any]:
+    """Return what generated source defines, its elementary functions those of `library`: math, numpy or mpmath."""
+    least = min if library is math else _least_of_arrays
+    namespace = {"sin": library.sin, "cos": library.cos, "least": least}
+    exec(source, namespace)
+    return namespace
+
+
+def _least_of_arrays(*values: Any) -> Any:
+    """Return the least value entry by entry, of arrays and numbers of any broadcastable shapes."""
+    return np.minimum.reduce(np.broadcast_arrays(*values))
+
+
+# Accelerations and multipliers
+#
+# M is diagonal, so paper Eq. 9, [M C_q^T; C_q 0] [qddot; lambda] = [g; gamma - 2 alpha cdot - beta^2 c], reduces to
+#
+#     S lambda = r,   S = C_q M^-1 C_q^T,   r = C_q M^-1 g - gamma + 2 alpha cdot + beta^2 c
+#     qddot = M^-1 (g - C_q^T lambda)
+#
+# S is symmetric and positive definite. It is factored as L D L^T, L lower triangular with ones on its diagonal, D
+# diagonal, column by column; with W_ij = L_ij D_j, which is what is left of S_ij after the earlier columns:
+#
+#     D_j  = S_jj - sum_{p<j} L_jp W_jp                      | 1           | D0             | 1 L10 L20 |
+#     W_ij = S_ij - sum_{p<j} L_ip W_jp    (i > j)      S =  | L10 1       |    D1          |   1   L21 |
+#     L_ij = W_ij / D_j                                      | L20 L21 1   |       D2       |       1   |
+#
+# Then L y = r forwards, y / D, and L^T lambda = y / D backwards, all in the variables r_i and l_i. The loops over i, j
+# and p run here, once: what is generated is the list of assignments they would execute ("unrolled").
+#
+# A constraint involves few coordinates and a body few constraints, so most entries of C_q are zero whatever q is, and
+# with them many of S and L. Such structural zeros are known here, and no term that has one as a factor is written.
+# A chain of N bodies costs N times as much as one, where a full elimination would cost N^3.
+
+
+@dataclass(frozen=True)
+class AccelerationCode:
+    """Assignments that compute a_i = qddot_i and l_j = lambda_j from t, q_i, v_i, two_alpha and beta_squared.
+
+    On the way c_j and cdot_j get their values. `least_pivot_line` is one assignment more: `worst`, the least of the
+    pivots D_j relative to S_jj, at most 1; where it is small, S is nearly singular.
+    """
+
+    coordinates: int
+    constraints: int
+    lines: tuple[str, ...]
+    least_pivot_line: str
+
+
+def acceleration_code(equations: Equations) -> AccelerationCode:
+    """Return the assignments that solve paper Eq. 9 by an unrolled L D L^T without its structural zeros."""
+    coordinates = len(equations.q)
+    constraints = len(equations.constraints)
+    entries = _nonzero_entries(equations)
+    # for each constraint, the coordinates on which it depends: the columns of C_q where its row is not zero
+    columns_of_row = [[k for k in range(coordinates) if f"C{i}_{k}" in entries] for i in range(constraints)]
+    inverse_masses = [repr(1 / float(mass)) for mass in equations.mass]
+    factors = _nonzero_factors(columns_of_row)
+    lines = [
+        *_entry_lines(entries),
+        *_right_side_lines(columns_of_row, inverse_masses, entries),
+        *_factorization_lines(columns_of_row, inverse_masses, factors),
+        *_substitution_lines(constraints, factors),
+        *_acceleration_lines(columns_of_row, inverse_masses, entries),
+    ]
+    relative_pivots = ", ".join(f"D{j} / S{j}" for j in range(constraints))
+    return AccelerationCode(coordinates, constraints, tuple(lines), f"worst = least(1.0, {relative_pivots})")
+
+
+def _nonzero_entries(equations: Equations) -> dict[str, sp.Expr]:
+    """Return the entries of C_q, gamma, c, c_t and g that are not identically zero, by the names of their variables."""
+    coordinates = range(len(equations.q))
+    constraints = range(len(equations.constraints))
+    entries = {f"C{i}_{k}": equations.jacobian[i, k] for i in constraints for k in coordinates}
+    entries |= {f"gamma{i}": equations.gamma[i] for i in constraints}
+    entries |= {f"c{i}": equations.constraints[i] for i in constraints}
+    entries |= {f"ct{i}": equations.constraints_t[i] for i in constraints}
+    entries |= {f"g{k}": equations.forces[k] for k in coordinates}
+    return {name: expression for name, expression in entries.items() if expression != 0}
+
+
+def _entry_lines(entries: dict[str, sp.Expr]) -> list[str]:
+    """Return the assignments to the entries, after those to x0, x1, ...: what several of them have in common."""
+    common, remaining = sp.cse(list(entries.values()), symbols=sp.numbered_symbols("x"))
+    assigned = [(str(symbol), expression) for symbol, expression in common]
+    assigned += zip(entries, remaining, strict=True)
+    return [f"{name} = {sp.pycode(expression, fully_qualified_modules=False)}" for name, expression in assigned]
+
+
+def _right_side_lines(
+    columns_of_row: Sequence[Sequence[int]], inverse_masses: Sequence[str], entries: Iterable[str]
+) -> list[str]:
+    """Return the assignments to cdot = C_q v + c_t and r = C_q M^-1 g - gamma + 2 alpha cdot + beta^2 c."""
+    lines = []
+    for i, columns in enumerate(columns_of_row):
+        cdot = [f"C{i}_{k} * v{k}" for k in columns]
+        if f"ct{i}" in entries:
+            cdot.append(f"ct{i}")
+        right_side = [f"C{i}_{k} * {inverse_masses[k]} * g{k}" for k in columns if f"g{k}" in entries]
+        if f"gamma{i}" in entries:
+            right_side.append(f"(-gamma{i})")
+        right_side += [f"two_alpha * cdot{i}", f"beta_squared * c{i}"]
+        lines.append(f"cdot{i} = {' + '.join(cdot)}")
+        lines.append(f"r{i} = {' + '.join(right_side)}")
+    return lines
+
+
+def _nonzero_factors(columns_of_row: Sequence[Sequence[int]]) -> set[tuple[int, int]]:
+    """Return the places (i, j), i > j, of L that are not structurally zero.
+
+    L_ij is there where constraints i and j share a coordinate, and where an earlier column p fills the place in:
+    L_ip and L_jp both there.
+    """
+    factors: set[tuple[int, int]] = set()
+    constraints = len(columns_of_row)
+    for j in range(constraints):
+        for i in range(j + 1, constraints):
+            shared = set(columns_of_row[i]) & set(columns_of_row[j])
+            filled_in = any((i, p) in factors and (j, p) in factors for p in range(j))
+            if shared or filled_in:
+                factors.add((i, j))
+    return factors
+
+
+def _factorization_lines(
+    columns_of_row: Sequence[Sequence[int]], inverse_masses: Sequence[str], factors: set[tuple[int, int]]
+) -> list[str]:
+    """Return the assignments to S_j (the diagonal of S), D_j, W_ij and L_ij, column by column."""
+
+    def entry_of_s(i: int, j: int) -> str:
+        shared = [k for k in columns_of_row[i] if k in columns_of_row[j]]
+        return " + ".join(f"C{i}_{k} * C{j}_{k} * {inverse_masses[k]}" for k in shared) or "0.0"
+
+    def eliminated(i: int, j: int) -> str:
+        """Return what the columns before j take off from the entry (i, j)."""
+        earlier = [p for p in range(j) if (i, p) in factors and (j, p) in factors]
+        return "".join(f" - L{i}_{p} * W{j}_{p}" for p in earlier)
+
+    lines = []
+    constraints = len(columns_of_row)
+    for j in range(constraints):
+        lines.append(f"S{j} = {entry_of_s(j, j)}")
+        lines.append(f"D{j} = S{j}{eliminated(j, j)}")
+        for i in range(j + 1, constraints):
+            if (i, j) in factors:
+                lines.append(f"W{i}_{j} = {entry_of_s(i, j)}{eliminated(i, j)}")
+                lines.append(f"L{i}_{j} = W{i}_{j} / D{j}")
+    return lines
+
+
+def _substitution_lines(constraints: int, factors: set[tuple[int, int]]) -> list[str]:
+    """Return the assignments that solve L D L^T l = r: forwards, by the diagonal, backwards."""
+    lines = []
+    for i in range(constraints):
+        lines += [f"r{i} = r{i} - L{i}_{p} * r{p}" for p in range(i) if (i, p) in factors]
+    lines += [f"l{i} = r{i} / D{i}" for i in range(constraints)]
+    for i in reversed(range(constraints)):
+        lines += [f"l{i} = l{i} - L{p}_{i} * l{p}" for p in range(i + 1, constraints) if (p, i) in factors]
+    return lines
+
+
+def _acceleration_lines(
+    columns_of_row: Sequence[Sequence[int]], inverse_masses: Sequence[str], entries: Iterable[str]
+) -> list[str]:
+    """Return the assignments to a = M^-1 (g - C_q^T l)."""
+    lines = []
+    for k, inverse_mass in enumerate(inverse_masses):
+        force = f"g{k}" if f"g{k}" in entries else "0.0"
+        reactions = "".join(f" - C{i}_{k} * l{i}" for i, columns in enumerate(columns_of_row) if k in columns)
+        lines.append(f"a{k} = ({force}{reactions}) * {inverse_mass}")
+    return lines
+
+
+# Functions of a state
+
+
+def observation_source(acceleration: AccelerationCode) -> str:
+    """Return the source of observation(t, two_alpha, beta_squared, q, v): all c, then all cdot, then all l."""
+    constraints = acceleration.constraints
+    results = [name for prefix in ("c", "cdot", "l") for name in variable_names(prefix, constraints)]
+    return _function_source("observation", acceleration, results)
+
+
+def multipliers_source(acceleration: AccelerationCode) -> str:
+    """Return the source of multipliers(t, two_alpha, beta_squared, q, v): all l."""
+    return _function_source("multipliers", acceleration, variable_names("l", acceleration.constraints))
+
+
+def _function_source(name: str, acceleration: AccelerationCode, results: Sequence[str]) -> str:
+    """Return the source of a function that returns some of the variables that the acceleration code assigns."""
+    coordinates = acceleration.coordinates
+    lines = [
+        f"{_tuple(variable_names('q', coordinates))} = q",
+        f"{_tuple(variable_names('v', coordinates))} = v",
+        *acceleration.lines,
+        f"return {_tuple(results)}",
+    ]
+    return "\n".join([f"def {name}(t, two_alpha, beta_squared, q, v):", *_indented(lines, 1)])
+
+
+def _tuple(entries: Iterable[str]) -> str:
+    return f"({', '.join(entries)},)"
+
+
+def _indented(lines: Iterable[str], depth: int) -> list[str]:
+    return [" " * depth + line for line in lines]
+
+
+# The stepper
+#
+# A generator that runs for ever, one turn of its loop a step. For AB2 and one coordinate it reads
+#
+#     def run(start, h, two_alpha, beta_squared, state, past):
+#      k = 0
+#      (q0, v0,) = state
+#      (y_1_0, y_1_1,), (f_1_0, f_1_1,) = past[0]           the state and the slope one step back
+#      while True:
+#       worst_pivot = 1.0
+#       y0 = q0                                             y: the state at the start of the step, q then v
+#       y1 = v0
+#       t = start + (k + 0.0) * h
+#       ...                                                 the acceleration code: a0 from t, q0 and v0
+#       worst = least(1.0, D0 / S0)
+#       f0 = v0                                             f: the slope there, v then a
+#       f1 = a0
+#       worst_pivot = least(worst_pivot, worst)
+#       q0 = 1.0 * y0 + h * (1.5 * f0 + -0.5 * f_1_0)       the formula of the method, coordinate by coordinate
+#       v0 = 1.0 * y1 + h * (1.5 * f1 + -0.5 * f_1_1)
+#       f_1_0 = f0                                          what was new is now one step back
+#       f_1_1 = f1
+#       k = k + 1
+#       yield (q0, v0,), (f0, f1,), worst_pivot
+#
+# A Runge-Kutta method repeats the part from `t =` to `worst_pivot =` for each stage, with stage_1_0, stage_1_1, ... for
+# f0, f1, ...; a predictor-corrector pair once, with p0, p1, ... Since q and v are assigned only after y and the slope
+# have their values, and y keeps the old state, no line overwrites what a later one needs.
+
+
+@dataclass(frozen=True)
+class Term:
+    """A coefficient of a method and the prefix of the variables, one for each entry of a state, that it multiplies."""
+
+    coefficient: Fraction
+    prefix: str
+
+
+def stepper_source(acceleration: AccelerationCode, method: Method) -> str:
+    """Return the source of run(start, h, two_alpha, beta_squared, state, past), a generator of steps.
+
+    Each step yields the new state (q then v), the slope before it (their derivatives) and the least relative pivot of S
+    met on the way. `state` is the one at time `start` (s), h (s) the whole step of the method, and `past` holds the
+    earlier (state, slope) pairs that a method of several steps needs, newest first.
+    """
+    size = 2 * acceleration.coordinates
+    state = _state_variables(acceleration)
+    lines = ["worst_pivot = 1.0"]
+    lines += [f"y{i} = {name}" for i, name in enumerate(state)]
+    lines += _evaluation_lines(acceleration, "f", AT_THE_START)
+    match method.scheme:
+        case LinearMultistep() as scheme:
+            lines += _multistep_lines(state, scheme, slope_at_the_end=None)
+        case PredictorCorrector(predictor, corrector):
+            lines += _multistep_lines(state, predictor, slope_at_the_end=None)
+            lines += _evaluation_lines(acceleration, "p", AT_THE_END)
+            lines += _multistep_lines(state, corrector, slope_at_the_end="p")
+        case RungeKutta() as scheme:
+            lines += _runge_kutta_lines(acceleration, scheme)
+        case Partitioned() as scheme:
+            lines += _partitioned_lines(acceleration.coordinates, scheme)
+    lines += _shift_lines(size, method)
+    lines += ["k = k + 1", f"yield {_tuple(state)}, {_tuple(variable_names('f', size))}, worst_pivot"]
+
+    head = ["k = 0", f"{_tuple(state)} = state"]
+    for back in range(1, steps(method)):
+        past_state = _tuple(variable_names(f"y_{back}_", size))
+        past_slope = _tuple(variable_names(f"f_{back}_", size))
+        head.append(f"{past_state}, {past_slope} = past[{back - 1}]")
+    return "\n".join([
+        "def run(start, h, two_alpha, beta_squared, state, past):",
+        *_indented(head, 1),
+        " while True:",
+        *_indented(lines, 2),
+    ])  # fmt: skip
+
+
+def _state_variables(acceleration: AccelerationCode) -> list[str]:
+    coordinates = acceleration.coordinates
+    return [*variable_names("q", coordinates), *variable_names("v", coordinates)]
+
+
+def _evaluation_lines(acceleration: AccelerationCode, slope: str, moment: Fraction) -> list[str]:
+    """Return the assignments to the slope, so called, at the current q and v and at time t + moment h."""
+    coordinates = acceleration.coordinates
+    derivatives = [*variable_names("v", coordinates), *variable_names("a", coordinates)]
+    return [
+        f"t = start + (k + {float(moment)!r}) * h",
+        *acceleration.lines,
+        acceleration.least_pivot_line,
+        *(f"{slope}{i} = {derivative}" for i, derivative in enumerate(derivatives)),
+        "worst_pivot = least(worst_pivot, worst)",
+    ]
+
+
+def _update_lines(state: Sequence[str], states: Sequence[Term], slopes: Sequence[Term]) -> list[str]:
+    """Return the assignments that set q and v to a sum of states plus h times a sum of slopes."""
+    lines = []
+    for i, variable in enumerate(state):
+        value = " + ".join(_product_text(term, i) for term in states if term.coefficient)
+        rise = " + ".join(_product_text(term, i) for term in slopes if term.coefficient)
+        lines.append(f"{variable} = {value} + h * ({rise or '0.0'})")
+    return lines
+
+
+def _product_text(term: Term, entry: int) -> str:
+    return f"{float(term.coefficient)!r} * {term.prefix}{entry}"
+
+
+def _multistep_lines(state: Sequence[str], scheme: LinearMultistep, slope_at_the_end: str | None) -> list[str]:
+    """Return the step y_{k+1} = -sum_{j>0} rho_j y_{k+1-j} + h sum_j sigma_j f_{k+1-j} of a multistep scheme.
+
+    f_{k+1}, which only a corrector uses, is the slope called `slope_at_the_end`.
+    """
+    states = [Term(-scheme.rho[1], "y")]
+    slopes = [] if slope_at_the_end is None else [Term(scheme.sigma[0], slope_at_the_end)]
+    slopes.append(Term(scheme.sigma[1], "f"))
+    for back in range(1, scheme.steps):
+        states.append(Term(-scheme.rho[back + 1], f"y_{back}_"))
+        slopes.append(Term(scheme.sigma[back + 1], f"f_{back}_"))
+    return _update_lines(state, states, slopes)
+
+
+def _runge_kutta_lines(acceleration: AccelerationCode, scheme: RungeKutta) -> list[str]:
+    """Return the later stages, each evaluated at y + h sum A_ij (slope of stage j), and the step with the weights."""
+    state = _state_variables(acceleration)
+    old_state = [Term(Fraction(1), "y")]
+    stages = ["f", *(f"stage_{number}_" for number in range(1, len(scheme.weights)))]
+    lines = []
+    for number, stage in enumerate(stages):
+        if number == 0:
+            continue  # it is f, the slope at the start of the step
+        row = scheme.tableau[number]
+        slopes = [Term(coefficient, name) for coefficient, name in zip(row, stages, strict=True)]
+        lines += _update_lines(state, old_state, slopes)
+        lines += _evaluation_lines(acceleration, stage, sum(row, Fraction(0)))
+    weighted = [Term(weight, name) for weight, name in zip(scheme.weights, stages, strict=True)]
+    return lines + _update_lines(state, old_state, weighted)
+
+
+def _partitioned_lines(coordinates: int, scheme: Partitioned) -> list[str]:
+    """Return the step of the velocities, then that of the coordinates, which may use the new velocities."""
+    new_velocity, old_velocity = (float(coefficient) for coefficient in scheme.position.sigma)
+    acceleration = float(scheme.velocity.sigma[1])
+    lines = []
+    for i in range(coordinates):
+        lines.append(f"v{i} = y{coordinates + i} + h * ({acceleration!r} * a{i})")
+        lines.append(f"q{i} = y{i} + h * ({old_velocity!r} * y{coordinates + i} + {new_velocity!r} * v{i})")
+    return lines
+
+
+def _shift_lines(size: int, method: Method) -> list[str]:
+    """Return the assignments that move the past on by one step, oldest first, as far as the method uses it.
+
+    Adams and Bezier methods use past slopes but no past states.
+    """
+    match method.scheme:
+        case LinearMultistep() as scheme:
+            schemes = [scheme]
+        case PredictorCorrector(predictor, corrector):
+            schemes = [predictor, corrector]
+        case RungeKutta() | Partitioned():
+            schemes = []
+    kinds = []
+    if any(coefficient for scheme in schemes for coefficient in scheme.rho[2:]):
+        kinds.append("y")
+    if any(coefficient for scheme in schemes for coefficient in scheme.sigma[2:]):
+        kinds.append("f")
+    lines = []
+    for back in reversed(range(1, steps(method))):
+        newer = "" if back == 1 else f"_{back - 1}_"
+        lines += [f"{kind}_{back}_{i} = {kind}{newer}{i}" for kind in kinds for i in range(size)]
+    return lines

@@ -1,0 +1,130 @@
+"""Initial states: q and qdot that satisfy the constraints, or violate the first of them by a given error."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+import sympy as sp
+from numpy.typing import NDArray
+
+from bezstab.errors import InputError, NumericalError
+from bezstab.mechanism.compiled import SINGULAR, Mechanism
+from bezstab.mechanism.equations import T
+
+FloatArray = NDArray[np.float64]
+
+NEWTON_STEPS = 50  # quadratic: a handful suffices from any guess that leads anywhere
+CLOSED = 1e-12  # m: what Newton reaches at mechanism sizes around a metre, and what a whole state must keep
+RANK = 1e-9  # of the largest entry of C_q: a row that depends on the others to this is redundant
+
+
+@dataclass(frozen=True, eq=False)
+class Geometry:
+    """c (shape (m, 1)), C_q (m, n) and c_t (m, 1) as functions of q (n of them) and t (s); SI units."""
+
+    constraints: Callable[[Sequence[FloatArray] | FloatArray, float], FloatArray]
+    jacobian: Callable[[Sequence[FloatArray] | FloatArray, float], FloatArray]
+    constraints_t: Callable[[Sequence[FloatArray] | FloatArray, float], FloatArray]
+
+
+@cache
+def geometry(mechanism: Mechanism) -> Geometry:
+    """Return the mechanism's constraints and their first derivatives as functions of floats or arrays."""
+    equations = mechanism.equations
+
+    def compiled(matrix: sp.Matrix) -> Callable[..., FloatArray]:
+        function: Callable[..., FloatArray] = sp.lambdify((equations.q, T), matrix, "numpy")
+        return function
+
+    return Geometry(compiled(equations.constraints), compiled(equations.jacobian), compiled(equations.constraints_t))
+
+
+def constraint_errors(mechanism: Mechanism, t: float, q: Sequence[FloatArray]) -> FloatArray:
+    """Return c at time t (s) for a batch, one array of q per coordinate; shape (m, *shape of these), SI units."""
+    return geometry(mechanism).constraints(q, t)[:, 0]
+
+
+def initial_state(mechanism: Mechanism) -> tuple[FloatArray, FloatArray]:
+    """Return q and qdot at t = 0 (shape (n,) each, SI units), which satisfy c = 0 and C_q qdot = -c_t.
+
+    The scene gives as many coordinates and velocities as the mechanism has freedoms, or all; the others follow.
+    InputError, naming the key, where they do not close, are redundant or, given whole, are inconsistent.
+    """
+    q = _closed_position(mechanism)
+    return q, _consistent_velocity(mechanism, q)
+
+
+def _closed_position(mechanism: Mechanism) -> FloatArray:
+    """Return q at t = 0: the scene's coordinates, completed by Newton's method on c(q, 0) = 0 from its guesses."""
+    scene = mechanism.scene
+    at = geometry(mechanism)
+    q = np.array([scene.position.get(name, scene.guess.get(name, 0.0)) for name in scene.coordinates])
+    unknown = _unknown(scene.position, scene.coordinates, mechanism.constraints, "position")
+    if unknown:
+        for _ in range(NEWTON_STEPS):
+            # least squares: it also has an answer where the linear system has none, on the way or for good
+            step = np.linalg.lstsq(at.jacobian(q, 0.0)[:, unknown], at.constraints(q, 0.0)[:, 0], rcond=None)[0]
+            q[unknown] -= step
+    error = float(np.abs(at.constraints(q, 0.0)).max())
+    if not error <= CLOSED:  # not a number included
+        key = (
+            "position: the joints cannot close" if unknown else "position: all coordinates are given, but inconsistent"
+        )
+        raise InputError(f"initial: {key} (largest |c| = {error:.3g})")
+    jacobian = at.jacobian(q, 0.0)
+    rank = int(np.linalg.matrix_rank(jacobian, tol=RANK * np.abs(jacobian).max()))
+    if rank < mechanism.constraints:
+        raise InputError(
+            f"joint: redundant constraints or a singular start: {mechanism.constraints} constraints, rank {rank}"
+        )
+    return q
+
+
+def _consistent_velocity(mechanism: Mechanism, q: FloatArray) -> FloatArray:
+    """Return qdot at t = 0: the scene's velocities, completed by C_q qdot = -c_t, linear in the unknown ones."""
+    scene = mechanism.scene
+    at = geometry(mechanism)
+    jacobian = at.jacobian(q, 0.0)
+    c_t = at.constraints_t(q, 0.0)[:, 0]
+    v = np.array([scene.velocity.get(name, 0.0) for name in scene.coordinates])
+    unknown = _unknown(scene.velocity, scene.coordinates, mechanism.constraints, "velocity")
+    if unknown:
+        is_unknown = np.isin(np.arange(mechanism.size), unknown)
+        right = -(c_t + jacobian @ np.where(is_unknown, 0.0, v))
+        v[unknown] = np.linalg.lstsq(jacobian[:, unknown], right, rcond=None)[0]
+    error = float(np.abs(jacobian @ v + c_t).max())
+    if not error <= CLOSED * max(1.0, float(np.abs(v).max())):
+        raise InputError(f"initial: velocity: inconsistent with the joints (largest |cdot| = {error:.3g})")
+    return v
+
+
+def _unknown(given: Mapping[str, float], coordinates: Sequence[str], constraints: int, key: str) -> list[int]:
+    """Return the indices of the coordinates that are not given; InputError unless there are m or none."""
+    unknown = [index for index, name in enumerate(coordinates) if name not in given]
+    if unknown and len(unknown) != constraints:
+        freedoms = len(coordinates) - constraints
+        raise InputError(
+            f"initial: {key} gives {len(given)} of {len(coordinates)} coordinates: expected {freedoms}, or all"
+        )
+    return unknown
+
+
+def perturbed_state(mechanism: Mechanism, error: float) -> tuple[FloatArray, FloatArray]:
+    """Return the initial state moved so that c_1 = error to first order and no other constraint changes; SI units.
+
+    The change is along M^-1 C_q^T, as the constraint forces are: they undo it and leave the motion as it was. q and
+    qdot have shape (n,). NumericalError where C_q M^-1 C_q^T, its rows and columns scaled alike, has lost its rank in
+    float64; InputError as `initial_state`.
+    """
+    q, v = initial_state(mechanism)
+    jacobian = geometry(mechanism).jacobian(q, 0.0)
+    directions = jacobian.T / np.array(mechanism.equations.mass, float)[:, np.newaxis]  # M^-1 C_q^T
+    with np.errstate(all="ignore"):
+        effective = jacobian @ directions
+        size = np.sqrt(np.diag(effective))
+        scaled = effective / np.outer(size, size)
+    if not (np.isfinite(scaled).all() and np.linalg.eigvalsh(scaled)[0] > SINGULAR):
+        raise NumericalError("at t = 0 s: C_q M^-1 C_q^T is singular to rounding: masses too far apart?")
+    first_constraint = np.eye(mechanism.constraints)[0]
+    return q + directions @ np.linalg.solve(effective, error * first_constraint), v

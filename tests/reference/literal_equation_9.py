@@ -1,0 +1,59 @@
+"""Paper Eq. 9 as it stands: its matrices evaluated, put together and solved by numpy, without any of its structure."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import sympy as sp
+from numpy.typing import NDArray
+
+from bezstab.mechanism import Equations, T
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Solution:
+    """c and cdot (shape (m,)), qddot (n,), lambda (m,), and the condition number of the matrix they come from."""
+
+    c: FloatArray
+    cdot: FloatArray
+    accelerations: FloatArray
+    multipliers: FloatArray
+    condition: float
+
+
+def literal_equation_9(
+    equations: Equations, two_alpha: float, beta_squared: float
+) -> Callable[[float, FloatArray, FloatArray], Solution]:
+    """Return the function of t, q and qdot that solves [M C_q^T; C_q 0] [qddot; lambda] = [g; gamma - feedback]."""
+    variables = (T, equations.q, equations.v)
+    jacobian_at = sp.lambdify(variables, equations.jacobian, "numpy")
+    columns = (equations.constraints, equations.constraints_t, equations.gamma, equations.forces)
+    columns_at = [sp.lambdify(variables, column, "numpy") for column in columns]
+    mass = np.diag(np.array(equations.mass, float))
+    n, m = len(equations.q), len(equations.constraints)
+
+    def solution(t: float, q: FloatArray, v: FloatArray) -> Solution:
+        jacobian = np.asarray(jacobian_at(t, q, v), float)
+        c, c_t, gamma, forces = (np.asarray(column_at(t, q, v), float)[:, 0] for column_at in columns_at)
+        cdot = jacobian @ v + c_t
+        matrix = np.block([[mass, jacobian.T], [jacobian, np.zeros((m, m))]])
+        right = np.concatenate([forces, gamma - two_alpha * cdot - beta_squared * c])
+        unknown = np.linalg.solve(matrix, right)
+        return Solution(c, cdot, unknown[:n], unknown[n:], float(np.linalg.cond(matrix)))
+
+    return solution
+
+
+def literal_slope(
+    equations: Equations, two_alpha: float, beta_squared: float
+) -> Callable[[float, FloatArray], FloatArray]:
+    """Return the function of t and y = (q, qdot) that gives y' = (qdot, qddot)."""
+    solution = literal_equation_9(equations, two_alpha, beta_squared)
+
+    def slope(t: float, y: FloatArray) -> FloatArray:
+        q, v = np.split(y, 2)
+        return np.concatenate([v, solution(t, q, v).accelerations])
+
+    return slope
