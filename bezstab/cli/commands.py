@@ -387,7 +387,7 @@ def verify(
     """
     import numpy as np
 
-    from bezstab.evidence import measured_poles as measuring
+    from bezstab import evidence as measuring
     from bezstab.mechanism import compiled_mechanism, load_scene
     from bezstab.show import tables
     from bezstab.stability import region

@@ -16,19 +16,10 @@ from bezstab.evidence.accuracy_costs import (
 )
 from bezstab.evidence.chunks import ATTEMPTS, Arrays, chunk_store, completed_chunks, worker_pool
 from bezstab.evidence.extremes import Check, extreme_checks
-from bezstab.evidence.measured_poles import (
-    CLOSE,
-    LINEAR,
-    SPREAD,
-    Measurement,
-    VerdictMap,
-    map_rows,
-    measure_poles,
-    random_points,
-    simulated_verdicts,
-    verdict_map,
-)
+from bezstab.evidence.linear_prediction import SPREAD, Fit, Refusal, fit_dominant_pole
+from bezstab.evidence.measured_poles import CLOSE, LINEAR, Measurement, measure_poles, random_points
 from bezstab.evidence.mujoco_witness import TIMES, model_xml, mujoco_witnesses, witness_count
+from bezstab.evidence.verdict_maps import MapRows, VerdictMap, map_rows, simulated_verdicts, verdict_map
 
 __all__ = [
     "ATTEMPTS",
@@ -41,13 +32,17 @@ __all__ = [
     "TIMES",
     "Arrays",
     "Check",
+    "Fit",
+    "MapRows",
     "Measurement",
+    "Refusal",
     "Run",
     "Sweep",
     "VerdictMap",
     "chunk_store",
     "completed_chunks",
     "extreme_checks",
+    "fit_dominant_pole",
     "map_cost",
     "map_rows",
     "measure_poles",
