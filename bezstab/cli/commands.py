@@ -387,7 +387,7 @@ def verify(
     """
     import numpy as np
 
-    from bezstab.evidence import measured_poles as measuring
+    from bezstab import evidence as measuring
     from bezstab.mechanism import compiled_mechanism, load_scene
     from bezstab.show import tables
     from bezstab.stability import region
@@ -459,14 +459,16 @@ def tradeoff(
 
     Example: bezstab tradeoff --method B4 --method AB4 --h 0.002 --h 0.004 --time 1
     """
-    from bezstab.evidence import accuracy_costs as trading
+    from bezstab import evidence as trading
     from bezstab.mechanism import load_scene
     from bezstab.show import tables
 
     if maps:
         methods = [lookup("B4"), lookup("AB4")] if _by_default("methods") else methods
-        costs = (trading.map_cost(method, count) for method in methods for count in trading.MAP_POINTS)
-        shown = _progress(costs, "maps", len(methods) * len(trading.MAP_POINTS))
+        from bezstab.evidence.accuracy_costs import MAP_POINTS
+
+        costs = (trading.map_cost(method, count) for method in methods for count in MAP_POINTS)
+        shown = _progress(costs, "maps", len(methods) * len(MAP_POINTS))
         _show([tables.row(cost) for cost in shown], tables.MAP_COSTS, form)
         return
     point = _point(alpha, beta)
@@ -495,7 +497,7 @@ def tradeoff(
     _show(rows, tables.RUNS, form)
     if form in ("text", "markdown"):
         said = [f"The reference is known to {true.error:.0e} (m, rad)."]
-        click.echo("\n" + "\n".join(said + trading.words(swept, float(tolerance), physical)))
+        click.echo("\n" + "\n".join(said + trading.sweep_sentences(swept, float(tolerance), physical)))
 
 
 @command

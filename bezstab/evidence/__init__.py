@@ -1,34 +1,27 @@
 """Whether the prediction holds: measured poles, outside witnesses, what accuracy costs."""
 
 from bezstab.evidence.accuracy_costs import (
-    FINE,
     METHODS,
     STEPS,
     Run,
     Sweep,
+    SweptRuns,
     map_cost,
     measured_runs,
-    pareto_front,
-    reference_motion,
-    summary,
+    pareto_fronts,
     swept_runs,
-    words,
+    whole_sweep,
+    with_fronts,
 )
 from bezstab.evidence.chunks import ATTEMPTS, Arrays, chunk_store, completed_chunks, worker_pool
 from bezstab.evidence.extremes import Check, extreme_checks
-from bezstab.evidence.measured_poles import (
-    CLOSE,
-    LINEAR,
-    SPREAD,
-    Measurement,
-    VerdictMap,
-    map_rows,
-    measure_poles,
-    random_points,
-    simulated_verdicts,
-    verdict_map,
-)
+from bezstab.evidence.linear_prediction import SPREAD, Fit, Refusal, fit_dominant_pole
+from bezstab.evidence.measured_poles import CLOSE, LINEAR, Measurement, measure_poles, random_points
 from bezstab.evidence.mujoco_witness import TIMES, model_xml, mujoco_witnesses, witness_count
+from bezstab.evidence.pareto import pareto_front
+from bezstab.evidence.reference_motions import ReferenceMotion, reference_motion
+from bezstab.evidence.sweep_summaries import FINE, Summary, summary, sweep_sentences
+from bezstab.evidence.verdict_maps import MapRows, VerdictMap, map_rows, simulated_verdicts, verdict_map
 
 __all__ = [
     "ATTEMPTS",
@@ -41,13 +34,20 @@ __all__ = [
     "TIMES",
     "Arrays",
     "Check",
+    "Fit",
+    "MapRows",
     "Measurement",
+    "ReferenceMotion",
+    "Refusal",
     "Run",
+    "Summary",
     "Sweep",
+    "SweptRuns",
     "VerdictMap",
     "chunk_store",
     "completed_chunks",
     "extreme_checks",
+    "fit_dominant_pole",
     "map_cost",
     "map_rows",
     "measure_poles",
@@ -55,13 +55,16 @@ __all__ = [
     "model_xml",
     "mujoco_witnesses",
     "pareto_front",
+    "pareto_fronts",
     "random_points",
     "reference_motion",
     "simulated_verdicts",
     "summary",
+    "sweep_sentences",
     "swept_runs",
     "verdict_map",
+    "whole_sweep",
+    "with_fronts",
     "witness_count",
-    "words",
     "worker_pool",
 ]

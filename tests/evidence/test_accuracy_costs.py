@@ -1,54 +1,13 @@
-from collections.abc import Sequence
-from dataclasses import replace
-from functools import cache
+"""Errors, costs and orders of swept runs, and what a map costs."""
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-from bezstab.evidence import (
-    FINE,
-    METHODS,
-    STEPS,
-    Run,
-    Sweep,
-    map_cost,
-    measured_runs,
-    pareto_front,
-    reference_motion,
-    summary,
-    swept_runs,
-    words,
-)
-from bezstab.mechanism import load_scene
+from bezstab.evidence import METHODS, STEPS, map_cost, measured_runs, swept_runs, whole_sweep
 from bezstab.methods import accuracy, lookup
-from bezstab.stability import QUALITY, region
-
-SCENE = "slider_crank_light"
-DURATION = 2.0  # s: in the first one AB4 shows the error of its RK4 start, of order 2
-SOFT = (50.0, 50.0)  # alpha and beta in 1/s
-
-
-@cache
-def swept(name: str, steps: tuple[float, ...], point: tuple[float, float] | None = None) -> list[Run]:
-    true = reference_motion(load_scene(SCENE), min(steps), DURATION)
-    sweep = Sweep(lookup(name), load_scene(SCENE), steps, DURATION, point, point == SOFT, 1, true)
-    return swept_runs(sweep, measured_runs(sweep))
-
-
-def test_the_reference_has_the_digits_it_claims() -> None:
-    # one coordinate, by quadrature with 30 digits: see test_simulate
-    true = reference_motion(load_scene("slider_crank"), 1e-3, 2.0)
-    assert true.error < 1e-12
-    angles = true.at(np.array([1.0, 2.0]))[:, 0]
-    assert angles == pytest.approx([1.822086334469, 2.872938352485], abs=max(true.error, 5e-13))
-
-
-def test_between_its_steps_the_reference_is_as_good() -> None:
-    true = reference_motion(load_scene(SCENE), 1e-3, DURATION)
-    other = reference_motion(load_scene(SCENE), 1e-3 * np.sqrt(0.5), DURATION)
-    assert np.abs(true.at(other.t[:-1]) - other.q[:-1]).max() < true.error + other.error + 1e-13
+from bezstab.stability import QUALITY
+from tests.evidence.small_sweeps import SOFT, small_sweep, swept
+from tests.reference.undominated import undominated
 
 
 @pytest.mark.parametrize("name", METHODS)
@@ -79,38 +38,31 @@ def test_a_run_that_fails_is_kept_and_says_so() -> None:
     assert failed.trajectory_error is None
     assert ended.failure is None
     assert ended.order is None  # there is nothing to compare with
-    assert summary([failed, ended]).coarsest == 0.002
 
 
-@given(st.lists(st.tuples(st.floats(1, 9), st.one_of(st.none(), st.floats(1, 9)))))
-def test_nothing_beats_the_front_and_the_front_beats_the_rest(points: list[tuple[float, float | None]]) -> None:
-    on_it = [points[k] for k in pareto_front(points)]
-    kept = [(cost, error) for cost, error in points if error is not None]
-    for cost, error in kept:
-        beaten = any(c <= cost and e is not None and e <= error and (c, e) != (cost, error) for c, e in on_it)
-        assert beaten != ((cost, error) in on_it)
+def test_with_alpha_and_beta_fixed_the_point_moves_with_the_step_exactly() -> None:
+    coarse, fine = swept("B4", (0.001, 0.003), SOFT)
+    assert (coarse.alpha_hat, coarse.beta_hat) == (0.3, 0.0225)  # 2 * 50 * 0.003, (50 * 0.003)^2, rounded once
+    assert (fine.alpha_hat, fine.beta_hat) == (0.1, 0.0025)
 
 
-def test_the_words_name_the_cheapest_run_and_the_numbers() -> None:
-    steps = (2e-4, 4e-4, 2e-3)
-    both: Sequence[Run] = [*swept("B4", steps, SOFT), *swept("AB4", steps, SOFT)]
-    cheapest, orders, against = words(both, 1e-7, physical=True)
-    within = [run for run in both if run.trajectory_error is not None and run.trajectory_error <= 1e-7]
-    best = min(within, key=lambda run: run.evaluations)
-    assert f"{best.method.name} at h = {best.h:g} s" in cheapest
-    assert "kept: B4 2.0 (of 2), AB4 4.0 (of 4)" in orders.replace("AB4 3.9", "AB4 4.0")
-    ratio = region(lookup("B4")).area / region(lookup("AB4")).area
-    won, lost = against.split("; loses: ")
-    assert won.startswith(f"B4 against AB4 wins: region {ratio:.2g} times as large")
-    assert "a trajectory error of 1e-08" in lost
-    assert words(both, 1e-20, physical=True)[0].startswith("No run meets")
-
-
-def test_evaluations_for_an_error_follow_the_power_law() -> None:
-    made = [
-        replace(run, trajectory_error=1e6 * float(run.evaluations) ** -3) for run in swept("B4", (2e-4, 4e-4), SOFT)
-    ]
-    assert summary(made).needed == pytest.approx((1e6 / FINE) ** (1 / 3))
+def test_a_sweep_knows_its_fronts() -> None:
+    sweeps = [small_sweep(name, (0.004, 0.0125), SOFT) for name in ("B2", "AB4")]
+    measured = [measured_runs(sweep) for sweep in sweeps]
+    whole = whole_sweep(sweeps, measured)
+    one_by_one = [run for sweep, arrays in zip(sweeps, measured, strict=True) for run in swept_runs(sweep, arrays)]
+    assert list(whole.runs) == one_by_one
+    assert whole.reference_error == sweeps[0].reference.error
+    trajectory = [(run.evaluations, run.trajectory_error) for run in whole.runs]
+    constraint = [(run.evaluations, None if run.failure else run.c_max) for run in whole.runs]
+    for front, points in ((whole.trajectory_front, trajectory), (whole.constraint_front, constraint)):
+        assert {points[index] for index in front} == undominated(points)
+    failed = [index for index, run in enumerate(whole.runs) if run.failure]
+    assert failed  # AB4 at the larger step
+    for index, label in enumerate(whole.front_labels):
+        assert ("T" in label) == (index in whole.trajectory_front)
+        assert ("c" in label) == (index in whole.constraint_front)
+        assert not (label and index in failed)
 
 
 def test_the_default_steps_are_ten_from_a_tenth_of_a_millisecond_to_twenty() -> None:

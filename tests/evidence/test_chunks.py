@@ -1,3 +1,5 @@
+"""Chunks over processes and over a real Dask cluster: each done once, none lost, resumed to the same bytes."""
+
 import os
 import signal
 import subprocess
@@ -34,25 +36,25 @@ def squares(found: dict[int, Arrays]) -> list[int]:
     return [int(found[number]["square"]) for number in sorted(found)]
 
 
-def test_every_chunk_is_done_once_and_kept(tmp_path: Path) -> None:
-    kept = chunk_store(tmp_path / "job", "squares", resume=False)
-    with worker_pool(2) as hands:
-        arrived = list(completed_chunks(square, [Job(number) for number in range(7)], hands, kept))
+def test_every_chunk_is_done_once_and_stored(tmp_path: Path) -> None:
+    store = chunk_store(tmp_path / "job", "squares", resume=False)
+    with worker_pool(2) as workers:
+        arrived = list(completed_chunks(square, [Job(number) for number in range(7)], workers, store))
     assert sorted(number for number, _ in arrived) == list(range(7))
     assert squares(dict(arrived)) == [number**2 for number in range(7)]
-    assert list(kept.finished()) == list(range(7))
+    assert list(store.finished()) == list(range(7))
     assert len({int(arrays["by"]) for _, arrays in arrived}) <= 2
     assert os.getpid() not in {int(arrays["by"]) for _, arrays in arrived}
-    kept.discard()
-    assert not kept.path.exists()
+    store.discard()
+    assert not store.path.exists()
 
 
 def test_a_resumed_job_does_only_what_is_missing(tmp_path: Path) -> None:
-    kept = chunk_store(tmp_path / "job", "squares", resume=False)
-    kept.keep(1, {"square": np.array(-1)})
+    store = chunk_store(tmp_path / "job", "squares", resume=False)
+    store.save(1, {"square": np.array(-1)})
     again = chunk_store(tmp_path / "job", "squares", resume=True)
-    with worker_pool(1) as hands:
-        arrived = dict(completed_chunks(square, [Job(number) for number in range(3)], hands, again))
+    with worker_pool(1) as workers:
+        arrived = dict(completed_chunks(square, [Job(number) for number in range(3)], workers, again))
     assert squares(arrived) == [0, -1, 4]  # the second was not done again
     with pytest.raises(InputError, match=r"--resume: .* other options"):
         chunk_store(tmp_path / "job", "cubes", resume=True)
@@ -61,18 +63,18 @@ def test_a_resumed_job_does_only_what_is_missing(tmp_path: Path) -> None:
 
 def test_a_lost_worker_costs_its_chunk_alone(tmp_path: Path) -> None:
     jobs = [Job(number, (tmp_path / "died",) if number == 2 else ()) for number in range(5)]
-    with worker_pool(2) as hands:
-        arrived = dict(completed_chunks(square, jobs, hands, chunk_store(tmp_path / "job", "squares", resume=False)))
+    with worker_pool(2) as workers:
+        arrived = dict(completed_chunks(square, jobs, workers, chunk_store(tmp_path / "job", "squares", resume=False)))
     assert squares(arrived) == [0, 1, 4, 9, 16]
     assert (tmp_path / "died").exists()
 
 
 def test_a_chunk_that_kills_every_worker_is_reported(tmp_path: Path) -> None:
     deaths = tuple(tmp_path / f"death {number}" for number in range(ATTEMPTS))
-    kept = chunk_store(tmp_path / "job", "squares", resume=False)
-    with worker_pool(1) as hands, pytest.raises(NumericalError, match="chunk 1 lost its worker 3 times"):
-        list(completed_chunks(square, [Job(0), Job(1, deaths)], hands, kept))
-    assert 0 in kept.finished()
+    store = chunk_store(tmp_path / "job", "squares", resume=False)
+    with worker_pool(1) as workers, pytest.raises(NumericalError, match="chunk 1 lost its worker 3 times"):
+        list(completed_chunks(square, [Job(0), Job(1, deaths)], workers, store))
+    assert 0 in store.finished()
 
 
 @pytest.fixture
@@ -88,7 +90,7 @@ def cluster() -> Iterator[str]:
     address = f"tcp://127.0.0.1:{port}"
     serve = [*python, "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", str(port), "--no-dashboard"]
     work = [*python, "distributed.cli.dask_worker", address, "--nworkers", "2", "--nthreads", "1", "--no-dashboard"]
-    running = [subprocess.Popen(each, env=environment, **quiet) for each in (serve, work)]  # type: ignore[call-overload]
+    running = [subprocess.Popen(command, env=environment, **quiet) for command in (serve, work)]  # type: ignore[call-overload]
     try:
         yield address
     finally:
@@ -101,10 +103,10 @@ def test_a_cluster_does_the_same_work(cluster: str, tmp_path: Path) -> None:
     jobs = [Job(number, (tmp_path / "died",) if number == 2 else ()) for number in range(6)]
     deadline = time.monotonic() + 60
     while True:
-        with worker_pool(scheduler=cluster) as hands:
-            if hands.count == 2:
+        with worker_pool(scheduler=cluster) as workers:
+            if workers.count == 2:
                 arrived = dict(
-                    completed_chunks(square, jobs, hands, chunk_store(tmp_path / "job", "squares", resume=False))
+                    completed_chunks(square, jobs, workers, chunk_store(tmp_path / "job", "squares", resume=False))
                 )
                 break
         assert time.monotonic() < deadline, "the workers did not come up"
@@ -126,24 +128,11 @@ def test_a_scheduler_that_does_not_answer_is_one_line() -> None:
 
 
 def test_a_resumed_sweep_writes_the_same_bytes(tmp_path: Path) -> None:
-    command = [
-        sys.executable,
-        "-m",
-        "bezstab",
-        "tradeoff",
-        "--h",
-        "0.01",
-        "--time",
-        "0.2",
-        "--alpha",
-        "50",
-        "--beta",
-        "50",
-    ]
-    command += ["--physical", "--method", "SYM", "--method", "RK4", "--workers", "1"]
-    kept = tmp_path / "tradeoff_slider_crank_light.chunks"
+    swept = "tradeoff --h 0.01 --time 0.2 --alpha 50 --beta 50 --physical --method SYM --method RK4 --workers 1"
+    command = [sys.executable, "-m", "bezstab", *swept.split()]
+    chunks = tmp_path / "tradeoff_slider_crank_light.chunks"
     with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as running:
-        while not list(kept.glob("0.npz")) and running.poll() is None:
+        while not list(chunks.glob("0.npz")) and running.poll() is None:
             time.sleep(0.001)
         running.kill()
     subprocess.run([*command, "--resume"], cwd=tmp_path, check=True, capture_output=True, timeout=120)
@@ -158,24 +147,12 @@ def test_a_killed_map_resumes_to_the_same_bytes(tmp_path: Path, monkeypatch: pyt
     whole, killed = tmp_path / "whole", tmp_path / "killed"
     for folder in (whole, killed):
         folder.mkdir()
-    command = [
-        sys.executable,
-        "-m",
-        "bezstab",
-        "verify",
-        "--map",
-        "80",
-        "--method",
-        "SYM",
-        "--scene",
-        "pendulum",
-        "--workers",
-        "1",
-    ]
+    mapped = "verify --map 80 --method SYM --scene pendulum --workers 1"
+    command = [sys.executable, "-m", "bezstab", *mapped.split()]
     subprocess.run(command, cwd=whole, check=True, capture_output=True, timeout=120)
-    kept = killed / "verify_pendulum_SYM.chunks"
+    chunks = killed / "verify_pendulum_SYM.chunks"
     with subprocess.Popen(command, cwd=killed, stderr=subprocess.DEVNULL) as running:
-        while not list(kept.glob("[0-9]*.npz")):
+        while not list(chunks.glob("[0-9]*.npz")):
             assert running.poll() is None
             time.sleep(0.01)
         running.kill()

@@ -1,0 +1,210 @@
+"""Linear prediction (Prony's method): the dominant pole in a sampled response, or why none can be told.
+
+This module knows of samples only, not of mechanisms, methods or feedback.
+
+The samples of a linear recursion are sums of powers of its poles,
+
+    d_k = a_1 z_1^k + a_2 z_2^k + ... + a_p z_p^k,
+
+so each sample is one and the same combination of the p samples before it:
+
+    d_k = c_0 d_(k-p) + c_1 d_(k-p+1) + ... + c_(p-1) d_(k-1)        for every k >= p,
+
+and the poles are the roots of z^p - c_(p-1) z^(p-1) - ... - c_0. Hence three steps, for any stretch of a response:
+least squares for the coefficients c, the roots of that polynomial for the poles z, and least squares again for the
+amplitudes a, because a root without amplitude belongs to the noise.
+
+What is difficult is to choose the stretch. A response that decays looks like this (log |d| over k):
+
+    |d|  *
+         | * .                  too early: poles that decay fast are still seen, which is harmless but costs digits
+         |    *  .
+         |       *   .          usable: the dominant pole is left, well above what does not decay
+         |           *    .
+         |                *  .
+         |~~~~~~~~~~~~~~~~~~~*~~~~~~~~~~~   too late: forcing and round-off, which no recursion explains
+         +------------------------------------ k
+
+and one that grows leaves the range in which the system is linear. Nobody knows beforehand where the usable part begins
+and ends. So many windows are tried, each gives a fit or none, and a pole is claimed only if the better half of the fits
+has found one and the same.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+InexactArray = NDArray[np.inexact[Any]]
+
+ABOVE_FORCED = (1e2, 1e3, 1e4, 1e5, 1e6)
+"""Least |d| of a window, in units of the largest |d| in the second half of the response: above what is forced."""
+
+SETTLED = 1e-3
+"""Of the largest |d|: if no more remains in the second half, what remains there is forced, not still decaying."""
+
+SKIPPED = (0.5, 0.3, 0.0)
+"""Share of a window that is left to the poles that decay fast."""
+
+SAMPLES = 400
+"""Of a window at most: the system that answers may change meanwhile."""
+
+RESIDUAL = 1e-4
+"""Relative, of a recursion that is believed. The least order that reaches it is taken, so that noise is not fitted."""
+
+CARRIES = 1e-3
+"""Of the largest amplitude: a root with less belongs to the noise."""
+
+SPREAD = 1e-3
+"""Of |z|, and rad: fits that differ by more have not found one and the same pole."""
+
+
+@dataclass(frozen=True)
+class Fit:
+    """The dominant pole of a response, per sample, and how well it is known.
+
+    `pole` lies in the closed upper half plane, for its conjugate is a pole too. `residual` is the relative error of the
+    recursion in the window that gave it, `order` the number of poles in that recursion and `samples` the window's
+    length. `spread_abs` (relative) and `spread_angle` (rad) say by how much the better half of all fits differ.
+    """
+
+    pole: complex
+    residual: float
+    order: int
+    samples: int
+    spread_abs: float
+    spread_angle: float
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """Why no pole is claimed, in one line."""
+
+    reason: str
+
+
+@dataclass(frozen=True)
+class WindowFit:
+    """What one window gives: the recursion's residual, its order and dominant pole, and the window's ends (samples)."""
+
+    residual: float
+    order: int
+    pole: complex
+    start: int
+    stop: int
+
+
+def fit_dominant_pole(
+    responses: FloatArray,
+    order: int,
+    sizes: FloatArray | None = None,
+    limits: Sequence[float] = (np.inf,),
+) -> Fit | Refusal:
+    """Return the dominant pole that several responses of one linear system share, or why it cannot be had.
+
+    `responses` has shape (samples, responses), equally spaced in time; unit as the user likes, for the pole has none.
+    `order` is the largest number of poles to look for. `sizes`, of the same shape and by default |responses|, is what
+    must stay below a limit for the system to answer linearly; every one of `limits` is tried. A number that is not
+    finite ends a response. No errors are raised: what cannot be fitted is a Refusal.
+
+    Every window of every response gives a fit. Of the half with the smaller residuals the one of median |z| is taken;
+    if these differ, or stem from one window only, no pole is claimed (Prony's method: Hildebrand, Introduction to
+    Numerical Analysis, 2nd ed., section 9.4).
+    """
+    if sizes is None:
+        sizes = np.abs(responses)
+    fits: list[WindowFit] = []
+    longest = 0
+    for response, size in zip(responses.T, sizes.T, strict=True):
+        for window in response_windows(response, size, limits):
+            samples = response[window]
+            longest = max(longest, len(samples))
+            fit = fit_window(samples, order, window.start)
+            if fit is not None:
+                fits.append(fit)
+    fits.sort(key=lambda fit: fit.residual)
+    better_half = fits[: (len(fits) + 1) // 2]
+    # Several responses in one window are no independent witnesses: they may differ by a factor only.
+    if len({(fit.start, fit.stop) for fit in better_half}) < 2:
+        return Refusal(f"no linear recursion fits the {longest} samples between round-off and the linear range")
+    z = np.array([fit.pole for fit in better_half])
+    moduli = np.abs(z)
+    spread_abs = float(np.ptp(moduli / moduli.max()))
+    spread_angle = float(np.ptp(np.angle(z)))
+    for spread, quantity in ((spread_abs, "|z| (relative)"), (spread_angle, "angle (rad)")):
+        if not spread <= SPREAD:  # not a number included
+            differing = f"{spread:.1g} in {quantity}"
+            return Refusal(f"fits differ by {differing}: poles of nearly equal modulus, or too much forced error")
+    median = better_half[int(np.argsort(moduli)[len(moduli) // 2])]
+    return Fit(
+        pole=median.pole,
+        residual=median.residual,
+        order=median.order,
+        samples=median.stop - median.start,
+        spread_abs=spread_abs,
+        spread_angle=spread_angle,
+    )
+
+
+def response_windows(response: FloatArray, size: FloatArray, limits: Sequence[float]) -> Iterator[slice]:
+    """Yield the stretches of one response, shape (samples,), that lie in the linear range and above what is forced."""
+    ends: set[int] = set()
+    for limit in limits:
+        outside = np.flatnonzero(~(size < limit))  # not a number included
+        end = int(outside[0]) if outside.size else len(response)
+        within = np.abs(response[:end])
+        largest = within.max(initial=0.0)
+        remaining = within[len(within) // 2 :].max(initial=0.0)
+        if remaining < SETTLED * largest:
+            # It has decayed to what is forced: end where it is last well above that.
+            for factor in ABOVE_FORCED:
+                last_above = np.flatnonzero(within > factor * remaining).max(initial=-1)
+                ends.add(int(last_above) + 1)
+        else:
+            ends.add(len(within))
+    for end in sorted(ends):
+        for share in SKIPPED:
+            start = int(share * end)
+            yield slice(start, min(end, start + SAMPLES))
+
+
+def fit_window(samples: FloatArray, order: int, start: int = 0) -> WindowFit | None:
+    """Return what the shortest recursion of at most `order` says of the samples, which begin at `start`; None without.
+
+    A recursion of p terms is tried only on 2p + 2 samples and more, so that there are more equations than unknowns.
+    """
+    for terms in range(1, order + 1):
+        if len(samples) < 2 * terms + 2:
+            return None
+        # Each row is an equation: p samples and the one after them. Rows are scaled to their largest entry, so that
+        # decay does not hide the later ones.
+        rows = sliding_window_view(samples, terms + 1)
+        largest = np.abs(rows).max(axis=1, keepdims=True)
+        if not largest.all():
+            return None
+        rows = rows / largest
+        before, after = rows[:, :terms], rows[:, terms]
+        coefficients = np.linalg.lstsq(before, after, rcond=None)[0]
+        residual = float(np.linalg.norm(before @ coefficients - after) / np.linalg.norm(after))
+        if residual < RESIDUAL:
+            z = np.roots([1.0, *-coefficients[::-1]])
+            pole = _dominant_with_amplitude(samples, z)
+            return WindowFit(residual, terms, pole, start, start + len(samples))
+    return None
+
+
+def _dominant_with_amplitude(samples: FloatArray, z: InexactArray) -> complex:
+    """Return the largest of the roots z that carries an amplitude in the samples, in the upper half plane."""
+    k = np.arange(len(samples))
+    growth = np.abs(z).max()
+    # Powers and samples are both divided by growth^k, so that neither overflows; amplitudes are the same.
+    powers = (z / growth) ** k[:, np.newaxis]
+    scaled = samples * np.exp(-k * np.log(growth))
+    amplitudes = np.abs(np.linalg.lstsq(powers, scaled, rcond=None)[0])
+    carrying = z[amplitudes > CARRIES * amplitudes.max()]
+    dominant = carrying[np.argmax(np.abs(carrying))]
+    return complex(dominant.real, abs(dominant.imag))

@@ -1,0 +1,158 @@
+"""How many digits of the poles are right, and how many could be: against roots of a hundred digits.
+
+A root z of pi(z, mu) = sum c_kj z^k mu^j is not known better than its coefficients. If each of them is off by the share
+eps, as every number in float64 is by 1e-16, then to first order z is off by at most
+
+    |dz / z| <= eps * condition,     condition = sum |c_kj| |z|^k |mu|^j / |z pi'(z)|,
+
+where pi' is the slope in z: the flatter pi crosses zero, the farther the root moves (Higham, Accuracy and Stability of
+Numerical Algorithms, 2nd ed., section 5.1; Wilkinson 1963). So a pole of condition 1 can have fifteen digits, one of
+condition 1e6 nine: "15 less those of each pole's condition number" is what a good root finder must reach, and no root
+finder can promise much more.
+
+The references come from Newton's method in mpmath (which comes with sympy), started at the poles to be judged. That
+would prove nothing if two starts led to one root, or if a pole were missing: as many different roots must be found as
+there are.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import islice
+
+import mpmath as mp
+
+from bezstab.errors import NumericalError
+from bezstab.methods import Method, coefficient_table, feedback_matrix
+from bezstab.stability import poles
+
+DIGITS = 100
+"""Of the arithmetic: differences of squares of two float64 cancel up to 32 of them."""
+
+SAME = mp.mpf(10) ** -40
+"""Relative: iterates nearer than this have found one and the same root."""
+
+AT_BEST = 15.0
+"""Digits of a pole of condition number one."""
+
+MOST_COUNTED = mp.mpf(10) ** -17
+"""Of an error: below, float64 cannot show it, and a difference of zero has no logarithm."""
+
+UNDERFLOW = 2.3e-308
+"""What float64 no longer holds to all digits."""
+
+
+@dataclass(frozen=True)
+class PoleDigits:
+    """How many digits the poles keep, at worst, and by how many, at worst, that beats their condition numbers."""
+
+    digits: float
+    margin: float
+
+
+def pole_digits(method: Method, alpha_hat: float, beta_hat: float) -> PoleDigits:
+    """Return how many digits the poles at one point keep, at worst, and how many more than they must.
+
+    Relative to each pole; to 1 where |z| < 1 for a one-step method, whose z = R(mu) is a difference there. Where a
+    coefficient of pi underflows only the pole next to 1 counts. NumericalError if the references are not all the roots,
+    or if a pole leaves the range of float64.
+    """
+    found = [mp.mpc(z) for z in poles(method, alpha_hat, beta_hat).tolist()]
+    with mp.workdps(DIGITS):
+        table = [[_exact(entry) for entry in row] for row in coefficient_table(method)]
+        judged = [
+            _judged_pole(table, mu, seen, reference)
+            for mu in _mus(method, alpha_hat, beta_hat)
+            for seen, reference in _seen_and_reference(table, mu, found)
+        ]
+        return PoleDigits(
+            digits=min(pole.digits for pole in judged),
+            margin=min(pole.margin for pole in judged),
+        )
+
+
+def _exact(value: Fraction) -> mp.mpf:
+    return mp.mpf(value.numerator) / value.denominator
+
+
+def _mus(method: Method, alpha_hat: float, beta_hat: float) -> list[mp.mpc]:
+    """Return the mu of a point: both, or one of a conjugate pair, for the poles of the other are conjugate to its own.
+
+    They are the roots of mu^2 + 2 half mu + product, the coefficients as the method's step takes alpha_hat and
+    beta_hat. The larger one comes from the sum that does not cancel, the other from their product.
+    """
+    (a, b), (c, d) = (map(_exact, row) for row in feedback_matrix(method))
+    x, y = mp.mpf(alpha_hat), mp.mpf(beta_hat)
+    half = (a * x + b * y) / 2
+    product_of_both = c * x + d * y
+    root = mp.sqrt(half**2 - product_of_both)
+    larger = -(half + root) if half >= 0 else root - half
+    if mp.im(larger):
+        return [larger]
+    return [larger, product_of_both / larger]
+
+
+def _seen_and_reference(
+    table: Sequence[Sequence[mp.mpf]], mu: mp.mpc, found: Sequence[mp.mpc]
+) -> list[tuple[mp.mpc, mp.mpc]]:
+    """Return the roots of pi(z, mu), each beside the pole that was found for it."""
+    polynomial = [mp.polyval(row[::-1], mu) for row in table][::-1]  # in z, descending powers
+    smallest = min(abs(c) * abs(mu) ** j for row in table for j, c in enumerate(row) if c)
+    if smallest < UNDERFLOW:
+        next_to_one = _polished(polynomial, mp.mpc(1))
+        if not next_to_one:
+            raise NumericalError("no root next to 1 was found")
+        return [(min(found, key=lambda z: abs(z - next_to_one)), next_to_one)]
+    return [(found[index], root) for index, root in all_roots(polynomial, found).items()]
+
+
+def _judged_pole(table: Sequence[Sequence[mp.mpf]], mu: mp.mpc, seen: mp.mpc, z: mp.mpc) -> PoleDigits:
+    """Return how many digits of the root z of pi(z, mu) were seen, and how many more than its condition leaves."""
+    one_step = len(table) == 2  # pi = z - R(mu)
+    scale = max(abs(z), 1) if one_step else abs(z)
+    error = abs(seen - z) / scale
+    condition = mp.mpf(1) if one_step else _condition(table, mu, z)
+    digits = float(-mp.log10(max(error, MOST_COUNTED)))
+    needed = AT_BEST - float(mp.log10(max(condition, 1)))
+    return PoleDigits(digits=digits, margin=digits - needed)
+
+
+def _condition(table: Sequence[Sequence[mp.mpf]], mu: mp.mpc, z: mp.mpc) -> mp.mpf:
+    """Return the condition number of a simple root z of pi(z, mu), see above; table[k][j] belongs to z^k mu^j."""
+    polynomial = [mp.polyval(row[::-1], mu) for row in table][::-1]
+    slope = mp.polyval(polynomial, z, derivative=True)[1]
+    terms = (abs(c) * abs(z) ** k * abs(mu) ** j for k, row in enumerate(table) for j, c in enumerate(row))
+    return sum(terms) / abs(z * slope)
+
+
+def all_roots(polynomial: Sequence[mp.mpf], starts: Sequence[mp.mpc]) -> dict[int, mp.mpc]:
+    """Return every root by the number of the start that is nearest to it, relative to its size.
+
+    The polynomial's coefficients stand in descending powers. NumericalError if the starts do not lead to as many
+    different roots as its degree.
+    """
+    reached = {}
+    for index, start in enumerate(starts):
+        root = _polished(polynomial, start)
+        if root is not None:
+            reached[index] = root
+    nearest_first = sorted(reached, key=lambda k: abs(starts[k] - reached[k]) / (abs(reached[k]) or 1))
+    roots: dict[int, mp.mpc] = {}
+    for index in nearest_first:
+        if all(abs(reached[index] - other) > SAME * abs(other) for other in roots.values()):
+            roots[index] = reached[index]
+    degree = len(polynomial) - 1
+    if len(roots) < degree:
+        raise NumericalError(f"only {len(roots)} of {degree} roots were found")
+    return dict(islice(roots.items(), degree))
+
+
+def _polished(polynomial: Sequence[mp.mpf], z: mp.mpc) -> mp.mpc | None:
+    """Return the root that Newton's method reaches from z, at the precision in force; None from too far away."""
+    for _ in range(DIGITS * 4):  # quadratic, but linear on the way out of a cluster
+        value, slope = mp.polyval(polynomial, z, derivative=True)
+        step = value / (slope or mp.mpc(1, 1))  # a start on a saddle is moved off it
+        z -= step
+        if abs(step) <= mp.mpf(10) ** (10 - DIGITS) * abs(z):
+            return z
+    return None

@@ -1,0 +1,177 @@
+"""What a sweep over methods and steps says, method by method and in words."""
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from bezstab.evidence.accuracy_costs import Run
+from bezstab.methods import Method, accuracy, evaluations, steps
+from bezstab.stability import region, spectral_radius
+
+FINE = 1e-8
+"""m or rad: the trajectory error at which high order shows."""
+
+BEYOND = 1e3
+"""Times the evaluations of the dearest run: no power law is trusted further."""
+
+ORDER_LOST = 0.5
+"""Of an order: below the stated one by more, it has fallen."""
+
+ALIKE = 1.05
+"""Ratios nearer to one are neither won nor lost."""
+
+LINE = 4000
+"""Points on alpha = beta, where the largest stable step is looked for: alpha h to a thousandth."""
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What a sweep says of one method; None where it says nothing.
+
+    order: observed between the two smallest steps whose error is well above the reference's. alpha_step: the largest
+    alpha h per evaluation with alpha = beta that is stable. evaluations_needed: for a trajectory error of FINE,
+    interpolated or extrapolated. largest_step: in s, of the runs that did not fail.
+    """
+
+    method: Method
+    stated_order: int
+    order: float | None
+    area: float
+    alpha_step: float
+    evaluations_needed: float | None
+    largest_step: float | None
+
+
+def summary(runs: Sequence[Run]) -> Summary:
+    """Return the summary of one method's runs, the largest step first.
+
+    NumericalError where the method's region cannot be traced.
+    """
+    method = runs[0].method
+    ended = [run for run in runs if run.failure is None]
+    orders = [run.order for run in runs if run.order is not None]
+    stated_order, _ = accuracy(method)
+    return Summary(
+        method=method,
+        stated_order=stated_order,
+        order=orders[-1] if orders else None,
+        area=region(method).area,
+        alpha_step=_largest_stable_alpha_step(method) / evaluations(method),
+        evaluations_needed=_evaluations_needed(FINE, ended),
+        largest_step=ended[0].h if ended else None,
+    )
+
+
+def _largest_stable_alpha_step(method: Method) -> float:
+    """Return the largest alpha h with alpha = beta that is stable, 0 if none is.
+
+    With alpha = beta, alpha_hat = 2 alpha h and beta_hat = (alpha h)^2: the parabola of critical damping.
+    """
+    alpha_step = np.linspace(0, 4, LINE)[1:]
+    stable = spectral_radius(method, 2 * alpha_step, alpha_step**2) < 1
+    return float(alpha_step[stable].max(initial=0.0))
+
+
+def _evaluations_needed(error: float, ended: Sequence[Run]) -> float | None:
+    """Return the evaluations at which the trajectory's error falls to `error`; None where nothing can be told.
+
+    log error falls linearly with log evaluations (a power law) between two neighbouring runs: the first two between
+    which `error` lies, or, to extrapolate, the last two. Runs without an observed order are left out but for the first,
+    because their error is that of the reference.
+    """
+    usable = [run for run in ended if run.trajectory_error and (run.order is not None or run is ended[0])]
+    if len(usable) < 2:
+        return None
+    chosen = (usable[-2], usable[-1])
+    for coarser, finer in pairwise(usable):
+        if finer.trajectory_error is not None and finer.trajectory_error <= error:
+            chosen = (coarser, finer)
+            break
+    (first_cost, first_error), (second_cost, second_error) = (
+        np.log([run.evaluations, run.trajectory_error or np.nan]) for run in chosen
+    )
+    share = (np.log(error) - first_error) / (second_error - first_error)
+    needed = float(np.exp(first_cost + (second_cost - first_cost) * share))
+    return needed if needed < BEYOND * ended[-1].evaluations else None
+
+
+def sweep_sentences(runs: Sequence[Run], tolerance: float, physical: bool) -> list[str]:
+    """Return the answers as sentences: the cheapest run within the tolerance (SI), orders kept and lost, comparisons.
+
+    The runs of each method stand with the largest step first. `physical` says whether alpha and beta (1/s) were held
+    while h shrank, or alpha_hat and beta_hat. The Bezier method of most steps is compared with each that is none.
+    """
+    methods = dict.fromkeys(run.method for run in runs)
+    summaries = [summary([run for run in runs if run.method == method]) for method in methods]
+    bezier = [one for one in summaries if _is_bezier(one.method)]
+    sentences = [_cheapest_sentence(runs, tolerance), *_order_sentences(summaries, physical)]
+    if bezier:
+        most_steps = max(bezier, key=lambda one: steps(one.method))
+        sentences += [_comparison_sentence(most_steps, other) for other in summaries if other not in bezier]
+    return sentences
+
+
+def _is_bezier(method: Method) -> bool:
+    # A method is to carry its family, and then nobody asks its name: method.family.name == "Bezier".
+    return re.fullmatch(r"B\d+", method.name) is not None
+
+
+def _cheapest_sentence(runs: Sequence[Run], tolerance: float) -> str:
+    """Return which run is the cheapest within the tolerance, or the least error if none is."""
+    known = [(run, run.trajectory_error) for run in runs if run.trajectory_error is not None]
+    within = [(run, error) for run, error in known if error <= tolerance]
+    if not within:
+        least = f"{min(error for _, error in known):.1e}" if known else "-"
+        return f"No run meets the tolerance {tolerance:g}; the least error is {least}."
+    best, error = min(within, key=lambda pair: pair[0].evaluations)
+    return (
+        f"Cheapest for a trajectory error of {tolerance:g}: {best.method.name} at h = {best.h:g} s, error "
+        f"{error:.1e}, {best.evaluations} evaluations, {best.seconds:.2g} s."
+    )
+
+
+def _order_sentences(summaries: Sequence[Summary], physical: bool) -> Iterator[str]:
+    """Yield the orders of accuracy that are lost, and those that are kept, if there are any."""
+    held = "α and β" if physical else "α̂ and β̂"
+    lost, kept = [], []
+    for one in summaries:
+        if one.order is None:
+            continue
+        text = f"{one.method.name} {one.order:.1f} (of {one.stated_order})"
+        if one.order < one.stated_order - ORDER_LOST:
+            lost.append(text)
+        else:
+            kept.append(text)
+    for verb, texts in (("lost", lost), ("kept", kept)):
+        if texts:
+            yield f"Order of accuracy with {held} held while h shrinks, {verb}: {', '.join(texts)}."
+
+
+def _comparison_sentence(bezier: Summary, other: Summary) -> str:
+    """Return where a Bezier method wins and where it loses against another, with the numbers."""
+    wins, loses = [], []
+    for times_better, text in _advantages(bezier, other):
+        if np.log(times_better) > np.log(ALIKE):
+            wins.append(text)
+        elif -np.log(times_better) > np.log(ALIKE):
+            loses.append(text)
+    clauses = [f"{verb}: {', '.join(texts)}" for verb, texts in (("wins", wins), ("loses", loses)) if texts]
+    return f"{bezier.method.name} against {other.method.name} {'; '.join(clauses) or 'does as well'}."
+
+
+def _advantages(bezier: Summary, other: Summary) -> Iterator[tuple[float, str]]:
+    """Yield how many times better the Bezier method is (less than one: worse), and in what."""
+    ratio = bezier.area / other.area
+    yield ratio, f"region {ratio:.2g} times as large"
+    if other.alpha_step:
+        ratio = other.alpha_step / bezier.alpha_step
+        yield 1 / ratio, f"stable at one α = β with {ratio:.2g} times the evaluations"
+    if bezier.largest_step and other.largest_step:
+        ends = f"runs through up to h = {bezier.largest_step:g} s, the other up to {other.largest_step:g} s"
+        yield bezier.largest_step / other.largest_step, ends
+    if bezier.evaluations_needed and other.evaluations_needed:
+        ratio = bezier.evaluations_needed / other.evaluations_needed
+        yield 1 / ratio, f"a trajectory error of {FINE:g} with {ratio:.2g} times the evaluations"

@@ -1,0 +1,165 @@
+"""Maps of simulated verdicts: a run at every cell of the plane, diverging or not, against |z_p| from the polynomial."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bezstab.evidence.linear_prediction import SETTLED
+from bezstab.evidence.measured_poles import GROWN, LINEAR, kicked_constraint_errors
+from bezstab.mechanism import Scene, compiled_mechanism
+from bezstab.methods import Method
+from bezstab.stability import FloatArray, pole_map, region, window
+
+BoolArray = NDArray[np.bool_]
+
+MAP_RUN = 2000
+"""Steps after the kick."""
+
+BATCH = 2000
+"""Cells at a time: more make no step cheaper."""
+
+MAP_KICK = 1e-6
+"""SI units: a thousandth of the linear range, so that a decaying run stays in it and a growing one needs time."""
+
+TOO_CLOSE = 10.0
+"""Over the number of steps: with | |z_p| - 1 | below this growth or decay may not show in a run."""
+
+PARTS = 8
+"""Of a run, compared by the largest difference in each."""
+
+
+@dataclass(frozen=True)
+class VerdictMap:
+    """Predicted |z_p| and what `run` simulated steps of h (s) did; masks of shape (beta_hat.size, alpha_hat.size).
+
+    `broken` is where the mechanism itself left the linear range, whatever the kick: no verdict.
+    """
+
+    scene: Scene = field(repr=False)
+    method: Method = field(repr=False)
+    h: float
+    run: int
+    alpha_hat: FloatArray = field(repr=False)
+    beta_hat: FloatArray = field(repr=False)
+    z_abs: FloatArray = field(repr=False)
+    diverges: BoolArray = field(repr=False)
+    broken: BoolArray = field(repr=False)
+
+    @property
+    def disagrees(self) -> BoolArray:
+        """Where simulated and predicted verdict differ; shape (beta_hat.size, alpha_hat.size)."""
+        differs: BoolArray = (self.diverges != (self.z_abs >= 1)) & ~self.broken
+        return differs
+
+    @property
+    def judged(self) -> int:
+        """The number of runs with a verdict: all but those that broke down."""
+        return self.broken.size - int(self.broken.sum())
+
+    @property
+    def agreement(self) -> float | None:
+        """The share of the judged runs whose verdict is the predicted one; None if none was judged."""
+        if not self.judged:
+            return None
+        return 1 - int(self.disagrees.sum()) / self.judged
+
+    @property
+    def band(self) -> float:
+        """How far |z_p| must be from one for a run of this length to show it."""
+        return TOO_CLOSE / self.run
+
+    @property
+    def farthest_disagreement(self) -> float | None:
+        """The largest | |z_p| - 1 | at which the verdicts differ; None where they nowhere do."""
+        distance = self._distances_of_disagreement()
+        return float(distance.max()) if distance.size else None
+
+    @property
+    def disagreements_beyond_band(self) -> int:
+        """The number of runs that disagree although |z_p| is farther from one than the band."""
+        return int((self._distances_of_disagreement() > self.band).sum())
+
+    def _distances_of_disagreement(self) -> FloatArray:
+        distance: FloatArray = np.abs(self.z_abs - 1)[self.disagrees]
+        return distance
+
+
+@dataclass(frozen=True)
+class MapRows:
+    """Some rows of a map of simulated verdicts, to be run as one batch; h in s."""
+
+    scene: Scene = field(repr=False)
+    method: Method = field(repr=False)
+    h: float
+    alpha_hat: FloatArray = field(repr=False)
+    beta_hat: FloatArray = field(repr=False)
+
+
+def map_rows(scene: Scene, method: Method, h: float, count: int) -> list[MapRows]:
+    """Return the count x count cells of the window that shows the region, by rows (constant beta_hat); h in s."""
+    centres = (np.arange(count) + 0.5) / count
+    alpha_window, beta_window = window(region(method))
+    alpha_hat = _inside(alpha_window, centres)
+    beta_hat = _inside(beta_window, centres)
+    rows_at_once = max(1, BATCH // count)
+    return [
+        MapRows(scene, method, h, alpha_hat, beta_hat[first : first + rows_at_once])
+        for first in range(0, count, rows_at_once)
+    ]
+
+
+def _inside(interval: tuple[float, float], shares: FloatArray) -> FloatArray:
+    """Return the points that lie at these shares of an interval."""
+    low, high = interval
+    return low + (high - low) * shares
+
+
+def simulated_verdicts(rows: MapRows) -> dict[str, BoolArray]:
+    """Return where runs diverge, and where they broke down; shape (beta_hat.size, alpha_hat.size).
+
+    A run diverges if the difference after the kick grows until c leaves the linear range, or is larger in the last
+    eighth of the run than in the eighth before its middle without having decayed to what is forced.
+    """
+    alpha_grid, beta_grid = np.meshgrid(rows.alpha_hat, rows.beta_hat)
+    alpha_hat, beta_hat = alpha_grid.ravel(), beta_grid.ravel()
+    steps_of_a_part = MAP_RUN // PARTS
+    largest = np.zeros((PARTS + 1, alpha_hat.size))  # the one step more than eight eighths is a part of its own
+    linear = np.full(alpha_hat.size, True)
+    with np.errstate(all="ignore"):  # what diverges runs into infinity, and is cut off there
+        kicked = kicked_constraint_errors(
+            compiled_mechanism(rows.scene), rows.method, rows.h, alpha_hat, beta_hat, (MAP_KICK,)
+        )
+        for k, c in zip(range(MAP_RUN + 1), kicked, strict=False):
+            linear &= np.abs(c).max(axis=(0, 1, 2)) < LINEAR[0]  # not so where it is not a number
+            up, down = c[0, :, 0]
+            part = largest[k // steps_of_a_part]
+            np.maximum(part, np.abs(up - down) / 2, out=part, where=linear)
+    peak = largest.max(axis=0)
+    before_middle, last = largest[PARTS // 2 - 1], largest[PARTS - 1]
+    grows_within = (last > before_middle) & (last > SETTLED * peak)
+    grows_out = peak > GROWN * MAP_KICK
+    diverges = np.where(linear, grows_within, grows_out)
+    shape = (rows.beta_hat.size, rows.alpha_hat.size)
+    return {"diverges": diverges.reshape(shape), "broken": (~linear & ~diverges).reshape(shape)}
+
+
+def verdict_map(chunks: Sequence[MapRows], found: Sequence[Mapping[str, NDArray[np.generic]]]) -> VerdictMap:
+    """Return the map that these rows make up, from what `simulated_verdicts` found in each, with what is predicted.
+
+    NumericalError where a predicted pole leaves the range of float64.
+    """
+    first = chunks[0]
+    beta_hat = np.concatenate([rows.beta_hat for rows in chunks])
+    return VerdictMap(
+        scene=first.scene,
+        method=first.method,
+        h=first.h,
+        run=MAP_RUN,
+        alpha_hat=first.alpha_hat,
+        beta_hat=beta_hat,
+        z_abs=np.concatenate([np.abs(block) for block in pole_map(first.method, first.alpha_hat, beta_hat)]),
+        diverges=np.concatenate([verdicts["diverges"] for verdicts in found]),
+        broken=np.concatenate([verdicts["broken"] for verdicts in found]),
+    )

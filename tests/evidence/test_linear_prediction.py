@@ -1,0 +1,73 @@
+"""Linear prediction against responses whose poles are known because they were put in."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bezstab.evidence import LINEAR, SPREAD, Fit, Refusal, fit_dominant_pole
+from bezstab.evidence.linear_prediction import SAMPLES, fit_window, response_windows
+from tests.reference.sampled_responses import for_every_kick, geometric, two_poles
+
+root = st.tuples(st.floats(0.4, 0.999), st.floats(0, np.pi))
+
+
+@given(root, st.floats(0.2, 0.9), st.floats(0, 2 * np.pi))
+def test_a_recursion_gives_back_its_dominant_pole(dominant: tuple[float, float], ratio: float, phase: float) -> None:
+    modulus, angle = dominant
+    if abs(np.sin(angle)) < 1e-2 or abs(np.cos(phase)) < 1e-2:
+        return  # a double pole, or none of the dominant one
+    fit = fit_window(two_poles(60, modulus, angle, phase, ratio), order=4)
+    assert fit
+    # RESIDUAL allows order 2 when the third pole has all but gone
+    assert abs(fit.pole) == pytest.approx(modulus, abs=2e-3)
+
+
+@pytest.mark.parametrize(("modulus", "angle"), [(0.97, 0.4), (0.99, 3.0), (1.02, 0.2)])
+def test_one_response_alone_gives_its_pole_and_how_well_it_is_known(modulus: float, angle: float) -> None:
+    response = two_poles(300, modulus, angle, 1.0, 0.5)[:, np.newaxis]
+    fit = fit_dominant_pole(response, order=4)
+    assert isinstance(fit, Fit)
+    assert fit.pole == pytest.approx(modulus * np.exp(1j * angle), abs=1e-6)
+    assert fit.order >= 2  # a complex pair
+    assert 2 * fit.order + 2 <= fit.samples <= SAMPLES
+    assert max(fit.spread_abs, fit.spread_angle) < SPREAD
+
+
+def test_the_pole_does_not_depend_on_the_unit_of_the_samples() -> None:
+    response = two_poles(300, 0.97, 0.4, 1.0, 0.5)[:, np.newaxis]
+    metres = fit_dominant_pole(response, order=4)
+    powers_of_two = fit_dominant_pole(1024 * response, order=4)
+    assert isinstance(metres, Fit)
+    assert isinstance(powers_of_two, Fit)
+    assert powers_of_two.pole == metres.pole  # a power of two rounds nothing
+
+
+def test_what_cannot_be_measured_is_said() -> None:
+    k = np.arange(1001)
+    noise = np.random.default_rng(1).normal(0, 1, k.size)
+    for name, response in {
+        "gone at once": 1e-3**k + 1e-12 * noise,
+        "noise": noise,
+        "two of equal modulus": 0.99**k * (np.cos(0.5 * k) + np.cos(0.9 * k + 1)),
+    }.items():
+        responses, sizes = for_every_kick(response)
+        refusal = fit_dominant_pole(responses, order=2, sizes=sizes, limits=LINEAR)
+        assert isinstance(refusal, Refusal), name
+        assert "fit" in refusal.reason
+
+
+@pytest.mark.parametrize("response", [np.zeros(50), np.full(50, np.nan), np.ones(2), np.zeros(0)])
+def test_silence_gaps_and_too_few_samples_are_refused(response: np.ndarray[tuple[int], np.dtype[np.float64]]) -> None:
+    assert isinstance(fit_dominant_pole(response[:, np.newaxis], order=2), Refusal)
+
+
+def test_windows_end_where_the_range_is_left_and_before_what_is_forced() -> None:
+    growing = geometric(1001, 1.05) * 1e-8
+    for window in response_windows(growing, growing, (1e-3,)):
+        assert growing[window].max() < 1e-3
+    forced = 1e-9
+    decaying = geometric(1001, 0.97) + forced
+    for window in response_windows(decaying, decaying, (np.inf,)):
+        assert decaying[window].min() > 90 * forced
+        assert window.stop - window.start <= SAMPLES

@@ -1,0 +1,79 @@
+"""Simulated verdicts over the plane against the exact region, and how their agreement is counted."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from bezstab.evidence import VerdictMap, map_rows, simulated_verdicts, verdict_map
+from bezstab.mechanism import load_scene
+from bezstab.methods import lookup
+from bezstab.stability import region
+from tests.reference.verdict_counts import count_cell_by_cell
+
+H = 1e-3  # s
+
+
+def whole_map(scene: str, name: str, h: float, count: int) -> VerdictMap:
+    chunks = map_rows(load_scene(scene), lookup(name), h, count)
+    return verdict_map(chunks, [simulated_verdicts(rows) for rows in chunks])
+
+
+@pytest.mark.parametrize("name", ["B4", "AB4", "SYM"])
+def test_simulated_verdicts_agree_outside_the_band(name: str) -> None:
+    verdicts = whole_map("slider_crank", name, H, 16)
+    assert not verdicts.broken.any()
+    distance = np.abs(verdicts.z_abs - 1)[verdicts.disagrees]
+    assert distance.max(initial=0) < verdicts.band
+    assert verdicts.disagreements_beyond_band == 0
+    cell = (verdicts.alpha_hat[1] - verdicts.alpha_hat[0]) * (verdicts.beta_hat[1] - verdicts.beta_hat[0])
+    crossed = 4 * 16 * cell  # by the boundary, at most
+    assert cell * (~verdicts.diverges).sum() == pytest.approx(region(lookup(name)).area, abs=crossed)
+
+
+def test_runs_that_break_down_whatever_the_kick_give_no_verdict() -> None:
+    # a hundredth of a second is too coarse for the four-bar: the truncation error alone leaves the linear range
+    verdicts = whole_map("four_bar", "SYM", 1e-2, 6)
+    assert verdicts.broken.all()
+    assert not verdicts.disagrees.any()
+    assert verdicts.judged == 0
+    assert verdicts.agreement is None
+    assert verdicts.farthest_disagreement is None
+    assert verdicts.disagreements_beyond_band == 0
+
+
+def test_agreement_is_what_a_count_cell_by_cell_gives() -> None:
+    random = np.random.default_rng(5)
+    shape = (7, 9)
+    made_up = replace(
+        whole_map("pendulum", "SYM", H, 4),
+        alpha_hat=np.linspace(0, 2, 9),
+        beta_hat=np.linspace(0, 4, 7),
+        z_abs=random.uniform(0.98, 1.02, shape),
+        diverges=random.random(shape) < 0.5,
+        broken=random.random(shape) < 0.2,
+    )
+    counted = count_cell_by_cell(made_up)
+    assert 0 < counted.agreeing < counted.judged < made_up.broken.size
+    assert made_up.judged == counted.judged
+    assert made_up.agreement == pytest.approx(counted.agreeing / counted.judged)
+    assert made_up.farthest_disagreement == max(counted.distances_of_the_others)
+    beyond = [distance for distance in counted.distances_of_the_others if distance > made_up.band]
+    assert made_up.disagreements_beyond_band == len(beyond) > 0
+
+
+def test_a_map_where_all_agree_has_no_farthest_disagreement() -> None:
+    verdicts = whole_map("pendulum", "SYM", H, 4)
+    agreeing = replace(verdicts, diverges=verdicts.z_abs >= 1)
+    assert agreeing.agreement == 1
+    assert agreeing.farthest_disagreement is None
+
+
+@pytest.mark.parametrize("count", [3, 60])
+def test_the_rows_are_the_whole_window_once(count: int) -> None:
+    method = lookup("SYM")
+    chunks = map_rows(load_scene("pendulum"), method, H, count)
+    beta_hat = np.concatenate([rows.beta_hat for rows in chunks])
+    assert len(beta_hat) == len(chunks[0].alpha_hat) == count
+    assert (np.diff(beta_hat) > 0).all()
+    assert max(rows.beta_hat.size * rows.alpha_hat.size for rows in chunks) <= 2000

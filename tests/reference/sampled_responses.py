@@ -1,0 +1,27 @@
+"""Responses whose poles are known because they are written down as sums of powers, to be fitted."""
+
+import numpy as np
+
+from bezstab.stability import FloatArray
+
+KICKS = (1e-4, 1e-6, 1e-8, 1e-11)
+"""SI units; a linear system's responses to them differ by a factor only."""
+
+
+def two_poles(count: int, modulus: float, angle: float, phase: float, ratio: float) -> FloatArray:
+    """Return Re(z^k) with z = modulus exp(i angle), shifted in phase, plus a real pole at ratio times its modulus."""
+    k = np.arange(count)
+    response: FloatArray = modulus**k * np.cos(angle * k + phase) + (ratio * modulus) ** k
+    return response
+
+
+def geometric(count: int, pole: float) -> FloatArray:
+    """Return pole^k."""
+    response: FloatArray = pole ** np.arange(float(count))
+    return response
+
+
+def for_every_kick(response: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return a response that all kicks share, shape (steps, kicks), and its size."""
+    responses = np.multiply.outer(response, KICKS)
+    return responses, np.abs(responses)
