@@ -21,7 +21,7 @@ from bezstab.engines import ENGINES, Engine
 from bezstab.errors import InputError, NumericalError
 from bezstab.files import output_directory, write_whole
 from bezstab.methods import REGISTRY, Method, lookup
-from bezstab.paper.printed import FASTER_LEVEL, PARTS, Finding
+from bezstab.paper.printed import FASTER_LEVEL, PARTS
 from bezstab.rationals import rational
 from bezstab.units import feedback_gains, to_dimensionless
 
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
     from bezstab.evidence import Arrays
     from bezstab.mechanism import Start
+    from bezstab.paper.findings import Finding
     from bezstab.show import Format, Row
     from bezstab.show.tables import Columns
     from bezstab.stability import BestPoint, Goal
@@ -701,30 +702,28 @@ def paper(
 
     Example: bezstab paper --only table4
     """
-    from bezstab.paper import report
-    from bezstab.show import columns, tables
+    from bezstab.paper import ledger
 
     chosen = set(only or PARTS)
     output_directory(output)
     findings: list[Finding] = []
-    for parts, make in report.REPORTS.items():
-        if not chosen & set(parts):
+    for subject in ledger.SUBJECTS:
+        if not chosen & set(subject.parts):
             continue
-        made = make(lambda runs, length: _progress(runs, parts[0], length))  # noqa: B023
+        made = subject.report(_progress)
         for name in (part for part in made.tables if part in chosen):
             _write(output / f"paper_{name}.md", lambda file: file.write(made.tables[name].encode()))  # noqa: B023
         for name in (part for part in made.figures if part.rstrip("abc") in chosen):
-            _write_figure(output / f"paper_{name}", lambda _: made.figures[name], figure)  # noqa: B023
+            _write_figure(output / f"paper_{name}", lambda _: made.figures[name](), figure)  # noqa: B023
         if made.aside and form in ("text", "markdown"):
             click.echo(f"{made.aside}\n")
         findings += made.findings
     if not only:
-        _write(output / "LEDGER.md", lambda file: file.write(report.ledger(findings).encode()))
-    rows = [tables.row(finding) for finding in findings]
+        _write(output / "LEDGER.md", lambda file: file.write(ledger.ledger(findings).encode()))
     if form == "text":
-        click.echo("\n\n".join(columns.render(tables.transposed(row), tables.PROPERTIES, form) for row in rows))
+        click.echo(ledger.findings_to_read(findings))
     else:
-        _show(rows, tables.FINDINGS, form)
+        _show(ledger.finding_rows(findings), ledger.FINDINGS, form)
 
 
 def _point(alpha: Fraction | None, beta: Fraction | None) -> tuple[Fraction, Fraction] | None:

@@ -1,0 +1,72 @@
+"""The command `bezstab paper`: make what is asked for, write tables, figures and the ledger, show what came out."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from bezstab.cli.options import FigureForm, figure_option, format_option, output_option
+from bezstab.cli.output import progress, show_rows, write_figure, write_file
+from bezstab.files import output_directory
+from bezstab.paper.printed import PARTS
+
+if TYPE_CHECKING:  # so that `bezstab --help`, which lists this command, loads nothing that computes or draws
+    from bezstab.paper.findings import Finding
+    from bezstab.paper.reports import Report
+    from bezstab.show import Format
+
+
+@click.command()
+@click.option("--only", type=click.Choice(PARTS), multiple=True, help="This part alone. Repeatable.")
+@output_option
+@figure_option
+@format_option
+def paper(only: tuple[str, ...], output: Path, figure: FigureForm, form: "Format") -> None:
+    """Regenerate the paper: Tables 1 to 6, Figures 1 to 9, and a ledger of what holds.
+
+    Writes paper_table1.md, ..., paper_fig9.png and, unless --only asks for parts, LEDGER.md, and prints what agrees
+    with the paper and what does not.
+
+    Example: bezstab paper --only table4
+    """
+    from bezstab.paper.ledger import SUBJECTS, ledger
+
+    wanted = set(only or PARTS)
+    output_directory(output)
+    findings: list[Finding] = []
+    for subject in SUBJECTS:
+        if wanted.isdisjoint(subject.parts):
+            continue
+        report = subject.report(progress)
+        write_parts(report, wanted, output, figure)
+        if report.aside and form in ("text", "markdown"):
+            click.echo(f"{report.aside}\n")
+        findings += report.findings
+    if not only:
+        write_text(output / "LEDGER.md", ledger(findings))
+    show_findings(findings, form)
+
+
+def write_parts(report: "Report", wanted: set[str], output: Path, figure: FigureForm) -> None:
+    """Write the tables and figures of a report that are asked for; a figure's panels, fig1a, go with it."""
+    for name, table in report.tables.items():
+        if name in wanted:
+            write_text(output / f"paper_{name}.md", table)
+    for name, draw in report.figures.items():
+        if name.rstrip("abc") in wanted:
+            write_figure(output / f"paper_{name}", draw, figure)
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text to a file."""
+    write_file(path, lambda file: file.write(text.encode()))
+
+
+def show_findings(findings: "list[Finding]", form: "Format") -> None:
+    """Print what came out; as text one claim below the other."""
+    from bezstab.paper.ledger import FINDINGS, finding_rows, findings_to_read
+
+    if form == "text":
+        click.echo(findings_to_read(findings))
+    else:
+        show_rows(finding_rows(findings), FINDINGS, form)

@@ -1,0 +1,290 @@
+"""Table 5 with Fig. 9: four methods at three points (section 5.2.3)."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import astuple
+from fractions import Fraction
+from functools import partial
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from bezstab.methods import Verdict, lookup, steps
+from bezstab.paper.experiments import DURATION, STEP, Experiment, experiment
+from bezstab.paper.findings import Finding, finding
+from bezstab.paper.printed import COMPARED, TABLE_5, PrintedCase, PrintedPole
+from bezstab.paper.reports import Progress, Report, captioned_table, pole_cells
+from bezstab.show import Row, column, pole_column
+from bezstab.show.style import column_figure, method_line, styled
+from bezstab.stability import dominant_pole, verdict
+
+ROUNDED = 1e-13  # m: below, c_1 is rounding amplified by beta^2 h^2 / |1 - z|, and differs between machines
+HALF_A_DIGIT = 0.5001  # of the last place: what rounding may take, and a little for the float64 that is rounded
+LAST_DIGIT = 1e-3  # a pole that is this near is the printed one, rounded or cut off after three decimals
+
+PRINTED_POLES = [
+    column("α̂", "alpha_hat", "g"),
+    column("β̂", "beta_hat", "g"),
+    column("method", "method"),
+    pole_column("dominant pole"),
+    column("|z_p|", "z_abs", ".4f"),
+    column("∠z_p (deg)", "z_angle_deg", ".3f"),
+    column("as printed", "printed"),
+    column("largest |c₁| of 6 to 8 s (m)", "before", ".0e"),
+    column("of 8 to 10 s", "after", ".0e"),
+]
+
+CaseRuns = Mapping[str, Experiment]
+"""The runs of one case of Table 5, by the name of the method."""
+
+
+def report(progress: Progress) -> Report:
+    """Return Table 5 with Fig. 9, and what they claim."""
+    runs = list(progress(compared_runs(), "table5", len(TABLE_5) * len(COMPARED)))
+    return Report(
+        tables={"table5": pole_table(runs)}, figures={"fig9": partial(panels_figure, runs)}, findings=findings(runs)
+    )
+
+
+def compared_runs() -> Iterator[Experiment]:
+    """Yield three points, each with four methods."""
+    for case in TABLE_5:
+        for name in COMPARED:
+            yield experiment(
+                lookup(name),
+                h=STEP,
+                duration=DURATION,
+                alpha_hat=float(case.alpha_hat),
+                beta_hat=float(case.beta_hat),
+            )
+
+
+def by_case(runs: Sequence[Experiment]) -> list[CaseRuns]:
+    """Return the runs of each case of Table 5."""
+    return [
+        {
+            run.method.name: run
+            for run in runs
+            if run.alpha_hat == float(case.alpha_hat) and run.beta_hat == float(case.beta_hat)
+        }
+        for case in TABLE_5
+    ]
+
+
+def pole_table(runs: Sequence[Experiment]) -> str:
+    """Return Table 5 as Markdown."""
+    caption = (
+        "Table 5: dominant poles, with Re z, Im z, |z| and ∠z as the paper prints them, and what is left of c₁ in the "
+        "simulation (h = 1 ms, RK4 at 5 ms, consistent initial state; 0: below 1e-13 m, which is rounding)."
+    )
+    rows = [
+        pole_row(run, case.poles[name])
+        for case, of_case in zip(TABLE_5, by_case(runs), strict=True)
+        for name, run in of_case.items()
+    ]
+    return captioned_table(caption, rows, PRINTED_POLES)
+
+
+def pole_row(run: Experiment, printed: PrintedPole) -> Row:
+    """Return a line of Table 5: a dominant pole, the paper's beside it, and how large c_1 still is, 0 if rounding."""
+    return {
+        "alpha_hat": run.alpha_hat,
+        "beta_hat": run.beta_hat,
+        "method": run.method.name,
+        **pole_cells(run.pole),
+        "printed": " ".join(astuple(printed)),
+        "before": _zero_if_rounding(run.largest(6.0, 8.0)),
+        "after": _zero_if_rounding(run.largest(8.0, 10.0)),
+    }
+
+
+def _zero_if_rounding(largest: float) -> float:
+    return largest if largest > ROUNDED else 0.0
+
+
+def findings(runs: Sequence[Experiment]) -> list[Finding]:
+    """Return what the paper says of Table 5 and Fig. 9, held against poles and runs."""
+    inside, at_the_edge, outside = by_case(runs)
+    return [
+        poles_as_printed(runs),
+        alike_well_inside(inside),
+        one_step_methods_oscillate(inside, at_the_edge, outside),
+        multistep_methods_are_damped(inside),
+        ab4_decreases(TABLE_5[1], at_the_edge["AB4"]),
+        ab4_diverges(TABLE_5[2], outside["AB4"]),
+    ]
+
+
+def poles_as_printed(runs: Sequence[Experiment]) -> Finding:
+    """Return which of the printed poles are not ours."""
+    misprints = []
+    for case, of_case in zip(TABLE_5, by_case(runs), strict=True):
+        for name, run in of_case.items():
+            wrong = misprinted(case.poles[name], run.pole)
+            if wrong:
+                misprints.append(f"{name} at ({case.alpha_hat}, {case.beta_hat}): {', '.join(wrong)}")
+    return finding(
+        where="Table 5",
+        claim="dominant poles of four methods at three points",
+        paper="48 numbers",
+        here="; ".join(misprints) or "all as printed",
+        holds=[not misprints, len(misprints) < len(TABLE_5) * len(COMPARED)],
+    )
+
+
+def misprinted(printed: PrintedPole, pole: complex) -> list[str]:
+    """Return which of the printed numbers are not those of the pole, rounded to as many digits."""
+    pairs = [
+        (printed.real, pole.real),
+        (printed.imaginary, pole.imag),
+        (printed.modulus, abs(pole)),
+        (printed.angle, float(np.degrees(np.angle(pole)))),
+    ]
+    wrong = []
+    for text, value in pairs:
+        decimals = len(text.partition(".")[2])
+        if abs(float(text) - value) > HALF_A_DIGIT * 10.0**-decimals:
+            wrong.append(f"{text} should be {value:.{decimals}f}")
+    return wrong
+
+
+def alike_well_inside(runs: CaseRuns) -> Finding:
+    """Return the poles of B4 and AB4 in case 1, and how much more B4 leaves of c_1."""
+    b4, ab4 = runs["B4"], runs["AB4"]
+    ratio = b4.largest(8, 10) / max(ab4.largest(8, 10), ROUNDED)
+    moduli = abs(b4.pole), abs(ab4.pole)
+    return finding(
+        where="Fig. 9b",
+        claim="well inside the region B4 and AB4 behave almost identically",
+        paper="almost identical",
+        here=f"|z_p| {moduli[0]:.3f} and {moduli[1]:.3f}; "
+        f"but after 8 s |c_1| of B4 is at least {ratio:.0e} times AB4's",
+        holds=[abs(moduli[0] - moduli[1]) < 0.01, 0.1 < ratio < 10],
+    )
+
+
+def one_step_methods_oscillate(*cases: CaseRuns) -> Finding:
+    """Return all amplitudes in the first of the cases, and whether those of RK4 and Euler last in every one."""
+    first = cases[0]
+    amplitudes = ", ".join(f"{name} {_amplitude(run)}" for name, run in first.items())
+    ratio = first["SIE"].largest(8, 10) / first["RK4@5"].largest(8, 10)
+    constant = all(0.5 < _growth(case[name]) < 2 for case in cases for name in ("RK4@5", "SIE"))
+    return finding(
+        where="Fig. 9a, c, f",
+        claim="RK4 and Euler oscillate constantly about zero, Euler with a much larger amplitude",
+        paper="constant oscillation, much larger for Euler",
+        here=f"case 1 after 8 s, |c_1| in m: {amplitudes}; Euler / RK4 = {ratio:.1f}",
+        holds=[constant, first["SIE"].largest(8, 10) > 3 * first["RK4@5"].largest(8, 10)],
+    )
+
+
+def multistep_methods_are_damped(runs: CaseRuns) -> Finding:
+    """Return what is left of the oscillation of B4 and AB4 in case 1, and whether it is still falling."""
+    b4, ab4 = runs["B4"], runs["AB4"]
+    left = max(b4.largest(8, 10), ab4.largest(8, 10))
+    return finding(
+        where="Fig. 9b",
+        claim="the oscillation of B4 and AB4 is damped out",
+        paper="damped out",
+        here="far below RK4's, but to the level of the truncation error, not to zero: "
+        f"{_amplitude(b4)} and {_amplitude(ab4)} m",
+        holds=[left < 0.01 * runs["RK4@5"].largest(8, 10), _growth(b4) < 0.5 and _growth(ab4) < 0.5],
+    )
+
+
+def ab4_decreases(case: PrintedCase, run: Experiment) -> Finding:
+    """Return whether AB4 converges at the edge of its region: as proven, and as run."""
+    proven, growth = _verdict_of_ab4(case), _growth(run)
+    return finding(
+        where="Fig. 9d",
+        claim="case 2: AB4's oscillation decreases gradually",
+        paper="|z_p| = 0.999, converges",
+        here=f"{proven}; |c_1| of 8 to 10 s {'below' if growth < 1 else 'above'} that of 6 to 8 s",
+        holds=[proven == "converges", growth < 1],
+    )
+
+
+def ab4_diverges(case: PrintedCase, run: Experiment) -> Finding:
+    """Return whether AB4 diverges just outside its region: as proven, and as run."""
+    proven, growth = _verdict_of_ab4(case), _growth(run)
+    return finding(
+        where="Fig. 9e",
+        claim="case 3: AB4 diverges gradually",
+        paper="|z_p| = 1.001, diverges",
+        here=f"{proven}; |c_1| of 8 to 10 s over that of 6 to 8 s: {growth:.2g}",
+        holds=[proven == "diverges", growth > 1],
+    )
+
+
+def _verdict_of_ab4(case: PrintedCase) -> Verdict:
+    return verdict(lookup("AB4"), Fraction(case.alpha_hat), Fraction(case.beta_hat))
+
+
+def _growth(run: Experiment) -> float:
+    """Return the largest |c_1| of the last two seconds over that of the two before."""
+    return run.largest(8, 10) / run.largest(6, 8)
+
+
+def _amplitude(run: Experiment) -> str:
+    """Return the largest |c_1| (m) of the last two seconds."""
+    largest = run.largest(8, 10)
+    return f"{largest:.0e}" if largest > ROUNDED else f"below {ROUNDED:g}"
+
+
+def what_semi_implicit_euler_is(table_5: Sequence[PrintedCase] = TABLE_5) -> Finding:
+    """Return which method's poles are those that Table 5 prints for "Euler semi-implicit".
+
+    The claim holds as it stands if they are those of symplectic Euler (SYM), which everybody else calls so; with a
+    correction if they are those of an explicit Euler step, corrected once (SIE).
+    """
+    of_sie, of_sym = matching_poles("SIE", table_5), matching_poles("SYM", table_5)
+    is_symplectic = of_sym == len(table_5)
+    is_corrected_once = of_sie == len(table_5)
+    return finding(
+        where="Table 5",
+        claim="a method called “Euler semi-implicit”",
+        paper="semi-implicit Euler",
+        here=f"1 + μ + μ² (Euler, corrected once): {of_sie} of 3 poles; symplectic Euler: {of_sym} of 3",
+        holds=[is_symplectic, is_symplectic or is_corrected_once],
+    )
+
+
+def matching_poles(name: str, table_5: Sequence[PrintedCase]) -> int:
+    """Return how many of the poles printed for "Euler semi-implicit" are those of a method."""
+    matches = 0
+    for case in table_5:
+        printed = case.poles["SIE"]
+        pole = complex(dominant_pole(lookup(name), float(case.alpha_hat), float(case.beta_hat)))
+        same_modulus = abs(abs(pole) - float(printed.modulus)) < LAST_DIGIT
+        same_real_part = abs(pole.real - float(printed.real)) < LAST_DIGIT
+        matches += same_modulus and same_real_part
+    return matches
+
+
+def panels_figure(runs: Sequence[Experiment]) -> Figure:
+    """Return c_1 against time for the cases of Table 5, one-step and multistep methods apart (paper Fig. 9)."""
+    with styled():
+        figure = column_figure(1.5)
+        for row, of_case in enumerate(by_case(runs)):
+            for place in (0, 1):
+                number = 2 * row + place
+                axes = figure.add_subplot(len(TABLE_5), 2, number + 1)
+                # the paper's panels a to f: on the right the multistep methods, in the last row on the left
+                multistep = (place == 1) != (row == 2)
+                shown = [run for run in of_case.values() if (steps(run.method) > 1) == multistep]
+                _draw_histories(axes, "abcdef"[number], shown)
+        for axes in figure.axes[-2:]:
+            axes.set_xlabel("t (s)")
+        figure.supylabel("$c_1$ (m)", fontsize=8)
+        lines = [line for axes in figure.axes[:2] for line in axes.lines]
+        figure.legend(handles=lines, loc="outside lower center", ncols=4)
+        return figure
+
+
+def _draw_histories(axes: Axes, letter: str, runs: Sequence[Experiment]) -> None:
+    """Draw c_1 against time of several runs at one point."""
+    for run in runs:
+        axes.plot(run.t, run.c, label=run.method.name, **method_line(run.method) | {"linewidth": 0.6})
+    point = rf"$\hat\alpha = {runs[0].alpha_hat:g}$, $\hat\beta = {runs[0].beta_hat:g}$"
+    axes.set_title(f"{letter}: {point}", fontsize=7)
+    axes.ticklabel_format(axis="y", scilimits=(-2, 3))

@@ -1,0 +1,63 @@
+"""All subjects of the paper in order, and the ledger: a row for every claim that can be tested."""
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from typing import get_args
+
+from bezstab.paper import comparison, cost, drift, influence, methods, regions, slider_crank
+from bezstab.paper.findings import Agreement, Finding
+from bezstab.paper.reports import Progress, Report
+from bezstab.show import Row, column, render
+
+
+@dataclass(frozen=True)
+class Subject:
+    """Tables and figures that come together, and what makes them."""
+
+    parts: tuple[str, ...]
+    report: Callable[[Progress], Report]
+
+
+SUBJECTS = (
+    Subject(("table1", "table2"), methods.report),
+    Subject(("fig1", "fig2", "fig3"), regions.report),
+    Subject(("table3", "fig4"), slider_crank.report),
+    Subject(("fig5",), drift.collapse_report),
+    Subject(("fig6",), drift.growth_report),
+    Subject(("table4", "fig7", "fig8"), influence.report),
+    Subject(("table5", "fig9"), comparison.report),
+    Subject(("table6",), cost.report),
+)
+"""In the order of the ledger."""
+
+FINDINGS = [
+    column("where", "where"),
+    column("claim", "claim"),
+    column("paper", "paper"),
+    column("here", "here"),
+    column("agreement", "agreement"),
+]
+PROPERTIES = [column("property", "property"), column("value", "value")]
+
+
+def finding_rows(findings: Sequence[Finding]) -> list[Row]:
+    """Return the findings as rows."""
+    return [asdict(finding) for finding in findings]
+
+
+def ledger(findings: Sequence[Finding]) -> str:
+    """Return every claim with what came out, as Markdown."""
+    counts = Counter(finding.agreement for finding in findings)
+    total = ", ".join(f"{counts[agreement]} {agreement}" for agreement in get_args(Agreement))
+    rows = render(finding_rows(findings), FINDINGS, "markdown")
+    return f"# What the paper claims, and what came out\n\nWritten by `bezstab paper`: {total}.\n\n{rows}\n"
+
+
+def findings_to_read(findings: Sequence[Finding]) -> str:
+    """Return every claim as text, one below the other: a table of them would be too wide for a terminal."""
+    blocks = []
+    for row in finding_rows(findings):
+        properties: list[Row] = [{"property": name, "value": value} for name, value in row.items()]
+        blocks.append(render(properties, PROPERTIES, "text"))
+    return "\n\n".join(blocks)

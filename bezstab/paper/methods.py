@@ -1,0 +1,174 @@
+"""Tables 1 and 2, and what the equations of sections 3 and 4 come to: the Bézier methods themselves."""
+
+from fractions import Fraction
+from itertools import product
+
+from bezstab.methods import (
+    LinearMultistep,
+    accuracy,
+    characteristic_text,
+    closed_loop_at,
+    lookup,
+    mapping_text,
+    recursion_text,
+)
+from bezstab.paper.findings import Finding, finding
+from bezstab.paper.reports import Progress, Report, captioned_table
+from bezstab.show import column
+from bezstab.stability import verdict
+
+TABULATED = ("B2", "B3", "B4")
+MAPPINGS = [column("method", "method"), column("step", "recursion"), column("s→z mapping", "mapping")]
+CHARACTERISTIC = [
+    column("method", "method"),
+    column("characteristic polynomial", "characteristic_polynomial"),
+]
+
+SAMPLES = [Fraction("-3/2"), Fraction(0), Fraction("1/7"), Fraction(1), Fraction("5/3")]
+"""Values of each parameter at which polynomials are compared: more than the degree in it of any of them."""
+
+
+def report(_progress: Progress) -> Report:
+    """Return Tables 1 and 2, and what the equations come to."""
+    return Report(tables={"table1": mapping_table(), "table2": polynomial_table()}, findings=findings())
+
+
+def mapping_table() -> str:
+    """Return Table 1: each method's step and s→z mapping, as Markdown."""
+    rows = [
+        {"method": name, "recursion": recursion_text(lookup(name), False), "mapping": mapping_text(lookup(name), False)}
+        for name in TABULATED
+    ]
+    return captioned_table("Table 1: the Bézier methods and their s→z mappings.", rows, MAPPINGS)
+
+
+def polynomial_table() -> str:
+    """Return Table 2: each method's characteristic polynomial, as Markdown."""
+    rows = [
+        {"method": name, "characteristic_polynomial": characteristic_text(lookup(name), False)} for name in TABULATED
+    ]
+    return captioned_table("Table 2: their characteristic polynomials.", rows, CHARACTERISTIC)
+
+
+def findings() -> list[Finding]:
+    """Return what the equations of sections 3 and 4 come to, and what Table 1 and section 5.1 say of orders."""
+    return [
+        weights_of_b2(),
+        mapping_of_b2(),
+        polynomial_of_b2(),
+        no_feedback_is_unstable(),
+        positive_parameters_are_not_enough(),
+        second_order_is_one_method(),
+        orders_of_accuracy(),
+    ]
+
+
+def weights_of_b2() -> Finding:
+    """Return whether Eq. 12 has the weights that follow from the Bernstein curve."""
+    weights = _multistep("B2").sigma[1:]
+    return finding(
+        where="Eq. 12",
+        claim="B2: y' = y + h/2 (3 f - f')",
+        paper="3/2, -1/2",
+        here=", ".join(map(str, weights)),
+        holds=[weights == (Fraction(3, 2), Fraction(-1, 2))],
+    )
+
+
+def mapping_of_b2() -> Finding:
+    """Return whether Eq. 14 has the ρ and σ of B2."""
+    b2 = _multistep("B2")
+    rho, sigma = (f"[{', '.join(map(str, coefficients))}]" for coefficients in (b2.rho, b2.sigma))
+    rho_agrees = b2.rho == (Fraction(1), Fraction(-1), Fraction(0))
+    sigma_agrees = b2.sigma[0] == 0 and b2.sigma[1] == -3 * b2.sigma[2]
+    return finding(
+        where="Eq. 14",
+        claim="B2: s = (2/h) z (z - 1) / (3 z - 1)",
+        paper="ρ = z² - z, σ = (3 z - 1)/2",
+        here=f"ρ = {rho}, σ = {sigma}",
+        holds=[rho_agrees and sigma_agrees],
+    )
+
+
+def polynomial_of_b2() -> Finding:
+    """Return at how many rational points the printed characteristic polynomial is ours, up to a factor."""
+    points = list(product(SAMPLES, SAMPLES))
+    agree = []
+    for alpha_hat, beta_hat in points:
+        ours = closed_loop_at(lookup("B2"), alpha_hat, beta_hat)
+        printed = printed_polynomial_of_b2(alpha_hat, beta_hat)
+        agree.append([c / ours[0] for c in ours] == [c / printed[0] for c in printed])
+    return finding(
+        where="Eqs 15, 17",
+        claim="characteristic polynomial of B2",
+        paper="4 z⁴ + (-8 + 6 α̂) z³ + …",
+        here=f"the same at {sum(agree)} of {len(agree)} rational points",
+        holds=[all(agree)],
+    )
+
+
+def printed_polynomial_of_b2(alpha_hat: Fraction, beta_hat: Fraction) -> list[Fraction]:
+    """Return the coefficients of Eq. 17, highest power of z first."""
+    return [
+        Fraction(4),
+        -8 + 6 * alpha_hat,
+        4 - 8 * alpha_hat + 9 * beta_hat,
+        2 * alpha_hat - 6 * beta_hat,
+        beta_hat,
+    ]
+
+
+def no_feedback_is_unstable() -> Finding:
+    """Return what every method of the paper does with c̈ = 0."""
+    names = ("B2", "B3", "B4", "AB2", "AB3", "AB4")
+    verdicts = {verdict(lookup(name), Fraction(0), Fraction(0)) for name in names}
+    return finding(
+        where="Section 3",
+        claim="c̈ = 0 is unstable",
+        paper="does not converge",
+        here=f"at α̂ = β̂ = 0: {', '.join(sorted(verdicts))}",
+        holds=[verdicts == {"diverges"}],
+    )
+
+
+def positive_parameters_are_not_enough() -> Finding:
+    """Return whether some method diverges at a point with both parameters positive."""
+    verdicts = {name: verdict(lookup(name), Fraction(2), Fraction(2)) for name in ("B2", "B3", "B4", "AB4")}
+    return finding(
+        where="Section 4",
+        claim="positive α and β do not guarantee convergence",
+        paper="integrator decides",
+        here="at (2, 2): " + ", ".join(f"{name} {found}" for name, found in verdicts.items()),
+        holds=["diverges" in verdicts.values()],
+    )
+
+
+def second_order_is_one_method() -> Finding:
+    """Return whether B2 and AB2 have the same coefficients."""
+    same = _multistep("B2") == _multistep("AB2")
+    return finding(
+        where="Section 5.1",
+        claim="second order of both families is the same method",
+        paper="same",
+        here="same weights" if same else "differ",
+        holds=[same],
+    )
+
+
+def orders_of_accuracy() -> Finding:
+    """Return whether an n-th order Bézier method is of order n; the name is the paper's, the order is Taylor's."""
+    orders = {name: accuracy(lookup(name))[0] for name in ("B2", "B3", "B4", "AB3", "AB4")}
+    bezier_orders = ", ".join(f"{name}: {orders[name]}" for name in TABULATED)
+    return finding(
+        where="Table 1",
+        claim="“n-th order Bézier” is of order n",
+        paper="2, 3, 4",
+        here=f"{bezier_orders}; AB3 and AB4: {orders['AB3']} and {orders['AB4']}",
+        holds=[[orders[name] for name in TABULATED] == [2, 3, 4], orders["B2"] == 2],
+    )
+
+
+def _multistep(name: str) -> LinearMultistep:
+    scheme = lookup(name).scheme
+    assert isinstance(scheme, LinearMultistep)
+    return scheme

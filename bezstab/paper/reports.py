@@ -1,0 +1,45 @@
+"""What a subject of the paper hands over: its tables, what draws its figures, its findings."""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from bezstab.paper.experiments import Experiment
+from bezstab.paper.findings import Finding
+from bezstab.show import Column, Row, render
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+Progress = Callable[[Iterator[Experiment], str, int], Iterable[Experiment]]
+"""Passes runs on as they are made, and may show how far it is: it is told their label and their number."""
+
+
+@dataclass(frozen=True)
+class Report:
+    """Tables as Markdown and what draws the figures, by the name of their part; and what came of the claims.
+
+    `aside` is for the eye only: it holds measured times, which no two runs share and no file keeps.
+    """
+
+    tables: Mapping[str, str] = field(default_factory=dict)
+    figures: Mapping[str, Callable[[], "Figure"]] = field(default_factory=dict)
+    findings: Sequence[Finding] = ()
+    aside: str = ""
+
+
+def captioned_table(caption: str, rows: Sequence[Row], columns: Sequence[Column]) -> str:
+    """Return a table as Markdown below its caption."""
+    return f"{caption}\n\n{render(rows, columns, 'markdown')}\n"
+
+
+def pole_cells(pole: complex) -> Row:
+    """Return the cells that show a pole: its real and imaginary part, its modulus, its angle in degrees."""
+    return {
+        "z_real": pole.real,
+        "z_imag": pole.imag,
+        "z_abs": abs(pole),
+        "z_angle_deg": float(np.degrees(np.angle(pole))),
+    }

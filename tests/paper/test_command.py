@@ -1,0 +1,42 @@
+import json
+from pathlib import Path
+
+from click.testing import CliRunner
+
+from bezstab.cli import main
+
+FIGURES = Path(__file__).parent.parent.parent / "figures"
+
+
+def test_the_committed_tables_and_ledger_are_those_of_a_fresh_run(tmp_path: Path) -> None:
+    assert CliRunner().invoke(main, ["paper", "--figure", "none", "-o", str(tmp_path)]).exit_code == 0
+    fresh = {path.name: path.read_text(encoding="utf-8") for path in tmp_path.iterdir()}
+    assert set(fresh) == {"LEDGER.md", *(f"paper_table{number}.md" for number in range(1, 7))}
+    for name, text in fresh.items():
+        assert (FIGURES / name).read_text(encoding="utf-8") == text, name
+    rows = [line for line in fresh["LEDGER.md"].splitlines() if line.startswith("| ")][2:]
+    assert len(rows) > 40
+
+
+def test_one_part_alone_is_written_without_a_ledger(tmp_path: Path) -> None:
+    arguments = ["paper", "--only", "table6", "--format", "json", "-o", str(tmp_path)]
+    result = CliRunner().invoke(main, arguments)
+    assert [path.name for path in tmp_path.iterdir()] == ["paper_table6.md"]
+    (row,) = json.loads(result.stdout)
+    assert row["where"] == "Table 6"
+
+
+def test_a_figure_is_written_with_its_panels(tmp_path: Path) -> None:
+    assert CliRunner().invoke(main, ["paper", "--only", "fig1", "-o", str(tmp_path)]).exit_code == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == [f"paper_fig1{panel}.png" for panel in "abc"]
+
+
+def test_as_text_each_claim_stands_below_the_other(tmp_path: Path) -> None:
+    result = CliRunner().invoke(main, ["paper", "--only", "table1", "-o", str(tmp_path)])
+    assert result.stdout.count("property") == result.stdout.count("agreement") == 7
+
+
+def test_measured_times_are_printed_and_not_kept(tmp_path: Path) -> None:
+    result = CliRunner().invoke(main, ["paper", "--only", "table6", "-o", str(tmp_path)])
+    assert "processor time" in result.stdout
+    assert "processor time" not in (tmp_path / "paper_table6.md").read_text(encoding="utf-8")

@@ -1,0 +1,99 @@
+from dataclasses import replace
+from functools import cache
+
+from bezstab.methods import lookup
+from bezstab.paper.comparison import (
+    ROUNDED,
+    compared_runs,
+    findings,
+    matching_poles,
+    misprinted,
+    panels_figure,
+    pole_row,
+    what_semi_implicit_euler_is,
+)
+from bezstab.paper.experiments import Experiment, experiment
+from bezstab.paper.findings import Finding
+from bezstab.paper.printed import COMPARED, TABLE_5, PrintedCase, PrintedPole
+from bezstab.stability import dominant_pole
+
+
+@cache
+def compared() -> tuple[Experiment, ...]:
+    return tuple(compared_runs())
+
+
+def found(words: str) -> Finding:
+    (finding,) = (finding for finding in findings(compared()) if words in finding.claim)
+    return finding
+
+
+def table_5_with(name: str) -> list[PrintedCase]:
+    """Return Table 5 as it would be if "Euler semi-implicit" were that method, cut off after three decimals."""
+    cases = []
+    for case in TABLE_5:
+        pole = complex(dominant_pole(lookup(name), float(case.alpha_hat), float(case.beta_hat)))
+        printed = PrintedPole(f"{pole.real:.3f}", f"{pole.imag:.3f}", f"{abs(pole):.3f}", "0")
+        cases.append(replace(case, poles={**case.poles, "SIE": printed}))
+    return cases
+
+
+def test_the_poles_of_table_5_are_as_printed_but_for_one() -> None:
+    finding = found("dominant poles")
+    assert finding.agreement == "confirmed with a correction"
+    assert finding.here == "B4 at (0.1, 0.1): 0.898 should be 0.899, 0.299 should be 0.300"
+
+
+def test_a_misprint_is_noticed_and_a_half_digit_is_not() -> None:
+    assert misprinted(PrintedPole("0.600", "0.800", "1.0", "53.13"), 0.6 + 0.8j) == []
+    assert misprinted(PrintedPole("0.600", "0.810", "1.0", "53.13"), 0.6 + 0.8j) == ["0.810 should be 0.800"]
+    assert misprinted(PrintedPole("0.12", "0.00", "0.1", "0.0"), 0.1249 + 0j) == []
+
+
+def test_euler_semi_implicit_is_an_euler_step_corrected_once() -> None:
+    finding = what_semi_implicit_euler_is()
+    assert finding.agreement == "confirmed with a correction"
+    assert "3 of 3 poles; symplectic Euler: 0 of 3" in finding.here
+
+
+def test_had_it_been_symplectic_euler_the_name_would_be_confirmed() -> None:
+    symplectic = table_5_with("SYM")
+    assert (matching_poles("SYM", symplectic), matching_poles("SIE", symplectic)) == (3, 0)
+    assert what_semi_implicit_euler_is(symplectic).agreement == "confirmed"
+
+
+def test_had_it_been_neither_or_not_everywhere_it_would_not() -> None:
+    assert what_semi_implicit_euler_is(table_5_with("AB2")).agreement == "not confirmed"
+    once_symplectic = [table_5_with("SYM")[0], *table_5_with("AB2")[1:]]
+    assert matching_poles("SYM", once_symplectic) == 1
+    assert what_semi_implicit_euler_is(once_symplectic).agreement == "not confirmed"
+
+
+def test_what_fig_9_shows() -> None:
+    for words in ("case 2", "case 3"):
+        assert found(words).agreement == "confirmed"
+    for words in ("oscillate constantly", "damped out", "almost identically"):
+        assert found(words).agreement == "confirmed with a correction"
+    last = {(run.alpha_hat, run.beta_hat, run.method.name): run.largest(8, 10) for run in compared()}
+    assert len(last) == 3 * len(COMPARED)
+    # AB4 alone has left the level of its truncation error, by the 1e4 that 1.0014^10000 = 1e6 allows
+    assert last[0.5, 0.101, "AB4"] > 1e4 * last[0.1, 0.1, "B4"]
+    assert max(value for key, value in last.items() if key != (0.5, 0.101, "AB4")) < 1e-6
+
+
+def test_fig_9_keeps_the_papers_panels() -> None:
+    runs = [
+        experiment(lookup(name), h=1e-3, duration=0.02, alpha_hat=alpha_hat, beta_hat=beta_hat)
+        for alpha_hat, beta_hat in ((0.1, 0.1), (0.5, 0.1), (0.5, 0.101))
+        for name in COMPARED
+    ]
+    figure = panels_figure(runs)
+    shown = ["".join(sorted(str(line.get_label()) for line in axes.lines)) for axes in figure.axes]
+    assert shown == ["RK4@5SIE", "AB4B4", "RK4@5SIE", "AB4B4", "AB4B4", "RK4@5SIE"]
+    assert [axes.get_title()[0] for axes in figure.axes] == list("abcdef")
+
+
+def test_rounding_is_zero_in_the_table() -> None:
+    run = next(run for run in compared() if run.method.name == "AB4" and run.alpha_hat == 0.1)
+    assert 0 < run.largest(8, 10) < ROUNDED
+    assert pole_row(run, TABLE_5[0].poles["AB4"])["after"] == 0

@@ -1,0 +1,30 @@
+from typing import get_args
+
+from bezstab.paper import lost, methods, regions, slider_crank
+from bezstab.paper.findings import Agreement, finding
+from bezstab.paper.ledger import SUBJECTS, findings_to_read, ledger
+from bezstab.paper.printed import PARTS
+
+
+def test_every_part_is_made_by_one_subject() -> None:
+    assert sorted(part for subject in SUBJECTS for part in subject.parts) == sorted(PARTS)
+
+
+def test_every_row_says_what_the_paper_says_and_what_came_out() -> None:
+    found = [*methods.findings(), *regions.findings(), *slider_crank.findings(), *lost.findings()]
+    assert all(f.where and f.claim and f.paper and f.here and f.agreement in get_args(Agreement) for f in found)
+    assert len({(f.where, f.claim) for f in found}) == len(found) > 25
+    assert {f.agreement for f in lost.findings()} == {"cannot be tested"}
+
+
+def test_the_ledger_counts_and_escapes_and_the_text_has_a_line_for_each_property() -> None:
+    found = [finding(where="Fig. 1", claim="|z_p| < 1", paper="yes", here="no", holds=[False])]
+    assert "0 confirmed, 0 confirmed with a correction, 1 not confirmed, 0 cannot be tested" in ledger(found)
+    assert r"\|z_p\| < 1" in ledger(found)
+    assert [line.split()[0] for line in findings_to_read(found).splitlines()[1:]] == [
+        "where",
+        "claim",
+        "paper",
+        "here",
+        "agreement",
+    ]
