@@ -30,6 +30,7 @@ from bezstab.mechanism.scenes import (
     Revolute,
     Scene,
 )
+from bezstab.mechanism.simulation import Simulation, simulated
 from bezstab.mechanism.start import constraint_errors, initial_state, perturbed_state
 
 __all__ = [
@@ -47,6 +48,7 @@ __all__ = [
     "PointOnLine",
     "Revolute",
     "Scene",
+    "Simulation",
     "Start",
     "T",
     "Trajectory",
@@ -65,5 +67,6 @@ __all__ = [
     "resume",
     "shipped_scenes",
     "simulate",
+    "simulated",
     "stepper_code",
 ]

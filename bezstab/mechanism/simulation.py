@@ -1,0 +1,95 @@
+"""A run together with what its constraints did: what `simulate` on the command line and in Python shows."""
+
+from dataclasses import dataclass
+
+from bezstab.mechanism.compiled import Mechanism
+from bezstab.mechanism.observation import FloatArray, Observation, observe
+from bezstab.mechanism.runner import Start, Trajectory, simulate
+from bezstab.mechanism.start import perturbed_state
+from bezstab.methods import Method
+from bezstab.units import feedback_gains
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Simulation:
+    """A run at one point of the plane, with steps of h (s), and the constraint errors along it; SI units.
+
+    t has shape (times,), q and v (times, coordinates), c, cdot and multipliers (times, constraints), energy (times,).
+    `failure` says when and why the run ended early; None if it did not.
+    """
+
+    trajectory: Trajectory
+    observation: Observation
+    h: float
+    alpha_hat: float
+    beta_hat: float
+
+    @property
+    def t(self) -> FloatArray:
+        """The times (s)."""
+        return self.trajectory.t
+
+    @property
+    def q(self) -> FloatArray:
+        """The coordinates (m, rad), in the order of `scene.coordinates`."""
+        return self.trajectory.q
+
+    @property
+    def v(self) -> FloatArray:
+        """Their derivatives (m/s, rad/s)."""
+        return self.trajectory.v
+
+    @property
+    def c(self) -> FloatArray:
+        """The constraint errors (m; rad for a driven angle)."""
+        return self.observation.c
+
+    @property
+    def cdot(self) -> FloatArray:
+        """Their derivatives."""
+        return self.observation.cdot
+
+    @property
+    def multipliers(self) -> FloatArray:
+        """The Lagrange multipliers (N; N m for a driven angle)."""
+        return self.observation.multipliers
+
+    @property
+    def energy(self) -> FloatArray:
+        """Kinetic and potential energy (J)."""
+        return self.observation.energy
+
+    @property
+    def failure(self) -> str | None:
+        """When and why the run ended early."""
+        return self.trajectory.failure
+
+    def __repr__(self) -> str:
+        point = f"alpha_hat {self.alpha_hat:g}, beta_hat {self.beta_hat:g}"
+        run = f"{self.trajectory.mechanism.scene.name}, {self.trajectory.method.name}"
+        ended = ", failed" if self.failure else ""
+        return f"Simulation({run}, {point}, {len(self.t)} times, to t = {self.t[-1]:.6g} s{ended})"
+
+
+def simulated(
+    mechanism: Mechanism,
+    method: Method,
+    *,
+    h: float,
+    duration: float,
+    alpha_hat: float,
+    beta_hat: float,
+    perturb: float = 0.0,
+    start: Start = "rk4",
+) -> Simulation:
+    """Return a run over `duration` (s) from the scene's initial state, its first constraint off by `perturb` (m).
+
+    h (s) is the user's step, a method's own is its step multiple of that. InputError for a scene that cannot start,
+    NumericalError where it cannot be perturbed; what goes wrong on the way is the run's `failure`. Paper Eqs 6 to 9.
+    """
+    gains = feedback_gains(alpha_hat, beta_hat, h)
+    state = perturbed_state(mechanism, perturb)
+    trajectory = simulate(mechanism, method, h, duration, gains, state, start)
+    two_alpha, beta_squared = gains
+    observation = observe(mechanism, trajectory.t, trajectory.q, trajectory.v, two_alpha, beta_squared)
+    return Simulation(trajectory=trajectory, observation=observation, h=h, alpha_hat=alpha_hat, beta_hat=beta_hat)
