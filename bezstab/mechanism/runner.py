@@ -115,9 +115,8 @@ def march(
     states = [state]
     slopes: list[State] = []
     for starter, step_count in _starters(method, start):
-        for new_state, slope, pivot in islice(
-            resume(mechanism, starter, h, gains, states, slopes, library), step_count
-        ):
+        run = resume(mechanism, starter, h, gains, states, slopes, library)
+        for new_state, slope, pivot in islice(run, step_count):
             states.append(new_state)
             slopes.append(slope)
             yield new_state, slope, pivot
