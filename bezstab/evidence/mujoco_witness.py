@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bezstab.errors import InputError
 from bezstab.mechanism import GROUND, Body, Mechanism, Revolute, Scene, constraint_errors, perturbed_state
@@ -17,15 +18,35 @@ from bezstab.methods import Method, lookup
 from bezstab.stability import FloatArray, first_where, region, spectral_radius
 from bezstab.units import feedback_gains
 
+BoolArray = NDArray[np.bool_]
 Outcome = Literal["converges", "diverges", "neither"]
 
 INTEGRATORS = {"Euler": "SYM", "RK4": "RK4"}
-RAYS = (15.0, 30.0, 45.0, 60.0, 75.0)  # degrees, in the plane scaled by the region's extent
-TIMES = (0.9, 1.1)  # the boundary: nearer, growth takes thousands of steps
-IMPEDANCE = 0.9999  # the most that MuJoCo takes: the rest of the unconstrained acceleration leaks into the constraint
-RUN = 3000  # steps
-KICK = 1e-3  # m: |z_p| <= 0.9 leaves nothing of it; what remains is truncation error and the leak
-LEFT = 1.0  # m: |z_p| >= 1.1 takes the kick there within a hundred steps
+"""MuJoCo's integrators, and the method that each of them is."""
+
+RAYS = (15.0, 30.0, 45.0, 60.0, 75.0)
+"""Degrees, in the plane scaled by the region's extent."""
+
+TIMES = (0.9, 1.1)
+"""The boundary: nearer, growth takes thousands of steps."""
+
+IMPEDANCE = 0.9999
+"""The most that MuJoCo takes: the rest of the unconstrained acceleration leaks into the constraint."""
+
+RUN = 3000
+"""Steps."""
+
+KICK = 1e-3
+"""m: |z_p| <= 0.9 leaves nothing of it; what remains is truncation error and the leak."""
+
+GROWN_TO = 1.0
+"""m: |z_p| >= 1.1 takes the kick there within a hundred steps."""
+
+LAST_SHARE = 10
+"""The last tenth of a run is looked at for what remains."""
+
+ALONG_A_RAY = np.linspace(0, 2, 400)[1:]
+"""In units of the region's extent: where the boundary is looked for first."""
 
 
 @dataclass(frozen=True)
@@ -58,18 +79,45 @@ def mujoco_witnesses(mechanism: Mechanism, h: float) -> Iterator[Witnessed]:
         for boundary in _boundary_points(method):
             for times in TIMES:
                 alpha_hat, beta_hat = (times * boundary).tolist()
-                model = mujoco.MjModel.from_xml_string(model_xml(mechanism.scene, integrator, h, alpha_hat, beta_hat))
-                c = _run(mujoco, model, mechanism)
-                remaining = float(c[-RUN // 10 :].max())
-                seen: Outcome = "diverges" if len(c) < RUN else "converges" if remaining < KICK else "neither"
-                z_abs = float(spectral_radius(method, alpha_hat, beta_hat))
-                predicted: Outcome = "converges" if z_abs < 1 else "diverges"
-                outcome = (z_abs, predicted, seen, remaining, len(c))
-                yield Witnessed(integrator, method, alpha_hat, beta_hat, times, *outcome)
+                yield _witnessed(mujoco, mechanism, integrator, method, h, (alpha_hat, beta_hat), times)
+
+
+def _witnessed(
+    mujoco: types.ModuleType,
+    mechanism: Mechanism,
+    integrator: str,
+    method: Method,
+    h: float,
+    point: tuple[float, float],
+    times: float,
+) -> Witnessed:
+    """Return what one of MuJoCo's integrators does at (alpha_hat, beta_hat), so many times the boundary; h in s."""
+    model = mujoco.MjModel.from_xml_string(model_xml(mechanism.scene, integrator, h, *point))
+    c = _run(mujoco, model, mechanism)
+    remaining = float(c[-RUN // LAST_SHARE :].max())
+    if len(c) < RUN:
+        measured: Outcome = "diverges"
+    elif remaining < KICK:
+        measured = "converges"
+    else:
+        measured = "neither"
+    z_abs = float(spectral_radius(method, *point))
+    return Witnessed(
+        integrator=integrator,
+        method=method,
+        alpha_hat=point[0],
+        beta_hat=point[1],
+        times_boundary=times,
+        predicted_abs=z_abs,
+        predicted_verdict="converges" if z_abs < 1 else "diverges",
+        measured_verdict=measured,
+        remaining=remaining,
+        steps=len(c),
+    )
 
 
 def witness_count() -> int:
-    """Return how many answers there are."""
+    """Return how many answers `mujoco_witnesses` yields."""
     return len(INTEGRATORS) * len(RAYS) * len(TIMES)
 
 
@@ -104,12 +152,16 @@ def model_xml(scene: Scene, integrator: str, h: float, alpha_hat: float, beta_ha
 def _body_xml(body: Body, sites: str) -> str:
     axes = {"x": 'type="slide" axis="1 0 0"', "y": 'type="slide" axis="0 1 0"', "theta": 'type="hinge" axis="0 0 1"'}
     x, y, theta = (body.locked.get(axis, 0.0) for axis in axes)
-    u, w = body.center
+    center_x, center_y = body.center
     mass = body.mass or 1.0  # of a body about its centre on a fixed pivot, where it does not matter
-    inertia = body.inertia - body.mass * (u * u + w * w) if "theta" in body.free else 1.0  # about the centre of mass
+    if "theta" in body.free:
+        offset_squared = center_x * center_x + center_y * center_y
+        inertia = body.inertia - body.mass * offset_squared  # about the centre of mass (parallel axes)
+    else:
+        inertia = 1.0  # of a body that does not turn: it does not matter
     joints = "".join(f"<joint {axes[axis]}/>" for axis in body.free)
     return f"""<body pos="{x!r} {y!r} 0" euler="0 0 {theta!r}">
-        <inertial pos="{u!r} {w!r} 0" mass="{mass!r}" diaginertia="{inertia!r} {inertia!r} {inertia!r}"/>
+        <inertial pos="{center_x!r} {center_y!r} 0" mass="{mass!r}" diaginertia="{inertia!r} {inertia!r} {inertia!r}"/>
         {joints}{sites}
     </body>"""
 
@@ -124,24 +176,33 @@ def _mujoco() -> types.ModuleType:
 
 
 def _boundary_points(method: Method) -> Iterator[FloatArray]:
-    """Yield the first point with |z_p| = 1 on each ray from the origin."""
+    """Yield the first point with |z_p| = 1 on each ray from the origin, as (alpha_hat, beta_hat)."""
     extent = region(method).extent
     assert extent
+    (_, alpha_hat_max), (_, beta_hat_max) = extent
     for angle in np.radians(RAYS):
-        ray = np.array([np.cos(angle), np.sin(angle)]) * np.array(extent)[:, 1]
-        met = first_where(lambda s: spectral_radius(method, *np.outer(ray, s)) >= 1, np.linspace(0, 2, 400)[1:])  # noqa: B023
-        assert met
-        yield met[0] * ray
+        yield _boundary_on_ray(method, np.array([np.cos(angle) * alpha_hat_max, np.sin(angle) * beta_hat_max]))
+
+
+def _boundary_on_ray(method: Method, ray: FloatArray) -> FloatArray:
+    """Return the first multiple of the ray with |z_p| = 1."""
+
+    def unstable(multiples: FloatArray) -> BoolArray:
+        return spectral_radius(method, *np.outer(ray, multiples)) >= 1
+
+    met = first_where(unstable, ALONG_A_RAY)
+    assert met
+    return met[0] * ray
 
 
 def _run(mujoco: types.ModuleType, model: object, mechanism: Mechanism) -> FloatArray:
-    """Return the largest |c| after each step from a kicked state, up to where it exceeds LEFT or is not a number."""
+    """Return the largest |c| (m) after each step from a kicked state, to where it passes GROWN_TO or is no number."""
     data = mujoco.MjData(model)
     data.qpos[:], data.qvel[:] = perturbed_state(mechanism, KICK)
     c: list[float] = []
     mujoco.set_mju_user_warning(lambda _: None)  # it would print, and write a file, where a run diverges
     try:
-        while len(c) < RUN and (not c or c[-1] < LEFT):
+        while len(c) < RUN and (not c or c[-1] < GROWN_TO):
             mujoco.mj_step(model, data)
             c.append(float(np.abs(constraint_errors(mechanism, 0.0, list(data.qpos))).max()))
     finally:

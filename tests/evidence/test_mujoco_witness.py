@@ -1,3 +1,5 @@
+"""MuJoCo as a witness: it settles and diverges where the map says, and its model is the scene."""
+
 import re
 import sys
 from dataclasses import replace
@@ -10,9 +12,10 @@ import pytest
 from bezstab.engines import ENGINES
 from bezstab.errors import InputError
 from bezstab.evidence import TIMES, model_xml, mujoco_witnesses, witness_count
-from bezstab.mechanism import Force, Revolute, compiled_mechanism, load_scene, observe, parse_scene, perturbed_state
+from bezstab.mechanism import Force, Revolute, compiled_mechanism, load_scene, parse_scene, perturbed_state
 from bezstab.stability import spectral_radius
 from tests.mechanism.test_scenes import pendulum
+from tests.reference.newton import newtons_accelerations
 
 H = 1e-3
 mujoco: Any = pytest.importorskip("mujoco")
@@ -24,43 +27,38 @@ def model(scene: str, alpha_hat: float = 0.5, beta_hat: float = 0.1) -> Any:
 
 @pytest.mark.parametrize("scene", ["slider_crank", "slider_crank_light", "four_bar", "n_four_bar"])
 def test_mujoco_settles_and_diverges_where_the_map_says(scene: str) -> None:
-    heard = list(mujoco_witnesses(compiled_mechanism(load_scene(scene)), H))
-    assert len(heard) == witness_count()
-    assert {each.integrator for each in heard} == {"Euler", "RK4"}
-    for each in heard:
-        assert each.measured_verdict == ("converges" if each.times_boundary < 1 else "diverges")
-        boundary = np.array([each.alpha_hat, each.beta_hat]) / each.times_boundary
-        assert spectral_radius(each.method, *boundary) == pytest.approx(1, abs=1e-9)
-        assert (each.predicted_abs < 1) == (each.times_boundary == TIMES[0])
+    witnessed = list(mujoco_witnesses(compiled_mechanism(load_scene(scene)), H))
+    assert len(witnessed) == witness_count()
+    assert {one.integrator for one in witnessed} == {"Euler", "RK4"}
+    for one in witnessed:
+        assert one.measured_verdict == ("converges" if one.times_boundary < 1 else "diverges")
+        boundary = np.array([one.alpha_hat, one.beta_hat]) / one.times_boundary
+        assert spectral_radius(one.method, *boundary) == pytest.approx(1, abs=1e-9)
+        assert (one.predicted_abs < 1) == (one.times_boundary == TIMES[0])
 
 
 def test_no_file_is_left_where_a_run_diverges(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    assert any(
-        each.measured_verdict == "diverges" for each in mujoco_witnesses(compiled_mechanism(load_scene("four_bar")), H)
-    )
+    witnessed = list(mujoco_witnesses(compiled_mechanism(load_scene("four_bar")), H))
+    assert any(one.measured_verdict == "diverges" for one in witnessed)
     assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("scene", ["slider_crank", "four_bar", "n_four_bar"])
 def test_the_model_has_the_scenes_masses_and_accelerations(scene: str) -> None:
-    moving = compiled_mechanism(load_scene(scene))
+    mechanism = compiled_mechanism(load_scene(scene))
     built = model(scene)
-    assert built.nq == built.nv == moving.size
+    assert built.nq == built.nv == mechanism.size
     data = mujoco.MjData(built)
-    state = perturbed_state(moving, 1e-4)
+    state = perturbed_state(mechanism, 1e-4)
     data.qpos[:], data.qvel[:] = state
     mujoco.mj_forward(built, data)
-    mass = np.zeros((moving.size, moving.size))
-    for column, unit in zip(mass, np.eye(moving.size), strict=True):  # symmetric: rows are columns
+    mass = np.zeros((mechanism.size, mechanism.size))
+    for column, unit in zip(mass, np.eye(mechanism.size), strict=True):  # symmetric: rows are columns
         mujoco.mj_mulM(built, data, column, unit)
-    assert mass == pytest.approx(np.diag(np.array(moving.equations.mass, float)), abs=1e-12)
+    assert mass == pytest.approx(np.diag(np.array(mechanism.equations.mass, float)), abs=1e-12)
     two_alpha, beta_squared = 0.5 / H, 0.1 / H**2
-    q, v = state
-    seen = observe(moving, np.zeros(1), q[np.newaxis], v[np.newaxis], two_alpha, beta_squared)
-    jacobian = np.array(moving.equations.jacobian.subs(dict(zip(moving.equations.q, q, strict=True))), float)
-    forces = np.array(moving.equations.forces.subs(dict(zip(moving.equations.q, q, strict=True))), float)[:, 0]
-    ours = (forces - jacobian.T @ seen.multipliers[0]) / np.diag(mass)
+    ours = newtons_accelerations(mechanism, state, two_alpha, beta_squared)
     # what leaks: 1 - 0.9999 of the difference between constrained and unconstrained acceleration, and its coupling
     assert data.qacc == pytest.approx(ours, abs=2e-3 * np.abs(ours).max())
 
@@ -95,12 +93,14 @@ def test_without_mujoco_the_message_says_how_to_get_it(monkeypatch: pytest.Monke
 def test_solref_means_what_the_conversion_says(solref: str) -> None:
     values = tuple(map(Fraction, solref.split()))
     alpha_hat, beta_hat = map(float, ENGINES["mujoco"].point(values, Fraction(1, 1000)))
-    moving = compiled_mechanism(load_scene("slider_crank"))
-    xml = re.sub(r'solref="[^"]*"', f'solref="{solref}"', model_xml(moving.scene, "Euler", H, 1.0, 1.0))
+    mechanism = compiled_mechanism(load_scene("slider_crank"))
+    xml = re.sub(r'solref="[^"]*"', f'solref="{solref}"', model_xml(mechanism.scene, "Euler", H, 1.0, 1.0))
     built = mujoco.MjModel.from_xml_string(xml)
     data = mujoco.MjData(built)
-    data.qpos[:], _ = perturbed_state(moving, 1e-4)
-    data.qvel[:] = np.random.default_rng(3).normal(0, 1e-4, moving.size)  # small: newer versions add gamma, its square
+    data.qpos[:], _ = perturbed_state(mechanism, 1e-4)
+    data.qvel[:] = np.random.default_rng(3).normal(
+        0, 1e-4, mechanism.size
+    )  # small: newer versions add gamma, its square
     mujoco.mj_forward(built, data)
     damping, stiffness = (alpha_hat / H) * data.efc_vel, (beta_hat / H**2) * data.efc_pos
     # MuJoCo divides by dmax = 0.9999 here, and multiplies by it in the equation that it solves
