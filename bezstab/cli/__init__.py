@@ -1,5 +1,5 @@
 """The command line."""
 
-from bezstab.cli.commands import main
+from bezstab.cli.main import main
 
 __all__ = ["main"]

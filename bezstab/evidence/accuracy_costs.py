@@ -206,11 +206,6 @@ def with_fronts(runs: Sequence[Run], reference_error: float) -> SweptRuns:
     )
 
 
-def pareto_fronts(runs: Sequence[Run]) -> list[str]:
-    """Return for each run on which fronts it is, as `SweptRuns.front_labels`, which takes its place."""
-    return with_fronts(runs, 0.0).front_labels
-
-
 @dataclass(frozen=True)
 class MapCost:
     """A map of count x count points: time (s), peak memory (MB), how far what is read off it is from the exact region.

@@ -1,6 +1,5 @@
 """What a sweep over methods and steps says, method by method and in words."""
 
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -115,8 +114,7 @@ def sweep_sentences(runs: Sequence[Run], tolerance: float, physical: bool) -> li
 
 
 def _is_bezier(method: Method) -> bool:
-    # A method is to carry its family, and then nobody asks its name: method.family.name == "Bezier".
-    return re.fullmatch(r"B\d+", method.name) is not None
+    return method.family is not None and method.family.name == "Bezier" and method.step_multiple == 1
 
 
 def _cheapest_sentence(runs: Sequence[Run], tolerance: float) -> str:

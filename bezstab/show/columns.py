@@ -33,7 +33,9 @@ def formatted(value: Value, form: str = "") -> str:
     """Return a value in a format, minus zero as zero; a dash for None and for an empty text."""
     if value is None or value == "":
         return MISSING
-    return format(value + 0.0 if isinstance(value, float) else value, form)
+    if isinstance(value, float):
+        value += 0.0  # minus zero becomes zero
+    return format(value, form)
 
 
 def pole_column(heading: str) -> Column:
@@ -56,23 +58,46 @@ def yes_no_column(heading: str, key: str) -> Column:
     return Column(heading, lambda row: words[row[key]])
 
 
+PROPERTIES: Sequence[Column] = (column("property", "property"), column("value", "value"))
+"""The columns of a transposed row."""
+
+
+def transposed(row: Row) -> list[Row]:
+    """Return one row per key of a long row, with `property` and `value` as texts, for reading from top to bottom."""
+    properties: list[Row] = []
+    for key, value in row.items():
+        text = formatted(value, ".10g") if isinstance(value, float) else formatted(value)
+        properties.append({"property": key.replace("_", " "), "value": text})
+    return properties
+
+
 def render(rows: Sequence[Row], columns: Sequence[Column], form: Format) -> str:
     """Return the rows in the given form: every key for json and csv, the chosen columns for text and markdown.
 
-    What is infinite or not a number is missing: null, an empty cell, a dash.
+    What is infinite or not a number is missing: null, an empty cell, a dash. So is, in csv, a key that only other rows
+    have. KeyError if a row lacks the key of a chosen column.
     """
-    rows = [{k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in row.items()} for row in rows]
+    finite_rows: list[Row] = [{key: _finite(value) for key, value in row.items()} for row in rows]
     if form == "json":
-        return json.dumps(rows, indent=2, ensure_ascii=False, allow_nan=False)
+        return json.dumps(finite_rows, indent=2, ensure_ascii=False, allow_nan=False)
     if form == "csv":
-        return _comma_separated(rows)
-    lines = [[each.heading for each in columns], *([each.text(row) for each in columns] for row in rows)]
+        return _comma_separated(finite_rows)
+    headings = [column.heading for column in columns]
+    lines = [headings, *([column.text(row) for column in columns] for row in finite_rows)]
     return _markdown(lines) if form == "markdown" else _aligned(lines)
 
 
+def _finite(value: Value) -> Value:
+    """Return the value, None for one that is infinite or not a number."""
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
 def _comma_separated(rows: Sequence[Row]) -> str:
+    keys = list(dict.fromkeys(key for row in rows for key in row))  # of every row: some have more than the first
     text = io.StringIO()
-    writer = csv.DictWriter(text, list(rows[0]) if rows else [], lineterminator="\n")
+    writer = csv.DictWriter(text, keys, lineterminator="\n")
     writer.writeheader()
     writer.writerows(rows)
     return text.getvalue().rstrip("\n")

@@ -1,18 +1,21 @@
 """What all figures share: size, fonts, colours and dashes, the plane of alpha_hat and beta_hat, and saving."""
 
-import re
 from contextlib import AbstractContextManager
-from typing import Any, BinaryIO, Literal
+from typing import Any, BinaryIO, Literal, TypeVar
 
 import numpy as np
 from matplotlib import style
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
 
 from bezstab.methods import Method
 from bezstab.stability import FloatArray, Region
 from bezstab.units import feedback_gains
+
+Number = TypeVar("Number", float, NDArray[np.float64])
 
 COLUMN_WIDTH = 85 / 25.4  # inches
 STYLE: dict[str, Any] = {
@@ -26,14 +29,17 @@ STYLE: dict[str, Any] = {
     "grid.color": "0.9",
     "mathtext.fontset": "dejavusans",
 }
-FAMILIES = {  # by prefix: colours of Okabe & Ito that differ in lightness too, so that grey keeps them apart
-    "ABM": "#cc79a7",
-    "AB": "#e69f00",
-    "B": "#00395c",
-    "RK": "#009e73",
+FAMILIES = {  # by family: colours of Okabe & Ito that differ in lightness too, so that grey keeps them apart
+    "Adams-Bashforth-Moulton": "#cc79a7",
+    "Adams-Bashforth": "#e69f00",
+    "Bezier": "#00395c",
+    "Runge-Kutta": "#009e73",
     "SIE": "#56b4e9",
-    "SYM": "#d55e00",
+    "symplectic Euler": "#d55e00",
 }
+SINGLE = {"SIE", "symplectic Euler"}  # families of one: there is no number for the dashes to tell apart
+NO_FAMILY = "0.4"  # the colour of a user's method
+ACCENT = FAMILIES["symplectic Euler"]  # for what must be seen first: a limit, a disagreement
 MARKERS = "osD^v<>ph*"
 CONVERGES, DIVERGES = "#9ecae1", "0.45"
 DASHES: list[str | tuple[int, tuple[float, ...]]] = ["-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (5, 1.5, 1.2, 1.5))]
@@ -69,22 +75,45 @@ def plane_axes(title: str, h: float | None) -> tuple[Figure, Axes]:
     return figure, axes
 
 
-def curves(axes: Axes, region: Region, h: float | None, label: str, **line: Any) -> None:
-    """Draw a region's boundary, its closed curves as one line; of an empty region only the label shows."""
-    gap = np.full((1, 2), np.nan)
-    points = np.concatenate([part for curve in region.boundary for part in (curve, gap)] or [gap])
-    axes.plot(*feedback_gains(points[:, 0], points[:, 1], h or 1.0), label=label, **line)
+def plane_coordinates(alpha_hat: Number, beta_hat: Number, h: float | None) -> tuple[Number, Number]:
+    """Return where points lie on the axes of plane_axes: as they are, or 2 alpha (1/s), beta^2 (1/s^2) with h (s)."""
+    if h is None:
+        return alpha_hat, beta_hat
+    return feedback_gains(alpha_hat, beta_hat, h)
+
+
+def curves(axes: Axes, region: Region, h: float | None, label: str, **line: Any) -> Line2D:
+    """Draw a region's boundary, its closed curves as one line, and return it; of an empty one only the label shows."""
+    gap = np.full((1, 2), np.nan)  # lifts the pen from one closed curve to the next
+    pieces: list[FloatArray] = []
+    for curve in region.boundary:
+        pieces += [curve, gap]
+    points = np.concatenate(pieces or [gap])
+    x, y = plane_coordinates(points[:, 0], points[:, 1], h)
+    (drawn,) = axes.plot(x, y, label=label, **line)
+    return drawn
 
 
 def cells(axes: Axes, x: FloatArray, y: FloatArray, values: "np.ma.MaskedArray[Any, Any]", **colours: Any) -> AxesImage:
-    """Draw values of shape (y.size, x.size) as cells around the points of an even grid."""
-    (left, right), (low, high) = ((end[0] - (end[1] - end[0]) / 2, end[-1] + (end[1] - end[0]) / 2) for end in (x, y))
-    extent = (left, right, low, high)
+    """Draw values of shape (y.size, x.size) as cells around the points of an even grid; return the image."""
+    left, right = _outer_edges(x)
+    low, high = _outer_edges(y)
     axes.grid(visible=False)
-    return axes.imshow(values, origin="lower", extent=extent, aspect="auto", interpolation="nearest", **colours)
+    return axes.imshow(
+        values, origin="lower", extent=(left, right, low, high), aspect="auto", interpolation="nearest", **colours
+    )
+
+
+def _outer_edges(points: FloatArray) -> tuple[float, float]:
+    """Return the ends of the cells around the first and the last of evenly spaced points."""
+    half = (points[1] - points[0]) / 2
+    return points[0] - half, points[-1] + half
 
 
 def method_line(method: Method) -> dict[str, Any]:
     """Return colour and dashes by the method's family and number, the same in every figure."""
-    family, number = re.fullmatch(r"(\D*)(\d*).*", method.name, re.DOTALL).groups()  # type: ignore[union-attr]
-    return {"color": FAMILIES.get(family, "0.4"), "linestyle": DASHES[-int(number or 0) % 4]}
+    family = method.family
+    if family is None:
+        return {"color": NO_FAMILY, "linestyle": DASHES[0]}
+    number = 0 if family.name in SINGLE else family.number
+    return {"color": FAMILIES[family.name], "linestyle": DASHES[-number % len(DASHES)]}

@@ -1,7 +1,7 @@
 """Poles of the closed loop, the exact region, its best point, and which parameters to choose."""
 
 from bezstab.stability.best_points import BestPoint, best_point
-from bezstab.stability.choices import Choice, Goal, choose, describe_point, stability_margins
+from bezstab.stability.choices import THOUSANDFOLD, Choice, Goal, choose, describe_point, stability_margins
 from bezstab.stability.closed_loop import (
     EPS,
     ComplexArray,
@@ -21,6 +21,7 @@ __all__ = [
     "EPS",
     "FAMILIES",
     "QUALITY",
+    "THOUSANDFOLD",
     "BestPoint",
     "Choice",
     "ComplexArray",

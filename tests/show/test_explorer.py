@@ -8,16 +8,17 @@ from matplotlib.figure import Figure
 
 from bezstab.errors import InputError
 from bezstab.methods import lookup
-from bezstab.show.explorer import STEPS, Explorer, _answer, show
+from bezstab.show.explorer import STEPS, Explorer, kick_response, show
 from bezstab.stability import dominant_pole, poles
 
 
 def window(*names: str) -> tuple[Explorer, Any, list[str]]:
-    figure, said = Figure(figsize=(9, 5)), list[str]()
+    figure = Figure(figsize=(9, 5))
+    printed: list[str] = []
     canvas: Any = FigureCanvasAgg(figure)
-    explorer = Explorer(figure, [lookup(name) for name in names], 0.001, said.append)
+    explorer = Explorer(figure, [lookup(name) for name in names], 0.001, printed.append)
     canvas.draw()
-    return explorer, canvas, said
+    return explorer, canvas, printed
 
 
 def mouse(explorer: Explorer, canvas: Any, name: str, alpha_hat: float, beta_hat: float) -> None:
@@ -46,8 +47,8 @@ def test_moving_shows_poles_decay_and_numbers() -> None:
 
 
 def test_the_decay_is_the_linear_recursion() -> None:
-    assert _answer(np.array([1.0, -0.5])) == pytest.approx(0.5 ** np.arange(STEPS + 1))
-    two = _answer(np.array([1.0, -0.9, 0.2]))  # roots 0.4 and 0.5
+    assert kick_response(np.array([1.0, -0.5]), STEPS) == pytest.approx(0.5 ** np.arange(STEPS + 1))
+    two = kick_response(np.array([1.0, -0.9, 0.2]), STEPS)  # roots 0.4 and 0.5
     k = np.arange(STEPS + 1)
     assert two == pytest.approx(5 * 0.5**k - 4 * 0.4**k)
 
@@ -70,7 +71,7 @@ def test_outside_the_map_nothing_changes() -> None:
 
 
 def test_keys_switch_the_method_and_print_the_point() -> None:
-    explorer, canvas, said = window("B4", "AB4")
+    explorer, canvas, printed = window("B4", "AB4")
     mouse(explorer, canvas, "motion_notify_event", 0.25, 0.05)
     key(canvas, "n")
     canvas.draw()
@@ -78,7 +79,7 @@ def test_keys_switch_the_method_and_print_the_point() -> None:
     assert explorer.map.get_title() == "AB4"
     assert len(explorer.map.images) == 1
     key(canvas, "p")
-    assert said == [f"--method AB4 --alpha {explorer.point[0]} --beta {explorer.point[1]}"]
+    assert printed == [f"--method AB4 --alpha {explorer.point[0]} --beta {explorer.point[1]}"]
     key(canvas, "n")
     assert explorer.method == lookup("B4")
     key(canvas, "x")

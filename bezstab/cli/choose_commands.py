@@ -1,0 +1,254 @@
+"""Commands that answer which parameters to take: choose, check, engines, explore."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+import click
+
+from bezstab.cli.options import (
+    ENGINE,
+    ENGINE_VALUES,
+    NUMBER,
+    SECONDS,
+    USUAL_METHODS,
+    EngineValues,
+    both_or_none,
+    format_option,
+    left_at_default,
+    methods_option,
+    physical_option,
+    step_option,
+)
+from bezstab.cli.output import progress, show_rows
+from bezstab.engines import ENGINES
+from bezstab.errors import InputError
+from bezstab.methods import Method, lookup
+from bezstab.rationals import exact
+from bezstab.show import MISSING, Column, Format, Row, column, formatted
+from bezstab.units import to_dimensionless
+
+if TYPE_CHECKING:
+    from bezstab.stability import Choice, Goal
+
+
+def range_column(heading: str, low_key: str, high_key: str) -> Column:
+    """Return the column of the factors by which something may be scaled: 0.45 to 1.6; without an upper end, to any."""
+
+    def text(row: Row) -> str:
+        low, high = row[low_key], row[high_key]
+        if low is None:
+            return MISSING
+        return f"{formatted(low, '.3g')} to {'any' if high is None else formatted(high, '.3g')}"
+
+    return Column(heading, text)
+
+
+CHOICES = [
+    column("method", "method"),
+    column("goal", "goal"),
+    column("α̂", "alpha_hat", ".6f"),
+    column("β̂", "beta_hat", ".6f"),
+    column("α (1/s)", "alpha", ".6g"),
+    column("β (1/s)", "beta", ".6g"),
+    column("verdict", "verdict"),
+    column("|z_p|", "z_abs", ".4f"),
+    column("∠z_p (deg)", "z_angle_deg", ".1f"),
+    column("within the spread", "worst", ".4f"),
+    column("steps to 1/1000", "settle_steps", "d"),
+    column("s", "settle_seconds", ".3g"),
+    column("stable for h (s) to", "h_max", ".4g"),
+    range_column("α times", "alpha_factor_min", "alpha_factor_max"),
+    range_column("β times", "beta_factor_min", "beta_factor_max"),
+]
+PASTE = column("to paste", "engine")
+
+
+@click.command()
+@methods_option("B4")
+@click.option("--h", type=SECONDS, required=True, help="Step size in s.")
+@click.option(
+    "--goal",
+    type=click.Choice(["robust", "fastest", "critical", "gentle"]),
+    default="robust",
+    help="robust: fastest at worst over smaller steps and the spread; fastest: least |z_p|; critical: fastest without "
+    "oscillation; gentle: the mildest α = β that settles in time.",
+)
+@click.option("--h-max", type=SECONDS, help="robust: the largest step in s that may occur [--h].")
+@click.option("--spread", type=NUMBER, default="0.1", help="By what share α and β may be off.")
+@click.option("--settle", type=SECONDS, help="gentle: the time in s in which c falls a thousandfold.")
+@click.option("--keep", type=click.Choice(["alpha=beta"]), help="Only points with α = β.")
+@click.option("--engine", type=ENGINE, help="Also print what to paste into that engine.")
+@format_option
+def choose(
+    methods: Sequence[Method],
+    h: Fraction,
+    goal: "Goal",
+    h_max: Fraction | None,
+    spread: Fraction,
+    settle: Fraction | None,
+    keep: str | None,
+    engine: str | None,
+    form: Format,
+) -> None:
+    """Recommend α and β for an integrator and its step size.
+
+    The answer is proven stable, and the margins that remain are printed. The fastest point is a kink: towards more
+    damping |z_p| rises like a square root. Hence robust is the default. "within the spread" is the largest |z_p| with α
+    and β off by --spread. With --engine the method is SYM unless given: that is how engines step.
+
+    Example: bezstab choose --method B4 --h 0.001
+    """
+    from bezstab.show.rows import choice_row
+
+    if not 0 <= spread < 1:
+        raise InputError(f"--spread {float(spread):g}: expected a share from 0 to 1")
+    if h_max is not None and (goal != "robust" or h_max < h):
+        raise InputError(f"--h-max {float(h_max):g}: only for --goal robust, and at least --h {float(h):g}")
+    if (settle is not None) != (goal == "gentle"):
+        raise click.UsageError("--settle and --goal gentle go together")
+    if engine and left_at_default("methods"):
+        methods = [lookup("SYM")]
+    rows: list[Row] = []
+    for method in progress(methods, goal):
+        choice = _chosen(method, goal, h, h if h_max is None else h_max, float(spread), settle, keep is not None)
+        row = choice_row(choice, float(h))
+        if engine:
+            row["engine"] = ENGINES[engine].setting((Fraction(choice.alpha_hat), Fraction(choice.beta_hat)), h)
+        rows.append(row)
+    show_rows(rows, [*CHOICES, PASTE] if engine else CHOICES, form)
+
+
+def _chosen(
+    method: Method,
+    goal: "Goal",
+    h: Fraction,
+    h_max: Fraction,
+    spread: float,
+    settle: Fraction | None,
+    equal: bool,
+) -> "Choice":
+    """Return the choice for a method at a step of h (s), made at the largest step that may occur.
+
+    At a smaller step the same alpha and beta are a smaller alpha_hat = 2 alpha h and beta_hat = beta^2 h^2.
+    """
+    from bezstab import stability
+
+    rate = None
+    if settle is not None:
+        rate = stability.THOUSANDFOLD ** float(h * method.step_multiple / settle)
+    choice = stability.choose(method, goal, spread, rate, equal)
+    if h == h_max:
+        return choice
+    share = h / h_max
+    alpha_hat, beta_hat = exact(choice.alpha_hat) * share, exact(choice.beta_hat) * share**2
+    return stability.describe_point(method, goal, alpha_hat, beta_hat, spread)
+
+
+@click.command()
+@methods_option("B4")
+@click.option("--alpha", type=NUMBER, help="α̂; α in 1/s with --physical.")
+@click.option("--beta", type=NUMBER, help="β̂; β in 1/s with --physical.")
+@click.option("--h", type=SECONDS, help="Step size in s; needed with --physical and --engine.")
+@physical_option
+@click.option("--engine", type=ENGINE_VALUES, help="An engine's own values, such as mujoco=0.02,1, instead.")
+@format_option
+@click.pass_context
+def check(
+    context: click.Context,
+    methods: Sequence[Method],
+    alpha: Fraction | None,
+    beta: Fraction | None,
+    h: Fraction | None,
+    physical: bool,
+    engine: EngineValues | None,
+    form: Format,
+) -> None:
+    """Tell whether a choice is safe: exit status 0 if so, 1 if not.
+
+    Safe is what is proven stable for every method. Prints the verdict, the margins and the largest stable step, and
+    what `choose` would give instead.
+
+    Example: bezstab check --method RK2 --h 0.002 --alpha 50 --beta 50 --physical
+    """
+    from bezstab import stability
+    from bezstab.show.rows import choice_row
+
+    alpha_hat, beta_hat = _point_to_check(methods, alpha, beta, h, physical, engine)
+    step = None if h is None else float(h)
+    given = [stability.describe_point(method, "as given", alpha_hat, beta_hat) for method in methods]
+    rows: list[Row] = []
+    for choice in given:
+        rows.append(choice_row(choice, step))
+        rows.append(choice_row(stability.choose(choice.method, "robust"), step))
+    show_rows(rows, CHOICES, form)
+    context.exit(0 if all(choice.verdict == "converges" for choice in given) else 1)
+
+
+def _point_to_check(
+    methods: Sequence[Method],
+    alpha: Fraction | None,
+    beta: Fraction | None,
+    h: Fraction | None,
+    physical: bool,
+    engine: EngineValues | None,
+) -> tuple[Fraction, Fraction]:
+    """Return (alpha_hat, beta_hat) as given in one of three ways; UsageError for anything else."""
+    if (physical or engine) and h is None:
+        raise click.UsageError("--physical and --engine need --h: the step in s")
+    if engine and h is not None:
+        if alpha is not None or beta is not None or physical:
+            raise click.UsageError("--engine takes the place of --alpha, --beta and --physical")
+        words, values = engine
+        point = words.point(values, h)
+        if words.level == "velocity" and [method.name for method in methods] != ["SYM"]:
+            raise click.UsageError(f"{words.name} works at velocity level: only with --method SYM")
+        return point
+    if alpha is None or beta is None:
+        raise click.UsageError("--alpha and --beta are needed, or --engine")
+    if physical and h is not None:
+        return to_dimensionless(alpha, beta, h)
+    return alpha, beta
+
+
+ENGINES_LISTED = [
+    column("engine", "name"),
+    column("level", "level"),
+    column("parameters", "parameters"),
+    column("for this point", "set"),
+    column("left out", "excludes"),
+]
+
+
+@click.command()
+@step_option
+@click.option("--alpha", type=NUMBER, help="α̂: with --beta, say what to set for this point.")
+@click.option("--beta", type=NUMBER, help="β̂.")
+@format_option
+def engines(h: Fraction, alpha: Fraction | None, beta: Fraction | None, form: Format) -> None:
+    """List what other engines call the feedback, and what to set.
+
+    acceleration: true Baumgarte feedback, where the integrator decides. velocity: an impulse engine, which is SYM at an
+    equivalent point. Each row says what the conversion leaves out.
+
+    Example: bezstab engines --alpha 1 --beta 0.2 --h 0.002
+    """
+    from bezstab.show.rows import engine_row
+
+    point = both_or_none(alpha, beta)
+    show_rows([engine_row(engine, point, h) for engine in ENGINES.values()], ENGINES_LISTED, form)
+
+
+@click.command()
+@methods_option(*USUAL_METHODS)
+@step_option
+def explore(methods: Sequence[Method], h: Fraction) -> None:
+    """Open a window: move over the region, see poles and decay.
+
+    A click proves the verdict; n shows the next method; p prints the point as options for the other commands.
+
+    Example: bezstab explore --method B4 --method AB4
+    """
+    from bezstab.show.explorer import show
+
+    show(methods, float(h), click.echo)

@@ -1,0 +1,103 @@
+"""The group of all commands: how they are listed, found and ended."""
+
+import importlib
+import os
+import sys
+from collections.abc import Mapping, Sequence
+from typing import Any, NoReturn
+
+import click
+
+from bezstab import __version__
+from bezstab.cli.choose_commands import check, choose, engines, explore
+from bezstab.cli.evidence_commands import extremes, simulate, tradeoff, verify
+from bezstab.cli.map_commands import family, methods, poles, region
+from bezstab.errors import InputError, NumericalError
+
+SECTIONS: Mapping[str, Sequence[click.Command]] = {
+    "Maps": (poles, region, methods, family),
+    "Choose": (choose, check, engines, explore),
+    "Evidence": (simulate, verify, tradeoff, extremes),
+}
+"""What `bezstab --help` lists under which heading, in this order."""
+
+LOADED_LATE: Mapping[str, Mapping[str, str]] = {"Paper": {"paper": "bezstab.cli.paper_command:paper"}}
+"""Extensions by heading and name, each as module:command: nothing imports them, the group finds them by name."""
+
+
+class BezstabGroup(click.Group):
+    """A group that lists its commands under headings, finds extensions when asked for, and ends errors in one line.
+
+    Exit status 2 for a user's mistake, 3 for numerical trouble, 130 after Ctrl-C.
+    """
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Return the names of all commands in the order of their sections."""
+        return [name for names in self._names_by_section().values() for name in names]
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Return the command of that name, an extension's loaded now; None if there is none."""
+        for commands in LOADED_LATE.values():
+            if cmd_name in commands:
+                module, _, function = commands[cmd_name].partition(":")
+                command: click.Command = getattr(importlib.import_module(module), function)
+                return command
+        return super().get_command(ctx, cmd_name)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write a heading for each section and a sentence for each command."""
+        longest = max(len(name) for name in self.list_commands(ctx))
+        room = formatter.width - 6 - longest  # as click counts it: two indents and the gap between name and sentence
+        for heading, names in self._names_by_section().items():
+            sentences: list[tuple[str, str]] = []
+            for name in names:
+                command = self.get_command(ctx, name)
+                assert command
+                sentences.append((name.ljust(longest), command.get_short_help_str(room)))
+            with formatter.section(heading):
+                formatter.write_dl(sentences)
+
+    def main(self, *args: Any, **kwargs: Any) -> NoReturn:
+        """Run the command line and exit."""
+        try:
+            status = super().main(*args, **{**kwargs, "standalone_mode": False})
+        except click.ClickException as error:
+            _complain(error.format_message())
+            sys.exit(2)
+        except InputError as error:
+            _complain(str(error))
+            sys.exit(2)
+        except NumericalError as error:
+            click.echo(f"bezstab: {error}", err=True)
+            sys.exit(3)
+        except click.Abort:
+            click.echo("bezstab: interrupted", err=True)
+            sys.exit(130)
+        except BrokenPipeError:  # the reader, such as `head`, has seen enough
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            sys.exit(1)
+        sys.exit(status if isinstance(status, int) else 0)  # a command that calls ctx.exit(status) returns it here
+
+    def _names_by_section(self) -> dict[str, list[str]]:
+        sections = {heading: [command.name or "" for command in commands] for heading, commands in SECTIONS.items()}
+        for heading, commands in LOADED_LATE.items():
+            sections.setdefault(heading, []).extend(commands)
+        return sections
+
+
+def _complain(message: str) -> None:
+    """Print a user's mistake in one line."""
+    click.echo(f"bezstab: {' '.join(message.split())}", err=True)
+
+
+@click.group(
+    cls=BezstabGroup,
+    commands=[command for commands in SECTIONS.values() for command in commands],
+    context_settings={"help_option_names": ["-h", "--help"], "show_default": True},
+)
+@click.version_option(__version__)
+def main() -> None:
+    """Which Baumgarte parameters are safe, and best, for an explicit integrator at its step size?
+
+    Everywhere α̂ = 2αh and β̂ = β²h² (dimensionless) for the feedback c̈ + 2αċ + β²c = 0 and a step of h seconds.
+    """

@@ -1,0 +1,394 @@
+"""Commands about the plane: poles, region, methods, family."""
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from bezstab.cli.options import (
+    ENGINE,
+    METHOD,
+    NUMBER,
+    POSITIVE,
+    SECONDS,
+    USUAL_METHODS,
+    FigureForm,
+    TableForm,
+    figure_option,
+    format_option,
+    methods_option,
+    output_option,
+    physical_option,
+    table_option,
+)
+from bezstab.cli.output import file_name, progress, show_rows, write_figure, write_table
+from bezstab.engines import ENGINES
+from bezstab.errors import InputError
+from bezstab.files import output_directory
+from bezstab.methods import REGISTRY, Method, lookup
+from bezstab.show import PROPERTIES, Column, Format, Row, column, formatted, pole_column, transposed
+from bezstab.units import to_dimensionless
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from bezstab.stability import BestPoint, Extent, FloatArray
+
+Window = tuple[Fraction, Fraction]
+
+MOST_DRAWN = 1e100  # of a window's ends: their squares are drawn as well
+MOST_FIXED = 1e6  # a modulus from here on is shown with an exponent
+
+
+def modulus_column(heading: str, key: str) -> Column:
+    """Return the column of a modulus: six decimals, or an exponent where it is huge."""
+
+    def text(row: Row) -> str:
+        modulus = row[key]
+        huge = isinstance(modulus, float) and modulus >= MOST_FIXED
+        return formatted(modulus, ".6e" if huge else ".6f")
+
+    return Column(heading, text)
+
+
+POLES = [
+    column("method", "method"),
+    pole_column("pole z"),
+    modulus_column("|z|", "z_abs"),
+    column("∠z (deg)", "z_angle_deg", ".3f"),
+    column("verdict", "verdict"),
+]
+
+
+@click.command()
+@methods_option(*USUAL_METHODS)
+@click.option("--alpha", type=NUMBER, required=True, help="α̂, a decimal or fraction, read exactly.")
+@click.option("--beta", type=NUMBER, required=True, help="β̂, a decimal or fraction, read exactly.")
+@click.option("--h", type=SECONDS, help="Step size in s, for --physical.")
+@physical_option
+@click.option("--all-poles", is_flag=True, help="Every root, not only the dominant one.")
+@format_option
+def poles(
+    methods: Sequence[Method],
+    alpha: Fraction,
+    beta: Fraction,
+    h: Fraction | None,
+    physical: bool,
+    all_poles: bool,
+    form: Format,
+) -> None:
+    """Print each method's dominant pole at one point, and the verdict.
+
+    converges: every |z| < 1. marginal: bounded without decay. diverges: a root outside the unit circle, or a repeated
+    one on it. Proven by a Schur-Cohn test in exact arithmetic on the numbers as typed.
+
+    Example: bezstab poles --alpha 0.5 --beta 0.1
+    """
+    from bezstab import stability
+    from bezstab.show.rows import pole_rows
+
+    if physical != (h is not None):
+        raise click.UsageError("--physical and --h go together: α and β in 1/s need the step in s")
+    if h is not None:
+        alpha, beta = to_dimensionless(alpha, beta, h)
+    alpha_hat, beta_hat = float(alpha), float(beta)
+    poles_of = stability.poles if all_poles else stability.dominant_pole
+    rows: list[Row] = []
+    for method in methods:
+        z = poles_of(method, alpha_hat, beta_hat).reshape(-1)
+        rows += pole_rows(method, alpha_hat, beta_hat, z, stability.verdict(method, alpha, beta))
+    show_rows(rows, POLES, form, heading=f"α̂ = {alpha_hat:.10g}, β̂ = {beta_hat:.10g}")
+
+
+REGIONS = [
+    column("method", "method"),
+    column("area", "area", ".10g"),
+    column("α̂ from", "alpha_hat_min", ".6g"),
+    column("α̂ to", "alpha_hat_max", ".8g"),
+    column("β̂ to", "beta_hat_max", ".8g"),
+    column("least |z_p|", "best_z_abs", ".8f"),
+    column("at α̂", "best_alpha_hat", ".8f"),
+    column("at β̂", "best_beta_hat", ".8f"),
+    column("there", "best_where"),
+]
+
+
+@click.command()
+@methods_option("B4")
+@output_option
+@figure_option
+@table_option
+@click.option(
+    "--quality",
+    type=click.Choice(["balanced", "fast", "fine"]),
+    default="balanced",
+    help="Points per axis of the map: fast 50, balanced 200, fine 1000.",
+)
+@click.option("--grid", type=click.IntRange(2, 4000), help="Points per axis, instead.")
+@click.option("--alpha-range", type=NUMBER, nargs=2, help="Window in α̂ [all of the region].")
+@click.option("--beta-range", type=NUMBER, nargs=2, help="Window in β̂ [all of the region].")
+@click.option(
+    "--level",
+    "levels",
+    type=POSITIVE,
+    multiple=True,
+    help="Draw |z_p| < LEVEL, below 1. Repeatable. Default: a quarter of the way from the least |z_p| to 1.",
+)
+@click.option("--compare", is_flag=True, help="One figure with the boundaries of all methods (default level 1).")
+@click.option("--h", type=SECONDS, help="Step size in s: axes become 2α (1/s) and β² (1/s²).")
+@click.option("--engine", type=ENGINE, help="Mark that engine's defaults and rules; needs --h.")
+@format_option
+def region(
+    methods: Sequence[Method],
+    output: Path,
+    figure: FigureForm,
+    table: TableForm,
+    quality: str,
+    grid: int | None,
+    alpha_range: Window | None,
+    beta_range: Window | None,
+    levels: Sequence[Fraction],
+    compare: bool,
+    h: Fraction | None,
+    engine: str | None,
+    form: Format,
+) -> None:
+    """Draw where each method is stable, and tabulate |z_p| there.
+
+    Writes region_METHOD.png and region_METHOD.csv and prints the axis limits of the exact region, its area, the
+    smallest |z_p| and where. The table holds α̂, β̂, |z_p| and ∠z_p; with --compare, the boundary curves.
+
+    Example: bezstab region --method B4
+    """
+    from bezstab.stability import QUALITY
+
+    _check_window("--alpha-range", alpha_range)
+    _check_window("--beta-range", beta_range)
+    if any(level > 1 for level in levels):
+        raise InputError(f"--level {float(max(levels)):g}: must be at most 1, the stability boundary")
+    if engine and (h is None or compare):
+        raise click.UsageError("--engine marks one map and needs --h: the step in s")
+    if compare and len(levels) > 1:
+        raise InputError(f"--compare takes one --level, but {len(levels)} were given")
+    if figure != "none" or table != "none":
+        output_directory(output)
+    chosen_levels = [float(level) for level in levels]
+    step = None if h is None else float(h)
+    if compare:
+        level = chosen_levels[0] if chosen_levels else 1.0
+        rows = _compare_regions(methods, level, alpha_range, beta_range, step, output, figure, table)
+    else:
+        marks = _engine_marks(engine, h) if engine and h else {}
+        rows = []
+        for method in methods:
+            points = grid or QUALITY[quality]
+            rows.append(
+                _map_region(method, chosen_levels, alpha_range, beta_range, points, step, marks, output, figure, table)
+            )
+    show_rows(rows, REGIONS, form)
+
+
+def _check_window(option: str, window: Window | None) -> None:
+    """Raise InputError unless the window's ends ascend, as float64 too, and can be drawn."""
+    if window is None:
+        return
+    typed = f"{option} {float(window[0]):g} {float(window[1]):g}"
+    if not float(window[0]) < float(window[1]):
+        raise InputError(f"{typed}: the first must be the smaller")
+    if max(abs(window[0]), abs(window[1])) > MOST_DRAWN:
+        raise InputError(f"{typed}: expected at most {MOST_DRAWN:g}")
+
+
+def _compare_regions(
+    methods: Sequence[Method],
+    level: float,
+    alpha_range: Window | None,
+    beta_range: Window | None,
+    h: float | None,
+    output: Path,
+    figure: FigureForm,
+    table: TableForm,
+) -> list[Row]:
+    """Write the boundaries of all methods into one table and one figure; return a row for each."""
+    from bezstab import stability
+    from bezstab.show.arrays import boundary_arrays
+    from bezstab.show.rows import region_row
+
+    regions = [stability.region(method, level) for method in methods]
+    rows = [region_row(each, stability.best_point(each.method)) for each in regions]
+    path = output / "_".join(["compare", *(file_name(method.name) for method in methods)])
+
+    def draw() -> "Figure":
+        from bezstab.show.plane_figures import comparison_figure
+
+        return comparison_figure(regions, alpha_range, beta_range, h)
+
+    write_table(path, boundary_arrays(regions, h), table)
+    write_figure(path, draw, figure)
+    return rows
+
+
+def _map_region(
+    method: Method,
+    levels: Sequence[float],
+    alpha_range: Window | None,
+    beta_range: Window | None,
+    points: int,
+    h: float | None,
+    marks: Mapping[str, tuple[float, float]],
+    output: Path,
+    figure: FigureForm,
+    table: TableForm,
+) -> Row:
+    """Write the |z_p| map of one method as table and figure; return its row."""
+    import numpy as np
+
+    from bezstab import stability
+    from bezstab.show.arrays import map_arrays
+    from bezstab.show.rows import region_row
+
+    stable = stability.region(method)
+    best = stability.best_point(method)
+    if figure == table == "none":
+        return region_row(stable, best)
+    alpha_hat, beta_hat = _grid(stability.window(stable), alpha_range, beta_range, points)
+    blocks = stability.pole_map(method, alpha_hat, beta_hat)
+    z = np.concatenate(list(progress(blocks, method.name, points, len)))
+
+    def draw() -> "Figure":
+        from bezstab.show.plane_figures import region_figure
+
+        faster = [stability.region(method, level) for level in levels or _default_levels(best)]
+        return region_figure(stable, faster, best, alpha_hat, beta_hat, np.abs(z), h, marks)
+
+    path = output / f"region_{file_name(method.name)}"
+    write_table(path, map_arrays(alpha_hat, beta_hat, z, h), table)
+    write_figure(path, draw, figure)
+    return region_row(stable, best)
+
+
+def _grid(
+    fitting: "Extent", alpha_range: Window | None, beta_range: Window | None, points: int
+) -> "tuple[FloatArray, FloatArray]":
+    """Return the points on both axes, of shape (points,): over the given ranges, else over those that fit."""
+    import numpy as np
+
+    alpha_start, alpha_end = alpha_range or fitting[0]
+    beta_start, beta_end = beta_range or fitting[1]
+    return (
+        np.linspace(float(alpha_start), float(alpha_end), points),
+        np.linspace(float(beta_start), float(beta_end), points),
+    )
+
+
+def _default_levels(best: "BestPoint | None") -> list[float]:
+    """Return the level of one faster region: a quarter of the way from the least |z_p| to 1, to two digits."""
+    if best is None:
+        return []
+    return [round(best.z_abs + (1 - best.z_abs) / 4, 2)]
+
+
+def _engine_marks(engine: str, h: Fraction) -> dict[str, tuple[float, float]]:
+    """Return the engine's defaults and rules of thumb at a step of h (s), as points (alpha_hat, beta_hat) by label."""
+    marks: dict[str, tuple[float, float]] = {}
+    for label, point in ENGINES[engine].marks:
+        alpha_hat, beta_hat = point(h)
+        marks[label] = (float(alpha_hat), float(beta_hat))
+    return marks
+
+
+METHODS = [
+    column("method", "method"),
+    column("steps", "steps", "d"),
+    column("evaluations", "evaluations", "d"),
+    column("order of accuracy", "order", "d"),
+    column("error constant", "error_constant"),
+    column("source", "source"),
+]
+
+
+@click.command()
+@click.argument("methods", metavar="[NAME]...", type=METHOD, nargs=-1)
+@click.option("--latex", is_flag=True, help="Formulas as LaTeX.")
+@format_option
+def methods(methods: Sequence[Method], latex: bool, form: Format) -> None:
+    """List the methods, or show those that are named whole.
+
+    Steps, evaluations of f per step, order of accuracy and error constant, computed from the coefficients; for one
+    method also its recursion, s→z mapping, characteristic polynomial and stability region (the paper's Tables 1, 2).
+
+    Example: bezstab methods B4
+    """
+    from bezstab.show.rows import method_row, whole_row
+
+    if not methods:
+        show_rows([method_row(lookup(name)) for name in REGISTRY], METHODS, form)
+        return
+    from bezstab.stability import best_point, region
+
+    rows = [whole_row(method, region(method), best_point(method), latex) for method in methods]
+    if form in ("json", "csv"):
+        show_rows(rows, METHODS, form)
+        return
+    for row in rows:
+        show_rows(transposed(row), PROPERTIES, form)
+
+
+def _n_or_limit(row: Row) -> str:
+    return formatted(row["n"]) if row["n"] else "limit"
+
+
+FAMILY = [
+    Column("n", _n_or_limit),
+    column("method", "method"),
+    column("area", "area", ".10g"),
+    column("α̂ to", "alpha_hat_max", ".8g"),
+    column("β̂ to", "beta_hat_max", ".8g"),
+    column("least |z_p|", "z_abs", ".8f"),
+    column("order of accuracy", "order", "d"),
+    column("error constant", "error_constant", ".6f"),
+]
+
+
+@click.command()
+@click.argument("name", metavar="bezier|adams-bashforth", type=click.Choice(["bezier", "adams-bashforth"]))
+@click.option("--from", "first", type=click.IntRange(min=1), default=2, help="Smallest n.")
+@click.option("--to", "last", type=click.IntRange(min=1), help="Largest n [12 for bezier, 8 for adams-bashforth].")
+@output_option
+@figure_option
+@format_option
+def family(name: str, first: int, last: int | None, output: Path, figure: FigureForm, form: Format) -> None:
+    """Show what becomes of a family as its number of steps n grows.
+
+    Its region, least |z_p| and error constant. The Bézier methods tend to a limit with a region of its own; the
+    regions of Adams and Bashforth shrink to nothing, but each step gains an order. The figure has both.
+
+    Example: bezstab family bezier --from 2 --to 5
+    """
+    from bezstab.show.rows import family_row, limit_row
+    from bezstab.stability import FAMILIES, bezier_limit, family_members
+
+    largest = {family_name: most for family_name, (_, most) in FAMILIES.items()}
+    last = largest[name] if last is None else last
+    if not first <= last <= largest[name]:
+        raise InputError(f"--from {first} --to {last}: expected 1 <= from <= to <= {largest[name]} for {name}")
+    if figure != "none":
+        output_directory(output)
+    members = family_members(name, first, last)
+    limit = bezier_limit()
+    rows = [family_row(member) for member in members]
+    if name == "bezier":
+        rows.append(limit_row(limit))
+
+    def draw() -> "Figure":
+        from bezstab.show.plane_figures import family_figure
+
+        families = {}
+        for other, most in largest.items():
+            families[other] = members if other == name else family_members(other, 2, most)
+        return family_figure(families, limit)
+
+    show_rows(rows, FAMILY, form)
+    write_figure(output / f"family_{name}", draw, figure)

@@ -1,0 +1,136 @@
+"""What the commands share of their options: the types of what is typed, and the options that several have."""
+
+from collections.abc import Callable
+from fractions import Fraction
+from pathlib import Path
+from typing import Any, Literal, Protocol, TypeVar
+
+import click
+
+from bezstab.engines import ENGINES, Engine
+from bezstab.errors import InputError
+from bezstab.methods import lookup
+from bezstab.rationals import rational
+
+FigureForm = Literal["png", "svg", "pdf", "none"]
+TableForm = Literal["csv", "npz", "none"]
+EngineValues = tuple[Engine, tuple[Fraction, ...]]
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+class Decorator(Protocol):
+    """What adds an option to a command's function and returns it."""
+
+    def __call__(self, function: Function, /) -> Function:
+        """Return the function, with the option."""
+
+
+SHORTEST = Fraction("1e-100")  # s, and the longest time's inverse: their squares are within float64
+USUAL_METHODS = ("B2", "B3", "B4", "AB2", "AB3", "AB4", "RK4@5", "SIE")
+"""What poles and explore show unless told otherwise: the Bezier methods and what one would take instead."""
+
+
+class ParsedType(click.ParamType):  # type: ignore[type-arg]  # generic since click 8.3
+    """What a function makes of the text that was typed; its InputError names the option, too."""
+
+    def __init__(self, name: str, parse: Callable[[str], object]) -> None:
+        self.name, self.parse = name, parse
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Return what was parsed; fails, naming the option, where nothing can be."""
+        try:
+            return self.parse(value) if isinstance(value, str) else value
+        except InputError as error:
+            self.fail(str(error), param, ctx)
+
+
+def _positive(text: str) -> Fraction:
+    number = rational(text)
+    if number <= 0:
+        raise InputError(f"{text} is not positive")
+    return number
+
+
+def _seconds(text: str) -> Fraction:
+    number = _positive(text)
+    if not SHORTEST <= number <= 1 / SHORTEST:
+        raise InputError(f"{text} s: expected {float(SHORTEST):g} to {float(1 / SHORTEST):g} s")
+    return number
+
+
+def _engine_values(text: str) -> EngineValues:
+    """Return an engine and values of its parameters from text such as mujoco=0.02,1."""
+    name, _, numbers = text.partition("=")
+    if name not in ENGINES:
+        raise InputError(f"unknown engine {name!r} (known: {', '.join(ENGINES)})")
+    engine = ENGINES[name]
+    try:
+        return engine, tuple(rational(number) for number in numbers.split(","))
+    except InputError as error:
+        raise InputError(f"{error}: expected {name}={','.join(engine.parameters)}") from None
+
+
+NUMBER = ParsedType("number", rational)
+POSITIVE = ParsedType("number", _positive)
+SECONDS = ParsedType("seconds", _seconds)
+METHOD = ParsedType("method", lookup)
+ENGINE = click.Choice(list(ENGINES))
+ENGINE_VALUES = ParsedType("name=values", _engine_values)
+
+
+def methods_option(*default: str) -> Decorator:
+    """Return the option --method, any number of times, as the parameter `methods`."""
+    return click.option(
+        "--method",
+        "methods",
+        type=METHOD,
+        multiple=True,
+        default=default,
+        help="A method, as listed by `bezstab methods`, or a .toml file; @m for a step of m h. Repeatable.",
+    )
+
+
+def scene_option(default: str) -> Decorator:
+    """Return the option --scene."""
+    return click.option("--scene", default=default, help="A shipped scene's name, or a .toml file.")
+
+
+step_option = click.option("--h", type=SECONDS, default="0.001", help="Step size in s.")
+physical_option = click.option(
+    "--physical", is_flag=True, help="Take --alpha and --beta as α and β in 1/s; goes with --h."
+)
+output_option = click.option(
+    "-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory for what is written."
+)
+figure_option = click.option(
+    "--figure", type=click.Choice(["png", "svg", "pdf", "none"]), default="png", help="Format of the figure."
+)
+table_option = click.option(
+    "--table", type=click.Choice(["csv", "npz", "none"]), default="csv", help="Format of the table."
+)
+format_option = click.option(
+    "--format",
+    "form",
+    type=click.Choice(["text", "json", "csv", "markdown"]),
+    default="text",
+    help="What to print on standard output.",
+)
+workers_option = click.option(
+    "--workers", type=click.IntRange(1, 1000), help="Number of processes [one for each core]."
+)
+scheduler_option = click.option("--scheduler", help="Address of a Dask scheduler, tcp://host:port, instead.")
+resume_option = click.option("--resume", is_flag=True, help="Go on with what a killed run of the same job has left.")
+
+
+def both_or_none(alpha: Fraction | None, beta: Fraction | None) -> tuple[Fraction, Fraction] | None:
+    """Return the point that --alpha and --beta are, None without them; UsageError if one is missing."""
+    if alpha is None and beta is None:
+        return None
+    if alpha is None or beta is None:
+        raise click.UsageError("--alpha and --beta go together: they are one point")
+    return alpha, beta
+
+
+def left_at_default(parameter: str) -> bool:
+    """Return whether the user has not given that parameter of the running command."""
+    return click.get_current_context().get_parameter_source(parameter) == click.core.ParameterSource.DEFAULT

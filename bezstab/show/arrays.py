@@ -1,0 +1,123 @@
+"""Results as equally long arrays by name, and their files: CSV with every digit, or NPZ."""
+
+import csv
+import io
+import math
+from collections.abc import Mapping, Sequence
+from typing import BinaryIO, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bezstab.evidence import VerdictMap
+from bezstab.mechanism import Observation, Trajectory
+from bezstab.show.columns import Row, Value
+from bezstab.stability import ComplexArray, FloatArray, Region
+from bezstab.units import feedback_gains
+
+Arrays = dict[str, NDArray[np.generic]]
+
+TEXTS = ("failure", "front")  # keys of a run that hold text: missing, they are empty, not nan
+
+
+def map_arrays(alpha_hat: FloatArray, beta_hat: FloatArray, z: ComplexArray, h: float | None) -> Arrays:
+    """Return a map of dominant poles as arrays of shape (points,), alpha_hat running fastest.
+
+    z has shape (beta_hat.size, alpha_hat.size). Dimensionless; the angle of z in degrees; with h (s) also 2 alpha and
+    beta^2 in 1/s and 1/s^2.
+    """
+    alpha_grid, beta_grid = np.meshgrid(alpha_hat, beta_hat)
+    grids = {
+        "alpha_hat": alpha_grid,
+        "beta_hat": beta_grid,
+        "z_abs": np.abs(z),
+        "z_angle_deg": np.degrees(np.angle(z)),
+        **_gains(alpha_grid, beta_grid, h),
+    }
+    return {key: grid.ravel() for key, grid in grids.items()}
+
+
+def boundary_arrays(regions: Sequence[Region], h: float | None) -> Arrays:
+    """Return all boundary curves as arrays of shape (points,): method, number of the closed curve, the point.
+
+    Dimensionless; with h (s) also 2 alpha and beta^2 in 1/s and 1/s^2.
+    """
+    methods: list[str] = []
+    numbers: list[int] = []
+    curves = [np.empty((0, 2))]
+    for region in regions:
+        for number, curve in enumerate(region.boundary):
+            methods += [region.method.name] * len(curve)
+            numbers += [number] * len(curve)
+            curves.append(curve)
+    alpha_hat, beta_hat = np.concatenate(curves).T
+    return {
+        "method": np.array(methods, dtype=np.str_),
+        "curve": np.array(numbers, dtype=np.int64),
+        "alpha_hat": alpha_hat,
+        "beta_hat": beta_hat,
+        **_gains(alpha_hat, beta_hat, h),
+    }
+
+
+def _gains(alpha_hat: FloatArray, beta_hat: FloatArray, h: float | None) -> dict[str, FloatArray]:
+    if h is None:
+        return {}
+    two_alpha, beta_squared = feedback_gains(alpha_hat, beta_hat, h)
+    return {"two_alpha": two_alpha, "beta_squared": beta_squared}
+
+
+def verdict_arrays(verdicts: VerdictMap) -> Arrays:
+    """Return a map of verdicts as arrays of shape (runs,), alpha_hat running fastest; 1 for diverges, 1 for broken."""
+    alpha_grid, beta_grid = np.meshgrid(verdicts.alpha_hat, verdicts.beta_hat)
+    grids = {
+        "alpha_hat": alpha_grid,
+        "beta_hat": beta_grid,
+        "z_abs": verdicts.z_abs,
+        "diverges": verdicts.diverges.astype(int),
+        "broken": verdicts.broken.astype(int),
+    }
+    return {key: grid.ravel() for key, grid in grids.items()}
+
+
+def history_arrays(trajectory: Trajectory, observation: Observation) -> Arrays:
+    """Return t, every coordinate q and d/dt q, c_1, cdot_1, lambda_1, ... and energy: shape (times,), SI units."""
+    coordinates = trajectory.mechanism.scene.coordinates
+    arrays: Arrays = {"t": trajectory.t}
+    for i, name in enumerate(coordinates):
+        arrays[name] = trajectory.q[:, i]
+    for i, name in enumerate(coordinates):
+        arrays[f"d/dt {name}"] = trajectory.v[:, i]
+    constraint_histories = {"c": observation.c, "cdot": observation.cdot, "lambda": observation.multipliers}
+    for name, histories in constraint_histories.items():
+        for number, history in enumerate(histories.T, start=1):
+            arrays[f"{name}_{number}"] = history
+    arrays["energy"] = observation.energy
+    return arrays
+
+
+def untimed_arrays(rows: Sequence[Row]) -> Arrays:
+    """Return rows as arrays of shape (rows,) without processor times, which no two runs share.
+
+    What is missing is nan among numbers and empty among TEXTS.
+    """
+    keys = [key for key in rows[0] if not key.startswith("seconds")]
+    return {key: np.array([_present(key, row[key]) for row in rows]) for key in keys}
+
+
+def _present(key: str, value: Value) -> Value:
+    if value is not None:
+        return value
+    return "" if key in TEXTS else math.nan
+
+
+def write_arrays(arrays: Mapping[str, NDArray[np.generic]], form: Literal["csv", "npz"], file: BinaryIO) -> None:
+    """Write equally long arrays: CSV with every digit of float64, or NPZ with one array per name."""
+    if form == "npz":
+        np.savez_compressed(file, **arrays)  # type: ignore[arg-type]  # its options have other names
+        return
+    text = io.TextIOWrapper(file, encoding="utf-8", newline="", write_through=True)
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(arrays)
+    writer.writerows(zip(*(array.tolist() for array in arrays.values()), strict=True))
+    text.detach()  # the file stays open: who opened it closes it

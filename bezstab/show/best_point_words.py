@@ -1,0 +1,28 @@
+"""In words: which poles meet at the best point of a method, and where else it is as good."""
+
+from bezstab.stability import BestPoint
+
+
+def best_point_words(best: BestPoint) -> str:
+    """Return in words which poles meet at the best point, and where else |z_p| is as small (dimensionless, as text)."""
+    words = _poles_in_words(best)
+    points = " and ".join(f"({alpha_hat:.6f}, {beta_hat:.6f})" for alpha_hat, beta_hat in best.elsewhere)
+    if best.arc:
+        return f"{words}; the same |z_p| on a whole arc, to {points}"
+    return f"{words}; also at {points}" if points else words
+
+
+def _poles_in_words(best: BestPoint) -> str:
+    if best.z_abs == 0:
+        return "deadbeat: every pole is 0"
+    words = f"z = {' and '.join(_pole_text(z) for z in best.meeting)}"
+    if len(best.meeting) > 1:
+        words += " meet"
+    if best.double:
+        words += ", each double, on β̂ = α̂²/4"
+    return words
+
+
+def _pole_text(z: complex) -> str:
+    """Return +0.625884, or -0.140131 ± 0.504013i for a pair."""
+    return f"{z.real:+.6f} ± {z.imag:.6f}i" if z.imag else f"{z.real:+.6f}"

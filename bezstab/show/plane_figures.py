@@ -1,0 +1,117 @@
+"""Figures of the plane of alpha_hat and beta_hat: readable in grey, at column width, the same bytes each time."""
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from bezstab.evidence import VerdictMap
+from bezstab.show import plot
+from bezstab.show.plot import Point, Range
+from bezstab.show.style import ACCENT, DASHES, column_figure, method_line, plane_axes, plane_coordinates, styled
+from bezstab.stability import BestPoint, FloatArray, Limit, Member, Region
+
+
+def region_figure(
+    region: Region,
+    faster: Iterable[Region],
+    best: BestPoint | None,
+    alpha_hat: FloatArray,
+    beta_hat: FloatArray,
+    z_abs: FloatArray,
+    h: float | None = None,
+    marks: Mapping[str, Point] | None = None,
+) -> Figure:
+    """Return the |z_p| map with exact boundary, faster regions, best point and critical damping (paper Fig. 1).
+
+    z_abs has shape (beta_hat.size, alpha_hat.size). With h (s) the axes are 2 alpha (1/s) and beta^2 (1/s^2), else
+    alpha_hat and beta_hat; `marks` are points (alpha_hat, beta_hat) by their labels.
+    """
+    with styled():
+        figure, axes = plane_axes(region.method.name, h)
+        image = plot.modulus_map(alpha_hat, beta_hat, z_abs, region.level, axes, h)
+        figure.colorbar(image, label="$|z_p|$")
+        boundary = {"color": "black", "linestyle": "-", "label": rf"$|z_p| = {region.level:g}$"}
+        plot.region(region, axes, h, **boundary)
+        for number, inner in enumerate(faster, start=1):
+            curve = {"color": "white", "linestyle": DASHES[number % 4], "label": rf"$|z_p| = {inner.level:g}$"}
+            plot.region(inner, axes, h, **curve)
+        plot.critical_damping((alpha_hat[0], alpha_hat[-1]), axes, h)
+        if best:
+            plot.best_point(best, axes, h)
+        plot.marks(marks or {}, axes, h)
+        left, bottom = plane_coordinates(alpha_hat[0], beta_hat[0], h)
+        right, top = plane_coordinates(alpha_hat[-1], beta_hat[-1], h)
+        axes.set(xlim=(left, right), ylim=(bottom, top), facecolor="0.93")
+        figure.legend(loc="outside lower center", ncols=2, facecolor="0.75")
+        return figure
+
+
+def comparison_figure(
+    regions: Sequence[Region], alpha_range: Range | None = None, beta_range: Range | None = None, h: float | None = None
+) -> Figure:
+    """Return the boundaries of several methods in one plane (paper Fig. 2; with h in s, at equal h, Fig. 3).
+
+    The ranges are in alpha_hat and beta_hat whatever the axes; without them all of every region shows.
+    """
+    with styled():
+        figure, axes = plane_axes(rf"$|z_p| = {regions[0].level:g}$", h)
+        for region in regions:
+            plot.region(region, axes, h)
+        if alpha_range:
+            left, _ = plane_coordinates(float(alpha_range[0]), 0.0, h)
+            right, _ = plane_coordinates(float(alpha_range[1]), 0.0, h)
+            axes.set_xlim(left, right)
+        if beta_range:
+            _, bottom = plane_coordinates(0.0, float(beta_range[0]), h)
+            _, top = plane_coordinates(0.0, float(beta_range[1]), h)
+            axes.set_ylim(bottom, top)
+        figure.legend(loc="outside lower center", ncols=4)
+        return figure
+
+
+def verdict_figure(verdicts: VerdictMap, region: Region) -> Figure:
+    """Return the simulated verdicts as cells under the exact boundary; cells that disagree are crossed."""
+    with styled():
+        share = verdicts.agreement
+        agreeing = "no run could be judged" if share is None else f"{share:.2%} of {verdicts.broken.size} runs agree"
+        title = f"{verdicts.scene.name}, {verdicts.method.name}, h = {verdicts.h:g} s\n{verdicts.run} steps: {agreeing}"
+        figure, axes = plane_axes(title, None)
+        plot.verdicts(verdicts, axes)
+        plot.region(region, axes, color="black", linestyle="-", label=r"$|z_p| = 1$")
+        plot.disagreements(verdicts, axes)
+        figure.legend(loc="outside lower center", ncols=2)
+        return figure
+
+
+def family_figure(families: Mapping[str, Sequence[Member]], limit: Limit) -> Figure:
+    """Return area, least |z_p| and error constant against n, and the Bezier regions with their limit."""
+    with styled():
+        figure = column_figure(1.3)
+        (area, fastest), (constant, regions) = figure.subplots(2, 2)
+        for name, members in families.items():
+            order = members[0].order if members[0].order == members[-1].order else "n"
+            label = f"{name} (order {order})"
+            plot.family(members, "area", area, label=label)
+            plot.family(members, "least |z_p|", fastest, label=label)
+            plot.family(members, "error constant", constant, label=label)
+        _draw_regions(regions, families["bezier"])
+        for axes, value in ((area, limit.area), (fastest, limit.z_abs), (constant, float(limit.error_constant))):
+            axes.axhline(value, color=ACCENT, linestyle=DASHES[1], label="Bézier limit")
+        regions.plot(limit.boundary[:, 0], limit.boundary[:, 1], color=ACCENT, linestyle=DASHES[1])
+        area.set(ylabel="area of the region", yscale="log", xlabel="n")
+        fastest.set(ylabel="least $|z_p|$", xlabel="n")
+        constant.set(ylabel="error constant", xlabel="n")
+        regions.set(xlabel=r"$\hat\alpha$", ylabel=r"$\hat\beta$")
+        regions.set_ylim(top=1.4 * regions.get_ylim()[1])  # room above the curves
+        regions.legend(fontsize=6, loc="upper center", ncols=2)
+        figure.legend(*area.get_legend_handles_labels(), loc="outside lower center", ncols=2)
+        return figure
+
+
+def _draw_regions(axes: Axes, members: Sequence[Member]) -> None:
+    """Draw the regions of some members of one family, told apart by their dashes."""
+    colour = method_line(members[-1].method)["color"]
+    stride = max(1, len(members) // 3)
+    for number, member in enumerate(members[::stride]):
+        plot.region(member.region, axes, color=colour, linestyle=DASHES[number % 4])

@@ -1,0 +1,317 @@
+"""Plots for a notebook or a script: each function draws one result and returns what it drew.
+
+Without `axes` each makes a new Figure of its own, as the attribute `figure` of what it returns; pyplot is not involved:
+`plot.region(region(method("B4"))).figure.savefig("b4.png")`. With `axes` it draws there, and several results come into
+one picture. The plane is alpha_hat, beta_hat (dimensionless); with `h` in s it is 2 alpha (1/s) and beta^2 (1/s^2).
+Further keyword arguments are matplotlib's, for the line that is drawn.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Literal, SupportsFloat
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
+from matplotlib.image import AxesImage
+from matplotlib.lines import Line2D
+from matplotlib.patheffects import withStroke
+
+from bezstab.evidence import Run, VerdictMap
+from bezstab.mechanism import COORDINATES, Observation, Scene, Trajectory
+from bezstab.methods import Method
+from bezstab.show.style import (
+    ACCENT,
+    CONVERGES,
+    DASHES,
+    DIVERGES,
+    cells,
+    column_figure,
+    curves,
+    method_line,
+    plane_axes,
+    plane_coordinates,
+    styled,
+)
+from bezstab.stability import BestPoint, FloatArray, Member, Region
+from bezstab.stability import spectral_radius as spectral_radius_at
+
+Range = tuple[SupportsFloat, SupportsFloat]
+Quantity = Literal["area", "least |z_p|", "error constant"]
+Point = tuple[float, float]
+
+PARABOLA = 400  # points of a smooth curve: more than its pixels tell apart
+MARK_SHAPES = "oDs^v"
+
+
+def region(region: Region, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
+    """Draw the boundary of a region |z_p| < level and return its line: all its closed curves, nan between them.
+
+    By default in the method's own colour and dashes, labelled with its name. Of an empty region only the label shows.
+    """
+    style = {"label": region.method.name, **method_line(region.method), **line}
+    return curves(_plane(axes, rf"$|z_p| = {region.level:g}$", h), region, h, **style)
+
+
+def spectral_radius(
+    method: Method,
+    alpha_range: Range,
+    beta_range: Range,
+    points: int = 200,
+    axes: Axes | None = None,
+    h: float | None = None,
+) -> AxesImage:
+    """Draw |z_p| over ranges of alpha_hat and beta_hat and return the image, of shape (points, points).
+
+    Where |z_p| >= 1 it is blank. The ranges are dimensionless whatever the axes.
+    """
+    alpha_hat = np.linspace(float(alpha_range[0]), float(alpha_range[1]), points)
+    beta_hat = np.linspace(float(beta_range[0]), float(beta_range[1]), points)
+    z_abs = spectral_radius_at(method, alpha_hat, beta_hat[:, np.newaxis])
+    return modulus_map(alpha_hat, beta_hat, z_abs, axes=_plane(axes, method.name, h), h=h)
+
+
+def modulus_map(
+    alpha_hat: FloatArray,
+    beta_hat: FloatArray,
+    z_abs: FloatArray,
+    level: float = 1.0,
+    axes: Axes | None = None,
+    h: float | None = None,
+) -> AxesImage:
+    """Draw |z_p|, computed before on an even grid, and return the image; where it is at least `level` it is blank.
+
+    z_abs has shape (beta_hat.size, alpha_hat.size).
+    """
+    x, y = plane_coordinates(alpha_hat, beta_hat, h)
+    inside = np.ma.masked_greater_equal(z_abs, level)
+    return cells(_plane(axes, "$|z_p|$", h), x, y, inside, cmap="cividis", vmax=level)
+
+
+def critical_damping(alpha_range: Range, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
+    """Draw beta_hat = alpha_hat^2 / 4, where alpha = beta, over a range of alpha_hat, and return the line.
+
+    White with a black outline: it is made to lie on a map.
+    """
+    alpha_hat = np.linspace(float(alpha_range[0]), float(alpha_range[1]), PARABOLA)
+    x, y = plane_coordinates(alpha_hat, alpha_hat**2 / 4, h)
+    outline = withStroke(linewidth=2.4, foreground="black")  # white alone is lost outside the region
+    style = {
+        "color": "white",
+        "linestyle": DASHES[2],
+        "label": r"$\hat\beta = \hat\alpha^2/4$",
+        "path_effects": [outline],
+        **line,
+    }
+    (drawn,) = _plane(axes, r"$(\hat\alpha, \hat\beta)$", h).plot(x, y, **style)
+    return drawn
+
+
+def best_point(best: BestPoint, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
+    """Draw a star at the point of least |z_p|, labelled with it, and return the line of one point."""
+    x, y = plane_coordinates(best.alpha_hat, best.beta_hat, h)
+    style = {
+        "linestyle": "none",
+        "marker": "*",
+        "color": "white",
+        "markeredgecolor": "black",
+        "markersize": 8,
+        "label": f"least $|z_p|$: {best.z_abs:.4f}",
+        **line,
+    }
+    (drawn,) = _plane(axes, best.method.name, h).plot(x, y, **style)
+    return drawn
+
+
+def marks(points: Mapping[str, Point], axes: Axes | None = None, h: float | None = None) -> list[Line2D]:
+    """Draw points (alpha_hat, beta_hat) by their labels, each with a shape of its own, and return a line for each.
+
+    There are five shapes; further points begin again.
+    """
+    axes = _plane(axes, r"$(\hat\alpha, \hat\beta)$", h)
+    drawn: list[Line2D] = []
+    for number, (label, (alpha_hat, beta_hat)) in enumerate(points.items()):
+        x, y = plane_coordinates(alpha_hat, beta_hat, h)
+        marker = MARK_SHAPES[number % len(MARK_SHAPES)]
+        drawn += axes.plot(x, y, marker, color="white", markeredgecolor="black", markersize=5, label=label)
+    return drawn
+
+
+def verdicts(verdict_map: VerdictMap, axes: Axes | None = None) -> AxesImage:
+    """Draw simulated verdicts as cells over alpha_hat and beta_hat and return the image.
+
+    Values of shape (beta_hat.size, alpha_hat.size): 0 converges, 1 diverges, blank where the run broke down. What the
+    colours mean is labelled.
+    """
+    axes = _plane(axes, f"{verdict_map.scene.name}, {verdict_map.method.name}", None)
+    values = np.ma.masked_array(verdict_map.diverges, verdict_map.broken)
+    colours = ListedColormap([CONVERGES, DIVERGES])
+    image = cells(axes, verdict_map.alpha_hat, verdict_map.beta_hat, values, cmap=colours, vmin=0, vmax=1)
+    axes.set_facecolor("white")
+    meanings = {"run converges": CONVERGES, "run diverges": DIVERGES}
+    if verdict_map.broken.any():
+        meanings["run breaks down"] = "white"
+    for meaning, colour in meanings.items():
+        axes.plot([], [], "s", color=colour, markeredgecolor="0.5", label=meaning)
+    return image
+
+
+def disagreements(verdict_map: VerdictMap, axes: Axes | None = None) -> Line2D | None:
+    """Cross the cells whose simulated verdict contradicts |z_p| < 1; return the line, None if there are none."""
+    rows, columns = np.nonzero(verdict_map.disagrees)
+    if not rows.size:
+        return None
+    axes = _plane(axes, f"{verdict_map.scene.name}, {verdict_map.method.name}", None)
+    alpha_hat, beta_hat = verdict_map.alpha_hat[columns], verdict_map.beta_hat[rows]
+    (drawn,) = axes.plot(alpha_hat, beta_hat, "x", color=ACCENT, markersize=3, label="disagree")
+    return drawn
+
+
+def family(members: Sequence[Member], quantity: Quantity = "area", axes: Axes | None = None, **line: Any) -> Line2D:
+    """Draw one quantity of a family's members (at least one) against their number of steps n and return the line.
+
+    Area of the region (dimensionless), least |z_p| (a gap where the region is empty) or the error constant.
+    """
+    values = [_quantity(member, quantity) for member in members]
+    style = {**method_line(members[-1].method), "linestyle": "-", "marker": ".", **line}
+    axes = _new_axes("", "n", quantity) if axes is None else axes
+    (drawn,) = axes.plot([member.n for member in members], values, **style)
+    return drawn
+
+
+def _quantity(member: Member, quantity: Quantity) -> float:
+    if quantity == "area":
+        return member.region.area
+    if quantity == "error constant":
+        return float(member.error_constant)
+    return np.nan if member.z_abs is None else member.z_abs
+
+
+def trajectory(
+    trajectory: Trajectory,
+    observation: Observation,
+    constraint: int = 1,
+    derivative: bool = False,
+    axes: Axes | None = None,
+    **line: Any,
+) -> Line2D:
+    """Draw the error of one constraint, or its time derivative, against t (s) and return the line; SI units.
+
+    `observation` is what `observe` makes of the trajectory; constraints count from 1. In the method's own colour.
+    """
+    history = observation.cdot if derivative else observation.c
+    name = rf"$\dot c_{constraint}$ (SI)" if derivative else rf"$c_{constraint}$ (SI)"
+    if axes is None:
+        axes = _new_axes(f"{trajectory.mechanism.scene.name}, {trajectory.method.name}", "t (s)", name)
+    style = {"color": method_line(trajectory.method)["color"], **line}
+    (drawn,) = axes.plot(trajectory.t, history[:, constraint - 1], **style)
+    return drawn
+
+
+def mechanism(scene: Scene, q: FloatArray, axes: Axes | None = None) -> list[Line2D]:
+    """Draw a scene's bodies in a state q (shape (n,), SI) as lines through the points of their joints; return them.
+
+    A body that has one joint and is free to move is a square on it.
+    """
+    if axes is None:
+        axes = _new_axes(scene.name, "x (m)", "y (m)")
+        axes.set_aspect("equal")
+    lines: list[Line2D] = []
+    for number, (name, points) in enumerate(_joints(scene, q).items()):
+        x, y = np.transpose(points)
+        bars = axes.plot(x, y, color=f"{0.15 * number:g}", linewidth=3, solid_capstyle="round", label=name)
+        axes.plot(x, y, "o", color="white", markeredgecolor="black", markersize=4)
+        if len(points) == 1 and name in {body.name for body in scene.bodies}:
+            axes.plot(x, y, "s", color="0.8", markeredgecolor="black", markersize=12, zorder=1.5)
+        box = {"facecolor": "white", "edgecolor": "none", "pad": 0.5}
+        middle = (float(x.mean()), float(y.mean()))
+        axes.annotate(name, middle, xytext=(0, 14), textcoords="offset points", ha="center", bbox=box)
+        lines += bars
+    return lines
+
+
+def _joints(scene: Scene, q: FloatArray) -> dict[str, list[Point]]:
+    """Return where the joints of each body are in a state q, in m, ascending; of the ground too, if it has any.
+
+    A body whose frame lies at the origin turns about it: that is one of its points.
+    """
+    free = dict(zip(scene.coordinates, q.tolist(), strict=True))
+    frames: dict[str, list[float]] = {}
+    for body in scene.bodies:
+        frames[body.name] = [free.get(f"{body.name}.{axis}", body.locked.get(axis, 0.0)) for axis in COORDINATES]
+    joints: dict[str, set[Point]] = {}
+    for name, (x, y, _) in frames.items():
+        joints[name] = {(0.0, 0.0)} if x == y == 0 else set()
+    for name, local in scene.attachments:
+        x, y, theta = frames.get(name, (0.0, 0.0, 0.0))
+        place = complex(x, y) + complex(*local) * np.exp(1j * theta)
+        joints.setdefault(name, set()).add((place.real, place.imag))
+    return {name: sorted(places) for name, places in joints.items() if places}
+
+
+def work_precision(
+    runs: Sequence[Run], constraint: bool = False, floor: float = 0.0, axes: Axes | None = None, **line: Any
+) -> Line2D:
+    """Draw the errors of one method's runs (at least one) against their evaluations and return the line.
+
+    The trajectory's error (SI), or with `constraint` the largest |c|; left out are runs that failed and errors up to
+    `floor`, that of the reference. Both axes are logarithmic.
+    """
+    axes = _work_precision_axes(constraint) if axes is None else axes
+    method = runs[0].method
+    style = {**method_line(method), "markersize": 3, "linewidth": 0.8, "label": method.name, **line}
+    x, y = _work_and_error(runs, constraint, floor)
+    (drawn,) = axes.plot(x, y, **style)
+    return drawn
+
+
+def pareto_front(runs: Iterable[Run], constraint: bool = False, floor: float = 0.0, axes: Axes | None = None) -> Line2D:
+    """Ring the runs of a Pareto front of work and error, as pareto_front finds them, and return the line of rings."""
+    axes = _work_precision_axes(constraint) if axes is None else axes
+    x, y = _work_and_error(sorted(runs, key=lambda run: run.evaluations), constraint, floor)
+    (drawn,) = axes.plot(x, y, "o", color="none", markeredgecolor="0.3", markersize=7, label="front")
+    return drawn
+
+
+def run_error(run: Run, constraint: bool) -> float | None:
+    """Return a run's largest |c| with `constraint`, else its trajectory's error (SI); None if it failed."""
+    if run.failure:
+        return None
+    return run.c_max if constraint else run.trajectory_error
+
+
+def error_label(constraint: bool) -> str:
+    """Return what run_error is, for an axis."""
+    return "largest $|c|$ (SI)" if constraint else "trajectory error (m, rad)"
+
+
+def _work_and_error(runs: Iterable[Run], constraint: bool, floor: float) -> tuple[list[float], list[float]]:
+    evaluations: list[float] = []
+    errors: list[float] = []
+    for run in runs:
+        error = run_error(run, constraint)
+        if error is not None and error > floor:
+            evaluations.append(run.evaluations)
+            errors.append(error)
+    return evaluations, errors
+
+
+def _work_precision_axes(constraint: bool) -> Axes:
+    axes = _new_axes("", "evaluations of f", error_label(constraint))
+    axes.set(xscale="log", yscale="log")
+    return axes
+
+
+def _plane(axes: Axes | None, title: str, h: float | None) -> Axes:
+    """Return the given axes, or those of a new figure for the plane."""
+    if axes is not None:
+        return axes
+    with styled():
+        return plane_axes(title, h)[1]
+
+
+def _new_axes(title: str, x_label: str, y_label: str) -> Axes:
+    """Return the axes of a new figure."""
+    with styled():
+        axes = column_figure().add_subplot()
+        axes.set(title=title, xlabel=x_label, ylabel=y_label)
+        return axes

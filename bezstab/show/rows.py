@@ -1,0 +1,260 @@
+"""Results as rows: what a command prints in JSON and CSV, and what the columns of its table show."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import fields
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from bezstab.errors import InputError
+from bezstab.methods import Method, evaluations, steps
+from bezstab.show.columns import Row, Value
+from bezstab.units import feedback_gains
+
+if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
+    from _typeshed import DataclassInstance
+
+    from bezstab.engines import Engine
+    from bezstab.evidence import Measurement, VerdictMap
+    from bezstab.mechanism import Observation, Trajectory
+    from bezstab.methods import Verdict
+    from bezstab.stability import BestPoint, Choice, Limit, Member, Region
+
+
+def row(result: DataclassInstance, without: Collection[str] = (), **more: Value) -> dict[str, Value]:
+    """Return a result's fields by name, then `more`, which also stands in for fields of the same name.
+
+    Numbers and texts as they are, an exact number as float64, a method or a scene by its name, a complex number by its
+    parts (see complex_parts; those of a field `pole` are called z_...). TypeError, naming the field and its type, for
+    a field that is none of these: it belongs into `without` or `more`.
+    """
+    cells: dict[str, Value] = {}
+    for field in fields(result):
+        if field.name in without or field.name in more:
+            continue
+        value = getattr(result, field.name)
+        if isinstance(value, complex):
+            cells |= complex_parts("z_" if field.name == "pole" else f"{field.name}_", value)
+        else:
+            cells[field.name] = _cell(f"{type(result).__name__}.{field.name}", value)
+    return {**cells, **more}
+
+
+def _cell(field: str, value: object) -> Value:
+    """Return what a row holds of one field's value."""
+    if isinstance(value, Fraction):
+        return float(value)
+    if value is None or isinstance(value, str | float | int):
+        return value
+    name = getattr(value, "name", None)
+    if isinstance(name, str):  # a method, a scene
+        return name
+    raise TypeError(f"{field} is a {type(value).__name__}: no row knows how to show it")
+
+
+def complex_parts(prefix: str, z: complex) -> dict[str, float]:
+    """Return real and imaginary part, modulus and angle (degrees), as `prefix` + real, imag, abs, angle_deg."""
+    parts = {"real": z.real, "imag": z.imag, "abs": abs(z), "angle_deg": float(np.degrees(np.angle(z)))}
+    return {f"{prefix}{key}": value for key, value in parts.items()}
+
+
+def pole_rows(
+    method: Method, alpha_hat: float, beta_hat: float, poles: Iterable[complex], verdict: Verdict
+) -> list[Row]:
+    """Return a row for each pole of one method at one point (dimensionless), angles in degrees."""
+    point: Row = {"method": method.name, "alpha_hat": alpha_hat, "beta_hat": beta_hat}
+    return [{**point, **complex_parts("z_", complex(z)), "verdict": verdict} for z in poles]
+
+
+def method_row(method: Method) -> Row:
+    """Return steps, evaluations per step, order of accuracy, error constant (exact, as text) and source."""
+    from bezstab.methods import accuracy  # loads sympy
+
+    order, constant = accuracy(method)
+    return {
+        "method": method.name,
+        "steps": steps(method),
+        "evaluations": evaluations(method),
+        "order": order,
+        "error_constant": str(constant),
+        "source": method.source,
+    }
+
+
+def formula_row(method: Method, latex: bool = False) -> Row:
+    """Return one method's recursion, s->z mapping and characteristic polynomial (paper Tables 1 and 2), as text."""
+    from bezstab.methods import characteristic_text, mapping_text, recursion_text  # loads sympy
+
+    return {
+        "method": method.name,
+        "recursion": recursion_text(method, latex),
+        "mapping": mapping_text(method, latex),
+        "characteristic_polynomial": characteristic_text(method, latex),
+    }
+
+
+def whole_row(method: Method, region: Region, best: BestPoint | None, latex: bool) -> Row:
+    """Return all that is known of one method: method_row, formula_row (as text or LaTeX) and region_row."""
+    return {**method_row(method), **formula_row(method, latex), **region_row(region, best)}
+
+
+def region_row(region: Region, best: BestPoint | None) -> Row:
+    """Return area, axis limits and best point (dimensionless); None where the region is empty."""
+    from bezstab.show.best_point_words import best_point_words
+
+    alpha_min = alpha_max = beta_max = None
+    if region.extent:
+        (alpha_min, alpha_max), (_, beta_max) = region.extent
+    return {
+        "method": region.method.name,
+        "area": region.area,
+        "alpha_hat_min": alpha_min,
+        "alpha_hat_max": alpha_max,
+        "beta_hat_max": beta_max,
+        "best_z_abs": best.z_abs if best else None,
+        "best_alpha_hat": best.alpha_hat if best else None,
+        "best_beta_hat": best.beta_hat if best else None,
+        "best_where": best_point_words(best) if best else None,
+    }
+
+
+def family_row(member: Member) -> Row:
+    """Return what has become of a family at its number of steps n; None where its region is empty."""
+    alpha_max = beta_max = None
+    if member.region.extent:
+        (_, alpha_max), (_, beta_max) = member.region.extent
+    return row(member, without={"region"}, area=member.region.area, alpha_hat_max=alpha_max, beta_hat_max=beta_max)
+
+
+def limit_row(limit: Limit) -> Row:
+    """Return the row of the Bezier family's limit, of order two, which has no n."""
+    return row(limit, without={"boundary"}, n=None, method="B∞", order=2)
+
+
+def simulation_row(
+    trajectory: Trajectory, observation: Observation, alpha_hat: float, beta_hat: float, h: float
+) -> Row:
+    """Return the summary of one run: largest |c| and |cdot| (SI), energy drift (J), evaluations, when and why it ended.
+
+    `time` is where it ended (s); h in s.
+    """
+    return {
+        "scene": trajectory.mechanism.scene.name,
+        **row(
+            trajectory,
+            without={"mechanism", "t", "q", "v"},
+            alpha_hat=alpha_hat,
+            beta_hat=beta_hat,
+            h=h,
+            time=float(trajectory.t[-1]),
+        ),
+        "c_max": float(np.abs(observation.c).max()),
+        "cdot_max": float(np.abs(observation.cdot).max()),
+        "energy_drift": float(observation.energy[-1] - observation.energy[0]),
+    }
+
+
+def measurement_row(scene: str, measurement: Measurement) -> Row:
+    """Return predicted and measured dominant pole at one point, their difference, angles in degrees.
+
+    None where nothing was measured; verdicts agree if both or neither diverge.
+    """
+    predicted = complex_parts("", measurement.predicted)
+    measured: dict[str, float | None] = dict.fromkeys(predicted)
+    difference: dict[str, float | None] = dict.fromkeys(predicted)
+    if measurement.measured is not None:
+        parts = complex_parts("", measurement.measured)
+        measured |= parts
+        difference |= {key: parts[key] - predicted[key] for key in parts}
+    agree = None
+    if measurement.measured_verdict != "too close to call":
+        agree = (measurement.predicted_verdict == "diverges") == (measurement.measured_verdict == "diverges")
+    return {
+        **row(measurement, scene=scene, measurable=measurement.measured is not None),
+        **{f"measured_{key}": value for key, value in measured.items()},
+        **{f"difference_{key}": value for key, value in difference.items()},
+        "verdicts_agree": agree,
+    }
+
+
+def summary_row(measurements: Sequence[Row]) -> Row:
+    """Return how well the measured poles of one method agree: errors of |z|, and verdicts that contradict theory.
+
+    From its rows by measurement_row, at least one.
+    """
+    errors = [abs(each["difference_abs"]) for each in measurements if isinstance(each["difference_abs"], float)]
+    return {
+        "method": measurements[0]["method"],
+        "points": len(measurements),
+        "measured": len(errors),
+        "median_error": float(np.median(errors)) if errors else None,
+        "largest_error": max(errors, default=None),
+        "called": sum(each["verdicts_agree"] is not None for each in measurements),
+        "wrong": sum(each["verdicts_agree"] is False for each in measurements),
+    }
+
+
+def verdict_map_row(verdicts: VerdictMap) -> Row:
+    """Return how far simulated verdicts agree with |z_p| < 1, and how near to one those lie that do not."""
+    return row(
+        verdicts,
+        without={"alpha_hat", "beta_hat", "z_abs", "diverges"},
+        runs=verdicts.broken.size,
+        broken=int(verdicts.broken.sum()),
+        agreement=verdicts.agreement,
+        band=verdicts.band,
+        farthest=verdicts.farthest_disagreement,
+        disagreeing=verdicts.disagreements_beyond_band,
+    )
+
+
+def choice_row(choice: Choice, h: float | None) -> dict[str, Value]:
+    """Return a point, with h (s) in 1/s too, how fast it settles and by what it may be off; None for no limit."""
+    alpha = beta = settle_seconds = h_max = None
+    if h is not None:
+        alpha, beta = alpha_and_beta(choice.alpha_hat, choice.beta_hat, h)
+        if choice.settle_steps is not None:
+            settle_seconds = choice.settle_steps * h * float(choice.method.step_multiple)
+        if choice.margins:
+            h_max = choice.margins.h * h
+    h_factor = alpha_min = alpha_max = beta_min = beta_max = None
+    if choice.margins:
+        h_factor = choice.margins.h
+        alpha_min, alpha_max = choice.margins.alpha
+        beta_min, beta_max = choice.margins.beta
+    return row(
+        choice,
+        without={"margins"} if choice.margins else (),  # where there are none the row says so: margins is None
+        h=h,
+        alpha=alpha,
+        beta=beta,
+        settle_steps=choice.settle_steps,
+        settle_seconds=settle_seconds,
+        h_factor=h_factor,
+        h_max=h_max,
+        alpha_factor_min=alpha_min,
+        alpha_factor_max=alpha_max,
+        beta_factor_min=beta_min,
+        beta_factor_max=beta_max,
+    )
+
+
+def alpha_and_beta(alpha_hat: float, beta_hat: float, h: float) -> tuple[float, float | None]:
+    """Return alpha and beta (1/s) for a step of h (s); beta None where beta_hat < 0 has no root."""
+    two_alpha, beta_squared = feedback_gains(alpha_hat, beta_hat, h)
+    return two_alpha / 2, math.sqrt(beta_squared) if beta_squared >= 0 else None
+
+
+def engine_row(engine: Engine, point: tuple[Fraction, Fraction] | None, h: Fraction) -> Row:
+    """Return an engine's words, and its setting for (alpha_hat, beta_hat) at a step h (s), or why it has none."""
+    setting = None
+    if point:
+        try:
+            setting = engine.setting(point, h)
+        except InputError as error:
+            setting = str(error)
+    return row(engine, without={"read", "write", "marks"}, parameters=", ".join(engine.parameters), set=setting)

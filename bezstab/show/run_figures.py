@@ -1,0 +1,63 @@
+"""Figures of simulations: a scene, the history of a run, and what accuracy costs."""
+
+from matplotlib.figure import Figure
+
+from bezstab.evidence import SweptRuns
+from bezstab.mechanism import Observation, Scene, Trajectory
+from bezstab.show import plot
+from bezstab.show.style import MARKERS, column_figure, method_line, styled
+from bezstab.stability import FloatArray
+
+
+def scene_figure(scene: Scene, q: FloatArray) -> Figure:
+    """Return a scene's bodies in a state q, each a line through the points of its joints, in m (paper Fig. 4)."""
+    with styled():
+        figure = column_figure(0.6)
+        axes = figure.add_subplot()
+        plot.mechanism(scene, q, axes)
+        axes.set(xlabel="x (m)", ylabel="y (m)", aspect="equal", title=scene.name)
+        axes.margins(0.15, 0.35)
+        return figure
+
+
+def history_figure(trajectory: Trajectory, observation: Observation) -> Figure:
+    """Return the first constraint and its derivative against time in s, SI units (paper Figs. 5-9)."""
+    with styled():
+        figure = column_figure()
+        upper, lower = figure.subplots(2, 1, sharex=True)
+        plot.trajectory(trajectory, observation, axes=upper)
+        plot.trajectory(trajectory, observation, derivative=True, axes=lower)
+        title = f"{trajectory.mechanism.scene.name}, {trajectory.method.name}"
+        if trajectory.failure:
+            title += f"\n{trajectory.failure}"
+        upper.set(title=title, ylabel="$c_1$ (SI)")
+        lower.set(xlabel="t (s)", ylabel=r"$\dot c_1$ (SI)")
+        for axes in (upper, lower):
+            axes.ticklabel_format(axis="y", scilimits=(-2, 3))
+        return figure
+
+
+def work_precision_figure(swept: SweptRuns, scene: str, constraint: bool, floor: float = 0.0) -> Figure:
+    """Return the error of each run against its evaluations, the Pareto front ringed, failed runs on top.
+
+    The trajectory's error (SI), not drawn below `floor`, that of the reference; or with `constraint` the largest |c|.
+    """
+    runs = swept.runs
+    with styled():
+        figure = column_figure(1.15)
+        axes = figure.add_subplot()
+        known_errors = [error for run in runs if (error := plot.run_error(run, constraint)) is not None]
+        top = 10 * max(known_errors, default=1.0)
+        for number, method in enumerate(dict.fromkeys(run.method for run in runs)):
+            own = [run for run in runs if run.method == method]
+            plot.work_precision(own, constraint, floor, axes, marker=MARKERS[number % len(MARKERS)])
+            failed = [run.evaluations for run in own if run.failure]
+            axes.plot(failed, [top] * len(failed), "x", color=method_line(method)["color"], markersize=4)
+        front = swept.constraint_front if constraint else swept.trajectory_front
+        plot.pareto_front([runs[number] for number in front], constraint, floor, axes)
+        if any(run.failure for run in runs):
+            axes.plot([], [], "x", color="0.4", label="diverged")
+        axes.set(xscale="log", yscale="log", xlabel="evaluations of f", title=scene)
+        axes.set_ylabel(plot.error_label(constraint))
+        figure.legend(loc="outside lower center", ncols=4)
+        return figure

@@ -1,0 +1,107 @@
+"""Every command prints the JSON that it printed before the package moved into its rooms.
+
+golden/outputs.json holds exit status, rows and written files of each command, without processor times, which no two
+runs share.
+"""
+
+import json
+import math
+import re
+import shlex
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.cli.running import run
+
+GOLDEN: list[dict[str, Any]] = json.loads((Path(__file__).parent / "golden" / "outputs.json").read_text("utf-8"))
+SLOW = ("extremes", "paper", "family", "tradeoff", "choose --method B4 --method AB4 --method SYM")
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """How far numbers under some keys of some commands may be off."""
+
+    command: str
+    key: str
+    relative: float
+    absolute: float
+    reason: str
+
+
+TOLERANCES = (
+    Tolerance("verify --witness", "remaining", 0.5, 0.0, "what MuJoCo leaves differs between its versions"),
+    Tolerance("verify", "measured_angle_deg|difference_angle_deg", 1e-6, 1e-4, "as below: 1e-6 rad in degrees"),
+    Tolerance(
+        "verify",
+        "measured_.*|difference_.*",
+        1e-6,
+        1e-6,
+        "simulated, then fitted: libm and BLAS differ between machines; a difference is as far off as what it is of",
+    ),
+    Tolerance(
+        "simulate|tradeoff",
+        "c_max|c_rms|cdot_max|cdot_rms|least_pivot|trajectory_error",
+        1e-6,
+        1e-13,
+        "simulated: libm differs between machines, and 1e-13 (SI) is rounding over a run of thousands of steps",
+    ),
+    Tolerance(
+        "simulate|tradeoff", "energy_drift", 1e-6, 1e-10, "the difference of two energies of some 10 J, each rounded"
+    ),
+    Tolerance("tradeoff", "order", 1e-6, 1e-5, "the logarithm of a ratio of simulated errors"),
+    Tolerance("choose|check", "z_angle_deg", 1e-9, 1e-4, "as below: 1e-6 rad in degrees"),
+    Tolerance(
+        "choose|check", "z_.*", 1e-9, 1e-7, "many choices are double poles, which split by the root of rounding, 1e-8"
+    ),
+    Tolerance("", ".*", 1e-9, 1e-12, "float64 arithmetic on numbers of order one"),
+)
+"""The first that fits both command and key."""
+
+
+def tolerance(command: str, key: str) -> Tolerance:
+    """Return what holds for the numbers of one key of one command."""
+    return next(each for each in TOLERANCES if re.match(each.command, command) and re.fullmatch(each.key, key))
+
+
+def assert_agrees(command: str, key: str, printed: Any, expected: Any) -> None:
+    """Fail unless a value is as before: numbers within their tolerance, everything else exactly."""
+    if _is_number(expected) and _is_number(printed):
+        allowed = tolerance(command, key)
+        close = math.isclose(printed, expected, rel_tol=allowed.relative, abs_tol=allowed.absolute)
+        assert close, f"{key}: {printed!r}, expected {expected!r} ({allowed.reason})"
+    elif command.startswith("extremes") and key == "seen":  # digits and rounding errors differ between machines
+        assert _without_numbers(str(printed)) == _without_numbers(str(expected))
+    else:
+        assert printed == expected, key
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, float | int) and not isinstance(value, bool)
+
+
+def _without_numbers(text: str) -> str:
+    return re.sub(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?", "#", text)
+
+
+@pytest.mark.parametrize(
+    "golden",
+    [
+        pytest.param(golden, id=golden["command"], marks=[pytest.mark.slow] * golden["command"].startswith(SLOW))
+        for golden in GOLDEN
+    ],
+)
+def test_a_command_prints_what_it_printed_before(golden: dict[str, Any], tmp_path: Path) -> None:
+    command = golden["command"]
+    result = run(*shlex.split(command), "--format", "json")
+    assert result.exit_code == golden["status"], result.stderr
+    printed = json.loads(result.stdout)
+    assert len(printed) == len(golden["rows"])
+    for row, expected in zip(printed, golden["rows"], strict=True):
+        untimed = {key: value for key, value in row.items() if not key.startswith("seconds")}
+        assert list(untimed) == list(expected)
+        for key, value in expected.items():
+            assert_agrees(command, key, untimed[key], value)
+    assert sorted(path.name for path in tmp_path.iterdir()) == golden["files"]

@@ -1,0 +1,115 @@
+import csv
+import io
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.cli.running import arrays, rows, run
+
+
+def test_poles_prints_the_default_methods_and_keys() -> None:
+    found = rows("poles", "--alpha", "0.5", "--beta", "0.1")
+    assert [row["method"] for row in found] == ["B2", "B3", "B4", "AB2", "AB3", "AB4", "RK4@5", "SIE"]
+    assert list(found[0]) == ["method", "alpha_hat", "beta_hat", "z_real", "z_imag", "z_abs", "z_angle_deg", "verdict"]
+    assert {row["verdict"] for row in found} == {"converges"}
+
+
+@pytest.mark.parametrize(
+    ("name", "alpha", "beta", "verdict"),
+    [
+        ("SYM", "1", "2", "marginal"),
+        ("SYM", "1", "2.00000000000000000001", "diverges"),
+        ("SYM", "1", "1.99999999999999999999", "converges"),
+        ("AB2", "1.5", "0.5", "marginal"),
+        ("AB2", "2", "1", "diverges"),
+        ("RK1", "2", "2", "marginal"),
+        ("RK1", "2.00000000000000000002", "2", "converges"),
+        ("B4", "0", "0", "diverges"),
+        ("B4", "-0.1", "0.1", "diverges"),
+        ("RK1", "6/11", "3/11", "converges"),
+        ("RK1", "6/11", "6/11", "marginal"),
+    ],
+)
+def test_the_verdict_is_proven_on_the_numbers_as_typed(name: str, alpha: str, beta: str, verdict: str) -> None:
+    (row,) = rows("poles", "--method", name, "--alpha", alpha, "--beta", beta)
+    assert row["verdict"] == verdict
+
+
+def test_physical_units_and_all_poles() -> None:
+    physical = rows(
+        "poles", "--alpha", "50", "--beta", "50", "--h", "0.002", "--physical", "--method", "B3", "--all-poles"
+    )
+    assert physical == rows("poles", "--alpha", "0.2", "--beta", "0.01", "--method", "B3", "--all-poles")
+    assert len(physical) == 6
+
+
+def test_methods_lists_and_shows() -> None:
+    assert {row["method"] for row in rows("methods")} >= {"B12", "AB8", "ABM4", "RK4", "SIE", "SYM"}
+    (row,) = rows("methods", "B4")
+    assert row["order"] == 2
+    assert row["recursion"] == "y_{k+1} = y_k + h/108 (175 f_k - 81 f_{k-1} + 15 f_{k-2} - f_{k-3})"
+    assert r"\hat{\alpha}" in run("methods", "B4", "--latex").stdout
+    text = run("methods", "B4").stdout
+    for piece in ("175 z^3 - 81 z^2 + 15 z - 1", "11664 z^8", "0.8096847184", "11/36", "0.625883502", "1.588235294"):
+        assert piece in text
+
+
+def test_region_needs_no_option_and_writes_two_files(tmp_path: Path) -> None:
+    result = run("region", "--method", "B4")
+    assert result.exit_code == 0
+    assert {path.name for path in tmp_path.iterdir()} == {"region_B4.png", "region_B4.csv"}
+    assert "0.8096847184" in result.stdout
+    assert "wrote" not in result.stdout
+    assert result.stderr.count("wrote") == 2
+    table = list(csv.DictReader(io.StringIO((tmp_path / "region_B4.csv").read_text(encoding="utf-8"))))
+    assert list(table[0]) == ["alpha_hat", "beta_hat", "z_abs", "z_angle_deg"]
+    assert len(table) == 200**2
+
+
+def test_region_prints_the_promised_keys(tmp_path: Path) -> None:
+    (row, other) = rows("region", "--method", "B4", "--method", "AB4", "--figure", "none", "--table", "none")
+    assert (row["method"], other["method"]) == ("B4", "AB4")
+    assert {"area", "alpha_hat_max", "beta_hat_max", "best_z_abs", "best_alpha_hat", "best_beta_hat"} <= set(row)
+    assert not list(tmp_path.iterdir())
+
+
+def test_region_options(tmp_path: Path) -> None:
+    options = (
+        "-o out --figure svg --table npz --grid 11 --alpha-range -0.1 0.5 --beta-range 1/10 2/10 --level 0.8 --h 0.001"
+    )
+    assert run("region", "--method", "B3", *options.split()).exit_code == 0
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {"region_B3.svg", "region_B3.npz"}
+    table = arrays(tmp_path / "out" / "region_B3.npz")
+    assert table["alpha_hat"][:11] == pytest.approx(np.linspace(-0.1, 0.5, 11))
+    assert table["beta_hat"][::11] == pytest.approx(np.linspace(0.1, 0.2, 11))
+    assert table["two_alpha"] == pytest.approx(table["alpha_hat"] * 1e3)
+    assert "0.8" in (tmp_path / "out" / "region_B3.svg").read_text(encoding="utf-8")
+
+
+def test_quality_is_points_per_axis(tmp_path: Path) -> None:
+    run("region", "--quality", "fast", "--figure", "none", "--table", "npz")
+    assert len(arrays(tmp_path / "region_B4.npz")["z_abs"]) == 50**2
+
+
+def test_compare_overlays_boundaries(tmp_path: Path) -> None:
+    assert run("region", "--compare", "--method", "B4", "--method", "RK4@5", "--h", "0.001").exit_code == 0
+    assert {path.suffix for path in tmp_path.iterdir()} == {".png", ".csv"}
+    table = list(csv.DictReader(io.StringIO(next(tmp_path.glob("*.csv")).read_text(encoding="utf-8"))))
+    assert {row["method"] for row in table} == {"B4", "RK4@5"}
+
+
+def test_a_users_method(tmp_path: Path) -> None:
+    Path("mine.toml").write_text('name = "a/b"\nrho = ["1", "-1"]\nsigma = ["0", "1"]', encoding="utf-8")
+    assert run("region", "--method", "mine.toml", "--grid", "5").exit_code == 0
+    assert (tmp_path / "region_a_b.png").exists()
+    assert rows("poles", "--alpha", "1", "--beta", "1/2", "--method", "mine.toml@2")[0]["method"] == "a/b@2"
+
+
+def test_family_ends_with_its_limit(tmp_path: Path) -> None:
+    found = rows("family", "bezier", "--from", "3", "--to", "5")
+    assert [row["n"] for row in found] == [3, 4, 5, None]
+    assert [row["method"] for row in found] == ["B3", "B4", "B5", "B∞"]
+    assert [path.name for path in tmp_path.iterdir()] == ["family_bezier.png"]
+    found = rows("family", "adams-bashforth", "--figure", "none")
+    assert [row["order"] for row in found] == list(range(2, 9))

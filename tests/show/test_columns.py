@@ -1,0 +1,78 @@
+import csv
+import io
+import json
+import math
+
+import pytest
+
+from bezstab.cli.map_commands import POLES, REGIONS
+from bezstab.methods import lookup
+from bezstab.show import Column, Row, column, formatted, pole_column, render, transposed, yes_no_column
+from bezstab.show.rows import pole_rows, region_row
+from bezstab.stability import best_point, region
+
+ROWS = pole_rows(lookup("B4"), 0.5, 0.1, [0.75 + 0.125j, -0.5 + 0j], "converges")
+
+
+def shown(column: Column, **row: object) -> str:
+    return column.text(row)  # type: ignore[arg-type]
+
+
+def test_json_and_csv_keep_every_digit() -> None:
+    assert json.loads(render(ROWS, POLES, "json")) == ROWS
+    (first, _) = csv.DictReader(io.StringIO(render(ROWS, POLES, "csv")))
+    assert {key: float(first[key]) for key in ("z_real", "z_imag", "z_abs")} == {
+        k: ROWS[0][k] for k in ("z_real", "z_imag", "z_abs")
+    }
+
+
+def test_csv_has_the_keys_of_every_row() -> None:
+    rows: list[Row] = [{"a": 1}, {"a": 2, "b": 3}]
+    assert render(rows, [], "csv").splitlines() == ["a,b", "1,", "2,3"]
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+def test_what_is_not_finite_is_missing(value: float) -> None:
+    rows = [{**ROWS[0], "z_abs": value}]
+    assert json.loads(render(rows, POLES, "json")) == [{**ROWS[0], "z_abs": None}]
+    assert next(csv.DictReader(io.StringIO(render(rows, POLES, "csv"))))["z_abs"] == ""
+    assert " -  " in render(rows, POLES, "text")
+
+
+def test_columns_line_up_under_hats() -> None:
+    rows = [region_row(region(lookup(name)), best_point(lookup(name))) for name in ("B4", "AB4")]
+    for form in ("text", "markdown"):
+        header, *lines = render(rows, REGIONS, form).replace("\u0302", "").splitlines()
+        column = header.index("least")
+        assert [line[column : column + 10] for line in lines if "---" not in line] == ["0.62588350", "0.80700735"]
+
+
+def test_text_rounds_and_markdown_is_a_table() -> None:
+    assert "0.750000 ± 0.125000i" in render(ROWS, POLES, "text")
+    assert "-0.500000  " in render(ROWS, POLES, "text")
+    assert render(ROWS, POLES, "markdown").splitlines()[1].replace("-", "").replace("|", "").strip() == ""
+
+
+def test_missing_values_are_dashes_and_minus_zero_is_zero() -> None:
+    assert [formatted(None, ".3f"), formatted(""), formatted(-0.0, "g")] == ["-", "-", "0"]
+    assert shown(column("x", "x", ".2f"), x=None) == "-"
+
+
+def test_a_pole_shows_its_conjugate_unless_it_is_real_to_six_digits() -> None:
+    z = pole_column("z")
+    assert shown(z, z_real=0.5, z_imag=0.25) == "0.500000 ± 0.250000i"
+    assert shown(z, z_real=0.5, z_imag=1e-9) == "0.500000"
+    assert shown(z, z_real=-2e6, z_imag=0.0) == "-2.000000e+06"
+
+
+def test_a_truth_value_is_yes_no_or_a_dash() -> None:
+    held = yes_no_column("held", "held")
+    assert [shown(held, held=value) for value in (True, False, None)] == ["yes", "NO", "-"]
+
+
+def test_a_transposed_row_reads_from_top_to_bottom() -> None:
+    assert transposed({"h_max": 0.5, "reason": None, "steps": 4}) == [
+        {"property": "h max", "value": "0.5"},
+        {"property": "reason", "value": "-"},
+        {"property": "steps", "value": "4"},
+    ]

@@ -1,0 +1,125 @@
+import io
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from bezstab.evidence import map_rows, simulated_verdicts, verdict_map
+from bezstab.mechanism import load_scene
+from bezstab.methods import lookup
+from bezstab.show.plane_figures import comparison_figure, family_figure, region_figure, verdict_figure
+from bezstab.show.style import save
+from bezstab.stability import (
+    FloatArray,
+    Member,
+    best_point,
+    bezier_limit,
+    family_members,
+    region,
+    spectral_radius,
+    window,
+)
+
+
+def drawn_map(name: str = "B4", h: float | None = None) -> tuple[Figure, FloatArray, FloatArray, FloatArray]:
+    method = lookup(name)
+    alpha_hat, beta_hat = (np.linspace(low, high, 41) for low, high in window(region(method)))
+    z_abs = spectral_radius(method, alpha_hat, beta_hat[:, None])
+    faster = [region(method, 0.75), region(method, 0.9)]
+    return (
+        region_figure(region(method), faster, best_point(method), alpha_hat, beta_hat, z_abs, h),
+        alpha_hat,
+        beta_hat,
+        z_abs,
+    )
+
+
+@pytest.mark.parametrize("h", [None, 0.001])
+def test_the_figure_draws_what_it_is_given(h: float | None) -> None:
+    figure, alpha_hat, beta_hat, z_abs = drawn_map(h=h)
+    axes, scale = figure.axes[0], np.array([1 / (h or 1), 1 / (h or 1) ** 2])
+    (image,) = axes.images
+    shown = image.get_array()
+    assert shown is not None
+    assert (np.ma.getmaskarray(shown) == (z_abs >= 1)).all()
+    assert np.asarray(shown)[z_abs < 1].tolist() == z_abs[z_abs < 1].tolist()
+    left, right, bottom, top = image.get_extent()
+    step = (alpha_hat[1] - alpha_hat[0]) * scale[0]
+    assert (left + step / 2, right - step / 2) == pytest.approx((0, alpha_hat[-1] * scale[0]))  # nodes at pixel centres
+    assert (bottom + top) / 2 == pytest.approx(beta_hat[[0, -1]].mean() * scale[1])
+    lines = {str(line.get_label()): np.array(line.get_xydata()) for line in axes.lines}
+    for label, level in (("$|z_p| = 1$", 1.0), ("$|z_p| = 0.75$", 0.75), ("$|z_p| = 0.9$", 0.9)):
+        (curve,) = region(lookup("B4"), level).boundary
+        assert lines[label][:-1] == pytest.approx(curve * scale)
+    parabola = lines[r"$\hat\beta = \hat\alpha^2/4$"]
+    assert parabola[:, 1] == pytest.approx(parabola[:, 0] ** 2 / 4)  # beta^2 = (2 alpha)^2/4 in either unit
+    best = best_point(lookup("B4"))
+    assert best is not None
+    assert lines["least $|z_p|$: 0.6259"][0] == pytest.approx(np.array([best.alpha_hat, best.beta_hat]) * scale)
+    assert r"\alpha" in axes.get_xlabel()
+    assert r"\beta" in axes.get_ylabel()
+    assert ("1/s" in axes.get_xlabel()) == (h is not None)
+
+
+def test_the_verdict_figure_shows_cells_boundary_and_disagreement() -> None:
+    method = lookup("SYM")
+    rows = map_rows(load_scene("pendulum"), method, 1e-3, 6)
+    cells = verdict_map(rows, [simulated_verdicts(each) for each in rows])
+    wrong = cells.diverges.copy()
+    wrong[2, 3] ^= True
+    broken = np.zeros_like(wrong)
+    broken[0, 5] = True
+    figure = verdict_figure(replace(cells, diverges=wrong, broken=broken), region(method))
+    (axes,) = figure.axes
+    shown = axes.images[0].get_array()
+    assert shown is not None
+    assert (np.ma.getmaskarray(shown) == broken).all()
+    assert (np.asarray(shown)[~broken] == wrong[~broken]).all()
+    lines = {str(line.get_label()): np.array(line.get_xydata()) for line in axes.lines}
+    assert lines["disagree"].tolist() == [[cells.alpha_hat[3], cells.beta_hat[2]]]
+    (curve,) = region(method).boundary
+    assert lines["$|z_p| = 1$"][:-1] == pytest.approx(curve)
+    assert "97.14%" in axes.get_title()  # 34 of 35
+
+
+def test_the_family_figure_has_a_point_per_method_and_the_limit() -> None:
+    families = {"bezier": family_members("bezier", 2, 5), "adams-bashforth": family_members("adams-bashforth", 2, 4)}
+    limit = bezier_limit()
+    area, fastest, constant, regions = family_figure(families, limit).axes
+
+    def assert_drawn(axes: Axes, quantity: Callable[[Member], float | None]) -> None:
+        lines = {str(line.get_label()): line for line in axes.lines}
+        for name, members in families.items():
+            order = {"bezier": 2, "adams-bashforth": "n"}[name]
+            points = np.array(lines[f"{name} (order {order})"].get_xydata()).tolist()
+            assert points == [[member.n, quantity(member)] for member in members]
+
+    assert_drawn(area, lambda member: member.region.area)
+    assert_drawn(fastest, lambda member: member.z_abs)
+    assert_drawn(constant, lambda member: float(member.error_constant))
+    assert [np.array(axes.lines[-1].get_ydata())[0] for axes in (area, fastest)] == [limit.area, limit.z_abs]
+    assert np.array(regions.lines[-1].get_xydata()) == pytest.approx(limit.boundary)
+
+
+def test_an_empty_region_can_be_drawn() -> None:
+    axis = np.linspace(0, 1, 5)
+    figure = region_figure(region(lookup("AB4"), 0.5), [], None, axis, axis, np.full((5, 5), 2.0))
+    save(figure, "png", io.BytesIO())
+
+
+def test_a_comparison_draws_each_boundary_and_keeps_a_given_window() -> None:
+    regions = [region(lookup(name)) for name in ("B4", "RK4@5")]
+    axes = comparison_figure(regions, (0.0, 1.0), (0.0, 0.5), h=0.001).axes[0]
+    for line, shape in zip(axes.lines, regions, strict=True):
+        assert np.array(line.get_xydata())[:-1] == pytest.approx(shape.boundary[0] * [1e3, 1e6])
+    assert (*axes.get_xlim(), *axes.get_ylim()) == pytest.approx((0, 1e3, 0, 0.5e6))
+
+
+def test_an_empty_region_has_its_label_only() -> None:
+    figure = comparison_figure([region(lookup("B4"), 0.5)])
+    (line,) = figure.axes[0].lines
+    assert line.get_label() == "B4"
+    assert np.isnan(line.get_xydata()).all()

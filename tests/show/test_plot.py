@@ -1,0 +1,95 @@
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from bezstab.evidence import map_rows, simulated_verdicts, verdict_map
+from bezstab.mechanism import compiled_mechanism, initial_state, load_scene, observe, simulate
+from bezstab.methods import lookup
+from bezstab.show import plot
+from bezstab.stability import best_point, family_members, region, spectral_radius
+
+B4 = lookup("B4")
+
+
+def test_a_boundary_is_drawn_into_a_new_figure() -> None:
+    line = plot.region(region(B4))
+    (curve,) = region(B4).boundary
+    assert np.array(line.get_xydata())[:-1] == pytest.approx(curve)
+    assert line.get_label() == "B4"
+    assert isinstance(line.figure, Figure)
+    assert "alpha" in line.axes.get_xlabel()  # type: ignore[union-attr]
+
+
+def test_two_regions_share_given_axes_and_take_the_callers_style() -> None:
+    axes = Figure().add_subplot()
+    first = plot.region(region(B4), axes, color="red", linewidth=3)
+    second = plot.region(region(lookup("AB4")), axes)
+    assert axes.lines[:] == [first, second]
+    assert (first.get_color(), first.get_linewidth()) == ("red", 3)
+
+
+def test_with_a_step_the_plane_is_two_alpha_and_beta_squared() -> None:
+    curve = np.array(plot.region(region(B4), h=0.001).get_xydata())[:-1]
+    assert curve == pytest.approx(region(B4).boundary[0] * [1e3, 1e6])
+
+
+def test_the_map_is_blank_where_the_method_is_unstable() -> None:
+    image = plot.spectral_radius(B4, (0, 2), (0, 1), points=20)
+    shown = image.get_array()
+    assert shown is not None
+    z_abs = spectral_radius(B4, np.linspace(0, 2, 20), np.linspace(0, 1, 20)[:, np.newaxis])
+    assert (np.ma.getmaskarray(shown) == (z_abs >= 1)).all()
+    assert np.asarray(shown)[z_abs < 1].tolist() == z_abs[z_abs < 1].tolist()
+
+
+def test_the_best_point_and_marks_lie_where_they_are() -> None:
+    best = best_point(B4)
+    assert best
+    assert np.array(plot.best_point(best).get_xydata()).tolist() == [[best.alpha_hat, best.beta_hat]]
+    lines = plot.marks({"one": (1.0, 0.25), "two": (0.5, 0.1)})
+    assert [np.array(line.get_xydata()).tolist() for line in lines] == [[[1.0, 0.25]], [[0.5, 0.1]]]
+    assert [line.get_label() for line in lines] == ["one", "two"]
+    assert lines[0].axes is lines[1].axes
+
+
+def test_critical_damping_is_the_parabola() -> None:
+    alpha_hat, beta_hat = np.array(plot.critical_damping((0, 2)).get_xydata()).T
+    assert beta_hat == pytest.approx(alpha_hat**2 / 4)
+
+
+def test_a_trajectory_shows_one_constraint_or_its_derivative() -> None:
+    moving = compiled_mechanism(load_scene("pendulum"))
+    run = simulate(moving, lookup("SYM"), 1e-3, 0.1, (1e3, 2e5))
+    seen = observe(moving, run.t, run.q, run.v, 1e3, 2e5)
+    last = seen.c.shape[1]
+    axes = Figure().add_subplot()
+    line = plot.trajectory(run, seen, constraint=last, axes=axes)
+    assert np.array(line.get_xydata()).tolist() == np.stack([run.t, seen.c[:, last - 1]], axis=1).tolist()
+    slope = plot.trajectory(run, seen, derivative=True, axes=axes)
+    assert axes.lines[:] == [line, slope]
+    assert np.array(slope.get_ydata()).tolist() == seen.cdot[:, 0].tolist()
+
+
+def test_a_family_is_drawn_against_n() -> None:
+    members = family_members("bezier", 2, 4)
+    assert np.array(plot.family(members).get_xydata()).tolist() == [[m.n, m.region.area] for m in members]
+    assert np.array(plot.family(members, "error constant").get_ydata()).tolist() == [
+        float(m.error_constant) for m in members
+    ]
+    shrinking = family_members("adams-bashforth", 8, 8)
+    assert np.array(plot.family(shrinking, "least |z_p|").get_ydata())[0] == shrinking[0].z_abs
+
+
+def test_verdicts_that_agree_are_not_crossed() -> None:
+    rows = map_rows(load_scene("pendulum"), lookup("SYM"), 1e-3, 3)
+    verdicts = verdict_map(rows, [simulated_verdicts(chunk) for chunk in rows])
+    shown = plot.verdicts(verdicts).get_array()
+    assert shown is not None
+    assert np.asarray(shown).tolist() == verdicts.diverges.tolist()
+    assert plot.disagreements(verdicts) is None
+
+
+def test_a_mechanism_is_a_line_for_each_body() -> None:
+    scene = load_scene("slider_crank")
+    lines = plot.mechanism(scene, initial_state(compiled_mechanism(scene))[0])
+    assert [line.get_label() for line in lines] == [body.name for body in scene.bodies]

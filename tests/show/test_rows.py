@@ -1,0 +1,72 @@
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from bezstab.engines import ENGINES
+from bezstab.methods import Method, lookup
+from bezstab.show.rows import alpha_and_beta, choice_row, engine_row, row, whole_row
+from bezstab.stability import best_point, describe_point, region
+from bezstab.units import to_dimensionless
+
+
+@dataclass(frozen=True)
+class Sample:
+    method: Method
+    pole: complex
+    share: Fraction
+    missing: str | None
+    values: object
+
+
+SAMPLE = Sample(lookup("B4"), 0.6 + 0.8j, Fraction(1, 4), None, np.zeros(2))
+KNOWN = {
+    "method": "B4",
+    "z_real": 0.6,
+    "z_imag": 0.8,
+    "z_abs": 1.0,
+    "z_angle_deg": pytest.approx(53.13010235415598),
+    "share": 0.25,
+    "missing": None,
+}
+
+
+def test_a_row_has_names_parts_and_numbers() -> None:
+    assert row(SAMPLE, without={"values"}) == KNOWN
+
+
+def test_a_row_refuses_a_type_that_it_does_not_know() -> None:
+    with pytest.raises(TypeError, match=r"Sample\.values is a ndarray"):
+        row(SAMPLE)
+
+
+def test_a_row_takes_what_is_said_instead_of_a_field() -> None:
+    assert row(SAMPLE, values=2, more="text") == {**KNOWN, "values": 2, "more": "text"}
+
+
+def test_a_whole_row_says_that_b4_is_of_order_two() -> None:
+    whole = whole_row(lookup("B4"), region(lookup("B4")), best_point(lookup("B4")), latex=False)
+    assert (whole["order"], whole["error_constant"], whole["steps"], whole["evaluations"]) == (2, "11/36", 4, 1)
+
+
+def test_alpha_and_beta_come_back() -> None:
+    alpha_hat, beta_hat = to_dimensionless(Fraction(50), Fraction(30), Fraction(1, 500))
+    assert alpha_and_beta(float(alpha_hat), float(beta_hat), 0.002) == pytest.approx((50, 30))
+    assert alpha_and_beta(0.1, -0.1, 0.002)[1] is None
+
+
+def test_a_choice_has_its_margins_or_says_that_there_are_none() -> None:
+    stable = choice_row(describe_point(lookup("SYM"), "as given", Fraction(1), Fraction(1, 2)), 0.002)
+    unstable = choice_row(describe_point(lookup("SYM"), "as given", Fraction(2), Fraction(2)), 0.002)
+    assert "margins" not in stable
+    assert stable["h_max"] == pytest.approx(0.002 * float(str(stable["h_factor"])))
+    assert (unstable["margins"], unstable["h_max"], unstable["settle_seconds"]) == (None, None, None)
+    assert unstable["alpha"] == 500
+
+
+def test_an_engine_without_a_setting_says_why() -> None:
+    point = (Fraction(1), Fraction(1, 5))
+    assert engine_row(ENGINES["ode"], point, Fraction(1, 500))["set"] == "ERP = 0.2"
+    assert "reaches" in str(engine_row(ENGINES["box2d"], point, Fraction(1, 500))["set"])
+    assert engine_row(ENGINES["ode"], None, Fraction(1, 500))["set"] is None
