@@ -15,7 +15,7 @@ import numpy as np
 
 from bezstab.errors import InputError
 from bezstab.methods import Method, accuracy, characteristic_text, evaluations, mapping_text, recursion_text, steps
-from bezstab.paper.printed import LEAST_Z_ABS, TABLE_5
+from bezstab.paper.printed import LEAST_Z_ABS
 from bezstab.show.columns import Column, Row, Value, formatted, pole_column
 from bezstab.units import feedback_gains
 
@@ -25,9 +25,8 @@ if TYPE_CHECKING:  # so that a small table does not load what makes the large on
 
     from bezstab.engines import Engine
     from bezstab.evidence import Measurement, VerdictMap
-    from bezstab.mechanism import Observation, Scene, Trajectory
+    from bezstab.mechanism import Observation, Trajectory
     from bezstab.methods import Verdict
-    from bezstab.paper.experiments import Experiment
     from bezstab.stability import BestPoint, Choice, FloatArray, Limit, Member, Region
 
 Columns = Sequence[Column]
@@ -125,22 +124,7 @@ MAP_COSTS = _columns(
     "error of the area = area_error .1e; error of the boundary in α̂ = boundary_error .1e; "
     "largest = boundary_error_max .1e"
 )
-BEHAVIOURS = _columns(
-    "case = case d; described as = described; α̂ = alpha_hat g; β̂ = beta_hat g; dominant pole = z pole; "
-    "|z_p| = z_abs .4f; ∠z_p (deg) = z_angle_deg .2f; seen: |z| = rate .4f; zero crossings of c₁ = crossings d"
-)
-PRINTED_POLES = _columns(
-    "α̂ = alpha_hat g; β̂ = beta_hat g; method = method; dominant pole = z pole; |z_p| = z_abs .4f; "
-    "∠z_p (deg) = z_angle_deg .3f; as printed = printed; largest |c₁| of 6 to 8 s (m) = before .0e; "
-    "of 8 to 10 s = after .0e"
-)
-MAPPINGS = _columns("method = method; step = recursion; s→z mapping = mapping")
-CHARACTERISTIC = _columns("method = method; characteristic polynomial = characteristic_polynomial")
-BODIES = _columns("body = body; length (m) = length g; mass (kg) = mass g; moment of inertia (kg m²) = inertia g")
-COSTS = _columns("method = method; evaluations of f in 10 s = evaluations d")
-TIMED: Columns = [*COSTS, *_columns("processor time / B4's = time_ratio .2f")]
 CHECKS = _columns("group = group; case = case; expected = expected; seen = seen; held = held yes")
-FINDINGS = _columns("where = where; claim = claim; paper = paper; here = here; agreement = agreement")
 REGIONS = _columns(
     "method = method; area = area .10g; α̂ from = alpha_hat_min .6g; α̂ to = alpha_hat_max .8g; "
     "β̂ to = beta_hat_max .8g; least |z_p| = best_z_abs .8f; at α̂ = best_alpha_hat .8f; at β̂ = best_beta_hat .8f; "
@@ -197,16 +181,6 @@ def formula_row(method: Method, latex: bool = False) -> Row:
         "mapping": mapping_text(method, latex),
         "characteristic_polynomial": characteristic_text(method, latex),
     }
-
-
-def body_rows(scene: Scene) -> list[Row]:
-    """Return each body's length between its joints, mass and moment of inertia; None where there is or enters none."""
-    along = {body.name: [0.0] for body in scene.bodies}
-    for name, (x, _) in scene.attachments:
-        along.setdefault(name, []).append(x)
-    spans = {name: max(x) - min(x) for name, x in along.items()}
-    cells = ((body.name, spans[body.name] or None, body.mass or None, body.inertia or None) for body in scene.bodies)
-    return [dict(zip(("body", "length", "mass", "inertia"), cell, strict=True)) for cell in cells]
 
 
 def transposed(row: Row) -> list[Row]:
@@ -350,13 +324,6 @@ def engine_row(engine: Engine, point: tuple[Fraction, Fraction] | None, h: Fract
     except InputError as error:
         setting = str(error)
     return row(engine, parameters=", ".join(engine.parameters), set=setting)
-
-
-def comparison_row(run: Experiment) -> Row:
-    """Return a line of Table 5: a dominant pole, the paper's beside it, and how large c_1 still is, 0 if rounding."""
-    left = {"before": run.left(6.0, 8.0), "after": run.left(8.0, 10.0)}
-    printed = TABLE_5[str(run.alpha_hat), str(run.beta_hat)][run.run.method.name]
-    return row(run, method=run.run.method.name, printed=" ".join(printed), **left, **_parts("z_", run.pole))
 
 
 def _parts(name: str, z: complex) -> dict[str, float]:
