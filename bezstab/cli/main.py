@@ -21,7 +21,7 @@ SECTIONS: Mapping[str, Sequence[click.Command]] = {
 }
 """What `bezstab --help` lists under which heading, in this order."""
 
-LOADED_LATE: Mapping[str, Mapping[str, str]] = {"Paper": {"paper": "bezstab.cli.paper_command:paper"}}
+LOADED_LATE: Mapping[str, Mapping[str, str]] = {"Paper": {"paper": "bezstab.paper.command:paper"}}
 """Extensions by heading and name, each as module:command: nothing imports them, the group finds them by name."""
 
 

@@ -79,8 +79,8 @@ def pole_table(runs: Sequence[Experiment]) -> str:
     )
     rows = [
         pole_row(run, case.poles[name])
-        for case, of_case in zip(TABLE_5, by_case(runs), strict=True)
-        for name, run in of_case.items()
+        for case, case_runs in zip(TABLE_5, by_case(runs), strict=True)
+        for name, run in case_runs.items()
     ]
     return captioned_table(caption, rows, PRINTED_POLES)
 
@@ -118,8 +118,8 @@ def findings(runs: Sequence[Experiment]) -> list[Finding]:
 def poles_as_printed(runs: Sequence[Experiment]) -> Finding:
     """Return which of the printed poles are not ours."""
     misprints = []
-    for case, of_case in zip(TABLE_5, by_case(runs), strict=True):
-        for name, run in of_case.items():
+    for case, case_runs in zip(TABLE_5, by_case(runs), strict=True):
+        for name, run in case_runs.items():
             wrong = misprinted(case.poles[name], run.pole)
             if wrong:
                 misprints.append(f"{name} at ({case.alpha_hat}, {case.beta_hat}): {', '.join(wrong)}")
@@ -237,14 +237,14 @@ def what_semi_implicit_euler_is(table_5: Sequence[PrintedCase] = TABLE_5) -> Fin
     The claim holds as it stands if they are those of symplectic Euler (SYM), which everybody else calls so; with a
     correction if they are those of an explicit Euler step, corrected once (SIE).
     """
-    of_sie, of_sym = matching_poles("SIE", table_5), matching_poles("SYM", table_5)
-    is_symplectic = of_sym == len(table_5)
-    is_corrected_once = of_sie == len(table_5)
+    sie_matches, sym_matches = matching_poles("SIE", table_5), matching_poles("SYM", table_5)
+    is_symplectic = sym_matches == len(table_5)
+    is_corrected_once = sie_matches == len(table_5)
     return finding(
         where="Table 5",
         claim="a method called “Euler semi-implicit”",
         paper="semi-implicit Euler",
-        here=f"1 + μ + μ² (Euler, corrected once): {of_sie} of 3 poles; symplectic Euler: {of_sym} of 3",
+        here=f"1 + μ + μ² (Euler, corrected once): {sie_matches} of 3 poles; symplectic Euler: {sym_matches} of 3",
         holds=[is_symplectic, is_symplectic or is_corrected_once],
     )
 
@@ -265,13 +265,13 @@ def panels_figure(runs: Sequence[Experiment]) -> Figure:
     """Return c_1 against time for the cases of Table 5, one-step and multistep methods apart (paper Fig. 9)."""
     with styled():
         figure = column_figure(1.5)
-        for row, of_case in enumerate(by_case(runs)):
+        for row, case_runs in enumerate(by_case(runs)):
             for place in (0, 1):
                 number = 2 * row + place
                 axes = figure.add_subplot(len(TABLE_5), 2, number + 1)
                 # the paper's panels a to f: on the right the multistep methods, in the last row on the left
                 multistep = (place == 1) != (row == 2)
-                shown = [run for run in of_case.values() if (steps(run.method) > 1) == multistep]
+                shown = [run for run in case_runs.values() if (steps(run.method) > 1) == multistep]
                 _draw_histories(axes, "abcdef"[number], shown)
         for axes in figure.axes[-2:]:
             axes.set_xlabel("t (s)")

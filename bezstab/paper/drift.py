@@ -56,11 +56,11 @@ def collapse_findings(runs: Sequence[Experiment]) -> list[Finding]:
     steps = ", ".join(f"{1e3 * h:g}" for h in COLLAPSE_STEPS)
     texts, later = {}, []
     for start in START_NAMES:
-        of_b4 = [ends[start, "B4", h] for h in COLLAPSE_STEPS]
-        of_ab4 = [ends[start, "AB4", h] for h in COLLAPSE_STEPS]
-        pairs = [f"{_time(b4)} / {_time(ab4)}" for b4, ab4 in zip(of_b4, of_ab4, strict=True)]
+        b4_ends = [ends[start, "B4", h] for h in COLLAPSE_STEPS]
+        ab4_ends = [ends[start, "AB4", h] for h in COLLAPSE_STEPS]
+        pairs = [f"{_time(b4)} / {_time(ab4)}" for b4, ab4 in zip(b4_ends, ab4_ends, strict=True)]
         texts[start] = f"B4 / AB4 after {', '.join(pairs)} s at {steps} ms"
-        later.append(all(b4 > ab4 for b4, ab4 in zip(of_b4, of_ab4, strict=True)))
+        later.append(all(b4 > ab4 for b4, ab4 in zip(b4_ends, ab4_ends, strict=True)))
     return [
         finding(
             where="Fig. 5",

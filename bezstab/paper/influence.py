@@ -66,14 +66,14 @@ class Behaviour:
 def report(progress: Progress) -> Report:
     """Return Table 4 with Figs. 7 and 8, and what they claim."""
     runs = list(progress(kicked_runs(), "table4", len(TABLE_4)))
-    seen = behaviours(runs)
+    observed = behaviours(runs)
     return Report(
-        tables={"table4": behaviour_table(seen)},
+        tables={"table4": behaviour_table(observed)},
         figures={
-            "fig7": partial(history_figures, runs, derivative=False),
-            "fig8": partial(history_figures, runs, derivative=True),
+            "fig7": partial(histories_figure, runs, derivative=False),
+            "fig8": partial(histories_figure, runs, derivative=True),
         },
-        findings=findings(seen),
+        findings=findings(observed),
     )
 
 
@@ -99,7 +99,7 @@ def _behaviour(case: Case, run: Experiment) -> Behaviour:
     return Behaviour(case, pole=run.pole, rate=float(rate), crossings=crossings, failure=run.failure)
 
 
-def behaviour_table(seen: Sequence[Behaviour]) -> str:
+def behaviour_table(observed: Sequence[Behaviour]) -> str:
     """Return Table 4 as Markdown."""
     caption = (
         f"Table 4: B4 at h = {1e3 * STEP:g} ms, c₁ kicked by {1e3 * KICK:g} mm. The paper's "
@@ -115,14 +115,14 @@ def behaviour_table(seen: Sequence[Behaviour]) -> str:
             "rate": behaviour.rate,
             "crossings": behaviour.crossings,
         }
-        for number, behaviour in enumerate(seen, start=1)
+        for number, behaviour in enumerate(observed, start=1)
     ]
     return captioned_table(caption, rows, BEHAVIOURS)
 
 
-def findings(seen: Sequence[Behaviour]) -> list[Finding]:
+def findings(observed: Sequence[Behaviour]) -> list[Finding]:
     """Return what the paper says of the cases of Table 4, held against pole and run."""
-    negative, slow, slow_waving, fast, fast_waving, outside = seen
+    negative, slow, slow_waving, fast, fast_waving, outside = observed
     return [
         finding(
             where="Table 4",
@@ -163,7 +163,7 @@ def _shown(*behaviours: Behaviour) -> str:
     return "; ".join(texts)
 
 
-def history_figures(runs: Sequence[Experiment], derivative: bool) -> Figure:
+def histories_figure(runs: Sequence[Experiment], derivative: bool) -> Figure:
     """Return c_1, or its derivative, against time for the cases of Table 4 (paper Figs. 7 and 8)."""
     with styled():
         figure = column_figure(1.3)

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from bezstab.methods import lookup
-from bezstab.paper.influence import TABLE_4, behaviours, findings, history_figures, kicked_runs, report
+from bezstab.paper.influence import TABLE_4, behaviours, findings, histories_figure, kicked_runs, report
 from bezstab.stability import poles, region
 
 
@@ -41,7 +41,7 @@ def test_a_report_makes_its_parts_and_says_how_many_runs_it_takes() -> None:
 @pytest.mark.parametrize("derivative", [False, True])
 def test_the_figures_draw_the_histories(derivative: bool) -> None:
     runs = list(kicked_runs())
-    panels = history_figures(runs, derivative).axes
+    panels = histories_figure(runs, derivative).axes
     for axes, run in zip(panels, runs, strict=True):
         (line,) = axes.lines
         assert np.array(line.get_xdata()) == pytest.approx(1e3 * run.t)
