@@ -1,6 +1,76 @@
-"""Which Baumgarte parameters are safe, and best, for an explicit integrator at its step size.
+"""Which Baumgarte parameters are safe, and best, for an integrator at its step size.
 
-Data flows one way: method -> derivation -> poles -> region -> figure.
+>>> import bezstab
+>>> bezstab.verdict("SYM", alpha=500, beta=707.10678, h=0.002)
+'diverges'
+
+The names below are loaded when first used, so that `import bezstab` stays light. bezstab/README.md has examples.
 """
 
+from typing import TYPE_CHECKING
+
+from bezstab.lazy import lazy_names
+
+if TYPE_CHECKING:
+    from bezstab.api import (
+        best_point,
+        check,
+        choose,
+        dominant_pole,
+        method,
+        poles,
+        region,
+        scene,
+        simulate,
+        spectral_radius,
+        verdict,
+        verify,
+    )
+    from bezstab.show import plot
+    from bezstab.units import from_dimensionless, to_dimensionless
+
 __version__ = "0.1.0"
+
+NAMES = {
+    "bezstab.api": (
+        "best_point",
+        "check",
+        "choose",
+        "dominant_pole",
+        "method",
+        "poles",
+        "region",
+        "scene",
+        "simulate",
+        "spectral_radius",
+        "verdict",
+        "verify",
+    ),
+    "bezstab.show": ("plot",),
+    "bezstab.units": ("from_dimensionless", "to_dimensionless"),
+}
+"""The public names by the module that has them."""
+
+__getattr__ = lazy_names(__name__, NAMES)
+
+__all__ = [
+    "best_point",
+    "check",
+    "choose",
+    "dominant_pole",
+    "from_dimensionless",
+    "method",
+    "plot",
+    "poles",
+    "region",
+    "scene",
+    "simulate",
+    "spectral_radius",
+    "to_dimensionless",
+    "verdict",
+    "verify",
+]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

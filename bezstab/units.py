@@ -3,7 +3,7 @@
     alpha_hat = 2 alpha h          c'' + 2 alpha c' + beta^2 c = 0        (paper Eqs 6 and 16)
     beta_hat  = beta^2 h^2
 
-This is the only place where the two meet. On the way in everything is exact; on the way out it is float64.
+This is the only place where the two meet. What is exact on the way in stays exact; what comes out is float64.
 """
 
 from fractions import Fraction
@@ -21,13 +21,22 @@ LONGEST_STEP = 1e100
 FloatOrArray = TypeVar("FloatOrArray", float, NDArray[np.float64])
 
 
-def to_dimensionless(alpha: Fraction, beta: Fraction, h: Fraction) -> tuple[Fraction, Fraction]:
-    """Return (alpha_hat, beta_hat) = (2 alpha h, beta^2 h^2), exact; alpha and beta in 1/s, h in s (paper Eq. 16).
+@overload
+def to_dimensionless(alpha: Fraction, beta: Fraction, h: Fraction) -> tuple[Fraction, Fraction]: ...
+@overload
+def to_dimensionless(alpha: FloatOrArray, beta: FloatOrArray, h: float) -> tuple[FloatOrArray, FloatOrArray]: ...
+def to_dimensionless(alpha: Any, beta: Any, h: Any) -> tuple[Any, Any]:
+    """Return (alpha_hat, beta_hat) = (2 alpha h, beta^2 h^2); alpha and beta in 1/s, h in s (paper Eq. 16).
 
+    Dimensionless and of the shape of alpha and beta: exact numbers if all three are Fractions, else float64.
     InputError where they leave the range of float64.
     """
-    alpha_hat, beta_hat = from_feedback_gains(2 * alpha, beta * beta, h)
-    return within_float64(alpha_hat, "α̂ = 2αh"), within_float64(beta_hat, "β̂ = β²h²")
+    alpha_hat, beta_hat = 2 * alpha * h, beta * beta * h * h
+    if isinstance(alpha_hat, Fraction) and isinstance(beta_hat, Fraction):
+        return within_float64(alpha_hat, "α̂ = 2αh"), within_float64(beta_hat, "β̂ = β²h²")
+    if not (np.isfinite(alpha_hat).all() and np.isfinite(beta_hat).all()):
+        raise InputError(f"α̂ = 2αh or β̂ = β²h² is outside the range of float64 for h = {float(h):g} s")
+    return alpha_hat, beta_hat
 
 
 def from_dimensionless(alpha_hat: FloatOrArray, beta_hat: FloatOrArray, h: float) -> tuple[FloatOrArray, FloatOrArray]:

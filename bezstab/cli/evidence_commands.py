@@ -41,7 +41,7 @@ from bezstab.errors import InputError, NumericalError
 from bezstab.files import output_directory
 from bezstab.methods import Method
 from bezstab.show import Column, Format, Row, column, formatted, yes_no_column
-from bezstab.units import feedback_gains, to_dimensionless
+from bezstab.units import to_dimensionless
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -114,8 +114,7 @@ def simulate(
     Example: bezstab simulate --method AB4 --alpha 0.5 --beta 0.101 --time 2
     """
     from bezstab import mechanism
-    from bezstab.show.arrays import history_arrays
-    from bezstab.show.rows import simulation_row
+    from bezstab.show import history_arrays, simulation_row
 
     if physical:
         alpha, beta = to_dimensionless(alpha, beta, h)
@@ -124,25 +123,28 @@ def simulate(
     _check_number_of_steps(time, h, method)
     if figure != "none" or table != "none":
         output_directory(output)
-    moving = mechanism.compiled_mechanism(mechanism.load_scene(scene))
-    alpha_hat, beta_hat, step = float(alpha), float(beta), float(h)
-    gains = feedback_gains(alpha_hat, beta_hat, step)
-    state = mechanism.perturbed_state(moving, float(perturb))
-    trajectory = mechanism.simulate(moving, method, step, float(time), gains, state, start)
-    two_alpha, beta_squared = gains
-    observation = mechanism.observe(moving, trajectory.t, trajectory.q, trajectory.v, two_alpha, beta_squared)
+    simulation = mechanism.simulated(
+        mechanism.compiled_mechanism(mechanism.load_scene(scene)),
+        method,
+        h=float(h),
+        duration=float(time),
+        alpha_hat=float(alpha),
+        beta_hat=float(beta),
+        perturb=float(perturb),
+        start=start,
+    )
 
     def draw() -> "Figure":
-        from bezstab.show.run_figures import history_figure
+        from bezstab.show import history_figure
 
-        return history_figure(trajectory, observation)
+        return history_figure(simulation)
 
     path = output / f"simulate_{file_name(Path(scene).stem)}_{file_name(method.name)}"
-    write_table(path, history_arrays(trajectory, observation), table)
+    write_table(path, history_arrays(simulation), table)
     write_figure(path, draw, figure)
-    show_rows([simulation_row(trajectory, observation, alpha_hat, beta_hat, step)], SIMULATIONS, form)
-    if trajectory.failure:
-        raise NumericalError(trajectory.failure)
+    show_rows([simulation_row(simulation)], SIMULATIONS, form)
+    if simulation.failure:
+        raise NumericalError(simulation.failure)
 
 
 def _check_number_of_steps(time: Fraction, h: Fraction, method: Method) -> None:
@@ -246,7 +248,7 @@ def verify(
     Example: bezstab verify --method AB4 --points 20
     """
     from bezstab.mechanism import compiled_mechanism, load_scene
-    from bezstab.show.rows import verdict_map_row
+    from bezstab.show import verdict_map_row
 
     point = both_or_none(alpha, beta)
     if sum(choice is not None for choice in (point, points, cells, witness)) > 1:
@@ -271,7 +273,7 @@ def verify(
 def _witness_rows(moving: "Mechanism", h: float) -> list[Row]:
     """Return a row for each run of MuJoCo's integrators; h in s."""
     from bezstab.evidence import mujoco_witnesses, witness_count
-    from bezstab.show.rows import row
+    from bezstab.show import row
 
     witnesses = progress(mujoco_witnesses(moving, h), "MuJoCo", witness_count())
     return [row(witnessed, scene=moving.scene.name) for witnessed in witnesses]
@@ -289,7 +291,7 @@ def _show_measurements(
     import numpy as np
 
     from bezstab.evidence import measure_poles, random_points
-    from bezstab.show.rows import measurement_row, summary_row
+    from bezstab.show import measurement_row, summary_row
 
     rows: list[Row] = []
     summaries: list[Row] = []
@@ -324,7 +326,7 @@ def _map_verdicts(
 ) -> "VerdictMap":
     """Simulate cells x cells runs, write their verdicts as table and figure, and return them; h in s."""
     from bezstab.evidence import map_rows, simulated_verdicts, verdict_map
-    from bezstab.show.arrays import verdict_arrays
+    from bezstab.show import verdict_arrays
     from bezstab.stability import region
 
     chunks = map_rows(moving.scene, method, h, cells)
@@ -332,7 +334,7 @@ def _map_verdicts(
         verdicts = verdict_map(chunks, results)
 
         def draw() -> "Figure":
-            from bezstab.show.plane_figures import verdict_figure
+            from bezstab.show import verdict_figure
 
             return verdict_figure(verdicts, region(method))
 
@@ -421,8 +423,7 @@ def tradeoff(
     """
     from bezstab import evidence
     from bezstab.mechanism import load_scene
-    from bezstab.show.arrays import untimed_arrays
-    from bezstab.show.rows import row
+    from bezstab.show import row, untimed_arrays
 
     point = both_or_none(alpha, beta)
     if physical and point is None:
@@ -443,7 +444,7 @@ def tradeoff(
         rows = [row(run, front=front) for run, front in zip(swept.runs, swept.front_labels, strict=True)]
 
         def draw(constraint: bool, floor: float) -> "Figure":
-            from bezstab.show.run_figures import work_precision_figure
+            from bezstab.show import work_precision_figure
 
             return work_precision_figure(swept, moving.name, constraint, floor)
 
@@ -490,7 +491,7 @@ def extremes(context: click.Context, short: bool, form: Format) -> None:
     Example: bezstab extremes --short
     """
     from bezstab.evidence import extreme_checks
-    from bezstab.show.rows import row
+    from bezstab.show import row
 
     checks = list(extreme_checks(not short))
     outcomes = [check() for check in progress(checks, "extremes")]

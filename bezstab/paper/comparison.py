@@ -14,8 +14,7 @@ from bezstab.paper.experiments import DURATION, STEP, Experiment, experiment
 from bezstab.paper.findings import Finding, finding
 from bezstab.paper.printed import COMPARED, TABLE_5, PrintedCase, PrintedPole
 from bezstab.paper.reports import Progress, Report, captioned_table, pole_cells
-from bezstab.show import Row, column, pole_column
-from bezstab.show.style import column_figure, method_line, styled
+from bezstab.show import Row, column, column_figure, method_line, pole_column, styled
 from bezstab.stability import dominant_pole, verdict
 
 ROUNDED = 1e-13  # m: below, c_1 is rounding amplified by beta^2 h^2 / |1 - z|, and differs between machines

@@ -12,7 +12,7 @@ from bezstab.methods import lookup
 from bezstab.paper.experiments import START_NAMES, Experiment, experiment
 from bezstab.paper.findings import Finding, finding
 from bezstab.paper.reports import Progress, Report
-from bezstab.show.style import DASHES, column_figure, method_line, styled
+from bezstab.show import DASHES, column_figure, method_line, styled
 from bezstab.stability import FloatArray
 
 METHODS = ("B4", "AB4")

@@ -11,8 +11,7 @@ from bezstab.methods import lookup
 from bezstab.paper.experiments import STEP, Experiment, experiment
 from bezstab.paper.findings import Finding, finding
 from bezstab.paper.reports import Progress, Report, captioned_table, pole_cells
-from bezstab.show import Row, column, pole_column
-from bezstab.show.style import column_figure, method_line, styled
+from bezstab.show import Row, column, column_figure, method_line, pole_column, styled
 
 KICK = 1e-3  # m: Table 4 is about decay and growth, so there must be something that decays or grows
 DURATION = 0.4  # s

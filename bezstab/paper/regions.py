@@ -13,7 +13,7 @@ from bezstab.paper.findings import Finding, finding
 from bezstab.paper.printed import FASTER_LEVEL, LEAST_Z_ABS
 from bezstab.paper.reports import Progress, Report
 from bezstab.rationals import exact
-from bezstab.show.plane_figures import comparison_figure, region_figure
+from bezstab.show import comparison_figure, region_figure
 from bezstab.stability import QUALITY, best_point, region, spectral_radius, verdict, window
 
 GRID = 200  # points per axis, where one counterexample is looked for

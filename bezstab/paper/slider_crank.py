@@ -11,8 +11,7 @@ from bezstab.paper import lost
 from bezstab.paper.findings import Finding, finding
 from bezstab.paper.printed import TABLE_3
 from bezstab.paper.reports import Progress, Report, captioned_table
-from bezstab.show import Row, column
-from bezstab.show.run_figures import scene_figure
+from bezstab.show import Row, column, scene_figure
 from bezstab.stability import FloatArray
 
 SAME = 1e-12  # SI: rounding of sums of a few terms near one

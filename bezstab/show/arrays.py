@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.evidence import VerdictMap
-from bezstab.mechanism import Observation, Trajectory
+from bezstab.mechanism import Simulation
 from bezstab.show.columns import Row, Value
 from bezstab.stability import ComplexArray, FloatArray, Region
 from bezstab.units import feedback_gains
@@ -80,19 +80,19 @@ def verdict_arrays(verdicts: VerdictMap) -> Arrays:
     return {key: grid.ravel() for key, grid in grids.items()}
 
 
-def history_arrays(trajectory: Trajectory, observation: Observation) -> Arrays:
+def history_arrays(simulation: Simulation) -> Arrays:
     """Return t, every coordinate q and d/dt q, c_1, cdot_1, lambda_1, ... and energy: shape (times,), SI units."""
-    coordinates = trajectory.mechanism.scene.coordinates
-    arrays: Arrays = {"t": trajectory.t}
+    coordinates = simulation.trajectory.mechanism.scene.coordinates
+    arrays: Arrays = {"t": simulation.t}
     for i, name in enumerate(coordinates):
-        arrays[name] = trajectory.q[:, i]
+        arrays[name] = simulation.q[:, i]
     for i, name in enumerate(coordinates):
-        arrays[f"d/dt {name}"] = trajectory.v[:, i]
-    constraint_histories = {"c": observation.c, "cdot": observation.cdot, "lambda": observation.multipliers}
+        arrays[f"d/dt {name}"] = simulation.v[:, i]
+    constraint_histories = {"c": simulation.c, "cdot": simulation.cdot, "lambda": simulation.multipliers}
     for name, histories in constraint_histories.items():
         for number, history in enumerate(histories.T, start=1):
             arrays[f"{name}_{number}"] = history
-    arrays["energy"] = observation.energy
+    arrays["energy"] = simulation.energy
     return arrays
 
 

@@ -17,7 +17,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 
 from bezstab.evidence import Run, VerdictMap
-from bezstab.mechanism import COORDINATES, Observation, Scene, Trajectory
+from bezstab.mechanism import COORDINATES, Scene, Simulation
 from bezstab.methods import Method
 from bezstab.show.style import (
     ACCENT,
@@ -38,6 +38,22 @@ from bezstab.stability import spectral_radius as spectral_radius_at
 Range = tuple[SupportsFloat, SupportsFloat]
 Quantity = Literal["area", "least |z_p|", "error constant"]
 Point = tuple[float, float]
+
+__all__ = [
+    "best_point",
+    "critical_damping",
+    "disagreements",
+    "family",
+    "history",
+    "marks",
+    "mechanism",
+    "modulus_map",
+    "pareto_front",
+    "region",
+    "spectral_radius",
+    "verdicts",
+    "work_precision",
+]
 
 PARABOLA = 400  # points of a smooth curve: more than its pixels tell apart
 MARK_SHAPES = "oDs^v"
@@ -186,24 +202,24 @@ def _quantity(member: Member, quantity: Quantity) -> float:
     return np.nan if member.z_abs is None else member.z_abs
 
 
-def trajectory(
-    trajectory: Trajectory,
-    observation: Observation,
+def history(
+    simulation: Simulation,
     constraint: int = 1,
     derivative: bool = False,
     axes: Axes | None = None,
     **line: Any,
 ) -> Line2D:
-    """Draw the error of one constraint, or its time derivative, against t (s) and return the line; SI units.
+    """Draw the error of one constraint of a run, or its time derivative, against t (s) and return the line; SI units.
 
-    `observation` is what `observe` makes of the trajectory; constraints count from 1. In the method's own colour.
+    Constraints count from 1. In the method's own colour.
     """
-    history = observation.cdot if derivative else observation.c
+    trajectory = simulation.trajectory
+    errors = simulation.cdot if derivative else simulation.c
     name = rf"$\dot c_{constraint}$ (SI)" if derivative else rf"$c_{constraint}$ (SI)"
     if axes is None:
         axes = _new_axes(f"{trajectory.mechanism.scene.name}, {trajectory.method.name}", "t (s)", name)
     style = {"color": method_line(trajectory.method)["color"], **line}
-    (drawn,) = axes.plot(trajectory.t, history[:, constraint - 1], **style)
+    (drawn,) = axes.plot(simulation.t, errors[:, constraint - 1], **style)
     return drawn
 
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
 
     from bezstab.engines import Engine
     from bezstab.evidence import Measurement, VerdictMap
-    from bezstab.mechanism import Observation, Trajectory
+    from bezstab.mechanism import Simulation
     from bezstab.methods import Verdict
     from bezstab.stability import BestPoint, Choice, Limit, Member, Region
 
@@ -135,26 +135,25 @@ def limit_row(limit: Limit) -> Row:
     return row(limit, without={"boundary"}, n=None, method="B∞", order=2)
 
 
-def simulation_row(
-    trajectory: Trajectory, observation: Observation, alpha_hat: float, beta_hat: float, h: float
-) -> Row:
+def simulation_row(simulation: Simulation) -> Row:
     """Return the summary of one run: largest |c| and |cdot| (SI), energy drift (J), evaluations, when and why it ended.
 
     `time` is where it ended (s); h in s.
     """
+    trajectory = simulation.trajectory
     return {
         "scene": trajectory.mechanism.scene.name,
         **row(
             trajectory,
             without={"mechanism", "t", "q", "v"},
-            alpha_hat=alpha_hat,
-            beta_hat=beta_hat,
-            h=h,
-            time=float(trajectory.t[-1]),
+            alpha_hat=simulation.alpha_hat,
+            beta_hat=simulation.beta_hat,
+            h=simulation.h,
+            time=float(simulation.t[-1]),
         ),
-        "c_max": float(np.abs(observation.c).max()),
-        "cdot_max": float(np.abs(observation.cdot).max()),
-        "energy_drift": float(observation.energy[-1] - observation.energy[0]),
+        "c_max": float(np.abs(simulation.c).max()),
+        "cdot_max": float(np.abs(simulation.cdot).max()),
+        "energy_drift": float(simulation.energy[-1] - simulation.energy[0]),
     }
 
 

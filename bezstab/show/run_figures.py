@@ -3,7 +3,7 @@
 from matplotlib.figure import Figure
 
 from bezstab.evidence import SweptRuns
-from bezstab.mechanism import Observation, Scene, Trajectory
+from bezstab.mechanism import Scene, Simulation
 from bezstab.show import plot
 from bezstab.show.style import MARKERS, column_figure, method_line, styled
 from bezstab.stability import FloatArray
@@ -20,16 +20,16 @@ def scene_figure(scene: Scene, q: FloatArray) -> Figure:
         return figure
 
 
-def history_figure(trajectory: Trajectory, observation: Observation) -> Figure:
+def history_figure(simulation: Simulation) -> Figure:
     """Return the first constraint and its derivative against time in s, SI units (paper Figs. 5-9)."""
     with styled():
         figure = column_figure()
         upper, lower = figure.subplots(2, 1, sharex=True)
-        plot.trajectory(trajectory, observation, axes=upper)
-        plot.trajectory(trajectory, observation, derivative=True, axes=lower)
-        title = f"{trajectory.mechanism.scene.name}, {trajectory.method.name}"
-        if trajectory.failure:
-            title += f"\n{trajectory.failure}"
+        plot.history(simulation, axes=upper)
+        plot.history(simulation, derivative=True, axes=lower)
+        title = f"{simulation.trajectory.mechanism.scene.name}, {simulation.trajectory.method.name}"
+        if simulation.failure:
+            title += f"\n{simulation.failure}"
         upper.set(title=title, ylabel="$c_1$ (SI)")
         lower.set(xlabel="t (s)", ylabel=r"$\dot c_1$ (SI)")
         for axes in (upper, lower):

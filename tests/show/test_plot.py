@@ -3,7 +3,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from bezstab.evidence import map_rows, simulated_verdicts, verdict_map
-from bezstab.mechanism import compiled_mechanism, initial_state, load_scene, observe, simulate
+from bezstab.mechanism import compiled_mechanism, initial_state, load_scene, simulated
 from bezstab.methods import lookup
 from bezstab.show import plot
 from bezstab.stability import best_point, family_members, region, spectral_radius
@@ -57,17 +57,16 @@ def test_critical_damping_is_the_parabola() -> None:
     assert beta_hat == pytest.approx(alpha_hat**2 / 4)
 
 
-def test_a_trajectory_shows_one_constraint_or_its_derivative() -> None:
-    moving = compiled_mechanism(load_scene("pendulum"))
-    run = simulate(moving, lookup("SYM"), 1e-3, 0.1, (1e3, 2e5))
-    seen = observe(moving, run.t, run.q, run.v, 1e3, 2e5)
-    last = seen.c.shape[1]
+def test_a_history_shows_one_constraint_or_its_derivative() -> None:
+    mechanism = compiled_mechanism(load_scene("pendulum"))
+    run = simulated(mechanism, lookup("SYM"), h=1e-3, duration=0.1, alpha_hat=1.0, beta_hat=0.2)
+    last = run.c.shape[1]
     axes = Figure().add_subplot()
-    line = plot.trajectory(run, seen, constraint=last, axes=axes)
-    assert np.array(line.get_xydata()).tolist() == np.stack([run.t, seen.c[:, last - 1]], axis=1).tolist()
-    slope = plot.trajectory(run, seen, derivative=True, axes=axes)
+    line = plot.history(run, constraint=last, axes=axes)
+    assert np.array(line.get_xydata()).tolist() == np.stack([run.t, run.c[:, last - 1]], axis=1).tolist()
+    slope = plot.history(run, derivative=True, axes=axes)
     assert axes.lines[:] == [line, slope]
-    assert np.array(slope.get_ydata()).tolist() == seen.cdot[:, 0].tolist()
+    assert np.array(slope.get_ydata()).tolist() == run.cdot[:, 0].tolist()
 
 
 def test_a_family_is_drawn_against_n() -> None:

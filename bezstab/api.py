@@ -1,0 +1,284 @@
+"""What `import bezstab` offers: the rooms behind one door, with names for methods and scenes, and units said aloud.
+
+Wherever a point of the plane is asked for, keywords say which numbers it is: `alpha_hat=` and `beta_hat=`
+(dimensionless, alpha_hat = 2 alpha h and beta_hat = beta^2 h^2, paper Eq. 16), or `alpha=` and `beta=` in 1/s together
+with the step `h=` in s. A method is a name as on the command line ("B4", "RK4@5", "mine.toml") or what `method` made
+of one; a scene is a shipped scene's name, the path of a TOML file, or what `scene` made of one.
+"""
+
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from bezstab import evidence, mechanism, stability
+from bezstab.errors import InputError
+from bezstab.mechanism import Scene, Simulation
+from bezstab.methods import Method, Verdict, lookup
+from bezstab.rationals import exact, rational
+from bezstab.units import to_dimensionless
+
+FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+Number = int | float | str | Fraction
+"""A number that is read exactly: a float as the decimal it shows, a text as a decimal or a fraction such as "6/11"."""
+
+
+def method(name: str | Method) -> Method:
+    """Return the integration method of that name, or the one in a .toml file; with @m appended its steps span m h.
+
+    InputError, with the nearest name, if there is none. `Method.source` names the book or paper.
+    """
+    return name if isinstance(name, Method) else lookup(name)
+
+
+def scene(name: str | Scene) -> Scene:
+    """Return the shipped scene of that name, or the one in a .toml file; SI units and rad.
+
+    InputError, naming the file and the key, if it cannot be read. "slider_crank" is that of the paper's section 5.2.
+    """
+    return name if isinstance(name, Scene) else mechanism.load_scene(name)
+
+
+def poles(
+    method: str | Method,
+    *,
+    alpha_hat: ArrayLike | None = None,
+    beta_hat: ArrayLike | None = None,
+    alpha: ArrayLike | None = None,
+    beta: ArrayLike | None = None,
+    h: float | None = None,
+) -> ComplexArray:
+    """Return all poles z of the constraint error, dimensionless, descending by modulus.
+
+    Complex; shape of the two coordinates broadcast, plus one axis for the poles. InputError unless the point is given
+    in one of the two ways; NumericalError if a pole leaves the range of float64. The roots of paper Eq. 17.
+    """
+    a, b = _plane_arrays(alpha_hat, beta_hat, alpha, beta, h)
+    return stability.poles(_method(method), a, b)
+
+
+def dominant_pole(
+    method: str | Method,
+    *,
+    alpha_hat: ArrayLike | None = None,
+    beta_hat: ArrayLike | None = None,
+    alpha: ArrayLike | None = None,
+    beta: ArrayLike | None = None,
+    h: float | None = None,
+) -> ComplexArray:
+    """Return z_p, the pole of largest modulus, dimensionless; of a conjugate pair the one with Im >= 0.
+
+    Complex; shape of the two coordinates broadcast. Errors as for `poles`. The paper's dominant pole, section 4.
+    """
+    a, b = _plane_arrays(alpha_hat, beta_hat, alpha, beta, h)
+    return stability.dominant_pole(_method(method), a, b)
+
+
+def spectral_radius(
+    method: str | Method,
+    *,
+    alpha_hat: ArrayLike | None = None,
+    beta_hat: ArrayLike | None = None,
+    alpha: ArrayLike | None = None,
+    beta: ArrayLike | None = None,
+    h: float | None = None,
+) -> FloatArray:
+    """Return |z_p|, by which the constraint error shrinks in a step, dimensionless; it decays where that is below 1.
+
+    float64; shape of the two coordinates broadcast. Errors as for `poles`. The quantity of the paper's Figs. 1 to 3.
+    """
+    a, b = _plane_arrays(alpha_hat, beta_hat, alpha, beta, h)
+    return stability.spectral_radius(_method(method), a, b)
+
+
+def verdict(
+    method: str | Method,
+    *,
+    alpha_hat: Number | None = None,
+    beta_hat: Number | None = None,
+    alpha: Number | None = None,
+    beta: Number | None = None,
+    h: Number | None = None,
+) -> Verdict:
+    """Return "converges", "marginal" or "diverges" for one point, proven in exact arithmetic.
+
+    Numbers are read exactly: 0.1 is one tenth. InputError unless the point is given in one of the two ways. The
+    Schur-Cohn test (I. Schur, J. reine angew. Math. 147, 1917) on the polynomial of paper Eq. 17.
+    """
+    a, b = _plane_point(alpha_hat, beta_hat, alpha, beta, h)
+    return stability.verdict(_method(method), a, b)
+
+
+def region(method: str | Method, level: float = 1.0) -> stability.Region:
+    """Return the exact region |z_p| < level, 0 < level <= 1, in the dimensionless plane.
+
+    `boundary` has its closed curves as arrays of shape (points, 2), columns alpha_hat and beta_hat; `area`, `extent`,
+    and `contains(alpha_hat, beta_hat)`. NumericalError if an edge cannot be found. Boundary locus of paper Eq. 17.
+    """
+    return stability.region(_method(method), level)
+
+
+def best_point(method: str | Method) -> stability.BestPoint | None:
+    """Return the point with the smallest |z_p| and what meets there, dimensionless; None if no point is stable.
+
+    NumericalError if no solution of the defining equations is as small as a sampled |z_p|. The paper's section 5.1.
+    """
+    return stability.best_point(_method(method))
+
+
+def choose(
+    method: str | Method,
+    *,
+    goal: stability.Goal = "robust",
+    spread: float = 0.1,
+    h: Number | None = None,
+    h_max: Number | None = None,
+    settle: Number | None = None,
+    equal: bool = False,
+) -> stability.Choice:
+    """Return the point that a goal asks for, dimensionless, proven stable, with the margins that remain.
+
+    robust: fastest at worst over smaller steps and over alpha, beta off by the share `spread`; with `h` and `h_max`
+    (s) the steps up to h_max, for use at h. fastest: least |z_p|. critical: fastest without oscillation. gentle: the
+    mildest alpha = beta whose error falls a thousandfold within `settle` (s) at the step `h` (s). `equal` keeps
+    alpha = beta. `from_dimensionless` turns the answer into 1/s. InputError if nothing stable meets the goal.
+    """
+    return stability.choose(
+        _method(method),
+        goal,
+        spread=spread,
+        h=_exact_if_given(h),
+        h_max=_exact_if_given(h_max),
+        settle=_exact_if_given(settle),
+        equal=equal,
+    )
+
+
+def check(
+    method: str | Method,
+    *,
+    alpha_hat: Number | None = None,
+    beta_hat: Number | None = None,
+    alpha: Number | None = None,
+    beta: Number | None = None,
+    h: Number | None = None,
+    spread: float = 0.1,
+) -> stability.Choice:
+    """Return what there is to say of a point of your own: proven verdict, dominant pole, margins; dimensionless.
+
+    `margins` has the factors by which h, alpha and beta may be scaled alone; None unless the point is stable.
+    Errors as for `verdict`, whose sources it shares.
+    """
+    a, b = _plane_point(alpha_hat, beta_hat, alpha, beta, h)
+    return stability.describe_point(_method(method), "as given", a, b, spread)
+
+
+def simulate(
+    scene: str | Scene,
+    method: str | Method,
+    *,
+    h: float,
+    duration: float,
+    alpha_hat: float | None = None,
+    beta_hat: float | None = None,
+    alpha: float | None = None,
+    beta: float | None = None,
+    start: mechanism.Start = "rk4",
+    perturb: float = 0.0,
+) -> Simulation:
+    """Return a run of `duration` (s) with steps of h (s): t, q, v, c, cdot, multipliers and energy as arrays, SI units.
+
+    t has shape (steps + 1,), the others a row for each time. The initial state is the scene's, its first constraint
+    off by `perturb`. A run that breaks down ends early and says when and why in `failure`. InputError for a scene
+    that cannot start. Paper Eqs. 6 to 9.
+    """
+    a, b = _plane_arrays(alpha_hat, beta_hat, alpha, beta, h)
+    return mechanism.simulated(
+        mechanism.compiled_mechanism(_scene(scene)),
+        _method(method),
+        h=h,
+        duration=duration,
+        alpha_hat=float(a),
+        beta_hat=float(b),
+        perturb=perturb,
+        start=start,
+    )
+
+
+def verify(
+    scene: str | Scene,
+    method: str | Method,
+    *,
+    h: float,
+    alpha_hat: ArrayLike | None = None,
+    beta_hat: ArrayLike | None = None,
+    alpha: ArrayLike | None = None,
+    beta: ArrayLike | None = None,
+) -> list[evidence.Measurement]:
+    """Return predicted and measured dominant pole for each of a row of points, at steps of h (s); dimensionless.
+
+    `measured` is None, and `reason` says why, where no pole can be measured. InputError for a scene that cannot
+    start, or unless the points are given in one of the two ways. Method: opposite kicks and linear prediction (Prony).
+    """
+    a, b = np.broadcast_arrays(*_plane_arrays(alpha_hat, beta_hat, alpha, beta, h))
+    compiled = mechanism.compiled_mechanism(_scene(scene))
+    return evidence.measure_poles(compiled, _method(method), h, np.atleast_1d(a).ravel(), np.atleast_1d(b).ravel())
+
+
+def _method(method_or_name: str | Method) -> Method:
+    return method(method_or_name)
+
+
+def _scene(scene_or_name: str | Scene) -> Scene:
+    return scene(scene_or_name)
+
+
+def _exact(value: Number) -> Fraction:
+    """Return a number exactly: a text as it reads, a float as the decimal it shows."""
+    if isinstance(value, str):
+        return rational(value)
+    return Fraction(value) if isinstance(value, int | Fraction) else exact(value)
+
+
+def _exact_if_given(value: Number | None) -> Fraction | None:
+    return None if value is None else _exact(value)
+
+
+def _is_dimensionless(*, alpha_hat: object, beta_hat: object, alpha: object, beta: object, h: object) -> bool:
+    """Return whether a point was given as alpha_hat and beta_hat; InputError unless so, or as alpha, beta and h."""
+    has_dimensionless = alpha_hat is not None and beta_hat is not None and alpha is None and beta is None
+    has_physical = alpha is not None and beta is not None and alpha_hat is None and beta_hat is None
+    if has_physical and h is None:
+        raise InputError("alpha and beta in 1/s need the step h in s")
+    if not has_dimensionless and not has_physical:
+        raise InputError("a point is given as alpha_hat= and beta_hat=, or as alpha= and beta= in 1/s with h= in s")
+    return has_dimensionless
+
+
+def _plane_arrays(
+    alpha_hat: ArrayLike | None,
+    beta_hat: ArrayLike | None,
+    alpha: ArrayLike | None,
+    beta: ArrayLike | None,
+    h: float | None,
+) -> tuple[FloatArray, FloatArray]:
+    """Return alpha_hat and beta_hat as float64 arrays, from whichever of the two ways was taken."""
+    if _is_dimensionless(alpha_hat=alpha_hat, beta_hat=beta_hat, alpha=alpha, beta=beta, h=h):
+        return np.asarray(alpha_hat, np.float64), np.asarray(beta_hat, np.float64)
+    assert h is not None
+    return to_dimensionless(np.asarray(alpha, np.float64), np.asarray(beta, np.float64), h)
+
+
+def _plane_point(
+    alpha_hat: Number | None, beta_hat: Number | None, alpha: Number | None, beta: Number | None, h: Number | None
+) -> tuple[Fraction, Fraction]:
+    """Return alpha_hat and beta_hat as exact numbers, from whichever of the two ways was taken."""
+    if _is_dimensionless(alpha_hat=alpha_hat, beta_hat=beta_hat, alpha=alpha, beta=beta, h=h):
+        assert alpha_hat is not None
+        assert beta_hat is not None
+        return _exact(alpha_hat), _exact(beta_hat)
+    assert alpha is not None
+    assert beta is not None
+    assert h is not None
+    return to_dimensionless(_exact(alpha), _exact(beta), _exact(h))

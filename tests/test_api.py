@@ -1,0 +1,104 @@
+import doctest
+import inspect
+import subprocess
+import sys
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import bezstab
+from bezstab.errors import InputError
+
+PAGE = Path(__file__).parent.parent / "bezstab" / "README.md"
+FUNCTIONS = sorted(set(bezstab.__all__) - {"plot"})
+PLOTS = sorted(
+    name for name, value in vars(bezstab.plot).items() if inspect.isfunction(value) and name in bezstab.plot.__all__
+)
+UNITS = ("dimensionless", "1/s", "SI", " s)", "(s)", "rad")
+
+
+def test_the_page_of_examples_is_true() -> None:
+    found = doctest.testfile(str(PAGE), module_relative=False, encoding="utf-8")
+    assert found.attempted > 15
+    assert found.failed == 0
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_a_public_name_says_what_it_returns_in_which_unit_and_what_it_raises(name: str) -> None:
+    function = getattr(bezstab, name)
+    text = inspect.getdoc(function) or ""
+    assert text.startswith("Return ")
+    assert any(unit in text for unit in UNITS)
+    assert "Error" in text
+    signature = inspect.signature(function)
+    assert signature.return_annotation is not inspect.Signature.empty
+    assert all(parameter.annotation is not inspect.Parameter.empty for parameter in signature.parameters.values())
+
+
+@pytest.mark.parametrize("name", PLOTS)
+def test_a_plot_takes_an_axes_and_says_what_it_draws(name: str) -> None:
+    function = getattr(bezstab.plot, name)
+    assert "axes" in inspect.signature(function).parameters
+    assert (inspect.getdoc(function) or "").startswith(("Draw", "Return"))
+
+
+def test_what_is_public_is_listed_once_and_found() -> None:
+    assert sorted(bezstab.__all__) == dir(bezstab)
+    assert sorted(sum(bezstab.NAMES.values(), ())) == sorted(bezstab.__all__)
+    with pytest.raises(AttributeError, match="no attribute 'pole'"):
+        _ = bezstab.pole
+
+
+def test_importing_everything_by_star_works() -> None:
+    code = "from bezstab import *; print(method('B4').name)"
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "B4\n"
+
+
+def test_both_ways_to_give_a_point_agree() -> None:
+    direct = bezstab.poles("B3", alpha_hat=0.2, beta_hat=0.01)
+    assert bezstab.poles("B3", alpha=50, beta=50, h=0.002) == pytest.approx(direct, rel=1e-14)  # a few roundings
+    assert bezstab.verdict("SYM", alpha="500", beta=Fraction(500), h=0.002) == "converges"
+
+
+@pytest.mark.parametrize(
+    "point",
+    [
+        {"alpha_hat": 1.0},
+        {"alpha_hat": 1.0, "beta": 1.0},
+        {"alpha": 1.0, "beta": 1.0},
+        {"alpha_hat": 1.0, "beta_hat": 1.0, "alpha": 1.0, "beta": 1.0, "h": 0.1},
+        {},
+    ],
+)
+def test_a_point_is_never_guessed(point: dict[str, float]) -> None:
+    for function in (bezstab.poles, bezstab.dominant_pole, bezstab.spectral_radius, bezstab.verdict, bezstab.check):
+        with pytest.raises(InputError, match="h in s"):
+            function("B4", **point)
+
+
+def test_units_go_there_and_back() -> None:
+    alpha, beta = np.array([10.0, 50.0]), np.array([20.0, 0.0])
+    there = bezstab.to_dimensionless(alpha, beta, 0.002)
+    back = bezstab.from_dimensionless(*there, 0.002)
+    assert back[0] == pytest.approx(alpha, rel=1e-15)  # one rounding each way
+    assert back[1] == pytest.approx(beta, rel=1e-15)
+
+
+def test_a_region_knows_what_it_contains() -> None:
+    stable = bezstab.region("B4")
+    a, b = np.meshgrid(np.linspace(-0.2, 1.8, 41), np.linspace(-0.1, 0.9, 31))
+    assert (stable.contains(a, b) == (bezstab.spectral_radius("B4", alpha_hat=a, beta_hat=b) < 1)).all()
+
+
+def test_results_have_short_names_for_themselves() -> None:
+    run = bezstab.simulate("pendulum", "SYM", alpha_hat=1.0, beta_hat=0.2, h=0.001, duration=0.1)
+    for result in (
+        bezstab.region("B4"),
+        bezstab.best_point("B4"),
+        bezstab.check("B4", alpha_hat=0.5, beta_hat=0.1),
+        run,
+    ):
+        assert len(repr(result)) < 160
+        assert "array" not in repr(result)
