@@ -22,10 +22,10 @@ if TYPE_CHECKING:  # so that `bezstab --help`, which lists this command, loads n
 @figure_option
 @format_option
 def paper(only: tuple[str, ...], output: Path, figure: FigureForm, form: "Format") -> None:
-    """Regenerate the paper: Tables 1 to 6, Figures 1 to 9, and a ledger of what holds.
+    """Regenerate the paper: its tables, its figures, and what holds.
 
-    Writes paper_table1.md, ..., paper_fig9.png and, unless --only asks for parts, LEDGER.md, and prints what agrees
-    with the paper and what does not.
+    Writes Tables 1 to 6 as paper_table1.md, ..., Figures 1 to 9 as paper_fig1a.png, ... and, unless --only asks for
+    parts, a ledger of all claims, LEDGER.md; prints what agrees with the paper and what does not.
 
     Example: bezstab paper --only table4
     """
