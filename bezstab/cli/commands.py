@@ -257,9 +257,9 @@ def region(
     """
     import numpy as np
 
+    from bezstab import stability as exact
     from bezstab.show import tables
     from bezstab.stability import best_point
-    from bezstab.stability import regions as exact
 
     for name, window in (("--alpha-range", alpha_range), ("--beta-range", beta_range)):
         if window and not float(window[0]) < float(window[1]):
@@ -440,9 +440,6 @@ def tradeoff(
     physical: bool = _physical,
     tolerance: Fraction = option("--tolerance", type=POSITIVE, default="1e-6", help="In m and rad."),
     repeats: int = option("--repeats", type=click.IntRange(1, 100), default=3, help="Of each timing."),
-    maps: bool = option(
-        "--maps", is_flag=True, help="The trade of the |z_p| map instead: points against error, time and memory."
-    ),
     output: Path = _output,
     workers: int | None = _workers,
     scheduler: str | None = _scheduler,
@@ -463,12 +460,6 @@ def tradeoff(
     from bezstab.mechanism import load_scene
     from bezstab.show import tables
 
-    if maps:
-        methods = [lookup("B4"), lookup("AB4")] if _by_default("methods") else methods
-        costs = (trading.map_cost(method, count) for method in methods for count in trading.MAP_POINTS)
-        shown = _progress(costs, "maps", len(methods) * len(trading.MAP_POINTS))
-        _show([tables.row(cost) for cost in shown], tables.MAP_COSTS, form)
-        return
     point = _point(alpha, beta)
     if physical and point is None:
         raise click.UsageError("--physical needs --alpha and --beta")

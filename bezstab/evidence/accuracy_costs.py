@@ -2,7 +2,6 @@
 
 import re
 import time
-import tracemalloc
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -13,7 +12,7 @@ from numpy.typing import NDArray
 from bezstab.errors import NumericalError
 from bezstab.mechanism import Scene, compiled_mechanism, observe, simulate
 from bezstab.methods import Method, accuracy, evaluations, lookup, steps
-from bezstab.stability import QUALITY, FloatArray, choose, pole_map, region, scan, spectral_radius, window
+from bezstab.stability import FloatArray, choose, region, spectral_radius
 from bezstab.units import feedback_gains
 
 METHODS = ("B2", "B3", "B4", "AB2", "AB4", "ABM4", "RK4", "SIE", "SYM")
@@ -24,7 +23,6 @@ HALVINGS = 4  # of the reference's step at most
 ROUNDED = 4.0  # RK4's error falls sixteenfold with each; where it falls less, rounding has taken over
 ABOVE = 30.0  # times the reference's own error: below, an observed order is noise
 LOST = 0.5  # of an order: below the stated one by more, it has fallen
-MAP_POINTS = (50, 100, 200, 500, 1000, 2000)  # per axis
 ALIKE = 1.05  # ratios nearer to one are neither won nor lost
 LINE = 4000  # points on alpha = beta, where the largest stable step is looked for
 
@@ -284,46 +282,3 @@ def _against(bezier: Summary, other: Summary) -> str:
         found = [text for better, text in points if of * np.log(better) > np.log(ALIKE)]
         said += [f"{verb}: {', '.join(found)}"] * bool(found)
     return f"{bezier.method.name} against {other.method.name} {'; '.join(said) or 'does as well'}."
-
-
-@dataclass(frozen=True)
-class MapCost:
-    """A map of count x count points: time (s), peak memory (MB), how far what is read off it is from the exact region.
-
-    The area counts the points inside, its error is relative. The boundary is interpolated along rows of constant
-    beta_hat; median and largest error are in alpha_hat.
-    """
-
-    method: Method
-    count: int
-    quality: str | None
-    seconds: float
-    megabytes: float
-    area_error: float
-    boundary_error: float
-    boundary_error_max: float
-
-
-def map_cost(method: Method, count: int) -> MapCost:
-    """Return what a map costs, and how far what is read off it differs from the exact region."""
-    exact = region(method)
-    alpha_hat, beta_hat = (np.linspace(low, high, count) for low, high in window(exact))
-    begin = time.perf_counter()
-    z_abs = np.abs(np.concatenate(list(pole_map(method, alpha_hat, beta_hat))))
-    seconds = time.perf_counter() - begin
-    tracemalloc.start()
-    np.abs(np.concatenate(list(pole_map(method, alpha_hat, beta_hat))))
-    megabytes = tracemalloc.get_traced_memory()[1] / 1e6
-    tracemalloc.stop()
-    cell = (alpha_hat[1] - alpha_hat[0]) * (beta_hat[1] - beta_hat[0])
-    rows, k = np.nonzero((z_abs[:, 1:] < 1) != (z_abs[:, :-1] < 1))
-    before, after = z_abs[rows, k], z_abs[rows, k + 1]
-    read = alpha_hat[k] + (1 - before) / (after - before) * (alpha_hat[1] - alpha_hat[0])
-    true_rows, true = scan(method, beta_hat)
-    order = np.lexsort((true, true_rows))
-    seen, there = (np.bincount(each, minlength=count) for each in (rows, true_rows))
-    alike = seen == there  # else the grid has missed a crossing, or rounding on an edge has made one up
-    off = np.abs(read[alike[rows]] - true[order][alike[true_rows[order]]])
-    area_error = float(abs(cell * np.count_nonzero(z_abs < 1) / exact.area - 1))
-    quality = next((name for name, points in QUALITY.items() if points == count), None)
-    return MapCost(method, count, quality, seconds, megabytes, area_error, float(np.median(off)), float(off.max()))

@@ -214,13 +214,6 @@ def test_tradeoff_writes_a_table_without_times_and_two_figures(tmp_path: Path) -
     assert (tmp_path / f"{name}.csv").read_bytes() == first
 
 
-def test_tradeoff_of_maps_needs_no_scene(tmp_path: Path) -> None:
-    found = rows("tradeoff", "--maps", "--method", "SYM")
-    assert [row["count"] for row in found] == [50, 100, 200, 500, 1000, 2000]
-    assert [row["quality"] for row in found] == ["fast", None, "balanced", None, "fine", None]
-    assert not list(tmp_path.iterdir())
-
-
 def test_quality_is_points_per_axis(tmp_path: Path) -> None:
     run("region", "--quality", "fast", "--figure", "none", "--table", "npz")
     assert len(arrays(tmp_path / "region_B4.npz")["z_abs"]) == 50**2

@@ -1,0 +1,1 @@
+"""Independent answers: other routes to what bezstab computes."""
