@@ -1,7 +1,6 @@
 """Speed against accuracy: what a method and a step size cost in simulation, and what they buy."""
 
 import time
-import tracemalloc
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -13,7 +12,7 @@ from bezstab.evidence.reference_motions import ReferenceMotion
 from bezstab.mechanism import Scene, Trajectory, compiled_mechanism, observe, simulate
 from bezstab.methods import Method, steps
 from bezstab.rationals import exact
-from bezstab.stability import QUALITY, choose, pole_map, region, scan, spectral_radius, window
+from bezstab.stability import choose, spectral_radius
 from bezstab.units import feedback_gains, to_dimensionless
 
 METHODS = ("B2", "B3", "B4", "AB2", "AB4", "ABM4", "RK4", "SIE", "SYM")
@@ -24,8 +23,6 @@ STEPS = ("0.0001", "0.0002", "0.0004", "0.0008", "0.0016", "0.0032", "0.005", "0
 
 ABOVE_REFERENCE = 30.0
 """Times the reference's own error: below, an observed order is noise."""
-
-MAP_POINTS = (50, 100, 200, 500, 1000, 2000)  # per axis
 
 
 @dataclass(frozen=True)
@@ -204,46 +201,3 @@ def with_fronts(runs: Sequence[Run], reference_error: float) -> SweptRuns:
         constraint_front=tuple(pareto_front(constraint)),
         reference_error=reference_error,
     )
-
-
-@dataclass(frozen=True)
-class MapCost:
-    """A map of count x count points: time (s), peak memory (MB), how far what is read off it is from the exact region.
-
-    The area counts the points inside, its error is relative. The boundary is interpolated along rows of constant
-    beta_hat; median and largest error are in alpha_hat.
-    """
-
-    method: Method
-    count: int
-    quality: str | None
-    seconds: float
-    megabytes: float
-    area_error: float
-    boundary_error: float
-    boundary_error_max: float
-
-
-def map_cost(method: Method, count: int) -> MapCost:
-    """Return what a map costs, and how far what is read off it differs from the exact region."""
-    exact = region(method)
-    alpha_hat, beta_hat = (np.linspace(low, high, count) for low, high in window(exact))
-    begin = time.perf_counter()
-    z_abs = np.abs(np.concatenate(list(pole_map(method, alpha_hat, beta_hat))))
-    seconds = time.perf_counter() - begin
-    tracemalloc.start()
-    np.abs(np.concatenate(list(pole_map(method, alpha_hat, beta_hat))))
-    megabytes = tracemalloc.get_traced_memory()[1] / 1e6
-    tracemalloc.stop()
-    cell = (alpha_hat[1] - alpha_hat[0]) * (beta_hat[1] - beta_hat[0])
-    rows, k = np.nonzero((z_abs[:, 1:] < 1) != (z_abs[:, :-1] < 1))
-    before, after = z_abs[rows, k], z_abs[rows, k + 1]
-    read = alpha_hat[k] + (1 - before) / (after - before) * (alpha_hat[1] - alpha_hat[0])
-    true_rows, true = scan(method, beta_hat)
-    order = np.lexsort((true, true_rows))
-    seen, there = (np.bincount(each, minlength=count) for each in (rows, true_rows))
-    alike = seen == there  # else the grid has missed a crossing, or rounding on an edge has made one up
-    off = np.abs(read[alike[rows]] - true[order][alike[true_rows[order]]])
-    area_error = float(abs(cell * np.count_nonzero(z_abs < 1) / exact.area - 1))
-    quality = next((name for name, points in QUALITY.items() if points == count), None)
-    return MapCost(method, count, quality, seconds, megabytes, area_error, float(np.median(off)), float(off.max()))

@@ -1,20 +1,38 @@
-"""Poles of the closed loop, the exact region, its best point, and which parameters to choose."""
+"""Poles of the closed loop, the exact region, its best point, and which parameters to choose.
 
+From a method's polynomial in float64 (its pencil) upwards; a file imports only from those above it:
+
+    arrays            names for arrays
+    exact_sums        sums that keep their rounding; the feedback's roots mu
+    root_finding      all roots of many polynomials
+    pencils           what float64 needs to know of a method, made once
+    dominant_roots    the largest root along a row of mu, followed
+    closed_loop       poles, |z_p|, the proven verdict
+    searches          where a condition comes to hold; where a value is least
+    boundary_locus    the curve |z| = r in mu: cut, traced, integrated
+    regions           the exact region in alpha_hat and beta_hat
+    grid_maps         |z_p| on a grid
+    best_points       the smallest |z_p|
+    choices           which parameters to take
+    step_families     methods by their number of steps, and their limit
+"""
+
+from bezstab.stability.arrays import EPS, ComplexArray, FloatArray
 from bezstab.stability.best_points import BestPoint, best_point
-from bezstab.stability.choices import THOUSANDFOLD, Choice, Goal, choose, describe_point, stability_margins
-from bezstab.stability.closed_loop import (
-    EPS,
-    ComplexArray,
-    FloatArray,
-    branch_points,
-    dominant_pole,
-    float_table,
-    poles,
-    roots_in_z,
-    spectral_radius,
-    verdict,
+from bezstab.stability.choices import (
+    THOUSANDFOLD,
+    Choice,
+    Goal,
+    Margins,
+    choose,
+    describe_point,
+    stability_margins,
 )
-from bezstab.stability.regions import QUALITY, Extent, Region, first_where, pole_map, region, scan, stable_mask, window
+from bezstab.stability.closed_loop import dominant_pole, poles, spectral_radius, verdict
+from bezstab.stability.grid_maps import QUALITY, pole_map
+from bezstab.stability.pencils import Pencil, pencil_of, roots_in_z
+from bezstab.stability.regions import Extent, Region, region, window
+from bezstab.stability.searches import first_where
 from bezstab.stability.step_families import FAMILIES, Limit, Member, bezier_limit, family_members
 
 __all__ = [
@@ -29,25 +47,24 @@ __all__ = [
     "FloatArray",
     "Goal",
     "Limit",
+    "Margins",
     "Member",
+    "Pencil",
     "Region",
     "best_point",
     "bezier_limit",
-    "branch_points",
     "choose",
     "describe_point",
     "dominant_pole",
     "family_members",
     "first_where",
-    "float_table",
+    "pencil_of",
     "pole_map",
     "poles",
     "region",
     "roots_in_z",
-    "scan",
     "spectral_radius",
     "stability_margins",
-    "stable_mask",
     "verdict",
     "window",
 ]

@@ -1,30 +1,49 @@
-"""The smallest |z_p| a method can reach, and where, from the equations that define it.
+r"""The smallest |z_p| a method can reach, and where, from the equations that define it.
 
 |z_p| over conjugate mu is f(mu) = max |z| over the roots of pi(., mu), and a real pair does no better. log f is a
-maximum of harmonic functions, so away from z = 0 and from double roots it has its least value at a kink: two roots of
-equal modulus whose gradients oppose each other, or three whose gradients surround zero.
+maximum of harmonic functions, and those have no minima inside. So away from z = 0 and from double roots f has its
+least value at a kink: two roots of equal modulus whose gradients oppose each other, or three whose gradients surround
+zero.
+
+      f   \     /                f    \      /  |z_1|        two kinks: on the real axis of mu, by symmetry, gradients
+           \   /                  \    \    /                across it vanish and two roots suffice anywhere; off it
+            \ /  two opposed       \_   \  /                 they must be parallel. B3, B4, AB3, AB4: z and -z on the
+             V                     | `-._\/  |z_2|           axis.
+          ---+--- mu              -+------+---- mu
+
+Every kind is a square system of equations for mu and the roots that meet; a sampled minimum starts Newton's method on
+each kind, and the least solution that is a maximum over all roots is the answer, to rounding.
 """
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
-from numpy.polynomial.polynomial import polyder, polyval2d
+from numpy.polynomial.polynomial import polyval2d
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method, feedback_matrix
-from bezstab.stability.closed_loop import ComplexArray, FloatArray, dominant_root, float_table, roots_in_mu, roots_in_z
+from bezstab.methods import Method
+from bezstab.stability.arrays import ComplexArray, FloatArray
+from bezstab.stability.dominant_roots import dominant_root
+from bezstab.stability.pencils import Pencil, pencil_of, roots_in_mu, roots_in_z
 from bezstab.stability.regions import region
+from bezstab.stability.searches import zoom_on_minimum
 
 ROUNDING = 1e-9  # relative; a solved kink's moduli agree to about 1e-15, neighbouring candidates differ far more
 DOUBLE = 1e-6  # relative; two roots closer than this are one double root, which float64 splits by sqrt(eps) = 1e-8
 REACH = 1e150  # of mu, whose square is beta_hat; one zero of R is always within its degree, as R(0) = R'(0) = 1
 NEWTON_STEPS = 30
+STEP_SETTLED = ROUNDING**1.5  # relative, 3e-14: a Newton step this small changes nothing that is compared
 STARTS = 6  # local minima of the sampled f that are followed up
+ZOOM_POINTS, ZOOM, ZOOMS = 13, 0.6, 30  # 0.6^29 = 4e-7 of the grid's spacing: a start, from which Newton takes over
+ARC_SAMPLES = 4097  # of theta, where a curve of equal |z_p| is looked for
+ARC_SHARE = 1 / 10  # of the samples lie on such a curve, if there is one; a kink shows at isolated theta only
+ARC_ZOOM_POINTS, ARC_ZOOMS = 65, 7  # each by 1/32: the curve's end, to rounding
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class BestPoint:
     """The smallest |z_p|, one point that has it, and the poles of that modulus there (Im >= 0, dimensionless).
 
@@ -41,125 +60,193 @@ class BestPoint:
     elsewhere: tuple[tuple[float, float], ...]
     arc: bool
 
+    def __repr__(self) -> str:
+        place = f"alpha_hat = {self.alpha_hat:.6g}, beta_hat = {self.beta_hat:.6g}"
+        return f"BestPoint({self.method.name}: |z_p| = {self.z_abs:.6g} at {place})"
+
+
+@dataclass(frozen=True, eq=False)
+class _Kink:
+    """One kind of least value: its equations in (mu, z_1, ...), where the z start, and how often each is a root."""
+
+    equations: Callable[[ComplexArray], list[float]]
+    starts: list[complex]
+    multiplicity: int = 1
+
+
+@dataclass(frozen=True)
+class _Candidate:
+    """A mu and the largest modulus of the roots there."""
+
+    z_abs: float
+    mu: complex
+
 
 @cache
 def best_point(method: Method) -> BestPoint | None:
     """Return the smallest |z_p| and its place, to about 1e-12; None if no parameters have |z_p| < 1.
 
-    NumericalError if no solution of the defining equations is as small as a sampled |z_p|.
+    Dimensionless, of the poles of paper Eq. 17. NumericalError if no solution of the defining equations is as small
+    as a sampled |z_p|.
     """
-    if len(float_table(method)) == 2:  # one step: z = R(mu), and the zeros of R are deadbeat
-        zeros: list[complex] = []
-        for mu in map(_upper, np.sort_complex(roots_in_mu(method, np.zeros(1, complex))[:, 0])):  # most damped first
-            if abs(mu) < REACH and all(abs(mu - other) > DOUBLE * abs(mu) for other in zeros):
-                zeros.append(mu)
-        return _described(method, 0.0, zeros, arc=False)
+    pencil = pencil_of(method)
+    if pencil.steps == 1:  # z = R(mu), and the zeros of R are deadbeat
+        return _described(pencil, 0.0, _zeros(pencil), arc=False)
     if not region(method).boundary:
         return None
-    z_abs, mu = _smallest(method)
-    end = _other_end(method, z_abs, mu)
-    return _described(method, z_abs, [mu] if end is None else [mu, end], arc=end is not None)
+    least = _smallest(pencil)
+    end = _other_end(pencil, least)
+    return _described(pencil, least.z_abs, [least.mu] if end is None else [least.mu, end], arc=end is not None)
 
 
-def _described(method: Method, z_abs: float, mus: list[complex], arc: bool) -> BestPoint:
-    """Return the optimum at the first of mus, with its poles in the plane of the user's parameters."""
+def _zeros(pencil: Pencil) -> list[complex]:
+    """Return the different mu of the upper half at which the one root is zero, the most damped first."""
+    zeros: list[complex] = []
+    for root in np.sort_complex(roots_in_mu(pencil, np.zeros(1, complex))[:, 0]):
+        mu = _upper(root)
+        if abs(mu) < REACH and all(abs(mu - other) > DOUBLE * abs(mu) for other in zeros):
+            zeros.append(mu)
+    return zeros
+
+
+def _described(pencil: Pencil, z_abs: float, mus: list[complex], arc: bool) -> BestPoint:
+    """Return the best point at the first of mus, with its poles, in the plane of the user's parameters."""
     places = np.array(mus)
-    to_user = np.linalg.inv(np.array(feedback_matrix(method), float))
-    points = np.stack([-2 * places.real, np.abs(places) ** 2], axis=-1) @ to_user.T
-    z = roots_in_z(method, places[:1])[:, 0]
-    largest = z[np.abs(z) >= z_abs * (1 - DOUBLE)] if z_abs else np.zeros(1, complex)
+    points = np.stack([-2 * places.real, np.abs(places) ** 2], axis=-1) @ pencil.to_user.T
+    (alpha_hat, beta_hat), *elsewhere = [(float(a), float(b)) for a, b in points]
+    return BestPoint(
+        method=pencil.method,
+        z_abs=z_abs,
+        alpha_hat=alpha_hat,
+        beta_hat=beta_hat,
+        meeting=_meeting_poles(pencil, z_abs, places[:1]),
+        double=bool(places[0].imag == 0),
+        elsewhere=tuple(elsewhere),
+        arc=arc,
+    )
+
+
+def _meeting_poles(pencil: Pencil, z_abs: float, mu: ComplexArray) -> tuple[complex, ...]:
+    """Return the different roots at mu whose modulus is z_abs, taken to the upper half, the rightmost first."""
+    if not z_abs:
+        return (0j,)
+    z = roots_in_z(pencil, mu)[:, 0]
+    largest = z[np.abs(z) >= z_abs * (1 - DOUBLE)]
     upper = np.where(np.abs(largest.imag) < DOUBLE * z_abs, largest.real, largest.real + 1j * np.abs(largest.imag))
     meeting: list[complex] = []
     for pole in sorted(upper, key=lambda pole: (-pole.real, pole.imag)):
         if all(abs(pole - other) > DOUBLE * z_abs for other in meeting):
             meeting.append(complex(pole))
-    (alpha_hat, beta_hat), *elsewhere = [(float(a), float(b)) for a, b in points]
-    return BestPoint(
-        method, z_abs, alpha_hat, beta_hat, tuple(meeting), bool(places[0].imag == 0), tuple(elsewhere), arc
-    )
+    return tuple(meeting)
 
 
-def _smallest(method: Method) -> tuple[float, complex]:
+def _smallest(pencil: Pencil) -> _Candidate:
     """Return min f and a mu that has it, a real one if there is one."""
-    sampled = list(_local_minima(method))
-    lowest = min(f for f, _ in sampled)
-    solved = [solution for _, mu in sampled for solution in _solutions(method, mu)]
-    best = min((f for f, _ in solved), default=np.inf)
+    sampled = list(_local_minima(pencil))
+    lowest = min(candidate.z_abs for candidate in sampled)
+    solved = [solution for candidate in sampled for solution in _solutions(pencil, candidate.mu)]
+    best = min((solution.z_abs for solution in solved), default=np.inf)
     if not best <= lowest * (1 + ROUNDING):
-        raise NumericalError(f"{method.name}: |z_p| = {lowest:.6g} was sampled, but no kink as low could be solved for")
-    return min((s for s in solved if s[0] <= best * (1 + ROUNDING)), key=lambda s: (abs(s[1].imag), s[0]))
+        name = pencil.method.name
+        raise NumericalError(f"{name}: |z_p| = {lowest:.6g} was sampled, but no kink as low could be solved for")
+    as_low = [solution for solution in solved if solution.z_abs <= best * (1 + ROUNDING)]
+    return min(as_low, key=lambda solution: (abs(solution.mu.imag), solution.z_abs))
 
 
-def _local_minima(method: Method) -> Iterator[tuple[float, complex]]:
+def _local_minima(pencil: Pencil) -> Iterator[_Candidate]:
     """Yield the lowest local minima of f on a grid over S_1, each narrowed by a sequence of smaller grids."""
-    corners = np.abs(np.concatenate(region(method).boundary) @ np.array(feedback_matrix(method), float).T)
+    corners = np.abs(np.concatenate(region(pencil.method).boundary) @ pencil.to_feedback.T)
     reach = float(np.max(corners[:, 0] + np.sqrt(corners[:, 1])))  # of both roots of the feedback
     x, y = np.linspace(-reach, reach / 4, 151), np.linspace(0, reach, 121)
-    f = np.pad(_f(method, x + 1j * y[:, np.newaxis]), 1, mode="reflect")
-    neighbours = np.stack([np.roll(f, (i, j), (0, 1)) for i in (-1, 0, 1) for j in (-1, 0, 1)])
-    rows, columns = np.nonzero((f == neighbours.min(axis=0))[1:-1, 1:-1])
-    lowest = np.argsort(f[1:-1, 1:-1][rows, columns])[:STARTS]
-    offsets = np.linspace(-1, 1, 13)
+    sampled = _largest_modulus(pencil, x + 1j * y[:, np.newaxis])
+    padded = np.pad(sampled, 1, mode="reflect")
+    shifts = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1)]
+    least_around = np.min([np.roll(padded, shift, (0, 1)) for shift in shifts], axis=0)[1:-1, 1:-1]
+    rows, columns = np.nonzero(sampled == least_around)
+    lowest = np.argsort(sampled[rows, columns])[:STARTS]
+
+    def to_upper_half(points: FloatArray) -> FloatArray:
+        return np.stack([points[..., 0], np.abs(points[..., 1])], axis=-1)
+
+    def modulus(points: FloatArray) -> FloatArray:
+        return _largest_modulus(pencil, points[..., 0] + 1j * points[..., 1])
+
     for row, column in zip(rows[lowest], columns[lowest], strict=True):
-        mu, width = complex(x[column], y[row]), x[1] - x[0]
-        for _ in range(30):
-            around = mu + width * (offsets + 1j * offsets[:, np.newaxis])
-            values = _f(method, around.real + 1j * np.abs(around.imag))
-            k = np.argmin(values)
-            mu, width = complex(around.flat[k].real, abs(around.flat[k].imag)), 0.6 * width
-        yield float(values.flat[k]), mu
+        place, z_abs = zoom_on_minimum(
+            modulus,
+            np.array([x[column], y[row]]),
+            np.full(2, x[1] - x[0]),
+            points=ZOOM_POINTS,
+            shrink=ZOOM,
+            rounds=ZOOMS,
+            fold=to_upper_half,
+        )
+        yield _Candidate(float(z_abs), complex(*place))
 
 
-def _f(method: Method, mu: ComplexArray) -> FloatArray:
-    return np.abs(dominant_root(method, mu.ravel())).reshape(mu.shape)
+def _largest_modulus(pencil: Pencil, mu: ComplexArray) -> FloatArray:
+    """Return f(mu); shape of mu."""
+    return np.abs(dominant_root(pencil, mu.ravel())).reshape(mu.shape)
 
 
-def _solutions(method: Method, start: complex) -> Iterator[tuple[float, complex]]:
-    """Yield (f, mu) for every kind of least value that Newton's method finds from a nearby start.
+def _kinks(pencil: Pencil, mu: complex) -> list[_Kink]:
+    """Return the kinds of least value, the roots at a nearby mu as their starts.
 
-    The unknowns are mu and the roots z that meet there, as complex numbers x[0] and x[1:].
+    The unknowns are mu and the roots z that meet there, as complex numbers x[0] and x[1:]; equations are real.
     """
-    table = float_table(method)
-    table_z, table_mu = (polyder(table, axis=axis) for axis in (0, 1))
 
     def on_the_locus(x: ComplexArray) -> list[float]:
-        return [part for z in x[1:] for part in _parts(polyval2d(z, x[0], table))]
+        residuals = [polyval2d(z, x[0], pencil.table) for z in x[1:]]
+        return [part for residual in residuals for part in (residual.real, residual.imag)]
+
+    def equal_moduli(x: ComplexArray) -> list[float]:
+        return [float(np.log(abs(z / following))) for z, following in pairwise(x[1:])]
 
     def two_on_the_axis(x: ComplexArray) -> list[float]:
-        return [*on_the_locus(x), np.log(abs(x[1] / x[2])), x[0].imag]
+        return [*on_the_locus(x), *equal_moduli(x), x[0].imag]
 
     def two_opposed(x: ComplexArray) -> list[float]:
-        z, mu = x[1:], np.full(2, x[0])
-        first, second = -polyval2d(z, mu, table_mu) / (z * polyval2d(z, mu, table_z))  # d log z / d mu
-        return [*on_the_locus(x), np.log(abs(x[1] / x[2])), (first / second).imag]
+        z, same_mu = x[1:], np.full(2, x[0])
+        by_mu, by_z = polyval2d(z, same_mu, pencil.table_by_mu), polyval2d(z, same_mu, pencil.table_by_z)
+        first, second = -by_mu / (z * by_z)  # d log z / d mu: parallel if their ratio is real
+        return [*on_the_locus(x), *equal_moduli(x), (first / second).imag]
 
     def three(x: ComplexArray) -> list[float]:
-        return [*on_the_locus(x), *np.log(np.abs(x[1:3] / x[2:4]))]
+        return [*on_the_locus(x), *equal_moduli(x)]
 
     def double_root(x: ComplexArray) -> list[float]:
-        return [*on_the_locus(x), *_parts(polyval2d(x[1], x[0], table_z))]
+        slope = polyval2d(x[1], x[0], pencil.table_by_z)
+        return [*on_the_locus(x), slope.real, slope.imag]
 
-    z = roots_in_z(method, np.array([start]))[:, 0]
-    z = z[np.argsort(-np.abs(z))]
-    problems = [(two_on_the_axis, [z[0], other]) for other in z[1:3]]
-    problems += [(two_opposed, [*z[:2]]), (double_root, [z[:2].mean()])]
+    roots = roots_in_z(pencil, np.array([mu]))[:, 0]
+    z = roots[np.argsort(-np.abs(roots))]
+    kinks = [_Kink(two_on_the_axis, [z[0], other]) for other in z[1:3]]
+    kinks.append(_Kink(two_opposed, [z[0], z[1]]))
+    kinks.append(_Kink(double_root, [z[:2].mean()], multiplicity=2))
     if len(z) > 2:
-        problems.append((three, [*z[:3]]))
-    for equations, meeting in problems:
-        x = _newton(equations, np.array([start, *meeting]))
+        kinks.append(_Kink(three, [z[0], z[1], z[2]]))
+    return kinks
+
+
+def _solutions(pencil: Pencil, start: complex) -> Iterator[_Candidate]:
+    """Yield the solution of every kind of least value that Newton's method finds from a nearby start.
+
+    A solution counts if its z are roots there indeed (along an arc of equal |z_p| the equations are dependent, and
+    least squares may end at what solves nothing) and no other root is larger.
+    """
+    for kink in _kinks(pencil, start):
+        x = _newton(kink.equations, np.array([start, *kink.starts]))
         if not np.isfinite(x).all():
             continue
-        r, others, matched = float(np.abs(x[1:]).max()), roots_in_z(method, x[:1])[:, 0], True
-        for solved in [*x[1:], x[1]] if equations is double_root else x[1:]:
-            k = np.argmin(np.abs(others - solved))
-            matched &= bool(np.abs(others[k] - solved) <= DOUBLE * r)  # else a least-squares fit that solves nothing
-            others = np.delete(others, k)
-        if matched and np.all(np.abs(others) <= r * (1 + ROUNDING)):
-            yield r, _upper(x[0])
-
-
-def _parts(value: complex) -> tuple[float, float]:
-    return value.real, value.imag
+        z_abs = float(np.abs(x[1:]).max())
+        others = roots_in_z(pencil, x[:1])[:, 0]
+        matched = True
+        for z in np.repeat(x[1:], kink.multiplicity):
+            closest = np.argmin(np.abs(others - z))
+            matched &= bool(np.abs(others[closest] - z) <= DOUBLE * z_abs)
+            others = np.delete(others, closest)
+        if matched and np.all(np.abs(others) <= z_abs * (1 + ROUNDING)):
+            yield _Candidate(z_abs, _upper(x[0]))
 
 
 def _upper(mu: complex) -> complex:
@@ -182,22 +269,39 @@ def _newton(equations: Callable[[ComplexArray], list[float]], x: ComplexArray) -
                 break
             step = np.linalg.lstsq(np.stack(columns, axis=1), residual, rcond=1e-9)[0] @ directions
             x = x - step
-            if np.abs(step).max() < ROUNDING**1.5 * scale:
+            if np.abs(step).max() < STEP_SETTLED * scale:
                 return x
     return np.full_like(x, np.nan)
 
 
-def _other_end(method: Method, z_abs: float, mu: complex) -> complex | None:
-    """Return the far end of the curve through mu on which f has its least value z_abs; None if that is a point."""
-    theta, far = np.linspace(-np.pi, np.pi, 4097), mu
-    for narrowing in range(8):
-        locus = roots_in_mu(method, z_abs * np.exp(1j * theta))
+# B2 and AB2 are as fast along a whole curve of mu: two roots of equal modulus, the least value, all along it. That
+# curve is a piece of the boundary locus at the level z_abs on which no other root lies outside. A kink touches the
+# locus of its level in isolated points, so only a curve shows at many theta. Its far end is where the distance from
+# the solved end is largest.
+
+
+def _other_end(pencil: Pencil, least: _Candidate) -> complex | None:
+    """Return the far end of the curve through mu on which f has its least value; None if that is a point."""
+
+    def distances(theta: FloatArray) -> tuple[ComplexArray, FloatArray]:
+        """Return the locus at the level, and its distances from mu; -1 where f is larger."""
+        locus = roots_in_mu(pencil, least.z_abs * np.exp(1j * theta))
         equal = np.isfinite(locus) & (locus.imag >= 0)
-        equal[equal] = _f(method, locus[equal]) <= z_abs * (1 + ROUNDING)
-        if narrowing == 0 and equal.sum() < len(theta) / 10:  # a kink shows at isolated theta only
-            return None
-        distance = np.where(equal, np.abs(locus - mu), -1)
-        branch, k = divmod(int(np.argmax(distance)), len(theta))
-        far = complex(locus[branch, k])
-        theta = np.linspace(theta[max(k - 1, 0)], theta[min(k + 1, len(theta) - 1)], 65)
-    return far
+        equal[equal] = _largest_modulus(pencil, locus[equal]) <= least.z_abs * (1 + ROUNDING)
+        return locus, np.where(equal, np.abs(locus - least.mu), -1)
+
+    theta = np.linspace(-np.pi, np.pi, ARC_SAMPLES)
+    _, sampled = distances(theta)
+    if (sampled >= 0).sum() < ARC_SHARE * theta.size:
+        return None
+    furthest = theta[np.argmax(sampled.max(axis=0))]
+    end, _ = zoom_on_minimum(
+        lambda points: -distances(points[:, 0])[1].max(axis=0),
+        np.array([furthest]),
+        np.array([theta[1] - theta[0]]),
+        points=ARC_ZOOM_POINTS,
+        shrink=2 / (ARC_ZOOM_POINTS - 1),
+        rounds=ARC_ZOOMS,
+    )
+    locus, distance = distances(end)
+    return complex(locus[np.argmax(distance[:, 0]), 0])

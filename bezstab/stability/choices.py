@@ -9,18 +9,26 @@ from typing import Literal
 import numpy as np
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.methods import Method, Verdict, feedback_matrix, steps
+from bezstab.methods import Method, Verdict, steps
+from bezstab.rationals import exact
+from bezstab.stability.arrays import BoolArray, FloatArray
 from bezstab.stability.best_points import best_point
-from bezstab.stability.closed_loop import FloatArray, dominant_pole, dominant_root, spectral_radius, verdict
-from bezstab.stability.regions import first_where, region
+from bezstab.stability.closed_loop import largest_modulus, largest_pole, verdict
+from bezstab.stability.dominant_roots import dominant_root
+from bezstab.stability.pencils import Pencil, pencil_of
+from bezstab.stability.regions import Extent, region
+from bezstab.stability.searches import first_where, zoom_on_minimum
 
 Goal = Literal["robust", "fastest", "critical", "gentle"]
+Objective = Callable[[FloatArray, FloatArray], FloatArray]
 
 THOUSANDFOLD = 1e-3  # what "settled" means for the constraint error
 SAMPLES = 4000  # along a line: |z_p| has no features as narrow as that
+FIRST_GRID = 52  # points per axis of the first grid over the region's box: every valley is seen
 GRID = 13  # points per axis of a zoom
-ZOOM = 0.75  # from one grid to the next, once the best point lies within it
-ZOOMS = 90  # 0.6^40 = 1e-9 of the region, where the objective is flat to rounding
+ZOOM = 0.75  # from one grid to the next
+ZOOMS = 90  # 0.75^89 = 8e-12 of the region at least, where the objective is flat to rounding
+SPREAD_POINTS = 9  # per axis, of the points among which the worst is looked for
 SHARES = 8  # of the largest step, besides the limit of small ones: in practice either end is the slowest
 ASIDE = 1e-7  # of mu: a double mu splits by 1e-8 in float64, which must not let a rival of equal modulus win
 DEADBEAT = 1e-6  # a double pole at zero, as far as float64 tells it
@@ -32,18 +40,21 @@ NEAREST = 1e-4  # and below which |z_p| is one to rounding
 
 @dataclass(frozen=True)
 class Margins:
-    """The factors by which h (up), alpha and beta (down, up) can be scaled alone before |z_p| = 1."""
+    """The factors by which h (up), alpha and beta (down, up) can be scaled alone before |z_p| = 1.
+
+    An upper end is infinite, and a lower end zero, where there is no such factor.
+    """
 
     h: float
     alpha: tuple[float, float]
     beta: tuple[float, float]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Choice:
     """A point, its proven verdict and dominant pole, and the largest |z_p| when alpha and beta are off by the spread.
 
-    `margins` is None unless the point is stable.
+    All dimensionless. `margins` is None unless the point is stable.
     """
 
     method: Method
@@ -54,6 +65,10 @@ class Choice:
     pole: complex
     worst: float
     margins: Margins | None
+
+    def __repr__(self) -> str:
+        place = f"alpha_hat = {self.alpha_hat:.6g}, beta_hat = {self.beta_hat:.6g}"
+        return f"Choice({self.method.name}, {self.goal}: {place}, |z_p| = {abs(self.pole):.6g}, {self.verdict})"
 
     @property
     def settle_steps(self) -> int | None:
@@ -71,73 +86,93 @@ class Choice:
 
 
 def choose(method: Method, goal: Goal, spread: float = 0.1, rate: float | None = None, equal: bool = False) -> Choice:
-    """Return the point that a goal asks for, proven stable.
+    """Return the point that a goal asks for, dimensionless and proven stable.
 
     fastest: the smallest |z_p|. critical: the fastest whose dominant pole is real and positive. robust: the fastest at
     worst over every smaller step at the same alpha, beta, and alpha and beta off by the spread (a share), where
     fast means decay per second. gentle: the smallest alpha = beta with |z_p| <= rate. `equal` keeps alpha = beta.
-    InputError if nothing stable meets the goal.
+    InputError if nothing stable meets the goal. The poles are those of paper Eq. 17; the goals are this package's.
     """
-    if not region(method).boundary:
+    extent = region(method).extent
+    if extent is None:
         raise InputError(f"{method.name} is stable for no parameters at all")
+    pencil = pencil_of(method)
     if goal == "gentle":
-        point = _gentle(method, 0.0 if rate is None else rate)
+        point = _gentle(pencil, extent, 0.0 if rate is None else rate)
     elif goal == "critical":
-        point = _critical(method)
+        point = _critical(pencil, extent)
         if equal and not math.isclose(point[1], point[0] ** 2 / 4):
             raise InputError(
                 f"--keep alpha=beta: the double mu of {method.name} is not at alpha = beta; no --goal critical"
             )
-    elif goal == "fastest" and not equal:
-        best = best_point(method)
-        assert best
-        point = best.alpha_hat, best.beta_hat
+    elif goal == "robust":
+        point = _least(extent, _slowest(pencil, spread), equal)
+    elif equal:
+        point = _least(extent, lambda alpha_hat, beta_hat: largest_modulus(pencil, alpha_hat, beta_hat), equal)
     else:
-        point = _least(method, _slowest(method, spread) if goal == "robust" else _plain(method), equal)
-    choice = describe_point(method, goal, Fraction(repr(point[0])), Fraction(repr(point[1])), spread)
+        best = best_point(method)
+        assert best  # the region is not empty
+        point = best.alpha_hat, best.beta_hat
+    choice = describe_point(method, goal, exact(point[0]), exact(point[1]), spread)
     if choice.verdict != "converges":
         raise NumericalError(f"{method.name}: the point {point} found for {goal} is not stable")
     return choice
 
 
 def describe_point(method: Method, goal: str, alpha_hat: Fraction, beta_hat: Fraction, spread: float = 0.1) -> Choice:
-    """Return what there is to say of a point."""
+    """Return what there is to say of an exact, dimensionless point; `goal` is only kept.
+
+    `spread` is the share by which alpha and beta may be off. NumericalError if a pole (a root of paper Eq. 17) leaves
+    the range of float64.
+    """
+    pencil = pencil_of(method)
     a, b = float(alpha_hat), float(beta_hat)
     proven = verdict(method, alpha_hat, beta_hat)
-    offsets = 1 + spread * np.linspace(-1, 1, 9)
-    near = (x.ravel() for x in np.meshgrid(a * offsets, b * offsets**2))
-    worst = float(spectral_radius(method, *near).max())
-    pole = complex(dominant_pole(method, a, b))
+    offsets = 1 + spread * np.linspace(-1, 1, SPREAD_POINTS)
+    near_a, near_b = np.meshgrid(a * offsets, b * offsets**2)
     return Choice(
-        method, goal, a, b, proven, pole, worst, stability_margins(method, a, b) if proven == "converges" else None
+        method=method,
+        goal=goal,
+        alpha_hat=a,
+        beta_hat=b,
+        verdict=proven,
+        pole=complex(largest_pole(pencil, a, b)),
+        worst=float(largest_modulus(pencil, near_a.ravel(), near_b.ravel()).max()),
+        margins=stability_margins(method, a, b) if proven == "converges" else None,
     )
 
 
 def stability_margins(method: Method, alpha_hat: float, beta_hat: float) -> Margins:
-    """Return how far a stable point is from |z_p| = 1 along three lines; an end without one is infinite, or zero."""
+    """Return how far a stable, dimensionless point is from |z_p| = 1 along three lines, as factors.
 
-    def end(path: Callable[[FloatArray], tuple[FloatArray, FloatArray]], furthest: float) -> float:
-        factors = np.geomspace(1, furthest, SAMPLES)
-        found = first_where(lambda factor: spectral_radius(method, *path(factor)) >= 1, factors)
-        return found[0] if found else math.inf if furthest > 1 else 0.0
+    A factor s on h makes (s alpha_hat, s^2 beta_hat), on alpha (s alpha_hat, beta_hat), on beta (alpha_hat,
+    s^2 beta_hat): paper Eq. 16. An end without |z_p| = 1 (a pole of paper Eq. 17) is infinite, or zero.
+    NumericalError if a pole leaves the range of float64.
+    """
+    pencil = pencil_of(method)
 
-    def alone(alpha: float, beta: float) -> tuple[float, float]:
-        def path(s: FloatArray) -> tuple[FloatArray, FloatArray]:
-            return alpha_hat * s**alpha, beta_hat * s ** (2 * beta)
+    def end(power_of_alpha_hat: int, power_of_beta_hat: int, furthest: float) -> float | None:
+        def unstable(factor: FloatArray) -> BoolArray:
+            scaled_alpha_hat = alpha_hat * factor**power_of_alpha_hat
+            scaled_beta_hat = beta_hat * factor**power_of_beta_hat
+            reached: BoolArray = largest_modulus(pencil, scaled_alpha_hat, scaled_beta_hat) >= 1
+            return reached
 
-        return end(path, NEAREST), end(path, FURTHEST)
+        found = first_where(unstable, np.geomspace(1, furthest, SAMPLES))
+        return found[0] if found else None
 
-    return Margins(alone(1, 1)[1], alone(1, 0), alone(0, 1))
+    def up(power_of_alpha_hat: int, power_of_beta_hat: int) -> float:
+        found = end(power_of_alpha_hat, power_of_beta_hat, FURTHEST)
+        return math.inf if found is None else found
+
+    def down(power_of_alpha_hat: int, power_of_beta_hat: int) -> float:
+        found = end(power_of_alpha_hat, power_of_beta_hat, NEAREST)
+        return 0.0 if found is None else found
+
+    return Margins(h=up(1, 2), alpha=(down(1, 0), up(1, 0)), beta=(down(0, 2), up(0, 2)))
 
 
-Objective = Callable[[FloatArray, FloatArray], FloatArray]
-
-
-def _plain(method: Method) -> Objective:
-    return lambda a, b: spectral_radius(method, a, b)
-
-
-def _slowest(method: Method, spread: float) -> Objective:
+def _slowest(pencil: Pencil, spread: float) -> Objective:
     """Return the objective of `robust`: the largest decay factor per largest step, over smaller steps and the spread.
 
     A step of share s of the largest turns (alpha_hat, beta_hat) into (s alpha_hat, s^2 beta_hat) and takes 1/s steps;
@@ -145,78 +180,93 @@ def _slowest(method: Method, spread: float) -> Objective:
     centre are taken.
     """
     shares = np.linspace(0, 1, SHARES + 1)[1:, np.newaxis]
-    corners = [(1 + spread * i, 1 + spread * j) for i in (-1, 0, 1) for j in (-1, 0, 1) if abs(i) == abs(j)]
-    multiple = float(method.step_multiple)
+    offsets = [(-1, -1), (-1, 1), (0, 0), (1, -1), (1, 1)]
+    multiple = float(pencil.method.step_multiple)
 
-    def objective(a: FloatArray, b: FloatArray) -> FloatArray:
-        worst = np.zeros(a.shape)
-        for first, second in corners:
-            off_a, off_b = first * a, second**2 * b
-            slow = multiple * (-off_a / 2 + np.sqrt(np.maximum(0, off_a**2 / 4 - off_b)))
-            per_share = spectral_radius(method, shares * off_a, shares**2 * off_b) ** (1 / shares)
-            worst = np.maximum(worst, np.maximum(np.exp(slow), per_share.max(axis=0)))
+    def objective(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
+        worst = np.zeros(alpha_hat.shape)
+        for of_alpha, of_beta in offsets:
+            off_alpha_hat = (1 + spread * of_alpha) * alpha_hat
+            off_beta_hat = (1 + spread * of_beta) ** 2 * beta_hat
+            slower_mu = -off_alpha_hat / 2 + np.sqrt(np.maximum(0, off_alpha_hat**2 / 4 - off_beta_hat))
+            at_shares = largest_modulus(pencil, shares * off_alpha_hat, shares**2 * off_beta_hat)
+            per_largest_step = (at_shares ** (1 / shares)).max(axis=0)
+            worst = np.maximum(worst, np.maximum(np.exp(multiple * slower_mu), per_largest_step))
         return worst
 
     return objective
 
 
-def _least(method: Method, objective: Objective, equal: bool) -> tuple[float, float]:
-    """Return where the objective is least, by grids that zoom in on the best point; with `equal` on alpha = beta."""
-    extent = region(method).extent
-    assert extent
-    high = np.array([extent[0][1] / 2, math.sqrt(extent[1][1])])  # of alpha h and beta h
-    low = np.zeros(2)
-    centre, width = (low + high) / 2, high - low
+def _least(extent: Extent, objective: Objective, equal: bool) -> tuple[float, float]:
+    """Return where the objective is least over the region's box; with `equal` on the line alpha = beta.
+
+    Its valleys are narrow, curved and have kinks for beds, so the grids are turned, and wait where the valley leads on.
+    """
+    largest = np.array([extent[0][1] / 2, math.sqrt(extent[1][1])])  # alpha h and beta h
+    centre = largest / 2
     if equal:
-        centre, width = centre.min() * np.ones(1), width.min() * np.ones(1)
-    count = SAMPLES if equal else GRID * 4
-    for k in range(ZOOMS):
-        offsets = np.meshgrid(*[np.linspace(-0.5, 0.5, count)] * len(width))
-        grid = np.stack([x.ravel() for x in offsets])
-        if k and not equal:  # turned by the golden angle each time, so that no valley stays diagonal
-            cosine, sine = math.cos(2.4 * k), math.sin(2.4 * k)
-            grid = np.array([[cosine, -sine], [sine, cosine]]) @ grid
-        points = centre[:, np.newaxis] + width[:, np.newaxis] * grid
-        points = points[:, (points > 0).all(axis=0)]
-        best = points[:, np.argmin(objective(2 * points[0], points[-1] ** 2))]
-        inner = (np.abs(best - centre) < 0.4 * width).all()  # else the valley leads on
-        centre, width, count = best, width * (ZOOM if inner else 1), GRID
-    return 2 * float(centre[0]), float(centre[-1]) ** 2
+        centre = np.array([centre.min()])
+
+    def over_positive_points(points: FloatArray) -> FloatArray:
+        alpha, beta = points[:, 0], points[:, -1]  # times h; with `equal` the same
+        values = np.full(len(points), np.inf)
+        positive = (points > 0).all(axis=-1)
+        values[positive] = objective(2 * alpha[positive], beta[positive] ** 2)
+        return values
+
+    best, _ = zoom_on_minimum(
+        over_positive_points,
+        centre,
+        reach=centre,
+        first_points=SAMPLES if equal else FIRST_GRID,
+        points=GRID,
+        shrink=ZOOM,
+        rounds=ZOOMS,
+        turned=not equal,
+        patient=True,
+    )
+    return 2 * float(best[0]), float(best[-1]) ** 2
 
 
-def _critical(method: Method) -> tuple[float, float]:
+def _critical(pencil: Pencil, extent: Extent) -> tuple[float, float]:
     """Return the double mu < 0 with the smallest dominant root that is real and positive.
 
-    A single mu is the slower of two, so the other may as well be there too.
+    A single mu is the slower of two, so the other may as well be there too. From zero on, the dominant root starts at
+    one and is real until a parasitic root overtakes it: the search is on that stretch alone.
     """
-    extent = region(method).extent
-    assert extent
-    to_user = np.linalg.inv(np.array(feedback_matrix(method), float))
 
-    def dominant(mu: FloatArray) -> FloatArray:
-        z = dominant_root(method, mu.astype(complex))
+    def real_dominant_root(mu: FloatArray) -> FloatArray:
+        z = dominant_root(pencil, mu.astype(complex))
         return np.where((np.abs(z.imag) < REAL * np.abs(z)) & (z.real > 0), z.real, np.inf)
 
     mu = -np.linspace(0, 2 * math.sqrt(extent[1][1]) + extent[0][1], SAMPLES)[1:]
-    inside, _ = first_where(lambda mu: np.isinf(dominant(mu)), mu) or mu[[-1, -1]]
-    candidates = np.append(mu[mu > inside], inside)
-    best = int(np.argmin(dominant(candidates)))
-    centre, width = candidates[best], abs(mu[0])
-    for _ in range(ZOOMS):
-        near = np.clip(centre + width * np.linspace(-1, 1, GRID), inside, 0)
-        centre, width = near[np.argmin(dominant(near))], width * ZOOM
-    centre = max(inside * (1 - ASIDE), centre)
-    a, b = to_user @ np.array([-2 * centre, centre**2])
-    return float(a), float(b)
+    overtaken = first_where(lambda mu: np.isinf(real_dominant_root(mu)), mu)
+    furthest = mu[-1] if overtaken is None else overtaken[0]
+    candidates = np.append(mu[mu > furthest], furthest)
+    best = candidates[np.argmin(real_dominant_root(candidates))]
+    found, _ = zoom_on_minimum(
+        lambda points: real_dominant_root(points[:, 0]),
+        np.array([best]),
+        reach=np.abs(mu[:1]),
+        points=GRID,
+        shrink=ZOOM,
+        rounds=ZOOMS,
+        fold=lambda points: np.clip(points, furthest, 0),
+    )
+    double_mu = max(furthest * (1 - ASIDE), float(found[0]))
+    alpha_hat, beta_hat = pencil.to_user @ np.array([-2 * double_mu, double_mu**2])
+    return float(alpha_hat), float(beta_hat)
 
 
-def _gentle(method: Method, rate: float) -> tuple[float, float]:
+def _gentle(pencil: Pencil, extent: Extent, rate: float) -> tuple[float, float]:
     """Return the smallest alpha = beta with |z_p| <= rate."""
-    extent = region(method).extent
-    assert extent
-    t = np.linspace(0, extent[0][1] / 2, SAMPLES)
-    found = first_where(lambda t: spectral_radius(method, 2 * t, t**2) <= rate, t)
+    alpha = np.linspace(0, extent[0][1] / 2, SAMPLES)  # times h, as beta
+
+    def modulus(alpha: FloatArray) -> FloatArray:
+        return largest_modulus(pencil, 2 * alpha, alpha**2)
+
+    found = first_where(lambda alpha: modulus(alpha) <= rate, alpha)
     if found is None:
-        best = spectral_radius(method, 2 * t, t**2).min()
-        raise InputError(f"--settle: with alpha = beta {method.name} has at best |z_p| = {best:.6g}, needed {rate:.6g}")
+        name, best = pencil.method.name, modulus(alpha).min()
+        raise InputError(f"--settle: with alpha = beta {name} has at best |z_p| = {best:.6g}, needed {rate:.6g}")
     return 2 * found[1], found[1] ** 2

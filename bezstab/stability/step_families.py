@@ -8,9 +8,10 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 
 from bezstab.methods import Method, accuracy, adams_bashforth, bezier
+from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
 from bezstab.stability.best_points import best_point
-from bezstab.stability.closed_loop import ComplexArray, FloatArray
-from bezstab.stability.regions import Region, first_where, region
+from bezstab.stability.regions import Region, region
+from bezstab.stability.searches import first_where
 
 FAMILIES: dict[str, tuple[Callable[[int], Method], int]] = {
     "bezier": (bezier, 12),
@@ -19,6 +20,9 @@ FAMILIES: dict[str, tuple[Callable[[int], Method], int]] = {
 """What makes a member, and the largest number of steps."""
 
 NODES = 400  # of Gauss and Legendre on half the circle: the integrand is analytic, a fourth of them is enough
+FINE_POINTS = 100_000  # of the locus, from which its largest coordinates are taken: to (pi / 1e5)^2 of them
+DRAWN_EVERY = 100  # of the fine points one in so many is drawn
+LIMIT_ERROR_CONSTANT = Fraction(1, 4)  # of 1/4 + 1/(6 (n - 1)), which B_n has
 
 
 @dataclass(frozen=True)
@@ -35,7 +39,7 @@ class Member:
 
 @dataclass(frozen=True)
 class Limit:
-    """What the Bezier methods tend to as n grows; `boundary` has shape (points, 2)."""
+    """What the Bezier methods tend to as n grows, dimensionless; `boundary` has shape (points, 2)."""
 
     area: float
     alpha_hat_max: float
@@ -46,40 +50,73 @@ class Limit:
 
 
 def family_members(family: str, first: int, last: int) -> list[Member]:
-    """Return the family's methods from `first` to `last` steps."""
-    made = [FAMILIES[family][0](n) for n in range(first, last + 1)]
-    return [
-        Member(n, m, region(m), best.z_abs if (best := best_point(m)) else None, *accuracy(m))
-        for n, m in enumerate(made, first)
-    ]
+    """Return the methods of a family (a key of FAMILIES) from `first` to `last` steps, with their regions.
+
+    NumericalError as for `region` and `best_point`.
+    """
+    make, _ = FAMILIES[family]
+    members = []
+    for n in range(first, last + 1):
+        method = make(n)
+        best = best_point(method)
+        order, error_constant = accuracy(method)
+        members.append(Member(n, method, region(method), best.z_abs if best else None, order, error_constant))
+    return members
 
 
 def bezier_limit() -> Limit:
-    """Return the limit region's area, axis limits, boundary and smallest |z_p|, to about 1e-12.
+    """Return the limit region's area, axis limits, boundary and smallest |z_p|, dimensionless, to about 1e-12.
 
     Its locus is mu = (z - 1)^2 / (z (exp((z - 1) / z) - 1)), |z| = 1: the weights tend to int_0^1 e^x (-x)^j / j! dx.
     As for every B_n, complex mu lie inside the locus and real ones between mu(-1) and 0, and the smallest |z_p| is a
     double mu with roots z = +-r.
     """
+    length = -_limit_mapping(np.array([-1 + 0j]))[0].real  # of the real interval
+    fine = _limit_mapping(np.exp(1j * np.linspace(0, np.pi, FINE_POINTS + 1)[1:]))
+    alpha_hat, beta_hat = -2 * fine.real, np.abs(fine) ** 2
+    return Limit(
+        area=_conjugate_area() + length**3 / 6,  # of conjugate pairs, and of real ones
+        alpha_hat_max=float(max(2 * length, alpha_hat.max())),
+        beta_hat_max=float(beta_hat.max()),
+        z_abs=_least_modulus(),
+        error_constant=LIMIT_ERROR_CONSTANT,
+        boundary=_boundary(np.stack([alpha_hat, beta_hat], axis=-1)[::DRAWN_EVERY], length),
+    )
+
+
+def _limit_mapping(z: ComplexArray) -> ComplexArray:
+    """Return mu(z) of the limit."""
+    mu: ComplexArray = (z - 1) ** 2 / (z * np.expm1((z - 1) / z))
+    return mu
+
+
+def _conjugate_area() -> float:
+    """Return the area of the conjugate pairs inside the locus, int 2 y^2 dx over mu = x + iy by Green."""
     nodes, weights = leggauss(NODES)
     theta = np.pi / 2 * (nodes + 1)
     z = np.exp(1j * theta)
-    mu = _mu(z)
+    mu = _limit_mapping(z)
     w = (z - 1) / z
     slope = 1j * z * mu * (2 / (z - 1) - 1 / z - np.exp(w) / np.expm1(w) / z**2)  # d mu / d theta
-    length = -_mu(np.array([-1 + 0j]))[0].real
-    area = abs(np.pi / 2 * weights @ (2 * mu.imag**2 * slope.real)) + length**3 / 6
-    fine = _mu(np.exp(1j * np.linspace(0, np.pi, 100001)[1:]))
-    arc = np.stack([-2 * fine.real, np.abs(fine) ** 2], axis=-1)[::100]
-    edge = np.linspace(length, 0, 3)[:, np.newaxis]
-    upper = np.concatenate([edge + length, edge * length], axis=1)  # one mu held at mu(-1)
-    met = first_where(lambda r: _mu(r.astype(complex)).real >= _mu(-r.astype(complex)).real, np.array([0.1, 0.9]))
+    return float(abs(np.pi / 2 * weights @ (2 * mu.imag**2 * slope.real)))
+
+
+def _least_modulus() -> float:
+    """Return the smallest |z_p|: r with mu(r) = mu(-r), where the two cross."""
+
+    def crossed(r: FloatArray) -> BoolArray:
+        z = r.astype(complex)
+        beyond: BoolArray = _limit_mapping(z).real >= _limit_mapping(-z).real
+        return beyond
+
+    met = first_where(crossed, np.array([0.1, 0.9]))
     assert met
-    boundary = np.concatenate([[[0.0, 0.0]], arc, upper, [[0.0, 0.0]]])
-    furthest = float(max(2 * length, -2 * fine.real.min()))
-    return Limit(float(area), furthest, float((np.abs(fine) ** 2).max()), met[1], Fraction(1, 4), boundary)
+    return met[1]
 
 
-def _mu(z: ComplexArray) -> ComplexArray:
-    limit: ComplexArray = (z - 1) ** 2 / (z * np.expm1((z - 1) / z))
-    return limit
+def _boundary(arc: FloatArray, length: float) -> FloatArray:
+    """Return the closed curve of the arc and the straight edge on which one mu is held at mu(-1) = -length."""
+    other_mu = np.linspace(length, 0, 3)[:, np.newaxis]
+    edge = np.concatenate([other_mu + length, other_mu * length], axis=1)
+    origin = np.zeros((1, 2))
+    return np.concatenate([origin, arc, edge, origin])

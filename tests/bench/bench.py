@@ -35,9 +35,13 @@ from bezstab.methods import (
     lookup,
     steps,
 )
-from bezstab.stability import FloatArray, region, roots_in_z, spectral_radius, stable_mask, window
+from bezstab.stability import FloatArray, pencil_of, region, roots_in_z, spectral_radius, window
 
 HERE = Path(__file__).parent
+sys.path.insert(0, str(HERE.parent.parent))  # run as a script, the tests are no package yet
+
+from tests.bench.stable_mask import stable_mask  # noqa: E402
+
 BASELINE, REPORT = HERE / "bench.json", HERE.parent.parent / "figures" / "bench.md"
 FALLEN = 2 / 3  # of the ratio in BASELINE
 
@@ -95,7 +99,7 @@ def away_from_multiple_roots(method: Method, alpha_hat: FloatArray, beta_hat: Fl
     """Return where no two poles of P lie within MULTIPLE of each other; boolean."""
     discriminant = np.emath.sqrt(alpha_hat**2 / 4 - beta_hat)
     mus = (-alpha_hat / 2 + discriminant, -alpha_hat / 2 - discriminant)
-    z = np.concatenate([roots_in_z(method, mu.ravel().astype(complex)) for mu in mus])
+    z = np.concatenate([roots_in_z(pencil_of(method), mu.ravel().astype(complex)) for mu in mus])
     gaps = [np.abs(z[i] - z[j]) for i in range(len(z)) for j in range(i)]
     return np.asarray(np.min(gaps, axis=0) > MULTIPLE).reshape(alpha_hat.shape)
 

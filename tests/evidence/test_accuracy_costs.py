@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from bezstab.evidence import METHODS, STEPS, map_cost, measured_runs, swept_runs, whole_sweep
+from bezstab.evidence import METHODS, STEPS, measured_runs, swept_runs, whole_sweep
 from bezstab.methods import accuracy, lookup
-from bezstab.stability import QUALITY
 from tests.evidence.small_sweeps import SOFT, small_sweep, swept
 from tests.reference.undominated import undominated
 
@@ -68,12 +67,3 @@ def test_a_sweep_knows_its_fronts() -> None:
 def test_the_default_steps_are_ten_from_a_tenth_of_a_millisecond_to_twenty() -> None:
     assert len(set(STEPS)) == 10
     assert (min(map(float, STEPS)), max(map(float, STEPS))) == (1e-4, 0.02)
-
-
-def test_more_points_read_the_boundary_better_and_cost_more() -> None:
-    rough, middle, fine = (map_cost(lookup("B4"), count) for count in sorted(QUALITY.values()))
-    assert rough.boundary_error > 10 * middle.boundary_error > 100 * fine.boundary_error
-    assert rough.area_error > middle.area_error > fine.area_error
-    assert rough.megabytes < middle.megabytes < fine.megabytes < 100
-    for cost, promised in zip((rough, middle, fine), (1e-4, 5e-6, 2e-7), strict=True):
-        assert cost.boundary_error < promised  # what the help says of --quality

@@ -118,3 +118,7 @@ def test_a_zero_of_r_beyond_float64s_squares_is_out_of_reach() -> None:
     best = best_point(far)
     assert best
     assert (best.z_abs, best.alpha_hat, best.beta_hat, best.elsewhere) == (0.0, 2.0, 1.0, ())
+
+
+def test_the_repr_of_a_best_point_is_one_line() -> None:
+    assert repr(best("RK2")) == "BestPoint(RK2: |z_p| = 0 at alpha_hat = 2, beta_hat = 2)"

@@ -3,32 +3,24 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bezstab.errors import InputError
 from bezstab.methods import lookup
 from bezstab.stability import (
-    FloatArray,
     Goal,
     best_point,
     choose,
     describe_point,
-    float_table,
+    pencil_of,
     roots_in_z,
     spectral_radius,
     stability_margins,
 )
+from tests.reference.robust_decay import worst_decay
 
 METHODS = ["B2", "B4", "AB4", "ABM3", "RK1", "RK4", "SIE", "SYM"]
-
-
-def decay(name: str, a: float, b: float, shares: FloatArray, spread: float) -> float:
-    """Return the largest |z_p|^(1/share) over the shares of the step and over the square of the spread, corners in."""
-    offsets = 1 + spread * np.linspace(-1, 1, 5)
-    first, second, share = (x.ravel() for x in np.meshgrid(offsets, offsets, shares))
-    z_abs = spectral_radius(lookup(name), a * first * share, b * (second * share) ** 2)
-    return float((z_abs ** (1 / share)).max())
 
 
 @pytest.mark.parametrize("name", METHODS)
@@ -36,13 +28,13 @@ def test_no_point_is_more_robust(name: str) -> None:
     """Second route: compass search from random points, on other shares of the step and other offsets."""
     chosen = choose(lookup(name), "robust", 0.1)
     shares = np.concatenate([np.geomspace(1e-6, 1, 50), np.linspace(0.5, 1, 50)])
-    best = decay(name, chosen.alpha_hat, chosen.beta_hat, shares, 0.1)
+    best = worst_decay(lookup(name), chosen.alpha_hat, chosen.beta_hat, shares, 0.1)
     random = np.random.default_rng(5)
     for size in (0.3, 0.1, 0.03, 0.01, 1e-3, 1e-4):
         for a, b in random.normal(1, size, (60, 2)) * (chosen.alpha_hat, chosen.beta_hat):
             if a > 0 and b > 0:
                 # six digits; that small steps end at a millionth here costs as much again
-                assert decay(name, a, b, shares, 0.1) > best * (1 - 2e-6)
+                assert worst_decay(lookup(name), a, b, shares, 0.1) > best * (1 - 2e-6)
 
 
 @pytest.mark.parametrize("name", ["B2", "B4", "AB4", "RK4"])
@@ -76,7 +68,7 @@ def test_the_critical_choice_is_where_a_parasitic_root_catches_up(name: str) -> 
     assert abs(chosen.pole.imag) < 1e-6 * chosen.pole.real
     mu = -chosen.alpha_hat / 2
     assert chosen.beta_hat == pytest.approx(mu * mu, rel=1e-12)
-    table = float_table(lookup(name))  # z and -z both solve pi(., mu) = 0
+    table = pencil_of(lookup(name)).table  # z and -z both solve pi(., mu) = 0
     r = chosen.pole.real
     signs = np.array([(-1.0) ** k for k in range(len(table))])
     both = [np.polynomial.polynomial.polyval(s, table @ [1, mu]) for s in (r,)]
@@ -97,13 +89,13 @@ def test_the_critical_choice_of_rk4_is_the_minimum_of_its_stability_function() -
 @pytest.mark.parametrize("rate", [0.999, 0.95, 0.85])
 def test_the_gentle_choice_solves_for_mu(name: str, rate: float) -> None:
     chosen = choose(lookup(name), "gentle", rate=rate)
-    mu = np.roots(
-        (np.vander([rate], len(float_table(lookup(name))), increasing=True) @ float_table(lookup(name)))[0][::-1]
-    )
+    pencil = pencil_of(lookup(name))
+    in_mu = np.vander([rate], pencil.steps + 1, increasing=True) @ pencil.table  # pi(rate, mu), ascending
+    mu = np.roots(in_mu[0][::-1])
     nearest = max(mu[(np.abs(mu.imag) < 1e-9) & (mu.real < 0)].real)
     assert chosen.alpha_hat == pytest.approx(-2 * nearest, rel=1e-7)  # a double mu: half the digits
     assert chosen.beta_hat == pytest.approx(nearest**2, rel=1e-7)
-    z = roots_in_z(lookup(name), np.array([nearest], complex))
+    z = roots_in_z(pencil, np.array([nearest], complex))
     assert np.abs(z).max() == pytest.approx(rate)
 
 
@@ -135,6 +127,7 @@ def test_alpha_and_beta_can_be_kept_equal(goal: Goal) -> None:
 
 
 @given(st.floats(0.05, 1.9), st.floats(0.05, 0.95))
+@settings(deadline=None)
 def test_margins_of_symplectic_euler_are_those_of_its_triangle(a: float, share: float) -> None:
     b = share * (4 - 2 * a)
     found = stability_margins(lookup("SYM"), a, b)
@@ -155,3 +148,8 @@ def test_a_choice_is_proven_and_described() -> None:
     assert deadbeat.settle_steps == 2
     slow = describe_point(lookup("B4"), "", Fraction("1e-17"), Fraction("1e-34"))  # |z_p| = 1 - 5e-18 is 1 in float64
     assert (slow.verdict, slow.settle_steps) == ("converges", None)
+
+
+def test_the_repr_of_a_choice_is_one_line() -> None:
+    described = describe_point(lookup("SYM"), "as given", Fraction(1), Fraction(1))
+    assert repr(described) == "Choice(SYM, as given: alpha_hat = 1, beta_hat = 1, |z_p| = 0, converges)"

@@ -1,7 +1,6 @@
 import contextlib
 from decimal import ROUND_DOWN, ROUND_HALF_EVEN, Decimal
 from fractions import Fraction
-from typing import Any
 
 import mpmath
 import numpy as np
@@ -13,18 +12,14 @@ from bezstab.errors import NumericalError
 from bezstab.methods import (
     REGISTRY,
     LinearMultistep,
-    Method,
-    RungeKutta,
     closed_loop_at,
-    coefficient_table,
-    feedback_matrix,
     lookup,
 )
-from bezstab.stability import branch_points, dominant_pole, poles, roots_in_z, spectral_radius, verdict
+from bezstab.stability import dominant_pole, poles, spectral_radius, verdict
+from tests.reference.fifty_digit_poles import poles_with_errors
 
 F = Fraction
 NAMES = [*REGISTRY, "RK4@5"]
-EPS = 2.0**-52
 
 TABLE_5 = {  # paper, as printed: real, imaginary part, modulus, angle
     ("B4", "0.1", "0.1"): "0.898 0.299 0.947 18.45",
@@ -78,42 +73,13 @@ POINTS = [
 ]  # fmt: skip
 
 
-def reference_poles(method: Method, alpha_hat: float, beta_hat: float) -> list[tuple[Any, Any]]:
-    """Return each pole to 50 digits with the error that float64 cannot avoid: rounding times its condition.
-
-    Rounding the coefficients of pi, mu and the evaluation by a few eps moves a root of multiplicity k by the k-th
-    root of (rounding / |k-th derivative|).
-    """
-    (a, b), (c, d) = ([mpmath.mpf(x.numerator) / x.denominator for x in row] for row in feedback_matrix(method))
-    p, q = a * mpmath.mpf(alpha_hat) + b * mpmath.mpf(beta_hat), c * mpmath.mpf(alpha_hat) + d * mpmath.mpf(beta_hat)
-    root = mpmath.sqrt(p * p / 4 - q)
-    pairs = []
-    for mu in (-p / 2 + root, -p / 2 - root):
-        table = [[mpmath.mpf(x.numerator) / x.denominator for x in row] for row in coefficient_table(method)]
-        coefficients = [sum(x * mu**j for j, x in enumerate(row)) for row in table]
-        sizes = [sum(abs(x * mu**j) for j, x in enumerate(row)) for row in table]
-        while coefficients[0] == 0:  # exact zeros, which polyroots would only approach
-            pairs.append((mpmath.mpf(0), mpmath.mpf(0)))
-            coefficients, sizes = coefficients[1:], sizes[1:]
-        for z in mpmath.polyroots(coefficients[::-1], maxsteps=500, extraprec=200):
-            rounding = 50 * EPS * sum(size * abs(z) ** k for k, size in enumerate(sizes))
-            derivative, error = coefficients, mpmath.inf
-            for k in range(1, len(coefficients)):
-                derivative = [i * x for i, x in enumerate(derivative)][1:]
-                slope = abs(mpmath.polyval(derivative[::-1], z)) / mpmath.factorial(k)
-                if slope:
-                    error = min(error, (len(coefficients) * rounding / slope) ** (mpmath.mpf(1) / k))
-            pairs.append((z, error))
-    return pairs
-
-
 @pytest.mark.parametrize("name", NAMES)
 def test_poles_agree_with_fifty_digits(name: str) -> None:
     method = lookup(name)
     with mpmath.workdps(50):
         for alpha_hat, beta_hat in POINTS:
             found = list(poles(method, alpha_hat, beta_hat))
-            for exact, allowed in sorted(reference_poles(method, alpha_hat, beta_hat), key=lambda pair: pair[1]):
+            for exact, allowed in sorted(poles_with_errors(method, alpha_hat, beta_hat), key=lambda pair: pair[1]):
                 k = min(range(len(found)), key=lambda i: abs(found[i] - exact))
                 assert abs(found.pop(k) - exact) <= allowed, (alpha_hat, beta_hat, complex(exact))
 
@@ -216,39 +182,3 @@ def test_away_from_the_boundary_the_proof_agrees_with_the_number(name: str, a: F
 def test_overflow_is_reported_never_returned(name: str, point: tuple[float, float]) -> None:
     with contextlib.suppress(NumericalError):
         assert np.isfinite(poles(lookup(name), *point)).all()
-
-
-@pytest.mark.parametrize("name", REGISTRY)
-def test_a_map_follows_the_pole_that_is_largest_everywhere(name: str) -> None:
-    method = lookup(name)
-    for low, high in (((-3, -2), (5, 6)), ((0, 0), (40, 900))):  # kinks and branch points; far outside
-        alpha_hat, beta_hat = np.linspace(low, high, 120).T
-        grid = (alpha_hat, beta_hat[:, np.newaxis])
-        every = np.abs(poles(method, *grid)).max(axis=-1)
-        # of ABM four roots meet at z = 1 along a curve of the plane, and float64 keeps a quarter of the digits there
-        assert np.allclose(spectral_radius(method, *grid), every, rtol=1e-4 if "ABM" in name else 1e-12, atol=0)
-
-
-def test_a_map_whose_rows_leap_over_branch_points_follows_no_pole_across_them() -> None:
-    """From the end of one row, mu = -85, to the start of the next, mu = -5, the slopes at the former mean nothing."""
-    weights = (tuple(map(Fraction, text.split())) for text in ("1 -1 0 1/3 -1/3", "0 4/5 1 2/5 -13/15"))
-    method = Method("leap", LinearMultistep(*weights), "")
-    grid = (np.linspace(8.673741, 86.61854885, 211), np.linspace(-28.26979122, 65.9313013, 197)[:, np.newaxis])
-    every = np.abs(poles(method, *grid)).max(axis=-1)
-    assert np.allclose(spectral_radius(method, *grid), every, rtol=1e-12, atol=0)
-
-
-@pytest.mark.parametrize("name", ["B2", "B4", "AB3", "AB4", "ABM2"])
-def test_two_roots_meet_at_a_branch_point(name: str) -> None:
-    found = branch_points(lookup(name))
-    assert len(found)
-    z = roots_in_z(lookup(name), found)
-    apart = np.abs(z[:, np.newaxis] - z)[np.triu_indices(len(z), 1)].min(axis=0)
-    assert apart.max() < 1e-3  # where three or four meet, float64 keeps a third or a quarter of its digits
-
-
-def test_coefficients_beyond_float64_are_reported() -> None:
-    huge = Fraction(10) ** 200
-    method = Method("huge", RungeKutta(((Fraction(0),) * 2, (huge, Fraction(0))), (1 - huge, huge)), "constructed")
-    with pytest.raises(NumericalError, match="huge: products of its coefficients"):
-        poles(method, 0.5, 0.1)

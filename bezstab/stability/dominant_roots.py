@@ -1,0 +1,102 @@
+"""The root of pi(., mu) of largest modulus along a row of mu, followed from neighbour to neighbour where that is safe.
+
+A map asks for one root of a million polynomials. To solve them all for all their roots takes four times as long as
+what is done here:
+
+    row of mu     . . . . . . . . c . . . . . . .     one block of STRIDE neighbours with its centre c
+    at c          all roots are solved for; the largest leads, the others are rivals
+    elsewhere     Newton's method takes the leading root from c to the others
+
+                  |z|   ___________x_________         what Newton finds: must stay above the rivals' bound
+                        - - - - - - - - - - -         bound: how far the rivals can come within the block
+                               o                      the largest rival at c
+
+What Newton finds is a root, and if its modulus is above what every rival can reach it is no rival: so it is the leading
+root, and it is the largest. Where that fails (near kinks and branch points) all roots are solved for again.
+
+How far can a rival come? mu is a function of z, so z(mu) is one-to-one up to the distance R of the next branch point,
+and Koebe's distortion theorem says |z(mu) - z(c)| <= |z'(c)| r / (1 - r/R)^2 for |mu - c| = r < R. (For PECE, where mu
+is one of two functions of z, that is an estimate.)
+"""
+
+import numpy as np
+from numpy.polynomial.polynomial import polyval2d
+from numpy.typing import NDArray
+
+from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
+from bezstab.stability.pencils import Pencil, roots_in_z
+from bezstab.stability.root_finding import CHUNK, CONVERGED, STRIDE, followed_roots
+
+FEWEST = STRIDE**2  # mu for which following is worth its preparations
+
+
+def dominant_root(pencil: Pencil, mu: ComplexArray) -> ComplexArray:
+    """Return the root of pi(., mu) of largest modulus for each of a row of mu; complex, dimensionless.
+
+    Faster where neighbours in the row are close, as on a map. NumericalError if a root leaves the range of float64.
+    """
+    if pencil.steps == 1 or mu.size < FEWEST:
+        return _largest(roots_in_z(pencil, mu))
+    found = np.full(mu.size, np.nan, complex)
+    in_blocks = mu.size - mu.size % STRIDE
+    _follow(pencil, mu[:in_blocks].reshape(-1, STRIDE), found[:in_blocks].reshape(-1, STRIDE))
+    rest = np.flatnonzero(np.isnan(found))
+    found[rest] = _largest(roots_in_z(pencil, mu[rest]))
+    return found
+
+
+def _largest(z: ComplexArray) -> ComplexArray:
+    """Return the entry of largest modulus along the first axis."""
+    largest: ComplexArray = np.take_along_axis(z, np.argmax(np.abs(z), axis=0)[np.newaxis], axis=0)[0]
+    return largest
+
+
+def _follow(pencil: Pencil, blocks: ComplexArray, found: ComplexArray) -> None:
+    """Write into `found` the leading roots of blocks of mu, shape (blocks, STRIDE), where they are safe to follow."""
+    centre = blocks[:, STRIDE // 2]
+    z = roots_in_z(pencil, centre)
+    same_mu = np.broadcast_to(centre, z.shape)
+    with np.errstate(all="ignore"):  # what is not finite is not followed
+        slope = -polyval2d(z, same_mu, pencil.table_by_mu) / polyval2d(z, same_mu, pencil.table_by_z)  # dz/dmu
+        lead = np.argmax(np.abs(z), axis=0)[np.newaxis]
+        lead_z = np.take_along_axis(z, lead, axis=0)[0]
+        lead_slope = np.take_along_axis(slope, lead, axis=0)[0]
+        bound = _rivals_bound(pencil, blocks, z, slope, lead)
+        safe = np.flatnonzero(bound < np.abs(lead_z))
+        blocks_at_a_time = CHUNK // STRIDE
+        for i in range(0, safe.size, blocks_at_a_time):
+            chosen = safe[i : i + blocks_at_a_time]
+            mu = blocks[chosen]
+            offset = mu - centre[chosen, np.newaxis]
+            starts = lead_z[chosen, np.newaxis] + lead_slope[chosen, np.newaxis] * offset
+            found[chosen] = followed_roots(pencil.table, mu, starts, bound[chosen, np.newaxis])
+
+
+def _rivals_bound(
+    pencil: Pencil, blocks: ComplexArray, z: ComplexArray, slope: ComplexArray, lead: NDArray[np.intp]
+) -> FloatArray:
+    """Return for each block the modulus that none but the leading root exceeds there; infinite near a branch point.
+
+    `z` and `slope` have the roots at the centres and their dz/dmu, `lead` the leading root's number.
+    """
+    centre = blocks[:, STRIDE // 2]
+    radius = np.abs(blocks - centre[:, np.newaxis]).max(axis=1)
+    share = radius / np.abs(centre[:, np.newaxis] - pencil.branch_points).min(axis=1, initial=np.inf)
+    moved = np.abs(slope) * np.where(share < 1, radius / (1 - share) ** 2, np.inf)
+    bound = np.abs(z) + moved
+    np.put_along_axis(bound, lead, 0, axis=0)
+    lead_z = np.take_along_axis(z, lead, axis=0)[0]
+    bounds: FloatArray = np.where(_twins(blocks, z, lead_z, moved), 0, bound).max(axis=0)
+    return bounds
+
+
+def _twins(blocks: ComplexArray, z: ComplexArray, lead_z: ComplexArray, moved: FloatArray) -> BoolArray:
+    """Return which roots are the leading one's conjugate and stay so, so that they are as large but never larger.
+
+    Along a block of real mu roots come in conjugate pairs; they stay a pair as long as they cannot reach the real axis.
+    """
+    conjugate = np.abs(z - lead_z.conj()) < CONVERGED * np.abs(lead_z)
+    real_mu = (blocks.imag == 0).all(axis=1)
+    off_the_axis = np.abs(z.imag) > moved
+    twins: BoolArray = conjugate & real_mu & off_the_axis
+    return twins

@@ -1,0 +1,205 @@
+"""All roots of many polynomials at once: of sum_kj table[k, j] y^k x^j in y, for every x of a row.
+
+Along a row of a map neighbouring x have neighbouring roots. So one x in STRIDE is solved from scratch, with starts
+from the Newton polygon, and its roots start Aberth's iteration for the others. If but one root of each is wanted, it
+can be followed by Newton's method alone (`followed_roots`), which is several times faster.
+"""
+
+import numpy as np
+
+from bezstab.stability.arrays import ComplexArray, FloatArray
+
+CHUNK = 16384  # points at a time: all the work arrays of one chunk stay in a core's cache
+STRIDE = 16  # of a row of points one in so many has all its roots solved for, the others start from them
+ITERATIONS = 200  # Aberth's iteration needs about ten; a multiple root, where it is linear, about sixty
+FAR = 1e15  # |z| whose 16th power still fits float64
+NEAR = 0.2  # relative distance of x within which the roots of a neighbour are better starts than the polygon's
+NUDGE = 1e-3  # about a step of a map's grid, so it costs no iteration
+CONVERGED = 1e-9  # relative correction after which a quadratically convergent iterate is exact to rounding
+NEWTON_STEPS = 4  # from a start that is off by the square of a map's spacing two suffice
+LOG_OF_ZERO = -1e300  # a finite stand-in for log 0, below every logarithm of a float64
+
+
+def roots_of_table(table: FloatArray, x: ComplexArray) -> ComplexArray:
+    """Return the roots y of sum_kj table[k, j] y^k x^j for each x; shape (table rows - 1, x.size) for a row of x.
+
+    Not finite where a root is at infinity or leaves the range of float64: that is for the caller to judge.
+    """
+    with np.errstate(all="ignore"):
+        chunks = [_roots_of_chunk(table, x[start : start + CHUNK]) for start in range(0, x.size, CHUNK)]
+    if not chunks:
+        return np.empty((len(table) - 1, 0), complex)
+    return np.concatenate(chunks, axis=1)
+
+
+def _roots_of_chunk(table: FloatArray, x: ComplexArray) -> ComplexArray:
+    """Return the roots as roots_of_table does, the polynomials scaled by x^-d where |x| > 1."""
+    linear = len(table) == 2
+    if linear and table[1, 0] == 1 and not table[1, 1:].any():  # y = R(x)
+        return -horner(table[0], x)[np.newaxis]
+    coefficients = _coefficients(table, x)
+    if linear:
+        single: ComplexArray = -coefficients[:1] / coefficients[1]
+        return single
+    solved_coefficients = coefficients[:, ::STRIDE]
+    solved = _aberth(solved_coefficients, newton_polygon_starts(solved_coefficients))
+    # Nudged apart: coinciding starts would never part, and real ones never leave the axis of a real polynomial.
+    solved += NUDGE * np.abs(solved) * _spread_directions(len(solved))
+    starts = np.repeat(solved, STRIDE, axis=1)[:, : x.size]
+    solved_x = np.repeat(x[::STRIDE], STRIDE)[: x.size]
+    too_far = np.abs(x - solved_x) >= NEAR * np.abs(x)
+    has_root_zero = coefficients[0] == 0  # an exact zero starts, and stays, at 0
+    alone = too_far | has_root_zero
+    starts[:, alone] = newton_polygon_starts(coefficients[:, alone])
+    return _aberth(coefficients, starts)
+
+
+def _coefficients(table: FloatArray, x: ComplexArray) -> ComplexArray:
+    """Return the coefficients in y, ascending, shape (table rows, x.size); times x^-d where |x| > 1, lest x^d overflow.
+
+    The common factor of a polynomial's coefficients does not move its roots.
+    """
+    large = np.abs(x) > 1
+    small_x = np.where(large, 0, x)
+    inverse = np.divide(1, x, out=np.zeros_like(x), where=large)
+    return np.stack([np.where(large, horner(row[::-1], inverse), horner(row, small_x)) for row in table])
+
+
+def horner(ascending: FloatArray, x: ComplexArray) -> ComplexArray:
+    """Return the polynomial with these coefficients, in ascending powers, at each x."""
+    total = np.full_like(x, ascending[-1])
+    for coefficient in ascending[-2::-1]:
+        total *= x
+        total += coefficient
+    return total
+
+
+def _spread_directions(n: int) -> ComplexArray:
+    """Return n directions around the circle, none the conjugate of another; shape (n, 1)."""
+    directions: ComplexArray = np.exp(1j * (2 * np.pi * np.arange(n) / n + 0.7))[:, np.newaxis]
+    return directions
+
+
+# The Newton polygon. Over k stands the point log|a_k|; above all points lies their upper hull:
+#
+#   log|a_k|      2
+#      |        o---__
+#      |      /   *    --__  4       slope of the hull from k to l = -log r: there are about l - k roots with |z| near
+#      |    /        *      o        r, because at |z| = r the terms a_k z^k and a_l z^l balance and outweigh the rest.
+#      |  o          3        \      Here two roots are small, two of middle size and one is large.
+#      |  0                     o 5
+#      +------------------------------ k
+#
+# The hull's slope over (i, i + 1) needs no hull: it is the max over lower <= i of the min over upper > i of the
+# chords' slopes (with the sign of log r).
+
+
+def newton_polygon_starts(coefficients: ComplexArray) -> ComplexArray:
+    """Return starting points on circles whose radii are the slopes of the upper hull of (k, log|a_k|).
+
+    Shape (n, points) for coefficients of shape (n + 1, points). D. A. Bini, Numer. Algorithms 13, 1996: so every
+    root, however small or large, has a start of its size.
+    """
+    n = len(coefficients) - 1
+    size = np.maximum(np.log(np.abs(coefficients)), LOG_OF_ZERO)
+    radii = np.empty((n, coefficients.shape[1]))
+    for i in range(n):
+        least_slopes = []
+        for lower in range(i + 1):
+            chords = [(size[lower] - size[upper]) / (upper - lower) for upper in range(i + 1, n + 1)]
+            least_slopes.append(np.min(chords, axis=0))
+        radii[i] = np.exp(np.max(least_slopes, axis=0))
+    return radii * _spread_directions(n)
+
+
+def _aberth(coefficients: ComplexArray, starts: ComplexArray) -> ComplexArray:
+    """Return the roots of sum_k a_k z^k, coefficients of shape (n + 1, points), from starts of shape (n, points).
+
+    Aberth's simultaneous Newton iteration (O. Aberth, Math. Comp. 27, 1973), cubic at simple roots; points leave as
+    they converge. At a multiple root the last digits cannot settle: there ITERATIONS ends the walk.
+    """
+    solution = starts.copy()
+    active = np.arange(starts.shape[1])
+    z = starts
+    step_from = _far_aberth_step if np.abs(z).max(initial=0.0) > FAR else _aberth_step
+    for _ in range(ITERATIONS):
+        step = step_from(coefficients, z)
+        settled = np.all(np.abs(step) <= CONVERGED * np.abs(z), axis=0)
+        z = z - step
+        solution[:, active[settled]] = z[:, settled]
+        if settled.all():
+            return solution
+        if settled.any():
+            moving = ~settled
+            coefficients = coefficients[:, moving]
+            z = z[:, moving]
+            active = active[moving]
+    solution[:, active] = z
+    return solution
+
+
+def _aberth_step(coefficients: ComplexArray, z: ComplexArray) -> ComplexArray:
+    """Return Newton's correction N = p/p' repelled by the other roots: N / (1 - N sum 1/(z_i - z_j))."""
+    value = np.broadcast_to(coefficients[-1], z.shape).copy()
+    slope = np.zeros_like(z)
+    for coefficient in coefficients[-2::-1]:
+        slope *= z
+        slope += value
+        value *= z
+        value += coefficient
+    return _quotient(value, slope - value * _repulsion(z))
+
+
+def _far_aberth_step(coefficients: ComplexArray, z: ComplexArray) -> ComplexArray:
+    """Return the same step where powers of z may overflow: for |z| > 1 by q with p(z) = z^n q(1/z), relative to z."""
+    n = len(z)
+    far = np.abs(z) > 1
+    inverse = np.divide(1, z, out=z.copy(), where=far)  # 1/z where z is far, else z itself
+    value = np.zeros_like(z)
+    slope = np.zeros_like(z)
+    for coefficient, reverse in zip(coefficients[::-1], coefficients, strict=True):
+        slope = slope * inverse + value
+        value = value * inverse + np.where(far, reverse, coefficient)
+    repulsion = _repulsion(z)
+    near_step = _quotient(value, slope - value * repulsion)
+    far_step = z * _quotient(value, n * value - inverse * slope - value * (z * repulsion))
+    return np.where(far, far_step, near_step)
+
+
+def _quotient(numerator: ComplexArray, denominator: ComplexArray) -> ComplexArray:
+    """Return the quotient, and 0 where the numerator is 0."""
+    quotient: ComplexArray = np.divide(numerator, denominator, out=np.zeros_like(numerator), where=numerator != 0)
+    return quotient
+
+
+def _repulsion(z: ComplexArray) -> ComplexArray:
+    """Return the sums of 1 / (z_i - z_j) over the other roots j, coinciding ones left out."""
+    repulsion = np.zeros_like(z)
+    for i in range(len(z)):
+        for j in range(i):
+            difference = z[i] - z[j]
+            reciprocal = np.divide(1, difference, out=np.zeros_like(difference), where=difference != 0)
+            repulsion[i] += reciprocal
+            repulsion[j] -= reciprocal
+    return repulsion
+
+
+def followed_roots(table: FloatArray, x: ComplexArray, starts: ComplexArray, bound: FloatArray) -> ComplexArray:
+    """Return the roots y that Newton's method reaches from the starts; nan where not settled, or not above the bound.
+
+    x, starts and the result have one shape, `bound` broadcasts to it: the modulus that no other root exceeds.
+    """
+    coefficients = [horner(row, x) if row[1:].any() else row[0] for row in table]
+    y = starts
+    for _ in range(NEWTON_STEPS):
+        value = coefficients[-1] * y + coefficients[-2]
+        slope = coefficients[-1]
+        for coefficient in coefficients[-3::-1]:
+            slope = slope * y + value
+            value = value * y + coefficient
+        step = value / slope
+        y = y - step
+        settled = np.abs(step) <= CONVERGED * np.abs(y)
+        if settled.all():
+            break
+    return np.where(settled & (np.abs(y) > bound), y, np.nan)

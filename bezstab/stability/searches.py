@@ -1,0 +1,113 @@
+"""The two kinds of search that this package needs: for where a condition comes to hold, and for a least value.
+
+Both evaluate whole arrays of points, and many brackets side by side: one call for a thousand polynomials costs little
+more than one for a single polynomial. scipy's `brentq` and `minimize_scalar` would serve one bracket at a time, and
+need smooth functions to be fast, while |z_p| has kinks just where it is least. And they would make a fifth required
+package for two short functions. Bisecting until the ends are neighbours keeps the last digit.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from bezstab.stability.arrays import BoolArray, FloatArray
+
+BISECTIONS = 60  # halves a bracket of 1e-3 below float64's spacing at one
+WELL_INSIDE = 0.8  # of the reach: a best point further out says that the valley may lead on
+GOLDEN_ANGLE = 2.4  # rad, about pi (3 - sqrt 5): grids turned by it from one to the next never line up again
+
+
+def bisected(
+    holds: Callable[[FloatArray], BoolArray], before: FloatArray, after: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return brackets narrowed to float64's spacing: at `before` the condition does not hold yet, at `after` it does.
+
+    `before` and `after` have one shape, that of the returned ends; `holds` takes and returns arrays of that shape.
+    """
+    for _ in range(BISECTIONS):
+        middle = (before + after) / 2
+        held = holds(middle)
+        before, after = np.where(held, before, middle), np.where(held, middle, after)
+    return before, after
+
+
+def first_where(holds: Callable[[FloatArray], BoolArray], samples: FloatArray) -> tuple[float, float] | None:
+    """Return two numbers next to each other between which a condition first comes to hold along the samples, or None.
+
+    At the first it does not hold yet (unless at all), at the second it does. What happens between two samples, twice,
+    is not seen.
+    """
+    found = np.flatnonzero(holds(samples))
+    if not found.size:
+        return None
+    before = samples[max(0, found[0] - 1)]
+    after = samples[found[0]]
+    ends = bisected(holds, np.array([before]), np.array([after]))
+    return float(ends[0][0]), float(ends[1][0])
+
+
+# A zoom: a grid around the centre, a smaller grid around its best point, and so on.
+#
+#     +---+---+---+---+
+#     |   |   |   |   |         reach: half the grid's width along each axis, one number for each
+#     +---+---+---+---+         shrink: the factor on it from one grid to the next
+#     |   |  +-+-+|   |
+#     +---+--+-x-+----+ centre
+#     |   |  +-+-+|   |         A diagonal valley narrower than the grid's spacing can hold the centre fast at a point
+#     +---+---+---+---+         that is best along both axes but not in between: turning the grids finds the way on.
+
+
+def zoom_on_minimum(
+    objective: Callable[[FloatArray], FloatArray],
+    centre: FloatArray,
+    reach: FloatArray,
+    *,
+    points: int,
+    shrink: float,
+    rounds: int,
+    first_points: int | None = None,
+    turned: bool = False,
+    patient: bool = False,
+    fold: Callable[[FloatArray], FloatArray] | None = None,
+) -> tuple[FloatArray, FloatArray]:
+    """Return the best point of the last of `rounds` grids that zoom in on the least value, and the value there.
+
+    centre and reach: shape (..., dimensions), one or two of them; leading axes are searches side by side.
+    objective: takes points of shape (..., grid points, dimensions) and returns their values, without the last axis.
+    points, first_points: along each axis of a grid, and of the first. shrink: the factor on the reach from grid to
+    grid. turned: each grid is rotated by the golden angle (two dimensions). patient: a grid whose best point is near
+    its edge is followed by one as large. fold: takes points to where they are allowed. The search ends after `rounds`
+    grids, with a reach of shrink^(rounds - 1) of the first; what the least value is worth is for the caller to judge.
+    """
+    dimensions = centre.shape[-1]
+    for k in range(rounds):
+        count = first_points if first_points and k == 0 else points
+        offsets = _grid(dimensions, count)
+        if turned and k:
+            offsets = _rotation(GOLDEN_ANGLE * k) @ offsets
+        candidates = centre[..., np.newaxis, :] + reach[..., np.newaxis, :] * offsets.T
+        if fold:
+            candidates = fold(candidates)
+        values = objective(candidates)
+        least = np.asarray(np.argmin(values, axis=-1))
+        best = np.take_along_axis(candidates, least[..., np.newaxis, np.newaxis], axis=-2)[..., 0, :]
+        value = np.take_along_axis(values, least[..., np.newaxis], axis=-1)[..., 0]
+        if patient:
+            well_inside = np.all(np.abs(best - centre) < WELL_INSIDE * reach, axis=-1, keepdims=True)
+            reach = np.where(well_inside, shrink * reach, reach)
+        else:
+            reach = shrink * reach
+        centre = best
+    return centre, np.asarray(value)
+
+
+def _grid(dimensions: int, count: int) -> FloatArray:
+    """Return the points of a grid over [-1, 1] in each dimension, the first running fastest; shape (dimensions, n)."""
+    axes = [np.linspace(-1, 1, count)] * dimensions
+    return np.stack([coordinate.ravel() for coordinate in np.meshgrid(*axes)])
+
+
+def _rotation(angle: float) -> FloatArray:
+    """Return the matrix that turns the plane by an angle in rad."""
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return np.array([[cosine, -sine], [sine, cosine]])

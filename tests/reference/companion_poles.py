@@ -1,0 +1,45 @@
+"""The poles by a second route: eigenvalues of the companion matrix of P(z; alpha_hat, beta_hat)."""
+
+from functools import cache
+
+import numpy as np
+from numpy.polynomial import polynomial
+
+from bezstab.methods import Method, closed_loop_polynomial
+from bezstab.stability import ComplexArray, FloatArray
+
+
+@cache
+def closed_loop_tables(method: Method) -> FloatArray:
+    """Return C with P(z) = sum_kij C[k, i, j] alpha_hat^i beta_hat^j z^(n - k), rounded from the exact P."""
+    coefficients = [
+        c.as_poly(*closed_loop_polynomial(method).domain.symbols).terms()
+        for c in closed_loop_polynomial(method).all_coeffs()
+    ]
+    degree = max(max(powers) for terms in coefficients for powers, _ in terms)
+    table = np.zeros((len(coefficients), degree + 1, degree + 1))
+    for k, terms in enumerate(coefficients):
+        for (i, j), c in terms:
+            table[k, i, j] = float(c)
+    return table
+
+
+def polynomial_at(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, level: float = 1.0) -> FloatArray:
+    """Return P's coefficients in z / level, descending powers along the first axis."""
+    table = closed_loop_tables(method)
+    return np.array([polynomial.polyval2d(alpha_hat, beta_hat, c) / level**k for k, c in enumerate(table)])
+
+
+def eigenvalues(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
+    """Return P's roots as eigenvalues of its companion matrix."""
+    c = polynomial_at(method, alpha_hat, beta_hat)
+    n = len(c) - 1
+    companion = np.zeros((*alpha_hat.shape, n, n))
+    companion[..., 0, :] = -np.moveaxis(c[1:], 0, -1)
+    companion[..., range(1, n), range(n - 1)] = 1
+    return np.linalg.eigvals(companion).astype(complex)
+
+
+def radius(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
+    """Return |z_p| from the companion's eigenvalues; shape of alpha_hat."""
+    return np.asarray(np.abs(eigenvalues(method, alpha_hat, beta_hat)).max(axis=-1))

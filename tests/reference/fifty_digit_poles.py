@@ -1,0 +1,50 @@
+"""The poles to 50 digits, with the error that float64 cannot avoid; |z_p| from P itself."""
+
+from typing import Any
+
+import mpmath
+
+from bezstab.methods import Method, closed_loop_polynomial, coefficient_table, feedback_matrix
+
+EPS = 2.0**-52
+
+
+def poles_with_errors(method: Method, alpha_hat: float, beta_hat: float) -> list[tuple[Any, Any]]:
+    """Return each pole to 50 digits with the error that float64 cannot avoid: rounding times its condition.
+
+    Rounding the coefficients of pi, mu and the evaluation by a few eps moves a root of multiplicity k by the k-th
+    root of (rounding / |k-th derivative|).
+    """
+    (a, b), (c, d) = ([mpmath.mpf(x.numerator) / x.denominator for x in row] for row in feedback_matrix(method))
+    p, q = a * mpmath.mpf(alpha_hat) + b * mpmath.mpf(beta_hat), c * mpmath.mpf(alpha_hat) + d * mpmath.mpf(beta_hat)
+    root = mpmath.sqrt(p * p / 4 - q)
+    pairs = []
+    for mu in (-p / 2 + root, -p / 2 - root):
+        table = [[mpmath.mpf(x.numerator) / x.denominator for x in row] for row in coefficient_table(method)]
+        coefficients = [sum(x * mu**j for j, x in enumerate(row)) for row in table]
+        sizes = [sum(abs(x * mu**j) for j, x in enumerate(row)) for row in table]
+        while coefficients[0] == 0:  # exact zeros, which polyroots would only approach
+            pairs.append((mpmath.mpf(0), mpmath.mpf(0)))
+            coefficients, sizes = coefficients[1:], sizes[1:]
+        for z in mpmath.polyroots(coefficients[::-1], maxsteps=500, extraprec=200):
+            rounding = 50 * EPS * sum(size * abs(z) ** k for k, size in enumerate(sizes))
+            derivative, error = coefficients, mpmath.inf
+            for k in range(1, len(coefficients)):
+                derivative = [i * x for i, x in enumerate(derivative)][1:]
+                slope = abs(mpmath.polyval(derivative[::-1], z)) / mpmath.factorial(k)
+                if slope:
+                    error = min(error, (len(coefficients) * rounding / slope) ** (mpmath.mpf(1) / k))
+            pairs.append((z, error))
+    return pairs
+
+
+def modulus_from_p(method: Method, alpha_hat: float, beta_hat: float) -> float:
+    """Return |z_p| from the roots of P(z; alpha_hat, beta_hat), its exact coefficients evaluated with 50 digits."""
+    polynomial = closed_loop_polynomial(method)
+    with mpmath.workdps(50):
+        a, b = mpmath.mpf(alpha_hat), mpmath.mpf(beta_hat)
+        coefficients = []
+        for coefficient in polynomial.all_coeffs():
+            terms = coefficient.as_poly(*polynomial.domain.symbols).terms()
+            coefficients.append(sum(mpmath.mpf(int(c.p)) / int(c.q) * a**i * b**j for (i, j), c in terms))
+        return float(max(abs(z) for z in mpmath.polyroots(coefficients, maxsteps=500, extraprec=300)))

@@ -1,0 +1,59 @@
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bezstab.stability.exact_sums import exact_combination, feedback_roots, two_product, two_sum
+
+IDENTITY = ((Fraction(1), Fraction(0)), (Fraction(0), Fraction(1)))
+NUMBERS = st.floats(-1e100, 1e100).filter(lambda x: x == 0 or abs(x) > 1e-100)
+
+
+@given(NUMBERS, NUMBERS)
+def test_a_sum_and_its_rounding_are_exact(x: float, y: float) -> None:
+    high, low = two_sum(np.array([x]), np.array([y]))
+    assert high[0] == x + y
+    assert Fraction(high[0]) + Fraction(low[0]) == Fraction(x) + Fraction(y)
+
+
+@given(NUMBERS, NUMBERS)
+def test_a_product_and_its_rounding_are_exact(x: float, y: float) -> None:
+    high, low = two_product(np.array([x]), np.array([y]))
+    assert high[0] == x * y
+    assert Fraction(high[0]) + Fraction(low[0]) == Fraction(x) * Fraction(y)
+
+
+@given(NUMBERS, NUMBERS)
+def test_a_combination_with_thirds_keeps_twice_the_digits(x: float, y: float) -> None:
+    factors = (Fraction(1, 3), Fraction(-2, 7))
+    high, low = exact_combination(factors, np.array([x]), np.array([y]))
+    exact = factors[0] * Fraction(x) + factors[1] * Fraction(y)
+    assert abs(Fraction(high[0]) + Fraction(low[0]) - exact) <= Fraction(2) ** -100 * (
+        abs(Fraction(x)) + abs(Fraction(y))
+    )
+
+
+@given(st.floats(1e-6, 1e6), st.floats(-1e-12, 1e-12))
+def test_next_to_the_parabola_both_mu_keep_their_digits(alpha_hat: float, off: float) -> None:
+    beta_hat = alpha_hat**2 / 4 * (1 + off)
+    found = feedback_roots(IDENTITY, np.array([alpha_hat]), np.array([beta_hat]))
+    with mpmath.workdps(50):
+        p, q = mpmath.mpf(alpha_hat), mpmath.mpf(beta_hat)
+        root = mpmath.sqrt(p * p / 4 - q)
+        for mu in found:
+            error = min(abs(mu[0] - (-p / 2 + sign * root)) for sign in (1, -1))
+            assert error <= 4 * 2.0**-52 * alpha_hat
+
+
+@given(st.floats(-1e150, 1e150), st.floats(-1e300, 1e300))
+def test_the_roots_are_a_pair_with_the_upper_first_or_real(alpha_hat: float, beta_hat: float) -> None:
+    (first,), (second,) = feedback_roots(IDENTITY, np.array([alpha_hat]), np.array([beta_hat]))
+    assert first.imag >= 0
+    assert second == first.conjugate() or (first.imag, second.imag) == (0, 0)
+
+
+def test_no_points_have_no_roots() -> None:
+    first, second = feedback_roots(IDENTITY, np.empty(0), np.empty(0))
+    assert (first.size, second.size) == (0, 0)

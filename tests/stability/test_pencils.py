@@ -1,0 +1,66 @@
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from numpy.polynomial.polynomial import polyval2d
+
+from bezstab.errors import NumericalError
+from bezstab.methods import REGISTRY, Method, RungeKutta, lookup, steps
+from bezstab.stability import pencil_of, poles, roots_in_z
+from bezstab.stability.pencils import roots_in_mu
+
+NAMES = [*REGISTRY, "RK4@5", "SYM@1/3"]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_method_has_one_pencil(name: str) -> None:
+    assert pencil_of(lookup(name)) is pencil_of(lookup(name))
+    assert pencil_of(lookup(name)).steps == steps(lookup(name))
+    assert repr(pencil_of(lookup(name))) == f"Pencil({name})"
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_tables_of_the_gradient_are_those_of_difference_quotients(name: str) -> None:
+    pencil, z, mu, small = pencil_of(lookup(name)), 0.3 + 0.4j, -0.5 + 0.2j, 1e-5
+    by_z = (polyval2d(z + small, mu, pencil.table) - polyval2d(z - small, mu, pencil.table)) / (2 * small)
+    by_mu = (polyval2d(z, mu + small, pencil.table) - polyval2d(z, mu - small, pencil.table)) / (2 * small)
+    assert abs(polyval2d(z, mu, pencil.table_by_z) - by_z) < 1e-8
+    assert abs(polyval2d(z, mu, pencil.table_by_mu) - by_mu) < 1e-8
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_to_the_feedback_and_back_is_where_we_were(name: str) -> None:
+    pencil = pencil_of(lookup(name))
+    assert pencil.to_user @ pencil.to_feedback == pytest.approx(np.eye(2), abs=1e-15)
+    assert pencil.to_feedback.tolist() == [[float(entry) for entry in row] for row in pencil.feedback]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_both_ways_of_roots_solve_the_same_equation(name: str) -> None:
+    pencil = pencil_of(lookup(name))
+    mu = np.array([-0.5 + 0.2j, -0.1 + 0.7j])
+    for z in roots_in_z(pencil, mu):
+        assert np.abs(roots_in_mu(pencil, z) - mu).min(axis=0).max() < 1e-9
+
+
+def test_poles_do_not_pay_for_branch_points() -> None:
+    pencil = pencil_of(lookup("B4@7"))
+    poles(lookup("B4@7"), 0.1, 0.1)
+    assert "branch_points" not in vars(pencil)
+
+
+@pytest.mark.parametrize("name", ["B2", "B4", "AB3", "AB4", "ABM2"])
+def test_two_roots_meet_at_a_branch_point(name: str) -> None:
+    pencil = pencil_of(lookup(name))
+    found = pencil.branch_points
+    assert len(found)
+    z = roots_in_z(pencil, found)
+    apart = np.abs(z[:, np.newaxis] - z)[np.triu_indices(len(z), 1)].min(axis=0)
+    assert apart.max() < 1e-3  # where three or four meet, float64 keeps a third or a quarter of its digits
+
+
+def test_coefficients_beyond_float64_are_reported() -> None:
+    huge = Fraction(10) ** 200
+    method = Method("huge", RungeKutta(((Fraction(0),) * 2, (huge, Fraction(0))), (1 - huge, huge)), "constructed")
+    with pytest.raises(NumericalError, match="huge: products of its coefficients"):
+        poles(method, 0.5, 0.1)

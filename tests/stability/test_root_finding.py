@@ -1,0 +1,57 @@
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bezstab.stability.root_finding import STRIDE, followed_roots, horner, newton_polygon_starts, roots_of_table
+
+
+@given(st.lists(st.integers(-9, 9), min_size=2, max_size=6))
+def test_horner_is_the_polynomial(coefficients: list[int]) -> None:
+    x = np.array([0.5 + 1j, -2.0, 0.0])
+    assert horner(np.array(coefficients, float), x) == pytest.approx(np.polyval(coefficients[::-1], x))
+
+
+@given(st.sets(st.integers(-20, 20), min_size=2, max_size=5))
+def test_each_start_has_the_size_of_its_root(exponents: set[int]) -> None:
+    sizes = 1000.0 ** np.sort(list(exponents))  # far apart: of each coefficient one term is all but the whole
+    starts = newton_polygon_starts(np.poly(sizes)[::-1].astype(complex)[:, np.newaxis])
+    assert np.abs(starts[:, 0]) == pytest.approx(sizes, rel=0.01)
+
+
+@given(st.lists(st.floats(-4, 4), min_size=10, max_size=10), st.integers(1, 3 * STRIDE))
+@settings(deadline=None)
+def test_the_roots_have_their_sum_and_their_product(numbers: list[float], count: int) -> None:
+    table = np.array([numbers[:3], numbers[3:6], numbers[6:9], [1.0, 0.0, 0.0]])  # cubic in y, monic
+    x = np.linspace(-1 + 0.3j, 1 + 0.3j, count, dtype=np.complex128)
+    y = roots_of_table(table, x)
+    size = 1 + np.abs(table).sum()
+    assert np.abs(y.sum(axis=0) + horner(table[2], x)).max() < 1e-7 * size  # a triple root keeps a third of the digits
+    assert np.abs(y.prod(axis=0) + horner(table[0], x)).max() < 1e-7 * size**3
+
+
+def test_roots_of_very_different_size_keep_their_digits() -> None:
+    exact = np.array([1e-12, 1e-3, 1.0, 1e7, 1e15])
+    product = [Fraction(1)]  # ascending
+    for root in exact.tolist():
+        product = [
+            below - Fraction(root) * c
+            for below, c in zip([Fraction(0), *product], [*product, Fraction(0)], strict=True)
+        ]
+    ascending = [float(c) for c in product]
+    found = roots_of_table(np.array(ascending)[:, np.newaxis], np.array([0j]))[:, 0]
+    assert np.sort(found.real) == pytest.approx(exact, rel=1e-13)
+
+
+def test_no_points_have_no_roots() -> None:
+    assert roots_of_table(np.ones((4, 2)), np.empty(0, complex)).shape == (3, 0)
+
+
+def test_a_root_is_followed_to_its_neighbours_and_refused_below_the_bound() -> None:
+    table = np.array([[0.0, -1.0], [0.0, 0.0], [1.0, 0.0]])  # y^2 = x
+    x = np.linspace(1, 1.1, 8).astype(complex)
+    starts = np.full(x.shape, 1.02 + 0j)
+    assert followed_roots(table, x, starts, np.array(0.5)) == pytest.approx(np.sqrt(x), rel=1e-14)
+    assert np.isnan(followed_roots(table, x, starts, np.array(2.0))).all()
