@@ -25,9 +25,9 @@ Number = int | float | str | Fraction
 
 
 def method(name: str | Method) -> Method:
-    """Return the integration method of that name, or the one in a .toml file; with @m appended its steps span m h.
+    """Return the integration method of that name, or the one in a .toml file.
 
-    InputError, with the nearest name, if there is none. `Method.source` names the book or paper.
+    Its steps last h, the user's step (s), or m h with @m appended to the name: "RK4@5". InputError, with the nearest name, if there is none. `Method.source` names the book or paper.
     """
     return name if isinstance(name, Method) else lookup(name)
 
@@ -101,7 +101,7 @@ def verdict(
     beta: Number | None = None,
     h: Number | None = None,
 ) -> Verdict:
-    """Return "converges", "marginal" or "diverges" for one point, proven in exact arithmetic.
+    """Return "converges", "marginal" or "diverges" for one point (dimensionless, or in 1/s with h), proven exactly.
 
     Numbers are read exactly: 0.1 is one tenth. InputError unless the point is given in one of the two ways. The
     Schur-Cohn test (I. Schur, J. reine angew. Math. 147, 1917) on the polynomial of paper Eq. 17.
@@ -144,13 +144,17 @@ def choose(
     mildest alpha = beta whose error falls a thousandfold within `settle` (s) at the step `h` (s). `equal` keeps
     alpha = beta. `from_dimensionless` turns the answer into 1/s. InputError if nothing stable meets the goal.
     """
-    return stability.choose(
+    if h is None:
+        if h_max is not None or settle is not None:
+            raise InputError("h_max and settle need the step h in s")
+        return stability.choose(_method(method), goal, spread=spread, equal=equal)
+    return stability.choose_at_step(
         _method(method),
         goal,
-        spread=spread,
-        h=_exact_if_given(h),
+        h=_exact(h),
         h_max=_exact_if_given(h_max),
         settle=_exact_if_given(settle),
+        spread=spread,
         equal=equal,
     )
 

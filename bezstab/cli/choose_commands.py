@@ -24,12 +24,11 @@ from bezstab.cli.output import progress, show_rows
 from bezstab.engines import ENGINES
 from bezstab.errors import InputError
 from bezstab.methods import Method, lookup
-from bezstab.rationals import exact
 from bezstab.show import MISSING, Column, Format, Row, column, formatted
 from bezstab.units import to_dimensionless
 
 if TYPE_CHECKING:
-    from bezstab.stability import Choice, Goal
+    from bezstab.stability import Goal
 
 
 def range_column(heading: str, low_key: str, high_key: str) -> Column:
@@ -100,6 +99,7 @@ def choose(
     Example: bezstab choose --method B4 --h 0.001
     """
     from bezstab.show import choice_row
+    from bezstab.stability import choose_at_step
 
     if not 0 <= spread < 1:
         raise InputError(f"--spread {float(spread):g}: expected a share from 0 to 1")
@@ -111,38 +111,14 @@ def choose(
         methods = [lookup("SYM")]
     rows: list[Row] = []
     for method in progress(methods, goal):
-        choice = _chosen(method, goal, h, h if h_max is None else h_max, float(spread), settle, keep is not None)
+        choice = choose_at_step(
+            method, goal, h=h, h_max=h_max, settle=settle, spread=float(spread), equal=keep is not None
+        )
         row = choice_row(choice, float(h))
         if engine:
             row["engine"] = ENGINES[engine].setting((Fraction(choice.alpha_hat), Fraction(choice.beta_hat)), h)
         rows.append(row)
     show_rows(rows, [*CHOICES, PASTE] if engine else CHOICES, form)
-
-
-def _chosen(
-    method: Method,
-    goal: "Goal",
-    h: Fraction,
-    h_max: Fraction,
-    spread: float,
-    settle: Fraction | None,
-    equal: bool,
-) -> "Choice":
-    """Return the choice for a method at a step of h (s), made at the largest step that may occur.
-
-    At a smaller step the same alpha and beta are a smaller alpha_hat = 2 alpha h and beta_hat = beta^2 h^2.
-    """
-    from bezstab import stability
-
-    rate = None
-    if settle is not None:
-        rate = stability.THOUSANDFOLD ** float(h * method.step_multiple / settle)
-    choice = stability.choose(method, goal, spread, rate, equal)
-    if h == h_max:
-        return choice
-    share = h / h_max
-    alpha_hat, beta_hat = exact(choice.alpha_hat) * share, exact(choice.beta_hat) * share**2
-    return stability.describe_point(method, goal, alpha_hat, beta_hat, spread)
 
 
 @click.command()

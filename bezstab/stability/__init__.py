@@ -25,6 +25,7 @@ from bezstab.stability.choices import (
     Goal,
     Margins,
     choose,
+    choose_at_step,
     describe_point,
     stability_margins,
 )
@@ -54,6 +55,7 @@ __all__ = [
     "best_point",
     "bezier_limit",
     "choose",
+    "choose_at_step",
     "describe_point",
     "dominant_pole",
     "family_members",

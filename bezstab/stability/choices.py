@@ -119,6 +119,37 @@ def choose(method: Method, goal: Goal, spread: float = 0.1, rate: float | None =
     return choice
 
 
+def choose_at_step(
+    method: Method,
+    goal: Goal,
+    *,
+    h: Fraction,
+    h_max: Fraction | None = None,
+    settle: Fraction | None = None,
+    spread: float = 0.1,
+    equal: bool = False,
+) -> Choice:
+    """Return the choice for steps of h (s), as `choose` makes it for the largest step h_max (s) that may occur.
+
+    At a smaller step the same alpha and beta are a smaller alpha_hat = 2 alpha h and beta_hat = beta^2 h^2 (paper Eq.
+    16). `settle` (s) is the time in which the error of `gentle` falls a thousandfold. InputError as for `choose`, and
+    for an h_max below h or without the goal robust, and for a settle without the goal gentle, or that without it.
+    """
+    if h_max is not None and (goal != "robust" or h_max < h):
+        raise InputError(f"h_max = {float(h_max):g} s: only for the goal robust, and at least h = {float(h):g} s")
+    if (settle is not None) != (goal == "gentle"):
+        raise InputError("settle, a time in s, and the goal gentle go together")
+    rate = None
+    if settle is not None:
+        rate = THOUSANDFOLD ** float(h * method.step_multiple / settle)
+    choice = choose(method, goal, spread, rate, equal)
+    if h_max is None or h_max == h:
+        return choice
+    share = h / h_max
+    alpha_hat, beta_hat = exact(choice.alpha_hat) * share, exact(choice.beta_hat) * share**2
+    return describe_point(method, goal, alpha_hat, beta_hat, spread)
+
+
 def describe_point(method: Method, goal: str, alpha_hat: Fraction, beta_hat: Fraction, spread: float = 0.1) -> Choice:
     """Return what there is to say of an exact, dimensionless point; `goal` is only kept.
 
