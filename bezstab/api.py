@@ -27,7 +27,8 @@ Number = int | float | str | Fraction
 def method(name: str | Method) -> Method:
     """Return the integration method of that name, or the one in a .toml file.
 
-    Its steps last h, the user's step (s), or m h with @m appended to the name: "RK4@5". InputError, with the nearest name, if there is none. `Method.source` names the book or paper.
+    Its steps last h, the user's step (s), or m h with @m appended to the name: "RK4@5". InputError, with the nearest
+    name, if there is none. `Method.source` names the book or paper.
     """
     return name if isinstance(name, Method) else lookup(name)
 

@@ -74,7 +74,7 @@ def test_both_ways_to_give_a_point_agree() -> None:
 )
 def test_a_point_is_never_guessed(point: dict[str, float]) -> None:
     for function in (bezstab.poles, bezstab.dominant_pole, bezstab.spectral_radius, bezstab.verdict, bezstab.check):
-        with pytest.raises(InputError, match="h=? in s"):
+        with pytest.raises(InputError, match=r"h=? in s"):
             function("B4", **point)
 
 
