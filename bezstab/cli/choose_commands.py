@@ -25,7 +25,7 @@ from bezstab.engines import ENGINES
 from bezstab.errors import InputError
 from bezstab.methods import Method, lookup
 from bezstab.rationals import exact
-from bezstab.show import MISSING, Column, Format, Row, column, formatted
+from bezstab.show import MISSING, Column, Format, Row, choice_row, column, engine_row, formatted
 from bezstab.units import to_dimensionless
 
 if TYPE_CHECKING:
@@ -99,7 +99,6 @@ def choose(
 
     Example: bezstab choose --method B4 --h 0.001
     """
-    from bezstab.show.rows import choice_row
 
     if not 0 <= spread < 1:
         raise InputError(f"--spread {float(spread):g}: expected a share from 0 to 1")
@@ -172,7 +171,6 @@ def check(
     Example: bezstab check --method RK2 --h 0.002 --alpha 50 --beta 50 --physical
     """
     from bezstab import stability
-    from bezstab.show.rows import choice_row
 
     alpha_hat, beta_hat = _point_to_check(methods, alpha, beta, h, physical, engine)
     step = None if h is None else float(h)
@@ -233,7 +231,6 @@ def engines(h: Fraction, alpha: Fraction | None, beta: Fraction | None, form: Fo
 
     Example: bezstab engines --alpha 1 --beta 0.2 --h 0.002
     """
-    from bezstab.show.rows import engine_row
 
     point = both_or_none(alpha, beta)
     show_rows([engine_row(engine, point, h) for engine in ENGINES.values()], ENGINES_LISTED, form)
@@ -249,6 +246,6 @@ def explore(methods: Sequence[Method], h: Fraction) -> None:
 
     Example: bezstab explore --method B4 --method AB4
     """
-    from bezstab.show.explorer import show
+    from bezstab.show import open_window
 
-    show(methods, float(h), click.echo)
+    open_window(methods, float(h), click.echo)

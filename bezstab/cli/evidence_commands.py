@@ -40,7 +40,19 @@ from bezstab.cli.output import (
 from bezstab.errors import InputError, NumericalError
 from bezstab.files import output_directory
 from bezstab.methods import Method
-from bezstab.show import Column, Format, Row, column, formatted, yes_no_column
+from bezstab.show import (
+    Column,
+    Format,
+    Row,
+    column,
+    formatted,
+    measurement_row,
+    row,
+    simulation_row,
+    summary_row,
+    verdict_map_row,
+    yes_no_column,
+)
 from bezstab.units import feedback_gains, to_dimensionless
 
 if TYPE_CHECKING:
@@ -114,8 +126,7 @@ def simulate(
     Example: bezstab simulate --method AB4 --alpha 0.5 --beta 0.101 --time 2
     """
     from bezstab import mechanism
-    from bezstab.show.arrays import history_arrays
-    from bezstab.show.rows import simulation_row
+    from bezstab.show import history_arrays
 
     if physical:
         alpha, beta = to_dimensionless(alpha, beta, h)
@@ -133,7 +144,7 @@ def simulate(
     observation = mechanism.observe(moving, trajectory.t, trajectory.q, trajectory.v, two_alpha, beta_squared)
 
     def draw() -> "Figure":
-        from bezstab.show.run_figures import history_figure
+        from bezstab.show import history_figure
 
         return history_figure(trajectory, observation)
 
@@ -246,7 +257,6 @@ def verify(
     Example: bezstab verify --method AB4 --points 20
     """
     from bezstab.mechanism import compiled_mechanism, load_scene
-    from bezstab.show.rows import verdict_map_row
 
     point = both_or_none(alpha, beta)
     if sum(choice is not None for choice in (point, points, cells, witness)) > 1:
@@ -271,7 +281,6 @@ def verify(
 def _witness_rows(moving: "Mechanism", h: float) -> list[Row]:
     """Return a row for each run of MuJoCo's integrators; h in s."""
     from bezstab.evidence import mujoco_witnesses, witness_count
-    from bezstab.show.rows import row
 
     witnesses = progress(mujoco_witnesses(moving, h), "MuJoCo", witness_count())
     return [row(witnessed, scene=moving.scene.name) for witnessed in witnesses]
@@ -289,7 +298,6 @@ def _show_measurements(
     import numpy as np
 
     from bezstab.evidence import measure_poles, random_points
-    from bezstab.show.rows import measurement_row, summary_row
 
     rows: list[Row] = []
     summaries: list[Row] = []
@@ -324,7 +332,7 @@ def _map_verdicts(
 ) -> "VerdictMap":
     """Simulate cells x cells runs, write their verdicts as table and figure, and return them; h in s."""
     from bezstab.evidence import map_rows, simulated_verdicts, verdict_map
-    from bezstab.show.arrays import verdict_arrays
+    from bezstab.show import verdict_arrays
     from bezstab.stability import region
 
     chunks = map_rows(moving.scene, method, h, cells)
@@ -332,7 +340,7 @@ def _map_verdicts(
         verdicts = verdict_map(chunks, results)
 
         def draw() -> "Figure":
-            from bezstab.show.plane_figures import verdict_figure
+            from bezstab.show import verdict_figure
 
             return verdict_figure(verdicts, region(method))
 
@@ -421,8 +429,7 @@ def tradeoff(
     """
     from bezstab import evidence
     from bezstab.mechanism import load_scene
-    from bezstab.show.arrays import untimed_arrays
-    from bezstab.show.rows import row
+    from bezstab.show import untimed_arrays
 
     point = both_or_none(alpha, beta)
     if physical and point is None:
@@ -446,7 +453,7 @@ def tradeoff(
         rows = [row(run, front=front) for run, front in zip(runs, fronts, strict=True)]
 
         def draw(constraint: bool, floor: float) -> "Figure":
-            from bezstab.show.run_figures import work_precision_figure
+            from bezstab.show import work_precision_figure
 
             return work_precision_figure(runs, fronts, moving.name, constraint, floor)
 
@@ -493,7 +500,6 @@ def extremes(context: click.Context, short: bool, form: Format) -> None:
     Example: bezstab extremes --short
     """
     from bezstab.evidence import extreme_checks
-    from bezstab.show.rows import row
 
     checks = list(extreme_checks(not short))
     outcomes = [check() for check in progress(checks, "extremes")]

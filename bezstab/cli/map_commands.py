@@ -28,7 +28,22 @@ from bezstab.engines import ENGINES
 from bezstab.errors import InputError
 from bezstab.files import output_directory
 from bezstab.methods import REGISTRY, Method, lookup
-from bezstab.show import PROPERTIES, Column, Format, Row, column, formatted, pole_column, transposed
+from bezstab.show import (
+    PROPERTIES,
+    Column,
+    Format,
+    Row,
+    column,
+    family_row,
+    formatted,
+    limit_row,
+    method_row,
+    pole_column,
+    pole_rows,
+    region_row,
+    transposed,
+    whole_row,
+)
 from bezstab.units import to_dimensionless
 
 if TYPE_CHECKING:
@@ -87,7 +102,6 @@ def poles(
     Example: bezstab poles --alpha 0.5 --beta 0.1
     """
     from bezstab import stability
-    from bezstab.show.rows import pole_rows
 
     if physical != (h is not None):
         raise click.UsageError("--physical and --h go together: α and β in 1/s need the step in s")
@@ -213,15 +227,14 @@ def _compare_regions(
 ) -> list[Row]:
     """Write the boundaries of all methods into one table and one figure; return a row for each."""
     from bezstab import stability
-    from bezstab.show.arrays import boundary_arrays
-    from bezstab.show.rows import region_row
+    from bezstab.show import boundary_arrays
 
     regions = [stability.region(method, level) for method in methods]
     rows = [region_row(each, stability.best_point(each.method)) for each in regions]
     path = output / "_".join(["compare", *(file_name(method.name) for method in methods)])
 
     def draw() -> "Figure":
-        from bezstab.show.plane_figures import comparison_figure
+        from bezstab.show import comparison_figure
 
         return comparison_figure(regions, alpha_range, beta_range, h)
 
@@ -246,8 +259,7 @@ def _map_region(
     import numpy as np
 
     from bezstab import stability
-    from bezstab.show.arrays import map_arrays
-    from bezstab.show.rows import region_row
+    from bezstab.show import map_arrays
 
     stable = stability.region(method)
     best = stability.best_point(method)
@@ -258,7 +270,7 @@ def _map_region(
     z = np.concatenate(list(progress(blocks, method.name, points, len)))
 
     def draw() -> "Figure":
-        from bezstab.show.plane_figures import region_figure
+        from bezstab.show import region_figure
 
         faster = [stability.region(method, level) for level in levels or _default_levels(best)]
         return region_figure(stable, faster, best, alpha_hat, beta_hat, np.abs(z), h, marks)
@@ -321,7 +333,6 @@ def methods(methods: Sequence[Method], latex: bool, form: Format) -> None:
 
     Example: bezstab methods B4
     """
-    from bezstab.show.rows import method_row, whole_row
 
     if not methods:
         show_rows([method_row(lookup(name)) for name in REGISTRY], METHODS, form)
@@ -367,7 +378,6 @@ def family(name: str, first: int, last: int | None, output: Path, figure: Figure
 
     Example: bezstab family bezier --from 2 --to 5
     """
-    from bezstab.show.rows import family_row, limit_row
     from bezstab.stability import FAMILIES, bezier_limit, family_members
 
     largest = {family_name: most for family_name, (_, most) in FAMILIES.items()}
@@ -383,7 +393,7 @@ def family(name: str, first: int, last: int | None, output: Path, figure: Figure
         rows.append(limit_row(limit))
 
     def draw() -> "Figure":
-        from bezstab.show.plane_figures import family_figure
+        from bezstab.show import family_figure
 
         families = {}
         for other, most in largest.items():

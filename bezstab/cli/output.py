@@ -51,7 +51,7 @@ def write_table(path: Path, columns: "Mapping[str, NDArray[np.generic]]", form: 
     """Write equally long arrays by name into `path` + .csv or .npz, or nothing if the form is none."""
     if form == "none":
         return
-    from bezstab.show.arrays import write_arrays
+    from bezstab.show import write_arrays
 
     write_file(path.with_name(f"{path.name}.{form}"), lambda file: write_arrays(columns, form, file))
 
@@ -61,7 +61,7 @@ def write_figure(path: Path, draw: "Callable[[], Figure]", form: FigureForm) -> 
     if form == "none":
         return
     figure = draw()
-    from bezstab.show.style import save
+    from bezstab.show import save
 
     write_file(path.with_name(f"{path.name}.{form}"), lambda file: save(figure, form, file))
 

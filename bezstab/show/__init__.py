@@ -1,8 +1,11 @@
-"""Results as rows and tables; figures in plane_figures, run_figures and the public module plot.
+"""Results as rows, tables and figures, and the public module `plot` for notebooks and scripts.
 
-What draws, or needs sympy, is not loaded before it is used.
+What draws is loaded when first used, and so is what needs sympy.
 """
 
+from typing import TYPE_CHECKING
+
+from bezstab.lazy import lazy_names
 from bezstab.show.columns import (
     MISSING,
     PROPERTIES,
@@ -17,22 +20,101 @@ from bezstab.show.columns import (
     transposed,
     yes_no_column,
 )
-from bezstab.show.rows import complex_parts, formula_row, row
+from bezstab.show.rows import (
+    choice_row,
+    complex_parts,
+    engine_row,
+    family_row,
+    formula_row,
+    limit_row,
+    measurement_row,
+    method_row,
+    pole_rows,
+    region_row,
+    row,
+    simulation_row,
+    summary_row,
+    verdict_map_row,
+    whole_row,
+)
+
+if TYPE_CHECKING:
+    from bezstab.show.arrays import (
+        boundary_arrays,
+        history_arrays,
+        map_arrays,
+        untimed_arrays,
+        verdict_arrays,
+        write_arrays,
+    )
+    from bezstab.show.explorer import open_window
+    from bezstab.show.plane_figures import comparison_figure, family_figure, region_figure, verdict_figure
+    from bezstab.show.run_figures import history_figure, scene_figure, work_precision_figure
+    from bezstab.show.style import DASHES, column_figure, method_line, save, styled
+
+LOADED_LATE = {
+    "arrays": (
+        "boundary_arrays",
+        "history_arrays",
+        "map_arrays",
+        "untimed_arrays",
+        "verdict_arrays",
+        "write_arrays",
+    ),
+    "explorer": ("open_window",),
+    "plane_figures": ("comparison_figure", "family_figure", "region_figure", "verdict_figure"),
+    "run_figures": ("history_figure", "scene_figure", "work_precision_figure"),
+    "style": ("DASHES", "column_figure", "method_line", "save", "styled"),
+}
+"""What is loaded when first used, by module."""
+
+__getattr__ = lazy_names(__name__, LOADED_LATE)
 
 __all__ = [
+    "DASHES",
     "MISSING",
     "PROPERTIES",
     "Column",
     "Format",
     "Row",
     "Value",
+    "boundary_arrays",
+    "choice_row",
     "column",
+    "column_figure",
+    "comparison_figure",
     "complex_parts",
+    "engine_row",
+    "family_figure",
+    "family_row",
     "formatted",
     "formula_row",
+    "history_arrays",
+    "history_figure",
+    "limit_row",
+    "map_arrays",
+    "measurement_row",
+    "method_line",
+    "method_row",
+    "open_window",
     "pole_column",
+    "pole_rows",
+    "region_figure",
+    "region_row",
     "render",
     "row",
+    "save",
+    "scene_figure",
+    "simulation_row",
+    "styled",
+    "summary_row",
     "transposed",
+    "untimed_arrays",
+    "verdict_arrays",
+    "verdict_figure",
+    "verdict_map_row",
+    "whole_row",
+    "work_precision_figure",
+    "write_arrays",
     "yes_no_column",
 ]

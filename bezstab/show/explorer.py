@@ -148,7 +148,7 @@ def kick_response(polynomial: FloatArray, steps: int) -> FloatArray:
     return c[degree:]
 
 
-def show(methods: Sequence[Method], h: float, print_line: Callable[[str], None]) -> None:
+def open_window(methods: Sequence[Method], h: float, print_line: Callable[[str], None]) -> None:
     """Open the window and return once it is closed; InputError if matplotlib has no window to open."""
     from matplotlib import pyplot
 

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from bezstab.errors import InputError
 from bezstab.methods import lookup
-from bezstab.show.explorer import STEPS, Explorer, kick_response, show
+from bezstab.show.explorer import STEPS, Explorer, kick_response, open_window
 from bezstab.stability import dominant_pole, poles
 
 
@@ -98,4 +98,4 @@ def test_only_what_moves_is_drawn_again() -> None:
 def test_without_a_window_one_line_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("MPLBACKEND", "Agg")
     with pytest.raises(InputError, match="window"):
-        show([lookup("B4")], 0.001, print)
+        open_window([lookup("B4")], 0.001, print)
