@@ -5,11 +5,11 @@ maximum of harmonic functions, and those have no minima inside. So away from z =
 least value at a kink: two roots of equal modulus whose gradients oppose each other, or three whose gradients surround
 zero.
 
-      f   \     /                f    \      /  |z_1|        two kinks: on the real axis of mu, by symmetry, gradients
-           \   /                  \    \    /                across it vanish and two roots suffice anywhere; off it
-            \ /  two opposed       \_   \  /                 they must be parallel. B3, B4, AB3, AB4: z and -z on the
-             V                     | `-._\/  |z_2|           axis.
-          ---+--- mu              -+------+---- mu
+      f |  \       /
+        |   \     /  |z_1|        a kink of two roots: seen along mu, one falls and the other rises. On the real axis
+        |    \   /                of mu, where by symmetry no gradient leads off it, that is enough (B3, B4, AB3, AB4:
+        |     \ /   |z_2|         z and -z); elsewhere the two gradients must be parallel as well, or a third root
+        +------+-------- mu       must close the gap between them
 
 Every kind is a square system of equations for mu and the roots that meet; a sampled minimum starts Newton's method on
 each kind, and the least solution that is a maximum over all roots is the answer, to rounding.

@@ -2,7 +2,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bezstab.stability import FloatArray
@@ -10,6 +10,7 @@ from bezstab.stability.searches import bisected, first_where, zoom_on_minimum
 
 
 @given(st.lists(st.floats(-1, 1), min_size=1, max_size=5))
+@settings(deadline=None)
 def test_bisecting_ends_at_neighbours_on_both_sides(thresholds: list[float]) -> None:
     found = np.array(thresholds)
     before, after = bisected(lambda x: x >= found, np.full(found.shape, -1.5), np.full(found.shape, 1.5))
@@ -19,6 +20,7 @@ def test_bisecting_ends_at_neighbours_on_both_sides(thresholds: list[float]) -> 
 
 
 @given(st.floats(0.001, 0.999))
+@settings(deadline=None)
 def test_the_first_of_several_changes_is_found(threshold: float) -> None:
     found = first_where(lambda x: (x >= threshold) & (x < 2) | (x > 3), np.linspace(0, 4, 41))
     assert found is not None
@@ -32,6 +34,7 @@ def test_what_never_holds_is_nowhere_and_what_always_holds_is_at_once() -> None:
 
 
 @given(st.floats(-0.9, 0.9))
+@settings(deadline=None)
 def test_a_zoom_finds_a_kink_to_the_last_grid(least: float) -> None:
     found, value = zoom_on_minimum(
         lambda points: np.abs(points[:, 0] - least), np.zeros(1), np.ones(1), points=33, shrink=1 / 16, rounds=10
@@ -41,6 +44,7 @@ def test_a_zoom_finds_a_kink_to_the_last_grid(least: float) -> None:
 
 
 @given(st.lists(st.floats(-0.9, 0.9), min_size=1, max_size=6))
+@settings(deadline=None)
 def test_searches_side_by_side_find_what_each_finds_alone(minima: list[float]) -> None:
     least = np.array(minima)
 
@@ -64,14 +68,15 @@ def test_searches_side_by_side_find_what_each_finds_alone(minima: list[float]) -
         assert found[k] == alone
 
 
-@pytest.mark.parametrize("angle", [0.2, np.pi / 4, 1.0])
+@pytest.mark.parametrize("angle", [0.2, 0.5, 1.0])
 def test_a_narrow_diagonal_valley_with_a_kink_is_followed_by_turning(angle: float) -> None:
     along, across = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
     bottom = 0.6 * along
 
     def valley(points: FloatArray) -> FloatArray:
         offset = points - bottom
-        return np.asarray(10 * np.abs(offset @ across) + np.abs(offset @ along))
+        # so steep that at the latter two angles grids that are not turned stop halfway
+        return np.asarray(100 * np.abs(offset @ across) + np.abs(offset @ along))
 
     found, _ = zoom_on_minimum(
         valley, np.zeros(2), np.ones(2), points=13, shrink=0.75, rounds=120, turned=True, patient=True
