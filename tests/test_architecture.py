@@ -1,54 +1,194 @@
-r"""The house: floors (a room imports only from below), doors (through a room's __init__), walls (nobody enters paper).
+r"""The house: floors, doors and walls.
 
-cli      paper           paper is an extension: nothing imports it; the main group finds its command by name
-  |        |
-  api ---- show          what people type, and what they see
-         |
-      evidence           the only place where stability and mechanism meet
-      /      |
-stability  mechanism     neither knows of the other
-      \      |
-      methods            schemes as exact data
-         |
-errors, rationals, files, toml_tables, units, engines
+Floors: a room imports only from rooms below, a file only from those above it in its room's own list. Doors: other
+rooms are entered through their `__init__`. Walls: nobody enters `paper`; stability and mechanism do not know each
+other; only appointed files see a library.
+
+    paper                  an extension: the main group finds its command by name
+      |
+    cli        api         what people type, on the command line and in Python
+      |         |
+    show -------+          what they see
+      |
+    evidence               the only place where stability and mechanism meet
+      |      \
+    stability  mechanism
+      |      /
+    methods                schemes as exact data
+      |
+    errors, rationals, files, toml_tables, units, engines, lazy
 """
 
 import ast
+import importlib
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 PACKAGE = Path(__file__).parent.parent / "bezstab"
+TESTS = PACKAGE.parent / "tests"
 ROOMS = ("methods", "stability", "mechanism", "evidence", "show", "cli", "paper")
-FOUNDATIONS = {"lazy", "errors", "rationals", "files", "toml_tables", "units", "engines"}
+FOUNDATIONS = ("lazy", "errors", "rationals", "files", "toml_tables", "units", "engines")
+"""Beside the rooms, each importing only from those before it."""
+
 BELOW = {
-    "methods": FOUNDATIONS,
-    "stability": FOUNDATIONS | {"methods"},
-    "mechanism": FOUNDATIONS | {"methods"},
-    "evidence": FOUNDATIONS | {"methods", "stability", "mechanism"},
-    "show": FOUNDATIONS | {"methods", "stability", "mechanism", "evidence"},
-    "cli": FOUNDATIONS | {"methods", "stability", "mechanism", "evidence", "show"},
-    "paper": FOUNDATIONS | {"methods", "stability", "mechanism", "evidence", "show", "cli"},
+    "methods": {*FOUNDATIONS},
+    "stability": {*FOUNDATIONS, "methods"},
+    "mechanism": {*FOUNDATIONS, "methods"},
+    "evidence": {*FOUNDATIONS, "methods", "stability", "mechanism"},
+    "show": {*FOUNDATIONS, "methods", "stability", "mechanism", "evidence"},
+    "cli": {*FOUNDATIONS, "methods", "stability", "mechanism", "evidence", "show"},
+    "paper": {*FOUNDATIONS, "methods", "stability", "mechanism", "evidence", "show", "cli"},
+    "api": {*FOUNDATIONS, "methods", "stability", "mechanism", "evidence"},
 }
-FILES = sorted(path.relative_to(PACKAGE) for path in PACKAGE.rglob("*.py") if path.parent != PACKAGE)
+SHARED_WITH_EXTENSIONS = {"cli.options", "cli.output"}
+"""What a command outside the room `cli`, such as the paper's, is written with."""
+
+APPOINTED = {
+    "sympy": {
+        *("methods/derivation.py", "methods/formulas.py", "methods/orders.py"),
+        *("mechanism/equations.py", "mechanism/generated_code.py", "mechanism/start.py", "mechanism/observation.py"),
+    },
+    "matplotlib": {
+        *("show/style.py", "show/plot.py", "show/plane_figures.py", "show/run_figures.py", "show/explorer.py"),
+        *(f"paper/{name}.py" for name in ("regions", "slider_crank", "drift", "influence", "comparison")),
+    },
+    "click": {f"cli/{name}.py" for name in ("options", "output", "command_group")}
+    | {f"cli/{name}_commands.py" for name in ("map", "choose", "evidence")}
+    | {"paper/command.py"},
+    "mujoco": {"evidence/mujoco_witness.py"},
+    "distributed": {"evidence/chunks.py"},
+    "mpmath": {"evidence/extremes.py", "evidence/root_digits.py"},
+}
+"""The files that may import a library when they run; for types anybody may."""
+
+FILES = sorted(path.relative_to(PACKAGE) for path in PACKAGE.rglob("*.py"))
+IN_ROOMS = [path for path in FILES if len(path.parts) == 2 and path.name != "__init__.py"]
 
 
-def imported(path: Path) -> set[str]:
-    """Return every module of the package that a file imports, inside functions too, as dotted names."""
-    names = set()
-    for node in ast.walk(ast.parse((PACKAGE / path).read_text(encoding="utf-8"))):
-        if isinstance(node, ast.ImportFrom) and node.module and node.module.split(".")[0] == "bezstab":
-            names.add(node.module.removeprefix("bezstab").removeprefix("."))
-    return names
+def tree_of(path: Path) -> ast.Module:
+    return ast.parse((PACKAGE / path).read_text(encoding="utf-8"))
+
+
+def imports(path: Path, with_types: bool = True) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Yield each module that a file imports, inside functions too, with the names taken from it."""
+    for node in _nodes(tree_of(path), with_types):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            yield node.module, tuple(alias.name for alias in node.names)
+        elif isinstance(node, ast.Import):
+            for alias in node.names:
+                yield alias.name, ()
+
+
+def _nodes(node: ast.AST, with_types: bool) -> Iterator[ast.AST]:
+    for child in ast.iter_child_nodes(node):
+        for_types = isinstance(child, ast.If) and ast.unparse(child.test) == "TYPE_CHECKING"
+        if with_types or not for_types:
+            yield child
+            yield from _nodes(child, with_types)
+
+
+def own_imports(path: Path) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Yield what a file imports of the package, its first name left out: ("methods.schur", ("verdict",))."""
+    for module, names in imports(path):
+        if module == "bezstab":
+            yield from ((name, ()) for name in names)
+        elif module.startswith("bezstab."):
+            yield module.removeprefix("bezstab."), names
+
+
+def listed(room: str) -> list[str]:
+    """Return the files of a room in the order in which its door lists them."""
+    text = importlib.import_module(f"bezstab.{room}").__doc__ or ""
+    listing = text.split("above it")[1]
+    return [line.split()[0] for line in listing.splitlines() if line.startswith("    ")]
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_the_door_of_a_room_lists_its_files(room: str) -> None:
+    assert sorted(listed(room)) == sorted(path.stem for path in IN_ROOMS if path.parts[0] == room)
+
+
+@pytest.mark.parametrize("path", IN_ROOMS, ids=str)
+def test_a_file_imports_only_from_those_above_it_in_its_room(path: Path) -> None:
+    room = path.parts[0]
+    lower = set(listed(room)[: listed(room).index(path.stem)])
+    for module, names in own_imports(path):
+        if module == room:  # from bezstab.room import other_file
+            assert set(names) <= lower
+        elif module.startswith(f"{room}."):
+            assert module.removeprefix(f"{room}.") in lower
+
+
+@pytest.mark.parametrize("path", [*IN_ROOMS, Path("api.py")], ids=str)
+def test_a_room_imports_only_from_rooms_below(path: Path) -> None:
+    room = path.parts[0].removesuffix(".py")
+    others = {module.split(".")[0] for module, _ in own_imports(path)} - {room, "__version__"}
+    assert others <= BELOW[room]
+
+
+@pytest.mark.parametrize("name", FOUNDATIONS)
+def test_the_foundations_stand_on_one_another_in_order(name: str) -> None:
+    used = {module for module, _ in own_imports(Path(f"{name}.py"))}
+    assert used <= set(FOUNDATIONS[: FOUNDATIONS.index(name)])
+
+
+@pytest.mark.parametrize("path", [*IN_ROOMS, Path("api.py")], ids=str)
+def test_another_room_is_entered_through_its_door(path: Path) -> None:
+    for module, names in own_imports(path):
+        room = module.split(".")[0]
+        if room in ROOMS and room != path.parts[0] and module not in SHARED_WITH_EXTENSIONS:
+            assert module == room
+            assert set(names) <= set(importlib.import_module(f"bezstab.{room}").__all__)
+
+
+@pytest.mark.parametrize("path", [path for path in FILES if path.parts[0] != "paper"], ids=str)
+def test_nobody_enters_the_paper(path: Path) -> None:
+    assert not [module for module, _ in own_imports(path) if module.split(".")[0] == "paper"]
 
 
 @pytest.mark.parametrize("path", FILES, ids=str)
-def test_a_room_imports_only_from_below(path: Path) -> None:
-    room = path.parts[0]
-    others = {name.split(".")[0] for name in imported(path) if name} - {room}
-    assert others <= BELOW[room]
+def test_only_the_appointed_files_see_a_library(path: Path) -> None:
+    for library in {module.split(".")[0] for module, _ in imports(path, with_types=False)} & set(APPOINTED):
+        assert path.as_posix() in APPOINTED[library]
+
+
+@pytest.mark.parametrize("path", [path for path in FILES if path.parts[0] != "cli"], ids=str)
+def test_computation_neither_prints_nor_exits_nor_filters_warnings(path: Path) -> None:
+    called = {ast.unparse(node.func) for node in ast.walk(tree_of(path)) if isinstance(node, ast.Call)}
+    assert not called & {"print", "exit", "sys.exit", "warnings.filterwarnings", "warnings.simplefilter", "np.seterr"}
+    modules = {module for module, _ in imports(path)}
+    assert "warnings" not in modules
+    if path.as_posix() != "show/explorer.py":  # pyplot is what opens a window
+        assert "matplotlib.pyplot" not in modules
+        assert ("matplotlib", ("pyplot",)) not in set(imports(path))
+
+
+@pytest.mark.parametrize("path", FILES, ids=str)
+def test_no_file_is_called_like_what_it_defines(path: Path) -> None:
+    defined = {node.name for node in tree_of(path).body if isinstance(node, ast.FunctionDef | ast.ClassDef)}
+    assert path.stem not in defined
+
+
+@pytest.mark.parametrize("package", ["bezstab", "bezstab.methods", "bezstab.show"])
+def test_what_is_loaded_late_is_what_tools_are_told(package: str) -> None:
+    module = importlib.import_module(package)
+    path = Path(module.__file__ or "").relative_to(PACKAGE)
+    at_run_time = set(imports(path, with_types=False))
+    for_tools = {name for entry in imports(path) if entry not in at_run_time for name in entry[1]}
+    late = {name for name in module.__all__ if name not in {name for _, names in at_run_time for name in names}}
+    assert for_tools == late
+    assert all(getattr(module, name) is not None for name in late)
+
+
+@pytest.mark.parametrize("path", IN_ROOMS, ids=str)
+def test_the_tests_mirror_the_tree(path: Path) -> None:
+    without_logic = {"stability/arrays.py", "paper/lost.py", "paper/reports.py"}
+    if path.as_posix() not in without_logic:
+        assert (TESTS / path.parent / f"test_{path.name}").exists()
 
 
 @pytest.mark.parametrize("code", ["import bezstab", "from bezstab.cli import main; main(['--help'])"])

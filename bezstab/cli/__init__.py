@@ -1,5 +1,15 @@
-"""The command line."""
+"""The command line: parse, call, show, save, exit status.
 
-from bezstab.cli.main import main
+A file imports only from those above it:
+
+    options             parameter types and the options that commands share
+    output              rows, files, messages, progress
+    map_commands        poles, region, methods, family
+    choose_commands     choose, check, engines, explore
+    evidence_commands   simulate, verify, tradeoff, extremes
+    command_group       the group of all commands
+"""
+
+from bezstab.cli.command_group import main
 
 __all__ = ["main"]

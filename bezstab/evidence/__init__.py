@@ -1,4 +1,19 @@
-"""Whether the prediction holds: measured poles, outside witnesses, what accuracy costs."""
+"""Whether the prediction holds: measured poles, outside witnesses, what accuracy costs.
+
+The only room in which stability and mechanism meet. A file imports only from those above it:
+
+    chunks              long work shared by processes or a cluster, kept on disk as it arrives
+    linear_prediction   the dominant pole in a sampled response, or why none can be told
+    measured_poles      predicted against measured poles of a running mechanism
+    verdict_maps        simulated verdicts over the plane against |z_p| < 1
+    mujoco_witness      an engine that is not ours must diverge where the map says
+    reference_motions   a motion known to some thirteen digits
+    pareto              which runs no other beats
+    accuracy_costs      what a method and a step cost in simulation, and what they buy
+    sweep_summaries     that in sentences
+    root_digits         how many digits of a pole are right, against a hundred
+    extremes            what holds where numbers are extreme
+"""
 
 from bezstab.evidence.accuracy_costs import (
     METHODS,

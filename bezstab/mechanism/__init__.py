@@ -2,8 +2,17 @@
 
     scene (TOML data) -> equations_of_motion (sympy) -> compiled_mechanism -> initial_state -> simulate -> observe
 
-`scenes` is the data, `equations` the mechanics, `generated_code` writes and compiles the Python that runs, `compiled`
-keeps it with its scene, `start`, `runner` and `observation` use it.
+From data upwards; a file imports only from those above it:
+
+    scenes              bodies, joints, forces and initial state as checked data
+    scene_files         their file format
+    equations           M, c, C_q, gamma and g by sympy
+    generated_code      the one place that writes and compiles Python source: accelerations, steppers
+    compiled            a scene with its compiled functions, made once
+    observation         what the constraints do along a history
+    start               consistent initial states, and perturbed ones
+    runner              runs of a method with feedback, and what ends one early
+    simulation          a run and its observation as one value
 """
 
 from bezstab.mechanism.compiled import (

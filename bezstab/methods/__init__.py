@@ -1,14 +1,16 @@
 """Integration methods as exact data, and what follows from their coefficients.
 
-    schemes            what a method is; steps and evaluations
-    families           Bezier, Adams-Bashforth, Adams-Bashforth-Moulton: how their weights come about
-    one_step_methods   RK1 to RK4, SIE, SYM
-    registry           all of them by name; lookup
-    method_files       a user's own method
-    derivation         characteristic and closed-loop polynomial, s->z mapping
-    orders             order of accuracy
-    formulas           all of these as text or LaTeX
-    schur              where a polynomial's roots lie, proven
+From exact numbers upwards; a file imports only from those above it:
+
+    schur               where a polynomial's roots lie, proven in exact arithmetic
+    schemes             the kinds of methods as frozen data that checks itself
+    families            Bezier, Adams-Bashforth and their predictor-corrector pairs, by number of steps
+    one_step_methods    Runge-Kutta methods and symplectic Euler
+    method_files        a user's method, from TOML
+    registry            every built-in method by name
+    derivation          by sympy: s->z mapping, characteristic polynomial, closed loop
+    orders              order of accuracy and error constant
+    formulas            all that as text or LaTeX
 
 What needs sympy is loaded when first used: naming a method, or proving a verdict, does not.
 """

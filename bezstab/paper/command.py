@@ -29,7 +29,7 @@ def paper(only: tuple[str, ...], output: Path, figure: FigureForm, form: "Format
 
     Example: bezstab paper --only table4
     """
-    from bezstab.paper.ledger import SUBJECTS, ledger
+    from bezstab.paper.ledger import SUBJECTS, ledger_text
 
     wanted = set(only or PARTS)
     output_directory(output)
@@ -43,7 +43,7 @@ def paper(only: tuple[str, ...], output: Path, figure: FigureForm, form: "Format
             click.echo(f"{report.aside}\n")
         findings += report.findings
     if not only:
-        write_text(output / "LEDGER.md", ledger(findings))
+        write_text(output / "LEDGER.md", ledger_text(findings))
     show_findings(findings, form)
 
 

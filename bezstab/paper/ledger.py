@@ -46,7 +46,7 @@ def finding_rows(findings: Sequence[Finding]) -> list[Row]:
     return [asdict(finding) for finding in findings]
 
 
-def ledger(findings: Sequence[Finding]) -> str:
+def ledger_text(findings: Sequence[Finding]) -> str:
     """Return every claim with what came out, as Markdown."""
     counts = Counter(finding.agreement for finding in findings)
     total = ", ".join(f"{counts[agreement]} {agreement}" for agreement in get_args(Agreement))

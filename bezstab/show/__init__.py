@@ -1,6 +1,16 @@
 """Results as rows and tables, and as figures; `plot` is the public module that draws on a user's own Axes.
 
-What draws is not loaded before it is used.
+A file imports only from those above it; what draws is not loaded before it is used:
+
+    columns             typed columns, and rows as text, Markdown, CSV or JSON
+    best_point_text     a best point in words
+    rows                results as rows
+    arrays              histories and maps as arrays for files
+    style               what all figures share
+    plot                one result on one Axes
+    plane_figures       figures of the alpha_hat-beta_hat plane
+    run_figures         figures of simulations
+    explorer            the window
 """
 
 from typing import TYPE_CHECKING

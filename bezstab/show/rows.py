@@ -104,7 +104,7 @@ def whole_row(method: Method, region: Region, best: BestPoint | None, latex: boo
 
 def region_row(region: Region, best: BestPoint | None) -> Row:
     """Return area, axis limits and best point (dimensionless); None where the region is empty."""
-    from bezstab.show.best_point_words import best_point_words
+    from bezstab.show.best_point_text import best_point_words
 
     alpha_min = alpha_max = beta_max = None
     if region.extent:

@@ -1,5 +1,5 @@
 from bezstab.methods import lookup
-from bezstab.show.best_point_words import best_point_words
+from bezstab.show.best_point_text import best_point_words
 from bezstab.stability import best_point
 
 
