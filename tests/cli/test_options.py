@@ -46,7 +46,7 @@ def test_an_engine_comes_with_values_of_its_parameters() -> None:
 
 def test_a_point_is_two_numbers_or_none() -> None:
     assert both_or_none(None, None) is None
-    assert both_or_none(Fraction(1), Fraction(2)) == (1, 2)
+    assert both_or_none(Fraction(1), Fraction(2)) == (Fraction(1), Fraction(2))
     for alpha, beta in ((Fraction(1), None), (None, Fraction(1))):
         with pytest.raises(click.UsageError, match="go together"):
             both_or_none(alpha, beta)
