@@ -253,34 +253,34 @@ def verify(
     point = both_or_none(alpha, beta)
     if sum(choice is not None for choice in (point, points, cells, witness)) > 1:
         raise click.UsageError("choose one of --alpha with --beta, --points, --map and --witness")
-    moving = compiled_mechanism(load_scene(scene))
+    mechanism = compiled_mechanism(load_scene(scene))
     if witness:
-        show_rows(_witness_rows(moving, float(h)), WITNESSED, form)
+        show_rows(_witness_rows(mechanism, float(h)), WITNESSED, form)
     elif cells is None:
-        _show_measurements(moving, methods, float(h), point, points or RANDOM_POINTS, form)
+        _show_measurements(mechanism, methods, float(h), point, points or RANDOM_POINTS, form)
     else:
         rows: list[Row] = []
         for method in methods:
             path = output / f"verify_{file_name(Path(scene).stem)}_{file_name(method.name)}"
-            job = f"--map {cells} --h {h} {method} {moving.scene}"
+            job = f"--map {cells} --h {h} {method} {mechanism.scene}"
             verdicts = _map_verdicts(
-                moving, method, float(h), cells, path, job, workers, scheduler, resume, figure, table
+                mechanism, method, float(h), cells, path, job, workers, scheduler, resume, figure, table
             )
             rows.append(verdict_map_row(verdicts))
         show_rows(rows, VERDICT_MAPS, form)
 
 
-def _witness_rows(moving: "Mechanism", h: float) -> list[Row]:
+def _witness_rows(mechanism: "Mechanism", h: float) -> list[Row]:
     """Return a row for each run of MuJoCo's integrators; h in s."""
     from bezstab.evidence import mujoco_witnesses, witness_count
     from bezstab.show import row
 
-    witnesses = progress(mujoco_witnesses(moving, h), "MuJoCo", witness_count())
-    return [row(witnessed, scene=moving.scene.name) for witnessed in witnesses]
+    witnesses = progress(mujoco_witnesses(mechanism, h), "MuJoCo", witness_count())
+    return [row(witnessed, scene=mechanism.scene.name) for witnessed in witnesses]
 
 
 def _show_measurements(
-    moving: "Mechanism",
+    mechanism: "Mechanism",
     methods: Sequence[Method],
     h: float,
     point: tuple[Fraction, Fraction] | None,
@@ -301,8 +301,8 @@ def _show_measurements(
         else:
             alpha_hat, beta_hat = random_points(method, points)
         bar = partial(progress, label=method.name)
-        measurements = measure_poles(moving, method, h, alpha_hat, beta_hat, bar)
-        own_rows = [measurement_row(moving.scene.name, measurement) for measurement in measurements]
+        measurements = measure_poles(mechanism, method, h, alpha_hat, beta_hat, bar)
+        own_rows = [measurement_row(mechanism.scene.name, measurement) for measurement in measurements]
         rows += own_rows
         summaries.append(summary_row(own_rows))
     show_rows(rows, MEASUREMENTS, form)
@@ -312,7 +312,7 @@ def _show_measurements(
 
 
 def _map_verdicts(
-    moving: "Mechanism",
+    mechanism: "Mechanism",
     method: Method,
     h: float,
     cells: int,
@@ -329,7 +329,7 @@ def _map_verdicts(
     from bezstab.show import verdict_arrays
     from bezstab.stability import region
 
-    chunks = map_rows(moving.scene, method, h, cells)
+    chunks = map_rows(mechanism.scene, method, h, cells)
     with results_of_chunks(simulated_verdicts, chunks, path, job, workers, scheduler, resume) as results:
         verdicts = verdict_map(chunks, results)
 
@@ -430,15 +430,15 @@ def tradeoff(
         raise click.UsageError("--physical needs --alpha and --beta")
     step_sizes = tuple(sorted({float(step) for step in steps or evidence.STEPS}))
     _check_swept_time(float(time), step_sizes, methods)
-    moving = load_scene(scene)
-    reference = evidence.reference_motion(moving, step_sizes[0], float(time))
+    loaded_scene = load_scene(scene)
+    reference = evidence.reference_motion(loaded_scene, step_sizes[0], float(time))
     given = None if point is None else (float(point[0]), float(point[1]))
     sweeps = [
-        evidence.Sweep(method, moving, step_sizes, float(time), given, physical, repeats, reference)
+        evidence.Sweep(method, loaded_scene, step_sizes, float(time), given, physical, repeats, reference)
         for method in dict.fromkeys(methods)
     ]
     path = output / f"tradeoff_{file_name(Path(scene).stem)}"
-    job = f"{methods} {(moving, step_sizes, float(time), given, physical, repeats)}"
+    job = f"{methods} {(loaded_scene, step_sizes, float(time), given, physical, repeats)}"
     with results_of_chunks(evidence.measured_runs, sweeps, path, job, workers, scheduler, resume) as results:
         swept = evidence.whole_sweep(sweeps, results)
         rows = [row(run, front=front) for run, front in zip(swept.runs, swept.front_labels, strict=True)]
@@ -446,7 +446,7 @@ def tradeoff(
         def draw(constraint: bool, floor: float) -> "Figure":
             from bezstab.show import work_precision_figure
 
-            return work_precision_figure(swept, moving.name, constraint, floor)
+            return work_precision_figure(swept, loaded_scene.name, constraint, floor)
 
         write_table(path, untimed_arrays(rows), table)
         for_trajectory = partial(draw, constraint=False, floor=reference.error)

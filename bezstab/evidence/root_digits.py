@@ -18,7 +18,6 @@ there are.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import islice
 
 import mpmath as mp
 
@@ -128,23 +127,25 @@ def _condition(table: Sequence[Sequence[mp.mpf]], mu: mp.mpc, z: mp.mpc) -> mp.m
 def all_roots(polynomial: Sequence[mp.mpf], starts: Sequence[mp.mpc]) -> dict[int, mp.mpc]:
     """Return every root by the number of the start that is nearest to it, relative to its size.
 
-    The polynomial's coefficients stand in descending powers. NumericalError if the starts do not lead to as many
-    different roots as its degree.
+    The polynomial's coefficients stand in descending powers. Each start belongs to one root at most: of two roots that
+    nearly coincide both starts may lead to the same, and yet each root has a start beside it. NumericalError if the
+    starts do not lead to as many different roots as the degree.
     """
-    reached = {}
-    for index, start in enumerate(starts):
+    roots: list[mp.mpc] = []
+    for start in starts:
         root = _polished(polynomial, start)
-        if root is not None:
-            reached[index] = root
-    nearest_first = sorted(reached, key=lambda k: abs(starts[k] - reached[k]) / (abs(reached[k]) or 1))
-    roots: dict[int, mp.mpc] = {}
-    for index in nearest_first:
-        if all(abs(reached[index] - other) > SAME * abs(other) for other in roots.values()):
-            roots[index] = reached[index]
+        if root is not None and all(abs(root - other) > SAME * abs(other) for other in roots):
+            roots.append(root)
     degree = len(polynomial) - 1
     if len(roots) < degree:
         raise NumericalError(f"only {len(roots)} of {degree} roots were found")
-    return dict(islice(roots.items(), degree))
+    pairs = [(index, number) for index in range(len(starts)) for number in range(degree)]
+    pairs.sort(key=lambda pair: abs(starts[pair[0]] - roots[pair[1]]) / (abs(roots[pair[1]]) or 1))
+    beside: dict[int, int] = {}  # start by root
+    for index, number in pairs:
+        if number not in beside and index not in beside.values():
+            beside[number] = index
+    return {index: roots[number] for number, index in beside.items()}
 
 
 def _polished(polynomial: Sequence[mp.mpf], z: mp.mpc) -> mp.mpc | None:
