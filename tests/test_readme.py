@@ -2,7 +2,9 @@ import importlib
 import re
 import shlex
 import tomllib
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 from click.testing import CliRunner
@@ -21,18 +23,30 @@ INLINE = sorted(
         )
     )
 )
+LONG = ("paper", "tradeoff", "verify --map", "verify --witness", "choose --method B4 --method AB4 --method SYM")
+"""Beginnings of commands that take more than a few seconds; `make test-slow` runs these."""
 
 
-@pytest.mark.parametrize("session", SESSIONS)
+def by_length(texts: list[str], command_of: Callable[[str], str]) -> list[Any]:
+    """Return the texts as parameters, those of long commands marked as slow."""
+    slow = pytest.mark.slow
+    return [pytest.param(text, marks=[slow] if command_of(text).startswith(LONG) else []) for text in texts]
+
+
+def prompted(session: str) -> str:
+    """Return the command that a session begins with."""
+    return session.partition("\n")[0].removeprefix("$ bezstab ")
+
+
+@pytest.mark.parametrize("session", by_length(SESSIONS, prompted))
 def test_a_session_prints_what_the_readme_shows(session: str) -> None:
-    prompt, _, shown = session.partition("\n")
-    command = prompt.removeprefix("$ bezstab ")
+    command, shown = prompted(session), session.partition("\n")[2]
     result = CliRunner().invoke(main, shlex.split(command))
     assert result.exit_code == ("check" in command and "diverges" in shown)  # 1 for an unsafe choice
     assert result.stdout.strip() == shown.strip()
 
 
-@pytest.mark.parametrize("command", INLINE)
+@pytest.mark.parametrize("command", by_length(INLINE, str))
 def test_a_command_in_the_text_runs(command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     result = CliRunner().invoke(main, shlex.split(command))

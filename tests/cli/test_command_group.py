@@ -158,6 +158,7 @@ TYPED: dict[str, dict[str, list[str] | None]] = {
 }
 
 
+@pytest.mark.slow
 @settings(deadline=None)  # the first region takes its time
 @given(st.data())
 def test_whatever_is_typed_ends_in_an_answer_or_one_line(data: st.DataObject) -> None:
@@ -212,7 +213,12 @@ def test_every_command_prints_in_every_format(command: str, form: str) -> None:
         assert isinstance(json.loads(result.stdout), list)
 
 
-@pytest.mark.parametrize("name", NAMES)
+LONG_EXAMPLES = {"extremes", "tradeoff", "family", "choose"}
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] if name in LONG_EXAMPLES else []) for name in NAMES]
+)
 def test_the_example_in_the_help_runs(name: str) -> None:
     shown = run(name, "--help").stdout
     example = re.search(r"Example: bezstab ((?:[^\n]|\n  \S)*)", shown)

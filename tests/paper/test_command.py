@@ -1,6 +1,7 @@
 import json
 from pathlib import Path
 
+import pytest
 from click.testing import CliRunner
 
 from bezstab.cli import main
@@ -8,6 +9,7 @@ from bezstab.cli import main
 FIGURES = Path(__file__).parent.parent.parent / "figures"
 
 
+@pytest.mark.slow
 def test_the_committed_tables_and_ledger_are_those_of_a_fresh_run(tmp_path: Path) -> None:
     assert CliRunner().invoke(main, ["paper", "--figure", "none", "-o", str(tmp_path)]).exit_code == 0
     fresh = {path.name: path.read_text(encoding="utf-8") for path in tmp_path.iterdir()}
