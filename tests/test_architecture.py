@@ -10,7 +10,7 @@ stability  mechanism     neither knows of the other
       \      |
       methods            schemes as exact data
          |
-errors, rationals, files, toml_tables, units, engines
+errors, stopping, rationals, files, toml_tables, units, engines
 """
 
 import ast
@@ -22,7 +22,7 @@ import pytest
 
 PACKAGE = Path(__file__).parent.parent / "bezstab"
 ROOMS = ("methods", "stability", "mechanism", "evidence", "show", "cli", "paper")
-FOUNDATIONS = {"lazy", "errors", "rationals", "files", "toml_tables", "units", "engines"}
+FOUNDATIONS = {"lazy", "errors", "stopping", "rationals", "files", "toml_tables", "units", "engines"}
 BELOW = {
     "methods": FOUNDATIONS,
     "stability": FOUNDATIONS | {"methods"},

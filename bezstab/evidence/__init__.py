@@ -11,7 +11,8 @@ from bezstab.evidence.accuracy_costs import (
     whole_sweep,
     with_fronts,
 )
-from bezstab.evidence.chunks import ATTEMPTS, Arrays, chunk_store, completed_chunks, worker_pool
+from bezstab.evidence.chunk_stores import Arrays, chunk_store
+from bezstab.evidence.chunks import ATTEMPTS, completed_chunks
 from bezstab.evidence.extremes import Check, extreme_checks
 from bezstab.evidence.linear_prediction import SPREAD, Fit, Refusal, fit_dominant_pole
 from bezstab.evidence.measured_poles import CLOSE, LINEAR, Measurement, measure_poles, random_points
@@ -20,6 +21,7 @@ from bezstab.evidence.pareto import pareto_front
 from bezstab.evidence.reference_motions import ReferenceMotion, reference_motion
 from bezstab.evidence.sweep_summaries import FINE, Summary, summary, sweep_sentences
 from bezstab.evidence.verdict_maps import MapRows, VerdictMap, map_rows, simulated_verdicts, verdict_map
+from bezstab.evidence.worker_pools import worker_pool
 
 __all__ = [
     "ATTEMPTS",
