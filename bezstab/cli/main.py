@@ -60,6 +60,13 @@ class BezstabGroup(click.Group):
             with formatter.section(heading):
                 formatter.write_dl(sentences)
 
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the command that was typed, and let it alone speak: matplotlib has words where it finds no home."""
+        import logging
+
+        logging.getLogger("matplotlib").setLevel(logging.ERROR)
+        return super().invoke(ctx)
+
     def main(self, *args: Any, **kwargs: Any) -> NoReturn:
         """Run the command line and exit."""
         try:

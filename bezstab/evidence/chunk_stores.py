@@ -49,8 +49,9 @@ class ChunkStore:
         No object in a file is ever unpickled.
         """
         try:
-            with np.load(self.file(number), allow_pickle=False) as file:
-                arrays = dict(file)
+            # Opened here, for numpy forgets to close what turns out to be damaged.
+            with self.file(number).open("rb") as file, np.load(file, allow_pickle=False) as archive:
+                arrays = dict(archive)
             if arrays.pop(SEAL) != self._seal(number):
                 return None
         except Exception:  # a damaged zip archive makes numpy raise nearly anything

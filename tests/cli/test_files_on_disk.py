@@ -1,4 +1,4 @@
-"""What happens to files while a run works on them: damage, other runs, full disks, signals. One line each, no litter."""
+"""What happens to files while a run works on them (damage, other runs, full disks, signals): a line, no litter."""
 
 import os
 import pickle
@@ -19,6 +19,7 @@ from tests.cli.processes import catches, files_below, finished, group_members, s
 
 pytestmark = pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="looks at processes as Linux shows them")
 
+SLOW = pytest.mark.slow
 NAME = "verify_pendulum_SYM"
 SMALL = ("verify", "--map", "6", "--method", "SYM", "--scene", "pendulum", "--figure", "none", "--workers", "1")
 LONG = ("verify", "--map", "300", "--method", "SYM", "--scene", "pendulum", "--figure", "none", "--workers", "2")
@@ -107,14 +108,14 @@ def put_pickle(chunk: Path) -> None:
     "damage",
     [
         truncate,
-        flip_a_bit,
-        empty,
-        put_text,
-        put_one_array,
-        put_other_arrays,
         put_hostile_archive,
-        put_hostile_archive_of_a_pickle,
-        put_pickle,
+        pytest.param(flip_a_bit, marks=SLOW),
+        pytest.param(empty, marks=SLOW),
+        pytest.param(put_text, marks=SLOW),
+        pytest.param(put_one_array, marks=SLOW),
+        pytest.param(put_other_arrays, marks=SLOW),
+        pytest.param(put_hostile_archive_of_a_pickle, marks=SLOW),
+        pytest.param(put_pickle, marks=SLOW),
     ],
 )
 def test_a_damaged_chunk_is_computed_again_to_the_same_bytes(
@@ -165,7 +166,7 @@ def limit_of(size: int) -> Callable[[], None]:
     return lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
 
 
-@pytest.mark.parametrize("size", [0, 100, 700, 1500])
+@pytest.mark.parametrize("size", [pytest.param(0, marks=SLOW), pytest.param(100, marks=SLOW), 700])
 def test_a_full_disk_takes_one_line_and_resume_goes_on(size: int, whole: bytes, tmp_path: Path) -> None:
     full = finished(*SMALL, cwd=tmp_path, prepare=limit_of(size))
     assert full.returncode == 2
@@ -180,11 +181,11 @@ def test_a_full_disk_takes_one_line_and_resume_goes_on(size: int, whole: bytes, 
     "command",
     [
         "region --method B2 --grid 20 --table npz",
-        "region --method B2 --grid 20 --figure svg",
-        "region --method B2 --grid 20 --figure pdf --table none",
         "simulate --time 0.1",
-        "simulate --time 0.1 --figure none --table npz",
-        "family bezier --from 2 --to 3",
+        pytest.param("region --method B2 --grid 20 --figure svg", marks=SLOW),
+        pytest.param("region --method B2 --grid 20 --figure pdf --table none", marks=SLOW),
+        pytest.param("simulate --time 0.1 --figure none --table npz", marks=SLOW),
+        pytest.param("family bezier --from 2 --to 3", marks=SLOW),
     ],
 )
 def test_a_full_disk_leaves_no_part_of_a_result(command: str, tmp_path: Path) -> None:
@@ -194,28 +195,28 @@ def test_a_full_disk_leaves_no_part_of_a_result(command: str, tmp_path: Path) ->
     assert files_below(tmp_path) == []
 
 
-def become_a_file(directory: Path) -> None:
-    shutil.rmtree(directory)
-    directory.touch()
-
-
-@pytest.mark.parametrize("happen", [shutil.rmtree, become_a_file])
-@pytest.mark.parametrize("below", ["out", f"out/{NAME}.chunks"])
-def test_a_directory_that_goes_away_midway_takes_one_line(
-    happen: Callable[[Path], None], below: str, tmp_path: Path
-) -> None:
+@pytest.mark.parametrize(
+    ("below", "becomes_a_file"),
+    [
+        (f"out/{NAME}.chunks", True),
+        pytest.param(f"out/{NAME}.chunks", False, marks=SLOW),
+        pytest.param("out", True, marks=SLOW),
+        pytest.param("out", False, marks=SLOW),
+    ],
+)
+def test_a_directory_that_goes_away_midway_takes_one_line(below: str, becomes_a_file: bool, tmp_path: Path) -> None:
     with started(*LONG, "-o", "out", cwd=tmp_path) as running:
         wait_for_chunk(tmp_path / "out", running)
         moved = tmp_path / "moved"
         (tmp_path / below).rename(moved)  # at once, so that no chunk is written while it is taken away
-        if happen is become_a_file:
+        if becomes_a_file:
             (tmp_path / below).touch()
         _, errors = running.communicate(timeout=60)
         assert running.returncode == 2
         assert only_line(errors).startswith("bezstab: cannot write")
         wait_until(lambda: not group_members(running.pid))
     assert not [name for name in files_below(tmp_path) if "/." in name]
-    if happen is become_a_file:
+    if becomes_a_file:
         (tmp_path / below).unlink()
     moved.rename(tmp_path / below)
     with started(*LONG, "-o", "out", "--resume", cwd=tmp_path) as resumed:
@@ -269,11 +270,11 @@ def test_an_answer_needs_no_standard_error(how: str, whole: bytes, tmp_path: Pat
 SIGNALS = {signal.SIGINT: ("interrupted", 130), signal.SIGTERM: ("terminated", 143), signal.SIGHUP: ("hung up", 129)}
 
 
-def check_stopped(number: int, running: "subprocess.Popen[bytes]", path: Path) -> None:
+def check_stopped(number: signal.Signals, running: "subprocess.Popen[bytes]", path: Path) -> None:
     """Assert that a run which was told to end has: by its line and status, or because it was just finished."""
     _, errors = running.communicate(timeout=60)
     wait_until(lambda: not group_members(running.pid))  # no worker is left
-    word, status = SIGNALS[signal.Signals(number)]
+    word, status = SIGNALS[number]
     lines = errors.decode().splitlines()
     if running.returncode != 0:
         assert running.returncode == status
@@ -282,14 +283,24 @@ def check_stopped(number: int, running: "subprocess.Popen[bytes]", path: Path) -
     assert not [name for name in files_below(path) if Path(name).name.startswith(".")]
 
 
-@pytest.mark.parametrize("number", SIGNALS, ids=lambda number: signal.Signals(number).name)
-@pytest.mark.parametrize("to_all", [False, True], ids=["alone", "with-its-workers"])
+@pytest.mark.parametrize(
+    ("name", "to_all"),
+    [
+        ("SIGINT", True),  # as a terminal sends Ctrl-C, to the workers too
+        ("SIGTERM", False),
+        pytest.param("SIGHUP", True, marks=SLOW),
+        pytest.param("SIGINT", False, marks=SLOW),
+        pytest.param("SIGTERM", True, marks=SLOW),
+        pytest.param("SIGHUP", False, marks=SLOW),
+    ],
+)
 def test_a_signal_ends_a_run_at_any_moment_and_resume_goes_on(
-    number: int, to_all: bool, whole: bytes, tmp_path: Path
+    name: str, to_all: bool, whole: bytes, tmp_path: Path
 ) -> None:
+    number = signal.Signals[name]
     moments = random.Random(f"{number} {to_all}")
     command = (*SMALL, "--workers", "2")
-    for latest in (0.0, 0.3, 1.0, 2.0, 2.0, 2.0):
+    for latest in (0.02, 0.5, 2.0, 2.0):
         with started(*command, "--resume", cwd=tmp_path) as running:
             wait_until(
                 lambda: catches(signal.SIGHUP, running.pid), running
@@ -303,7 +314,15 @@ def test_a_signal_ends_a_run_at_any_moment_and_resume_goes_on(
     assert (tmp_path / f"{NAME}.csv").read_bytes() == whole
 
 
-@pytest.mark.parametrize("command", ["--help", "poles --alpha 1 --beta 1", "region --method B2", "simulate --time 0.5"])
+@pytest.mark.parametrize(
+    "command",
+    [
+        "region --method B2",
+        pytest.param("--help", marks=SLOW),
+        pytest.param("poles --alpha 1 --beta 1", marks=SLOW),
+        pytest.param("simulate --time 0.5", marks=SLOW),
+    ],
+)
 def test_a_signal_ends_every_command_at_any_moment(command: str, tmp_path: Path) -> None:
     moments = random.Random(command)
     for number in SIGNALS:
@@ -325,7 +344,8 @@ def test_a_signal_that_was_ignored_stays_so(tmp_path: Path) -> None:
         assert running.wait(timeout=60) == 0
 
 
-def test_a_sweep_is_locked_and_resumed_too(tmp_path: Path) -> None:
+@pytest.mark.slow
+def test_a_damaged_chunk_of_a_sweep_is_measured_again(tmp_path: Path) -> None:
     (table := tmp_path / "tradeoff_slider_crank_light.csv").mkdir()
     assert finished(*SWEEP, cwd=tmp_path).returncode == 2
     table.rmdir()
