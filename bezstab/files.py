@@ -1,13 +1,16 @@
 """Input files that are read or refused in one line; output files that are written whole or not at all."""
 
-import os
+import io
+import secrets
 import tempfile
 import tomllib
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, BinaryIO, TypeVar
 
 from bezstab.errors import InputError
+from bezstab.stopping import if_stopped
 
 Parsed = TypeVar("Parsed")
 
@@ -36,16 +39,23 @@ def output_directory(path: Path) -> Path:
 
 
 def write_whole(path: Path, write: Callable[[BinaryIO], object]) -> None:
-    """Let `write` fill a temporary neighbour of `path`, which then takes its name in one stroke.
+    """Put what `write` writes into a temporary neighbour of `path`, which then takes its name in one stroke.
 
-    Whatever interrupts `write`, `path` keeps what it held before. InputError where the system refuses.
+    Whatever interrupts that, `path` keeps what it held before, and no neighbour stays. InputError where the system
+    refuses: no such directory, no space, no permission.
     """
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        with temporary.open("xb") as file:
-            write(file)
-        temporary.replace(path)
-    except OSError as error:
-        raise InputError(f"cannot write {path}: {error.strerror}") from None
-    finally:
-        temporary.unlink(missing_ok=True)
+    # First into memory: on a full disk those who write in pieces (zip archives, figures) complain again and again,
+    # even when they are collected. So the system is asked for one plain write, all that can fail for its reasons.
+    content = io.BytesIO()
+    write(content)
+    temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}")
+    with if_stopped(lambda: temporary.unlink(missing_ok=True)):
+        try:
+            with temporary.open("xb") as file:
+                file.write(content.getbuffer())
+            temporary.replace(path)
+        except OSError as error:
+            raise InputError(f"cannot write {path}: {error.strerror}") from None
+        finally:
+            with suppress(OSError):  # as where its directory has become a file
+                temporary.unlink()

@@ -16,7 +16,7 @@ other; only appointed files see a library.
       |      /
     methods                schemes as exact data
       |
-    errors, rationals, files, toml_tables, units, engines, lazy
+    errors, rationals, files, toml_tables, units, engines, stopping, lazy
 """
 
 import ast
@@ -31,7 +31,7 @@ import pytest
 PACKAGE = Path(__file__).parent.parent / "bezstab"
 TESTS = PACKAGE.parent / "tests"
 ROOMS = ("methods", "stability", "mechanism", "evidence", "show", "cli", "paper")
-FOUNDATIONS = ("lazy", "errors", "rationals", "files", "toml_tables", "units", "engines")
+FOUNDATIONS = ("lazy", "stopping", "errors", "rationals", "files", "toml_tables", "units", "engines")
 """Beside the rooms, each importing only from those before it."""
 
 BELOW = {
@@ -60,7 +60,7 @@ APPOINTED = {
     | {f"cli/{name}_commands.py" for name in ("map", "choose", "evidence")}
     | {"paper/command.py"},
     "mujoco": {"evidence/mujoco_witness.py"},
-    "distributed": {"evidence/chunks.py"},
+    "distributed": {"evidence/worker_pools.py"},
     "mpmath": {"evidence/extremes.py", "evidence/root_digits.py"},
 }
 """The files that may import a library when they run; for types anybody may."""

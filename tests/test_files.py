@@ -37,6 +37,19 @@ def test_what_cannot_be_written_is_the_users_mistake(tmp_path: Path) -> None:
     assert {entry.name for entry in tmp_path.iterdir()} == {"file", "taken"}
 
 
+@pytest.mark.parametrize("becomes_a_file", [False, True])
+def test_a_directory_that_goes_away_is_named_once(becomes_a_file: bool, tmp_path: Path) -> None:
+    directory = output_directory(tmp_path / "a")
+
+    def go_away(file: BinaryIO) -> None:
+        directory.rmdir()
+        if becomes_a_file:
+            directory.touch()
+
+    with pytest.raises(InputError, match=f"cannot write {directory / 'b'}: "):
+        write_whole(directory / "b", go_away)
+
+
 def test_a_missing_directory_is_made(tmp_path: Path) -> None:
     assert list(output_directory(tmp_path / "a" / "b").iterdir()) == []
 

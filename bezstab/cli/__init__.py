@@ -2,6 +2,7 @@
 
 A file imports only from those above it:
 
+    terminal            words for what a terminal cannot show
     options             parameter types and the options that commands share
     output              rows, files, messages, progress
     map_commands        poles, region, methods, family

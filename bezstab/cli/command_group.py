@@ -12,6 +12,7 @@ from bezstab import __version__
 from bezstab.cli.choose_commands import check, choose, engines, explore
 from bezstab.cli.evidence_commands import extremes, simulate, tradeoff, verify
 from bezstab.cli.map_commands import family, methods, poles, region
+from bezstab.cli.output import say
 from bezstab.errors import InputError, NumericalError
 
 SECTIONS: Mapping[str, Sequence[click.Command]] = {
@@ -28,7 +29,9 @@ LOADED_LATE: Mapping[str, Mapping[str, str]] = {"Paper": {"paper": "bezstab.pape
 class BezstabGroup(click.Group):
     """A group that lists its commands under headings, finds extensions when asked for, and ends errors in one line.
 
-    Exit status 2 for a user's mistake, 3 for numerical trouble, 130 after Ctrl-C.
+    Exit status 2 for a user's mistake and for what the system refuses (a full disk, a closed standard output), 3 for
+    numerical trouble, 1 where nobody reads the answer any more (`| head`). A signal that ends a run is 128 + its
+    number, as a shell has it: 130 after Ctrl-C, 143 after TERM, 129 when the terminal is gone (bezstab.stopping).
     """
 
     def list_commands(self, ctx: click.Context) -> list[str]:
@@ -57,6 +60,13 @@ class BezstabGroup(click.Group):
             with formatter.section(heading):
                 formatter.write_dl(sentences)
 
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the command that was typed, and let it alone speak: matplotlib has words where it finds no home."""
+        import logging
+
+        logging.getLogger("matplotlib").setLevel(logging.ERROR)
+        return super().invoke(ctx)
+
     def main(self, *args: Any, **kwargs: Any) -> NoReturn:
         """Run the command line and exit."""
         try:
@@ -68,14 +78,18 @@ class BezstabGroup(click.Group):
             _complain(str(error))
             sys.exit(2)
         except NumericalError as error:
-            click.echo(f"bezstab: {error}", err=True)
+            _complain(str(error))
             sys.exit(3)
         except click.Abort:
-            click.echo("bezstab: interrupted", err=True)
+            _complain("interrupted")
             sys.exit(130)
         except BrokenPipeError:  # the reader, such as `head`, has seen enough
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            _give_up_output()
             sys.exit(1)
+        except OSError as error:
+            _give_up_output()
+            _complain(f"{error.filename}: {error.strerror}" if error.filename else str(error))
+            sys.exit(2)
         sys.exit(status if isinstance(status, int) else 0)  # a command that calls ctx.exit(status) returns it here
 
     def _names_by_section(self) -> dict[str, list[str]]:
@@ -86,8 +100,16 @@ class BezstabGroup(click.Group):
 
 
 def _complain(message: str) -> None:
-    """Print a user's mistake in one line."""
-    click.echo(f"bezstab: {' '.join(message.split())}", err=True)
+    """Print bad news in one line."""
+    say(f"bezstab: {' '.join(message.split())}")
+
+
+def _give_up_output() -> None:
+    """Let what cannot be written on standard output vanish: Python would complain at exit, with a traceback."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 @click.group(

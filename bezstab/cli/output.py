@@ -1,9 +1,10 @@
 """How commands answer: rows on standard output, files, messages and progress on standard error."""
 
+import json
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from operator import length_hint
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
@@ -11,8 +12,10 @@ from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 import click
 
 from bezstab.cli.options import FigureForm, TableForm
+from bezstab.cli.terminal import output_encoding, spelled, visible
 from bezstab.files import write_whole
 from bezstab.show import Column, Format, Row, render
+from bezstab.stopping import if_stopped
 
 if TYPE_CHECKING:
     import numpy as np
@@ -26,9 +29,38 @@ Item = TypeVar("Item")
 
 def show_rows(rows: Sequence[Row], columns: Sequence[Column], form: Format, heading: str = "") -> None:
     """Print rows on standard output, below a heading where people read them."""
+    encoding = output_encoding()
     if heading and for_reading(form):
         click.echo(f"{heading}\n")
-    click.echo(render(rows, columns, form))
+    answer = render(rows, [_presentable(column, encoding) for column in columns], form)
+    click.echo(_escaped_json(answer, encoding) if form == "json" else answer)
+
+
+def _presentable(column: Column, encoding: str) -> Column:
+    """Return the column with words for what the encoding lacks, and no cell that would command a terminal.
+
+    That is done here, before the widths of the columns are found.
+    """
+
+    def text(row: Row) -> str:
+        return visible(spelled(column.text(row), encoding))
+
+    return Column(spelled(column.heading, encoding), text)
+
+
+def _escaped_json(text: str, encoding: str) -> str:
+    """Return JSON that an encoding such as ascii has the characters for: all others escaped, as JSON has it."""
+    try:
+        text.encode(encoding)
+    except UnicodeEncodeError:
+        return re.sub(r"[^\x00-\x7f]", lambda found: json.dumps(found[0])[1:-1], text)
+    return text
+
+
+def say(message: str) -> None:
+    """Print a message on standard error, in one line; where that cannot be written, nobody wants to read it."""
+    with suppress(OSError):
+        click.echo(visible(message), err=True)
 
 
 def for_reading(form: Format) -> bool:
@@ -37,14 +69,14 @@ def for_reading(form: Format) -> bool:
 
 
 def file_name(name: str) -> str:
-    """Return a method's or a scene's name with nothing that a file's name cannot have."""
-    return re.sub(r"[^\w@.+-]", "_", name)
+    """Return a method's or a scene's name with nothing that a file's name cannot have, whatever the system's names."""
+    return re.sub(r"[^\w@.+-]", "_", spelled(name, sys.getfilesystemencoding()))
 
 
 def write_file(path: Path, write: Callable[[BinaryIO], object]) -> None:
     """Write a file whole, or not at all, and say so on standard error; InputError where the system refuses."""
     write_whole(path, write)
-    click.echo(f"wrote {path}", err=True)
+    say(f"wrote {path}")
 
 
 def write_table(path: Path, columns: "Mapping[str, NDArray[np.generic]]", form: TableForm) -> None:
@@ -76,7 +108,8 @@ def progress(
     if not sys.stderr.isatty():
         yield from items
         return
-    with click.progressbar(length=length or length_hint(items), label=label, file=sys.stderr) as bar:
+    bar = click.progressbar(length=length or length_hint(items), label=visible(label), file=sys.stderr)
+    with bar, if_stopped(bar.render_finish):  # which shows the cursor again
         for item in items:
             yield item
             bar.update(size(item))
@@ -95,16 +128,20 @@ def results_of_chunks(
     """Give the results of independent chunks, in their order, from processes or a cluster's workers.
 
     What is finished is kept in `path` + .chunks, for `resume` by the same `job`, and goes once the caller has used it.
+    What is damaged there is computed again, and said so. InputError while another run is at work there.
     """
     from bezstab.evidence import chunk_store, completed_chunks, worker_pool
 
-    with worker_pool(workers, scheduler) as pool:
-        store = chunk_store(path.with_name(f"{path.name}.chunks"), job, resume)
-        try:
-            arriving = completed_chunks(work, chunks, pool, store)
+    def say_damaged(file: Path) -> None:
+        say(f"bezstab: {file} is damaged: computed again")
+
+    def say_how_to_go_on() -> None:
+        say(f"bezstab: what is finished lies in {store.path}: --resume goes on from there")
+
+    kept_in = path.with_name(f"{path.name}.chunks")
+    with worker_pool(workers, scheduler) as pool, chunk_store(kept_in, job, resume) as store:
+        with if_stopped(say_how_to_go_on):
+            arriving = completed_chunks(work, chunks, pool, store, say_damaged)
             results = dict(progress(arriving, path.name, len(chunks)))
-        except KeyboardInterrupt:
-            click.echo(f"bezstab: what is finished lies in {store.path}: --resume goes on from there", err=True)
-            raise
-    yield [results[number] for number in range(len(chunks))]
-    store.discard()
+        yield [results[number] for number in range(len(chunks))]
+        store.discard()

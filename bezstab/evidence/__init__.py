@@ -2,7 +2,9 @@
 
 The only room in which stability and mechanism meet. A file imports only from those above it:
 
-    chunks              long work shared by processes or a cluster, kept on disk as it arrives
+    worker_pools        who does long work: processes, or a cluster's workers
+    chunk_stores        where finished chunks are kept, under a lock
+    chunks              long work in chunks, spread over workers, kept as they arrive
     linear_prediction   the dominant pole in a sampled response, or why none can be told
     measured_poles      predicted against measured poles of a running mechanism
     verdict_maps        simulated verdicts over the plane against |z_p| < 1
@@ -26,7 +28,8 @@ from bezstab.evidence.accuracy_costs import (
     whole_sweep,
     with_fronts,
 )
-from bezstab.evidence.chunks import ATTEMPTS, Arrays, chunk_store, completed_chunks, worker_pool
+from bezstab.evidence.chunk_stores import Arrays, chunk_store
+from bezstab.evidence.chunks import ATTEMPTS, completed_chunks
 from bezstab.evidence.extremes import Check, extreme_checks
 from bezstab.evidence.linear_prediction import SPREAD, Fit, Refusal, fit_dominant_pole
 from bezstab.evidence.measured_poles import CLOSE, LINEAR, Measurement, measure_poles, random_points
@@ -35,6 +38,7 @@ from bezstab.evidence.pareto import pareto_front
 from bezstab.evidence.reference_motions import ReferenceMotion, reference_motion
 from bezstab.evidence.sweep_summaries import FINE, Summary, summary, sweep_sentences
 from bezstab.evidence.verdict_maps import MapRows, VerdictMap, map_rows, simulated_verdicts, verdict_map
+from bezstab.evidence.worker_pools import worker_pool
 
 __all__ = [
     "ATTEMPTS",

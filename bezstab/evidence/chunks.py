@@ -1,130 +1,37 @@
-"""Independent chunks of a long computation, spread over processes or a Dask cluster, kept on disk as they arrive."""
+"""Independent chunks of a long computation, spread over workers, kept in a store as they arrive."""
 
-import os
-import shutil
-import signal
 from collections import Counter, deque
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
-from contextlib import contextmanager
-from dataclasses import dataclass
-from multiprocessing import get_context
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from pathlib import Path
 from typing import TypeVar
 
-import numpy as np
-from numpy.typing import NDArray
-
-from bezstab.errors import InputError, NumericalError
-from bezstab.files import output_directory, write_whole
+from bezstab.errors import NumericalError
+from bezstab.evidence.chunk_stores import Arrays, ChunkStore
+from bezstab.evidence.worker_pools import WorkerPool
 
 Chunk = TypeVar("Chunk")
-Arrays = Mapping[str, NDArray[np.generic]]
 
 ATTEMPTS = 3
 """A chunk that loses its worker so often is what kills them."""
 
-PATIENCE = 10
-"""s, for a scheduler to answer."""
-
-
-@dataclass(frozen=True)
-class WorkerPool:
-    """So many executors made by `start`, each with one chunk at a time, and what it raises when its worker is lost."""
-
-    start: Callable[[], Executor]
-    count: int
-    lost: type[Exception]
-
-
-@contextmanager
-def worker_pool(count: int | None = None, scheduler: str | None = None) -> Iterator[WorkerPool]:
-    """Give `count` processes (by default one for each core), or the workers of the Dask cluster at tcp://host:port.
-
-    InputError without Dask or without an answer.
-    """
-    if scheduler is None:
-        yield _process_pool(count or _cores())
-        return
-    try:
-        from distributed import Client, KilledWorker
-    except ImportError:
-        raise InputError("--scheduler needs an optional package: pip install 'bezstab[dask]'") from None
-    try:
-        client = Client(scheduler, timeout=PATIENCE)
-    except (OSError, ValueError) as error:
-        raise InputError(f"--scheduler {scheduler}: {error}") from None
-    with client:
-        threads = sum(client.nthreads().values())
-        yield WorkerPool(start=client.get_executor, count=threads or 1, lost=KilledWorker)
-
-
-def _process_pool(count: int) -> WorkerPool:
-    """Return a pool of executors of one process each, so that a lost one takes no other's chunk with it."""
-    spawn = get_context("spawn")  # a fork while other executors' threads run may never wake up
-
-    def start() -> Executor:
-        return ProcessPoolExecutor(max_workers=1, mp_context=spawn, initializer=_die_quietly)
-
-    return WorkerPool(start=start, count=count, lost=BrokenExecutor)
-
-
-def _cores() -> int:
-    """Return the number of cores that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0)) or 1
-    return os.cpu_count() or 1
-
-
-def _die_quietly() -> None:
-    signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C: the parent says so, once
-
-
-@dataclass(frozen=True)
-class ChunkStore:
-    """A directory that keeps the finished chunks of one job, each in a file called by its number."""
-
-    path: Path
-
-    def finished(self) -> dict[int, Path]:
-        """Return the files of the finished chunks by number, ascending."""
-        files = {int(path.stem): path for path in self.path.glob("*.npz")}
-        return dict(sorted(files.items()))
-
-    def save(self, number: int, arrays: Arrays) -> None:
-        """Write one finished chunk."""
-        write_whole(self.path / f"{number}.npz", lambda file: np.savez(file, **arrays))  # type: ignore[arg-type]
-
-    def discard(self) -> None:
-        """Remove the directory: the job's result has been written."""
-        shutil.rmtree(self.path)
-
-
-def chunk_store(path: Path, job: str, resume: bool) -> ChunkStore:
-    """Return the store of a job at `path`, empty unless `resume`; InputError if what lies there is of another job.
-
-    `job` is a text that says all on which the result depends; it is kept beside the chunks.
-    """
-    described = path / "job.txt"
-    if resume and described.exists() and described.read_text(encoding="utf-8") != job:
-        raise InputError(f"--resume: {path} was left by a run with other options; without --resume it is overwritten")
-    if not resume and described.exists():
-        shutil.rmtree(path)
-    write_whole(output_directory(path) / described.name, lambda file: file.write(job.encode()))
-    return ChunkStore(path)
-
 
 def completed_chunks(
-    work: Callable[[Chunk], Arrays], chunks: Sequence[Chunk], workers: WorkerPool, store: ChunkStore
+    work: Callable[[Chunk], Arrays],
+    chunks: Sequence[Chunk],
+    workers: WorkerPool,
+    store: ChunkStore,
+    report_damaged: Callable[[Path], object] = lambda path: None,
 ) -> Iterator[tuple[int, Arrays]]:
     """Yield (number, work(chunk)) as they arrive, those first that the store already has.
 
-    A chunk whose worker is lost goes to another. NumericalError if that happens to one ATTEMPTS times.
+    A chunk whose file is damaged is reported and computed again; one whose worker is lost goes to another.
+    NumericalError if that happens to one ATTEMPTS times; InputError if a chunk cannot be written.
     """
-    finished = store.finished()
-    for number, path in finished.items():
-        with np.load(path, allow_pickle=False) as arrays:
-            yield number, dict(arrays)
+    finished: set[int] = set()
+    for number, arrays in _intact_chunks(store, len(chunks), report_damaged):
+        finished.add(number)
+        yield number, arrays
     waiting = deque(number for number in range(len(chunks)) if number not in finished)
     # An executor is idle, or busy with one chunk: then it is found by the future of that chunk's result.
     idle = [workers.start() for _ in range(min(workers.count, len(waiting)))]
@@ -157,3 +64,16 @@ def completed_chunks(
         still_busy = [executor for executor, _ in busy.values()]
         for executor in (*idle, *still_busy):
             executor.shutdown(wait=False)
+
+
+def _intact_chunks(
+    store: ChunkStore, count: int, report_damaged: Callable[[Path], object]
+) -> Iterator[tuple[int, Arrays]]:
+    """Yield those of `count` chunks that the store has, and report each whose file is damaged."""
+    for number in store.finished():
+        if number < count:
+            arrays = store.load(number)
+            if arrays is None:
+                report_damaged(store.file(number))
+            else:
+                yield number, arrays

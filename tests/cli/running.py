@@ -33,7 +33,7 @@ def arrays(path: Path) -> dict[str, Any]:
 
 # A child inherits an ignored SIGINT, as every job in the background of a script has it, and Python then keeps it so.
 HEARS_INTERRUPTS = (
-    "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); from bezstab.cli import main; main()"
+    "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); from bezstab.__main__ import run; run()"
 )
 
 

@@ -37,44 +37,46 @@ def squares(found: dict[int, Arrays]) -> list[int]:
 
 
 def test_every_chunk_is_done_once_and_stored(tmp_path: Path) -> None:
-    store = chunk_store(tmp_path / "job", "squares", resume=False)
-    with worker_pool(2) as workers:
+    with worker_pool(2) as workers, chunk_store(tmp_path / "job", "squares", resume=False) as store:
         arrived = list(completed_chunks(square, [Job(number) for number in range(7)], workers, store))
+        assert list(store.finished()) == list(range(7))
+        store.discard()
+        assert not store.path.exists()
     assert sorted(number for number, _ in arrived) == list(range(7))
     assert squares(dict(arrived)) == [number**2 for number in range(7)]
-    assert list(store.finished()) == list(range(7))
     assert len({int(arrays["by"]) for _, arrays in arrived}) <= 2
     assert os.getpid() not in {int(arrays["by"]) for _, arrays in arrived}
-    store.discard()
-    assert not store.path.exists()
 
 
 def test_a_resumed_job_does_only_what_is_missing(tmp_path: Path) -> None:
-    store = chunk_store(tmp_path / "job", "squares", resume=False)
-    store.save(1, {"square": np.array(-1)})
-    again = chunk_store(tmp_path / "job", "squares", resume=True)
-    with worker_pool(1) as workers:
-        arrived = dict(completed_chunks(square, [Job(number) for number in range(3)], workers, again))
+    with chunk_store(tmp_path / "job", "squares", resume=False) as store:
+        store.save(1, {"square": np.array(-1)})
+    with worker_pool(1) as workers, chunk_store(tmp_path / "job", "squares", resume=True) as store:
+        arrived = dict(completed_chunks(square, [Job(number) for number in range(3)], workers, store))
     assert squares(arrived) == [0, -1, 4]  # the second was not done again
-    with pytest.raises(InputError, match=r"--resume: .* other options"):
-        chunk_store(tmp_path / "job", "cubes", resume=True)
-    assert not chunk_store(tmp_path / "job", "cubes", resume=False).finished()
+    with (
+        pytest.raises(InputError, match=r"--resume: .* other options"),
+        chunk_store(tmp_path / "job", "cubes", resume=True),
+    ):
+        pass
+    with chunk_store(tmp_path / "job", "cubes", resume=False) as store:
+        assert not store.finished()
 
 
 def test_a_lost_worker_costs_its_chunk_alone(tmp_path: Path) -> None:
     jobs = [Job(number, (tmp_path / "died",) if number == 2 else ()) for number in range(5)]
-    with worker_pool(2) as workers:
-        arrived = dict(completed_chunks(square, jobs, workers, chunk_store(tmp_path / "job", "squares", resume=False)))
+    with worker_pool(2) as workers, chunk_store(tmp_path / "job", "squares", resume=False) as store:
+        arrived = dict(completed_chunks(square, jobs, workers, store))
     assert squares(arrived) == [0, 1, 4, 9, 16]
     assert (tmp_path / "died").exists()
 
 
 def test_a_chunk_that_kills_every_worker_is_reported(tmp_path: Path) -> None:
     deaths = tuple(tmp_path / f"death {number}" for number in range(ATTEMPTS))
-    store = chunk_store(tmp_path / "job", "squares", resume=False)
-    with worker_pool(1) as workers, pytest.raises(NumericalError, match="chunk 1 lost its worker 3 times"):
-        list(completed_chunks(square, [Job(0), Job(1, deaths)], workers, store))
-    assert 0 in store.finished()
+    with worker_pool(1) as workers, chunk_store(tmp_path / "job", "squares", resume=False) as store:
+        with pytest.raises(NumericalError, match="chunk 1 lost its worker 3 times"):
+            list(completed_chunks(square, [Job(0), Job(1, deaths)], workers, store))
+        assert 0 in store.finished()
 
 
 @pytest.fixture
@@ -105,9 +107,8 @@ def test_a_cluster_does_the_same_work(cluster: str, tmp_path: Path) -> None:
     while True:
         with worker_pool(scheduler=cluster) as workers:
             if workers.count == 2:
-                arrived = dict(
-                    completed_chunks(square, jobs, workers, chunk_store(tmp_path / "job", "squares", resume=False))
-                )
+                with chunk_store(tmp_path / "job", "squares", resume=False) as store:
+                    arrived = dict(completed_chunks(square, jobs, workers, store))
                 break
         assert time.monotonic() < deadline, "the workers did not come up"
         time.sleep(0.2)

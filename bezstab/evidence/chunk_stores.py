@@ -1,0 +1,177 @@
+"""Where finished chunks are kept: a directory beside the result, locked while a run works in it."""
+
+import hashlib
+import os
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import BinaryIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bezstab.errors import InputError
+from bezstab.files import output_directory, write_whole
+
+if sys.platform == "win32":
+    import msvcrt
+else:
+    import fcntl
+
+Arrays = Mapping[str, NDArray[np.generic]]
+
+JOB = "job.txt"
+LOCK = "lock.txt"
+SEAL = "of the job and chunk"
+"""The name of the array in a chunk's file that says whose it is: no array of a result is called so."""
+
+
+@dataclass(frozen=True)
+class ChunkStore:
+    """A directory that keeps the finished chunks of one job, each in a file called by its number."""
+
+    path: Path
+    job: str
+
+    def finished(self) -> list[int]:
+        """Return the numbers of the chunks that have a file, ascending."""
+        return sorted(int(file.stem) for file in self.path.glob("*.npz") if file.stem.isdecimal() and file.is_file())
+
+    def file(self, number: int) -> Path:
+        """Return where a chunk is kept."""
+        return self.path / f"{number}.npz"
+
+    def load(self, number: int) -> Arrays | None:
+        """Return a finished chunk; None if its file is damaged, or of another chunk or job.
+
+        No object in a file is ever unpickled.
+        """
+        try:
+            # Opened here, for numpy forgets to close what turns out to be damaged.
+            with self.file(number).open("rb") as file, np.load(file, allow_pickle=False) as archive:
+                arrays = dict(archive)
+            if arrays.pop(SEAL) != self._seal(number):
+                return None
+        except Exception:  # a damaged zip archive makes numpy raise nearly anything
+            return None
+        return arrays
+
+    def save(self, number: int, arrays: Arrays) -> None:
+        """Write one finished chunk; InputError if the system refuses."""
+        sealed = {**arrays, SEAL: self._seal(number)}
+        write_whole(self.file(number), lambda file: np.savez(file, **sealed))  # type: ignore[arg-type]
+
+    def discard(self) -> None:
+        """Remove the directory: the job's result has been written. What cannot be removed does no harm."""
+        _empty(self.path)
+        with suppress(OSError):
+            (self.path / LOCK).unlink()  # last: another run waits for it
+            self.path.rmdir()
+
+    def _seal(self, number: int) -> NDArray[np.str_]:
+        return np.array(f"{hashlib.sha256(self.job.encode()).hexdigest()} {number}")
+
+
+@contextmanager
+def chunk_store(path: Path, job: str, resume: bool) -> Iterator[ChunkStore]:
+    """Give the store of a job at `path`, empty unless `resume`, to this run alone.
+
+    `job` is a text that says all on which the result depends; it is kept beside the chunks. InputError if what lies
+    there is of another job, or if another run is at work there: that run is named. A run that is killed leaves no
+    lock behind, for the system holds it as long as the process lives.
+    """
+    with _locked(path):
+        description = path / JOB
+        described = _content(description)
+        if resume and described is not None and described != job.encode():
+            raise InputError(
+                f"--resume: {path} was left by a run with other options; without --resume it is overwritten"
+            )
+        if not resume or described is None:
+            _empty(path)
+        write_whole(description, lambda file: file.write(job.encode()))
+        yield ChunkStore(path, job)
+
+
+def _content(path: Path) -> bytes | None:
+    """Return what a file holds, None if there is none; InputError if it cannot be read."""
+    try:
+        return path.read_bytes()
+    except FileNotFoundError:
+        return None
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror}") from None
+
+
+def _empty(directory: Path) -> None:
+    """Remove all files but the lock from a directory, those too that a killed run had half written."""
+    with suppress(OSError):
+        for file in directory.iterdir():
+            if file.name != LOCK:
+                with suppress(OSError):
+                    file.unlink()
+
+
+@contextmanager
+def _locked(directory: Path) -> Iterator[None]:
+    """Hold the lock of a directory, made if need be; InputError that names the holder where that is another process."""
+    file = _opened_and_locked(directory)
+    with file:  # and with it goes the lock
+        with suppress(OSError):  # on a full disk: then the holder has no name
+            file.truncate(0)
+            file.write(f"process {os.getpid()}".encode())
+        yield
+
+
+def _opened_and_locked(directory: Path) -> BinaryIO:
+    path = directory / LOCK
+    while True:
+        output_directory(directory)
+        try:
+            file = path.open("a+b", buffering=0)
+        except FileNotFoundError:
+            continue  # the run that had the directory has just removed it
+        except OSError as error:
+            raise InputError(f"cannot write {path}: {error.strerror}") from None
+        with ExitStack() as closing:
+            closing.enter_context(file)
+            if not _try_to_lock(file):
+                raise _in_use(directory, file)
+            if _is_at(path, file):
+                closing.pop_all()
+                return file
+            # else the run that had the lock removed the file between opening and locking
+
+
+def _in_use(directory: Path, file: BinaryIO) -> InputError:
+    """Return the error that names who holds a lock file, by the words it has left there."""
+    file.seek(0)
+    holder = file.read(100).decode(errors="replace") or "another process"
+    return InputError(f"{directory} is in use by another run ({holder}): wait for it, or choose another --output")
+
+
+def _is_at(path: Path, file: BinaryIO) -> bool:
+    """Return whether an open file is still what lies at a path."""
+    try:
+        return os.path.samestat(os.fstat(file.fileno()), path.stat())
+    except FileNotFoundError:
+        return False
+
+
+def _try_to_lock(file: BinaryIO) -> bool:
+    """Return whether the file could be locked for this process; the system lets go of it when the process ends.
+
+    InputError where the file system has no locks.
+    """
+    try:
+        if sys.platform == "win32":
+            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+        else:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except (BlockingIOError, PermissionError):  # held by another: as Unix says it, as Windows does
+        return False
+    except OSError as error:
+        raise InputError(f"cannot lock {file.name}: {error.strerror}; choose another --output") from None
+    return True

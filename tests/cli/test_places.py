@@ -1,0 +1,163 @@
+"""Odd terminals and places: an answer or one line. Each command here is a process in that very environment."""
+
+import csv
+import io
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.cli.processes import files_below, finished
+
+SLOW = pytest.mark.slow
+ASCII = {"LANG": "C", "LC_ALL": "C", "PYTHONCOERCECLOCALE": "0", "PYTHONUTF8": "0", "PYTHONIOENCODING": "ascii"}
+OLD_LOCALE = {**ASCII, "PYTHONIOENCODING": None}  # then the names of files are ASCII, too, and nothing says strict
+EULER = 'A = [["0"]]\nb = ["1"]\n'
+
+
+def own_method(path: Path, name: str) -> str:
+    """Write a method of that name, and return the path of its file."""
+    file = path / "own.toml"
+    file.write_text(f"name = {json.dumps(name, ensure_ascii=False)}\n{EULER}", encoding="utf-8")
+    return str(file)
+
+
+@pytest.mark.parametrize("environment", [ASCII, OLD_LOCALE], ids=["ascii", "old-locale"])
+def test_an_ascii_terminal_gets_words_in_columns(environment: dict[str, str | None], tmp_path: Path) -> None:
+    run = finished("poles", "--alpha", "0.5", "--beta", "0.1", cwd=tmp_path, environment=environment)
+    assert run.returncode == 0
+    heading, _, columns, *rows = run.stdout.decode("ascii").splitlines()
+    assert heading == "alpha_hat = 0.5, beta_hat = 0.1"
+    assert columns.split("  ")[0] == "method"
+    assert "angle z (deg)" in columns
+    assert any(" +- " in row for row in rows)
+    starts = columns.index("verdict")
+    assert {row[starts:].split()[0] for row in rows} <= {"converges", "marginal", "diverges"}
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "--help",
+        "methods B4",
+        "engines",
+        *(pytest.param(f"{name} --help", marks=SLOW) for name in ("poles", "simulate")),
+    ],
+)
+def test_an_ascii_terminal_can_read_everything(command: str, tmp_path: Path) -> None:
+    run = finished(*command.split(), cwd=tmp_path, environment=ASCII)
+    assert run.returncode == 0
+    text = run.stdout.decode("ascii")
+    assert "\\u" not in text
+    assert "?" not in text.replace("size?", "").replace("step size?", "")
+
+
+def test_complaints_are_ascii_too(tmp_path: Path) -> None:
+    run = finished(
+        "check", "--alpha", "1", "--beta", "1e300", "--h", "1", "--physical", cwd=tmp_path, environment=ASCII
+    )
+    assert run.returncode == 2
+    (line,) = run.stderr.decode("ascii").splitlines()
+    assert "beta_hat" in line
+
+
+def test_json_for_an_ascii_terminal_holds_the_same_values(tmp_path: Path) -> None:
+    method = own_method(tmp_path, "naïve α̂ 中 \N{GRINNING FACE}")
+    poles = ("poles", "--alpha", "1", "--beta", "1", "--method", method, "--format")
+    plain = finished(*poles, "json", cwd=tmp_path, environment=ASCII)
+    usual = finished(*poles, "json", cwd=tmp_path, environment={"PYTHONIOENCODING": "utf-8"})
+    assert json.loads(plain.stdout.decode("ascii")) == json.loads(usual.stdout.decode("utf-8"))
+    table = finished(*poles, "csv", cwd=tmp_path, environment=ASCII)
+    (row,) = csv.DictReader(io.StringIO(table.stdout.decode("ascii")))
+    assert row["method"] == "naive alpha_hat \\u4e2d \\U0001f600"
+
+
+@pytest.mark.parametrize("environment", [ASCII, OLD_LOCALE], ids=["ascii", "old-locale"])
+def test_a_name_that_the_file_system_lacks_is_spelled(environment: dict[str, str | None], tmp_path: Path) -> None:
+    method = own_method(tmp_path, "é∞")
+    run = finished("region", "--method", method, "--grid", "9", "-o", "out", cwd=tmp_path, environment=environment)
+    assert run.returncode == 0
+    assert b"Traceback" not in run.stderr
+    assert len(files_below(tmp_path / "out")) == 2
+
+
+def test_no_home_and_no_place_for_matplotlib(tmp_path: Path) -> None:
+    (tmp_path / "taken").touch()
+    nowhere = {"HOME": None, "XDG_CONFIG_HOME": None, "XDG_CACHE_HOME": None, "MPLCONFIGDIR": str(tmp_path / "taken")}
+    run = finished("region", "--method", "B2", "--grid", "9", "-o", "out", cwd=tmp_path, environment=nowhere)
+    assert run.returncode == 0
+    assert run.stderr.decode().splitlines() == ["wrote out/region_B2.csv", "wrote out/region_B2.png"]
+
+
+@pytest.mark.parametrize("columns", ["20", *(pytest.param(text, marks=SLOW) for text in ("1", "0", "-3", "wide"))])
+@pytest.mark.parametrize("command", ["--help", "poles --help", "poles --alpha 1 --beta 1", "poles --alpha 1"])
+def test_a_narrow_terminal(columns: str, command: str, tmp_path: Path) -> None:
+    run = finished(*command.split(), cwd=tmp_path, environment={"COLUMNS": columns})
+    complains = command == "poles --alpha 1"
+    assert run.returncode == (2 if complains else 0)
+    assert run.stderr.count(b"\n") == complains
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "a b",
+        "line\nline",
+        "é中",
+        "x" * 300,
+        *(pytest.param(name, marks=SLOW) for name in ("  two  spaces ", "-o", "\x1b[2J", "a\udcffb")),
+    ],
+)
+def test_a_directory_of_any_name(name: str, tmp_path: Path) -> None:
+    run = finished("region", "--method", "B2", "--grid", "9", "--figure", "none", "-o", name, cwd=tmp_path)
+    (line,) = run.stderr.decode().splitlines()
+    if len(name) > 255:
+        assert run.returncode == 2
+        assert line.endswith("File name too long")
+    else:
+        assert run.returncode == 0
+        assert line.startswith("wrote ")
+        assert "\x1b" not in line
+        assert [path.name for path in (tmp_path / name).iterdir()] == ["region_B2.csv"]
+
+
+@pytest.mark.parametrize("name", ["line\nline", "a  b", "\x1b[2J", "x" * 300])
+def test_a_missing_file_of_any_name(name: str, tmp_path: Path) -> None:
+    for option in (("poles", "--alpha", "1", "--beta", "1", "--method"), ("verify", "--scene")):
+        run = finished(*option, f"{name}.toml", cwd=tmp_path)
+        assert run.returncode == 2
+        (line,) = run.stderr.decode().splitlines()
+        assert "\x1b" not in line
+
+
+@pytest.mark.parametrize(
+    "name", ["../../x", "a|b", *(pytest.param(name, marks=SLOW) for name in ("/etc/x", "..", ".", "CON:", "a\\b"))]
+)
+def test_a_method_of_any_name(name: str, tmp_path: Path) -> None:
+    method = own_method(tmp_path, name)
+    for form in ("text", "markdown"):
+        run = finished("region", "--method", method, "--grid", "9", "-o", "out", "--format", form, cwd=tmp_path)
+        assert run.returncode == 0
+        assert run.stdout.decode().count("\n") == (2 if form == "text" else 3)
+        assert not {"\x1b", "\x07"} & set(run.stdout.decode() + run.stderr.decode())
+        assert run.stderr.count(b"\n") == 2
+    assert all(path.startswith("out/region_") or path in ("out", "own.toml") for path in files_below(tmp_path))
+    assert len(files_below(tmp_path)) == 4
+
+
+@pytest.mark.parametrize("name", ["\x1b[2J\x07", "line\nline", "\N{LINE SEPARATOR}", "\udcff"])
+def test_a_method_that_is_called_like_its_file(name: str, tmp_path: Path) -> None:
+    (tmp_path / f"{name}.toml").write_text(EULER, encoding="utf-8")
+    run = finished("poles", "--alpha", "1", "--beta", "1", "--method", f"{name}.toml", cwd=tmp_path)
+    assert run.returncode == 2
+    (line,) = run.stderr.decode().splitlines()
+    assert line.endswith("expected one line of text")
+    assert not {"\x1b", "\x07"} & set(line)
+
+
+def test_a_method_whose_name_is_too_long_for_a_file(tmp_path: Path) -> None:
+    run = finished("region", "--method", own_method(tmp_path, "x" * 300), "--grid", "9", cwd=tmp_path)
+    assert run.returncode == 2
+    (line,) = run.stderr.decode().splitlines()
+    assert line.endswith("File name too long")
+    assert files_below(tmp_path) == ["own.toml"]
