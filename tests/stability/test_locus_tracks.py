@@ -8,13 +8,7 @@ from bezstab.methods import Method, lookup
 from bezstab.stability import pencil_of, region
 from bezstab.stability.locus_tracks import sampled_angles, tracks
 from tests.reference.slice_integral import slice_area
-from tests.stability.made_methods import runge_kutta
-
-CLOSE_BRANCHES = runge_kutta("close", "6/47;0 94/735;0 0 49/136;0 0 0 17/63;0 0 0 0 63/100", "0 0 0 0 0 1")
-"""A branch point with |z*| = 0.930: two branches of that level pass by each other within less than a thousandth rad."""
-
-FAR_INTERVAL = runge_kutta("far", "23/24;0 7/30;0 0 5/9;0 0 0 7/8;0 0 0 0 1/27", "-1 -3/5 1/11 1/13 7122/3575 11/25")
-"""A real zero of R at -122.2, around which S_r is an interval of 4e-8."""
+from tests.stability.made_methods import CLOSE_BRANCHES, FAR_INTERVAL
 
 LEVELS = [1.0, 0.93, 0.75, 0.5]
 
