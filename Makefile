@@ -2,7 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: region figures test test-slow test-oldest extremes lint bench clean
+.PHONY: region figures test test-slow test-oldest extremes lint bench campaign clean
 
 region: .venv/installed  ## draw where B4 is stable, into this directory
 	$(BIN)/bezstab region --method B4
@@ -37,6 +37,9 @@ lint: .venv/tested  ## style, format and types
 
 bench: .venv/benched  ## speed, as ratios measured in one run, into figures/bench.md
 	$(BIN)/python tests/bench/bench.py
+
+campaign: .venv/tested  ## areas of 10,000 random methods against an independent integral, in hours
+	$(BIN)/python tests/stability/campaign.py
 
 clean:  ## remove the virtual environments
 	rm -rf .venv .venv-oldest

@@ -107,6 +107,7 @@ REGIONS = [
     column("area", "area", ".10g"),
     column("α̂ from", "alpha_hat_min", ".6g"),
     column("α̂ to", "alpha_hat_max", ".8g"),
+    column("β̂ from", "beta_hat_min", ".6g"),
     column("β̂ to", "beta_hat_max", ".8g"),
     column("least |z_p|", "best_z_abs", ".8f"),
     column("at α̂", "best_alpha_hat", ".8f"),

@@ -106,14 +106,15 @@ def region_row(region: Region, best: BestPoint | None) -> Row:
     """Return area, axis limits and best point (dimensionless); None where the region is empty."""
     from bezstab.show.best_point_text import best_point_words
 
-    alpha_min = alpha_max = beta_max = None
+    alpha_min = alpha_max = beta_min = beta_max = None
     if region.extent:
-        (alpha_min, alpha_max), (_, beta_max) = region.extent
+        (alpha_min, alpha_max), (beta_min, beta_max) = region.extent
     return {
         "method": region.method.name,
         "area": region.area,
         "alpha_hat_min": alpha_min,
         "alpha_hat_max": alpha_max,
+        "beta_hat_min": beta_min,
         "beta_hat_max": beta_max,
         "best_z_abs": best.z_abs if best else None,
         "best_alpha_hat": best.alpha_hat if best else None,

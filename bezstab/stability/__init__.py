@@ -9,7 +9,11 @@ From a method's polynomial in float64 (its pencil) upwards; a file imports only 
     dominant_roots    the largest root along a row of mu, followed
     closed_loop       poles, |z_p|, the proven verdict
     searches          where a condition comes to hold; where a value is least
-    boundary_locus    the curve |z| = r in mu: cut, traced, integrated
+    locus_tracks      the branches of the curve |z| = r in mu, followed
+    boundary_locus    that curve cut where it bounds the region, integrated
+    line_crossings    where an arc crosses lines
+    line_slices       where lines across the region are stable, by a second route
+    self_checks       every answer held against a second route
     regions           the exact region in alpha_hat and beta_hat
     grid_maps         |z_p| on a grid
     best_points       the smallest |z_p|

@@ -1,7 +1,7 @@
 r"""What bounds S_r = {mu : all roots of pi(., mu) inside |z| < r}: arcs in its upper half, intervals on its real axis.
 
 The boundary locus is the curve of all mu with a root on the circle: pi(r e^(i theta), mu) = 0. Walking along it, theta
-runs through (-pi, pi]; to one theta belong as many mu, branches, as pi has degree in mu.
+runs through (-pi, pi]; to one theta belong as many mu, branches, as pi has degree in mu (locus_tracks follows them).
 
     Im mu                                       AB4 and up: the locus crosses itself
       |      .-----.                                   .-----.
@@ -11,37 +11,40 @@ runs through (-pi, pi]; to one theta belong as many mu, branches, as pi has degr
     --+--L-------------0---- Re mu                     /     \
      theta = pi     theta = 0 (for r = 1 mu = 0)
 
-S_r is symmetric about the real axis, so its upper half is enough; but theta < 0 is needed too, for a branch may go
-through the upper half there. A point of the locus is boundary if none of the other roots at that mu lies outside the
-circle. Between the theta where that changes lie arcs: each is traced from its middle to both ends.
+S_r is symmetric about the real axis: its upper half is enough, and so is theta in [0, pi]. A branch in the lower half
+is there the conjugate of one in the upper half at -theta. A point of the locus is boundary if none of the other roots
+at that mu lies outside the circle. Each branch is cut by itself, where that changes, and where it crosses the real
+axis: between two cuts lies an arc, or nothing.
 """
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
+from math import pi
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 from numpy.polynomial.polynomial import polyval2d
 from numpy.typing import NDArray
 
-from bezstab.stability.arrays import ComplexArray, FloatArray
+from bezstab.stability.arrays import FloatArray
 from bezstab.stability.dominant_roots import dominant_root
+from bezstab.stability.locus_tracks import Track, tracks
 from bezstab.stability.pencils import Pencil, roots_in_mu, roots_in_z
 from bezstab.stability.searches import bisected, zoom_on_minimum
 
 ARC_POINTS = 400  # drawn per arc: chords stay within 1e-5 of the curve
-SAMPLES = 1024  # of theta over half the circle: arcs shorter than that are looked for by themselves
 NODES = 16  # of Gauss and Legendre on a panel
 QUADRATURE = 1e-14  # of |mu|^3: a panel is split until its halves agree to this, a hundredfold above rounding
 SPLITS = 40  # halvings of a panel at most: towards a corner of the locus they end at rounding
 FINER = 33  # samples of a bracket: from one zoom to the next by the spacing of the last, 1/16
 TURN_ZOOMS = 8  # each by 1/16: from a sample's spacing to where a smooth extreme is flat to rounding
-DIP_ZOOMS = 4  # each by 1/16: an arc of 1e-7 rad is seen, and no shorter one would be drawn
+DIP_ZOOMS = 5  # each by 1/16: an arc or a gap of 1e-8 rad is seen, and no shorter one would be drawn
 MARGIN = 1e-13  # of the level: rounding of a simple root's modulus, a hundredfold
 AXIS = 1e-7  # of |mu|: an arc that runs into the real axis ends this far from it, its conjugate root within MARGIN
 REAL = 1e-9  # an imaginary part below this times |mu| is rounding where a branch is known to cross the real axis
+SAME_MU = 1e-13  # of |mu|: simple roots of pi(+-level, .) closer than this are one, a hundredfold above rounding
 
 Interval = tuple[float, float]
 
@@ -52,18 +55,8 @@ def feedback_coefficients(first: NDArray[np.inexact], second: NDArray[np.inexact
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Arc:
-    """One branch mu(theta) of the locus where it bounds S_r's upper half, sampled from end to end."""
-
-    pencil: Pencil
-    level: float
-    theta: FloatArray
-    mu: ComplexArray
-
-    def at(self, theta: FloatArray) -> ComplexArray:
-        """Return mu(theta) for a row of theta (rad): the point of the locus next to the interpolated samples."""
-        near = np.interp(theta, self.theta, self.mu.real) + 1j * np.interp(theta, self.theta, self.mu.imag)
-        return _nearest(roots_in_mu(self.pencil, self.level * np.exp(1j * theta)), near)
+class Arc(Track):
+    """A piece of one branch mu(theta) where it bounds S_r's upper half, sampled from end to end."""
 
     def plane(self) -> FloatArray:
         """Return the samples in the plane of the feedback's coefficients (p, q); shape (samples, 2)."""
@@ -127,18 +120,15 @@ class Bounds:
 
 
 @cache
-def bounds_of(pencil: Pencil, level: float) -> Bounds:
-    """Return what bounds S_r for r = level, 0 < level <= 1."""
-    arcs = tuple(_bounding_arcs(pencil, level))
-    return Bounds(arcs, tuple(_real_intervals(pencil, level, arcs)))
+def bounds_of(pencil: Pencil, level: float, finer: int = 1) -> Bounds:
+    """Return what bounds S_r for r = level, 0 < level <= 1; `finer` divides the steps along the locus.
 
-
-def _nearest(candidates: ComplexArray, targets: ComplexArray) -> ComplexArray:
-    """Return from each column of candidates the one closest to that column's target."""
-    distance = np.abs(candidates - targets)
-    closest = np.argmin(np.where(np.isnan(distance), np.inf, distance), axis=0)
-    nearest: ComplexArray = candidates[closest, np.arange(len(targets))]
-    return nearest
+    NumericalError if two branches of the locus could not be told apart.
+    """
+    arcs: list[Arc] = []
+    for track in tracks(pencil, level, finer):
+        arcs += _bounding_arcs(track)
+    return Bounds(tuple(arcs), tuple(_real_intervals(pencil, level, arcs)))
 
 
 # Adaptive panels. An arc's density is analytic but at its ends, where it may behave like a root of the distance to a
@@ -173,113 +163,114 @@ def _integral(density: Callable[[FloatArray], FloatArray], start: float, end: fl
     return total + float(whole.sum())
 
 
-def _locus(pencil: Pencil, level: float, theta: FloatArray) -> tuple[ComplexArray, FloatArray]:
-    """Return every mu with a root at level e^(i theta), and by what share of it the largest other root lies outside.
-
-    Both of shape (branches, theta.size). A mu of the upper half bounds S_r if that is below -MARGIN; inf elsewhere.
-    """
-    z = level * np.exp(1j * theta)
-    mu = roots_in_mu(pencil, z)
-    upper = np.isfinite(mu) & (mu.imag > 0)
-    outside = np.full(mu.shape, np.inf)
-    roots = roots_in_z(pencil, mu[upper])
-    modulus = np.abs(roots)
-    own = np.argmin(np.abs(roots - np.broadcast_to(z, mu.shape)[upper]), axis=0)  # the root on the circle itself
-    np.put_along_axis(modulus, own[np.newaxis], 0, axis=0)
-    outside[upper] = modulus.max(axis=0) / level - 1
-    return mu, outside
-
-
-# Cutting. How many branches bound S_r is counted at each sampled theta; where the count changes, an arc begins or
-# ends, and the change is bisected. Samples are dense near theta = 0 and pi, where S_r may be a lens between two arcs
-# close to the real axis. An arc so short that it lies between two samples leaves the count at zero on both sides; but
-# there the largest other root comes near the circle:
+# Cutting. Along a branch two functions change sign where an arc may begin or end: Im mu, and by how much the largest
+# other root lies outside the circle. What is positive, or negative, only between two samples shows as a dip:
 #
 #     outside
-#      |  \            /      the least sample at x, with a higher one on either side: a dip. Zooming in on it shows
-#      |   \__      __/       whether it goes below zero; if so its theta becomes a sample, and is counted like any
-#    0 +------x--__-x---- theta
+#      |  \            /      the least sample at x, with a higher one on either side. Zooming in on it shows whether
+#      |   \__      __/       it goes below zero; if so its theta becomes a sample. Above and below zero alike: a short
+#    0 +------x--__-x---- theta       arc, or a short gap in a long one
 #      |         ||           the short arc
 
 
-def _bounding_arcs(pencil: Pencil, level: float) -> Iterator[Arc]:
-    """Yield the arcs of the locus that bound S_r's upper half, cut where their number changes."""
-    graded = np.geomspace(1e-5, 1e-2, 30)
-    even = np.linspace(1e-2, np.pi - 1e-2, SAMPLES)
-    half = np.unique(np.concatenate([[0], graded, even, np.pi - graded, [np.pi]]))
+def _bounding_arcs(track: Track) -> Iterator[Arc]:
+    """Yield the arcs of one branch, theta in [0, pi], that bound S_r's upper half."""
+    one_step = track.pencil.steps == 1  # the root on the circle is the only one
 
-    def count(theta: FloatArray) -> NDArray[np.int_]:
-        _, outside = _locus(pencil, level, theta)
-        return np.asarray((outside < -MARGIN).sum(axis=0))
+    def height(theta: FloatArray) -> FloatArray:
+        return np.asarray(track.at(theta).imag)
 
-    for start, end, edges in ((-np.pi, 0.0, -half[::-1]), (0.0, np.pi, half)):
-        theta = _with_dips(pencil, level, (edges[1:] + edges[:-1]) / 2)
-        counts = count(theta)  # all in one go again: dips judged alone may be noise, and would pass for arcs
-        change = np.flatnonzero(np.diff(counts))
-        before = counts[change]
-        low, high = bisected(lambda middle: count(middle) != before, theta[change], theta[change + 1])  # noqa: B023
-        cuts = [start, *((low + high) / 2), end]
-        present = counts[np.append(change, len(theta) - 1)]
-        for (first, last), branches in zip(pairwise(cuts), present, strict=True):
-            if branches:
-                yield from _traced(pencil, level, first, last)
+    def outside(theta: FloatArray) -> FloatArray:
+        return _largest_other(track, theta) + MARGIN
+
+    inner = track.theta[1:-1]
+    cuts = [track.theta[[0, -1]], _sign_changes(height, inner)]
+    if not one_step:
+        cuts.append(_sign_changes(outside, inner))
+    for start, end in pairwise(np.unique(np.concatenate(cuts)).tolist()):
+        middle = np.array([(start + end) / 2])
+        if not one_step and outside(middle)[0] >= 0:
+            continue
+        theta = _drawn_angles(track, start, end)
+        mu = track.at(theta)
+        mu_middle = complex(track.at(middle)[0])
+        if abs(mu_middle.imag) <= REAL * abs(mu_middle):
+            continue  # along the real axis
+        if np.abs(mu - mu_middle).max() <= REAL * abs(mu_middle):
+            continue  # rounding, where several roots meet on the circle
+        if mu_middle.imag > 0:
+            yield Arc(track.pencil, track.level, theta, mu)
+        else:
+            yield Arc(track.pencil, track.level, -theta[::-1], mu[::-1].conj())
 
 
-def _with_dips(pencil: Pencil, level: float, theta: FloatArray) -> FloatArray:
-    """Return theta with a sample more in each arc so short that it lies between two: where |z_p| comes near level."""
+def _largest_other(track: Track, theta: FloatArray) -> FloatArray:
+    """Return by what share of the level the largest root besides that on the circle lies outside it; shape of theta."""
+    z = track.level * np.exp(1j * theta)
+    roots = roots_in_z(track.pencil, track.at(theta))
+    modulus = np.abs(roots)
+    own = np.argmin(np.abs(roots - z), axis=0)
+    np.put_along_axis(modulus, own[np.newaxis], 0, axis=0)
+    return np.asarray(modulus.max(axis=0) / track.level - 1)
 
-    def least_outside(theta: FloatArray) -> FloatArray:
-        _, outside = _locus(pencil, level, theta.ravel())
-        return np.asarray(outside.min(axis=0).reshape(theta.shape))
 
-    sampled = least_outside(theta)
-    before, here, after = sampled[:-2], sampled[1:-1], sampled[2:]
-    dip = 1 + np.flatnonzero((here < before) & (here <= after) & (here >= -MARGIN))
+def _drawn_angles(track: Track, start: float, end: float) -> FloatArray:
+    """Return the angles at which an arc is drawn, crowded at its ends (like cosines), where it may turn fastest.
+
+    With branch points about, where it may turn sharply too, also the samples by which it was followed.
+    """
+    theta = start + (end - start) * (1 - np.cos(np.linspace(0, pi, ARC_POINTS))) / 2
+    if not track.pencil.branch_points_in_z.size:
+        return theta
+    followed = track.theta[(track.theta > start) & (track.theta < end)]
+    return np.unique(np.append(theta, followed))
+
+
+def _sign_changes(values_at: Callable[[FloatArray], FloatArray], samples: FloatArray) -> FloatArray:
+    """Return where a continuous function changes sign along ascending samples, to rounding; shape (changes,)."""
+    theta = _with_dips(values_at, samples)
+    positive = values_at(theta) >= 0  # all in one go again: dips judged alone may be noise, and would pass for changes
+    change = np.flatnonzero(positive[1:] != positive[:-1])
+    if not change.size:
+        return np.empty(0)
+    after = positive[change + 1]
+    low, high = bisected(lambda middle: (values_at(middle) >= 0) == after, theta[change], theta[change + 1])
+    return (low + high) / 2
+
+
+def _with_dips(values_at: Callable[[FloatArray], FloatArray], theta: FloatArray) -> FloatArray:
+    """Return theta with a sample more wherever the function has the other sign only between two of them."""
+    values = values_at(theta)
+    size = np.abs(values)
+    same_sign = (values[:-2] >= 0) == (values[1:-1] >= 0)
+    same_sign &= (values[2:] >= 0) == (values[1:-1] >= 0)
+    dip = 1 + np.flatnonzero(same_sign & (size[1:-1] < size[:-2]) & (size[1:-1] <= size[2:]))
     if not dip.size:
         return theta
+    sign = np.where(values[dip] >= 0, 1.0, -1.0)
     low, high = theta[dip - 1], theta[dip + 1]
-    found, outside = zoom_on_minimum(
-        lambda points: least_outside(points[..., 0]),
+
+    def towards_zero(points: FloatArray) -> FloatArray:
+        return sign[:, np.newaxis] * values_at(points.ravel()).reshape(points.shape[:-1])
+
+    found, least = zoom_on_minimum(
+        towards_zero,
         (low + high)[:, np.newaxis] / 2,
         (high - low)[:, np.newaxis] / 2,
         points=FINER,
         shrink=2 / (FINER - 1),
         rounds=DIP_ZOOMS,
     )
-    return np.sort(np.append(theta, found[outside < -MARGIN, 0]))
+    return np.sort(np.append(theta, found[least < 0, 0]))
 
 
-# Tracing. Samples crowd at both ends of an arc (like cosines), where branches may meet and turn fastest. From the
-# middle, where the branches are apart, each is followed to either end: of the branches at the next theta it goes on at
-# the one closest to where it is.
-
-
-def _traced(pencil: Pencil, level: float, start: float, end: float) -> Iterator[Arc]:
-    """Yield the branches that bound S_r between two values of theta, followed from the middle to both ends."""
-    theta = start + (end - start) * (1 - np.cos(np.linspace(0, np.pi, ARC_POINTS))) / 2
-    mu, outside = _locus(pencil, level, theta)
-    middle = ARC_POINTS // 2
-    for first in mu[outside[:, middle] < -MARGIN, middle]:
-        branch = np.full(ARC_POINTS, first)
-        for k in range(middle + 1, ARC_POINTS):
-            branch[k] = _nearest(mu[:, [k]], branch[[k - 1]])[0]
-        for k in range(middle - 1, -1, -1):
-            branch[k] = _nearest(mu[:, [k]], branch[[k + 1]])[0]
-        if np.abs(branch - first).max() > REAL * np.abs(first):  # else rounding, where several roots meet on the circle
-            yield Arc(pencil, level, theta, branch)
-
-
-def _real_intervals(pencil: Pencil, level: float, arcs: tuple[Arc, ...]) -> list[Interval]:
+def _real_intervals(pencil: Pencil, level: float, arcs: list[Arc]) -> list[Interval]:
     """Return the open intervals that S_r cuts from the real axis, ascending.
 
     Their ends have a root at z = level or -level, or a conjugate pair on the circle, where an arc meets the axis. So
     all candidates are known; between two neighbours S_r contains all of the axis or nothing.
     """
-    at_real_z = roots_in_mu(pencil, np.array([level, -level], complex)).ravel()
-    candidates = np.concatenate([at_real_z, *(arc.mu[[0, -1]] for arc in arcs)])
-    real = np.isfinite(candidates) & (np.abs(candidates.imag) <= AXIS * np.abs(candidates))
-    points = np.sort(candidates[real].real)
-    points = points[np.diff(points, append=np.inf) > REAL * np.abs(points)]  # of those that coincide, one
+    points = _ends_on_the_axis(pencil, level, arcs)
     middle = (points[1:] + points[:-1]) / 2
     inside = np.abs(dominant_root(pencil, middle.astype(complex))) < level * (1 - MARGIN)
     through = np.abs(dominant_root(pencil, points.astype(complex))) < level * (1 - REAL)  # no end after all
@@ -291,3 +282,31 @@ def _real_intervals(pencil: Pencil, level: float, arcs: tuple[Arc, ...]) -> list
         else:
             merged.append((start, end))
     return merged
+
+
+def _ends_on_the_axis(pencil: Pencil, level: float, arcs: list[Arc]) -> FloatArray:
+    """Return all mu where an interval of the axis may end, ascending, of those that coincide one.
+
+    A mu with a root at +-level is solved for, good to rounding: far out, at a zero of R, S_r may be as narrow as 1e-10
+    of mu and yet hold the furthest alpha_hat. Where an arc with a pair on the circle meets the axis it is good to REAL.
+    """
+    at_real_z = roots_in_mu(pencil, np.array([level, -level], complex)).ravel()
+    at_real_z = at_real_z[np.isfinite(at_real_z)]
+    real = np.abs(at_real_z.imag) <= AXIS * np.abs(at_real_z)
+    solved = _distinct(at_real_z[real].real, SAME_MU)
+    arrived: list[float] = []
+    for arc in arcs:
+        for theta, mu in ((arc.theta[0], arc.mu[0]), (arc.theta[-1], arc.mu[-1])):
+            if abs(mu.imag) <= AXIS * abs(mu) and 0 < abs(theta) < pi:
+                arrived.append(float(mu.real))
+    ends = _distinct(np.array(arrived), REAL)
+    if solved.size:
+        apart = np.abs(ends[:, np.newaxis] - solved).min(axis=1) > REAL * np.abs(ends)
+        ends = ends[apart]
+    return np.sort(np.append(solved, ends))
+
+
+def _distinct(points: FloatArray, closeness: float) -> FloatArray:
+    """Return points ascending, without those closer to the next than a share of their size."""
+    ascending = np.sort(points)
+    return ascending[np.diff(ascending, append=np.inf) > closeness * np.abs(ascending)]

@@ -10,7 +10,7 @@ from fractions import Fraction
 from functools import cache, cached_property
 
 import numpy as np
-from numpy.polynomial.polynomial import polyder, polyroots, polyval2d
+from numpy.polynomial.polynomial import polyder, polymul, polyroots, polysub, polyval, polyval2d
 
 from bezstab.errors import NumericalError
 from bezstab.methods import Method, branch_polynomial, coefficient_table, feedback_matrix
@@ -53,6 +53,29 @@ class Pencil:
         flattest = np.argmin(slope, axis=0)  # of all mu with a root at this z, the one whose root is double
         met: ComplexArray = np.take_along_axis(mu, flattest[np.newaxis], axis=0)[0]
         return met[np.isfinite(met)]
+
+    @cached_property
+    def branch_points_in_z(self) -> ComplexArray:
+        """Every z at which two roots mu of pi(z, .) meet, or one is infinite; shape (points,), none for a multistep.
+
+        Multistep: mu = rho / sigma has one value. One step, z = R(mu): R at the zeros of R'. PECE, a quadratic in mu:
+        the zeros of its discriminant and of its leading coefficient.
+        """
+        if self.table.shape[1] == 2:
+            return np.zeros(0, complex)
+        if self.steps == 1:
+            growth = -self.table[0] / self.table[1, 0]
+            with np.errstate(all="ignore"):
+                values = polyval(polyroots(polyder(growth)).astype(complex), growth)
+            return np.asarray(values[np.isfinite(values)], complex)
+        constant, linear, quadratic = self.table.T
+        discriminant = polysub(polymul(linear, linear), 4 * polymul(constant, quadratic))
+        zeros = [np.zeros(0)]
+        for polynomial in (discriminant, quadratic):
+            trimmed = np.trim_zeros(polynomial, "b")
+            if len(trimmed) > 1:
+                zeros.append(polyroots(trimmed))
+        return np.concatenate(zeros).astype(complex)
 
 
 @cache

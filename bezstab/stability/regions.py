@@ -31,8 +31,10 @@ from bezstab.stability.arrays import BoolArray, FloatArray
 from bezstab.stability.boundary_locus import Arc, Bounds, bounds_of, feedback_coefficients
 from bezstab.stability.closed_loop import spectral_radius
 from bezstab.stability.pencils import Pencil, pencil_of
+from bezstab.stability.self_checks import check_region
 
 ROUNDING = 1e-13  # of a range: an end this close to an axis lies on it
+FINER = 4  # times as many samples of the locus, where the first sampling failed the check
 GAP = 1e-6  # of a curve's size: where two arcs meet in a double mu, each ends within the root of rounding
 
 Extent = tuple[tuple[float, float], tuple[float, float]]
@@ -72,22 +74,33 @@ class Region:
 def region(method: Method, level: float = 1.0) -> Region:
     """Return the region |z_p| < level, 0 < level <= 1; area and extent are good to about 1e-12.
 
-    Dimensionless; from the boundary locus of paper Eq. 17. NumericalError if its edges leave a gap: not found is an
-    edge on which several roots have |z| = level, or one so short, where the level is hardly above the least |z_p|,
-    that it lies between two samples of the locus.
+    Dimensionless; from the boundary locus of paper Eq. 17, held against slices that share nothing with it
+    (self_checks). NumericalError if they disagree, or its edges leave a gap, on a finer sampling of the locus as well:
+    not found is an edge on which several roots have |z| = level, or one so short, where the level is hardly above the
+    least |z_p|, that it lies between two samples.
     """
+    try:
+        return _checked_region(method, level, finer=1)
+    except NumericalError:
+        return _checked_region(method, level, finer=FINER)
+
+
+def _checked_region(method: Method, level: float, finer: int) -> Region:
+    """Return the region from one sampling of the locus; NumericalError if it fails its check."""
     pencil = pencil_of(method)
-    bounds = bounds_of(pencil, level)
+    bounds = bounds_of(pencil, level, finer)
     edges = [arc.plane() @ pencil.to_user.T for arc in bounds.arcs] + straight_edges(pencil, bounds)
     area = _area(pencil, bounds)
     extent = _extent(pencil, bounds.arcs, edges)
     if extent is None or not 0 < area <= np.prod(np.diff(extent)):  # else noise, where two roots on the circle meet
+        check_region(pencil, level, Bounds((), ()), 0.0, [])
         return Region(method, level, 0.0, (), None)
     curves = _closed_curves(edges)
     if any(np.abs(curve[-1] - curve[-2]).max() > GAP * np.abs(curve).max() for curve in curves):
         raise NumericalError(
             f"{method.name}: an edge of |z_p| < {level:g} was not found: it is very short, or several roots share it"
         )
+    check_region(pencil, level, bounds, area, curves)
     return Region(method, level, area, tuple(curves), extent)
 
 

@@ -5,10 +5,9 @@ from numpy.typing import NDArray
 
 from bezstab.methods import Method
 from bezstab.stability import FloatArray, pencil_of, region
-from bezstab.stability.boundary_locus import Arc, bounds_of
+from bezstab.stability.boundary_locus import bounds_of
+from bezstab.stability.line_crossings import arc_crossings, crossed_levels
 from bezstab.stability.regions import straight_edges
-
-FALSE_POSITIONS = 10  # from 1/400 of an arc: the sixth is exact to rounding but where the line nearly touches it
 
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int_]
@@ -59,36 +58,3 @@ def _edges(method: Method, level: float) -> list[list[list[float]]]:
     """Return the two ends (alpha_hat, beta_hat) of each straight edge."""
     pencil = pencil_of(method)
     return [edge.tolist() for edge in straight_edges(pencil, bounds_of(pencil, level))]
-
-
-def crossed_levels(levels: FloatArray, values: FloatArray) -> tuple[IntArray, IntArray]:
-    """Return every (i, k) such that the step from values[k] to values[k + 1] crosses levels[i]."""
-    below = np.searchsorted(levels, values)  # how many levels lie below each value
-    number = np.abs(np.diff(below))
-    step = np.repeat(np.arange(len(number)), number)
-    first = np.repeat(np.minimum(below[:-1], below[1:]) - np.cumsum(number) + number, number)
-    return first + np.arange(number.sum()), step
-
-
-def arc_crossings(arc: Arc, beta_hat: FloatArray, to_user: FloatArray) -> tuple[IntArray, FloatArray]:
-    """Return the numbers of the levels beta_hat that the arc crosses, and alpha_hat there, by false position.
-
-    Between two neighbouring turns or samples beta_hat is monotonic, so each crossing is bracketed. Illinois: the value
-    of an end that stays twice is halved, lest it stay for ever (M. Dowell & P. Jarratt, BIT 11, 1971).
-    """
-    theta = np.sort(np.append(arc.theta, arc.turns(to_user[1])))
-    values = arc.coordinate(theta, to_user[1])
-    rows, step = crossed_levels(beta_hat, values)
-    low, high, target = theta[step], theta[step + 1], beta_hat[rows]
-    below, above = values[step] - target, values[step + 1] - target
-    beyond = np.full(len(rows), False)
-    middle = low
-    for k in range(FALSE_POSITIONS):
-        middle = low - below * (high - low) / (above - below)
-        off = arc.coordinate(middle, to_user[1]) - target
-        last = beyond
-        beyond = np.sign(off) == np.sign(above)
-        stays = np.where(last == beyond, 0.5 if k else 1.0, 1.0)
-        high, low = np.where(beyond, middle, high), np.where(beyond, low, middle)
-        above, below = np.where(beyond, off, stays * above), np.where(beyond, stays * below, off)
-    return rows, arc.coordinate(middle, to_user[0])

@@ -3,7 +3,8 @@ import pytest
 
 from bezstab.methods import REGISTRY, lookup
 from bezstab.stability import region, spectral_radius, window
-from tests.bench.stable_mask import crossed_levels, stable_mask
+from bezstab.stability.line_crossings import crossed_levels
+from tests.bench.stable_mask import stable_mask
 from tests.stability.made_methods import multistep
 
 

@@ -70,7 +70,15 @@ def test_region_needs_no_option_and_writes_two_files(tmp_path: Path) -> None:
 def test_region_prints_the_promised_keys(tmp_path: Path) -> None:
     (row, other) = rows("region", "--method", "B4", "--method", "AB4", "--figure", "none", "--table", "none")
     assert (row["method"], other["method"]) == ("B4", "AB4")
-    assert {"area", "alpha_hat_max", "beta_hat_max", "best_z_abs", "best_alpha_hat", "best_beta_hat"} <= set(row)
+    assert {
+        "area",
+        "alpha_hat_max",
+        "beta_hat_min",
+        "beta_hat_max",
+        "best_z_abs",
+        "best_alpha_hat",
+        "best_beta_hat",
+    } <= set(row)
     assert not list(tmp_path.iterdir())
 
 

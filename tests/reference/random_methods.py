@@ -1,0 +1,110 @@
+"""Random methods of every kind with rational coefficients: consistent and zero-stable by construction."""
+
+import random
+from fractions import Fraction
+from functools import reduce
+
+from bezstab.methods import LinearMultistep, Method, PredictorCorrector, RungeKutta
+
+Polynomial = list[Fraction]  # descending powers of z
+
+
+def product(first: Polynomial, second: Polynomial) -> Polynomial:
+    """Return the product of two polynomials in descending powers."""
+    result = [Fraction(0)] * (len(first) + len(second) - 1)
+    for i, a in enumerate(first):
+        for j, b in enumerate(second):
+            result[i + j] += a * b
+    return result
+
+
+def small(rng: random.Random, size: Fraction) -> Fraction:
+    """Return a random fraction in [-size, size] with a small denominator."""
+    denominator = rng.randint(2, 40)
+    return size * Fraction(rng.randint(-denominator, denominator), denominator)
+
+
+def random_rho(rng: random.Random, steps: int) -> Polynomial:
+    """Return rho with the root 1 and the others inside the unit circle, some of them zero."""
+    factors: list[Polynomial] = [[Fraction(1), Fraction(-1)]]
+    degree = 1
+    adams = rng.random() < 0.25
+    while degree < steps:
+        kind = rng.random()
+        if adams or kind < 0.2:
+            factors.append([Fraction(1), Fraction(0)])
+            degree += 1
+        elif kind < 0.6 or degree == steps - 1:
+            factors.append([Fraction(1), small(rng, Fraction(19, 20))])
+            degree += 1
+        else:  # z^2 + p z + q with |q| < 1 and |p| < 1 + q
+            q = small(rng, Fraction(9, 10))
+            p = small(rng, Fraction(19, 20)) * (1 + q)
+            factors.append([Fraction(1), p, q])
+            degree += 2
+    return reduce(product, factors)
+
+
+def random_sigma(rng: random.Random, rho: Polynomial, explicit: bool) -> Polynomial:
+    """Return sigma with sigma(1) = rho'(1), explicit or not."""
+    steps = len(rho) - 1
+    slope = sum(((steps - i) * a for i, a in enumerate(rho)), Fraction(0))
+    size = Fraction(rng.choice([1, 1, 2, 4]), 2)
+    while True:
+        sigma = [small(rng, size) for _ in rho]
+        if rng.random() < 0.3:
+            sigma[-1] = Fraction(0)
+        if explicit:
+            sigma[0] = Fraction(0)
+        place = rng.randint(1, steps)
+        sigma[place] += slope - sum(sigma)
+        if explicit or sigma[0]:
+            return sigma
+
+
+def random_multistep(rng: random.Random, steps: int, explicit: bool = True) -> LinearMultistep:
+    rho = random_rho(rng, steps)
+    return LinearMultistep(tuple(rho), tuple(random_sigma(rng, rho, explicit)))
+
+
+def random_runge_kutta(rng: random.Random, stages: int) -> RungeKutta:
+    """Return an explicit tableau: full, or low-storage (only the sub-diagonal), with weights that sum to one."""
+    low_storage = rng.random() < 0.4
+    rows = []
+    for i in range(stages):
+        row = [
+            small(rng, Fraction(1)) if (j < i and (not low_storage or j == i - 1)) else Fraction(0)
+            for j in range(stages)
+        ]
+        if low_storage and i:
+            row[i - 1] = abs(row[i - 1]) or Fraction(1, 3)
+        rows.append(tuple(row))
+    if low_storage and rng.random() < 0.6:
+        weights = [Fraction(0)] * (stages - 1) + [Fraction(1)]
+    else:
+        weights = [small(rng, Fraction(1)) for _ in range(stages)]
+        weights[rng.randrange(stages)] += 1 - sum(weights)
+    return RungeKutta(tuple(rows), tuple(weights))
+
+
+KINDS = [("LMM", n) for n in range(2, 7)] + [("RK", n) for n in range(2, 7)] + [("PECE", n) for n in range(2, 7)]
+
+
+def random_method(number: int) -> Method:
+    """Return method number 0, 1, 2, ... of a fixed sequence that goes round the kinds; the same on every machine."""
+    rng = random.Random(f"method {number}")
+    kind, size = KINDS[number % len(KINDS)]
+    scheme: LinearMultistep | RungeKutta | PredictorCorrector
+    if kind == "LMM":
+        scheme = random_multistep(rng, size)
+    elif kind == "RK":
+        scheme = random_runge_kutta(rng, size)
+    else:
+        rho = random_rho(rng, size)
+        predictor = LinearMultistep(tuple(rho), tuple(random_sigma(rng, rho, explicit=True)))
+        if rng.random() < 0.5:
+            rho = random_rho(rng, size)
+        scheme = PredictorCorrector(
+            predictor, LinearMultistep(tuple(rho), tuple(random_sigma(rng, rho, explicit=False)))
+        )
+    return Method(f"{kind}{size}-{number}", scheme, "random")

@@ -1,0 +1,64 @@
+"""Branches of the locus are followed where two of them pass close by each other."""
+
+import numpy as np
+import pytest
+from numpy.polynomial.polynomial import polyroots, polysub, polyval2d
+
+from bezstab.methods import Method, lookup
+from bezstab.stability import pencil_of, region
+from bezstab.stability.locus_tracks import sampled_angles, tracks
+from tests.reference.slice_integral import slice_area
+from tests.stability.made_methods import CLOSE_BRANCHES, FAR_INTERVAL
+
+LEVELS = [1.0, 0.93, 0.75, 0.5]
+
+
+@pytest.mark.parametrize("level", [*LEVELS, 0.925, 0.935])
+@pytest.mark.parametrize("method", [CLOSE_BRANCHES, FAR_INTERVAL], ids=["close", "far"])
+def test_the_area_is_that_of_the_slices(method: Method, level: float) -> None:
+    assert region(method, level).area == pytest.approx(slice_area(method, level).area, rel=1e-8)
+
+
+def test_the_area_between_close_branches_to_twelve_digits() -> None:
+    assert region(CLOSE_BRANCHES, 0.93).area == pytest.approx(27.904641404469, rel=1e-12)
+
+
+@pytest.mark.parametrize("level", LEVELS)
+def test_a_far_interval_reaches_furthest(level: float) -> None:
+    """R is linear across the interval, so both its ends are the zero of R plus or minus level / |R'|."""
+    growth = -pencil_of(FAR_INTERVAL).table[0]
+    crossing = np.concatenate([polyroots(polysub(growth, [side])) for side in (level, -level)])
+    furthest = float(crossing[np.abs(crossing + 122) < 1].real.min())
+    found = region(FAR_INTERVAL, level).extent
+    assert found
+    assert found[0][1] == pytest.approx(-2 * furthest, rel=1e-12)
+    assert found[1][1] == pytest.approx(furthest**2, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", ["B4", "RK4", "ABM3", "ABM4"])
+def test_every_branch_solves_pi_between_its_samples(name: str) -> None:
+    pencil = pencil_of(lookup(name))
+    for track in tracks(pencil, 0.9, finer=1):
+        theta = (track.theta[1:] + track.theta[:-1]) / 2
+        mu = track.at(theta)
+        size = polyval2d(np.full(theta.shape, 0.9), np.abs(mu), np.abs(pencil.table))
+        assert (np.abs(polyval2d(0.9 * np.exp(1j * theta), mu, pencil.table)) < 1e-12 * size).all()
+
+
+@pytest.mark.parametrize("name", ["RK4", "ABM3"])
+def test_all_branches_together_are_all_roots(name: str) -> None:
+    pencil = pencil_of(lookup(name))
+    theta = np.array([1.0])
+    found = [
+        complex(track.at(theta)[0]) for track in tracks(pencil, 0.9, finer=1) if track.theta[0] < 1 < track.theta[-1]
+    ]
+    powers = (0.9 * np.exp(1j)) ** np.arange(pencil.steps + 1)
+    assert np.sort_complex(np.array(found)) == pytest.approx(
+        np.sort_complex(np.roots((powers @ pencil.table)[::-1])), rel=1e-9
+    )
+
+
+def test_a_finer_sampling_has_shorter_steps_throughout() -> None:
+    coarse, fine = (sampled_angles(pencil_of(CLOSE_BRANCHES), 0.93, finer) for finer in (1, 2))
+    assert len(fine) > 1.5 * len(coarse)
+    assert np.diff(fine).max() < 0.6 * np.diff(coarse).max()
