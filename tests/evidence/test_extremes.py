@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from bezstab.evidence import Check, extreme_checks, extremes
+from bezstab.mechanism import Observation, observe
 from bezstab.stability import Choice, describe_point
 
 SHORT = list(extreme_checks(full=False))
@@ -45,3 +46,13 @@ def test_a_step_taken_for_stable_that_is_not_does_not_hold(monkeypatch: pytest.M
     assert extremes._step("SYM", 0.9).held
     monkeypatch.setattr(extremes, "describe_point", longer)
     assert not extremes._step("SYM", 0.9).held
+
+
+def test_multipliers_that_are_off_by_1e_8_do_not_hold(monkeypatch: pytest.MonkeyPatch) -> None:
+    def off(*arguments: Any) -> Observation:
+        seen = observe(*arguments)
+        return replace(seen, multipliers=seen.multipliers * (1 + 1e-8))
+
+    assert extremes._masses(1.0).held
+    monkeypatch.setattr(extremes, "observe", off)
+    assert not extremes._masses(1.0).held
