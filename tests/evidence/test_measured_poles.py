@@ -120,3 +120,15 @@ def test_half_the_difference_of_both_kicks_is_at_first_the_kick() -> None:
     assert difference[0, :, 0] == pytest.approx(KICKS, rel=1e-4, abs=1e-15)
     # |c| after the kick: that, its square, and the forced error, 1e-7 m
     assert size[0, :, 0] == pytest.approx(KICKS, rel=1e-2, abs=2e-7)
+
+
+@pytest.mark.parametrize(("grown", "verdict"), [(20.0, "diverges"), (5.0, "too close to call")])
+def test_growth_counts_from_tenfold_on_well_before_the_linear_range_is_left(grown: float, verdict: str) -> None:
+    growing = np.geomspace(1, grown, 376)  # three quarters of the 500 steps to where c leaves it, whatever the kick
+    difference, size = sampled_responses.for_every_kick(np.append(growing, np.full(625, grown)))
+    size[500:] = np.inf
+    assert _measured_verdict(None, difference, size) == verdict
+
+
+def test_no_window_reaches_beyond_the_range_that_decides_on_leaving_it() -> None:
+    assert max(LINEAR) == LINEAR[0]

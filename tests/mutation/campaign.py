@@ -210,7 +210,10 @@ def main() -> int:
         importlib.import_module(module)
 
     harmless = harmless_reasons()
-    chosen = sampled(all_mutants(), options.count, options.seed)
+    mutants = all_mutants()
+    for key in sorted(set(harmless) - {mutant.key for mutant in mutants}):
+        print(f"{HARMLESS.name}: no such mutant any more: {key}")
+    chosen = sampled(mutants, options.count, options.seed)
     chosen.sort(key=lambda mutant: mutant.path.name in BEING_REWRITTEN)
     known = read_results(results)
     telling = [mutant for mutant in chosen if mutant.key not in harmless]
