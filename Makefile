@@ -2,7 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: region figures test test-slow test-oldest extremes lint bench campaign clean
+.PHONY: region figures test test-slow test-oldest mutants campaign extremes lint bench clean
 
 region: .venv/installed  ## draw where B4 is stable, into this directory
 	$(BIN)/bezstab region --method B4
@@ -26,6 +26,9 @@ test-oldest:  ## the same tests with the oldest versions that pyproject.toml all
 	    print("\n".join(p["dependencies"]).replace(">=", "=="))' > .venv-oldest/oldest.txt
 	.venv-oldest/bin/pip install --quiet --editable '.[test]' --constraint .venv-oldest/oldest.txt
 	.venv-oldest/bin/python -m pytest -m "not slow" -n 2
+
+mutants: .venv/tested  ## are the tests able to fail? an hour or two; results stay in a temporary folder, so that it goes on
+	$(BIN)/python -m tests.mutation.campaign --count 200 --seed 1
 
 extremes: .venv/installed  ## what holds at the extremes, in minutes; the tests run the short form
 	$(BIN)/bezstab extremes

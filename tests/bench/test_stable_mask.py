@@ -3,7 +3,6 @@ import pytest
 
 from bezstab.methods import REGISTRY, lookup
 from bezstab.stability import region, spectral_radius, window
-from bezstab.stability.line_crossings import crossed_levels
 from tests.bench.stable_mask import stable_mask
 from tests.stability.made_methods import multistep
 
@@ -30,12 +29,3 @@ def test_the_mask_is_where_the_largest_pole_is_below_the_level(name: str) -> Non
 
 def test_the_mask_leaves_out_the_axis_where_errors_never_decay() -> None:
     assert not stable_mask(lookup("B4"), np.linspace(0, 1, 50), np.array([0.0])).any()
-
-
-def test_levels_are_crossed_once_for_each_step_over_them() -> None:
-    levels, values = np.array([0.5, 1.5, 2.5]), np.array([0.0, 2.0, 1.0, 1.2])
-    assert sorted(zip(*(found.tolist() for found in crossed_levels(levels, values)), strict=True)) == [
-        (0, 0),
-        (1, 0),
-        (1, 1),
-    ]

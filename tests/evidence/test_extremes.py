@@ -5,9 +5,11 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
+import numpy as np
 import pytest
 
 from bezstab.evidence import Check, extreme_checks, extremes
+from bezstab.mechanism import Observation, observe
 from bezstab.stability import Choice, describe_point
 
 SHORT = list(extreme_checks(full=False))
@@ -45,3 +47,34 @@ def test_a_step_taken_for_stable_that_is_not_does_not_hold(monkeypatch: pytest.M
     assert extremes._step("SYM", 0.9).held
     monkeypatch.setattr(extremes, "describe_point", longer)
     assert not extremes._step("SYM", 0.9).held
+
+
+def test_multipliers_that_are_off_by_1e_8_do_not_hold(monkeypatch: pytest.MonkeyPatch) -> None:
+    def off(*arguments: Any) -> Observation:
+        seen = observe(*arguments)
+        return replace(seen, multipliers=seen.multipliers * (1 + 1e-8))
+
+    assert extremes._masses(1.0).held
+    monkeypatch.setattr(extremes, "observe", off)
+    assert not extremes._masses(1.0).held
+
+
+def test_steps_are_tried_within_a_hundredth_of_the_largest_stable_one_on_both_sides() -> None:
+    below, above = ([times for times in extremes.OF_THE_BOUNDARY if (times < 1) == less] for less in (True, False))
+    assert max(below) == pytest.approx(0.99)
+    assert min(above) == pytest.approx(1.01)
+    assert max(above) == 10
+
+
+def test_a_triple_root_of_less_than_four_and_a_half_digits_does_not_hold(monkeypatch: pytest.MonkeyPatch) -> None:
+    for digits, held in ((4.4, False), (4.6, True)):
+        moved = np.array([0.5 * (1 + 10**-digits)])
+        monkeypatch.setattr(extremes, "poles", lambda *_, moved=moved: moved)
+        assert extremes._triple_root().held == held
+
+
+def test_every_method_of_two_steps_and_more_is_looked_at_where_two_roots_meet() -> None:
+    looked_at = {
+        check.args[0].name for check in SHORT if isinstance(check, partial) and check.func is extremes._double_root
+    }
+    assert looked_at == {"B2", "B4", "B12", "AB4"}

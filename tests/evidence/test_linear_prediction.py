@@ -6,7 +6,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bezstab.evidence import LINEAR, SPREAD, Fit, Refusal, fit_dominant_pole
-from bezstab.evidence.linear_prediction import SAMPLES, fit_window, response_windows
+from bezstab.evidence.linear_prediction import (
+    ABOVE_FORCED,
+    SAMPLES,
+    _dominant_with_amplitude,
+    fit_window,
+    response_windows,
+)
 from tests.reference.sampled_responses import for_every_kick, geometric, two_poles
 
 root = st.tuples(st.floats(0.4, 0.999), st.floats(0, np.pi))
@@ -71,3 +77,17 @@ def test_windows_end_where_the_range_is_left_and_before_what_is_forced() -> None
     for window in response_windows(decaying, decaying, (np.inf,)):
         assert decaying[window].min() > 90 * forced
         assert window.stop - window.start <= SAMPLES
+
+
+def test_a_window_ends_with_the_last_sample_that_is_well_above_what_remains() -> None:
+    decaying = geometric(1001, 0.97) + 1e-9
+    remaining = decaying[500:].max()
+    ends = {window.stop for window in response_windows(decaying, decaying, (np.inf,)) if window.start == 0}
+    exact = {1 + int(np.flatnonzero(decaying > factor * remaining)[-1]) for factor in ABOVE_FORCED}
+    assert ends == {min(end, SAMPLES) for end in exact}
+
+
+@pytest.mark.parametrize(("amplitude", "dominant"), [(1e-5, 0.9), (1e-2, 0.99)])
+def test_a_root_with_less_than_a_thousandth_of_the_amplitude_is_noise(amplitude: float, dominant: float) -> None:
+    samples = geometric(60, 0.9) + amplitude * geometric(60, 0.99)
+    assert _dominant_with_amplitude(samples, np.array([0.9, 0.99])) == pytest.approx(dominant)

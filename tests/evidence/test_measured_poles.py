@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bezstab.evidence import CLOSE, LINEAR, SPREAD, Measurement, measure_poles, random_points
-from bezstab.evidence.measured_poles import KICKS, _measured_verdict
+from bezstab.evidence.measured_poles import KICKS, _kicked_responses, _measured_verdict
 from bezstab.mechanism import compiled_mechanism, load_scene
 from bezstab.methods import REGISTRY, LinearMultistep, lookup, steps
 from bezstab.stability import spectral_radius
@@ -111,3 +111,24 @@ def test_progress_sees_every_step() -> None:
     mechanism = compiled_mechanism(load_scene("pendulum"))
     measure_poles(mechanism, lookup("SYM"), H, np.array([0.5]), np.array([0.5]), progress)
     assert seen == list(range(1001))
+
+
+def test_half_the_difference_of_both_kicks_is_at_first_the_kick() -> None:
+    mechanism, point = compiled_mechanism(load_scene("slider_crank")), np.array([0.5])
+    difference, size = _kicked_responses(mechanism, lookup("SYM"), H, point, point, lambda _: range(1))
+    # what is even in the kick cancels; odd are its cube, and the rounding of a metre
+    assert difference[0, :, 0] == pytest.approx(KICKS, rel=1e-4, abs=1e-15)
+    # |c| after the kick: that, its square, and the forced error, 1e-7 m
+    assert size[0, :, 0] == pytest.approx(KICKS, rel=1e-2, abs=2e-7)
+
+
+@pytest.mark.parametrize(("grown", "verdict"), [(20.0, "diverges"), (5.0, "too close to call")])
+def test_growth_counts_from_tenfold_on_well_before_the_linear_range_is_left(grown: float, verdict: str) -> None:
+    growing = np.geomspace(1, grown, 376)  # three quarters of the 500 steps to where c leaves it, whatever the kick
+    difference, size = sampled_responses.for_every_kick(np.append(growing, np.full(625, grown)))
+    size[500:] = np.inf
+    assert _measured_verdict(None, difference, size) == verdict
+
+
+def test_no_window_reaches_beyond_the_range_that_decides_on_leaving_it() -> None:
+    assert max(LINEAR) == LINEAR[0]

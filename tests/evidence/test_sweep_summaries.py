@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 
 from bezstab.evidence import FINE, summary, sweep_sentences
+from bezstab.evidence.sweep_summaries import _comparison_sentence
 from bezstab.methods import lookup
 from bezstab.stability import region, spectral_radius
 from tests.evidence.small_sweeps import SOFT, swept
@@ -43,3 +44,24 @@ def test_the_largest_stable_alpha_step_is_where_critical_damping_leaves_the_regi
     assert spectral_radius(lookup(name), 2 * alpha_step, alpha_step**2) < 1
     beyond = alpha_step + 2e-3  # the line is looked at in steps of a thousandth
     assert spectral_radius(lookup(name), 2 * beyond, beyond**2) >= 1
+
+
+@pytest.mark.parametrize(("times", "trusted"), [(500, True), (2000, False)])
+def test_no_power_law_is_trusted_beyond_a_thousand_times_the_dearest_run(times: float, trusted: bool) -> None:
+    runs = swept("B4", (2e-4, 4e-4), SOFT)
+    dearest = runs[-1].evaluations
+    made_up = [replace(run, trajectory_error=FINE * times * dearest / run.evaluations) for run in runs]  # order one
+    needed = summary(made_up).evaluations_needed
+    assert needed == (pytest.approx(times * dearest) if trusted else None)
+
+
+def test_what_is_better_is_won_and_what_is_worse_is_lost() -> None:
+    first = summary(swept("B4", (2e-4, 4e-4), SOFT))
+    mixed = replace(first, area=first.area / 2, largest_step=0.001, evaluations_needed=4e6, alpha_step=0.1)
+    other = replace(first, area=first.area, largest_step=0.002, evaluations_needed=8e6, alpha_step=0.2)
+    words = _comparison_sentence(mixed, other)
+    won, lost = words.split("; loses: ")
+    assert won.endswith("wins: a trajectory error of 1e-08 with 0.5 times the evaluations")
+    assert lost.startswith("region 0.5 times as large, stable at one α = β with 2 times the evaluations, runs through")
+    alike = _comparison_sentence(first, replace(first, area=1.01 * first.area))
+    assert alike.endswith("does as well.")

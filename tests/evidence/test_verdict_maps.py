@@ -77,3 +77,10 @@ def test_the_rows_are_the_whole_window_once(count: int) -> None:
     assert len(beta_hat) == len(chunks[0].alpha_hat) == count
     assert (np.diff(beta_hat) > 0).all()
     assert max(rows.beta_hat.size * rows.alpha_hat.size for rows in chunks) <= 2000
+
+
+def test_the_band_is_ten_over_the_number_of_steps() -> None:
+    verdicts = whole_map("pendulum", "SYM", H, 4)
+    assert verdicts.run == 2000
+    assert verdicts.band == pytest.approx(10 / 2000)
+    assert replace(verdicts, run=100).band == pytest.approx(0.1)

@@ -168,3 +168,12 @@ def test_a_low_order_start_spoils_adams_bashforth() -> None:
 def test_a_trajectory_prints_in_one_line() -> None:
     run = simulate(compiled_mechanism(load_scene("slider_crank")), lookup("B4"), H, 0.1, (0.0, 0.0))
     assert repr(run) == "Trajectory(slider-crank, B4, 101 times, to t = 0.1 s)"
+
+
+def test_a_start_is_refused_from_1e9_on_in_si() -> None:
+    mechanism = compiled_mechanism(load_scene("pendulum"))
+    at_rest, _ = initial_state(mechanism)
+    run = simulate(mechanism, lookup("RK1"), 1e-12, 1e-12, (0.0, 0.0), (at_rest, np.array([0.0, 5e8])))
+    assert run.failure is None
+    with pytest.raises(InputError, match="the start: blow-up"):
+        simulate(mechanism, lookup("RK1"), 1e-12, 1e-12, (0.0, 0.0), (at_rest, np.array([0.0, 2e9])))

@@ -1,3 +1,4 @@
+import math
 from pathlib import Path
 from typing import Any
 
@@ -134,3 +135,10 @@ def test_any_bytes_are_a_scene_or_one_line_of_refusal(tmp_path_factory: pytest.T
         assert str(path) in message
     else:
         assert scene.coordinates
+
+
+def test_a_chains_guesses_stand_it_upright_and_are_for_coordinates_it_has() -> None:
+    chain = parse_scene({"name": "chain", "four_bar_chain": {"count": 3, "length": 2.0, "mass": 1.0}})
+    assert set(chain.guess) <= set(chain.coordinates)
+    assert {chain.guess[f"rod{i}.theta"] for i in range(4)} == {math.pi / 2}
+    assert [(chain.guess[f"coupler{i}.x"], chain.guess[f"coupler{i}.y"]) for i in range(3)] == [(1, 2), (3, 2), (5, 2)]

@@ -1,3 +1,4 @@
+from dataclasses import replace
 from fractions import Fraction
 
 import mpmath
@@ -6,8 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from bezstab.errors import NumericalError
 from bezstab.methods import REGISTRY, LinearMultistep, Method, RungeKutta, lookup
-from bezstab.stability import BestPoint, best_point, region, spectral_radius, window
+from bezstab.stability import BestPoint, Pencil, best_point, best_points, region, spectral_radius, window
 
 F = Fraction
 KINKS = [f"B{n}" for n in range(3, 13)] + [f"AB{n}" for n in range(3, 9)]
@@ -122,3 +124,18 @@ def test_a_zero_of_r_beyond_float64s_squares_is_out_of_reach() -> None:
 
 def test_the_repr_of_a_best_point_is_one_line() -> None:
     assert repr(best("RK2")) == "BestPoint(RK2: |z_p| = 0 at alpha_hat = 2, beta_hat = 2)"
+
+
+def test_a_solved_kink_above_a_sampled_modulus_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is returned is never worse than what was sampled: 1 % above, it is no answer."""
+    solutions = best_points._solutions
+    scheme = LinearMultistep((F(1), F(-1), F(0)), (F(0), F(8, 5), F(-3, 5)))  # of no other test: nothing is remembered
+
+    def worse(pencil: Pencil, start: complex) -> list[best_points._Candidate]:
+        return [replace(one, z_abs=1.01 * one.z_abs) for one in solutions(pencil, start)]
+
+    monkeypatch.setattr(best_points, "_solutions", worse)
+    with pytest.raises(NumericalError, match="no kink as low"):
+        best_point(Method("kinked", scheme, ""))
+    monkeypatch.undo()
+    assert best_point(Method("kinked", scheme, ""))

@@ -12,13 +12,18 @@ from bezstab.stability import (
     Goal,
     best_point,
     choose,
+    choose_at_step,
     describe_point,
     pencil_of,
+    region,
     roots_in_z,
     spectral_radius,
     stability_margins,
+    verdict,
+    window,
 )
 from tests.reference.robust_decay import worst_decay
+from tests.stability.made_methods import multistep
 
 METHODS = ["B2", "B4", "AB4", "ABM3", "RK1", "RK4", "SIE", "SYM"]
 
@@ -138,6 +143,28 @@ def test_margins_of_symplectic_euler_are_those_of_its_triangle(a: float, share: 
     assert (found.alpha[0], found.beta[0]) == (0, 0)
 
 
+@pytest.mark.parametrize("name", ["B2", "B4", "B12", "AB4", "ABM3", "RK4", "SYM", "RK4@5"])
+def test_each_end_of_a_margin_lies_between_two_proven_verdicts(name: str) -> None:
+    """One part in 1e9 nearer the point converges, one part further diverges, in exact arithmetic."""
+    method, part = lookup(name), Fraction(1, 10**9)
+    (_, alpha_hat_max), (_, beta_hat_max) = window(region(method))
+    alpha_hat, beta_hat = Fraction(0.4 * alpha_hat_max), Fraction(0.2 * beta_hat_max)
+    assert verdict(method, alpha_hat, beta_hat) == "converges"
+    found = stability_margins(method, float(alpha_hat), float(beta_hat))
+    # an end, the powers with which its factor enters alpha_hat and beta_hat, and the way outwards
+    ends = [(found.h, 1, 2, 1), (found.alpha[1], 1, 0, 1), (found.alpha[0], 1, 0, -1)]
+    ends += [(found.beta[1], 0, 2, 1), (found.beta[0], 0, 2, -1)]
+    assert math.isfinite(found.h)
+    for end, of_alpha_hat, of_beta_hat, outwards in ends:
+        if 0 < end < math.inf:
+            nearer, further = (Fraction(end) * (1 + outwards * side * part) for side in (-1, 1))
+            inside, outside = (
+                verdict(method, alpha_hat * factor**of_alpha_hat, beta_hat * factor**of_beta_hat)
+                for factor in (nearer, further)
+            )
+            assert (inside, outside) == ("converges", "diverges")
+
+
 def test_a_choice_is_proven_and_described() -> None:
     for name in METHODS:
         assert choose(lookup(name), "fastest").verdict == "converges"
@@ -153,3 +180,48 @@ def test_a_choice_is_proven_and_described() -> None:
 def test_the_repr_of_a_choice_is_one_line() -> None:
     described = describe_point(lookup("SYM"), "as given", Fraction(1), Fraction(1))
     assert repr(described) == "Choice(SYM, as given: alpha_hat = 1, beta_hat = 1, |z_p| = 0, converges)"
+
+
+@pytest.mark.parametrize("name", ["RK1", "RK2", "RK3", "RK4", "SIE", "SYM"])
+def test_the_fastest_point_of_a_one_step_method_settles_in_two_steps(name: str) -> None:
+    assert choose(lookup(name), "fastest").settle_steps == 2
+
+
+def test_a_deadbeat_point_of_a_two_step_method_settles_in_four() -> None:
+    # pi(z, -2) = z^2 - 3/2 z + 1/2 + 2 (3/4 z - 1/4) = z^2, hence P(z) = z^4 at alpha_hat = beta_hat = 4
+    found = describe_point(multistep("deadbeat", "1 -3/2 1/2", "0 3/4 -1/4"), "", Fraction(4), Fraction(4))
+    assert (found.verdict, found.settle_steps) == ("converges", 4)
+
+
+@pytest.mark.parametrize("name", ["B4", "AB4", "RK4"])
+def test_after_the_steps_to_settle_a_thousandth_is_left_and_not_before(name: str) -> None:
+    found = describe_point(lookup(name), "", Fraction(1, 5), Fraction(1, 50))
+    assert found.settle_steps
+    assert abs(found.pole) ** found.settle_steps <= 1e-3 < abs(found.pole) ** (found.settle_steps - 1)
+
+
+def test_a_decay_that_rounding_leaves_no_digits_of_has_no_steps_to_settle() -> None:
+    slow = describe_point(lookup("B4"), "", Fraction("1e-13"), Fraction("2.5e-27"))  # |z_p| = 1 - 5e-14
+    assert (slow.verdict, slow.settle_steps) == ("converges", None)
+    assert describe_point(lookup("B4"), "", Fraction("1e-11"), Fraction("2.5e-23")).settle_steps
+
+
+def test_a_choice_for_larger_steps_is_the_same_alpha_and_beta_at_a_smaller_step() -> None:
+    h, h_max = Fraction(1, 1000), Fraction(1, 400)
+    smaller = choose_at_step(lookup("RK2"), "robust", h=h, h_max=h_max)
+    largest = choose(lookup("RK2"), "robust")
+    assert smaller.alpha_hat / float(h) == pytest.approx(largest.alpha_hat / float(h_max), rel=1e-14)  # 2 alpha
+    assert smaller.beta_hat / float(h) ** 2 == pytest.approx(largest.beta_hat / float(h_max) ** 2, rel=1e-14)
+    assert choose_at_step(lookup("RK2"), "robust", h=h_max, h_max=h_max) == largest
+    for goal, above in (("fastest", h_max), ("robust", h / 2)):
+        with pytest.raises(InputError, match="h_max"):
+            choose_at_step(lookup("RK2"), goal, h=h, h_max=above)  # type: ignore[arg-type]
+
+
+def test_a_time_to_settle_goes_with_the_goal_gentle_and_is_met() -> None:
+    h, settle = Fraction(1, 1000), Fraction(1, 20)
+    gentle = choose_at_step(lookup("RK2@2"), "gentle", h=h, settle=settle)  # 25 steps of 2 ms
+    assert abs(gentle.pole) ** 25 == pytest.approx(1e-3, rel=1e-6)
+    for goal, time in (("gentle", None), ("fastest", settle)):
+        with pytest.raises(InputError, match="settle"):
+            choose_at_step(lookup("RK2"), goal, h=h, settle=time)  # type: ignore[arg-type]

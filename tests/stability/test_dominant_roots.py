@@ -5,6 +5,7 @@ import pytest
 
 from bezstab.methods import REGISTRY, LinearMultistep, Method, lookup
 from bezstab.stability import poles, spectral_radius
+from bezstab.stability.dominant_roots import _twins
 
 
 @pytest.mark.parametrize("name", REGISTRY)
@@ -25,3 +26,12 @@ def test_a_map_whose_rows_leap_over_branch_points_follows_no_pole_across_them() 
     grid = (np.linspace(8.673741, 86.61854885, 211), np.linspace(-28.26979122, 65.9313013, 197)[:, np.newaxis])
     every = np.abs(poles(method, *grid)).max(axis=-1)
     assert np.allclose(spectral_radius(method, *grid), every, rtol=1e-12, atol=0)
+
+
+def test_a_conjugate_is_no_rival_where_mu_is_real_and_it_cannot_reach_the_axis() -> None:
+    z = np.array([[0.9 + 0.3j], [0.9 - 0.3j], [0.1 + 0j]])
+    real, complex_ = np.full((1, 16), -0.2 + 0j), np.full((1, 16), -0.2 + 0.1j)
+    near, far = np.full((3, 1), 0.2), np.full((3, 1), 0.4)  # how far the roots may come
+    assert _twins(real, z, z[0], near).ravel().tolist() == [False, True, False]
+    assert not _twins(real, z, z[0], far).any()
+    assert not _twins(complex_, z, z[0], near).any()

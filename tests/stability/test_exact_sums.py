@@ -2,6 +2,7 @@ from fractions import Fraction
 
 import mpmath
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -58,3 +59,16 @@ def test_the_roots_are_a_pair_with_the_upper_first_or_real(alpha_hat: float, bet
 def test_no_points_have_no_roots() -> None:
     first, second = feedback_roots(IDENTITY, np.empty(0), np.empty(0))
     assert (first.size, second.size) == (0, 0)
+
+
+@pytest.mark.parametrize("point", [(1e300, 1e300), (3e307, -1e305), (1e290, 1e307), (-2e281, 4e280), (1e-300, -1e300)])
+def test_beyond_1e280_the_roots_are_as_exact_as_elsewhere(point: tuple[float, float]) -> None:
+    found = feedback_roots(IDENTITY, np.array(point[:1]), np.array(point[1:]))
+    with mpmath.workdps(700):
+        half, q = mpmath.mpf(point[0]) / 2, mpmath.mpf(point[1])
+        root = mpmath.sqrt(half * half - q)
+        for mu, other in zip(found, found[::-1], strict=True):
+            distances = {abs(mu[0] - candidate): candidate for candidate in (-half + root, -half - root)}
+            exact = distances[min(distances)]
+            assert abs(mu[0] - exact) <= 4 * 2.0**-52 * abs(exact)
+            assert mu[0] != other[0]

@@ -55,3 +55,16 @@ def test_a_root_is_followed_to_its_neighbours_and_refused_below_the_bound() -> N
     starts = np.full(x.shape, 1.02 + 0j)
     assert followed_roots(table, x, starts, np.array(0.5)) == pytest.approx(np.sqrt(x), rel=1e-14)
     assert np.isnan(followed_roots(table, x, starts, np.array(2.0))).all()
+
+
+def test_a_linear_polynomials_root_is_a_quotient() -> None:
+    table = np.array([[1.0, 2.0], [1.0, 3.0]])  # 1 + 2 x + (1 + 3 x) y
+    x = np.array([0.5 + 1j, -2.0, 1e3j])
+    assert roots_of_table(table, x)[0] == pytest.approx(-(1 + 2 * x) / (1 + 3 * x), rel=1e-14)
+
+
+def test_roots_whose_powers_leave_float64_keep_their_digits() -> None:
+    exact = np.array([1e-120, 1.0, 1e120])
+    ascending = [-1.0, 1e120, -1e120, 1.0]  # of the product, where each coefficient is one term and trifles
+    found = roots_of_table(np.array(ascending)[:, np.newaxis], np.array([0j]))[:, 0]
+    assert np.sort(found.real) == pytest.approx(exact, rel=1e-13)

@@ -64,3 +64,11 @@ def test_the_limits_numbers_to_thirty_digits() -> None:
         r = mp.findroot(lambda r: mu(mp.mpc(r)).real - mu(mp.mpc(-r)).real, 0.687)
         assert limit.z_abs == pytest.approx(float(r), abs=1e-14)
     assert limit.error_constant == Fraction(1, 4)
+
+
+def test_the_limits_boundary_is_closed_and_encloses_its_area() -> None:
+    limit = bezier_limit()
+    (a, b), (next_a, next_b) = limit.boundary[:-1].T, limit.boundary[1:].T
+    assert (limit.boundary[0] == limit.boundary[-1]).all()
+    assert abs(np.sum(a * next_b - next_a * b)) / 2 == pytest.approx(limit.area, rel=1e-4)  # a thousand chords
+    assert limit.boundary.max(axis=0) == pytest.approx([limit.alpha_hat_max, limit.beta_hat_max], rel=1e-4)

@@ -1,0 +1,35 @@
+"""Mutants are what they are said to be: one change each, of what computes, and the same for the same seed."""
+
+import ast
+from difflib import SequenceMatcher
+
+from tests.mutation.campaign import harmless_reasons
+from tests.mutation.mutants import KINDS, ROOT, all_mutants, sampled
+
+ALL = all_mutants()
+
+
+def test_every_mutant_is_a_python_file_that_differs_from_the_original_in_one_place() -> None:
+    for mutant in sampled(ALL, 40, seed=3):
+        original = (ROOT / mutant.path).read_text(encoding="utf-8")
+        assert ast.dump(ast.parse(mutant.source)) != ast.dump(ast.parse(original))
+        matcher = SequenceMatcher(None, original.splitlines(), mutant.source.splitlines(), autojunk=False)
+        (changed,) = [code for code in matcher.get_opcodes() if code[0] != "equal"]
+        assert changed[1] + 1 == mutant.line
+
+
+def test_keys_tell_mutants_apart() -> None:
+    assert len({mutant.key for mutant in ALL}) == len(ALL)
+
+
+def test_a_sample_has_as_many_of_each_kind_and_is_the_same_for_the_same_seed() -> None:
+    sample = sampled(ALL, 201, seed=1)
+    counts = [sum(mutant.kind == kind for mutant in sample) for kind in KINDS]
+    assert sorted(counts) == [50, 50, 50, 51]
+    assert sample == sampled(ALL[::-1], 201, seed=1)
+    assert {mutant.key for mutant in sampled(ALL, 100, seed=1)} < {mutant.key for mutant in sample}
+    assert sample != sampled(ALL, 201, seed=2)
+
+
+def test_what_is_listed_as_harmless_has_a_reason() -> None:
+    assert all(len(reason) > 20 for reason in harmless_reasons().values())
