@@ -1,5 +1,7 @@
 """Where an arc of the boundary crosses lines of constant beta_hat."""
 
+import itertools
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -31,7 +33,7 @@ def test_a_level_is_crossed_where_one_value_lies_above_it_and_the_next_does_not(
     by_hand = {
         (i, k)
         for i, level in enumerate(ascending)
-        for k, (first, second) in enumerate(zip(values, values[1:], strict=False))
+        for k, (first, second) in enumerate(itertools.pairwise(values))
         if (first > level) != (second > level)
     }
     rows, steps = crossed_levels(np.array(ascending), np.array(values))
