@@ -6,6 +6,7 @@
     registry           all of them by name; lookup
     method_files       a user's own method
     derivation         characteristic and closed-loop polynomial, s->z mapping
+    shared_factors     poles that no feedback moves
     orders             order of accuracy
     formulas           all of these as text or LaTeX
     schur              where a polynomial's roots lie, proven
@@ -50,6 +51,7 @@ if TYPE_CHECKING:
     )
     from bezstab.methods.formulas import characteristic_text, mapping_text, recursion_text
     from bezstab.methods.orders import accuracy
+    from bezstab.methods.shared_factors import fixed_poles, without_shared_factor
 
 DERIVED = {
     "derivation": (
@@ -70,6 +72,7 @@ DERIVED = {
     ),
     "formulas": ("characteristic_text", "mapping_text", "recursion_text"),
     "orders": ("accuracy",),
+    "shared_factors": ("fixed_poles", "without_shared_factor"),
 }
 """What is loaded when first used, by module."""
 
@@ -104,6 +107,7 @@ __all__ = [
     "evaluations",
     "feedback_matrix",
     "feedback_polynomial",
+    "fixed_poles",
     "is_schur",
     "lookup",
     "mapping_equations",
@@ -112,4 +116,5 @@ __all__ = [
     "recursion_text",
     "recursion_verdict",
     "steps",
+    "without_shared_factor",
 ]
