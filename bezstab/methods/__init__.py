@@ -9,6 +9,7 @@ From exact numbers upwards; a file imports only from those above it:
     method_files        a user's method, from TOML
     registry            every built-in method by name
     derivation          by sympy: s->z mapping, characteristic polynomial, closed loop
+    shared_factors      poles that no feedback moves
     orders              order of accuracy and error constant
     formulas            all that as text or LaTeX
 
@@ -52,6 +53,7 @@ if TYPE_CHECKING:
     )
     from bezstab.methods.formulas import characteristic_text, mapping_text, recursion_text
     from bezstab.methods.orders import accuracy
+    from bezstab.methods.shared_factors import fixed_poles, without_shared_factor
 
 DERIVED = {
     "derivation": (
@@ -72,6 +74,7 @@ DERIVED = {
     ),
     "formulas": ("characteristic_text", "mapping_text", "recursion_text"),
     "orders": ("accuracy",),
+    "shared_factors": ("fixed_poles", "without_shared_factor"),
 }
 """What is loaded when first used, by module."""
 
@@ -106,6 +109,7 @@ __all__ = [
     "evaluations",
     "feedback_matrix",
     "feedback_polynomial",
+    "fixed_poles",
     "is_schur",
     "lookup",
     "mapping_equations",
@@ -114,4 +118,5 @@ __all__ = [
     "recursion_text",
     "recursion_verdict",
     "steps",
+    "without_shared_factor",
 ]

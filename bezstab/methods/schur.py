@@ -29,8 +29,8 @@ def recursion_verdict(polynomial: Polynomial) -> Verdict:
     if abs(p[-1]) > abs(p[0]):  # the product of all |z| exceeds one
         return "diverges"
     reciprocal = _trimmed(p[::-1])
-    shared = _gcd(p, reciprocal)
-    rest, _ = _divmod(p, shared)
+    shared = polynomial_gcd(p, reciprocal)
+    rest, _ = quotient_and_remainder(p, shared)
     if is_schur(_derivative(shared)) and is_schur(rest):
         return "marginal"
     return "diverges"
@@ -67,7 +67,7 @@ def _derivative(p: Polynomial) -> list[Fraction]:
     return [(degree - i) * a for i, a in enumerate(p[:-1])] or [Fraction(1)]
 
 
-def _divmod(p: Polynomial, divisor: Polynomial) -> tuple[list[Fraction], list[Fraction]]:
+def quotient_and_remainder(p: Polynomial, divisor: Polynomial) -> tuple[list[Fraction], list[Fraction]]:
     """Return quotient and remainder of polynomial long division; the divisor's leading coefficient is not zero."""
     remainder, quotient = list(p), []
     while len(remainder) >= len(divisor):
@@ -78,10 +78,10 @@ def _divmod(p: Polynomial, divisor: Polynomial) -> tuple[list[Fraction], list[Fr
     return quotient, remainder
 
 
-def _gcd(p: Polynomial, q: Polynomial) -> list[Fraction]:
+def polynomial_gcd(p: Polynomial, q: Polynomial) -> list[Fraction]:
     """Return the monic greatest common divisor by Euclid's algorithm."""
     while any(q):
         divisor = _trimmed(q)
-        _, remainder = _divmod(p, divisor)
+        _, remainder = quotient_and_remainder(p, divisor)
         p, q = divisor, remainder
     return _trimmed(p)

@@ -1,15 +1,21 @@
 """In words: which poles meet at the best point of a method, and where else it is as good."""
 
-from bezstab.stability import BestPoint
+from bezstab.stability import BestPoint, pole_place
 
 
 def best_point_words(best: BestPoint) -> str:
     """Return in words which poles meet at the best point, and where else |z_p| is as small (dimensionless, as text)."""
+    if best.fixed is not None and best.z_abs <= abs(best.fixed):
+        return f"a pole stays at {pole_place(best.fixed)} whatever α̂ and β̂"
     words = _poles_in_words(best)
     points = " and ".join(f"({alpha_hat:.6f}, {beta_hat:.6f})" for alpha_hat, beta_hat in best.elsewhere)
     if best.arc:
-        return f"{words}; the same |z_p| on a whole arc, to {points}"
-    return f"{words}; also at {points}" if points else words
+        words += f"; the same |z_p| on a whole arc, to {points}"
+    elif points:
+        words += f"; also at {points}"
+    if best.fixed is not None:
+        words += f"; a pole stays at {pole_place(best.fixed)} whatever α̂ and β̂"
+    return words
 
 
 def _poles_in_words(best: BestPoint) -> str:

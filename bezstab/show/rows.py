@@ -119,8 +119,17 @@ def region_row(region: Region, best: BestPoint | None) -> Row:
         "best_z_abs": best.z_abs if best else None,
         "best_alpha_hat": best.alpha_hat if best else None,
         "best_beta_hat": best.beta_hat if best else None,
-        "best_where": best_point_words(best) if best else None,
+        "best_where": best_point_words(best) if best else _nowhere(region),
     }
+
+
+def _nowhere(region: Region) -> str | None:
+    """Return why there is no best point, where a pole that no parameters move says so."""
+    from bezstab.stability import pole_place
+
+    if not region.fixed_poles:
+        return None
+    return f"stable nowhere: a pole stays at {pole_place(region.fixed_poles[0])} whatever α̂ and β̂"
 
 
 def family_row(member: Member) -> Row:

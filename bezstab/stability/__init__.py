@@ -36,7 +36,7 @@ from bezstab.stability.choices import (
 from bezstab.stability.closed_loop import dominant_pole, poles, spectral_radius, verdict
 from bezstab.stability.grid_maps import QUALITY, pole_map
 from bezstab.stability.pencils import Pencil, pencil_of, roots_in_z
-from bezstab.stability.regions import Extent, Region, region, window
+from bezstab.stability.regions import Extent, Region, pole_place, region, window
 from bezstab.stability.searches import first_where
 from bezstab.stability.step_families import FAMILIES, Limit, Member, bezier_limit, family_members
 
@@ -66,6 +66,7 @@ __all__ = [
     "first_where",
     "pencil_of",
     "pole_map",
+    "pole_place",
     "poles",
     "region",
     "roots_in_z",

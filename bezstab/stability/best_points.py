@@ -16,7 +16,7 @@ each kind, and the least solution that is a maximum over all roots is the answer
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from itertools import pairwise
 
@@ -24,7 +24,7 @@ import numpy as np
 from numpy.polynomial.polynomial import polyval2d
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method
+from bezstab.methods import Method, fixed_poles, without_shared_factor
 from bezstab.stability.arrays import ComplexArray, FloatArray
 from bezstab.stability.dominant_roots import dominant_root
 from bezstab.stability.pencils import Pencil, pencil_of, roots_in_mu, roots_in_z
@@ -49,6 +49,8 @@ class BestPoint:
 
     `double`: those poles are double, because the two mu coincide. `elsewhere` has the other points (alpha_hat,
     beta_hat) with the same |z_p|; with `arc` they are the two ends of a curve along which it is constant.
+    `fixed` is the largest pole that no parameters move (None for an ordinary method): where it is the largest at all,
+    |z_p| is its modulus on a whole neighbourhood, and the point is where the other poles are smallest.
     """
 
     method: Method
@@ -59,6 +61,7 @@ class BestPoint:
     double: bool
     elsewhere: tuple[tuple[float, float], ...]
     arc: bool
+    fixed: complex | None = None
 
     def __repr__(self) -> str:
         place = f"alpha_hat = {self.alpha_hat:.6g}, beta_hat = {self.beta_hat:.6g}"
@@ -89,6 +92,9 @@ def best_point(method: Method) -> BestPoint | None:
     Dimensionless, of the poles of paper Eq. 17. NumericalError if no solution of the defining equations is as small
     as a sampled |z_p|.
     """
+    stuck = fixed_poles(method)
+    if stuck:
+        return _beside_a_fixed_pole(method, stuck[0])
     pencil = pencil_of(method)
     if pencil.steps == 1:  # z = R(mu), and the zeros of R are deadbeat
         return _described(pencil, 0.0, _zeros(pencil), arc=False)
@@ -97,6 +103,21 @@ def best_point(method: Method) -> BestPoint | None:
     least = _smallest(pencil)
     end = _other_end(pencil, least)
     return _described(pencil, least.z_abs, [least.mu] if end is None else [least.mu, end], arc=end is not None)
+
+
+def _beside_a_fixed_pole(method: Method, fixed: complex) -> BestPoint | None:
+    """Return the best point of the method without the factor that rho and sigma share, where that decides.
+
+    None if the fixed pole is on the unit circle.
+    """
+    if not region(method).boundary:
+        return None
+    others = best_point(without_shared_factor(method))
+    if others is None:
+        return None
+    if others.z_abs >= abs(fixed):
+        return replace(others, method=method, fixed=fixed)
+    return replace(others, method=method, fixed=fixed, z_abs=abs(fixed), meeting=(fixed,), elsewhere=(), arc=False)
 
 
 def _zeros(pencil: Pencil) -> list[complex]:

@@ -9,14 +9,14 @@ from typing import Literal
 import numpy as np
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.methods import Method, Verdict, steps
+from bezstab.methods import Method, Verdict, steps, without_shared_factor
 from bezstab.rationals import exact
 from bezstab.stability.arrays import BoolArray, FloatArray
 from bezstab.stability.best_points import best_point
 from bezstab.stability.closed_loop import largest_modulus, largest_pole, verdict
 from bezstab.stability.dominant_roots import dominant_root
 from bezstab.stability.pencils import Pencil, pencil_of
-from bezstab.stability.regions import Extent, region
+from bezstab.stability.regions import Extent, pole_place, region
 from bezstab.stability.searches import first_where, zoom_on_minimum
 
 Goal = Literal["robust", "fastest", "critical", "gentle"]
@@ -93,12 +93,16 @@ def choose(method: Method, goal: Goal, spread: float = 0.1, rate: float | None =
     fast means decay per second. gentle: the smallest alpha = beta with |z_p| <= rate. `equal` keeps alpha = beta.
     InputError if nothing stable meets the goal. The poles are those of paper Eq. 17; the goals are this package's.
     """
-    extent = region(method).extent
+    stable = region(method)
+    extent = stable.extent
     if extent is None:
-        raise InputError(f"{method.name} is stable for no parameters at all")
-    pencil = pencil_of(method)
+        reason = ""
+        if stable.fixed_poles and abs(stable.fixed_poles[0]) > 1 - SLOW:
+            reason = f": a pole stays at {pole_place(stable.fixed_poles[0])} on the unit circle"
+        raise InputError(f"{method.name} is stable for no parameters at all{reason}")
+    pencil = pencil_of(without_shared_factor(method))  # a pole that no parameters move must not hide the others
     if goal == "gentle":
-        point = _gentle(pencil, extent, 0.0 if rate is None else rate)
+        point = _gentle(pencil_of(method), extent, 0.0 if rate is None else rate)
     elif goal == "critical":
         point = _critical(pencil, extent)
         if equal and not math.isclose(point[1], point[0] ** 2 / 4):

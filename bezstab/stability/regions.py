@@ -18,7 +18,7 @@ root lies outside, and straight lines: one mu held at the end of a real interval
 (For a method whose feedback matrix is not the identity all this is its preimage, of a determinant that is not one.)
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from itertools import combinations
 
@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method
+from bezstab.methods import Method, fixed_poles, without_shared_factor
 from bezstab.stability.arrays import BoolArray, FloatArray
 from bezstab.stability.boundary_locus import Arc, Bounds, bounds_of, feedback_coefficients
 from bezstab.stability.closed_loop import spectral_radius
@@ -46,7 +46,8 @@ class Region:
     """The set |z_p| < level for one method, in alpha_hat and beta_hat, all dimensionless.
 
     `boundary` holds closed curves as arrays of shape (points, 2); `extent` is ((alpha_hat_min, alpha_hat_max),
-    (beta_hat_min, beta_hat_max)), None if the set is empty.
+    (beta_hat_min, beta_hat_max)), None if the set is empty. `fixed_poles` are those that neither alpha_hat nor beta_hat
+    moves, where rho and sigma share a factor.
     """
 
     method: Method
@@ -54,6 +55,7 @@ class Region:
     area: float
     boundary: tuple[FloatArray, ...]
     extent: Extent | None
+    fixed_poles: tuple[complex, ...] = ()
 
     def __repr__(self) -> str:
         curves = f"{len(self.boundary)} closed curve{'' if len(self.boundary) == 1 else 's'}"
@@ -79,6 +81,11 @@ def region(method: Method, level: float = 1.0) -> Region:
     not found is an edge on which several roots have |z| = level, or one so short, where the level is hardly above the
     least |z_p|, that it lies between two samples.
     """
+    stuck = fixed_poles(method)
+    if stuck:
+        if abs(stuck[0]) >= level * (1 - ROUNDING):
+            return Region(method, level, 0.0, (), None, stuck)
+        return replace(region(without_shared_factor(method), level), method=method, fixed_poles=stuck)
     try:
         return _checked_region(method, level, finer=1)
     except NumericalError:
@@ -164,6 +171,15 @@ def _closed_curves(edges: list[FloatArray]) -> list[FloatArray]:
             curve = np.concatenate([curve, edge[::-1] if reverse else edge])
         curves.append(np.concatenate([curve, curve[:1]]))
     return curves
+
+
+def pole_place(z: complex) -> str:
+    """Return a pole that no feedback moves, and its conjugate, as text: 0.9, ±i or 0.3 ± 0.4i."""
+    real, imaginary = float(f"{z.real:.6g}"), float(f"{abs(z.imag):.6g}")
+    if not imaginary:
+        return f"{real:g}"
+    size = "" if imaginary == 1 else f"{imaginary:g}"
+    return f"{real:g} ± {size}i" if abs(real) > ROUNDING else f"±{size}i"
 
 
 def window(shown: Region) -> Extent:

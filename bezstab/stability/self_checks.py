@@ -92,7 +92,7 @@ def _lines_through(curves: list[FloatArray]) -> tuple[FloatArray, FloatArray]:
     half = np.diff(edges)[:, np.newaxis] / 2
     t = (edges[:-1, np.newaxis] + half * (1 + nodes)).ravel()
     weight = (half * weights).ravel()
-    kept = (weight > 0) & (np.diff(t, prepend=-np.inf) > 0) & (t != 0)
+    kept = (weight > 0) & (np.diff(t, prepend=-np.inf) > 0) & (np.abs(t) > BESIDE * np.abs(t).max())
     return t[kept], weight[kept]
 
 
