@@ -10,6 +10,7 @@ import pytest
 
 from bezstab.evidence import Check, extreme_checks, extremes
 from bezstab.mechanism import Observation, observe
+from bezstab.methods import LinearMultistep, steps
 from bezstab.stability import Choice, describe_point
 
 SHORT = list(extreme_checks(full=False))
@@ -73,8 +74,10 @@ def test_a_triple_root_of_less_than_four_and_a_half_digits_does_not_hold(monkeyp
         assert extremes._triple_root().held == held
 
 
-def test_every_method_of_two_steps_and_more_is_looked_at_where_two_roots_meet() -> None:
-    looked_at = {
-        check.args[0].name for check in SHORT if isinstance(check, partial) and check.func is extremes._double_root
-    }
-    assert looked_at == {"B2", "B4", "B12", "AB4"}
+@pytest.mark.parametrize(("full", "count"), [(False, 4), (True, 18)])
+def test_every_method_of_two_steps_and_more_is_looked_at_where_two_roots_meet(full: bool, count: int) -> None:
+    checks = [check for check in extreme_checks(full) if isinstance(check, partial)]
+    looked_at = [check.args[0] for check in checks if check.func is extremes._double_root]
+    assert {type(method.scheme) for method in looked_at} == {LinearMultistep}
+    assert min(steps(method) for method in looked_at) == 2
+    assert len(looked_at) == count  # B2 to B12 and AB2 to AB8

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from bezstab.evidence import CLOSE, LINEAR, SPREAD, Measurement, measure_poles, random_points
-from bezstab.evidence.measured_poles import KICKS, _kicked_responses, _measured_verdict
+from bezstab.evidence.measured_poles import KICKS, _kicked_responses, _measured_verdict, _measurement
 from bezstab.mechanism import compiled_mechanism, load_scene
 from bezstab.methods import REGISTRY, LinearMultistep, lookup, steps
-from bezstab.stability import spectral_radius
+from bezstab.stability import best_point, dominant_pole, poles, spectral_radius
 from tests.reference import sampled_responses
 
 H = 1e-3  # s
@@ -132,3 +132,19 @@ def test_growth_counts_from_tenfold_on_well_before_the_linear_range_is_left(grow
 
 def test_no_window_reaches_beyond_the_range_that_decides_on_leaving_it() -> None:
     assert max(LINEAR) == LINEAR[0]
+
+
+@pytest.mark.parametrize(("ratio", "told"), [(0.9962, True), (0.9985, False)])
+def test_two_poles_are_told_apart_if_in_400_samples_the_lesser_falls_to_1_over_e(ratio: float, told: bool) -> None:
+    """With both mu at one place beyond the kink of B4 the poles +p and -p have moduli whose ratio grows from one."""
+    method, kink = lookup("B4"), best_point(lookup("B4"))
+    assert kink
+    mu = kink.alpha_hat / 2 * np.linspace(1, 1.02, 20001)
+    z = poles(method, 2 * mu, mu**2)
+    moduli = np.sort(np.abs(z), axis=-1)
+    place = mu[np.argmin(np.abs(moduli[:, -3] / moduli[:, -1] - ratio))]  # each pole is double
+    dominant = abs(dominant_pole(method, 2 * place, place**2))
+    responses = sampled_responses.for_every_kick(sampled_responses.geometric(1001, dominant))
+    found = _measurement(method, 2 * place, place**2, *responses)
+    assert (found.measured is not None) == told
+    assert ("too near" in found.reason) != told

@@ -57,11 +57,12 @@ def test_no_power_law_is_trusted_beyond_a_thousand_times_the_dearest_run(times: 
 
 def test_what_is_better_is_won_and_what_is_worse_is_lost() -> None:
     first = summary(swept("B4", (2e-4, 4e-4), SOFT))
-    mixed = replace(first, area=first.area / 2, largest_step=0.001, evaluations_needed=4e6, alpha_step=0.1)
+    mixed = replace(first, area=first.area / 2, largest_step=0.004, evaluations_needed=4e6, alpha_step=0.1)
     other = replace(first, area=first.area, largest_step=0.002, evaluations_needed=8e6, alpha_step=0.2)
     words = _comparison_sentence(mixed, other)
     won, lost = words.split("; loses: ")
-    assert won.endswith("wins: a trajectory error of 1e-08 with 0.5 times the evaluations")
-    assert lost.startswith("region 0.5 times as large, stable at one α = β with 2 times the evaluations, runs through")
+    assert won.startswith("B4 against B4 wins: runs through up to h = 0.004 s, the other up to 0.002 s, ")
+    assert won.endswith("a trajectory error of 1e-08 with 0.5 times the evaluations")
+    assert lost == "region 0.5 times as large, stable at one α = β with 2 times the evaluations."
     alike = _comparison_sentence(first, replace(first, area=1.01 * first.area))
     assert alike.endswith("does as well.")

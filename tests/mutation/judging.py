@@ -45,8 +45,8 @@ class Watch:
     took: dict[str, float] = field(default_factory=dict)
 
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
-        """Put the tests in order: those of the own file first, and of either group the quickest first."""
-        items.sort(key=lambda item: (not item.nodeid.startswith(self.own), self.seconds.get(item.nodeid, 1.0)))
+        """Put the tests in order: those of the own file first, and of either group new ones, then the quickest."""
+        items.sort(key=lambda item: (not item.nodeid.startswith(self.own), self.seconds.get(item.nodeid, 0.0)))
         self.left = len(items)
 
     @pytest.hookimpl(hookwrapper=True)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from bezstab.methods import REGISTRY, LinearMultistep, Method, lookup
-from bezstab.stability import poles, spectral_radius
-from bezstab.stability.dominant_roots import _twins
+from bezstab.stability import pencil_of, poles, roots_in_z, spectral_radius
+from bezstab.stability.dominant_roots import STRIDE, _follow, _twins
 
 
 @pytest.mark.parametrize("name", REGISTRY)
@@ -35,3 +35,16 @@ def test_a_conjugate_is_no_rival_where_mu_is_real_and_it_cannot_reach_the_axis()
     assert _twins(real, z, z[0], near).ravel().tolist() == [False, True, False]
     assert not _twins(real, z, z[0], far).any()
     assert not _twins(complex_, z, z[0], near).any()
+
+
+@pytest.mark.parametrize("name", ["B4", "AB3", "ABM3"])
+def test_along_a_smooth_row_every_root_is_followed_and_none_solved_for_again(name: str) -> None:
+    pencil = pencil_of(lookup(name))
+    for start, end in ((-0.35 + 0.02j, -0.1 + 0.25j), (-0.3 + 0j, -0.05 + 0j)):
+        blocks = np.linspace(start, end, 1600).reshape(-1, STRIDE)
+        found = np.full(blocks.shape, np.nan, complex)
+        _follow(pencil, blocks, found)
+        assert np.isfinite(found).all()
+        every = roots_in_z(pencil, blocks.ravel())
+        largest = np.take_along_axis(every, np.argmax(np.abs(every), axis=0)[np.newaxis], axis=0)[0]
+        assert found.ravel() == pytest.approx(largest, rel=1e-13)
