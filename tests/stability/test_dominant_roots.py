@@ -5,7 +5,8 @@ import pytest
 
 from bezstab.methods import REGISTRY, LinearMultistep, Method, lookup
 from bezstab.stability import pencil_of, poles, roots_in_z, spectral_radius
-from bezstab.stability.dominant_roots import STRIDE, _follow, _twins
+from bezstab.stability.dominant_roots import _follow, _twins
+from bezstab.stability.root_finding import STRIDE
 
 
 @pytest.mark.parametrize("name", REGISTRY)
@@ -41,7 +42,7 @@ def test_a_conjugate_is_no_rival_where_mu_is_real_and_it_cannot_reach_the_axis()
 def test_along_a_smooth_row_every_root_is_followed_and_none_solved_for_again(name: str) -> None:
     pencil = pencil_of(lookup(name))
     for start, end in ((-0.35 + 0.02j, -0.1 + 0.25j), (-0.3 + 0j, -0.05 + 0j)):
-        blocks = np.linspace(start, end, 1600).reshape(-1, STRIDE)
+        blocks = np.linspace(start, end, 1600).astype(np.complex128).reshape(-1, STRIDE)
         found = np.full(blocks.shape, np.nan, complex)
         _follow(pencil, blocks, found)
         assert np.isfinite(found).all()
