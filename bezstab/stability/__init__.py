@@ -14,6 +14,7 @@ From a method's polynomial in float64 (its pencil) upwards; a file imports only 
     line_crossings    where an arc crosses lines
     line_slices       where lines across the region are stable, by a second route
     self_checks       every answer held against a second route
+    answer_checks     best points, choices and margins held against samples and proofs
     regions           the exact region in alpha_hat and beta_hat
     grid_maps         |z_p| on a grid
     best_points       the smallest |z_p|

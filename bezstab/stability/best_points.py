@@ -25,6 +25,7 @@ from numpy.polynomial.polynomial import polyval2d
 
 from bezstab.errors import NumericalError
 from bezstab.methods import Method, fixed_poles, without_shared_factor
+from bezstab.stability.answer_checks import check_best_point, check_deadbeat
 from bezstab.stability.arrays import ComplexArray, FloatArray
 from bezstab.stability.dominant_roots import dominant_root
 from bezstab.stability.pencils import Pencil, pencil_of, roots_in_mu, roots_in_z
@@ -90,19 +91,24 @@ def best_point(method: Method) -> BestPoint | None:
     """Return the smallest |z_p| and its place, to about 1e-12; None if no parameters have |z_p| < 1.
 
     Dimensionless, of the poles of paper Eq. 17. NumericalError if no solution of the defining equations is as small
-    as a sampled |z_p|.
+    as a sampled |z_p|, or a point or slice of the region is better than what was found (answer_checks).
     """
     stuck = fixed_poles(method)
     if stuck:
         return _beside_a_fixed_pole(method, stuck[0])
     pencil = pencil_of(method)
     if pencil.steps == 1:  # z = R(mu), and the zeros of R are deadbeat
-        return _described(pencil, 0.0, _zeros(pencil), arc=False)
-    if not region(method).boundary:
+        deadbeat = _described(pencil, 0.0, _zeros(pencil), arc=False)
+        check_deadbeat(pencil, deadbeat.alpha_hat, deadbeat.beta_hat)
+        return deadbeat
+    extent = region(method).extent
+    if extent is None:
         return None
     least = _smallest(pencil)
     end = _other_end(pencil, least)
-    return _described(pencil, least.z_abs, [least.mu] if end is None else [least.mu, end], arc=end is not None)
+    found = _described(pencil, least.z_abs, [least.mu] if end is None else [least.mu, end], arc=end is not None)
+    check_best_point(pencil, found.z_abs, found.alpha_hat, found.beta_hat, extent)
+    return found
 
 
 def _beside_a_fixed_pole(method: Method, fixed: complex) -> BestPoint | None:

@@ -11,6 +11,7 @@ import numpy as np
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method, Verdict, steps, without_shared_factor
 from bezstab.rationals import exact
+from bezstab.stability.answer_checks import check_least, check_least_equal, check_margin
 from bezstab.stability.arrays import BoolArray, FloatArray
 from bezstab.stability.best_points import best_point
 from bezstab.stability.closed_loop import largest_modulus, largest_pole, verdict
@@ -110,9 +111,9 @@ def choose(method: Method, goal: Goal, spread: float = 0.1, rate: float | None =
                 f"--keep alpha=beta: the double mu of {method.name} is not at alpha = beta; no --goal critical"
             )
     elif goal == "robust":
-        point = _least(extent, _slowest(pencil, spread), equal)
+        point = _checked_least(pencil, extent, _slowest(pencil, spread), equal)
     elif equal:
-        point = _least(extent, lambda alpha_hat, beta_hat: largest_modulus(pencil, alpha_hat, beta_hat), equal)
+        point = _checked_least(pencil, extent, lambda a, b: largest_modulus(pencil, a, b), equal)
     else:
         best = best_point(method)
         assert best  # the region is not empty
@@ -204,7 +205,11 @@ def stability_margins(method: Method, alpha_hat: float, beta_hat: float) -> Marg
         found = end(power_of_alpha_hat, power_of_beta_hat, NEAREST)
         return 0.0 if found is None else found
 
-    return Margins(h=up(1, 2), alpha=(down(1, 0), up(1, 0)), beta=(down(0, 2), up(0, 2)))
+    margins = Margins(h=up(1, 2), alpha=(down(1, 0), up(1, 0)), beta=(down(0, 2), up(0, 2)))
+    check_margin(pencil, alpha_hat, beta_hat, (1, 2), [margins.h])
+    check_margin(pencil, alpha_hat, beta_hat, (1, 0), margins.alpha)
+    check_margin(pencil, alpha_hat, beta_hat, (0, 2), margins.beta)
+    return margins
 
 
 def _slowest(pencil: Pencil, spread: float) -> Objective:
@@ -230,6 +235,16 @@ def _slowest(pencil: Pencil, spread: float) -> Objective:
         return worst
 
     return objective
+
+
+def _checked_least(pencil: Pencil, extent: Extent, objective: Objective, equal: bool) -> tuple[float, float]:
+    """Return where the objective is least; NumericalError if a sampled point is better (answer_checks)."""
+    alpha_hat, beta_hat = _least(extent, objective, equal)
+    if equal:
+        check_least_equal(pencil.method, objective, alpha_hat, extent)
+    else:
+        check_least(pencil.method, objective, alpha_hat, beta_hat, extent)
+    return alpha_hat, beta_hat
 
 
 def _least(extent: Extent, objective: Objective, equal: bool) -> tuple[float, float]:

@@ -35,7 +35,9 @@ from bezstab.methods import (
     lookup,
     steps,
 )
-from bezstab.stability import FloatArray, pencil_of, region, roots_in_z, spectral_radius, window
+from bezstab.stability import FloatArray, Pencil, Region, pencil_of, region, roots_in_z, spectral_radius, window
+from bezstab.stability.boundary_locus import bounds_of
+from bezstab.stability.self_checks import check_region
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent.parent))  # run as a script, the tests are no package yet
@@ -203,6 +205,23 @@ def maps() -> Iterator[Line]:
             total = mask + whole
             note = f"{1e3 * mask:.1f} ms; {theirs / total:.0f} times with what the boundary takes, {1e3 * total:.0f} ms"
             yield Line("map", f"{name}: batched eigenvalues, stable or not", theirs / mask, 500.0, note)
+
+
+def self_checks() -> Iterator[Line]:
+    """Yield how many times longer a region takes than its check against slices: 3 at least."""
+    for name in ("B4", "AB4", "RK4", "ABM3"):
+        pencil = pencil_of(lookup(name))
+
+        def found(pencil: Pencil = pencil) -> Region:
+            for remembered in (region, bounds_of):
+                remembered.cache_clear()
+            return region(pencil.method)
+
+        whole, shape = fastest(found, REPEATS)
+        bounds = bounds_of(pencil, 1.0)
+        check, _ = fastest(partial(check_region, pencil, 1.0, bounds, shape.area, list(shape.boundary)), REPEATS)
+        note = f"{1e3 * check:.1f} ms of {1e3 * whole:.0f} ms"
+        yield Line("check", f"{name}: a region and its check", (whole - check) / check, 3.0, note)
 
 
 def starts() -> Iterator[Line]:
@@ -461,7 +480,7 @@ def main() -> int:
     """Measure, print and write everything; return 1 if a promise is broken or a ratio has fallen by a third."""
     before: dict[str, float] = json.loads(BASELINE.read_text(encoding="utf-8")) if BASELINE.exists() else {}
     lines = []
-    for section in (maps, starts, runs, engines):
+    for section in (maps, self_checks, starts, runs, engines):
         for line in section():
             lines.append(line)
             print(f"{line.section:9} {line.what:50} {line.ratio:8.3g}  {line.note}", flush=True)

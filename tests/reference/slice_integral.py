@@ -28,7 +28,9 @@ class SliceArea:
     slices: int
 
 
-def slice_area(method: Method, level: float, relative: float = 1e-8, cap: int = 200_000) -> SliceArea:
+def slice_area(
+    method: Method, level: float, relative: float = 1e-8, cap: int = 200_000, panels_at_first: int = INITIAL_PANELS
+) -> SliceArea:
     """Return the area of |z_p| < level in the user's plane by adaptive Gauss-Legendre panels over sqrt|q|.
 
     relative: share of the area that the summed differences of panels and their halves may reach.
@@ -56,13 +58,13 @@ def slice_area(method: Method, level: float, relative: float = 1e-8, cap: int = 
     # Where every interval lies on one side of zero there is no stable q < 0: a pair of opposite signs has none.
     lowest = -bound if (events > 0).any() and (events < 0).any() else 0.0
     # A first look over everything that could be stable finds the range that is; there the panels are as fine again.
-    look = np.linspace(lowest, bound, 8 * INITIAL_PANELS + 1)[1:] - 0.382 * (bound - lowest) / (8 * INITIAL_PANELS)
+    look = np.linspace(lowest, bound, 8 * panels_at_first + 1)[1:] - 0.382 * (bound - lowest) / (8 * panels_at_first)
     seen = look[slices(pencil, level, look * np.abs(look), events, bound).lengths() > 0]
     spacing = look[1] - look[0]
-    ends = [np.linspace(lowest, bound, INITIAL_PANELS + 1), [0.0], corners]
+    ends = [np.linspace(lowest, bound, panels_at_first + 1), [0.0], corners]
     if len(seen):
         ends.append(
-            np.linspace(max(seen.min() - spacing, lowest), min(seen.max() + spacing, bound), INITIAL_PANELS + 1)
+            np.linspace(max(seen.min() - spacing, lowest), min(seen.max() + spacing, bound), panels_at_first + 1)
         )
     edges = np.unique(np.concatenate(ends))
     edges = edges[(edges <= bound) & (edges >= lowest)]

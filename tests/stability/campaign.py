@@ -23,6 +23,7 @@ from tests.reference.slice_integral import slice_area
 METHODS = 10_000
 LEVELS = (1.0, 0.93, 0.75, 0.5)
 DIFFERENT = 1e-6  # of the area
+FINER_PANELS = 1000  # of the integral, in place of 96, before a difference counts
 
 
 @dataclass(frozen=True)
@@ -55,6 +56,8 @@ def compared(method: Method, level: float) -> Case:
     except NumericalError as error:
         area, reason = None, str(error)
     integral = slice_area(method, level)
+    if area is not None and abs(area - integral.area) > DIFFERENT * max(abs(area), abs(integral.area)):
+        integral = slice_area(method, level, panels_at_first=FINER_PANELS)  # a part may have lain between its lines
     return Case(method.name, level, area, reason, integral.area, integral.error)
 
 

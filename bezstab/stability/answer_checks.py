@@ -1,0 +1,133 @@
+"""Best points, choices and margins held against sampled points and proven verdicts before they are given."""
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+
+import numpy as np
+
+from bezstab.errors import NumericalError
+from bezstab.methods import Method
+from bezstab.stability.arrays import EPS, FloatArray
+from bezstab.stability.closed_loop import largest_modulus, verdict
+from bezstab.stability.line_slices import mu_bound, real_events, slices, turning_radii
+from bezstab.stability.pencils import Pencil
+
+Extent = tuple[tuple[float, float], tuple[float, float]]
+Objective = Callable[[FloatArray, FloatArray], FloatArray]
+
+SAMPLES = 400  # over the region's box: a few thousandths of what the search itself looks at
+NEIGHBOURS = 32  # on each ring
+RINGS = 10.0 ** -np.arange(1, 6)  # radii, as shares of the region's box
+BETTER = 1e-6  # relative: a search ends where its objective is flat to this, along a kink's bed
+KINK = 1e-3  # relative: a pole of multiplicity m is good to eps^(1/m) at a rounded point, m = 4 among the best points
+EMPTY_BELOW = 1e-4  # relative: so far below the least |z_p| a slice must be empty
+NO_LENGTH = 1e-6  # of the bound on mu: a slice through a double root splits by the root of rounding
+SLICES = 128
+EITHER_SIDE = Fraction(1, 10**8)  # relative: a margin's end is good to 1e-12, and at a double pole to 1e-8
+UNDECIDED = 1e-12  # of |z_p|: nearer to one, an end is as good as float64 tells (a decay of 1e12 steps)
+BETWEEN = 40  # factors on the way to an end, at which |z_p| must be below one
+FURTHEST = (1e-4, 1e4)  # factors up to which an end was looked for
+PLASTIC = 1.32471795724474602596  # x^3 = x + 1: multiples of 1/x and 1/x^2 fill a square evenly (M. Roberts, 2018)
+
+
+def sampled_points(extent: Extent, alpha_hat: float, beta_hat: float) -> tuple[FloatArray, FloatArray]:
+    """Return alpha_hat and beta_hat of points over a region's box, on its parabola of double mu, and around a point."""
+    (alpha_low, alpha_high), (beta_low, beta_high) = extent
+    k = np.arange(1, SAMPLES + 1)
+    over_alpha = alpha_low + (alpha_high - alpha_low) * ((0.5 + k / PLASTIC) % 1)
+    over_beta = beta_low + (beta_high - beta_low) * ((0.5 + k / PLASTIC**2) % 1) ** 2  # even in |mu|
+    on_parabola = np.linspace(0, alpha_high, SAMPLES // 4 + 1)[1:]
+    angle = 2 * np.pi * np.arange(NEIGHBOURS) / NEIGHBOURS + 0.1
+    ring_alpha = alpha_hat + np.outer(RINGS, (alpha_high - alpha_low) * np.cos(angle)).ravel()
+    ring_beta = beta_hat + np.outer(RINGS, (beta_high - beta_low) * np.sin(angle)).ravel()
+    return (
+        np.concatenate([over_alpha, on_parabola, ring_alpha]),
+        np.concatenate([over_beta, on_parabola**2 / 4, ring_beta]),
+    )
+
+
+def check_deadbeat(pencil: Pencil, alpha_hat: float, beta_hat: float) -> None:
+    """Raise NumericalError unless every pole of a one-step method is zero, to rounding, at its best point."""
+    mu_abs = np.sqrt(abs(pencil.to_feedback[1] @ (alpha_hat, beta_hat)))
+    size = float(np.abs(pencil.table[0]) @ mu_abs ** np.arange(pencil.table.shape[1]))
+    z_abs = float(largest_modulus(pencil, alpha_hat, beta_hat))
+    if z_abs > 100 * np.sqrt(EPS) * size:  # a double mu splits by the root of rounding
+        raise NumericalError(f"{pencil.method.name}: |z_p| = {z_abs:.6g} where all poles were to be zero")
+
+
+def check_best_point(pencil: Pencil, z_abs: float, alpha_hat: float, beta_hat: float, extent: Extent) -> None:
+    """Raise NumericalError unless |z_p| at the point is as said, and smaller at no sampled point and on no slice."""
+    name = pencil.method.name
+    here = float(largest_modulus(pencil, alpha_hat, beta_hat))
+    if abs(here - z_abs) > KINK * max(z_abs, KINK):
+        raise NumericalError(f"{name}: |z_p| is {here:.9g} at the best point, not {z_abs:.9g}")
+    alpha_hats, beta_hats = sampled_points(extent, alpha_hat, beta_hat)
+    values = largest_modulus(pencil, alpha_hats, beta_hats)
+    least = int(np.argmin(values))
+    if values[least] < z_abs * (1 - BETTER):
+        place = f"({alpha_hats[least]:.6g}, {beta_hats[least]:.6g})"
+        raise NumericalError(f"{name}: |z_p| = {values[least]:.9g} at {place} is below the best point's {z_abs:.9g}")
+    below = z_abs * (1 - EMPTY_BELOW)
+    bound, events = mu_bound(pencil, below), real_events(pencil, below)
+    t = np.concatenate([np.linspace(0, bound, SLICES + 2)[1:-1], np.abs(events), turning_radii(pencil, below)])
+    t = t[np.isfinite(t) & (t > 0) & (t < bound)]
+    lengths = slices(pencil, below, t**2, events, bound).lengths()
+    if lengths.max() > NO_LENGTH * bound:
+        raise NumericalError(f"{name}: |z_p| < {below:.9g} on a slice: the best point has {z_abs:.9g}")
+
+
+def check_least(method: Method, objective: Objective, alpha_hat: float, beta_hat: float, extent: Extent) -> None:
+    """Raise NumericalError if an objective is smaller at a sampled point with alpha, beta > 0 than at the answer."""
+    alpha_hats, beta_hats = sampled_points(extent, alpha_hat, beta_hat)
+    _compare(method, objective, alpha_hat, beta_hat, alpha_hats, beta_hats)
+
+
+def check_least_equal(method: Method, objective: Objective, alpha_hat: float, extent: Extent) -> None:
+    """Raise NumericalError if an objective is smaller at a sampled alpha = beta than at the answer."""
+    near = alpha_hat * np.concatenate([1 + RINGS, 1 - RINGS])
+    alpha_hats = np.concatenate([near, np.linspace(0, extent[0][1], SAMPLES + 1)[1:]])
+    _compare(method, objective, alpha_hat, alpha_hat**2 / 4, alpha_hats, alpha_hats**2 / 4)
+
+
+def _compare(
+    method: Method,
+    objective: Objective,
+    alpha_hat: float,
+    beta_hat: float,
+    alpha_hats: FloatArray,
+    beta_hats: FloatArray,
+) -> None:
+    positive = (alpha_hats > 0) & (beta_hats > 0)
+    values = objective(alpha_hats[positive], beta_hats[positive])
+    here = float(objective(np.array([alpha_hat]), np.array([beta_hat]))[0])
+    least = int(np.argmin(values))
+    if values[least] < here * (1 - BETTER):
+        place = f"({alpha_hats[positive][least]:.6g}, {beta_hats[positive][least]:.6g})"
+        raise NumericalError(f"{method.name}: the point chosen has {here:.9g}, but {place} has {values[least]:.9g}")
+
+
+def check_margin(
+    pencil: Pencil, alpha_hat: float, beta_hat: float, powers: tuple[int, int], ends: Sequence[float]
+) -> None:
+    """Raise NumericalError unless the proven verdict turns at each end of a margin, and not before.
+
+    powers: of the factor on alpha_hat and on beta_hat. ends: factors; 0 and infinity for none.
+    """
+    for end in ends:
+        finite = 0 < end < np.inf
+        furthest = end if finite else FURTHEST[end > 1]
+        factors = np.geomspace(1, furthest, BETWEEN + 2)[1:-1]
+        on_the_way = largest_modulus(pencil, alpha_hat * factors ** powers[0], beta_hat * factors ** powers[1])
+        if (on_the_way >= 1 + UNDECIDED).any():
+            raise NumericalError(f"{pencil.method.name}: unstable before the margin {end:.9g}")
+        if not finite:
+            continue
+        outwards = 1 if end > 1 else -1
+        for side, stable in ((-1, True), (1, False)):
+            factor = Fraction(end) * (1 + side * outwards * EITHER_SIDE)
+            if (factor - 1) * outwards <= 0:
+                continue  # the margin is one to rounding
+            point = Fraction(alpha_hat) * factor ** powers[0], Fraction(beta_hat) * factor ** powers[1]
+            z_abs = float(largest_modulus(pencil, float(point[0]), float(point[1])))
+            if abs(z_abs - 1) > UNDECIDED and (verdict(pencil.method, *point) == "converges") != stable:
+                raise NumericalError(f"{pencil.method.name}: the margin {end:.9g} is not where the verdict turns")
