@@ -15,7 +15,7 @@ figures: .venv/installed  ## draw what the README shows, into figures/
 	$(BIN)/bezstab tradeoff --table none -o figures
 
 test: .venv/tested lint  ## what CI runs
-	$(BIN)/python -m pytest -m "not slow" -n 2
+	$(BIN)/python -m pytest -m "not slow" -n 2 --dist loadfile
 
 test-slow: .venv/tested  ## the checks that take minutes
 	$(BIN)/python -m pytest -m slow -n 2
@@ -25,7 +25,7 @@ test-oldest:  ## the same tests with the oldest versions that pyproject.toml all
 	.venv-oldest/bin/python -c 'import tomllib; p = tomllib.load(open("pyproject.toml", "rb"))["project"]; \
 	    print("\n".join(p["dependencies"]).replace(">=", "=="))' > .venv-oldest/oldest.txt
 	.venv-oldest/bin/pip install --quiet --editable '.[test]' --constraint .venv-oldest/oldest.txt
-	.venv-oldest/bin/python -m pytest -m "not slow" -n 2
+	.venv-oldest/bin/python -m pytest -m "not slow" -n 2 --dist loadfile
 
 mutants: .venv/tested  ## are the tests able to fail? an hour or two; results stay in a temporary folder, so that it goes on
 	$(BIN)/python -m tests.mutation.campaign --count 200 --seed 1

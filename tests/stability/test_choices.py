@@ -28,7 +28,12 @@ from tests.stability.made_methods import multistep
 METHODS = ["B2", "B4", "AB4", "ABM3", "RK1", "RK4", "SIE", "SYM"]
 
 
-@pytest.mark.parametrize("name", METHODS)
+QUICK = {"RK1", "SYM", "B2"}
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[] if name in QUICK else [pytest.mark.slow]) for name in METHODS]
+)
 def test_no_point_is_more_robust(name: str) -> None:
     """Second route: compass search from random points, on other shares of the step and other offsets."""
     chosen = choose(lookup(name), "robust", 0.1)

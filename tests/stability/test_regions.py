@@ -167,6 +167,7 @@ def test_the_boundary_encloses_exactly_the_stable_points(name: str, level: float
     assert (enclosed(region(method, level).boundary, points) == (modulus < level))[clear].all()
 
 
+@pytest.mark.slow
 @given(st.sampled_from(["B2", "B4", "AB3", "ABM3", "RK3", "RK4", "SIE", "SYM"]), st.floats(0.7, 1), st.floats(0.7, 1))
 @settings(max_examples=40, deadline=None)
 def test_regions_nest(name: str, one: float, other: float) -> None:
