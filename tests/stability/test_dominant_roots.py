@@ -4,7 +4,15 @@ import numpy as np
 import pytest
 
 from bezstab.methods import REGISTRY, LinearMultistep, Method, lookup
-from bezstab.stability import pencil_of, poles, roots_in_z, spectral_radius
+from bezstab.stability import (
+    ComplexArray,
+    FloatArray,
+    dominant_roots,
+    pencil_of,
+    poles,
+    roots_in_z,
+    spectral_radius,
+)
 from bezstab.stability.dominant_roots import STRIDE, _follow, _twins
 
 
@@ -48,3 +56,19 @@ def test_along_a_smooth_row_every_root_is_followed_and_none_solved_for_again(nam
         every = roots_in_z(pencil, blocks.ravel())
         largest = np.take_along_axis(every, np.argmax(np.abs(every), axis=0)[np.newaxis], axis=0)[0]
         assert found.ravel() == pytest.approx(largest, rel=1e-13)
+
+
+@pytest.mark.parametrize("name", ["B4", "AB3", "ABM3"])
+def test_newtons_starts_are_off_by_the_square_of_the_spacing(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    def starts_alone(_table: FloatArray, _mu: ComplexArray, starts: ComplexArray, _bound: FloatArray) -> ComplexArray:
+        return starts
+
+    monkeypatch.setattr(dominant_roots, "followed_roots", starts_alone)
+    pencil, errors = pencil_of(lookup(name)), []
+    for reach in (2e-3, 1e-3):
+        blocks = -0.2 + 0.15j + np.linspace(-reach, reach, STRIDE)[np.newaxis] * (1 + 1j)
+        found = np.empty(blocks.shape, complex)
+        _follow(pencil, blocks, found)
+        every = roots_in_z(pencil, blocks.ravel())
+        errors.append(np.abs(found.ravel() - every).min(axis=0).max())
+    assert errors[0] / errors[1] == pytest.approx(4, rel=0.05)
