@@ -143,7 +143,7 @@ def test_two_poles_are_told_apart_if_in_400_samples_the_lesser_falls_to_1_over_e
     z = poles(method, 2 * mu, mu**2)
     moduli = np.sort(np.abs(z), axis=-1)
     place = mu[np.argmin(np.abs(moduli[:, -3] / moduli[:, -1] - ratio))]  # each pole is double
-    dominant = abs(dominant_pole(method, 2 * place, place**2))
+    dominant = float(abs(dominant_pole(method, 2 * place, place**2)))
     responses = sampled_responses.for_every_kick(sampled_responses.geometric(1001, dominant))
     found = _measurement(method, 2 * place, place**2, *responses)
     assert (found.measured is not None) == told
