@@ -139,3 +139,16 @@ def test_a_solved_kink_above_a_sampled_modulus_is_refused(monkeypatch: pytest.Mo
         best_point(Method("kinked", scheme, ""))
     monkeypatch.undo()
     assert best_point(Method("kinked", scheme, ""))
+
+
+def test_zeros_of_r_a_third_of_a_percent_apart_are_two_deadbeat_points() -> None:
+    first, second = Fraction(3), Fraction("3.01")
+    third = 1 / (1 - 1 / first - 1 / second)  # so that R'(0) = 1
+    product = 1 / (first * second * third)
+    pairs = (first + second + third) * product  # R = 1 + mu + pairs mu^2 + product mu^3, zero at minus the three
+    zero = Fraction(0)
+    tableau = ((zero, zero, zero), (product / pairs, zero, zero), (zero, pairs, zero))
+    found = best_point(Method("close zeros", RungeKutta(tableau, (zero, zero, Fraction(1))), ""))
+    assert found
+    places = sorted([found.alpha_hat, *(alpha_hat for alpha_hat, _ in found.elsewhere)])
+    assert places == pytest.approx(sorted(float(2 * zero) for zero in (first, second, third)), rel=1e-10)

@@ -4,7 +4,15 @@ import numpy as np
 import pytest
 
 from bezstab.methods import REGISTRY, LinearMultistep, Method, lookup
-from bezstab.stability import pencil_of, poles, roots_in_z, spectral_radius
+from bezstab.stability import (
+    ComplexArray,
+    FloatArray,
+    dominant_roots,
+    pencil_of,
+    poles,
+    roots_in_z,
+    spectral_radius,
+)
 from bezstab.stability.dominant_roots import _follow, _twins
 from bezstab.stability.root_finding import STRIDE
 
@@ -42,10 +50,26 @@ def test_a_conjugate_is_no_rival_where_mu_is_real_and_it_cannot_reach_the_axis()
 def test_along_a_smooth_row_every_root_is_followed_and_none_solved_for_again(name: str) -> None:
     pencil = pencil_of(lookup(name))
     for start, end in ((-0.35 + 0.02j, -0.1 + 0.25j), (-0.3 + 0j, -0.05 + 0j)):
-        blocks = np.linspace(start, end, 1600).astype(np.complex128).reshape(-1, STRIDE)
+        blocks = np.linspace(start, end, 1600, dtype=np.complex128).reshape(-1, STRIDE)
         found = np.full(blocks.shape, np.nan, complex)
         _follow(pencil, blocks, found)
         assert np.isfinite(found).all()
         every = roots_in_z(pencil, blocks.ravel())
         largest = np.take_along_axis(every, np.argmax(np.abs(every), axis=0)[np.newaxis], axis=0)[0]
         assert found.ravel() == pytest.approx(largest, rel=1e-13)
+
+
+@pytest.mark.parametrize("name", ["B4", "AB3", "ABM3"])
+def test_newtons_starts_are_off_by_the_square_of_the_spacing(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    def starts_alone(_table: FloatArray, _mu: ComplexArray, starts: ComplexArray, _bound: FloatArray) -> ComplexArray:
+        return starts
+
+    monkeypatch.setattr(dominant_roots, "followed_roots", starts_alone)
+    pencil, errors = pencil_of(lookup(name)), []
+    for reach in (2e-3, 1e-3):
+        blocks = np.linspace(-reach, reach, STRIDE, dtype=np.complex128)[np.newaxis] * (1 + 1j) + (-0.2 + 0.15j)
+        found = np.empty(blocks.shape, complex)
+        _follow(pencil, blocks, found)
+        every = roots_in_z(pencil, blocks.ravel())
+        errors.append(np.abs(found.ravel() - every).min(axis=0).max())
+    assert errors[0] / errors[1] == pytest.approx(4, rel=0.05)
