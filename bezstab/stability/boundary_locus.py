@@ -19,7 +19,7 @@ axis: between two cuts lies an arc, or nothing.
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from itertools import pairwise
 from math import pi
 
@@ -40,6 +40,7 @@ QUADRATURE = 1e-14  # of |mu|^3: a panel is split until its halves agree to this
 SPLITS = 40  # halvings of a panel at most: towards a corner of the locus they end at rounding
 FINER = 33  # samples of a bracket: from one zoom to the next by the spacing of the last, 1/16
 TURN_ZOOMS = 8  # each by 1/16: from a sample's spacing to where a smooth extreme is flat to rounding
+REMEMBERED = 256  # turns of so many arcs and directions: a region asks for the same ones four times
 DIP_ZOOMS = 5  # each by 1/16: an arc or a gap of 1e-8 rad is seen, and no shorter one would be drawn
 MARGIN = 1e-13  # of the level: rounding of a simple root's modulus, a hundredfold
 AXIS = 1e-7  # of |mu|: an arc that runs into the real axis ends this far from it, its conjugate root within MARGIN
@@ -68,27 +69,9 @@ class Arc(Track):
         return np.asarray(feedback_coefficients(mu, mu.conj()) @ direction)
 
     def turns(self, direction: FloatArray) -> FloatArray:
-        """Return every theta where that coordinate turns, by narrowing in on the samples where it does."""
-        values = self.plane() @ direction
-        turning = np.flatnonzero(np.diff(np.sign(np.diff(values)))) + 1
-        if not turning.size:
-            return np.empty(0)
-        upwards = np.where(values[turning] > values[turning - 1], 1.0, -1.0)[:, np.newaxis]
-        low = self.theta[turning - 1]
-        high = self.theta[np.minimum(turning + 1, len(self.theta) - 1)]
-
-        def below_the_turn(theta: FloatArray) -> FloatArray:
-            return -upwards * self.coordinate(theta.ravel(), direction).reshape(upwards.size, -1)
-
-        theta, _ = zoom_on_minimum(
-            below_the_turn,
-            (low + high)[:, np.newaxis] / 2,
-            (high - low)[:, np.newaxis] / 2,
-            points=FINER,
-            shrink=2 / (FINER - 1),
-            rounds=TURN_ZOOMS,
-        )
-        return theta[:, 0]
+        """Return every theta where that coordinate turns: the same in a direction and its opposite, so found once."""
+        sign = -1.0 if tuple(direction) < (0.0, 0.0) else 1.0
+        return _turns(self, (float(sign * direction[0]), float(sign * direction[1])))
 
     def furthest(self, direction: FloatArray) -> float:
         """Return the largest value of that coordinate on the arc: at an end, or where it turns."""
@@ -109,6 +92,32 @@ class Arc(Track):
         mu = self.at(theta)
         slope = -1j * z * polyval2d(z, mu, self.pencil.table_by_z) / polyval2d(z, mu, self.pencil.table_by_mu)
         return np.asarray(-2 * mu.imag**2 * slope.real)
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _turns(arc: Arc, towards: tuple[float, float]) -> FloatArray:
+    """Return every theta where an arc's coordinate turns, by narrowing in on the samples where it does."""
+    direction = np.array(towards)
+    values = arc.plane() @ direction
+    turning = np.flatnonzero(np.diff(np.sign(np.diff(values)))) + 1
+    if not turning.size:
+        return np.empty(0)
+    upwards = np.where(values[turning] > values[turning - 1], 1.0, -1.0)[:, np.newaxis]
+    low = arc.theta[turning - 1]
+    high = arc.theta[np.minimum(turning + 1, len(arc.theta) - 1)]
+
+    def below_the_turn(theta: FloatArray) -> FloatArray:
+        return -upwards * arc.coordinate(theta.ravel(), direction).reshape(upwards.size, -1)
+
+    theta, _ = zoom_on_minimum(
+        below_the_turn,
+        (low + high)[:, np.newaxis] / 2,
+        (high - low)[:, np.newaxis] / 2,
+        points=FINER,
+        shrink=2 / (FINER - 1),
+        rounds=TURN_ZOOMS,
+    )
+    return theta[:, 0]
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,7 +22,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial.polynomial import polyval, polyval2d
+from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
 from bezstab.errors import NumericalError
@@ -62,9 +62,15 @@ class Track:
         spacing = np.abs(self.mu[right] - self.mu[right - 1])
         mu = start.copy()
         settled: BoolArray = np.zeros(mu.shape, bool)
+        in_mu = polyval(z, table)  # coefficients of pi(z, .), ascending; shape (powers, theta.size)
         with np.errstate(all="ignore"):  # what is not finite has not settled
             for _ in range(NEWTON_STEPS):
-                step = polyval2d(z, mu, table) / polyval2d(z, mu, self.pencil.table_by_mu)
+                value = in_mu[-1]
+                slope = np.zeros_like(mu)
+                for coefficient in in_mu[-2::-1]:
+                    slope = slope * mu + value
+                    value = value * mu + coefficient
+                step = value / slope
                 mu = mu - step
                 settled = np.abs(step) <= SETTLED * np.abs(mu)
                 if settled.all():

@@ -69,23 +69,25 @@ def cases_of(number: int) -> list[Case]:
     return cases
 
 
-def all_cases(methods: int, seconds: float) -> Iterator[Case]:
-    """Yield the cases of the first so many methods, from two processes, until the time is over."""
+def all_cases(methods: int, seconds: float, first_method: int) -> Iterator[Case]:
+    """Yield the cases of so many methods from the first on, from two processes, until the time is over."""
     start = time.monotonic()
     with ProcessPoolExecutor(2) as pool:
-        for first in range(0, methods, 20):
-            for cases in pool.map(cases_of, range(first, min(first + 20, methods))):
+        last_method = first_method + methods
+        for first in range(first_method, last_method, 20):
+            for cases in pool.map(cases_of, range(first, min(first + 20, last_method))):
                 yield from cases
             if time.monotonic() - start > seconds:
                 return
 
 
 def main() -> None:
-    """Run the campaign: number of methods and of seconds at most may be given."""
+    """Run the campaign: numbers of methods, of seconds at most, and of the first method may be given."""
     methods = int(sys.argv[1]) if len(sys.argv) > 1 else METHODS
     seconds = float(sys.argv[2]) if len(sys.argv) > 2 else float("inf")
+    first_method = int(sys.argv[3]) if len(sys.argv) > 3 else 0
     counts: Counter[str] = Counter()
-    for case in all_cases(methods, seconds):
+    for case in all_cases(methods, seconds, first_method):
         counts[case.verdict] += 1
         if case.verdict != "agrees":
             print(case.verdict, case, flush=True)
