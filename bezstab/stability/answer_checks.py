@@ -19,7 +19,8 @@ SAMPLES = 400  # over the region's box: a few thousandths of what the search its
 NEIGHBOURS = 32  # on each ring
 RINGS = 10.0 ** -np.arange(1, 6)  # radii, as shares of the region's box
 BETTER = 1e-6  # relative: a search ends where its objective is flat to this, along a kink's bed
-KINK = 1e-3  # relative: a pole of multiplicity m is good to eps^(1/m) at a rounded point, m = 4 among the best points
+KINK = 1e-3  # a pole of multiplicity m, however small, is good to eps^(1/m) of what it is a difference of, which is
+# near one; m = 4 among the best points
 EMPTY_BELOW = 1e-4  # relative: so far below the least |z_p| a slice must be empty
 NO_LENGTH = 1e-6  # of the bound on mu: a slice through a double root splits by the root of rounding
 SLICES = 128
@@ -59,7 +60,7 @@ def check_best_point(pencil: Pencil, z_abs: float, alpha_hat: float, beta_hat: f
     """Raise NumericalError unless |z_p| at the point is as said, and smaller at no sampled point and on no slice."""
     name = pencil.method.name
     here = float(largest_modulus(pencil, alpha_hat, beta_hat))
-    if abs(here - z_abs) > KINK * max(z_abs, KINK):
+    if abs(here - z_abs) > KINK:
         raise NumericalError(f"{name}: |z_p| is {here:.9g} at the best point, not {z_abs:.9g}")
     alpha_hats, beta_hats = sampled_points(extent, alpha_hat, beta_hat)
     values = largest_modulus(pencil, alpha_hats, beta_hats)

@@ -8,8 +8,13 @@ from bezstab.methods import accuracy, lookup
 from tests.evidence.small_sweeps import SOFT, small_sweep, swept
 from tests.reference.undominated import undominated
 
+QUICK = {"B4", "ABM4", "RK4", "SYM"}
+"""One of each kind; the others in make test-slow."""
 
-@pytest.mark.parametrize("name", METHODS)
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[] if name in QUICK else [pytest.mark.slow]) for name in METHODS]
+)
 def test_a_run_knows_its_error_its_cost_and_its_order(name: str) -> None:
     coarse, fine = swept(name, (8e-4, 1.6e-3), SOFT)
     assert (coarse.h, fine.h) == (1.6e-3, 8e-4)
@@ -23,7 +28,15 @@ def test_a_run_knows_its_error_its_cost_and_its_order(name: str) -> None:
     assert fine.seconds_min <= fine.seconds <= fine.seconds_max
 
 
-@pytest.mark.parametrize(("name", "order"), [("RK4", 2), ("ABM4", 2), ("AB4", 4), ("B4", 2)])
+@pytest.mark.parametrize(
+    ("name", "order"),
+    [
+        ("RK4", 2),
+        ("B4", 2),
+        pytest.param("ABM4", 2, marks=pytest.mark.slow),
+        pytest.param("AB4", 4, marks=pytest.mark.slow),
+    ],
+)
 def test_with_alpha_hat_fixed_stages_cost_order(name: str, order: int) -> None:
     *_, fine = swept(name, (1e-4, 2e-4) if name == "ABM4" else (8e-4, 1.6e-3))
     assert fine.order == pytest.approx(order, abs=0.2)

@@ -114,6 +114,14 @@ def test_random_two_step_methods(root: Fraction, b: Fraction) -> None:
         assert spectral_radius(method, a, c).min() >= found.z_abs - 1e-9
 
 
+def test_a_small_modulus_where_poles_nearly_coincide_is_an_answer() -> None:
+    root, b = F(-3, 10), F(2, 5)
+    scheme = LinearMultistep((F(1), -1 - root, root), (F(0), 1 - root - b, b))
+    found = best_point(Method("nearly deadbeat", scheme, ""))
+    assert found
+    assert found.z_abs == pytest.approx(0.0123, abs=1e-4)  # the poles at the rounded point are good to 1e-4 only
+
+
 def test_a_zero_of_r_beyond_float64s_squares_is_out_of_reach() -> None:
     tableau = ((Fraction(0),) * 2, (Fraction(1, 10**200), Fraction(0)))
     far = Method("far", RungeKutta(tableau, (Fraction(0), Fraction(1))), "constructed")  # R = 1 + mu + 1e-200 mu^2

@@ -28,7 +28,7 @@ from tests.stability.made_methods import multistep
 METHODS = ["B2", "B4", "AB4", "ABM3", "RK1", "RK4", "SIE", "SYM"]
 
 
-QUICK = {"RK1", "SYM", "B2"}
+QUICK = {"RK1", "SYM"}
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,8 @@
 import contextlib
+from collections.abc import Sequence
 from decimal import ROUND_DOWN, ROUND_HALF_EVEN, Decimal
 from fractions import Fraction
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -20,6 +22,14 @@ from tests.reference.fifty_digit_poles import poles_with_errors
 
 F = Fraction
 NAMES = [*REGISTRY, "RK4@5"]
+LONG = {"B6", "B7", "B8", "B9", "B10", "B11", "AB6", "AB7"}
+"""Methods of many steps, whose polynomials are long: B12 and AB8 are looked at each time, these in make test-slow."""
+
+
+def by_length(names: Sequence[str]) -> list[Any]:
+    """Return the names as parameters, the long ones marked as slow."""
+    return [pytest.param(name, marks=[pytest.mark.slow] if name in LONG else []) for name in names]
+
 
 TABLE_5 = {  # paper, as printed: real, imaginary part, modulus, angle
     ("B4", "0.1", "0.1"): "0.898 0.299 0.947 18.45",
@@ -73,7 +83,7 @@ POINTS = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", by_length(NAMES))
 def test_poles_agree_with_fifty_digits(name: str) -> None:
     method = lookup(name)
     with mpmath.workdps(50):
@@ -135,7 +145,10 @@ def test_the_verdict_is_right_on_the_boundary_itself(name: str, alpha_hat: Fract
         assert sides == {"converges", "diverges"}
 
 
-@pytest.mark.parametrize("name", [name for name in REGISTRY if isinstance(lookup(name).scheme, LinearMultistep)])
+MULTISTEP = [name for name in REGISTRY if isinstance(lookup(name).scheme, LinearMultistep)]
+
+
+@pytest.mark.parametrize("name", by_length(MULTISTEP))
 @given(st.fractions(F(1, 100), F(99, 100), max_denominator=1000), st.booleans())
 @settings(max_examples=10, deadline=None)
 def test_only_the_exact_verdict_knows_the_straight_edges(name: str, part: Fraction, along_alpha: bool) -> None:

@@ -278,7 +278,11 @@ USERS = [
 ]
 
 
-@pytest.mark.parametrize("method", USERS, ids=lambda method: method.name)
+@pytest.mark.parametrize(
+    "method",
+    [pytest.param(method, marks=[pytest.mark.slow] if number > 2 else []) for number, method in enumerate(USERS)],
+    ids=lambda method: method.name,
+)
 @pytest.mark.parametrize("level", [1.0, pytest.param(0.8, marks=pytest.mark.slow)])
 def test_user_made_methods_have_the_sliced_area(method: Method, level: float) -> None:
     shape = region(method, level)

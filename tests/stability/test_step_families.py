@@ -23,6 +23,7 @@ def extrapolated(values: list[float], n: list[int]) -> float:
     return float(np.polynomial.Polynomial.fit(1 / np.array(n), values, len(n) - 1)(0))
 
 
+@pytest.mark.slow
 def test_the_limit_is_where_the_family_tends() -> None:
     """Second route: the exact areas and optima of B5 to B12, extrapolated in 1/n."""
     found, limit = family_members("bezier", 5, 12), bezier_limit()
