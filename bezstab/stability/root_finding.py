@@ -5,6 +5,9 @@ from the Newton polygon, and its roots start Aberth's iteration for the others. 
 can be followed by Newton's method alone (`followed_roots`), which is several times faster.
 """
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 
 from bezstab.stability.arrays import ComplexArray, FloatArray
@@ -184,6 +187,20 @@ def _repulsion(z: ComplexArray) -> ComplexArray:
     return repulsion
 
 
+def newton_correction(coefficients: Sequence[Any], y: ComplexArray) -> ComplexArray:
+    """Return Newton's correction p(y) / p'(y), of the shape of y, by Horner's rule.
+
+    The coefficients, two at least, are ascending: numbers, or arrays of the shape of y.
+    """
+    value = coefficients[-1] * y + coefficients[-2]
+    slope = coefficients[-1]
+    for coefficient in coefficients[-3::-1]:
+        slope = slope * y + value
+        value = value * y + coefficient
+    correction: ComplexArray = value / slope
+    return correction
+
+
 def followed_roots(table: FloatArray, x: ComplexArray, starts: ComplexArray, bound: FloatArray) -> ComplexArray:
     """Return the roots y that Newton's method reaches from the starts; nan where not settled, or not above the bound.
 
@@ -192,12 +209,7 @@ def followed_roots(table: FloatArray, x: ComplexArray, starts: ComplexArray, bou
     coefficients = [horner(row, x) if row[1:].any() else row[0] for row in table]
     y = starts
     for _ in range(NEWTON_STEPS):
-        value = coefficients[-1] * y + coefficients[-2]
-        slope = coefficients[-1]
-        for coefficient in coefficients[-3::-1]:
-            slope = slope * y + value
-            value = value * y + coefficient
-        step = value / slope
+        step = newton_correction(coefficients, y)
         y = y - step
         settled = np.abs(step) <= CONVERGED * np.abs(y)
         if settled.all():
