@@ -3,7 +3,10 @@
 From exact numbers upwards; a file imports only from those above it:
 
     schur               where a polynomial's roots lie, proven in exact arithmetic
+    second_order        schemes for x'' = a(x, x') as a list of linear equations
+    recipes             such equations as text
     schemes             the kinds of methods as frozen data that checks itself
+    second_order_forms  every scheme written as a second-order one
     families            Bezier, Adams-Bashforth and their predictor-corrector pairs, by number of steps
     one_step_methods    Runge-Kutta methods and symplectic Euler
     method_files        a user's method, from TOML
@@ -21,6 +24,7 @@ from typing import TYPE_CHECKING
 from bezstab.lazy import lazy_names
 from bezstab.methods.families import adams_bashforth, adams_bashforth_moulton, bezier
 from bezstab.methods.method_files import read_method
+from bezstab.methods.recipes import recipe
 from bezstab.methods.registry import REGISTRY, lookup
 from bezstab.methods.schemes import (
     Family,
@@ -30,9 +34,12 @@ from bezstab.methods.schemes import (
     PredictorCorrector,
     RungeKutta,
     evaluations,
+    implicit,
     steps,
 )
 from bezstab.methods.schur import Polynomial, Verdict, is_schur, recursion_verdict
+from bezstab.methods.second_order import Assignment, Combination, Evaluation, PlaneTable, Quantity, SecondOrder
+from bezstab.methods.second_order_forms import second_order_form
 
 if TYPE_CHECKING:
     from bezstab.methods.derivation import (
@@ -46,6 +53,7 @@ if TYPE_CHECKING:
         characteristic_polynomial,
         closed_loop_at,
         closed_loop_polynomial,
+        closed_loop_table,
         coefficient_table,
         feedback_matrix,
         feedback_polynomial,
@@ -67,6 +75,7 @@ DERIVED = {
         "characteristic_polynomial",
         "closed_loop_at",
         "closed_loop_polynomial",
+        "closed_loop_table",
         "coefficient_table",
         "feedback_matrix",
         "feedback_polynomial",
@@ -85,15 +94,21 @@ __all__ = [
     "BETA_HAT",
     "MU",
     "REGISTRY",
+    "Assignment",
+    "Combination",
+    "Evaluation",
     "Family",
     "H",
     "LinearMultistep",
     "Method",
     "Partitioned",
+    "PlaneTable",
     "Polynomial",
     "PredictorCorrector",
+    "Quantity",
     "RungeKutta",
     "S",
+    "SecondOrder",
     "Verdict",
     "Z",
     "accuracy",
@@ -105,18 +120,22 @@ __all__ = [
     "characteristic_text",
     "closed_loop_at",
     "closed_loop_polynomial",
+    "closed_loop_table",
     "coefficient_table",
     "evaluations",
     "feedback_matrix",
     "feedback_polynomial",
     "fixed_poles",
+    "implicit",
     "is_schur",
     "lookup",
     "mapping_equations",
     "mapping_text",
     "read_method",
+    "recipe",
     "recursion_text",
     "recursion_verdict",
+    "second_order_form",
     "steps",
     "without_shared_factor",
 ]

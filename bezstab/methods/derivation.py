@@ -8,6 +8,7 @@ from fractions import Fraction
 from functools import cache
 
 import sympy as sp
+from sympy.polys.matrices import DomainMatrix
 
 from bezstab.methods.schemes import (
     ONE,
@@ -19,6 +20,7 @@ from bezstab.methods.schemes import (
     PredictorCorrector,
     RungeKutta,
 )
+from bezstab.methods.second_order import PlaneTable, SecondOrder
 
 Z, MU, ALPHA_HAT, BETA_HAT, S, H = sp.symbols("z mu alpha_hat beta_hat s h")
 
@@ -37,10 +39,12 @@ def multistep_polynomial(scheme: LinearMultistep) -> sp.Expr:
 
 @cache
 def characteristic_polynomial(method: Method) -> sp.Poly:
-    """Return pi(z, mu), monic in z, of one step on y' = lambda y, mu = h lambda, h the length of that step.
+    """Return pi(z, mu) of one step on y' = lambda y, mu = h lambda, h the length of that step.
 
-    Multistep: rho - mu sigma. Runge-Kutta: z - R(mu), R = 1 + mu b^T (I - mu A)^-1 1. PECE: the corrector's pi with
-    the predictor's value in place of the new one. Partitioned: that of the velocity map.
+    Multistep: rho - mu sigma. Runge-Kutta: z - R(mu), R = 1 + mu b^T (I - mu A)^-1 1, times det(I - mu A), which is one
+    for an explicit method. PECE: the corrector's pi with the predictor's value in place of the new one. Partitioned:
+    that of the velocity map. Monic in z for mu = 0; for every mu unless implicit.
+    TypeError for a second-order scheme, which treats position and velocity differently and has no mu.
     """
     match method.scheme:
         case LinearMultistep() as scheme:
@@ -48,16 +52,21 @@ def characteristic_polynomial(method: Method) -> sp.Poly:
         case PredictorCorrector(predictor, corrector):
             expression = multistep_polynomial(corrector) + corrector.sigma[0] * MU * multistep_polynomial(predictor)
         case RungeKutta(tableau, weights):
-            # Each K_i is lambda y_k times a polynomial in mu. `stages` holds those found so far; zip stops there, and
-            # what is left of a row is on or above the diagonal, zero.
-            stages: list[sp.Expr] = []
-            for row in tableau:
-                earlier = sp.Add(*(a * stage for a, stage in zip(row, stages, strict=False)))
-                stages.append(sp.expand(1 + MU * earlier))
-            expression = Z - 1 - MU * sp.Add(*(b * stage for b, stage in zip(weights, stages, strict=True)))
+            # det(I - mu A + mu 1 b^T) / det(I - mu A) = R(mu) (Hairer & Wanner II, Proposition IV.3.2)
+            denominator = sp.eye(len(weights)) - MU * sp.Matrix(tableau)
+            numerator = denominator + MU * sp.ones(len(weights), 1) * sp.Matrix([weights])
+            expression = Z * _determinant(denominator) - _determinant(numerator)
         case Partitioned(velocity=velocity):
             expression = multistep_polynomial(velocity)
+        case SecondOrder():
+            raise TypeError(f"{method.name}: a second-order scheme has no pi(z, mu)")
     return sp.Poly(expression, Z, MU, domain="QQ")
+
+
+def _determinant(matrix: sp.Matrix) -> sp.Expr:
+    """Return the determinant of a matrix of polynomials in mu, without dividing (Berkowitz)."""
+    *_, constant = DomainMatrix.from_Matrix(matrix).convert_to(sp.QQ[MU]).charpoly()
+    return sp.QQ[MU].to_sympy(constant) * (-1) ** matrix.rows
 
 
 @cache
@@ -81,22 +90,67 @@ def feedback_polynomial(method: Method) -> sp.Poly:
 
 @cache
 def closed_loop_polynomial(method: Method) -> sp.Poly:
-    """Return P(z; alpha_hat, beta_hat), monic in z; the constraint error's poles are its roots.
+    """Return P(z; alpha_hat, beta_hat); the constraint error's poles are its roots.
 
     P = Res_mu(pi, feedback) is zero exactly at those z for which some mu satisfies both: in other words it is, up to a
     factor, the product of pi(z, mu) over the two mu that the feedback asks for. Paper Eq. 17 for B2; for a multistep
-    method it is rho^2 + alpha_hat rho sigma + beta_hat sigma^2.
+    method it is rho^2 + alpha_hat rho sigma + beta_hat sigma^2. For a second-order scheme it is the determinant of its
+    equations. Monic in z for an explicit method; else its leading coefficient is one at alpha_hat = beta_hat = 0.
     """
+    ring = sp.QQ[ALPHA_HAT, BETA_HAT]
+    if isinstance(method.scheme, SecondOrder):
+        return sp.Poly(_expression_of(closed_loop_table(method)), Z, domain=ring)
     pi = characteristic_polynomial(method).as_expr()
     resultant = sp.resultant(feedback_polynomial(method).as_expr(), pi, MU)
-    return sp.Poly(sp.expand(resultant), Z, domain=sp.QQ[ALPHA_HAT, BETA_HAT]).monic()
+    polynomial = sp.Poly(sp.expand(resultant), Z, domain=ring)
+    return polynomial.mul_ground(1 / polynomial.LC().subs({ALPHA_HAT: 0, BETA_HAT: 0}))
+
+
+def _expression_of(table: PlaneTable) -> sp.Expr:
+    return sp.Add(*(
+        coefficient * Z**k * ALPHA_HAT**i * BETA_HAT**j
+        for k, in_plane in enumerate(table)
+        for i, in_beta in enumerate(in_plane)
+        for j, coefficient in enumerate(in_beta)
+    ))  # fmt: skip
+
+
+@cache
+def closed_loop_table(method: Method) -> PlaneTable:
+    """Return C with P = sum_kij C[k][i][j] z^k alpha_hat^i beta_hat^j, exact, in the user's alpha_hat and beta_hat."""
+    if isinstance(method.scheme, SecondOrder):
+        m = method.step_multiple
+        return tuple(
+            tuple(tuple(c * m ** (i + 2 * j) for j, c in enumerate(row)) for i, row in enumerate(in_plane))
+            for in_plane in method.scheme.table
+        )
+    polynomial = sp.Poly(closed_loop_polynomial(method).as_expr(), Z, ALPHA_HAT, BETA_HAT)
+    return tuple(
+        tuple(
+            tuple(
+                Fraction(polynomial.coeff_monomial(Z**k * ALPHA_HAT**i * BETA_HAT**j))
+                for j in range(polynomial.degree(BETA_HAT) + 1)
+            )
+            for i in range(polynomial.degree(ALPHA_HAT) + 1)
+        )
+        for k in range(polynomial.degree(Z) + 1)
+    )
 
 
 def closed_loop_at(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> list[Fraction]:
     """Return the exact coefficients of P(z), in descending powers, at one point.
 
-    The same as `closed_loop_polynomial` there, without the cost of a symbolic resultant.
+    The same as `closed_loop_polynomial` there, up to a factor, without the cost of a symbolic resultant. The first is
+    zero where a root is infinite: there an implicit step has no solution.
     """
+    if isinstance(method.scheme, SecondOrder):
+        return [
+            sum(
+                (c * alpha_hat**i * beta_hat**j for i, row in enumerate(in_plane) for j, c in enumerate(row)),
+                ZERO,
+            )
+            for in_plane in reversed(closed_loop_table(method))
+        ]
     # The feedback is mu^2 + p mu + q = 0 with roots mu_1, mu_2. Modulo it every power of mu is u + v mu, hence
     # pi = A(z) + B(z) mu at either root, and P is the product of the two (the norm of pi):
     #     (A + B mu_1) (A + B mu_2) = A^2 - p A B + q B^2,   as mu_1 + mu_2 = -p and mu_1 mu_2 = q.
@@ -164,7 +218,7 @@ def mapping_equations(method: Method) -> list[sp.Equality]:
     """Return the s->z mapping as equations between s and z (paper Eq. 14, Table 1); h is the user's step.
 
     One equation solved for s for a multistep method, for z for a Runge-Kutta method, left implicit for PECE, and two
-    (position, then velocity) for a partitioned method.
+    (position, then velocity) for a partitioned method; none for a second-order scheme, which has no such mapping.
     """
     h = method.step_multiple * H
     match method.scheme:
@@ -173,7 +227,11 @@ def mapping_equations(method: Method) -> list[sp.Equality]:
         case Partitioned(position, velocity):
             return [_solved_for_s(position, h), _solved_for_s(velocity, h)]
         case RungeKutta():
-            return [sp.Eq(Z, (Z - characteristic_polynomial(method).as_expr()).subs(MU, h * S))]
+            pi = sp.Poly(characteristic_polynomial(method).as_expr(), Z)
+            growth = -pi.nth(0) / pi.nth(1)
+            return [sp.Eq(Z, growth.subs(MU, h * S))]
+        case SecondOrder():
+            return []
         case PredictorCorrector():
             pi = sp.collect(sp.expand(characteristic_polynomial(method).as_expr()), MU, sp.factor)
             return [sp.Eq(pi.subs(MU, h * S), 0)]

@@ -1,11 +1,12 @@
-"""Explicit integration methods as exact, frozen data that checks itself at birth.
+"""Integration methods as exact, frozen data that checks itself at birth.
 
 A scheme is a formula, a method a scheme with its name, source, family and step:
 
-    LinearMultistep      rho(E) y = h sigma(E) f                          B4, AB4, explicit Euler
+    LinearMultistep      rho(E) y = h sigma(E) f                          B4, AB4, BDF2, trapezoidal rule
     PredictorCorrector   two of them: predict, evaluate, correct          ABM4
-    RungeKutta           stages by a Butcher tableau A, weights b         RK4, SIE
+    RungeKutta           stages by a Butcher tableau A, weights b         RK4, SIE, SDIRK2
     Partitioned          one map for velocities, one for positions        SYM
+    SecondOrder          equations for x, v, a and helpers                Verlet, Newmark (second_order.py)
 """
 
 from dataclasses import dataclass
@@ -13,6 +14,7 @@ from fractions import Fraction
 
 from bezstab.errors import InputError
 from bezstab.methods.schur import recursion_verdict
+from bezstab.methods.second_order import SecondOrder
 
 Coefficients = tuple[Fraction, ...]
 
@@ -77,7 +79,7 @@ class PredictorCorrector:
 
 @dataclass(frozen=True)
 class RungeKutta:
-    """An explicit Runge-Kutta method by its Butcher tableau (A strictly lower triangular, weights b).
+    """A Runge-Kutta method by its Butcher tableau; explicit where A is strictly lower triangular.
 
         0    |
         a_21 | 0             K_i = f(y_k + h sum_j a_ij K_j)
@@ -85,7 +87,7 @@ class RungeKutta:
         -----+-----------
              | b_1 b_2 b_3
 
-    InputError unless it is explicit and consistent (the weights sum to one).
+    InputError unless it is consistent (the weights sum to one).
     """
 
     tableau: tuple[Coefficients, ...]
@@ -95,10 +97,13 @@ class RungeKutta:
         stages = len(self.weights)
         if stages == 0 or len(self.tableau) != stages or any(len(row) != stages for row in self.tableau):
             raise InputError(f"A must be square with a row for each of the {stages} weights b")
-        if any(a != 0 for i, row in enumerate(self.tableau) for a in row[i:]):
-            raise InputError("implicit: A has an entry on or above its diagonal")
         if sum(self.weights) != 1:
             raise InputError(f"inconsistent: the weights b sum to {sum(self.weights)}, not 1")
+
+    @property
+    def implicit(self) -> bool:
+        """Whether some stage needs itself or a later one: an entry of A on or above the diagonal."""
+        return any(a != 0 for i, row in enumerate(self.tableau) for a in row[i:])
 
 
 @dataclass(frozen=True)
@@ -116,7 +121,7 @@ class Partitioned:
             raise InputError("a partitioned method needs one-step maps, that of the velocity explicit")
 
 
-Scheme = LinearMultistep | PredictorCorrector | RungeKutta | Partitioned
+Scheme = LinearMultistep | PredictorCorrector | RungeKutta | Partitioned | SecondOrder
 
 
 @dataclass(frozen=True)
@@ -136,8 +141,9 @@ class Method:
     """A scheme with its name and source; each of its steps spans `step_multiple` of the user's h (RK4@5: five).
 
     `family` is None for a scheme that belongs to no family known here. It takes part in equality, as what is
-    remembered for a method (a start, a colour) may depend on it.
-    InputError for an implicit multistep scheme and for a step multiple outside 1e-6 to 1e6.
+    remembered for a method (a start, a colour) may depend on it. `digits`: irrational coefficients have been replaced
+    by rationals good to so many digits, which is what is proven about; None where the coefficients are the method's.
+    InputError for a step multiple outside 1e-6 to 1e6.
     """
 
     name: str
@@ -145,10 +151,9 @@ class Method:
     source: str
     step_multiple: Fraction = ONE
     family: Family | None = None
+    digits: int | None = None
 
     def __post_init__(self) -> None:
-        if isinstance(self.scheme, LinearMultistep) and self.scheme.implicit:
-            raise InputError("implicit: the leading coefficient of sigma is not 0")
         if not LEAST_STEP_MULTIPLE <= self.step_multiple <= LARGEST_STEP_MULTIPLE:
             raise InputError(f"step multiple {float(self.step_multiple):g}: expected 1e-6 to 1e6")
 
@@ -162,10 +167,24 @@ def steps(method: Method) -> int:
             return scheme.steps
         case RungeKutta() | Partitioned():
             return 1
+        case SecondOrder() as scheme:
+            return 1 - scheme.oldest
+
+
+def implicit(method: Method) -> bool:
+    """Return whether a step has to solve equations for what it evaluates at."""
+    match method.scheme:
+        case LinearMultistep() | RungeKutta() | SecondOrder() as scheme:
+            return scheme.implicit
+        case PredictorCorrector() | Partitioned():
+            return False
 
 
 def evaluations(method: Method) -> int:
-    """Return the number of right-hand-side evaluations in one step of the method, whatever its step multiple."""
+    """Return the number of right-hand-side evaluations in one step of the method, whatever its step multiple.
+
+    Of an implicit method: for one iteration.
+    """
     match method.scheme:
         case LinearMultistep() | Partitioned():
             return 1
@@ -173,3 +192,5 @@ def evaluations(method: Method) -> int:
             return 2
         case RungeKutta(weights=weights):
             return len(weights)
+        case SecondOrder() as scheme:
+            return scheme.evaluations

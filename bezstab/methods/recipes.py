@@ -1,0 +1,172 @@
+"""Second-order schemes as text: `x1 = "x0 + v0 + 1/2 a0"`, a linear grammar of sums. Nothing is executed.
+
+equation       quantity = sum   |   quantity = acceleration(sum, sum)
+sum            [+-] product { +- product }
+product        [number [*]] quantity   |   [number [*]] ( sum )   |   quantity / number
+number         1/2, 0.5, 3                             exact
+quantity       x1, v0, a[-1]                           position, velocity, acceleration at a numbered step
+               vh, vh[0]                               a helper, of this step and of the one before
+"""
+
+import re
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import NoReturn
+
+from bezstab.errors import InputError
+from bezstab.methods.second_order import (
+    ACCELERATION,
+    ONE,
+    POSITION,
+    VELOCITY,
+    Assignment,
+    Combination,
+    Equation,
+    Evaluation,
+    Quantity,
+    SecondOrder,
+)
+from bezstab.rationals import rational
+
+TOKEN = re.compile(
+    r"\s*(?:(?P<number>\d+(?:\.\d*)?(?:/\d+)?)|(?P<name>[A-Za-z_]\w*)(?P<index>\[\s*-?\d{1,3}\s*\])?|(?P<sign>[-+*/(),]))"
+)
+NUMBERED = re.compile(rf"([{POSITION}{VELOCITY}{ACCELERATION}])(\d+)")
+FUNCTION = "acceleration"
+LONGEST = 2000  # characters of one equation
+DEEPEST = 20  # parentheses within each other
+
+
+def recipe(equations: Mapping[str, str]) -> SecondOrder:
+    """Return the scheme of equations given as text, result by right-hand side; h = 1.
+
+    InputError, naming the equation and the word, for what is not linear, and what `SecondOrder` refuses.
+    """
+    return SecondOrder(tuple(_equation(result, text) for result, text in equations.items()))
+
+
+def _equation(result: str, text: str) -> Equation:
+    left = _Reader(result, result)
+    quantity = left.quantity()
+    left.expect_end()
+    right = _Reader(result, text)
+    if right.take_name(FUNCTION):
+        right.expect("(")
+        position = right.sum()
+        right.expect(",")
+        velocity = right.sum()
+        right.expect(")")
+        right.expect_end()
+        return Evaluation(quantity, position, velocity)
+    value = right.sum()
+    right.expect_end()
+    return Assignment(quantity, value)
+
+
+class _Reader:
+    """The words of one text, read from left to right."""
+
+    def __init__(self, result: str, text: str) -> None:
+        self.result = result
+        self.words: list[re.Match[str]] = []
+        self.place = 0
+        self.depth = 0
+        if len(text) > LONGEST:
+            raise InputError(f"{result[:LONGEST]}: {len(text)} characters: expected at most {LONGEST}")
+        end = len(text.rstrip())
+        position = 0
+        while position < end:
+            word = TOKEN.match(text, position)
+            if word is None:
+                self._refuse(repr(text[position:].strip()[0]), "a sum of numbers times quantities")
+            self.words.append(word)
+            position = word.end()
+
+    def _refuse(self, found: str, expected: str) -> NoReturn:
+        raise InputError(f"{self.result} = ...: found {found}, expected {expected}")
+
+    def _next(self) -> str:
+        """Return the next word, '' at the end."""
+        return self.words[self.place].group().strip() if self.place < len(self.words) else ""
+
+    def _shown(self) -> str:
+        return repr(self._next()) if self._next() else "the end"
+
+    def take(self, word: str) -> bool:
+        """Return whether the next word is this one, and go past it if so."""
+        if self._next() != word:
+            return False
+        self.place += 1
+        return True
+
+    take_name = take
+
+    def expect(self, word: str) -> None:
+        """Go past a word that must be there."""
+        if not self.take(word):
+            self._refuse(self._shown(), repr(word))
+
+    def expect_end(self) -> None:
+        """Refuse what stands after the end."""
+        if self._next():
+            self._refuse(self._shown(), "+, - or the end")
+
+    def sum(self) -> Combination:
+        """Return a sum of products, equal quantities added up."""
+        total: dict[Quantity, Fraction] = {}
+        sign = -ONE if self.take("-") else ONE
+        if sign == ONE:
+            self.take("+")
+        while True:
+            for coefficient, quantity in self.product():
+                total[quantity] = total.get(quantity, Fraction(0)) + sign * coefficient
+            if self.take("+"):
+                sign = ONE
+            elif self.take("-"):
+                sign = -ONE
+            else:
+                return tuple((coefficient, quantity) for quantity, coefficient in total.items() if coefficient)
+
+    def product(self) -> Combination:
+        """Return a number times a quantity or times a sum in parentheses."""
+        factor = ONE
+        if self.place < len(self.words) and self.words[self.place].group("number"):
+            factor = rational(self._next())
+            self.place += 1
+            self.take("*")
+        if self.take("("):
+            self.depth += 1
+            if self.depth > DEEPEST:
+                self._refuse("'('", f"at most {DEEPEST} parentheses within each other")
+            inner = self.sum()
+            self.expect(")")
+            self.depth -= 1
+        else:
+            inner = ((ONE, self.quantity()),)
+        while self.take("/"):
+            divisor = rational(self._next()) if self._next()[:1].isdigit() else Fraction(0)
+            if not divisor:
+                self._refuse(self._shown(), "a number other than 0 to divide by")
+            self.place += 1
+            factor /= divisor
+        return tuple((factor * coefficient, quantity) for coefficient, quantity in inner)
+
+    def quantity(self) -> Quantity:
+        """Return the quantity that the next word names."""
+        word = self.words[self.place] if self.place < len(self.words) else None
+        if word is None or not word.group("name"):
+            self._refuse(self._shown(), "a quantity such as x0, v1 or a helper's name")
+        name, index = word.group("name"), word.group("index")
+        self.place += 1
+        numbered = NUMBERED.fullmatch(name)
+        if name == FUNCTION:
+            self._refuse(f"{FUNCTION!r}", f"a sum: {FUNCTION}(position, velocity) stands alone on the right")
+        if numbered and index is None:
+            return Quantity(numbered.group(1), int(numbered.group(2)))
+        if name in (POSITION, VELOCITY, ACCELERATION):
+            if index is None:
+                self._refuse(f"{name!r}", f"a step with it, such as {name}0, {name}1 or {name}[-1]")
+            return Quantity(name, int(index[1:-1]))
+        if numbered:
+            self._refuse(f"{word.group().strip()!r}", f"{numbered.group(1)}{index}")
+        return Quantity(name, 1 if index is None else int(index[1:-1]))
