@@ -9,6 +9,7 @@ from functools import cache
 
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
+from sympy.polys.rings import PolyElement, ring
 
 from bezstab.methods.schemes import (
     ONE,
@@ -24,17 +25,27 @@ from bezstab.methods.second_order import PlaneTable, SecondOrder
 
 Z, MU, ALPHA_HAT, BETA_HAT, S, H = sp.symbols("z mu alpha_hat beta_hat s h")
 
+RING, RING_Z, RING_MU, RING_ALPHA, RING_BETA = ring("z, mu, alpha_hat, beta_hat", sp.QQ)
+"""Exact polynomials by their coefficients: sums of sympy's symbols would do, but take a tenth of a second to begin."""
+
 Table = tuple[Coefficients, ...]
 
 
-def _in_z(coefficients: Coefficients) -> sp.Expr:
+def _in_z(coefficients: Coefficients) -> PolyElement:
     """Return the polynomial in z with these coefficients in descending powers."""
-    return sp.Add(*(a * Z**power for power, a in enumerate(reversed(coefficients))))
+    polynomial = RING.zero
+    for a in coefficients:
+        polynomial = polynomial * RING_Z + _in_ring(a)
+    return polynomial
 
 
-def multistep_polynomial(scheme: LinearMultistep) -> sp.Expr:
+def _in_ring(a: Fraction) -> PolyElement:
+    return RING.ground_new(sp.QQ(a.numerator, a.denominator))
+
+
+def multistep_polynomial(scheme: LinearMultistep) -> PolyElement:
     """Return rho(z) - mu sigma(z)."""
-    return _in_z(scheme.rho) - MU * _in_z(scheme.sigma)
+    return _in_z(scheme.rho) - RING_MU * _in_z(scheme.sigma)
 
 
 @cache
@@ -48,25 +59,28 @@ def characteristic_polynomial(method: Method) -> sp.Poly:
     """
     match method.scheme:
         case LinearMultistep() as scheme:
-            expression = multistep_polynomial(scheme)
+            pi = multistep_polynomial(scheme)
         case PredictorCorrector(predictor, corrector):
-            expression = multistep_polynomial(corrector) + corrector.sigma[0] * MU * multistep_polynomial(predictor)
+            new_weight = _in_ring(corrector.sigma[0])
+            pi = multistep_polynomial(corrector) + new_weight * RING_MU * multistep_polynomial(predictor)
         case RungeKutta(tableau, weights):
             # det(I - mu A + mu 1 b^T) / det(I - mu A) = R(mu) (Hairer & Wanner II, Proposition IV.3.2)
-            denominator = sp.eye(len(weights)) - MU * sp.Matrix(tableau)
-            numerator = denominator + MU * sp.ones(len(weights), 1) * sp.Matrix([weights])
-            expression = Z * _determinant(denominator) - _determinant(numerator)
+            stages = range(len(weights))
+            rows = [[RING(int(i == j)) - RING_MU * _in_ring(tableau[i][j]) for j in stages] for i in stages]
+            with_weights = [[rows[i][j] + RING_MU * _in_ring(weights[j]) for j in stages] for i in stages]
+            pi = RING_Z * _determinant(rows) - _determinant(with_weights)
         case Partitioned(velocity=velocity):
-            expression = multistep_polynomial(velocity)
+            pi = multistep_polynomial(velocity)
         case SecondOrder():
             raise TypeError(f"{method.name}: a second-order scheme has no pi(z, mu)")
-    return sp.Poly(expression, Z, MU, domain="QQ")
+    return sp.Poly.from_dict({(k, j): c for (k, j, _, _), c in pi.items()}, Z, MU, domain=sp.QQ)
 
 
-def _determinant(matrix: sp.Matrix) -> sp.Expr:
-    """Return the determinant of a matrix of polynomials in mu, without dividing (Berkowitz)."""
-    *_, constant = DomainMatrix.from_Matrix(matrix).convert_to(sp.QQ[MU]).charpoly()
-    return sp.QQ[MU].to_sympy(constant) * (-1) ** matrix.rows
+def _determinant(rows: list[list[PolyElement]]) -> PolyElement:
+    """Return the determinant of a matrix of polynomials, without dividing (Berkowitz)."""
+    size = len(rows)
+    *_, constant = DomainMatrix(rows, (size, size), RING.to_domain()).charpoly()
+    return constant * (-1) ** size
 
 
 @cache
@@ -76,16 +90,21 @@ def feedback_polynomial(method: Method) -> sp.Poly:
     Monic in mu, coefficients in QQ[alpha_hat, beta_hat]. Position and velocity maps s_1 and s_2 of a partitioned method
     differ: there it is the numerator of (h s_1)(mu + alpha_hat) + beta_hat with z eliminated by the velocity map.
     """
-    feedback: sp.Expr = MU * (MU + ALPHA_HAT) + BETA_HAT
+    m = _in_ring(method.step_multiple)
+    feedback = RING_MU * (RING_MU + RING_ALPHA) + RING_BETA
     if isinstance(method.scheme, Partitioned):
         position, velocity = method.scheme.position, method.scheme.velocity
         # h s_1 = rho/sigma of the position, so that rho (mu + alpha_hat) + beta_hat sigma = 0, where mu = h s_2 is a
         # function of z. The resultant over z is zero exactly where some z satisfies this and the velocity map.
-        numerator = _in_z(position.rho) * (MU + ALPHA_HAT) + BETA_HAT * _in_z(position.sigma)
-        feedback = sp.resultant(multistep_polynomial(velocity), numerator, Z)
-    m = method.step_multiple
-    scaled = feedback.subs({ALPHA_HAT: m * ALPHA_HAT, BETA_HAT: m**2 * BETA_HAT}, simultaneous=True)
-    return sp.Poly(sp.expand(scaled), MU, domain=sp.QQ[ALPHA_HAT, BETA_HAT]).monic()
+        numerator = _in_z(position.rho) * (RING_MU + RING_ALPHA) + RING_BETA * _in_z(position.sigma)
+        feedback = multistep_polynomial(velocity).resultant(numerator).set_ring(RING)
+    feedback = feedback.quo_ground(feedback.coeff(RING_MU**2))
+    feedback = feedback.compose([(RING_ALPHA, m * RING_ALPHA), (RING_BETA, m**2 * RING_BETA)])
+    plane = sp.QQ[ALPHA_HAT, BETA_HAT]
+    by_power: dict[tuple[int], PolyElement] = {}
+    for (_, j, *in_plane), c in feedback.items():
+        by_power[(j,)] = by_power.get((j,), plane.zero) + plane.ring.term_new(tuple(in_plane), c)
+    return sp.Poly.from_dict(by_power, MU, domain=plane)
 
 
 @cache
@@ -189,8 +208,9 @@ def feedback_matrix(method: Method) -> Table:
 
     The identity for most; it holds the step multiple, and for a partitioned method the difference of its two maps.
     """
-    _, *coefficients = (sp.Poly(c, ALPHA_HAT, BETA_HAT) for c in feedback_polynomial(method).all_coeffs())
-    return tuple(tuple(Fraction(c.coeff_monomial(x)) for x in (ALPHA_HAT, BETA_HAT)) for c in coefficients)
+    by_power = feedback_polynomial(method).rep.to_dict()
+    p, q = (by_power.get((j,), {}) for j in (1, 0))
+    return tuple(tuple(_fraction(c.get(x, 0)) for x in ((1, 0), (0, 1))) for c in (p, q))
 
 
 @cache
@@ -201,10 +221,14 @@ def coefficient_table(method: Method) -> Table:
 
 def table_of(pi: sp.Poly) -> Table:
     """Return the coefficients of a polynomial in z and mu: C[k][j] belongs to z^k mu^j."""
+    terms = pi.rep.to_dict()
     return tuple(
-        tuple(Fraction(pi.coeff_monomial(Z**k * MU**j)) for j in range(pi.degree(MU) + 1))
-        for k in range(pi.degree(Z) + 1)
+        tuple(_fraction(terms.get((k, j), 0)) for j in range(pi.degree(MU) + 1)) for k in range(pi.degree(Z) + 1)
     )
+
+
+def _fraction(c: sp.Rational) -> Fraction:
+    return Fraction(int(c.numerator), int(c.denominator))
 
 
 def branch_polynomial(method: Method) -> tuple[Fraction, ...]:
@@ -239,6 +263,6 @@ def mapping_equations(method: Method) -> list[sp.Equality]:
 
 def _solved_for_s(scheme: LinearMultistep, h: sp.Expr) -> sp.Equality:
     """Return s = rho / (h sigma), rho factored, and whole numbers but for one factor in front (as the paper prints)."""
-    rho_factor, numerator = sp.factor(_in_z(scheme.rho)).as_content_primitive()
-    sigma_factor, denominator = _in_z(scheme.sigma).as_content_primitive()
+    rho_factor, numerator = sp.factor(_in_z(scheme.rho).as_expr()).as_content_primitive()
+    sigma_factor, denominator = _in_z(scheme.sigma).as_expr().as_content_primitive()
     return sp.Eq(S, rho_factor / sigma_factor * numerator / (h * denominator))

@@ -41,7 +41,7 @@ def accuracy(method: Method) -> tuple[int, Fraction]:
 
 
 def _multistep_error(scheme: LinearMultistep) -> tuple[int, Fraction]:
-    return _leading_error(table_of(sp.Poly(multistep_polynomial(scheme), Z, MU)))
+    return _leading_error(table_of(sp.Poly(multistep_polynomial(scheme).as_expr(), Z, MU)))
 
 
 def _leading_error(table: Table) -> tuple[int, Fraction]:
