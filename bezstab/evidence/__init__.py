@@ -6,6 +6,7 @@ The only room in which stability and mechanism meet. A file imports only from th
     chunk_stores        where finished chunks are kept, under a lock
     chunks              long work in chunks, spread over workers, kept as they arrive
     linear_prediction   the dominant pole in a sampled response, or why none can be told
+    moving_mechanisms   what a mechanism's motion does to its poles, to first order
     measured_poles      predicted against measured poles of a running mechanism
     verdict_maps        simulated verdicts over the plane against |z_p| < 1
     mujoco_witness      an engine that is not ours must diverge where the map says
@@ -33,6 +34,7 @@ from bezstab.evidence.chunks import ATTEMPTS, completed_chunks
 from bezstab.evidence.extremes import Check, extreme_checks
 from bezstab.evidence.linear_prediction import SPREAD, Fit, Refusal, fit_dominant_pole
 from bezstab.evidence.measured_poles import CLOSE, LINEAR, Measurement, measure_poles, random_points
+from bezstab.evidence.moving_mechanisms import MovingPole, growth_rates, momentary_rates, moving_pole
 from bezstab.evidence.mujoco_witness import TIMES, model_xml, mujoco_witnesses, witness_count
 from bezstab.evidence.pareto import pareto_front
 from bezstab.evidence.reference_motions import ReferenceMotion, reference_motion
@@ -54,6 +56,7 @@ __all__ = [
     "Fit",
     "MapRows",
     "Measurement",
+    "MovingPole",
     "ReferenceMotion",
     "Refusal",
     "Run",
@@ -65,10 +68,13 @@ __all__ = [
     "completed_chunks",
     "extreme_checks",
     "fit_dominant_pole",
+    "growth_rates",
     "map_rows",
     "measure_poles",
     "measured_runs",
     "model_xml",
+    "momentary_rates",
+    "moving_pole",
     "mujoco_witnesses",
     "pareto_front",
     "random_points",

@@ -12,6 +12,7 @@ From data upwards; a file imports only from those above it:
     observation         what the constraints do along a history
     start               consistent initial states, and perturbed ones
     runner              runs of a method with feedback, and what ends one early
+    turning_normals     how fast the directions of the constraints turn along a motion
     simulation          a run and its observation as one value
 """
 
@@ -41,6 +42,7 @@ from bezstab.mechanism.scenes import (
 )
 from bezstab.mechanism.simulation import Simulation, simulated
 from bezstab.mechanism.start import constraint_errors, initial_state, perturbed_state
+from bezstab.mechanism.turning_normals import TurningNormals, turning_normals
 
 __all__ = [
     "COORDINATES",
@@ -61,6 +63,7 @@ __all__ = [
     "Start",
     "T",
     "Trajectory",
+    "TurningNormals",
     "compiled_mechanism",
     "compiled_source",
     "constraint_errors",
@@ -78,4 +81,5 @@ __all__ = [
     "simulate",
     "simulated",
     "stepper_code",
+    "turning_normals",
 ]

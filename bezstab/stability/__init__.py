@@ -40,6 +40,7 @@ from bezstab.stability.pencils import Pencil, pencil_of, roots_in_z
 from bezstab.stability.regions import Extent, Region, pole_place, region, window
 from bezstab.stability.searches import first_where
 from bezstab.stability.step_families import FAMILIES, Limit, Member, bezier_limit, family_members
+from bezstab.stability.turning import turning_sensitivity
 
 __all__ = [
     "EPS",
@@ -73,6 +74,7 @@ __all__ = [
     "roots_in_z",
     "spectral_radius",
     "stability_margins",
+    "turning_sensitivity",
     "verdict",
     "window",
 ]

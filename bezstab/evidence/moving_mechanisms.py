@@ -1,0 +1,111 @@
+r"""What the motion of a mechanism does to the poles at rest, to first order in omega h: rates of growth with bands.
+
+Along the motion each pole z of the map carries errors w_n = z^n Y(n h), where Y' = chi K(t) Y: K(t) says how the normals
+of the constraints turn (`mechanism.turning_normals`), chi how the method takes it (`stability.turning`).
+
+    |z|   worst      - - - - - - - - -   |z| exp(h max_t max Re(chi eig K)): for moments only
+          moving     ------------------  |z| exp(h Lambda): over the motion, Lambda = ln(growth of Y) / duration
+          at rest    . . . . . . . . .   the map
+
+Over a closed motion the integral of tr K is zero, so det Y = 1 and Lambda >= 0: the motion never helps.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bezstab.mechanism import TurningNormals
+from bezstab.methods import Method
+from bezstab.stability import ComplexArray, FloatArray, poles, turning_sensitivity
+
+SLOWEST = 1e-3  # of |z_p|: a pole so much smaller dies out within a step, whatever the motion does to it
+BEYOND_FIRST_ORDER = 0.5  # |chi| kappa h: from here on the terms left out are as large as those kept
+
+
+@dataclass(frozen=True)
+class MovingPole:
+    """The dominant pole of a moving mechanism at one point; everything is per step of the method, dimensionless.
+
+    `z_abs`: at rest. `chi_abs`: |chi| of the pole that grows most over the motion. `z_abs_moving`: its rate over the
+    motion. `z_abs_worst`: the largest momentary rate of any pole. `kappa`: in 1/s. `double`: another pole is so near
+    that the first-order law fails; then both rates are widened by the factor exp((kappa h)^(1/2)). `settled`: all of
+    the band, and the second-order terms that were left out, are on one side of one.
+    """
+
+    z_abs: float
+    kappa: float
+    chi_abs: float
+    z_abs_moving: float
+    z_abs_worst: float
+    double: bool
+    settled: bool
+
+
+def growth_rates(turning: TurningNormals, chi: ArrayLike) -> FloatArray:
+    """Return Lambda (1/s), shape of chi: how fast Y' = chi K(t) Y grows over the motion.
+
+    Over a revolution: of the spectral radius of Y. Over a run, which has no such thing: of Y's norm, errors measured by
+    the displacement they stand for. Runge and Kutta's rule for linear equations, K at every second sample in the
+    middle of a step.
+    """
+    chi = np.asarray(chi, complex)
+    size = turning.rates.shape[1]
+    step = 2 * turning.duration / (len(turning.rates) - 1)
+    factor = chi[..., np.newaxis, np.newaxis]
+    grown: ComplexArray = np.broadcast_to(np.eye(size, dtype=complex), (*chi.shape, size, size))
+    ends = turning.rates[::2]
+    for (start, end), middle in zip(pairwise(ends), turning.rates[1::2], strict=True):
+        first = factor * (start @ grown)
+        second = factor * (middle @ (grown + step / 2 * first))
+        third = factor * (middle @ (grown + step / 2 * second))
+        fourth = factor * (end @ (grown + step * third))
+        grown = grown + step / 6 * (first + 2 * second + 2 * third + fourth)
+    if turning.closed:
+        growth = np.abs(np.linalg.eigvals(grown)).max(axis=-1)
+    else:
+        before, after = (np.linalg.cholesky(metric) for metric in turning.metric)
+        growth = np.linalg.norm(np.linalg.solve(after, grown @ before), ord=2, axis=(-2, -1))
+    return np.asarray(np.log(growth) / turning.duration)
+
+
+def momentary_rates(turning: TurningNormals, chi: ArrayLike) -> FloatArray:
+    """Return the largest real part of chi times an eigenvalue of K(t) along the motion (1/s); shape of chi."""
+    eigenvalues = np.linalg.eigvals(turning.rates).ravel()
+    return np.asarray((np.multiply.outer(np.asarray(chi, complex), eigenvalues)).real.max(axis=-1))
+
+
+def moving_pole(method: Method, turning: TurningNormals, h: float, alpha_hat: float, beta_hat: float) -> MovingPole:
+    """Return what becomes of the poles at one point on a mechanism that moves, h in s.
+
+    Theory: the first-order law of the moving mechanism (docstring of this file). NumericalError if a pole leaves the
+    range of float64.
+    """
+    z = poles(method, alpha_hat, beta_hat)
+    z = z[np.abs(z) > SLOWEST * np.abs(z[0])] if z[0] else z[:1]
+    step = h * float(method.step_multiple)
+    turned = turning.kappa * step
+    chi = turning_sensitivity(method, alpha_hat, beta_hat, z)
+    apart = np.abs(z[:, np.newaxis] - z) + np.where(np.eye(len(z)), np.inf, 0.0)
+    near_another = apart.min(axis=1) < np.sqrt(turned) * np.abs(z)
+    beyond = ~(np.abs(chi) * turned < BEYOND_FIRST_ORDER)
+    double = bool((near_another | beyond)[0])
+    usable = np.where(np.isfinite(chi), chi, 0)
+    at_rest = np.log(np.abs(z))
+    moving = at_rest + step * growth_rates(turning, usable)
+    worst = at_rest + step * momentary_rates(turning, usable)
+    leading = int(np.argmax(moving))
+    widened = np.sqrt(turned) if double else 0.0
+    rate, highest = float(moving[leading]), max(float(worst.max()), float(moving[leading])) + widened
+    left_out = (float(np.abs(usable[leading])) * turned) ** 2
+    settled = not double and (highest < -left_out or rate > left_out)
+    return MovingPole(
+        z_abs=float(np.abs(z[0])),
+        kappa=turning.kappa,
+        chi_abs=float(np.abs(chi[leading])),
+        z_abs_moving=float(np.exp(rate)),
+        z_abs_worst=float(np.exp(highest)),
+        double=double,
+        settled=bool(settled),
+    )

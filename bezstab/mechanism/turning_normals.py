@@ -1,0 +1,118 @@
+r"""How fast the directions of the constraints turn along a motion: K = Cdot_q G, in the metric of the masses.
+
+A constraint's direction in coordinate space is its row of C_q. Along a motion it turns, and what the feedback has put
+right in the old directions is off in the new ones:
+
+        rows of C_q at t        rows of C_q at t + h
+              |                      /
+              |                     /       G = M^-1 C_q^T S^-1 leads from constraint errors w to the displacement
+              |                    /        dq = G w that the constraint forces make; C_q(t + h) G(t) = 1 + h K
+        ------+------         ----/-----
+
+K is m x m, in 1/s. The roots mu and poles z of the feedback move by it to first order (`stability.turning`).
+"""
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bezstab.errors import InputError, NumericalError
+from bezstab.mechanism.compiled import Mechanism
+from bezstab.mechanism.runner import simulate
+from bezstab.mechanism.scenes import Driver
+from bezstab.mechanism.start import geometry
+from bezstab.methods import lookup
+from bezstab.units import feedback_gains
+
+FloatArray = NDArray[np.float64]
+
+COMPLEX_STEP = 1e-30  # of time: the derivative is exact to rounding, as nothing is subtracted
+SAMPLES = 400  # over the motion, an even number: K turns a few times a revolution, so its integrals are good to 1e-8
+STEPS_A_SAMPLE = 5  # of RK4, whose error over a revolution is then about 1e-10
+FEEDBACK = (1.0, 0.25)  # alpha_hat and beta_hat of that run: well inside RK4's region, double mu = -1/2
+CLOSED = 1e-6  # of the size of a coordinate: a motion that misses its start by more than RK4's error does not close
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class TurningNormals:
+    """K at equal steps along a motion that lasts `duration` (s): `rates` has shape (samples + 1, m, m), in 1/s.
+
+    `closed`: the motion is a revolution that begins anew. `metric` has S = C_q M^-1 C_q^T at both ends, shape
+    (2, m, m): a constraint error w has the size w^T S^-1 w, that of the displacement it stands for.
+    """
+
+    duration: float
+    rates: FloatArray
+    metric: FloatArray
+    closed: bool
+
+    @property
+    def kappa(self) -> float:
+        """The largest modulus of an eigenvalue of K along the motion (1/s)."""
+        return float(np.abs(np.linalg.eigvals(self.rates)).max())
+
+    def __repr__(self) -> str:
+        motion = "revolution" if self.closed else "run"
+        return f"TurningNormals(kappa = {self.kappa:.6g} 1/s over a {motion} of {self.duration:.6g} s)"
+
+
+@cache
+def turning_normals(mechanism: Mechanism, duration: float) -> TurningNormals:
+    """Return how the constraints turn: over one revolution if a driver turns at a constant rate, else over `duration`.
+
+    duration in s. InputError for a driven scene that is not where it began after a revolution; NumericalError if the
+    run that provides the motion breaks down.
+    """
+    period = _period(mechanism)
+    span = duration if period is None else period
+    step = span / (SAMPLES * STEPS_A_SAMPLE)
+    run = simulate(mechanism, lookup("RK4"), step, span, feedback_gains(*FEEDBACK, step))
+    if run.failure:
+        raise NumericalError(f"the motion of {mechanism.scene.name} breaks down {run.failure}")
+    if period is not None:
+        _check_closed(mechanism, run.q[0], run.q[-1], period)
+    sampled = slice(None, None, STEPS_A_SAMPLE)
+    rates, metrics = [], []
+    for t, q, v in zip(run.t[sampled], run.q[sampled], run.v[sampled], strict=True):
+        rate, metric = _rate(mechanism, float(t), q, v)
+        rates.append(rate)
+        metrics.append(metric)
+    return TurningNormals(
+        duration=span, rates=np.stack(rates), metric=np.stack([metrics[0], metrics[-1]]), closed=period is not None
+    )
+
+
+def _rate(mechanism: Mechanism, t: float, q: FloatArray, v: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return K and S at one moment; Cdot_q is C_q's derivative along the motion, by a complex step."""
+    at = geometry(mechanism)
+    jacobian = np.asarray(at.jacobian(q, t), float)
+    ahead = np.asarray(at.jacobian(q + 1j * COMPLEX_STEP * v, t + 1j * COMPLEX_STEP), complex)  # type: ignore[arg-type]
+    turning = ahead.imag / COMPLEX_STEP
+    by_forces = jacobian.T / np.array(mechanism.equations.mass, float)[:, np.newaxis]  # M^-1 C_q^T
+    metric = jacobian @ by_forces
+    return np.linalg.solve(metric, (turning @ by_forces).T).T, metric  # S is symmetric
+
+
+def _period(mechanism: Mechanism) -> float | None:
+    """Return how long one revolution of the drivers takes (s); None unless all turn at one constant rate."""
+    drivers = [joint for joint in mechanism.scene.joints if isinstance(joint, Driver)]
+    rates = {abs(driver.rate) for driver in drivers}
+    steady = all(driver.acceleration == 0 and driver.amplitude == 0 for driver in drivers)
+    if len(rates) != 1 or not steady or rates == {0.0}:
+        return None
+    return float(2 * np.pi / rates.pop())
+
+
+def _check_closed(mechanism: Mechanism, start: FloatArray, end: FloatArray, period: float) -> None:
+    """Raise InputError unless every coordinate is back after a revolution, an angle up to whole turns."""
+    for name, before, after in zip(mechanism.scene.coordinates, start, end, strict=True):
+        apart = abs(after - before)
+        if name.endswith(".theta"):
+            apart = abs((apart + np.pi) % (2 * np.pi) - np.pi)
+        if apart > CLOSED * max(1.0, abs(before)):
+            raise InputError(
+                f"{mechanism.scene.name}: {name} is off by {apart:.3g} after one revolution ({period:.6g} s): "
+                "expected a driven motion that begins anew"
+            )
