@@ -7,6 +7,7 @@ The only room in which stability and mechanism meet. A file imports only from th
     chunks              long work in chunks, spread over workers, kept as they arrive
     linear_prediction   the dominant pole in a sampled response, or why none can be told
     moving_mechanisms   what a mechanism's motion does to its poles, to first order
+    moving_regions      the region of a mechanism that moves
     measured_poles      predicted against measured poles of a running mechanism
     verdict_maps        simulated verdicts over the plane against |z_p| < 1
     mujoco_witness      an engine that is not ours must diverge where the map says
@@ -35,6 +36,7 @@ from bezstab.evidence.extremes import Check, extreme_checks
 from bezstab.evidence.linear_prediction import SPREAD, Fit, Refusal, fit_dominant_pole
 from bezstab.evidence.measured_poles import CLOSE, LINEAR, Measurement, measure_poles, random_points
 from bezstab.evidence.moving_mechanisms import MovingPole, growth_rates, momentary_rates, moving_pole
+from bezstab.evidence.moving_regions import MovingRegion, moving_growth, moving_region
 from bezstab.evidence.mujoco_witness import TIMES, model_xml, mujoco_witnesses, witness_count
 from bezstab.evidence.pareto import pareto_front
 from bezstab.evidence.reference_motions import ReferenceMotion, reference_motion
@@ -57,6 +59,7 @@ __all__ = [
     "MapRows",
     "Measurement",
     "MovingPole",
+    "MovingRegion",
     "ReferenceMotion",
     "Refusal",
     "Run",
@@ -74,7 +77,9 @@ __all__ = [
     "measured_runs",
     "model_xml",
     "momentary_rates",
+    "moving_growth",
     "moving_pole",
+    "moving_region",
     "mujoco_witnesses",
     "pareto_front",
     "random_points",

@@ -14,6 +14,7 @@ K is m x m, in 1/s. The roots mu and poles z of the feedback move by it to first
 
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,6 +54,16 @@ class TurningNormals:
         """The largest modulus of an eigenvalue of K along the motion (1/s)."""
         return float(np.abs(np.linalg.eigvals(self.rates)).max())
 
+    @property
+    def largest_norm(self) -> float:
+        """A bound on every rate that Y' = chi K(t) Y can grow at, for |chi| = 1 (1/s).
+
+        The largest spectral norm of K, each constraint's error in units of its own size at the start.
+        """
+        size = np.sqrt(np.diag(self.metric[0]))
+        scaled = self.rates / size[:, np.newaxis] * size
+        return float(np.linalg.norm(scaled, ord=2, axis=(1, 2)).max())
+
     def __repr__(self) -> str:
         motion = "revolution" if self.closed else "run"
         return f"TurningNormals(kappa = {self.kappa:.6g} 1/s over a {motion} of {self.duration:.6g} s)"
@@ -88,8 +99,8 @@ def _rate(mechanism: Mechanism, t: float, q: FloatArray, v: FloatArray) -> tuple
     """Return K and S at one moment; Cdot_q is C_q's derivative along the motion, by a complex step."""
     at = geometry(mechanism)
     jacobian = np.asarray(at.jacobian(q, t), float)
-    ahead = np.asarray(at.jacobian(q + 1j * COMPLEX_STEP * v, t + 1j * COMPLEX_STEP), complex)  # type: ignore[arg-type]
-    turning = ahead.imag / COMPLEX_STEP
+    ahead: Any = at.jacobian(q + 1j * COMPLEX_STEP * v, t + 1j * COMPLEX_STEP)  # type: ignore[arg-type]
+    turning = np.asarray(ahead.imag / COMPLEX_STEP, float)
     by_forces = jacobian.T / np.array(mechanism.equations.mass, float)[:, np.newaxis]  # M^-1 C_q^T
     metric = jacobian @ by_forces
     return np.linalg.solve(metric, (turning @ by_forces).T).T, metric  # S is symmetric

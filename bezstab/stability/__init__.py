@@ -22,7 +22,7 @@ From a method's polynomial in float64 (its pencil) upwards; a file imports only 
     step_families     methods by their number of steps, and their limit
 """
 
-from bezstab.stability.arrays import EPS, ComplexArray, FloatArray
+from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, FloatArray
 from bezstab.stability.best_points import BestPoint, best_point
 from bezstab.stability.choices import (
     THOUSANDFOLD,
@@ -48,6 +48,7 @@ __all__ = [
     "QUALITY",
     "THOUSANDFOLD",
     "BestPoint",
+    "BoolArray",
     "Choice",
     "ComplexArray",
     "Extent",

@@ -3,7 +3,8 @@ r"""What turning constraints do to a pole, to first order: delta z = z chi eps, 
 Seen from directions that stand still, an error w of constraints that turn by eps a step obeys the feedback with other
 gains. With X = (1 - t eps) w, its rate V in these directions and hcdot = V + eps X, h^2 cddot = A + 2 eps V there,
 
-    A + 2 eps V = -alpha_hat (V + eps X) - beta_hat X,    so    A = -(alpha_hat + 2 eps) V - (beta_hat + eps alpha_hat) X
+    A + 2 eps V = -alpha_hat (V + eps X) - beta_hat X,
+    A = -(alpha_hat + 2 eps) V - (beta_hat + eps alpha_hat) X,
 
 up to terms of second order. Whatever the integrator does with alpha_hat and beta_hat it does with these, and what it
 makes of X grows by (1 + eps) more a step when it is seen as w again:
@@ -16,46 +17,58 @@ chi = 1 - 1 / (z mu'(z)), mu' = -pi_z / pi_mu, which also holds where both mu ar
 For an exact integrator z = e^mu: chi = 0, as it must be.
 """
 
+from functools import cache
+
 import numpy as np
 from numpy.polynomial.polynomial import polyval2d
+from numpy.typing import ArrayLike
 
 from bezstab.methods import Method, Partitioned, SecondOrder, closed_loop_table
-from bezstab.stability.arrays import ComplexArray
+from bezstab.stability.arrays import ComplexArray, FloatArray
 from bezstab.stability.exact_sums import feedback_roots
 from bezstab.stability.pencils import pencil_of
 
 
-def turning_sensitivity(method: Method, alpha_hat: float, beta_hat: float, z: ComplexArray) -> ComplexArray:
-    """Return chi of poles z at one point: constraints that turn at K (1/s) change each by z chi h eig K.
+def turning_sensitivity(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike, z: ArrayLike) -> ComplexArray:
+    """Return chi of poles z: constraints that turn at K (1/s) change each by z chi h eig K.
 
-    Complex, shape of z, dimensionless; h is the length of the method's own step. Infinite at a double pole of one mu,
-    where the change is like the root of h K. Theory: the first-order law of the moving mechanism.
+    Complex, shape of alpha_hat, beta_hat and z broadcast, dimensionless; h is the length of the method's own step.
+    Infinite at a double pole of one mu, where the change is like the root of h K. Theory: the first-order law of the
+    moving mechanism.
     """
-    z = np.asarray(z, complex)
+    alpha_hat, beta_hat, z = np.broadcast_arrays(
+        np.asarray(alpha_hat, float), np.asarray(beta_hat, float), np.asarray(z, complex)
+    )
     with np.errstate(all="ignore"):
         if isinstance(method.scheme, SecondOrder | Partitioned):
             return _by_closed_loop(method, alpha_hat, beta_hat, z)
-        pencil = pencil_of(method)
-        roots = feedback_roots(pencil.feedback, np.array([alpha_hat]), np.array([beta_hat]))
-        mu = np.stack([np.broadcast_to(root, z.shape) for root in roots])
-        own = np.argmin(np.abs(polyval2d(np.broadcast_to(z, mu.shape), mu, pencil.table)), axis=0)
-        mu = np.take_along_axis(mu, own[np.newaxis], axis=0)[0]
-        slope_z = polyval2d(z, mu, pencil.table_by_z)
-        slope_mu = polyval2d(z, mu, pencil.table_by_mu)
-        return np.asarray(1 + slope_mu / (z * slope_z))
+        return _by_feedback_roots(method, alpha_hat, beta_hat, z)
 
 
-def _by_closed_loop(method: Method, alpha_hat: float, beta_hat: float, z: ComplexArray) -> ComplexArray:
-    """Return chi from P(z; alpha_hat, beta_hat) itself, per step of the user's h."""
-    by_z, by_alpha, by_beta = np.zeros_like(z), np.zeros_like(z), np.zeros_like(z)
-    for k, in_plane in enumerate(closed_loop_table(method)):
-        for i, in_beta in enumerate(in_plane):
-            for j, coefficient in enumerate(in_beta):
-                c = float(coefficient)
-                if not c:
-                    continue
-                by_z += k * c * z ** max(k - 1, 0) * alpha_hat**i * beta_hat**j
-                by_alpha += i * c * z**k * alpha_hat ** max(i - 1, 0) * beta_hat**j
-                by_beta += j * c * z**k * alpha_hat**i * beta_hat ** max(j - 1, 0)
-    step = float(method.step_multiple)  # a step of m h turns by m eps
-    return np.asarray(1 - (2 * by_alpha + alpha_hat * by_beta) / (step * z * by_z))
+def _by_feedback_roots(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, z: ComplexArray) -> ComplexArray:
+    """Return 1 + pi_mu / (z pi_z) at whichever root mu of the feedback each z belongs to."""
+    pencil = pencil_of(method)
+    mu = np.stack(feedback_roots(pencil.feedback, alpha_hat.ravel(), beta_hat.ravel())).reshape(2, *z.shape)
+    left_over = np.abs(polyval2d(np.broadcast_to(z, mu.shape), mu, pencil.table))
+    own = np.take_along_axis(mu, np.argmin(left_over, axis=0)[np.newaxis], axis=0)[0]
+    slope_z = polyval2d(z, own, pencil.table_by_z)
+    slope_mu = polyval2d(z, own, pencil.table_by_mu)
+    return np.asarray(1 + slope_mu / (z * slope_z))
+
+
+def _by_closed_loop(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, z: ComplexArray) -> ComplexArray:
+    """Return 1 - (2 P_alpha + alpha_hat P_beta) / (z P_z); a step of m h turns by m times as much as one of h."""
+    by_z, by_alpha, by_beta = (_value(table, z, alpha_hat, beta_hat) for table in _closed_loop_slopes(method))
+    return np.asarray(1 - (2 * by_alpha + alpha_hat * by_beta) / (float(method.step_multiple) * z * by_z))
+
+
+@cache
+def _closed_loop_slopes(method: Method) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the tables of P's derivatives by z, alpha_hat and beta_hat, indexed by powers in this order."""
+    table = np.array(closed_loop_table(method), float)
+    by_z, by_alpha, by_beta = (np.polynomial.polynomial.polyder(table, axis=axis) for axis in range(3))
+    return by_z, by_alpha, by_beta
+
+
+def _value(table: FloatArray, z: ComplexArray, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
+    return np.asarray(np.polynomial.polynomial.polyval3d(z, alpha_hat, beta_hat, table))

@@ -1,0 +1,132 @@
+r"""The region of a moving mechanism: where errors decay over its motion, inside the region at rest.
+
+      beta_hat
+        |        .-----.         outer curve: |z_p| = 1, the map's
+        |      .' .--.  '.       inner curve: |z| = exp(-h Lambda(chi(z))), this mechanism's: there the decay of a
+        |    .'  /    \   |      step is just what the motion takes back. It is found on lines of constant beta_hat,
+        |---/---x------x--/--    by bisecting between a point that decays and one that does not
+        |  /___/________\/
+        +----------------- alpha_hat
+
+To first order Lambda >= 0 over a closed motion, so that the inner curve is inside. The law does not hold where the
+dominant pole's angle is within a few omega h of 0 or 180 degrees: there it mixes with its conjugate. Such points are
+counted as the law says, and marked.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from bezstab.evidence.moving_mechanisms import tabulated_rates
+from bezstab.mechanism import TurningNormals
+from bezstab.methods import Method
+from bezstab.stability import BoolArray, FloatArray, dominant_pole, poles, region, turning_sensitivity, window
+
+LINES = 160  # of constant beta_hat, at Gauss and Legendre's nodes: the length of a line has kinks, so 1e-4 of the area
+SAMPLES = 241  # along a line; what is narrower than 1/240 of the window is not seen
+ALIKE = 4.0  # omega h: an angle so near to 0 or pi, in rad, is in an excluded sector
+HALVINGS = 20  # of a sample's width: 1e-6 of it, well below what the lines make of the area
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class MovingRegion:
+    """The region at rest and that of the moving mechanism, dimensionless; `h` (s) is the step.
+
+    `area_at_rest`, `area`: of both, over the quadrant that the window shows. `alpha_hat` and `beta_hat` are the axes of
+    a grid, `growth` ln|z| a step on it over the motion, `excluded` where the law does not hold; both of shape
+    (beta_hat.size, alpha_hat.size).
+    """
+
+    method: Method
+    h: float
+    area_at_rest: float | None
+    area: float
+    alpha_hat: FloatArray
+    beta_hat: FloatArray
+    growth: FloatArray
+    excluded: BoolArray
+
+    def __repr__(self) -> str:
+        return f"MovingRegion({self.method.name}: area {self.area:.6g} at h = {self.h:g} s)"
+
+
+def moving_growth(
+    method: Method, turning: TurningNormals, h: float, alpha_hat: FloatArray, beta_hat: FloatArray
+) -> FloatArray:
+    """Return ln|z| a step over the motion, of the pole that grows most; shape of alpha_hat and beta_hat broadcast.
+
+    h in s. Where a pole at rest is so far from one that no motion of this kappa could matter its value is that at rest.
+    """
+    z = poles(method, alpha_hat, beta_hat)
+    candidates = z[..., : min(4, z.shape[-1])]  # two conjugate pairs: what may come to lead
+    alpha_hat, beta_hat = np.broadcast_arrays(alpha_hat, beta_hat)
+    step = h * float(method.step_multiple)
+    chi = turning_sensitivity(method, alpha_hat[..., np.newaxis], beta_hat[..., np.newaxis], candidates)
+    chi = np.where(np.isfinite(chi), chi, 0)
+    with np.errstate(divide="ignore"):
+        at_rest = np.log(np.abs(candidates))
+    furthest = np.abs(chi) * turning.largest_norm * step
+    matters = (candidates.imag >= 0) & (np.abs(at_rest) < furthest) & np.isfinite(at_rest)
+    growth = np.array(at_rest)
+    growth[matters] += step * tabulated_rates(turning, chi[matters])
+    return np.asarray(growth.max(axis=-1))
+
+
+def moving_region(method: Method, turning: TurningNormals, h: float, points: int = SAMPLES) -> MovingRegion:
+    """Return the region of a mechanism that moves, by the first-order law; h in s, `points` per axis of its grid.
+
+    The area is that of the region at rest whose decay outlasts the motion, over the window that shows it.
+    NumericalError if a pole leaves the range of float64.
+    """
+    at_rest = region(method)
+    (alpha_low, alpha_high), (beta_low, beta_high) = window(at_rest)
+    nodes, weights = np.polynomial.legendre.leggauss(LINES)
+    lines = beta_low + (beta_high - beta_low) * (nodes + 1) / 2
+    lengths = _stable_lengths(method, turning, h, np.linspace(alpha_low, alpha_high, SAMPLES), lines)
+    alpha_hat = np.linspace(alpha_low, alpha_high, points)
+    beta_hat = np.linspace(beta_low, beta_high, points)
+    return MovingRegion(
+        method=method,
+        h=h,
+        area_at_rest=at_rest.area,
+        area=float((beta_high - beta_low) / 2 * weights @ lengths),
+        alpha_hat=alpha_hat,
+        beta_hat=beta_hat,
+        growth=moving_growth(method, turning, h, alpha_hat, beta_hat[:, np.newaxis]),
+        excluded=excluded_sectors(method, turning, h, alpha_hat, beta_hat[:, np.newaxis]),
+    )
+
+
+def _stable_lengths(
+    method: Method, turning: TurningNormals, h: float, samples: FloatArray, lines: FloatArray
+) -> FloatArray:
+    """Return the length that decays on each line of constant beta_hat, between changes that are bisected."""
+
+    def decays(alpha_hat: FloatArray, beta_hat: FloatArray) -> BoolArray:
+        decaying: BoolArray = moving_growth(method, turning, h, alpha_hat, beta_hat) < 0
+        return decaying
+
+    held = decays(samples, lines[:, np.newaxis])
+    row, step = np.nonzero(held[:, 1:] != held[:, :-1])
+    after = held[row, step + 1]
+    low, high = samples[step], samples[step + 1]
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2
+        beyond = decays(middle, lines[row]) == after
+        low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
+    lengths = np.where(held[:, -1], samples[-1], 0.0) - np.where(held[:, 0], samples[0], 0.0)
+    np.add.at(lengths, row, np.where(after, -high, high))
+    return lengths
+
+
+def excluded_sectors(
+    method: Method, turning: TurningNormals, h: float, alpha_hat: FloatArray, beta_hat: FloatArray
+) -> BoolArray:
+    """Return where the dominant pole's angle is so near 0 or pi that it mixes with its conjugate; shape broadcast.
+
+    Real poles, which have no conjugate, are not excluded.
+    """
+    angle = np.angle(dominant_pole(method, alpha_hat, beta_hat))
+    turned = ALIKE * 2 * np.pi / turning.duration * h * float(method.step_multiple)
+    excluded: BoolArray = ((angle > 0) & (angle < turned)) | ((angle > np.pi - turned) & (angle < np.pi))
+    return excluded
