@@ -24,7 +24,7 @@ from bezstab.mechanism.linear_equations import inverses, solution
 FloatArray = NDArray[np.float64]
 
 IMAGINARY_STEP = 1e-50
-MOST_ITERATIONS = 25  # two to four are usual; from far away Newton's method may first wander
+MOST_ITERATIONS = 15  # two to four are usual; from far away Newton's method may first wander
 TOLERANCE = 500.0  # roundings (1e-13 in float64) of X, V and A together: what h^2 acceleration cannot be relied upon
 FALL = 0.1  # of a correction to the next, with a Jacobian that is good enough to keep
 
@@ -121,42 +121,43 @@ def newton_solutions(
 ) -> tuple[tuple[FloatArray, ...], Any]:
     """Return the same for a batch: arrays of any broadcastable shapes. What does not converge is not a number there.
 
-    The points iterate together until the last of them has converged or failed; one that has converged stays put.
+    `situation` may hold arrays too. A point that has converged or failed is left out of what follows, so that a few
+    that run away cost the others nothing; the others' Jacobians are renewed together.
     """
-    entries = np.broadcast_arrays(*guess, *known, *situation)
-    unknown = np.array(entries[: len(guess)], np.float64)
-    size_of_known = np.abs(entries[len(guess) : len(guess) + len(known)]).sum(axis=0)
-    converged = np.zeros(unknown.shape[1:], bool)
-    last = np.full(unknown.shape[1:], np.inf)
+    entries = np.broadcast_arrays(*situation, *known, *guess)
+    batch = entries[0].shape
+    flat = np.array(entries, np.float64).reshape(len(entries), -1)
+    given, unknown = flat[: len(situation)], flat[len(flat) - len(guess) :]
+    known_parts = flat[len(situation) : len(flat) - len(guess)]
+    pivots = np.full(flat.shape[1], np.nan)
+    points = np.arange(flat.shape[1])  # that still iterate
+    last = np.full(flat.shape[1], np.inf)
     inverse: FloatArray | None = None
-    pivot: Any = 1.0
     for _ in range(MOST_ITERATIONS):
-        values, pivot = residual.real(*situation, known, unknown)
+        here = given[:, points], known_parts[:, points], unknown[:, points]
+        values, pivots[points] = residual.real(*here[0], *here[1:])
         if inverse is None:
-            inverse = _inverse_jacobians(residual, situation, known, unknown)
-        corrections = (inverse * np.array(np.broadcast_arrays(*values))[np.newaxis]).sum(axis=1)
-        unknown = np.where(converged, unknown, unknown - corrections)
+            inverse = _inverse_jacobians(residual, *here)
+        corrections = (inverse * np.array(values)).sum(axis=1)
+        unknown[:, points] -= corrections
         moved = np.abs(corrections).sum(axis=0)
-        converged |= moved <= tolerance * (size_of_known + np.abs(unknown).sum(axis=0))
-        waiting = ~converged & np.isfinite(moved)
+        size = np.abs(known_parts[:, points]).sum(axis=0) + np.abs(unknown[:, points]).sum(axis=0)
+        failed = ~np.isfinite(moved)
+        unknown[:, points[failed]] = np.nan
+        waiting = ~failed & (moved > tolerance * size)
         if not waiting.any():
+            points = points[waiting]
             break
-        if (moved > FALL * last)[waiting].any():
-            inverse = None
-        last = moved
-    return tuple(np.where(converged, unknown, np.nan)), pivot
+        renewed = (moved > FALL * last)[waiting].any()
+        inverse = None if renewed else inverse[:, :, waiting]
+        points, last = points[waiting], moved[waiting]
+    unknown[:, points] = np.nan
+    return tuple(unknown.reshape(len(guess), *batch)), pivots.reshape(batch)
 
 
-def _inverse_jacobians(
-    residual: Residual, situation: Sequence[Any], known: Sequence[Any], unknown: FloatArray
-) -> FloatArray:
-    """Return the inverse Jacobian of each point, shape (m, m, *batch), by complex steps along an axis of their own."""
-    size = len(unknown)
-    batch = unknown.shape[1:]
-    directions = np.eye(size).reshape(size, size, *(1 for _ in batch))
-    shifted = [entry + IMAGINARY_STEP * 1j * direction for entry, direction in zip(unknown, directions, strict=True)]
-    columns = [
-        np.broadcast_to(np.imag(value) / IMAGINARY_STEP, (size, *batch))
-        for value in residual.complex(*situation, known, shifted)
-    ]
-    return inverses(np.stack(columns))
+def _inverse_jacobians(residual: Residual, situation: FloatArray, known: FloatArray, unknown: FloatArray) -> FloatArray:
+    """Return the inverse Jacobian of each point, shape (m, m, points), by complex steps along an axis of their own."""
+    directions = np.eye(len(unknown))[:, :, np.newaxis]
+    shifted = unknown[:, np.newaxis] + IMAGINARY_STEP * 1j * directions
+    rows = residual.complex(*situation, known, shifted)
+    return inverses(np.stack(rows).imag / IMAGINARY_STEP)

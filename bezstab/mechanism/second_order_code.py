@@ -285,14 +285,16 @@ def _residual_function(
     for own, evaluation in enumerate(evaluations):
         positions, velocities = (
             [
-                " + ".join([
-                    f"K{(2 * own + part) * coordinates + i}",
-                    *(
-                        _product_text(terms[unknown], f"U{other * coordinates + i}")
-                        for other, unknown in enumerate(unknowns)
-                        if terms.get(unknown)
-                    ),
-                ])
+                " + ".join(
+                    [
+                        f"K{(2 * own + part) * coordinates + i}",
+                        *(
+                            _product_text(terms[unknown], f"U{other * coordinates + i}")
+                            for other, unknown in enumerate(unknowns)
+                            if terms.get(unknown)
+                        ),
+                    ]
+                )
                 for i in range(coordinates)
             ]
             for part, terms in enumerate(
