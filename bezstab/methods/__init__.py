@@ -13,6 +13,7 @@ From exact numbers upwards; a file imports only from those above it:
     registry            every built-in method by name
     derivation          by sympy: s->z mapping, characteristic polynomial, closed loop
     shared_factors      poles that no feedback moves
+    plane_edges         where a second-order scheme's plane turns from stable to unstable, exactly
     orders              order of accuracy and error constant
     formulas            all that as text or LaTeX
 
@@ -61,7 +62,8 @@ if TYPE_CHECKING:
     )
     from bezstab.methods.formulas import characteristic_text, mapping_text, recursion_text
     from bezstab.methods.orders import accuracy
-    from bezstab.methods.shared_factors import fixed_poles, without_shared_factor
+    from bezstab.methods.plane_edges import CurveTable, PlaneStrips, Strip, plane_strips
+    from bezstab.methods.shared_factors import fixed_poles, free_table, without_shared_factor
 
 DERIVED = {
     "derivation": (
@@ -83,7 +85,8 @@ DERIVED = {
     ),
     "formulas": ("characteristic_text", "mapping_text", "recursion_text"),
     "orders": ("accuracy",),
-    "shared_factors": ("fixed_poles", "without_shared_factor"),
+    "plane_edges": ("CurveTable", "PlaneStrips", "Strip", "plane_strips"),
+    "shared_factors": ("fixed_poles", "free_table", "without_shared_factor"),
 }
 """What is loaded when first used, by module."""
 
@@ -96,12 +99,14 @@ __all__ = [
     "REGISTRY",
     "Assignment",
     "Combination",
+    "CurveTable",
     "Evaluation",
     "Family",
     "H",
     "LinearMultistep",
     "Method",
     "Partitioned",
+    "PlaneStrips",
     "PlaneTable",
     "Polynomial",
     "PredictorCorrector",
@@ -109,6 +114,7 @@ __all__ = [
     "RungeKutta",
     "S",
     "SecondOrder",
+    "Strip",
     "Verdict",
     "Z",
     "accuracy",
@@ -126,11 +132,13 @@ __all__ = [
     "feedback_matrix",
     "feedback_polynomial",
     "fixed_poles",
+    "free_table",
     "implicit",
     "is_schur",
     "lookup",
     "mapping_equations",
     "mapping_text",
+    "plane_strips",
     "read_method",
     "recipe",
     "recursion_text",
