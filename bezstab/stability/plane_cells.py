@@ -19,19 +19,24 @@ from fractions import Fraction
 import numpy as np
 
 from bezstab.errors import NumericalError
-from bezstab.methods import PlaneStrips, Strip
-from bezstab.stability.arrays import FloatArray
+from bezstab.methods import CurveTable, PlaneStrips, Strip
+from bezstab.stability.arrays import ComplexArray, FloatArray
+from bezstab.stability.exact_sums import double_polynomial, split
 from bezstab.stability.searches import zoom_on_minimum
 
 POLISH = 3  # steps of Newton's method on a root that companion eigenvalues have to a few eps of the largest
 SETTLED = 1e-4  # of a root: a larger step does not polish but leads away
+EIGENVALUE_ERROR = 1e-13  # of the largest root: beyond what eigenvalues leave of a small one
+REFINED = 1e-6  # of a root: what float64 may be off by, unless two roots meet
 QUADRATURE_STEP = 1 / 16  # of tanh-sinh, in whose plane integrands with roots at their ends are analytic
 QUADRATURE_END = 3.2  # beyond it the weights are below 1e-16
-AGREEING = 1e-6  # of the area: half the nodes so near to all say that all are good to its square
+AGREEING = 1e-9  # of an integral: half the nodes so near to all say that all are good to rounding
+NEGLIGIBLE = 1e-14  # of the area: a part that is off by less need not be halved
 MOST_HALVINGS = 12  # of a strip in which a singularity lies close
 DRAWN = 160  # points of an edge along its strip
 TURN_ROUNDS = 12  # of zooming on an edge's furthest point: its place to 1e-8 leaves its value at rounding
 NEAR_LEVEL = 1e-10  # of a strip: so near to a level crossings that are lost are far from the others
+BESIDE_LEVEL = 1e-13  # of a strip: nearer to a level, a crossing that is lost there may show at the wrong infinity
 JOINED = 1e-6  # of what is seen: two roots that meet are known to the root of rounding
 LEAST_VIEW = 4.0  # alpha_hat and beta_hat: of a region without corners but the origin, that much is shown
 OUT_OF_VIEW = 3.0  # times what is to be seen: curves that go on are drawn so far
@@ -67,29 +72,50 @@ class PlaneShape:
 
 
 class Edges:
-    """The edges of all strips as functions of beta_hat, in float64."""
+    """The edges of all strips as functions of beta_hat, in float64; a strip is known by its lower end."""
 
     def __init__(self, strips: PlaneStrips) -> None:
-        self.tables = [np.array(curve, float) for curve in strips.curves]
-        self.counts: dict[tuple[float, int], int] = {}
+        self._split = [_split(curve) for curve in strips.curves]
+        self.tables = [np.array(curve)[:, :, 0] for curve in self._split]
+        self._slopes = [np.polynomial.polynomial.polyder(table, axis=0) for table in self.tables]
+        self._counts: dict[tuple[float, int], int] = {}
+        self._spans: dict[tuple[float, int], tuple[float, float]] = {}
         for strip in strips.strips:
-            for number in range(len(self.tables)):
-                self.counts[_end(strip.low, -1), number] = sum(crossing[0] == number for crossing in strip.crossings)
-
-    def all_places(self, number: int, low: float, beta_hat: FloatArray) -> FloatArray:
-        """Return alpha_hat of a curve's crossings with lines in the strip that begins at low; shape (crossings, lines).
-
-        Ascending; infinite where a crossing is lost.
-        """
-        count = self.counts[low, number]
-        table = self.tables[number]
-        coefficients = np.stack([np.polynomial.polynomial.polyval(beta_hat, row) for row in table])
-        return _real_roots(coefficients, count)
+            low, high = _end(strip.low, -1), _end(strip.high, 1)
+            for number, lost in enumerate(strips.lost):
+                self._counts[low, number] = sum(crossing[0] == number for crossing in strip.crossings)
+                width = high - low if np.isfinite(high - low) else 1.0
+                off = [BESIDE_LEVEL * max(width, abs(end)) if np.isfinite(end) else 0.0 for end in (low, high)]
+                self._spans[low, number] = (
+                    low + (off[0] if strip.low in lost else 0.0),
+                    high - (off[1] if strip.high in lost else 0.0),
+                )
 
     def places(self, crossing: Crossing, low: float, beta_hat: FloatArray) -> FloatArray:
-        """Return alpha_hat of one crossing with lines in the strip that begins at low."""
+        """Return alpha_hat of one crossing with lines in the strip that begins at low; the shape of beta_hat.
+
+        On a level at which a crossing of the same curve is lost, it is taken just beside, in the strip.
+        """
         number, k = crossing
-        return np.asarray(self.all_places(number, low, beta_hat)[k])
+        levels = np.clip(beta_hat, *self._spans[low, number])
+        coefficients = np.stack([np.polynomial.polynomial.polyval(levels, row) for row in self.tables[number]])
+        return np.asarray(_real_roots(coefficients, self._counts[low, number])[k])
+
+    def exact_places(self, crossing: Crossing, low: float, beta_hat: FloatArray) -> FloatArray:
+        """Return what `places` does, to rounding: one more step of Newton's method with the curve's exact value."""
+        number, _ = crossing
+        place = self.places(crossing, low, beta_hat)
+        high, rest = double_polynomial(self._split[number], place, beta_hat)
+        slope = np.polynomial.polynomial.polyval2d(place, beta_hat, self._slopes[number])
+        with np.errstate(all="ignore"):
+            step = (high + rest) / slope
+        return place - np.where(np.abs(step) < REFINED * np.abs(place), step, 0)
+
+
+def _split(curve: CurveTable) -> list[list[tuple[float, float]]]:
+    """Return a curve's coefficients as sums of two float64, the largest one: they may have hundreds of digits."""
+    largest = max(abs(c) for row in curve for c in row)
+    return [[split(c / largest) for c in row] for row in curve]
 
 
 def _end(level: Fraction | None, sign: int) -> float:
@@ -101,6 +127,8 @@ def _real_roots(coefficients: FloatArray, count: int) -> FloatArray:
     with np.errstate(all="ignore"):
         if len(coefficients) == 2:
             return np.asarray(-coefficients[:1] / coefficients[1])
+        if len(coefficients) == 3:
+            return _quadratic_places(*coefficients)
         monic = coefficients[:-1] / coefficients[-1]
         n, lines = monic.shape
         lost = ~np.isfinite(monic).all(axis=0)
@@ -108,9 +136,8 @@ def _real_roots(coefficients: FloatArray, count: int) -> FloatArray:
         companion[:, range(1, n), range(n - 1)] = 1
         companion[:, :, -1] = -np.where(lost, 0, monic).T
         roots = np.linalg.eigvals(companion)
-        realness = np.abs(roots.imag) / np.maximum(np.abs(roots), np.finfo(float).tiny)
-        chosen = np.argsort(realness, axis=1, kind="stable")[:, :count]
-        x = np.sort(np.take_along_axis(roots.real, chosen, axis=1), axis=1).T
+        x = np.sort(_most_real(roots, count), axis=1).T
+        allowed = np.maximum(SETTLED * np.abs(x), EIGENVALUE_ERROR * np.abs(roots).max(axis=1))
         for _ in range(POLISH):
             value = np.broadcast_to(coefficients[-1], x.shape)
             slope = np.zeros_like(x)
@@ -118,8 +145,32 @@ def _real_roots(coefficients: FloatArray, count: int) -> FloatArray:
                 slope = slope * x + value
                 value = value * x + coefficient
             step = value / slope
-            x = x - np.where(np.abs(step) < SETTLED * np.abs(x), step, 0)
+            x = x - np.where(np.abs(step) < allowed, step, 0)
         return np.where(lost, np.inf, x)
+
+
+def _quadratic_places(constant: FloatArray, linear: FloatArray, square: FloatArray) -> FloatArray:
+    """Return both real roots, ascending: touching where rounding makes the discriminant negative."""
+    further = -(linear / 2 + np.copysign(np.sqrt(np.maximum(0, linear**2 / 4 - square * constant)), linear))
+    roots = np.stack([further / square, np.where(further == 0, 0, constant / further)])
+    return np.where(np.isfinite(roots).all(axis=0), np.sort(roots, axis=0), np.inf)
+
+
+def _most_real(roots: ComplexArray, count: int) -> FloatArray:
+    """Return of each line's roots those so many that are real; shape (lines, count).
+
+    Near a level rounding may turn a close pair of real roots into a conjugate one, or the other way about.
+    """
+    real = roots.imag == 0
+    order = np.argsort(np.abs(roots.imag), axis=1, kind="stable")
+    chosen = np.take_along_axis(roots.real, order[:, :count], axis=1)
+    for line in np.flatnonzero(real.sum(axis=1) > count):
+        x = np.sort(roots[line].real[real[line]])
+        while len(x) > count + 1:
+            closest = int(np.argmin(np.diff(x)))
+            x = np.delete(x, [closest, closest + 1])
+        chosen[line] = x[:count]
+    return chosen
 
 
 def plane_shape(strips: PlaneStrips, name: str) -> PlaneShape | None:
@@ -234,7 +285,7 @@ def _furthest(
     edges: Edges, crossing: Crossing, strip_low: float, low: float, high: float, sign: int
 ) -> tuple[float, float]:
     """Return the point of an edge between two levels that lies furthest to the right (sign 1) or left (-1)."""
-    found, value = zoom_on_minimum(
+    found, _ = zoom_on_minimum(
         lambda points: -sign * edges.places(crossing, strip_low, np.clip(points[:, 0], low, high)),
         np.array([(low + high) / 2]),
         np.array([(high - low) / 2]),
@@ -242,14 +293,15 @@ def _furthest(
         shrink=0.25,
         rounds=TURN_ROUNDS,
     )
-    return -sign * float(value), float(found[0])
+    place = edges.exact_places(crossing, strip_low, np.clip(found, low, high))
+    return float(place[0]), float(found[0])
 
 
 def _extent(cells: tuple[Cell, ...], corners: FloatArray) -> Extent:
     """Return the ranges of alpha_hat and beta_hat, infinite where there is no limit."""
     left = -np.inf if any(cell.goes_left for cell in cells) else float(corners[:, 0].min())
     right = np.inf if any(cell.goes_right for cell in cells) else float(corners[:, 0].max())
-    return (left, right), (min(cell.low for cell in cells), max(cell.high for cell in cells))
+    return (left + 0.0, right + 0.0), (min(cell.low for cell in cells), max(cell.high for cell in cells))
 
 
 def _view(cells: tuple[Cell, ...], corners: FloatArray) -> Extent:
@@ -270,20 +322,24 @@ def _area(edges: Edges, cells: tuple[Cell, ...], name: str) -> float:
     def width(cell: Cell, beta_hat: FloatArray) -> FloatArray:
         assert cell.left is not None
         assert cell.right is not None
-        return edges.places(cell.right, cell.low, beta_hat) - edges.places(cell.left, cell.low, beta_hat)
+        left, right = (edges.exact_places(wall, cell.low, beta_hat) for wall in (cell.left, cell.right))
+        return right - left
+
+    def terms(cell: Cell, low: float, high: float) -> FloatArray:
+        beta_hat, weights = tanh_sinh(low, high)
+        return weights * width(cell, beta_hat)
 
     def integral(cell: Cell, low: float, high: float, halvings: int) -> float:
-        beta_hat, weights = tanh_sinh(low, high)
-        terms = weights * width(cell, beta_hat)
-        total, from_half = float(terms.sum()), 2 * float(terms[::2].sum())
-        size = float(np.abs(terms).sum())
-        if abs(total - from_half) <= AGREEING * size:
+        of_nodes = terms(cell, low, high)
+        total, from_half = float(of_nodes.sum()), 2 * float(of_nodes[::2].sum())
+        if abs(total - from_half) <= max(AGREEING * float(np.abs(of_nodes).sum()), NEGLIGIBLE * whole):
             return total
         if halvings == 0:
             raise NumericalError(f"{name}: the area between beta_hat = {low:.6g} and {high:.6g} cannot be integrated")
         middle = (low + high) / 2
-        return integral(cell, low, middle, halvings - 1) + integral(cell, middle, high, halvings - 1)
+        return sum(integral(cell, *half, halvings - 1) for half in ((low, middle), (middle, high)))
 
+    whole = sum(float(terms(cell, cell.low, cell.high).sum()) for cell in cells)
     return sum(integral(cell, cell.low, cell.high, MOST_HALVINGS) for cell in cells)
 
 

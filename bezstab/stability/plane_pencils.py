@@ -5,35 +5,35 @@ of these schemes, which a formula gives, or three, or as many as it looks back.
 """
 
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cache
 
 import numpy as np
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method, PlaneTable, closed_loop_table
+from bezstab.methods import Method, closed_loop_table
 from bezstab.stability.arrays import ComplexArray, FloatArray
-from bezstab.stability.exact_sums import two_product, two_sum
+from bezstab.stability.exact_sums import double_polynomial, double_product, double_sum, split
 from bezstab.stability.low_degrees import cubic_parts, largest_quadratic_root, quadratic_roots
 from bezstab.stability.root_finding import CHUNK, roots_of_rows
 
 CANCELS = 1e-4  # of (b/2)^2: where the discriminant is below it, more than four digits are lost, and won back
 
-Term = tuple[int, int, float, float]
-"""A power of alpha_hat, one of beta_hat, and the coefficient with what its rounding to float64 leaves over."""
+Term = tuple[int, int, float]
+"""A power of alpha_hat, one of beta_hat, and the coefficient."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PlanePencil:
     """P(z; alpha_hat, beta_hat) of a second-order scheme, its degree in z, and its coefficients in float64.
 
-    `terms[k]` has the terms of the coefficient of z^k; everything is dimensionless.
+    `terms[k]` has the terms of the coefficient of z^k, `split[k]` its whole table, each entry with what its rounding
+    leaves over; everything is dimensionless.
     """
 
     method: Method
     degree: int
-    exact: PlaneTable
     terms: tuple[tuple[Term, ...], ...]
+    split: tuple[tuple[tuple[tuple[float, float], ...], ...], ...]
 
     def __repr__(self) -> str:
         return f"PlanePencil({self.method.name})"
@@ -44,16 +44,13 @@ def plane_pencil_of(method: Method) -> PlanePencil:
     """Return the plane pencil of a second-order scheme; NumericalError if its coefficients leave float64's range."""
     exact = closed_loop_table(method)
     try:
-        terms = tuple(tuple(_terms(in_plane)) for in_plane in exact)
+        halves = tuple(tuple(tuple(split(c) for c in row) for row in in_plane) for in_plane in exact)
     except OverflowError:
         raise NumericalError(f"{method.name}: products of its coefficients leave the range of float64") from None
-    return PlanePencil(method, len(exact) - 1, exact, terms)
-
-
-def _terms(in_plane: tuple[tuple[Fraction, ...], ...]) -> list[Term]:
-    return [
-        (i, j, float(c), float(c - Fraction(float(c)))) for i, row in enumerate(in_plane) for j, c in enumerate(row) if c
-    ]
+    terms = tuple(
+        tuple((i, j, c) for i, row in enumerate(in_plane) for j, (c, _) in enumerate(row) if c) for in_plane in halves
+    )
+    return PlanePencil(method, len(exact) - 1, terms, halves)
 
 
 def coefficients_at(pencil: PlanePencil, alpha_hat: FloatArray, beta_hat: FloatArray) -> list[FloatArray]:
@@ -78,40 +75,13 @@ def _powers(
 
 def _sum_of(terms: tuple[Term, ...], of_alpha: list[FloatArray], of_beta: list[FloatArray]) -> FloatArray:
     total = np.zeros_like(of_alpha[0])
-    for i, j, c, _ in terms:
+    for i, j, c in terms:
         if i and j:
             total += c * (of_alpha[i] * of_beta[j])
         elif i or j:
             total += c * (of_alpha[i] if i else of_beta[j])
         else:
             total += c
-    return total
-
-
-Double = tuple[FloatArray, FloatArray]
-"""A number as an unevaluated sum of two float64."""
-
-
-def _times(first: Double, second: Double) -> Double:
-    product, low = two_product(first[0], second[0])
-    return product, low + (first[0] * second[1] + first[1] * second[0])
-
-
-def _plus(first: Double, second: Double) -> Double:
-    total, low = two_sum(first[0], second[0])
-    return total, low + (first[1] + second[1])
-
-
-def _doubly_exact(terms: tuple[Term, ...], alpha_hat: FloatArray, beta_hat: FloatArray) -> Double:
-    """Return a coefficient of P with twice the digits of float64."""
-    zero = np.zeros_like(alpha_hat)
-    total = (zero, zero)
-    for i, j, c, low in terms:
-        product = (zero + c, zero + low)
-        for x, power in ((alpha_hat, i), (beta_hat, j)):
-            for _ in range(power):
-                product = _times(product, (x, zero))
-        total = _plus(total, product)
     return total
 
 
@@ -125,10 +95,10 @@ def discriminants(
     discriminant = square - last
     close = np.flatnonzero(np.abs(discriminant) < CANCELS * square)
     if close.size:
-        a, b, c = (_doubly_exact(terms, alpha_hat[close], beta_hat[close]) for terms in pencil.terms[::-1])
+        a, b, c = (double_polynomial(table, alpha_hat[close], beta_hat[close]) for table in pencil.split[::-1])
         b = (0.5 * b[0], 0.5 * b[1])
-        four_times = _plus(_times(b, b), _times((-a[0], -a[1]), c))
-        better = (four_times[0] + four_times[1]) / a[0] / a[0]
+        unscaled = double_sum(double_product(b, b), double_product((-a[0], -a[1]), c))
+        better = (unscaled[0] + unscaled[1]) / a[0] / a[0]
         discriminant[close] = np.where(np.isfinite(better), better, discriminant[close])
     return half, last, discriminant
 
