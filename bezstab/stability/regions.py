@@ -35,6 +35,8 @@ from bezstab.stability.self_checks import check_region
 
 ROUNDING = 1e-13  # of a range: an end this close to an axis lies on it
 FINER = 4  # times as many samples of the locus, where the first sampling failed the check
+MARGIN = 0.05  # of what is to be seen of a bounded region
+GOES_ON = 0.5  # of what is to be seen of an unbounded one: enough to see that it goes on
 GAP = 1e-6  # of a curve's size: where two arcs meet in a double mu, each ends within the root of rounding
 
 Extent = tuple[tuple[float, float], tuple[float, float]]
@@ -45,21 +47,27 @@ Extent = tuple[tuple[float, float], tuple[float, float]]
 class Region:
     """The set |z_p| < level for one method, in alpha_hat and beta_hat, all dimensionless.
 
-    `boundary` holds closed curves as arrays of shape (points, 2); `extent` is ((alpha_hat_min, alpha_hat_max),
-    (beta_hat_min, beta_hat_max)), None if the set is empty. `fixed_poles` are those that neither alpha_hat nor beta_hat
-    moves, where rho and sigma share a factor.
+    `boundary` holds curves as arrays of shape (points, 2), closed but where they run to infinity; `extent` is
+    ((alpha_hat_min, alpha_hat_max), (beta_hat_min, beta_hat_max)), infinite where there is no limit, None if the set
+    is empty. `fixed_poles` are those that neither alpha_hat nor beta_hat moves, where rho and sigma share a factor.
+    `bounded`: whether all limits are finite; if not, `area` is None. `view` has finite ranges that hold what there is
+    to see: the extent of a bounded region, of an unbounded one every corner and turn of its boundary.
     """
 
     method: Method
     level: float
-    area: float
+    area: float | None
     boundary: tuple[FloatArray, ...]
     extent: Extent | None
     fixed_poles: tuple[complex, ...] = ()
+    bounded: bool = True
+    view: Extent | None = None
 
     def __repr__(self) -> str:
-        curves = f"{len(self.boundary)} closed curve{'' if len(self.boundary) == 1 else 's'}"
-        return f"Region({self.method.name}: |z_p| < {self.level:g}, area {self.area:.6g}, {curves})"
+        kind = "curve" if self.area is None else "closed curve"
+        curves = f"{len(self.boundary)} {kind}{'' if len(self.boundary) == 1 else 's'}"
+        size = "unbounded" if self.area is None else f"area {self.area:.6g}"
+        return f"Region({self.method.name}: |z_p| < {self.level:g}, {size}, {curves})"
 
     def contains(self, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> BoolArray:
         """Return whether |z_p| < level at each point, by the dominant pole itself.
@@ -108,7 +116,7 @@ def _checked_region(method: Method, level: float, finer: int) -> Region:
             f"{method.name}: an edge of |z_p| < {level:g} was not found: it is very short, or several roots share it"
         )
     check_region(pencil, level, bounds, area, curves)
-    return Region(method, level, area, tuple(curves), extent)
+    return Region(method, level, area, tuple(curves), extent, view=extent)
 
 
 def straight_edges(pencil: Pencil, bounds: Bounds) -> list[FloatArray]:
@@ -185,12 +193,13 @@ def pole_place(z: complex) -> str:
 def window(shown: Region) -> Extent:
     """Return ranges of alpha_hat and beta_hat that show the whole region, the origin and a margin of 5 %.
 
-    Dimensionless; of the unit square if the region is empty.
+    Dimensionless and finite; of the unit square if the region is empty. Of an unbounded region they show the part that
+    matters: every corner of its boundary and every turn, and half as much again, over which it goes on.
     """
-    (alpha_min, alpha_max), (beta_min, beta_max) = shown.extent or ((0.0, 1.0), (0.0, 1.0))
+    (alpha_min, alpha_max), (beta_min, beta_max) = shown.view or ((0.0, 1.0), (0.0, 1.0))
     low = np.minimum(0, [alpha_min, beta_min])
     high = np.maximum(0, [alpha_max, beta_max])
-    margin = 0.05 * (high - low)
+    margin = (MARGIN if shown.bounded else GOES_ON) * (high - low)
     low = np.where(low < 0, low - margin, 0)
     high = high + margin
     return (float(low[0]), float(high[0])), (float(low[1]), float(high[1]))
