@@ -10,6 +10,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bezstab.errors import NumericalError
 from bezstab.methods import Method, SecondOrder, Verdict, closed_loop_at, recursion_verdict
 from bezstab.stability.arrays import EPS, ComplexArray, FloatArray
 from bezstab.stability.dominant_roots import dominant_root
@@ -26,15 +27,18 @@ AnyPencil = Pencil | PlanePencil
 def verdict(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> Verdict:
     """Return 'converges', 'marginal' or 'diverges' at one exact, dimensionless point.
 
-    Proven by the Schur-Cohn test on P (paper Eq. 17) in rational arithmetic, so right on the boundary itself.
+    Proven by the Schur-Cohn test on P (paper Eq. 17) in rational arithmetic, so right on the boundary itself. Where
+    P's leading coefficient vanishes a pole is infinite, the implicit step has no solution, and it 'diverges'.
     """
-    return recursion_verdict(closed_loop_at(method, alpha_hat, beta_hat))
+    polynomial = closed_loop_at(method, alpha_hat, beta_hat)
+    return recursion_verdict(polynomial) if polynomial[0] else "diverges"
 
 
 def poles(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexArray:
     """Return all closed-loop poles; complex, shape of alpha_hat and beta_hat broadcast plus (2 n,), dimensionless.
 
-    Descending by modulus. Roots of paper Eq. 17. NumericalError if a root leaves the range of float64.
+    Descending by modulus. Roots of paper Eq. 17. NumericalError if a root leaves the range of float64, or is infinite,
+    where an implicit step has no solution.
     """
     alpha_hat, beta_hat = np.broadcast_arrays(np.asarray(alpha_hat, float), np.asarray(beta_hat, float))
     z = _all_poles(any_pencil_of(method), alpha_hat.ravel(), beta_hat.ravel()).T.reshape(*alpha_hat.shape, -1)
@@ -60,21 +64,29 @@ def dominant_pole(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> 
     """Return the pole z_p of largest modulus; complex, Im >= 0, shape of alpha_hat and beta_hat broadcast.
 
     Dimensionless; a root of paper Eq. 17. Of poles equal in modulus to rounding, one is taken. NumericalError if a
-    root leaves the range of float64.
+    root leaves the range of float64, or is infinite, where an implicit step has no solution.
     """
-    return largest_pole(any_pencil_of(method), alpha_hat, beta_hat)
+    pencil = any_pencil_of(method)
+    found = largest_pole(pencil, alpha_hat, beta_hat)
+    infinite = ~np.isfinite(found)
+    if infinite.any():
+        alpha_hat, beta_hat = np.broadcast_arrays(np.asarray(alpha_hat, float), np.asarray(beta_hat, float))
+        worst = f"({alpha_hat[infinite][0]:.6g}, {beta_hat[infinite][0]:.6g})"
+        raise NumericalError(f"{method.name}: a pole is infinite at {worst}: the implicit step has no solution there")
+    return found
 
 
 def spectral_radius(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> FloatArray:
     """Return |z_p|; shape of alpha_hat and beta_hat broadcast, dimensionless; below one the constraint error decays.
 
-    NumericalError if a root of paper Eq. 17 leaves the range of float64.
+    Infinite where an implicit step has no solution. NumericalError if a finite root of paper Eq. 17 leaves the range
+    of float64.
     """
     return largest_modulus(any_pencil_of(method), alpha_hat, beta_hat)
 
 
 def largest_pole(pencil: AnyPencil, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexArray:
-    """Return what dominant_pole does, from a pencil."""
+    """Return what dominant_pole does, from a pencil; infinite where an implicit step has no solution."""
     alpha_hat, beta_hat = np.broadcast_arrays(np.asarray(alpha_hat, float), np.asarray(beta_hat, float))
     row_of_alpha, row_of_beta = alpha_hat.reshape(-1), beta_hat.reshape(-1)
     dominant = np.empty(alpha_hat.size, complex)

@@ -38,6 +38,7 @@ TURN_ROUNDS = 12  # of zooming on an edge's furthest point: its place to 1e-8 le
 NEAR_LEVEL = 1e-10  # of a strip: so near to a level crossings that are lost are far from the others
 BESIDE_LEVEL = 1e-13  # of a strip: nearer to a level, a crossing that is lost there may show at the wrong infinity
 JOINED = 1e-6  # of what is seen: two roots that meet are known to the root of rounding
+ROUNDING = 1e-13  # of a range: an end this close to an axis lies on it
 LEAST_VIEW = 4.0  # alpha_hat and beta_hat: of a region without corners but the origin, that much is shown
 OUT_OF_VIEW = 3.0  # times what is to be seen: curves that go on are drawn so far
 
@@ -173,12 +174,11 @@ def _most_real(roots: ComplexArray, count: int) -> FloatArray:
     return chosen
 
 
-def plane_shape(strips: PlaneStrips, name: str) -> PlaneShape | None:
+def plane_shape(strips: PlaneStrips, edges: Edges, name: str) -> PlaneShape | None:
     """Return the region that the stable cells make; None if there are none. NumericalError if it cannot be integrated.
 
     `name` is what such an error is about.
     """
-    edges = Edges(strips)
     cells = tuple(cell for strip in strips.strips for cell in _stable_cells(strips, strip, edges))
     if not cells:
         return None
@@ -301,7 +301,9 @@ def _extent(cells: tuple[Cell, ...], corners: FloatArray) -> Extent:
     """Return the ranges of alpha_hat and beta_hat, infinite where there is no limit."""
     left = -np.inf if any(cell.goes_left for cell in cells) else float(corners[:, 0].min())
     right = np.inf if any(cell.goes_right for cell in cells) else float(corners[:, 0].max())
-    return (left + 0.0, right + 0.0), (min(cell.low for cell in cells), max(cell.high for cell in cells))
+    if np.isfinite([left, right]).all():
+        left, right = (0.0 if abs(end) < ROUNDING * (right - left) else end for end in (left, right))
+    return (left, right), (min(cell.low for cell in cells), max(cell.high for cell in cells))
 
 
 def _view(cells: tuple[Cell, ...], corners: FloatArray) -> Extent:

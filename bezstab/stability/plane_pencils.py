@@ -132,12 +132,17 @@ def _roots_of_chunk(pencil: PlanePencil, alpha_hat: FloatArray, beta_hat: FloatA
 def largest_plane_root(pencil: PlanePencil, alpha_hat: FloatArray, beta_hat: FloatArray, into: ComplexArray) -> None:
     """Write into an array the pole of largest modulus at each of a row of points, Im >= 0.
 
-    NumericalError if a pole leaves the range of float64.
+    Infinite where an implicit step has no solution. NumericalError if a finite pole leaves the range of float64.
     """
     for start in range(0, alpha_hat.size, CHUNK):
         chunk = slice(start, start + CHUNK)
         _write_largest(pencil, alpha_hat[chunk], beta_hat[chunk], into[chunk])
-    _check_finite(pencil, into[np.newaxis], alpha_hat, beta_hat)
+    lost = np.flatnonzero(~np.isfinite(into))
+    if lost.size:
+        leading = coefficients_at(pencil, alpha_hat[lost], beta_hat[lost])[-1]
+        into[lost] = np.where(leading == 0, np.inf, np.nan)
+        unsolvable = np.isinf(into)
+        _check_finite(pencil, np.where(unsolvable, 0, into)[np.newaxis], alpha_hat, beta_hat)
 
 
 def _write_largest(pencil: PlanePencil, alpha_hat: FloatArray, beta_hat: FloatArray, into: ComplexArray) -> None:
