@@ -47,6 +47,7 @@ from bezstab.stability.searches import bisected, zoom_on_minimum
 ARC_POINTS = 400  # drawn per arc: chords stay within 1e-5 of the curve
 NODES = 16  # of Gauss and Legendre on a panel
 QUADRATURE = 1e-14  # of |mu|^3: a panel is split until its halves agree to this, a hundredfold above rounding
+PANEL_SAMPLES = 50  # of an arc to each of the first panels, where it may turn so fast that halves miss it alike
 SPLITS = 40  # halvings of a panel at most: towards a corner of the locus they end at rounding
 FINER = 33  # samples of a bracket: from one zoom to the next by the spacing of the last, 1/16
 TURN_ZOOMS = 8  # each by 1/16: from a sample's spacing to where a smooth extreme is flat to rounding
@@ -95,8 +96,9 @@ class Arc(Track):
 
         (p, q) = (-2x, x^2 + y^2) has the Jacobian 4y, and by Green int int 4y dx dy = -closed int 2 y^2 dx.
         """
-        start, end = self.theta[[0, -1]]
-        return _integral(self._area_density, start, end, tolerance=QUADRATURE * float(np.abs(self.mu).max()) ** 3)
+        stride = PANEL_SAMPLES if self.pencil.implicit else len(self.theta)  # far out it turns within few samples
+        edges = np.unique(np.append(self.theta[::stride], self.theta[-1]))
+        return _integral(self._area_density, edges, tolerance=QUADRATURE * float(np.abs(self.mu).max()) ** 3)
 
     def _area_density(self, theta: FloatArray) -> FloatArray:
         """Return -2 y^2 dx/dtheta, with dmu/dz = -(d pi/dz) / (d pi/dmu)."""
@@ -209,8 +211,11 @@ def _all_within(pencil: Pencil, mu: ComplexArray, level: float) -> BoolArray:
 #     |---------------|-------|---|---|      towards a corner the panels shrink geometrically, and so do their errors
 
 
-def _integral(density: Callable[[FloatArray], FloatArray], start: float, end: float, tolerance: float) -> float:
-    """Return the integral of a density over (start, end), panels of Gauss and Legendre halved until they agree."""
+def _integral(density: Callable[[FloatArray], FloatArray], edges: FloatArray, tolerance: float) -> float:
+    """Return the integral of a density over panels of Gauss and Legendre, halved until they agree.
+
+    `edges` are those of the first panels, ascending.
+    """
     nodes, weights = leggauss(NODES)
 
     def panel_integrals(panels: FloatArray) -> FloatArray:
@@ -218,7 +223,7 @@ def _integral(density: Callable[[FloatArray], FloatArray], start: float, end: fl
         theta = panels[:, :1] + half + half * nodes
         return np.asarray(half[:, 0] * (density(theta.ravel()).reshape(theta.shape) @ weights))
 
-    panels = np.array([[start, end]])
+    panels = np.stack([edges[:-1], edges[1:]], axis=1)
     whole = panel_integrals(panels)
     total = 0.0
     for _ in range(SPLITS):
