@@ -68,7 +68,7 @@ def _roots_from_neighbours(coefficients: ComplexArray, too_far: BoolArray) -> Co
     solved += NUDGE * np.abs(solved) * _spread_directions(len(solved))
     starts = np.repeat(solved, STRIDE, axis=1)[:, :points]
     has_root_zero = coefficients[0] == 0  # an exact zero starts, and stays, at 0
-    no_start = ~np.isfinite(np.repeat(solved.sum(axis=0), STRIDE)[: x.size])  # a root of the neighbour is infinite
+    no_start = ~np.isfinite(np.repeat(solved.sum(axis=0), STRIDE)[:points])  # a root of the neighbour is infinite
     alone = too_far | has_root_zero | no_start
     starts[:, alone] = newton_polygon_starts(coefficients[:, alone])
     return _aberth(coefficients, starts)
