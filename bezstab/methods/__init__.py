@@ -65,7 +65,7 @@ if TYPE_CHECKING:
         mapping_equations,
     )
     from bezstab.methods.formulas import characteristic_text, mapping_text, recursion_text
-    from bezstab.methods.orders import accuracy
+    from bezstab.methods.orders import ForceAccuracy, accuracy, accuracy_by_force
     from bezstab.methods.shared_factors import fixed_poles, without_shared_factor
 
 DERIVED = {
@@ -87,7 +87,7 @@ DERIVED = {
         "mapping_equations",
     ),
     "formulas": ("characteristic_text", "mapping_text", "recursion_text"),
-    "orders": ("accuracy",),
+    "orders": ("ForceAccuracy", "accuracy", "accuracy_by_force"),
     "shared_factors": ("fixed_poles", "without_shared_factor"),
 }
 """What is loaded when first used, by module."""
@@ -104,6 +104,7 @@ __all__ = [
     "Combination",
     "Evaluation",
     "Family",
+    "ForceAccuracy",
     "H",
     "LinearMultistep",
     "Method",
@@ -119,6 +120,7 @@ __all__ = [
     "Verdict",
     "Z",
     "accuracy",
+    "accuracy_by_force",
     "adams_bashforth",
     "adams_bashforth_moulton",
     "bezier",
