@@ -18,6 +18,7 @@ From exact numbers upwards; a file imports only from those above it:
     registry            every built-in method by name
     derivation          by sympy: s->z mapping, characteristic polynomial, closed loop
     shared_factors      poles that no feedback moves
+    plane_edges         where a second-order scheme's plane turns from stable to unstable, exactly
     orders              order of accuracy and error constant
     formulas            all that as text or LaTeX
 
@@ -65,8 +66,9 @@ if TYPE_CHECKING:
         mapping_equations,
     )
     from bezstab.methods.formulas import characteristic_text, mapping_text, recursion_text
-    from bezstab.methods.orders import accuracy
-    from bezstab.methods.shared_factors import fixed_poles, without_shared_factor
+    from bezstab.methods.orders import ForceAccuracy, accuracy, accuracy_by_force
+    from bezstab.methods.plane_edges import CurveTable, PlaneStrips, Strip, plane_strips
+    from bezstab.methods.shared_factors import fixed_poles, free_table, without_shared_factor
 
 DERIVED = {
     "derivation": (
@@ -87,8 +89,9 @@ DERIVED = {
         "mapping_equations",
     ),
     "formulas": ("characteristic_text", "mapping_text", "recursion_text"),
-    "orders": ("accuracy",),
-    "shared_factors": ("fixed_poles", "without_shared_factor"),
+    "orders": ("ForceAccuracy", "accuracy", "accuracy_by_force"),
+    "plane_edges": ("CurveTable", "PlaneStrips", "Strip", "plane_strips"),
+    "shared_factors": ("fixed_poles", "free_table", "without_shared_factor"),
 }
 """What is loaded when first used, by module."""
 
@@ -102,13 +105,16 @@ __all__ = [
     "REGISTRY",
     "Assignment",
     "Combination",
+    "CurveTable",
     "Evaluation",
     "Family",
+    "ForceAccuracy",
     "H",
     "LinearMultistep",
     "Method",
     "MethodGroup",
     "Partitioned",
+    "PlaneStrips",
     "PlaneTable",
     "Polynomial",
     "PredictorCorrector",
@@ -116,9 +122,11 @@ __all__ = [
     "RungeKutta",
     "S",
     "SecondOrder",
+    "Strip",
     "Verdict",
     "Z",
     "accuracy",
+    "accuracy_by_force",
     "adams_bashforth",
     "adams_bashforth_moulton",
     "bezier",
@@ -133,11 +141,13 @@ __all__ = [
     "feedback_matrix",
     "feedback_polynomial",
     "fixed_poles",
+    "free_table",
     "implicit",
     "is_schur",
     "lookup",
     "mapping_equations",
     "mapping_text",
+    "plane_strips",
     "read_method",
     "recipe",
     "recursion_text",
