@@ -20,8 +20,8 @@ from typing import Literal
 import numpy as np
 
 from bezstab.evidence.linear_prediction import SAMPLES, SETTLED, SPREAD, Fit, fit_dominant_pole
-from bezstab.mechanism import Mechanism, constraint_errors, initial_state, march, perturbed_state, resume
-from bezstab.methods import Method, Verdict, steps
+from bezstab.mechanism import Mechanism, constraint_errors, initial_state, march, perturbed_state, resume, states_needed
+from bezstab.methods import Method, SecondOrder, Verdict, closed_loop_table, steps
 from bezstab.rationals import exact
 from bezstab.stability import ComplexArray, FloatArray, dominant_pole, poles, region, verdict, window
 from bezstab.units import feedback_gains
@@ -127,8 +127,7 @@ def _measurement(
     if rival > (1 - 1 / SAMPLES) * abs(predicted):
         reason = f"another pole, of modulus {rival:.6g}, is too near to tell them apart"
     else:
-        # The recursion of each mu has as many poles as the method steps, and there are two mu.
-        fit = fit_dominant_pole(difference, order=2 * steps(method), sizes=size, limits=LINEAR)
+        fit = fit_dominant_pole(difference, order=_number_of_poles(method), sizes=size, limits=LINEAR)
         if isinstance(fit, Fit):
             measured = fit.pole
         else:
@@ -143,6 +142,13 @@ def _measurement(
         measured_verdict=_measured_verdict(measured, difference, size),
         reason=reason,
     )
+
+
+def _number_of_poles(method: Method) -> int:
+    """Return the degree of P: for each of two mu as many as the method steps, or that of a second-order scheme."""
+    if isinstance(method.scheme, SecondOrder):
+        return len(closed_loop_table(method)) - 1
+    return 2 * steps(method)
 
 
 def _rival(z: ComplexArray, predicted: complex) -> float:
@@ -182,7 +188,8 @@ def kicked_constraint_errors(
     """Yield c at each step from the kick on, without end; shape (constraints, 2 for up and down, kicks, points).
 
     The kick of the first constraint (SI units) comes after as many steps as the method has; what a multistep method
-    remembers of before is left alone.
+    remembers of before is left alone. A second-order scheme starts anew from the kicked state and those before: its
+    recursion is linear, and from any first values its poles are the same.
     """
     h_step = h * float(method.step_multiple)
     gains = feedback_gains(alpha_hat, beta_hat, h)
@@ -193,7 +200,8 @@ def kicked_constraint_errors(
     start = tuple(np.full(alpha_hat.shape, value) for value in (*q, *v))
     history = [start]
     slopes = []
-    for state, slope, _ in islice(march(mechanism, method, h_step, gains, start, "rk4", np), steps(method)):
+    before_the_kick = max(steps(method), states_needed(method) - 1)
+    for state, slope, _ in islice(march(mechanism, method, h_step, gains, start, "rk4", np), before_the_kick):
         history.append(state)
         slopes.append(slope)
     state = tuple(value + amounts * change for value, change in zip(history[-1], direction, strict=True))

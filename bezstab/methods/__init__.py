@@ -7,12 +7,18 @@ From exact numbers upwards; a file imports only from those above it:
     recipes             such equations as text
     schemes             the kinds of methods as frozen data that checks itself
     second_order_forms  every scheme written as a second-order one
+    algebraic_numbers   irrational coefficients as rationals good to 40 digits
     families            Bezier, Adams-Bashforth and their predictor-corrector pairs, by number of steps
     one_step_methods    Runge-Kutta methods and symplectic Euler
+    runge_kutta_pairs   explicit Runge-Kutta methods that people run, most of them in pairs
+    implicit_methods    BDF, Adams-Moulton, implicit Runge-Kutta
+    second_order_methods  Verlet, Newmark, symplectic compositions and such
     method_files        a user's method, from TOML
+    aliases             what else they are called, and advice
     registry            every built-in method by name
     derivation          by sympy: s->z mapping, characteristic polynomial, closed loop
     shared_factors      poles that no feedback moves
+    plane_edges         where a second-order scheme's plane turns from stable to unstable, exactly
     orders              order of accuracy and error constant
     formulas            all that as text or LaTeX
 
@@ -25,7 +31,7 @@ from bezstab.lazy import lazy_names
 from bezstab.methods.families import adams_bashforth, adams_bashforth_moulton, bezier
 from bezstab.methods.method_files import read_method
 from bezstab.methods.recipes import recipe
-from bezstab.methods.registry import REGISTRY, lookup
+from bezstab.methods.registry import GROUPS, REGISTRY, MethodGroup, lookup
 from bezstab.methods.schemes import (
     Family,
     LinearMultistep,
@@ -60,8 +66,9 @@ if TYPE_CHECKING:
         mapping_equations,
     )
     from bezstab.methods.formulas import characteristic_text, mapping_text, recursion_text
-    from bezstab.methods.orders import accuracy
-    from bezstab.methods.shared_factors import fixed_poles, without_shared_factor
+    from bezstab.methods.orders import ForceAccuracy, accuracy, accuracy_by_force
+    from bezstab.methods.plane_edges import CurveTable, PlaneStrips, Strip, plane_strips
+    from bezstab.methods.shared_factors import fixed_poles, free_table, without_shared_factor
 
 DERIVED = {
     "derivation": (
@@ -82,8 +89,9 @@ DERIVED = {
         "mapping_equations",
     ),
     "formulas": ("characteristic_text", "mapping_text", "recursion_text"),
-    "orders": ("accuracy",),
-    "shared_factors": ("fixed_poles", "without_shared_factor"),
+    "orders": ("ForceAccuracy", "accuracy", "accuracy_by_force"),
+    "plane_edges": ("CurveTable", "PlaneStrips", "Strip", "plane_strips"),
+    "shared_factors": ("fixed_poles", "free_table", "without_shared_factor"),
 }
 """What is loaded when first used, by module."""
 
@@ -92,16 +100,21 @@ __getattr__ = lazy_names(__name__, DERIVED)
 __all__ = [
     "ALPHA_HAT",
     "BETA_HAT",
+    "GROUPS",
     "MU",
     "REGISTRY",
     "Assignment",
     "Combination",
+    "CurveTable",
     "Evaluation",
     "Family",
+    "ForceAccuracy",
     "H",
     "LinearMultistep",
     "Method",
+    "MethodGroup",
     "Partitioned",
+    "PlaneStrips",
     "PlaneTable",
     "Polynomial",
     "PredictorCorrector",
@@ -109,9 +122,11 @@ __all__ = [
     "RungeKutta",
     "S",
     "SecondOrder",
+    "Strip",
     "Verdict",
     "Z",
     "accuracy",
+    "accuracy_by_force",
     "adams_bashforth",
     "adams_bashforth_moulton",
     "bezier",
@@ -126,11 +141,13 @@ __all__ = [
     "feedback_matrix",
     "feedback_polynomial",
     "fixed_poles",
+    "free_table",
     "implicit",
     "is_schur",
     "lookup",
     "mapping_equations",
     "mapping_text",
+    "plane_strips",
     "read_method",
     "recipe",
     "recursion_text",

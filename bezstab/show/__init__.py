@@ -46,6 +46,7 @@ from bezstab.show.rows import (
     summary_row,
     verdict_map_row,
     whole_row,
+    with_unbounded,
 )
 
 if TYPE_CHECKING:
@@ -141,6 +142,7 @@ __all__ = [
     "verdict_figure",
     "verdict_map_row",
     "whole_row",
+    "with_unbounded",
     "work_precision_figure",
     "write_arrays",
     "yes_no_column",

@@ -185,7 +185,8 @@ def disagreements(verdict_map: VerdictMap, axes: Axes | None = None) -> Line2D |
 def family(members: Sequence[Member], quantity: Quantity = "area", axes: Axes | None = None, **line: Any) -> Line2D:
     """Draw one quantity of a family's members (at least one) against their number of steps n and return the line.
 
-    Area of the region (dimensionless), least |z_p| (a gap where the region is empty) or the error constant.
+    Area of the region (dimensionless; a gap where it is unbounded), least |z_p| (a gap where the region is empty) or
+    the error constant.
     """
     values = [_quantity(member, quantity) for member in members]
     style = {**method_line(members[-1].method), "linestyle": "-", "marker": ".", **line}
@@ -196,7 +197,7 @@ def family(members: Sequence[Member], quantity: Quantity = "area", axes: Axes | 
 
 def _quantity(member: Member, quantity: Quantity) -> float:
     if quantity == "area":
-        return member.region.area
+        return np.nan if member.region.area is None else member.region.area
     if quantity == "error constant":
         return float(member.error_constant)
     return np.nan if member.z_abs is None else member.z_abs

@@ -15,6 +15,9 @@ from bezstab.methods import Method, evaluations, steps
 from bezstab.show.columns import Row, Value
 from bezstab.units import feedback_gains
 
+LIMITS = ("alpha_hat_min", "alpha_hat_max", "beta_hat_min", "beta_hat_max")
+"""The ends of a region's ranges, as rows name them."""
+
 if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
     from _typeshed import DataclassInstance
 
@@ -103,24 +106,31 @@ def whole_row(method: Method, region: Region, best: BestPoint | None, latex: boo
 
 
 def region_row(region: Region, best: BestPoint | None) -> Row:
-    """Return area, axis limits and best point (dimensionless); None where the region is empty."""
+    """Return area, axis limits and best point (dimensionless); None where the region is empty, or without limit."""
     from bezstab.show.best_point_text import best_point_words
 
-    alpha_min = alpha_max = beta_min = beta_max = None
-    if region.extent:
-        (alpha_min, alpha_max), (beta_min, beta_max) = region.extent
     return {
         "method": region.method.name,
         "area": region.area,
-        "alpha_hat_min": alpha_min,
-        "alpha_hat_max": alpha_max,
-        "beta_hat_min": beta_min,
-        "beta_hat_max": beta_max,
+        **_limits(region),
         "best_z_abs": best.z_abs if best else None,
         "best_alpha_hat": best.alpha_hat if best else None,
         "best_beta_hat": best.beta_hat if best else None,
         "best_where": best_point_words(best) if best else _nowhere(region),
+        "bounded": region.bounded,
     }
+
+
+def _limits(region: Region) -> dict[str, float | None]:
+    """Return the ends of a region's ranges by name; None where it is empty, or goes on without end."""
+    ends = np.ravel(region.extent or [math.inf] * 4).tolist()
+    return {key: end if math.isfinite(end) else None for key, end in zip(LIMITS, ends, strict=True)}
+
+
+def with_unbounded(row: Row) -> Row:
+    """Return a row of region_row for reading: the word "unbounded" for an area or a limit that there is none of."""
+    missing = () if row["bounded"] else [key for key in ("area", *LIMITS) if row[key] is None]
+    return {**row, **dict.fromkeys(missing, "unbounded")}
 
 
 def _nowhere(region: Region) -> str | None:

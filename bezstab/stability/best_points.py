@@ -101,7 +101,7 @@ def best_point(method: Method) -> BestPoint | None:
         deadbeat = _described(pencil, 0.0, _zeros(pencil), arc=False)
         check_deadbeat(pencil, deadbeat.alpha_hat, deadbeat.beta_hat)
         return deadbeat
-    extent = region(method).extent
+    extent = region(method).view
     if extent is None:
         return None
     least = _smallest(pencil)

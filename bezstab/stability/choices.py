@@ -95,7 +95,7 @@ def choose(method: Method, goal: Goal, spread: float = 0.1, rate: float | None =
     InputError if nothing stable meets the goal. The poles are those of paper Eq. 17; the goals are this package's.
     """
     stable = region(method)
-    extent = stable.extent
+    extent = stable.view
     if extent is None:
         reason = ""
         if stable.fixed_poles and abs(stable.fixed_poles[0]) > 1 - SLOW:

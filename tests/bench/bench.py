@@ -219,6 +219,7 @@ def self_checks() -> Iterator[Line]:
 
         whole, shape = fastest(found, REPEATS)
         bounds = bounds_of(pencil, 1.0)
+        assert shape.area is not None
         check, _ = fastest(partial(check_region, pencil, 1.0, bounds, shape.area, list(shape.boundary)), REPEATS)
         note = f"{1e3 * check:.1f} ms of {1e3 * whole:.0f} ms"
         yield Line("check", f"{name}: a region and its check", (whole - check) / check, 3.0, note)
