@@ -16,6 +16,8 @@ From data upwards; a file imports only from those above it:
     observation         what the constraints do along a history
     start               consistent initial states, and perturbed ones
     runner              runs of a method with feedback, and what ends one early
+    motions             the motion itself, as a function of time, and when it begins anew
+    linearized          how the acceleration changes with position and velocity
     turning_normals     how fast the directions of the constraints turn along a motion
     simulation          a run and its observation as one value
 """
@@ -23,12 +25,15 @@ From data upwards; a file imports only from those above it:
 from bezstab.mechanism.compiled import (
     SINGULAR,
     Mechanism,
+    acceleration_function,
     compiled_mechanism,
     multipliers_function,
     stepper_code,
 )
 from bezstab.mechanism.equations import Equations, T, equations_of_motion
 from bezstab.mechanism.generated_code import compiled_source
+from bezstab.mechanism.linearized import acceleration_jacobians
+from bezstab.mechanism.motions import Motion, motion
 from bezstab.mechanism.observation import Observation, observe
 from bezstab.mechanism.runner import Start, Trajectory, march, resume, simulate, states_needed
 from bezstab.mechanism.scene_files import load_scene, parse_scene, read_scene, shipped_scenes
@@ -44,8 +49,9 @@ from bezstab.mechanism.scenes import (
     Revolute,
     Scene,
 )
+from bezstab.mechanism.second_order_memory import Memory, memory
 from bezstab.mechanism.simulation import Simulation, simulated
-from bezstab.mechanism.start import constraint_errors, initial_state, perturbed_state
+from bezstab.mechanism.start import constraint_errors, constraint_jacobian, initial_state, perturbed_state
 from bezstab.mechanism.turning_normals import TurningNormals, turning_normals
 
 __all__ = [
@@ -59,6 +65,8 @@ __all__ = [
     "Force",
     "Joint",
     "Mechanism",
+    "Memory",
+    "Motion",
     "Observation",
     "PointOnLine",
     "Revolute",
@@ -68,13 +76,18 @@ __all__ = [
     "T",
     "Trajectory",
     "TurningNormals",
+    "acceleration_function",
+    "acceleration_jacobians",
     "compiled_mechanism",
     "compiled_source",
     "constraint_errors",
+    "constraint_jacobian",
     "equations_of_motion",
     "initial_state",
     "load_scene",
     "march",
+    "memory",
+    "motion",
     "multipliers_function",
     "observe",
     "parse_scene",

@@ -45,6 +45,11 @@ def constraint_errors(mechanism: Mechanism, t: float, q: Sequence[FloatArray]) -
     return geometry(mechanism).constraints(q, t)[:, 0]
 
 
+def constraint_jacobian(mechanism: Mechanism, t: float, q: FloatArray) -> FloatArray:
+    """Return C_q at time t (s) for one q of shape (n,); shape (m, n), SI units."""
+    return np.asarray(geometry(mechanism).jacobian(q, t), float)
+
+
 def initial_state(mechanism: Mechanism) -> tuple[FloatArray, FloatArray]:
     """Return q and qdot at t = 0 (shape (n,) each, SI units), which satisfy c = 0 and C_q qdot = -c_t.
 

@@ -19,21 +19,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.errors import InputError, NumericalError
 from bezstab.mechanism.compiled import Mechanism
-from bezstab.mechanism.runner import simulate
-from bezstab.mechanism.scenes import Driver
+from bezstab.mechanism.motions import motion
 from bezstab.mechanism.start import geometry
-from bezstab.methods import lookup
-from bezstab.units import feedback_gains
 
 FloatArray = NDArray[np.float64]
 
 COMPLEX_STEP = 1e-30  # of time: the derivative is exact to rounding, as nothing is subtracted
 SAMPLES = 400  # over the motion, an even number: K turns a few times a revolution, so its integrals are good to 1e-8
-STEPS_A_SAMPLE = 5  # of RK4, whose error over a revolution is then about 1e-10
-FEEDBACK = (1.0, 0.25)  # alpha_hat and beta_hat of that run: well inside RK4's region, double mu = -1/2
-CLOSED = 1e-6  # of the size of a coordinate: a motion that misses its start by more than RK4's error does not close
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -73,25 +66,20 @@ class TurningNormals:
 def turning_normals(mechanism: Mechanism, duration: float) -> TurningNormals:
     """Return how the constraints turn: over one revolution if a driver turns at a constant rate, else over `duration`.
 
-    duration in s. InputError for a driven scene that is not where it began after a revolution; NumericalError if the
-    run that provides the motion breaks down.
+    duration in s. InputError and NumericalError as for the `motion` they turn along.
     """
-    period = _period(mechanism)
-    span = duration if period is None else period
-    step = span / (SAMPLES * STEPS_A_SAMPLE)
-    run = simulate(mechanism, lookup("RK4"), step, span, feedback_gains(*FEEDBACK, step))
-    if run.failure:
-        raise NumericalError(f"the motion of {mechanism.scene.name} breaks down {run.failure}")
-    if period is not None:
-        _check_closed(mechanism, run.q[0], run.q[-1], period)
-    sampled = slice(None, None, STEPS_A_SAMPLE)
+    along = motion(mechanism, duration)
+    every = (len(along.t) - 1) // SAMPLES
     rates, metrics = [], []
-    for t, q, v in zip(run.t[sampled], run.q[sampled], run.v[sampled], strict=True):
+    for t, q, v in zip(along.t[::every], along.q[::every], along.v[::every], strict=True):
         rate, metric = _rate(mechanism, float(t), q, v)
         rates.append(rate)
         metrics.append(metric)
     return TurningNormals(
-        duration=span, rates=np.stack(rates), metric=np.stack([metrics[0], metrics[-1]]), closed=period is not None
+        duration=along.duration,
+        rates=np.stack(rates),
+        metric=np.stack([metrics[0], metrics[-1]]),
+        closed=along.closed,
     )
 
 
@@ -104,26 +92,3 @@ def _rate(mechanism: Mechanism, t: float, q: FloatArray, v: FloatArray) -> tuple
     by_forces = jacobian.T / np.array(mechanism.equations.mass, float)[:, np.newaxis]  # M^-1 C_q^T
     metric = jacobian @ by_forces
     return np.linalg.solve(metric, (turning @ by_forces).T).T, metric  # S is symmetric
-
-
-def _period(mechanism: Mechanism) -> float | None:
-    """Return how long one revolution of the drivers takes (s); None unless all turn at one constant rate."""
-    drivers = [joint for joint in mechanism.scene.joints if isinstance(joint, Driver)]
-    rates = {abs(driver.rate) for driver in drivers}
-    steady = all(driver.acceleration == 0 and driver.amplitude == 0 for driver in drivers)
-    if len(rates) != 1 or not steady or rates == {0.0}:
-        return None
-    return float(2 * np.pi / rates.pop())
-
-
-def _check_closed(mechanism: Mechanism, start: FloatArray, end: FloatArray, period: float) -> None:
-    """Raise InputError unless every coordinate is back after a revolution, an angle up to whole turns."""
-    for name, before, after in zip(mechanism.scene.coordinates, start, end, strict=True):
-        apart = abs(after - before)
-        if name.endswith(".theta"):
-            apart = abs((apart + np.pi) % (2 * np.pi) - np.pi)
-        if apart > CLOSED * max(1.0, abs(before)):
-            raise InputError(
-                f"{mechanism.scene.name}: {name} is off by {apart:.3g} after one revolution ({period:.6g} s): "
-                "expected a driven motion that begins anew"
-            )

@@ -1,0 +1,315 @@
+r"""The exact rate of a moving mechanism: the discrete step's own linearisation, multiplied over the motion.
+
+A method makes from what it carries (positions, velocities, accelerations of some steps) the same, a step later. How a
+small change of it comes out is a matrix, M_k for the step from t_k, with the Jacobians of the acceleration at the
+evaluations of that step. Over a revolution of N steps
+
+    change after = M_{N-1} ... M_1 M_0 change before,          |z| = (largest |eigenvalue| of the product)^(1/N):
+
+a Floquet multiplier, exact but for what the motion itself is computed with. A run that does not begin anew has no
+eigenvalues; there it is the growth of the constraints' errors from a kick of the position to the end, in which the free
+motion has no part.
+
+The matrices M_k are never formed. Each quantity is held as its derivatives by everything carried at the start, an
+n x D array, and the method's equations are taken line by line, as they are for the quantities themselves.
+
+Each step starts from the exact motion, so that nothing but the change grows. An evaluation at the state itself has
+Jacobians that all points share, affine in the gains; in a stage they are taken at the stage that the point's own gains
+lead to.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from bezstab.mechanism import (
+    Mechanism,
+    Memory,
+    Motion,
+    acceleration_function,
+    acceleration_jacobians,
+    constraint_jacobian,
+    memory,
+    motion,
+)
+from bezstab.methods import Assignment, Combination, Evaluation, Method, Quantity, SecondOrder, second_order_form
+from bezstab.stability import FloatArray
+
+SQUARINGS = 8  # the product over 256 revolutions leaves of the lesser multipliers what 256 powers leave
+LEADING = 6  # multipliers found together: a conjugate pair, and some that are as large
+RESCALED = 16  # steps between two looks at how large the changes have grown, lest they overflow
+BATCH = 256  # points at a time: their arrays stay within a core's cache
+
+Values = dict[Quantity, FloatArray]
+
+
+@dataclass(frozen=True)
+class _Points:
+    """The points of a batch: their gains 2 alpha (1/s) and beta^2 (1/s^2), shape (points, 1)."""
+
+    two_alpha: FloatArray
+    beta_squared: FloatArray
+
+
+def floquet_rates(
+    mechanism: Mechanism, method: Method, h: float, alpha_hat: FloatArray, beta_hat: FloatArray, duration: float
+) -> FloatArray:
+    """Return |z| per step of the method over the motion at each of a row of points; shape (points,), dimensionless.
+
+    h (s) is the user's step; over a revolution it is taken so that a whole number of steps fills it, at most half a
+    step in all from h. A motion that is no revolution lasts `duration` (s). InputError and NumericalError as `motion`.
+    """
+    along = motion(mechanism, duration)
+    steps = max(1, round(along.duration / (h * float(method.step_multiple))))
+    rates = [
+        _batch_rates(mechanism, method, along, steps, alpha_hat[i : i + BATCH], beta_hat[i : i + BATCH])
+        for i in range(0, alpha_hat.size, BATCH)
+    ]
+    return np.concatenate(rates)
+
+
+def _batch_rates(
+    mechanism: Mechanism, method: Method, along: Motion, steps: int, alpha_hat: FloatArray, beta_hat: FloatArray
+) -> FloatArray:
+    """Return |z| per step for a batch of points, in `steps` steps over the motion."""
+    step = along.duration / steps
+    user_step = step / float(method.step_multiple)
+    points = _Points((alpha_hat / user_step)[:, np.newaxis], (beta_hat / user_step**2)[:, np.newaxis])
+    scheme = second_order_form(method.scheme)
+    remembered = memory(scheme)
+    carried = remembered.carried
+    size = mechanism.size
+    changes: Values = {}
+    for number, quantity in enumerate(carried):
+        block = np.zeros((alpha_hat.size, size, len(carried) * size))
+        block[:, np.arange(size), number * size + np.arange(size)] = 1
+        changes[quantity] = block
+    log_scale = np.zeros(alpha_hat.size)
+    evaluated = _Evaluated(mechanism, scheme, remembered, along, step, points, steps)
+    for k in range(steps):
+        changes = _after_a_step(evaluated, scheme, carried, changes, k)
+        if k % RESCALED == RESCALED - 1:
+            largest = np.max([np.abs(change).max(axis=(1, 2)) for change in changes.values()], axis=0)
+            changes = {quantity: change / largest[:, np.newaxis, np.newaxis] for quantity, change in changes.items()}
+            log_scale += np.log(largest)
+    product = np.concatenate([changes[quantity] for quantity in carried], axis=1)
+    if along.closed:
+        log_growth = np.log(_spectral_radius(product))
+    else:
+        log_growth = np.log(_constraint_growth(mechanism, along, carried, product))
+    return np.asarray(np.exp((log_scale + log_growth) / steps))
+
+
+def _after_a_step(
+    evaluated: "_Evaluated", scheme: SecondOrder, carried: Sequence[Quantity], changes: Values, k: int
+) -> Values:
+    """Return the changes of what is carried after step k, from those before it."""
+    known = dict(changes)
+    jacobians = evaluated.jacobians(k)
+    for group in scheme.groups:
+        if len(group) == 1 and group[0].result not in group[0].used:
+            known[group[0].result] = _right_side(group[0], known, jacobians)
+        else:
+            known.update(_solved_together(group, known, jacobians))
+    return {quantity: known[Quantity(quantity.name, quantity.step + 1)] for quantity in carried}
+
+
+Jacobians = dict[Quantity, tuple[FloatArray, FloatArray]]
+"""By the result of an evaluation, of h^2 qddot by X and by V = h qdot: shape (points, n, n) each."""
+
+
+def _right_side(equation: Assignment | Evaluation, known: Values, jacobians: Jacobians) -> FloatArray:
+    match equation:
+        case Assignment(value=value):
+            return _combined(value, known)
+        case Evaluation(result, position, velocity):
+            by_position, by_velocity = jacobians[result]
+            return np.asarray(by_position @ _combined(position, known) + by_velocity @ _combined(velocity, known))
+
+
+def _combined(combination: Combination, values: Values) -> FloatArray:
+    """Return the sum of coefficients times values; of none of them, 0."""
+    total: FloatArray = np.zeros(1)
+    for coefficient, quantity in combination:
+        term = values[quantity] if coefficient == 1 else float(coefficient) * values[quantity]
+        total = total + term
+    return total
+
+
+def _solved_together(
+    group: Sequence[Assignment | Evaluation], known: Values, jacobians: Jacobians
+) -> Iterator[tuple[Quantity, FloatArray]]:
+    """Yield what the equations of an implicit group give: a linear system with a block for each of them."""
+    results = [equation.result for equation in group]
+    shape = next(iter(known.values())).shape
+    points, size, columns = shape
+    identity = np.eye(size)
+    left = np.zeros((points, len(group), size, len(group), size))
+    right = np.zeros((points, len(group), size, columns))
+    for row, equation in enumerate(group):
+        left[:, row, :, row, :] += identity
+        if isinstance(equation, Assignment):
+            parts = [(equation.value, identity)]
+        else:
+            by_position, by_velocity = jacobians[equation.result]
+            parts = [(equation.position, by_position), (equation.velocity, by_velocity)]
+        for combination, matrix in parts:
+            outside = tuple(term for term in combination if term[1] not in results)
+            if outside:
+                right[:, row] += matrix @ _combined(outside, known)
+            for coefficient, quantity in combination:
+                if quantity in results:
+                    left[:, row, :, results.index(quantity), :] -= float(coefficient) * matrix
+    unknowns = len(group) * size
+    solved = np.linalg.solve(left.reshape(points, unknowns, unknowns), right.reshape(points, unknowns, columns))
+    for number, result in enumerate(results):
+        yield result, solved[:, number * size : (number + 1) * size]
+
+
+class _Evaluated:
+    """The Jacobians of every evaluation along the motion, for a batch of points."""
+
+    def __init__(
+        self,
+        mechanism: Mechanism,
+        scheme: SecondOrder,
+        remembered: Memory,
+        along: Motion,
+        step: float,
+        points: _Points,
+        steps: int,
+    ) -> None:
+        self.mechanism = mechanism
+        self.scheme = scheme
+        self.remembered = remembered
+        self.along = along
+        self.step = step
+        self.points = points
+        self.starts = step * np.arange(steps)
+        self.shared = {
+            equation.result: self._shared_jacobians(equation)
+            for equation in scheme.equations
+            if isinstance(equation, Evaluation) and _on_the_motion(equation, scheme)
+        }
+
+    def jacobians(self, k: int) -> Jacobians:
+        """Return the Jacobians of the evaluations of step k."""
+        found: Jacobians = {}
+        two_alpha = self.points.two_alpha[:, :, np.newaxis]
+        beta_squared = self.points.beta_squared[:, :, np.newaxis]
+        for result, (by_q, by_v) in self.shared.items():
+            found[result] = (
+                self.step**2 * (by_q[0, k] + two_alpha * by_q[1, k] + beta_squared * by_q[2, k]),
+                self.step * (by_v[0, k] + two_alpha * by_v[1, k]),
+            )
+        if len(found) < self.scheme.evaluations:
+            found |= self._stage_jacobians(k)
+        return found
+
+    def _shared_jacobians(self, evaluation: Evaluation) -> tuple[FloatArray, FloatArray]:
+        """Return by_q and by_v without gains, and their slopes by 2 alpha and beta^2; shape (3, steps, n, n)."""
+        moment = float(self.remembered.moments[evaluation.result])
+        t = self.starts + moment * self.step
+        q, v, _ = self.along.at(t)
+        without = acceleration_jacobians(self.mechanism, t, 0.0, 0.0, q, v)
+        with_alpha = acceleration_jacobians(self.mechanism, t, 1.0, 0.0, q, v)
+        with_beta = acceleration_jacobians(self.mechanism, t, 0.0, 1.0, q, v)
+        by_q, by_v = (
+            np.stack([base, by_alpha - base, by_beta - base])
+            for base, by_alpha, by_beta in zip(without, with_alpha, with_beta, strict=True)
+        )
+        return by_q, by_v
+
+    def _stage_jacobians(self, k: int) -> Jacobians:
+        """Return the Jacobians of the evaluations of step k that do not take place on the motion itself."""
+        values = self._on_the_motion(k)
+        found: Jacobians = {}
+        for group in self.scheme.groups:
+            for equation in group:
+                if isinstance(equation, Assignment):
+                    if all(quantity in values for quantity in equation.used):
+                        values[equation.result] = _combined(equation.value, values)
+                    continue
+                t = float(self.starts[k] + float(self.remembered.moments[equation.result]) * self.step)
+                if equation.result in self.shared or not all(quantity in values for quantity in equation.used):
+                    q, v, a = self.along.at(np.array([t]))
+                else:
+                    q, v = _combined(equation.position, values), _combined(equation.velocity, values) / self.step
+                    a = self._accelerations(t, q, v)
+                values[equation.result] = self.step**2 * a
+                if equation.result not in self.shared:
+                    gains = self.points.two_alpha[:, 0], self.points.beta_squared[:, 0]
+                    q, v = (np.broadcast_to(part, (gains[0].size, self.mechanism.size)) for part in (q, v))
+                    by_q, by_v = acceleration_jacobians(self.mechanism, t, *gains, q, v)
+                    found[equation.result] = self.step**2 * by_q, self.step * by_v
+        return found
+
+    def _on_the_motion(self, k: int) -> Values:
+        """Return what is carried as step k begins, as it is on the motion; shape (1, n)."""
+        values: Values = {}
+        remembered = self.remembered
+        for quantity, shares, state_step in zip(
+            remembered.carried, remembered.shares, remembered.state_steps, strict=True
+        ):
+            q, v, a = self.along.at(np.array([self.starts[k] + state_step * self.step]))
+            by_q, by_v, by_a = (float(share) for share in shares)
+            values[quantity] = by_q * q + by_v * self.step * v + by_a * self.step**2 * a
+        return values
+
+    def _accelerations(self, t: float, q: FloatArray, v: FloatArray) -> FloatArray:
+        """Return qddot of each point in a stage; shape (points, n)."""
+        gains = self.points.two_alpha[:, 0], self.points.beta_squared[:, 0]
+        q, v = (np.broadcast_to(part, (gains[0].size, self.mechanism.size)) for part in (q, v))
+        a = acceleration_function(self.mechanism, np)(t, *gains, q.T, v.T)
+        return np.stack(np.broadcast_arrays(*a), axis=-1)
+
+
+def _on_the_motion(evaluation: Evaluation, scheme: SecondOrder) -> bool:
+    """Return whether an evaluation takes place at position and velocity of one step."""
+    position, velocity = evaluation.position, evaluation.velocity
+    if len(position) != 1 or len(velocity) != 1:
+        return False
+    (by_x, x), (by_v, v) = position[0], velocity[0]
+    return (by_x, x.name, by_v, v.name, x.step) == (1, "x", 1, "v", v.step)
+
+
+def _spectral_radius(product: FloatArray) -> FloatArray:
+    """Return the largest modulus of an eigenvalue of each matrix; shape (points,).
+
+    A high power of the matrix takes a few vectors to the leading eigenvectors, on which it is small and has the same
+    leading eigenvalues (orthogonal iteration by squaring). The whole of a matrix of 40 rows takes ten times as long.
+    """
+    size = product.shape[-1]
+    if size <= LEADING:
+        return np.asarray(np.abs(np.linalg.eigvals(product)).max(axis=-1))
+    power = product
+    for _ in range(SQUARINGS):
+        power = power / np.abs(power).max(axis=(1, 2), keepdims=True)
+        power = power @ power
+    start = np.random.default_rng(0).standard_normal((size, LEADING))
+    basis, _ = np.linalg.qr(power @ start)
+    basis, _ = np.linalg.qr(product @ basis)
+    small = np.swapaxes(basis, 1, 2) @ (product @ basis)
+    return np.asarray(np.abs(np.linalg.eigvals(small)).max(axis=-1))
+
+
+def _constraint_growth(
+    mechanism: Mechanism, along: Motion, carried: Sequence[Quantity], product: FloatArray
+) -> FloatArray:
+    """Return by how much constraint errors grow from a kick of the newest position to the end; shape (points,).
+
+    An error w has the size of the displacement M^-1 C_q^T S^-1 w that it stands for, in the metric of the masses.
+    """
+    size = mechanism.size
+    newest = max((quantity for quantity in carried if quantity.name == "x"), key=lambda quantity: quantity.step)
+    columns = slice(carried.index(newest) * size, (carried.index(newest) + 1) * size)
+    mass = np.array(mechanism.equations.mass, float)
+    ends = []
+    for t, q in ((0.0, along.q[0]), (along.duration, along.q[-1])):
+        jacobian = constraint_jacobian(mechanism, t, q)
+        ends.append((jacobian, np.linalg.cholesky((jacobian / mass) @ jacobian.T)))
+    (before, size_before), (after, size_after) = ends
+    kick = (before / mass).T @ np.linalg.inv(size_before).T  # unit errors at the start
+    answer = np.linalg.solve(size_after, after @ product[:, columns, columns] @ kick)
+    return np.asarray(np.linalg.norm(answer, ord=2, axis=(1, 2)))
