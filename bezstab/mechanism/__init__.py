@@ -4,7 +4,7 @@
 
 From data upwards; a file imports only from those above it:
 
-    scenes              bodies, joints, forces and initial state as checked data
+    scenes              bodies, joints, forces, springs and initial state as checked data
     scene_files         their file format
     equations           M, c, C_q, gamma and g by sympy
     generated_code      the one place that writes and compiles Python source: accelerations, steppers
@@ -38,6 +38,7 @@ from bezstab.mechanism.scenes import (
     PointOnLine,
     Revolute,
     Scene,
+    Spring,
 )
 from bezstab.mechanism.simulation import Simulation, simulated
 from bezstab.mechanism.start import constraint_errors, initial_state, perturbed_state
@@ -58,6 +59,7 @@ __all__ = [
     "Revolute",
     "Scene",
     "Simulation",
+    "Spring",
     "Start",
     "T",
     "Trajectory",
