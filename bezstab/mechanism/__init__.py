@@ -10,6 +10,7 @@ From data upwards; a file imports only from those above it:
     generated_code      the one place that writes and compiles Python source: accelerations, steppers
     compiled            a scene with its compiled functions, made once
     observation         what the constraints do along a history
+    energies            work of drivers and forces, and the drift that is left
     start               consistent initial states, and perturbed ones
     runner              runs of a method with feedback, and what ends one early
     simulation          a run and its observation as one value
@@ -22,6 +23,7 @@ from bezstab.mechanism.compiled import (
     multipliers_function,
     stepper_code,
 )
+from bezstab.mechanism.energies import EnergyBalance, energy_balance
 from bezstab.mechanism.equations import Equations, T, equations_of_motion
 from bezstab.mechanism.generated_code import compiled_source
 from bezstab.mechanism.observation import Observation, observe
@@ -50,6 +52,7 @@ __all__ = [
     "Body",
     "Distance",
     "Driver",
+    "EnergyBalance",
     "Equations",
     "Force",
     "Joint",
@@ -66,6 +69,7 @@ __all__ = [
     "compiled_mechanism",
     "compiled_source",
     "constraint_errors",
+    "energy_balance",
     "equations_of_motion",
     "initial_state",
     "load_scene",

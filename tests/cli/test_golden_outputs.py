@@ -60,8 +60,8 @@ TOLERANCES = (
 )
 """The first that fits both command and key."""
 
-ADDED = ("beta_hat_min",)
-"""Keys that rows have got since, in their place: the least beta_hat of a region."""
+ADDED = ("beta_hat_min", "driver_work", "force_work")
+"""Keys that rows have got since: the least beta_hat of a region, the work done in a simulation."""
 
 
 def tolerance(command: str, key: str) -> Tolerance:
