@@ -65,6 +65,8 @@ SIMULATIONS = [
     column("largest |c|", "c_max", ".3e"),
     column("largest |ċ|", "cdot_max", ".3e"),
     column("energy drift (J)", "energy_drift", ".3e"),
+    column("work of drivers (J)", "driver_work", ".3e"),
+    column("of forces (J)", "force_work", ".3e"),
     EVALUATIONS,
     column("least pivot", "least_pivot", ".1e"),
     column("at (s)", "pivot_time", ".6g"),

@@ -126,7 +126,7 @@ def model_xml(scene: Scene, integrator: str, h: float, alpha_hat: float, beta_ha
 
     It holds numbers and names made here, nothing else of the scene.
     """
-    if scene.forces or not all(isinstance(joint, Revolute) for joint in scene.joints):
+    if scene.forces or scene.springs or not all(isinstance(joint, Revolute) for joint in scene.joints):
         raise InputError(f"--witness mujoco: {scene.name} has more than revolute joints and gravity: not supported")
     two_alpha, beta_squared = feedback_gains(alpha_hat, beta_hat, h)
     feedback = f'solref="{-beta_squared!r} {-two_alpha!r}" solimp="{IMPEDANCE} {IMPEDANCE} 1 0.5 1"'

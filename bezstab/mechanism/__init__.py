@@ -4,7 +4,7 @@
 
 From data upwards; a file imports only from those above it:
 
-    scenes              bodies, joints, forces and initial state as checked data
+    scenes              bodies, joints, forces, springs and initial state as checked data
     scene_files         their file format
     equations           M, c, C_q, gamma and g by sympy
     generated_code      the one place that compiles generated Python source: accelerations, steppers
@@ -14,6 +14,7 @@ From data upwards; a file imports only from those above it:
     newton_iterations   Newton's method for the accelerations of an implicit step
     compiled            a scene with its compiled functions, made once
     observation         what the constraints do along a history
+    energies            work of drivers and forces, and the drift that is left
     start               consistent initial states, and perturbed ones
     runner              runs of a method with feedback, and what ends one early
     motions             the motion itself, as a function of time, and when it begins anew
@@ -30,6 +31,7 @@ from bezstab.mechanism.compiled import (
     multipliers_function,
     stepper_code,
 )
+from bezstab.mechanism.energies import EnergyBalance, energy_balance
 from bezstab.mechanism.equations import Equations, T, equations_of_motion
 from bezstab.mechanism.generated_code import compiled_source
 from bezstab.mechanism.linearized import acceleration_jacobians
@@ -48,6 +50,7 @@ from bezstab.mechanism.scenes import (
     PointOnLine,
     Revolute,
     Scene,
+    Spring,
 )
 from bezstab.mechanism.second_order_memory import Memory, memory
 from bezstab.mechanism.simulation import Simulation, simulated
@@ -61,6 +64,7 @@ __all__ = [
     "Body",
     "Distance",
     "Driver",
+    "EnergyBalance",
     "Equations",
     "Force",
     "Joint",
@@ -72,6 +76,7 @@ __all__ = [
     "Revolute",
     "Scene",
     "Simulation",
+    "Spring",
     "Start",
     "T",
     "Trajectory",
@@ -82,6 +87,7 @@ __all__ = [
     "compiled_source",
     "constraint_errors",
     "constraint_jacobian",
+    "energy_balance",
     "equations_of_motion",
     "initial_state",
     "load_scene",

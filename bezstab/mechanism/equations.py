@@ -1,11 +1,12 @@
 """A scene's equations of motion as sympy expressions: M, c, C_q, gamma and g, paper Eqs 1 to 5."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import sympy as sp
 
-from bezstab.mechanism.scenes import GROUND, Body, Distance, Driver, Joint, PointOnLine, Revolute, Scene
+from bezstab.mechanism.scenes import GROUND, Body, Distance, Driver, Joint, PointOnLine, Revolute, Scene, Spring
 
 T = sp.Symbol("t")
 """Time (s)."""
@@ -17,8 +18,9 @@ class Equations:
 
     With n coordinates and m constraints: `q` and `v` are n symbols each, `mass` is the diagonal of M (n numbers),
     `constraints` c (m, 1), `jacobian` C_q (m, n), `constraints_t` dc/dt at fixed q (m, 1), `gamma` (m, 1) the
-    right-hand side of C_q qddot = gamma, `forces` g (n, 1), and `potential` the potential energy (J) with g its
-    negative gradient.
+    right-hand side of C_q qddot = gamma, and `forces` g (n, 1). `potential` is the potential energy (J) of gravity and
+    springs, and `applied` (n, 1) what else there is in g, constant forces, torques and dampers: g is the negative
+    gradient of the one, plus the other. `spring_lengths` has the distance (m) of each spring's ends.
 
     M is diagonal by construction: a body's frame sits at its centre of mass or turns about a fixed pivot.
     """
@@ -32,6 +34,8 @@ class Equations:
     gamma: sp.Matrix
     forces: sp.Matrix
     potential: sp.Expr
+    applied: sp.Matrix
+    spring_lengths: tuple[sp.Expr, ...]
 
     def __repr__(self) -> str:
         return f"Equations({len(self.q)} coordinates, {len(self.constraints)} constraints)"
@@ -72,8 +76,10 @@ def equations_of_motion(scene: Scene) -> Equations:
     c_t = c.diff(T)
     velocity = sp.Matrix(v)
     gamma = -((jacobian * velocity).jacobian(q) * velocity + 2 * jacobian.diff(T) * velocity + c_t.diff(T))
-    potential = _potential_energy(scene, frames)
-    forces = -sp.Matrix([potential]).jacobian(q).T
+    lengths = [_distance(spring, frames) for spring in scene.springs]
+    potential = _potential_energy(scene, frames, lengths)
+    applied = _constant_forces(scene, frames, q) + _damper_forces(scene, lengths, q, v)
+    forces = applied - _gradient(potential, q)
     return Equations(
         q=tuple(q),
         v=tuple(v),
@@ -84,7 +90,14 @@ def equations_of_motion(scene: Scene) -> Equations:
         gamma=gamma,
         forces=forces,
         potential=potential,
+        applied=applied,
+        spring_lengths=tuple(lengths),
     )
+
+
+def _gradient(expression: sp.Expr, q: Sequence[sp.Symbol]) -> sp.Matrix:
+    """Return the derivatives by each coordinate, shape (n, 1)."""
+    return sp.Matrix([expression]).jacobian(q).T
 
 
 def _frame(body: Body, symbol_of: dict[str, sp.Symbol]) -> Frame:
@@ -99,9 +112,13 @@ def _frame(body: Body, symbol_of: dict[str, sp.Symbol]) -> Frame:
 
 def _turned(vector: tuple[float, float], theta: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
     """Return a vector of a body's frame along the ground's axes."""
-    # A component that is 0 has to vanish from the expressions: 0.0 * cos(theta) would stay and be computed.
-    along, across = (sp.Integer(0) if component == 0 else sp.Float(component) for component in vector)
+    along, across = (_exact_zero(component) for component in vector)
     return along * sp.cos(theta) - across * sp.sin(theta), along * sp.sin(theta) + across * sp.cos(theta)
+
+
+def _exact_zero(number: float) -> sp.Expr:
+    """Return the number; 0 as one that vanishes from expressions, where 0.0 * cos(theta) would stay and be computed."""
+    return sp.Integer(0) if number == 0 else sp.Float(number)
 
 
 def _position(frame: Frame, point: tuple[float, float]) -> tuple[sp.Expr, sp.Expr]:
@@ -110,16 +127,45 @@ def _position(frame: Frame, point: tuple[float, float]) -> tuple[sp.Expr, sp.Exp
     return frame.x + x, frame.y + y
 
 
-def _potential_energy(scene: Scene, frames: dict[str, Frame]) -> sp.Expr:
-    """Return the potential energy (J) of gravity and of the constant forces and torques."""
+def _distance(spring: Spring, frames: dict[str, Frame]) -> sp.Expr:
+    """Return the distance (m) of a spring's ends."""
+    (ax, ay), (bx, by) = (
+        _position(frames[name], point) for name, point in zip(spring.bodies, spring.points, strict=True)
+    )
+    return sp.sqrt((bx - ax) ** 2 + (by - ay) ** 2)
+
+
+def _potential_energy(scene: Scene, frames: dict[str, Frame], lengths: Sequence[sp.Expr]) -> sp.Expr:
+    """Return the potential energy (J) of gravity and of the springs."""
     potential = sp.Integer(0)
     for body in scene.bodies:
         x, y = _position(frames[body.name], body.center)
         potential -= body.mass * (scene.gravity[0] * x + scene.gravity[1] * y)
+    for spring, length in zip(scene.springs, lengths, strict=True):
+        if spring.stiffness:
+            potential += spring.stiffness * (length - _exact_zero(spring.free_length)) ** 2 / 2
+    return potential
+
+
+def _constant_forces(scene: Scene, frames: dict[str, Frame], q: Sequence[sp.Symbol]) -> sp.Matrix:
+    """Return what the constant forces and torques are along each coordinate: the gradient of their work."""
+    work = sp.Integer(0)
     for force in scene.forces:
         x, y = _position(frames[force.body], force.point)
-        potential -= force.force[0] * x + force.force[1] * y + force.torque * frames[force.body].theta
-    return potential
+        work += force.force[0] * x + force.force[1] * y + force.torque * frames[force.body].theta
+    return _gradient(work, q)
+
+
+def _damper_forces(
+    scene: Scene, lengths: Sequence[sp.Expr], q: Sequence[sp.Symbol], v: Sequence[sp.Symbol]
+) -> sp.Matrix:
+    """Return what the dampers are along each coordinate: -damping dL/dt times the gradient of the length L."""
+    total = sp.zeros(len(q), 1)
+    for spring, length in zip(scene.springs, lengths, strict=True):
+        if spring.damping:
+            slopes = _gradient(length, q)
+            total -= spring.damping * slopes.dot(sp.Matrix(v)) * slopes
+    return total
 
 
 def _constraints(joint: Joint, frames: dict[str, Frame], symbol_of: dict[str, sp.Symbol]) -> list[sp.Expr]:

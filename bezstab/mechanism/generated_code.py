@@ -1,7 +1,7 @@
 """Generated source: accelerations, multipliers, observations and time steps as Python text, and its compilation.
 
-All of it is plain arithmetic on numbered variables, one assignment a line, with `sin`, `cos` and `least` as the only
-functions. What they are is decided when the text is compiled, so one source serves three kinds of numbers:
+All of it is plain arithmetic on numbered variables, one assignment a line, with `sin`, `cos`, `sqrt` and `least` as the
+only functions. What they are is decided when the text is compiled, so one source serves three kinds of numbers:
 
 - floats with `math`: a single run, without the overhead of arrays of four or five entries;
 - numpy arrays: a batch of runs, each variable one array over the batch, each line one operation on all of it;
@@ -31,7 +31,7 @@ AT_THE_END = Fraction(1)
 def compiled_source(source: str, library: Any) -> dict[str, Any]:
     """Return what generated source defines, its elementary functions those of `library`: math, numpy or mpmath."""
     least = min if library is math else _least_of_arrays
-    namespace = {"sin": library.sin, "cos": library.cos, "least": least}
+    namespace = {"sin": library.sin, "cos": library.cos, "sqrt": library.sqrt, "least": least}
     exec(source, namespace)
     return namespace
 

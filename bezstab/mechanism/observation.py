@@ -1,24 +1,34 @@
-"""What the constraints do along a history: c, cdot, multipliers and energy."""
+"""What the constraints do along a history: c, cdot and multipliers, with energy and the power that changes it."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
 from bezstab.mechanism.compiled import Mechanism, observation_function
+from bezstab.mechanism.equations import T
 
 FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Observation:
-    """Along a history: c and cdot (shape (times, m)), lambda (same), energy (J, shape (times,)); SI units."""
+    """Along a history: c and cdot (shape (times, m)), lambda (same), energy (J, shape (times,)); SI units.
+
+    The energy is kinetic and, of gravity and springs, potential. `driver_power` (W, shape (times,)) is what the drivers
+    add to it, each its multiplier times its prescribed rate, and `applied_power` (same) what constant forces, torques
+    and dampers do.
+    """
 
     c: FloatArray
     cdot: FloatArray
     multipliers: FloatArray
     energy: FloatArray
+    driver_power: FloatArray
+    applied_power: FloatArray
 
     def __repr__(self) -> str:
         times, constraints = self.c.shape
@@ -45,5 +55,36 @@ def observe(
         for first in range(0, len(columns), mechanism.constraints)
     )
     kinetic = v**2 @ np.array(mechanism.equations.mass, float) / 2
-    potential = sp.lambdify((mechanism.equations.q,), mechanism.equations.potential, "numpy")(q_columns)
-    return Observation(c, cdot, multipliers, kinetic + potential)
+    potential, applied_power = _energy_terms(mechanism)(q_columns, v_columns)
+    return Observation(
+        c=c,
+        cdot=cdot,
+        multipliers=multipliers,
+        energy=kinetic + potential,
+        driver_power=_driver_power(mechanism, t, multipliers),
+        applied_power=np.zeros(t.shape) + applied_power,  # a number where nothing is applied
+    )
+
+
+@cache
+def _energy_terms(mechanism: Mechanism) -> Callable[[FloatArray, FloatArray], tuple[FloatArray, FloatArray]]:
+    """Return the function of q and v that gives the potential energy (J) and the power of the applied forces (W)."""
+    equations = mechanism.equations
+    power = equations.applied.dot(sp.Matrix(equations.v))
+    terms: Callable[[FloatArray, FloatArray], tuple[FloatArray, FloatArray]] = sp.lambdify(
+        (equations.q, equations.v), (equations.potential, power), "numpy"
+    )
+    return terms
+
+
+def _driver_power(mechanism: Mechanism, t: FloatArray, multipliers: FloatArray) -> FloatArray:
+    """Return the power (W) of the drivers, zero without any.
+
+    The constraint forces -C_q^T lambda do -lambda . C_q v = lambda . c_t where cdot = C_q v + c_t = 0. Only a driver
+    has a c_t, minus its prescribed rate.
+    """
+    power = np.zeros(t.shape)
+    for multiplier, rate in zip(multipliers.T, mechanism.equations.constraints_t, strict=True):
+        if rate != 0:
+            power += multiplier * sp.lambdify(T, rate, "numpy")(t)
+    return power

@@ -23,6 +23,7 @@ from bezstab.mechanism.scenes import (
     PointOnLine,
     Revolute,
     Scene,
+    Spring,
 )
 from bezstab.toml_tables import TomlTable, is_pair, is_point
 
@@ -70,13 +71,14 @@ def parse_scene(data: dict[str, Any]) -> Scene:
     if not joints:
         raise top.mistake("no joint, hence no constraint to stabilise")
     forces = tuple(_force(table, body_names) for table in top.tables("force"))
+    springs = tuple(_spring(table, body_names) for table in top.tables("spring"))
 
     initial = top.table("initial")
     position = initial.numbers("position", allowed=coordinates)
     velocity = initial.numbers("velocity", allowed=coordinates)
     guess = initial.numbers("guess", allowed=coordinates)
     top.refuse_unknown_keys()
-    return Scene(name, gravity, bodies, joints, forces, position, velocity, {**chain.guess, **guess})
+    return Scene(name, gravity, bodies, joints, forces, springs, position, velocity, {**chain.guess, **guess})
 
 
 def _refuse_taken_names(body_names: Sequence[str]) -> None:
@@ -174,6 +176,22 @@ def _force(table: TomlTable, body_names: Sequence[str]) -> Force:
         force=table.point("force", default=NOWHERE),
         torque=table.number("torque", default=0.0),
     )
+
+
+def _spring(table: TomlTable, body_names: Sequence[str]) -> Spring:
+    bodies = _two_bodies(table, body_names)
+    points = _two_points(table)
+    stiffness = table.number("stiffness", default=0.0)
+    damping = table.number("damping", default=0.0)
+    for key, value in (("stiffness", stiffness), ("damping", damping)):
+        if value < 0:
+            raise table.mistake(f"{key} = {value:g}: expected 0 or more")
+    if stiffness == damping == 0:
+        raise table.mistake("stiffness and damping are both 0: expected one of them positive")
+    free_length = table.number("free_length", default=None if stiffness else 0.0)
+    if free_length < 0:
+        raise table.mistake(f"free_length = {free_length:g}: expected 0 or more")
+    return Spring(bodies, points, stiffness, free_length, damping)
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""A planar mechanism as data: bodies with their free coordinates, joints, forces, gravity, initial state."""
+"""A planar mechanism as data: bodies with their free coordinates, joints, forces, springs, gravity, initial state."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -79,6 +79,20 @@ class Force:
 
 
 @dataclass(frozen=True)
+class Spring:
+    """A spring and a damper, side by side, between a point of each body.
+
+    At the distance L of the points they pull with stiffness (L - free_length) + damping dL/dt (N/m, m, N s/m; N).
+    """
+
+    bodies: tuple[str, str]
+    points: tuple[Point, Point]
+    stiffness: float
+    free_length: float
+    damping: float
+
+
+@dataclass(frozen=True)
 class Scene:
     """A planar mechanism; coordinates are called body.x, body.y and body.theta, in the order of the bodies.
 
@@ -91,6 +105,7 @@ class Scene:
     bodies: tuple[Body, ...]
     joints: tuple[Joint, ...]
     forces: tuple[Force, ...]
+    springs: tuple[Spring, ...]
     position: Mapping[str, float] = field(hash=False)
     velocity: Mapping[str, float] = field(hash=False)
     guess: Mapping[str, float] = field(hash=False)

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from bezstab.mechanism.compiled import Mechanism
+from bezstab.mechanism.energies import EnergyBalance, energy_balance
 from bezstab.mechanism.observation import FloatArray, Observation, observe
 from bezstab.mechanism.runner import Start, Trajectory, simulate
 from bezstab.mechanism.start import perturbed_state
@@ -14,12 +15,14 @@ from bezstab.units import feedback_gains
 class Simulation:
     """A run at one point of the plane, with steps of h (s), and the constraint errors along it; SI units.
 
-    t has shape (times,), q and v (times, coordinates), c, cdot and multipliers (times, constraints), energy (times,).
-    `failure` says when and why the run ended early; None if it did not.
+    t has shape (times,), q and v (times, coordinates), c, cdot and multipliers (times, constraints), energy and the
+    work of drivers and forces, with their balance, (times,). `failure` says when and why the run ended early; None if
+    it did not.
     """
 
     trajectory: Trajectory
     observation: Observation
+    balance: EnergyBalance
     h: float
     alpha_hat: float
     beta_hat: float
@@ -60,6 +63,21 @@ class Simulation:
         return self.observation.energy
 
     @property
+    def driver_work(self) -> FloatArray:
+        """What the drivers have put in since the start (J)."""
+        return self.balance.driver_work
+
+    @property
+    def force_work(self) -> FloatArray:
+        """What constant forces and torques have put in and dampers taken out since the start (J)."""
+        return self.balance.force_work
+
+    @property
+    def energy_drift(self) -> FloatArray:
+        """The change of energy since the start that no work explains (J): an error."""
+        return self.balance.drift
+
+    @property
     def failure(self) -> str | None:
         """When and why the run ended early."""
         return self.trajectory.failure
@@ -92,4 +110,12 @@ def simulated(
     trajectory = simulate(mechanism, method, h, duration, gains, state, start)
     two_alpha, beta_squared = gains
     observation = observe(mechanism, trajectory.t, trajectory.q, trajectory.v, two_alpha, beta_squared)
-    return Simulation(trajectory=trajectory, observation=observation, h=h, alpha_hat=alpha_hat, beta_hat=beta_hat)
+    balance = energy_balance(observation, h * float(method.step_multiple))
+    return Simulation(
+        trajectory=trajectory,
+        observation=observation,
+        balance=balance,
+        h=h,
+        alpha_hat=alpha_hat,
+        beta_hat=beta_hat,
+    )

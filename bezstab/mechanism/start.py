@@ -54,10 +54,21 @@ def initial_state(mechanism: Mechanism) -> tuple[FloatArray, FloatArray]:
     """Return q and qdot at t = 0 (shape (n,) each, SI units), which satisfy c = 0 and C_q qdot = -c_t.
 
     The scene gives as many coordinates and velocities as the mechanism has freedoms, or all; the others follow.
-    InputError, naming the key, where they do not close, are redundant or, given whole, are inconsistent.
+    InputError, naming the key, where they do not close, are redundant or, given whole, are inconsistent, and where the
+    ends of a spring meet.
     """
     q = _closed_position(mechanism)
+    _refuse_springs_without_direction(mechanism, q)
     return q, _consistent_velocity(mechanism, q)
+
+
+def _refuse_springs_without_direction(mechanism: Mechanism, q: FloatArray) -> None:
+    """Raise InputError if a spring's ends meet and its force, other than by its stiffness alone, has no direction."""
+    lengths = sp.lambdify((mechanism.equations.q,), mechanism.equations.spring_lengths, "numpy")(q)
+    for number, (spring, length) in enumerate(zip(mechanism.scene.springs, lengths, strict=True), start=1):
+        has_direction = length > CLOSED or spring.free_length == spring.damping == 0
+        if not has_direction:
+            raise InputError(f"spring {number}: its ends meet at the start, where its force has no direction")
 
 
 def _closed_position(mechanism: Mechanism) -> FloatArray:

@@ -81,7 +81,7 @@ def verdict_arrays(verdicts: VerdictMap) -> Arrays:
 
 
 def history_arrays(simulation: Simulation) -> Arrays:
-    """Return t, every coordinate q and d/dt q, c_1, cdot_1, lambda_1, ... and energy: shape (times,), SI units."""
+    """Return t, every q and d/dt q, c_1, cdot_1, lambda_1, ..., energy and work: shape (times,), SI units."""
     coordinates = simulation.trajectory.mechanism.scene.coordinates
     arrays: Arrays = {"t": simulation.t}
     for i, name in enumerate(coordinates):
@@ -93,6 +93,8 @@ def history_arrays(simulation: Simulation) -> Arrays:
         for number, history in enumerate(histories.T, start=1):
             arrays[f"{name}_{number}"] = history
     arrays["energy"] = simulation.energy
+    arrays["driver_work"] = simulation.driver_work
+    arrays["force_work"] = simulation.force_work
     return arrays
 
 

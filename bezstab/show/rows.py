@@ -158,7 +158,8 @@ def limit_row(limit: Limit) -> Row:
 def simulation_row(simulation: Simulation) -> Row:
     """Return the summary of one run: largest |c| and |cdot| (SI), energy drift (J), evaluations, when and why it ended.
 
-    `time` is where it ended (s); h in s.
+    `time` is where it ended (s); h in s. The drift is what of the change of energy is not the work (J) of drivers and
+    of applied forces, which are there as well.
     """
     trajectory = simulation.trajectory
     return {
@@ -173,7 +174,9 @@ def simulation_row(simulation: Simulation) -> Row:
         ),
         "c_max": float(np.abs(simulation.c).max()),
         "cdot_max": float(np.abs(simulation.cdot).max()),
-        "energy_drift": float(simulation.energy[-1] - simulation.energy[0]),
+        "energy_drift": float(simulation.energy_drift[-1]),
+        "driver_work": float(simulation.driver_work[-1]),
+        "force_work": float(simulation.force_work[-1]),
     }
 
 

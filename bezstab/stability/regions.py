@@ -35,8 +35,8 @@ from bezstab.rationals import exact
 from bezstab.stability.arrays import BoolArray, FloatArray
 from bezstab.stability.boundary_locus import Arc, Bounds, bounds_of, feedback_coefficients
 from bezstab.stability.closed_loop import spectral_radius
-from bezstab.stability.pencils import Pencil, pencil_of
 from bezstab.stability.line_slices import RIM, rim_radius
+from bezstab.stability.pencils import Pencil, pencil_of
 from bezstab.stability.plane_cells import Edges, plane_shape
 from bezstab.stability.plane_checks import check_plane
 from bezstab.stability.plane_pencils import plane_pencil_of

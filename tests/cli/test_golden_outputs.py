@@ -60,8 +60,8 @@ TOLERANCES = (
 )
 """The first that fits both command and key."""
 
-ADDED = ("beta_hat_min", "bounded")
-"""Keys that rows have got since: the least beta_hat of a region, in its place, and whether it is bounded."""
+ADDED = ("beta_hat_min", "bounded", "driver_work", "force_work")
+"""Keys that rows have got since: the least beta_hat of a region, whether it is bounded, the work in a simulation."""
 
 
 def tolerance(command: str, key: str) -> Tolerance:

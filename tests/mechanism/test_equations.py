@@ -1,8 +1,13 @@
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 import pytest
 import sympy as sp
+from numpy.typing import NDArray
 
 from bezstab.mechanism import (
+    Mechanism,
     compiled_mechanism,
     equations_of_motion,
     initial_state,
@@ -11,6 +16,8 @@ from bezstab.mechanism import (
     parse_scene,
 )
 from tests.mechanism.test_scenes import pendulum
+
+FloatArray = NDArray[np.float64]
 
 
 def test_the_slider_crank_has_the_papers_equations_18_to_23() -> None:
@@ -82,3 +89,80 @@ def test_a_distance_joint_holds_two_points_a_length_apart() -> None:
     apart = q[0] + second - first
     assert seen.c[0] == pytest.approx((apart @ apart - 4) / 4, rel=1e-14)
     assert seen.cdot[0] == pytest.approx(apart @ v[0] / 2, rel=1e-14)
+
+
+ON_A_LINE = {"type": "point-on-line", "bodies": ["ground", "plate"], "points": [[0, 0], [0, 0]], "direction": [1, 2]}
+ARM_END, PLATE_END = (0.3, -0.1), (-0.2, 0.4)
+
+
+def arm_and_plate(**spring: float) -> Mechanism:
+    """Return a body on a pivot and one that slides and turns, with a spring between points of them."""
+    data: dict[str, Any] = {
+        "name": "arm and plate",
+        "body": [
+            {"name": "arm", "free": ["theta"], "locked": {"x": 0.5, "y": -0.25}, "mass": 1.0, "inertia": 2.0},
+            {"name": "plate", "free": ["x", "y", "theta"], "mass": 3.0, "inertia": 0.5},
+        ],
+        "joint": [ON_A_LINE],
+        "spring": [{"bodies": ["arm", "plate"], "points": [ARM_END, PLATE_END], **spring}],
+    }
+    return compiled_mechanism(parse_scene(data))
+
+
+def spring_length(q: FloatArray) -> float:
+    """Return the distance of the two ends, by complex numbers."""
+    first = complex(0.5, -0.25) + complex(*ARM_END) * np.exp(1j * q[0])
+    second = complex(q[1], q[2]) + complex(*PLATE_END) * np.exp(1j * q[3])
+    return float(abs(second - first))
+
+
+def forces_at(mechanism: Mechanism, q: FloatArray, v: FloatArray) -> FloatArray:
+    equations = mechanism.equations
+    values = dict(zip((*equations.q, *equations.v), (*q, *v), strict=True))
+    return np.array(equations.forces.subs(values), float)[:, 0]
+
+
+def slopes(function: Callable[[FloatArray], float], q: FloatArray) -> FloatArray:
+    """Return the derivatives by central differences, to 1e-9 for functions of order one."""
+    d = 1e-5
+    return np.array([(function(q + d * unit) - function(q - d * unit)) / (2 * d) for unit in np.eye(len(q))])
+
+
+def test_a_spring_pulls_by_its_extension_and_a_damper_by_its_rate() -> None:
+    """By hand, from (0, 1) to the bob at (3, 5): L = 5, dL/dt = (3, 4)/5 . (1, 2) = 2.2: 2 (5 - 1) + 3 * 2.2 = 14.6."""
+    spring = {"bodies": ["ground", "bob"], "points": [[0, 1], [0, 0]], "stiffness": 2, "free_length": 1, "damping": 3}
+    mechanism = compiled_mechanism(parse_scene(pendulum(spring=[spring])))
+    forces = forces_at(mechanism, np.array([3.0, 5.0]), np.array([1.0, 2.0]))
+    assert forces == pytest.approx([-14.6 * 3 / 5, -14.6 * 4 / 5], rel=1e-14)
+
+
+@pytest.mark.parametrize("free_length", [0.0, 0.4, 5.0])  # pulling, pulling and pushing
+def test_a_springs_force_is_the_negative_slope_of_its_energy(free_length: float) -> None:
+    mechanism, random = arm_and_plate(stiffness=7.0, free_length=free_length), np.random.default_rng(1)
+    for q in random.normal(0, 1, (5, 4)):
+        expected = -slopes(lambda q: 7.0 * (spring_length(q) - free_length) ** 2 / 2, q)
+        assert forces_at(mechanism, q, np.zeros(4)) == pytest.approx(expected, abs=1e-7)  # of energies up to 100
+
+
+def test_a_damper_takes_the_square_of_its_rate_out_of_the_motion() -> None:
+    mechanism, random = arm_and_plate(damping=1.5), np.random.default_rng(1)
+    for q, v in random.normal(0, 1, (5, 2, 4)):
+        gradient = slopes(spring_length, q)
+        forces = forces_at(mechanism, q, v)
+        assert forces == pytest.approx(-1.5 * (gradient @ v) * gradient, abs=1e-7)
+        assert forces @ v == pytest.approx(-1.5 * (gradient @ v) ** 2, abs=1e-7)
+
+
+def test_the_energy_has_the_springs_in_it() -> None:
+    mechanism, random = arm_and_plate(stiffness=7.0, free_length=0.4, damping=1.5), np.random.default_rng(1)
+    q, v = random.normal(0, 1, (2, 5, 4))
+    kinetic = v**2 @ [2.0, 3.0, 3.0, 0.5] / 2
+    elastic = [7.0 * (spring_length(each) - 0.4) ** 2 / 2 for each in q]
+    energy = observe(mechanism, np.zeros(5), q, v, 0.0, 0.0).energy
+    assert energy == pytest.approx(kinetic + elastic, rel=1e-13)
+
+
+def test_a_spring_without_free_length_costs_no_root() -> None:
+    """k L^2 / 2 is a polynomial in the ends' coordinates, and where the ends meet there is nothing to divide by."""
+    mechanism = arm_and_plate(stiffness=7.0, free_length=0.0)
+    assert {power.exp for power in mechanism.equations.potential.atoms(sp.Pow)} == {2}

@@ -6,11 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import sympy as sp
+from numpy.typing import NDArray
 
 from bezstab.errors import InputError
-from bezstab.mechanism import Start, compiled_mechanism, initial_state, load_scene, observe, simulate
+from bezstab.mechanism import Start, compiled_mechanism, initial_state, load_scene, observe, parse_scene, simulate
 from bezstab.methods import Method, accuracy, evaluations, lookup, steps
 from bezstab.units import feedback_gains
+from tests.mechanism.test_scenes import pendulum
 from tests.methods.kinds import EXPLICIT
 from tests.reference.one_coordinate_motion import (
     distance,
@@ -19,6 +21,8 @@ from tests.reference.one_coordinate_motion import (
     shown_order,
     slider_crank_energies,
 )
+
+FloatArray = NDArray[np.float64]
 
 H = 1e-3  # s
 STARTS: tuple[Start, ...] = ("rk4", "ramp", "euler")
@@ -178,3 +182,41 @@ def test_a_start_is_refused_from_1e9_on_in_si() -> None:
     assert run.failure is None
     with pytest.raises(InputError, match="the start: blow-up"):
         simulate(mechanism, lookup("RK1"), 1e-12, 1e-12, (0.0, 0.0), (at_rest, np.array([0.0, 2e9])))
+
+
+def test_a_mass_on_a_spring_and_damper_rings_down_as_the_book_has_it() -> None:
+    """x = 2 + e^(-t) (cos 3 t + sin(3 t) / 3): x'' = -10 (x - 2) - 2 x', released at rest at x = 3."""
+    line = {"type": "point-on-line", "bodies": ["ground", "bob"], "points": [[0, 0], [0, 0]], "direction": [1, 0]}
+    spring = {"bodies": ["ground", "bob"], "points": [[0, 0], [0, 0]], "stiffness": 10, "free_length": 2, "damping": 2}
+    initial = {"position": {"bob.x": 3.0}, "velocity": {"bob.x": 0.0}}
+    scene = parse_scene({**pendulum(spring=[spring], initial=initial), "joint": [line]})
+    run = simulate(compiled_mechanism(scene), lookup("RK4"), H, 3.0, (20.0, 100.0))
+    expected = 2 + np.exp(-run.t) * (np.cos(3 * run.t) + np.sin(3 * run.t) / 3)
+    assert run.q[:, 0] == pytest.approx(expected, abs=1e-11)  # 3000 steps of (sqrt(10) h)^5 / 120
+
+
+ANDREWS = np.array([
+    0.1581077119629904e2,
+    -0.1575637105984298e2,
+    0.4082224013073101e-1,
+    -0.5347301163226948,
+    0.5244099658805304,
+    0.5347301163226948,
+    0.1048080741042263e1,
+])  # fmt: skip
+"""beta, Theta, gamma, Phi, delta, Omega, epsilon at 0.03 s: the Test Set for IVP Solvers, from its solver PSIDE."""
+ANDREWS_DIGITS = 1e-9  # relative: what these are good to, seven of the sixteen digits printed being the solver's
+
+
+def andrews_angles(name: str, h: float) -> FloatArray:
+    """Return the seven angles of the test set, at 0.03 s; three of them are relative to another body."""
+    mechanism = compiled_mechanism(load_scene("andrews"))
+    run = simulate(mechanism, lookup(name), h, 0.03, feedback_gains(0.1, 0.01, h))
+    last = dict(zip(mechanism.scene.coordinates, run.q[-1].tolist(), strict=True))
+    k1, k2, k3, k4, k5, k6, k7 = (last[f"K{number}.theta"] for number in range(1, 8))
+    return np.array([k1, k2 - k1, k3, k4 - k5, k5, k6 - k7, k7])
+
+
+@pytest.mark.parametrize(("name", "h"), [("ABM4", 2e-6), ("AB4", 5e-7)])
+def test_andrews_squeezing_mechanism_ends_where_the_test_set_says(name: str, h: float) -> None:
+    assert andrews_angles(name, h) == pytest.approx(ANDREWS, rel=ANDREWS_DIGITS, abs=0)

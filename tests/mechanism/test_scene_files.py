@@ -10,6 +10,7 @@ from bezstab.errors import InputError
 from bezstab.mechanism import load_scene, parse_scene, read_scene, shipped_scenes
 from tests.mechanism.test_scenes import SHIPPED, pendulum
 
+SPRING = {"bodies": ["ground", "bob"], "points": [[0, 2], [0, 0]], "stiffness": 3.0, "free_length": 1.0}
 LINE = {"type": "point-on-line", "bodies": ["ground", "bob"], "points": [[0, 0], [0, 0]]}
 
 
@@ -56,6 +57,16 @@ def test_the_chain_grows_with_its_count() -> None:
         ({"initial__position": {"ghost.x": 1.0}}, "ghost.x"),
         ({"initial": 3}, "initial"),
         ({"force": [{"body": "ghost", "force": [0, 1]}]}, "ghost"),
+        ({"spring": [{**SPRING, "bodies": ["ground", "ghost"]}]}, "ghost"),
+        ({"spring": [{**SPRING, "bodies": ["ground"]}]}, "bodies"),
+        ({"spring": [{**SPRING, "points": [0, 0]}]}, "points"),
+        ({"spring": [{**SPRING, "stiffness": -3.0}]}, "stiffness"),
+        ({"spring": [{**SPRING, "stiffness": 0.0}]}, "stiffness and damping"),
+        ({"spring": [{**SPRING, "stiffness": "3"}]}, "stiffness"),
+        ({"spring": [{**SPRING, "damping": -1.0}]}, "damping"),
+        ({"spring": [{**SPRING, "free_length": -1.0}]}, "free_length"),
+        ({"spring": [{key: SPRING[key] for key in ("bodies", "points", "stiffness")}]}, "free_length"),
+        ({"spring": [{**SPRING, "length": 1.0}]}, "length"),
     ],
 )  # fmt: skip
 def test_a_bad_scene_takes_one_line_that_names_the_key(changes: dict[str, Any], named: str) -> None:
@@ -63,6 +74,12 @@ def test_a_bad_scene_takes_one_line_that_names_the_key(changes: dict[str, Any], 
         parse_scene(pendulum(**changes))
     assert named in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def test_a_mere_damper_needs_no_free_length() -> None:
+    damper = {**{key: SPRING[key] for key in ("bodies", "points")}, "damping": 2.0}
+    (spring,) = parse_scene(pendulum(spring=[damper])).springs
+    assert (spring.stiffness, spring.free_length, spring.damping) == (0, 0, 2)
 
 
 def test_an_unknown_scene_suggests_a_near_one(tmp_path: Path) -> None:

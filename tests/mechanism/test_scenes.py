@@ -29,7 +29,7 @@ def pendulum(**changes: Any) -> dict[str, Any]:
 
 
 def scene(*joints: Revolute | Distance | Driver) -> Scene:
-    return Scene("two bodies", (0.0, 0.0), (CRANK, SLIDER), joints, (), position={}, velocity={}, guess={})
+    return Scene("two bodies", (0.0, 0.0), (CRANK, SLIDER), joints, (), (), position={}, velocity={}, guess={})
 
 
 def test_coordinates_are_those_left_free_in_the_order_of_the_bodies() -> None:

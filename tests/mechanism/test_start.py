@@ -59,6 +59,18 @@ def test_redundant_constraints_are_refused() -> None:
         initial_state(compiled_mechanism(parse_scene({**pendulum(), "joint": [joint, joint]})))
 
 
+@pytest.mark.parametrize(("changes", "starts"), [({}, False), ({"free_length": 0.0}, True), ({"damping": 1.0}, False)])
+def test_a_spring_without_a_direction_is_refused(changes: dict[str, float], starts: bool) -> None:
+    spring = {"bodies": ["ground", "bob"], "points": [[1, 0], [0, 0]], "stiffness": 1.0, "free_length": 0.5, **changes}
+    initial = {"position": {"bob.x": 1.0, "bob.y": 0.0}, "velocity": {"bob.y": 0.0}}
+    mechanism = compiled_mechanism(parse_scene(pendulum(spring=[spring], initial=initial)))
+    if starts:
+        assert initial_state(mechanism)[0] == pytest.approx([1, 0])
+    else:
+        with pytest.raises(InputError, match="spring 1: its ends meet"):
+            initial_state(mechanism)
+
+
 def test_constraint_errors_are_those_of_each_state_of_a_batch() -> None:
     mechanism = compiled_mechanism(load_scene("slider_crank"))
     states = [perturbed_state(mechanism, error)[0] for error in (0.0, 1e-3, 2e-3)]

@@ -1,0 +1,109 @@
+"""Work by routes that do not integrate power: closed forms of the energy, a force times its way, a book's solution."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from bezstab.mechanism import Simulation, compiled_mechanism, load_scene, parse_scene, simulated
+from bezstab.mechanism.energies import NODES, running_integral
+from bezstab.methods import accuracy, lookup
+from tests.mechanism.test_scenes import pendulum
+from tests.reference.one_coordinate_motion import ANGLE, shown_order, slider_crank_energies
+
+H = 1e-3  # s
+
+
+def run_of(scene: str | dict[str, Any], name: str = "RK4", h: float = H, duration: float = 0.5) -> Simulation:
+    """Return a run with 2 alpha = 20 / s and beta^2 = 100 / s^2 whatever h is."""
+    mechanism = compiled_mechanism(load_scene(scene) if isinstance(scene, str) else parse_scene(scene))
+    return simulated(
+        mechanism, lookup(name), h=h, duration=duration, alpha_hat=20 * h, beta_hat=100 * h**2, start="rk4"
+    )
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, NODES - 1, NODES, NODES + 1, 3 * NODES])
+def test_polynomials_are_integrated_exactly_up_to_the_number_of_nodes(count: int) -> None:
+    random, h = np.random.default_rng(1), 0.1
+    t = h * np.arange(count)
+    polynomial = np.polynomial.Polynomial(random.normal(0, 1, min(count, NODES)))
+    antiderivative = polynomial.integ()
+    assert running_integral(polynomial(t), h) == pytest.approx(antiderivative(t) - antiderivative(0), rel=1e-12)
+
+
+@pytest.mark.parametrize("even", [True, False])
+def test_the_integral_converges_with_the_order_of_its_polynomials(even: bool) -> None:
+    errors = []
+    for count in (20, 40):
+        t = np.linspace(0, 4, count + 1 + (not even))
+        errors.append(np.abs(running_integral(np.cos(t), t[1]) - np.sin(t)).max())
+    assert shown_order(errors) > NODES - 0.5
+
+
+def test_a_drivers_work_is_the_energy_that_the_motion_has_in_closed_form() -> None:
+    run = run_of("driven_slider_crank", h=2e-3, duration=6.0)  # a revolution
+    rate = 2 * np.pi / 6
+    energies = slider_crank_energies("45")
+    energy = sp.lambdify(ANGLE, energies.inertia * rate**2 / 2 + energies.potential, "numpy")(np.pi / 4 + rate * run.t)
+    assert np.ptp(energy) > 1  # J, of 30
+    assert run.driver_work == pytest.approx(energy - energy[0], abs=1e-8)  # the run is off by RK4's error
+    assert np.array_equal(run.force_work, np.zeros(len(run.t)))
+
+
+@pytest.mark.parametrize("name", ["SIE", "B2", "AB3", "AB4", "RK4", "RK3"])
+def test_of_a_driven_mechanism_only_the_drift_shrinks_with_the_step(name: str) -> None:
+    """Its own energy changes by 0.2 J whatever the step is."""
+    runs = [run_of("driven_four_bar", name, h) for h in (2e-3, 1e-3)]
+    drifts = [float(np.abs(run.energy_drift).max()) for run in runs]
+    assert shown_order(drifts) == pytest.approx(accuracy(lookup(name))[0], abs=0.1)
+    for run in runs:
+        assert np.ptp(run.energy) > 0.1
+        assert np.ptp(run.energy) > 100 * np.abs(run.energy_drift).max()
+
+
+def test_a_constant_force_does_its_way_times_itself() -> None:
+    scene = {
+        **pendulum(force=[{"body": "bob", "force": [3.0, -4.0]}]),
+        "initial": {"position": {"bob.x": 1.0, "bob.y": 0.0}, "velocity": {"bob.y": 0.0}},
+    }
+    run = run_of(scene)
+    assert run.force_work == pytest.approx((run.q - run.q[0]) @ [3, -4], abs=1e-9)  # RK4's q and the integral of its v
+    assert np.ptp(run.force_work) > 1
+    assert run.energy == pytest.approx((run.v**2).sum(axis=1) / 2, rel=1e-14)  # no gravity: kinetic alone
+    assert np.abs(run.energy_drift).max() < 1e-10  # RK4's, of 3 J
+
+
+def test_a_torque_does_its_angle_times_itself() -> None:
+    run = run_of("andrews", "AB4", h=1e-5, duration=0.005)
+    assert run.force_work == pytest.approx(0.033 * (run.q[:, 0] - run.q[0, 0]), rel=1e-8, abs=1e-14)  # likewise of AB4
+    assert np.abs(run.energy_drift).max() < 1e-6 * run.force_work.max()
+
+
+def test_a_damper_takes_what_the_oscillation_loses() -> None:
+    line = {"type": "point-on-line", "bodies": ["ground", "bob"], "points": [[0, 0], [0, 0]], "direction": [1, 0]}
+    spring = {"bodies": ["ground", "bob"], "points": [[0, 0], [0, 0]], "stiffness": 10, "free_length": 2, "damping": 2}
+    initial = {"position": {"bob.x": 3.0}, "velocity": {"bob.x": 0.0}}
+    run = run_of({**pendulum(spring=[spring], initial=initial), "joint": [line]}, duration=3.0)
+    # x = 2 + e^(-t) (cos 3 t + sin(3 t) / 3), as tests/mechanism/test_runner.py has it
+    x = np.exp(-run.t) * (np.cos(3 * run.t) + np.sin(3 * run.t) / 3)
+    rate = -np.exp(-run.t) * np.sin(3 * run.t) * 10 / 3
+    assert run.force_work == pytest.approx(rate**2 / 2 + 10 * x**2 / 2 - 5, abs=1e-10)
+    assert run.energy_drift == pytest.approx(np.zeros(len(run.t)), abs=1e-10)
+
+
+def test_without_drivers_and_forces_the_drift_is_the_change_of_energy() -> None:
+    run = run_of("four_bar", "AB2")
+    assert np.array_equal(run.energy_drift, run.energy - run.energy[0])
+
+
+def test_the_balance_of_a_run_that_broke_down_ends_with_it() -> None:
+    mechanism = compiled_mechanism(load_scene("driven_four_bar"))
+    run = simulated(mechanism, lookup("B4"), h=H, duration=5.0, alpha_hat=1.7, beta_hat=0.8, perturb=1e-4)
+    assert run.failure
+    assert run.driver_work.shape == run.t.shape
+
+
+def test_a_balance_prints_in_one_line() -> None:
+    run = run_of("pendulum", duration=0.01)
+    assert repr(run.balance).startswith("EnergyBalance(11 times, drift ")
