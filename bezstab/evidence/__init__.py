@@ -8,6 +8,7 @@ The only room in which stability and mechanism meet. A file imports only from th
     linear_prediction   the dominant pole in a sampled response, or why none can be told
     moving_mechanisms   what a mechanism's motion does to its poles, to first order
     moving_regions      the region of a mechanism that moves
+    floquet             the exact rates of a mechanism that moves
     measured_poles      predicted against measured poles of a running mechanism
     verdict_maps        simulated verdicts over the plane against |z_p| < 1
     mujoco_witness      an engine that is not ours must diverge where the map says
@@ -33,9 +34,16 @@ from bezstab.evidence.accuracy_costs import (
 from bezstab.evidence.chunk_stores import Arrays, chunk_store
 from bezstab.evidence.chunks import ATTEMPTS, completed_chunks
 from bezstab.evidence.extremes import Check, extreme_checks
+from bezstab.evidence.floquet import floquet_rates
 from bezstab.evidence.linear_prediction import SPREAD, Fit, Refusal, fit_dominant_pole
 from bezstab.evidence.measured_poles import CLOSE, LINEAR, Measurement, measure_poles, random_points
-from bezstab.evidence.moving_mechanisms import MovingPole, growth_rates, momentary_rates, moving_pole
+from bezstab.evidence.moving_mechanisms import (
+    MovingPole,
+    growth_rates,
+    momentary_rates,
+    moving_pole,
+    tabulated_rates,
+)
 from bezstab.evidence.moving_regions import MovingRegion, moving_growth, moving_region
 from bezstab.evidence.mujoco_witness import TIMES, model_xml, mujoco_witnesses, witness_count
 from bezstab.evidence.pareto import pareto_front
@@ -71,6 +79,7 @@ __all__ = [
     "completed_chunks",
     "extreme_checks",
     "fit_dominant_pole",
+    "floquet_rates",
     "growth_rates",
     "map_rows",
     "measure_poles",
@@ -88,6 +97,7 @@ __all__ = [
     "summary",
     "sweep_sentences",
     "swept_runs",
+    "tabulated_rates",
     "verdict_map",
     "whole_sweep",
     "with_fronts",

@@ -7,8 +7,8 @@ evaluations of that step. Over a revolution of N steps
     change after = M_{N-1} ... M_1 M_0 change before,          |z| = (largest |eigenvalue| of the product)^(1/N):
 
 a Floquet multiplier, exact but for what the motion itself is computed with. A run that does not begin anew has no
-eigenvalues; there it is the growth of the constraints' errors from a kick of the position to the end, in which the free
-motion has no part.
+eigenvalues; there it is the growth of the constraints' errors after a kick of the position, over the later two thirds
+of the steps after which they still stand out from what the free motion, which does not decay, has made of the kick.
 
 The matrices M_k are never formed. Each quantity is held as its derivatives by everything carried at the start, an
 n x D array, and the method's equations are taken line by line, as they are for the quantities themselves.
@@ -39,6 +39,8 @@ from bezstab.stability import FloatArray
 SQUARINGS = 8  # the product over 256 revolutions leaves of the lesser multipliers what 256 powers leave
 LEADING = 6  # multipliers found together: a conjugate pair, and some that are as large
 RESCALED = 16  # steps between two looks at how large the changes have grown, lest they overflow
+FIRST_SHARE = 1 / 3  # of those steps: there the lesser poles still count
+STANDS_OUT = 1e-7  # of the change of the coordinates: the free motion of a method has a constraint error of this size
 BATCH = 256  # points at a time: their arrays stay within a core's cache
 
 Values = dict[Quantity, FloatArray]
@@ -85,20 +87,21 @@ def _batch_rates(
         block = np.zeros((alpha_hat.size, size, len(carried) * size))
         block[:, np.arange(size), number * size + np.arange(size)] = 1
         changes[quantity] = block
-    log_scale = np.zeros(alpha_hat.size)
     evaluated = _Evaluated(mechanism, scheme, remembered, along, step, points, steps)
+    log_scale = np.zeros(alpha_hat.size)
+    errors = None if along.closed else _ConstraintErrors(mechanism, along, step, steps, carried, alpha_hat.size)
     for k in range(steps):
         changes = _after_a_step(evaluated, scheme, carried, changes, k)
+        if errors:
+            errors.note(k, changes, log_scale)
         if k % RESCALED == RESCALED - 1:
             largest = np.max([np.abs(change).max(axis=(1, 2)) for change in changes.values()], axis=0)
             changes = {quantity: change / largest[:, np.newaxis, np.newaxis] for quantity, change in changes.items()}
             log_scale += np.log(largest)
+    if errors:
+        return errors.rates()
     product = np.concatenate([changes[quantity] for quantity in carried], axis=1)
-    if along.closed:
-        log_growth = np.log(_spectral_radius(product))
-    else:
-        log_growth = np.log(_constraint_growth(mechanism, along, carried, product))
-    return np.asarray(np.exp((log_scale + log_growth) / steps))
+    return np.asarray(np.exp((log_scale + np.log(_spectral_radius(product))) / steps))
 
 
 def _after_a_step(
@@ -162,7 +165,9 @@ def _solved_together(
                 if quantity in results:
                     left[:, row, :, results.index(quantity), :] -= float(coefficient) * matrix
     unknowns = len(group) * size
-    solved = np.linalg.solve(left.reshape(points, unknowns, unknowns), right.reshape(points, unknowns, columns))
+    solved: FloatArray = np.linalg.solve(
+        left.reshape(points, unknowns, unknowns), right.reshape(points, unknowns, columns)
+    ).astype(float)
     for number, result in enumerate(results):
         yield result, solved[:, number * size : (number + 1) * size]
 
@@ -190,7 +195,7 @@ class _Evaluated:
         self.shared = {
             equation.result: self._shared_jacobians(equation)
             for equation in scheme.equations
-            if isinstance(equation, Evaluation) and _on_the_motion(equation, scheme)
+            if isinstance(equation, Evaluation) and _is_on_the_motion(equation)
         }
 
     def jacobians(self, k: int) -> Jacobians:
@@ -210,7 +215,7 @@ class _Evaluated:
     def _shared_jacobians(self, evaluation: Evaluation) -> tuple[FloatArray, FloatArray]:
         """Return by_q and by_v without gains, and their slopes by 2 alpha and beta^2; shape (3, steps, n, n)."""
         moment = float(self.remembered.moments[evaluation.result])
-        t = self.starts + moment * self.step
+        t = np.asarray(self.starts + moment * self.step, float)
         q, v, _ = self.along.at(t)
         without = acceleration_jacobians(self.mechanism, t, 0.0, 0.0, q, v)
         with_alpha = acceleration_jacobians(self.mechanism, t, 1.0, 0.0, q, v)
@@ -265,13 +270,13 @@ class _Evaluated:
         return np.stack(np.broadcast_arrays(*a), axis=-1)
 
 
-def _on_the_motion(evaluation: Evaluation, scheme: SecondOrder) -> bool:
+def _is_on_the_motion(evaluation: Evaluation) -> bool:
     """Return whether an evaluation takes place at position and velocity of one step."""
     position, velocity = evaluation.position, evaluation.velocity
     if len(position) != 1 or len(velocity) != 1:
         return False
     (by_x, x), (by_v, v) = position[0], velocity[0]
-    return (by_x, x.name, by_v, v.name, x.step) == (1, "x", 1, "v", v.step)
+    return by_x == by_v == 1 and (x.name, v.name) == ("x", "v") and x.step == v.step
 
 
 def _spectral_radius(product: FloatArray) -> FloatArray:
@@ -294,22 +299,49 @@ def _spectral_radius(product: FloatArray) -> FloatArray:
     return np.asarray(np.abs(np.linalg.eigvals(small)).max(axis=-1))
 
 
-def _constraint_growth(
-    mechanism: Mechanism, along: Motion, carried: Sequence[Quantity], product: FloatArray
-) -> FloatArray:
-    """Return by how much constraint errors grow from a kick of the newest position to the end; shape (points,).
+class _ConstraintErrors:
+    """How large constraint errors are after each step of a run, from kicks of the newest position.
 
     An error w has the size of the displacement M^-1 C_q^T S^-1 w that it stands for, in the metric of the masses.
     """
-    size = mechanism.size
-    newest = max((quantity for quantity in carried if quantity.name == "x"), key=lambda quantity: quantity.step)
-    columns = slice(carried.index(newest) * size, (carried.index(newest) + 1) * size)
-    mass = np.array(mechanism.equations.mass, float)
-    ends = []
-    for t, q in ((0.0, along.q[0]), (along.duration, along.q[-1])):
-        jacobian = constraint_jacobian(mechanism, t, q)
-        ends.append((jacobian, np.linalg.cholesky((jacobian / mass) @ jacobian.T)))
-    (before, size_before), (after, size_after) = ends
-    kick = (before / mass).T @ np.linalg.inv(size_before).T  # unit errors at the start
-    answer = np.linalg.solve(size_after, after @ product[:, columns, columns] @ kick)
-    return np.asarray(np.linalg.norm(answer, ord=2, axis=(1, 2)))
+
+    def __init__(
+        self, mechanism: Mechanism, along: Motion, step: float, steps: int, carried: Sequence[Quantity], points: int
+    ) -> None:
+        self.mechanism = mechanism
+        self.mass = np.array(mechanism.equations.mass, float)
+        newest = max((quantity for quantity in carried if quantity.name == "x"), key=lambda quantity: quantity.step)
+        place = carried.index(newest) * mechanism.size
+        self.newest = newest
+        self.columns = slice(place, place + mechanism.size)
+        self.t = np.asarray(step * (newest.step + np.arange(steps + 1)), float)
+        self.q = along.at(self.t)[0]
+        jacobian, size = self._at(0)
+        self.kick = (jacobian / self.mass).T @ np.linalg.inv(size).T  # unit errors at the start
+        self.log_errors = np.full((points, steps), -np.inf)
+        self.stands_out = np.zeros((points, steps), bool)
+
+    def _at(self, number: int) -> tuple[FloatArray, FloatArray]:
+        """Return C_q, and the factor L of S = L L^T, at one of the times."""
+        jacobian = constraint_jacobian(self.mechanism, float(self.t[number]), self.q[number])
+        return jacobian, np.linalg.cholesky((jacobian / self.mass) @ jacobian.T)
+
+    def note(self, k: int, changes: Values, log_scale: FloatArray) -> None:
+        """Take down the errors after step k."""
+        jacobian, size = self._at(k + 1)
+        moved = changes[self.newest][:, :, self.columns] @ self.kick
+        error = np.linalg.norm(np.linalg.solve(size, jacobian @ moved), axis=(1, 2))
+        displaced = np.linalg.norm(np.sqrt(self.mass)[:, np.newaxis] * moved, axis=(1, 2))
+        with np.errstate(divide="ignore"):
+            self.log_errors[:, k] = np.log(error) + log_scale
+        self.stands_out[:, k] = error > STANDS_OUT * displaced
+
+    def rates(self) -> FloatArray:
+        """Return |z| per step; shape (points,)."""
+        lost = ~self.stands_out
+        last = np.where(lost.any(axis=1), np.argmax(lost, axis=1), lost.shape[1]) - 1
+        last = np.maximum(last, 1)
+        first = (FIRST_SHARE * last).astype(int)
+        point = np.arange(len(last))
+        growth = self.log_errors[point, last] - self.log_errors[point, first]
+        return np.asarray(np.exp(growth / (last - first)))

@@ -1,0 +1,68 @@
+"""Exact rates of a moving mechanism: against the runner on complex numbers, and against the poles at rest."""
+
+import numpy as np
+import pytest
+
+from bezstab.evidence import floquet_rates
+from bezstab.mechanism import compiled_mechanism, load_scene
+from bezstab.methods import Method, lookup, second_order_form
+from bezstab.stability import spectral_radius
+from tests.reference.perturbed_revolutions import runner_multipliers
+
+FOUR_BAR = compiled_mechanism(load_scene("driven_four_bar"))
+STABLE = {
+    "B4": (0.25, 0.2),
+    "AB4": (0.2, 0.08),
+    "AB2": (0.3, 0.3),
+    "RK4": (0.3, 1.5),
+    "SYM": (0.2, 1.5),
+    "B2": (0.3, 0.3),
+}
+"""Points with |z| of 0.9 to 0.97, where the motion makes a difference."""
+
+
+@pytest.mark.parametrize("name", STABLE)
+def test_the_runner_itself_shows_the_same_rate(name: str) -> None:
+    """Its run and the motion differ by truncation errors, of (omega h)^2 = 1e-3 and less in the Jacobians."""
+    count = 200
+    alpha_hat, beta_hat = STABLE[name]
+    found = floquet_rates(FOUR_BAR, lookup(name), 1 / count, np.array([alpha_hat]), np.array([beta_hat]), 1.0)
+    expected = runner_multipliers(FOUR_BAR, lookup(name), count, alpha_hat, beta_hat)
+    at_rest = float(spectral_radius(lookup(name), alpha_hat, beta_hat))
+    assert found[0] == pytest.approx(expected, abs=2e-5)
+    assert abs(at_rest - expected) > 1e-4  # there is something to be seen
+
+
+@pytest.mark.parametrize("name", ["B4", "RK4", "SYM", "ABM3", "trapezoid", "verlet-half", "newmark(1/4,1/2)"])
+def test_a_mechanism_that_hardly_moves_has_the_poles_at_rest(name: str) -> None:
+    """What the motion does to a pole falls with omega h, like it or like its square: here from 0.13 to 0.013."""
+    method = lookup(name)
+    alpha_hat, beta_hat = np.array([0.3, 0.4]), np.array([0.1, 0.08])
+    at_rest = spectral_radius(method, alpha_hat, beta_hat)
+    moved = [np.abs(floquet_rates(FOUR_BAR, method, h, alpha_hat, beta_hat, 1.0) - at_rest).max() for h in (2e-2, 2e-3)]
+    assert moved[1] < 0.2 * moved[0] < 0.2 * 2e-2
+
+
+@pytest.mark.parametrize("name", ["B3", "SIE", "trapezoid", "bdf2"])
+def test_a_method_and_its_second_order_form_have_the_same_rate(name: str) -> None:
+    method = lookup(name)
+    written_out = Method(name, second_order_form(method.scheme), "")
+    point = np.array([0.4]), np.array([0.12])
+    rates = [floquet_rates(FOUR_BAR, each, 0.01, *point, 1.0) for each in (method, written_out)]
+    assert rates[0] == pytest.approx(rates[1], rel=1e-12)
+
+
+def test_a_batch_gives_what_single_points_give() -> None:
+    alpha_hat, beta_hat = np.array([0.3, 0.5, 0.7]), np.array([0.1, 0.2, 0.15])
+    together = floquet_rates(FOUR_BAR, lookup("RK2"), 0.02, alpha_hat, beta_hat, 1.0)
+    alone = [floquet_rates(FOUR_BAR, lookup("RK2"), 0.02, alpha_hat[[i]], beta_hat[[i]], 1.0)[0] for i in range(3)]
+    assert together == pytest.approx(alone, rel=1e-12)
+
+
+def test_a_run_without_a_driver_has_the_rate_of_its_constraint_errors() -> None:
+    """On the slider-crank, which is hardly turned, the error of 1000 steps decays as the pole at rest says."""
+    mechanism = compiled_mechanism(load_scene("slider_crank"))
+    rates = floquet_rates(mechanism, lookup("B4"), 1e-3, np.array([0.1, 0.5]), np.array([0.1, 0.1]), 0.2)
+    at_rest = spectral_radius(lookup("B4"), np.array([0.1, 0.5]), np.array([0.1, 0.1]))
+    # a conjugate pair is seen at two phases, apart by a factor of about two, 40 steps or more from each other
+    assert np.abs(rates / at_rest - 1).max() < 3e-2

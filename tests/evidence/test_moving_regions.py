@@ -1,0 +1,49 @@
+"""The region of a moving mechanism: inside that at rest, all of it at rest, and bounded where exact rates are one."""
+
+import numpy as np
+import pytest
+
+from bezstab.evidence import floquet_rates, moving_growth, moving_region
+from bezstab.mechanism import compiled_mechanism, load_scene, turning_normals
+from bezstab.methods import lookup
+from bezstab.stability import region
+
+FOUR_BAR = compiled_mechanism(load_scene("driven_four_bar"))
+TURNING = turning_normals(FOUR_BAR, 1.0)
+OMEGA = 2 * np.pi
+
+
+@pytest.mark.parametrize("name", ["B4", "SYM", "verlet-old"])
+def test_it_shrinks_with_speed_from_the_region_at_rest(name: str) -> None:
+    method = lookup(name)
+    areas = [moving_region(method, TURNING, turned / OMEGA, points=2).area for turned in (1e-4, 0.1, 0.3)]
+    at_rest = region(method).area
+    assert at_rest is not None
+    assert areas[0] == pytest.approx(at_rest, rel=3e-3)  # 160 lines across kinks and corners
+    assert areas == sorted(areas, reverse=True)
+    assert areas[2] < 0.95 * at_rest
+
+
+def test_exact_rates_on_its_edge_are_one() -> None:
+    """At omega h = 0.031, away from the corners: 5e-4 (theory, section 9), where the map's own edge is off by 1e-2."""
+    method, count = lookup("B4"), 203
+    h = 1 / count
+    alpha_hat = np.linspace(0.2, 1.4, 7)
+    low, high = np.zeros(7), np.full(7, 1.2)
+    inside = np.full(7, 0.3)
+    for _ in range(40):  # the upper edge, from a point inside
+        middle = (inside + high) / 2
+        decays = moving_growth(method, TURNING, h, alpha_hat, middle) < 0
+        inside, high = np.where(decays, middle, inside), np.where(decays, high, middle)
+    rates = floquet_rates(FOUR_BAR, method, h, alpha_hat, inside, 1.0)
+    assert low.size == rates.size
+    assert np.median(np.abs(rates - 1)) < 5e-4
+
+
+def test_its_grid_says_where_errors_decay_and_where_the_law_does_not_hold() -> None:
+    found = moving_region(lookup("B4"), TURNING, 0.1 / OMEGA, points=60)
+    assert found.growth.shape == found.excluded.shape == (60, 60)
+    assert 0.0 < found.excluded.mean() < 0.5
+    decaying = (found.growth < 0).mean()
+    window_area = np.ptp(found.alpha_hat) * np.ptp(found.beta_hat)
+    assert decaying * window_area == pytest.approx(found.area, rel=0.05)  # cells of a sixtieth

@@ -1,0 +1,51 @@
+"""The motion as a function of time: between its steps, and closed where a driver turns steadily."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from bezstab.errors import InputError
+from bezstab.mechanism import Body, compiled_mechanism, constraint_errors, load_scene, motion
+
+MECHANISM = compiled_mechanism(load_scene("driven_four_bar"))
+
+
+def test_a_steady_driver_makes_a_revolution_whatever_the_duration() -> None:
+    assert motion(MECHANISM, 0.3).closed
+    assert motion(MECHANISM, 0.3).duration == pytest.approx(1.0, rel=1e-15)
+
+
+def test_without_a_driver_the_motion_is_a_run() -> None:
+    run = motion(compiled_mechanism(load_scene("slider_crank")), 0.25)
+    assert not run.closed
+    assert run.duration == pytest.approx(0.25, rel=1e-12)
+
+
+def test_between_steps_velocity_and_acceleration_are_the_positions_derivatives() -> None:
+    along = motion(MECHANISM, 1.0)
+    t = np.array([0.1001, 0.33337, 0.71234])
+    step = 1e-4  # central differences: truncation (omega step)^2 = 4e-7 of v, rounding 1e-12 of q / step = 1e-8
+    (before, v_before, _), (_, v, a), (after, v_after, _) = along.at(t - step), along.at(t), along.at(t + step)
+    assert np.allclose((after - before) / (2 * step), v, rtol=1e-5, atol=1e-5)
+    assert np.allclose((v_after - v_before) / (2 * step), a, rtol=1e-5, atol=1e-4)
+
+
+def test_the_motion_satisfies_its_joints_to_the_last_digits() -> None:
+    along = motion(MECHANISM, 1.0)
+    for t in (0.0, 0.12345, 0.5, 0.98765):
+        q = along.at(np.array([t]))[0][0]
+        assert np.abs(constraint_errors(MECHANISM, t, list(q))).max() < 1e-11  # what RK4's 4000 steps leave, in m
+
+
+def test_a_motion_that_misses_its_start_is_refused_with_the_coordinate() -> None:
+    scene = load_scene("driven_four_bar")
+    free = Body(name="free", mass=1.0, inertia=1.0, center=(0.0, 0.0), free=("x",), locked={})
+    drifting = replace(
+        scene,
+        bodies=(*scene.bodies, free),
+        velocity={"free.x": 0.3},
+        position={"free.x": 0.0},
+    )
+    with pytest.raises(InputError, match=r"free\.x is off by 0\.3 after one revolution"):
+        motion(compiled_mechanism(drifting), 1.0)
