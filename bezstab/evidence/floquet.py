@@ -37,7 +37,7 @@ from bezstab.methods import Assignment, Combination, Evaluation, Method, Quantit
 from bezstab.stability import FloatArray
 
 SQUARINGS = 8  # the product over 256 revolutions leaves of the lesser multipliers what 256 powers leave
-LEADING = 6  # multipliers found together: a conjugate pair, and some that are as large
+SPARE = 2  # multipliers found besides the leading ones
 RESCALED = 16  # steps between two looks at how large the changes have grown, lest they overflow
 FIRST_SHARE = 1 / 3  # of those steps: there the lesser poles still count
 STANDS_OUT = 1e-7  # of the change of the coordinates: the free motion of a method has a constraint error of this size
@@ -101,7 +101,7 @@ def _batch_rates(
     if errors:
         return errors.rates()
     product = np.concatenate([changes[quantity] for quantity in carried], axis=1)
-    return np.asarray(np.exp((log_scale + np.log(_spectral_radius(product))) / steps))
+    return np.asarray(np.exp((log_scale + np.log(_spectral_radius(product, 2 * mechanism.constraints + SPARE))) / steps))
 
 
 def _after_a_step(
@@ -279,20 +279,21 @@ def _is_on_the_motion(evaluation: Evaluation) -> bool:
     return by_x == by_v == 1 and (x.name, v.name) == ("x", "v") and x.step == v.step
 
 
-def _spectral_radius(product: FloatArray) -> FloatArray:
+def _spectral_radius(product: FloatArray, leading: int) -> FloatArray:
     """Return the largest modulus of an eigenvalue of each matrix; shape (points,).
 
-    A high power of the matrix takes a few vectors to the leading eigenvectors, on which it is small and has the same
-    leading eigenvalues (orthogonal iteration by squaring). The whole of a matrix of 40 rows takes ten times as long.
+    Each of the m constraints has a conjugate pair at the dominant pole, so that 2m eigenvalues are about as large:
+    `leading` counts them and some more. A high power of the matrix takes so many vectors to the space of their
+    eigenvectors, on which the matrix is small and has just these eigenvalues (orthogonal iteration by squaring).
     """
     size = product.shape[-1]
-    if size <= LEADING:
+    if size <= 2 * leading:
         return np.asarray(np.abs(np.linalg.eigvals(product)).max(axis=-1))
     power = product
     for _ in range(SQUARINGS):
         power = power / np.abs(power).max(axis=(1, 2), keepdims=True)
         power = power @ power
-    start = np.random.default_rng(0).standard_normal((size, LEADING))
+    start = np.random.default_rng(0).standard_normal((size, leading))
     basis, _ = np.linalg.qr(power @ start)
     basis, _ = np.linalg.qr(product @ basis)
     small = np.swapaxes(basis, 1, 2) @ (product @ basis)
