@@ -52,7 +52,7 @@ def _roots_of_chunk(table: FloatArray, x: ComplexArray) -> ComplexArray:
     solved_x = np.repeat(x[::STRIDE], STRIDE)[: x.size]
     too_far = np.abs(x - solved_x) >= NEAR * np.abs(x)
     has_root_zero = coefficients[0] == 0  # an exact zero starts, and stays, at 0
-    no_start = ~np.isfinite(np.repeat(solved.sum(axis=0), STRIDE)[: x.size])  # a root of the neighbour is infinite
+    no_start = ~np.isfinite(np.repeat(solved.sum(axis=0), STRIDE)[:points])  # a root of the neighbour is infinite
     alone = too_far | has_root_zero | no_start
     starts[:, alone] = newton_polygon_starts(coefficients[:, alone])
     return _aberth(coefficients, starts)
