@@ -7,9 +7,14 @@ From exact numbers upwards; a file imports only from those above it:
     recipes             such equations as text
     schemes             the kinds of methods as frozen data that checks itself
     second_order_forms  every scheme written as a second-order one
+    algebraic_numbers   irrational coefficients as rationals good to 40 digits
     families            Bezier, Adams-Bashforth and their predictor-corrector pairs, by number of steps
     one_step_methods    Runge-Kutta methods and symplectic Euler
+    runge_kutta_pairs   explicit Runge-Kutta methods that people run, most of them in pairs
+    implicit_methods    BDF, Adams-Moulton, implicit Runge-Kutta
+    second_order_methods  Verlet, Newmark, symplectic compositions and such
     method_files        a user's method, from TOML
+    aliases             what else they are called, and advice
     registry            every built-in method by name
     derivation          by sympy: s->z mapping, characteristic polynomial, closed loop
     shared_factors      poles that no feedback moves
@@ -25,7 +30,7 @@ from bezstab.lazy import lazy_names
 from bezstab.methods.families import adams_bashforth, adams_bashforth_moulton, bezier
 from bezstab.methods.method_files import read_method
 from bezstab.methods.recipes import recipe
-from bezstab.methods.registry import REGISTRY, lookup
+from bezstab.methods.registry import GROUPS, REGISTRY, MethodGroup, lookup
 from bezstab.methods.schemes import (
     Family,
     LinearMultistep,
@@ -60,7 +65,7 @@ if TYPE_CHECKING:
         mapping_equations,
     )
     from bezstab.methods.formulas import characteristic_text, mapping_text, recursion_text
-    from bezstab.methods.orders import accuracy
+    from bezstab.methods.orders import ForceAccuracy, accuracy, accuracy_by_force
     from bezstab.methods.shared_factors import fixed_poles, without_shared_factor
 
 DERIVED = {
@@ -82,7 +87,7 @@ DERIVED = {
         "mapping_equations",
     ),
     "formulas": ("characteristic_text", "mapping_text", "recursion_text"),
-    "orders": ("accuracy",),
+    "orders": ("ForceAccuracy", "accuracy", "accuracy_by_force"),
     "shared_factors": ("fixed_poles", "without_shared_factor"),
 }
 """What is loaded when first used, by module."""
@@ -92,15 +97,18 @@ __getattr__ = lazy_names(__name__, DERIVED)
 __all__ = [
     "ALPHA_HAT",
     "BETA_HAT",
+    "GROUPS",
     "MU",
     "REGISTRY",
     "Assignment",
     "Combination",
     "Evaluation",
     "Family",
+    "ForceAccuracy",
     "H",
     "LinearMultistep",
     "Method",
+    "MethodGroup",
     "Partitioned",
     "PlaneTable",
     "Polynomial",
@@ -112,6 +120,7 @@ __all__ = [
     "Verdict",
     "Z",
     "accuracy",
+    "accuracy_by_force",
     "adams_bashforth",
     "adams_bashforth_moulton",
     "bezier",

@@ -58,10 +58,17 @@ def adams_bashforth_moulton(n: int) -> Method:
     (Hairer, Norsett & Wanner I, section III.1).
     """
     predictor = _adams_bashforth_scheme(n)
-    corrector = LinearMultistep(predictor.rho, (*_interpolatory_weights([1 - j for j in range(n)]), ZERO))
+    corrector = adams_moulton_scheme(n)
+    same_steps = LinearMultistep((*corrector.rho, ZERO), (*corrector.sigma, ZERO))
     source = "Hairer, Norsett & Wanner I, section III.1 (Adams-Bashforth-Moulton, PECE)"
     family = Family("Adams-Bashforth-Moulton", n)
-    return Method(f"ABM{n}", PredictorCorrector(predictor, corrector), source, family=family)
+    return Method(f"ABM{n}", PredictorCorrector(predictor, same_steps), source, family=family)
+
+
+def adams_moulton_scheme(n: int) -> LinearMultistep:
+    """Return the Adams-Moulton scheme of order n >= 2, of n - 1 steps: the polynomial through n values, one new."""
+    weights = _interpolatory_weights([1 - j for j in range(n)])
+    return LinearMultistep((ONE, -ONE, *[ZERO] * (n - 2)), tuple(weights))
 
 
 def _explicit_adams(weights: Sequence[Fraction]) -> LinearMultistep:

@@ -1,6 +1,7 @@
 """Order of accuracy and error constant, from a method's exact coefficients."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations_with_replacement, count
 from math import factorial, prod
@@ -17,27 +18,134 @@ from bezstab.methods.schemes import (
     PredictorCorrector,
     RungeKutta,
 )
+from bezstab.methods.second_order import SecondOrder, defect
+from bezstab.methods.second_order_forms import second_order_form
 
 Tree = tuple["Tree", ...]
 """A rooted tree: the subtrees of its root, in a fixed order. () is a single vertex, ((),) one with a leaf on it."""
 
 
-def accuracy(method: Method) -> tuple[int, Fraction]:
+Accuracy = tuple[int, Fraction]
+"""Order of accuracy and error constant."""
+
+
+def accuracy(method: Method) -> Accuracy:
     """Return the order of accuracy p and the error constant, both from the coefficients alone.
 
     The error constant is the coefficient of mu^(p+1) in the local error on y' = lambda y, divided by sigma(1)
     (Hairer, Norsett & Wanner I, Eq. III.2.13). A Runge-Kutta method's p is that of its rooted-tree conditions, which
-    nonlinear right-hand sides need (ibid., Theorem II.2.13); a partitioned method has the worse of its two maps.
+    nonlinear right-hand sides need (ibid., Theorem II.2.13); a partitioned method has the worse of its two maps. Where
+    rationals stand for irrational coefficients, a condition holds if it does to all but two of their digits.
+
+    A second-order scheme's p is that of linear motions under forces of position and of velocity: symplectic
+    compositions, whose kicks see an old velocity, have order one however many kicks they have, and what they reach
+    without such forces is in `accuracy_by_force`, whose worse part the constant is.
     """
     match method.scheme:
         case RungeKutta() as scheme:
-            p = _runge_kutta_order(scheme)
+            p = _runge_kutta_order(scheme, _rounding(method))
             return p, _local_error(coefficient_table(method), p + 1)
         case Partitioned(position, velocity):
             errors = [_multistep_error(velocity), _multistep_error(position)]
-            return min(errors, key=lambda error: (error[0], -abs(error[1])))
+            return min(errors, key=_goodness)
         case LinearMultistep() | PredictorCorrector():
             return _leading_error(coefficient_table(method))
+        case SecondOrder() as scheme:
+            rounding = _rounding(method)
+            p = next(p for p in count() if not _is_exact(scheme, p + 1, rounding, _any_force))
+            by_force = accuracy_by_force(method)
+            return p, min((by_force.position, by_force.velocity), key=_goodness)[1]
+
+
+def _goodness(error: Accuracy) -> tuple[int, Fraction]:
+    """Return what is less for the worse of two."""
+    order, constant = error
+    return order, -abs(constant)
+
+
+@dataclass(frozen=True)
+class ForceAccuracy:
+    """Order of accuracy and error constant where forces depend on the position alone, and on the velocity alone."""
+
+    position: Accuracy
+    velocity: Accuracy
+
+
+def accuracy_by_force(method: Method) -> ForceAccuracy:
+    """Return order and error constant on x'' = -b x and on v' = -a v: of what the feedback's beta and alpha do.
+
+    Two things err: z, whose error grows from step to step, and the ratio of v to x at that z, whose error does not. The
+    order is that of the worse, over the exact motions e^(mu t); the constant is c where z = e^mu - c mu^(p+1) + ...,
+    as for `accuracy`, or v = mu (1 + c mu^p + ...) x if that is what errs. For other schemes than second-order ones it
+    is of their linear motions as well.
+    """
+    scheme = second_order_form(method.scheme)
+    rounding = _rounding(method)
+    return ForceAccuracy(
+        position=_error_under(scheme, rounding, _force_of_position),
+        velocity=_error_under(scheme, rounding, _force_of_velocity),
+    )
+
+
+LeftOver = Sequence[Fraction]
+"""What is left over on exact motions: entry i belongs to mu^(n - i) alpha_hat^i, beta_hat = -mu (alpha_hat + mu)."""
+
+
+def _any_force(left_over: LeftOver) -> Fraction:
+    """Return the largest coefficient."""
+    return max(map(abs, left_over))
+
+
+def _force_of_position(left_over: LeftOver) -> Fraction:
+    """Return the coefficient of mu^n where alpha_hat = 0: mu^2 = -beta_hat."""
+    return left_over[0]
+
+
+def _force_of_velocity(left_over: LeftOver) -> Fraction:
+    """Return the coefficient of mu^n where beta_hat = 0: mu = -alpha_hat."""
+    return sum((c * (-1) ** i for i, c in enumerate(left_over)), ZERO)
+
+
+Force = Callable[[LeftOver], Fraction]
+
+
+def _is_exact(scheme: SecondOrder, power: int, rounding: Fraction, force: Force) -> bool:
+    """Return whether neither z nor the ratio of v to x errs in mu^power, relative to one and to mu^2."""
+    return abs(force(_growth_error(scheme, power))) <= rounding and abs(force(_ratio_error(scheme, power))) <= rounding
+
+
+def _error_under(scheme: SecondOrder, rounding: Fraction, force: Force) -> Accuracy:
+    """Return order and constant for one kind of force."""
+    p = next(p for p in count() if not _is_exact(scheme, p + 1, rounding, force))
+    growth, ratio = force(_growth_error(scheme, p + 1)), force(_ratio_error(scheme, p + 1))
+    if abs(growth) > rounding:
+        # P(e^mu) = (e^mu - z) (mu - mu_2) ... is so much, mu_2 the other root: -mu, or 0 without a force of position
+        return p, growth / (2 if force is _force_of_position else 1)
+    return p, ratio
+
+
+def _growth_error(scheme: SecondOrder, power: int) -> LeftOver:
+    """Return what e^mu leaves over in P, of degree power + 1, relative to the roots that stay."""
+    at_one = sum((_second_derivative(k) * in_plane[0][0] for k, in_plane in enumerate(scheme.table)), ZERO)
+    return [c / at_one for c in defect(scheme.table, power + 1)]
+
+
+def _second_derivative(k: int) -> Fraction:
+    """Return that of z^k at one, halved: of (z - 1)^2 R(z) it is R(1)."""
+    return Fraction(k * (k - 1), 2)
+
+
+def _ratio_error(scheme: SecondOrder, power: int) -> LeftOver:
+    """Return v - mu x on exact motions, of degree `power`, relative to x."""
+    position, velocity = scheme.responses
+    at_one = sum((in_plane[0][0] for in_plane in position), ZERO)
+    times_mu = [*defect(position, power - 1), ZERO]
+    return [(v - x) / at_one for v, x in zip(defect(velocity, power), times_mu, strict=True)]
+
+
+def _rounding(method: Method) -> Fraction:
+    """Return how far an order condition may be off: not at all where the coefficients are the method's own."""
+    return ZERO if method.digits is None else Fraction(100, 10**method.digits)
 
 
 def _multistep_error(scheme: LinearMultistep) -> tuple[int, Fraction]:
@@ -82,18 +190,18 @@ def _local_error(table: Table, power: int) -> Fraction:
 # trees, which is why R(mu) alone does not tell the order.
 
 
-def _runge_kutta_order(scheme: RungeKutta) -> int:
+def _runge_kutta_order(scheme: RungeKutta, rounding: Fraction) -> int:
     """Return the largest p with sum_i b_i Phi_i(t) = 1 / gamma(t) for every rooted tree t of up to p vertices."""
     for p in count(1):
-        if not all(_satisfied(scheme, tree) for tree in _trees(p + 1)):
+        if not all(_satisfied(scheme, tree, rounding) for tree in _trees(p + 1)):
             return p
-    raise AssertionError("s explicit stages have at most order s")
+    raise AssertionError("s stages have at most order 2 s")
 
 
-def _satisfied(scheme: RungeKutta, tree: Tree) -> bool:
+def _satisfied(scheme: RungeKutta, tree: Tree, rounding: Fraction) -> bool:
     stage_weights = _stage_weights(scheme, tree)
     total = sum((b * phi for b, phi in zip(scheme.weights, stage_weights, strict=True)), ZERO)
-    return total * _density(tree) == 1
+    return abs(total * _density(tree) - 1) <= rounding
 
 
 def _stage_weights(scheme: RungeKutta, tree: Tree) -> list[Fraction]:

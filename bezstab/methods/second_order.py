@@ -39,6 +39,11 @@ ONE, ZERO = Fraction(1), Fraction(0)
 PlaneTable = tuple[tuple[tuple[Fraction, ...], ...], ...]
 """A polynomial in z, alpha_hat and beta_hat: table[k][i][j] belongs to z^k alpha_hat^i beta_hat^j."""
 
+Terms = dict[tuple[int, int, int], Fraction]
+"""Such a polynomial as its coefficients by powers of z, alpha_hat and beta_hat."""
+
+Matrix = list[list[Terms]]
+
 
 @dataclass(frozen=True, order=True)
 class Quantity:
@@ -172,6 +177,12 @@ class SecondOrder:
         """
         return _determinant_table(self.equations)
 
+    @cached_property
+    def responses(self) -> tuple[PlaneTable, PlaneTable]:
+        """Polynomials in the ratio of x and v on every motion z^k, from the equations without one evaluation."""
+        position, velocity = _responses(self.equations)
+        return _plain_table(position), _plain_table(velocity)
+
 
 def _in_order(equations: tuple[Equation, ...]) -> Iterator[tuple[Equation, ...]]:
     """Yield the equations in groups that can be taken one after the other, as far as possible as they are listed."""
@@ -196,49 +207,100 @@ def _needed(result: Quantity, waiting: dict[Quantity, Equation]) -> set[Quantity
 
 def _determinant_table(equations: tuple[Equation, ...]) -> PlaneTable:
     """Return the determinant of the equations' coefficients as a table."""
+    return _table_of(_determinant_terms(_coefficient_rows(equations)))
+
+
+def _coefficient_rows(equations: tuple[Equation, ...]) -> Matrix:
+    """Return the coefficients of each equation, one column for each quantity's name, in the order of the equations.
+
+    A coefficient is a polynomial as a dict, by powers of z, alpha_hat and beta_hat.
+    """
+    column = {equation.result.name: number for number, equation in enumerate(equations)}
+    earliest = min(quantity.step for equation in equations for quantity in (equation.result, *equation.used))
+    rows: Matrix = []
+    for equation in equations:
+        row: list[Terms] = [{} for _ in equations]
+        for coefficient, quantity, (by_velocity, by_position) in _terms_of(equation):
+            terms = row[column[quantity.name]]
+            powers = (quantity.step - earliest, by_velocity, by_position)
+            terms[powers] = terms.get(powers, ZERO) + coefficient
+        rows.append(row)
+    return rows
+
+
+def _terms_of(equation: Equation) -> Iterator[tuple[Fraction, Quantity, tuple[int, int]]]:
+    """Yield what stands in `result - right-hand side = 0`: coefficient, quantity, powers of alpha_hat and beta_hat."""
+    yield ONE, equation.result, (0, 0)
+    match equation:
+        case Assignment(value=value):
+            yield from ((-coefficient, quantity, (0, 0)) for coefficient, quantity in value)
+        case Evaluation(position=position, velocity=velocity):
+            yield from ((coefficient, quantity, (0, 1)) for coefficient, quantity in position)
+            yield from ((coefficient, quantity, (1, 0)) for coefficient, quantity in velocity)
+
+
+def _determinant_terms(rows: Matrix) -> Terms:
+    """Return the determinant of a matrix of polynomials."""
     import sympy as sp  # only here, and when asked for: naming a scheme needs no algebra
     from sympy.polys.matrices import DomainMatrix
 
-    z, alpha_hat, beta_hat = sp.symbols("z alpha_hat beta_hat")
-    ring = sp.QQ[z, alpha_hat, beta_hat]
-    shift, by_velocity, by_position = (ring.from_sympy(symbol) for symbol in (z, alpha_hat, beta_hat))
-    column = {equation.result.name: number for number, equation in enumerate(equations)}
-    earliest = min(quantity.step for equation in equations for quantity in (equation.result, *equation.used))
-    rows = []
-    for equation in equations:
-        row = [ring.zero] * len(equations)
-
-        def add(quantity: Quantity, coefficient: object, row: list[object] = row) -> None:
-            row[column[quantity.name]] += coefficient * shift ** (quantity.step - earliest)
-
-        add(equation.result, ring.one)
-        match equation:
-            case Assignment(value=value):
-                for coefficient, quantity in value:
-                    add(quantity, -ring.convert(sp.Rational(coefficient)))
-            case Evaluation(position=position, velocity=velocity):
-                for coefficient, quantity in position:
-                    add(quantity, by_position * ring.convert(sp.Rational(coefficient)))
-                for coefficient, quantity in velocity:
-                    add(quantity, by_velocity * ring.convert(sp.Rational(coefficient)))
-        rows.append(row)
+    ring = sp.QQ[sp.symbols("z alpha_hat beta_hat")]
+    polynomials = [
+        [
+            ring.ring.from_dict({powers: sp.QQ(c.numerator, c.denominator) for powers, c in terms.items() if c})
+            for terms in row
+        ]
+        for row in rows
+    ]
     # Berkowitz' way to the characteristic polynomial of the matrix, which ends with its determinant, divides nothing
-    determinant = DomainMatrix(rows, (len(rows), len(rows)), ring).charpoly()[-1]
-    terms = {powers: Fraction(int(c.numerator), int(c.denominator)) for powers, c in dict(determinant).items()}
-    return _table_of(terms)
+    determinant = DomainMatrix(polynomials, (len(rows), len(rows)), ring).charpoly()[-1]
+    sign = (-1) ** len(rows)
+    return {powers: sign * Fraction(int(c.numerator), int(c.denominator)) for powers, c in dict(determinant).items()}
 
 
-def _table_of(terms: dict[tuple[int, int, int], Fraction]) -> PlaneTable:
-    """Return the table of a polynomial given as coefficients by powers of z, alpha_hat and beta_hat; () for zero."""
+def _responses(equations: tuple[Equation, ...]) -> tuple[Terms, Terms]:
+    """Return x and v where the acceleration of one evaluation is free, up to one factor, as polynomials.
+
+    They are the minors of the coefficients without the row of that evaluation, the first that acts on x at all: on a
+    motion z^k that satisfies all equations x and v are in their ratio (Cramer's rule).
+    """
+    rows = _coefficient_rows(equations)
+    names = [equation.result.name for equation in equations]
+    for number, equation in enumerate(equations):
+        if isinstance(equation, Evaluation):
+            position, velocity = (
+                _determinant_terms(_with_unit_row(rows, number, names.index(name))) for name in (POSITION, VELOCITY)
+            )
+            if sum(c for (_, i, j), c in position.items() if (i, j) == (0, 0)):
+                return position, velocity
+    raise AssertionError("an acceleration acts in full: the scheme has been checked")
+
+
+def _with_unit_row(rows: Matrix, number: int, column: int) -> Matrix:
+    """Return the matrix with 1 in one column of one row, and 0 in its others."""
+    unit: list[Terms] = [{(0, 0, 0): ONE} if place == column else {} for place in range(len(rows))]
+    return [unit if place == number else row for place, row in enumerate(rows)]
+
+
+def _table_of(terms: Terms) -> PlaneTable:
+    """Return the table of a polynomial without roots z = 0 that no parameters move; () for zero.
+
+    Leading coefficient one at alpha_hat = beta_hat = 0, if there is one.
+    """
     if not terms:
         return ()
     lowest = min(k for k, _, _ in terms)
-    highest = [max(powers[axis] for powers in terms) for axis in range(3)]
     at_origin = [k for k, i, j in terms if (i, j) == (0, 0)]
     scale = terms[max(at_origin), 0, 0] if at_origin else ONE
+    return _plain_table({(k - lowest, i, j): c / scale for (k, i, j), c in terms.items()})
+
+
+def _plain_table(terms: Terms) -> PlaneTable:
+    """Return the table of a polynomial other than zero."""
+    highest = [max(powers[axis] for powers in terms) for axis in range(3)]
     return tuple(
-        tuple(tuple(terms.get((k, i, j), ZERO) / scale for j in range(highest[2] + 1)) for i in range(highest[1] + 1))
-        for k in range(lowest, highest[0] + 1)
+        tuple(tuple(terms.get((k, i, j), ZERO) for j in range(highest[2] + 1)) for i in range(highest[1] + 1))
+        for k in range(highest[0] + 1)
     )
 
 

@@ -1,6 +1,7 @@
 """Every scheme written as a second-order one: the same steps, as equations for x, v and a. So one runner serves all.
 
-The state is y = (x, v) and its slope f = (v, a): what a scheme does with y and f it does with x and v, and with v and a.
+The state is y = (x, v) and its slope f = (v, a): what a scheme does with y and f it does with x and v, and with v and
+a.
 """
 
 from collections.abc import Iterable

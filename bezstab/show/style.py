@@ -38,7 +38,7 @@ FAMILIES = {  # by family: colours of Okabe & Ito that differ in lightness too, 
     "symplectic Euler": "#d55e00",
 }
 SINGLE = {"SIE", "symplectic Euler"}  # families of one: there is no number for the dashes to tell apart
-NO_FAMILY = "0.4"  # the colour of a user's method
+NO_FAMILY = "0.4"  # the colour of a user's method, and of families without one of their own
 ACCENT = FAMILIES["symplectic Euler"]  # for what must be seen first: a limit, a disagreement
 MARKERS = "osD^v<>ph*"
 CONVERGES, DIVERGES = "#9ecae1", "0.45"
@@ -113,7 +113,7 @@ def _outer_edges(points: FloatArray) -> tuple[float, float]:
 def method_line(method: Method) -> dict[str, Any]:
     """Return colour and dashes by the method's family and number, the same in every figure."""
     family = method.family
-    if family is None:
+    if family is None or family.name not in FAMILIES:
         return {"color": NO_FAMILY, "linestyle": DASHES[0]}
     number = 0 if family.name in SINGLE else family.number
     return {"color": FAMILIES[family.name], "linestyle": DASHES[-number % len(DASHES)]}

@@ -8,8 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bezstab.errors import NumericalError
-from bezstab.methods import REGISTRY, LinearMultistep, Method, RungeKutta, lookup
+from bezstab.methods import LinearMultistep, Method, RungeKutta, lookup
 from bezstab.stability import BestPoint, Pencil, best_point, best_points, region, spectral_radius, window
+from tests.methods.kinds import EXPLICIT
 
 F = Fraction
 KINKS = [f"B{n}" for n in range(3, 13)] + [f"AB{n}" for n in range(3, 9)]
@@ -84,7 +85,7 @@ def test_a_double_root_of_pi_at_one_third() -> None:
     assert (found.z_abs, found.alpha_hat, found.beta_hat) == pytest.approx((1 / 3, 4 / 3, 4 / 9), rel=1e-9)
 
 
-@pytest.mark.parametrize("name", [*REGISTRY, "B4@2"])
+@pytest.mark.parametrize("name", [*EXPLICIT, "B4@2"])
 def test_nothing_in_the_plane_is_faster(name: str) -> None:
     method, found, random = lookup(name), best(name), np.random.default_rng(5)
     (a_low, a_high), (b_low, b_high) = window(region(method))

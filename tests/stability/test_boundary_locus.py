@@ -3,10 +3,11 @@ import pytest
 from numpy.polynomial.polynomial import polyval2d
 
 from bezstab.errors import NumericalError
-from bezstab.methods import REGISTRY, LinearMultistep, lookup
+from bezstab.methods import LinearMultistep, lookup
 from bezstab.stability import FloatArray, Region, pencil_of, region, spectral_radius
 from bezstab.stability.boundary_locus import Arc, bounds_of
 from bezstab.stability.dominant_roots import dominant_root
+from tests.methods.kinds import EXPLICIT
 from tests.reference.companion_poles import radius
 from tests.reference.sliced_areas import sliced_area
 from tests.stability.made_methods import multistep, runge_kutta
@@ -16,7 +17,7 @@ def arcs(name: str, level: float) -> tuple[Arc, ...]:
     return bounds_of(pencil_of(lookup(name)), level).arcs
 
 
-@pytest.mark.parametrize("name", REGISTRY)
+@pytest.mark.parametrize("name", EXPLICIT)
 @pytest.mark.parametrize("level", [1.0, 0.9])
 def test_an_arc_lies_in_the_upper_half_on_the_level(name: str, level: float) -> None:
     for arc in arcs(name, level):

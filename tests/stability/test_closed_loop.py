@@ -12,16 +12,16 @@ from hypothesis import strategies as st
 
 from bezstab.errors import NumericalError
 from bezstab.methods import (
-    REGISTRY,
     LinearMultistep,
     closed_loop_at,
     lookup,
 )
 from bezstab.stability import dominant_pole, poles, spectral_radius, verdict
+from tests.methods.kinds import EXPLICIT
 from tests.reference.fifty_digit_poles import poles_with_errors
 
 F = Fraction
-NAMES = [*REGISTRY, "RK4@5"]
+NAMES = [*EXPLICIT, "RK4@5"]
 LONG = {"B6", "B7", "B8", "B9", "B10", "B11", "AB6", "AB7"}
 """Methods of many steps, whose polynomials are long: B12 and AB8 are looked at each time, these in make test-slow."""
 
@@ -145,7 +145,7 @@ def test_the_verdict_is_right_on_the_boundary_itself(name: str, alpha_hat: Fract
         assert sides == {"converges", "diverges"}
 
 
-MULTISTEP = [name for name in REGISTRY if isinstance(lookup(name).scheme, LinearMultistep)]
+MULTISTEP = [name for name in EXPLICIT if isinstance(lookup(name).scheme, LinearMultistep)]
 
 
 @pytest.mark.parametrize("name", by_length(MULTISTEP))

@@ -5,11 +5,12 @@ import pytest
 from numpy.polynomial.polynomial import polyval2d
 
 from bezstab.errors import NumericalError
-from bezstab.methods import REGISTRY, Method, RungeKutta, lookup, steps
+from bezstab.methods import Method, RungeKutta, lookup, steps
 from bezstab.stability import pencil_of, poles, roots_in_z
 from bezstab.stability.pencils import roots_in_mu
+from tests.methods.kinds import EXPLICIT
 
-NAMES = [*REGISTRY, "RK4@5", "SYM@1/3"]
+NAMES = [*EXPLICIT, "RK4@5", "SYM@1/3"]
 
 
 @pytest.mark.parametrize("name", NAMES)

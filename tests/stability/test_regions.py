@@ -5,9 +5,10 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from bezstab.methods import REGISTRY, LinearMultistep, Method, RungeKutta, lookup
+from bezstab.methods import LinearMultistep, Method, RungeKutta, lookup
 from bezstab.rationals import rational
 from bezstab.stability import Extent, Region, region, spectral_radius, verdict, window
+from tests.methods.kinds import EXPLICIT
 from tests.reference.companion_poles import eigenvalues, polynomial_at, radius
 from tests.reference.enclosed_points import enclosed
 from tests.reference.fifty_digit_poles import modulus_from_p
@@ -19,7 +20,7 @@ from tests.stability.made_methods import multistep, runge_kutta
 EPS = float(np.finfo(float).eps)
 
 
-NAMES = [*REGISTRY, "RK4@5"]
+NAMES = [*EXPLICIT, "RK4@5"]
 
 
 LEVELS = [1.0, 0.95, 0.8]

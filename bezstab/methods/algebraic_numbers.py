@@ -1,0 +1,29 @@
+"""Irrational coefficients as rationals: roots of polynomials, good to 40 digits."""
+
+from collections.abc import Callable
+from fractions import Fraction
+from math import ceil, floor
+
+DIGITS = 40
+"""Decimals of what stands for an irrational coefficient: every proof is about that rational."""
+
+
+def decimal_root(polynomial: Callable[[Fraction], Fraction], low: Fraction, high: Fraction) -> Fraction:
+    """Return the root between two numbers, rounded up to 40 decimals, of a polynomial that changes sign there.
+
+    Exact bisection on the multiples of 10^-40: the one returned has the sign that the polynomial has at `high` (or is
+    the root), its neighbour below has not. ValueError if both ends have the same sign.
+    """
+    scale = 10**DIGITS
+    rising = polynomial(high) > 0
+    if (polynomial(low) > 0) == rising:
+        raise ValueError(f"no change of sign between {low} and {high}")
+    before, after = floor(low * scale), ceil(high * scale)
+    while after - before > 1:
+        middle = (before + after) // 2
+        value = polynomial(Fraction(middle, scale))
+        if value == 0 or (value > 0) == rising:
+            after = middle
+        else:
+            before = middle
+    return Fraction(after, scale)
