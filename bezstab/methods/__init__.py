@@ -18,6 +18,7 @@ From exact numbers upwards; a file imports only from those above it:
     registry            every built-in method by name
     derivation          by sympy: s->z mapping, characteristic polynomial, closed loop
     shared_factors      poles that no feedback moves
+    plane_edges         where a second-order scheme's plane turns from stable to unstable, exactly
     orders              order of accuracy and error constant
     formulas            all that as text or LaTeX
 
@@ -66,7 +67,8 @@ if TYPE_CHECKING:
     )
     from bezstab.methods.formulas import characteristic_text, mapping_text, recursion_text
     from bezstab.methods.orders import ForceAccuracy, accuracy, accuracy_by_force
-    from bezstab.methods.shared_factors import fixed_poles, without_shared_factor
+    from bezstab.methods.plane_edges import CurveTable, PlaneStrips, Strip, plane_strips
+    from bezstab.methods.shared_factors import fixed_poles, free_table, without_shared_factor
 
 DERIVED = {
     "derivation": (
@@ -88,7 +90,8 @@ DERIVED = {
     ),
     "formulas": ("characteristic_text", "mapping_text", "recursion_text"),
     "orders": ("ForceAccuracy", "accuracy", "accuracy_by_force"),
-    "shared_factors": ("fixed_poles", "without_shared_factor"),
+    "plane_edges": ("CurveTable", "PlaneStrips", "Strip", "plane_strips"),
+    "shared_factors": ("fixed_poles", "free_table", "without_shared_factor"),
 }
 """What is loaded when first used, by module."""
 
@@ -102,6 +105,7 @@ __all__ = [
     "REGISTRY",
     "Assignment",
     "Combination",
+    "CurveTable",
     "Evaluation",
     "Family",
     "ForceAccuracy",
@@ -110,6 +114,7 @@ __all__ = [
     "Method",
     "MethodGroup",
     "Partitioned",
+    "PlaneStrips",
     "PlaneTable",
     "Polynomial",
     "PredictorCorrector",
@@ -117,6 +122,7 @@ __all__ = [
     "RungeKutta",
     "S",
     "SecondOrder",
+    "Strip",
     "Verdict",
     "Z",
     "accuracy",
@@ -135,11 +141,13 @@ __all__ = [
     "feedback_matrix",
     "feedback_polynomial",
     "fixed_poles",
+    "free_table",
     "implicit",
     "is_schur",
     "lookup",
     "mapping_equations",
     "mapping_text",
+    "plane_strips",
     "read_method",
     "recipe",
     "recursion_text",

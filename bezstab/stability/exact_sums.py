@@ -74,6 +74,40 @@ def exact_combination(factors: Sequence[Fraction], x: FloatArray, y: FloatArray)
     return total, total_low + (ax_low + by_low + of_rounded_factors)
 
 
+Double = tuple[FloatArray, FloatArray]
+"""Numbers with twice the digits of float64, as unevaluated sums of two."""
+
+
+def double_product(first: Double, second: Double) -> Double:
+    """Return the product of two doubles, as one."""
+    product, low = two_product(first[0], second[0])
+    return product, low + (first[0] * second[1] + first[1] * second[0])
+
+
+def double_sum(first: Double, second: Double) -> Double:
+    """Return the sum of two doubles, as one."""
+    total, low = two_sum(first[0], second[0])
+    return total, low + (first[1] + second[1])
+
+
+def double_polynomial(table: Sequence[Sequence[tuple[float, float]]], x: FloatArray, y: FloatArray) -> Double:
+    """Return sum_ij c_ij x^i y^j with twice the digits of float64, each c_ij an unevaluated sum of two; by Horner."""
+    zero = np.zeros_like(x)
+    total = (zero, zero)
+    for row in reversed(table):
+        in_y = (zero, zero)
+        for high, low in reversed(row):
+            in_y = double_sum(double_product(in_y, (y, zero)), (zero + high, zero + low))
+        total = double_sum(double_product(total, (x, zero)), in_y)
+    return total
+
+
+def split(exact: Fraction) -> tuple[float, float]:
+    """Return an exact number rounded to float64, and what that leaves over, rounded."""
+    high = float(exact)
+    return high, float(exact - Fraction(high))
+
+
 def two_sum(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return x + y rounded, and its rounding error, exactly (D. E. Knuth, TAOCP 2, Theorem 4.2.2B)."""
     total = x + y

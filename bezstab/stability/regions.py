@@ -30,12 +30,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method, fixed_poles, without_shared_factor
+from bezstab.methods import Method, SecondOrder, fixed_poles, plane_strips, without_shared_factor
+from bezstab.rationals import exact
 from bezstab.stability.arrays import BoolArray, FloatArray
 from bezstab.stability.boundary_locus import Arc, Bounds, bounds_of, feedback_coefficients
 from bezstab.stability.closed_loop import spectral_radius
 from bezstab.stability.pencils import Pencil, pencil_of
 from bezstab.stability.line_slices import RIM, rim_radius
+from bezstab.stability.plane_cells import Edges, plane_shape
+from bezstab.stability.plane_checks import check_plane
+from bezstab.stability.plane_pencils import plane_pencil_of
 from bezstab.stability.self_checks import check_region
 
 ROUNDING = 1e-13  # of a range: an end this close to an axis lies on it
@@ -104,11 +108,30 @@ def region(method: Method, level: float = 1.0) -> Region:
     if stuck:
         if abs(stuck[0]) >= level * (1 - ROUNDING):
             return Region(method, level, 0.0, (), None, stuck)
+    if isinstance(method.scheme, SecondOrder):
+        return _plane_region(method, level, stuck)
+    if stuck:
         return replace(region(without_shared_factor(method), level), method=method, fixed_poles=stuck)
     try:
         return _checked_region(method, level, finer=1)
     except NumericalError:
         return _checked_region(method, level, finer=FINER)
+
+
+def _plane_region(method: Method, level: float, stuck: tuple[complex, ...]) -> Region:
+    """Return the region of a second-order scheme, from the exact strips of its plane; NumericalError if unsure."""
+    pencil = plane_pencil_of(method)
+    strips = plane_strips(method, exact(level))
+    if strips is None:
+        return Region(method, level, 0.0, (), None, stuck)
+    edges = Edges(strips)
+    name = f"{method.name}, |z_p| < {level:g}"
+    shape = plane_shape(strips, edges, name)
+    check_plane(pencil, level, edges, shape)
+    if shape is None:
+        return Region(method, level, 0.0, (), None, stuck)
+    bounded = shape.area is not None
+    return Region(method, level, shape.area, shape.curves, shape.extent, stuck, bounded=bounded, view=shape.view)
 
 
 def _checked_region(method: Method, level: float, finer: int) -> Region:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from bezstab.stability.arrays import ComplexArray, FloatArray
+from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
 
 CHUNK = 16384  # points at a time: all the work arrays of one chunk stay in a core's cache
 STRIDE = 16  # of a row of points one in so many has all its roots solved for, the others start from them
@@ -35,6 +35,17 @@ def roots_of_table(table: FloatArray, x: ComplexArray) -> ComplexArray:
     return np.concatenate(chunks, axis=1)
 
 
+def roots_of_rows(coefficients: ComplexArray) -> ComplexArray:
+    """Return the roots of sum_k a_k z^k for a row of polynomials with alike neighbours, none of degree zero.
+
+    Coefficients of shape (n + 1, points), roots (n, points). Not finite where one is at infinity, or beyond float64.
+    """
+    with np.errstate(all="ignore"):
+        solved = np.repeat(coefficients[:, ::STRIDE], STRIDE, axis=1)[:, : coefficients.shape[1]]
+        too_far = (np.abs(coefficients - solved) >= NEAR * np.abs(coefficients)).any(axis=0)
+        return _roots_from_neighbours(coefficients, too_far)
+
+
 def _roots_of_chunk(table: FloatArray, x: ComplexArray) -> ComplexArray:
     """Return the roots as roots_of_table does, the polynomials scaled by x^-d where |x| > 1."""
     linear = len(table) == 2
@@ -44,13 +55,18 @@ def _roots_of_chunk(table: FloatArray, x: ComplexArray) -> ComplexArray:
     if linear:
         single: ComplexArray = -coefficients[:1] / coefficients[1]
         return single
+    solved_x = np.repeat(x[::STRIDE], STRIDE)[: x.size]
+    return _roots_from_neighbours(coefficients, np.abs(x - solved_x) >= NEAR * np.abs(x))
+
+
+def _roots_from_neighbours(coefficients: ComplexArray, too_far: BoolArray) -> ComplexArray:
+    """Return the roots of a row of polynomials: one in STRIDE from scratch, those not too far from it from its roots."""
+    points = coefficients.shape[1]
     solved_coefficients = coefficients[:, ::STRIDE]
     solved = _aberth(solved_coefficients, newton_polygon_starts(solved_coefficients))
     # Nudged apart: coinciding starts would never part, and real ones never leave the axis of a real polynomial.
     solved += NUDGE * np.abs(solved) * _spread_directions(len(solved))
-    starts = np.repeat(solved, STRIDE, axis=1)[:, : x.size]
-    solved_x = np.repeat(x[::STRIDE], STRIDE)[: x.size]
-    too_far = np.abs(x - solved_x) >= NEAR * np.abs(x)
+    starts = np.repeat(solved, STRIDE, axis=1)[:, :points]
     has_root_zero = coefficients[0] == 0  # an exact zero starts, and stays, at 0
     no_start = ~np.isfinite(np.repeat(solved.sum(axis=0), STRIDE)[:points])  # a root of the neighbour is infinite
     alone = too_far | has_root_zero | no_start
