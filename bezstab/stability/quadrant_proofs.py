@@ -8,10 +8,10 @@ The substitution z = (1 + w) / (1 - w) takes the unit disc to the left half-plan
                \       /                     . . . . . .|        all roots w are left of the axis
                  ' - '                                  |
 
-There Hurwitz' determinants decide (in the form of Lienard and Chipart: F. R. Gantmacher, Matrizentheorie, section 16.13):
-all coefficients in w and every other determinant must be positive. They are polynomials in alpha_hat and beta_hat. One
-without negative coefficients is positive on the whole quadrant; so is a sum over powers of alpha_hat whose factors,
-polynomials in beta_hat, are nowhere negative by Sturm's theorem, if one of them has no negative coefficient.
+There Hurwitz' determinants decide (in the form of Lienard and Chipart: F. R. Gantmacher, The Theory of Matrices 2,
+section XV.13): all coefficients in w and every other determinant must be positive. They are polynomials in alpha_hat
+and beta_hat. One without negative coefficients is positive on the whole quadrant; so is a sum over powers of alpha_hat
+whose factors, polynomials in beta_hat, are nowhere negative by Sturm's theorem, if one has no negative coefficient.
 """
 
 from collections.abc import Iterator, Sequence
@@ -31,7 +31,11 @@ RING = sp.QQ[ALPHA_HAT, BETA_HAT]
 W = sp.Symbol("w")
 
 MOST_ROOTS = 16  # of P, for which determinants are computed: beyond, they take minutes
-DAMPING_RATIOS = [Fraction(text) for text in "1/1000 1/100 1/30 1/10 1/4 1/2 3/4 9/10 1 5/4 2 10 100 1000".split()]
+DAMPING_RATIOS = [
+    *(Fraction(1, part) for part in (1000, 100, 30, 10, 4, 2)),
+    *(Fraction(part, 20) for part in (15, 18, 20, 25, 40)),
+    *(Fraction(10**power) for power in (1, 2, 3)),
+]
 BETA_STEPS = [Fraction(numerator, 12) * 10**power for power in range(-3, 7) for numerator in (12, 17, 25, 40, 60, 85)]
 """beta h from 1e-3 to 7e6, six to the decade."""
 
@@ -96,7 +100,9 @@ def _in_plane(plane: Sequence[Sequence[Fraction]]) -> Any:
     total = RING.zero
     for i, row in enumerate(plane):
         for j, coefficient in enumerate(row):
-            total += alpha_hat**i * beta_hat**j * RING.convert(sp.Rational(coefficient.numerator, coefficient.denominator))
+            total += (
+                alpha_hat**i * beta_hat**j * RING.convert(sp.Rational(coefficient.numerator, coefficient.denominator))
+            )
     return total
 
 

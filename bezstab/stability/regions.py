@@ -35,8 +35,8 @@ from bezstab.rationals import exact
 from bezstab.stability.arrays import BoolArray, FloatArray
 from bezstab.stability.boundary_locus import Arc, Bounds, bounds_of, feedback_coefficients
 from bezstab.stability.closed_loop import spectral_radius
-from bezstab.stability.pencils import Pencil, pencil_of
 from bezstab.stability.line_slices import RIM, rim_radius
+from bezstab.stability.pencils import Pencil, pencil_of
 from bezstab.stability.plane_cells import Edges, plane_shape
 from bezstab.stability.plane_checks import check_plane
 from bezstab.stability.plane_pencils import plane_pencil_of
@@ -138,8 +138,7 @@ def _checked_region(method: Method, level: float, finer: int) -> Region:
     """Return the region from one sampling of the locus; NumericalError if it fails its check."""
     pencil = pencil_of(method)
     bounds = bounds_of(pencil, level, finer, rim_radius(pencil, level) if pencil.implicit else math.inf)
-    edges = [piece.plane() @ pencil.to_user.T for piece in (*bounds.arcs, *bounds.rim)]
-    edges += straight_edges(pencil, bounds)
+    edges = curved_edges(pencil, bounds) + straight_edges(pencil, bounds)
     area = _area(pencil, bounds)
     extent = _extent(pencil, bounds.arcs, edges)
     if extent is None or not 0 < area <= np.prod(np.diff(extent)):  # else noise, where two roots on the circle meet
@@ -196,8 +195,8 @@ def _unbounded_extent(pencil: Pencil, level: float, bounds: Bounds, finer: int) 
     ranges = []
     for radius in (bounds.radius, FURTHER * bounds.radius):
         cut_off = bounds_of(pencil, level, finer, radius)
-        edges = [piece.plane() @ pencil.to_user.T for piece in (*cut_off.arcs, *cut_off.rim)]
-        ranges.append(_extent(pencil, cut_off.arcs, edges + straight_edges(pencil, cut_off)))
+        edges = curved_edges(pencil, cut_off) + straight_edges(pencil, cut_off)
+        ranges.append(_extent(pencil, cut_off.arcs, edges))
     near, far = ranges
     assert near
     assert far
@@ -237,6 +236,12 @@ def _view(pencil: Pencil, bounds: Bounds) -> Extent:
     return (0.0, alpha_max), (0.0, beta_max)
 
 
+def curved_edges(pencil: Pencil, bounds: Bounds) -> list[FloatArray]:
+    """Return the images of arcs, and of pieces of the rim, in the user's plane; each of shape (points, 2)."""
+    images = [arc.plane() for arc in bounds.arcs] + [piece.plane() for piece in bounds.rim]
+    return [image @ pencil.to_user.T for image in images]
+
+
 def straight_edges(pencil: Pencil, bounds: Bounds) -> list[FloatArray]:
     """Return the ends of the straight edges in the user's plane, one array of shape (2, 2) for each.
 
@@ -255,7 +260,7 @@ def _area(pencil: Pencil, bounds: Bounds) -> float:
 
     For real mu (p, q) = (-(mu_1 + mu_2), mu_1 mu_2) has the Jacobian |mu_1 - mu_2|.
     """
-    conjugate = sum(piece.area() for piece in (*bounds.arcs, *bounds.rim))
+    conjugate = sum(arc.area() for arc in bounds.arcs) + sum(piece.area() for piece in bounds.rim)
     real = sum((end - start) ** 3 / 6 for start, end in bounds.intervals)
     area = conjugate + real
     for (a, b), (c, d) in combinations(bounds.intervals, 2):
