@@ -36,7 +36,7 @@ from bezstab.stability.arrays import BoolArray, FloatArray
 from bezstab.stability.boundary_locus import Arc, Bounds, bounds_of, feedback_coefficients
 from bezstab.stability.closed_loop import spectral_radius
 from bezstab.stability.line_slices import RIM, rim_radius
-from bezstab.stability.pencils import Pencil, pencil_of
+from bezstab.stability.pencils import Pencil, pencil_of, roots_in_mu
 from bezstab.stability.plane_cells import Edges, plane_shape
 from bezstab.stability.plane_checks import check_plane
 from bezstab.stability.plane_pencils import plane_pencil_of
@@ -216,12 +216,16 @@ def _unbounded_extent(pencil: Pencil, level: float, bounds: Bounds, finer: int) 
 def _view(pencil: Pencil, bounds: Bounds) -> Extent:
     """Return ranges that hold what an unbounded region has of shape where alpha_hat, beta_hat >= 0, and USUAL_SIZE.
 
-    That is its corners (both mu at an end of an interval), the arcs that do not run to infinity, and of those that do
-    their ends and turns. What lies at negative parameters, which nobody asks for, may be far larger.
+    That is its corners (both mu at an end of an interval), the arcs that do not run to infinity, of those that do their
+    ends and turns, and where every pole of a one-step method is zero. What lies at negative parameters, which nobody asks for, may be far larger.
     """
     off_rim = bounds.radius * (1 - ALONG_THE_RIM)
     ends = np.array([end for interval in bounds.intervals for end in interval if abs(end) < off_rim])
     shapely = [feedback_coefficients(np.full(len(ends), end), ends) for end in ends]
+    if pencil.steps == 1:
+        deadbeat = roots_in_mu(pencil, np.zeros(1, complex))[:, 0]
+        deadbeat = deadbeat[np.abs(deadbeat) < off_rim]
+        shapely.append(feedback_coefficients(deadbeat, deadbeat.conj()))
     for arc in bounds.arcs:
         mu = arc.mu
         if np.abs(mu[[0, -1]]).max() >= off_rim:
