@@ -217,7 +217,8 @@ def _view(pencil: Pencil, bounds: Bounds) -> Extent:
     """Return ranges that hold what an unbounded region has of shape where alpha_hat, beta_hat >= 0, and USUAL_SIZE.
 
     That is its corners (both mu at an end of an interval), the arcs that do not run to infinity, of those that do their
-    ends and turns, and where every pole of a one-step method is zero. What lies at negative parameters, which nobody asks for, may be far larger.
+    ends and turns, and where every pole of a one-step method is zero. What lies at negative parameters, which nobody
+    asks for, may be far larger.
     """
     off_rim = bounds.radius * (1 - ALONG_THE_RIM)
     ends = np.array([end for interval in bounds.intervals for end in interval if abs(end) < off_rim])
