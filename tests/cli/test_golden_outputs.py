@@ -60,8 +60,12 @@ TOLERANCES = (
 )
 """The first that fits both command and key."""
 
-ADDED = ("beta_hat_min", "bounded", "driver_work", "force_work")
-"""Keys that rows have got since: the least beta_hat of a region, whether it is bounded, the work in a simulation."""
+ADDED = (
+    "beta_hat_min",
+    *("bounded", "stable_for_all", "unconditional_damping_ratio", "critical_damping_limit"),
+    *("driver_work", "force_work"),
+)
+"""Keys that rows have got since: of a region its least beta_hat, and for which steps it is stable; work done in a run."""
 
 
 def tolerance(command: str, key: str) -> Tolerance:
