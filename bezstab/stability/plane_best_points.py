@@ -43,6 +43,7 @@ ALIKE = 1e-4  # relative: a triple pole is known to 1e-5, and passes for a kink 
 PATH = 400  # places of a double pole between one and zero
 SPLIT = 1e-6  # relative: a rival as large as a double pole to this is no larger
 
+
 @dataclass(frozen=True)
 class PlaneLeast:
     """A least |z_p|: its value, place, the poles of that modulus (Im >= 0), and how often each is a root.
@@ -273,7 +274,9 @@ def _solutions(pencil: PlanePencil, start: FloatArray) -> Iterator[PlaneLeast]:
         near = different_ones and all(np.abs(others - each).min() <= max(rounding, ROUNDING) for each in meeting)
         if near and np.abs(others).max() <= z_abs + rounding and np.abs(np.abs(meeting) - z_abs).max() <= ROUNDING:
             real = [complex(each.real, abs(each.imag) if abs(each.imag) > rounding * z_abs else 0) for each in meeting]
-            yield PlaneLeast(z_abs, alpha_hat, beta_hat, tuple(sorted(real, key=lambda z: -z.real)), kind.multiplicity, residual)
+            yield PlaneLeast(
+                z_abs, alpha_hat, beta_hat, tuple(sorted(real, key=lambda z: -z.real)), kind.multiplicity, residual
+            )
 
 
 def _newton(kind: _Kind, start: FloatArray) -> tuple[float, float, ComplexArray, float] | None:
