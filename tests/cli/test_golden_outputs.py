@@ -61,7 +61,7 @@ TOLERANCES = (
 """The first that fits both command and key."""
 
 ADDED = (
-    "beta_hat_min",
+    *("beta_hat_min", "best_reason", "searched"),
     *("bounded", "stable_for_all", "unconditional_damping_ratio", "critical_damping_limit"),
     *("driver_work", "force_work"),
 )
