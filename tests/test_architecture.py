@@ -50,7 +50,6 @@ SHARED_WITH_EXTENSIONS = {"cli.options", "cli.output"}
 APPOINTED = {
     "sympy": {
         *("methods/derivation.py", "methods/formulas.py", "methods/orders.py", "methods/shared_factors.py"),
-        "methods/second_order.py",
         *("mechanism/equations.py", "mechanism/generated_code.py", "mechanism/start.py", "mechanism/observation.py"),
     },
     "matplotlib": {

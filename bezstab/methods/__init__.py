@@ -3,6 +3,7 @@
 From exact numbers upwards; a file imports only from those above it:
 
     schur               where a polynomial's roots lie, proven in exact arithmetic
+    plane_polynomials   polynomials in z, alpha_hat and beta_hat, and their determinants
     second_order        schemes for x'' = a(x, x') as a list of linear equations
     recipes             such equations as text
     schemes             the kinds of methods as frozen data that checks itself
@@ -19,6 +20,7 @@ From exact numbers upwards; a file imports only from those above it:
     derivation          by sympy: s->z mapping, characteristic polynomial, closed loop
     shared_factors      poles that no feedback moves
     orders              order of accuracy and error constant
+    second_order_formulas  the equations of a second-order scheme as text or LaTeX
     formulas            all that as text or LaTeX
 
 What needs sympy is loaded when first used: naming a method, or proving a verdict, does not.
@@ -66,7 +68,7 @@ if TYPE_CHECKING:
     )
     from bezstab.methods.formulas import characteristic_text, mapping_text, recursion_text
     from bezstab.methods.orders import ForceAccuracy, accuracy, accuracy_by_force
-    from bezstab.methods.shared_factors import fixed_poles, without_shared_factor
+    from bezstab.methods.shared_factors import fixed_poles, reduced_table, without_shared_factor
 
 DERIVED = {
     "derivation": (
@@ -88,7 +90,7 @@ DERIVED = {
     ),
     "formulas": ("characteristic_text", "mapping_text", "recursion_text"),
     "orders": ("ForceAccuracy", "accuracy", "accuracy_by_force"),
-    "shared_factors": ("fixed_poles", "without_shared_factor"),
+    "shared_factors": ("fixed_poles", "reduced_table", "without_shared_factor"),
 }
 """What is loaded when first used, by module."""
 
@@ -144,6 +146,7 @@ __all__ = [
     "recipe",
     "recursion_text",
     "recursion_verdict",
+    "reduced_table",
     "second_order_form",
     "steps",
     "without_shared_factor",
