@@ -101,7 +101,9 @@ def _batch_rates(
     if errors:
         return errors.rates()
     product = np.concatenate([changes[quantity] for quantity in carried], axis=1)
-    return np.asarray(np.exp((log_scale + np.log(_spectral_radius(product, 2 * mechanism.constraints + SPARE))) / steps))
+    return np.asarray(
+        np.exp((log_scale + np.log(_spectral_radius(product, 2 * mechanism.constraints + SPARE))) / steps)
+    )
 
 
 def _after_a_step(

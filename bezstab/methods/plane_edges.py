@@ -32,7 +32,7 @@ from sympy.polys.matrices import DomainMatrix
 
 from bezstab.methods.schemes import ONE, ZERO, Method
 from bezstab.methods.schur import is_schur
-from bezstab.methods.shared_factors import free_table
+from bezstab.methods.shared_factors import reduced_table
 
 A, B = sp.symbols("alpha_hat beta_hat")
 RING = sp.QQ[A, B]
@@ -76,7 +76,7 @@ def plane_strips(method: Method, level: Fraction) -> PlaneStrips | None:
 
     Proven: Schur's recursion in rationals decides one point of each cell. Roots that no feedback moves are left out.
     """
-    coefficients = _coefficients(free_table(method), level)
+    coefficients = _coefficients(reduced_table(method), level)
     edges = _edges(coefficients)
     if any(not edge for edge in edges):
         return None  # a pair z_i z_j = r^2, or a root +-r, everywhere
