@@ -27,7 +27,11 @@ from bezstab.mechanism.start import initial_state
 from bezstab.methods import Method, SecondOrder, adams_bashforth, bezier, evaluations, implicit, lookup, steps
 
 Start = Literal["rk4", "ramp", "euler"]
-"""Where a multistep method's first values come from: RK4, its family's members of fewer steps, or explicit Euler."""
+"""Where a multistep method's first values come from: RK4, its family's members of fewer steps, or explicit Euler.
+
+For an implicit method, which may bear stronger feedback than any of these: Gauss's method of order four, BDF methods of
+fewer steps, or implicit Euler.
+"""
 Gains = tuple[Any, Any]
 """2 alpha (1/s) and beta^2 (1/s^2), as `units.feedback_gains` returns them: floats, or arrays over a batch."""
 FloatArray = NDArray[np.float64]
@@ -40,7 +44,8 @@ class Trajectory:
     """A run: t (s, shape (steps + 1,)), q and v (shape (steps + 1, n), SI), and why it ended early, if it did.
 
     `evaluations` counts right-hand sides, and `iterations` those of Newton's method, None for an explicit method; each
-    iteration evaluates once, and a Jacobian once for each unknown, in complex numbers. `failure` says when and why in one line; the history ends before it.
+    iteration evaluates once, and a Jacobian once for each unknown, in complex numbers.
+    `failure` says when and why in one line; the history ends before it.
     `least_pivot` is the least relative pivot of S = C_q M^-1 C_q^T that was met, in the step from `pivot_time` (s):
     where it is small a singular configuration is near, and multipliers have lost about that factor of their digits.
     """
@@ -140,7 +145,7 @@ def march(
     states = [state]
     slopes: list[State] = []
     for starter, step_count in _starters(method, start):
-        run = resume(mechanism, starter, h, gains, states, slopes, library)
+        run = resume(mechanism, starter, h, gains, states, slopes, library, work)
         for new_state, slope, pivot in islice(run, step_count):
             states.append(new_state)
             slopes.append(slope)
@@ -157,47 +162,54 @@ def resume(
     slopes: Sequence[State],
     library: Any,
     work: Work | None = None,
+    undisturbed: State | None = None,
 ) -> Iterator[Step]:
     """Yield the steps after `history`, as `march` does; its last state may have been tampered with.
 
-    `history` holds the states from t = 0 on, h (s) apart, and `slopes` those of all but the last, in the same order;
-    a second-order scheme starts from the states alone.
+    `history` holds the states from t = 0 on, h (s) apart, and `slopes` those of all but the last, in the same order.
+    A second-order scheme starts from the states alone: the accelerations that it remembers are those of the states, at
+    the last one those of what it was before (`undisturbed`, by default itself).
     """
     scheme = run_as_second_order(method)
     if scheme:
-        return _second_order_run(mechanism, method, scheme, h, gains, history, library, work or Work())
+        carried = _carried(mechanism, scheme, h, gains, history, undisturbed, library, work or Work())
+        first = len(history) - 1 - memory(scheme).newest  # of the history: the state at step 0 of the first turn
+        run = compiled_stepper(mechanism, method, library)
+        turns = run(first * h, h, *gains, carried, implicit_solver(mechanism, method, library, work or Work()))
+        # of turns whose states are in the history already only what they give beyond them matters: the next needs it
+        return islice(turns, memory(scheme).newest, None)
     past = [(history[-1 - back], slopes[-back]) for back in range(1, steps(method))]
     two_alpha, beta_squared = gains
     run = compiled_stepper(mechanism, method, library)
     return run((len(history) - 1) * h, h, two_alpha, beta_squared, history[-1], past)
 
 
-def _second_order_run(
+def _carried(
     mechanism: Mechanism,
-    method: Method,
     scheme: SecondOrder,
     h: float,
     gains: Gains,
     history: Sequence[State],
+    undisturbed: State | None,
     library: Any,
     work: Work,
-) -> Iterator[Step]:
-    """Return the steps of a second-order scheme after `history`.
+) -> list[State]:
+    """Return what a second-order scheme carries into its first turn after `history`, in units in which h = 1.
 
-    What it carries starts as it is on a motion through the states of the history: accelerations are those of the
-    states, helpers what belongs to position, velocity and acceleration. So a last state that has been kicked is a start
-    of its own, and all that is remembered of before is left alone.
+    It is as on a motion through the states of the history: helpers are what belongs to position, velocity and
+    acceleration, and accelerations those of the states.
     """
     remembered = memory(scheme)
     size = mechanism.size
-    first = len(history) - 1 - remembered.newest  # of the history: the state at step 0 of the first turn
+    acceleration = acceleration_function(mechanism, library)
+    calm = [*history[:-1], history[-1] if undisturbed is None else undisturbed]
+    first = len(history) - 1 - remembered.newest
 
     @cache
-    def accelerations(step: int) -> State:
-        """Return qddot at a step of the first turn."""
+    def accelerations(place: int) -> State:
+        """Return qddot at a place of the history."""
         work.evaluations += 1
-        state = history[first + step]
-        return acceleration_function(mechanism, library)((first + step) * h, *gains, state[:size], state[size:])
+        return acceleration(place * h, *gains, calm[place][:size], calm[place][size:])
 
     carried = []
     for shares, step in zip(remembered.shares, remembered.state_steps, strict=True):
@@ -205,12 +217,9 @@ def _second_order_run(
         state = history[first + step]
         entries = tuple(by_q * q + by_v * v for q, v in zip(state[:size], state[size:], strict=True))
         if by_a:
-            entries = tuple(entry + by_a * a for entry, a in zip(entries, accelerations(step), strict=True))
+            entries = tuple(entry + by_a * a for entry, a in zip(entries, accelerations(first + step), strict=True))
         carried.append(entries)
-    solve = implicit_solver(mechanism, method, library, work)
-    run = compiled_stepper(mechanism, method, library)(first * h, h, *gains, carried, solve)
-    # turns whose states are in the history already: what they give beyond them is what the next one needs
-    return islice(run, remembered.newest, None)
+    return carried
 
 
 def _history(first: State, run: Iterator[Step]) -> _History:
@@ -254,11 +263,15 @@ def _evaluation_count(method: Method, start: Start, steps_taken: int) -> int:
     remaining = steps_taken
     for starter, step_count in _starters(method, start):
         starting = min(step_count, remaining)
-        count += starting * evaluations(starter)
+        count += starting * _explicit_evaluations(starter)
         remaining -= starting
+    return count + remaining * _explicit_evaluations(method)
+
+
+def _explicit_evaluations(method: Method) -> int:
+    """Return the number of evaluations in a step of the method that are not Newton's."""
     scheme = run_as_second_order(method)
-    in_a_step = evaluations(method) if scheme is None else scheme.evaluations - len(implicit_evaluations(scheme))
-    return count + remaining * in_a_step
+    return evaluations(method) if scheme is None else scheme.evaluations - len(implicit_evaluations(scheme))
 
 
 def states_needed(method: Method) -> int:
@@ -272,6 +285,8 @@ def _starters(method: Method, start: Start) -> list[tuple[Method, int]]:
     needed = states_needed(method) - 1
     if needed == 0:
         return []
+    if implicit(method):
+        return _implicit_starters(start, needed)
     match start:
         case "rk4":
             return [(lookup("RK4"), needed)]
@@ -280,3 +295,14 @@ def _starters(method: Method, start: Start) -> list[tuple[Method, int]]:
         case "ramp":
             family = bezier if method.family is not None and method.family.name == "Bezier" else adams_bashforth
             return [(family(n), 1) for n in range(1, needed + 1)]
+
+
+def _implicit_starters(start: Start, needed: int) -> list[tuple[Method, int]]:
+    """Return the same for an implicit method: where it bears feedback that is strong, so must they."""
+    match start:
+        case "rk4":
+            return [(lookup("gauss4"), needed)]
+        case "euler":
+            return [(lookup("implicit-euler"), needed)]
+        case "ramp":
+            return [(lookup(f"bdf{n}"), 1) for n in range(1, needed + 1)]
