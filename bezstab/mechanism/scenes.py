@@ -116,6 +116,22 @@ class Scene:
         return tuple(f"{body.name}.{axis}" for body in self.bodies for axis in body.free)
 
     @property
+    def constraint_names(self) -> tuple[str, ...]:
+        """What messages call each constraint, in order: its joint by number, kind and bodies, and of a pair, which."""
+        names = []
+        for number, joint in enumerate(self.joints, start=1):
+            match joint:
+                case Driver(coordinate=coordinate):
+                    names.append(f"joint {number} (driver of {coordinate})")
+                case Revolute(bodies=(first, second)):
+                    names += [f"{axis} of joint {number} (revolute, {first} and {second})" for axis in ("x", "y")]
+                case PointOnLine(bodies=(first, second)):
+                    names.append(f"joint {number} (point-on-line, {first} and {second})")
+                case Distance(bodies=(first, second)):
+                    names.append(f"joint {number} (distance, {first} and {second})")
+        return tuple(names)
+
+    @property
     def attachments(self) -> tuple[tuple[str, Point], ...]:
         """Each body's or the ground's name, and the point in its frame (m), wherever a joint holds it."""
         joined = (joint for joint in self.joints if not isinstance(joint, Driver))
