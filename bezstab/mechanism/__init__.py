@@ -41,6 +41,7 @@ from bezstab.mechanism.scenes import (
     Revolute,
     Scene,
     Spring,
+    at_speed,
 )
 from bezstab.mechanism.simulation import Simulation, simulated
 from bezstab.mechanism.start import constraint_errors, initial_state, perturbed_state
@@ -66,6 +67,7 @@ __all__ = [
     "Start",
     "T",
     "Trajectory",
+    "at_speed",
     "compiled_mechanism",
     "compiled_source",
     "constraint_errors",
