@@ -33,12 +33,14 @@ def method(name: str | Method) -> Method:
     return name if isinstance(name, Method) else lookup(name)
 
 
-def scene(name: str | Scene) -> Scene:
+def scene(name: str | Scene, speed: float = 1.0) -> Scene:
     """Return the shipped scene of that name, or the one in a .toml file; SI units and rad.
 
-    InputError, naming the file and the key, if it cannot be read. "slider_crank" is that of the paper's section 5.2.
+    Its drivers and initial velocities are `speed` times as fast as given there. InputError, naming the file and the
+    key, if it cannot be read, and where a speed has nothing to multiply. "slider_crank" is that of the paper's
+    section 5.2.
     """
-    return name if isinstance(name, Scene) else mechanism.load_scene(name)
+    return mechanism.at_speed(name if isinstance(name, Scene) else mechanism.load_scene(name), speed)
 
 
 def poles(

@@ -24,6 +24,7 @@ from bezstab.cli.options import (
     resume_option,
     scene_option,
     scheduler_option,
+    speed_option,
     step_option,
     table_option,
     workers_option,
@@ -76,6 +77,7 @@ SIMULATIONS = [
 
 @click.command()
 @scene_option("slider_crank")
+@speed_option
 @click.option("--method", type=METHOD, default="B4", help="As for the other commands.")
 @click.option("--alpha", type=NUMBER, default="0.5", help="α̂; α in 1/s with --physical.")
 @click.option("--beta", type=NUMBER, default="0.1", help="β̂; β in 1/s with --physical.")
@@ -96,6 +98,7 @@ SIMULATIONS = [
 @format_option
 def simulate(
     scene: str,
+    speed: Fraction,
     method: Method,
     alpha: Fraction,
     beta: Fraction,
@@ -128,7 +131,7 @@ def simulate(
     if figure != "none" or table != "none":
         output_directory(output)
     simulation = mechanism.simulated(
-        mechanism.compiled_mechanism(mechanism.load_scene(scene)),
+        mechanism.compiled_mechanism(mechanism.at_speed(mechanism.load_scene(scene), float(speed))),
         method,
         h=float(h),
         duration=float(time),
@@ -214,6 +217,7 @@ WITNESSED = [
 
 @click.command()
 @scene_option("slider_crank")
+@speed_option
 @methods_option("B4")
 @click.option("--alpha", type=NUMBER, help="α̂ of one point; with --beta, instead of --points.")
 @click.option("--beta", type=NUMBER, help="β̂ of one point.")
@@ -230,6 +234,7 @@ WITNESSED = [
 @format_option
 def verify(
     scene: str,
+    speed: Fraction,
     methods: Sequence[Method],
     alpha: Fraction | None,
     beta: Fraction | None,
@@ -254,13 +259,13 @@ def verify(
 
     Example: bezstab verify --method AB4 --points 20
     """
-    from bezstab.mechanism import compiled_mechanism, load_scene
+    from bezstab.mechanism import at_speed, compiled_mechanism, load_scene
     from bezstab.show import verdict_map_row
 
     point = both_or_none(alpha, beta)
     if sum(choice is not None for choice in (point, points, cells, witness)) > 1:
         raise click.UsageError("choose one of --alpha with --beta, --points, --map and --witness")
-    mechanism = compiled_mechanism(load_scene(scene))
+    mechanism = compiled_mechanism(at_speed(load_scene(scene), float(speed)))
     if witness:
         show_rows(_witness_rows(mechanism, float(h)), WITNESSED, form)
     elif cells is None:
@@ -387,6 +392,7 @@ RUNS = [
 
 @click.command()
 @scene_option("slider_crank_light")
+@speed_option
 @methods_option("B2", "B3", "B4", "AB2", "AB4", "ABM4", "RK4", "SIE", "SYM")
 @click.option("--h", "steps", type=SECONDS, multiple=True, help="Step in s [ten from 0.0001 to 0.02].")
 @click.option("--time", type=SECONDS, default="2", help="Duration in s.")
@@ -404,6 +410,7 @@ RUNS = [
 @format_option
 def tradeoff(
     scene: str,
+    speed: Fraction,
     methods: Sequence[Method],
     steps: Sequence[Fraction],
     time: Fraction,
@@ -429,7 +436,7 @@ def tradeoff(
     Example: bezstab tradeoff --method B4 --method AB4 --h 0.002 --h 0.004 --time 1
     """
     from bezstab import evidence
-    from bezstab.mechanism import load_scene
+    from bezstab.mechanism import at_speed, load_scene
     from bezstab.show import row, untimed_arrays
 
     point = both_or_none(alpha, beta)
@@ -437,7 +444,7 @@ def tradeoff(
         raise click.UsageError("--physical needs --alpha and --beta")
     step_sizes = tuple(sorted({float(step) for step in steps or evidence.STEPS}))
     _check_swept_time(float(time), step_sizes, methods)
-    loaded_scene = load_scene(scene)
+    loaded_scene = at_speed(load_scene(scene), float(speed))
     reference = evidence.reference_motion(loaded_scene, step_sizes[0], float(time))
     given = None if point is None else (float(point[0]), float(point[1]))
     sweeps = [

@@ -58,6 +58,13 @@ def _seconds(text: str) -> Fraction:
     return number
 
 
+def _speed(text: str) -> Fraction:
+    number = _positive(text)
+    if not SHORTEST <= number <= 1 / SHORTEST:
+        raise InputError(f"{text}: expected {float(SHORTEST):g} to {float(1 / SHORTEST):g} times the scene's own speed")
+    return number
+
+
 def _engine_values(text: str) -> EngineValues:
     """Return an engine and values of its parameters from text such as mujoco=0.02,1."""
     name, _, numbers = text.partition("=")
@@ -73,6 +80,7 @@ def _engine_values(text: str) -> EngineValues:
 NUMBER = ParsedType("number", rational)
 POSITIVE = ParsedType("number", _positive)
 SECONDS = ParsedType("seconds", _seconds)
+SPEED = ParsedType("number", _speed)
 METHOD = ParsedType("method", lookup)
 ENGINE = click.Choice(list(ENGINES))
 ENGINE_VALUES = ParsedType("name=values", _engine_values)
@@ -95,6 +103,9 @@ def scene_option(default: str) -> Decorator:
     return click.option("--scene", default=default, help="A shipped scene's name, or a .toml file.")
 
 
+speed_option = click.option(
+    "--speed", type=SPEED, default="1", help="Times the scene's own: its drivers' and its start's."
+)
 step_option = click.option("--h", type=SECONDS, default="0.001", help="Step size in s.")
 physical_option = click.option(
     "--physical", is_flag=True, help="Take --alpha and --beta as α and β in 1/s; goes with --h."

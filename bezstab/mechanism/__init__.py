@@ -51,6 +51,7 @@ from bezstab.mechanism.scenes import (
     Revolute,
     Scene,
     Spring,
+    at_speed,
 )
 from bezstab.mechanism.second_order_memory import Memory, memory
 from bezstab.mechanism.simulation import Simulation, simulated
@@ -83,6 +84,7 @@ __all__ = [
     "TurningNormals",
     "acceleration_function",
     "acceleration_jacobians",
+    "at_speed",
     "compiled_mechanism",
     "compiled_source",
     "constraint_errors",

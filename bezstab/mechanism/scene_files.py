@@ -136,7 +136,7 @@ def _driver(table: TomlTable, coordinates: Sequence[str]) -> Driver:
     coordinate = table.text("coordinate")
     if coordinate not in coordinates:
         raise table.mistake(f"coordinate {coordinate!r} is not among {', '.join(coordinates)}")
-    return Driver(
+    driver = Driver(
         coordinate,
         offset=table.number("offset", default=0.0),
         rate=table.number("rate", default=0.0),
@@ -145,6 +145,9 @@ def _driver(table: TomlTable, coordinates: Sequence[str]) -> Driver:
         frequency=table.number("frequency", default=0.0),
         phase=table.number("phase", default=0.0),
     )
+    if not driver.moves:
+        raise table.mistake(f"it never moves {coordinate}: expected a rate, an acceleration or an oscillation")
+    return driver
 
 
 def _two_bodies(table: TomlTable, body_names: Sequence[str]) -> tuple[str, str]:

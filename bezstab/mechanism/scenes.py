@@ -1,10 +1,13 @@
 """A planar mechanism as data: bodies with their free coordinates, joints, forces, springs, gravity, initial state."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+
+from bezstab.errors import InputError
 
 Point = tuple[float, float]
 
+FASTEST = 1e100  # times as fast as given, and the inverse the slowest: its square is within float64
 GROUND = "ground"
 COORDINATES = ("x", "y", "theta")
 """What a body in the plane can have free: its frame's origin (m, in the ground's axes) and its angle (rad)."""
@@ -64,6 +67,11 @@ class Driver:
     frequency: float
     phase: float
 
+    @property
+    def moves(self) -> bool:
+        """Whether the coordinate does not just stay where it is."""
+        return self.rate != 0 or self.acceleration != 0 or (self.amplitude != 0 and self.frequency != 0)
+
 
 Joint = Revolute | PointOnLine | Distance | Driver
 
@@ -116,7 +124,53 @@ class Scene:
         return tuple(f"{body.name}.{axis}" for body in self.bodies for axis in body.free)
 
     @property
+    def constraint_names(self) -> tuple[str, ...]:
+        """What messages call each constraint, in order: its joint by number, kind and bodies, and of a pair, which."""
+        names = []
+        for number, joint in enumerate(self.joints, start=1):
+            match joint:
+                case Driver(coordinate=coordinate):
+                    names.append(f"joint {number} (driver of {coordinate})")
+                case Revolute(bodies=(first, second)):
+                    names += [f"{axis} of joint {number} (revolute, {first} and {second})" for axis in ("x", "y")]
+                case PointOnLine(bodies=(first, second)):
+                    names.append(f"joint {number} (point-on-line, {first} and {second})")
+                case Distance(bodies=(first, second)):
+                    names.append(f"joint {number} (distance, {first} and {second})")
+        return tuple(names)
+
+    @property
     def attachments(self) -> tuple[tuple[str, Point], ...]:
         """Each body's or the ground's name, and the point in its frame (m), wherever a joint holds it."""
         joined = (joint for joint in self.joints if not isinstance(joint, Driver))
         return tuple(end for joint in joined for end in zip(joint.bodies, joint.points, strict=True))
+
+
+def at_speed(scene: Scene, factor: float) -> Scene:
+    """Return the scene with its initial velocities and its drivers so many times as fast, and a name that says so.
+
+    A driver's f(t) becomes f(factor t): the same course in less time, all its rates times the factor. The same scene
+    for a factor of 1. InputError for one that is not positive, and where nothing in the scene has a speed.
+    """
+    if not 1 / FASTEST <= factor <= FASTEST:  # nor if it is not a number
+        raise InputError(f"speed {factor:g}: expected {1 / FASTEST:g} to {FASTEST:g}")
+    if factor == 1:
+        return scene
+    drivers = [joint for joint in scene.joints if isinstance(joint, Driver)]
+    if not drivers and not any(scene.velocity.values()):
+        raise InputError(f"speed {factor:g}: {scene.name} starts at rest and nothing drives it: no speed to multiply")
+    return replace(
+        scene,
+        name=f"{scene.name}, {factor:g} times as fast",
+        joints=tuple(_faster(joint, factor) if isinstance(joint, Driver) else joint for joint in scene.joints),
+        velocity={name: factor * rate for name, rate in scene.velocity.items()},
+    )
+
+
+def _faster(driver: Driver, factor: float) -> Driver:
+    return replace(
+        driver,
+        rate=factor * driver.rate,
+        acceleration=factor**2 * driver.acceleration,
+        frequency=factor * driver.frequency,
+    )

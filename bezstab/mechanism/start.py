@@ -17,6 +17,8 @@ FloatArray = NDArray[np.float64]
 NEWTON_STEPS = 50  # quadratic: a handful suffices from any guess that leads anywhere
 CLOSED = 1e-12  # m: what Newton reaches at mechanism sizes around a metre, and what a whole state must keep
 RANK = 1e-9  # of the largest entry of C_q: a row that depends on the others to this is redundant
+DEPENDENT = 1e-6  # of a row of length one: what others leave of it where RANK has found that it depends on them
+BESIDE = 1e-3  # m, rad: far enough from a singular start for singular values that grow in proportion to pass RANK
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,26 +77,85 @@ def _closed_position(mechanism: Mechanism) -> FloatArray:
     """Return q at t = 0: the scene's coordinates, completed by Newton's method on c(q, 0) = 0 from its guesses."""
     scene = mechanism.scene
     at = geometry(mechanism)
-    q = np.array([scene.position.get(name, scene.guess.get(name, 0.0)) for name in scene.coordinates])
-    unknown = _unknown(scene.position, scene.coordinates, mechanism.constraints, "position")
-    if unknown:
-        for _ in range(NEWTON_STEPS):
-            # least squares: it also has an answer where the linear system has none, on the way or for good
-            step = np.linalg.lstsq(at.jacobian(q, 0.0)[:, unknown], at.constraints(q, 0.0)[:, 0], rcond=None)[0]
-            q[unknown] -= step
+    first_guess = np.array([scene.position.get(name, scene.guess.get(name, 0.0)) for name in scene.coordinates])
+    unknown = _unknown(scene.position, scene.coordinates)
+    q = _closed(mechanism, first_guess, unknown)
     error = float(np.abs(at.constraints(q, 0.0)).max())
-    if not error <= CLOSED:  # not a number included
+    closed = error <= CLOSED  # not if it is not a number
+    if closed:
+        _refuse_dependent_constraints(mechanism, q)  # first: it would explain a wrong number of coordinates
+    _check_number(scene.position, scene.coordinates, mechanism.constraints, "position")
+    if not closed:
         key = (
             "position: the joints cannot close" if unknown else "position: all coordinates are given, but inconsistent"
         )
         raise InputError(f"initial: {key} (largest |c| = {error:.3g})")
-    jacobian = at.jacobian(q, 0.0)
-    rank = int(np.linalg.matrix_rank(jacobian, tol=RANK * np.abs(jacobian).max()))
-    if rank < mechanism.constraints:
-        raise InputError(
-            f"joint: redundant constraints or a singular start: {mechanism.constraints} constraints, rank {rank}"
-        )
     return q
+
+
+def _closed(mechanism: Mechanism, guess: FloatArray, unknown: Sequence[int]) -> FloatArray:
+    """Return q after Newton's method on c(q, 0) = 0 for the unknown coordinates; where it fails, c is not zero."""
+    at = geometry(mechanism)
+    q = guess.copy()
+    for _ in range(NEWTON_STEPS if unknown else 0):
+        jacobian = at.jacobian(q, 0.0)[:, unknown]
+        # least squares: it also has an answer where the linear system has none, on the way or for good
+        q[unknown] -= np.linalg.lstsq(jacobian, at.constraints(q, 0.0)[:, 0], rcond=None)[0]
+    return q
+
+
+def _refuse_dependent_constraints(mechanism: Mechanism, q: FloatArray) -> None:
+    """Raise InputError, naming them, if constraints follow from others in a closed position q."""
+    jacobian = geometry(mechanism).jacobian(q, 0.0)
+    rank = _rank(jacobian)
+    if rank == mechanism.constraints:
+        return
+    rank_beside = _rank_beside(mechanism, q, jacobian)
+    if rank_beside is None:
+        what = "redundant constraints or a singular start"
+    elif rank_beside < mechanism.constraints:
+        what = "redundant constraints"
+    else:
+        what = "a singular start, beside which no constraint depends on others"
+    dependences = "; ".join(_dependences(mechanism.scene.constraint_names, jacobian))
+    raise InputError(f"joint: {what}: {mechanism.constraints} constraints, rank {rank}: {dependences}")
+
+
+def _rank(jacobian: FloatArray) -> int:
+    return int(np.linalg.matrix_rank(jacobian, tol=RANK * np.abs(jacobian).max()))
+
+
+def _rank_beside(mechanism: Mechanism, q: FloatArray, jacobian: FloatArray) -> int | None:
+    """Return the rank of C_q in a closed position a little further on; None where the mechanism does not move there.
+
+    Constraints that depend on others at a singular start alone do not there; redundant ones do.
+    """
+    _, _, directions = np.linalg.svd(jacobian)
+    free = directions[_rank(jacobian) :]  # C_q times these is zero
+    if not len(free):
+        return None
+    weights = np.sin(1.0 + np.arange(len(free)))  # any: no two alike, so that no symmetry is kept
+    beside = _closed(mechanism, q + BESIDE * weights @ free, range(mechanism.size))
+    moved = np.abs(beside - q).max() > BESIDE / 10
+    if not (moved and np.abs(geometry(mechanism).constraints(beside, 0.0)).max() <= CLOSED):
+        return None
+    return _rank(geometry(mechanism).jacobian(beside, 0.0))
+
+
+def _dependences(names: Sequence[str], jacobian: FloatArray) -> list[str]:
+    """Return for each row of C_q that depends on earlier ones a sentence that says on which."""
+    sentences = []
+    independent: list[int] = []
+    rows = jacobian / np.maximum(np.linalg.norm(jacobian, axis=1, keepdims=True), np.finfo(float).tiny)
+    for index, row in enumerate(rows):
+        weights = np.linalg.lstsq(rows[independent].T, row, rcond=None)[0] if independent else np.zeros(0)
+        left = row - weights @ rows[independent]
+        if np.linalg.norm(left) > DEPENDENT:
+            independent.append(index)
+            continue
+        others = [names[k] for k, weight in zip(independent, weights, strict=True) if abs(weight) > DEPENDENT]
+        sentences.append(f"{names[index]} follows from {' and '.join(others)}" if others else f"{names[index]} is void")
+    return sentences
 
 
 def _consistent_velocity(mechanism: Mechanism, q: FloatArray) -> FloatArray:
@@ -104,7 +165,8 @@ def _consistent_velocity(mechanism: Mechanism, q: FloatArray) -> FloatArray:
     jacobian = at.jacobian(q, 0.0)
     c_t = at.constraints_t(q, 0.0)[:, 0]
     v = np.array([scene.velocity.get(name, 0.0) for name in scene.coordinates])
-    unknown = _unknown(scene.velocity, scene.coordinates, mechanism.constraints, "velocity")
+    _check_number(scene.velocity, scene.coordinates, mechanism.constraints, "velocity")
+    unknown = _unknown(scene.velocity, scene.coordinates)
     if unknown:
         is_unknown = np.isin(np.arange(mechanism.size), unknown)
         right = -(c_t + jacobian @ np.where(is_unknown, 0.0, v))
@@ -115,15 +177,17 @@ def _consistent_velocity(mechanism: Mechanism, q: FloatArray) -> FloatArray:
     return v
 
 
-def _unknown(given: Mapping[str, float], coordinates: Sequence[str], constraints: int, key: str) -> list[int]:
-    """Return the indices of the coordinates that are not given; InputError unless there are m or none."""
-    unknown = [index for index, name in enumerate(coordinates) if name not in given]
-    if unknown and len(unknown) != constraints:
-        freedoms = len(coordinates) - constraints
-        raise InputError(
-            f"initial: {key} gives {len(given)} of {len(coordinates)} coordinates: expected {freedoms}, or all"
-        )
-    return unknown
+def _unknown(given: Mapping[str, float], coordinates: Sequence[str]) -> list[int]:
+    """Return the indices of the coordinates that are not given."""
+    return [index for index, name in enumerate(coordinates) if name not in given]
+
+
+def _check_number(given: Mapping[str, float], coordinates: Sequence[str], constraints: int, key: str) -> None:
+    """Raise InputError unless as many coordinates are given as there are freedoms, or all."""
+    freedoms = len(coordinates) - constraints
+    if len(given) not in (freedoms, len(coordinates)):
+        expected = f"{freedoms}, or all" if freedoms >= 0 else f"all, as there are {constraints} constraints"
+        raise InputError(f"initial: {key} gives {len(given)} of {len(coordinates)} coordinates: expected {expected}")
 
 
 def perturbed_state(mechanism: Mechanism, error: float) -> tuple[FloatArray, FloatArray]:

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from bezstab.mechanism import shipped_scenes
 from tests.cli.running import arrays, rows, run
 
 
@@ -40,6 +41,34 @@ def test_a_blow_up_is_status_three_and_keeps_the_history(tmp_path: Path) -> None
     assert "blow-up" in json.loads(result.stdout)[0]["failure"]
     assert "at t = 0.1" in result.stderr.splitlines()[-1]
     assert len(list(tmp_path.iterdir())) == 2
+
+
+@pytest.mark.parametrize("command", ["simulate", "verify --method B4", "tradeoff"])
+def test_a_speed_is_a_positive_number_that_has_something_to_multiply(command: str) -> None:
+    for options, said in (
+        (["--speed", "0"], "'--speed': 0 is not positive"),
+        (["--speed", "1e150"], "'--speed': 1e150: expected 1e-100 to 1e+100"),
+        (["--speed", "2", "--scene", "pendulum"], "speed 2: pendulum starts at rest and nothing drives it"),
+    ):
+        result = run(*command.split(), *options)
+        assert result.exit_code == 2
+        assert said in result.stderr
+        assert len(result.stderr.splitlines()) == 1
+
+
+def test_a_driver_at_twice_its_speed_does_four_times_the_work_on_what_has_no_weight(tmp_path: Path) -> None:
+    (tmp_path / "own.toml").write_text(
+        (shipped_scenes()["driven_four_bar"]).read_text(encoding="utf-8").replace("-9.81", "0.0"), encoding="utf-8"
+    )
+    common = ("--scene", "own.toml", "--figure", "none", "--table", "none", "--method", "RK4", "--alpha", "0.1")
+    (slow,) = rows("simulate", *common, "--time", "0.2", "--h", "0.0002", "--beta", "0.01")
+    (fast,) = rows("simulate", *common, "--time", "0.1", "--h", "0.0001", "--beta", "0.01", "--speed", "2")
+    slow_work, slow_drift, fast_work = slow["driver_work"], slow["energy_drift"], fast["driver_work"]
+    assert isinstance(slow_work, float)
+    assert isinstance(slow_drift, float)
+    assert fast_work == pytest.approx(4 * slow_work, rel=1e-7)  # RK4's error
+    assert abs(slow_work) > 1e5 * abs(slow_drift)
+    assert slow["force_work"] == 0
 
 
 def test_verify_prints_predicted_and_measured_pole(tmp_path: Path) -> None:

@@ -52,6 +52,8 @@ def test_the_chain_grows_with_its_count() -> None:
         ({"joint__length": 0}, "length"),
         ({"joint__type": "weld"}, "type"),
         ({"joint": {"type": "driver", "coordinate": "bob.theta"}}, "bob.theta"),
+        ({"joint": {"type": "driver", "coordinate": "bob.x", "offset": 1.0}}, "never moves bob.x"),
+        ({"joint": {"type": "driver", "coordinate": "bob.x", "amplitude": 1.0}}, "never moves bob.x"),
         ({"joint": {**LINE, "direction": [0, 0]}}, "direction"),
         ({"gravity": [0.0]}, "gravity"),
         ({"initial__position": {"ghost.x": 1.0}}, "ghost.x"),

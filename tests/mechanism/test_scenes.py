@@ -1,9 +1,23 @@
 from typing import Any
 
+import numpy as np
 import pytest
 
-from bezstab.mechanism import Body, Revolute, Scene, load_scene, shipped_scenes
+from bezstab.errors import InputError
+from bezstab.mechanism import (
+    Body,
+    Revolute,
+    Scene,
+    at_speed,
+    compiled_mechanism,
+    initial_state,
+    load_scene,
+    parse_scene,
+    shipped_scenes,
+    simulate,
+)
 from bezstab.mechanism.scenes import Distance, Driver
+from bezstab.methods import lookup
 
 SHIPPED = list(shipped_scenes())
 
@@ -50,3 +64,58 @@ def test_equal_scenes_have_equal_hashes(name: str) -> None:
 
 def test_the_slider_crank_has_the_papers_five_coordinates() -> None:
     assert load_scene("slider_crank").coordinates == ("crank.theta", "rod.x", "rod.y", "rod.theta", "slider.x")
+
+
+def test_a_joints_rows_are_named_by_number_kind_and_bodies() -> None:
+    pin = Revolute(("crank", "slider"), ((0.0, 0.0), (0.0, 0.0)))
+    drive = Driver("crank.theta", 0.0, 1.0, 0.0, 0.0, 0.0, 0.0)
+    assert scene(drive, pin).constraint_names == (
+        "joint 1 (driver of crank.theta)",
+        "x of joint 2 (revolute, crank and slider)",
+        "y of joint 2 (revolute, crank and slider)",
+    )
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_there_is_a_name_for_each_constraint(name: str) -> None:
+    mechanism = compiled_mechanism(load_scene(name))
+    assert len(mechanism.scene.constraint_names) == mechanism.constraints
+
+
+@pytest.mark.parametrize("name", ["four_bar", "driven_four_bar", "n_four_bar"])
+def test_twice_the_speed_doubles_every_velocity_of_the_start(name: str) -> None:
+    slow, fast = (initial_state(compiled_mechanism(at_speed(load_scene(name), factor))) for factor in (1.0, 2.0))
+    assert np.array_equal(slow[0], fast[0])
+    assert fast[1] == pytest.approx(2 * slow[1], rel=1e-14)
+
+
+def test_a_faster_driver_takes_the_same_course_in_less_time() -> None:
+    course = {"offset": 0.5, "rate": 2.0, "acceleration": -1.0, "amplitude": 0.3, "frequency": 7.0, "phase": 0.4}
+    data = {
+        **pendulum(),
+        "joint": [{"type": "driver", "coordinate": "bob.x", **course}],
+        "initial": {"position": {"bob.y": 0.0}, "velocity": {"bob.y": 0.0}},
+    }
+    slow, fast = (compiled_mechanism(at_speed(parse_scene(data), factor)) for factor in (1.0, 4.0))
+    whole = simulate(slow, lookup("RK4"), 1e-3, 1.0, (0.0, 0.0))
+    quarter = simulate(fast, lookup("RK4"), 2.5e-4, 0.25, (0.0, 0.0))
+    expected = 0.5 + 2 * whole.t - whole.t**2 / 2 + 0.3 * np.sin(7 * whole.t + 0.4)
+    for run in (whole, quarter):
+        assert run.q[:, 0] == pytest.approx(expected, abs=1e-11)  # RK4's
+
+
+def test_a_scene_at_another_speed_says_so_and_at_its_own_is_the_same() -> None:
+    four_bar = load_scene("four_bar")
+    assert at_speed(four_bar, 1.0) == four_bar
+    assert at_speed(four_bar, 0.5).name == "four-bar, 0.5 times as fast"
+
+
+@pytest.mark.parametrize("factor", [0.0, -1.0, float("nan"), float("inf"), 1e101])
+def test_a_speed_that_is_none_is_refused(factor: float) -> None:
+    with pytest.raises(InputError, match=r"speed .*: expected 1e-100 to 1e\+100"):
+        at_speed(load_scene("four_bar"), factor)
+
+
+def test_what_nothing_moves_has_no_speed() -> None:
+    with pytest.raises(InputError, match="pendulum starts at rest and nothing drives it"):
+        at_speed(load_scene("pendulum"), 2.0)

@@ -1,4 +1,6 @@
+import re
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -53,10 +55,67 @@ def test_states_that_do_not_fit_are_refused(initial: dict[str, dict[str, float]]
         initial_state(compiled_mechanism(parse_scene(pendulum(initial=initial))))
 
 
-def test_redundant_constraints_are_refused() -> None:
-    joint = {"type": "distance", "bodies": ["ground", "bob"], "points": [[0, 0], [0, 0]], "length": 1.0}
-    with pytest.raises(InputError, match="redundant"):
-        initial_state(compiled_mechanism(parse_scene({**pendulum(), "joint": [joint, joint]})))
+STRING = {"type": "distance", "bodies": ["ground", "bob"], "points": [[0, 0], [0, 0]], "length": 1.0}
+
+
+@pytest.mark.parametrize("position", [{"bob.x": 1.0, "bob.y": 0.0}, {"bob.x": 0.6}, {"bob.y": 0.8}])
+def test_a_joint_given_twice_is_refused_by_name_however_much_of_the_position_is_given(
+    position: dict[str, float],
+) -> None:
+    initial = {"position": position, "guess": {name: 0.7 for name in ("bob.x", "bob.y") if name not in position}}
+    expected = re.escape(
+        "redundant constraints: 2 constraints, rank 1: "
+        "joint 2 (distance, ground and bob) follows from joint 1 (distance, ground and bob)"
+    )
+    with pytest.raises(InputError, match=expected):
+        initial_state(compiled_mechanism(parse_scene({**pendulum(initial=initial), "joint": [STRING, STRING]})))
+
+
+def parallel_rods(count: int, angle: float) -> dict[str, Any]:
+    """Return a coupler on equal, parallel rods on pivots 1 m apart, all at one angle: with a third rod redundant."""
+    rods = [f"rod{i}" for i in range(count)]
+    return {
+        "name": "parallel rods",
+        "body": [
+            *({"name": rod, "free": ["theta"], "locked": {"x": i}, "inertia": 1.0} for i, rod in enumerate(rods)),
+            {"name": "coupler", "free": ["x", "y", "theta"], "mass": 1.0, "inertia": 1.0},
+        ],
+        "joint": [
+            {"type": "revolute", "bodies": [rod, "coupler"], "points": [[0.5, 0], [i, 0]]} for i, rod in enumerate(rods)
+        ],
+        "initial": {
+            "position": {"rod0.theta": angle},
+            "velocity": {"rod0.theta": 1.0},
+            "guess": {
+                **{f"{rod}.theta": angle for rod in rods},
+                "coupler.x": 0.5 * np.cos(angle),
+                "coupler.y": 0.5 * np.sin(angle),
+            },
+        },
+    }
+
+
+def test_the_third_of_three_parallel_rods_is_redundant_and_named() -> None:
+    """Along x, its tip goes where the coupler is taken by the other two; along y likewise, but for its own angle."""
+    with pytest.raises(InputError) as caught:
+        initial_state(compiled_mechanism(parse_scene(parallel_rods(3, angle=1.0))))
+    message = str(caught.value)
+    assert message.startswith("joint: redundant constraints: 6 constraints, rank 5: y of joint 3 (revolute, rod2 and ")
+    for number in (1, 2, 3):
+        assert f"joint {number} (revolute, rod{number - 1} and coupler)" in message
+    assert "\n" not in message
+
+
+def test_parallel_rods_that_lie_in_line_start_singular_but_not_redundant() -> None:
+    with pytest.raises(InputError, match="a singular start, beside which no constraint depends on others: 4 con"):
+        initial_state(compiled_mechanism(parse_scene(parallel_rods(2, angle=0.0))))
+
+
+def test_a_driven_mechanism_that_cannot_leave_a_singular_start_is_refused_as_either() -> None:
+    """At the end of its string, along which a driver holds it: whether it could move on is not decided there."""
+    driver = {"type": "driver", "coordinate": "bob.x", "offset": 1.0, "rate": -1.0}
+    with pytest.raises(InputError, match="redundant constraints or a singular start: 2 constraints, rank 1: joint 2"):
+        initial_state(compiled_mechanism(parse_scene({**pendulum(), "joint": [STRING, driver]})))
 
 
 @pytest.mark.parametrize(("changes", "starts"), [({}, False), ({"free_length": 0.0}, True), ({"damping": 1.0}, False)])
