@@ -6,6 +6,13 @@ from typing import TYPE_CHECKING
 
 import click
 
+from bezstab.cli.moving_mechanism import (
+    moving_columns,
+    moving_rows,
+    moving_scene_option,
+    moving_speed_option,
+    turning_of,
+)
 from bezstab.cli.options import (
     ENGINE,
     ENGINE_VALUES,
@@ -28,7 +35,7 @@ from bezstab.show import MISSING, Column, Format, Row, column, formatted
 from bezstab.units import to_dimensionless
 
 if TYPE_CHECKING:
-    from bezstab.stability import Goal
+    from bezstab.stability import Choice, Goal
 
 
 def range_column(heading: str, low_key: str, high_key: str) -> Column:
@@ -78,6 +85,8 @@ PASTE = column("to paste", "engine")
 @click.option("--settle", type=SECONDS, help="gentle: the time in s in which c falls a thousandfold.")
 @click.option("--keep", type=click.Choice(["alpha=beta"]), help="Only points with α = β.")
 @click.option("--engine", type=ENGINE, help="Also print what to paste into that engine.")
+@moving_scene_option("Choose for this mechanism as it moves.")
+@moving_speed_option
 @format_option
 def choose(
     methods: Sequence[Method],
@@ -88,6 +97,8 @@ def choose(
     settle: Fraction | None,
     keep: str | None,
     engine: str | None,
+    scene: str | None,
+    speed: Fraction,
     form: Format,
 ) -> None:
     """Recommend α and β for an integrator and its step size.
@@ -109,16 +120,22 @@ def choose(
         raise click.UsageError("--settle and --goal gentle go together")
     if engine and left_at_default("methods"):
         methods = [lookup("SYM")]
+    turning = turning_of(scene, speed, h)
     rows: list[Row] = []
     for method in progress(methods, goal):
+        modulus = None
+        if turning:
+            from bezstab.evidence import moving_modulus
+
+            modulus = moving_modulus(method, turning, float(h_max or h))
         choice = choose_at_step(
-            method, goal, h=h, h_max=h_max, settle=settle, spread=float(spread), equal=keep is not None
+            method, goal, h=h, h_max=h_max, settle=settle, spread=float(spread), equal=keep is not None, modulus=modulus
         )
         row = choice_row(choice, float(h))
         if engine:
             row["engine"] = ENGINES[engine].setting((Fraction(choice.alpha_hat), Fraction(choice.beta_hat)), h)
-        rows.append(row)
-    show_rows(rows, [*CHOICES, PASTE] if engine else CHOICES, form)
+        rows += moving_rows([row], [method], [(choice.alpha_hat, choice.beta_hat)], turning, h)
+    show_rows(rows, [*CHOICES, *moving_columns(turning), *([PASTE] if engine else [])], form)
 
 
 @click.command()
@@ -128,6 +145,8 @@ def choose(
 @click.option("--h", type=SECONDS, help="Step size in s; needed with --physical and --engine.")
 @physical_option
 @click.option("--engine", type=ENGINE_VALUES, help="An engine's own values, such as mujoco=0.02,1, instead.")
+@moving_scene_option("Safe for this mechanism as it moves? Needs --h.")
+@moving_speed_option
 @format_option
 @click.pass_context
 def check(
@@ -138,6 +157,8 @@ def check(
     h: Fraction | None,
     physical: bool,
     engine: EngineValues | None,
+    scene: str | None,
+    speed: Fraction,
     form: Format,
 ) -> None:
     """Tell whether a choice is safe: exit status 0 if so, 1 if not.
@@ -152,13 +173,20 @@ def check(
 
     alpha_hat, beta_hat = _point_to_check(methods, alpha, beta, h, physical, engine)
     step = None if h is None else float(h)
+    turning = turning_of(scene, speed, h)
     given = [stability.describe_point(method, "as given", alpha_hat, beta_hat) for method in methods]
-    rows: list[Row] = []
+    choices: list[Choice] = []
     for choice in given:
-        rows.append(choice_row(choice, step))
-        rows.append(choice_row(stability.choose(choice.method, "robust"), step))
-    show_rows(rows, CHOICES, form)
-    context.exit(0 if all(choice.verdict == "converges" for choice in given) else 1)
+        choices += [choice, stability.choose(choice.method, "robust")]
+    points = [(choice.alpha_hat, choice.beta_hat) for choice in choices]
+    rows = moving_rows(
+        [choice_row(choice, step) for choice in choices], [choice.method for choice in choices], points, turning, h
+    )
+    show_rows(rows, CHOICES + moving_columns(turning), form)
+    safe = all(choice.verdict == "converges" for choice in given)
+    if turning:
+        safe = safe and all(row["moving_verdict"] == "converges" for row in rows[::2])
+    context.exit(0 if safe else 1)
 
 
 def _point_to_check(

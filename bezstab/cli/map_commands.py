@@ -7,6 +7,13 @@ from typing import TYPE_CHECKING
 
 import click
 
+from bezstab.cli.moving_mechanism import (
+    moving_columns,
+    moving_rows,
+    moving_scene_option,
+    moving_speed_option,
+    turning_of,
+)
 from bezstab.cli.options import (
     ENGINE,
     METHOD,
@@ -45,6 +52,7 @@ from bezstab.units import to_dimensionless
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from bezstab.mechanism import TurningNormals
     from bezstab.stability import BestPoint, Extent, FloatArray
 
 Window = tuple[Fraction, Fraction]
@@ -77,9 +85,11 @@ POLES = [
 @methods_option(*USUAL_METHODS)
 @click.option("--alpha", type=NUMBER, required=True, help="α̂, a decimal or fraction, read exactly.")
 @click.option("--beta", type=NUMBER, required=True, help="β̂, a decimal or fraction, read exactly.")
-@click.option("--h", type=SECONDS, help="Step size in s, for --physical.")
+@click.option("--h", type=SECONDS, help="Step size in s, for --physical and --scene.")
 @physical_option
 @click.option("--all-poles", is_flag=True, help="Every root, not only the dominant one.")
+@moving_scene_option("Also what the motion of this mechanism does to the poles; needs --h.")
+@moving_speed_option
 @format_option
 def poles(
     methods: Sequence[Method],
@@ -88,6 +98,8 @@ def poles(
     h: Fraction | None,
     physical: bool,
     all_poles: bool,
+    scene: str | None,
+    speed: Fraction,
     form: Format,
 ) -> None:
     """Print each method's dominant pole at one point, and the verdict.
@@ -100,17 +112,20 @@ def poles(
     from bezstab import stability
     from bezstab.show import pole_rows
 
-    if physical != (h is not None):
+    if (physical and h is None) or (h is not None and not physical and scene is None):
         raise click.UsageError("--physical and --h go together: α and β in 1/s need the step in s")
-    if h is not None:
+    turning = turning_of(scene, speed, h)
+    if physical and h is not None:
         alpha, beta = to_dimensionless(alpha, beta, h)
     alpha_hat, beta_hat = float(alpha), float(beta)
     poles_of = stability.poles if all_poles else stability.dominant_pole
     rows: list[Row] = []
     for method in methods:
         z = poles_of(method, alpha_hat, beta_hat).reshape(-1)
-        rows += pole_rows(method, alpha_hat, beta_hat, z, stability.verdict(method, alpha, beta))
-    show_rows(rows, POLES, form, heading=f"α̂ = {alpha_hat:.10g}, β̂ = {beta_hat:.10g}")
+        of_method = pole_rows(method, alpha_hat, beta_hat, z, stability.verdict(method, alpha, beta))
+        points = [(alpha_hat, beta_hat)] * len(of_method)
+        rows += moving_rows(of_method, [method] * len(of_method), points, turning, h)
+    show_rows(rows, POLES + moving_columns(turning), form, heading=f"α̂ = {alpha_hat:.10g}, β̂ = {beta_hat:.10g}")
 
 
 def unbounded_column(heading: str, key: str, form: str) -> Column:
@@ -138,6 +153,9 @@ REGIONS = [
 ]
 
 
+MOVING_REGIONS = [column("κ (1/s)", "kappa", ".4g"), column("area moving", "area_moving", ".6g")]
+
+
 @click.command()
 @methods_option("B4")
 @output_option
@@ -162,6 +180,8 @@ REGIONS = [
 @click.option("--compare", is_flag=True, help="One figure with the boundaries of all methods (default level 1).")
 @click.option("--h", type=SECONDS, help="Step size in s: axes become 2α (1/s) and β² (1/s²).")
 @click.option("--engine", type=ENGINE, help="Mark that engine's defaults and rules; needs --h.")
+@moving_scene_option("Also the region of this mechanism as it moves; needs --h.")
+@moving_speed_option
 @format_option
 def region(
     methods: Sequence[Method],
@@ -176,6 +196,8 @@ def region(
     compare: bool,
     h: Fraction | None,
     engine: str | None,
+    scene: str | None,
+    speed: Fraction,
     form: Format,
 ) -> None:
     """Draw where each method is stable, and tabulate |z_p| there.
@@ -193,6 +215,9 @@ def region(
         raise InputError(f"--level {float(max(levels)):g}: must be at most 1, the stability boundary")
     if engine and (h is None or compare):
         raise click.UsageError("--engine marks one map and needs --h: the step in s")
+    if scene and compare:
+        raise click.UsageError("--scene draws one map for each method: not with --compare")
+    turning = turning_of(scene, speed, h)
     if compare and len(levels) > 1:
         raise InputError(f"--compare takes one --level, but {len(levels)} were given")
     if figure != "none" or table != "none":
@@ -208,9 +233,11 @@ def region(
         for method in methods:
             points = grid or QUALITY[quality]
             rows.append(
-                _map_region(method, chosen_levels, alpha_range, beta_range, points, step, marks, output, figure, table)
+                _map_region(
+                    method, chosen_levels, alpha_range, beta_range, points, step, marks, output, figure, table, turning
+                )
             )
-    show_rows(rows, REGIONS, form)
+    show_rows(rows, REGIONS + (MOVING_REGIONS if turning else []), form)
 
 
 def _check_window(option: str, window: Window | None) -> None:
@@ -263,8 +290,9 @@ def _map_region(
     output: Path,
     figure: FigureForm,
     table: TableForm,
+    turning: "TurningNormals | None",
 ) -> Row:
-    """Write the |z_p| map of one method as table and figure; return its row."""
+    """Write the |z_p| map of one method as table and figure; return its row, with the moving area if a scene moves."""
     import numpy as np
 
     from bezstab import stability
@@ -272,8 +300,15 @@ def _map_region(
 
     stable = stability.region(method)
     best = stability.best_point(method)
+    row = region_row(stable, best)
+    moving = None
+    if turning and h is not None:
+        from bezstab.evidence import moving_region
+
+        moving = moving_region(method, turning, h)
+        row |= {"area_moving": moving.area, "kappa": turning.kappa}
     if figure == table == "none":
-        return region_row(stable, best)
+        return row
     alpha_hat, beta_hat = _grid(stability.window(stable), alpha_range, beta_range, points)
     blocks = stability.pole_map(method, alpha_hat, beta_hat)
     z = np.concatenate(list(progress(blocks, method.name, points, len)))
@@ -282,12 +317,12 @@ def _map_region(
         from bezstab.show import region_figure
 
         faster = [stability.region(method, level) for level in levels or _default_levels(best)]
-        return region_figure(stable, faster, best, alpha_hat, beta_hat, np.abs(z), h, marks)
+        return region_figure(stable, faster, best, alpha_hat, beta_hat, np.abs(z), h, marks, moving)
 
     path = output / f"region_{file_name(method.name)}"
     write_table(path, map_arrays(alpha_hat, beta_hat, z, h), table)
     write_figure(path, draw, figure)
-    return region_row(stable, best)
+    return row
 
 
 def _grid(

@@ -39,12 +39,13 @@ from bezstab.evidence.linear_prediction import SPREAD, Fit, Refusal, fit_dominan
 from bezstab.evidence.measured_poles import CLOSE, LINEAR, Measurement, measure_poles, random_points
 from bezstab.evidence.moving_mechanisms import (
     MovingPole,
+    MovingVerdict,
     growth_rates,
     momentary_rates,
     moving_pole,
     tabulated_rates,
 )
-from bezstab.evidence.moving_regions import MovingRegion, moving_growth, moving_region
+from bezstab.evidence.moving_regions import MovingRegion, moving_growth, moving_modulus, moving_region
 from bezstab.evidence.mujoco_witness import TIMES, model_xml, mujoco_witnesses, witness_count
 from bezstab.evidence.pareto import pareto_front
 from bezstab.evidence.reference_motions import ReferenceMotion, reference_motion
@@ -68,6 +69,7 @@ __all__ = [
     "Measurement",
     "MovingPole",
     "MovingRegion",
+    "MovingVerdict",
     "ReferenceMotion",
     "Refusal",
     "Run",
@@ -87,6 +89,7 @@ __all__ = [
     "model_xml",
     "momentary_rates",
     "moving_growth",
+    "moving_modulus",
     "moving_pole",
     "moving_region",
     "mujoco_witnesses",

@@ -13,6 +13,7 @@ Over a closed motion the integral of tr K is zero, so det Y = 1 and Lambda >= 0:
 from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -27,6 +28,8 @@ BEYOND_FIRST_ORDER = 0.5  # |chi| kappa h: from here on the terms left out are a
 LARGEST_CHI = 32.0  # of the table: ten times what is seen on a boundary; further out the law does not hold at any speed
 RADII, ANGLES = 101, 61
 
+MovingVerdict = Literal["converges", "diverges", "not settled for this mechanism"]
+
 
 @dataclass(frozen=True)
 class MovingPole:
@@ -35,7 +38,9 @@ class MovingPole:
     `z_abs`: at rest. `chi_abs`: |chi| of the pole that grows most over the motion. `z_abs_moving`: its rate over the
     motion. `z_abs_worst`: the largest momentary rate of any pole. `kappa`: in 1/s. `double`: another pole is so near
     that the first-order law fails; then both rates are widened by the factor exp((kappa h)^(1/2)). `settled`: all of
-    the band, and the second-order terms that were left out, are on one side of one.
+    the band, and the second-order terms that were left out, are on one side of one. `safe_speed`: so many times as fast
+    the mechanism may move, at this step, until its rate is one; infinite where no speed would, nan where it diverges at
+    rest.
     """
 
     z_abs: float
@@ -45,6 +50,14 @@ class MovingPole:
     z_abs_worst: float
     double: bool
     settled: bool
+    safe_speed: float
+
+    @property
+    def verdict(self) -> MovingVerdict:
+        """What errors do over the motion, if the band settles it."""
+        if not self.settled:
+            return "not settled for this mechanism"
+        return "converges" if self.z_abs_moving < 1 else "diverges"
 
 
 def growth_rates(turning: TurningNormals, chi: ArrayLike) -> FloatArray:
@@ -125,7 +138,8 @@ def moving_pole(method: Method, turning: TurningNormals, h: float, alpha_hat: fl
     double = bool((near_another | beyond)[0])
     usable = np.where(np.isfinite(chi), chi, 0)
     at_rest = np.log(np.abs(z))
-    moving = at_rest + step * growth_rates(turning, usable)
+    growth = step * growth_rates(turning, usable)
+    moving = at_rest + growth
     worst = at_rest + step * momentary_rates(turning, usable)
     leading = int(np.argmax(moving))
     widened = np.sqrt(turned) if double else 0.0
@@ -140,4 +154,13 @@ def moving_pole(method: Method, turning: TurningNormals, h: float, alpha_hat: fl
         z_abs_worst=float(np.exp(highest)),
         double=double,
         settled=bool(settled),
+        safe_speed=_safe_speed(at_rest, growth),
     )
+
+
+def _safe_speed(at_rest: FloatArray, growth: FloatArray) -> float:
+    """Return by what growth, which is proportional to the speed, can be multiplied until it equals a pole's decay."""
+    if at_rest.max() >= 0:
+        return float("nan")
+    with np.errstate(divide="ignore"):
+        return float(np.min(np.where(growth > 0, -at_rest / growth, np.inf)))

@@ -20,7 +20,7 @@ import numpy as np
 from bezstab.evidence.moving_mechanisms import tabulated_rates
 from bezstab.mechanism import TurningNormals
 from bezstab.methods import Method
-from bezstab.stability import BoolArray, FloatArray, dominant_pole, poles, region, turning_sensitivity, window
+from bezstab.stability import BoolArray, FloatArray, Modulus, dominant_pole, poles, region, turning_sensitivity, window
 
 LINES = 160  # of constant beta_hat, at Gauss and Legendre's nodes: the length of a line has kinks, so 1e-4 of the area
 SAMPLES = 241  # along a line; what is narrower than 1/240 of the window is not seen
@@ -70,6 +70,15 @@ def moving_growth(
     growth = np.array(at_rest)
     growth[matters] += step * tabulated_rates(turning, chi[matters])
     return np.asarray(growth.max(axis=-1))
+
+
+def moving_modulus(method: Method, turning: TurningNormals, h: float) -> Modulus:
+    """Return the function that gives |z| a step over the motion for arrays of alpha_hat and beta_hat; h in s."""
+
+    def modulus(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
+        return np.asarray(np.exp(moving_growth(method, turning, h, alpha_hat, beta_hat)))
+
+    return modulus
 
 
 def moving_region(method: Method, turning: TurningNormals, h: float, points: int = SAMPLES) -> MovingRegion:

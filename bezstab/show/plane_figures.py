@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bezstab.evidence import VerdictMap
+from bezstab.evidence import MovingRegion, VerdictMap
 from bezstab.show import plot
 from bezstab.show.plot import Point, Range
 from bezstab.show.style import (
@@ -30,13 +30,15 @@ def region_figure(
     z_abs: FloatArray,
     h: float | None = None,
     marks: Mapping[str, Point] | None = None,
+    moving: MovingRegion | None = None,
 ) -> Figure:
     """Return the |z_p| map with exact boundary, faster regions, best point and critical damping (paper Fig. 1).
 
     Of an unbounded region it says that it goes on.
 
     z_abs has shape (beta_hat.size, alpha_hat.size). With h (s) the axes are 2 alpha (1/s) and beta^2 (1/s^2), else
-    alpha_hat and beta_hat; `marks` are points (alpha_hat, beta_hat) by their labels.
+    alpha_hat and beta_hat; `marks` are points (alpha_hat, beta_hat) by their labels. Of a mechanism that moves its own
+    boundary is drawn as well, and where the law behind it does not hold.
     """
     with styled():
         figure, axes = plane_axes(region.method.name, h)
@@ -47,6 +49,8 @@ def region_figure(
         for number, inner in enumerate(faster, start=1):
             curve = {"color": "white", "linestyle": DASHES[number % 4], "label": rf"$|z_p| = {inner.level:g}$"}
             plot.region(inner, axes, h, **curve)
+        if moving:
+            plot.moving_region(moving, axes, h)
         plot.critical_damping((alpha_hat[0], alpha_hat[-1]), axes, h)
         if best:
             plot.best_point(best, axes, h)

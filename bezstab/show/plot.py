@@ -12,12 +12,13 @@ from typing import Any, Literal, SupportsFloat
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
+from matplotlib.contour import QuadContourSet
 from matplotlib.image import AxesImage
 from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 from matplotlib.text import Annotation
 
-from bezstab.evidence import Run, VerdictMap
+from bezstab.evidence import MovingRegion, Run, VerdictMap
 from bezstab.mechanism import COORDINATES, Scene, Simulation
 from bezstab.methods import Method
 from bezstab.show.style import (
@@ -50,6 +51,7 @@ __all__ = [
     "marks",
     "mechanism",
     "modulus_map",
+    "moving_region",
     "pareto_front",
     "region",
     "spectral_radius",
@@ -76,6 +78,21 @@ def region(region: Region, axes: Axes | None = None, h: float | None = None, **l
     label = region.method.name if region.bounded else f"{region.method.name} (unbounded)"
     style = {"label": label, **method_line(region.method), **line}
     return curves(_plane(axes, rf"$|z_p| = {region.level:g}$", h), region, h, **style)
+
+
+def moving_region(moving: MovingRegion, axes: Axes | None = None, h: float | None = None) -> QuadContourSet:
+    """Draw the boundary of the region of a mechanism that moves, and return it; hatched: where the law does not hold.
+
+    With h (s) the axes are 2 alpha (1/s) and beta^2 (1/s^2).
+    """
+    drawn_on = _plane(axes, moving.method.name, h)
+    x, y = plane_coordinates(moving.alpha_hat, moving.beta_hat, h)
+    outside_the_law = moving.excluded & (moving.growth < 0)
+    if outside_the_law.any():
+        drawn_on.contourf(x, y, outside_the_law, levels=[0.5, 1.5], colors="none", hatches=["////"])
+    edge: QuadContourSet = drawn_on.contour(x, y, moving.growth, levels=[0.0], colors="black", linestyles=[DASHES[1]])
+    drawn_on.plot([], [], color="black", linestyle=DASHES[1], label="as it moves")
+    return edge
 
 
 def spectral_radius(

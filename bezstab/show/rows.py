@@ -22,7 +22,7 @@ if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
     from _typeshed import DataclassInstance
 
     from bezstab.engines import Engine
-    from bezstab.evidence import Measurement, VerdictMap
+    from bezstab.evidence import Measurement, MovingPole, VerdictMap
     from bezstab.mechanism import Simulation
     from bezstab.methods import Verdict
     from bezstab.stability import BestPoint, Choice, Limit, Member, Region
@@ -71,6 +71,22 @@ def pole_rows(
     """Return a row for each pole of one method at one point (dimensionless), angles in degrees."""
     point: Row = {"method": method.name, "alpha_hat": alpha_hat, "beta_hat": beta_hat}
     return [{**point, **complex_parts("z_", complex(z)), "verdict": verdict} for z in poles]
+
+
+def moving_row(moving: MovingPole) -> Row:
+    """Return what a mechanism's motion does to the poles at one point; kappa in 1/s, the rest dimensionless.
+
+    `z_abs_moving` is the rate over the motion, `z_abs_worst` the largest for a moment; `safe_speed` the factor on the
+    speed at which the rate is one, None where no speed is, or none is safe.
+    """
+    speed = moving.safe_speed if math.isfinite(moving.safe_speed) else None
+    return row(
+        moving,
+        without={"z_abs", "double"},
+        double_pole=moving.double,
+        moving_verdict=moving.verdict,
+        safe_speed=speed,
+    )
 
 
 def method_row(method: Method) -> Row:

@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -31,6 +32,8 @@ from bezstab.stability.searches import first_where, zoom_on_minimum
 
 Goal = Literal["robust", "fastest", "critical", "gentle"]
 Objective = Callable[[FloatArray, FloatArray], FloatArray]
+Modulus = Callable[[FloatArray, FloatArray], FloatArray]
+"""|z_p|, or what takes its place, over arrays of alpha_hat and beta_hat."""
 
 THOUSANDFOLD = 1e-3  # what "settled" means for the constraint error
 SAMPLES = 4000  # along a line: |z_p| has no features as narrow as that
@@ -99,12 +102,20 @@ class Choice:
         return math.ceil(math.log(THOUSANDFOLD) / math.log(abs(self.pole)))
 
 
-def choose(method: Method, goal: Goal, spread: float = 0.1, rate: float | None = None, equal: bool = False) -> Choice:
+def choose(
+    method: Method,
+    goal: Goal,
+    spread: float = 0.1,
+    rate: float | None = None,
+    equal: bool = False,
+    modulus: Modulus | None = None,
+) -> Choice:
     """Return the point that a goal asks for, dimensionless and proven stable.
 
     fastest: the smallest |z_p|. critical: the fastest whose dominant pole is real and positive. robust: the fastest at
     worst over every smaller step at the same alpha, beta, and alpha and beta off by the spread (a share), where
     fast means decay per second. gentle: the smallest alpha = beta with |z_p| <= rate. `equal` keeps alpha = beta.
+    `modulus` takes the place of |z_p| at rest, for a mechanism that moves; critical asks for poles at rest.
     InputError if nothing stable meets the goal. The poles are those of paper Eq. 17; the goals are this package's.
     """
     stable = region(method)
@@ -115,8 +126,12 @@ def choose(method: Method, goal: Goal, spread: float = 0.1, rate: float | None =
         raise InputError(f"{method.name} is stable for no parameters at all{reason}")
     box, cut = _box(stable)
     pencil = free_pencil_of(method)  # a pole that no parameters move must not hide the others
+    at_rest = modulus is None
+    if modulus is None:
+        modulus = partial(largest_modulus, pencil)
     if goal == "gentle":
-        point, cut = _gentle(any_pencil_of(method), box, 0.0 if rate is None else rate), False
+        of_all = partial(largest_modulus, any_pencil_of(method)) if at_rest else modulus
+        point, cut = _gentle(method, of_all, box, 0.0 if rate is None else rate), False
     elif goal == "critical":
         point = _critical_point(pencil, box, cut)
         if equal and not math.isclose(point[1], point[0] ** 2 / 4):
@@ -124,13 +139,11 @@ def choose(method: Method, goal: Goal, spread: float = 0.1, rate: float | None =
                 f"--keep alpha=beta: the double mu of {method.name} is not at alpha = beta; no --goal critical"
             )
     elif goal == "robust":
-        point = _checked_least(pencil, box, _slowest(pencil, spread), equal)
-    elif equal:
-        point = _checked_least(pencil, box, lambda a, b: largest_modulus(pencil, a, b), equal)
-    elif best := best_point(method):
+        point = _checked_least(pencil, box, _slowest(method, modulus, spread), equal)
+    elif not equal and at_rest and (best := best_point(method)):
         point, cut = (best.alpha_hat, best.beta_hat), False
-    else:  # it falls on as the feedback grows
-        point = _checked_least(pencil, box, lambda a, b: largest_modulus(pencil, a, b), equal)
+    else:  # on a line, or where |z_p| falls on as the feedback grows, or for a mechanism that moves
+        point = _checked_least(pencil, box, modulus, equal)
     choice = describe_point(method, goal, exact(point[0]), exact(point[1]), spread)
     if choice.verdict != "converges":
         raise NumericalError(f"{method.name}: the point {point} found for {goal} is not stable")
@@ -158,11 +171,13 @@ def choose_at_step(
     settle: Fraction | None = None,
     spread: float = 0.1,
     equal: bool = False,
+    modulus: Modulus | None = None,
 ) -> Choice:
     """Return the choice for steps of h (s), as `choose` makes it for the largest step h_max (s) that may occur.
 
     At a smaller step the same alpha and beta are a smaller alpha_hat = 2 alpha h and beta_hat = beta^2 h^2 (paper Eq.
-    16). `settle` (s) is the time in which the error of `gentle` falls a thousandfold. InputError as for `choose`, and
+    16). `settle` (s) is the time in which the error of `gentle` falls a thousandfold; `modulus`, of the largest step, is
+    as for `choose`. InputError as for `choose`, and
     for an h_max below h or without the goal robust, and for a settle without the goal gentle, or that without it.
     """
     if h_max is not None and (goal != "robust" or h_max < h):
@@ -172,7 +187,7 @@ def choose_at_step(
     rate = None
     if settle is not None:
         rate = THOUSANDFOLD ** float(h * method.step_multiple / settle)
-    choice = choose(method, goal, spread, rate, equal)
+    choice = choose(method, goal, spread, rate, equal, modulus)
     if h_max is None or h_max == h:
         return choice
     share = h / h_max
@@ -237,7 +252,7 @@ def stability_margins(method: Method, alpha_hat: float, beta_hat: float) -> Marg
     return margins
 
 
-def _slowest(pencil: AnyPencil, spread: float) -> Objective:
+def _slowest(method: Method, modulus: Modulus, spread: float) -> Objective:
     """Return the objective of `robust`: the largest decay factor per largest step, over smaller steps and the spread.
 
     A step of share s of the largest turns (alpha_hat, beta_hat) into (s alpha_hat, s^2 beta_hat) and takes 1/s steps;
@@ -246,7 +261,7 @@ def _slowest(pencil: AnyPencil, spread: float) -> Objective:
     """
     shares = np.linspace(0, 1, SHARES + 1)[1:, np.newaxis]
     offsets = [(-1, -1), (-1, 1), (0, 0), (1, -1), (1, 1)]
-    multiple = float(pencil.method.step_multiple)
+    multiple = float(method.step_multiple)
 
     def objective(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
         worst = np.zeros(alpha_hat.shape)
@@ -254,7 +269,7 @@ def _slowest(pencil: AnyPencil, spread: float) -> Objective:
             off_alpha_hat = (1 + spread * of_alpha) * alpha_hat
             off_beta_hat = (1 + spread * of_beta) ** 2 * beta_hat
             slower_mu = -off_alpha_hat / 2 + np.sqrt(np.maximum(0, off_alpha_hat**2 / 4 - off_beta_hat))
-            at_shares = largest_modulus(pencil, shares * off_alpha_hat, shares**2 * off_beta_hat)
+            at_shares = modulus(shares * off_alpha_hat, shares**2 * off_beta_hat)
             per_largest_step = (at_shares ** (1 / shares)).max(axis=0)
             worst = np.maximum(worst, np.maximum(np.exp(multiple * slower_mu), per_largest_step))
         return worst
@@ -347,15 +362,11 @@ def _critical(pencil: Pencil, furthest_mu: float) -> tuple[float, float]:
     return float(alpha_hat), float(beta_hat)
 
 
-def _gentle(pencil: AnyPencil, extent: Extent, rate: float) -> tuple[float, float]:
+def _gentle(method: Method, modulus: Modulus, extent: Extent, rate: float) -> tuple[float, float]:
     """Return the smallest alpha = beta with |z_p| <= rate."""
     alpha = np.linspace(0, extent[0][1] / 2, SAMPLES)  # times h, as beta
-
-    def modulus(alpha: FloatArray) -> FloatArray:
-        return largest_modulus(pencil, 2 * alpha, alpha**2)
-
-    found = first_where(lambda alpha: modulus(alpha) <= rate, alpha)
+    found = first_where(lambda alpha: modulus(2 * alpha, alpha**2) <= rate, alpha)
     if found is None:
-        name, best = pencil.method.name, modulus(alpha).min()
+        name, best = method.name, modulus(2 * alpha, alpha**2).min()
         raise InputError(f"--settle: with alpha = beta {name} has at best |z_p| = {best:.6g}, needed {rate:.6g}")
     return 2 * found[1], found[1] ** 2

@@ -1,0 +1,79 @@
+"""What poles, choose, check and region share when they are asked about a mechanism that moves: --scene and --speed."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+import click
+
+from bezstab.cli.options import SPEED, Decorator
+from bezstab.show import Column, Row, column, formatted
+
+if TYPE_CHECKING:
+    from bezstab.mechanism import TurningNormals
+    from bezstab.methods import Method
+
+RUN = 1.0  # s, of a motion that no driver closes
+
+moving_speed_option = click.option(
+    "--speed", type=SPEED, default="1", help="With --scene: times the scene's own, its drivers' and its start's."
+)
+
+
+def moving_scene_option(help_text: str) -> Decorator:
+    """Return the option --scene of a command that also works without one."""
+    return click.option("--scene", help=help_text)
+
+
+def turning_of(scene: str | None, speed: Fraction, h: Fraction | None) -> "TurningNormals | None":
+    """Return how the normals of the scene's constraints turn; None without a scene.
+
+    UsageError for a scene without a step (h in s), or a speed without a scene; InputError as `load_scene` and `motion`.
+    """
+    if scene is None:
+        if speed != 1:
+            raise click.UsageError("--speed goes with --scene: it is the mechanism that is so many times as fast")
+        return None
+    if h is None:
+        raise click.UsageError("--scene needs --h: how far the mechanism moves in a step depends on it")
+    from bezstab.mechanism import at_speed, compiled_mechanism, load_scene, turning_normals
+
+    return turning_normals(compiled_mechanism(at_speed(load_scene(scene), float(speed))), RUN)
+
+
+def moving_rows(
+    rows: Sequence[Row],
+    methods: Sequence["Method"],
+    points: Sequence[tuple[float, float]],
+    turning: "TurningNormals | None",
+    h: Fraction | None,
+) -> list[Row]:
+    """Return rows with what the motion does to each one's method at its point, in the same order; without one, as is."""
+    if turning is None or h is None:
+        return list(rows)
+    from bezstab.evidence import moving_pole
+    from bezstab.show import moving_row
+
+    return [
+        {**row, **moving_row(moving_pole(method, turning, float(h), *point))}
+        for row, method, point in zip(rows, methods, points, strict=True)
+    ]
+
+
+def moving_columns(turning: "TurningNormals | None") -> list[Column]:
+    """Return the columns that moving_rows adds; none without a scene."""
+    if turning is None:
+        return []
+    return [
+        column("κ (1/s)", "kappa", ".4g"),
+        column("|χ|", "chi_abs", ".3f"),
+        column("|z| moving", "z_abs_moving", ".6f"),
+        column("at worst", "z_abs_worst", ".6f"),
+        column("moving verdict", "moving_verdict"),
+        Column("safe to speed", _safe_speed),
+    ]
+
+
+def _safe_speed(row: Row) -> str:
+    speed = row["safe_speed"]
+    return "any" if speed is None and row["moving_verdict"] == "converges" else formatted(speed, ".3g")
