@@ -194,8 +194,13 @@ def _beside_a_fixed_pole(method: Method, fixed: complex) -> BestPoint | float | 
 
 def _zeros(pencil: Pencil) -> list[complex]:
     """Return the different mu of the upper half at which the one root is zero, the most damped first."""
+    numerator = np.trim_zeros(pencil.table[0], "b")
+    if len(numerator) < pencil.table.shape[1]:  # of an implicit method, of a degree less than the denominator
+        roots = polyroots(numerator).astype(complex)
+    else:
+        roots = roots_in_mu(pencil, np.zeros(1, complex))[:, 0]
     zeros: list[complex] = []
-    for root in np.sort_complex(roots_in_mu(pencil, np.zeros(1, complex))[:, 0]):
+    for root in np.sort_complex(roots):
         mu = _upper(root)
         if abs(mu) < REACH and all(abs(mu - other) > DOUBLE * abs(mu) for other in zeros):
             zeros.append(mu)

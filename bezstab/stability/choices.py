@@ -40,6 +40,7 @@ ZOOM = 0.75  # from one grid to the next
 ZOOMS = 90  # 0.75^89 = 8e-12 of the region at least, where the objective is flat to rounding
 SPREAD_POINTS = 9  # per axis, of the points among which the worst is looked for
 SHARES = 8  # of the largest step, besides the limit of small ones: in practice either end is the slowest
+AT_DEADBEAT = 0.01  # of alpha_hat, beta_hat: a double pole that is so near to zero may be followed no further
 ASIDE = 1e-7  # of mu: a double mu splits by 1e-8 in float64, which must not let a rival of equal modulus win
 DEADBEAT = 1e-6  # a double pole at zero, as far as float64 tells it
 SLOW = 1e-12  # 1 - |z_p| of which rounding leaves three digits: the decay takes 1e13 steps
@@ -124,13 +125,13 @@ def choose(method: Method, goal: Goal, spread: float = 0.1, rate: float | None =
                 f"--keep alpha=beta: the double mu of {method.name} is not at alpha = beta; no --goal critical"
             )
     elif goal == "robust":
-        point = _checked_least(pencil, box, _slowest(pencil, spread), equal)
+        point = _checked_least(pencil, box, _slowest(pencil, spread), equal, cut)
     elif equal:
-        point = _checked_least(pencil, box, lambda a, b: largest_modulus(pencil, a, b), equal)
+        point = _checked_least(pencil, box, lambda a, b: largest_modulus(pencil, a, b), equal, cut)
     elif best := best_point(method):
         point, cut = (best.alpha_hat, best.beta_hat), False
     else:  # it falls on as the feedback grows
-        point = _checked_least(pencil, box, lambda a, b: largest_modulus(pencil, a, b), equal)
+        point = _checked_least(pencil, box, lambda a, b: largest_modulus(pencil, a, b), equal, cut)
     choice = describe_point(method, goal, exact(point[0]), exact(point[1]), spread)
     if choice.verdict != "converges":
         raise NumericalError(f"{method.name}: the point {point} found for {goal} is not stable")
@@ -262,20 +263,23 @@ def _slowest(pencil: AnyPencil, spread: float) -> Objective:
     return objective
 
 
-def _checked_least(pencil: AnyPencil, extent: Extent, objective: Objective, equal: bool) -> tuple[float, float]:
+def _checked_least(
+    pencil: AnyPencil, extent: Extent, objective: Objective, equal: bool, cut: bool
+) -> tuple[float, float]:
     """Return where the objective is least; NumericalError if a sampled point is better (answer_checks)."""
-    alpha_hat, beta_hat = _least(extent, objective, equal)
+    alpha_hat, beta_hat = _least(extent, objective, equal, cut)
     if equal:
-        check_least_equal(pencil.method, objective, alpha_hat, extent)
+        check_least_equal(pencil.method, objective, alpha_hat, extent, cut)
     else:
-        check_least(pencil.method, objective, alpha_hat, beta_hat, extent)
+        check_least(pencil.method, objective, alpha_hat, beta_hat, extent, cut)
     return alpha_hat, beta_hat
 
 
-def _least(extent: Extent, objective: Objective, equal: bool) -> tuple[float, float]:
+def _least(extent: Extent, objective: Objective, equal: bool, cut: bool) -> tuple[float, float]:
     """Return where the objective is least over the region's box; with `equal` on the line alpha = beta.
 
-    Its valleys are narrow, curved and have kinks for beds, so the grids are turned, and wait where the valley leads on.
+    Its valleys are narrow, curved and have kinks for beds, so the grids are turned, and wait where the valley leads on;
+    out of a box that cuts off the region they are not led.
     """
     largest = np.array([extent[0][1] / 2, math.sqrt(extent[1][1])])  # alpha h and beta h
     centre = largest / 2
@@ -299,6 +303,7 @@ def _least(extent: Extent, objective: Objective, equal: bool) -> tuple[float, fl
         rounds=ZOOMS,
         turned=not equal,
         patient=True,
+        fold=(lambda points: np.minimum(points, 2 * centre)) if cut else None,
     )
     return 2 * float(best[0]), float(best[-1]) ** 2
 
@@ -310,6 +315,9 @@ def _critical_point(pencil: AnyPencil, box: Extent, cut: bool) -> tuple[float, f
         found = critical_point(pencil, (alpha_hat_max, beta_hat_max))
         if found is None:
             raise InputError(f"{pencil.method.name}: no double pole is dominant; no --goal critical")
+        best = best_point(pencil.method)
+        if best and not best.z_abs and math.dist(found, (best.alpha_hat, best.beta_hat)) < AT_DEADBEAT:
+            return best.alpha_hat, best.beta_hat
         return found
     furthest = 2 * math.sqrt(beta_hat_max) + alpha_hat_max
     if cut:

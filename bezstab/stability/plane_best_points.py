@@ -31,6 +31,7 @@ ROUNDING = 1e-9  # relative; a solved kink's moduli agree to about 1e-15, neighb
 SETTLED = 1e-13  # relative: a Newton step this small changes nothing that is compared
 NEWTON_STEPS = 40
 GRID = (121, 151)  # points of alpha_hat and sqrt(beta_hat): every valley is seen
+NEAR = 8.0  # of alpha_hat and sqrt(beta_hat): where least values lie, whatever corners are further out
 STARTS = 8  # local minima that are followed up
 HOPEFUL = 1.05  # times the least solution: the zoom on a minimum above it has not stopped so far short
 ZOOM_POINTS, ZOOM, ZOOMS = 13, 0.6, 24  # 0.6^23 = 8e-6 of the grid's spacing: a start, from which Newton takes over
@@ -143,9 +144,22 @@ def _least_far(pencil: PlanePencil, high: FloatArray, factor: float) -> float:
     return float(min(values))
 
 
+def _axis(end: float, count: int) -> FloatArray:
+    """Return a grid's points on one axis: evenly up to NEAR, and in even ratios from there."""
+    if end <= NEAR:
+        return np.linspace(0, end, count)
+    beyond = count // 3
+    return np.concatenate([np.linspace(0, NEAR, count - beyond), np.geomspace(NEAR, end, beyond + 1)[1:]])
+
+
+def _spacing(axis: FloatArray, k: int) -> float:
+    """Return the larger distance from a grid's point to a neighbour."""
+    return float(np.diff(axis)[max(k - 1, 0) : k + 1].max())
+
+
 def _local_minima(pencil: PlanePencil, high: FloatArray) -> Iterator[tuple[float, FloatArray]]:
     """Yield the lowest local minima over alpha_hat and sqrt(beta_hat) up to `high`, each narrowed by smaller grids."""
-    x, y = (np.linspace(0, end, count) for end, count in zip(high, GRID, strict=True))
+    x, y = (_axis(end, count) for end, count in zip(high, GRID, strict=True))
 
     def modulus(points: FloatArray) -> FloatArray:
         return largest_modulus(pencil, points[..., 0], points[..., 1] ** 2)
@@ -159,7 +173,7 @@ def _local_minima(pencil: PlanePencil, high: FloatArray) -> Iterator[tuple[float
         place, value = zoom_on_minimum(
             modulus,
             np.array([x[columns[k]], y[rows[k]]]),
-            np.array([x[1], y[1]]),
+            np.array([_spacing(x, int(columns[k])), _spacing(y, int(rows[k]))]),
             points=ZOOM_POINTS,
             shrink=ZOOM,
             rounds=ZOOMS,
