@@ -315,7 +315,7 @@ def _view(cells: tuple[Cell, ...], corners: FloatArray) -> Extent:
     for axis, (low, high) in enumerate(((left, right), (bottom, top))):
         within = corners[:, axis] if corners.size else np.zeros(1)
         seen_low = low if np.isfinite(low) else float(min(within.min(initial=0.0), 0.0))
-        seen_high = high if np.isfinite(high) else float(max(within.max(initial=0.0), seen_low + LEAST_VIEW))
+        seen_high = high if np.isfinite(high) else float(max(within.max(initial=0.0), LEAST_VIEW))
         ranges.append((seen_low, seen_high))
     return ranges[0], ranges[1]
 
