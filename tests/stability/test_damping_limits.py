@@ -10,12 +10,19 @@ from tests.methods.kinds import SECOND_ORDER
 from tests.reference.companion_poles import radius
 from tests.stability.made_methods import multistep
 
-LIMITS = {
-    **{"am3": 6, "am4": 3, "am5": Fraction(90, 49), "am6": Fraction(45, 38)},  # theory, section 10
-    **{"B1": 2, "B2": 1, "B3": Fraction(6, 7), "AB3": Fraction(6, 11), "AB4": Fraction(3, 10), "SIE": 1, "RK2": 2},
-    **{"central-difference": 2, "verlet-kdk": 2, "fox-goodwin": 6**0.5, "linear-acceleration": 12**0.5},
-    **{"SYM": 8**0.5 - 2, "verlet-half": 8**0.5 - 2, "imex-euler": 2 + 8**0.5},  # s^2 + 4 s = 4, s^2 = 4 + 4 s
+F = Fraction
+EXPLICIT_LIMITS = {"B1": 2, "B2": 1, "B3": F(6, 7), "AB3": F(6, 11), "AB4": F(3, 10), "SIE": 1, "RK2": 2}
+IMPLICIT_LIMITS = {"am3": 6, "am4": 3, "am5": F(90, 49), "am6": F(45, 38)}  # theory, section 10
+SECOND_ORDER_LIMITS = {
+    "central-difference": 2,
+    "verlet-kdk": 2,
+    "fox-goodwin": 6**0.5,
+    "linear-acceleration": 12**0.5,
+    "verlet-half": 8**0.5 - 2,  # s^2 + 4 s = 4, as for SYM
+    "SYM": 8**0.5 - 2,
+    "imex-euler": 2 + 8**0.5,  # s^2 = 4 + 4 s
 }
+LIMITS: dict[str, float | Fraction] = {**EXPLICIT_LIMITS, **IMPLICIT_LIMITS, **SECOND_ORDER_LIMITS}
 
 RATIOS = {"bdf3": 0.069193, "bdf4": 0.286497, "bdf5": 0.617863, "bdf6": 0.951917}
 

@@ -7,11 +7,9 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bezstab.methods import LinearMultistep, Method, lookup, recipe
+from bezstab.methods import ALPHA_HAT, BETA_HAT, LinearMultistep, Method, lookup, recipe
 from bezstab.stability import stable_for_all, verdict
 from bezstab.stability.quadrant_proofs import (
-    ALPHA_HAT,
-    BETA_HAT,
     RING,
     _positive,
     coefficients_in_w,
