@@ -32,7 +32,7 @@ from sympy.polys.matrices import DomainMatrix
 
 from bezstab.methods.schemes import ONE, ZERO, Method
 from bezstab.methods.schur import is_schur
-from bezstab.methods.shared_factors import free_table
+from bezstab.methods.shared_factors import reduced_table
 
 A, B = sp.symbols("alpha_hat beta_hat")
 RING = sp.QQ[A, B]
@@ -77,14 +77,14 @@ def plane_strips(method: Method, level: Fraction) -> PlaneStrips | None:
 
     Proven: Schur's recursion in rationals decides one point of each cell. Roots that no feedback moves are left out.
     """
-    coefficients = _coefficients(free_table(method), level)
+    coefficients = _coefficients(reduced_table(method), level)
     edges = _edges(coefficients)
     if any(not edge for edge in edges):
         return None  # a pair z_i z_j = r^2, or a root +-r, everywhere
     factors = _factors(edges)
     curves = [factor for factor in factors if factor.degree(A) > 0]
     levels, lost = _levels(factors, curves)
-    between = _between([level for level in levels])
+    between = _between(list(levels))
     ends = [None, *levels, None]
     strips = []
     for (low, high), beta_hat in zip(pairwise(ends), between, strict=True):
@@ -166,18 +166,19 @@ def _factors(polynomials: Iterable[sp.Poly]) -> list[sp.Poly]:
     found: list[sp.Poly] = []
     for polynomial in polynomials:
         for part in _parts(polynomial, long):
+            new = part
             for other in list(found):
-                shared = sp.gcd(part, other)
+                shared = sp.gcd(new, other)
                 if not shared.is_ground:
                     found.remove(other)
                     found += [shared, other.exquo(shared)]
-                    part = part.exquo(shared)
-            found.append(part)
+                    new = new.exquo(shared)
+            found.append(new)
     return [_primitive(each) for each in found if not each.is_ground]
 
 
 def _parts(polynomial: sp.Poly, long: bool) -> list[sp.Poly]:
-    """Return irreducible factors; of long polynomials those of one multiplicity, what depends on beta_hat alone apart."""
+    """Return irreducible factors; of long polynomials those of one multiplicity, and apart what beta_hat alone moves."""
     if not long:
         return [factor for factor, _ in polynomial.factor_list()[1]]
     parts = []
@@ -244,7 +245,7 @@ def _whole(polynomial: sp.Poly) -> tuple[int, ...]:
 
 @cache
 def real_roots(whole: tuple[int, ...]) -> tuple[Fraction, ...]:
-    """Return the real roots of an irreducible polynomial with whole coefficients, descending powers, in ascending order.
+    """Return the real roots of an irreducible polynomial with whole coefficients, descending powers, ascending.
 
     Exact where they are rational, else to LEVEL_BITS bits.
     """

@@ -66,9 +66,9 @@ class Margins:
 class Choice:
     """A point, its proven verdict and dominant pole, and the largest |z_p| when alpha and beta are off by the spread.
 
-    All dimensionless. `margins` is None unless the point is stable. `searched` is the largest alpha h and beta h (of the
-    method's step) that were looked at where the region goes on without end and a stronger feedback might be better by
-    the goal; None where all of the region was searched, or none of it.
+    All dimensionless. `margins` is None unless the point is stable. `searched` is the largest alpha h and beta h (of
+    the method's step) that were looked at where the region goes on without end and a stronger feedback might be better
+    by the goal; None where all of the region was searched, or none of it.
     """
 
     method: Method
@@ -142,12 +142,12 @@ def _box(stable: Region) -> tuple[Extent, bool]:
     """Return the ranges over which to search, and whether they cut off a region that goes on."""
     assert stable.extent
     multiple = float(stable.method.step_multiple)
-    ranges, cut = [], False
-    for (low, high), strongest in zip(stable.extent, (2 * SEARCHED, SEARCHED**2), strict=True):
-        strongest /= multiple if not ranges else multiple**2
-        cut = cut or not math.isfinite(high)
-        ranges.append((low if math.isfinite(low) else 0.0, high if math.isfinite(high) else strongest))
-    return (ranges[0], ranges[1]), cut
+    strongest = (2 * SEARCHED / multiple, (SEARCHED / multiple) ** 2)
+    ranges = [
+        (low if math.isfinite(low) else 0.0, high if math.isfinite(high) else end)
+        for (low, high), end in zip(stable.extent, strongest, strict=True)
+    ]
+    return (ranges[0], ranges[1]), not np.isfinite(stable.extent)[:, 1].all()
 
 
 def choose_at_step(

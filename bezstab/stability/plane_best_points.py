@@ -141,7 +141,9 @@ def _least_at_infinity(pencil: PlanePencil) -> float:
     There P's terms of the highest degree in alpha_hat and beta_hat alone decide. Infinite where one of their roots is.
     """
     degree = max(i + j for terms in pencil.terms for i, j, _ in terms)
-    leading = [[sum(c for i, j, c in terms if (i, j) == (p, degree - p)) for p in range(degree + 1)] for terms in pencil.terms]
+    leading = [
+        [sum(c for i, j, c in terms if (i, j) == (p, degree - p)) for p in range(degree + 1)] for terms in pencil.terms
+    ]
 
     def modulus(log_ratios: FloatArray) -> FloatArray:
         ratios = np.exp(log_ratios)

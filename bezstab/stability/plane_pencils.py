@@ -10,7 +10,7 @@ from functools import cache
 import numpy as np
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method, closed_loop_table, free_table
+from bezstab.methods import Method, closed_loop_table, reduced_table
 from bezstab.stability.arrays import ComplexArray, FloatArray
 from bezstab.stability.exact_sums import double_polynomial, double_product, double_sum, split
 from bezstab.stability.low_degrees import cubic_parts, largest_quadratic_root, quadratic_roots
@@ -45,7 +45,7 @@ def plane_pencil_of(method: Method, free: bool = False) -> PlanePencil:
 
     free: without the poles that no parameters move.
     """
-    exact = free_table(method) if free else closed_loop_table(method)
+    exact = reduced_table(method) if free else closed_loop_table(method)
     try:
         halves = tuple(tuple(tuple(split(c) for c in row) for row in in_plane) for in_plane in exact)
     except OverflowError:
