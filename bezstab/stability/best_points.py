@@ -92,7 +92,7 @@ class _Candidate:
 
 
 def best_point(method: Method) -> BestPoint | None:
-    """Return the smallest |z_p| and its place, to about 1e-12; None if no parameters have |z_p| < 1, or none the least.
+    """Return the smallest |z_p| and its place, to about 1e-12; None if no parameters have |z_p| < 1, or the least.
 
     The latter where |z_p| falls on as they grow: `falls_towards` says so. Dimensionless, of the poles of paper Eq. 17;
     of implicit and second-order methods among alpha_hat, beta_hat >= 0. NumericalError if no solution of the defining
@@ -120,22 +120,31 @@ def _best_or_limit(method: Method) -> BestPoint | float | None:
     if isinstance(method.scheme, SecondOrder):
         return _in_the_plane(method)
     pencil = pencil_of(method)
-    limit = _limit(pencil) if implicit(method) else math.inf
-    if pencil.steps == 1:  # z = R(mu), and the zeros of R are deadbeat
-        zeros = [mu for mu in _zeros(pencil) if mu.real < 0 or not implicit(method)]
-        if not zeros:
-            return limit
-        deadbeat = _described(pencil, 0.0, zeros, arc=False)
-        check_deadbeat(pencil, deadbeat.alpha_hat, deadbeat.beta_hat)
-        return deadbeat
-    stable = region(method)
+    return _deadbeat(pencil) if pencil.steps == 1 else _kink(pencil)
+
+
+def _deadbeat(pencil: Pencil) -> BestPoint | float:
+    """Return the zeros of R, or, without one where Re mu < 0, its modulus at infinity: z = R(mu)."""
+    explicit = not implicit(pencil.method)
+    zeros = [mu for mu in _zeros(pencil) if mu.real < 0 or explicit]
+    if not zeros:
+        return _limit(pencil)
+    deadbeat = _described(pencil, 0.0, zeros, arc=False)
+    check_deadbeat(pencil, deadbeat.alpha_hat, deadbeat.beta_hat)
+    return deadbeat
+
+
+def _kink(pencil: Pencil) -> BestPoint | float | None:
+    """Return the best point of a method of several steps, or the value its |z_p| falls towards."""
+    stable = region(pencil.method)
     extent = stable.view
     if extent is None:
         return None
-    if not stable.bounded and limit == 0:
+    limit = math.inf if stable.bounded else _limit(pencil)
+    if limit == 0:
         return limit
     least = _smallest(pencil)
-    if not stable.bounded and limit < least.z_abs:
+    if limit < least.z_abs:
         return limit
     end = _other_end(pencil, least)
     found = _described(pencil, least.z_abs, [least.mu] if end is None else [least.mu, end], arc=end is not None)
@@ -194,8 +203,13 @@ def _beside_a_fixed_pole(method: Method, fixed: complex) -> BestPoint | float | 
 
 def _zeros(pencil: Pencil) -> list[complex]:
     """Return the different mu of the upper half at which the one root is zero, the most damped first."""
+    numerator = np.trim_zeros(pencil.table[0], "b")
+    if len(numerator) < pencil.table.shape[1]:  # of an implicit method, of a degree less than the denominator
+        roots = polyroots(numerator).astype(complex)
+    else:
+        roots = roots_in_mu(pencil, np.zeros(1, complex))[:, 0]
     zeros: list[complex] = []
-    for root in np.sort_complex(roots_in_mu(pencil, np.zeros(1, complex))[:, 0]):
+    for root in np.sort_complex(roots):
         mu = _upper(root)
         if abs(mu) < REACH and all(abs(mu - other) > DOUBLE * abs(mu) for other in zeros):
             zeros.append(mu)

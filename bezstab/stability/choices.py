@@ -43,6 +43,7 @@ ZOOM = 0.75  # from one grid to the next
 ZOOMS = 90  # 0.75^89 = 8e-12 of the region at least, where the objective is flat to rounding
 SPREAD_POINTS = 9  # per axis, of the points among which the worst is looked for
 SHARES = 8  # of the largest step, besides the limit of small ones: in practice either end is the slowest
+AT_DEADBEAT = 0.01  # of alpha_hat, beta_hat: a double pole that is so near to zero may be followed no further
 ASIDE = 1e-7  # of mu: a double mu splits by 1e-8 in float64, which must not let a rival of equal modulus win
 DEADBEAT = 1e-6  # a double pole at zero, as far as float64 tells it
 SLOW = 1e-12  # 1 - |z_p| of which rounding leaves three digits: the decay takes 1e13 steps
@@ -68,9 +69,9 @@ class Margins:
 class Choice:
     """A point, its proven verdict and dominant pole, and the largest |z_p| when alpha and beta are off by the spread.
 
-    All dimensionless. `margins` is None unless the point is stable. `searched` is the largest alpha h and beta h (of the
-    method's step) that were looked at where the region goes on without end and a stronger feedback might be better by
-    the goal; None where all of the region was searched, or none of it.
+    All dimensionless. `margins` is None unless the point is stable. `searched` is the largest alpha h and beta h (of
+    the method's step) that were looked at where the region goes on without end and a stronger feedback might be better
+    by the goal; None where all of the region was searched, or none of it.
     """
 
     method: Method
@@ -139,11 +140,11 @@ def choose(
                 f"--keep alpha=beta: the double mu of {method.name} is not at alpha = beta; no --goal critical"
             )
     elif goal == "robust":
-        point = _checked_least(pencil, box, _slowest(method, modulus, spread), equal)
+        point = _checked_least(pencil, box, _slowest(method, modulus, spread), equal, cut)
     elif not equal and at_rest and (best := best_point(method)):
         point, cut = (best.alpha_hat, best.beta_hat), False
     else:  # on a line, or where |z_p| falls on as the feedback grows, or for a mechanism that moves
-        point = _checked_least(pencil, box, modulus, equal)
+        point = _checked_least(pencil, box, modulus, equal, cut)
     choice = describe_point(method, goal, exact(point[0]), exact(point[1]), spread)
     if choice.verdict != "converges":
         raise NumericalError(f"{method.name}: the point {point} found for {goal} is not stable")
@@ -154,12 +155,12 @@ def _box(stable: Region) -> tuple[Extent, bool]:
     """Return the ranges over which to search, and whether they cut off a region that goes on."""
     assert stable.extent
     multiple = float(stable.method.step_multiple)
-    ranges, cut = [], False
-    for (low, high), strongest in zip(stable.extent, (2 * SEARCHED, SEARCHED**2), strict=True):
-        strongest /= multiple if not ranges else multiple**2
-        cut = cut or not math.isfinite(high)
-        ranges.append((low if math.isfinite(low) else 0.0, high if math.isfinite(high) else strongest))
-    return (ranges[0], ranges[1]), cut
+    strongest = (2 * SEARCHED / multiple, (SEARCHED / multiple) ** 2)
+    ranges = [
+        (low if math.isfinite(low) else 0.0, high if math.isfinite(high) else end)
+        for (low, high), end in zip(stable.extent, strongest, strict=True)
+    ]
+    return (ranges[0], ranges[1]), not np.isfinite(stable.extent)[:, 1].all()
 
 
 def choose_at_step(
@@ -277,20 +278,23 @@ def _slowest(method: Method, modulus: Modulus, spread: float) -> Objective:
     return objective
 
 
-def _checked_least(pencil: AnyPencil, extent: Extent, objective: Objective, equal: bool) -> tuple[float, float]:
+def _checked_least(
+    pencil: AnyPencil, extent: Extent, objective: Objective, equal: bool, cut: bool
+) -> tuple[float, float]:
     """Return where the objective is least; NumericalError if a sampled point is better (answer_checks)."""
-    alpha_hat, beta_hat = _least(extent, objective, equal)
+    alpha_hat, beta_hat = _least(extent, objective, equal, cut)
     if equal:
-        check_least_equal(pencil.method, objective, alpha_hat, extent)
+        check_least_equal(pencil.method, objective, alpha_hat, extent, cut)
     else:
-        check_least(pencil.method, objective, alpha_hat, beta_hat, extent)
+        check_least(pencil.method, objective, alpha_hat, beta_hat, extent, cut)
     return alpha_hat, beta_hat
 
 
-def _least(extent: Extent, objective: Objective, equal: bool) -> tuple[float, float]:
+def _least(extent: Extent, objective: Objective, equal: bool, cut: bool) -> tuple[float, float]:
     """Return where the objective is least over the region's box; with `equal` on the line alpha = beta.
 
-    Its valleys are narrow, curved and have kinks for beds, so the grids are turned, and wait where the valley leads on.
+    Its valleys are narrow, curved and have kinks for beds, so the grids are turned, and wait where the valley leads on;
+    out of a box that cuts off the region they are not led.
     """
     largest = np.array([extent[0][1] / 2, math.sqrt(extent[1][1])])  # alpha h and beta h
     centre = largest / 2
@@ -314,6 +318,7 @@ def _least(extent: Extent, objective: Objective, equal: bool) -> tuple[float, fl
         rounds=ZOOMS,
         turned=not equal,
         patient=True,
+        fold=(lambda points: np.minimum(points, 2 * centre)) if cut else None,
     )
     return 2 * float(best[0]), float(best[-1]) ** 2
 
@@ -325,6 +330,9 @@ def _critical_point(pencil: AnyPencil, box: Extent, cut: bool) -> tuple[float, f
         found = critical_point(pencil, (alpha_hat_max, beta_hat_max))
         if found is None:
             raise InputError(f"{pencil.method.name}: no double pole is dominant; no --goal critical")
+        best = best_point(pencil.method)
+        if best and not best.z_abs and math.dist(found, (best.alpha_hat, best.beta_hat)) < AT_DEADBEAT:
+            return best.alpha_hat, best.beta_hat
         return found
     furthest = 2 * math.sqrt(beta_hat_max) + alpha_hat_max
     if cut:

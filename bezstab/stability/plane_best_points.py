@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from itertools import combinations, pairwise
 
 import numpy as np
-from numpy.polynomial.polynomial import polyder, polyval2d, polyval3d
+from numpy.polynomial.polynomial import polyder, polyval, polyval2d, polyval3d
 
 from bezstab.errors import NumericalError
 from bezstab.stability.arrays import EPS, ComplexArray, FloatArray
@@ -31,14 +31,15 @@ ROUNDING = 1e-9  # relative; a solved kink's moduli agree to about 1e-15, neighb
 SETTLED = 1e-13  # relative: a Newton step this small changes nothing that is compared
 NEWTON_STEPS = 40
 GRID = (121, 151)  # points of alpha_hat and sqrt(beta_hat): every valley is seen
+NEAR = 8.0  # of alpha_hat and sqrt(beta_hat): where least values lie, whatever corners are further out
+FAR = (1e4, 1e2)  # likewise, where a region goes on: a damping of infinity by less than 1e-4 moves them further
 STARTS = 8  # local minima that are followed up
 HOPEFUL = 1.05  # times the least solution: the zoom on a minimum above it has not stopped so far short
 ZOOM_POINTS, ZOOM, ZOOMS = 13, 0.6, 24  # 0.6^23 = 8e-6 of the grid's spacing: a start, from which Newton takes over
 ALL_ZERO = 1e-10  # of P's largest coefficient: the others, where all poles are to be zero
-FURTHER = (8.0, 64.0, 512.0, 4096.0)  # times what is to be seen: whether |z_p| falls on where the region has no end
-FAR_POINTS = 400  # along each of two coordinates, over one such factor
+RATIO, RATIOS = 1e6, 2001  # of alpha_hat to beta_hat, either way
+NOTHING = 2e-3  # |z_p| of a triple pole at zero, where the ratio is off by a rounding of 1e-9
 NO_LONGER = 1e-6  # relative: what is lower by less is as low
-LIMIT = 0.2  # |z_p| that falls by such a factor from 64 to 4096 times tends to zero, as some root of what grows
 ALIKE = 1e-4  # relative: a triple pole is known to 1e-5, and passes for a kink of other kinds beside it
 PATH = 400  # places of a double pole between one and zero
 SPLIT = 1e-6  # relative: a rival as large as a double pole to this is no larger
@@ -99,6 +100,8 @@ def plane_least(pencil: PlanePencil, view: Extent, unbounded: bool) -> PlaneLeas
     `view` holds every corner of the region. NumericalError if no solution is as small as a sampled value.
     """
     high = np.array([max(view[0][1], 0.0), np.sqrt(max(view[1][1], 0.0))])
+    if unbounded:
+        high = np.maximum(high, FAR)
     sampled = sorted(_local_minima(pencil, high), key=lambda minimum: minimum[0])
     lowest = min(value for value, _ in sampled)
     solved: list[PlaneLeast] = []
@@ -108,9 +111,9 @@ def plane_least(pencil: PlanePencil, view: Extent, unbounded: bool) -> PlaneLeas
             solved += _solutions(pencil, place)
     best = _best(solved)
     if unbounded:
-        far = [_least_far(pencil, high, factor) for factor in FURTHER]
-        if far[-1] < min(lowest, best.z_abs if best else np.inf, far[-3]) * (1 - NO_LONGER):
-            return 0.0 if far[-1] < LIMIT * far[-3] else far[-1]
+        limit = _least_at_infinity(pencil)
+        if limit < min(lowest, best.z_abs if best else np.inf) * (1 - NO_LONGER):
+            return limit
     if best is None or best.z_abs > lowest * (1 + ROUNDING) + EPS**0.5 * (lowest < EPS**0.25):
         raise NumericalError(
             f"{pencil.method.name}: |z_p| = {lowest:.6g} was sampled, but no kink as low could be solved for"
@@ -132,20 +135,55 @@ def _best(solved: list[PlaneLeast]) -> PlaneLeast | None:
     return min(zero or alike, key=how_well)
 
 
-def _least_far(pencil: PlanePencil, high: FloatArray, factor: float) -> float:
-    """Return the least |z_p| between a factor on what is to be seen and an eighth of it, on a grid of ratios."""
-    sizes = np.geomspace(factor / 8, factor, FAR_POINTS // 8)
-    ratios = np.geomspace(1 / FAR_POINTS, FAR_POINTS, FAR_POINTS)
-    alpha_hat = np.maximum(high[0], 1.0) * sizes[:, np.newaxis] * np.minimum(1, ratios)
-    beta_hat = np.maximum(high[0], 1.0) * sizes[:, np.newaxis] * np.minimum(1, 1 / ratios)
-    squared = np.maximum(high[1], 1.0) ** 2 * (sizes[:, np.newaxis] * np.minimum(1, 1 / ratios)) ** 2
-    values = [largest_modulus(pencil, alpha_hat.ravel(), each.ravel()).min() for each in (beta_hat, squared)]
-    return float(min(values))
+def _least_at_infinity(pencil: PlanePencil) -> float:
+    """Return the least |z_p| in the limit of large parameters, over all ratios of the two.
+
+    There P's terms of the highest degree in alpha_hat and beta_hat alone decide. Infinite where one of their roots is.
+    """
+    degree = max(i + j for terms in pencil.terms for i, j, _ in terms)
+    leading = [
+        [sum(c for i, j, c in terms if (i, j) == (p, degree - p)) for p in range(degree + 1)] for terms in pencil.terms
+    ]
+
+    def modulus(log_ratios: FloatArray) -> FloatArray:
+        ratios = np.exp(log_ratios)
+        coefficients = np.array([polyval(ratios, each) for each in leading])
+        infinite = coefficients[-1] == 0
+        monic = coefficients[:-1] / np.where(infinite, 1, coefficients[-1])
+        companion = np.zeros((ratios.size, pencil.degree, pencil.degree))
+        companion[:, range(1, pencil.degree), range(pencil.degree - 1)] = 1
+        companion[:, :, -1] = -monic.T
+        return np.where(infinite, np.inf, np.abs(np.linalg.eigvals(companion)).max(axis=-1))
+
+    samples = np.linspace(-np.log(RATIO), np.log(RATIO), RATIOS)
+    lowest = float(samples[np.argmin(modulus(samples))])
+    _, value = zoom_on_minimum(
+        lambda points: modulus(points[:, 0]),
+        np.array([lowest]),
+        np.array([samples[1] - samples[0]]),
+        points=ZOOM_POINTS,
+        shrink=ZOOM,
+        rounds=2 * ZOOMS,
+    )
+    return 0.0 if value < NOTHING else float(value)
+
+
+def _axis(end: float, count: int) -> FloatArray:
+    """Return a grid's points on one axis: evenly up to NEAR, and in even ratios from there."""
+    if end <= NEAR:
+        return np.linspace(0, end, count)
+    beyond = count // 3
+    return np.concatenate([np.linspace(0, NEAR, count - beyond), np.geomspace(NEAR, end, beyond + 1)[1:]])
+
+
+def _spacing(axis: FloatArray, k: int) -> float:
+    """Return the larger distance from a grid's point to a neighbour."""
+    return float(np.diff(axis)[max(k - 1, 0) : k + 1].max())
 
 
 def _local_minima(pencil: PlanePencil, high: FloatArray) -> Iterator[tuple[float, FloatArray]]:
     """Yield the lowest local minima over alpha_hat and sqrt(beta_hat) up to `high`, each narrowed by smaller grids."""
-    x, y = (np.linspace(0, end, count) for end, count in zip(high, GRID, strict=True))
+    x, y = (_axis(end, count) for end, count in zip(high, GRID, strict=True))
 
     def modulus(points: FloatArray) -> FloatArray:
         return largest_modulus(pencil, points[..., 0], points[..., 1] ** 2)
@@ -159,7 +197,7 @@ def _local_minima(pencil: PlanePencil, high: FloatArray) -> Iterator[tuple[float
         place, value = zoom_on_minimum(
             modulus,
             np.array([x[columns[k]], y[rows[k]]]),
-            np.array([x[1], y[1]]),
+            np.array([_spacing(x, int(columns[k])), _spacing(y, int(rows[k]))]),
             points=ZOOM_POINTS,
             shrink=ZOOM,
             rounds=ZOOMS,

@@ -15,6 +15,7 @@ tanh-sinh quadrature does not mind (H. Takahasi & M. Mori, Publ. RIMS 9, 1974).
 
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
 
 import numpy as np
 
@@ -216,7 +217,7 @@ def _lost_to(strips: PlaneStrips, strip: Strip, edges: Edges, crossing: Crossing
     """Return the signs of infinity that a crossing runs to at the strip's ends; without end, it may run to either."""
     if crossing is None:
         return set()
-    number, k = crossing
+    number, _ = crossing
     table = edges.tables[number]
     signs = set()
     for level, inwards in ((strip.low, 1), (strip.high, -1)):
@@ -315,7 +316,7 @@ def _view(cells: tuple[Cell, ...], corners: FloatArray) -> Extent:
     for axis, (low, high) in enumerate(((left, right), (bottom, top))):
         within = corners[:, axis] if corners.size else np.zeros(1)
         seen_low = low if np.isfinite(low) else float(min(within.min(initial=0.0), 0.0))
-        seen_high = high if np.isfinite(high) else float(max(within.max(initial=0.0), seen_low + LEAST_VIEW))
+        seen_high = high if np.isfinite(high) else float(max(within.max(initial=0.0), LEAST_VIEW))
         ranges.append((seen_low, seen_high))
     return ranges[0], ranges[1]
 
@@ -427,7 +428,7 @@ def _level_pieces(edges: Edges, cells: tuple[Cell, ...], box: Extent) -> list[Fl
                 intervals.append((max(ends[0], left), min(ends[1], right)))
             sides.append(intervals)
         ends = sorted({end for intervals in sides for interval in intervals for end in interval})
-        for start, end in zip(ends[:-1], ends[1:], strict=True):
+        for start, end in pairwise(ends):
             if end - start <= gap:
                 continue
             middle = (start + end) / 2
