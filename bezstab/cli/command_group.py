@@ -10,9 +10,10 @@ import click
 
 from bezstab import __version__
 from bezstab.cli.choose_commands import check, choose, engines, explore
-from bezstab.cli.evidence_commands import extremes, simulate, tradeoff, verify
+from bezstab.cli.evidence_commands import extremes, simulate, tradeoff
 from bezstab.cli.map_commands import family, methods, poles, region
 from bezstab.cli.output import say
+from bezstab.cli.verify_command import verify
 from bezstab.errors import InputError, NumericalError
 
 SECTIONS: Mapping[str, Sequence[click.Command]] = {

@@ -306,7 +306,7 @@ def _map_region(
         from bezstab.evidence import moving_region
 
         moving = moving_region(method, turning, h)
-        row |= {"area_moving": moving.area, "kappa": turning.kappa}
+        row = {**row, "area_moving": moving.area, "kappa": turning.kappa}
     if figure == table == "none":
         return row
     alpha_hat, beta_hat = _grid(stability.window(stable), alpha_range, beta_range, points)

@@ -48,7 +48,7 @@ def moving_rows(
     turning: "TurningNormals | None",
     h: Fraction | None,
 ) -> list[Row]:
-    """Return rows with what the motion does to each one's method at its point, in the same order; without one, as is."""
+    """Return rows with what the motion does to each one's method at its point, in the same order."""
     if turning is None or h is None:
         return list(rows)
     from bezstab.evidence import moving_pole

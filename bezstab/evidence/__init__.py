@@ -43,6 +43,7 @@ from bezstab.evidence.moving_mechanisms import (
     growth_rates,
     momentary_rates,
     moving_pole,
+    moving_poles,
     tabulated_rates,
 )
 from bezstab.evidence.moving_regions import MovingRegion, moving_growth, moving_modulus, moving_region
@@ -91,6 +92,7 @@ __all__ = [
     "moving_growth",
     "moving_modulus",
     "moving_pole",
+    "moving_poles",
     "moving_region",
     "mujoco_witnesses",
     "pareto_front",

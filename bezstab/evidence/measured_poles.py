@@ -19,8 +19,19 @@ from typing import Literal
 
 import numpy as np
 
+from bezstab.evidence.floquet import floquet_rates
 from bezstab.evidence.linear_prediction import SAMPLES, SETTLED, SPREAD, Refusal, fit_dominant_pole
-from bezstab.mechanism import Mechanism, constraint_errors, initial_state, march, perturbed_state, resume, states_needed
+from bezstab.evidence.moving_mechanisms import MovingPole, MovingVerdict, moving_poles
+from bezstab.mechanism import (
+    Mechanism,
+    constraint_errors,
+    initial_state,
+    march,
+    perturbed_state,
+    resume,
+    states_needed,
+    turning_normals,
+)
 from bezstab.methods import Method, SecondOrder, Verdict, closed_loop_table, steps
 from bezstab.rationals import exact
 from bezstab.stability import ComplexArray, FloatArray, dominant_pole, poles, region, verdict, window
@@ -41,8 +52,9 @@ LINEAR = (1e-3, 1e-4, 1e-5)
 GROWN = 10.0
 """Times the kick, well before c leaves the linear range; else the mechanism itself broke down."""
 
-CLOSE = 1e-3
-"""Of |z|: nearer to the circle than the bias of a moving mechanism (0.01 omega h) no verdict is given."""
+CLOSE = 1e-4
+"""Of |z|: nearer to the circle than a hundred of the fit's errors no verdict is given; on a mechanism that moves not
+nearer than |chi| kappa h, by which its poles move."""
 
 SURROUNDINGS = 0.1
 """Of the window that shows the region, added on every side."""
@@ -53,16 +65,43 @@ SEED = 2024
 
 @dataclass(frozen=True)
 class Measurement:
-    """Predicted and measured dominant pole at one point; `measured` is None, and `reason` says why, if it cannot be."""
+    """Predicted and measured dominant pole at one point; `measured` is None, and `reason` says why, if it cannot be.
+
+    `predicted` and its verdict are those of the mechanism at rest; `law_abs` and `law_verdict` what the first-order law
+    makes of them for the motion (`moving_mechanisms`), `floquet_abs` the exact rate over it, None unless asked for.
+    """
 
     method: Method
     alpha_hat: float
     beta_hat: float
     predicted: complex
     predicted_verdict: Verdict
+    law_abs: float
+    law_verdict: MovingVerdict
+    floquet_abs: float | None
     measured: complex | None
     measured_verdict: MeasuredVerdict
     reason: str
+
+    @property
+    def verdicts_agree(self) -> bool | None:
+        """Whether the law's verdict is the measured one; None where either is not settled."""
+        if self.measured_verdict == "too close to call" or self.law_verdict == "not settled for this mechanism":
+            return None
+        return self.law_verdict == self.measured_verdict
+
+    @property
+    def right(self) -> str:
+        """Which predictions have the measured verdict: those of the map, of the law, and the exact one; "" if none."""
+        if self.measured_verdict == "too close to call":
+            return ""
+        diverges = self.measured_verdict == "diverges"
+        verdicts = {
+            "at rest": self.predicted_verdict == "diverges",
+            "law": None if self.law_verdict == "not settled for this mechanism" else self.law_abs > 1,
+            "exact": None if self.floquet_abs is None else self.floquet_abs > 1,
+        }
+        return ", ".join(name for name, verdict in verdicts.items() if verdict == diverges) or "none"
 
 
 def random_points(method: Method, count: int) -> tuple[FloatArray, FloatArray]:
@@ -83,6 +122,7 @@ def measure_poles(
     h: float,
     alpha_hat: FloatArray,
     beta_hat: FloatArray,
+    floquet: bool = False,
     progress: Progress = iter,
 ) -> list[Measurement]:
     """Return what is predicted and what is measured at each of a row of points.
@@ -90,11 +130,17 @@ def measure_poles(
     alpha_hat and beta_hat have shape (points,), h is in s; `progress` sees the step numbers pass. All points run as one
     batch. Where no pole can be measured the verdict still says whether the error grew or decayed. NumericalError where
     a predicted pole leaves the range of float64. The prediction is the characteristic polynomial P(z) (paper Eq. 17,
-    Table 2), the measurement linear prediction (`fit_dominant_pole`).
+    Table 2), the first-order law of the motion and, with `floquet`, exact; the measurement is linear prediction
+    (`fit_dominant_pole`).
     """
     difference, size = _kicked_responses(mechanism, method, h, alpha_hat, beta_hat, progress)
+    duration = RUN * h * float(method.step_multiple)
+    moving = moving_poles(method, turning_normals(mechanism, duration), h, alpha_hat, beta_hat)
+    exact_rates: list[float | None] = [None] * alpha_hat.size
+    if floquet:
+        exact_rates = floquet_rates(mechanism, method, h, alpha_hat, beta_hat, duration).tolist()
     return [
-        _measurement(method, float(a), float(b), difference[:, :, i], size[:, :, i])
+        _measurement(method, float(a), float(b), moving[i], exact_rates[i], h, difference[:, :, i], size[:, :, i])
         for i, (a, b) in enumerate(zip(alpha_hat, beta_hat, strict=True))
     ]
 
@@ -117,9 +163,16 @@ def _kicked_responses(
 
 
 def _measurement(
-    method: Method, alpha_hat: float, beta_hat: float, difference: FloatArray, size: FloatArray
+    method: Method,
+    alpha_hat: float,
+    beta_hat: float,
+    moving: MovingPole,
+    floquet_abs: float | None,
+    h: float,
+    difference: FloatArray,
+    size: FloatArray,
 ) -> Measurement:
-    """Return the measurement at one point from its responses of shape (steps, kicks)."""
+    """Return the measurement at one point from its responses of shape (steps, kicks); h in s."""
     predicted = complex(dominant_pole(method, alpha_hat, beta_hat))
     measured, reason = None, ""
     all_poles = poles(method, alpha_hat, beta_hat)
@@ -141,8 +194,11 @@ def _measurement(
         beta_hat=beta_hat,
         predicted=predicted,
         predicted_verdict=verdict(method, exact(alpha_hat), exact(beta_hat)),
+        law_abs=moving.z_abs_moving,
+        law_verdict=moving.verdict,
+        floquet_abs=floquet_abs,
         measured=measured,
-        measured_verdict=_measured_verdict(measured, difference, size),
+        measured_verdict=_measured_verdict(measured, max(CLOSE, moving.shift(method, h)), difference, size),
         reason=reason,
     )
 
@@ -166,11 +222,16 @@ def _is_another(measured: complex, predicted: complex, all_poles: ComplexArray) 
     return abs(predicted - measured) > SPREAD and bool(distances.min() < SPREAD)
 
 
-def _measured_verdict(measured: complex | None, difference: FloatArray, size: FloatArray) -> MeasuredVerdict:
-    """Return whether the error grew or decayed: by the pole, else by the responses, shape (steps, kicks)."""
+def _measured_verdict(
+    measured: complex | None, close: float, difference: FloatArray, size: FloatArray
+) -> MeasuredVerdict:
+    """Return whether the error grew or decayed: by the pole, else by the responses, shape (steps, kicks).
+
+    `close`: so near to the circle the pole decides nothing.
+    """
     if measured is not None:
         excess = abs(measured) - 1
-        if abs(excess) < CLOSE:
+        if abs(excess) < close:
             return "too close to call"
         return "diverges" if excess > 0 else "converges"
     outside = np.flatnonzero(~(size[:, -1] < LINEAR[0]))

@@ -27,6 +27,7 @@ BEYOND_FIRST_ORDER = 0.5  # |chi| kappa h: from here on the terms left out are a
 
 LARGEST_CHI = 32.0  # of the table: ten times what is seen on a boundary; further out the law does not hold at any speed
 RADII, ANGLES = 101, 61
+RESCALED = 20  # steps between two looks at how large Y has grown: e^(32 kappa T / 10) at most, within float64
 
 MovingVerdict = Literal["converges", "diverges", "not settled for this mechanism"]
 
@@ -52,6 +53,10 @@ class MovingPole:
     settled: bool
     safe_speed: float
 
+    def shift(self, method: Method, h: float) -> float:
+        """By what share the motion moves the pole at most, |chi| kappa h; h is the user's step in s."""
+        return self.chi_abs * self.kappa * h * float(method.step_multiple)
+
     @property
     def verdict(self) -> MovingVerdict:
         """What errors do over the motion, if the band settles it."""
@@ -65,26 +70,32 @@ def growth_rates(turning: TurningNormals, chi: ArrayLike) -> FloatArray:
 
     Over a revolution: of the spectral radius of Y. Over a run, which has no such thing: of Y's norm, errors measured by
     the displacement they stand for. Runge and Kutta's rule for linear equations, K at every second sample in the
-    middle of a step.
+    middle of a step. From |chi| = LARGEST_CHI on it is taken to grow in proportion.
     """
     chi = np.asarray(chi, complex)
+    beyond = np.maximum(1, np.abs(chi) / LARGEST_CHI)
+    factor = (chi / beyond)[..., np.newaxis, np.newaxis]
     size = turning.rates.shape[1]
     step = 2 * turning.duration / (len(turning.rates) - 1)
-    factor = chi[..., np.newaxis, np.newaxis]
     grown: ComplexArray = np.broadcast_to(np.eye(size, dtype=complex), (*chi.shape, size, size))
+    log_scale = np.zeros(chi.shape)
     ends = turning.rates[::2]
-    for (start, end), middle in zip(pairwise(ends), turning.rates[1::2], strict=True):
+    for number, ((start, end), middle) in enumerate(zip(pairwise(ends), turning.rates[1::2], strict=True)):
         first = factor * (start @ grown)
         second = factor * (middle @ (grown + step / 2 * first))
         third = factor * (middle @ (grown + step / 2 * second))
         fourth = factor * (end @ (grown + step * third))
         grown = grown + step / 6 * (first + 2 * second + 2 * third + fourth)
+        if number % RESCALED == 0:
+            largest = np.abs(grown).max(axis=(-2, -1))
+            grown = grown / largest[..., np.newaxis, np.newaxis]
+            log_scale += np.log(largest)
     if turning.closed:
         growth = np.abs(np.linalg.eigvals(grown)).max(axis=-1)
     else:
         before, after = (np.linalg.cholesky(metric) for metric in turning.metric)
         growth = np.linalg.norm(np.linalg.solve(after, grown @ before), ord=2, axis=(-2, -1))
-    return np.asarray(np.log(growth) / turning.duration)
+    return np.asarray(beyond * (np.log(growth) + log_scale) / turning.duration)
 
 
 def tabulated_rates(turning: TurningNormals, chi: ComplexArray) -> FloatArray:
@@ -122,33 +133,60 @@ def momentary_rates(turning: TurningNormals, chi: ArrayLike) -> FloatArray:
 
 
 def moving_pole(method: Method, turning: TurningNormals, h: float, alpha_hat: float, beta_hat: float) -> MovingPole:
-    """Return what becomes of the poles at one point on a mechanism that moves, h in s.
+    """Return what becomes of the poles at one point on a mechanism that moves, h in s; as `moving_poles`."""
+    (found,) = moving_poles(method, turning, h, np.array([alpha_hat]), np.array([beta_hat]))
+    return found
+
+
+def moving_poles(
+    method: Method, turning: TurningNormals, h: float, alpha_hat: FloatArray, beta_hat: FloatArray
+) -> list[MovingPole]:
+    """Return what becomes of the poles at each of a row of points on a mechanism that moves; h in s.
 
     Theory: the first-order law of the moving mechanism (docstring of this file). NumericalError if a pole leaves the
     range of float64.
     """
     z = poles(method, alpha_hat, beta_hat)
-    z = z[np.abs(z) > SLOWEST * np.abs(z[0])] if z[0] else z[:1]
     step = h * float(method.step_multiple)
-    turned = turning.kappa * step
-    chi = turning_sensitivity(method, alpha_hat, beta_hat, z)
-    apart = np.abs(z[:, np.newaxis] - z) + np.where(np.eye(len(z)), np.inf, 0.0)
-    near_another = apart.min(axis=1) < np.sqrt(turned) * np.abs(z)
-    beyond = ~(np.abs(chi) * turned < BEYOND_FIRST_ORDER)
-    double = bool((near_another | beyond)[0])
-    usable = np.where(np.isfinite(chi), chi, 0)
-    at_rest = np.log(np.abs(z))
+    with np.errstate(divide="ignore"):
+        at_rest = np.log(np.abs(z))
+    counts = np.abs(z) > SLOWEST * np.abs(z[:, :1])
+    chi = turning_sensitivity(method, alpha_hat[:, np.newaxis], beta_hat[:, np.newaxis], z)
+    usable = np.where(np.isfinite(chi) & counts, chi, 0)
     growth = step * growth_rates(turning, usable)
+    worst = np.where(counts, at_rest + step * momentary_rates(turning, usable), -np.inf)
+    growth = np.where(counts, growth, 0)
+    return [_moving_pole(z[i], at_rest[i], chi[i], growth[i], worst[i], turning.kappa, step) for i in range(len(z))]
+
+
+def _moving_pole(
+    z: ComplexArray,
+    at_rest: FloatArray,
+    chi: ComplexArray,
+    growth: FloatArray,
+    worst: FloatArray,
+    kappa: float,
+    step: float,
+) -> MovingPole:
+    """Return what becomes of the poles at one point: ln|z| at rest, its growth over the motion, its worst for a moment.
+
+    All but kappa (1/s) of shape (poles,), the dominant pole first; `step` (s) is the method's own.
+    """
+    turned = kappa * step
+    apart = np.abs(z[0] - z[1:])
+    own = np.abs(z[1:] - z[0].conj()) == 0  # of a conjugate pair the other: not near, however flat the pair
+    near_another = bool((apart[~own] < np.sqrt(turned) * np.abs(z[0])).any())
+    double = near_another or not abs(chi[0]) * turned < BEYOND_FIRST_ORDER
     moving = at_rest + growth
-    worst = at_rest + step * momentary_rates(turning, usable)
     leading = int(np.argmax(moving))
     widened = np.sqrt(turned) if double else 0.0
-    rate, highest = float(moving[leading]), max(float(worst.max()), float(moving[leading])) + widened
-    left_out = (float(np.abs(usable[leading])) * turned) ** 2
+    rate = float(moving[leading])
+    highest = max(float(worst.max()), rate) + widened
+    left_out = (float(np.abs(chi[leading])) * turned) ** 2
     settled = not double and (highest < -left_out or rate > left_out)
     return MovingPole(
         z_abs=float(np.abs(z[0])),
-        kappa=turning.kappa,
+        kappa=kappa,
         chi_abs=float(np.abs(chi[leading])),
         z_abs_moving=float(np.exp(rate)),
         z_abs_worst=float(np.exp(highest)),

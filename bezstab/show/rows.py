@@ -243,14 +243,12 @@ def measurement_row(scene: str, measurement: Measurement) -> Row:
         parts = complex_parts("", measurement.measured)
         measured |= parts
         difference |= {key: parts[key] - predicted[key] for key in parts}
-    agree = None
-    if measurement.measured_verdict != "too close to call":
-        agree = (measurement.predicted_verdict == "diverges") == (measurement.measured_verdict == "diverges")
     return {
         **row(measurement, scene=scene, measurable=measurement.measured is not None),
         **{f"measured_{key}": value for key, value in measured.items()},
         **{f"difference_{key}": value for key, value in difference.items()},
-        "verdicts_agree": agree,
+        "verdicts_agree": measurement.verdicts_agree,
+        "right": measurement.right,
     }
 
 

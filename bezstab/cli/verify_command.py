@@ -1,0 +1,241 @@
+"""The command that holds predicted poles against measured ones: verify."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from bezstab.cli.options import (
+    NUMBER,
+    FigureForm,
+    TableForm,
+    both_or_none,
+    figure_option,
+    format_option,
+    methods_option,
+    output_option,
+    resume_option,
+    scene_option,
+    scheduler_option,
+    speed_option,
+    step_option,
+    table_option,
+    workers_option,
+)
+from bezstab.cli.output import (
+    file_name,
+    for_reading,
+    progress,
+    results_of_chunks,
+    show_rows,
+    write_figure,
+    write_table,
+)
+from bezstab.methods import Method
+from bezstab.show import Format, Row, column, yes_no_column
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from bezstab.evidence import VerdictMap
+    from bezstab.mechanism import Mechanism
+
+RANDOM_POINTS = 20  # unless told otherwise
+
+MEASUREMENTS = [
+    column("method", "method"),
+    column("α̂", "alpha_hat", ".6f"),
+    column("β̂", "beta_hat", ".6f"),
+    column("predicted |z|", "predicted_abs", ".6f"),
+    column("by the law", "law_abs", ".6f"),
+    column("measured |z|", "measured_abs", ".6f"),
+    column("difference", "difference_abs", "+.1e"),
+    column("predicted ∠z (deg)", "predicted_angle_deg", ".3f"),
+    column("measured ∠z (deg)", "measured_angle_deg", ".3f"),
+    column("difference (deg)", "difference_angle_deg", "+.0e"),
+    column("predicted", "predicted_verdict"),
+    column("measured", "measured_verdict"),
+    yes_no_column("verdicts agree", "verdicts_agree"),
+    column("not measurable because", "reason"),
+]
+EXACT = [column("exact |z|", "floquet_abs", ".6f"), column("whose verdict was right", "right")]
+SUMMARIES = [
+    column("method", "method"),
+    column("points", "points", "d"),
+    column("measured", "measured", "d"),
+    column("median error of |z|", "median_error", ".1e"),
+    column("largest", "largest_error", ".1e"),
+    column("verdicts called", "called", "d"),
+    column("of which wrong", "wrong", "d"),
+]
+VERDICT_MAPS = [
+    column("scene", "scene"),
+    column("method", "method"),
+    column("runs", "runs", "d"),
+    column("steps", "run", "d"),
+    column("broke down", "broken", "d"),
+    column("agreement", "agreement", ".2%"),
+    column("too close to call: | |z_p| - 1 | below", "band", "g"),
+    column("largest | |z_p| - 1 | that disagrees", "farthest", ".2e"),
+    column("disagreeing beyond", "disagreeing", "d"),
+]
+WITNESSED = [
+    column("scene", "scene"),
+    column("MuJoCo's", "integrator"),
+    column("method", "method"),
+    column("α̂", "alpha_hat", ".4f"),
+    column("β̂", "beta_hat", ".4f"),
+    column("times the boundary", "times_boundary", "g"),
+    column("predicted |z|", "predicted_abs", ".4f"),
+    column("predicted", "predicted_verdict"),
+    column("seen", "measured_verdict"),
+    column("largest |c| at the end (m)", "remaining", ".1e"),
+    column("after steps", "steps", "d"),
+]
+
+
+@click.command()
+@scene_option("slider_crank")
+@speed_option
+@methods_option("B4")
+@click.option("--alpha", type=NUMBER, help="α̂ of one point; with --beta, instead of --points.")
+@click.option("--beta", type=NUMBER, help="β̂ of one point.")
+@click.option("--points", type=click.IntRange(1, 1000), help="So many, over region and surroundings [20].")
+@click.option("--map", "cells", type=click.IntRange(2, 10000), help="Simulated verdicts of N×N points.")
+@click.option("--floquet", is_flag=True, help="Also the exact rates of the moving mechanism, by its linearised steps.")
+@click.option("--witness", type=click.Choice(["mujoco"]), help="Its own integrators.")
+@step_option
+@output_option
+@workers_option
+@scheduler_option
+@resume_option
+@figure_option
+@table_option
+@format_option
+def verify(
+    scene: str,
+    speed: Fraction,
+    methods: Sequence[Method],
+    alpha: Fraction | None,
+    beta: Fraction | None,
+    points: int | None,
+    cells: int | None,
+    floquet: bool,
+    witness: str | None,
+    h: Fraction,
+    output: Path,
+    workers: int | None,
+    scheduler: str | None,
+    resume: bool,
+    figure: FigureForm,
+    table: TableForm,
+    form: Format,
+) -> None:
+    """Compare predicted poles with poles measured in a simulation.
+
+    Two runs, one kicked up and one down, differ by what the linear recursion alone does; its dominant pole is fitted to
+    that difference. What cannot be measured is said so. On a mechanism that moves the prediction is that of the map (at
+    rest), of the first-order law of the motion, and with --floquet exact. --map draws simulated verdicts under the
+    exact boundary, by chunks that --workers or --scheduler share and a killed run keeps for --resume.
+    --witness mujoco runs the scene in MuJoCo, at 0.9 and 1.1 times the boundary of what its integrators are.
+
+    Example: bezstab verify --method AB4 --points 20
+    """
+    from bezstab.mechanism import at_speed, compiled_mechanism, load_scene
+    from bezstab.show import verdict_map_row
+
+    point = both_or_none(alpha, beta)
+    if sum(choice is not None for choice in (point, points, cells, witness)) > 1:
+        raise click.UsageError("choose one of --alpha with --beta, --points, --map and --witness")
+    mechanism = compiled_mechanism(at_speed(load_scene(scene), float(speed)))
+    if witness:
+        show_rows(_witness_rows(mechanism, float(h)), WITNESSED, form)
+    elif cells is None:
+        _show_measurements(mechanism, methods, float(h), point, points or RANDOM_POINTS, floquet, form)
+    else:
+        rows: list[Row] = []
+        for method in methods:
+            path = output / f"verify_{file_name(Path(scene).stem)}_{file_name(method.name)}"
+            job = f"--map {cells} --h {h} {method} {mechanism.scene}"
+            verdicts = _map_verdicts(
+                mechanism, method, float(h), cells, path, job, workers, scheduler, resume, figure, table
+            )
+            rows.append(verdict_map_row(verdicts))
+        show_rows(rows, VERDICT_MAPS, form)
+
+
+def _witness_rows(mechanism: "Mechanism", h: float) -> list[Row]:
+    """Return a row for each run of MuJoCo's integrators; h in s."""
+    from bezstab.evidence import mujoco_witnesses, witness_count
+    from bezstab.show import row
+
+    witnesses = progress(mujoco_witnesses(mechanism, h), "MuJoCo", witness_count())
+    return [row(witnessed, scene=mechanism.scene.name) for witnessed in witnesses]
+
+
+def _show_measurements(
+    mechanism: "Mechanism",
+    methods: Sequence[Method],
+    h: float,
+    point: tuple[Fraction, Fraction] | None,
+    points: int,
+    floquet: bool,
+    form: Format,
+) -> None:
+    """Print the poles measured at one point, else at random ones, and where there is room how well they agree."""
+    import numpy as np
+
+    from bezstab.evidence import measure_poles, random_points
+    from bezstab.show import measurement_row, summary_row
+
+    rows: list[Row] = []
+    summaries: list[Row] = []
+    for method in methods:
+        if point:
+            alpha_hat, beta_hat = np.array([float(point[0])]), np.array([float(point[1])])
+        else:
+            alpha_hat, beta_hat = random_points(method, points)
+        bar = partial(progress, label=method.name)
+        measurements = measure_poles(mechanism, method, h, alpha_hat, beta_hat, floquet, bar)
+        own_rows = [measurement_row(mechanism.scene.name, measurement) for measurement in measurements]
+        rows += own_rows
+        summaries.append(summary_row(own_rows))
+    show_rows(rows, MEASUREMENTS + (EXACT if floquet else []), form)
+    if for_reading(form):
+        click.echo()
+        show_rows(summaries, SUMMARIES, form)
+
+
+def _map_verdicts(
+    mechanism: "Mechanism",
+    method: Method,
+    h: float,
+    cells: int,
+    path: Path,
+    job: str,
+    workers: int | None,
+    scheduler: str | None,
+    resume: bool,
+    figure: FigureForm,
+    table: TableForm,
+) -> "VerdictMap":
+    """Simulate cells x cells runs, write their verdicts as table and figure, and return them; h in s."""
+    from bezstab.evidence import map_rows, simulated_verdicts, verdict_map
+    from bezstab.show import verdict_arrays
+    from bezstab.stability import region
+
+    chunks = map_rows(mechanism.scene, method, h, cells)
+    with results_of_chunks(simulated_verdicts, chunks, path, job, workers, scheduler, resume) as results:
+        verdicts = verdict_map(chunks, results)
+
+        def draw() -> "Figure":
+            from bezstab.show import verdict_figure
+
+            return verdict_figure(verdicts, region(method))
+
+        write_table(path, verdict_arrays(verdicts), table)
+        write_figure(path, draw, figure)
+    return verdicts
