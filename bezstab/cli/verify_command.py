@@ -61,7 +61,11 @@ MEASUREMENTS = [
     yes_no_column("verdicts agree", "verdicts_agree"),
     column("not measurable because", "reason"),
 ]
-EXACT = [column("exact |z|", "floquet_abs", ".6f"), column("whose verdict was right", "right")]
+EXACT = [
+    column("measured over the motion", "measured_rate", ".6f"),
+    column("exact |z|", "floquet_abs", ".6f"),
+    column("whose verdict was right", "right"),
+]
 SUMMARIES = [
     column("method", "method"),
     column("points", "points", "d"),
@@ -70,6 +74,12 @@ SUMMARIES = [
     column("largest", "largest_error", ".1e"),
     column("verdicts called", "called", "d"),
     column("of which wrong", "wrong", "d"),
+]
+MOTION_SUMMARIES = [
+    column("followed over the motion", "revolutions_measured", "d"),
+    column("median error at rest", "map_error", ".1e"),
+    column("of the law", "law_error", ".1e"),
+    column("exact", "floquet_error", ".1e"),
 ]
 VERDICT_MAPS = [
     column("scene", "scene"),
@@ -206,7 +216,7 @@ def _show_measurements(
     show_rows(rows, MEASUREMENTS + (EXACT if floquet else []), form)
     if for_reading(form):
         click.echo()
-        show_rows(summaries, SUMMARIES, form)
+        show_rows(summaries, SUMMARIES + (MOTION_SUMMARIES if floquet else []), form)
 
 
 def _map_verdicts(

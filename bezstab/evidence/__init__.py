@@ -36,7 +36,14 @@ from bezstab.evidence.chunks import ATTEMPTS, completed_chunks
 from bezstab.evidence.extremes import Check, extreme_checks
 from bezstab.evidence.floquet import floquet_rates
 from bezstab.evidence.linear_prediction import SPREAD, Fit, Refusal, fit_dominant_pole
-from bezstab.evidence.measured_poles import CLOSE, LINEAR, Measurement, measure_poles, random_points
+from bezstab.evidence.measured_poles import (
+    CLOSE,
+    LINEAR,
+    Measurement,
+    kicked_constraint_errors,
+    measure_poles,
+    random_points,
+)
 from bezstab.evidence.moving_mechanisms import (
     MovingPole,
     MovingVerdict,
@@ -84,6 +91,7 @@ __all__ = [
     "fit_dominant_pole",
     "floquet_rates",
     "growth_rates",
+    "kicked_constraint_errors",
     "map_rows",
     "measure_poles",
     "measured_runs",

@@ -56,6 +56,12 @@ CLOSE = 1e-4
 """Of |z|: nearer to the circle than a hundred of the fit's errors no verdict is given; on a mechanism that moves not
 nearer than |chi| kappa h, by which its poles move."""
 
+AUDIBLE = 1e-12
+"""SI units: a response below it is lost in the rounding of coordinates of about a metre."""
+
+SETTLING = 30
+"""Steps after the kick until the lesser poles have died out."""
+
 SURROUNDINGS = 0.1
 """Of the window that shows the region, added on every side."""
 
@@ -69,6 +75,8 @@ class Measurement:
 
     `predicted` and its verdict are those of the mechanism at rest; `law_abs` and `law_verdict` what the first-order law
     makes of them for the motion (`moving_mechanisms`), `floquet_abs` the exact rate over it, None unless asked for.
+    `measured` is what the first steps after the kick show. `measured_rate` is |z| per step over whole revolutions, of a
+    mechanism that a driver turns, where the response can be followed for so long.
     """
 
     method: Method
@@ -80,6 +88,7 @@ class Measurement:
     law_verdict: MovingVerdict
     floquet_abs: float | None
     measured: complex | None
+    measured_rate: float | None
     measured_verdict: MeasuredVerdict
     reason: str
 
@@ -134,13 +143,18 @@ def measure_poles(
     (`fit_dominant_pole`).
     """
     difference, size = _kicked_responses(mechanism, method, h, alpha_hat, beta_hat, progress)
-    duration = RUN * h * float(method.step_multiple)
-    moving = moving_poles(method, turning_normals(mechanism, duration), h, alpha_hat, beta_hat)
+    step = h * float(method.step_multiple)
+    duration = RUN * step
+    turning = turning_normals(mechanism, duration)
+    revolution = round(turning.duration / step) if turning.closed else None
+    moving = moving_poles(method, turning, h, alpha_hat, beta_hat)
     exact_rates: list[float | None] = [None] * alpha_hat.size
     if floquet:
         exact_rates = floquet_rates(mechanism, method, h, alpha_hat, beta_hat, duration).tolist()
     return [
-        _measurement(method, float(a), float(b), moving[i], exact_rates[i], h, difference[:, :, i], size[:, :, i])
+        _measurement(
+            method, float(a), float(b), moving[i], exact_rates[i], h, revolution, difference[:, :, i], size[:, :, i]
+        )
         for i, (a, b) in enumerate(zip(alpha_hat, beta_hat, strict=True))
     ]
 
@@ -169,10 +183,11 @@ def _measurement(
     moving: MovingPole,
     floquet_abs: float | None,
     h: float,
+    revolution: int | None,
     difference: FloatArray,
     size: FloatArray,
 ) -> Measurement:
-    """Return the measurement at one point from its responses of shape (steps, kicks); h in s."""
+    """Return the measurement at one point from its responses of shape (steps, kicks); h in s, a revolution in steps."""
     predicted = complex(dominant_pole(method, alpha_hat, beta_hat))
     measured, reason = None, ""
     all_poles = poles(method, alpha_hat, beta_hat)
@@ -198,9 +213,32 @@ def _measurement(
         law_verdict=moving.verdict,
         floquet_abs=floquet_abs,
         measured=measured,
+        measured_rate=None if revolution is None else _rate_over_revolutions(revolution, difference, size),
         measured_verdict=_measured_verdict(measured, max(CLOSE, moving.shift(method, h)), difference, size),
         reason=reason,
     )
+
+
+def _rate_over_revolutions(revolution: int, difference: FloatArray, size: FloatArray) -> float | None:
+    """Return |z| per step over as many whole revolutions as a response stays linear and above rounding; None if none.
+
+    What the motion does to it comes back after a revolution; a quarter of one shows its size whatever the phase.
+    """
+    window = max(revolution // 4, 2)
+    longest, rate = 0, None
+    for response, largest in zip(difference.T, size.T, strict=True):
+        usable = largest < LINEAR[0]
+        end = len(usable) if usable.all() else int(np.argmin(usable))
+        if end < SETTLING + window + revolution:
+            continue
+        strengths = np.sqrt(np.convolve(response[SETTLING:end] ** 2, np.ones(window) / window, "valid"))
+        audible = strengths > AUDIBLE
+        last = len(audible) if audible.all() else int(np.argmin(audible))
+        revolutions = (last - 1) // revolution
+        if revolutions > longest:
+            longest = revolutions
+            rate = float((strengths[revolutions * revolution] / strengths[0]) ** (1 / (revolutions * revolution)))
+    return rate
 
 
 def _number_of_poles(method: Method) -> int:

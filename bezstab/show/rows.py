@@ -258,6 +258,13 @@ def summary_row(measurements: Sequence[Row]) -> Row:
     From its rows by measurement_row, at least one.
     """
     errors = [abs(each["difference_abs"]) for each in measurements if isinstance(each["difference_abs"], float)]
+
+    def median_over_the_motion(key: str) -> float | None:
+        """Return the median difference of a prediction from the rate over whole revolutions."""
+        pairs = [(each[key], each["measured_rate"]) for each in measurements]
+        apart = [abs(a - b) for a, b in pairs if isinstance(a, float) and isinstance(b, float)]
+        return float(np.median(apart)) if apart else None
+
     return {
         "method": measurements[0]["method"],
         "points": len(measurements),
@@ -266,6 +273,10 @@ def summary_row(measurements: Sequence[Row]) -> Row:
         "largest_error": max(errors, default=None),
         "called": sum(each["verdicts_agree"] is not None for each in measurements),
         "wrong": sum(each["verdicts_agree"] is False for each in measurements),
+        "revolutions_measured": sum(isinstance(each["measured_rate"], float) for each in measurements),
+        "map_error": median_over_the_motion("predicted_abs"),
+        "law_error": median_over_the_motion("law_abs"),
+        "floquet_error": median_over_the_motion("floquet_abs"),
     }
 
 
