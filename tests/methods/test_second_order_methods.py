@@ -30,7 +30,7 @@ def same_up_to_a_number(name: str, coefficients: list[sp.Expr]) -> bool:
     found = closed_loop_polynomial(lookup(name)).as_expr()
     expected = sum(c * z**k for k, c in enumerate(reversed([sp.sympify(c) for c in coefficients])))
     ratio = sp.cancel(found / expected)
-    return ratio.free_symbols <= {z} and sp.Poly(sp.numer(ratio) * sp.denom(ratio), z).is_monomial
+    return bool(ratio.free_symbols <= {z} and sp.Poly(sp.numer(ratio) * sp.denom(ratio), z).is_monomial)
 
 
 @pytest.mark.parametrize(
@@ -86,7 +86,7 @@ def alpha_determinant(am: sp.Expr, af: sp.Expr, g: sp.Expr, B: sp.Expr) -> list[
         [0, z - 1, -(1 - g) - g * z],
         [b * weight, a * weight, (1 - am) * z + am],
     ])  # fmt: skip
-    return sp.Poly(matrix.det(), z).all_coeffs()
+    return list(sp.Poly(matrix.det(), z).all_coeffs())
 
 
 @pytest.mark.parametrize("radius", ["0", "1/2", "4/5", "1"])

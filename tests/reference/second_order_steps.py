@@ -85,11 +85,11 @@ def final_state(
     """
 
     def scaled(x: float, v: float) -> float:
-        return h * h * force(x, v / h)
+        return float(h * h * force(x, v / h))
 
     def exact(name: str, step: int) -> float:
         x, v = motion(step * h)
-        return {"x": x, "v": h * v, "a": h * h * force(x, v)}[name]
+        return float({"x": x, "v": h * v, "a": h * h * force(x, v)}[name])
 
     floats = [_with_floats(equation) for equation in scheme.equations]
     kept = _kept(scheme)
