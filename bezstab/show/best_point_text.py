@@ -2,7 +2,6 @@
 
 from bezstab.stability import BestPoint, pole_place
 
-
 TIMES = {2: "double", 3: "triple"}
 
 

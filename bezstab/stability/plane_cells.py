@@ -137,7 +137,7 @@ def _real_roots(coefficients: FloatArray, count: int) -> FloatArray:
         companion = np.zeros((lines, n, n))
         companion[:, range(1, n), range(n - 1)] = 1
         companion[:, :, -1] = -np.where(lost, 0, monic).T
-        roots = np.linalg.eigvals(companion)
+        roots = np.linalg.eigvals(companion).astype(complex)
         x = np.sort(_most_real(roots, count), axis=1).T
         allowed = np.maximum(SETTLED * np.abs(x), EIGENVALUE_ERROR * np.abs(roots).max(axis=1))
         for _ in range(POLISH):
@@ -281,7 +281,8 @@ def _turns(edges: Edges, cells: tuple[Cell, ...]) -> FloatArray:
                 for k in turning:
                     points.append([_furthest(edges, crossing, cell.low, levels[k - 1], levels[k + 1], sign)])
     flat = np.array([point for group in points for point in group]).reshape(-1, 2)
-    return flat[np.isfinite(flat).all(axis=1)]
+    finite: FloatArray = flat[np.isfinite(flat).all(axis=1)]
+    return finite
 
 
 def _furthest(

@@ -1,7 +1,7 @@
 """What float64 needs to know of a second-order scheme, made once: its P(z; alpha_hat, beta_hat) as a plane pencil.
 
-Such a scheme has no pi(z, mu), and its P is not a product over two mu. Its poles are the roots of P itself: two for most
-of these schemes, which a formula gives, or three, or as many as it looks back.
+Such a scheme has no pi(z, mu), and its P is not a product over two mu. Its poles are the roots of P itself: two for
+most of these schemes, which a formula gives, or three, or as many as it looks back.
 """
 
 from dataclasses import dataclass
