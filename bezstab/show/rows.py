@@ -123,6 +123,7 @@ def region_row(region: Region, best: BestPoint | None) -> Row:
         "best_alpha_hat": best.alpha_hat if best else None,
         "best_beta_hat": best.beta_hat if best else None,
         "best_where": best_point_words(best) if best else _nowhere(region),
+        "best_reason": None if best else _nowhere(region),
         "bounded": region.bounded,
         "stable_for_all": stable_for_all(region.method),
         "unconditional_damping_ratio": unconditional_damping_ratio(region.method),
@@ -155,9 +156,12 @@ def stable_steps_words(row: Row) -> str:
 
 
 def _nowhere(region: Region) -> str | None:
-    """Return why there is no best point, where a pole that no parameters move says so."""
-    from bezstab.stability import pole_place
+    """Return why there is no best point: |z_p| falls on as the feedback grows, or a pole that no parameters move."""
+    from bezstab.stability import falls_towards, pole_place
 
+    limit = falls_towards(region.method)
+    if limit is not None:
+        return f"none: |z_p| falls towards {limit:.6g} as α̂ and β̂ grow"
     if not region.fixed_poles:
         return None
     return f"stable nowhere: a pole stays at {pole_place(region.fixed_poles[0])} whatever α̂ and β̂"

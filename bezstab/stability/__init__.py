@@ -6,6 +6,8 @@ From a method's polynomial in float64 (its pencil) upwards; a file imports only 
     exact_sums        sums that keep their rounding; the feedback's roots mu
     root_finding      all roots of many polynomials
     pencils           what float64 needs to know of a method, made once
+    low_degrees       roots of quadratics and cubics
+    plane_pencils     the same of a second-order scheme, and its poles
     dominant_roots    the largest root along a row of mu, followed
     closed_loop       poles, |z_p|, the proven verdict
     searches          where a condition comes to hold; where a value is least
@@ -14,11 +16,14 @@ From a method's polynomial in float64 (its pencil) upwards; a file imports only 
     line_crossings    where an arc crosses lines
     line_slices       where lines across the region are stable, by a second route
     self_checks       every answer held against a second route
+    plane_cells       the stable cells of a second-order scheme's plane: area, extent, curves
+    plane_checks      those held against points, lines and the D-decomposition
     answer_checks     best points, choices and margins held against samples and proofs
     regions           the exact region in alpha_hat and beta_hat
     grid_maps         |z_p| on a grid
     quadrant_proofs   whether all of alpha_hat, beta_hat > 0 is stable
     damping_limits    up to which steps, by damping ratio
+    plane_best_points the smallest |z_p| of a second-order scheme
     best_points       the smallest |z_p|
     choices           which parameters to take
     step_families     methods by their number of steps, and their limit
@@ -30,7 +35,7 @@ from typing import TYPE_CHECKING
 
 from bezstab.lazy import lazy_names
 from bezstab.stability.arrays import EPS, ComplexArray, FloatArray
-from bezstab.stability.best_points import BestPoint, best_point
+from bezstab.stability.best_points import BestPoint, best_point, falls_towards
 from bezstab.stability.choices import (
     THOUSANDFOLD,
     Choice,
@@ -84,6 +89,7 @@ __all__ = [
     "critical_damping_limit",
     "describe_point",
     "dominant_pole",
+    "falls_towards",
     "family_members",
     "first_where",
     "pencil_of",
