@@ -17,7 +17,7 @@ from bezstab.stability.exact_sums import double_polynomial, double_product, doub
 from bezstab.stability.low_degrees import cubic_parts, largest_quadratic_root, quadratic_roots
 from bezstab.stability.root_finding import CHUNK, roots_of_rows
 
-CANCELS = 1e-4  # of (b/2)^2: where the discriminant is below it, more than four digits are lost, and won back
+CANCELS = 1e-5  # of (b/2)^2: where the discriminant is below it, its root would be good to 1e-13 or less
 
 Term = tuple[int, int, float]
 """A power of alpha_hat, one of beta_hat, and the coefficient."""
@@ -59,10 +59,10 @@ def plane_pencil_of(method: Method, free: bool = False) -> PlanePencil:
 
 def coefficients_at(pencil: PlanePencil, alpha_hat: FloatArray, beta_hat: FloatArray) -> list[FloatArray]:
     """Return P's coefficients in z, ascending, each with the shape of a row of points."""
-    return [
-        np.zeros_like(alpha_hat) + _horner([_horner([c for c, _ in row], beta_hat) for row in in_plane], alpha_hat)
-        for in_plane in pencil.split
-    ]
+    values = (
+        _horner([_horner([c for c, _ in row], beta_hat) for row in in_plane], alpha_hat) for in_plane in pencil.split
+    )
+    return [np.full_like(alpha_hat, value) if isinstance(value, float) else value for value in values]
 
 
 def _horner(ascending: Sequence[float | FloatArray], x: FloatArray) -> float | FloatArray:
