@@ -28,7 +28,18 @@ from bezstab.engines import ENGINES
 from bezstab.errors import InputError
 from bezstab.files import output_directory
 from bezstab.methods import GROUPS, Method, lookup
-from bezstab.show import PROPERTIES, Column, Format, Row, column, formatted, pole_column, transposed
+from bezstab.show import (
+    PROPERTIES,
+    Column,
+    Format,
+    Row,
+    column,
+    formatted,
+    pole_column,
+    stable_steps_words,
+    transposed,
+    with_unbounded,
+)
 from bezstab.units import to_dimensionless
 
 if TYPE_CHECKING:
@@ -102,13 +113,24 @@ def poles(
     show_rows(rows, POLES, form, heading=f"α̂ = {alpha_hat:.10g}, β̂ = {beta_hat:.10g}")
 
 
+def unbounded_column(heading: str, key: str, form: str) -> Column:
+    """Return the column of an area or a limit of a region: the word "unbounded" where there is none."""
+
+    def text(row: Row) -> str:
+        value = with_unbounded(row)[key]
+        return value if isinstance(value, str) else formatted(value, form)
+
+    return Column(heading, text)
+
+
 REGIONS = [
     column("method", "method"),
-    column("area", "area", ".10g"),
-    column("α̂ from", "alpha_hat_min", ".6g"),
-    column("α̂ to", "alpha_hat_max", ".8g"),
-    column("β̂ from", "beta_hat_min", ".6g"),
-    column("β̂ to", "beta_hat_max", ".8g"),
+    unbounded_column("area", "area", ".10g"),
+    unbounded_column("α̂ from", "alpha_hat_min", ".6g"),
+    unbounded_column("α̂ to", "alpha_hat_max", ".8g"),
+    unbounded_column("β̂ from", "beta_hat_min", ".6g"),
+    unbounded_column("β̂ to", "beta_hat_max", ".8g"),
+    Column("stable steps", stable_steps_words),
     column("least |z_p|", "best_z_abs", ".8f"),
     column("at α̂", "best_alpha_hat", ".8f"),
     column("at β̂", "best_beta_hat", ".8f"),
@@ -359,7 +381,7 @@ def methods(methods: Sequence[Method], latex: bool, form: Format) -> None:
         show_rows(rows, METHODS, form)
         return
     for row in rows:
-        show_rows(transposed(row), PROPERTIES, form)
+        show_rows(transposed(with_unbounded(row)), PROPERTIES, form)
 
 
 def _n_or_limit(row: Row) -> str:

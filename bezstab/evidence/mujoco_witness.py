@@ -177,9 +177,9 @@ def _mujoco() -> types.ModuleType:
 
 def _boundary_points(method: Method) -> Iterator[FloatArray]:
     """Yield the first point with |z_p| = 1 on each ray from the origin, as (alpha_hat, beta_hat)."""
-    extent = region(method).extent
-    assert extent
-    (_, alpha_hat_max), (_, beta_hat_max) = extent
+    view = region(method).view
+    assert view
+    (_, alpha_hat_max), (_, beta_hat_max) = view
     for angle in np.radians(RAYS):
         yield _boundary_on_ray(method, np.array([np.cos(angle) * alpha_hat_max, np.sin(angle) * beta_hat_max]))
 

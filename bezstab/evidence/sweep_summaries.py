@@ -38,7 +38,7 @@ class Summary:
     method: Method
     stated_order: int
     order: float | None
-    area: float
+    area: float | None
     alpha_step: float
     evaluations_needed: float | None
     largest_step: float | None
@@ -162,8 +162,9 @@ def _comparison_sentence(bezier: Summary, other: Summary) -> str:
 
 def _advantages(bezier: Summary, other: Summary) -> Iterator[tuple[float, str]]:
     """Yield how many times better the Bezier method is (less than one: worse), and in what."""
-    ratio = bezier.area / other.area
-    yield ratio, f"region {ratio:.2g} times as large"
+    if bezier.area is not None and other.area:
+        ratio = bezier.area / other.area
+        yield ratio, f"region {ratio:.2g} times as large"
     if other.alpha_step:
         ratio = other.alpha_step / bezier.alpha_step
         yield 1 / ratio, f"stable at one α = β with {ratio:.2g} times the evaluations"

@@ -19,6 +19,7 @@ From exact numbers upwards; a file imports only from those above it:
     registry            every built-in method by name
     derivation          by sympy: s->z mapping, characteristic polynomial, closed loop
     shared_factors      poles that no feedback moves
+    plane_edges         where a second-order scheme's plane turns from stable to unstable, exactly
     orders              order of accuracy and error constant
     second_order_formulas  the equations of a second-order scheme as text or LaTeX
     formulas            all that as text or LaTeX
@@ -68,6 +69,7 @@ if TYPE_CHECKING:
     )
     from bezstab.methods.formulas import characteristic_text, mapping_text, recursion_text
     from bezstab.methods.orders import ForceAccuracy, accuracy, accuracy_by_force
+    from bezstab.methods.plane_edges import CurveTable, PlaneStrips, Strip, plane_strips
     from bezstab.methods.shared_factors import fixed_poles, reduced_table, without_shared_factor
 
 DERIVED = {
@@ -90,6 +92,7 @@ DERIVED = {
     ),
     "formulas": ("characteristic_text", "mapping_text", "recursion_text"),
     "orders": ("ForceAccuracy", "accuracy", "accuracy_by_force"),
+    "plane_edges": ("CurveTable", "PlaneStrips", "Strip", "plane_strips"),
     "shared_factors": ("fixed_poles", "reduced_table", "without_shared_factor"),
 }
 """What is loaded when first used, by module."""
@@ -104,6 +107,7 @@ __all__ = [
     "REGISTRY",
     "Assignment",
     "Combination",
+    "CurveTable",
     "Evaluation",
     "Family",
     "ForceAccuracy",
@@ -112,6 +116,7 @@ __all__ = [
     "Method",
     "MethodGroup",
     "Partitioned",
+    "PlaneStrips",
     "PlaneTable",
     "Polynomial",
     "PredictorCorrector",
@@ -119,6 +124,7 @@ __all__ = [
     "RungeKutta",
     "S",
     "SecondOrder",
+    "Strip",
     "Verdict",
     "Z",
     "accuracy",
@@ -142,6 +148,7 @@ __all__ = [
     "lookup",
     "mapping_equations",
     "mapping_text",
+    "plane_strips",
     "read_method",
     "recipe",
     "recursion_text",

@@ -43,9 +43,11 @@ from bezstab.show.rows import (
     region_row,
     row,
     simulation_row,
+    stable_steps_words,
     summary_row,
     verdict_map_row,
     whole_row,
+    with_unbounded,
 )
 
 if TYPE_CHECKING:
@@ -133,6 +135,7 @@ __all__ = [
     "save",
     "scene_figure",
     "simulation_row",
+    "stable_steps_words",
     "styled",
     "summary_row",
     "transposed",
@@ -141,6 +144,7 @@ __all__ = [
     "verdict_figure",
     "verdict_map_row",
     "whole_row",
+    "with_unbounded",
     "work_precision_figure",
     "write_arrays",
     "yes_no_column",

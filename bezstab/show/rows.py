@@ -15,6 +15,9 @@ from bezstab.methods import Method, evaluations, implicit, steps
 from bezstab.show.columns import Row, Value
 from bezstab.units import feedback_gains
 
+LIMITS = ("alpha_hat_min", "alpha_hat_max", "beta_hat_min", "beta_hat_max")
+"""The ends of a region's ranges, as rows name them."""
+
 if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
     from _typeshed import DataclassInstance
 
@@ -113,30 +116,62 @@ def whole_row(method: Method, region: Region, best: BestPoint | None, latex: boo
 
 
 def region_row(region: Region, best: BestPoint | None) -> Row:
-    """Return area, axis limits and best point (dimensionless); None where the region is empty."""
-    from bezstab.show.best_point_text import best_point_words
+    """Return area, axis limits, best point and which steps are stable; all dimensionless.
 
-    alpha_min = alpha_max = beta_min = beta_max = None
-    if region.extent:
-        (alpha_min, alpha_max), (beta_min, beta_max) = region.extent
+    Area and limits are None where the region is empty, or has none. stable_for_all is about every alpha_hat,
+    beta_hat > 0; unconditional_damping_ratio is the alpha / beta above which every step is stable (None if there is
+    none); critical_damping_limit the largest beta h on alpha = beta up to which all are (None if there is none).
+    """
+    from bezstab.show.best_point_text import best_point_words
+    from bezstab.stability import critical_damping_limit, stable_for_all, unconditional_damping_ratio
+
     return {
         "method": region.method.name,
         "area": region.area,
-        "alpha_hat_min": alpha_min,
-        "alpha_hat_max": alpha_max,
-        "beta_hat_min": beta_min,
-        "beta_hat_max": beta_max,
+        **_limits(region),
         "best_z_abs": best.z_abs if best else None,
         "best_alpha_hat": best.alpha_hat if best else None,
         "best_beta_hat": best.beta_hat if best else None,
         "best_where": best_point_words(best) if best else _nowhere(region),
+        "best_reason": None if best else _nowhere(region),
+        "bounded": region.bounded,
+        "stable_for_all": stable_for_all(region.method),
+        "unconditional_damping_ratio": unconditional_damping_ratio(region.method),
+        "critical_damping_limit": critical_damping_limit(region.method),
     }
 
 
-def _nowhere(region: Region) -> str | None:
-    """Return why there is no best point, where a pole that no parameters move says so."""
-    from bezstab.stability import pole_place
+def _limits(region: Region) -> dict[str, float | None]:
+    """Return the ends of a region's ranges by name; None where it is empty, or goes on without end."""
+    ends = np.ravel(region.extent or [math.inf] * 4).tolist()
+    return {key: end if math.isfinite(end) else None for key, end in zip(LIMITS, ends, strict=True)}
 
+
+def with_unbounded(row: Row) -> Row:
+    """Return a row of region_row for reading: the word "unbounded" for an area or a limit that there is none of."""
+    missing = () if row["bounded"] else [key for key in ("area", *LIMITS) if row[key] is None]
+    return {**row, "bounded": "yes" if row["bounded"] else "no", **dict.fromkeys(missing, "unbounded")}
+
+
+def stable_steps_words(row: Row) -> str:
+    """Return from a row of region_row in words which steps are stable: what an engineer looks for first."""
+    ratio, limit = row["unconditional_damping_ratio"], row["critical_damping_limit"]
+    if row["stable_for_all"] == "proven":
+        return "every one (proven)"
+    if isinstance(ratio, float):
+        return f"every one from α/β = {ratio:.6g}" if ratio else "no unstable one found"
+    if isinstance(limit, float):
+        return f"βh to {limit:.6g} at α = β" if limit else "none at α = β"
+    return "every one at α = β"
+
+
+def _nowhere(region: Region) -> str | None:
+    """Return why there is no best point: |z_p| falls on as the feedback grows, or a pole that no parameters move."""
+    from bezstab.stability import falls_towards, pole_place
+
+    limit = falls_towards(region.method)
+    if limit is not None:
+        return f"none: |z_p| falls towards {limit:.6g} as α̂ and β̂ grow"
     if not region.fixed_poles:
         return None
     return f"stable nowhere: a pole stays at {pole_place(region.fixed_poles[0])} whatever α̂ and β̂"

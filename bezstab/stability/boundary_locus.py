@@ -15,28 +15,39 @@ S_r is symmetric about the real axis: its upper half is enough, and so is theta 
 is there the conjugate of one in the upper half at -theta. A point of the locus is boundary if none of the other roots
 at that mu lies outside the circle. Each branch is cut by itself, where that changes, and where it crosses the real
 axis: between two cuts lies an arc, or nothing.
+
+For an implicit method S_r may reach to infinity, and arcs may run there. It is cut off at a rim |mu| = radius beyond
+everything that has a shape: what lies within is bounded like any other, by arcs, intervals and pieces of the rim.
+
+              Im mu    .-------.    rim
+              |      .'         '.        backward Euler: all of mu is stable
+              |    .'      .--.   '.      but the disc |mu - 1| < 1
+              |   /       ( arc )   \
+    ---------(---+-------0------2----)---- Re mu
+             intervals: from the left end of the rim to 0, and from 2 to the right end
 """
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from itertools import pairwise
-from math import pi
+from math import inf, isfinite, pi
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 from numpy.polynomial.polynomial import polyval2d
 from numpy.typing import NDArray
 
-from bezstab.stability.arrays import FloatArray
-from bezstab.stability.dominant_roots import dominant_root
+from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
 from bezstab.stability.locus_tracks import Track, tracks
-from bezstab.stability.pencils import Pencil, roots_in_mu, roots_in_z
+from bezstab.stability.pencils import Pencil, moduli_in_z, roots_in_mu
+from bezstab.stability.root_finding import roots_of_table
 from bezstab.stability.searches import bisected, zoom_on_minimum
 
 ARC_POINTS = 400  # drawn per arc: chords stay within 1e-5 of the curve
 NODES = 16  # of Gauss and Legendre on a panel
 QUADRATURE = 1e-14  # of |mu|^3: a panel is split until its halves agree to this, a hundredfold above rounding
+PANEL_SAMPLES = 50  # of an arc to each of the first panels, where it may turn so fast that halves miss it alike
 SPLITS = 40  # halvings of a panel at most: towards a corner of the locus they end at rounding
 FINER = 33  # samples of a bracket: from one zoom to the next by the spacing of the last, 1/16
 TURN_ZOOMS = 8  # each by 1/16: from a sample's spacing to where a smooth extreme is flat to rounding
@@ -45,6 +56,8 @@ DIP_ZOOMS = 5  # each by 1/16: an arc or a gap of 1e-8 rad is seen, and no short
 MARGIN = 1e-13  # of the level: rounding of a simple root's modulus, a hundredfold
 AXIS = 1e-7  # of |mu|: an arc that runs into the real axis ends this far from it, its conjugate root within MARGIN
 REAL = 1e-9  # an imaginary part below this times |mu| is rounding where a branch is known to cross the real axis
+ON_THE_RIM = 1e-9  # of its radius: an arc that was cut there ends on it to rounding
+FAR = 1e300  # a finite stand-in for the modulus of an infinite root
 SAME_MU = 1e-13  # of |mu|: simple roots of pi(+-level, .) closer than this are one, a hundredfold above rounding
 
 Interval = tuple[float, float]
@@ -83,8 +96,9 @@ class Arc(Track):
 
         (p, q) = (-2x, x^2 + y^2) has the Jacobian 4y, and by Green int int 4y dx dy = -closed int 2 y^2 dx.
         """
-        start, end = self.theta[[0, -1]]
-        return _integral(self._area_density, start, end, tolerance=QUADRATURE * float(np.abs(self.mu).max()) ** 3)
+        stride = PANEL_SAMPLES if self.pencil.implicit else len(self.theta)  # far out it turns within few samples
+        edges = np.unique(np.append(self.theta[::stride], self.theta[-1]))
+        return _integral(self._area_density, edges, tolerance=QUADRATURE * float(np.abs(self.mu).max()) ** 3)
 
     def _area_density(self, theta: FloatArray) -> FloatArray:
         """Return -2 y^2 dx/dtheta, with dmu/dz = -(d pi/dz) / (d pi/dmu)."""
@@ -120,24 +134,73 @@ def _turns(arc: Arc, towards: tuple[float, float]) -> FloatArray:
     return theta[:, 0]
 
 
+@dataclass(frozen=True)
+class RimPiece:
+    """A piece of the rim |mu| = radius in the upper half, at angles (rad) from `start` to `end`."""
+
+    radius: float
+    start: float
+    end: float
+
+    def plane(self) -> FloatArray:
+        """Return its two ends in the plane of the feedback's coefficients, between which it is straight: q is held."""
+        mu = self.radius * np.exp(1j * np.array([self.start, self.end]))
+        return feedback_coefficients(mu, mu.conj())
+
+    def area(self) -> float:
+        """Return its contribution to the area: -int 2 y^2 dx = 2 radius^3 int sin^3."""
+        cosine = np.cos(np.array([self.start, self.end]))
+        return float(2 * self.radius**3 * np.diff(cosine**3 / 3 - cosine)[0])
+
+
 @dataclass(frozen=True, eq=False)
 class Bounds:
-    """What bounds S_r: arcs of the locus in its upper half, and the open intervals it cuts from the real axis."""
+    """What bounds S_r: arcs of the locus in its upper half, and the open intervals it cuts from the real axis.
+
+    `radius` is that of the rim, infinite for an explicit method, whose S_r is bounded anyway; `rim` has the pieces of
+    it that lie in S_r.
+    """
 
     arcs: tuple[Arc, ...]
     intervals: tuple[Interval, ...]
+    radius: float = inf
+    rim: tuple[RimPiece, ...] = ()
+
+    @property
+    def bounded(self) -> bool:
+        """Whether S_r does not reach the rim, so that it is known whole."""
+        return not self.rim and all(max(-start, end) < self.radius for start, end in self.intervals)
 
 
 @cache
-def bounds_of(pencil: Pencil, level: float, finer: int = 1) -> Bounds:
-    """Return what bounds S_r for r = level, 0 < level <= 1; `finer` divides the steps along the locus.
+def bounds_of(pencil: Pencil, level: float, finer: int = 1, radius: float = inf) -> Bounds:
+    """Return what bounds S_r for r = level, 0 < level <= 1, within |mu| < radius.
 
-    NumericalError if two branches of the locus could not be told apart.
+    `finer` divides the steps along the locus. NumericalError if two branches of the locus could not be told apart.
     """
     arcs: list[Arc] = []
     for track in tracks(pencil, level, finer):
-        arcs += _bounding_arcs(track)
-    return Bounds(tuple(arcs), tuple(_real_intervals(pencil, level, arcs)))
+        arcs += _bounding_arcs(track, radius)
+    intervals = _real_intervals(pencil, level, arcs, radius)
+    return Bounds(tuple(arcs), tuple(intervals), radius, tuple(_rim_pieces(pencil, level, arcs, radius)))
+
+
+def _rim_pieces(pencil: Pencil, level: float, arcs: list[Arc], radius: float) -> Iterator[RimPiece]:
+    """Yield the pieces of the rim that lie in S_r: between two places where an arc meets it all or nothing does."""
+    if not isfinite(radius):
+        return
+    ends = np.array([mu for arc in arcs for mu in (arc.mu[0], arc.mu[-1])], complex)
+    met = np.angle(ends[np.abs(ends) > radius * (1 - ON_THE_RIM)])
+    for start, end in pairwise([0.0, *np.sort(met).tolist(), pi]):
+        middle = np.array([radius * np.exp(0.5j * (start + end))])
+        if end > start and _all_within(pencil, middle, level)[0]:
+            yield RimPiece(radius, start, end)
+
+
+def _all_within(pencil: Pencil, mu: ComplexArray, level: float) -> BoolArray:
+    """Return whether all roots at each of a row of mu have |z| < level; False where one is infinite."""
+    within: BoolArray = moduli_in_z(pencil, mu).max(axis=0) < level
+    return within
 
 
 # Adaptive panels. An arc's density is analytic but at its ends, where it may behave like a root of the distance to a
@@ -148,8 +211,11 @@ def bounds_of(pencil: Pencil, level: float, finer: int = 1) -> Bounds:
 #     |---------------|-------|---|---|      towards a corner the panels shrink geometrically, and so do their errors
 
 
-def _integral(density: Callable[[FloatArray], FloatArray], start: float, end: float, tolerance: float) -> float:
-    """Return the integral of a density over (start, end), panels of Gauss and Legendre halved until they agree."""
+def _integral(density: Callable[[FloatArray], FloatArray], edges: FloatArray, tolerance: float) -> float:
+    """Return the integral of a density over panels of Gauss and Legendre, halved until they agree.
+
+    `edges` are those of the first panels, ascending.
+    """
     nodes, weights = leggauss(NODES)
 
     def panel_integrals(panels: FloatArray) -> FloatArray:
@@ -157,7 +223,7 @@ def _integral(density: Callable[[FloatArray], FloatArray], start: float, end: fl
         theta = panels[:, :1] + half + half * nodes
         return np.asarray(half[:, 0] * (density(theta.ravel()).reshape(theta.shape) @ weights))
 
-    panels = np.array([[start, end]])
+    panels = np.stack([edges[:-1], edges[1:]], axis=1)
     whole = panel_integrals(panels)
     total = 0.0
     for _ in range(SPLITS):
@@ -182,8 +248,8 @@ def _integral(density: Callable[[FloatArray], FloatArray], start: float, end: fl
 #      |         ||           the short arc
 
 
-def _bounding_arcs(track: Track) -> Iterator[Arc]:
-    """Yield the arcs of one branch, theta in [0, pi], that bound S_r's upper half."""
+def _bounding_arcs(track: Track, radius: float) -> Iterator[Arc]:
+    """Yield the arcs of one branch, theta in [0, pi], that bound S_r's upper half within |mu| < radius."""
     one_step = track.pencil.steps == 1  # the root on the circle is the only one
 
     def height(theta: FloatArray) -> FloatArray:
@@ -196,6 +262,8 @@ def _bounding_arcs(track: Track) -> Iterator[Arc]:
     cuts = [track.theta[[0, -1]], _sign_changes(height, inner)]
     if not one_step:
         cuts.append(_sign_changes(outside, inner))
+    if isfinite(radius):
+        cuts.append(_sign_changes(lambda theta: np.abs(track.at(theta)) - radius, inner))
     for start, end in pairwise(np.unique(np.concatenate(cuts)).tolist()):
         middle = np.array([(start + end) / 2])
         if not one_step and outside(middle)[0] >= 0:
@@ -205,6 +273,8 @@ def _bounding_arcs(track: Track) -> Iterator[Arc]:
         mu_middle = complex(track.at(middle)[0])
         if abs(mu_middle.imag) <= REAL * abs(mu_middle):
             continue  # along the real axis
+        if abs(mu_middle) > radius:
+            continue
         if np.abs(mu - mu_middle).max() <= REAL * abs(mu_middle):
             continue  # rounding, where several roots meet on the circle
         if mu_middle.imag > 0:
@@ -216,9 +286,10 @@ def _bounding_arcs(track: Track) -> Iterator[Arc]:
 def _largest_other(track: Track, theta: FloatArray) -> FloatArray:
     """Return by what share of the level the largest root besides that on the circle lies outside it; shape of theta."""
     z = track.level * np.exp(1j * theta)
-    roots = roots_in_z(track.pencil, track.at(theta))
-    modulus = np.abs(roots)
-    own = np.argmin(np.abs(roots - z), axis=0)
+    roots = roots_of_table(track.pencil.table, track.at(theta))
+    off = np.abs(roots - z)
+    modulus = np.where(np.isfinite(off), np.abs(roots), FAR)
+    own = np.argmin(np.where(np.isfinite(off), off, FAR), axis=0)
     np.put_along_axis(modulus, own[np.newaxis], 0, axis=0)
     return np.asarray(modulus.max(axis=0) / track.level - 1)
 
@@ -273,16 +344,18 @@ def _with_dips(values_at: Callable[[FloatArray], FloatArray], theta: FloatArray)
     return np.sort(np.append(theta, found[least < 0, 0]))
 
 
-def _real_intervals(pencil: Pencil, level: float, arcs: list[Arc]) -> list[Interval]:
-    """Return the open intervals that S_r cuts from the real axis, ascending.
+def _real_intervals(pencil: Pencil, level: float, arcs: list[Arc], radius: float) -> list[Interval]:
+    """Return the open intervals that S_r cuts from the real axis within |mu| < radius, ascending.
 
     Their ends have a root at z = level or -level, or a conjugate pair on the circle, where an arc meets the axis. So
     all candidates are known; between two neighbours S_r contains all of the axis or nothing.
     """
     points = _ends_on_the_axis(pencil, level, arcs)
+    if isfinite(radius):
+        points = np.array([-radius, *points[np.abs(points) < radius], radius])
     middle = (points[1:] + points[:-1]) / 2
-    inside = np.abs(dominant_root(pencil, middle.astype(complex))) < level * (1 - MARGIN)
-    through = np.abs(dominant_root(pencil, points.astype(complex))) < level * (1 - REAL)  # no end after all
+    inside = _all_within(pencil, middle.astype(complex), level * (1 - MARGIN))
+    through = _all_within(pencil, points.astype(complex), level * (1 - REAL))  # no end after all
     merged: list[Interval] = []
     for k in np.flatnonzero(inside).tolist():
         start, end = float(points[k]), float(points[k + 1])

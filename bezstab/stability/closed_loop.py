@@ -2,7 +2,7 @@
 
 The poles are the roots of pi(z, mu) at the two roots mu of the feedback. Compared with eigenvalues of P's companion
 that halves the degree, needs one solve where the mu are conjugate, and keeps all digits on beta_hat = alpha_hat^2/4,
-where the roots of P pair up.
+where the roots of P pair up. A second-order scheme has no mu: there the poles are the roots of P (plane_pencils).
 """
 
 from fractions import Fraction
@@ -10,75 +10,117 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bezstab.methods import Method, Verdict, closed_loop_at, recursion_verdict
+from bezstab.errors import NumericalError
+from bezstab.methods import Method, SecondOrder, Verdict, closed_loop_at, recursion_verdict, without_shared_factor
 from bezstab.stability.arrays import EPS, ComplexArray, FloatArray
-from bezstab.stability.dominant_roots import dominant_root
+from bezstab.stability.dominant_roots import FEWEST, dominant_root
 from bezstab.stability.exact_sums import feedback_roots
 from bezstab.stability.pencils import Pencil, pencil_of, roots_in_z
+from bezstab.stability.plane_pencils import PlanePencil, largest_plane_root, plane_pencil_of, plane_roots
 from bezstab.stability.root_finding import CHUNK
 
 BLOCK = 8 * CHUNK  # points whose roots are followed in one go: enough to outweigh the calls for one in STRIDE
+
+ORDINARY = 1e12  # of alpha_hat and beta_hat: their products, of degree 12 at most, are within float64
+
+AnyPencil = Pencil | PlanePencil
 
 
 def verdict(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> Verdict:
     """Return 'converges', 'marginal' or 'diverges' at one exact, dimensionless point.
 
-    Proven by the Schur-Cohn test on P (paper Eq. 17) in rational arithmetic, so right on the boundary itself.
+    Proven by the Schur-Cohn test on P (paper Eq. 17) in rational arithmetic, so right on the boundary itself. Where
+    P's leading coefficient vanishes a pole is infinite, the implicit step has no solution, and it 'diverges'.
     """
-    return recursion_verdict(closed_loop_at(method, alpha_hat, beta_hat))
+    polynomial = closed_loop_at(method, alpha_hat, beta_hat)
+    return recursion_verdict(polynomial) if polynomial[0] else "diverges"
 
 
 def poles(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexArray:
     """Return all closed-loop poles; complex, shape of alpha_hat and beta_hat broadcast plus (2 n,), dimensionless.
 
-    Descending by modulus. Roots of paper Eq. 17. NumericalError if a root leaves the range of float64.
+    Descending by modulus. Roots of paper Eq. 17. NumericalError if a root leaves the range of float64, or is infinite,
+    where an implicit step has no solution.
     """
-    pencil = pencil_of(method)
     alpha_hat, beta_hat = np.broadcast_arrays(np.asarray(alpha_hat, float), np.asarray(beta_hat, float))
-    mu = np.stack(feedback_roots(pencil.feedback, alpha_hat.ravel(), beta_hat.ravel()))
-    z = roots_in_z(pencil, mu.ravel()).reshape(-1, *mu.shape)
-    z = np.moveaxis(z, -1, 0).reshape(*alpha_hat.shape, -1)
+    z = _all_poles(any_pencil_of(method), alpha_hat.ravel(), beta_hat.ravel()).T.reshape(*alpha_hat.shape, -1)
     order = np.lexsort((-z.imag, -np.abs(z)), axis=-1)
     return _without_rounding(np.take_along_axis(z, order, axis=-1))
+
+
+def any_pencil_of(method: Method) -> AnyPencil:
+    """Return the pencil of a method of either kind; NumericalError if its coefficients leave the range of float64."""
+    return plane_pencil_of(method) if isinstance(method.scheme, SecondOrder) else pencil_of(method)
+
+
+def free_pencil_of(method: Method) -> AnyPencil:
+    """Return the pencil of a method of either kind without the poles that no parameters move."""
+    if isinstance(method.scheme, SecondOrder):
+        return plane_pencil_of(method, free=True)
+    return pencil_of(without_shared_factor(method))
+
+
+def _all_poles(pencil: AnyPencil, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
+    """Return all poles at a row of points; shape (poles, points)."""
+    if isinstance(pencil, PlanePencil):
+        return plane_roots(pencil, alpha_hat, beta_hat)
+    mu = np.stack(feedback_roots(pencil.feedback, alpha_hat, beta_hat))
+    z = roots_in_z(pencil, mu.ravel()).reshape(-1, *mu.shape)
+    return z.swapaxes(0, 1).reshape(-1, alpha_hat.size)
 
 
 def dominant_pole(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexArray:
     """Return the pole z_p of largest modulus; complex, Im >= 0, shape of alpha_hat and beta_hat broadcast.
 
     Dimensionless; a root of paper Eq. 17. Of poles equal in modulus to rounding, one is taken. NumericalError if a
-    root leaves the range of float64.
+    root leaves the range of float64, or is infinite, where an implicit step has no solution.
     """
-    return largest_pole(pencil_of(method), alpha_hat, beta_hat)
+    pencil = any_pencil_of(method)
+    found = largest_pole(pencil, alpha_hat, beta_hat)
+    infinite = ~np.isfinite(found)
+    if infinite.any():
+        alpha_hat, beta_hat = np.broadcast_arrays(np.asarray(alpha_hat, float), np.asarray(beta_hat, float))
+        worst = f"({alpha_hat[infinite][0]:.6g}, {beta_hat[infinite][0]:.6g})"
+        raise NumericalError(f"{method.name}: a pole is infinite at {worst}: the implicit step has no solution there")
+    return found
 
 
 def spectral_radius(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> FloatArray:
     """Return |z_p|; shape of alpha_hat and beta_hat broadcast, dimensionless; below one the constraint error decays.
 
-    NumericalError if a root of paper Eq. 17 leaves the range of float64.
+    Infinite where an implicit step has no solution. NumericalError if a finite root of paper Eq. 17 leaves the range
+    of float64.
     """
-    return largest_modulus(pencil_of(method), alpha_hat, beta_hat)
+    return largest_modulus(any_pencil_of(method), alpha_hat, beta_hat)
 
 
-def largest_pole(pencil: Pencil, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexArray:
-    """Return what dominant_pole does, from a pencil."""
+def largest_pole(pencil: AnyPencil, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexArray:
+    """Return what dominant_pole does, from a pencil; infinite where an implicit step has no solution."""
     alpha_hat, beta_hat = np.broadcast_arrays(np.asarray(alpha_hat, float), np.asarray(beta_hat, float))
+    row_of_alpha, row_of_beta = alpha_hat.reshape(-1), beta_hat.reshape(-1)
     dominant = np.empty(alpha_hat.size, complex)
     for start in range(0, alpha_hat.size, BLOCK):
-        block = dominant[start : start + BLOCK]
-        _write_largest_poles(pencil, alpha_hat.flat[start : start + BLOCK], beta_hat.flat[start : start + BLOCK], block)
+        block = slice(start, start + BLOCK)
+        _write_largest_poles(pencil, row_of_alpha[block], row_of_beta[block], dominant[block])
     return dominant.reshape(alpha_hat.shape)
 
 
-def largest_modulus(pencil: Pencil, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> FloatArray:
+def largest_modulus(pencil: AnyPencil, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> FloatArray:
     """Return what spectral_radius does, from a pencil."""
     return np.abs(largest_pole(pencil, alpha_hat, beta_hat))
 
 
-def _write_largest_poles(pencil: Pencil, alpha_hat: FloatArray, beta_hat: FloatArray, poles: ComplexArray) -> None:
+def _write_largest_poles(pencil: AnyPencil, alpha_hat: FloatArray, beta_hat: FloatArray, poles: ComplexArray) -> None:
     """Write into `poles` the dominant pole of each point of a row.
 
     Conjugate mu have conjugate poles, so one of the two is enough; of two real mu both are looked at.
     """
+    if isinstance(pencil, PlanePencil):
+        largest_plane_root(pencil, alpha_hat, beta_hat, into=poles)
+        return
+    if pencil.steps == 1 and pencil.implicit and poles.size >= FEWEST and _ordinary(alpha_hat, beta_hat):
+        largest_plane_root(plane_pencil_of(pencil.method), alpha_hat, beta_hat, into=poles)  # a quadratic
+        return
     second_mu = np.empty_like(poles)
     for i in range(0, poles.size, CHUNK):
         chunk = slice(i, i + CHUNK)
@@ -91,6 +133,11 @@ def _write_largest_poles(pencil: Pencil, alpha_hat: FloatArray, beta_hat: FloatA
         poles[real[larger]] = others[larger]
     poles.imag = np.abs(poles.imag)
     _without_rounding(poles)
+
+
+def _ordinary(alpha_hat: FloatArray, beta_hat: FloatArray) -> bool:
+    """Return whether all powers of a row of points are far from the ends of float64's range."""
+    return bool(np.abs(alpha_hat).max() < ORDINARY and np.abs(beta_hat).max() < ORDINARY)
 
 
 def _without_rounding(z: ComplexArray) -> ComplexArray:

@@ -15,46 +15,84 @@ What Newton finds is a root, and if its modulus is above what every rival can re
 root, and it is the largest. Where that fails (near kinks and branch points) all roots are solved for again.
 
 How far can a rival come? mu is a function of z, so z(mu) is one-to-one up to the distance R of the next branch point,
-and Koebe's distortion theorem says |z(mu) - z(c)| <= |z'(c)| r / (1 - r/R)^2 for |mu - c| = r < R. (For PECE, where mu
-is one of two functions of z, that is an estimate.)
+and Koebe's distortion theorem says |z(mu) - z(c)| <= |z'(c)| r / (1 - r/R)^2 for |mu - c| = r < R. A mu at which a root
+is infinite counts as a branch point: up to there all roots are finite, as the theorem asks. (For PECE, where mu is one
+of two functions of z, that is an estimate.)
 """
 
 import numpy as np
-from numpy.polynomial.polynomial import polyval2d
+from numpy.polynomial.polynomial import polyval, polyval2d
 from numpy.typing import NDArray
 
 from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
-from bezstab.stability.pencils import Pencil, roots_in_z
-from bezstab.stability.root_finding import CHUNK, CONVERGED, STRIDE, followed_roots
+from bezstab.stability.low_degrees import largest_quadratic_root
+from bezstab.stability.pencils import Pencil, has_infinite_root, raise_not_finite
+from bezstab.stability.root_finding import CHUNK, CONVERGED, STRIDE, followed_roots, roots_of_table
 
+CANCELS = 1e-5  # of (b/2)^2: where a quadratic's discriminant is below it, its root would be good to 1e-13 or less
+ORDINARY = 1e70  # of |mu|: its powers are far from the end of float64's range
 FEWEST = STRIDE**2  # mu for which following is worth its preparations
 
 
 def dominant_root(pencil: Pencil, mu: ComplexArray) -> ComplexArray:
     """Return the root of pi(., mu) of largest modulus for each of a row of mu; complex, dimensionless.
 
-    Faster where neighbours in the row are close, as on a map. NumericalError if a root leaves the range of float64.
+    Faster where neighbours in the row are close, as on a map. Infinite where an implicit step has no solution.
+    NumericalError if a finite root leaves the range of float64.
     """
     if pencil.steps == 1 or mu.size < FEWEST:
-        return _largest(roots_in_z(pencil, mu))
+        return _largest_of_all(pencil, mu)
     found = np.full(mu.size, np.nan, complex)
+    if pencil.steps == 2 and pencil.implicit:
+        for start in range(0, mu.size, CHUNK):
+            _write_larger(pencil, mu[start : start + CHUNK], found[start : start + CHUNK])
+        rest = np.flatnonzero(np.isnan(found))
+        found[rest] = _largest_of_all(pencil, mu[rest])
+        return found
     in_blocks = mu.size - mu.size % STRIDE
     _follow(pencil, mu[:in_blocks].reshape(-1, STRIDE), found[:in_blocks].reshape(-1, STRIDE))
     rest = np.flatnonzero(np.isnan(found))
-    found[rest] = _largest(roots_in_z(pencil, mu[rest]))
+    found[rest] = _largest_of_all(pencil, mu[rest])
     return found
 
 
-def _largest(z: ComplexArray) -> ComplexArray:
-    """Return the entry of largest modulus along the first axis."""
+def _write_larger(pencil: Pencil, mu: ComplexArray, found: ComplexArray) -> None:
+    """Write into `found` the larger root of a quadratic at each mu, by formula; nan where the formula loses digits."""
+    with np.errstate(all="ignore"):  # what is not finite is for Aberth's iteration
+        real = not mu.imag.any()
+        last, half, leading = (polyval(mu.real if real else mu, row) for row in pencil.table)
+        half = 0.5 * half
+        square = half * half
+        discriminant = square - last * leading
+        if real:
+            largest_quadratic_root(half / leading, discriminant / (leading * leading), into=found)
+        else:
+            root = np.sqrt(discriminant)
+            same_side = half.real * root.real + half.imag * root.imag >= 0
+            np.negative(root, out=root, where=~same_side)
+            np.divide(-half - root, leading, out=found)
+        kept = np.abs(discriminant) >= CANCELS * np.abs(square)
+        kept &= np.isfinite(found) & (np.abs(mu) < ORDINARY)
+    found[~kept] = np.nan
+
+
+def _largest_of_all(pencil: Pencil, mu: ComplexArray) -> ComplexArray:
+    """Return the root of largest modulus at each mu from all roots; infinite where one is."""
+    z = roots_of_table(pencil.table, mu)
     largest: ComplexArray = np.take_along_axis(z, np.argmax(np.abs(z), axis=0)[np.newaxis], axis=0)[0]
+    bad = np.flatnonzero(~np.isfinite(largest))  # argmax prefers nan
+    if bad.size:
+        infinite = has_infinite_root(pencil, mu[bad])
+        if not infinite.all():
+            raise_not_finite(pencil, mu[bad[~infinite]])
+        largest[bad] = np.inf
     return largest
 
 
 def _follow(pencil: Pencil, blocks: ComplexArray, found: ComplexArray) -> None:
     """Write into `found` the leading roots of blocks of mu, shape (blocks, STRIDE), where they are safe to follow."""
     centre = blocks[:, STRIDE // 2]
-    z = roots_in_z(pencil, centre)
+    z = roots_of_table(pencil.table, centre)
     same_mu = np.broadcast_to(centre, z.shape)
     with np.errstate(all="ignore"):  # what is not finite is not followed
         slope = -polyval2d(z, same_mu, pencil.table_by_mu) / polyval2d(z, same_mu, pencil.table_by_z)  # dz/dmu

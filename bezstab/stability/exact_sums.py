@@ -67,11 +67,48 @@ def feedback_roots(
 def exact_combination(factors: Sequence[Fraction], x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return a x + b y, (a, b) the factors, as an unevaluated sum of two float64."""
     a, b = factors
+    if {a, b} == {0, 1}:  # one of the two itself, as for most methods
+        chosen = x if a else y
+        return chosen, np.zeros_like(chosen)
     ax, ax_low = two_product(float(a), x)
     by, by_low = two_product(float(b), y)
     total, total_low = two_sum(ax, by)
     of_rounded_factors = float(a - Fraction(float(a))) * x + float(b - Fraction(float(b))) * y
     return total, total_low + (ax_low + by_low + of_rounded_factors)
+
+
+Double = tuple[FloatArray, FloatArray]
+"""Numbers with twice the digits of float64, as unevaluated sums of two."""
+
+
+def double_product(first: Double, second: Double) -> Double:
+    """Return the product of two doubles, as one."""
+    product, low = two_product(first[0], second[0])
+    return product, low + (first[0] * second[1] + first[1] * second[0])
+
+
+def double_sum(first: Double, second: Double) -> Double:
+    """Return the sum of two doubles, as one."""
+    total, low = two_sum(first[0], second[0])
+    return total, low + (first[1] + second[1])
+
+
+def double_polynomial(table: Sequence[Sequence[tuple[float, float]]], x: FloatArray, y: FloatArray) -> Double:
+    """Return sum_ij c_ij x^i y^j with twice the digits of float64, each c_ij an unevaluated sum of two; by Horner."""
+    zero = np.zeros_like(x)
+    total = (zero, zero)
+    for row in reversed(table):
+        in_y = (zero, zero)
+        for high, low in reversed(row):
+            in_y = double_sum(double_product(in_y, (y, zero)), (zero + high, zero + low))
+        total = double_sum(double_product(total, (x, zero)), in_y)
+    return total
+
+
+def split(exact: Fraction) -> tuple[float, float]:
+    """Return an exact number rounded to float64, and what that leaves over, rounded."""
+    high = float(exact)
+    return high, float(exact - Fraction(high))
 
 
 def two_sum(x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:

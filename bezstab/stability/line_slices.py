@@ -26,6 +26,8 @@ from bezstab.stability.pencils import Pencil, roots_in_mu
 
 COSINE_SLACK = 1e-6  # a double zero splits by sqrt(eps) = 1e-8 into the complex plane; more candidates do no harm
 TRUE_DEGREE = 1e-12  # relative: Chebyshev coefficients of a polynomial of lower degree are rounding, 1e-16 or so
+RIM = 64.0  # times everything finite: far enough out to tell how the region goes on, near enough to be checked
+AT_INFINITY = 1e10  # a larger |mu| is the rounding of an infinite one
 SHARED = 1e-4  # of |mu|: a shared root is good to the root of rounding; more candidates do no harm
 QUADRATIC_SAMPLES = 2600  # of theta for PECE, besides the graded ends: another grid than the arcs'
 QUADRATIC_ZOOMS = 8  # each by 1/8: a turn to 1e-10 rad, where the modulus is flat to rounding
@@ -37,11 +39,13 @@ LEADING = 1e-14  # of the largest coefficient: a leading coefficient below it is
 
 
 def mu_bound(pencil: Pencil, level: float) -> float:
-    """Return a radius that holds every mu whose roots z all have |z| < level.
+    """Return a radius that holds every mu whose roots z all have |z| < level; for an implicit method that of its rim.
 
     The coefficient of z^(n-i) is at most comb(n, i) level^i; each that depends on mu bounds mu by Cauchy's rule
     (|x| <= 2 max |c_j / c_d|^(1/(d-j))).
     """
+    if pencil.implicit:
+        return rim_radius(pencil, level)
     table = pencil.table
     degree = len(table) - 1
     bounds = []
@@ -53,6 +57,25 @@ def mu_bound(pencil: Pencil, level: float) -> float:
         highest = len(row) - 1
         bounds.append(2 * max((row[j] / row[-1]) ** (1 / (highest - j)) for j in range(highest)))
     return float(min(bounds))
+
+
+# An implicit method may be stable for arbitrarily large mu: then S_r is cut off at its rim |mu| = RIM times the size
+# of everything that it has of shape, and all that is checked lies within.
+
+
+def rim_radius(pencil: Pencil, level: float) -> float:
+    """Return the radius of the rim of an implicit method: RIM times that of the disc that holds every feature.
+
+    Features are all finite mu with a root at z = +-level, with an infinite root, with a double root, with a root at
+    zero, and those at which the locus turns towards or away from zero.
+    """
+    places = [
+        roots_in_mu(pencil, np.array([level, -level, 0], complex)).ravel(),
+        pencil.branch_points,
+        turning_radii(pencil, level).astype(complex),
+    ]
+    sizes = np.abs(np.concatenate(places))
+    return RIM * float(sizes[sizes < AT_INFINITY].max(initial=1.0))
 
 
 def _cosine_zeros(values_at: Callable[[FloatArray], FloatArray], degree: int, rows: int) -> FloatArray:
@@ -143,8 +166,9 @@ def island_radii(pencil: Pencil, level: float) -> FloatArray:
     """
     table = pencil.table
     zero = roots_in_mu(pencil, np.zeros(1, complex))[:, 0]
+    zero = zero[np.isfinite(zero)]
     with np.errstate(all="ignore"):
-        size = np.abs(level * table[1, 0] / polyval(zero, polyder(table[0])))
+        size = np.abs(level * polyval(zero, table[1]) / polyval(zero, polyder(table[0])))
     size = np.minimum(size, np.abs(zero))
     beside = np.array([-4, -2, -1, -0.5, 0, 0.5, 1, 2, 4])
     return np.asarray(np.abs(np.abs(zero) + beside[:, np.newaxis] * size).ravel())
@@ -157,7 +181,7 @@ def turning_radii(pencil: Pencil, level: float) -> FloatArray:
     cos(theta).  A slice length has a square root there, and a part of S_r too thin to be met begins or ends there.
     """
     table = pencil.table
-    if pencil.steps == 1 or table.shape[1] != 2:
+    if (pencil.steps == 1 and not pencil.implicit) or table.shape[1] != 2:
         return np.zeros(0)
     slope = polyder(table)
 
@@ -187,12 +211,13 @@ def paired_crossings(pencil: Pencil, level: float, radius: FloatArray) -> FloatA
 
 
 def _one_step_crossings(pencil: Pencil, level: float, radius: FloatArray) -> FloatArray:
-    """Return paired_crossings for z = R(mu): |R(radius e^(i phi))|^2 = level^2 is a polynomial in cos phi."""
+    """Return paired_crossings for z = N(mu) / Q(mu): on |mu| = radius |N|^2 = level^2 |Q|^2, polynomials in cos phi."""
     around = radius[:, np.newaxis]
+    denominator = np.trim_zeros(level * pencil.table[1], "b")
 
     def growth(cosine: FloatArray) -> FloatArray:
         mu = around * (cosine + 1j * np.sqrt(1 - cosine**2))
-        return np.asarray(np.abs(polyval(mu, pencil.table[0])) ** 2 - (level * pencil.table[1, 0]) ** 2)
+        return np.asarray(np.abs(polyval(mu, pencil.table[0])) ** 2 - np.abs(polyval(mu, denominator)) ** 2)
 
     return around * _cosine_zeros(growth, pencil.table.shape[1] - 1, len(radius))
 
@@ -342,6 +367,8 @@ def slices(pencil: Pencil, level: float, q: FloatArray, events: FloatArray, boun
         pairs[positive] = -2 * found
     split = np.where(positive[:, np.newaxis], np.concatenate([-2 * radius, 2 * radius], axis=1), np.nan)
     events = events[events != 0]
+    if pencil.implicit:
+        events = np.append(events, [-bound, bound])
     lines = -(events + q[:, np.newaxis] / events)
     furthest = bound + np.abs(q[:, np.newaxis]) / bound
     ends = np.concatenate([pairs, split, lines, -furthest, furthest], axis=1)
@@ -358,4 +385,7 @@ def slices(pencil: Pencil, level: float, q: FloatArray, events: FloatArray, boun
     stable = all_inside(pencil, first, level)
     real = np.isfinite(p) & ~is_pair & stable
     stable[real] = all_inside(pencil, second[real].astype(complex), level)
+    if pencil.implicit:
+        with np.errstate(all="ignore"):
+            stable &= (np.abs(first) < bound) & (np.abs(second) < bound)
     return Slices(ends, stable & np.isfinite(p))

@@ -14,9 +14,11 @@ from numpy.polynomial.polynomial import polyder, polymul, polyroots, polysub, po
 
 from bezstab.errors import NumericalError
 from bezstab.methods import Method, branch_polynomial, coefficient_table, feedback_matrix
-from bezstab.stability.arrays import ComplexArray, FloatArray
+from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, FloatArray
 from bezstab.stability.exact_sums import ExactMatrix
 from bezstab.stability.root_finding import roots_of_table
+
+LEADING = 4 * EPS  # of the sum of its terms' sizes: a leading coefficient below it is rounding of zero
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -40,9 +42,20 @@ class Pencil:
     def __repr__(self) -> str:
         return f"Pencil({self.method.name})"
 
+    @property
+    def implicit(self) -> bool:
+        """Whether the leading coefficient in z depends on mu: at some mu a root is infinite."""
+        return bool(self.table[-1, 1:].any())
+
+    @cached_property
+    def infinite_at(self) -> ComplexArray:
+        """Every mu at which a root z is infinite, so that an implicit step has no solution; none if explicit."""
+        leading = np.trim_zeros(self.table[-1], "b")
+        return polyroots(leading).astype(complex) if len(leading) > 1 else np.zeros(0, complex)
+
     @cached_property
     def branch_points(self) -> ComplexArray:
-        """Every mu at which two roots z of pi(., mu) meet; shape (points,).
+        """Every mu at which two roots z of pi(., mu) meet, or one is infinite; shape (points,).
 
         Beyond the nearest of them a root's power series diverges. Found on first use: the resultant takes longer than
         a pole. NumericalError if it leaves the range of float64.
@@ -52,21 +65,27 @@ class Pencil:
         slope = np.abs(polyval2d(np.broadcast_to(z, mu.shape), mu, self.table_by_z))
         flattest = np.argmin(slope, axis=0)  # of all mu with a root at this z, the one whose root is double
         met: ComplexArray = np.take_along_axis(mu, flattest[np.newaxis], axis=0)[0]
-        return met[np.isfinite(met)]
+        return np.append(met[np.isfinite(met)], self.infinite_at)
 
     @cached_property
     def branch_points_in_z(self) -> ComplexArray:
-        """Every z at which two roots mu of pi(z, .) meet, or one is infinite; shape (points,), none for a multistep.
+        """Every z at which two roots mu of pi(z, .) meet, or one is infinite; shape (points,).
 
-        Multistep: mu = rho / sigma has one value. One step, z = R(mu): R at the zeros of R'. PECE, a quadratic in mu:
-        the zeros of its discriminant and of its leading coefficient.
+        Explicit multistep: none, as mu = rho / sigma has one value, and where it is infinite nothing is stable.
+        Implicit multistep: the zeros of sigma. One step, z = R(mu): R at the zeros of R', and at infinity. PECE, a
+        quadratic in mu: the zeros of its discriminant and of its leading coefficient.
         """
         if self.table.shape[1] == 2:
-            return np.zeros(0, complex)
+            return polyroots(self.table[:, 1]).astype(complex) if self.implicit else np.zeros(0, complex)
         if self.steps == 1:
-            growth = -self.table[0] / self.table[1, 0]
+            numerator, denominator = -self.table[0], self.table[1]
+            if not self.implicit:
+                numerator, denominator = numerator / denominator[0], np.ones(1)
+            slope = polysub(polymul(polyder(numerator), denominator), polymul(numerator, polyder(denominator)))
+            flat = polyroots(np.trim_zeros(slope, "b")).astype(complex)
             with np.errstate(all="ignore"):
-                values = polyval(polyroots(polyder(growth)).astype(complex), growth)
+                values = polyval(flat, numerator) / polyval(flat, denominator)
+                values = np.append(values, numerator[-1] / self.table[1, -1])
             return np.asarray(values[np.isfinite(values)], complex)
         constant, linear, quadratic = self.table.T
         discriminant = polysub(polymul(linear, linear), 4 * polymul(constant, quadratic))
@@ -107,14 +126,38 @@ def _floats(method: Method, exact: Sequence[Fraction | Sequence[Fraction]]) -> F
 def roots_in_z(pencil: Pencil, mu: ComplexArray) -> ComplexArray:
     """Return all z with pi(z, mu) = 0; complex, shape (steps, mu.size) for a row of mu, dimensionless.
 
-    NumericalError if one leaves the range of float64.
+    NumericalError if one leaves the range of float64, or is infinite: there an implicit step has no solution.
     """
     z = roots_of_table(pencil.table, mu)
-    finite = np.isfinite(z).all(axis=0)
+    finite = np.isfinite(z).all(axis=0) & ~has_infinite_root(pencil, mu)
     if not finite.all():
-        worst = mu[~finite][0]
-        raise NumericalError(f"{pencil.method.name}: at mu = {worst:.6g} a pole leaves the range of float64")
+        raise_not_finite(pencil, mu[~finite])
     return z
+
+
+def raise_not_finite(pencil: Pencil, mu: ComplexArray) -> None:
+    """Raise NumericalError for a row of mu (one at least) at which a root is not finite."""
+    name, worst = pencil.method.name, mu[0]
+    if has_infinite_root(pencil, mu[:1])[0]:
+        raise NumericalError(f"{name}: at mu = {worst:.6g} a pole is infinite: the implicit step has no solution there")
+    raise NumericalError(f"{name}: at mu = {worst:.6g} a pole leaves the range of float64")
+
+
+def has_infinite_root(pencil: Pencil, mu: ComplexArray) -> BoolArray:
+    """Return at which of a row of finite mu a root z is infinite, to rounding: the leading coefficient vanishes."""
+    if not pencil.implicit:
+        return np.zeros(mu.shape, bool)
+    with np.errstate(all="ignore"):  # of mu whose powers overflow
+        leading = polyval(mu, pencil.table[-1])
+        size = polyval(np.abs(mu), np.abs(pencil.table[-1]))
+        vanishes: BoolArray = (np.abs(leading) <= LEADING * size) & np.isfinite(size)
+    return vanishes
+
+
+def moduli_in_z(pencil: Pencil, mu: ComplexArray) -> FloatArray:
+    """Return the moduli of all roots z at each of a row of mu, infinite for all where one is; shape as roots_in_z."""
+    z_abs = np.abs(roots_of_table(pencil.table, mu))
+    return np.asarray(np.where(np.isnan(z_abs).any(axis=0), np.inf, z_abs))
 
 
 def roots_in_mu(pencil: Pencil, z: ComplexArray) -> ComplexArray:

@@ -23,7 +23,16 @@ from bezstab.methods import closed_loop_at, is_schur
 from bezstab.stability.arrays import FloatArray
 from bezstab.stability.boundary_locus import Bounds
 from bezstab.stability.line_crossings import arc_crossings, crossed_levels
-from bezstab.stability.line_slices import Slices, all_inside, island_radii, mu_bound, real_events, slices, turning_radii
+from bezstab.stability.line_slices import (
+    RIM,
+    Slices,
+    all_inside,
+    island_radii,
+    mu_bound,
+    real_events,
+    slices,
+    turning_radii,
+)
 from bezstab.stability.pencils import Pencil, roots_in_mu
 
 PANELS = 8  # with as many nodes, 64 lines over what the region covers: each costs 5 to 20 us, a region 20 to 500 ms
@@ -54,7 +63,7 @@ def check_region(pencil: Pencil, level: float, bounds: Bounds, area: float, curv
     bound, events = mu_bound(pencil, level), real_events(pencil, level)
     _check_islands(pencil, level, bounds)
     _check_intervals(pencil, level, bounds)
-    t, weight = _lines_through(in_feedback)
+    t, weight = _lines_through(in_feedback, bounds.radius / RIM)
     beyond = _lines_beyond(pencil, level, in_feedback, bound, events)
     everything = np.concatenate([t, beyond])
     q = everything * np.abs(everything)
@@ -75,12 +84,13 @@ def check_region(pencil: Pencil, level: float, bounds: Bounds, area: float, curv
         )
 
 
-def _lines_through(curves: list[FloatArray]) -> tuple[FloatArray, FloatArray]:
+def _lines_through(curves: list[FloatArray], shapely: float) -> tuple[FloatArray, FloatArray]:
     """Return nodes t = sign(q) sqrt|q|, ascending, and their weights: panels over each curve's own range.
 
-    Each curve by itself, because a part of the region may be 1e-6 of the size of its distance to another.
+    Each curve by itself, because a part of the region may be 1e-6 of the size of its distance to another; and panels
+    over what has a shape, up to `shapely` (of |mu|), where curves go on beyond it.
     """
-    ends = []
+    ends = [np.linspace(-shapely, shapely, 2 * PANELS + 1)] if curves and shapely < np.inf else []
     for curve in sorted(curves, key=len, reverse=True)[:MOST_CURVES]:
         signed = np.sign(curve[:, 1]) * np.sqrt(np.abs(curve[:, 1]))
         if np.ptp(signed) > THIN * np.abs(signed).max():
@@ -119,9 +129,10 @@ def _check_islands(pencil: Pencil, level: float, bounds: Bounds) -> None:
     if pencil.steps > 1:
         return
     zeros = roots_in_mu(pencil, np.zeros(1, complex))[:, 0]
+    zeros = zeros[np.isfinite(zeros)]
     for zero in zeros[np.abs(zeros.imag) <= REAL_ZERO * np.abs(zeros)].real.tolist():
         slope = abs(float(polyval(zero, polyder(pencil.table[0]))))
-        if slope * WELL_WIDE * abs(zero) > level:
+        if slope * WELL_WIDE * abs(zero) > level * abs(float(polyval(zero, pencil.table[1]))):
             continue  # too narrow for float64
         if not any(start < zero < end for start, end in bounds.intervals):
             raise NumericalError(f"{pencil.method.name}: |z_p| < {level:g} around mu = {zero:.6g} was not found")
@@ -147,6 +158,7 @@ def _check_intervals(pencil: Pencil, level: float, bounds: Bounds) -> None:
     clear = np.tile(within > END_ROUNDING * np.abs(ends).max(axis=1), 4)
     always = np.full(len(ends), True)
     clear &= np.concatenate([always, always, gap_below > within, gap_above > within])  # some touch each other
+    clear &= np.abs(mu) < bounds.radius  # an end on the rim is none of the method's
     contradicted = clear & (all_inside(pencil, mu.astype(complex), level) != expected)
     for place in np.flatnonzero(contradicted):
         exact_mu = Fraction(float(mu[place]))
@@ -178,7 +190,7 @@ def proven_inside(pencil: Pencil, level: float, p: Fraction, q: Fraction) -> boo
     alpha_hat, beta_hat = (d * p - b * q) / determinant, (a * q - c * p) / determinant
     polynomial = closed_loop_at(pencil.method, alpha_hat, beta_hat)
     scale, degree = Fraction(level), len(polynomial) - 1
-    return is_schur([c * scale ** (degree - i) for i, c in enumerate(polynomial)])
+    return polynomial[0] != 0 and is_schur([c * scale ** (degree - i) for i, c in enumerate(polynomial)])
 
 
 def _check_lengths(

@@ -54,7 +54,7 @@ def map_cost(method: Method, count: int) -> MapCost:
         quality=next((name for name, points in QUALITY.items() if points == count), None),
         seconds=seconds,
         megabytes=megabytes,
-        area_error=float(abs(cell * np.count_nonzero(z_abs < 1) / exact.area - 1)),
+        area_error=float(abs(cell * np.count_nonzero(z_abs < 1) / (exact.area or np.nan) - 1)),
         boundary_error=float(np.median(off)),
         boundary_error_max=float(off.max()),
     )

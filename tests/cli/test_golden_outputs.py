@@ -62,10 +62,13 @@ TOLERANCES = (
 """The first that fits both command and key."""
 
 ADDED = (
-    "beta_hat_min",
+    *("beta_hat_min", "best_reason", "searched"),
+    *("bounded", "stable_for_all", "unconditional_damping_ratio", "critical_damping_limit"),
     *("implicit", "digits", "order_position_forces", "order_velocity_forces", "group"),
 )
-"""Keys that rows have got since, in their place: the least beta_hat of a region, and more of what a method is."""
+"""Keys that rows have got since, in their place: of a region its least beta_hat, and for which steps it is stable; of a
+method what it is.
+"""
 
 
 def tolerance(command: str, key: str) -> Tolerance:

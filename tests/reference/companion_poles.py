@@ -35,7 +35,7 @@ def eigenvalues(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> 
     c = polynomial_at(method, alpha_hat, beta_hat)
     n = len(c) - 1
     companion = np.zeros((*alpha_hat.shape, n, n))
-    companion[..., 0, :] = -np.moveaxis(c[1:], 0, -1)
+    companion[..., 0, :] = -np.moveaxis(c[1:] / c[0], 0, -1)  # c[0] is one but for an implicit method
     companion[..., range(1, n), range(n - 1)] = 1
     return np.linalg.eigvals(companion).astype(complex)
 

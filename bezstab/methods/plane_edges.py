@@ -1,0 +1,349 @@
+r"""Where the plane of a second-order scheme may change from stable to unstable: exact curves, and where they turn.
+
+A root leaves the disc |z| < r through z = r, through z = -r, as a pair through the circle, or from infinity. With the
+coefficients c_k of P(r z), polynomials in alpha_hat and beta_hat, that is where one of four polynomials vanishes:
+
+    P(r)      P(-r)      c_n      c_n^(n-1) prod_{i<j} (1 - z_i z_j) = det(X - Y)        (E. I. Jury, Theory and
+                                                                                         Application of the z-Transform
+              X = | c_n  c_n-1 ... c_2 |          Y = |           c_0   |                Method, 1964, section 3.5)
+                  |      c_n   ... c_3 |              |      c_0  c_1   |
+                  |            ... c_n |              | c_0  ...  c_n-2 |
+
+Their irreducible factors cross a line of constant beta_hat at places that neither meet nor vanish as long as beta_hat
+passes no zero of a leading coefficient, a discriminant or a resultant: those are the levels. Between two levels the
+crossings keep their number and order, so one line there tells all (cylindrical decomposition, G. E. Collins, 1975).
+
+      beta_hat |   \    /                level: two crossings meet (a resultant vanishes)
+        - - - -| - -\- / - - -
+               |     \/   ____
+        - - - -| - - /\ -/- - -\-  -     level: a crossing turns (a discriminant)
+               |    /  \ \____ /
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache
+from itertools import combinations, pairwise
+from math import gcd, lcm
+
+import sympy as sp
+from sympy.polys.matrices import DomainMatrix
+
+from bezstab.methods.schemes import ONE, ZERO, Method
+from bezstab.methods.schur import is_schur
+from bezstab.methods.shared_factors import reduced_table
+
+A, B = sp.symbols("alpha_hat beta_hat")
+RING = sp.QQ[A, B]
+
+LONG = 300  # bits of a coefficient: factors are looked for modulo primes of a multiple of that
+LEVEL_BITS = 70  # of a level, relative: float64 has 53
+
+CurveTable = tuple[tuple[Fraction, ...], ...]
+"""A polynomial in alpha_hat and beta_hat: table[i][j] belongs to alpha_hat^i beta_hat^j."""
+
+
+@dataclass(frozen=True)
+class Strip:
+    """The plane between two levels of beta_hat (None: unbounded): on each line the crossings are in one order.
+
+    crossings: from left to right, each as (curve's number, its number among the crossings of that curve). stable:
+    whether |z_p| < r left of the first, between each two, and right of the last: one more than crossings.
+    """
+
+    low: Fraction | None
+    high: Fraction | None
+    crossings: tuple[tuple[int, int], ...]
+    stable: tuple[bool, ...]
+
+
+@dataclass(frozen=True)
+class PlaneStrips:
+    """The whole plane in strips, from below to above, and the curves whose crossings they count.
+
+    Levels are exact to LEVEL_BITS bits, everything else is exact. `lost[i]` has for curve number i the levels at which
+    crossings run to infinity, with their number, complex ones included.
+    """
+
+    curves: tuple[CurveTable, ...]
+    strips: tuple[Strip, ...]
+    lost: tuple[dict[Fraction, int], ...]
+
+
+@cache
+def plane_strips(method: Method, level: Fraction) -> PlaneStrips | None:
+    """Return the plane of a second-order scheme cut where |z_p| < level may begin or end; None if that is nowhere.
+
+    Proven: Schur's recursion in rationals decides one point of each cell. Roots that no feedback moves are left out.
+    """
+    coefficients = _coefficients(reduced_table(method), level)
+    edges = _edges(coefficients)
+    if any(not edge for edge in edges):
+        return None  # a pair z_i z_j = r^2, or a root +-r, everywhere
+    factors = _factors(edges)
+    curves = [factor for factor in factors if factor.degree(A) > 0]
+    levels, lost = _levels(factors, curves)
+    between = _between(list(levels))
+    ends = [None, *levels, None]
+    strips = []
+    for (low, high), beta_hat in zip(pairwise(ends), between, strict=True):
+        crossings, places = _crossings(curves, beta_hat)
+        stable = tuple(is_schur(_at(coefficients, alpha_hat, beta_hat)) for alpha_hat in _between(places))
+        strips.append(Strip(low, high, crossings, stable))
+    return PlaneStrips(tuple(_table(curve) for curve in curves), tuple(strips), tuple(lost))
+
+
+def _coefficients(table: Iterable[CurveTable], level: Fraction) -> list[sp.Poly]:
+    """Return the coefficients of P(level z), ascending, without a factor that all of them share."""
+    coefficients = []
+    for k, in_plane in enumerate(table):
+        terms = {
+            (i, j): sp.Rational(c.numerator, c.denominator) * sp.Rational(level.numerator, level.denominator) ** k
+            for i, row in enumerate(in_plane)
+            for j, c in enumerate(row)
+            if c
+        }
+        coefficients.append(sp.Poly(terms or {(0, 0): 0}, A, B, domain=sp.QQ))
+    shared = coefficients[-1]
+    for coefficient in coefficients[:-1]:
+        shared = sp.gcd(shared, coefficient)
+    return [coefficient.exquo(shared) for coefficient in coefficients]
+
+
+def _at(coefficients: list[sp.Poly], alpha_hat: Fraction, beta_hat: Fraction) -> list[Fraction]:
+    """Return the coefficients at a point, descending in z."""
+    return [_value(_table(coefficient), alpha_hat, beta_hat) for coefficient in reversed(coefficients)]
+
+
+def _value(table: CurveTable, alpha_hat: Fraction, beta_hat: Fraction) -> Fraction:
+    total = ZERO
+    for row in reversed(table):
+        in_beta = ZERO
+        for c in reversed(row):
+            in_beta = in_beta * beta_hat + c
+        total = total * alpha_hat + in_beta
+    return total
+
+
+@cache
+def _table(polynomial: sp.Poly) -> CurveTable:
+    terms = {powers: Fraction(int(c.p), int(c.q)) for powers, c in polynomial.terms()}
+    highest = [max(powers[axis] for powers in terms) for axis in (0, 1)]
+    return tuple(tuple(terms.get((i, j), ZERO) for j in range(highest[1] + 1)) for i in range(highest[0] + 1))
+
+
+def _edges(coefficients: list[sp.Poly]) -> list[sp.Poly]:
+    """Return the four polynomials that vanish where a root may pass the circle."""
+    n = len(coefficients) - 1
+    at_one = sum(coefficients[1:], coefficients[0])
+    at_minus_one = sum((c if k % 2 == 0 else -c for k, c in enumerate(coefficients)), sp.Poly(0, A, B, domain=sp.QQ))
+    edges = [at_one, at_minus_one, coefficients[n]]
+    if n < 2:
+        return edges
+    rows = []
+    for i in range(n - 1):
+        row = []
+        for j in range(n - 1):
+            entry = RING.zero
+            if j >= i:
+                entry += RING.from_sympy(coefficients[n - (j - i)].as_expr())
+            if j >= n - 2 - i:
+                entry -= RING.from_sympy(coefficients[j - (n - 2 - i)].as_expr())
+            row.append(entry)
+        rows.append(row)
+    pairs = DomainMatrix(rows, (n - 1, n - 1), RING).charpoly()[-1]
+    return [*edges, sp.Poly(RING.to_sympy(pairs), A, B, domain=sp.QQ)]
+
+
+def _factors(polynomials: Iterable[sp.Poly]) -> list[sp.Poly]:
+    """Return polynomials without multiple or common factors whose product has the same zeros, with whole coefficients.
+
+    Irreducible ones but where coefficients are so long, of rationals in place of irrational numbers, that to find them
+    takes longer than all the rest.
+    """
+    long = any(_length(polynomial) > LONG for polynomial in polynomials)
+    found: list[sp.Poly] = []
+    for polynomial in polynomials:
+        for part in _parts(polynomial, long):
+            new = part
+            for other in list(found):
+                shared = sp.gcd(new, other)
+                if not shared.is_ground:
+                    found.remove(other)
+                    found += [shared, other.exquo(shared)]
+                    new = new.exquo(shared)
+            found.append(new)
+    return [_primitive(each) for each in found if not each.is_ground]
+
+
+def _parts(polynomial: sp.Poly, long: bool) -> list[sp.Poly]:
+    """Return irreducible factors; of long polynomials those of one multiplicity; apart what beta_hat alone moves."""
+    if not long:
+        return [factor for factor, _ in polynomial.factor_list()[1]]
+    parts = []
+    for part, _ in polynomial.sqf_list()[1]:
+        in_alpha = [sp.Poly(c, A, B, domain=sp.QQ) for c in sp.Poly(part.as_expr(), A).all_coeffs()]
+        content = in_alpha[0]
+        for c in in_alpha[1:]:
+            content = sp.gcd(content, c)
+        parts += [each for each in (content, part.exquo(content)) if not each.is_ground]
+    return parts
+
+
+def _length(polynomial: sp.Poly) -> int:
+    """Return the bits of the longest coefficient, as whole numbers without a common factor."""
+    return max(int(c).bit_length() for c in _primitive(polynomial).coeffs())
+
+
+def _primitive(polynomial: sp.Poly) -> sp.Poly:
+    """Return a multiple with whole coefficients that share no factor, the first positive."""
+    _, whole = polynomial.clear_denoms(convert=True)
+    _, primitive = whole.primitive()
+    return primitive if primitive.LC() > 0 else -primitive
+
+
+def _levels(factors: list[sp.Poly], curves: list[sp.Poly]) -> tuple[list[Fraction], list[dict[Fraction, int]]]:
+    """Return the ascending beta_hat at which the crossings may change, and for each curve those where some are lost."""
+    in_beta = [sp.Poly(factor.as_expr(), B) for factor in factors if factor.degree(A) == 0]
+    for curve in curves:
+        in_beta.append(_leading(curve))
+        in_beta.append(sp.Poly(curve.discriminant().as_expr(), B))
+    for first, second in combinations(curves, 2):
+        in_beta.append(sp.Poly(first.resultant(second).as_expr(), B))
+    different: dict[tuple[int, ...], None] = {}
+    for polynomial in in_beta:
+        for factor, _ in polynomial.factor_list()[1]:
+            different[_whole(factor)] = None
+    roots = {factor: real_roots(factor) for factor in different if len(factor) > 1}
+    levels = sorted(root for found in roots.values() for root in found)
+    lost = []
+    for curve in curves:
+        of_curve = {}
+        top = [sp.Poly(c, B) for c in sp.Poly(curve.as_expr(), A).all_coeffs()]
+        for factor, _ in top[0].factor_list()[1]:
+            number = 0  # of leading coefficients that vanish together
+            while number < len(top) and (top[number].is_zero or top[number].rem(factor).is_zero):
+                number += 1
+            of_curve.update(dict.fromkeys(roots.get(_whole(factor), []), number))
+        lost.append(of_curve)
+    return levels, lost
+
+
+def _leading(curve: sp.Poly) -> sp.Poly:
+    return sp.Poly(sp.Poly(curve.as_expr(), A).LC(), B)
+
+
+def _whole(polynomial: sp.Poly) -> tuple[int, ...]:
+    """Return the coefficients, descending, as whole numbers without a common factor, the first positive."""
+    fractions = [Fraction(int(c.p), int(c.q)) for c in polynomial.set_domain(sp.QQ).all_coeffs()]
+    scale = lcm(*(c.denominator for c in fractions))
+    whole = [int(c * scale) for c in fractions]
+    shared = gcd(*whole) * (1 if whole[0] > 0 else -1)
+    return tuple(c // shared for c in whole)
+
+
+@cache
+def real_roots(whole: tuple[int, ...]) -> tuple[Fraction, ...]:
+    """Return the real roots of an irreducible polynomial with whole coefficients, descending powers, ascending.
+
+    Exact where they are rational, else to LEVEL_BITS bits.
+    """
+    if len(whole) == 2:
+        return (Fraction(-whole[1], whole[0]),)
+    polynomial = sp.Poly(whole, B)
+    return tuple(
+        _refined(whole, Fraction(int(low.p), int(low.q)), Fraction(int(high.p), int(high.q)))
+        for (low, high), _ in polynomial.intervals()
+    )
+
+
+def _refined(whole: tuple[int, ...], low: Fraction, high: Fraction) -> Fraction:
+    """Return the one root between two numbers, by bisection on a grid of binary fractions."""
+    if low == high:
+        return low
+    bits = LEVEL_BITS
+    size = max(abs(low), abs(high))
+    bits += max(0, -_exponent(size)) + 4
+    while True:
+        below, above = int(low * (1 << bits)) - 1, int(high * (1 << bits)) + 1
+        below, above = _bisected(
+            whole, bits, max(low, Fraction(below, 1 << bits)), min(high, Fraction(above, 1 << bits))
+        )
+        root = Fraction(below + above, 2 << bits)
+        if root and _exponent(abs(root)) + bits >= LEVEL_BITS:
+            return root
+        bits *= 2  # nearer to zero than the interval told
+
+
+def _bisected(whole: tuple[int, ...], bits: int, low: Fraction, high: Fraction) -> tuple[int, int]:
+    """Return neighbours on the grid of 2^-bits that enclose the root."""
+    slope = tuple(c * (len(whole) - 1 - i) for i, c in enumerate(whole[:-1]))
+    rising = (_sign(whole, low) or _sign(slope, low)) < 0  # another root may lie at the end of the interval
+    below, above = int(low * (1 << bits)) - 1, int(high * (1 << bits)) + 1
+    while above - below > 1:
+        middle = (below + above) // 2
+        place = Fraction(middle, 1 << bits)
+        before = place <= low or (place < high and (_sign(whole, place) < 0) == rising)
+        below, above = (middle, above) if before else (below, middle)
+    return below, above
+
+
+def _sign(whole: tuple[int, ...], x: Fraction) -> int:
+    """Return a number with the sign of the polynomial at x: its value times a power of x's denominator."""
+    total, scale = 0, 1
+    for c in whole:
+        total = total * x.numerator + c * scale
+        scale *= x.denominator
+    return total
+
+
+def _exponent(x: Fraction) -> int:
+    """Return about log2 of a positive number, rounded down."""
+    return x.numerator.bit_length() - x.denominator.bit_length() - 1
+
+
+def _between(ascending: list[Fraction]) -> list[Fraction]:
+    """Return a number below all, one between each two, and one above all, with short numerators."""
+    if not ascending:
+        return [ONE]
+    below, above = Fraction(int(ascending[0]) - 1), Fraction(int(ascending[-1]) + 1)
+    if below >= ascending[0]:
+        below -= 1
+    if above <= ascending[-1]:
+        above += 1
+    return [below, *(_shortest_between(low, high) for low, high in pairwise(ascending)), above]
+
+
+def _shortest_between(low: Fraction, high: Fraction) -> Fraction:
+    """Return a binary fraction in the middle third between two numbers."""
+    bits = max(0, 2 - _exponent(high - low))
+    return Fraction(round((low + high) / 2 * (1 << bits)), 1 << bits)
+
+
+def _crossings(curves: list[sp.Poly], beta_hat: Fraction) -> tuple[tuple[tuple[int, int], ...], list[Fraction]]:
+    """Return the crossings with a line between levels, from left to right, and numbers that are in their order."""
+    lines = []
+    for curve in curves:
+        table = _table(curve)
+        values = [_value((row,), ZERO, beta_hat) for row in table]
+        lines.append(sp.Poly([sp.Rational(v.numerator, v.denominator) for v in reversed(values)], A, domain=sp.QQ))
+    found = []
+    for number, line in enumerate(lines):
+        for k, root in enumerate(_line_roots(line)):
+            found.append((root, (number, k)))
+    found.sort()
+    return tuple(crossing for _, crossing in found), [root for root, _ in found]
+
+
+def _line_roots(line: sp.Poly) -> list[Fraction]:
+    """Return the simple real roots of a polynomial in alpha_hat, ascending, to LEVEL_BITS bits."""
+    whole = _whole(line)
+    if len(whole) < 2:
+        return []
+    if len(whole) == 2:
+        return [Fraction(-whole[1], whole[0])]
+    return [
+        _refined(whole, Fraction(int(low.p), int(low.q)), Fraction(int(high.p), int(high.q)))
+        for (low, high), _ in sp.Poly(whole, A).intervals()
+    ]

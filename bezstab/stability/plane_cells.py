@@ -1,0 +1,460 @@
+r"""The stable cells of a second-order scheme's plane in float64: their edges as functions, their area, extent, curves.
+
+plane_strips (methods) has proven which cells of each strip are stable and what bounds them. What remains is to follow
+edges: real roots alpha_hat of a polynomial whose coefficients depend on beta_hat, in their proven order.
+
+      beta_hat |        ______________      level: what is stable below and not above is a level edge
+               |       /   stable    /
+               | edge (    cell     (  edge: the k-th real root of a curve along the strip
+               |       \_____________\      level
+               +-------------------------- alpha_hat
+
+The area is the integral of the cells' width over beta_hat. At a level a width may begin like any root of the distance:
+tanh-sinh quadrature does not mind (H. Takahasi & M. Mori, Publ. RIMS 9, 1974).
+"""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+
+import numpy as np
+
+from bezstab.errors import NumericalError
+from bezstab.methods import CurveTable, PlaneStrips, Strip
+from bezstab.stability.arrays import ComplexArray, FloatArray
+from bezstab.stability.exact_sums import double_polynomial, split
+from bezstab.stability.searches import zoom_on_minimum
+
+POLISH = 3  # steps of Newton's method on a root that companion eigenvalues have to a few eps of the largest
+SETTLED = 1e-4  # of a root: a larger step does not polish but leads away
+EIGENVALUE_ERROR = 1e-13  # of the largest root: beyond what eigenvalues leave of a small one
+REFINED = 1e-6  # of a root: what float64 may be off by, unless two roots meet
+QUADRATURE_STEP = 1 / 16  # of tanh-sinh, in whose plane integrands with roots at their ends are analytic
+QUADRATURE_END = 3.2  # beyond it the weights are below 1e-16
+AGREEING = 1e-9  # of an integral: half the nodes so near to all say that all are good to rounding
+NEGLIGIBLE = 1e-14  # of the area: a part that is off by less need not be halved
+MOST_HALVINGS = 12  # of a strip in which a singularity lies close
+DRAWN = 160  # points of an edge along its strip
+TURN_ROUNDS = 12  # of zooming on an edge's furthest point: its place to 1e-8 leaves its value at rounding
+NEAR_LEVEL = 1e-10  # of a strip: so near to a level crossings that are lost are far from the others
+BESIDE_LEVEL = 1e-13  # of a strip: nearer to a level, a crossing that is lost there may show at the wrong infinity
+JOINED = 1e-6  # of what is seen: two roots that meet are known to the root of rounding
+ROUNDING = 1e-13  # of a range: an end this close to an axis lies on it
+LEAST_VIEW = 4.0  # alpha_hat and beta_hat: of a region without corners but the origin, that much is shown
+OUT_OF_VIEW = 3.0  # times what is to be seen: curves that go on are drawn so far
+
+Extent = tuple[tuple[float, float], tuple[float, float]]
+Crossing = tuple[int, int]
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A stable cell: its strip, and the crossings that bound it on the left and on the right (None: unbounded).
+
+    `low` and `high` are the ends of the strip; `goes_left`, `goes_right`: whether alpha_hat has no limit in it.
+    """
+
+    low: float
+    high: float
+    left: Crossing | None
+    right: Crossing | None
+    goes_left: bool
+    goes_right: bool
+
+
+@dataclass(frozen=True)
+class PlaneShape:
+    """What a region is: stable cells, area (None: unbounded), extent, a finite view of it, and its boundary curves."""
+
+    cells: tuple[Cell, ...]
+    area: float | None
+    extent: Extent
+    view: Extent
+    curves: tuple[FloatArray, ...]
+
+
+class Edges:
+    """The edges of all strips as functions of beta_hat, in float64; a strip is known by its lower end."""
+
+    def __init__(self, strips: PlaneStrips) -> None:
+        self._split = [_split(curve) for curve in strips.curves]
+        self.tables = [np.array(curve)[:, :, 0] for curve in self._split]
+        self._slopes = [np.polynomial.polynomial.polyder(table, axis=0) for table in self.tables]
+        self._counts: dict[tuple[float, int], int] = {}
+        self._spans: dict[tuple[float, int], tuple[float, float]] = {}
+        for strip in strips.strips:
+            low, high = _end(strip.low, -1), _end(strip.high, 1)
+            for number, lost in enumerate(strips.lost):
+                self._counts[low, number] = sum(crossing[0] == number for crossing in strip.crossings)
+                width = high - low if np.isfinite(high - low) else 1.0
+                off = [BESIDE_LEVEL * max(width, abs(end)) if np.isfinite(end) else 0.0 for end in (low, high)]
+                self._spans[low, number] = (
+                    low + (off[0] if strip.low in lost else 0.0),
+                    high - (off[1] if strip.high in lost else 0.0),
+                )
+
+    def places(self, crossing: Crossing, low: float, beta_hat: FloatArray) -> FloatArray:
+        """Return alpha_hat of one crossing with lines in the strip that begins at low; the shape of beta_hat.
+
+        On a level at which a crossing of the same curve is lost, it is taken just beside, in the strip.
+        """
+        number, k = crossing
+        levels = np.clip(beta_hat, *self._spans[low, number])
+        coefficients = np.stack([np.polynomial.polynomial.polyval(levels, row) for row in self.tables[number]])
+        return np.asarray(_real_roots(coefficients, self._counts[low, number])[k])
+
+    def exact_places(self, crossing: Crossing, low: float, beta_hat: FloatArray) -> FloatArray:
+        """Return what `places` does, to rounding: one more step of Newton's method with the curve's exact value."""
+        number, _ = crossing
+        place = self.places(crossing, low, beta_hat)
+        high, rest = double_polynomial(self._split[number], place, beta_hat)
+        slope = np.polynomial.polynomial.polyval2d(place, beta_hat, self._slopes[number])
+        with np.errstate(all="ignore"):
+            step = (high + rest) / slope
+        return place - np.where(np.abs(step) < REFINED * np.abs(place), step, 0)
+
+
+def _split(curve: CurveTable) -> list[list[tuple[float, float]]]:
+    """Return a curve's coefficients as sums of two float64, the largest one: they may have hundreds of digits."""
+    largest = max(abs(c) for row in curve for c in row)
+    return [[split(c / largest) for c in row] for row in curve]
+
+
+def _end(level: Fraction | None, sign: int) -> float:
+    return sign * np.inf if level is None else float(level)
+
+
+def _real_roots(coefficients: FloatArray, count: int) -> FloatArray:
+    """Return so many real roots of each polynomial, ascending; coefficients ascending, shape (n + 1, lines)."""
+    with np.errstate(all="ignore"):
+        if len(coefficients) == 2:
+            return np.asarray(-coefficients[:1] / coefficients[1])
+        if len(coefficients) == 3:
+            return _quadratic_places(*coefficients)
+        monic = coefficients[:-1] / coefficients[-1]
+        n, lines = monic.shape
+        lost = ~np.isfinite(monic).all(axis=0)
+        companion = np.zeros((lines, n, n))
+        companion[:, range(1, n), range(n - 1)] = 1
+        companion[:, :, -1] = -np.where(lost, 0, monic).T
+        roots = np.linalg.eigvals(companion).astype(complex)
+        x = np.sort(_most_real(roots, count), axis=1).T
+        allowed = np.maximum(SETTLED * np.abs(x), EIGENVALUE_ERROR * np.abs(roots).max(axis=1))
+        for _ in range(POLISH):
+            value = np.broadcast_to(coefficients[-1], x.shape)
+            slope = np.zeros_like(x)
+            for coefficient in coefficients[-2::-1]:
+                slope = slope * x + value
+                value = value * x + coefficient
+            step = value / slope
+            x = x - np.where(np.abs(step) < allowed, step, 0)
+        return np.where(lost, np.inf, x)
+
+
+def _quadratic_places(constant: FloatArray, linear: FloatArray, square: FloatArray) -> FloatArray:
+    """Return both real roots, ascending: touching where rounding makes the discriminant negative."""
+    further = -(linear / 2 + np.copysign(np.sqrt(np.maximum(0, linear**2 / 4 - square * constant)), linear))
+    roots = np.stack([further / square, np.where(further == 0, 0, constant / further)])
+    return np.where(np.isfinite(roots).all(axis=0), np.sort(roots, axis=0), np.inf)
+
+
+def _most_real(roots: ComplexArray, count: int) -> FloatArray:
+    """Return of each line's roots those so many that are real; shape (lines, count).
+
+    Near a level rounding may turn a close pair of real roots into a conjugate one, or the other way about.
+    """
+    real = roots.imag == 0
+    order = np.argsort(np.abs(roots.imag), axis=1, kind="stable")
+    chosen = np.take_along_axis(roots.real, order[:, :count], axis=1)
+    for line in np.flatnonzero(real.sum(axis=1) > count):
+        x = np.sort(roots[line].real[real[line]])
+        while len(x) > count + 1:
+            closest = int(np.argmin(np.diff(x)))
+            x = np.delete(x, [closest, closest + 1])
+        chosen[line] = x[:count]
+    return chosen
+
+
+def plane_shape(strips: PlaneStrips, edges: Edges, name: str) -> PlaneShape | None:
+    """Return the region that the stable cells make; None if there are none. NumericalError if it cannot be integrated.
+
+    `name` is what such an error is about.
+    """
+    cells = tuple(cell for strip in strips.strips for cell in _stable_cells(strips, strip, edges))
+    if not cells:
+        return None
+    corners = _turns(edges, cells)
+    extent = _extent(cells, corners)
+    view = _view(extent, corners)
+    bounded = bool(np.isfinite(extent).all())
+    area = _area(edges, cells, name) if bounded else None
+    return PlaneShape(cells, area, extent, view, tuple(_curves(edges, cells, view, bounded, name)))
+
+
+def _stable_cells(strips: PlaneStrips, strip: Strip, edges: Edges) -> list[Cell]:
+    low, high = _end(strip.low, -1), _end(strip.high, 1)
+    walls = [None, *strip.crossings, None]
+    cells = []
+    for k, stable in enumerate(strip.stable):
+        if not stable:
+            continue
+        left, right = walls[k], walls[k + 1]
+        limits = [_lost_to(strips, strip, edges, crossing) for crossing in (left, right)]
+        cells.append(
+            Cell(
+                low,
+                high,
+                left,
+                right,
+                goes_left=left is None or -1 in limits[0] or -1 in limits[1],
+                goes_right=right is None or 1 in limits[1] or 1 in limits[0],
+            )
+        )
+    return cells
+
+
+def _lost_to(strips: PlaneStrips, strip: Strip, edges: Edges, crossing: Crossing | None) -> set[int]:
+    """Return the signs of infinity that a crossing runs to at the strip's ends; without end, it may run to either."""
+    if crossing is None:
+        return set()
+    number, _ = crossing
+    table = edges.tables[number]
+    signs = set()
+    for level, inwards in ((strip.low, 1), (strip.high, -1)):
+        if level is None:
+            continue
+        lost = strips.lost[number].get(level, 0)
+        if not lost:
+            continue
+        width = _width(strip)
+        beta_hat = float(level) + inwards * NEAR_LEVEL * width
+        exact = [np.polynomial.polynomial.polyval(beta_hat, row) for row in table]
+        sizes = np.sort(np.abs(np.polynomial.polynomial.polyroots(exact)))
+        place = float(edges.places(crossing, _end(strip.low, -1), np.array([beta_hat]))[0])
+        if abs(place) >= sizes[-lost] * (1 - JOINED):
+            signs.add(1 if place > 0 else -1)
+    return signs
+
+
+def _width(strip: Strip) -> float:
+    if strip.low is None or strip.high is None:
+        return 1.0
+    return float(strip.high - strip.low)
+
+
+def _span(cell: Cell) -> tuple[float, float]:
+    """Return the ends of a cell's strip, an infinite one moved to where its edges have taken their course."""
+    low, high = cell.low, cell.high
+    if not np.isfinite(low):
+        low = (high if np.isfinite(high) else 0.0) - OUT_OF_VIEW * LEAST_VIEW
+    if not np.isfinite(high):
+        high = (cell.low if np.isfinite(cell.low) else 0.0) + OUT_OF_VIEW * LEAST_VIEW
+    return low, high
+
+
+def _drawn_levels(low: float, high: float) -> FloatArray:
+    """Return beta_hat along a strip, closer together towards its ends, where edges may turn."""
+    angle = np.linspace(0, np.pi, DRAWN)
+    levels = (low + high) / 2 - (high - low) / 2 * np.cos(angle)
+    levels[0], levels[-1] = low, high
+    return levels
+
+
+def _turns(edges: Edges, cells: tuple[Cell, ...]) -> FloatArray:
+    """Return the corners of all cells and each edge's furthest points within its strip; shape (points, 2), finite."""
+    points = []
+    for cell in cells:
+        low, high = _span(cell)
+        levels = _drawn_levels(low, high)
+        inside = np.isfinite([cell.low, cell.high])
+        for crossing in (cell.left, cell.right):
+            if crossing is None:
+                points.append([(0.0, level) for level in (cell.low, cell.high) if np.isfinite(level)])
+                continue
+            place = edges.places(crossing, cell.low, levels)
+            points.append(
+                [(place[end], levels[end]) for end, is_level in zip((0, -1), inside, strict=True) if is_level]
+            )
+            for sign in (1, -1):
+                within = sign * place[1:-1]
+                turning = 1 + np.flatnonzero((within > sign * place[:-2]) & (within > sign * place[2:]))
+                for k in turning:
+                    points.append([_furthest(edges, crossing, cell.low, levels[k - 1], levels[k + 1], sign)])
+    flat = np.array([point for group in points for point in group]).reshape(-1, 2)
+    finite: FloatArray = flat[np.isfinite(flat).all(axis=1)]
+    return finite
+
+
+def _furthest(
+    edges: Edges, crossing: Crossing, strip_low: float, low: float, high: float, sign: int
+) -> tuple[float, float]:
+    """Return the point of an edge between two levels that lies furthest to the right (sign 1) or left (-1)."""
+    found, _ = zoom_on_minimum(
+        lambda points: -sign * edges.places(crossing, strip_low, np.clip(points[:, 0], low, high)),
+        np.array([(low + high) / 2]),
+        np.array([(high - low) / 2]),
+        points=13,
+        shrink=0.25,
+        rounds=TURN_ROUNDS,
+    )
+    place = edges.exact_places(crossing, strip_low, np.clip(found, low, high))
+    return float(place[0]), float(found[0])
+
+
+def _extent(cells: tuple[Cell, ...], corners: FloatArray) -> Extent:
+    """Return the ranges of alpha_hat and beta_hat, infinite where there is no limit."""
+    left = -np.inf if any(cell.goes_left for cell in cells) else float(corners[:, 0].min())
+    right = np.inf if any(cell.goes_right for cell in cells) else float(corners[:, 0].max())
+    if np.isfinite([left, right]).all():
+        left, right = (0.0 if abs(end) < ROUNDING * (right - left) else end for end in (left, right))
+    return (left, right), (min(cell.low for cell in cells), max(cell.high for cell in cells))
+
+
+def _view(extent: Extent, corners: FloatArray) -> Extent:
+    """Return the extent of a bounded region; else ranges that hold all corners and turns with alpha_hat, beta_hat >= 0.
+
+    What has no limit mostly goes on where a feedback would drive away, to corners a thousandfold further out, which
+    would leave nothing to see of the rest. At least LEAST_VIEW.
+    """
+    if np.isfinite(extent).all():
+        return extent
+    seen = corners[(corners >= 0).all(axis=1)]
+    alpha_hat_max, beta_hat_max = (float(seen[:, axis].max(initial=LEAST_VIEW)) for axis in (0, 1))
+    return (0.0, alpha_hat_max), (0.0, beta_hat_max)
+
+
+def _area(edges: Edges, cells: tuple[Cell, ...], name: str) -> float:
+    """Return the sum over cells of the integral of their width."""
+
+    def width(cell: Cell, beta_hat: FloatArray) -> FloatArray:
+        assert cell.left is not None
+        assert cell.right is not None
+        left, right = (edges.exact_places(wall, cell.low, beta_hat) for wall in (cell.left, cell.right))
+        return right - left
+
+    def terms(cell: Cell, low: float, high: float) -> FloatArray:
+        beta_hat, weights = tanh_sinh(low, high)
+        return weights * width(cell, beta_hat)
+
+    def integral(cell: Cell, low: float, high: float, halvings: int) -> float:
+        of_nodes = terms(cell, low, high)
+        total, from_half = float(of_nodes.sum()), 2 * float(of_nodes[::2].sum())
+        if abs(total - from_half) <= max(AGREEING * float(np.abs(of_nodes).sum()), NEGLIGIBLE * whole):
+            return total
+        if halvings == 0:
+            raise NumericalError(f"{name}: the area between beta_hat = {low:.6g} and {high:.6g} cannot be integrated")
+        middle = (low + high) / 2
+        return sum(integral(cell, *half, halvings - 1) for half in ((low, middle), (middle, high)))
+
+    whole = sum(float(terms(cell, cell.low, cell.high).sum()) for cell in cells)
+    return sum(integral(cell, cell.low, cell.high, MOST_HALVINGS) for cell in cells)
+
+
+def tanh_sinh(low: float, high: float) -> tuple[FloatArray, FloatArray]:
+    """Return nodes and weights over an interval, for integrands that are analytic but at its ends."""
+    number = round(QUADRATURE_END / QUADRATURE_STEP / 2) * 2
+    t = QUADRATURE_STEP * np.arange(-number, number + 1)
+    share = 1 / (1 + np.exp(np.pi * np.sinh(-t)))  # of the way from low to high
+    other = 1 / (1 + np.exp(np.pi * np.sinh(t)))
+    width = high - low
+    nodes = np.where(share < other, low + width * share, high - width * other)
+    weights = QUADRATURE_STEP * width * np.pi * np.cosh(t) * share * other
+    return nodes, weights
+
+
+# The boundary: each wall of a cell, and along a level what is stable on one side only.
+#
+#        above:   |-- stable --|     |------|            - and the parts that differ are edges
+#        level:  =|=====-------|=====|------|-----
+#        below:   |---- |            |--- stable --|
+
+
+def _curves(edges: Edges, cells: tuple[Cell, ...], view: Extent, bounded: bool, name: str) -> list[FloatArray]:
+    """Return the boundary as curves of shape (points, 2): closed, or ending out of view where the region goes on."""
+    box = _box(view)
+    pieces = _walls(edges, cells, box) + _level_pieces(edges, cells, box)
+    size = np.ptp(np.array(box), axis=1)
+    curves = _joined(pieces, size)
+    if bounded and any((np.abs(curve[0] - curve[-1]) > JOINED * size).any() for curve in curves):
+        raise NumericalError(f"{name}: an edge of the region was not found")
+    return curves
+
+
+def _box(view: Extent) -> Extent:
+    ends = []
+    for low, high in view:
+        more = OUT_OF_VIEW * (high - low)
+        ends.append((low - more, high + more))
+    return ends[0], ends[1]
+
+
+def _walls(edges: Edges, cells: tuple[Cell, ...], box: Extent) -> list[FloatArray]:
+    """Return the cells' left and right edges within the box; one that bounds two cells is none."""
+    (left, right), (bottom, top) = box
+    walls: dict[tuple[float, Crossing], Cell] = {}
+    for cell in cells:
+        for crossing in (cell.left, cell.right):
+            if crossing is not None:
+                walls[cell.low, crossing] = cell
+    pieces = []
+    for (strip_low, crossing), cell in walls.items():
+        low, high = max(cell.low, bottom), min(cell.high, top)
+        if low >= high:
+            continue
+        levels = _drawn_levels(low, high)
+        place = edges.places(crossing, strip_low, levels)
+        seen = np.isfinite(place) & (place >= left) & (place <= right)
+        for run in np.split(np.arange(len(levels)), np.flatnonzero(np.diff(seen)) + 1):
+            if seen[run[0]] and len(run) > 1:
+                pieces.append(np.stack([place[run], levels[run]], axis=1))
+    return pieces
+
+
+def _level_pieces(edges: Edges, cells: tuple[Cell, ...], box: Extent) -> list[FloatArray]:
+    """Return the pieces of levels that are stable on one side only, within the box."""
+    (left, right), (bottom, top) = box
+    gap = JOINED * (right - left)
+    pieces = []
+    for level in sorted({cell.low for cell in cells} | {cell.high for cell in cells}):
+        if not bottom <= level <= top:
+            continue
+        sides = []
+        for beside in ([c for c in cells if c.high == level], [c for c in cells if c.low == level]):
+            intervals = []
+            for cell in beside:
+                ends = [
+                    limit if crossing is None else float(edges.places(crossing, cell.low, np.array([level]))[0])
+                    for crossing, limit in ((cell.left, left), (cell.right, right))
+                ]
+                ends = [limit if not np.isfinite(end) else end for end, limit in zip(ends, (left, right), strict=True)]
+                intervals.append((max(ends[0], left), min(ends[1], right)))
+            sides.append(intervals)
+        ends = sorted({end for intervals in sides for interval in intervals for end in interval})
+        for start, end in pairwise(ends):
+            if end - start <= gap:
+                continue
+            middle = (start + end) / 2
+            inside = [any(a < middle < b for a, b in intervals) for intervals in sides]
+            if inside[0] != inside[1]:
+                pieces.append(np.array([[start, level], [end, level]]))
+    return pieces
+
+
+def _joined(pieces: list[FloatArray], size: FloatArray) -> list[FloatArray]:
+    """Return the pieces joined where their ends meet."""
+    curves = []
+    free = list(pieces)
+    while free:
+        curve = free.pop()
+        for _ in range(2):  # from one end, then from the other
+            while free and not ((np.abs(curve[0] - curve[-1]) <= JOINED * size).all() and len(curve) > 2):
+                ends = np.array([[piece[0], piece[-1]] for piece in free])
+                gaps = (np.abs(ends - curve[-1]) / size).max(axis=-1)
+                k, reverse = np.unravel_index(np.argmin(gaps), gaps.shape)
+                if gaps[k, reverse] > JOINED:
+                    break
+                piece = free.pop(int(k))
+                curve = np.concatenate([curve, piece[::-1] if reverse else piece])
+            curve = curve[::-1]
+        curves.append(curve)
+    return curves

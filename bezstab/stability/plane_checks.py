@@ -1,0 +1,189 @@
+r"""The region of a second-order scheme held against routes that share nothing with its strips: an error, never an area.
+
+points    all over what is seen: inside by the poles is inside by the cells, and the contrary is decided in rationals
+lines     of constant alpha_hat, where the strips run along beta_hat: where |z_p| passes the level, found by
+          bisection, are the crossings of the drawn curves, and the lengths between add up to the area
+curve     with one evaluation a step P is linear in alpha_hat and beta_hat, and Re P = Im P = 0 at z = r e^(i theta)
+          gives the point at which that pair is a root (Yu. I. Neimark's D-decomposition): where no other root is
+          larger, it lies on an edge
+"""
+
+from fractions import Fraction
+
+import numpy as np
+from numpy.polynomial.legendre import leggauss
+
+from bezstab.errors import NumericalError
+from bezstab.methods import Method, closed_loop_at, is_schur
+from bezstab.rationals import exact
+from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
+from bezstab.stability.line_crossings import crossed_levels
+from bezstab.stability.plane_cells import Edges, Extent, PlaneShape
+from bezstab.stability.plane_pencils import PlanePencil, coefficients_at
+from bezstab.stability.searches import bisected
+
+POINTS = 600  # all over the view: 0.1 ms
+PLASTIC = 1.32471795724474602596  # x^3 = x + 1: multiples of 1/x and 1/x^2 fill a square evenly (M. Roberts, 2018)
+UNDECIDED = 1e-9  # of |z_p|: nearer to the level float64 may be wrong where poles nearly meet
+BESIDE = 1e-9  # of what is seen: nearer to an edge a point may fall to either side
+PANELS, NODES = 8, 8  # of Gauss and Legendre: 64 lines
+ON_A_LINE = 256  # points on which |z_p| is looked at, besides those between the drawn curves
+CURVE_ERROR = 2e-3  # of the longest line: chords between drawn points are off by 1e-4, near tangencies more
+TANGENT = 2  # lines that may disagree: those next to a tangency
+AREA_ERROR = 5e-3  # of the area: what 64 nodes leave across square roots and corners
+ANGLES = 360  # on the upper half of the circle
+ON_EDGE = 1e-6  # of what is seen: a point of the curve is known to 1e-12, times the edge's inclination
+PARALLEL = 1e-6  # of the two equations' size: nearly dependent, they give no point
+
+
+def check_plane(pencil: PlanePencil, level: float, edges: Edges | None, shape: PlaneShape | None) -> None:
+    """Raise NumericalError unless the shape of |z_p| < level (None: empty) agrees with poles, proofs and curve."""
+    view = shape.view if shape else ((-1.0, 4.0), (-1.0, 4.0))
+    _check_points(pencil, level, edges, shape, view)
+    if shape is None or edges is None:
+        return
+    _check_curve(pencil, level, edges, shape)
+    if shape.area is not None:
+        _check_lines(pencil, level, shape, shape.area)
+
+
+def contained(
+    edges: Edges, shape: PlaneShape, alpha_hat: FloatArray, beta_hat: FloatArray
+) -> tuple[BoolArray, FloatArray]:
+    """Return whether points lie in a stable cell, and how far from its edges along alpha_hat, those of all cells."""
+    inside = np.zeros(alpha_hat.shape, bool)
+    distance = np.full(alpha_hat.shape, np.inf)
+    for cell in shape.cells:
+        here = np.flatnonzero((beta_hat > cell.low) & (beta_hat < cell.high))
+        if not here.size:
+            continue
+        left = edges.places(cell.left, cell.low, beta_hat[here]) if cell.left else np.full(here.size, -np.inf)
+        right = edges.places(cell.right, cell.low, beta_hat[here]) if cell.right else np.full(here.size, np.inf)
+        inside[here] |= (left < alpha_hat[here]) & (alpha_hat[here] < right)
+        nearest = np.minimum(np.abs(alpha_hat[here] - left), np.abs(alpha_hat[here] - right))
+        distance[here] = np.minimum(distance[here], nearest)
+    return inside, distance
+
+
+def _check_points(
+    pencil: PlanePencil, level: float, edges: Edges | None, shape: PlaneShape | None, view: Extent
+) -> None:
+    """Raise NumericalError where a point is inside by the poles and outside by the cells, or the contrary."""
+    k = np.arange(1, POINTS + 1)
+    (left, right), (low, high) = view
+    alpha_hat = left + (right - left) * (1.2 * ((0.5 + k / PLASTIC) % 1) - 0.1)
+    beta_hat = low + (high - low) * (1.2 * ((0.5 + k / PLASTIC**2) % 1) - 0.1)
+    by_poles = _inside(pencil, level, alpha_hat, beta_hat)
+    by_cells = np.zeros(POINTS, bool)
+    distance = np.full(POINTS, np.inf)
+    if edges and shape:
+        by_cells, distance = contained(edges, shape, alpha_hat, beta_hat)
+    wrong = (by_poles != by_cells) & (distance > BESIDE * (right - left))
+    for i in np.flatnonzero(wrong):
+        if proven(pencil.method, level, float(alpha_hat[i]), float(beta_hat[i])) != by_cells[i]:
+            raise NumericalError(
+                f"{pencil.method.name}: |z_p| < {level:g} is wrong at ({alpha_hat[i]:.6g}, {beta_hat[i]:.6g})"
+            )
+
+
+def _inside(pencil: PlanePencil, level: float, alpha_hat: FloatArray, beta_hat: FloatArray) -> BoolArray:
+    """Return whether |z_p| < level, by Schur's recursion in float64; False where a pole is infinite."""
+    p = np.stack([c * level**k for k, c in enumerate(coefficients_at(pencil, alpha_hat, beta_hat))])
+    inside = np.full(alpha_hat.shape, True)
+    with np.errstate(all="ignore"):
+        while len(p) > 1:
+            k = p[0] / p[-1]
+            inside &= np.abs(k) < 1
+            p = (p - k * p[::-1])[1:]  # whose last coefficient, p(0) - k lead(p), was 0
+    return inside
+
+
+def proven(method: Method, level: float, alpha_hat: float, beta_hat: float) -> bool:
+    """Return whether |z_p| < level at one point: Schur's recursion in rationals, a proof."""
+    polynomial = closed_loop_at(method, Fraction(alpha_hat), Fraction(beta_hat))
+    scale, degree = exact(level), len(polynomial) - 1
+    if polynomial[0] == 0:
+        return False
+    return is_schur([c * scale ** (degree - i) for i, c in enumerate(polynomial)])
+
+
+def _check_lines(pencil: PlanePencil, level: float, shape: PlaneShape, area: float) -> None:
+    """Raise NumericalError unless lines of constant alpha_hat are stable as far as the curves say, and add up."""
+    (left, right), (low, high) = shape.extent
+    nodes, weights = leggauss(NODES)
+    half = (right - left) / (2 * PANELS)
+    middles = left + half * (1 + 2 * np.arange(PANELS))
+    lines = (middles[:, np.newaxis] + half * nodes).ravel()
+    weight = np.tile(half * weights, PANELS)
+    crossings = _curve_crossings(shape.curves, lines)
+    margin = (high - low) / ON_A_LINE
+    grid = np.linspace(low - margin, high + margin, ON_A_LINE)
+    samples = [np.unique(np.concatenate([grid, (places[1:] + places[:-1]) / 2])) for places in crossings]
+    which = np.repeat(np.arange(len(lines)), [len(each) for each in samples])
+    beta_hat = np.concatenate(samples)
+    inside = _inside(pencil, level, lines[which], beta_hat)
+    turn = np.flatnonzero((np.diff(which) == 0) & (inside[1:] != inside[:-1]))
+    entering = inside[turn + 1]
+
+    def arrived(place: FloatArray) -> BoolArray:
+        found: BoolArray = _inside(pencil, level, lines[which[turn]], place) == entering
+        return found
+
+    place = bisected(arrived, beta_hat[turn], beta_hat[turn + 1])[1]
+    lengths = np.zeros(len(lines))
+    np.add.at(lengths, which[turn], np.where(entering, -place, place))
+    by_curves = np.array([np.sum(places[1::2]) - np.sum(places[0 : len(places) // 2 * 2 : 2]) for places in crossings])
+    off = np.abs(by_curves - lengths)
+    if (off > CURVE_ERROR * lengths.max()).sum() > TANGENT:
+        worst = int(np.argmax(off))
+        raise NumericalError(
+            f"{pencil.method.name}: the curves of |z_p| < {level:g} contradict the poles at alpha_hat = "
+            f"{lines[worst]:.6g}: length {by_curves[worst]:.6g}, not {lengths[worst]:.6g}"
+        )
+    terms = weight * lengths
+    if abs(terms.sum() - area) > AREA_ERROR * area + terms.max():
+        raise NumericalError(
+            f"{pencil.method.name}: the area {area:.6g} of |z_p| < {level:g} is about {terms.sum():.6g} by slices"
+        )
+
+
+def _curve_crossings(curves: tuple[FloatArray, ...], lines: FloatArray) -> list[FloatArray]:
+    """Return for each line of constant alpha_hat the ascending beta_hat at which closed polygons cross it."""
+    found: list[list[FloatArray]] = [[np.zeros(0)] for _ in lines]
+    for curve in curves:
+        row, step = crossed_levels(lines, curve[:, 0])
+        start, end = curve[step], curve[step + 1]
+        place = start[:, 1] + (end[:, 1] - start[:, 1]) * (lines[row] - start[:, 0]) / (end[:, 0] - start[:, 0])
+        for line in np.unique(row):
+            found[line].append(place[row == line])
+    return [np.sort(np.concatenate(places)) for places in found]
+
+
+def _check_curve(pencil: PlanePencil, level: float, edges: Edges, shape: PlaneShape) -> None:
+    """Raise NumericalError unless the active points of the D-decomposition within view lie on edges."""
+    if any(i + j > 1 for terms in pencil.terms for i, j, _ in terms):
+        return  # more than one evaluation
+    theta = np.pi * (np.arange(ANGLES) + 0.5) / ANGLES
+    constant, by_alpha, by_beta = (_at_circle(pencil, powers, level, theta) for powers in ((0, 0), (1, 0), (0, 1)))
+    determinant = by_alpha.real * by_beta.imag - by_alpha.imag * by_beta.real
+    given = np.abs(determinant) > PARALLEL * np.abs(by_alpha) * np.abs(by_beta)
+    divisor = np.where(given, determinant, 1)
+    alpha_hat = (constant.imag * by_beta.real - constant.real * by_beta.imag) / divisor
+    beta_hat = (constant.real * by_alpha.imag - constant.imag * by_alpha.real) / divisor
+    (left, right), (low, high) = shape.view
+    seen = given & (alpha_hat > left) & (alpha_hat < right) & (beta_hat > low) & (beta_hat < high)
+    alpha_hat, beta_hat = alpha_hat[seen], beta_hat[seen]
+    active = ~_inside(pencil, level * (1 - UNDECIDED), alpha_hat, beta_hat)
+    active &= _inside(pencil, level * (1 + UNDECIDED), alpha_hat, beta_hat)
+    _, distance = contained(edges, shape, alpha_hat[active], beta_hat[active])
+    off = distance > ON_EDGE * (right - left)
+    if off.sum() > TANGENT:
+        i = int(np.flatnonzero(off)[0])
+        place = f"({alpha_hat[active][i]:.6g}, {beta_hat[active][i]:.6g})"
+        raise NumericalError(f"{pencil.method.name}: no edge of |z_p| < {level:g} was found at {place}")
+
+
+def _at_circle(pencil: PlanePencil, powers: tuple[int, int], level: float, theta: FloatArray) -> ComplexArray:
+    """Return the part of P that belongs to powers of alpha_hat and beta_hat, at z = level e^(i theta)."""
+    part = [sum(c for i, j, c in terms if (i, j) == powers) for terms in pencil.terms]
+    return np.asarray(np.polynomial.polynomial.polyval(level * np.exp(1j * theta), part), complex)
