@@ -178,7 +178,7 @@ def _factors(polynomials: Iterable[sp.Poly]) -> list[sp.Poly]:
 
 
 def _parts(polynomial: sp.Poly, long: bool) -> list[sp.Poly]:
-    """Return irreducible factors; of long polynomials those of one multiplicity, and apart what beta_hat alone moves."""
+    """Return irreducible factors; of long polynomials those of one multiplicity; apart what beta_hat alone moves."""
     if not long:
         return [factor for factor, _ in polynomial.factor_list()[1]]
     parts = []

@@ -91,6 +91,7 @@ class _Candidate:
     mu: complex
 
 
+@cache
 def best_point(method: Method) -> BestPoint | None:
     """Return the smallest |z_p| and its place, to about 1e-12; None if no parameters have |z_p| < 1, or the least.
 
@@ -103,16 +104,18 @@ def best_point(method: Method) -> BestPoint | None:
     return found if isinstance(found, BestPoint) else None
 
 
+@cache
 def falls_towards(method: Method) -> float | None:
     """Return the value below which |z_p| stays nowhere, though it falls towards it as the parameters grow.
 
     Zero for implicit Euler and BDF. None if some point has the least |z_p|, or none is stable. Errors as best_point.
     """
+    if best_point(method):
+        return None
     found = _best_or_limit(method)
     return found if isinstance(found, float) else None
 
 
-@cache
 def _best_or_limit(method: Method) -> BestPoint | float | None:
     stuck = fixed_poles(method)
     if stuck:

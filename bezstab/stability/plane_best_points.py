@@ -1,4 +1,4 @@
-r"""The smallest |z_p| of a second-order scheme over alpha_hat, beta_hat >= 0, and its double poles, from their equations.
+r"""The smallest |z_p| of a second-order scheme over alpha_hat, beta_hat >= 0, and its double poles, by equations.
 
 Its poles depend on both parameters as they like, so besides the kinks of mu-methods (see best_points) there are more
 kinds of least value: poles that are all zero, a triple one, a double one that is least along the curve on which it is
@@ -75,8 +75,8 @@ class _Tables:
 
     def __init__(self, pencil: PlanePencil) -> None:
         self.p = np.array(pencil.split)[..., 0]
-        self.by_z = polyder(self.p, axis=0)
-        self.by_z_twice = polyder(self.by_z, axis=0)
+        self.by_z = _derivative(self.p, 0)
+        self.by_z_twice = _derivative(self.by_z, 0)
         self.by_alpha, self.by_beta = (_derivative(self.p, axis) for axis in (1, 2))
 
     def coefficients(self, alpha_hat: float, beta_hat: float) -> FloatArray:
@@ -122,7 +122,7 @@ def plane_least(pencil: PlanePencil, view: Extent, unbounded: bool) -> PlaneLeas
 
 
 def _best(solved: list[PlaneLeast]) -> PlaneLeast | None:
-    """Return the least solution; of those that are alike but for the rounding of multiple poles, the one solved best."""
+    """Return the least solution; of those alike but for the rounding of multiple poles, the one solved best."""
     if not solved:
         return None
     least = min(each.z_abs for each in solved)
@@ -318,7 +318,7 @@ def _solutions(pencil: PlanePencil, start: FloatArray) -> Iterator[PlaneLeast]:
 
 
 def _newton(kind: _Kind, start: FloatArray) -> tuple[float, float, ComplexArray, float] | None:
-    """Return alpha_hat, beta_hat, the poles, and what is left of the equations, by Gauss-Newton steps; None if too much.
+    """Return alpha_hat, beta_hat, the poles, and what is left of the equations, by Gauss-Newton steps; None if much.
 
     Least squares, because some kinds have an equation to spare.
     """
@@ -377,7 +377,7 @@ def _double_at(tables: _Tables, pole: float, place: FloatArray) -> FloatArray | 
     start = place
     with np.errstate(all="ignore"):
         for _ in range(NEWTON_STEPS):
-            rows = [[float(polyval3d(pole, *place, t)) for t in each] for each in derivative_tables]
+            rows = [[tables.at(t, pole, place[0], place[1]).real for t in each] for each in derivative_tables]
             values, jacobian = np.array(rows)[:, 0], np.array(rows)[:, 1:]
             if abs(np.linalg.det(jacobian)) <= EPS * np.abs(jacobian).max() ** 2:
                 return None

@@ -105,9 +105,8 @@ def region(method: Method, level: float = 1.0) -> Region:
     least |z_p|, that it lies between two samples.
     """
     stuck = fixed_poles(method)
-    if stuck:
-        if abs(stuck[0]) >= level * (1 - ROUNDING):
-            return Region(method, level, 0.0, (), None, stuck)
+    if stuck and abs(stuck[0]) >= level * (1 - ROUNDING):
+        return Region(method, level, 0.0, (), None, stuck)
     if isinstance(method.scheme, SecondOrder):
         return _plane_region(method, level, stuck)
     if stuck:
