@@ -230,9 +230,7 @@ def _refined(whole: tuple[int, ...], low: Fraction, high: Fraction) -> Fraction:
     bits += max(0, -_exponent(size)) + 4
     while True:
         below, above = int(low * (1 << bits)) - 1, int(high * (1 << bits)) + 1
-        below, above = _bisected(
-            whole, bits, max(low, Fraction(below, 1 << bits)), min(high, Fraction(above, 1 << bits))
-        )
+        below, above = _bisected(whole, bits, max(low, Fraction(below, 1 << bits)), min(high, Fraction(above, 1 << bits)))
         root = Fraction(below + above, 2 << bits)
         if root and _exponent(abs(root)) + bits >= LEVEL_BITS:
             return root

@@ -271,9 +271,7 @@ def _turns(edges: Edges, cells: tuple[Cell, ...]) -> FloatArray:
                 points.append([(0.0, level) for level in (cell.low, cell.high) if np.isfinite(level)])
                 continue
             place = edges.places(crossing, cell.low, levels)
-            points.append(
-                [(place[end], levels[end]) for end, is_level in zip((0, -1), inside, strict=True) if is_level]
-            )
+            points.append([(place[end], levels[end]) for end, is_level in zip((0, -1), inside, strict=True) if is_level])
             for sign in (1, -1):
                 within = sign * place[1:-1]
                 turning = 1 + np.flatnonzero((within > sign * place[:-2]) & (within > sign * place[2:]))
@@ -366,7 +364,9 @@ def tanh_sinh(low: float, high: float) -> tuple[FloatArray, FloatArray]:
 #        below:   |---- |            |--- stable --|
 
 
-def _curves(edges: Edges, cells: tuple[Cell, ...], view: Extent, bounded: bool, name: str) -> list[FloatArray]:
+def _curves(
+    edges: Edges, cells: tuple[Cell, ...], view: Extent, bounded: bool, name: str
+) -> list[FloatArray]:
     """Return the boundary as curves of shape (points, 2): closed, or ending out of view where the region goes on."""
     box = _box(view)
     pieces = _walls(edges, cells, box) + _level_pieces(edges, cells, box)
@@ -423,7 +423,9 @@ def _level_pieces(edges: Edges, cells: tuple[Cell, ...], box: Extent) -> list[Fl
                     limit if crossing is None else float(edges.places(crossing, cell.low, np.array([level]))[0])
                     for crossing, limit in ((cell.left, left), (cell.right, right))
                 ]
-                ends = [limit if not np.isfinite(end) else end for end, limit in zip(ends, (left, right), strict=True)]
+                ends = [
+                    limit if not np.isfinite(end) else end for end, limit in zip(ends, (left, right), strict=True)
+                ]
                 intervals.append((max(ends[0], left), min(ends[1], right)))
             sides.append(intervals)
         ends = sorted({end for intervals in sides for interval in intervals for end in interval})

@@ -1,11 +1,11 @@
 r"""The region of a second-order scheme held against routes that share nothing with its strips: an error, never an area.
 
-points    all over what is seen: inside by the poles is inside by the cells, and the contrary is decided in rationals
-lines     of constant alpha_hat, where the strips run along beta_hat: where |z_p| passes the level, found by
-          bisection, are the crossings of the drawn curves, and the lengths between add up to the area
-curve     with one evaluation a step P is linear in alpha_hat and beta_hat, and Re P = Im P = 0 at z = r e^(i theta)
-          gives the point at which that pair is a root (Yu. I. Neimark's D-decomposition): where no other root is
-          larger, it lies on an edge
+    points    all over what is seen: inside by the poles is inside by the cells, and the contrary is decided in rationals
+    lines     of constant alpha_hat, where the strips run along beta_hat: where |z_p| passes the level, found by
+              bisection, are the crossings of the drawn curves, and the lengths between add up to the area
+    curve     with one evaluation a step P is linear in alpha_hat and beta_hat, and Re P = Im P = 0 at z = r e^(i theta)
+              gives the point at which that pair is a root (Yu. I. Neimark's D-decomposition): where no other root is
+              larger, it lies on an edge
 """
 
 from fractions import Fraction
@@ -48,9 +48,7 @@ def check_plane(pencil: PlanePencil, level: float, edges: Edges | None, shape: P
         _check_lines(pencil, level, shape, shape.area)
 
 
-def contained(
-    edges: Edges, shape: PlaneShape, alpha_hat: FloatArray, beta_hat: FloatArray
-) -> tuple[BoolArray, FloatArray]:
+def contained(edges: Edges, shape: PlaneShape, alpha_hat: FloatArray, beta_hat: FloatArray) -> tuple[BoolArray, FloatArray]:
     """Return whether points lie in a stable cell, and how far from its edges along alpha_hat, those of all cells."""
     inside = np.zeros(alpha_hat.shape, bool)
     distance = np.full(alpha_hat.shape, np.inf)
