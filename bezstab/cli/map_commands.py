@@ -28,7 +28,18 @@ from bezstab.engines import ENGINES
 from bezstab.errors import InputError
 from bezstab.files import output_directory
 from bezstab.methods import REGISTRY, Method, lookup
-from bezstab.show import PROPERTIES, Column, Format, Row, column, formatted, pole_column, transposed, with_unbounded
+from bezstab.show import (
+    PROPERTIES,
+    Column,
+    Format,
+    Row,
+    column,
+    formatted,
+    pole_column,
+    stable_steps_words,
+    transposed,
+    with_unbounded,
+)
 from bezstab.units import to_dimensionless
 
 if TYPE_CHECKING:
@@ -119,6 +130,7 @@ REGIONS = [
     unbounded_column("α̂ to", "alpha_hat_max", ".8g"),
     unbounded_column("β̂ from", "beta_hat_min", ".6g"),
     unbounded_column("β̂ to", "beta_hat_max", ".8g"),
+    Column("stable steps", stable_steps_words),
     column("least |z_p|", "best_z_abs", ".8f"),
     column("at α̂", "best_alpha_hat", ".8f"),
     column("at β̂", "best_beta_hat", ".8f"),

@@ -3,6 +3,7 @@
 From exact numbers upwards; a file imports only from those above it:
 
     schur               where a polynomial's roots lie, proven in exact arithmetic
+    plane_polynomials   polynomials in z, alpha_hat and beta_hat, and their determinants
     second_order        schemes for x'' = a(x, x') as a list of linear equations
     recipes             such equations as text
     schemes             the kinds of methods as frozen data that checks itself
@@ -20,6 +21,7 @@ From exact numbers upwards; a file imports only from those above it:
     shared_factors      poles that no feedback moves
     plane_edges         where a second-order scheme's plane turns from stable to unstable, exactly
     orders              order of accuracy and error constant
+    second_order_formulas  the equations of a second-order scheme as text or LaTeX
     formulas            all that as text or LaTeX
 
 What needs sympy is loaded when first used: naming a method, or proving a verdict, does not.
@@ -68,7 +70,7 @@ if TYPE_CHECKING:
     from bezstab.methods.formulas import characteristic_text, mapping_text, recursion_text
     from bezstab.methods.orders import ForceAccuracy, accuracy, accuracy_by_force
     from bezstab.methods.plane_edges import CurveTable, PlaneStrips, Strip, plane_strips
-    from bezstab.methods.shared_factors import fixed_poles, free_table, without_shared_factor
+    from bezstab.methods.shared_factors import fixed_poles, reduced_table, without_shared_factor
 
 DERIVED = {
     "derivation": (
@@ -91,7 +93,7 @@ DERIVED = {
     "formulas": ("characteristic_text", "mapping_text", "recursion_text"),
     "orders": ("ForceAccuracy", "accuracy", "accuracy_by_force"),
     "plane_edges": ("CurveTable", "PlaneStrips", "Strip", "plane_strips"),
-    "shared_factors": ("fixed_poles", "free_table", "without_shared_factor"),
+    "shared_factors": ("fixed_poles", "reduced_table", "without_shared_factor"),
 }
 """What is loaded when first used, by module."""
 
@@ -141,7 +143,6 @@ __all__ = [
     "feedback_matrix",
     "feedback_polynomial",
     "fixed_poles",
-    "free_table",
     "implicit",
     "is_schur",
     "lookup",
@@ -152,6 +153,7 @@ __all__ = [
     "recipe",
     "recursion_text",
     "recursion_verdict",
+    "reduced_table",
     "second_order_form",
     "steps",
     "without_shared_factor",

@@ -7,7 +7,7 @@ with names of the same word only: nobody is offered a method of another kind bec
 
 import re
 from collections.abc import Iterable, Sequence
-from difflib import get_close_matches
+from difflib import SequenceMatcher, get_close_matches
 
 from bezstab.errors import InputError
 
@@ -120,38 +120,54 @@ def folded(name: str) -> str:
 
 
 def unknown_method(name: str, known: Iterable[str]) -> InputError:
-    """Return the error of a name that is no method's: advice where there is some, else a near name of the same word."""
+    """Return the error of a name that is no method's: advice where there is some, else near names of the same word."""
     advice = ADVICE.get(folded(name))
     if advice:
         return InputError(f"method {name!r}: {advice}")
-    nearest = near_name(name, list(known)) or near_name(name, [*ALIASES, *ADVICE])
-    suggestion = ""
-    if nearest in ADVICE:
-        suggestion = f" did you mean {nearest}: {ADVICE[nearest]}?"
-    elif nearest:
-        meaning = f" ({ALIASES[nearest]})" if nearest in ALIASES else ""
-        suggestion = f" did you mean {nearest}{meaning}?"
+    near = near_names(name, list(known))
+    suggestion = f" did you mean {' or '.join(_explained(each) for each in near)}?" if near else ""
     return InputError(f"unknown method {name!r}:{suggestion} (`bezstab methods` lists all; or give a .toml file)")
 
 
-def near_name(name: str, known: Sequence[str]) -> str | None:
-    """Return the known name that was probably meant, None if none is near.
+def _explained(name: str) -> str:
+    """Return a name with what it stands for, if it is not a method's own."""
+    if name in ADVICE:
+        return f"{name}: {ADVICE[name]}"
+    return f"{name} ({ALIASES[name]})" if name in ALIASES else name
 
-    Its word, the letters alone, must be the same but for their order, or nearly so where it is long: BDF2 is not B2.
-    Among names of one word the nearest number is taken.
+
+def near_names(name: str, known: Sequence[str]) -> list[str]:
+    """Return the names that were probably meant, those of methods, aliases and of which there is advice.
+
+    Their word, the letters alone, must be the same but for their order, or nearly so where it is long: BDF2 is not B2.
+    Among the methods of one word the nearest number is taken; of words that are equally near, each.
     """
+    names = [*known, *ALIASES, *ADVICE]
     word = _word(name)
-    words = {other: _word(other) for other in known}
-    same = [other for other in known if words[other] == word]
-    reordered = [other for other in known if sorted(words[other]) == sorted(word)]
-    near: list[str] = []
-    if len(word) >= LEAST_LETTERS:
-        long = {each for each in words.values() if len(each) >= LEAST_LETTERS}
-        near = [other for other in known if words[other] in get_close_matches(word, long, n=1, cutoff=SIMILARITY)]
-    candidates = same or reordered or near
-    if not word or not candidates:
-        return None
-    by_folded_name = {folded(other): other for other in reversed(candidates)}
+    by_word: dict[str, list[str]] = {}
+    for other in names:
+        by_word.setdefault(_word(other), []).append(other)
+    reordered = [other for other in by_word if other and sorted(other) == sorted(word)]
+    if word and word in by_word:
+        words = [word]
+    elif reordered or len(word) < LEAST_LETTERS:
+        words = reordered
+    else:
+        words = _closest(word, [other for other in by_word if len(other) >= LEAST_LETTERS])
+    return [_nearest(name, by_word[each]) for each in words]
+
+
+def _closest(word: str, others: Sequence[str]) -> list[str]:
+    """Return the words most like this one, all those that are equally so, if they are like it at all."""
+    likeness = {other: SequenceMatcher(None, word, other).ratio() for other in others}
+    most = max(likeness.values())
+    return [other for other in others if likeness[other] == most] if most >= SIMILARITY else []
+
+
+def _nearest(name: str, others: Sequence[str]) -> str:
+    """Return the name most like this one, of those before the first alias if there are any."""
+    own = [other for other in others if other not in ALIASES and other not in ADVICE] or others
+    by_folded_name = {folded(other): other for other in own}
     (nearest,) = get_close_matches(folded(name), by_folded_name, n=1, cutoff=0)
     return by_folded_name[nearest]
 

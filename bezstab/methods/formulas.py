@@ -8,6 +8,8 @@ import sympy as sp
 
 from bezstab.methods.derivation import ALPHA_HAT, BETA_HAT, MU, Z, closed_loop_polynomial, mapping_equations
 from bezstab.methods.schemes import LinearMultistep, Method, Partitioned, PredictorCorrector, RungeKutta
+from bezstab.methods.second_order import SecondOrder
+from bezstab.methods.second_order_formulas import SHOWN_DIGITS, is_long, second_order_text
 
 LATEX = {ALPHA_HAT: r"\hat{\alpha}", BETA_HAT: r"\hat{\beta}", MU: r"\mu"}
 TEXT = {"alpha_hat": "α̂", "beta_hat": "β̂", "**": "^", "*": " "}
@@ -19,7 +21,9 @@ Terms = Iterable[tuple[Fraction, str]]
 def recursion_text(method: Method, latex: bool = False) -> str:
     """Return the step from y_k to y_{k+1} (paper Eq. 12, Table 1), f_k = f(t_k, y_k), as text or LaTeX.
 
-    Several formulas, in the order in which they are taken, are separated by "; ".
+    Several formulas, in the order in which they are taken, are separated by "; ". Of a second-order scheme: its
+    equations for positions x, velocities v and accelerations a(x, v). Where rationals stand for irrational
+    coefficients, they are shown as decimals.
     """
     multiple = method.step_multiple
     match method.scheme:
@@ -33,6 +37,8 @@ def recursion_text(method: Method, latex: bool = False) -> str:
             velocity_step = _multistep("v_{k+1}", velocity, "v", "a", multiple, latex)
             position_step = _multistep("x_{k+1}", position, "x", "v", multiple, latex)
             lines = [velocity_step, position_step]
+        case SecondOrder() as scheme:
+            return second_order_text(scheme, multiple, latex)
         case RungeKutta(tableau, weights):
             stages = [f"K_{i}" for i in range(1, len(weights) + 1)]
             lines = []
@@ -43,9 +49,12 @@ def recursion_text(method: Method, latex: bool = False) -> str:
 
 
 def mapping_text(method: Method, latex: bool = False) -> str:
-    """Return the s->z mapping (paper Eq. 14, Table 1)."""
+    """Return the s->z mapping (paper Eq. 14, Table 1); of a second-order scheme that it has none."""
+    if isinstance(method.scheme, SecondOrder):
+        return "none: positions and velocities are stepped differently"
     sides = [
-        f"{_written(equation.lhs, latex)} = {_written(equation.rhs, latex)}" for equation in mapping_equations(method)
+        f"{_written(_readable(equation.lhs), latex)} = {_written(_readable(equation.rhs), latex)}"
+        for equation in mapping_equations(method)
     ]
     if isinstance(method.scheme, Partitioned):
         sides = [f"{name}: {text}" for name, text in zip(("position", "velocity"), sides, strict=True)]
@@ -53,13 +62,23 @@ def mapping_text(method: Method, latex: bool = False) -> str:
 
 
 def characteristic_text(method: Method, latex: bool = False) -> str:
-    """Return P(z; alpha_hat, beta_hat) = 0 with whole-number coefficients (paper Eq. 17, Table 2)."""
-    polynomial = closed_loop_polynomial(method)
-    _, whole = sp.Poly(polynomial.as_expr(), Z, ALPHA_HAT, BETA_HAT, domain="QQ").clear_denoms(convert=True)
+    """Return P(z; alpha_hat, beta_hat) = 0 with whole-number coefficients (paper Eq. 17, Table 2).
+
+    With decimals where rationals stand for irrational coefficients.
+    """
+    polynomial = sp.Poly(closed_loop_polynomial(method).as_expr(), Z, ALPHA_HAT, BETA_HAT, domain="QQ")
+    if method.digits is None:
+        _, polynomial = polynomial.clear_denoms(convert=True)
     terms = []
-    for (power,), coefficient in sp.Poly(whole.as_expr(), Z).terms():
-        terms.append(_power_term(coefficient, power, latex))
+    for (power,), coefficient in sp.Poly(polynomial.as_expr(), Z).terms():
+        terms.append(_power_term(_readable(coefficient), power, latex))
     return " + ".join(terms).replace("+ -", "- ") + " = 0"
+
+
+def _readable(expression: sp.Expr) -> sp.Expr:
+    """Return the expression with decimals for fractions too long to be read."""
+    long = [number for number in expression.atoms(sp.Rational) if is_long(Fraction(number))]
+    return expression.xreplace({number: sp.Float(number, SHOWN_DIGITS) for number in long})
 
 
 def _power_term(coefficient: sp.Expr, power: int, latex: bool) -> str:
@@ -113,13 +132,18 @@ def _index(j: int) -> str:
 
 
 def _combination(terms: Terms) -> tuple[int, str]:
-    """Return the common denominator and the sum of whole-number multiples that it divides."""
+    """Return the common denominator and the sum of whole-number multiples that it divides.
+
+    Where a coefficient is too long to be read: one, and the sum of decimal multiples.
+    """
     present = [(c, name) for c, name in terms if c]
-    denominator = lcm(*(c.denominator for c, _ in present))
+    as_decimals = any(is_long(c) for c, _ in present)
+    denominator = 1 if as_decimals else lcm(*(c.denominator for c, _ in present))
     parts = []
     for c, name in present:
         multiple = abs(c * denominator)
-        parts.append(("- " if c < 0 else "+ ") + (name if multiple == 1 else f"{multiple} {name}"))
+        number = f"{float(multiple):.{SHOWN_DIGITS}g}" if as_decimals else str(multiple)
+        parts.append(("- " if c < 0 else "+ ") + (name if multiple == 1 else f"{number} {name}"))
     text = " ".join(parts)
     if text.startswith("+ "):
         return denominator, text.removeprefix("+ ")

@@ -11,6 +11,7 @@ from bezstab.methods.families import adams_moulton_scheme
 from bezstab.methods.schemes import ONE, ZERO, Coefficients, Family, LinearMultistep, Method, RungeKutta
 
 HALF = Fraction(1, 2)
+MOST_BDF_STEPS = 6  # with more the method is not zero-stable
 
 WANNER = "Hairer & Wanner II"
 

@@ -6,16 +6,24 @@ from typing import Any
 from bezstab.errors import InputError
 from bezstab.files import read_toml
 from bezstab.methods.families import adams_bashforth, bezier
+from bezstab.methods.implicit_methods import MOST_BDF_STEPS, adams_moulton, bdf
 from bezstab.methods.one_step_methods import runge_kutta, semi_implicit_euler
+from bezstab.methods.recipes import recipe
 from bezstab.methods.schemes import Family, LinearMultistep, Method, RungeKutta, Scheme
 from bezstab.toml_tables import TomlTable
+
+EXAMPLE = "x0 + v0 + 1/2 a0"
+EQUATIONS = f"a table of equations like x1 = {EXAMPLE!r}"
+SHOWN = 40  # characters of what was given in place of an equation
+LISTED = 200  # and of the keys that were given instead
 
 MOST_STEPS_COMPARED = 12  # as in the largest built-in member; the weights of n steps take n^3 exact operations
 
 
 def read_method(path: Path) -> Method:
-    """Return the method in a TOML file: rho and sigma, or A and b, as rational strings; name and source if given.
+    """Return the method in a TOML file: rho and sigma, or A and b, as rational strings, or a table of equations.
 
+    Name and source are the file's, if given.
     Its family is the one that has a member with the same coefficients, whatever the file calls it, else None.
     Nothing in the file is executed. InputError, naming the file and the key, for anything else.
     """
@@ -31,8 +39,12 @@ def _parse_method(data: dict[str, Any], path: Path) -> Method:
 
 
 def _parse_scheme(table: TomlTable) -> Scheme:
-    """Return the scheme by whichever pair of keys the file has; every other key is refused."""
+    """Return the scheme by the table or whichever pair of keys the file has; every other key is refused."""
     found = set(table.data) - {"name", "source"}
+    if "update" in found and not {"rho", "sigma", "A", "b"} & found:
+        equations = table.entry("update", lambda value: isinstance(value, dict), EQUATIONS)
+        table.refuse_unknown_keys()
+        return recipe({result: _sum_text(result, text) for result, text in equations.items()})
     if {"rho", "sigma"} <= found and not {"A", "b"} & found:
         rho, sigma = table.rationals("rho"), table.rationals("sigma")
         table.refuse_unknown_keys()
@@ -42,7 +54,14 @@ def _parse_scheme(table: TomlTable) -> Scheme:
         table.refuse_unknown_keys()
         return RungeKutta(tableau, weights)
     listed = ", ".join(sorted(found)) or "none"
-    raise InputError(f"expected the keys rho and sigma, or A and b, but found {listed}")
+    raise InputError(f"expected the keys rho and sigma, or A and b, or the table update, but found {listed[:LISTED]}")
+
+
+def _sum_text(result: str, text: object) -> str:
+    """Return the right-hand side of an equation, if it is a text."""
+    if not isinstance(text, str):
+        raise InputError(f"update: {result[:SHOWN]!r} = {repr(text)[:SHOWN]}: expected a text like {EXAMPLE!r}")
+    return text
 
 
 def _family_of(scheme: Scheme) -> Family | None:
@@ -54,7 +73,9 @@ def _family_of(scheme: Scheme) -> Family | None:
     members: list[Method] = []
     match scheme:
         case LinearMultistep() if scheme.steps <= MOST_STEPS_COMPARED:
-            members = [adams_bashforth(scheme.steps), bezier(scheme.steps)]
+            members = [adams_bashforth(scheme.steps), bezier(scheme.steps), adams_moulton(scheme.steps + 1)]
+            if scheme.steps <= MOST_BDF_STEPS:
+                members.append(bdf(scheme.steps))
         case RungeKutta():
             members = [runge_kutta(1), runge_kutta(2), runge_kutta(3), runge_kutta(4), semi_implicit_euler()]
     for member in members:

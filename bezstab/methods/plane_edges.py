@@ -32,11 +32,12 @@ from sympy.polys.matrices import DomainMatrix
 
 from bezstab.methods.schemes import ONE, ZERO, Method
 from bezstab.methods.schur import is_schur
-from bezstab.methods.shared_factors import free_table
+from bezstab.methods.shared_factors import reduced_table
 
 A, B = sp.symbols("alpha_hat beta_hat")
 RING = sp.QQ[A, B]
 
+LONG = 300  # bits of a coefficient: factors are looked for modulo primes of a multiple of that
 LEVEL_BITS = 70  # of a level, relative: float64 has 53
 
 CurveTable = tuple[tuple[Fraction, ...], ...]
@@ -76,14 +77,14 @@ def plane_strips(method: Method, level: Fraction) -> PlaneStrips | None:
 
     Proven: Schur's recursion in rationals decides one point of each cell. Roots that no feedback moves are left out.
     """
-    coefficients = _coefficients(free_table(method), level)
+    coefficients = _coefficients(reduced_table(method), level)
     edges = _edges(coefficients)
     if any(not edge for edge in edges):
         return None  # a pair z_i z_j = r^2, or a root +-r, everywhere
     factors = _factors(edges)
     curves = [factor for factor in factors if factor.degree(A) > 0]
     levels, lost = _levels(factors, curves)
-    between = _between([level for level in levels])
+    between = _between(list(levels))
     ends = [None, *levels, None]
     strips = []
     for (low, high), beta_hat in zip(pairwise(ends), between, strict=True):
@@ -156,14 +157,50 @@ def _edges(coefficients: list[sp.Poly]) -> list[sp.Poly]:
 
 
 def _factors(polynomials: Iterable[sp.Poly]) -> list[sp.Poly]:
-    """Return the different irreducible factors, with whole coefficients."""
-    found: dict[sp.Poly, None] = {}
+    """Return polynomials without multiple or common factors whose product has the same zeros, with whole coefficients.
+
+    Irreducible ones but where coefficients are so long, of rationals in place of irrational numbers, that to find them
+    takes longer than all the rest.
+    """
+    long = any(_length(polynomial) > LONG for polynomial in polynomials)
+    found: list[sp.Poly] = []
     for polynomial in polynomials:
-        for factor, _ in polynomial.factor_list()[1]:
-            _, whole = factor.clear_denoms(convert=True)
-            _, primitive = whole.primitive()
-            found[primitive if primitive.LC() > 0 else -primitive] = None
-    return list(found)
+        for part in _parts(polynomial, long):
+            new = part
+            for other in list(found):
+                shared = sp.gcd(new, other)
+                if not shared.is_ground:
+                    found.remove(other)
+                    found += [shared, other.exquo(shared)]
+                    new = new.exquo(shared)
+            found.append(new)
+    return [_primitive(each) for each in found if not each.is_ground]
+
+
+def _parts(polynomial: sp.Poly, long: bool) -> list[sp.Poly]:
+    """Return irreducible factors; of long polynomials those of one multiplicity; apart what beta_hat alone moves."""
+    if not long:
+        return [factor for factor, _ in polynomial.factor_list()[1]]
+    parts = []
+    for part, _ in polynomial.sqf_list()[1]:
+        in_alpha = [sp.Poly(c, A, B, domain=sp.QQ) for c in sp.Poly(part.as_expr(), A).all_coeffs()]
+        content = in_alpha[0]
+        for c in in_alpha[1:]:
+            content = sp.gcd(content, c)
+        parts += [each for each in (content, part.exquo(content)) if not each.is_ground]
+    return parts
+
+
+def _length(polynomial: sp.Poly) -> int:
+    """Return the bits of the longest coefficient, as whole numbers without a common factor."""
+    return max(int(c).bit_length() for c in _primitive(polynomial).coeffs())
+
+
+def _primitive(polynomial: sp.Poly) -> sp.Poly:
+    """Return a multiple with whole coefficients that share no factor, the first positive."""
+    _, whole = polynomial.clear_denoms(convert=True)
+    _, primitive = whole.primitive()
+    return primitive if primitive.LC() > 0 else -primitive
 
 
 def _levels(factors: list[sp.Poly], curves: list[sp.Poly]) -> tuple[list[Fraction], list[dict[Fraction, int]]]:
@@ -208,7 +245,7 @@ def _whole(polynomial: sp.Poly) -> tuple[int, ...]:
 
 @cache
 def real_roots(whole: tuple[int, ...]) -> tuple[Fraction, ...]:
-    """Return the real roots of an irreducible polynomial with whole coefficients, descending powers, in ascending order.
+    """Return the real roots of an irreducible polynomial with whole coefficients, descending powers, ascending.
 
     Exact where they are rational, else to LEVEL_BITS bits.
     """
@@ -230,7 +267,9 @@ def _refined(whole: tuple[int, ...], low: Fraction, high: Fraction) -> Fraction:
     bits += max(0, -_exponent(size)) + 4
     while True:
         below, above = int(low * (1 << bits)) - 1, int(high * (1 << bits)) + 1
-        below, above = _bisected(whole, bits, max(low, Fraction(below, 1 << bits)), min(high, Fraction(above, 1 << bits)))
+        below, above = _bisected(
+            whole, bits, max(low, Fraction(below, 1 << bits)), min(high, Fraction(above, 1 << bits))
+        )
         root = Fraction(below + above, 2 << bits)
         if root and _exponent(abs(root)) + bits >= LEVEL_BITS:
             return root

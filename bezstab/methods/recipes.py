@@ -14,9 +14,10 @@ from fractions import Fraction
 from typing import NoReturn
 
 from bezstab.errors import InputError
+from bezstab.methods.plane_polynomials import ONE, ZERO
 from bezstab.methods.second_order import (
     ACCELERATION,
-    ONE,
+    MOST_EQUATIONS,
     POSITION,
     VELOCITY,
     Assignment,
@@ -28,12 +29,16 @@ from bezstab.methods.second_order import (
 )
 from bezstab.rationals import rational
 
-TOKEN = re.compile(
-    r"\s*(?:(?P<number>\d+(?:\.\d*)?(?:/\d+)?)|(?P<name>[A-Za-z_]\w*)(?P<index>\[\s*-?\d{1,3}\s*\])?|(?P<sign>[-+*/(),]))"
-)
-NUMBERED = re.compile(rf"([{POSITION}{VELOCITY}{ACCELERATION}])(\d+)")
+NUMBER = r"(?P<number>\d+(?:\.\d*)?(?:/\d+)?)"
+NAME = r"(?P<name>[A-Za-z_]\w*)(?P<index>\[\s*-?\d{1,3}\s*\])?"
+SIGN = r"(?P<sign>[-+*/(),])"
+TOKEN = re.compile(rf"\s*(?:{NUMBER}|{NAME}|{SIGN})", re.ASCII)
+NUMBERED = re.compile(rf"([{POSITION}{VELOCITY}{ACCELERATION}])(\d+)", re.ASCII)
+PLAIN = re.compile(r"\w+(?:\[-?\d+\])?", re.ASCII)  # what is shown as it is of a result
 FUNCTION = "acceleration"
 LONGEST = 2000  # characters of one equation
+LONGEST_NAME = 30  # characters of a quantity's name
+SHOWN = 40  # characters shown of what was given
 DEEPEST = 20  # parentheses within each other
 
 
@@ -42,6 +47,8 @@ def recipe(equations: Mapping[str, str]) -> SecondOrder:
 
     InputError, naming the equation and the word, for what is not linear, and what `SecondOrder` refuses.
     """
+    if len(equations) > MOST_EQUATIONS:
+        raise InputError(f"{len(equations)} equations: expected at most {MOST_EQUATIONS}")
     return SecondOrder(tuple(_equation(result, text) for result, text in equations.items()))
 
 
@@ -50,7 +57,7 @@ def _equation(result: str, text: str) -> Equation:
     quantity = left.quantity()
     left.expect_end()
     right = _Reader(result, text)
-    if right.take_name(FUNCTION):
+    if right.take(FUNCTION):
         right.expect("(")
         position = right.sum()
         right.expect(",")
@@ -72,7 +79,7 @@ class _Reader:
         self.place = 0
         self.depth = 0
         if len(text) > LONGEST:
-            raise InputError(f"{result[:LONGEST]}: {len(text)} characters: expected at most {LONGEST}")
+            raise InputError(f"{self._equation()}: {len(text)} characters, expected at most {LONGEST}")
         end = len(text.rstrip())
         position = 0
         while position < end:
@@ -82,15 +89,20 @@ class _Reader:
             self.words.append(word)
             position = word.end()
 
+    def _equation(self) -> str:
+        """Return how the equation is called in messages: one short line, whatever stands on its left."""
+        plain = PLAIN.fullmatch(self.result) and len(self.result) <= SHOWN
+        return f"{self.result if plain else repr(self.result[:SHOWN])} = ..."
+
     def _refuse(self, found: str, expected: str) -> NoReturn:
-        raise InputError(f"{self.result} = ...: found {found}, expected {expected}")
+        raise InputError(f"{self._equation()}: found {found}, expected {expected}")
 
     def _next(self) -> str:
         """Return the next word, '' at the end."""
         return self.words[self.place].group().strip() if self.place < len(self.words) else ""
 
     def _shown(self) -> str:
-        return repr(self._next()) if self._next() else "the end"
+        return repr(self._next()[:SHOWN]) if self._next() else "the end"
 
     def take(self, word: str) -> bool:
         """Return whether the next word is this one, and go past it if so."""
@@ -98,8 +110,6 @@ class _Reader:
             return False
         self.place += 1
         return True
-
-    take_name = take
 
     def expect(self, word: str) -> None:
         """Go past a word that must be there."""
@@ -119,7 +129,7 @@ class _Reader:
             self.take("+")
         while True:
             for coefficient, quantity in self.product():
-                total[quantity] = total.get(quantity, Fraction(0)) + sign * coefficient
+                total[quantity] = total.get(quantity, ZERO) + sign * coefficient
             if self.take("+"):
                 sign = ONE
             elif self.take("-"):
@@ -131,8 +141,7 @@ class _Reader:
         """Return a number times a quantity or times a sum in parentheses."""
         factor = ONE
         if self.place < len(self.words) and self.words[self.place].group("number"):
-            factor = rational(self._next())
-            self.place += 1
+            factor = self._number()
             self.take("*")
         if self.take("("):
             self.depth += 1
@@ -144,12 +153,21 @@ class _Reader:
         else:
             inner = ((ONE, self.quantity()),)
         while self.take("/"):
-            divisor = rational(self._next()) if self._next()[:1].isdigit() else Fraction(0)
+            shown = self._shown()
+            divisor = self._number() if self._next()[:1].isdigit() else ZERO
             if not divisor:
-                self._refuse(self._shown(), "a number other than 0 to divide by")
-            self.place += 1
+                self._refuse(shown, "a number other than 0 to divide by")
             factor /= divisor
         return tuple((factor * coefficient, quantity) for coefficient, quantity in inner)
+
+    def _number(self) -> Fraction:
+        """Return the number that the next word is, and go past it."""
+        try:
+            value = rational(self._next())
+        except InputError:
+            self._refuse(self._shown(), "a number like 1/2 or 0.5")
+        self.place += 1
+        return value
 
     def quantity(self) -> Quantity:
         """Return the quantity that the next word names."""
@@ -157,6 +175,8 @@ class _Reader:
         if word is None or not word.group("name"):
             self._refuse(self._shown(), "a quantity such as x0, v1 or a helper's name")
         name, index = word.group("name"), word.group("index")
+        if len(name) > LONGEST_NAME:
+            self._refuse(self._shown(), f"a name of at most {LONGEST_NAME} characters")
         self.place += 1
         numbered = NUMBERED.fullmatch(name)
         if name == FUNCTION:

@@ -198,11 +198,12 @@ def _built_in(name: str) -> Method:
     with_parameters = re.fullmatch(r"([^()]+)\(([^()]*)\)", name)
     if with_parameters:
         word = folded(with_parameters[1])
-        word = ALIASES.get(word, word).partition("(")[0]
+        word = folded(ALIASES.get(word, word)).partition("(")[0]
         if word in PARAMETRIC:
             return _with_parameters(name, word, with_parameters[2].split(","))
         if word in FOLDED_NAMES:
-            raise InputError(f"method {name!r}: {word} has no parameters")
+            raise InputError(f"method {name!r}: {FOLDED_NAMES[word]} has no parameters")
+        name = with_parameters[1]  # of which advice may know
     elif folded(name) in ALIASES:
         return lookup(ALIASES[folded(name)])
     raise unknown_method(name, [*REGISTRY, *PARAMETRIC])
@@ -212,8 +213,8 @@ def _with_parameters(typed: str, word: str, texts: list[str]) -> Method:
     """Return a method with the parameters of its name; the name of the result has them as exact fractions."""
     method = PARAMETRIC[word]
     names = ",".join(parameter.name for parameter in method.parameters)
-    if len(texts) != len(method.parameters):
-        given = 0 if texts == [""] else len(texts)
+    given = len([text for text in texts if text.strip()])
+    if given != len(method.parameters):
         raise InputError(f"method {typed!r}: {given} parameters given, expected {word}({names})")
     values = []
     for parameter, text in zip(method.parameters, texts, strict=True):

@@ -28,21 +28,16 @@ from functools import cached_property
 from math import comb, factorial
 
 from bezstab.errors import InputError
+from bezstab.methods.plane_polynomials import ONE, ZERO, Matrix, Terms, determinant
 from bezstab.methods.schur import quotient_and_remainder, recursion_verdict
 
 POSITION, VELOCITY, ACCELERATION = "x", "v", "a"
-MOST_EQUATIONS = 60  # some 20 stages, of which a determinant still takes no more than seconds
+MOST_EQUATIONS = 60  # some 20 stages
 FURTHEST_BACK = -20  # steps
-
-ONE, ZERO = Fraction(1), Fraction(0)
+LATEST = 2  # step of a result: beyond the end of the step by as much as a multistep formula may be written
 
 PlaneTable = tuple[tuple[tuple[Fraction, ...], ...], ...]
 """A polynomial in z, alpha_hat and beta_hat: table[k][i][j] belongs to z^k alpha_hat^i beta_hat^j."""
-
-Terms = dict[tuple[int, int, int], Fraction]
-"""Such a polynomial as its coefficients by powers of z, alpha_hat and beta_hat."""
-
-Matrix = list[list[Terms]]
 
 
 @dataclass(frozen=True, order=True)
@@ -116,6 +111,8 @@ class SecondOrder:
             result = equation.result
             if result.name in latest:
                 raise InputError(f"{result}: a second equation for {result.name}")
+            if not 0 <= result.step <= LATEST:
+                raise InputError(f"{result}: expected an equation for step 0, 1 or 2")
             latest[result.name] = result
         for name in (POSITION, VELOCITY):
             if name not in latest or latest[name].step < 1:
@@ -137,15 +134,17 @@ class SecondOrder:
 
     def _check_motion(self) -> None:
         free = [in_plane[0][0] for in_plane in reversed(self.table)]
-        while free and not free[0]:
-            del free[0]
-        if not free:
+        if not free or not free[0]:  # else without feedback, or with little, a step has no solution or many
             raise InputError("the equations do not determine x1 and v1")
         reduced, rest = quotient_and_remainder(free, (ONE, Fraction(-2), ONE))
         if any(rest) or not reduced:
             raise InputError("inconsistent: a free motion x0 + v0 t is not followed exactly")
         if any(any(defect(self.table, degree)) for degree in range(3)):
             raise InputError("inconsistent: an acceleration does not act in full, or feedback not as feedback")
+        position, velocity = self.responses
+        mu_times_x = [*defect(position, 0), ZERO]
+        if any(defect(velocity, 0)) or defect(velocity, 1) != mu_times_x:
+            raise InputError("inconsistent: v1 is not the velocity of x1")
         if sum(reduced) == 0 or recursion_verdict(reduced) == "diverges":
             raise InputError("zero-unstable: without feedback a root lies outside the unit circle, or repeats on it")
 
@@ -181,7 +180,8 @@ class SecondOrder:
     def responses(self) -> tuple[PlaneTable, PlaneTable]:
         """Polynomials in the ratio of x and v on every motion z^k, from the equations without one evaluation."""
         position, velocity = _responses(self.equations)
-        return _plain_table(position), _plain_table(velocity)
+        lowest = min(k for k, _, _ in (*position, *velocity))
+        return _table_from(position, lowest), _table_from(velocity, lowest)
 
 
 def _in_order(equations: tuple[Equation, ...]) -> Iterator[tuple[Equation, ...]]:
@@ -207,7 +207,7 @@ def _needed(result: Quantity, waiting: dict[Quantity, Equation]) -> set[Quantity
 
 def _determinant_table(equations: tuple[Equation, ...]) -> PlaneTable:
     """Return the determinant of the equations' coefficients as a table."""
-    return _table_of(_determinant_terms(_coefficient_rows(equations)))
+    return _table_of(determinant(_coefficient_rows(equations)))
 
 
 def _coefficient_rows(equations: tuple[Equation, ...]) -> Matrix:
@@ -224,7 +224,7 @@ def _coefficient_rows(equations: tuple[Equation, ...]) -> Matrix:
             terms = row[column[quantity.name]]
             powers = (quantity.step - earliest, by_velocity, by_position)
             terms[powers] = terms.get(powers, ZERO) + coefficient
-        rows.append(row)
+        rows.append([{powers: c for powers, c in terms.items() if c} for terms in row])
     return rows
 
 
@@ -239,25 +239,6 @@ def _terms_of(equation: Equation) -> Iterator[tuple[Fraction, Quantity, tuple[in
             yield from ((coefficient, quantity, (1, 0)) for coefficient, quantity in velocity)
 
 
-def _determinant_terms(rows: Matrix) -> Terms:
-    """Return the determinant of a matrix of polynomials."""
-    import sympy as sp  # only here, and when asked for: naming a scheme needs no algebra
-    from sympy.polys.matrices import DomainMatrix
-
-    ring = sp.QQ[sp.symbols("z alpha_hat beta_hat")]
-    polynomials = [
-        [
-            ring.ring.from_dict({powers: sp.QQ(c.numerator, c.denominator) for powers, c in terms.items() if c})
-            for terms in row
-        ]
-        for row in rows
-    ]
-    # Berkowitz' way to the characteristic polynomial of the matrix, which ends with its determinant, divides nothing
-    determinant = DomainMatrix(polynomials, (len(rows), len(rows)), ring).charpoly()[-1]
-    sign = (-1) ** len(rows)
-    return {powers: sign * Fraction(int(c.numerator), int(c.denominator)) for powers, c in dict(determinant).items()}
-
-
 def _responses(equations: tuple[Equation, ...]) -> tuple[Terms, Terms]:
     """Return x and v where the acceleration of one evaluation is free, up to one factor, as polynomials.
 
@@ -269,11 +250,11 @@ def _responses(equations: tuple[Equation, ...]) -> tuple[Terms, Terms]:
     for number, equation in enumerate(equations):
         if isinstance(equation, Evaluation):
             position, velocity = (
-                _determinant_terms(_with_unit_row(rows, number, names.index(name))) for name in (POSITION, VELOCITY)
+                determinant(_with_unit_row(rows, number, names.index(name))) for name in (POSITION, VELOCITY)
             )
             if sum(c for (_, i, j), c in position.items() if (i, j) == (0, 0)):
                 return position, velocity
-    raise AssertionError("an acceleration acts in full: the scheme has been checked")
+    raise InputError("inconsistent: no acceleration acts on x1")
 
 
 def _with_unit_row(rows: Matrix, number: int, column: int) -> Matrix:
@@ -289,18 +270,17 @@ def _table_of(terms: Terms) -> PlaneTable:
     """
     if not terms:
         return ()
-    lowest = min(k for k, _, _ in terms)
     at_origin = [k for k, i, j in terms if (i, j) == (0, 0)]
     scale = terms[max(at_origin), 0, 0] if at_origin else ONE
-    return _plain_table({(k - lowest, i, j): c / scale for (k, i, j), c in terms.items()})
+    return _table_from({powers: c / scale for powers, c in terms.items()}, lowest=min(k for k, _, _ in terms))
 
 
-def _plain_table(terms: Terms) -> PlaneTable:
-    """Return the table of a polynomial other than zero."""
+def _table_from(terms: Terms, lowest: int) -> PlaneTable:
+    """Return the table of a polynomial other than zero, divided by z^lowest."""
     highest = [max(powers[axis] for powers in terms) for axis in range(3)]
     return tuple(
         tuple(tuple(terms.get((k, i, j), ZERO) for j in range(highest[2] + 1)) for i in range(highest[1] + 1))
-        for k in range(highest[0] + 1)
+        for k in range(lowest, highest[0] + 1)
     )
 
 

@@ -2,6 +2,8 @@
 
 from bezstab.stability import BestPoint, pole_place
 
+TIMES = {2: "double", 3: "triple"}
+
 
 def best_point_words(best: BestPoint) -> str:
     """Return in words which poles meet at the best point, and where else |z_p| is as small (dimensionless, as text)."""
@@ -24,6 +26,8 @@ def _poles_in_words(best: BestPoint) -> str:
     words = f"z = {' and '.join(_pole_text(z) for z in best.meeting)}"
     if len(best.meeting) > 1:
         words += " meet"
+    if best.multiplicity > 1:
+        words += f", {'each ' if len(best.meeting) > 1 else ''}{TIMES.get(best.multiplicity, 'multiple')}"
     if best.double:
         words += ", each double, on β̂ = α̂²/4"
     return words

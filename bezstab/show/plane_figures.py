@@ -8,7 +8,16 @@ from matplotlib.figure import Figure
 from bezstab.evidence import VerdictMap
 from bezstab.show import plot
 from bezstab.show.plot import Point, Range
-from bezstab.show.style import ACCENT, DASHES, column_figure, method_line, plane_axes, plane_coordinates, styled
+from bezstab.show.style import (
+    ACCENT,
+    DASHES,
+    NO_FAMILY,
+    column_figure,
+    method_line,
+    plane_axes,
+    plane_coordinates,
+    styled,
+)
 from bezstab.stability import BestPoint, FloatArray, Limit, Member, Region
 
 
@@ -23,6 +32,8 @@ def region_figure(
     marks: Mapping[str, Point] | None = None,
 ) -> Figure:
     """Return the |z_p| map with exact boundary, faster regions, best point and critical damping (paper Fig. 1).
+
+    Of an unbounded region it says that it goes on.
 
     z_abs has shape (beta_hat.size, alpha_hat.size). With h (s) the axes are 2 alpha (1/s) and beta^2 (1/s^2), else
     alpha_hat and beta_hat; `marks` are points (alpha_hat, beta_hat) by their labels.
@@ -39,6 +50,7 @@ def region_figure(
         plot.critical_damping((alpha_hat[0], alpha_hat[-1]), axes, h)
         if best:
             plot.best_point(best, axes, h)
+        plot.goes_on(region, axes)
         plot.marks(marks or {}, axes, h)
         left, bottom = plane_coordinates(alpha_hat[0], beta_hat[0], h)
         right, top = plane_coordinates(alpha_hat[-1], beta_hat[-1], h)
@@ -52,12 +64,17 @@ def comparison_figure(
 ) -> Figure:
     """Return the boundaries of several methods in one plane (paper Fig. 2; with h in s, at equal h, Fig. 3).
 
-    The ranges are in alpha_hat and beta_hat whatever the axes; without them all of every region shows.
+    The ranges are in alpha_hat and beta_hat whatever the axes; without them all of every bounded region shows, and of
+    an unbounded one, which its label says it is, its window.
     """
     with styled():
         figure, axes = plane_axes(rf"$|z_p| = {regions[0].level:g}$", h)
+        without_colour = [region.method for region in regions if method_line(region.method)["color"] == NO_FAMILY]
         for region in regions:
-            plot.region(region, axes, h)
+            dashes = {}
+            if region.method in without_colour:  # all of these are grey: told apart by their dashes
+                dashes["linestyle"] = DASHES[without_colour.index(region.method) % len(DASHES)]
+            plot.region(region, axes, h, **dashes)
         if alpha_range:
             left, _ = plane_coordinates(float(alpha_range[0]), 0.0, h)
             right, _ = plane_coordinates(float(alpha_range[1]), 0.0, h)
@@ -66,7 +83,8 @@ def comparison_figure(
             _, bottom = plane_coordinates(0.0, float(beta_range[0]), h)
             _, top = plane_coordinates(0.0, float(beta_range[1]), h)
             axes.set_ylim(bottom, top)
-        figure.legend(loc="outside lower center", ncols=4)
+        longer_labels = any(not region.bounded for region in regions)
+        figure.legend(loc="outside lower center", ncols=2 if longer_labels else 4)
         return figure
 
 

@@ -15,6 +15,7 @@ from matplotlib.colors import ListedColormap
 from matplotlib.image import AxesImage
 from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
+from matplotlib.text import Annotation
 
 from bezstab.evidence import Run, VerdictMap
 from bezstab.mechanism import COORDINATES, Scene, Simulation
@@ -44,6 +45,7 @@ __all__ = [
     "critical_damping",
     "disagreements",
     "family",
+    "goes_on",
     "history",
     "marks",
     "mechanism",
@@ -55,16 +57,24 @@ __all__ = [
     "work_precision",
 ]
 
+GOES_ON: Mapping[tuple[bool, bool], tuple[Point, Point]] = {
+    (True, True): ((0.78, 0.9), (0.99, 0.99)),
+    (True, False): ((0.75, 0.3), (0.99, 0.3)),
+    (False, True): ((0.25, 0.85), (0.25, 0.99)),
+}
+"""From where to where an arrow points, in shares of the axes: to the right, upwards."""
 PARABOLA = 400  # points of a smooth curve: more than its pixels tell apart
 MARK_SHAPES = "oDs^v"
 
 
 def region(region: Region, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
-    """Draw the boundary of a region |z_p| < level and return its line: all its closed curves, nan between them.
+    """Draw the boundary of a region |z_p| < level and return its line: all its curves, nan between them.
 
-    By default in the method's own colour and dashes, labelled with its name. Of an empty region only the label shows.
+    By default in the method's own colour and dashes, labelled with its name, and as unbounded where it is. Of an empty
+    region only the label shows.
     """
-    style = {"label": region.method.name, **method_line(region.method), **line}
+    label = region.method.name if region.bounded else f"{region.method.name} (unbounded)"
+    style = {"label": label, **method_line(region.method), **line}
     return curves(_plane(axes, rf"$|z_p| = {region.level:g}$", h), region, h, **style)
 
 
@@ -136,6 +146,32 @@ def best_point(best: BestPoint, axes: Axes | None = None, h: float | None = None
     }
     (drawn,) = _plane(axes, best.method.name, h).plot(x, y, **style)
     return drawn
+
+
+def goes_on(region: Region, axes: Axes) -> Annotation | None:
+    """Draw an arrow and the word "unbounded" to where a region goes on beyond the axes; return it, None if it does not.
+
+    Up, to the right or both, as its limits say.
+    """
+    if region.bounded or region.extent is None:
+        return None
+    rightwards, upwards = (bool(np.isinf(end)) for _, end in region.extent)
+    place = GOES_ON.get((rightwards, upwards))
+    if place is None:
+        return None
+    outline = withStroke(linewidth=1.6, foreground="black")
+    return axes.annotate(
+        "unbounded",
+        xy=place[1],
+        xytext=place[0],
+        xycoords="axes fraction",
+        ha="center",
+        va="center",
+        color="white",
+        fontsize=7,
+        path_effects=[outline],
+        arrowprops={"arrowstyle": "->", "color": "white", "path_effects": [outline]},
+    )
 
 
 def marks(points: Mapping[str, Point], axes: Axes | None = None, h: float | None = None) -> list[Line2D]:

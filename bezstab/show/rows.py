@@ -106,8 +106,14 @@ def whole_row(method: Method, region: Region, best: BestPoint | None, latex: boo
 
 
 def region_row(region: Region, best: BestPoint | None) -> Row:
-    """Return area, axis limits and best point (dimensionless); None where the region is empty, or without limit."""
+    """Return area, axis limits, best point and which steps are stable; all dimensionless.
+
+    Area and limits are None where the region is empty, or has none. stable_for_all is about every alpha_hat,
+    beta_hat > 0; unconditional_damping_ratio is the alpha / beta above which every step is stable (None if there is
+    none); critical_damping_limit the largest beta h on alpha = beta up to which all are (None if there is none).
+    """
     from bezstab.show.best_point_text import best_point_words
+    from bezstab.stability import critical_damping_limit, stable_for_all, unconditional_damping_ratio
 
     return {
         "method": region.method.name,
@@ -117,7 +123,11 @@ def region_row(region: Region, best: BestPoint | None) -> Row:
         "best_alpha_hat": best.alpha_hat if best else None,
         "best_beta_hat": best.beta_hat if best else None,
         "best_where": best_point_words(best) if best else _nowhere(region),
+        "best_reason": None if best else _nowhere(region),
         "bounded": region.bounded,
+        "stable_for_all": stable_for_all(region.method),
+        "unconditional_damping_ratio": unconditional_damping_ratio(region.method),
+        "critical_damping_limit": critical_damping_limit(region.method),
     }
 
 
@@ -130,13 +140,28 @@ def _limits(region: Region) -> dict[str, float | None]:
 def with_unbounded(row: Row) -> Row:
     """Return a row of region_row for reading: the word "unbounded" for an area or a limit that there is none of."""
     missing = () if row["bounded"] else [key for key in ("area", *LIMITS) if row[key] is None]
-    return {**row, **dict.fromkeys(missing, "unbounded")}
+    return {**row, "bounded": "yes" if row["bounded"] else "no", **dict.fromkeys(missing, "unbounded")}
+
+
+def stable_steps_words(row: Row) -> str:
+    """Return from a row of region_row in words which steps are stable: what an engineer looks for first."""
+    ratio, limit = row["unconditional_damping_ratio"], row["critical_damping_limit"]
+    if row["stable_for_all"] == "proven":
+        return "every one (proven)"
+    if isinstance(ratio, float):
+        return f"every one from α/β = {ratio:.6g}" if ratio else "no unstable one found"
+    if isinstance(limit, float):
+        return f"βh to {limit:.6g} at α = β" if limit else "none at α = β"
+    return "every one at α = β"
 
 
 def _nowhere(region: Region) -> str | None:
-    """Return why there is no best point, where a pole that no parameters move says so."""
-    from bezstab.stability import pole_place
+    """Return why there is no best point: |z_p| falls on as the feedback grows, or a pole that no parameters move."""
+    from bezstab.stability import falls_towards, pole_place
 
+    limit = falls_towards(region.method)
+    if limit is not None:
+        return f"none: |z_p| falls towards {limit:.6g} as α̂ and β̂ grow"
     if not region.fixed_poles:
         return None
     return f"stable nowhere: a pole stays at {pole_place(region.fixed_poles[0])} whatever α̂ and β̂"

@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from bezstab.methods import Method
-from bezstab.stability import FloatArray, Region
+from bezstab.stability import FloatArray, Region, window
 from bezstab.units import feedback_gains
 
 Number = TypeVar("Number", float, NDArray[np.float64])
@@ -83,14 +83,24 @@ def plane_coordinates(alpha_hat: Number, beta_hat: Number, h: float | None) -> t
 
 
 def curves(axes: Axes, region: Region, h: float | None, label: str, **line: Any) -> Line2D:
-    """Draw a region's boundary, its closed curves as one line, and return it; of an empty one only the label shows."""
+    """Draw a region's boundary, all its curves as one line, and return it; of an empty one only the label shows.
+
+    Curves of an unbounded region run far out: there the axes make room for its window alone.
+    """
     gap = np.full((1, 2), np.nan)  # lifts the pen from one closed curve to the next
     pieces: list[FloatArray] = []
     for curve in region.boundary:
         pieces += [curve, gap]
     points = np.concatenate(pieces or [gap])
     x, y = plane_coordinates(points[:, 0], points[:, 1], h)
-    (drawn,) = axes.plot(x, y, label=label, **line)
+    if region.bounded:
+        (drawn,) = axes.plot(x, y, label=label, **line)
+        return drawn
+    drawn = Line2D(x, y, label=label, **line)
+    axes.add_artist(drawn)
+    alpha_range, beta_range = (np.array(ends) for ends in window(region))
+    axes.update_datalim(np.stack(plane_coordinates(alpha_range, beta_range, h), axis=-1))
+    axes.autoscale_view()
     return drawn
 
 

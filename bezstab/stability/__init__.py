@@ -6,6 +6,8 @@ From a method's polynomial in float64 (its pencil) upwards; a file imports only 
     exact_sums        sums that keep their rounding; the feedback's roots mu
     root_finding      all roots of many polynomials
     pencils           what float64 needs to know of a method, made once
+    low_degrees       roots of quadratics and cubics
+    plane_pencils     the same of a second-order scheme, and its poles
     dominant_roots    the largest root along a row of mu, followed
     closed_loop       poles, |z_p|, the proven verdict
     searches          where a condition comes to hold; where a value is least
@@ -14,16 +16,26 @@ From a method's polynomial in float64 (its pencil) upwards; a file imports only 
     line_crossings    where an arc crosses lines
     line_slices       where lines across the region are stable, by a second route
     self_checks       every answer held against a second route
+    plane_cells       the stable cells of a second-order scheme's plane: area, extent, curves
+    plane_checks      those held against points, lines and the D-decomposition
     answer_checks     best points, choices and margins held against samples and proofs
     regions           the exact region in alpha_hat and beta_hat
     grid_maps         |z_p| on a grid
+    quadrant_proofs   whether all of alpha_hat, beta_hat > 0 is stable
+    damping_limits    up to which steps, by damping ratio
+    plane_best_points the smallest |z_p| of a second-order scheme
     best_points       the smallest |z_p|
     choices           which parameters to take
     step_families     methods by their number of steps, and their limit
+
+What needs sympy's polynomials is loaded when first used: poles and maps do not.
 """
 
+from typing import TYPE_CHECKING
+
+from bezstab.lazy import lazy_names
 from bezstab.stability.arrays import EPS, ComplexArray, FloatArray
-from bezstab.stability.best_points import BestPoint, best_point
+from bezstab.stability.best_points import BestPoint, best_point, falls_towards
 from bezstab.stability.choices import (
     THOUSANDFOLD,
     Choice,
@@ -41,6 +53,18 @@ from bezstab.stability.regions import Extent, Region, pole_place, region, window
 from bezstab.stability.searches import first_where
 from bezstab.stability.step_families import FAMILIES, Limit, Member, bezier_limit, family_members
 
+if TYPE_CHECKING:
+    from bezstab.stability.damping_limits import critical_damping_limit, unconditional_damping_ratio
+    from bezstab.stability.quadrant_proofs import StableForAll, stable_for_all
+
+PROVEN = {
+    "damping_limits": ("critical_damping_limit", "unconditional_damping_ratio"),
+    "quadrant_proofs": ("StableForAll", "stable_for_all"),
+}
+"""What is loaded when first used, by module."""
+
+__getattr__ = lazy_names(__name__, PROVEN)
+
 __all__ = [
     "EPS",
     "FAMILIES",
@@ -57,12 +81,15 @@ __all__ = [
     "Member",
     "Pencil",
     "Region",
+    "StableForAll",
     "best_point",
     "bezier_limit",
     "choose",
     "choose_at_step",
+    "critical_damping_limit",
     "describe_point",
     "dominant_pole",
+    "falls_towards",
     "family_members",
     "first_where",
     "pencil_of",
@@ -73,6 +100,8 @@ __all__ = [
     "roots_in_z",
     "spectral_radius",
     "stability_margins",
+    "stable_for_all",
+    "unconditional_damping_ratio",
     "verdict",
     "window",
 ]

@@ -8,9 +8,10 @@ import numpy as np
 from bezstab.errors import NumericalError
 from bezstab.methods import Method
 from bezstab.stability.arrays import EPS, FloatArray
-from bezstab.stability.closed_loop import largest_modulus, verdict
+from bezstab.stability.closed_loop import AnyPencil, largest_modulus, verdict
 from bezstab.stability.line_slices import mu_bound, real_events, slices, turning_radii
 from bezstab.stability.pencils import Pencil
+from bezstab.stability.plane_pencils import PlanePencil
 
 Extent = tuple[tuple[float, float], tuple[float, float]]
 Objective = Callable[[FloatArray, FloatArray], FloatArray]
@@ -21,6 +22,9 @@ RINGS = 10.0 ** -np.arange(1, 6)  # radii, as shares of the region's box
 BETTER = 1e-6  # relative: a search ends where its objective is flat to this, along a kink's bed
 KINK = 1e-3  # a pole of multiplicity m, however small, is good to eps^(1/m) of what it is a difference of, which is
 # near one; m = 4 among the best points
+NO_LESS = 1e-9  # of one: the search for a least value of zero ends so far from it
+NEAR = (8.0, 64.0)  # alpha_hat, beta_hat: corners of a region may lie a thousandfold further out, least values do not
+ROOT_OF_ROUNDING = 1e-7  # a double pole at zero, as far as float64 tells it
 EMPTY_BELOW = 1e-4  # relative: so far below the least |z_p| a slice must be empty
 NO_LENGTH = 1e-6  # of the bound on mu: a slice through a double root splits by the root of rounding
 SLICES = 128
@@ -77,16 +81,43 @@ def check_best_point(pencil: Pencil, z_abs: float, alpha_hat: float, beta_hat: f
         raise NumericalError(f"{name}: |z_p| < {below:.9g} on a slice: the best point has {z_abs:.9g}")
 
 
-def check_least(method: Method, objective: Objective, alpha_hat: float, beta_hat: float, extent: Extent) -> None:
-    """Raise NumericalError if an objective is smaller at a sampled point with alpha, beta > 0 than at the answer."""
+def check_plane_best_point(pencil: PlanePencil, z_abs: float, alpha_hat: float, beta_hat: float, view: Extent) -> None:
+    """Raise NumericalError unless |z_p| of a second-order scheme is as said, and smaller at no sampled point."""
+    name = pencil.method.name
+    here = float(largest_modulus(pencil, alpha_hat, beta_hat))
+    if abs(here - z_abs) > KINK:
+        raise NumericalError(f"{name}: |z_p| is {here:.9g} at the best point, not {z_abs:.9g}")
+    near = [(0.0, min(high, strongest)) for (_, high), strongest in zip(view, NEAR, strict=True)]
+    samples = [sampled_points(extent, alpha_hat, beta_hat) for extent in (view, (near[0], near[1]))]
+    alpha_hats, beta_hats = (np.concatenate([each[axis] for each in samples]) for axis in (0, 1))
+    positive = (alpha_hats >= 0) & (beta_hats >= 0)
+    values = largest_modulus(pencil, alpha_hats[positive], beta_hats[positive])
+    if values.min(initial=np.inf) < z_abs * (1 - BETTER) - ROOT_OF_ROUNDING:
+        raise NumericalError(f"{name}: |z_p| = {values.min():.9g} was sampled below the best point's {z_abs:.9g}")
+
+
+def check_least(
+    method: Method, objective: Objective, alpha_hat: float, beta_hat: float, extent: Extent, cut: bool = False
+) -> None:
+    """Raise NumericalError if an objective is smaller at a sampled point with alpha, beta > 0 than at the answer.
+
+    cut: only points within the extent are an answer.
+    """
     alpha_hats, beta_hats = sampled_points(extent, alpha_hat, beta_hat)
+    if cut:
+        within = (alpha_hats <= extent[0][1]) & (beta_hats <= extent[1][1])
+        alpha_hats, beta_hats = alpha_hats[within], beta_hats[within]
     _compare(method, objective, alpha_hat, beta_hat, alpha_hats, beta_hats)
 
 
-def check_least_equal(method: Method, objective: Objective, alpha_hat: float, extent: Extent) -> None:
-    """Raise NumericalError if an objective is smaller at a sampled alpha = beta than at the answer."""
+def check_least_equal(
+    method: Method, objective: Objective, alpha_hat: float, extent: Extent, cut: bool = False
+) -> None:
+    """Raise NumericalError if an objective is smaller at a sampled alpha = beta than at the answer; as check_least."""
     near = alpha_hat * np.concatenate([1 + RINGS, 1 - RINGS])
     alpha_hats = np.concatenate([near, np.linspace(0, extent[0][1], SAMPLES + 1)[1:]])
+    if cut:
+        alpha_hats = alpha_hats[alpha_hats <= min(extent[0][1], 2 * np.sqrt(extent[1][1]))]
     _compare(method, objective, alpha_hat, alpha_hat**2 / 4, alpha_hats, alpha_hats**2 / 4)
 
 
@@ -102,13 +133,13 @@ def _compare(
     values = objective(alpha_hats[positive], beta_hats[positive])
     here = float(objective(np.array([alpha_hat]), np.array([beta_hat]))[0])
     least = int(np.argmin(values))
-    if values[least] < here * (1 - BETTER):
+    if values[least] < here * (1 - BETTER) - NO_LESS:
         place = f"({alpha_hats[positive][least]:.6g}, {beta_hats[positive][least]:.6g})"
         raise NumericalError(f"{method.name}: the point chosen has {here:.9g}, but {place} has {values[least]:.9g}")
 
 
 def check_margin(
-    pencil: Pencil, alpha_hat: float, beta_hat: float, powers: tuple[int, int], ends: Sequence[float]
+    pencil: AnyPencil, alpha_hat: float, beta_hat: float, powers: tuple[int, int], ends: Sequence[float]
 ) -> None:
     """Raise NumericalError unless the proven verdict turns at each end of a margin, and not before.
 

@@ -15,20 +15,23 @@ Every kind is a square system of equations for mu and the roots that meet; a sam
 each kind, and the least solution that is a maximum over all roots is the answer, to rounding.
 """
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache
-from itertools import pairwise
+from itertools import pairwise, product
 
 import numpy as np
-from numpy.polynomial.polynomial import polyval2d
+from numpy.polynomial.polynomial import polyroots, polyval2d
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method, fixed_poles, without_shared_factor
-from bezstab.stability.answer_checks import check_best_point, check_deadbeat
+from bezstab.methods import Method, SecondOrder, fixed_poles, implicit, without_shared_factor
+from bezstab.stability.answer_checks import check_best_point, check_deadbeat, check_plane_best_point
 from bezstab.stability.arrays import ComplexArray, FloatArray
 from bezstab.stability.dominant_roots import dominant_root
 from bezstab.stability.pencils import Pencil, pencil_of, roots_in_mu, roots_in_z
+from bezstab.stability.plane_best_points import plane_least
+from bezstab.stability.plane_pencils import plane_pencil_of
 from bezstab.stability.regions import region
 from bezstab.stability.searches import zoom_on_minimum
 
@@ -52,6 +55,7 @@ class BestPoint:
     beta_hat) with the same |z_p|; with `arc` they are the two ends of a curve along which it is constant.
     `fixed` is the largest pole that no parameters move (None for an ordinary method): where it is the largest at all,
     |z_p| is its modulus on a whole neighbourhood, and the point is where the other poles are smallest.
+    `multiplicity`: how often each of those poles is a root, of a second-order scheme, whose poles need no double mu.
     """
 
     method: Method
@@ -63,6 +67,7 @@ class BestPoint:
     elsewhere: tuple[tuple[float, float], ...]
     arc: bool
     fixed: complex | None = None
+    multiplicity: int = 1
 
     def __repr__(self) -> str:
         place = f"alpha_hat = {self.alpha_hat:.6g}, beta_hat = {self.beta_hat:.6g}"
@@ -88,39 +93,112 @@ class _Candidate:
 
 @cache
 def best_point(method: Method) -> BestPoint | None:
-    """Return the smallest |z_p| and its place, to about 1e-12; None if no parameters have |z_p| < 1.
+    """Return the smallest |z_p| and its place, to about 1e-12; None if no parameters have |z_p| < 1, or the least.
 
-    Dimensionless, of the poles of paper Eq. 17. NumericalError if no solution of the defining equations is as small
-    as a sampled |z_p|, or a point or slice of the region is better than what was found (answer_checks).
+    The latter where |z_p| falls on as they grow: `falls_towards` says so. Dimensionless, of the poles of paper Eq. 17;
+    of implicit and second-order methods among alpha_hat, beta_hat >= 0. NumericalError if no solution of the defining
+    equations is as small as a sampled |z_p|, or a point or slice of the region is better than what was found
+    (answer_checks).
     """
+    found = _best_or_limit(method)
+    return found if isinstance(found, BestPoint) else None
+
+
+@cache
+def falls_towards(method: Method) -> float | None:
+    """Return the value below which |z_p| stays nowhere, though it falls towards it as the parameters grow.
+
+    Zero for implicit Euler and BDF. None if some point has the least |z_p|, or none is stable. Errors as best_point.
+    """
+    if best_point(method):
+        return None
+    found = _best_or_limit(method)
+    return found if isinstance(found, float) else None
+
+
+def _best_or_limit(method: Method) -> BestPoint | float | None:
     stuck = fixed_poles(method)
     if stuck:
         return _beside_a_fixed_pole(method, stuck[0])
+    if isinstance(method.scheme, SecondOrder):
+        return _in_the_plane(method)
     pencil = pencil_of(method)
-    if pencil.steps == 1:  # z = R(mu), and the zeros of R are deadbeat
-        deadbeat = _described(pencil, 0.0, _zeros(pencil), arc=False)
-        check_deadbeat(pencil, deadbeat.alpha_hat, deadbeat.beta_hat)
-        return deadbeat
-    extent = region(method).view
+    return _deadbeat(pencil) if pencil.steps == 1 else _kink(pencil)
+
+
+def _deadbeat(pencil: Pencil) -> BestPoint | float:
+    """Return the zeros of R, or, without one where Re mu < 0, its modulus at infinity: z = R(mu)."""
+    explicit = not implicit(pencil.method)
+    zeros = [mu for mu in _zeros(pencil) if mu.real < 0 or explicit]
+    if not zeros:
+        return _limit(pencil)
+    deadbeat = _described(pencil, 0.0, zeros, arc=False)
+    check_deadbeat(pencil, deadbeat.alpha_hat, deadbeat.beta_hat)
+    return deadbeat
+
+
+def _kink(pencil: Pencil) -> BestPoint | float | None:
+    """Return the best point of a method of several steps, or the value its |z_p| falls towards."""
+    stable = region(pencil.method)
+    extent = stable.view
     if extent is None:
         return None
+    limit = math.inf if stable.bounded else _limit(pencil)
+    if limit == 0:
+        return limit
     least = _smallest(pencil)
+    if limit < least.z_abs:
+        return limit
     end = _other_end(pencil, least)
     found = _described(pencil, least.z_abs, [least.mu] if end is None else [least.mu, end], arc=end is not None)
     check_best_point(pencil, found.z_abs, found.alpha_hat, found.beta_hat, extent)
     return found
 
 
-def _beside_a_fixed_pole(method: Method, fixed: complex) -> BestPoint | None:
+def _limit(pencil: Pencil) -> float:
+    """Return the largest modulus of the roots that pi(., mu) tends to as mu grows; infinite where one does."""
+    polynomial = np.trim_zeros(pencil.table[:, -1], "b")
+    if len(polynomial) < len(pencil.table):
+        return math.inf
+    return float(np.abs(polyroots(polynomial)).max())
+
+
+def _in_the_plane(method: Method) -> BestPoint | float | None:
+    """Return the best point of a second-order scheme, or the value its |z_p| falls towards."""
+    stable = region(method)
+    if stable.view is None:
+        return None
+    pencil = plane_pencil_of(method, free=True)
+    least = plane_least(pencil, stable.view, unbounded=not stable.bounded)
+    if isinstance(least, float):
+        return least
+    check_plane_best_point(pencil, least.z_abs, least.alpha_hat, least.beta_hat, stable.view)
+    return BestPoint(
+        method=method,
+        z_abs=least.z_abs,
+        alpha_hat=least.alpha_hat,
+        beta_hat=least.beta_hat,
+        meeting=least.meeting,
+        double=False,
+        elsewhere=(),
+        arc=False,
+        multiplicity=least.multiplicity,
+    )
+
+
+def _beside_a_fixed_pole(method: Method, fixed: complex) -> BestPoint | float | None:
     """Return the best point of the method without the factor that rho and sigma share, where that decides.
 
     None if the fixed pole is on the unit circle.
     """
     if not region(method).boundary:
         return None
-    others = best_point(without_shared_factor(method))
+    second_order = isinstance(method.scheme, SecondOrder)
+    others = _in_the_plane(method) if second_order else _best_or_limit(without_shared_factor(method))
     if others is None:
         return None
+    if isinstance(others, float):
+        return max(others, abs(fixed))
     if others.z_abs >= abs(fixed):
         return replace(others, method=method, fixed=fixed)
     return replace(others, method=method, fixed=fixed, z_abs=abs(fixed), meeting=(fixed,), elsewhere=(), arc=False)
@@ -128,8 +206,13 @@ def _beside_a_fixed_pole(method: Method, fixed: complex) -> BestPoint | None:
 
 def _zeros(pencil: Pencil) -> list[complex]:
     """Return the different mu of the upper half at which the one root is zero, the most damped first."""
+    numerator = np.trim_zeros(pencil.table[0], "b")
+    if len(numerator) < pencil.table.shape[1]:  # of an implicit method, of a degree less than the denominator
+        roots = polyroots(numerator).astype(complex)
+    else:
+        roots = roots_in_mu(pencil, np.zeros(1, complex))[:, 0]
     zeros: list[complex] = []
-    for root in np.sort_complex(roots_in_mu(pencil, np.zeros(1, complex))[:, 0]):
+    for root in np.sort_complex(roots):
         mu = _upper(root)
         if abs(mu) < REACH and all(abs(mu - other) > DOUBLE * abs(mu) for other in zeros):
             zeros.append(mu)
@@ -182,7 +265,10 @@ def _smallest(pencil: Pencil) -> _Candidate:
 
 def _local_minima(pencil: Pencil) -> Iterator[_Candidate]:
     """Yield the lowest local minima of f on a grid over S_1, each narrowed by a sequence of smaller grids."""
-    corners = np.abs(np.concatenate(region(pencil.method).boundary) @ pencil.to_feedback.T)
+    stable = region(pencil.method)
+    assert stable.view
+    seen = np.concatenate(stable.boundary) if stable.bounded else np.array(list(product(*stable.view)))
+    corners = np.abs(seen @ pencil.to_feedback.T)
     reach = float(np.max(corners[:, 0] + np.sqrt(corners[:, 1])))  # of both roots of the feedback
     x, y = np.linspace(-reach, reach / 4, 151), np.linspace(0, reach, 121)
     sampled = _largest_modulus(pencil, x + 1j * y[:, np.newaxis])

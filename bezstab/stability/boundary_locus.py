@@ -192,7 +192,7 @@ def _rim_pieces(pencil: Pencil, level: float, arcs: list[Arc], radius: float) ->
     ends = np.array([mu for arc in arcs for mu in (arc.mu[0], arc.mu[-1])], complex)
     met = np.angle(ends[np.abs(ends) > radius * (1 - ON_THE_RIM)])
     for start, end in pairwise([0.0, *np.sort(met).tolist(), pi]):
-        middle = radius * np.exp(1j * np.array([(start + end) / 2]))
+        middle = np.array([radius * np.exp(0.5j * (start + end))])
         if end > start and _all_within(pencil, middle, level)[0]:
             yield RimPiece(radius, start, end)
 

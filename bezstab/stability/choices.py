@@ -2,22 +2,31 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Literal
 
 import numpy as np
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.methods import Method, Verdict, steps, without_shared_factor
+from bezstab.methods import Method, Verdict, steps
 from bezstab.rationals import exact
 from bezstab.stability.answer_checks import check_least, check_least_equal, check_margin
 from bezstab.stability.arrays import BoolArray, FloatArray
 from bezstab.stability.best_points import best_point
-from bezstab.stability.closed_loop import largest_modulus, largest_pole, verdict
+from bezstab.stability.closed_loop import (
+    AnyPencil,
+    any_pencil_of,
+    free_pencil_of,
+    largest_modulus,
+    largest_pole,
+    verdict,
+)
 from bezstab.stability.dominant_roots import dominant_root
-from bezstab.stability.pencils import Pencil, pencil_of
-from bezstab.stability.regions import Extent, pole_place, region
+from bezstab.stability.pencils import Pencil
+from bezstab.stability.plane_best_points import critical_point
+from bezstab.stability.plane_pencils import PlanePencil
+from bezstab.stability.regions import Extent, Region, pole_place, region
 from bezstab.stability.searches import first_where, zoom_on_minimum
 
 Goal = Literal["robust", "fastest", "critical", "gentle"]
@@ -31,11 +40,13 @@ ZOOM = 0.75  # from one grid to the next
 ZOOMS = 90  # 0.75^89 = 8e-12 of the region at least, where the objective is flat to rounding
 SPREAD_POINTS = 9  # per axis, of the points among which the worst is looked for
 SHARES = 8  # of the largest step, besides the limit of small ones: in practice either end is the slowest
+AT_DEADBEAT = 0.01  # of alpha_hat, beta_hat: a double pole that is so near to zero may be followed no further
 ASIDE = 1e-7  # of mu: a double mu splits by 1e-8 in float64, which must not let a rival of equal modulus win
 DEADBEAT = 1e-6  # a double pole at zero, as far as float64 tells it
 SLOW = 1e-12  # 1 - |z_p| of which rounding leaves three digits: the decay takes 1e13 steps
 REAL = 1e-9  # of |z|: an imaginary part below it is rounding
 FURTHEST = 1e4  # factor on h, alpha or beta beyond which nobody asks
+SEARCHED = 4.0  # alpha h and beta h: there e^-4, a fiftieth, is left after a step, and nobody asks for faster decay
 NEAREST = 1e-4  # and below which |z_p| is one to rounding
 
 
@@ -55,7 +66,9 @@ class Margins:
 class Choice:
     """A point, its proven verdict and dominant pole, and the largest |z_p| when alpha and beta are off by the spread.
 
-    All dimensionless. `margins` is None unless the point is stable.
+    All dimensionless. `margins` is None unless the point is stable. `searched` is the largest alpha h and beta h (of
+    the method's step) that were looked at where the region goes on without end and a stronger feedback might be better
+    by the goal; None where all of the region was searched, or none of it.
     """
 
     method: Method
@@ -66,6 +79,7 @@ class Choice:
     pole: complex
     worst: float
     margins: Margins | None
+    searched: float | None = None
 
     def __repr__(self) -> str:
         place = f"alpha_hat = {self.alpha_hat:.6g}, beta_hat = {self.beta_hat:.6g}"
@@ -95,33 +109,45 @@ def choose(method: Method, goal: Goal, spread: float = 0.1, rate: float | None =
     InputError if nothing stable meets the goal. The poles are those of paper Eq. 17; the goals are this package's.
     """
     stable = region(method)
-    extent = stable.view
-    if extent is None:
+    if stable.extent is None:
         reason = ""
         if stable.fixed_poles and abs(stable.fixed_poles[0]) > 1 - SLOW:
             reason = f": a pole stays at {pole_place(stable.fixed_poles[0])} on the unit circle"
         raise InputError(f"{method.name} is stable for no parameters at all{reason}")
-    pencil = pencil_of(without_shared_factor(method))  # a pole that no parameters move must not hide the others
+    box, cut = _box(stable)
+    pencil = free_pencil_of(method)  # a pole that no parameters move must not hide the others
     if goal == "gentle":
-        point = _gentle(pencil_of(method), extent, 0.0 if rate is None else rate)
+        point, cut = _gentle(any_pencil_of(method), box, 0.0 if rate is None else rate), False
     elif goal == "critical":
-        point = _critical(pencil, extent)
+        point = _critical_point(pencil, box, cut)
         if equal and not math.isclose(point[1], point[0] ** 2 / 4):
             raise InputError(
                 f"--keep alpha=beta: the double mu of {method.name} is not at alpha = beta; no --goal critical"
             )
     elif goal == "robust":
-        point = _checked_least(pencil, extent, _slowest(pencil, spread), equal)
+        point = _checked_least(pencil, box, _slowest(pencil, spread), equal, cut)
     elif equal:
-        point = _checked_least(pencil, extent, lambda a, b: largest_modulus(pencil, a, b), equal)
-    else:
-        best = best_point(method)
-        assert best  # the region is not empty
-        point = best.alpha_hat, best.beta_hat
+        point = _checked_least(pencil, box, lambda a, b: largest_modulus(pencil, a, b), equal, cut)
+    elif best := best_point(method):
+        point, cut = (best.alpha_hat, best.beta_hat), False
+    else:  # it falls on as the feedback grows
+        point = _checked_least(pencil, box, lambda a, b: largest_modulus(pencil, a, b), equal, cut)
     choice = describe_point(method, goal, exact(point[0]), exact(point[1]), spread)
     if choice.verdict != "converges":
         raise NumericalError(f"{method.name}: the point {point} found for {goal} is not stable")
-    return choice
+    return replace(choice, searched=SEARCHED) if cut else choice
+
+
+def _box(stable: Region) -> tuple[Extent, bool]:
+    """Return the ranges over which to search, and whether they cut off a region that goes on."""
+    assert stable.extent
+    multiple = float(stable.method.step_multiple)
+    strongest = (2 * SEARCHED / multiple, (SEARCHED / multiple) ** 2)
+    ranges = [
+        (low if math.isfinite(low) else 0.0, high if math.isfinite(high) else end)
+        for (low, high), end in zip(stable.extent, strongest, strict=True)
+    ]
+    return (ranges[0], ranges[1]), not np.isfinite(stable.extent)[:, 1].all()
 
 
 def choose_at_step(
@@ -152,7 +178,7 @@ def choose_at_step(
         return choice
     share = h / h_max
     alpha_hat, beta_hat = exact(choice.alpha_hat) * share, exact(choice.beta_hat) * share**2
-    return describe_point(method, goal, alpha_hat, beta_hat, spread)
+    return replace(describe_point(method, goal, alpha_hat, beta_hat, spread), searched=choice.searched)
 
 
 def describe_point(method: Method, goal: str, alpha_hat: Fraction, beta_hat: Fraction, spread: float = 0.1) -> Choice:
@@ -161,7 +187,7 @@ def describe_point(method: Method, goal: str, alpha_hat: Fraction, beta_hat: Fra
     `spread` is the share by which alpha and beta may be off. NumericalError if a pole (a root of paper Eq. 17) leaves
     the range of float64.
     """
-    pencil = pencil_of(method)
+    pencil = any_pencil_of(method)
     a, b = float(alpha_hat), float(beta_hat)
     proven = verdict(method, alpha_hat, beta_hat)
     offsets = 1 + spread * np.linspace(-1, 1, SPREAD_POINTS)
@@ -185,7 +211,7 @@ def stability_margins(method: Method, alpha_hat: float, beta_hat: float) -> Marg
     s^2 beta_hat): paper Eq. 16. An end without |z_p| = 1 (a pole of paper Eq. 17) is infinite, or zero.
     NumericalError if a pole leaves the range of float64.
     """
-    pencil = pencil_of(method)
+    pencil = any_pencil_of(method)
 
     def end(power_of_alpha_hat: int, power_of_beta_hat: int, furthest: float) -> float | None:
         def unstable(factor: FloatArray) -> BoolArray:
@@ -212,7 +238,7 @@ def stability_margins(method: Method, alpha_hat: float, beta_hat: float) -> Marg
     return margins
 
 
-def _slowest(pencil: Pencil, spread: float) -> Objective:
+def _slowest(pencil: AnyPencil, spread: float) -> Objective:
     """Return the objective of `robust`: the largest decay factor per largest step, over smaller steps and the spread.
 
     A step of share s of the largest turns (alpha_hat, beta_hat) into (s alpha_hat, s^2 beta_hat) and takes 1/s steps;
@@ -237,20 +263,23 @@ def _slowest(pencil: Pencil, spread: float) -> Objective:
     return objective
 
 
-def _checked_least(pencil: Pencil, extent: Extent, objective: Objective, equal: bool) -> tuple[float, float]:
+def _checked_least(
+    pencil: AnyPencil, extent: Extent, objective: Objective, equal: bool, cut: bool
+) -> tuple[float, float]:
     """Return where the objective is least; NumericalError if a sampled point is better (answer_checks)."""
-    alpha_hat, beta_hat = _least(extent, objective, equal)
+    alpha_hat, beta_hat = _least(extent, objective, equal, cut)
     if equal:
-        check_least_equal(pencil.method, objective, alpha_hat, extent)
+        check_least_equal(pencil.method, objective, alpha_hat, extent, cut)
     else:
-        check_least(pencil.method, objective, alpha_hat, beta_hat, extent)
+        check_least(pencil.method, objective, alpha_hat, beta_hat, extent, cut)
     return alpha_hat, beta_hat
 
 
-def _least(extent: Extent, objective: Objective, equal: bool) -> tuple[float, float]:
+def _least(extent: Extent, objective: Objective, equal: bool, cut: bool) -> tuple[float, float]:
     """Return where the objective is least over the region's box; with `equal` on the line alpha = beta.
 
-    Its valleys are narrow, curved and have kinks for beds, so the grids are turned, and wait where the valley leads on.
+    Its valleys are narrow, curved and have kinks for beds, so the grids are turned, and wait where the valley leads on;
+    out of a box that cuts off the region they are not led.
     """
     largest = np.array([extent[0][1] / 2, math.sqrt(extent[1][1])])  # alpha h and beta h
     centre = largest / 2
@@ -274,11 +303,29 @@ def _least(extent: Extent, objective: Objective, equal: bool) -> tuple[float, fl
         rounds=ZOOMS,
         turned=not equal,
         patient=True,
+        fold=(lambda points: np.minimum(points, 2 * centre)) if cut else None,
     )
     return 2 * float(best[0]), float(best[-1]) ** 2
 
 
-def _critical(pencil: Pencil, extent: Extent) -> tuple[float, float]:
+def _critical_point(pencil: AnyPencil, box: Extent, cut: bool) -> tuple[float, float]:
+    """Return the fastest point whose dominant pole is real and positive; InputError if there is none."""
+    (_, alpha_hat_max), (_, beta_hat_max) = box
+    if isinstance(pencil, PlanePencil):
+        found = critical_point(pencil, (alpha_hat_max, beta_hat_max))
+        if found is None:
+            raise InputError(f"{pencil.method.name}: no double pole is dominant; no --goal critical")
+        best = best_point(pencil.method)
+        if best and not best.z_abs and math.dist(found, (best.alpha_hat, best.beta_hat)) < AT_DEADBEAT:
+            return best.alpha_hat, best.beta_hat
+        return found
+    furthest = 2 * math.sqrt(beta_hat_max) + alpha_hat_max
+    if cut:
+        furthest = min(alpha_hat_max / 2, math.sqrt(beta_hat_max)) * float(pencil.method.step_multiple)
+    return _critical(pencil, furthest)
+
+
+def _critical(pencil: Pencil, furthest_mu: float) -> tuple[float, float]:
     """Return the double mu < 0 with the smallest dominant root that is real and positive.
 
     A single mu is the slower of two, so the other may as well be there too. From zero on, the dominant root starts at
@@ -289,7 +336,7 @@ def _critical(pencil: Pencil, extent: Extent) -> tuple[float, float]:
         z = dominant_root(pencil, mu.astype(complex))
         return np.where((np.abs(z.imag) < REAL * np.abs(z)) & (z.real > 0), z.real, np.inf)
 
-    mu = -np.linspace(0, 2 * math.sqrt(extent[1][1]) + extent[0][1], SAMPLES)[1:]
+    mu = -np.linspace(0, furthest_mu, SAMPLES)[1:]
     overtaken = first_where(lambda mu: np.isinf(real_dominant_root(mu)), mu)
     furthest = mu[-1] if overtaken is None else overtaken[0]
     candidates = np.append(mu[mu > furthest], furthest)
@@ -308,7 +355,7 @@ def _critical(pencil: Pencil, extent: Extent) -> tuple[float, float]:
     return float(alpha_hat), float(beta_hat)
 
 
-def _gentle(pencil: Pencil, extent: Extent, rate: float) -> tuple[float, float]:
+def _gentle(pencil: AnyPencil, extent: Extent, rate: float) -> tuple[float, float]:
     """Return the smallest alpha = beta with |z_p| <= rate."""
     alpha = np.linspace(0, extent[0][1] / 2, SAMPLES)  # times h, as beta
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method, SecondOrder, Verdict, closed_loop_at, recursion_verdict
+from bezstab.methods import Method, SecondOrder, Verdict, closed_loop_at, recursion_verdict, without_shared_factor
 from bezstab.stability.arrays import EPS, ComplexArray, FloatArray
 from bezstab.stability.dominant_roots import dominant_root
 from bezstab.stability.exact_sums import feedback_roots
@@ -49,6 +49,13 @@ def poles(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexA
 def any_pencil_of(method: Method) -> AnyPencil:
     """Return the pencil of a method of either kind; NumericalError if its coefficients leave the range of float64."""
     return plane_pencil_of(method) if isinstance(method.scheme, SecondOrder) else pencil_of(method)
+
+
+def free_pencil_of(method: Method) -> AnyPencil:
+    """Return the pencil of a method of either kind without the poles that no parameters move."""
+    if isinstance(method.scheme, SecondOrder):
+        return plane_pencil_of(method, free=True)
+    return pencil_of(without_shared_factor(method))
 
 
 def _all_poles(pencil: AnyPencil, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:

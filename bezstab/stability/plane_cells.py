@@ -15,6 +15,7 @@ tanh-sinh quadrature does not mind (H. Takahasi & M. Mori, Publ. RIMS 9, 1974).
 
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
 
 import numpy as np
 
@@ -136,7 +137,7 @@ def _real_roots(coefficients: FloatArray, count: int) -> FloatArray:
         companion = np.zeros((lines, n, n))
         companion[:, range(1, n), range(n - 1)] = 1
         companion[:, :, -1] = -np.where(lost, 0, monic).T
-        roots = np.linalg.eigvals(companion)
+        roots = np.linalg.eigvals(companion).astype(complex)
         x = np.sort(_most_real(roots, count), axis=1).T
         allowed = np.maximum(SETTLED * np.abs(x), EIGENVALUE_ERROR * np.abs(roots).max(axis=1))
         for _ in range(POLISH):
@@ -216,7 +217,7 @@ def _lost_to(strips: PlaneStrips, strip: Strip, edges: Edges, crossing: Crossing
     """Return the signs of infinity that a crossing runs to at the strip's ends; without end, it may run to either."""
     if crossing is None:
         return set()
-    number, k = crossing
+    number, _ = crossing
     table = edges.tables[number]
     signs = set()
     for level, inwards in ((strip.low, 1), (strip.high, -1)):
@@ -271,14 +272,17 @@ def _turns(edges: Edges, cells: tuple[Cell, ...]) -> FloatArray:
                 points.append([(0.0, level) for level in (cell.low, cell.high) if np.isfinite(level)])
                 continue
             place = edges.places(crossing, cell.low, levels)
-            points.append([(place[end], levels[end]) for end, is_level in zip((0, -1), inside, strict=True) if is_level])
+            points.append(
+                [(place[end], levels[end]) for end, is_level in zip((0, -1), inside, strict=True) if is_level]
+            )
             for sign in (1, -1):
                 within = sign * place[1:-1]
                 turning = 1 + np.flatnonzero((within > sign * place[:-2]) & (within > sign * place[2:]))
                 for k in turning:
                     points.append([_furthest(edges, crossing, cell.low, levels[k - 1], levels[k + 1], sign)])
     flat = np.array([point for group in points for point in group]).reshape(-1, 2)
-    return flat[np.isfinite(flat).all(axis=1)]
+    finite: FloatArray = flat[np.isfinite(flat).all(axis=1)]
+    return finite
 
 
 def _furthest(
@@ -313,7 +317,7 @@ def _view(cells: tuple[Cell, ...], corners: FloatArray) -> Extent:
     for axis, (low, high) in enumerate(((left, right), (bottom, top))):
         within = corners[:, axis] if corners.size else np.zeros(1)
         seen_low = low if np.isfinite(low) else float(min(within.min(initial=0.0), 0.0))
-        seen_high = high if np.isfinite(high) else float(max(within.max(initial=0.0), seen_low + LEAST_VIEW))
+        seen_high = high if np.isfinite(high) else float(max(within.max(initial=0.0), LEAST_VIEW))
         ranges.append((seen_low, seen_high))
     return ranges[0], ranges[1]
 
@@ -364,9 +368,7 @@ def tanh_sinh(low: float, high: float) -> tuple[FloatArray, FloatArray]:
 #        below:   |---- |            |--- stable --|
 
 
-def _curves(
-    edges: Edges, cells: tuple[Cell, ...], view: Extent, bounded: bool, name: str
-) -> list[FloatArray]:
+def _curves(edges: Edges, cells: tuple[Cell, ...], view: Extent, bounded: bool, name: str) -> list[FloatArray]:
     """Return the boundary as curves of shape (points, 2): closed, or ending out of view where the region goes on."""
     box = _box(view)
     pieces = _walls(edges, cells, box) + _level_pieces(edges, cells, box)
@@ -423,13 +425,11 @@ def _level_pieces(edges: Edges, cells: tuple[Cell, ...], box: Extent) -> list[Fl
                     limit if crossing is None else float(edges.places(crossing, cell.low, np.array([level]))[0])
                     for crossing, limit in ((cell.left, left), (cell.right, right))
                 ]
-                ends = [
-                    limit if not np.isfinite(end) else end for end, limit in zip(ends, (left, right), strict=True)
-                ]
+                ends = [limit if not np.isfinite(end) else end for end, limit in zip(ends, (left, right), strict=True)]
                 intervals.append((max(ends[0], left), min(ends[1], right)))
             sides.append(intervals)
         ends = sorted({end for intervals in sides for interval in intervals for end in interval})
-        for start, end in zip(ends[:-1], ends[1:], strict=True):
+        for start, end in pairwise(ends):
             if end - start <= gap:
                 continue
             middle = (start + end) / 2

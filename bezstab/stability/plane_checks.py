@@ -1,11 +1,11 @@
 r"""The region of a second-order scheme held against routes that share nothing with its strips: an error, never an area.
 
-    points    all over what is seen: inside by the poles is inside by the cells, and the contrary is decided in rationals
-    lines     of constant alpha_hat, where the strips run along beta_hat: where |z_p| passes the level, found by
-              bisection, are the crossings of the drawn curves, and the lengths between add up to the area
-    curve     with one evaluation a step P is linear in alpha_hat and beta_hat, and Re P = Im P = 0 at z = r e^(i theta)
-              gives the point at which that pair is a root (Yu. I. Neimark's D-decomposition): where no other root is
-              larger, it lies on an edge
+points    all over what is seen: inside by the poles is inside by the cells, and the contrary is decided in rationals
+lines     of constant alpha_hat, where the strips run along beta_hat: where |z_p| passes the level, found by
+          bisection, are the crossings of the drawn curves, and the lengths between add up to the area
+curve     with one evaluation a step P is linear in alpha_hat and beta_hat, and Re P = Im P = 0 at z = r e^(i theta)
+          gives the point at which that pair is a root (Yu. I. Neimark's D-decomposition): where no other root is
+          larger, it lies on an edge
 """
 
 from fractions import Fraction
@@ -17,10 +17,9 @@ from bezstab.errors import NumericalError
 from bezstab.methods import Method, closed_loop_at, is_schur
 from bezstab.rationals import exact
 from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
-from bezstab.stability.closed_loop import largest_modulus
 from bezstab.stability.line_crossings import crossed_levels
 from bezstab.stability.plane_cells import Edges, Extent, PlaneShape
-from bezstab.stability.plane_pencils import PlanePencil
+from bezstab.stability.plane_pencils import PlanePencil, coefficients_at
 from bezstab.stability.searches import bisected
 
 POINTS = 600  # all over the view: 0.1 ms
@@ -48,7 +47,9 @@ def check_plane(pencil: PlanePencil, level: float, edges: Edges | None, shape: P
         _check_lines(pencil, level, shape, shape.area)
 
 
-def contained(edges: Edges, shape: PlaneShape, alpha_hat: FloatArray, beta_hat: FloatArray) -> tuple[BoolArray, FloatArray]:
+def contained(
+    edges: Edges, shape: PlaneShape, alpha_hat: FloatArray, beta_hat: FloatArray
+) -> tuple[BoolArray, FloatArray]:
     """Return whether points lie in a stable cell, and how far from its edges along alpha_hat, those of all cells."""
     inside = np.zeros(alpha_hat.shape, bool)
     distance = np.full(alpha_hat.shape, np.inf)
@@ -86,15 +87,14 @@ def _check_points(
 
 
 def _inside(pencil: PlanePencil, level: float, alpha_hat: FloatArray, beta_hat: FloatArray) -> BoolArray:
-    """Return whether |z_p| < level by float64; False where a pole is infinite."""
-    try:
-        inside: BoolArray = largest_modulus(pencil, alpha_hat, beta_hat) < level
-    except NumericalError:
-        if alpha_hat.size == 1:
-            return np.zeros(1, bool)
-        half = alpha_hat.size // 2
-        parts = [_inside(pencil, level, alpha_hat[part], beta_hat[part]) for part in (slice(half), slice(half, None))]
-        inside = np.concatenate(parts)
+    """Return whether |z_p| < level, by Schur's recursion in float64; False where a pole is infinite."""
+    p = np.stack([c * level**k for k, c in enumerate(coefficients_at(pencil, alpha_hat, beta_hat))])
+    inside = np.full(alpha_hat.shape, True)
+    with np.errstate(all="ignore"):
+        while len(p) > 1:
+            k = p[0] / p[-1]
+            inside &= np.abs(k) < 1
+            p = (p - k * p[::-1])[1:]  # whose last coefficient, p(0) - k lead(p), was 0
     return inside
 
 

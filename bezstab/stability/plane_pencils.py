@@ -1,7 +1,7 @@
 """What float64 needs to know of a second-order scheme, made once: its P(z; alpha_hat, beta_hat) as a plane pencil.
 
-Such a scheme has no pi(z, mu), and its P is not a product over two mu. Its poles are the roots of P itself: two for most
-of these schemes, which a formula gives, or three, or as many as it looks back.
+Such a scheme has no pi(z, mu), and its P is not a product over two mu. Its poles are the roots of P itself: two for
+most of these schemes, which a formula gives, or three, or as many as it looks back.
 """
 
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from functools import cache
 import numpy as np
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method, closed_loop_table
+from bezstab.methods import Method, closed_loop_table, reduced_table
 from bezstab.stability.arrays import ComplexArray, FloatArray
 from bezstab.stability.exact_sums import double_polynomial, double_product, double_sum, split
 from bezstab.stability.low_degrees import cubic_parts, largest_quadratic_root, quadratic_roots
@@ -40,9 +40,12 @@ class PlanePencil:
 
 
 @cache
-def plane_pencil_of(method: Method) -> PlanePencil:
-    """Return the plane pencil of a second-order scheme; NumericalError if its coefficients leave float64's range."""
-    exact = closed_loop_table(method)
+def plane_pencil_of(method: Method, free: bool = False) -> PlanePencil:
+    """Return the plane pencil of a second-order scheme; NumericalError if its coefficients leave float64's range.
+
+    free: without the poles that no parameters move.
+    """
+    exact = reduced_table(method) if free else closed_loop_table(method)
     try:
         halves = tuple(tuple(tuple(split(c) for c in row) for row in in_plane) for in_plane in exact)
     except OverflowError:

@@ -35,8 +35,8 @@ from bezstab.rationals import exact
 from bezstab.stability.arrays import BoolArray, FloatArray
 from bezstab.stability.boundary_locus import Arc, Bounds, bounds_of, feedback_coefficients
 from bezstab.stability.closed_loop import spectral_radius
-from bezstab.stability.pencils import Pencil, pencil_of
 from bezstab.stability.line_slices import RIM, rim_radius
+from bezstab.stability.pencils import Pencil, pencil_of, roots_in_mu
 from bezstab.stability.plane_cells import Edges, plane_shape
 from bezstab.stability.plane_checks import check_plane
 from bezstab.stability.plane_pencils import plane_pencil_of
@@ -105,9 +105,8 @@ def region(method: Method, level: float = 1.0) -> Region:
     least |z_p|, that it lies between two samples.
     """
     stuck = fixed_poles(method)
-    if stuck:
-        if abs(stuck[0]) >= level * (1 - ROUNDING):
-            return Region(method, level, 0.0, (), None, stuck)
+    if stuck and abs(stuck[0]) >= level * (1 - ROUNDING):
+        return Region(method, level, 0.0, (), None, stuck)
     if isinstance(method.scheme, SecondOrder):
         return _plane_region(method, level, stuck)
     if stuck:
@@ -138,8 +137,7 @@ def _checked_region(method: Method, level: float, finer: int) -> Region:
     """Return the region from one sampling of the locus; NumericalError if it fails its check."""
     pencil = pencil_of(method)
     bounds = bounds_of(pencil, level, finer, rim_radius(pencil, level) if pencil.implicit else math.inf)
-    edges = [piece.plane() @ pencil.to_user.T for piece in (*bounds.arcs, *bounds.rim)]
-    edges += straight_edges(pencil, bounds)
+    edges = curved_edges(pencil, bounds) + straight_edges(pencil, bounds)
     area = _area(pencil, bounds)
     extent = _extent(pencil, bounds.arcs, edges)
     if extent is None or not 0 < area <= np.prod(np.diff(extent)):  # else noise, where two roots on the circle meet
@@ -196,8 +194,8 @@ def _unbounded_extent(pencil: Pencil, level: float, bounds: Bounds, finer: int) 
     ranges = []
     for radius in (bounds.radius, FURTHER * bounds.radius):
         cut_off = bounds_of(pencil, level, finer, radius)
-        edges = [piece.plane() @ pencil.to_user.T for piece in (*cut_off.arcs, *cut_off.rim)]
-        ranges.append(_extent(pencil, cut_off.arcs, edges + straight_edges(pencil, cut_off)))
+        edges = curved_edges(pencil, cut_off) + straight_edges(pencil, cut_off)
+        ranges.append(_extent(pencil, cut_off.arcs, edges))
     near, far = ranges
     assert near
     assert far
@@ -217,12 +215,17 @@ def _unbounded_extent(pencil: Pencil, level: float, bounds: Bounds, finer: int) 
 def _view(pencil: Pencil, bounds: Bounds) -> Extent:
     """Return ranges that hold what an unbounded region has of shape where alpha_hat, beta_hat >= 0, and USUAL_SIZE.
 
-    That is its corners (both mu at an end of an interval), the arcs that do not run to infinity, and of those that do
-    their ends and turns. What lies at negative parameters, which nobody asks for, may be far larger.
+    That is its corners (both mu at an end of an interval), the arcs that do not run to infinity, of those that do their
+    ends and turns, and where every pole of a one-step method is zero. What lies at negative parameters, which nobody
+    asks for, may be far larger.
     """
     off_rim = bounds.radius * (1 - ALONG_THE_RIM)
     ends = np.array([end for interval in bounds.intervals for end in interval if abs(end) < off_rim])
     shapely = [feedback_coefficients(np.full(len(ends), end), ends) for end in ends]
+    if pencil.steps == 1:
+        deadbeat = roots_in_mu(pencil, np.zeros(1, complex))[:, 0]
+        deadbeat = deadbeat[np.abs(deadbeat) < off_rim]
+        shapely.append(feedback_coefficients(deadbeat, deadbeat.conj()))
     for arc in bounds.arcs:
         mu = arc.mu
         if np.abs(mu[[0, -1]]).max() >= off_rim:
@@ -235,6 +238,12 @@ def _view(pencil: Pencil, bounds: Bounds) -> Extent:
     size = np.array([USUAL_SIZE, USUAL_SIZE]) / float(pencil.method.step_multiple) ** np.array([1, 2])
     alpha_max, beta_max = np.maximum(points[(points >= 0).all(axis=1)].max(axis=0, initial=0), size).tolist()
     return (0.0, alpha_max), (0.0, beta_max)
+
+
+def curved_edges(pencil: Pencil, bounds: Bounds) -> list[FloatArray]:
+    """Return the images of arcs, and of pieces of the rim, in the user's plane; each of shape (points, 2)."""
+    images = [arc.plane() for arc in bounds.arcs] + [piece.plane() for piece in bounds.rim]
+    return [image @ pencil.to_user.T for image in images]
 
 
 def straight_edges(pencil: Pencil, bounds: Bounds) -> list[FloatArray]:
@@ -255,7 +264,7 @@ def _area(pencil: Pencil, bounds: Bounds) -> float:
 
     For real mu (p, q) = (-(mu_1 + mu_2), mu_1 mu_2) has the Jacobian |mu_1 - mu_2|.
     """
-    conjugate = sum(piece.area() for piece in (*bounds.arcs, *bounds.rim))
+    conjugate = sum(arc.area() for arc in bounds.arcs) + sum(piece.area() for piece in bounds.rim)
     real = sum((end - start) ** 3 / 6 for start, end in bounds.intervals)
     area = conjugate + real
     for (a, b), (c, d) in combinations(bounds.intervals, 2):

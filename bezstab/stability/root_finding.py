@@ -42,7 +42,7 @@ def roots_of_rows(coefficients: ComplexArray) -> ComplexArray:
     """
     with np.errstate(all="ignore"):
         solved = np.repeat(coefficients[:, ::STRIDE], STRIDE, axis=1)[:, : coefficients.shape[1]]
-        too_far = (np.abs(coefficients - solved) >= NEAR * np.abs(coefficients)).any(axis=0)
+        too_far: BoolArray = np.any(np.abs(coefficients - solved) >= NEAR * np.abs(coefficients), axis=0)
         return _roots_from_neighbours(coefficients, too_far)
 
 
@@ -60,7 +60,7 @@ def _roots_of_chunk(table: FloatArray, x: ComplexArray) -> ComplexArray:
 
 
 def _roots_from_neighbours(coefficients: ComplexArray, too_far: BoolArray) -> ComplexArray:
-    """Return the roots of a row of polynomials: one in STRIDE from scratch, those not too far from it from its roots."""
+    """Return the roots of a row of polynomials: one in STRIDE from scratch, others near it from its roots."""
     points = coefficients.shape[1]
     solved_coefficients = coefficients[:, ::STRIDE]
     solved = _aberth(solved_coefficients, newton_polygon_starts(solved_coefficients))

@@ -60,8 +60,11 @@ TOLERANCES = (
 )
 """The first that fits both command and key."""
 
-ADDED = ("beta_hat_min", "bounded")
-"""Keys that rows have got since: the least beta_hat of a region, in its place, and whether it is bounded."""
+ADDED = (
+    *("beta_hat_min", "best_reason", "searched"),
+    *("bounded", "stable_for_all", "unconditional_damping_ratio", "critical_damping_limit"),
+)
+"""Keys that rows have got since, in their place: of a region its least beta_hat, and for which steps it is stable."""
 
 
 def tolerance(command: str, key: str) -> Tolerance:

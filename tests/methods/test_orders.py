@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from bezstab.methods import (
-    REGISTRY,
     Method,
     accuracy,
     adams_bashforth,
@@ -20,10 +19,11 @@ from bezstab.methods import (
     steps,
 )
 from bezstab.methods.orders import _trees
+from tests.methods.kinds import EXPLICIT
 from tests.reference.orders import DORMAND_PRINCE, JAMESON, adams_constant, tableau_method
 from tests.reference.steppers import State, trajectory
 
-METHODS = [pytest.param(lookup(name), id=name) for name in [*REGISTRY, "B4@1/2", "RK4@5", "ABM3@2", "SYM@3"]]
+METHODS = [pytest.param(lookup(name), id=name) for name in [*EXPLICIT, "B4@1/2", "RK4@5", "ABM3@2", "SYM@3"]]
 
 
 @pytest.mark.parametrize("n", range(2, 13))
@@ -101,14 +101,16 @@ def test_measured_order_of_convergence_is_the_order_of_accuracy(method: Method) 
     errors = []
     with mp.workdps(50):
         number = cache(lambda c: mp.mpf(c.numerator) / c.denominator)
-        for count in (128, 256):
+        # Tsitouras' decimals show where the error is below their rounding, some 1e-16
+        for count in (64, 128) if method.digits else (128, 256):
             h = mp.mpf(1) / count
             start = [exact(k * h) for k in range(steps(method))]
             end = trajectory(method, nonlinear, start, h, count + 1, number)[-1]
             errors.append(max(abs(end - exact(mp.mpf(1)))))
         measured = float(mp.log(errors[0] / errors[1], 2))
-    # the error has a term of the next order: O(h) off, 0.17 at worst (B12, whose start takes 12 of 128 steps)
-    assert abs(measured - accuracy(method)[0]) < 0.2
+    # the error has a term of the next order: O(h) off, 0.17 at worst (B12, whose start takes 12 of 128 steps); that of
+    # tsit5 is 30 times its leading one, so that it is half of it at 64 steps
+    assert abs(measured - accuracy(method)[0]) < (0.4 if method.digits else 0.2)
 
 
 def test_rooted_trees_are_as_many_as_there_are_and_none_comes_twice() -> None:

@@ -18,9 +18,11 @@ from bezstab.methods import (
     adams_bashforth,
     bezier,
     evaluations,
+    implicit,
     lookup,
     steps,
 )
+from tests.methods import kinds
 from tests.methods.exact_lists import fractions
 
 NAMES = list(REGISTRY)
@@ -36,7 +38,7 @@ def test_a_method_is_frozen_data(name: str) -> None:
             setattr(instance, field, None)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", [*kinds.MU_METHODS, "rkn4"])
 def test_every_coefficient_is_exact(name: str) -> None:
     def leaves(value: object) -> list[object]:
         if isinstance(value, tuple):
@@ -45,7 +47,7 @@ def test_every_coefficient_is_exact(name: str) -> None:
             return [leaf for field in value.__dataclass_fields__ for leaf in leaves(getattr(value, field))]
         return [value]
 
-    coefficients = leaves(lookup(name).scheme)
+    coefficients = [leaf for leaf in leaves(lookup(name).scheme) if not isinstance(leaf, str | int)]
     assert coefficients
     assert all(type(c) is Fraction for c in coefficients)
 
@@ -57,7 +59,13 @@ def test_an_n_step_method_keeps_n_points_and_evaluates_once(n: int) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "points", "calls"), [("ABM4", 4, 2), ("RK1", 1, 1), ("RK4", 1, 4), ("SIE", 1, 2), ("SYM", 1, 1)]
+    ("name", "points", "calls"),
+    [
+        *(("ABM4", 4, 2), ("RK1", 1, 1), ("RK4", 1, 4), ("SIE", 1, 2), ("SYM", 1, 1)),
+        *(("heun", 1, 2), ("bs3", 1, 3), ("dopri5", 1, 6), ("tsit5", 1, 6), ("cash-karp", 1, 6)),
+        *(("verlet-half", 1, 1), ("verlet-kdk", 1, 2), ("ruth3", 1, 3), ("forest-ruth", 1, 3), ("yoshida4", 1, 4)),
+        *(("rkn4", 1, 4), ("hht", 1, 1), ("bdf4", 4, 1), ("am4", 3, 1), ("sdirk2", 1, 2)),
+    ],
 )
 def test_steps_and_evaluations_count_what_one_step_needs(name: str, points: int, calls: int) -> None:
     assert (steps(lookup(name)), evaluations(lookup(name))) == (points, calls)
@@ -103,13 +111,10 @@ def test_a_multistep_method_is_consistent_and_zero_stable(rho: str, sigma: str, 
         (["0 0", "1 0"], "1", "square"),
         (["0", "1 0"], "0 1", "square"),
         ([], "", "square"),
-        (["0 0", "1/2 1/2"], "0 1", "implicit"),
-        (["0 1", "0 0"], "0 1", "implicit"),
-        (["1"], "1", "implicit"),
         (["0 0", "1/2 0"], "1/2 1/3", "inconsistent: the weights b sum to 5/6"),
     ],
 )
-def test_a_runge_kutta_method_is_explicit_and_consistent(tableau: list[str], b: str, why: str) -> None:
+def test_a_runge_kutta_method_is_square_and_consistent(tableau: list[str], b: str, why: str) -> None:
     with pytest.raises(InputError, match=why):
         RungeKutta(tuple(map(fractions, tableau)), fractions(b))
 
@@ -124,10 +129,43 @@ def wrong_pairs() -> list[Callable[[], object]]:
         lambda: Partitioned(position=EULER, velocity=TRAPEZE),
         lambda: Partitioned(position=two, velocity=EULER),
         lambda: Partitioned(position=EULER, velocity=two),
-        lambda: Method("M", TRAPEZE, "source"),
         lambda: Method("M", EULER, "source", Fraction(0)),
         lambda: Method("M", EULER, "source", Fraction(-1)),
     ]
+
+
+@pytest.mark.parametrize(
+    ("tableau", "b", "is_implicit"),
+    [
+        (["0 0", "1 0"], "0 1", False),
+        (["0 0", "1/2 1/2"], "0 1", True),
+        (["0 1", "0 0"], "0 1", True),
+        (["1"], "1", True),
+    ],
+)
+def test_a_tableau_with_an_entry_on_or_above_the_diagonal_is_implicit(
+    tableau: list[str], b: str, is_implicit: bool
+) -> None:
+    scheme = RungeKutta(tuple(map(fractions, tableau)), fractions(b))
+    assert implicit(Method("M", scheme, "source")) == is_implicit
+
+
+IMPLICIT_SECOND_ORDER = {
+    *("verlet-implicit", "central-difference", "average-acceleration", "linear-acceleration", "fox-goodwin"),
+    *("hht", "generalized-alpha", "imex-euler", "stable-pd"),
+}
+
+
+@pytest.mark.parametrize("name", kinds.SECOND_ORDER)
+def test_a_second_order_scheme_is_implicit_where_equations_wait_for_each_other(name: str) -> None:
+    assert implicit(lookup(name)) == (name in IMPLICIT_SECOND_ORDER)
+    assert steps(lookup(name)) == 1
+
+
+def test_a_rational_stands_for_irrational_coefficients_where_digits_say_so() -> None:
+    rounded = {name: lookup(name).digits for name in REGISTRY if lookup(name).digits}
+    forty = ("forest-ruth", "yoshida4", "sdirk2", "dirk3", "gauss4")
+    assert rounded == {"tsit5": 15, **dict.fromkeys(forty, 40)}
 
 
 @pytest.mark.parametrize("build", wrong_pairs())

@@ -70,8 +70,8 @@ def test_a_choice_that_a_neighbour_betters_is_no_answer(
 ) -> None:
     least = choices._least
 
-    def beside(extent: Any, objective: Any, equal: bool) -> tuple[float, float]:
-        alpha_hat, beta_hat = least(extent, objective, equal)
+    def beside(extent: Any, objective: Any, equal: bool, cut: bool) -> tuple[float, float]:
+        alpha_hat, beta_hat = least(extent, objective, equal, cut)
         return 0.99 * alpha_hat, 0.99**2 * beta_hat
 
     monkeypatch.setattr(choices, "_least", beside)

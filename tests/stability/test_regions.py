@@ -1,4 +1,4 @@
-from math import atan, pi, sin, sqrt
+from math import atan, inf, pi, sin, sqrt
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from bezstab.methods import LinearMultistep, Method, RungeKutta, lookup
 from bezstab.rationals import rational
-from bezstab.stability import Extent, Region, region, spectral_radius, verdict, window
+from bezstab.stability import Extent, FloatArray, Region, region, spectral_radius, verdict, window
 from tests.methods.kinds import EXPLICIT
 from tests.reference.companion_poles import eigenvalues, polynomial_at, radius
 from tests.reference.enclosed_points import enclosed
@@ -386,3 +386,140 @@ def test_what_a_region_contains_converges(name: str) -> None:
 
 def test_the_repr_of_a_region_is_one_line_without_its_arrays() -> None:
     assert repr(region(lookup("RK1"))) == "Region(RK1: |z_p| < 1, area 4, 1 closed curve)"
+
+
+# Implicit methods: S_r may be unbounded.
+
+UNBOUNDED = [
+    *("implicit-euler", "bdf2", "bdf3", "bdf4", "bdf5", "bdf6", "trapezoid", "implicit-midpoint"),
+    *("sdirk2", "dirk3", "radau3", "gauss4"),
+]
+HALF_PLANES = ["trapezoid", "implicit-midpoint", "gauss4"]
+
+
+def theta_method(theta: str) -> Method:
+    return multistep(f"theta {theta}", "1 -1", f"{theta} {1 - rational(theta)}")
+
+
+@pytest.mark.parametrize("level", [1.0, 0.99, 0.7, 0.3, 0.05])
+@pytest.mark.parametrize("theta", ["1/2", "2/5", "1/10"])
+def test_a_theta_method_has_the_area_of_two_disc_halves(theta: str, level: float) -> None:
+    # |1 + (1 - theta) mu| < r |1 - theta mu| is a disc of radius rho: 4 int int y over its half, and (2 rho)^3 / 6
+    method, t = theta_method(theta), float(rational(theta))
+    if t == 0.5 and level == 1:
+        assert region(method).area is None
+        return
+    rho = level / ((1 - t) ** 2 - (level * t) ** 2)
+    assert region(method, level).area == pytest.approx(4 * rho**3, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("name", "level"),
+    [
+        *[("am3", 1.0), ("am4", 0.8)],
+        *[pytest.param(name, level, marks=pytest.mark.slow) for name in ("am5", "am6") for level in (1.0, 0.8)],
+    ],
+)
+def test_adams_moulton_regions_have_the_area_of_their_slices(name: str, level: float) -> None:
+    shape = region(lookup(name), level)
+    assert shape.bounded
+    assert sliced_area(lookup(name), level) == pytest.approx(shape.area, rel=1e-9)
+
+
+@pytest.mark.parametrize("name", UNBOUNDED)
+def test_an_unbounded_region_says_so(name: str) -> None:
+    shape = region(lookup(name))
+    assert not shape.bounded
+    assert shape.area is None
+    assert "unbounded" in repr(shape)
+    (alpha_min, alpha_max), (beta_min, beta_max) = found_extent(shape)
+    assert alpha_max == beta_max == inf
+    assert (alpha_min, beta_min) == ((0, 0) if name in HALF_PLANES else (-inf, -inf))
+    assert np.isfinite(window(shape)).all()
+    assert np.isfinite(np.array(shape.view)).all()
+
+
+@pytest.mark.parametrize("name", UNBOUNDED)
+@pytest.mark.parametrize("level", [1.0, 0.8])
+def test_between_two_points_the_boundary_is_crossed_as_often_as_the_verdict_turns(name: str, level: float) -> None:
+    shape = region(lookup(name), level)
+    (_, a_high), (_, b_high) = window(shape)
+    random = np.random.default_rng(8)
+    low, high = np.array([-0.5 * a_high, -0.5 * b_high]), np.array([a_high, b_high])
+    ends = random.uniform(low, high, (150, 2, 2))
+    inside = radius(lookup(name), ends[..., 0], ends[..., 1]) < level
+    for (start, end), (first, last) in zip(ends, inside, strict=True):
+        crossings = sum(crossed(curve, start, end) for curve in shape.boundary)
+        assert crossings % 2 == int(first != last)
+
+
+def crossed(curve: FloatArray, start: FloatArray, end: FloatArray) -> int:
+    """Return how often a polygon crosses the straight line between two points."""
+    across = np.array([-(end - start)[1], (end - start)[0]])
+    side = (curve - start) @ across
+    steps = np.flatnonzero((side[1:] > 0) != (side[:-1] > 0))
+    share = side[steps] / (side[steps] - side[steps + 1])
+    met = curve[steps] + share[:, np.newaxis] * (curve[steps + 1] - curve[steps])
+    along = (met - start) @ (end - start) / ((end - start) @ (end - start))
+    return int(((along > 0) & (along < 1)).sum())
+
+
+@pytest.mark.parametrize("name", UNBOUNDED)
+def test_the_boundary_of_an_unbounded_region_has_its_level(name: str) -> None:
+    for level in (1.0, 0.9):
+        shape = region(lookup(name), level)
+        points = np.concatenate([curve[3:-3:7] for curve in shape.boundary])
+        if points.size:  # at double poles eigenvalues keep half the digits, of bdf6 a few of twelve
+            z_abs = radius(lookup(name), points[:, 0], points[:, 1])
+            assert np.quantile(np.abs(z_abs - level), 0.9) < 1e-5
+
+
+@pytest.mark.parametrize("name", ["bdf3", "bdf4", "bdf5", "bdf6"])
+def test_the_lobe_of_a_bdf_method_is_its_locus(name: str) -> None:
+    scheme = lookup(name).scheme
+    assert isinstance(scheme, LinearMultistep)
+    z = np.exp(1j * np.linspace(0.1, 3, 50))
+    mu = np.polyval(np.array(scheme.rho, float), z) / np.polyval(np.array(scheme.sigma, float), z)
+    mu = mu[(mu.imag > 0) & (np.abs(mu) > 0.1)]
+    z_abs = radius(lookup(name), -2 * mu.real, np.abs(mu) ** 2)
+    active = mu[np.abs(z_abs - 1) < 1e-6]  # where no other root is outside
+    assert active.size > 10
+    drawn = np.concatenate(region(lookup(name)).boundary)
+    for point in np.stack([-2 * active.real, np.abs(active) ** 2], axis=-1):
+        assert np.abs(drawn - point).max(axis=1).min() < 0.05 * np.abs(point).max()  # 400 points of an arc
+
+
+def test_at_the_level_of_infinity_the_region_is_a_half_plane_of_mu() -> None:
+    # theta = 3/4, r = 1/3: Re mu < -(1 - r^2) / (2 (1 - theta + r^2 theta)) = -4/3
+    shape = region(theta_method("3/4"), 1 / 3)
+    (alpha_min, alpha_max), (beta_min, beta_max) = found_extent(shape)
+    assert (alpha_min, beta_min) == pytest.approx(
+        (8 / 3, 16 / 9), rel=1e-6
+    )  # as float64 rounds 1/3, of the arc far out
+    assert alpha_max == beta_max == inf
+
+
+def test_a_region_opens_to_infinity_with_the_level() -> None:
+    assert region(lookup("trapezoid"), 1 - 1e-6).area == pytest.approx(4 * 1e18 * 8, rel=1e-5)  # rho = 2 / (1 - r)
+    assert not region(theta_method("3/4"), 0.34).bounded
+    assert region(theta_method("3/4"), 0.33).bounded
+
+
+def test_the_window_of_an_unbounded_region_holds_its_lobe_and_goes_on() -> None:
+    shape = region(lookup("bdf6"))
+    lobe = np.concatenate(shape.boundary)
+    lobe = lobe[(lobe >= 0).all(axis=1) & (lobe[:, 1] < 400)]
+    (_, alpha_high), (_, beta_high) = window(shape)
+    curved = lobe[lobe[:, 1] > 0]
+    assert alpha_high > 1.4 * curved[curved[:, 0] < 20, 0].max()
+    assert beta_high > 1.4 * curved[:, 1].max()
+
+
+def test_a_map_passes_points_at_which_an_implicit_step_has_no_solution() -> None:
+    axis = np.linspace(-4, 4, 65)
+    z_abs = spectral_radius(lookup("implicit-euler"), axis, axis[:, np.newaxis])
+    assert np.isinf(z_abs[40, 16])  # 1 + alpha_hat + beta_hat = 0
+    assert not np.isnan(z_abs).any()
+    regular = np.isfinite(z_abs)
+    alpha_hat, beta_hat = (grid[regular] for grid in np.meshgrid(axis, axis))
+    assert z_abs[regular] == pytest.approx(radius(lookup("implicit-euler"), alpha_hat, beta_hat), rel=1e-9)

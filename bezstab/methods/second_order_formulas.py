@@ -1,0 +1,105 @@
+"""The equations of a second-order scheme as text or LaTeX, with the powers of h that h = 1 hides.
+
+In the equations v stands for h v and a for h^2 a: each term gets the power of h by which its quantity's time
+derivative is higher than that of the result. A helper has the least of the derivatives that are added up in it: a
+velocity if it is a sum of velocities and accelerations.
+
+    vh = v0 + 1/2 a0        v_h is a velocity        v_h = v_k + h/2 a_k
+"""
+
+from fractions import Fraction
+
+from bezstab.methods.second_order import (
+    ACCELERATION,
+    POSITION,
+    VELOCITY,
+    Assignment,
+    Combination,
+    Evaluation,
+    Quantity,
+    SecondOrder,
+)
+
+SHOWN_DIGITS = 10  # of a coefficient that is shown as a decimal
+LONGEST_PART = 10**12  # of a fraction that is shown as one
+
+KNOWN_DERIVATIVES = {POSITION: 0, VELOCITY: 1, ACCELERATION: 2}
+
+
+def is_long(number: Fraction) -> bool:
+    """Return whether a number is better read as a decimal: one that stands for an irrational one, above all."""
+    return number.denominator > LONGEST_PART
+
+
+def second_order_text(scheme: SecondOrder, multiple: Fraction, latex: bool) -> str:
+    """Return the equations in the order in which they are taken, separated by "; ", for steps of `multiple` h."""
+    derivatives = _derivatives(scheme)
+    carried = {
+        quantity.name for equation in scheme.equations for quantity in (equation.result, *equation.used)
+        if quantity.step != 1
+    }  # fmt: skip
+
+    def name(quantity: Quantity) -> str:
+        return _name(quantity, quantity.name in carried, latex)
+
+    def terms(combination: Combination, derivative: int) -> str:
+        parts = []
+        for coefficient, quantity in combination:
+            power = derivatives[quantity.name] - derivative
+            parts.append(_term(coefficient * multiple**power, power, name(quantity), latex))
+        text = " ".join(parts)
+        return text.removeprefix("+ ") if text.startswith("+ ") else text.replace("- ", "-", 1) or "0"
+
+    lines = []
+    for equation in (equation for group in scheme.groups for equation in group):
+        match equation:
+            case Assignment(result, value):
+                lines.append(f"{name(result)} = {terms(value, derivatives[result.name])}")
+            case Evaluation(result, position, velocity):
+                lines.append(f"{name(result)} = a({terms(position, 0)}, {terms(velocity, 1)})")
+    return "; ".join(lines)
+
+
+def _derivatives(scheme: SecondOrder) -> dict[str, int]:
+    """Return how often each quantity is differentiated with respect to time: 0 a position, 2 an acceleration."""
+    derivatives = dict(KNOWN_DERIVATIVES)
+    for equation in scheme.equations:
+        derivatives.setdefault(equation.result.name, KNOWN_DERIVATIVES[ACCELERATION])
+    for _ in scheme.equations:  # a sum may have a helper in it whose own sum comes later: so often at most
+        for equation in scheme.equations:
+            result = equation.result.name
+            if isinstance(equation, Assignment) and result not in KNOWN_DERIVATIVES:
+                derivatives[result] = min(
+                    (derivatives[quantity.name] for quantity in equation.used), default=KNOWN_DERIVATIVES[ACCELERATION]
+                )
+    return derivatives
+
+
+def _name(quantity: Quantity, carried: bool, latex: bool) -> str:
+    """Return x_{k+1} for x1, and so for a helper that is carried to another step; the name alone for others."""
+    name = quantity.name
+    if latex and name not in KNOWN_DERIVATIVES:
+        escaped = name.replace("_", r"\_")
+        name = rf"\mathrm{{{escaped}}}"
+    if quantity.name not in KNOWN_DERIVATIVES and not carried:
+        return name
+    return f"{name}_k" if quantity.step == 0 else f"{name}_{{k{quantity.step:+d}}}"
+
+
+def _term(coefficient: Fraction, power: int, name: str, latex: bool) -> str:
+    """Return a signed coefficient with a power of h times a quantity: `+ 3 h^2/2 a_k`, `- x_k/h`."""
+    sign, size = ("-", -coefficient) if coefficient < 0 else ("+", coefficient)
+    step = "" if power == 0 else "h" if abs(power) == 1 else f"h^{abs(power)}"
+    if is_long(size):
+        over, under = [f"{float(size):.{SHOWN_DIGITS}g}"], []
+    else:
+        over, under = [str(size.numerator)] * (size.numerator != 1), [str(size.denominator)] * (size.denominator != 1)
+    (over if power > 0 else under).extend([step] * (power != 0))
+    if not under:
+        factor = " ".join(over)
+    elif latex:
+        factor = rf"\frac{{{' '.join(over) or '1'}}}{{{' '.join(under)}}}"
+    else:
+        divisor = under[0] if len(under) == 1 else f"({' '.join(under)})"
+        factor = f"{' '.join(over) or '1'}/{divisor}"
+    return f"{sign} {factor} {name}" if factor else f"{sign} {name}"

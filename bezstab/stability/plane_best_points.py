@@ -1,0 +1,404 @@
+r"""The smallest |z_p| of a second-order scheme over alpha_hat, beta_hat >= 0, and its double poles, by equations.
+
+Its poles depend on both parameters as they like, so besides the kinks of mu-methods (see best_points) there are more
+kinds of least value: poles that are all zero, a triple one, a double one that is least along the curve on which it is
+double, and a single pair where its modulus has no slope. Every kind is a square system of real equations for alpha_hat,
+beta_hat and the poles that meet; sampled minima start Newton's method on each, and the least solution is the answer.
+
+      beta_hat |     all zero    two equations               |z_1| = |z_2| = |z_3|    or two of them with
+               |        x                                        \   /                gradients that oppose
+               |   -----------   double: real on one side          x                  each other
+               |     pair        a pair on the other             /   \
+               +------------------------- alpha_hat
+"""
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from itertools import combinations, pairwise
+
+import numpy as np
+from numpy.polynomial.polynomial import polyder, polyval, polyval2d, polyval3d
+
+from bezstab.errors import NumericalError
+from bezstab.stability.arrays import EPS, ComplexArray, FloatArray
+from bezstab.stability.closed_loop import largest_modulus
+from bezstab.stability.plane_cells import Extent
+from bezstab.stability.plane_pencils import PlanePencil, plane_roots
+from bezstab.stability.searches import zoom_on_minimum
+
+ROUNDING = 1e-9  # relative; a solved kink's moduli agree to about 1e-15, neighbouring candidates differ far more
+SETTLED = 1e-13  # relative: a Newton step this small changes nothing that is compared
+NEWTON_STEPS = 40
+GRID = (121, 151)  # points of alpha_hat and sqrt(beta_hat): every valley is seen
+NEAR = 8.0  # of alpha_hat and sqrt(beta_hat): where least values lie, whatever corners are further out
+FAR = (1e4, 1e2)  # likewise, where a region goes on: a damping of infinity by less than 1e-4 moves them further
+STARTS = 8  # local minima that are followed up
+HOPEFUL = 1.05  # times the least solution: the zoom on a minimum above it has not stopped so far short
+ZOOM_POINTS, ZOOM, ZOOMS = 13, 0.6, 24  # 0.6^23 = 8e-6 of the grid's spacing: a start, from which Newton takes over
+ALL_ZERO = 1e-10  # of P's largest coefficient: the others, where all poles are to be zero
+RATIO, RATIOS = 1e6, 2001  # of alpha_hat to beta_hat, either way
+NOTHING = 2e-3  # |z_p| of a triple pole at zero, where the ratio is off by a rounding of 1e-9
+NO_LONGER = 1e-6  # relative: what is lower by less is as low
+ALIKE = 1e-4  # relative: a triple pole is known to 1e-5, and passes for a kink of other kinds beside it
+PATH = 400  # places of a double pole between one and zero
+SPLIT = 1e-6  # relative: a rival as large as a double pole to this is no larger
+
+
+@dataclass(frozen=True)
+class PlaneLeast:
+    """A least |z_p|: its value, place, the poles of that modulus (Im >= 0), and how often each is a root.
+
+    `residual` says how well its equations are solved.
+    """
+
+    z_abs: float
+    alpha_hat: float
+    beta_hat: float
+    meeting: tuple[complex, ...]
+    multiplicity: int
+    residual: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class _Kind:
+    """Equations in (alpha_hat, beta_hat, Re z_1, Im z_1, ...), where the z start, and each one's multiplicity."""
+
+    equations: Callable[[float, float, ComplexArray], list[float]]
+    starts: list[complex]
+    multiplicity: int = 1
+    loose: float = 0.0  # added to the residual of a kind that is solved to half the digits where another fits better
+
+
+class _Tables:
+    """P's table in float64 and those of its derivatives, and their values."""
+
+    def __init__(self, pencil: PlanePencil) -> None:
+        self.p = np.array(pencil.split)[..., 0]
+        self.by_z = _derivative(self.p, 0)
+        self.by_z_twice = _derivative(self.by_z, 0)
+        self.by_alpha, self.by_beta = (_derivative(self.p, axis) for axis in (1, 2))
+
+    def coefficients(self, alpha_hat: float, beta_hat: float) -> FloatArray:
+        """Return P's coefficients at a point, ascending."""
+        return np.asarray(polyval2d(alpha_hat, beta_hat, np.moveaxis(self.p, 0, -1)), float)
+
+    def at(self, table: FloatArray, z: complex, alpha_hat: float, beta_hat: float) -> complex:
+        """Return the value of one of the tables."""
+        return complex(polyval3d(z, alpha_hat, beta_hat, table))
+
+
+def _derivative(table: FloatArray, axis: int) -> FloatArray:
+    if table.shape[axis] == 1:
+        return np.zeros_like(table)
+    return np.asarray(polyder(table, axis=axis), float)
+
+
+def plane_least(pencil: PlanePencil, view: Extent, unbounded: bool) -> PlaneLeast | float:
+    """Return where |z_p| is least over alpha_hat, beta_hat >= 0, or the value it falls towards without end.
+
+    `view` holds every corner of the region. NumericalError if no solution is as small as a sampled value.
+    """
+    high = np.array([max(view[0][1], 0.0), np.sqrt(max(view[1][1], 0.0))])
+    if unbounded:
+        high = np.maximum(high, FAR)
+    sampled = sorted(_local_minima(pencil, high), key=lambda minimum: minimum[0])
+    lowest = min(value for value, _ in sampled)
+    solved: list[PlaneLeast] = []
+    for value, place in sampled:
+        best = _best(solved)
+        if best is None or value < HOPEFUL * best.z_abs:
+            solved += _solutions(pencil, place)
+    best = _best(solved)
+    if unbounded:
+        limit = _least_at_infinity(pencil)
+        if limit < min(lowest, best.z_abs if best else np.inf) * (1 - NO_LONGER):
+            return limit
+    if best is None or best.z_abs > lowest * (1 + ROUNDING) + EPS**0.5 * (lowest < EPS**0.25):
+        raise NumericalError(
+            f"{pencil.method.name}: |z_p| = {lowest:.6g} was sampled, but no kink as low could be solved for"
+        )
+    return best
+
+
+def _best(solved: list[PlaneLeast]) -> PlaneLeast | None:
+    """Return the least solution; of those alike but for the rounding of multiple poles, the one solved best."""
+    if not solved:
+        return None
+    least = min(each.z_abs for each in solved)
+    alike = [each for each in solved if each.z_abs <= least + ALIKE * (least or 1.0)]
+
+    def how_well(each: PlaneLeast) -> tuple[int, int, float]:
+        return math.frexp(max(each.residual, EPS))[1] // 8, -each.multiplicity, each.beta_hat
+
+    zero = [each for each in alike if not each.z_abs]
+    return min(zero or alike, key=how_well)
+
+
+def _least_at_infinity(pencil: PlanePencil) -> float:
+    """Return the least |z_p| in the limit of large parameters, over all ratios of the two.
+
+    There P's terms of the highest degree in alpha_hat and beta_hat alone decide. Infinite where one of their roots is.
+    """
+    degree = max(i + j for terms in pencil.terms for i, j, _ in terms)
+    leading = [
+        [sum(c for i, j, c in terms if (i, j) == (p, degree - p)) for p in range(degree + 1)] for terms in pencil.terms
+    ]
+
+    def modulus(log_ratios: FloatArray) -> FloatArray:
+        ratios = np.exp(log_ratios)
+        coefficients = np.array([polyval(ratios, each) for each in leading])
+        infinite = coefficients[-1] == 0
+        monic = coefficients[:-1] / np.where(infinite, 1, coefficients[-1])
+        companion = np.zeros((ratios.size, pencil.degree, pencil.degree))
+        companion[:, range(1, pencil.degree), range(pencil.degree - 1)] = 1
+        companion[:, :, -1] = -monic.T
+        return np.where(infinite, np.inf, np.abs(np.linalg.eigvals(companion)).max(axis=-1))
+
+    samples = np.linspace(-np.log(RATIO), np.log(RATIO), RATIOS)
+    lowest = float(samples[np.argmin(modulus(samples))])
+    _, value = zoom_on_minimum(
+        lambda points: modulus(points[:, 0]),
+        np.array([lowest]),
+        np.array([samples[1] - samples[0]]),
+        points=ZOOM_POINTS,
+        shrink=ZOOM,
+        rounds=2 * ZOOMS,
+    )
+    return 0.0 if value < NOTHING else float(value)
+
+
+def _axis(end: float, count: int) -> FloatArray:
+    """Return a grid's points on one axis: evenly up to NEAR, and in even ratios from there."""
+    if end <= NEAR:
+        return np.linspace(0, end, count)
+    beyond = count // 3
+    return np.concatenate([np.linspace(0, NEAR, count - beyond), np.geomspace(NEAR, end, beyond + 1)[1:]])
+
+
+def _spacing(axis: FloatArray, k: int) -> float:
+    """Return the larger distance from a grid's point to a neighbour."""
+    return float(np.diff(axis)[max(k - 1, 0) : k + 1].max())
+
+
+def _local_minima(pencil: PlanePencil, high: FloatArray) -> Iterator[tuple[float, FloatArray]]:
+    """Yield the lowest local minima over alpha_hat and sqrt(beta_hat) up to `high`, each narrowed by smaller grids."""
+    x, y = (_axis(end, count) for end, count in zip(high, GRID, strict=True))
+
+    def modulus(points: FloatArray) -> FloatArray:
+        return largest_modulus(pencil, points[..., 0], points[..., 1] ** 2)
+
+    grid = np.stack(np.meshgrid(x, y), axis=-1)
+    sampled = modulus(grid)
+    padded = np.pad(sampled, 1, mode="edge")
+    around = np.min([np.roll(padded, (i, j), (0, 1)) for i in (-1, 0, 1) for j in (-1, 0, 1)], axis=0)[1:-1, 1:-1]
+    rows, columns = np.nonzero(sampled <= around)
+    for k in np.argsort(sampled[rows, columns], kind="stable")[:STARTS]:
+        place, value = zoom_on_minimum(
+            modulus,
+            np.array([x[columns[k]], y[rows[k]]]),
+            np.array([_spacing(x, int(columns[k])), _spacing(y, int(rows[k]))]),
+            points=ZOOM_POINTS,
+            shrink=ZOOM,
+            rounds=ZOOMS,
+            turned=True,
+            patient=True,
+            fold=np.abs,
+        )
+        yield float(value), np.array([place[0], place[1] ** 2])
+
+
+def _kinds(tables: _Tables, z: ComplexArray) -> Iterator[_Kind]:
+    """Yield the kinds of least value near a point with these poles, the largest first."""
+
+    def parts(values: list[complex]) -> list[float]:
+        return [part for value in values for part in (value.real, value.imag)]
+
+    def on_p(a: float, b: float, z: ComplexArray) -> list[float]:
+        return parts([tables.at(tables.p, each, a, b) for each in z])
+
+    def equal(z: ComplexArray) -> list[float]:
+        return [float(np.log(abs(first / second))) for first, second in pairwise(z)]
+
+    def log_gradient(a: float, b: float, z: complex) -> FloatArray:
+        by_z = tables.at(tables.by_z, z, a, b)
+        if not by_z or not z:
+            return np.full(2, np.nan)
+        slopes = [-tables.at(table, z, a, b) / (z * by_z) for table in (tables.by_alpha, tables.by_beta)]
+        return np.array([slope.real for slope in slopes])
+
+    def all_zero(a: float, b: float, z: ComplexArray) -> list[float]:
+        *others, leading = tables.coefficients(a, b)
+        return [float(c / leading) for c in others]
+
+    def all_zero_twice(a: float, b: float, z: ComplexArray) -> list[float]:
+        constant = [polyval2d(a, b, _derivative(tables.p[:1], axis)[0]) for axis in (1, 2)]
+        return [*all_zero(a, b, z)[1:], *(float(c) for c in constant)]
+
+    def double(a: float, b: float, z: ComplexArray) -> list[float]:
+        return [*on_p(a, b, z[:1]), *parts([tables.at(tables.by_z, z[0], a, b)])]
+
+    def double_everywhere(a: float, b: float, z: ComplexArray) -> list[float]:
+        slopes = [tables.at(tables.by_z, each, a, b) for each in z]
+        return [*on_p(a, b, z), *parts(slopes), *equal(z), *(z.imag.tolist())]
+
+    def triple(a: float, b: float, z: ComplexArray) -> list[float]:
+        return [*double(a, b, z), tables.at(tables.by_z_twice, z[0], a, b).real, z[0].imag]
+
+    def double_and_another(a: float, b: float, z: ComplexArray) -> list[float]:
+        return [*double(a, b, z), *on_p(a, b, z[1:]), *equal(z), z[0].imag]
+
+    def least_double(a: float, b: float, z: ComplexArray) -> list[float]:
+        slope_tables = [(_derivative(t, 1), _derivative(t, 2)) for t in (tables.p, tables.by_z)]
+        (p_a, p_b), (q_a, q_b) = ([tables.at(t, z[0], a, b).real for t in pair] for pair in slope_tables)
+        return [*double(a, b, z), p_a * q_b - p_b * q_a, z[0].imag]
+
+    def without_slope(a: float, b: float, z: ComplexArray) -> list[float]:
+        return [*on_p(a, b, z), *log_gradient(a, b, complex(z[0])).tolist()]
+
+    def two_opposed(a: float, b: float, z: ComplexArray) -> list[float]:
+        first, second = (log_gradient(a, b, complex(each)) for each in z)
+        return [*on_p(a, b, z), *equal(z), float(first[0] * second[1] - first[1] * second[0])]
+
+    def several(a: float, b: float, z: ComplexArray) -> list[float]:
+        return [*on_p(a, b, z), *equal(z)]
+
+    upper = [complex(each.real, abs(each.imag)) for each in z]
+    different: list[complex] = []
+    for each in upper:
+        if all(abs(each - other) > SPLIT * abs(each) for other in different):
+            different.append(each)
+    middle = complex(np.mean([each.real for each in upper[:2]]))
+    yield _Kind(all_zero, [], loose=ROUNDING)
+    yield _Kind(all_zero_twice, [])  # where P's last coefficient touches zero without passing it
+    yield _Kind(least_double, [middle], multiplicity=2)
+    yield _Kind(without_slope, different[:1])
+    if len(z) > 2:
+        yield _Kind(triple, [complex(np.mean([each.real for each in upper[:3]]))], multiplicity=3)
+        for other in different[1:4]:
+            yield _Kind(double_and_another, [middle, other], multiplicity=2)
+    if len(z) > 3:
+        yield _Kind(double, [different[0]], multiplicity=2)
+        yield _Kind(double_everywhere, [middle, complex(-middle.real)], multiplicity=2)
+    for other in different[1:4]:
+        yield _Kind(two_opposed, [different[0], other])
+    if len(different) > 2:
+        yield _Kind(several, different[:3])
+
+
+def _solutions(pencil: PlanePencil, start: FloatArray) -> Iterator[PlaneLeast]:
+    """Yield the solution of every kind that Newton's method finds from a nearby start, if no other pole is larger."""
+    tables = _Tables(pencil)
+    z = plane_roots(pencil, start[:1], start[1:])[:, 0]
+    z = z[np.argsort(-np.abs(z), kind="stable")]
+    if abs(z[0]) < EPS**0.25:  # so near to all zero that nothing else is to be told
+        z = z + EPS**0.25
+    for kind in _kinds(tables, z):
+        found = _newton(kind, start)
+        if found is None:
+            continue
+        alpha_hat, beta_hat, meeting, residual = found
+        if not (alpha_hat >= 0 and beta_hat >= 0):
+            continue
+        if not kind.starts:
+            coefficients = np.abs(tables.coefficients(alpha_hat, beta_hat))
+            if coefficients[:-1].max() <= ALL_ZERO * coefficients[-1]:
+                yield PlaneLeast(0.0, alpha_hat, beta_hat, (0j,), pencil.degree, residual + kind.loose)
+            continue
+        z_abs = float(np.abs(meeting).max())
+        others = plane_roots(pencil, np.array([alpha_hat]), np.array([beta_hat]))[:, 0]
+        rounding = 10 * EPS ** (1 / (kind.multiplicity + 1))  # of poles of one multiplicity more, differing from one
+        different_ones = all(abs(a - b) > rounding for a, b in combinations(meeting, 2))
+        near = different_ones and all(np.abs(others - each).min() <= max(rounding, ROUNDING) for each in meeting)
+        if near and np.abs(others).max() <= z_abs + rounding and np.abs(np.abs(meeting) - z_abs).max() <= ROUNDING:
+            real = [complex(each.real, abs(each.imag) if abs(each.imag) > rounding * z_abs else 0) for each in meeting]
+            yield PlaneLeast(
+                z_abs, alpha_hat, beta_hat, tuple(sorted(real, key=lambda z: -z.real)), kind.multiplicity, residual
+            )
+
+
+def _newton(kind: _Kind, start: FloatArray) -> tuple[float, float, ComplexArray, float] | None:
+    """Return alpha_hat, beta_hat, the poles, and what is left of the equations, by Gauss-Newton steps; None if much.
+
+    Least squares, because some kinds have an equation to spare.
+    """
+    starts = np.array(kind.starts, complex)
+    x = np.concatenate([start, starts.real, starts.imag])
+    count = len(starts)
+
+    def residual(x: FloatArray) -> FloatArray:
+        return np.array(kind.equations(float(x[0]), float(x[1]), x[2 : 2 + count] + 1j * x[2 + count :]), float)
+
+    scale = np.maximum(np.abs(x), np.concatenate([[1e-3, 1e-3], np.ones(2 * count)]))
+    with np.errstate(all="ignore"):
+        for _ in range(NEWTON_STEPS):
+            columns = []
+            for k, size in enumerate(1e-6 * scale):
+                offset = np.zeros_like(x)
+                offset[k] = size
+                columns.append((residual(x + offset) - residual(x - offset)) / 2)
+            value = residual(x)
+            if not np.isfinite([*columns, value]).all():
+                return None
+            step = np.linalg.lstsq(np.stack(columns, axis=1), value, rcond=1e-9)[0] * 1e-6 * scale
+            x = x - step
+            if np.all(np.abs(step) <= SETTLED**0.75 * scale):
+                left = float(np.abs(residual(x)).max(initial=0.0))
+                z = x[2 : 2 + count] + 1j * x[2 + count :]
+                return (float(x[0]), float(x[1]), z, left) if left < ROUNDING else None
+    return None
+
+
+def critical_point(pencil: PlanePencil, high: tuple[float, float]) -> tuple[float, float] | None:
+    """Return (alpha_hat, beta_hat) with the smallest dominant pole that is double, real and positive; None without one.
+
+    From one, where both parameters are zero, the double pole is followed down until another overtakes it, or a
+    parameter exceeds `high`. It is the fastest without oscillation along that way.
+    """
+    tables = _Tables(pencil)
+    place = np.zeros(2)
+    pole, step, ended = 1.0, 1 / PATH, False
+    while pole > 0 and step > EPS:
+        lower = max(0.0, pole - step)
+        found = _double_at(tables, lower, place)
+        within = found is not None and (found >= 0).all() and found[0] <= high[0] and found[1] <= high[1]
+        if found is not None and within and not _overtaken(tables, lower, found):
+            pole, place = lower, found
+        else:
+            ended = True
+        if ended:
+            step /= 2
+    return (float(place[0]), float(place[1])) if pole < 1 else None
+
+
+def _double_at(tables: _Tables, pole: float, place: FloatArray) -> FloatArray | None:
+    """Return the point near a place at which a pole is double, by Newton's method."""
+    derivative_tables = [(t, _derivative(t, 1), _derivative(t, 2)) for t in (tables.p, tables.by_z)]
+    start = place
+    with np.errstate(all="ignore"):
+        for _ in range(NEWTON_STEPS):
+            rows = [[tables.at(t, pole, place[0], place[1]).real for t in each] for each in derivative_tables]
+            values, jacobian = np.array(rows)[:, 0], np.array(rows)[:, 1:]
+            if abs(np.linalg.det(jacobian)) <= EPS * np.abs(jacobian).max() ** 2:
+                return None
+            step = np.linalg.solve(jacobian, values)
+            place = place - step
+            if not np.isfinite(place).all():
+                return None
+            if np.abs(step).max() <= SETTLED * max(1.0, float(np.abs(place).max())):
+                near = np.abs(place - start).max() <= 0.2 * (1 + np.abs(start).max())
+                return place if near else None
+    return None
+
+
+def _overtaken(tables: _Tables, pole: float, place: FloatArray) -> bool:
+    """Return whether a pole other than the double one is as large."""
+    coefficients = tables.coefficients(*place)[::-1]
+    for _ in range(2):  # divided by z - pole
+        quotient = [coefficients[0]]
+        for c in coefficients[1:-1]:
+            quotient.append(c + pole * quotient[-1])
+        coefficients = np.array(quotient)
+    if len(coefficients) < 2:
+        return False
+    return bool(np.abs(np.roots(coefficients)).max(initial=0.0) >= pole)

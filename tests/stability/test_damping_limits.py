@@ -1,0 +1,97 @@
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from bezstab.methods import Method, closed_loop_at, lookup, recursion_verdict
+from bezstab.stability import critical_damping_limit, unconditional_damping_ratio
+from bezstab.stability.damping_limits import _limit_at
+from tests.methods.kinds import SECOND_ORDER
+from tests.reference.companion_poles import radius
+from tests.stability.made_methods import multistep
+
+F = Fraction
+EXPLICIT_LIMITS = {"B1": 2, "B2": 1, "B3": F(6, 7), "AB3": F(6, 11), "AB4": F(3, 10), "SIE": 1, "RK2": 2}
+IMPLICIT_LIMITS = {"am3": 6, "am4": 3, "am5": F(90, 49), "am6": F(45, 38)}  # theory, section 10
+SECOND_ORDER_LIMITS = {
+    "central-difference": 2,
+    "verlet-kdk": 2,
+    "fox-goodwin": 6**0.5,
+    "linear-acceleration": 12**0.5,
+    "verlet-half": 8**0.5 - 2,  # s^2 + 4 s = 4, as for SYM
+    "SYM": 8**0.5 - 2,
+    "imex-euler": 2 + 8**0.5,  # s^2 = 4 + 4 s
+}
+LIMITS: dict[str, float | Fraction] = {**EXPLICIT_LIMITS, **IMPLICIT_LIMITS, **SECOND_ORDER_LIMITS}
+
+RATIOS = {"bdf3": 0.069193, "bdf4": 0.286497, "bdf5": 0.617863, "bdf6": 0.951917}
+
+
+@pytest.mark.parametrize("name", LIMITS)
+def test_limits_at_critical_damping_are_the_known_numbers(name: str) -> None:
+    assert critical_damping_limit(lookup(name)) == pytest.approx(float(LIMITS[name]), rel=1e-15)
+
+
+def converges(method: Method, damping_ratio: Fraction, beta_step: Fraction) -> bool:
+    polynomial = closed_loop_at(method, 2 * damping_ratio * beta_step, beta_step**2)
+    return bool(polynomial[0]) and recursion_verdict(polynomial) == "converges"
+
+
+@pytest.mark.parametrize("name", [*LIMITS, "B8", "AB6", "ABM3", "RK4", "dopri5", "yoshida4", "RK4@5", "SYM@1/3"])
+def test_the_verdict_turns_at_the_limit_and_not_before(name: str) -> None:
+    method, limit = lookup(name), critical_damping_limit(lookup(name))
+    assert limit
+    for share in (*(Fraction(k, 12) for k in range(1, 12)), 1 - Fraction(1, 10**9)):
+        assert converges(method, Fraction(1), share * Fraction(limit))
+    assert not converges(method, Fraction(1), (1 + Fraction(1, 10**9)) * Fraction(limit))
+
+
+@pytest.mark.parametrize("name", ["B2", "AB3", "am3", "RK2"])
+def test_both_routes_to_the_limit_agree(name: str) -> None:
+    by_p = _limit_at(lookup(name), Fraction(1))
+    assert by_p == pytest.approx(critical_damping_limit(lookup(name)), rel=1e-14)
+
+
+@pytest.mark.parametrize("name", ["implicit-euler", "bdf2", "bdf6", "gauss4", "average-acceleration", "hht"])
+def test_there_is_no_limit_where_every_step_is_stable(name: str) -> None:
+    assert critical_damping_limit(lookup(name)) is None
+
+
+def test_a_method_that_is_stable_nowhere_has_limit_zero_and_no_ratio() -> None:
+    for method in (multistep("leapfrog", "1 0 -1", "0 2 0"), multistep("stuck", "1 0 -1", "0 1 1")):
+        assert critical_damping_limit(method) == 0
+        assert unconditional_damping_ratio(method) is None
+
+
+@pytest.mark.parametrize("name", RATIOS)
+def test_bdf_methods_need_a_damping_ratio(name: str) -> None:
+    assert unconditional_damping_ratio(lookup(name)) == pytest.approx(RATIOS[name], abs=5e-7)
+
+
+@pytest.mark.parametrize("name", RATIOS)
+def test_above_the_ratio_every_step_is_stable_and_just_below_some_is_not(name: str) -> None:
+    ratio = unconditional_damping_ratio(lookup(name))
+    assert ratio
+    step = 10 ** np.linspace(-1, 3, 1001)
+    for above in (1 + 1e-6, 1.01, 1.5, 10):  # of float64 the lobe beyond 1 + 1e-6 keeps 1 - |z_p| = 1e-7
+        assert (radius(lookup(name), 2 * above * ratio * step, step**2) < 1 + 1e-12).all()
+    assert (radius(lookup(name), 2 * 0.999 * ratio * step, step**2) > 1).any()
+
+
+@pytest.mark.parametrize("name", ["trapezoid", "sdirk2", "radau3", "average-acceleration", "generalized-alpha"])
+def test_the_ratio_is_zero_where_all_is_stable(name: str) -> None:
+    assert unconditional_damping_ratio(lookup(name)) == 0
+
+
+@pytest.mark.parametrize("name", ["B4", "AB2", "RK4", "SYM", "am3", "verlet-half", "imex-euler", "verlet-kdk"])
+def test_there_is_no_ratio_where_even_critical_damping_has_a_limit(name: str) -> None:
+    assert unconditional_damping_ratio(lookup(name)) is None
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SECOND_ORDER)
+def test_second_order_schemes_turn_at_their_limit(name: str) -> None:
+    limit = critical_damping_limit(lookup(name))
+    if limit:
+        assert converges(lookup(name), Fraction(1), (1 - Fraction(1, 10**9)) * Fraction(limit))
+        assert not converges(lookup(name), Fraction(1), (1 + Fraction(1, 10**9)) * Fraction(limit))

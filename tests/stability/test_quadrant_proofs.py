@@ -1,0 +1,126 @@
+from fractions import Fraction
+from itertools import product
+
+import numpy as np
+import pytest
+import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bezstab.methods import ALPHA_HAT, BETA_HAT, LinearMultistep, Method, lookup, recipe
+from bezstab.stability import stable_for_all, verdict
+from bezstab.stability.quadrant_proofs import (
+    RING,
+    _positive,
+    coefficients_in_w,
+    hurwitz_determinant,
+    stability_conditions,
+)
+from tests.methods.kinds import EXPLICIT
+from tests.reference.companion_poles import radius
+
+PROVEN = [
+    *("implicit-euler", "bdf1", "bdf2", "trapezoid", "am2", "implicit-midpoint"),
+    *("sdirk2", "dirk3", "radau3", "gauss4"),
+    *("average-acceleration", "newmark(3/10,3/5)", "hht", "hht(-1/5)", "hht(-1/3)"),
+    *("generalized-alpha", "generalized-alpha(0)", "generalized-alpha(1/2)"),
+]
+
+
+@pytest.mark.parametrize("name", PROVEN)
+def test_what_is_known_to_be_stable_for_all_steps_is_proven_so(name: str) -> None:
+    assert stable_for_all(lookup(name)) == "proven"
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("bdf3", "bdf4", "bdf5", "bdf6", "am3", "am6", "SYM", "B2", "B12", "AB8", "RK4", "ABM4", "imex-euler"),
+        *("verlet-half", "verlet-implicit", "linear-acceleration", "fox-goodwin", "newmark(1/4,2/5)"),
+    ],
+)
+def test_what_is_known_to_have_limits_is_refuted(name: str) -> None:
+    assert stable_for_all(lookup(name)) == "no"
+
+
+def theta_method(theta: Fraction) -> Method:
+    return Method("theta", LinearMultistep((Fraction(1), Fraction(-1)), (theta, 1 - theta)), "")
+
+
+@settings(max_examples=8, deadline=None)
+@given(st.fractions(Fraction(1, 10), Fraction(9, 10), max_denominator=50))
+def test_a_theta_method_is_stable_for_all_from_one_half_on(theta: Fraction) -> None:
+    assert stable_for_all(theta_method(theta)) == ("proven" if theta >= Fraction(1, 2) else "no")
+
+
+@settings(max_examples=10, deadline=None)
+@given(st.fractions(Fraction(2, 5), 1, max_denominator=20), st.fractions(Fraction(1, 20), 1, max_denominator=20))
+def test_newmark_is_stable_for_all_where_hughes_says_so(velocity: Fraction, position: Fraction) -> None:
+    # T. J. R. Hughes, The Finite Element Method, section 9.1.2: gamma >= 1/2 and 2 beta >= gamma
+    def signed(coefficient: Fraction) -> str:
+        return f"{'-' if coefficient < 0 else '+'} {abs(coefficient)}"
+
+    half = Fraction(1, 2)
+    scheme = recipe(
+        {
+            "x1": f"x0 + v0 {signed(half - position)} a0 {signed(position)} a1",
+            "v1": f"v0 {signed(1 - velocity)} a0 {signed(velocity)} a1",
+            "a1": "acceleration(x1, v1)",
+        }
+    )
+    expected = "proven" if velocity >= half and 2 * position >= velocity else "no"
+    assert stable_for_all(Method("newmark", scheme, "")) == expected
+
+
+@pytest.mark.parametrize("name", PROVEN)
+def test_at_random_points_of_the_quadrant_the_companion_agrees(name: str) -> None:
+    random = np.random.default_rng(3)
+    damping, step = 10 ** random.uniform(-2, 2, 300), 10 ** random.uniform(-1, 2, 300)
+    z_abs = radius(lookup(name), 2 * damping * step, step**2)
+    assert (z_abs < 1 + 1e-9).all()  # eigenvalues of companions with entries up to 1e10 keep that many digits
+
+
+def test_a_method_refuted_by_a_sampled_point_is_not_stable_there() -> None:
+    assert verdict(lookup("bdf3"), Fraction(1, 1000), Fraction(1)) == "diverges"  # a step in its lobe, hardly damped
+
+
+def test_in_w_the_circle_is_the_axis() -> None:
+    ring = sp.QQ[sp.Symbol("step")]
+    z = [ring.convert(sp.Integer(c)) for c in (2, -3, 1)]  # (z - 1)(z - 2), ascending
+    descending = [ring.to_sympy(c) for c in coefficients_in_w(z, ring)]
+    w = sorted(sp.Poly(descending, sp.Symbol("w")).all_roots())
+    assert w == [0, sp.Rational(1, 3)]  # (z - 1) / (z + 1)
+
+
+@settings(max_examples=50, deadline=None)
+@given(st.lists(st.complex_numbers(max_magnitude=1.5, allow_nan=False), min_size=1, max_size=3))
+def test_the_conditions_say_what_the_roots_say(roots: list[complex]) -> None:
+    real = np.poly([*roots, *np.conj(roots)]).real
+    exact = [Fraction(c).limit_denominator(10**6) for c in real[::-1]]
+    moduli = np.abs(np.roots([float(c) for c in exact[::-1]]))
+    if (np.abs(moduli - 1) < 1e-3).any():
+        return  # too near for float64, of which roots may be triple
+    ring = sp.QQ[sp.Symbol("step")]
+    conditions = stability_conditions([ring.convert(sp.Rational(c.numerator, c.denominator)) for c in exact], ring)
+    assert all(ring.to_sympy(condition) > 0 for condition in conditions) == (moduli < 1).all()
+
+
+def test_hurwitz_determinants_are_those_of_the_textbook() -> None:
+    ring = sp.QQ[sp.symbols("a0 a1 a2 a3")]
+    a0, a1, a2, a3 = ring.gens
+    assert hurwitz_determinant([a0, a1, a2, a3], 2, ring) == a1 * a2 - a0 * a3
+    assert hurwitz_determinant([a0, a1, a2, a3], 3, ring) == a3 * (a1 * a2 - a0 * a3)
+
+
+def test_only_what_is_positive_on_the_whole_quadrant_passes() -> None:
+    a, b = ALPHA_HAT, BETA_HAT
+    positive = [1 + a * b, a, (1 - b / 12) ** 2 + a**2 / 3, (a - 1) ** 2 + b, 5 + a * (b - 1) ** 2]
+    not_proven = [sp.Integer(0), b - 1, (a - 1) ** 2, a * (b - 1) ** 3 + 1, -1 - a, (a - b) ** 2]
+    for expression, expected in [*product(positive, [True]), *product(not_proven, [False])]:
+        assert _positive(RING.from_sympy(sp.expand(expression))) is expected
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", EXPLICIT)
+def test_no_explicit_method_is_stable_for_all(name: str) -> None:
+    assert stable_for_all(lookup(name)) == "no"
