@@ -63,8 +63,10 @@ TOLERANCES = (
 ADDED = (
     *("beta_hat_min", "best_reason", "searched"),
     *("bounded", "stable_for_all", "unconditional_damping_ratio", "critical_damping_limit"),
+    "iterations",
 )
-"""Keys that rows have got since, in their place: of a region its least beta_hat, and for which steps it is stable."""
+"""Keys that rows have got since, in their place: of a region its least beta_hat, and for which steps it is stable; of a
+run its number of Newton's iterations."""
 
 
 def tolerance(command: str, key: str) -> Tolerance:
