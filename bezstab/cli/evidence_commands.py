@@ -89,7 +89,8 @@ SIMULATIONS = [
     "--start",
     type=click.Choice(["rk4", "ramp", "euler"]),
     default="rk4",
-    help="What gives a multistep method's first values: RK4, its family's shorter members, or explicit Euler.",
+    help="What gives a multistep method's first values: RK4, its family's shorter members, or explicit Euler; "
+    "for an implicit method Gauss's of order four, shorter BDF methods, or implicit Euler.",
 )
 @output_option
 @figure_option

@@ -5,9 +5,9 @@ imaginary step eps in one unknown, Im r(A + i eps e_l) / eps is the derivative o
 is subtracted, and eps^2 = 1e-100 is lost in any rounding). That costs one complex evaluation for each unknown, about
 twice the price of a real one; to derive the chain of assignments in text would cost three times as many operations.
 
-The Jacobian at the first guess is kept as long as each correction is at most a tenth of the one before, else taken
-anew. The iteration ends with a correction within some hundred roundings of what it corrects: after it, less than a
-tenth of that is left.
+The Jacobian at the first guess is kept as long as each correction is at most a thousandth of the one before; one that
+is more is not made, but computed anew with the Jacobian there. The iteration ends with a correction within some hundred
+roundings of what it corrects: what it leaves is far less than that.
 """
 
 import cmath
@@ -26,7 +26,7 @@ FloatArray = NDArray[np.float64]
 IMAGINARY_STEP = 1e-50
 MOST_ITERATIONS = 15  # two to four are usual; from far away Newton's method may first wander
 TOLERANCE = 500.0  # roundings (1e-13 in float64) of X, V and A together: what h^2 acceleration cannot be relied upon
-FALL = 0.1  # of a correction to the next, with a Jacobian that is good enough to keep
+FALL = 1e-3  # of a correction to the next, with a Jacobian good enough to keep: 1e-5 is usual at 1 ms
 
 
 class NotConvergedError(ArithmeticError):
@@ -77,28 +77,31 @@ def newton_solution(
     where the iteration leaves the numbers; ArithmeticError where the Jacobian is singular.
     """
     unknown = list(guess)
-    inverse: list[list[Any]] | None = None
     size_of_known = sum(map(abs, known))
-    last = math.inf
+    inverse: list[list[Any]] = []
+    last = 0.0
     for _ in range(MOST_ITERATIONS):
         values, pivot = residual.real(*situation, known, unknown)
         work.iterations += 1
         work.evaluations += residual.evaluations
-        if inverse is None:
+        corrections = _product(inverse, values)
+        if not inverse or not sum(map(abs, corrections)) <= FALL * last:
             inverse = _inverse_jacobian(residual, situation, known, unknown, work)
-        corrections = [sum(entry * value for entry, value in zip(row, values, strict=True)) for row in inverse]
+            corrections = _product(inverse, values)
         unknown = [entry - correction for entry, correction in zip(unknown, corrections, strict=True)]
         moved = sum(map(abs, corrections))
         if not moved < math.inf:
             raise NotConvergedError("Newton's method did not converge: its iterates are not finite")
         if moved <= tolerance * (size_of_known + sum(map(abs, unknown))):
             return tuple(unknown), pivot
-        if moved > FALL * last:
-            inverse = None
         last = moved
     raise NotConvergedError(
         f"Newton's method did not converge in {MOST_ITERATIONS} iterations (last correction {float(moved):.2g})"
     )
+
+
+def _product(matrix: Sequence[Sequence[Any]], column: Sequence[Any]) -> list[Any]:
+    return [sum(entry * value for entry, value in zip(row, column, strict=True)) for row in matrix]
 
 
 def _inverse_jacobian(
@@ -131,26 +134,26 @@ def newton_solutions(
     known_parts = flat[len(situation) : len(flat) - len(guess)]
     pivots = np.full(flat.shape[1], np.nan)
     points = np.arange(flat.shape[1])  # that still iterate
-    last = np.full(flat.shape[1], np.inf)
+    last = np.zeros(flat.shape[1])
     inverse: FloatArray | None = None
     for _ in range(MOST_ITERATIONS):
         here = given[:, points], known_parts[:, points], unknown[:, points]
         values, pivots[points] = residual.real(*here[0], *here[1:])
-        if inverse is None:
+        corrections = None if inverse is None else (inverse * np.array(values)).sum(axis=1)
+        if corrections is None or not (np.abs(corrections).sum(axis=0) <= FALL * last).all():
             inverse = _inverse_jacobians(residual, *here)
-        corrections = (inverse * np.array(values)).sum(axis=1)
+            corrections = (inverse * np.array(values)).sum(axis=1)
         unknown[:, points] -= corrections
         moved = np.abs(corrections).sum(axis=0)
         size = np.abs(known_parts[:, points]).sum(axis=0) + np.abs(unknown[:, points]).sum(axis=0)
         failed = ~np.isfinite(moved)
         unknown[:, points[failed]] = np.nan
         waiting = ~failed & (moved > tolerance * size)
-        if not waiting.any():
-            points = points[waiting]
-            break
-        renewed = (moved > FALL * last)[waiting].any()
-        inverse = None if renewed else inverse[:, :, waiting]
         points, last = points[waiting], moved[waiting]
+        if not waiting.any():
+            break
+        assert inverse is not None
+        inverse = inverse[:, :, waiting]
     unknown[:, points] = np.nan
     return tuple(unknown.reshape(len(guess), *batch)), pivots.reshape(batch)
 

@@ -172,7 +172,7 @@ def resume(
     """
     scheme = run_as_second_order(method)
     if scheme:
-        carried = _carried(mechanism, scheme, h, gains, history, undisturbed, library, work or Work())
+        carried = carried_quantities(mechanism, scheme, h, gains, history, undisturbed, library, work or Work())
         first = len(history) - 1 - memory(scheme).newest  # of the history: the state at step 0 of the first turn
         run = compiled_stepper(mechanism, method, library)
         turns = run(first * h, h, *gains, carried, implicit_solver(mechanism, method, library, work or Work()))
@@ -184,7 +184,7 @@ def resume(
     return run((len(history) - 1) * h, h, two_alpha, beta_squared, history[-1], past)
 
 
-def _carried(
+def carried_quantities(
     mechanism: Mechanism,
     scheme: SecondOrder,
     h: float,

@@ -102,7 +102,10 @@ def test_the_energy_drifts_like_a_power_of_the_step(scene: str, name: str) -> No
     assert shown_order(drifts) == pytest.approx(accuracy(lookup(name))[0], abs=0.1)
 
 
-@pytest.mark.parametrize("name", ["B4", "AB4", "ABM4", "RK4", "SYM", "RK4@5"])
+@pytest.mark.parametrize(
+    "name",
+    ["B4", "AB4", "ABM4", "RK4", "SYM", "RK4@5", "trapezoid", "bdf3", "hht", "verlet-predicted", "imex-euler", "sdirk2@2"],
+)
 def test_the_pendulum_keeps_time(name: str) -> None:
     order, _ = accuracy(lookup(name))
     run = simulate(compiled_mechanism(load_scene("pendulum")), lookup(name), 1e-3, 1.5, (20.0, 100.0))

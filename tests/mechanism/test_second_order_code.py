@@ -18,13 +18,13 @@ from bezstab.mechanism import (
     states_needed,
     stepper_code,
 )
-from bezstab.methods import Method, closed_loop_at, lookup, recipe, second_order_form
+from bezstab.methods import Method, SecondOrder, closed_loop_at, lookup, recipe, second_order_form
 from bezstab.units import feedback_gains
 from tests.mechanism.test_scenes import pendulum
 from tests.mechanism.test_second_order_memory import LEAPFROG, STOERMER
 from tests.methods.kinds import IMPLICIT, SECOND_ORDER
 from tests.reference.literal_equation_9 import literal_slope
-from tests.reference.plain_second_order import plain_second_order_run
+from tests.reference.plain_second_order import FloatArray, plain_second_order_run
 
 H = 1e-3  # s
 CALL = re.compile(r"(\w+)\(")
@@ -36,7 +36,7 @@ def test_each_step_satisfies_the_equations(name: str) -> None:
     mechanism, method, gains = compiled_mechanism(load_scene("slider_crank_light")), lookup(name), (200.0, 2e4)
     slope = literal_slope(mechanism.equations, *gains)
 
-    def acceleration(q: np.ndarray, v: np.ndarray) -> np.ndarray:  # type: ignore[type-arg]
+    def acceleration(q: FloatArray, v: FloatArray) -> FloatArray:
         return np.split(slope(0.0, np.concatenate([q, v])), 2)[1]
 
     first = states_needed(method)
@@ -74,8 +74,8 @@ def test_so_does_it_with_feedback_that_no_explicit_method_bears(name: str) -> No
 
 
 @pytest.mark.parametrize(("name", "scheme"), [("leapfrog", LEAPFROG), ("Stoermer", STOERMER)])
-def test_so_do_recipes_with_helpers_and_with_a_position_ahead(name: str, scheme: object) -> None:
-    follows_its_recursion(Method(name, scheme, "constructed"), "1/2", "3/10")  # type: ignore[arg-type]
+def test_so_do_recipes_with_helpers_and_with_a_position_ahead(name: str, scheme: SecondOrder) -> None:
+    follows_its_recursion(Method(name, scheme, "constructed"), "1/2", "3/10")
 
 
 @pytest.mark.parametrize("name", ["bdf3", "verlet-half", "hht", "sdirk2"])
@@ -111,7 +111,7 @@ def test_a_step_knows_the_times_of_its_evaluations() -> None:
     def f(t: float) -> float:
         return -0.5 * 9 * float(np.sin(3 * t))
 
-    def velocity_steps(name: str) -> np.ndarray:  # type: ignore[type-arg]
+    def velocity_steps(name: str) -> FloatArray:
         run = simulate(mechanism, lookup(name), h, 1.0, (0.0, 0.0))
         return np.asarray(np.diff(run.v[:, 0]) / h)
 

@@ -8,7 +8,7 @@ from bezstab.mechanism.second_order_memory import memory
 from bezstab.methods import Quantity, RungeKutta, SecondOrder, lookup, recipe, second_order_form
 from tests.methods.kinds import EXPLICIT, IMPLICIT, RUNGE_KUTTA
 
-HALF = Fraction(1, 2)
+HALF, ONE, ZERO = Fraction(1, 2), Fraction(1), Fraction(0)
 
 LEAPFROG = recipe({"w": "w[0] + a0", "x1": "x0 + w", "a1": "acceleration(x1, w)", "v1": "w + 1/2 a1"})
 """The velocity half a step back is what it carries."""
@@ -71,12 +71,12 @@ def test_an_acceleration_is_taken_where_a_steady_motion_is_then(name: str, momen
 def test_a_helper_starts_with_what_belongs_to_the_state() -> None:
     remembered = memory(LEAPFROG)
     shares = dict(zip(remembered.carried, remembered.shares, strict=True))
-    assert shares[Quantity("w", 0)] == (0, 1, -HALF)  # v - a / 2: half a step back
-    assert shares[Quantity("x", 0)] == (1, 0, 0)
-    assert shares[Quantity("a", 0)] == (0, 0, 1)
+    assert shares[Quantity("w", 0)] == (ZERO, ONE, -HALF)  # v - a / 2: half a step back
+    assert shares[Quantity("x", 0)] == (ONE, ZERO, ZERO)
+    assert shares[Quantity("a", 0)] == (ZERO, ZERO, ONE)
     ahead = recipe({"y": "y[0] + v1", "x1": "y - 1/2 v1", "v1": "v0 + a0", "a1": "acceleration(x1, v1)"})
     starts = dict(zip(memory(ahead).carried, memory(ahead).shares, strict=True))
-    assert starts[Quantity("y", 0)][:2] == (1, HALF)  # a position half a step ahead
+    assert starts[Quantity("y", 0)][:2] == (ONE, HALF)  # a position half a step ahead
 
 
 @pytest.mark.parametrize("name", [*EXPLICIT[::4], *IMPLICIT[::3], "rkn4", "hht"])
@@ -84,4 +84,4 @@ def test_what_starts_as_the_state_is_the_state(name: str) -> None:
     remembered = memory(form(name))
     for quantity, shares in zip(remembered.carried, remembered.shares, strict=True):
         if quantity.name in ("x", "v"):
-            assert shares == ((1, 0, 0) if quantity.name == "x" else (0, 1, 0))
+            assert shares == ((ONE, ZERO, ZERO) if quantity.name == "x" else (ZERO, ONE, ZERO))
