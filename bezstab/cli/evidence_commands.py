@@ -34,6 +34,7 @@ from bezstab.cli.output import (
     for_reading,
     progress,
     results_of_chunks,
+    say,
     show_rows,
     write_figure,
     write_table,
@@ -52,6 +53,7 @@ if TYPE_CHECKING:
 
 MOST_STEPS = 10**8  # a run keeps its whole history: 10 GB and an hour for the slider-crank
 MOST_SWEPT = 10**6  # the reference takes up to 32 times as many
+MOST_LISTED = 20  # times in a message
 RANDOM_POINTS = 20  # of verify, unless told otherwise
 
 SIMULATIONS = [
@@ -69,6 +71,7 @@ SIMULATIONS = [
     column("evaluations", "evaluations", "d"),
     column("least pivot", "least_pivot", ".1e"),
     column("at (s)", "pivot_time", ".6g"),
+    column("singular passages", "singular_passages", "d"),
     column("failure", "failure"),
 ]
 
@@ -148,8 +151,20 @@ def simulate(
     write_table(path, history_arrays(simulation), table)
     write_figure(path, draw, figure)
     show_rows([simulation_row(simulation)], SIMULATIONS, form)
+    if len(simulation.singular_times):
+        say(f"bezstab: {_passages_text(simulation.singular_times.tolist())}")
     if simulation.failure:
         raise NumericalError(simulation.failure)
+
+
+def _passages_text(times: Sequence[float]) -> str:
+    """Return where a run has gone through singular configurations, and what that means; times in s."""
+    listed = ", ".join(f"{time:.6g}" for time in times[:MOST_LISTED])
+    more = ", ..." if len(times) > MOST_LISTED else ""
+    return (
+        f"the run goes through singular configurations, {len(times)} times, at t = {listed}{more} s: "
+        "there the motion can branch, and which way it goes is left to rounding"
+    )
 
 
 def _check_number_of_steps(time: Fraction, h: Fraction, method: Method) -> None:

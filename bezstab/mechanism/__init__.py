@@ -26,7 +26,7 @@ from bezstab.mechanism.compiled import (
 from bezstab.mechanism.energies import EnergyBalance, energy_balance
 from bezstab.mechanism.equations import Equations, T, equations_of_motion
 from bezstab.mechanism.generated_code import compiled_source
-from bezstab.mechanism.observation import Observation, observe
+from bezstab.mechanism.observation import Observation, observe, singular_passages
 from bezstab.mechanism.runner import Start, Trajectory, march, resume, simulate
 from bezstab.mechanism.scene_files import load_scene, parse_scene, read_scene, shipped_scenes
 from bezstab.mechanism.scenes import (
@@ -85,5 +85,6 @@ __all__ = [
     "shipped_scenes",
     "simulate",
     "simulated",
+    "singular_passages",
     "stepper_code",
 ]

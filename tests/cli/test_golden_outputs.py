@@ -60,7 +60,7 @@ TOLERANCES = (
 )
 """The first that fits both command and key."""
 
-ADDED = ("beta_hat_min", "driver_work", "force_work")
+ADDED = ("beta_hat_min", "driver_work", "force_work", "singular_passages")
 """Keys that rows have got since: the least beta_hat of a region, the work done in a simulation."""
 
 

@@ -10,6 +10,7 @@ from bezstab.evidence.measured_poles import KICKS, _kicked_responses, _measured_
 from bezstab.mechanism import compiled_mechanism, load_scene
 from bezstab.methods import REGISTRY, LinearMultistep, lookup, steps
 from bezstab.stability import best_point, dominant_pole, poles, spectral_radius
+from tests.mechanism.test_scenes import small
 from tests.reference import sampled_responses
 
 H = 1e-3  # s
@@ -19,7 +20,7 @@ SLOW_FEEDBACK = ("AB7", "AB8")
 
 def measurements(scene: str, name: str, count: int) -> list[Measurement]:
     method = lookup(name)
-    return measure_poles(compiled_mechanism(load_scene(scene)), method, H, *random_points(method, count))
+    return measure_poles(compiled_mechanism(small(scene)), method, H, *random_points(method, count))
 
 
 def errors(found: list[Measurement]) -> list[float]:
