@@ -161,10 +161,9 @@ def _passages_text(times: Sequence[float]) -> str:
     """Return where a run has gone through singular configurations, and what that means; times in s."""
     listed = ", ".join(f"{time:.6g}" for time in times[:MOST_LISTED])
     more = ", ..." if len(times) > MOST_LISTED else ""
-    return (
-        f"the run goes through singular configurations, {len(times)} times, at t = {listed}{more} s: "
-        "there the motion can branch, and which way it goes is left to rounding"
-    )
+    what = "a singular configuration" if len(times) == 1 else f"{len(times)} singular configurations"
+    where = f"the run goes through {what}, at t = {listed}{more} s"
+    return f"{where}: there the motion can branch, and which way it goes is left to rounding"
 
 
 def _check_number_of_steps(time: Fraction, h: Fraction, method: Method) -> None:
