@@ -44,6 +44,7 @@ class Watch:
     left: int = 0
     took: dict[str, float] = field(default_factory=dict)
 
+    @pytest.hookimpl(trylast=True)  # after what is not asked for has been taken out: the slow tests
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
         """Put the tests in order: those of the own file first, and of either group new ones, then the quickest."""
         items.sort(key=lambda item: (not item.nodeid.startswith(self.own), self.seconds.get(item.nodeid, 0.0)))
