@@ -34,6 +34,7 @@ from bezstab.cli.output import (
     for_reading,
     progress,
     results_of_chunks,
+    say,
     show_rows,
     write_figure,
     write_table,
@@ -51,6 +52,7 @@ if TYPE_CHECKING:
 
 MOST_STEPS = 10**8  # a run keeps its whole history: 10 GB and an hour for the slider-crank
 MOST_SWEPT = 10**6  # the reference takes up to 32 times as many
+MOST_LISTED = 20  # times in a message
 RANDOM_POINTS = 20  # of verify, unless told otherwise
 
 EVALUATIONS = column("evaluations", "evaluations", "d")
@@ -70,6 +72,7 @@ SIMULATIONS = [
     EVALUATIONS,
     column("least pivot", "least_pivot", ".1e"),
     column("at (s)", "pivot_time", ".6g"),
+    column("singular passages", "singular_passages", "d"),
     column("failure", "failure"),
 ]
 
@@ -153,8 +156,19 @@ def simulate(
     if simulation.trajectory.iterations is not None:  # an implicit method
         columns.insert(columns.index(EVALUATIONS) + 1, ITERATIONS)
     show_rows([simulation_row(simulation)], columns, form)
+    if len(simulation.singular_times):
+        say(f"bezstab: {_passages_text(simulation.singular_times.tolist())}")
     if simulation.failure:
         raise NumericalError(simulation.failure)
+
+
+def _passages_text(times: Sequence[float]) -> str:
+    """Return where a run has gone through singular configurations, and what that means; times in s."""
+    listed = ", ".join(f"{time:.6g}" for time in times[:MOST_LISTED])
+    more = ", ..." if len(times) > MOST_LISTED else ""
+    what = "a singular configuration" if len(times) == 1 else f"{len(times)} singular configurations"
+    where = f"the run goes through {what}, at t = {listed}{more} s"
+    return f"{where}: there the motion can branch, and which way it goes is left to rounding"
 
 
 def _check_number_of_steps(time: Fraction, h: Fraction, method: Method) -> None:

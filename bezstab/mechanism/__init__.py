@@ -36,7 +36,7 @@ from bezstab.mechanism.equations import Equations, T, equations_of_motion
 from bezstab.mechanism.generated_code import compiled_source
 from bezstab.mechanism.linearized import acceleration_jacobians
 from bezstab.mechanism.motions import Motion, motion
-from bezstab.mechanism.observation import Observation, observe
+from bezstab.mechanism.observation import Observation, observe, singular_passages
 from bezstab.mechanism.runner import Start, Trajectory, march, resume, simulate, states_needed
 from bezstab.mechanism.scene_files import load_scene, parse_scene, read_scene, shipped_scenes
 from bezstab.mechanism.scenes import (
@@ -105,6 +105,7 @@ __all__ = [
     "shipped_scenes",
     "simulate",
     "simulated",
+    "singular_passages",
     "states_needed",
     "stepper_code",
     "turning_normals",

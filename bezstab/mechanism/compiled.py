@@ -154,7 +154,7 @@ def acceleration_function(mechanism: Mechanism, library: Any) -> StateFunction:
 
 @cache
 def observation_function(mechanism: Mechanism, library: Any) -> StateFunction:
-    """Return the function of (t, two_alpha, beta_squared, q, v) that gives all c, then all cdot, then all lambda."""
+    """Return the function of (t, two_alpha, beta_squared, q, v) that gives all c, cdot, lambda, and the pivot."""
     source = observation_source(mechanism.acceleration_code)
     observation: StateFunction = compiled_source(source, library)["observation"]
     return observation

@@ -72,10 +72,10 @@ def equations_of_motion(scene: Scene) -> Equations:
 
     mass = [sp.Float(body.inertia if axis == "theta" else body.mass) for body in scene.bodies for axis in body.free]
     c = sp.Matrix([row for joint in scene.joints for row in _constraints(joint, frames, symbol_of)])
-    jacobian = c.jacobian(q)
+    jacobian = _jacobian(c, q)
     c_t = c.diff(T)
     velocity = sp.Matrix(v)
-    gamma = -((jacobian * velocity).jacobian(q) * velocity + 2 * jacobian.diff(T) * velocity + c_t.diff(T))
+    gamma = -(_jacobian(jacobian * velocity, q) * velocity + 2 * jacobian.diff(T) * velocity + c_t.diff(T))
     lengths = [_distance(spring, frames) for spring in scene.springs]
     potential = _potential_energy(scene, frames, lengths)
     applied = _constant_forces(scene, frames, q) + _damper_forces(scene, lengths, q, v)
@@ -95,9 +95,19 @@ def equations_of_motion(scene: Scene) -> Equations:
     )
 
 
+def _jacobian(column: sp.Matrix, q: Sequence[sp.Symbol]) -> sp.Matrix:
+    """Return the derivatives of m expressions by n coordinates, shape (m, n), most of them zero without being asked."""
+    number_of = {symbol: number for number, symbol in enumerate(q)}
+    jacobian = sp.zeros(len(column), len(q))
+    for row, expression in enumerate(column):
+        for symbol in expression.free_symbols & number_of.keys():
+            jacobian[row, number_of[symbol]] = expression.diff(symbol)
+    return jacobian
+
+
 def _gradient(expression: sp.Expr, q: Sequence[sp.Symbol]) -> sp.Matrix:
     """Return the derivatives by each coordinate, shape (n, 1)."""
-    return sp.Matrix([expression]).jacobian(q).T
+    return _jacobian(sp.Matrix([expression]), q).T
 
 
 def _frame(body: Body, symbol_of: dict[str, sp.Symbol]) -> Frame:

@@ -205,10 +205,11 @@ def _acceleration_lines(
 
 
 def observation_source(acceleration: AccelerationCode) -> str:
-    """Return the source of observation(t, two_alpha, beta_squared, q, v): all c, then all cdot, then all l."""
+    """Return the source of observation(t, two_alpha, beta_squared, q, v): all c, all cdot, all l, the least pivot."""
     constraints = acceleration.constraints
     results = [name for prefix in ("c", "cdot", "l") for name in variable_names(prefix, constraints)]
-    return _function_source("observation", acceleration, results)
+    _, _, least_pivot = acceleration.least_pivot_line.partition(" = ")
+    return _function_source("observation", acceleration, [*results, least_pivot])
 
 
 def multipliers_source(acceleration: AccelerationCode) -> str:

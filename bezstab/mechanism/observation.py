@@ -13,6 +13,8 @@ from bezstab.mechanism.equations import T
 
 FloatArray = NDArray[np.float64]
 
+AT_ZERO = 0.05  # of a neighbour: the least pivot of a passage a fifth of a step away, and of what the parabola leaves
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Observation:
@@ -20,7 +22,7 @@ class Observation:
 
     The energy is kinetic and, of gravity and springs, potential. `driver_power` (W, shape (times,)) is what the drivers
     add to it, each its multiplier times its prescribed rate, and `applied_power` (same) what constant forces, torques
-    and dampers do.
+    and dampers do. `pivots` (same) are the least relative pivots of S = C_q M^-1 C_q^T, 0 in a singular configuration.
     """
 
     c: FloatArray
@@ -29,6 +31,7 @@ class Observation:
     energy: FloatArray
     driver_power: FloatArray
     applied_power: FloatArray
+    pivots: FloatArray
 
     def __repr__(self) -> str:
         times, constraints = self.c.shape
@@ -49,7 +52,7 @@ def observe(
     with np.errstate(all="ignore"):  # of a broken-down run's last states
         values = observation_function(mechanism, np)(t, two_alpha, beta_squared, q_columns, v_columns)
     # what depends on nothing that varies is a number: it holds at every time
-    columns = [np.broadcast_to(value, t.shape) for value in values]
+    *columns, pivots = [np.broadcast_to(value, t.shape) for value in values]
     c, cdot, multipliers = (
         np.stack(columns[first : first + mechanism.constraints], axis=-1)
         for first in range(0, len(columns), mechanism.constraints)
@@ -63,7 +66,22 @@ def observe(
         energy=kinetic + potential,
         driver_power=_driver_power(mechanism, t, multipliers),
         applied_power=np.zeros(t.shape) + applied_power,  # a number where nothing is applied
+        pivots=np.array(pivots),
     )
+
+
+def singular_passages(pivots: FloatArray) -> NDArray[np.intp]:
+    """Return the indices nearest to singular configurations that a run with these least pivots went through.
+
+    Near one the least pivot falls to zero and rises as the square of the time. So it does where the parabola through a
+    local minimum and its neighbours has its vertex near zero, within AT_ZERO of the larger neighbour: nearer than the
+    steps can tell. A run that only comes near is told from one that goes through by shorter steps.
+    """
+    before, at, after = pivots[:-2], pivots[1:-1], pivots[2:]
+    with np.errstate(all="ignore"):  # where all three are equal there is no vertex, and no minimum
+        vertex = at - (after - before) ** 2 / (8 * (before + after - 2 * at))
+        is_minimum = (at < before) & (at <= after)
+        return 1 + np.flatnonzero(is_minimum & (vertex < AT_ZERO * np.maximum(before, after)))
 
 
 @cache

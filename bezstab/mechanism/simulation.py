@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from bezstab.mechanism.compiled import Mechanism
 from bezstab.mechanism.energies import EnergyBalance, energy_balance
-from bezstab.mechanism.observation import FloatArray, Observation, observe
+from bezstab.mechanism.observation import FloatArray, Observation, observe, singular_passages
 from bezstab.mechanism.runner import Start, Trajectory, simulate
 from bezstab.mechanism.start import perturbed_state
 from bezstab.methods import Method
@@ -76,6 +76,11 @@ class Simulation:
     def energy_drift(self) -> FloatArray:
         """The change of energy since the start that no work explains (J): an error."""
         return self.balance.drift
+
+    @property
+    def singular_times(self) -> FloatArray:
+        """The times (s) nearest to singular configurations that the run went through, where a motion can branch."""
+        return self.t[singular_passages(self.observation.pivots)]
 
     @property
     def failure(self) -> str | None:

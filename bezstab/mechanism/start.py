@@ -15,6 +15,7 @@ from bezstab.mechanism.equations import T
 FloatArray = NDArray[np.float64]
 
 NEWTON_STEPS = 50  # quadratic: a handful suffices from any guess that leads anywhere
+SETTLED = 1e-15  # m, rad: a step of Newton's method that changes the last digits of a coordinate at most
 CLOSED = 1e-12  # m: what Newton reaches at mechanism sizes around a metre, and what a whole state must keep
 RANK = 1e-9  # of the largest entry of C_q: a row that depends on the others to this is redundant
 DEPENDENT = 1e-6  # of a row of length one: what others leave of it where RANK has found that it depends on them
@@ -100,7 +101,10 @@ def _closed(mechanism: Mechanism, guess: FloatArray, unknown: Sequence[int]) -> 
     for _ in range(NEWTON_STEPS if unknown else 0):
         jacobian = at.jacobian(q, 0.0)[:, unknown]
         # least squares: it also has an answer where the linear system has none, on the way or for good
-        q[unknown] -= np.linalg.lstsq(jacobian, at.constraints(q, 0.0)[:, 0], rcond=None)[0]
+        step = np.linalg.lstsq(jacobian, at.constraints(q, 0.0)[:, 0], rcond=None)[0]
+        q[unknown] -= step
+        if np.abs(step).max() < SETTLED:
+            break
     return q
 
 

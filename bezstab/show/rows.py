@@ -216,7 +216,7 @@ def simulation_row(simulation: Simulation) -> Row:
     """Return the summary of one run: largest |c| and |cdot| (SI), energy drift (J), evaluations, when and why it ended.
 
     `time` is where it ended (s); h in s. The drift is what of the change of energy is not the work (J) of drivers and
-    of applied forces, which are there as well.
+    of applied forces, which are there as well. `singular_passages` counts the singular configurations met.
     """
     trajectory = simulation.trajectory
     return {
@@ -234,6 +234,7 @@ def simulation_row(simulation: Simulation) -> Row:
         "energy_drift": float(simulation.energy_drift[-1]),
         "driver_work": float(simulation.driver_work[-1]),
         "force_work": float(simulation.force_work[-1]),
+        "singular_passages": len(simulation.singular_times),
     }
 
 

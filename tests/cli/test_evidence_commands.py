@@ -43,6 +43,23 @@ def test_a_blow_up_is_status_three_and_keeps_the_history(tmp_path: Path) -> None
     assert len(list(tmp_path.iterdir())) == 2
 
 
+@pytest.mark.parametrize(
+    ("time", "said"),
+    [
+        ("0.7", ""),
+        ("1", "a singular configuration, at t = 0.772 s: "),
+        ("4", "2 singular configurations, at t = 0.772, "),
+    ],
+)
+def test_simulate_says_where_it_goes_through_singular_configurations(time: str, said: str) -> None:
+    command = ("simulate", "--scene", "slider_crank_equal", "--figure", "none", "--table", "none", "--format", "json")
+    result = run(*command, "--time", time)
+    assert result.exit_code == 0
+    assert json.loads(result.stdout)[0]["singular_passages"] == {"0.7": 0, "1": 1, "4": 2}[time]
+    assert said in result.stderr
+    assert len(result.stderr.splitlines()) == bool(said)
+
+
 @pytest.mark.parametrize("command", ["simulate", "verify --method B4", "tradeoff"])
 def test_a_speed_is_a_positive_number_that_has_something_to_multiply(command: str) -> None:
     for options, said in (

@@ -65,7 +65,7 @@ ADDED = (
     *("beta_hat_min", "best_reason", "searched"),
     *("bounded", "stable_for_all", "unconditional_damping_ratio", "critical_damping_limit"),
     *("implicit", "digits", "order_position_forces", "order_velocity_forces", "group"),
-    *("driver_work", "force_work", "iterations"),
+    *("driver_work", "force_work", "iterations", "singular_passages"),
 )
 """Keys that rows have got since, in their place: more of what a region, a choice and a method is, and work in a run."""
 

@@ -10,6 +10,7 @@ from bezstab.evidence.measured_poles import KICKS, _kicked_responses, _measured_
 from bezstab.mechanism import compiled_mechanism, load_scene
 from bezstab.methods import LinearMultistep, lookup, steps
 from bezstab.stability import best_point, dominant_pole, poles, spectral_radius
+from tests.mechanism.test_scenes import small
 from tests.methods.kinds import EXPLICIT, IMPLICIT, SECOND_ORDER
 from tests.reference import sampled_responses
 
@@ -21,7 +22,7 @@ KICKS_THAT_DRIFT = ("ruth3", "forest-ruth", "yoshida4", "rkn4")
 
 def measurements(scene: str, name: str, count: int) -> list[Measurement]:
     method = lookup(name)
-    return measure_poles(compiled_mechanism(load_scene(scene)), method, H, *random_points(method, count))
+    return measure_poles(compiled_mechanism(small(scene)), method, H, *random_points(method, count))
 
 
 def errors(found: list[Measurement]) -> list[float]:

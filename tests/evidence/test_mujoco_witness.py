@@ -14,7 +14,7 @@ from bezstab.errors import InputError
 from bezstab.evidence import TIMES, model_xml, mujoco_witnesses, witness_count
 from bezstab.mechanism import Force, Revolute, compiled_mechanism, load_scene, parse_scene, perturbed_state
 from bezstab.stability import spectral_radius
-from tests.mechanism.test_scenes import pendulum
+from tests.mechanism.test_scenes import pendulum, small
 from tests.reference.newton import newtons_accelerations
 
 H = 1e-3
@@ -22,12 +22,12 @@ mujoco: Any = pytest.importorskip("mujoco")
 
 
 def model(scene: str, alpha_hat: float = 0.5, beta_hat: float = 0.1) -> Any:
-    return mujoco.MjModel.from_xml_string(model_xml(load_scene(scene), "Euler", H, alpha_hat, beta_hat))
+    return mujoco.MjModel.from_xml_string(model_xml(small(scene), "Euler", H, alpha_hat, beta_hat))
 
 
 @pytest.mark.parametrize("scene", ["slider_crank", "slider_crank_light", "four_bar", "n_four_bar"])
 def test_mujoco_settles_and_diverges_where_the_map_says(scene: str) -> None:
-    witnessed = list(mujoco_witnesses(compiled_mechanism(load_scene(scene)), H))
+    witnessed = list(mujoco_witnesses(compiled_mechanism(small(scene)), H))
     assert len(witnessed) == witness_count()
     assert {one.integrator for one in witnessed} == {"Euler", "RK4"}
     for one in witnessed:
@@ -46,7 +46,7 @@ def test_no_file_is_left_where_a_run_diverges(tmp_path: Any, monkeypatch: pytest
 
 @pytest.mark.parametrize("scene", ["slider_crank", "four_bar", "n_four_bar"])
 def test_the_model_has_the_scenes_masses_and_accelerations(scene: str) -> None:
-    mechanism = compiled_mechanism(load_scene(scene))
+    mechanism = compiled_mechanism(small(scene))
     built = model(scene)
     assert built.nq == built.nv == mechanism.size
     data = mujoco.MjData(built)

@@ -1,16 +1,24 @@
 import numpy as np
 import pytest
 
-from bezstab.mechanism import compiled_mechanism, initial_state, load_scene, observe, simulate
+from bezstab.mechanism import (
+    compiled_mechanism,
+    initial_state,
+    load_scene,
+    observe,
+    shipped_scenes,
+    simulate,
+    singular_passages,
+)
 from bezstab.methods import lookup
-from tests.mechanism.test_scenes import SHIPPED
+from tests.mechanism.test_scenes import four_bars, small
 from tests.reference.literal_equation_9 import literal_equation_9
 from tests.reference.one_coordinate_motion import slider_crank_joint_forces
 
 
-@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize("name", shipped_scenes())
 def test_the_generated_code_solves_the_literal_equation_9(name: str) -> None:
-    mechanism, random = compiled_mechanism(load_scene(name)), np.random.default_rng(2)
+    mechanism, random = compiled_mechanism(small(name)), np.random.default_rng(2)
     q, v = (state + random.normal(0, 0.01, (20, mechanism.size)) for state in initial_state(mechanism))
     t, two_alpha, beta_squared = random.uniform(0, 1, 20), 30.0, 500.0
     seen = observe(mechanism, t, q, v, two_alpha, beta_squared)
@@ -49,3 +57,30 @@ def test_an_observation_prints_in_one_line() -> None:
     q, v = initial_state(mechanism)
     seen = observe(mechanism, np.zeros(1), q[np.newaxis], v[np.newaxis], 0.0, 0.0)
     assert repr(seen) == "Observation(1 times, 4 constraints)"
+
+
+@pytest.mark.parametrize("h", [1e-3, 7e-3, 2e-2])
+def test_every_passage_through_a_singular_configuration_is_seen_whatever_the_step(h: float) -> None:
+    """The rods lie along the ground whenever their angle is a multiple of pi; found by the angles alone."""
+    mechanism, gains = compiled_mechanism(four_bars(3)), (20.0, 100.0)
+    run = simulate(mechanism, lookup("RK4"), h, 5.0, gains)
+    halves = np.floor(run.q[:, 0] / np.pi)
+    expected = run.t[np.flatnonzero(np.diff(halves))] + h / 2
+    found = run.t[singular_passages(observe(mechanism, run.t, run.q, run.v, *gains).pivots)]
+    assert len(expected) == 5
+    assert found == pytest.approx(expected, abs=h)
+
+
+@pytest.mark.parametrize("name", ["slider_crank", "slider_crank_300rpm", "four_bar", "driven_four_bar", "pendulum"])
+def test_where_nothing_is_singular_no_passage_is_seen(name: str) -> None:
+    mechanism, gains = compiled_mechanism(load_scene(name)), (20.0, 100.0)
+    run = simulate(mechanism, lookup("RK4"), 1e-2, 10.0, gains)
+    assert not len(singular_passages(observe(mechanism, run.t, run.q, run.v, *gains).pivots))
+
+
+def test_the_pivots_are_those_that_the_run_has_met() -> None:
+    mechanism = compiled_mechanism(load_scene("slider_crank"))
+    run = simulate(mechanism, lookup("RK1"), 1e-3, 3.0, (20.0, 100.0))
+    pivots = observe(mechanism, run.t, run.q, run.v, 20.0, 100.0).pivots[:-1]  # the last state takes no step
+    assert pivots.min() == pytest.approx(run.least_pivot, rel=1e-13)
+    assert run.t[pivots.argmin()] == run.pivot_time

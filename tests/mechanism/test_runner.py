@@ -3,21 +3,32 @@
 from collections.abc import Callable
 from dataclasses import replace
 
+import mpmath as mp
 import numpy as np
 import pytest
 import sympy as sp
 from numpy.typing import NDArray
 
 from bezstab.errors import InputError
-from bezstab.mechanism import Start, compiled_mechanism, initial_state, load_scene, observe, parse_scene, simulate
+from bezstab.mechanism import (
+    Start,
+    compiled_mechanism,
+    initial_state,
+    load_scene,
+    observe,
+    parse_scene,
+    simulate,
+    simulated,
+)
 from bezstab.methods import Method, accuracy, evaluations, lookup, steps
 from bezstab.units import feedback_gains
-from tests.mechanism.test_scenes import pendulum
+from tests.mechanism.test_scenes import four_bars, pendulum, small
 from tests.mechanism.test_second_order_memory import STOERMER
 from tests.methods.kinds import EXPLICIT, IMPLICIT, SECOND_ORDER
 from tests.reference.one_coordinate_motion import (
     distance,
     four_bar_chain_energies,
+    motion,
     shared_angles,
     shown_order,
     slider_crank_energies,
@@ -67,7 +78,7 @@ def test_with_alpha_hat_and_beta_hat_fixed_runge_kutta_methods_lose_order(name: 
 
 @pytest.mark.parametrize("name", ["RK4", "AB4", "AB3", "B4", "SYM"])
 def test_the_parallel_four_bars_move_as_one_coordinate(name: str) -> None:
-    mechanism, duration = compiled_mechanism(load_scene("n_four_bar")), 0.5
+    mechanism, duration = compiled_mechanism(four_bars(3)), 0.5
     reference = shared_angles(four_bar_chain_energies(3), np.pi / 2, -1.0, duration)
     assert reference[-1] > 0.3  # well above the ground, where the rods lie in line and the motion branches
     errors = []
@@ -94,7 +105,7 @@ def test_table_5_case_3_diverges_for_adams_bashforth_only() -> None:
 @pytest.mark.parametrize("scene", ["pendulum", "four_bar", "n_four_bar", "slider_crank_light"])
 @pytest.mark.parametrize("name", ["RK4", "AB3", "B4"])
 def test_the_energy_drifts_like_a_power_of_the_step(scene: str, name: str) -> None:
-    mechanism, drifts = compiled_mechanism(load_scene(scene)), []
+    mechanism, drifts = compiled_mechanism(small(scene)), []
     for h in (2e-3, 1e-3):
         run = simulate(mechanism, lookup(name), h, 0.5, (20.0, 100.0))
         energy = observe(mechanism, run.t, run.q, run.v, 20.0, 100.0).energy
@@ -104,7 +115,20 @@ def test_the_energy_drifts_like_a_power_of_the_step(scene: str, name: str) -> No
 
 @pytest.mark.parametrize(
     "name",
-    ["B4", "AB4", "ABM4", "RK4", "SYM", "RK4@5", "trapezoid", "bdf3", "hht", "verlet-predicted", "imex-euler", "sdirk2@2"],
+    [
+        "B4",
+        "AB4",
+        "ABM4",
+        "RK4",
+        "SYM",
+        "RK4@5",
+        "trapezoid",
+        "bdf3",
+        "hht",
+        "verlet-predicted",
+        "imex-euler",
+        "sdirk2@2",
+    ],
 )
 def test_the_pendulum_keeps_time(name: str) -> None:
     order, _ = accuracy(lookup(name))
@@ -297,3 +321,66 @@ def test_one_position_ahead_is_the_same_motion_as_velocities_beside() -> None:
         runs = [simulate(mechanism, method, h, 0.1, gains) for method in (ahead, lookup("newmark(0,1/2)"))]
         # first positions that differ by h^3 make velocities that differ by h^2, here times a jerk of 0.1 SI units
         assert np.abs(runs[0].q - runs[1].q).max() < 0.1 * h**2
+
+
+A01_AT_10_S = (0.275087462576, -0.961419205099)
+"""Where the benchmark's pendulum is, in m; published with the other sign of x, for a start at x = -1."""
+
+
+def exact_pendulum(t: float) -> tuple[float, float]:
+    """Return x and y (m) of the pendulum released from the horizontal: sin(phi / 2) = k sn(K - w t), k^2 = 1/2."""
+    with mp.workdps(30):
+        modulus = mp.mpf(1) / 2
+        sine = mp.ellipfun("sn", mp.ellipk(modulus) - mp.sqrt(mp.mpf("9.81")) * t, m=modulus) * mp.sqrt(modulus)
+        cosine = mp.sqrt(1 - sine**2)
+        return float(2 * sine * cosine), float(sine**2 - cosine**2)
+
+
+def test_the_exact_pendulum_is_that_of_the_benchmark() -> None:
+    assert exact_pendulum(0.0) == pytest.approx((1, 0), abs=1e-15)
+    assert exact_pendulum(10.0) == pytest.approx(A01_AT_10_S, abs=1e-12)  # as printed
+
+
+@pytest.mark.parametrize(
+    ("name", "duration", "error", "energy"),
+    [
+        ("ABM4", 10.0, 1e-8, 1e-8),
+        ("RK4", 10.0, 1e-7, 1e-7),
+        pytest.param("ABM4", 2000.0, 1e-3, 1e-5, marks=pytest.mark.slow),
+        pytest.param("RK4", 2000.0, 1e-3, 1e-5, marks=pytest.mark.slow),
+    ],
+)
+def test_a01_the_pendulum_keeps_its_energy_and_its_place(
+    name: str, duration: float, error: float, energy: float
+) -> None:
+    """The benchmark runs for 2000 s and allows errors of 1e-3 m at most."""
+    run = simulated(
+        compiled_mechanism(load_scene("pendulum")), lookup(name), h=H, duration=duration, alpha_hat=0.1, beta_hat=0.01
+    )
+    assert run.q[-1] == pytest.approx(exact_pendulum(duration), abs=error)
+    assert np.abs(run.energy_drift).max() < energy
+
+
+@pytest.mark.parametrize(
+    ("count", "duration", "passages"), [(5, 1.5, 2), pytest.param(40, 20.0, 20, marks=pytest.mark.slow)]
+)
+def test_a02_the_four_bars_go_through_their_singular_positions(count: int, duration: float, passages: int) -> None:
+    """The benchmark has N = 40, runs for 20 s and allows errors of 1e-3 at most; its exact motion by quadrature."""
+    scene = load_scene("n_four_bar") if count == 40 else four_bars(count)
+    mechanism = compiled_mechanism(scene)
+    run = simulated(mechanism, lookup("RK4"), h=H, duration=duration, alpha_hat=0.02, beta_hat=1e-4)
+    times = run.t[::100]  # close: the quadrature has a sharp peak where the rods turn over
+    passed = motion(four_bar_chain_energies(count), np.pi / 2, -1.0, times.tolist(), digits=20)
+    reference = [float(passed[time].angle) for time in times.tolist()]
+    assert run.q[::100, 0] == pytest.approx(reference, abs=1e-4)  # rad, on rods of 1 m
+    assert np.ptp(run.q[:, : count + 1], axis=1).max() < 1e-4  # rad: no four-bar has branched
+    assert np.abs(run.energy_drift).max() < 1e-3  # J, of hundreds
+    assert len(run.singular_times) == passages
+    assert run.trajectory.least_pivot < 1e-5
+
+
+def test_a02_as_shipped_has_forty_four_bars_and_starts_at_one_metre_a_second() -> None:
+    scene = load_scene("n_four_bar")
+    assert len(scene.coordinates) == 41 + 3 * 40
+    assert scene.velocity == {"rod0.theta": -1.0}  # the tip of an upright rod of 1 m: 1 m/s along x
+    assert scene.gravity == (0.0, -9.81)

@@ -86,6 +86,8 @@ def motion(
                 new_angle -= late * rate_at(new_angle)
                 if abs(late) < mp.mpf(10) ** (4 - digits):
                     break
+            else:
+                raise ArithmeticError(f"no angle at t = {float(time):g} s: take times closer together")
             old_time, old_angle = time, new_angle
             passages[time] = Passage(new_angle, rate_at(new_angle))
         return passages
