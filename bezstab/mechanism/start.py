@@ -19,6 +19,7 @@ SETTLED = 1e-15  # m, rad: a step of Newton's method that changes the last digit
 CLOSED = 1e-12  # m: what Newton reaches at mechanism sizes around a metre, and what a whole state must keep
 RANK = 1e-9  # of the largest entry of C_q: a row that depends on the others to this is redundant
 DEPENDENT = 1e-6  # of a row of length one: what others leave of it where RANK has found that it depends on them
+MOST_NAMED = 3  # dependences in a message: one tells where to look, and a long chain may have dozens
 BESIDE = 1e-3  # m, rad: far enough from a singular start for singular values that grow in proportion to pass RANK
 
 
@@ -121,8 +122,10 @@ def _refuse_dependent_constraints(mechanism: Mechanism, q: FloatArray) -> None:
         what = "redundant constraints"
     else:
         what = "a singular start, beside which no constraint depends on others"
-    dependences = "; ".join(_dependences(mechanism.scene.constraint_names, jacobian))
-    raise InputError(f"joint: {what}: {mechanism.constraints} constraints, rank {rank}: {dependences}")
+    dependences = _dependences(mechanism.scene.constraint_names, jacobian)
+    more = [f"and {len(dependences) - MOST_NAMED} more"] if len(dependences) > MOST_NAMED else []
+    named = "; ".join(dependences[:MOST_NAMED] + more)
+    raise InputError(f"joint: {what}: {mechanism.constraints} constraints, rank {rank}: {named}")
 
 
 def _rank(jacobian: FloatArray) -> int:

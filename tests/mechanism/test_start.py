@@ -137,3 +137,12 @@ def test_constraint_errors_are_those_of_each_state_of_a_batch() -> None:
     alone = [constraint_errors(mechanism, 0.0, list(state)) for state in states]
     assert together.shape == (4, 3)
     assert together == pytest.approx(np.transpose(alone), abs=1e-15)
+
+
+def test_of_many_dependences_the_first_are_named_and_the_rest_counted() -> None:
+    """Six strings of one kind: five depend on the first."""
+    with pytest.raises(InputError) as caught:
+        initial_state(compiled_mechanism(parse_scene({**pendulum(), "joint": [STRING] * 6})))
+    message = str(caught.value)
+    assert message.endswith("; and 2 more")
+    assert message.count("follows from joint 1 (distance, ground and bob)") == 3
