@@ -209,7 +209,7 @@ def _show_measurements(
         else:
             alpha_hat, beta_hat = random_points(method, points)
         bar = partial(progress, label=method.name)
-        measurements = measure_poles(mechanism, method, h, alpha_hat, beta_hat, floquet, bar)
+        measurements = measure_poles(mechanism, method, h, alpha_hat, beta_hat, bar, floquet)
         own_rows = [measurement_row(mechanism.scene.name, measurement) for measurement in measurements]
         rows += own_rows
         summaries.append(summary_row(own_rows))

@@ -131,8 +131,8 @@ def measure_poles(
     h: float,
     alpha_hat: FloatArray,
     beta_hat: FloatArray,
-    floquet: bool = False,
     progress: Progress = iter,
+    floquet: bool = False,
 ) -> list[Measurement]:
     """Return what is predicted and what is measured at each of a row of points.
 
@@ -214,7 +214,7 @@ def _measurement(
         floquet_abs=floquet_abs,
         measured=measured,
         measured_rate=None if revolution is None else _rate_over_revolutions(revolution, difference, size),
-        measured_verdict=_measured_verdict(measured, max(CLOSE, moving.shift(method, h)), difference, size),
+        measured_verdict=_measured_verdict(measured, difference, size, max(CLOSE, moving.shift(method, h))),
         reason=reason,
     )
 
@@ -261,7 +261,7 @@ def _is_another(measured: complex, predicted: complex, all_poles: ComplexArray) 
 
 
 def _measured_verdict(
-    measured: complex | None, close: float, difference: FloatArray, size: FloatArray
+    measured: complex | None, difference: FloatArray, size: FloatArray, close: float = CLOSE
 ) -> MeasuredVerdict:
     """Return whether the error grew or decayed: by the pole, else by the responses, shape (steps, kicks).
 

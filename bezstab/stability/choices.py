@@ -177,9 +177,9 @@ def choose_at_step(
     """Return the choice for steps of h (s), as `choose` makes it for the largest step h_max (s) that may occur.
 
     At a smaller step the same alpha and beta are a smaller alpha_hat = 2 alpha h and beta_hat = beta^2 h^2 (paper Eq.
-    16). `settle` (s) is the time in which the error of `gentle` falls a thousandfold; `modulus`, of the largest step, is
-    as for `choose`. InputError as for `choose`, and
-    for an h_max below h or without the goal robust, and for a settle without the goal gentle, or that without it.
+    16). `settle` (s) is the time in which the error of `gentle` falls a thousandfold; `modulus`, of the largest step,
+    is as for `choose`. InputError as for `choose`, and for an h_max below h or without the goal robust, and for a
+    settle without the goal gentle, or that without it.
     """
     if h_max is not None and (goal != "robust" or h_max < h):
         raise InputError(f"h_max = {float(h_max):g} s: only for the goal robust, and at least h = {float(h):g} s")

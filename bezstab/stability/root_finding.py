@@ -206,7 +206,7 @@ def _repulsion(z: ComplexArray) -> ComplexArray:
     return repulsion
 
 
-def newton_correction(coefficients: Sequence[Any], y: ComplexArray) -> ComplexArray:
+def newton_correction(coefficients: Sequence[Any] | FloatArray, y: ComplexArray) -> ComplexArray:
     """Return Newton's correction p(y) / p'(y), of the shape of y, by Horner's rule.
 
     The coefficients, two at least, are ascending: numbers, or arrays of the shape of y.
@@ -236,8 +236,8 @@ def followed_roots(table: FloatArray, x: ComplexArray, starts: ComplexArray, bou
     return np.where(settled & (np.abs(y) > bound), y, np.nan)
 
 
-# Of a row of real polynomials the largest root alone, from that of a neighbour by Newton's method. That no other root is
-# larger is not taken on trust: divided by z - r, or by (z - r)(z - conj r), what is left has all its roots within |r|,
+# Of a row of real polynomials the largest root alone, from that of a neighbour by Newton's method. That no other root
+# is larger is not taken on trust: divided by z - r, or by (z - r)(z - conj r), what is left has all its roots within |r|,
 # which Schur's recursion tells in few operations. Where it does not, near kinks, the runner-up of the neighbour is
 # tried, and then all roots are solved for.
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import pytest
 
-from bezstab.evidence import CLOSE, LINEAR, SPREAD, Measurement, measure_poles, random_points
+from bezstab.evidence import CLOSE, LINEAR, SPREAD, Measurement, MovingPole, measure_poles, random_points
 from bezstab.evidence.measured_poles import KICKS, _kicked_responses, _measured_verdict, _measurement
 from bezstab.mechanism import compiled_mechanism, load_scene
 from bezstab.methods import LinearMultistep, lookup, steps
@@ -176,6 +176,7 @@ def test_two_poles_are_told_apart_if_in_400_samples_the_lesser_falls_to_1_over_e
     place = mu[np.argmin(np.abs(moduli[:, -3] / moduli[:, -1] - ratio))]  # each pole is double
     dominant = float(abs(dominant_pole(method, 2 * place, place**2)))
     responses = sampled_responses.for_every_kick(sampled_responses.geometric(1001, dominant))
-    found = _measurement(method, 2 * place, place**2, *responses)
+    at_rest = MovingPole(dominant, 0.0, 0.0, dominant, dominant, double=False, settled=True, safe_speed=np.inf)
+    found = _measurement(method, 2 * place, place**2, at_rest, None, H, None, *responses)
     assert (found.measured is not None) == told
     assert ("too near" in found.reason) != told

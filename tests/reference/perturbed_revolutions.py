@@ -21,7 +21,7 @@ def runner_multipliers(mechanism: Mechanism, method: Method, count: int, alpha_h
     h = along.duration / count
     gains = feedback_gains(alpha_hat, beta_hat, h / float(method.step_multiple))
     past = steps(method)
-    t = h * np.arange(past)
+    t = np.asarray(h * np.arange(past), float)
     q, v, a = along.at(t)
     size = 2 * mechanism.size
     carried = np.concatenate([np.concatenate([q, v], axis=1).ravel(), np.concatenate([v, a], axis=1)[:-1].ravel()])
