@@ -20,6 +20,7 @@ from bezstab.cli.options import (
     NUMBER,
     POSITIVE,
     SECONDS,
+    SPEED,
     USUAL_METHODS,
     FigureForm,
     TableForm,
@@ -52,6 +53,7 @@ from bezstab.units import to_dimensionless
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from bezstab.evidence import MovingRegion
     from bezstab.mechanism import TurningNormals
     from bezstab.stability import BestPoint, Extent, FloatArray
 
@@ -153,7 +155,11 @@ REGIONS = [
 ]
 
 
-MOVING_REGIONS = [column("κ (1/s)", "kappa", ".4g"), column("area moving", "area_moving", ".6g")]
+MOVING_REGIONS = [
+    column("speed", "speed", "g"),
+    column("κ (1/s)", "kappa", ".4g"),
+    column("area moving", "area_moving", ".6g"),
+]
 
 
 @click.command()
@@ -181,7 +187,9 @@ MOVING_REGIONS = [column("κ (1/s)", "kappa", ".4g"), column("area moving", "are
 @click.option("--h", type=SECONDS, help="Step size in s: axes become 2α (1/s) and β² (1/s²).")
 @click.option("--engine", type=ENGINE, help="Mark that engine's defaults and rules; needs --h.")
 @moving_scene_option("Also the region of this mechanism as it moves; needs --h.")
-@moving_speed_option
+@click.option(
+    "--speed", "speeds", type=SPEED, multiple=True, help="With --scene: times the scene's own. Repeatable [1]."
+)
 @format_option
 def region(
     methods: Sequence[Method],
@@ -197,7 +205,7 @@ def region(
     h: Fraction | None,
     engine: str | None,
     scene: str | None,
-    speed: Fraction,
+    speeds: Sequence[Fraction],
     form: Format,
 ) -> None:
     """Draw where each method is stable, and tabulate |z_p| there.
@@ -217,7 +225,7 @@ def region(
         raise click.UsageError("--engine marks one map and needs --h: the step in s")
     if scene and compare:
         raise click.UsageError("--scene draws one map for each method: not with --compare")
-    turning = turning_of(scene, speed, h)
+    turnings = {float(speed): turning_of(scene, speed, h) for speed in speeds or [Fraction(1)]}
     if compare and len(levels) > 1:
         raise InputError(f"--compare takes one --level, but {len(levels)} were given")
     if figure != "none" or table != "none":
@@ -232,12 +240,15 @@ def region(
         rows = []
         for method in methods:
             points = grid or QUALITY[quality]
-            rows.append(
-                _map_region(
-                    method, chosen_levels, alpha_range, beta_range, points, step, marks, output, figure, table, turning
-                )
+            moving = _moving_regions(method, turnings, step)
+            row = _map_region(
+                method, chosen_levels, alpha_range, beta_range, points, step, marks, output, figure, table, moving
             )
-    show_rows(rows, REGIONS + (MOVING_REGIONS if turning else []), form)
+            rows += [
+                {**row, "speed": speed, "kappa": kappa, "area_moving": of_speed.area}
+                for (speed, kappa), of_speed in moving.items()
+            ] or [row]
+    show_rows(rows, REGIONS + (MOVING_REGIONS if scene else []), form)
 
 
 def _check_window(option: str, window: Window | None) -> None:
@@ -290,9 +301,9 @@ def _map_region(
     output: Path,
     figure: FigureForm,
     table: TableForm,
-    turning: "TurningNormals | None",
+    moving: "Mapping[tuple[float, float], MovingRegion]",
 ) -> Row:
-    """Write the |z_p| map of one method as table and figure; return its row, with the moving area if a scene moves."""
+    """Write the |z_p| map of one method as table and figure, with the regions as a scene moves; return its row."""
     import numpy as np
 
     from bezstab import stability
@@ -301,12 +312,6 @@ def _map_region(
     stable = stability.region(method)
     best = stability.best_point(method)
     row = region_row(stable, best)
-    moving = None
-    if turning and h is not None:
-        from bezstab.evidence import moving_region
-
-        moving = moving_region(method, turning, h)
-        row = {**row, "area_moving": moving.area, "kappa": turning.kappa}
     if figure == table == "none":
         return row
     alpha_hat, beta_hat = _grid(stability.window(stable), alpha_range, beta_range, points)
@@ -317,12 +322,35 @@ def _map_region(
         from bezstab.show import region_figure
 
         faster = [stability.region(method, level) for level in levels or _default_levels(best)]
-        return region_figure(stable, faster, best, alpha_hat, beta_hat, np.abs(z), h, marks, moving)
+        return region_figure(
+            stable,
+            faster,
+            best,
+            alpha_hat,
+            beta_hat,
+            np.abs(z),
+            h,
+            marks,
+            {speed: each for (speed, _), each in moving.items()},
+        )
 
     path = output / f"region_{file_name(method.name)}"
     write_table(path, map_arrays(alpha_hat, beta_hat, z, h), table)
     write_figure(path, draw, figure)
     return row
+
+
+def _moving_regions(
+    method: Method, turnings: "Mapping[float, TurningNormals | None]", h: float | None
+) -> "dict[tuple[float, float], MovingRegion]":
+    """Return the region as a scene moves by speed and kappa (1/s); none without a scene. h in s."""
+    from bezstab.evidence import moving_region
+
+    return {
+        (speed, turning.kappa): moving_region(method, turning, h)
+        for speed, turning in turnings.items()
+        if turning is not None and h is not None
+    }
 
 
 def _grid(

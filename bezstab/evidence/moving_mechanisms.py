@@ -1,7 +1,7 @@
 r"""What the motion of a mechanism does to the poles at rest, to first order in omega h: rates of growth with bands.
 
 Along the motion each pole z of the map carries errors w_n = z^n Y(n h), where Y' = chi K(t) Y: K(t) says how the
-normals of the constraints turn (`mechanism.turning_normals`), chi how the method takes it (`stability.turning`).
+normals of the constraints turn (`mechanism.constraint_normals`), chi how the method takes it (`stability.turning`).
 
     |z|   worst      - - - - - - - - -   |z| exp(h max_t max Re(chi eig K)): for moments only
           moving     ------------------  |z| exp(h Lambda): over the motion, Lambda = ln(growth of Y) / duration

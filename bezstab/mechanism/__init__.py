@@ -19,7 +19,7 @@ From data upwards; a file imports only from those above it:
     runner              runs of a method with feedback, and what ends one early
     motions             the motion itself, as a function of time, and when it begins anew
     linearized          how the acceleration changes with position and velocity
-    turning_normals     how fast the directions of the constraints turn along a motion
+    constraint_normals  how fast the directions of the constraints turn along a motion
     simulation          a run and its observation as one value
 """
 
@@ -31,6 +31,7 @@ from bezstab.mechanism.compiled import (
     multipliers_function,
     stepper_code,
 )
+from bezstab.mechanism.constraint_normals import TurningNormals, turning_normals
 from bezstab.mechanism.energies import EnergyBalance, energy_balance
 from bezstab.mechanism.equations import Equations, T, equations_of_motion
 from bezstab.mechanism.generated_code import compiled_source
@@ -56,7 +57,6 @@ from bezstab.mechanism.scenes import (
 from bezstab.mechanism.second_order_memory import Memory, memory
 from bezstab.mechanism.simulation import Simulation, simulated
 from bezstab.mechanism.start import constraint_errors, constraint_jacobian, initial_state, perturbed_state
-from bezstab.mechanism.turning_normals import TurningNormals, turning_normals
 
 __all__ = [
     "COORDINATES",

@@ -30,7 +30,7 @@ def region_figure(
     z_abs: FloatArray,
     h: float | None = None,
     marks: Mapping[str, Point] | None = None,
-    moving: MovingRegion | None = None,
+    moving: Mapping[float, MovingRegion] | None = None,
 ) -> Figure:
     """Return the |z_p| map with exact boundary, faster regions, best point and critical damping (paper Fig. 1).
 
@@ -38,7 +38,7 @@ def region_figure(
 
     z_abs has shape (beta_hat.size, alpha_hat.size). With h (s) the axes are 2 alpha (1/s) and beta^2 (1/s^2), else
     alpha_hat and beta_hat; `marks` are points (alpha_hat, beta_hat) by their labels. Of a mechanism that moves its own
-    boundary is drawn as well, and where the law behind it does not hold.
+    boundaries are drawn as well, by speed, and where the law behind the first of them does not hold.
     """
     with styled():
         figure, axes = plane_axes(region.method.name, h)
@@ -49,8 +49,9 @@ def region_figure(
         for number, inner in enumerate(faster, start=1):
             curve = {"color": "white", "linestyle": DASHES[number % 4], "label": rf"$|z_p| = {inner.level:g}$"}
             plot.region(inner, axes, h, **curve)
-        if moving:
-            plot.moving_region(moving, axes, h)
+        for number, (speed, of_speed) in enumerate((moving or {}).items()):
+            label = "as it moves" if speed == 1 else f"{speed:g} times as fast"
+            plot.moving_region(of_speed, axes, h, label=label, dashes=DASHES[(number + 1) % 4], hatched=number == 0)
         plot.critical_damping((alpha_hat[0], alpha_hat[-1]), axes, h)
         if best:
             plot.best_point(best, axes, h)

@@ -15,6 +15,7 @@ from matplotlib.colors import ListedColormap
 from matplotlib.contour import QuadContourSet
 from matplotlib.image import AxesImage
 from matplotlib.lines import Line2D
+from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 from matplotlib.text import Annotation
 
@@ -80,18 +81,27 @@ def region(region: Region, axes: Axes | None = None, h: float | None = None, **l
     return curves(_plane(axes, rf"$|z_p| = {region.level:g}$", h), region, h, **style)
 
 
-def moving_region(moving: MovingRegion, axes: Axes | None = None, h: float | None = None) -> QuadContourSet:
-    """Draw the boundary of the region of a mechanism that moves, and return it; hatched: where the law does not hold.
+def moving_region(
+    moving: MovingRegion,
+    axes: Axes | None = None,
+    h: float | None = None,
+    *,
+    label: str = "as it moves",
+    dashes: Any = DASHES[1],
+    hatched: bool = True,
+) -> QuadContourSet:
+    """Draw the boundary of the region of a mechanism that moves, and return it; hatched where the law does not hold.
 
     With h (s) the axes are 2 alpha (1/s) and beta^2 (1/s^2).
     """
     drawn_on = _plane(axes, moving.method.name, h)
     x, y = plane_coordinates(moving.alpha_hat, moving.beta_hat, h)
     outside_the_law = moving.excluded & (moving.growth < 0)
-    if outside_the_law.any():
-        drawn_on.contourf(x, y, outside_the_law, levels=[0.5, 1.5], colors="none", hatches=["////"])
-    edge: QuadContourSet = drawn_on.contour(x, y, moving.growth, levels=[0.0], colors="black", linestyles=[DASHES[1]])
-    drawn_on.plot([], [], color="black", linestyle=DASHES[1], label="as it moves")
+    if hatched and outside_the_law.any():
+        drawn_on.contourf(x, y, outside_the_law, levels=[0.5, 1.5], colors="none", hatches=["....."])
+        drawn_on.add_patch(Rectangle((0, 0), 0, 0, fill=False, hatch=".....", label="law does not hold"))  # a key
+    edge: QuadContourSet = drawn_on.contour(x, y, moving.growth, levels=[0.0], colors="black", linestyles=[dashes])
+    drawn_on.plot([], [], color="black", linestyle=dashes, label=label)
     return edge
 
 

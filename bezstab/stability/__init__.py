@@ -10,6 +10,7 @@ From a method's polynomial in float64 (its pencil) upwards; a file imports only 
     plane_pencils     the same of a second-order scheme, and its poles
     dominant_roots    the largest root along a row of mu, followed
     closed_loop       poles, |z_p|, the proven verdict
+    turning           what turning constraints do to a pole, to first order
     searches          where a condition comes to hold; where a value is least
     locus_tracks      the branches of the curve |z| = r in mu, followed
     boundary_locus    that curve cut where it bounds the region, integrated

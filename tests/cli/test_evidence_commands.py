@@ -109,40 +109,6 @@ def test_a_step_that_does_not_converge_is_status_three() -> None:
     assert "at t = 0.5 s: Newton's method did not converge in" in result.stderr.splitlines()[-1]
 
 
-def test_verify_takes_implicit_and_second_order_methods() -> None:
-    for name in ("radau3", "hht", "verlet-old"):
-        point = ("--alpha", "0.5", "--beta", "0.4", "--method", name)
-        (row,) = rows("verify", "--scene", "pendulum", *point)
-        assert row["measured_abs"] == pytest.approx(row["predicted_abs"], abs=1e-5)
-        assert row["verdicts_agree"] is True
-
-
-def test_verify_prints_predicted_and_measured_pole(tmp_path: Path) -> None:
-    (row,) = rows("verify", "--alpha", "0.5", "--beta", "0.1", "--method", "AB4")
-    assert row["scene"] == "slider-crank"
-    assert row["measurable"] is True
-    assert row["predicted_abs"] == pytest.approx(0.998848, abs=1e-6)
-    assert row["measured_abs"] == pytest.approx(row["predicted_abs"], abs=1e-4)
-    assert row["measured_angle_deg"] == pytest.approx(row["predicted_angle_deg"], abs=0.01)
-    assert row["predicted_verdict"] == row["measured_verdict"] == "converges"
-    (gone,) = rows("verify", "--alpha", "2", "--beta", "2", "--method", "RK2")  # deadbeat: nothing is left to measure
-    assert gone["measurable"] is False
-    assert gone["measured_abs"] is None
-    assert gone["reason"]
-    assert gone["measured_verdict"] == "converges"
-    assert len(rows("verify", "--points", "3", "--method", "B4", "--method", "SYM")) == 6
-    assert not list(tmp_path.iterdir())
-
-
-def test_verify_map_writes_verdicts_and_figure(tmp_path: Path) -> None:
-    (row,) = rows("verify", "--map", "5", "--scene", "pendulum", "--method", "SYM", "--table", "npz")
-    assert (row["runs"], row["agreement"], row["disagreeing"]) == (25, 1, 0)
-    assert row["band"] == 0.005
-    assert sorted(path.suffix for path in tmp_path.iterdir()) == [".npz", ".png"]
-    columns = arrays(tmp_path / "verify_pendulum_SYM.npz")
-    assert (columns["diverges"] == (columns["z_abs"] >= 1)).all()
-
-
 def test_tradeoff_writes_a_table_without_times_and_two_figures(tmp_path: Path) -> None:
     command = "--method B2 --method AB4 --h 0.004 --h 0.02 --time 0.6 --alpha 50 --beta 50 --physical"
     options = command.split()

@@ -1,0 +1,68 @@
+"""--scene and --speed of poles, choose, check and region."""
+
+import pytest
+
+from tests.cli.running import rows, run
+
+FOUR_BAR = ("--scene", "driven_four_bar", "--h", "0.01")
+NO_FILES = ("--figure", "none", "--table", "none")
+
+
+def test_poles_print_what_the_motion_does() -> None:
+    moving = rows("poles", "--alpha", "0.5", "--beta", "0.1", *FOUR_BAR, "--method", "B4", "--method", "AB4")
+    at_rest = rows("poles", "--alpha", "0.5", "--beta", "0.1", "--method", "B4", "--method", "AB4")
+    for row, plain in zip(moving, at_rest, strict=True):
+        assert {key: row[key] for key in plain} == plain
+        assert row["z_abs_worst"] >= row["z_abs_moving"] >= row["z_abs"] - 1e-9  # type: ignore[operator]
+        assert row["kappa"] == pytest.approx(3.22, abs=0.01)  # 1/s: half of omega
+    assert [row["settled"] for row in moving] == [True, True]
+    assert [row["moving_verdict"] for row in moving] == ["converges", "diverges"]
+
+
+def test_check_is_status_one_where_the_motion_undoes_what_is_stable_at_rest() -> None:
+    point = ("check", "--alpha", "0.5", "--beta", "0.1", "--method", "AB4")
+    assert run(*point).exit_code == 0
+    assert run(*point, *FOUR_BAR).exit_code == 1
+    assert run("check", "--alpha", "0.5", "--beta", "0.2", "--method", "B4", *FOUR_BAR).exit_code == 0
+
+
+def test_check_prints_up_to_which_speed_a_choice_is_safe() -> None:
+    point = ("check", "--alpha", "0.5", "--beta", "0.2", "--method", "B4", *FOUR_BAR)
+    (given, _) = rows(*point)
+    speed = given["safe_speed"]
+    assert isinstance(speed, float)
+    slower, faster = (rows(*point, "--speed", f"{share * speed:.4f}")[0]["z_abs_moving"] for share in (0.99, 1.01))
+    assert slower < 1 < faster  # type: ignore[operator]
+
+
+def test_choose_allows_for_the_motion() -> None:
+    """The fastest point of AB4 at rest sits on an edge that the motion pushes beyond one within the spread."""
+    common = ("choose", "--method", "AB4", "--goal", "gentle", "--settle", "1", "--h", "0.02")
+    (at_rest,) = rows(*common)
+    (moving,) = rows(*common, "--scene", "driven_four_bar", "--speed", "2")
+    assert moving["moving_verdict"] in ("converges", "not settled for this mechanism")
+    assert moving["z_abs_moving"] <= 1e-3 ** (0.02) * (1 + 1e-3)  # a thousandth after 50 steps
+    assert at_rest["alpha_hat"] <= moving["alpha_hat"]  # type: ignore[operator]
+
+
+def test_region_prints_the_area_that_is_left_at_each_speed() -> None:
+    found = rows("region", *FOUR_BAR, "--speed", "1", "--speed", "3", *NO_FILES)
+    at_rest, slow, fast = found[0]["area"], found[0]["area_moving"], found[1]["area_moving"]
+    assert [row["speed"] for row in found] == [1, 3]
+    assert fast < slow < at_rest  # type: ignore[operator]
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--scene", "driven_four_bar"), "--scene needs --h"),
+        (("--speed", "2"), "--speed goes with --scene"),
+        (("--scene", "nowhere", "--h", "0.01"), "nowhere"),
+    ],
+)
+@pytest.mark.parametrize("command", ["poles --alpha 0.5 --beta 0.1", "check --alpha 0.5 --beta 0.1", "region"])
+def test_a_mistake_is_one_line(command: str, options: tuple[str, ...], said: str) -> None:
+    result = run(*command.split(), *options)
+    assert result.exit_code == 2
+    assert said in result.stderr
+    assert len(result.stderr.splitlines()) == 1

@@ -1,0 +1,67 @@
+from pathlib import Path
+
+import pytest
+
+from tests.cli.running import arrays, rows, run
+
+
+def test_verify_takes_implicit_and_second_order_methods() -> None:
+    for name in ("radau3", "hht", "verlet-old"):
+        point = ("--alpha", "0.5", "--beta", "0.4", "--method", name)
+        (row,) = rows("verify", "--scene", "pendulum", *point)
+        assert row["measured_abs"] == pytest.approx(row["predicted_abs"], abs=1e-5)
+        assert row["verdicts_agree"] is True
+
+
+def test_verify_prints_predicted_and_measured_pole(tmp_path: Path) -> None:
+    (row,) = rows("verify", "--alpha", "0.5", "--beta", "0.1", "--method", "AB4")
+    assert row["scene"] == "slider-crank"
+    assert row["measurable"] is True
+    assert row["predicted_abs"] == pytest.approx(0.998848, abs=1e-6)
+    assert row["measured_abs"] == pytest.approx(row["predicted_abs"], abs=1e-4)
+    assert row["measured_angle_deg"] == pytest.approx(row["predicted_angle_deg"], abs=0.01)
+    assert row["predicted_verdict"] == row["measured_verdict"] == "converges"
+    (gone,) = rows("verify", "--alpha", "2", "--beta", "2", "--method", "RK2")  # deadbeat: nothing is left to measure
+    assert gone["measurable"] is False
+    assert gone["measured_abs"] is None
+    assert gone["reason"]
+    assert gone["measured_verdict"] == "converges"
+    assert len(rows("verify", "--points", "3", "--method", "B4", "--method", "SYM")) == 6
+    assert not list(tmp_path.iterdir())
+
+
+def test_verify_map_writes_verdicts_and_figure(tmp_path: Path) -> None:
+    (row,) = rows("verify", "--map", "5", "--scene", "pendulum", "--method", "SYM", "--table", "npz")
+    assert (row["runs"], row["agreement"], row["disagreeing"]) == (25, 1, 0)
+    assert row["band"] == 0.005
+    assert sorted(path.suffix for path in tmp_path.iterdir()) == [".npz", ".png"]
+    columns = arrays(tmp_path / "verify_pendulum_SYM.npz")
+    assert (columns["diverges"] == (columns["z_abs"] >= 1)).all()
+
+
+def test_verify_tells_what_the_motion_does_to_a_prediction() -> None:
+    """The driven four-bar at omega h = 0.063: AB4 converges by the map, diverges by the law and by exact rates."""
+    point = ("--method", "AB4", "--alpha", "0.5", "--beta", "0.1", "--h", "0.01")
+    (row,) = rows("verify", "--scene", "driven_four_bar", *point, "--floquet")
+    at_rest, law, exact = row["predicted_abs"], row["law_abs"], row["floquet_abs"]
+    assert isinstance(at_rest, float)
+    assert isinstance(law, float)
+    assert isinstance(exact, float)
+    assert at_rest < 1 < law
+    assert abs(law - exact) < 0.2 * abs(at_rest - exact)
+    assert row["measured_verdict"] == "diverges"
+    assert row["right"] == "law, exact"
+
+
+def test_without_floquet_nothing_exact_is_computed() -> None:
+    (row,) = rows("verify", "--scene", "driven_four_bar", "--alpha", "0.5", "--beta", "0.2", "--h", "0.01")
+    assert row["floquet_abs"] is None
+    assert "exact |z|" not in run("verify", "--alpha", "0.5", "--beta", "0.2").stdout
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("scene", ["four_bar", "slider_crank_300rpm"])
+@pytest.mark.parametrize("method", ["B4", "AB4", "AB7", "AB8", "RK4", "SYM"])
+def test_on_fast_scenes_hardly_a_verdict_that_is_not_flagged_is_wrong(scene: str, method: str) -> None:
+    measured = rows("verify", "--scene", scene, "--method", method, "--points", "200")
+    assert sum(row["verdicts_agree"] is False for row in measured) <= 2
