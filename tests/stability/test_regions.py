@@ -532,7 +532,11 @@ def implicit_runge_kutta(rows: str, weights: str) -> Method:
 
 @pytest.mark.parametrize(
     ("rows", "weights"),
-    [("0 0;1 1", "-1 2"), ("1/6 0;3/5 1/2", "-1/2 3/2"), ("-1/6 0 0;-1/4 0 0;3/5 2 1", "1/4 -2/3 17/12")],
+    [
+        ("0 0;1 1", "-1 2"),
+        pytest.param("1/6 0;3/5 1/2", "-1/2 3/2", marks=pytest.mark.slow),
+        pytest.param("-1/6 0 0;-1/4 0 0;3/5 2 1", "1/4 -2/3 17/12", marks=pytest.mark.slow),
+    ],
 )
 def test_each_arc_counts_once_where_a_branch_point_is_real(rows: str, weights: str) -> None:
     method = implicit_runge_kutta(rows, weights)
