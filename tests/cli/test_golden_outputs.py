@@ -65,10 +65,10 @@ ADDED = (
     *("beta_hat_min", "best_reason", "searched"),
     *("bounded", "stable_for_all", "unconditional_damping_ratio", "critical_damping_limit"),
     *("implicit", "digits", "order_position_forces", "order_velocity_forces", "group"),
+    "iterations",
 )
 """Keys that rows have got since, in their place: of a region its least beta_hat, and for which steps it is stable; of a
-method what it is.
-"""
+method what it is; of a run its number of Newton's iterations."""
 
 
 def tolerance(command: str, key: str) -> Tolerance:

@@ -24,7 +24,7 @@ def plain_step(method: Method, slope: Slope, t: float, h: float, states: Sequenc
         case Partitioned() as scheme:
             return _partitioned(scheme, slope, t, h, states[0])
         case SecondOrder():
-            raise TypeError("a second-order scheme has a stepper of its own: second_order_steps.py")
+            raise TypeError("plain_second_order_run takes such steps")
 
 
 def _multistep(
