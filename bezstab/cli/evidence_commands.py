@@ -53,6 +53,8 @@ MOST_STEPS = 10**8  # a run keeps its whole history: 10 GB and an hour for the s
 MOST_SWEPT = 10**6  # the reference takes up to 32 times as many
 RANDOM_POINTS = 20  # of verify, unless told otherwise
 
+EVALUATIONS = column("evaluations", "evaluations", "d")
+ITERATIONS = column("Newton's iterations", "iterations", "d")
 SIMULATIONS = [
     column("scene", "scene"),
     column("method", "method"),
@@ -63,7 +65,7 @@ SIMULATIONS = [
     column("largest |c|", "c_max", ".3e"),
     column("largest |ċ|", "cdot_max", ".3e"),
     column("energy drift (J)", "energy_drift", ".3e"),
-    column("evaluations", "evaluations", "d"),
+    EVALUATIONS,
     column("least pivot", "least_pivot", ".1e"),
     column("at (s)", "pivot_time", ".6g"),
     column("failure", "failure"),
@@ -84,7 +86,8 @@ SIMULATIONS = [
     "--start",
     type=click.Choice(["rk4", "ramp", "euler"]),
     default="rk4",
-    help="What gives a multistep method's first values: RK4, its family's shorter members, or explicit Euler.",
+    help="What gives a multistep method's first values: RK4, its family's shorter members, or explicit Euler; "
+    "for an implicit method Gauss's of order four, shorter BDF methods, or implicit Euler.",
 )
 @output_option
 @figure_option
@@ -142,7 +145,10 @@ def simulate(
     path = output / f"simulate_{file_name(Path(scene).stem)}_{file_name(method.name)}"
     write_table(path, history_arrays(simulation), table)
     write_figure(path, draw, figure)
-    show_rows([simulation_row(simulation)], SIMULATIONS, form)
+    columns = list(SIMULATIONS)
+    if simulation.trajectory.iterations is not None:  # an implicit method
+        columns.insert(columns.index(EVALUATIONS) + 1, ITERATIONS)
+    show_rows([simulation_row(simulation)], columns, form)
     if simulation.failure:
         raise NumericalError(simulation.failure)
 

@@ -19,9 +19,9 @@ from typing import Literal
 
 import numpy as np
 
-from bezstab.evidence.linear_prediction import SAMPLES, SETTLED, SPREAD, Fit, fit_dominant_pole
-from bezstab.mechanism import Mechanism, constraint_errors, initial_state, march, perturbed_state, resume
-from bezstab.methods import Method, Verdict, steps
+from bezstab.evidence.linear_prediction import SAMPLES, SETTLED, SPREAD, Refusal, fit_dominant_pole
+from bezstab.mechanism import Mechanism, constraint_errors, initial_state, march, perturbed_state, resume, states_needed
+from bezstab.methods import Method, SecondOrder, Verdict, closed_loop_table, steps
 from bezstab.rationals import exact
 from bezstab.stability import ComplexArray, FloatArray, dominant_pole, poles, region, verdict, window
 from bezstab.units import feedback_gains
@@ -122,17 +122,19 @@ def _measurement(
     """Return the measurement at one point from its responses of shape (steps, kicks)."""
     predicted = complex(dominant_pole(method, alpha_hat, beta_hat))
     measured, reason = None, ""
-    rival = _rival(poles(method, alpha_hat, beta_hat), predicted)
+    all_poles = poles(method, alpha_hat, beta_hat)
+    rival = _rival(all_poles, predicted)
     # Over a window of SAMPLES steps the lesser of two such moduli does not even fall to 1/e of the other.
     if rival > (1 - 1 / SAMPLES) * abs(predicted):
         reason = f"another pole, of modulus {rival:.6g}, is too near to tell them apart"
     else:
-        # The recursion of each mu has as many poles as the method steps, and there are two mu.
-        fit = fit_dominant_pole(difference, order=2 * steps(method), sizes=size, limits=LINEAR)
-        if isinstance(fit, Fit):
-            measured = fit.pole
-        else:
+        fit = fit_dominant_pole(difference, order=_number_of_poles(method), sizes=size, limits=LINEAR)
+        if isinstance(fit, Refusal):
             reason = fit.reason
+        elif _is_another(fit.pole, predicted, all_poles):
+            reason = f"the kick hardly excites the dominant pole: what answers is one of modulus {abs(fit.pole):.6g}"
+        else:
+            measured = fit.pole
     return Measurement(
         method=method,
         alpha_hat=alpha_hat,
@@ -145,10 +147,23 @@ def _measurement(
     )
 
 
+def _number_of_poles(method: Method) -> int:
+    """Return the degree of P: for each of two mu as many as the method steps, or that of a second-order scheme."""
+    if isinstance(method.scheme, SecondOrder):
+        return len(closed_loop_table(method)) - 1
+    return 2 * steps(method)
+
+
 def _rival(z: ComplexArray, predicted: complex) -> float:
     """Return the largest modulus of a pole that is neither the dominant one nor its conjugate, by its angle."""
     off_in_angle = np.abs(np.abs(np.angle(z)) - np.angle(predicted))
     return float(np.abs(z[off_in_angle > SPREAD]).max(initial=0.0))
+
+
+def _is_another(measured: complex, predicted: complex, all_poles: ComplexArray) -> bool:
+    """Return whether what was measured is a pole, but another than the dominant one or its conjugate."""
+    distances = np.abs(all_poles - measured)
+    return abs(predicted - measured) > SPREAD and bool(distances.min() < SPREAD)
 
 
 def _measured_verdict(measured: complex | None, difference: FloatArray, size: FloatArray) -> MeasuredVerdict:
@@ -182,7 +197,8 @@ def kicked_constraint_errors(
     """Yield c at each step from the kick on, without end; shape (constraints, 2 for up and down, kicks, points).
 
     The kick of the first constraint (SI units) comes after as many steps as the method has; what a multistep method
-    remembers of before is left alone.
+    remembers of before is left alone, and so is what a second-order scheme remembers of accelerations: its recursion is
+    linear, and its poles are the same from any first values.
     """
     h_step = h * float(method.step_multiple)
     gains = feedback_gains(alpha_hat, beta_hat, h)
@@ -193,12 +209,14 @@ def kicked_constraint_errors(
     start = tuple(np.full(alpha_hat.shape, value) for value in (*q, *v))
     history = [start]
     slopes = []
-    for state, slope, _ in islice(march(mechanism, method, h_step, gains, start, "rk4", np), steps(method)):
+    before_the_kick = max(steps(method), states_needed(method) - 1)
+    for state, slope, _ in islice(march(mechanism, method, h_step, gains, start, "rk4", np), before_the_kick):
         history.append(state)
         slopes.append(slope)
-    state = tuple(value + amounts * change for value, change in zip(history[-1], direction, strict=True))
+    undisturbed = history[-1]
+    state = tuple(value + amounts * change for value, change in zip(undisturbed, direction, strict=True))
     history[-1] = state
-    run = resume(mechanism, method, h_step, gains, history, slopes, np)
+    run = resume(mechanism, method, h_step, gains, history, slopes, np, undisturbed=undisturbed)
     k = len(history) - 1
     while True:
         yield constraint_errors(mechanism, k * h_step, state[: mechanism.size])

@@ -7,8 +7,8 @@ from itertools import pairwise
 import numpy as np
 
 from bezstab.evidence.accuracy_costs import Run
-from bezstab.methods import Method, accuracy, evaluations, steps
-from bezstab.stability import region, spectral_radius
+from bezstab.methods import Method, accuracy, evaluations, implicit, steps
+from bezstab.stability import critical_damping_limit, region, spectral_radius
 
 FINE = 1e-8
 """m or rad: the trajectory error at which high order shows."""
@@ -22,6 +22,9 @@ ORDER_LOST = 0.5
 ALIKE = 1.05
 """Ratios nearer to one are neither won nor lost."""
 
+UNLIMITED = 1e300
+"""Times better than any limit is to have none."""
+
 LINE = 4000
 """Points on alpha = beta, where the largest stable step is looked for: alpha h to a thousandth."""
 
@@ -31,7 +34,8 @@ class Summary:
     """What a sweep says of one method; None where it says nothing.
 
     order: observed between the two smallest steps whose error is well above the reference's. alpha_step: the largest
-    alpha h per evaluation with alpha = beta that is stable. evaluations_needed: for a trajectory error of FINE,
+    alpha h per evaluation with alpha = beta that is stable, None for an implicit method, whose evaluations are not so
+    many for each step; `unlimited` where there is no largest. evaluations_needed: for a trajectory error of FINE,
     interpolated or extrapolated. largest_step: in s, of the runs that did not fail.
     """
 
@@ -39,7 +43,8 @@ class Summary:
     stated_order: int
     order: float | None
     area: float | None
-    alpha_step: float
+    alpha_step: float | None
+    unlimited: bool
     evaluations_needed: float | None
     largest_step: float | None
 
@@ -58,7 +63,8 @@ def summary(runs: Sequence[Run]) -> Summary:
         stated_order=stated_order,
         order=orders[-1] if orders else None,
         area=region(method).area,
-        alpha_step=_largest_stable_alpha_step(method) / evaluations(method),
+        alpha_step=None if implicit(method) else _largest_stable_alpha_step(method) / evaluations(method),
+        unlimited=implicit(method) and critical_damping_limit(method) is None,
         evaluations_needed=_evaluations_needed(FINE, ended),
         largest_step=ended[0].h if ended else None,
     )
@@ -165,7 +171,9 @@ def _advantages(bezier: Summary, other: Summary) -> Iterator[tuple[float, str]]:
     if bezier.area is not None and other.area:
         ratio = bezier.area / other.area
         yield ratio, f"region {ratio:.2g} times as large"
-    if other.alpha_step:
+    if other.unlimited:
+        yield 1 / UNLIMITED, "stable up to some α = β, the other at every"
+    if other.alpha_step and bezier.alpha_step:
         ratio = other.alpha_step / bezier.alpha_step
         yield 1 / ratio, f"stable at one α = β with {ratio:.2g} times the evaluations"
     if bezier.largest_step and other.largest_step:

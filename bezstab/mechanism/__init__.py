@@ -7,7 +7,11 @@ From data upwards; a file imports only from those above it:
     scenes              bodies, joints, forces and initial state as checked data
     scene_files         their file format
     equations           M, c, C_q, gamma and g by sympy
-    generated_code      the one place that writes and compiles Python source: accelerations, steppers
+    generated_code      the one place that compiles generated Python source: accelerations, steppers
+    linear_equations    small systems of linear equations: exact, in any numbers, or many at a time
+    second_order_memory what a second-order scheme carries from step to step, and when it evaluates
+    second_order_code   generated source of second-order schemes and of all that are implicit
+    newton_iterations   Newton's method for the accelerations of an implicit step
     compiled            a scene with its compiled functions, made once
     observation         what the constraints do along a history
     start               consistent initial states, and perturbed ones
@@ -25,7 +29,7 @@ from bezstab.mechanism.compiled import (
 from bezstab.mechanism.equations import Equations, T, equations_of_motion
 from bezstab.mechanism.generated_code import compiled_source
 from bezstab.mechanism.observation import Observation, observe
-from bezstab.mechanism.runner import Start, Trajectory, march, resume, simulate
+from bezstab.mechanism.runner import Start, Trajectory, march, resume, simulate, states_needed
 from bezstab.mechanism.scene_files import load_scene, parse_scene, read_scene, shipped_scenes
 from bezstab.mechanism.scenes import (
     COORDINATES,
@@ -77,5 +81,6 @@ __all__ = [
     "shipped_scenes",
     "simulate",
     "simulated",
+    "states_needed",
     "stepper_code",
 ]

@@ -1,6 +1,7 @@
 """A mechanism: a scene with its equations of motion, and the functions that are generated and compiled from them."""
 
-from collections.abc import Callable, Iterator
+import math
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -9,13 +10,24 @@ from bezstab.mechanism.equations import Equations, equations_of_motion
 from bezstab.mechanism.generated_code import (
     AccelerationCode,
     acceleration_code,
+    acceleration_source,
     compiled_source,
     multipliers_source,
     observation_source,
     stepper_source,
 )
+from bezstab.mechanism.newton_iterations import (
+    TOLERANCE,
+    Residual,
+    Work,
+    complex_library,
+    newton_solution,
+    newton_solutions,
+    rounding_of,
+)
 from bezstab.mechanism.scenes import Scene
-from bezstab.methods import Method
+from bezstab.mechanism.second_order_code import implicit_groups, residuals_source, second_order_stepper_source
+from bezstab.methods import Method, SecondOrder, implicit, second_order_form
 
 State = tuple[Any, ...]
 """q then v, 2n numbers of any kind: floats, arrays over a batch, numbers of mpmath."""
@@ -63,8 +75,30 @@ def stepper_code(mechanism: Mechanism, method: Method) -> str:
     method) with the gains 2 alpha (1/s) and beta^2 (1/s^2). `past` holds the earlier (state, slope) pairs, newest
     first, one less than the method has steps. After each step it yields the new state, the slope before it and the
     least relative pivot of S = C_q M^-1 C_q^T met on the way.
+
+    A second-order scheme, and every implicit one, has instead run(start, h, two_alpha, beta_squared, carried, solve)
+    with what `second_order_memory` says that it carries, followed by its residuals.
     """
-    return stepper_source(mechanism.acceleration_code, method)
+    scheme = run_as_second_order(method)
+    if scheme is None:
+        return stepper_source(mechanism.acceleration_code, method)
+    parts = [
+        second_order_stepper_source(mechanism.acceleration_code, scheme),
+        residuals_source(mechanism.acceleration_code, scheme, with_pivots=True),
+    ]
+    return "\n".join(parts)
+
+
+def run_as_second_order(method: Method) -> SecondOrder | None:
+    """Return the second-order scheme by which a method runs, or None for an explicit one that has steps of its own."""
+    if implicit(method) or isinstance(method.scheme, SecondOrder):
+        return _form(method)
+    return None
+
+
+@cache
+def _form(method: Method) -> SecondOrder:
+    return second_order_form(method.scheme)
 
 
 @cache
@@ -72,6 +106,50 @@ def compiled_stepper(mechanism: Mechanism, method: Method, library: Any) -> Call
     """Return the function whose source `stepper_code` returns, in the arithmetic of math, numpy or mpmath."""
     run: Callable[..., Iterator[Step]] = compiled_source(stepper_code(mechanism, method), library)["run"]
     return run
+
+
+Solver = Callable[..., tuple[Sequence[Any], Any]]
+"""solve(number of the group, start, k, h, two_alpha, beta_squared, known, guess): the unknowns, and the least pivot."""
+
+
+def implicit_solver(mechanism: Mechanism, method: Method, library: Any, work: Work) -> Solver:
+    """Return what an implicit stepper calls to solve its groups of equations; what that takes is added to `work`.
+
+    With numpy nothing is counted: the points of a batch iterate together.
+    """
+    residuals = compiled_residuals(mechanism, method, library)
+    tolerance = TOLERANCE * rounding_of(library)
+
+    def solve(number: int, *situation_known_guess: Any) -> tuple[Sequence[Any], Any]:
+        *situation, known, guess = situation_known_guess
+        if library is math or not hasattr(library, "ndarray"):
+            return newton_solution(residuals[number], situation, known, guess, tolerance, work)
+        return newton_solutions(residuals[number], situation, known, guess, tolerance)
+
+    return solve
+
+
+@cache
+def compiled_residuals(mechanism: Mechanism, method: Method, library: Any) -> dict[int, Residual]:
+    """Return the residual of each implicit group by its number, compiled for real and for complex numbers."""
+    scheme = run_as_second_order(method)
+    assert scheme
+    real, complex_ = (
+        compiled_source(residuals_source(mechanism.acceleration_code, scheme, with_pivots), its_library)
+        for with_pivots, its_library in ((True, library), (False, complex_library(library)))
+    )
+    return {
+        number: Residual(real[f"residual_{number}"], complex_[f"residual_{number}"], evaluations)
+        for number, evaluations in implicit_groups(scheme).items()
+    }
+
+
+@cache
+def acceleration_function(mechanism: Mechanism, library: Any) -> StateFunction:
+    """Return the function of (t, two_alpha, beta_squared, q, v) that gives all of qddot."""
+    source = acceleration_source(mechanism.acceleration_code)
+    acceleration: StateFunction = compiled_source(source, library)["acceleration"]
+    return acceleration
 
 
 @cache

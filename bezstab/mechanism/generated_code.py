@@ -22,7 +22,7 @@ import numpy as np
 import sympy as sp
 
 from bezstab.mechanism.equations import Equations, variable_names
-from bezstab.methods import LinearMultistep, Method, Partitioned, PredictorCorrector, RungeKutta, steps
+from bezstab.methods import LinearMultistep, Method, Partitioned, PredictorCorrector, RungeKutta, SecondOrder, steps
 
 AT_THE_START = Fraction(0)  # of a step
 AT_THE_END = Fraction(1)
@@ -216,23 +216,30 @@ def multipliers_source(acceleration: AccelerationCode) -> str:
     return _function_source("multipliers", acceleration, variable_names("l", acceleration.constraints))
 
 
+def acceleration_source(acceleration: AccelerationCode) -> str:
+    """Return the source of acceleration(t, two_alpha, beta_squared, q, v): all a."""
+    return _function_source("acceleration", acceleration, variable_names("a", acceleration.coordinates))
+
+
 def _function_source(name: str, acceleration: AccelerationCode, results: Sequence[str]) -> str:
     """Return the source of a function that returns some of the variables that the acceleration code assigns."""
     coordinates = acceleration.coordinates
     lines = [
-        f"{_tuple(variable_names('q', coordinates))} = q",
-        f"{_tuple(variable_names('v', coordinates))} = v",
+        f"{tuple_text(variable_names('q', coordinates))} = q",
+        f"{tuple_text(variable_names('v', coordinates))} = v",
         *acceleration.lines,
-        f"return {_tuple(results)}",
+        f"return {tuple_text(results)}",
     ]
-    return "\n".join([f"def {name}(t, two_alpha, beta_squared, q, v):", *_indented(lines, 1)])
+    return "\n".join([f"def {name}(t, two_alpha, beta_squared, q, v):", *indented(lines, 1)])
 
 
-def _tuple(entries: Iterable[str]) -> str:
+def tuple_text(entries: Iterable[str]) -> str:
+    """Return the text of a tuple."""
     return f"({', '.join(entries)},)"
 
 
-def _indented(lines: Iterable[str], depth: int) -> list[str]:
+def indented(lines: Iterable[str], depth: int) -> list[str]:
+    """Return lines of source so many blocks deep."""
     return [" " * depth + line for line in lines]
 
 
@@ -297,19 +304,21 @@ def stepper_source(acceleration: AccelerationCode, method: Method) -> str:
             lines += _runge_kutta_lines(acceleration, scheme)
         case Partitioned() as scheme:
             lines += _partitioned_lines(acceleration.coordinates, scheme)
+        case SecondOrder():
+            raise TypeError(f"{method.name}: a second-order scheme has steps of its own")
     lines += _shift_lines(size, method)
-    lines += ["k = k + 1", f"yield {_tuple(state)}, {_tuple(variable_names('f', size))}, worst_pivot"]
+    lines += ["k = k + 1", f"yield {tuple_text(state)}, {tuple_text(variable_names('f', size))}, worst_pivot"]
 
-    head = ["k = 0", f"{_tuple(state)} = state"]
+    head = ["k = 0", f"{tuple_text(state)} = state"]
     for back in range(1, steps(method)):
-        past_state = _tuple(variable_names(f"y_{back}_", size))
-        past_slope = _tuple(variable_names(f"f_{back}_", size))
+        past_state = tuple_text(variable_names(f"y_{back}_", size))
+        past_slope = tuple_text(variable_names(f"f_{back}_", size))
         head.append(f"{past_state}, {past_slope} = past[{back - 1}]")
     return "\n".join([
         "def run(start, h, two_alpha, beta_squared, state, past):",
-        *_indented(head, 1),
+        *indented(head, 1),
         " while True:",
-        *_indented(lines, 2),
+        *indented(lines, 2),
     ])  # fmt: skip
 
 
@@ -397,7 +406,7 @@ def _shift_lines(size: int, method: Method) -> list[str]:
             schemes = [scheme]
         case PredictorCorrector(predictor, corrector):
             schemes = [predictor, corrector]
-        case RungeKutta() | Partitioned():
+        case RungeKutta() | Partitioned() | SecondOrder():
             schemes = []
     kinds = []
     if any(coefficient for scheme in schemes for coefficient in scheme.rho[2:]):

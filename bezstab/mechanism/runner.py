@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import islice
 from typing import Any, Literal
 
@@ -10,12 +11,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.errors import InputError
-from bezstab.mechanism.compiled import SINGULAR, Mechanism, State, Step, compiled_stepper
+from bezstab.mechanism.compiled import (
+    SINGULAR,
+    Mechanism,
+    State,
+    Step,
+    acceleration_function,
+    compiled_stepper,
+    implicit_solver,
+    run_as_second_order,
+)
+from bezstab.mechanism.newton_iterations import NotConvergedError, Work
+from bezstab.mechanism.second_order_memory import implicit_evaluations, memory
 from bezstab.mechanism.start import initial_state
-from bezstab.methods import Method, adams_bashforth, bezier, evaluations, lookup, steps
+from bezstab.methods import Method, SecondOrder, adams_bashforth, bezier, evaluations, implicit, lookup, steps
 
 Start = Literal["rk4", "ramp", "euler"]
-"""Where a multistep method's first values come from: RK4, its family's members of fewer steps, or explicit Euler."""
+"""Where a multistep method's first values come from: RK4, its family's members of fewer steps, or explicit Euler.
+
+For an implicit method, which may bear stronger feedback than any of these: Gauss's method of order four, BDF methods of
+fewer steps, or implicit Euler.
+"""
 Gains = tuple[Any, Any]
 """2 alpha (1/s) and beta^2 (1/s^2), as `units.feedback_gains` returns them: floats, or arrays over a batch."""
 FloatArray = NDArray[np.float64]
@@ -27,7 +43,9 @@ BLOWN_UP = 1e9  # SI units: far beyond any mechanism, far below overflow
 class Trajectory:
     """A run: t (s, shape (steps + 1,)), q and v (shape (steps + 1, n), SI), and why it ended early, if it did.
 
-    `evaluations` counts right-hand sides. `failure` says when and why in one line; the history ends before it.
+    `evaluations` counts right-hand sides, and `iterations` those of Newton's method, None for an explicit method; each
+    iteration evaluates once, and a Jacobian once for each unknown, in complex numbers.
+    `failure` says when and why in one line; the history ends before it.
     `least_pivot` is the least relative pivot of S = C_q M^-1 C_q^T that was met, in the step from `pivot_time` (s):
     where it is small a singular configuration is near, and multipliers have lost about that factor of their digits.
     """
@@ -41,6 +59,7 @@ class Trajectory:
     failure: str | None
     least_pivot: float
     pivot_time: float
+    iterations: int | None = None
 
     def __repr__(self) -> str:
         failed = ", failed" if self.failure else ""
@@ -71,7 +90,8 @@ def simulate(
 
     `gains` are 2 alpha and beta^2 (1/s, 1/s^2; paper Eq. 6). A step of the method lasts h (s) times its step multiple.
     The first values of a multistep method come from RK4, from its family's members of fewer steps ("ramp") or from
-    explicit Euler. A blow-up, a singular S or a number that is not finite ends the run, and `failure` says so.
+    explicit Euler. A blow-up, a singular S, a number that is not finite or an implicit step that Newton's method does
+    not solve ends the run, and `failure` says so.
     InputError for a start that has blown up before.
     """
     whole_step = h * float(method.step_multiple)
@@ -81,7 +101,8 @@ def simulate(
     blown_up = _breakdown(first, pivot=1.0)
     if blown_up:
         raise InputError(f"the start: {blown_up}")
-    run = march(mechanism, method, whole_step, gains, first, start, math)
+    work = Work()
+    run = march(mechanism, method, whole_step, gains, first, start, math, work)
     history = _history(first, islice(run, step_count))
 
     steps_taken = len(history.states) - 1
@@ -96,31 +117,40 @@ def simulate(
         t=np.arange(len(rows), dtype=np.float64) * whole_step,
         q=rows[:, : mechanism.size],
         v=rows[:, mechanism.size :],
-        evaluations=_evaluation_count(method, start, steps_taken),
+        evaluations=_evaluation_count(method, start, steps_taken) + work.evaluations,
         failure=failure,
         least_pivot=history.least_pivot,
         pivot_time=history.pivot_step * whole_step,
+        iterations=work.iterations if implicit(method) else None,
     )
 
 
 def march(
-    mechanism: Mechanism, method: Method, h: float, gains: Gains, state: State, start: Start, library: Any
+    mechanism: Mechanism,
+    method: Method,
+    h: float,
+    gains: Gains,
+    state: State,
+    start: Start,
+    library: Any,
+    work: Work | None = None,
 ) -> Iterator[Step]:
     """Yield step after step from `state` (q then v) at t = 0 on: new state, slope before it, least relative pivot.
 
     h (s) is the whole step of the method, `gains` are 2 alpha and beta^2 (1/s, 1/s^2); the first values of a multistep
     method come from `start`. With `library` math on floats; with numpy on arrays of any broadcastable shapes, gains
-    included. What goes wrong shows in the numbers, or raises an ArithmeticError or ValueError of Python's.
+    included. What goes wrong shows in the numbers, or raises an ArithmeticError or ValueError. The slope of a
+    second-order scheme is v and its own a, as far as it carries them; `work` counts what implicit steps take.
     """
     states = [state]
     slopes: list[State] = []
     for starter, step_count in _starters(method, start):
-        run = resume(mechanism, starter, h, gains, states, slopes, library)
+        run = resume(mechanism, starter, h, gains, states, slopes, library, work)
         for new_state, slope, pivot in islice(run, step_count):
             states.append(new_state)
             slopes.append(slope)
             yield new_state, slope, pivot
-    yield from resume(mechanism, method, h, gains, states, slopes, library)
+    yield from resume(mechanism, method, h, gains, states, slopes, library, work)
 
 
 def resume(
@@ -131,15 +161,65 @@ def resume(
     history: Sequence[State],
     slopes: Sequence[State],
     library: Any,
+    work: Work | None = None,
+    undisturbed: State | None = None,
 ) -> Iterator[Step]:
     """Yield the steps after `history`, as `march` does; its last state may have been tampered with.
 
     `history` holds the states from t = 0 on, h (s) apart, and `slopes` those of all but the last, in the same order.
+    A second-order scheme starts from the states alone: the accelerations that it remembers are those of the states, at
+    the last one those of what it was before (`undisturbed`, by default itself).
     """
+    scheme = run_as_second_order(method)
+    if scheme:
+        carried = carried_quantities(mechanism, scheme, h, gains, history, undisturbed, library, work or Work())
+        first = len(history) - 1 - memory(scheme).newest  # of the history: the state at step 0 of the first turn
+        run = compiled_stepper(mechanism, method, library)
+        turns = run(first * h, h, *gains, carried, implicit_solver(mechanism, method, library, work or Work()))
+        # of turns whose states are in the history already only what they give beyond them matters: the next needs it
+        return islice(turns, memory(scheme).newest, None)
     past = [(history[-1 - back], slopes[-back]) for back in range(1, steps(method))]
     two_alpha, beta_squared = gains
     run = compiled_stepper(mechanism, method, library)
     return run((len(history) - 1) * h, h, two_alpha, beta_squared, history[-1], past)
+
+
+def carried_quantities(
+    mechanism: Mechanism,
+    scheme: SecondOrder,
+    h: float,
+    gains: Gains,
+    history: Sequence[State],
+    undisturbed: State | None,
+    library: Any,
+    work: Work,
+) -> list[State]:
+    """Return what a second-order scheme carries into its first turn after `history`, in units in which h = 1.
+
+    It is as on a motion through the states of the history: helpers are what belongs to position, velocity and
+    acceleration, and accelerations those of the states.
+    """
+    remembered = memory(scheme)
+    size = mechanism.size
+    acceleration = acceleration_function(mechanism, library)
+    calm = [*history[:-1], history[-1] if undisturbed is None else undisturbed]
+    first = len(history) - 1 - remembered.newest
+
+    @cache
+    def accelerations(place: int) -> State:
+        """Return qddot at a place of the history."""
+        work.evaluations += 1
+        return acceleration(place * h, *gains, calm[place][:size], calm[place][size:])
+
+    carried = []
+    for shares, step in zip(remembered.shares, remembered.state_steps, strict=True):
+        by_q, by_v, by_a = (float(share) * h**power for power, share in enumerate(shares))
+        state = history[first + step]
+        entries = tuple(by_q * q + by_v * v for q, v in zip(state[:size], state[size:], strict=True))
+        if by_a:
+            entries = tuple(entry + by_a * a for entry, a in zip(entries, accelerations(first + step), strict=True))
+        carried.append(entries)
+    return carried
 
 
 def _history(first: State, run: Iterator[Step]) -> _History:
@@ -157,6 +237,8 @@ def _history(first: State, run: Iterator[Step]) -> _History:
                 least_pivot = pivot
                 pivot_step = len(states) - 1
             states.append(state)
+    except NotConvergedError as error:
+        cause = str(error)
     except (OverflowError, ValueError, ZeroDivisionError) as error:
         cause = f"arithmetic broke down ({error})"
     return _History(states, cause, least_pivot, pivot_step)
@@ -173,21 +255,38 @@ def _breakdown(state: State, pivot: float) -> str | None:
 
 
 def _evaluation_count(method: Method, start: Start, steps_taken: int) -> int:
-    """Return the number of right-hand sides of the first so many steps, the starting ones included."""
+    """Return the number of right-hand sides of the first so many steps, the starting ones included.
+
+    But for those that a second-order scheme starts with, and those of Newton's method: `Work` has them.
+    """
     count = 0
     remaining = steps_taken
     for starter, step_count in _starters(method, start):
         starting = min(step_count, remaining)
-        count += starting * evaluations(starter)
+        count += starting * _explicit_evaluations(starter)
         remaining -= starting
-    return count + remaining * evaluations(method)
+    return count + remaining * _explicit_evaluations(method)
+
+
+def _explicit_evaluations(method: Method) -> int:
+    """Return the number of evaluations in a step of the method that are not Newton's."""
+    scheme = run_as_second_order(method)
+    return evaluations(method) if scheme is None else scheme.evaluations - len(implicit_evaluations(scheme))
+
+
+def states_needed(method: Method) -> int:
+    """Return the number of states that a run of the method starts from, the newest included."""
+    scheme = run_as_second_order(method)
+    return steps(method) if scheme is None else 1 + memory(scheme).past
 
 
 def _starters(method: Method, start: Start) -> list[tuple[Method, int]]:
     """Return the methods, each with its number of steps, that provide a multistep method's first values."""
-    needed = steps(method) - 1
+    needed = states_needed(method) - 1
     if needed == 0:
         return []
+    if implicit(method):
+        return _implicit_starters(start, needed)
     match start:
         case "rk4":
             return [(lookup("RK4"), needed)]
@@ -196,3 +295,14 @@ def _starters(method: Method, start: Start) -> list[tuple[Method, int]]:
         case "ramp":
             family = bezier if method.family is not None and method.family.name == "Bezier" else adams_bashforth
             return [(family(n), 1) for n in range(1, needed + 1)]
+
+
+def _implicit_starters(start: Start, needed: int) -> list[tuple[Method, int]]:
+    """Return the same for an implicit method: where it bears feedback that is strong, so must they."""
+    match start:
+        case "rk4":
+            return [(lookup("gauss4"), needed)]
+        case "euler":
+            return [(lookup("implicit-euler"), needed)]
+        case "ramp":
+            return [(lookup(f"bdf{n}"), 1) for n in range(1, needed + 1)]

@@ -4,7 +4,7 @@ A quadratic loses digits where its roots nearly meet: there b^2/4 - a c cancels,
 A cubic's roots are found one, then two:
 
       p(z) |      _                    the root beyond the inflection's far side is simple, however the others meet: it
-           |    /   \\        /          has a formula that cancels nothing (Cardano's, or by cosines where all are real)
+           |    /   \\        /          has a formula that cancels nothing (Cardano's, or by cosines if all are real)
       -----+-x-+-----\\--_--/---- z      and one Newton step. Dividing by it, from the end where its power is largest,
            | /   o     '              leaves a quadratic (W. Kahan, "To solve a real cubic equation", 1986).
 """

@@ -15,7 +15,7 @@ from bezstab.methods import Method, closed_loop_table, reduced_table
 from bezstab.stability.arrays import ComplexArray, FloatArray
 from bezstab.stability.exact_sums import double_polynomial, double_product, double_sum, split
 from bezstab.stability.low_degrees import cubic_parts, largest_quadratic_root, quadratic_roots
-from bezstab.stability.root_finding import CHUNK, roots_of_rows
+from bezstab.stability.root_finding import CHUNK, largest_of_rows, roots_of_rows
 
 CANCELS = 1e-5  # of (b/2)^2: where the discriminant is below it, its root would be good to 1e-13 or less
 
@@ -139,9 +139,7 @@ def largest_plane_root(pencil: PlanePencil, alpha_hat: FloatArray, beta_hat: Flo
 def _write_largest(pencil: PlanePencil, alpha_hat: FloatArray, beta_hat: FloatArray, into: ComplexArray) -> None:
     with np.errstate(all="ignore"):
         if pencil.degree > 3:
-            z = _roots_of_chunk(pencil, alpha_hat, beta_hat)
-            into[:] = np.take_along_axis(z, np.argmax(np.abs(z), axis=0)[np.newaxis], axis=0)[0]
-            np.abs(into.imag, out=into.imag)
+            into[:] = largest_of_rows(np.stack(coefficients_at(pencil, alpha_hat, beta_hat)))
             return
         coefficients = coefficients_at(pencil, alpha_hat, beta_hat)
         if pencil.degree == 2:

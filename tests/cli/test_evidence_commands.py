@@ -42,6 +42,33 @@ def test_a_blow_up_is_status_three_and_keeps_the_history(tmp_path: Path) -> None
     assert len(list(tmp_path.iterdir())) == 2
 
 
+def test_simulate_shows_the_iterations_of_an_implicit_method_only() -> None:
+    common = ("simulate", "--time", "0.02", "--figure", "none", "--table", "none")
+    implicit, explicit = (run(*common, "--method", name).stdout for name in ("trapezoid", "verlet-half"))
+    assert "Newton's iterations" in implicit
+    assert "Newton's iterations" not in explicit
+    (row,) = rows(*common, "--method", "trapezoid")
+    assert isinstance(row["iterations"], int)
+    assert 40 <= row["iterations"] < row["evaluations"]
+    (row,) = rows(*common, "--method", "verlet-half")
+    assert row["iterations"] is None
+
+
+def test_a_step_that_does_not_converge_is_status_three() -> None:
+    options = ("--scene", "four_bar", "--h", "0.5", "--time", "50", "--physical", "--alpha", "10", "--beta", "10")
+    result = run("simulate", "--method", "trapezoid", *options, "--figure", "none", "--table", "none")
+    assert result.exit_code == 3
+    assert "at t = 0.5 s: Newton's method did not converge in" in result.stderr.splitlines()[-1]
+
+
+def test_verify_takes_implicit_and_second_order_methods() -> None:
+    for name in ("radau3", "hht", "verlet-old"):
+        point = ("--alpha", "0.5", "--beta", "0.4", "--method", name)
+        (row,) = rows("verify", "--scene", "pendulum", *point)
+        assert row["measured_abs"] == pytest.approx(row["predicted_abs"], abs=1e-5)
+        assert row["verdicts_agree"] is True
+
+
 def test_verify_prints_predicted_and_measured_pole(tmp_path: Path) -> None:
     (row,) = rows("verify", "--alpha", "0.5", "--beta", "0.1", "--method", "AB4")
     assert row["scene"] == "slider-crank"

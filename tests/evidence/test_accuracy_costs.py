@@ -5,7 +5,7 @@ import pytest
 
 from bezstab.evidence import METHODS, STEPS, measured_runs, swept_runs, whole_sweep
 from bezstab.methods import accuracy, lookup
-from tests.evidence.small_sweeps import SOFT, small_sweep, swept
+from tests.evidence.small_sweeps import DURATION, SOFT, small_sweep, swept
 from tests.reference.undominated import undominated
 
 QUICK = {"B4", "ABM4", "RK4", "SYM"}
@@ -26,6 +26,17 @@ def test_a_run_knows_its_error_its_cost_and_its_order(name: str) -> None:
     assert 0 < fine.c_rms <= fine.c_max
     assert 0 < fine.cdot_rms <= fine.cdot_max
     assert fine.seconds_min <= fine.seconds <= fine.seconds_max
+
+
+@pytest.mark.parametrize("name", ["trapezoid", "verlet-predicted"])
+def test_so_does_one_that_solves_equations_or_treats_velocities_differently(name: str) -> None:
+    coarse, fine = swept(name, (8e-4, 1.6e-3), SOFT)
+    assert fine.order == pytest.approx(accuracy(lookup(name))[0], abs=0.2)
+    for run in (coarse, fine):
+        steps = round(DURATION / run.h)
+        # a trapezoidal step: two iterations, each an evaluation, and a Jacobian, which takes one for each coordinate
+        least = steps * (2 + 5) if name == "trapezoid" else steps
+        assert least <= run.evaluations <= 1.5 * least
 
 
 @pytest.mark.parametrize(

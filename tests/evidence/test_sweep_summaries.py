@@ -41,10 +41,20 @@ def test_a_failed_run_does_not_count_as_a_step_that_runs_through() -> None:
 
 @pytest.mark.parametrize("name", ["B4", "RK4"])
 def test_the_largest_stable_alpha_step_is_where_critical_damping_leaves_the_region(name: str) -> None:
-    alpha_step = summary(swept(name, (8e-4, 1.6e-3), SOFT)).alpha_step * (4 if name == "RK4" else 1)
+    per_evaluation = summary(swept(name, (8e-4, 1.6e-3), SOFT)).alpha_step
+    assert per_evaluation is not None
+    alpha_step = per_evaluation * (4 if name == "RK4" else 1)
     assert spectral_radius(lookup(name), 2 * alpha_step, alpha_step**2) < 1
     beyond = alpha_step + 2e-3  # the line is looked at in steps of a thousandth
     assert spectral_radius(lookup(name), 2 * beyond, beyond**2) >= 1
+
+
+def test_what_has_no_limit_is_said_to_have_none() -> None:
+    bezier, other = (summary(swept(name, (8e-4, 1.6e-3), SOFT)) for name in ("B4", "trapezoid"))
+    assert (bezier.unlimited, other.unlimited, other.area, other.alpha_step) == (False, True, None, None)
+    words = _comparison_sentence(bezier, other)
+    assert "loses: stable up to some α = β, the other at every" in words
+    assert "region" not in words
 
 
 @pytest.mark.parametrize(("times", "trusted"), [(500, True), (2000, False)])

@@ -19,6 +19,14 @@ def whole_map(scene: str, name: str, h: float, count: int) -> VerdictMap:
     return verdict_map(chunks, [simulated_verdicts(rows) for rows in chunks])
 
 
+@pytest.mark.parametrize("name", ["verlet-old", pytest.param("am4", marks=pytest.mark.slow)])
+def test_so_do_those_of_methods_that_solve_equations(name: str) -> None:
+    verdicts = whole_map("pendulum", name, H, 8)
+    assert not verdicts.broken.any()
+    assert verdicts.disagreements_beyond_band == 0
+    assert 0 < verdicts.diverges.sum() < verdicts.diverges.size
+
+
 @pytest.mark.parametrize("name", ["B4", "AB4", "SYM"])
 def test_simulated_verdicts_agree_outside_the_band(name: str) -> None:
     verdicts = whole_map("slider_crank", name, H, 16)

@@ -11,7 +11,8 @@ from bezstab.errors import InputError
 from bezstab.mechanism import Start, compiled_mechanism, initial_state, load_scene, observe, simulate
 from bezstab.methods import Method, accuracy, evaluations, lookup, steps
 from bezstab.units import feedback_gains
-from tests.methods.kinds import EXPLICIT
+from tests.mechanism.test_second_order_memory import STOERMER
+from tests.methods.kinds import EXPLICIT, IMPLICIT, SECOND_ORDER
 from tests.reference.one_coordinate_motion import (
     distance,
     four_bar_chain_energies,
@@ -21,6 +22,8 @@ from tests.reference.one_coordinate_motion import (
 )
 
 H = 1e-3  # s
+QUICK = {"verlet-half", "verlet-predicted", "hht", "rkn4", "bdf2", "am3", "sdirk2", "radau3"}
+"""Of the methods that solve equations or treat velocities differently; the others in make test-slow."""
 STARTS: tuple[Start, ...] = ("rk4", "ramp", "euler")
 
 
@@ -95,7 +98,23 @@ def test_the_energy_drifts_like_a_power_of_the_step(scene: str, name: str) -> No
     assert shown_order(drifts) == pytest.approx(accuracy(lookup(name))[0], abs=0.1)
 
 
-@pytest.mark.parametrize("name", ["B4", "AB4", "ABM4", "RK4", "SYM", "RK4@5"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "B4",
+        "AB4",
+        "ABM4",
+        "RK4",
+        "SYM",
+        "RK4@5",
+        "trapezoid",
+        "bdf3",
+        "hht",
+        "verlet-predicted",
+        "imex-euler",
+        "sdirk2@2",
+    ],
+)
 def test_the_pendulum_keeps_time(name: str) -> None:
     order, _ = accuracy(lookup(name))
     run = simulate(compiled_mechanism(load_scene("pendulum")), lookup(name), 1e-3, 1.5, (20.0, 100.0))
@@ -178,3 +197,74 @@ def test_a_start_is_refused_from_1e9_on_in_si() -> None:
     assert run.failure is None
     with pytest.raises(InputError, match="the start: blow-up"):
         simulate(mechanism, lookup("RK1"), 1e-12, 1e-12, (0.0, 0.0), (at_rest, np.array([0.0, 2e9])))
+
+
+# Implicit and second-order methods
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=[] if name in QUICK else [pytest.mark.slow])
+        for name in (*SECOND_ORDER, *IMPLICIT)
+        if accuracy(lookup(name))[0] <= 4
+    ],
+)
+def test_so_does_one_that_solves_equations_or_treats_velocities_differently(name: str) -> None:
+    # dirk3 and the BDF methods come nearest to the bound, by 0.03
+    order, _ = accuracy(lookup(name))
+    assert measured_order(name, 400, lambda _: (20.0, 100.0)) == pytest.approx(order, abs=0.1)
+
+
+def test_iterations_and_evaluations_of_an_implicit_run_are_counted() -> None:
+    mechanism = compiled_mechanism(load_scene("slider_crank"))
+    run = simulate(mechanism, lookup("trapezoid"), H, 0.1, (20.0, 100.0))
+    assert run.iterations is not None
+    assert 200 <= run.iterations <= 400  # a correction and one to see that it was enough, for each of a hundred steps
+    jacobians = (run.evaluations - 1 - run.iterations) / mechanism.size  # and one evaluation for the first acceleration
+    assert jacobians in range(100, 201)
+    explicit = simulate(mechanism, lookup("verlet-half"), H, 0.1, (20.0, 100.0))
+    assert explicit.iterations is None
+    assert explicit.evaluations == 101
+
+
+def test_a_step_that_does_not_converge_ends_the_run_with_time_and_cause() -> None:
+    mechanism = compiled_mechanism(load_scene("four_bar"))
+    run = simulate(mechanism, lookup("implicit-midpoint"), 0.5, 50.0, (20.0, 100.0))
+    assert run.failure
+    assert run.failure.startswith(f"at t = {run.t[-1] + 0.5:.6g} s: Newton's method did not converge")
+    assert np.isfinite(run.q).all()
+
+
+@pytest.mark.parametrize("start", STARTS)
+def test_an_implicit_method_bears_strong_feedback_from_its_first_steps_on(start: Start) -> None:
+    mechanism = compiled_mechanism(load_scene("slider_crank"))
+    run = simulate(mechanism, lookup("bdf4"), H, 0.1, feedback_gains(40.0, 400.0, H), start=start)
+    assert run.failure is None
+    c = observe(mechanism, run.t, run.q, run.v, 0.0, 0.0).c
+    assert np.abs(c).max() < 1e-6  # m; the steps of RK4 multiply an error by 400^2 / 24 each
+
+
+@pytest.mark.parametrize("name", ["implicit-midpoint", "gauss4"])
+def test_gauss_methods_keep_what_is_quadratic(name: str) -> None:
+    """Without feedback cdot = q v / l of the pendulum is constant, and quadratic in the state: Gauss methods keep it.
+
+    Hairer, Lubich & Wanner, Geometric Numerical Integration, Theorem IV.2.1.
+    """
+    mechanism = compiled_mechanism(load_scene("pendulum"))
+    drifts = {}
+    for method in (name, "trapezoid", "bdf2"):
+        run = simulate(mechanism, lookup(method), 1e-2, 3.0, (0.0, 0.0))
+        drifts[method] = float(np.abs(observe(mechanism, run.t, run.q, run.v, 0.0, 0.0).cdot).max())
+    assert drifts[name] < 1e-10  # 300 steps, each solved within 1e-13, and a velocity is that over h
+    assert min(drifts["trapezoid"], drifts["bdf2"]) > 1e-6
+
+
+def test_one_position_ahead_is_the_same_motion_as_velocities_beside() -> None:
+    """Central differences and Newmark's method with beta = 0, gamma = 1/2 differ in nothing but their start."""
+    mechanism, gains = compiled_mechanism(load_scene("slider_crank_light")), (20.0, 100.0)
+    ahead = Method("Stoermer", STOERMER, "constructed")
+    for h in (1e-3, 5e-4):
+        runs = [simulate(mechanism, method, h, 0.1, gains) for method in (ahead, lookup("newmark(0,1/2)"))]
+        # first positions that differ by h^3 make velocities that differ by h^2, here times a jerk of 0.1 SI units
+        assert np.abs(runs[0].q - runs[1].q).max() < 0.1 * h**2

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.methods import LinearMultistep, Method, Partitioned, PredictorCorrector, RungeKutta
+from bezstab.methods import LinearMultistep, Method, Partitioned, PredictorCorrector, RungeKutta, SecondOrder
 
 FloatArray = NDArray[np.float64]
 Slope = Callable[[float, FloatArray], FloatArray]
@@ -23,6 +23,8 @@ def plain_step(method: Method, slope: Slope, t: float, h: float, states: Sequenc
             return _runge_kutta(scheme, slope, t, h, states[0])
         case Partitioned() as scheme:
             return _partitioned(scheme, slope, t, h, states[0])
+        case SecondOrder():
+            raise TypeError("plain_second_order_run takes such steps")
 
 
 def _multistep(
