@@ -68,7 +68,10 @@ def characteristic_polynomial(method: Method) -> sp.Poly:
             stages = range(len(weights))
             rows = [[RING(int(i == j)) - RING_MU * _in_ring(tableau[i][j]) for j in stages] for i in stages]
             with_weights = [[rows[i][j] + RING_MU * _in_ring(weights[j]) for j in stages] for i in stages]
-            pi = RING_Z * _determinant(rows) - _determinant(with_weights)
+            above, below = _determinant(with_weights), _determinant(rows)
+            unused = above.gcd(below)  # a factor of stages that the step does not depend on
+            unused = unused.quo_ground(unused.const())
+            pi = RING_Z * below.quo(unused) - above.quo(unused)
         case Partitioned(velocity=velocity):
             pi = multistep_polynomial(velocity)
         case SecondOrder():
