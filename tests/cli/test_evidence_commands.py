@@ -49,7 +49,7 @@ def test_simulate_shows_the_iterations_of_an_implicit_method_only() -> None:
     assert "Newton's iterations" not in explicit
     (row,) = rows(*common, "--method", "trapezoid")
     assert isinstance(row["iterations"], int)
-    assert 40 <= row["iterations"] < row["evaluations"]
+    assert 60 <= row["iterations"] < row["evaluations"]
     (row,) = rows(*common, "--method", "verlet-half")
     assert row["iterations"] is None
 
