@@ -43,6 +43,18 @@ def range_column(heading: str, low_key: str, high_key: str) -> Column:
     return Column(heading, text)
 
 
+def _largest_step(row: Row) -> str:
+    """Return the largest stable step; a stable point without one is stable at any."""
+    if row["h_max"] is None and row["h"] is not None and row["verdict"] == "converges":
+        return "unlimited"
+    return formatted(row["h_max"], ".4g")
+
+
+def _searched(row: Row) -> str:
+    strongest = row["searched"]
+    return "all" if strongest is None else f"αh, βh to {strongest:g}"
+
+
 CHOICES = [
     column("method", "method"),
     column("goal", "goal"),
@@ -56,11 +68,17 @@ CHOICES = [
     column("within the spread", "worst", ".4f"),
     column("steps to 1/1000", "settle_steps", "d"),
     column("s", "settle_seconds", ".3g"),
-    column("stable for h (s) to", "h_max", ".4g"),
+    Column("stable for h (s) to", _largest_step),
     range_column("α times", "alpha_factor_min", "alpha_factor_max"),
     range_column("β times", "beta_factor_min", "beta_factor_max"),
 ]
 PASTE = column("to paste", "engine")
+SEARCHED = Column("searched", _searched)
+
+
+def choice_columns(rows: Sequence[Row]) -> list[Column]:
+    """Return the columns of choices; how strong a feedback was searched where some region has no end."""
+    return [*CHOICES, SEARCHED] if any(row["searched"] is not None for row in rows) else CHOICES
 
 
 @click.command()
@@ -94,7 +112,8 @@ def choose(
 
     The answer is proven stable, and the margins that remain are printed. The fastest point is a kink: towards more
     damping |z_p| rises like a square root. Hence robust is the default. "within the spread" is the largest |z_p| with α
-    and β off by --spread. With --engine the method is SYM unless given: that is how engines step.
+    and β off by --spread. Where no feedback is too strong, those up to αh, βh = 4 are searched, and "searched" says so.
+    With --engine the method is SYM unless given: that is how engines step.
 
     Example: bezstab choose --method B4 --h 0.001
     """
@@ -118,7 +137,8 @@ def choose(
         if engine:
             row["engine"] = ENGINES[engine].setting((Fraction(choice.alpha_hat), Fraction(choice.beta_hat)), h)
         rows.append(row)
-    show_rows(rows, [*CHOICES, PASTE] if engine else CHOICES, form)
+    columns = choice_columns(rows)
+    show_rows(rows, [*columns, PASTE] if engine else columns, form)
 
 
 @click.command()
@@ -157,7 +177,7 @@ def check(
     for choice in given:
         rows.append(choice_row(choice, step))
         rows.append(choice_row(stability.choose(choice.method, "robust"), step))
-    show_rows(rows, CHOICES, form)
+    show_rows(rows, choice_columns(rows), form)
     context.exit(0 if all(choice.verdict == "converges" for choice in given) else 1)
 
 

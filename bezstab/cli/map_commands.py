@@ -23,11 +23,11 @@ from bezstab.cli.options import (
     physical_option,
     table_option,
 )
-from bezstab.cli.output import file_name, progress, show_rows, write_figure, write_table
+from bezstab.cli.output import file_name, progress, show_groups, show_rows, write_figure, write_table
 from bezstab.engines import ENGINES
 from bezstab.errors import InputError
 from bezstab.files import output_directory
-from bezstab.methods import REGISTRY, Method, lookup
+from bezstab.methods import GROUPS, Method, lookup
 from bezstab.show import (
     PROPERTIES,
     Column,
@@ -320,6 +320,12 @@ def _engine_marks(engine: str, h: Fraction) -> dict[str, tuple[float, float]]:
     return marks
 
 
+def _order_text(row: Row) -> str:
+    """Return the order of accuracy, with that for forces of position alone in parentheses if it is another."""
+    order, without_velocity = row["order"], row["order_position_forces"]
+    return str(order) if order == without_velocity else f"{order} ({without_velocity})"
+
+
 METHODS = [
     column("method", "method"),
     column("steps", "steps", "d"),
@@ -328,6 +334,15 @@ METHODS = [
     column("error constant", "error_constant"),
     column("source", "source"),
 ]
+LISTED = [
+    column("method", "method"),
+    column("steps", "steps", "d"),
+    column("evaluations", "evaluations", "d"),
+    Column("order", _order_text),
+    column("error constant", "error_constant"),
+    Column("implicit", lambda row: "yes" if row["implicit"] else ""),
+]
+"""What fits into a line of 80 characters."""
 
 
 @click.command()
@@ -337,15 +352,27 @@ METHODS = [
 def methods(methods: Sequence[Method], latex: bool, form: Format) -> None:
     """List the methods, or show those that are named whole.
 
-    Steps, evaluations of f per step, order of accuracy and error constant, computed from the coefficients; for one
-    method also its recursion, s→z mapping, characteristic polynomial and stability region (the paper's Tables 1, 2).
+    Steps, evaluations of f per step (of an implicit method: per iteration), order of accuracy and error constant,
+    computed from the coefficients; in parentheses the order where forces depend on positions alone. For one method also
+    its recursion, s→z mapping, characteristic polynomial and stability region (the paper's Tables 1, 2) and its source.
+
+    SIE, the paper's "Euler semi-implicit", is not what engines call semi-implicit Euler: that is SYM.
 
     Example: bezstab methods B4
     """
     from bezstab.show import method_row, whole_row
 
     if not methods:
-        show_rows([method_row(lookup(name)) for name in REGISTRY], METHODS, form)
+        listed = [
+            (group, [{**method_row(lookup(name)), "group": group.heading} for name in group.methods])
+            for group in GROUPS
+        ]
+        if form == "text":
+            show_groups(
+                [("\n".join(filter(None, (group.heading, group.note))), rows) for group, rows in listed], LISTED
+            )
+        else:
+            show_rows([row for _, rows in listed for row in rows], METHODS, form)
         return
     from bezstab.stability import best_point, region
 

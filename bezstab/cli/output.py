@@ -36,6 +36,19 @@ def show_rows(rows: Sequence[Row], columns: Sequence[Column], form: Format, head
     click.echo(_escaped_json(answer, encoding) if form == "json" else answer)
 
 
+def show_groups(groups: Sequence[tuple[str, Sequence[Row]]], columns: Sequence[Column]) -> None:
+    """Print groups of rows for reading, each below its heading, all in one table's columns."""
+    encoding = output_encoding()
+    rows = [row for _, rows in groups for row in rows]
+    head, *lines = render(rows, [_presentable(column, encoding) for column in columns], "text").splitlines()
+    click.echo(head)
+    for heading, of_group in groups:
+        click.echo(f"\n{spelled(heading, encoding)}")
+        for line in lines[: len(of_group)]:
+            click.echo(line)
+        del lines[: len(of_group)]
+
+
 def _presentable(column: Column, encoding: str) -> Column:
     """Return the column with words for what the encoding lacks, and no cell that would command a terminal.
 

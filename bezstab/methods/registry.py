@@ -41,10 +41,11 @@ ZERO, ONE, HALF = Fraction(0), Fraction(1), Fraction(1, 2)
 
 @dataclass(frozen=True)
 class MethodGroup:
-    """Methods that are listed together: what makes each of them, by its name."""
+    """Methods that are listed together: what makes each of them, by its name; a line about their names if needed."""
 
     heading: str
     methods: Mapping[str, Callable[[], Method]]
+    note: str = ""
 
 
 def _newmark(name: str, beta: Fraction) -> Callable[[], Method]:
@@ -71,6 +72,7 @@ GROUPS = (
             "tsit5": tsitouras,
             "cash-karp": cash_karp,
         },
+        note="(SIE is the paper's 'Euler semi-implicit', not that of engines, which is SYM)",
     ),
     MethodGroup(
         "Symplectic and Nyström",
@@ -93,7 +95,7 @@ GROUPS = (
         },
     ),
     MethodGroup(
-        "Newmark and generalised alpha; any newmark(beta,gamma), hht(alpha), generalized-alpha(rho_inf)",
+        "Newmark and generalised alpha",
         {
             "average-acceleration": _newmark("average-acceleration", Fraction(1, 4)),
             "linear-acceleration": _newmark("linear-acceleration", Fraction(1, 6)),
@@ -102,6 +104,7 @@ GROUPS = (
             "hht": partial(second_order.hht, Fraction(-1, 20), "hht"),
             "generalized-alpha": partial(second_order.generalized_alpha, Fraction(4, 5), "generalized-alpha"),
         },
+        note="(with parameters: newmark(beta,gamma), hht(alpha), generalized-alpha(rho_inf))",
     ),
     MethodGroup(
         "Implicit in the velocity, of physics engines and control",

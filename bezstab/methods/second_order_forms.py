@@ -7,10 +7,10 @@ a.
 from collections.abc import Iterable
 from fractions import Fraction
 
+from bezstab.methods.plane_polynomials import ONE
 from bezstab.methods.schemes import LinearMultistep, Partitioned, PredictorCorrector, RungeKutta, Scheme
 from bezstab.methods.second_order import (
     ACCELERATION,
-    ONE,
     POSITION,
     VELOCITY,
     Assignment,

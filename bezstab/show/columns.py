@@ -30,9 +30,11 @@ def column(heading: str, key: str, form: str = "") -> Column:
 
 
 def formatted(value: Value, form: str = "") -> str:
-    """Return a value in a format, minus zero as zero; a dash for None and for an empty text."""
+    """Return a value in a format, minus zero as zero, truth as yes or no; a dash for None and for an empty text."""
     if value is None or value == "":
         return MISSING
+    if isinstance(value, bool):
+        return "yes" if value else "no"
     if isinstance(value, float):
         value += 0.0  # minus zero becomes zero
     return format(value, form)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bezstab.errors import InputError
-from bezstab.methods import Method, evaluations, steps
+from bezstab.methods import Method, evaluations, implicit, steps
 from bezstab.show.columns import Row, Value
 from bezstab.units import feedback_gains
 
@@ -74,17 +74,27 @@ def pole_rows(
 
 
 def method_row(method: Method) -> Row:
-    """Return steps, evaluations per step, order of accuracy, error constant (exact, as text) and source."""
-    from bezstab.methods import accuracy  # loads sympy
+    """Return steps, evaluations per step, order of accuracy, error constant (exact, as text) and source.
+
+    The error constant is a decimal where rationals stand for irrational coefficients; `digits` says to how many digits
+    they do, None where they do not. `order_position_forces` and `order_velocity_forces` are the orders where forces
+    depend on the position alone, and on the velocity alone; `implicit` is whether a step solves equations.
+    """
+    from bezstab.methods import accuracy, accuracy_by_force  # loads sympy
 
     order, constant = accuracy(method)
+    by_force = accuracy_by_force(method)
     return {
         "method": method.name,
         "steps": steps(method),
         "evaluations": evaluations(method),
         "order": order,
-        "error_constant": str(constant),
+        "error_constant": str(constant) if method.digits is None else f"{float(constant):.10g}",
         "source": method.source,
+        "implicit": implicit(method),
+        "digits": method.digits,
+        "order_position_forces": by_force.position[0],
+        "order_velocity_forces": by_force.velocity[0],
     }
 
 

@@ -13,13 +13,15 @@ from numpy.typing import ArrayLike
 from bezstab.errors import NumericalError
 from bezstab.methods import Method, SecondOrder, Verdict, closed_loop_at, recursion_verdict, without_shared_factor
 from bezstab.stability.arrays import EPS, ComplexArray, FloatArray
-from bezstab.stability.dominant_roots import dominant_root
+from bezstab.stability.dominant_roots import FEWEST, dominant_root
 from bezstab.stability.exact_sums import feedback_roots
 from bezstab.stability.pencils import Pencil, pencil_of, roots_in_z
 from bezstab.stability.plane_pencils import PlanePencil, largest_plane_root, plane_pencil_of, plane_roots
 from bezstab.stability.root_finding import CHUNK
 
 BLOCK = 8 * CHUNK  # points whose roots are followed in one go: enough to outweigh the calls for one in STRIDE
+
+ORDINARY = 1e12  # of alpha_hat and beta_hat: their products, of degree 12 at most, are within float64
 
 AnyPencil = Pencil | PlanePencil
 
@@ -116,6 +118,9 @@ def _write_largest_poles(pencil: AnyPencil, alpha_hat: FloatArray, beta_hat: Flo
     if isinstance(pencil, PlanePencil):
         largest_plane_root(pencil, alpha_hat, beta_hat, into=poles)
         return
+    if pencil.steps == 1 and pencil.implicit and poles.size >= FEWEST and _ordinary(alpha_hat, beta_hat):
+        largest_plane_root(plane_pencil_of(pencil.method), alpha_hat, beta_hat, into=poles)  # a quadratic
+        return
     second_mu = np.empty_like(poles)
     for i in range(0, poles.size, CHUNK):
         chunk = slice(i, i + CHUNK)
@@ -128,6 +133,11 @@ def _write_largest_poles(pencil: AnyPencil, alpha_hat: FloatArray, beta_hat: Flo
         poles[real[larger]] = others[larger]
     poles.imag = np.abs(poles.imag)
     _without_rounding(poles)
+
+
+def _ordinary(alpha_hat: FloatArray, beta_hat: FloatArray) -> bool:
+    """Return whether all powers of a row of points are far from the ends of float64's range."""
+    return bool(np.abs(alpha_hat).max() < ORDINARY and np.abs(beta_hat).max() < ORDINARY)
 
 
 def _without_rounding(z: ComplexArray) -> ComplexArray:

@@ -21,13 +21,16 @@ of two functions of z, that is an estimate.)
 """
 
 import numpy as np
-from numpy.polynomial.polynomial import polyval2d
+from numpy.polynomial.polynomial import polyval, polyval2d
 from numpy.typing import NDArray
 
 from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
+from bezstab.stability.low_degrees import largest_quadratic_root
 from bezstab.stability.pencils import Pencil, has_infinite_root, raise_not_finite
 from bezstab.stability.root_finding import CHUNK, CONVERGED, STRIDE, followed_roots, roots_of_table
 
+CANCELS = 1e-5  # of (b/2)^2: where a quadratic's discriminant is below it, its root would be good to 1e-13 or less
+ORDINARY = 1e70  # of |mu|: its powers are far from the end of float64's range
 FEWEST = STRIDE**2  # mu for which following is worth its preparations
 
 
@@ -40,11 +43,37 @@ def dominant_root(pencil: Pencil, mu: ComplexArray) -> ComplexArray:
     if pencil.steps == 1 or mu.size < FEWEST:
         return _largest_of_all(pencil, mu)
     found = np.full(mu.size, np.nan, complex)
+    if pencil.steps == 2 and pencil.implicit:
+        for start in range(0, mu.size, CHUNK):
+            _write_larger(pencil, mu[start : start + CHUNK], found[start : start + CHUNK])
+        rest = np.flatnonzero(np.isnan(found))
+        found[rest] = _largest_of_all(pencil, mu[rest])
+        return found
     in_blocks = mu.size - mu.size % STRIDE
     _follow(pencil, mu[:in_blocks].reshape(-1, STRIDE), found[:in_blocks].reshape(-1, STRIDE))
     rest = np.flatnonzero(np.isnan(found))
     found[rest] = _largest_of_all(pencil, mu[rest])
     return found
+
+
+def _write_larger(pencil: Pencil, mu: ComplexArray, found: ComplexArray) -> None:
+    """Write into `found` the larger root of a quadratic at each mu, by formula; nan where the formula loses digits."""
+    with np.errstate(all="ignore"):  # what is not finite is for Aberth's iteration
+        real = not mu.imag.any()
+        last, half, leading = (polyval(mu.real if real else mu, row) for row in pencil.table)
+        half = 0.5 * half
+        square = half * half
+        discriminant = square - last * leading
+        if real:
+            largest_quadratic_root(half / leading, discriminant / (leading * leading), into=found)
+        else:
+            root = np.sqrt(discriminant)
+            same_side = half.real * root.real + half.imag * root.imag >= 0
+            np.negative(root, out=root, where=~same_side)
+            np.divide(-half - root, leading, out=found)
+        kept = np.abs(discriminant) >= CANCELS * np.abs(square)
+        kept &= np.isfinite(found) & (np.abs(mu) < ORDINARY)
+    found[~kept] = np.nan
 
 
 def _largest_of_all(pencil: Pencil, mu: ComplexArray) -> ComplexArray:

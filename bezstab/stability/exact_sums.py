@@ -67,6 +67,9 @@ def feedback_roots(
 def exact_combination(factors: Sequence[Fraction], x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return a x + b y, (a, b) the factors, as an unevaluated sum of two float64."""
     a, b = factors
+    if {a, b} == {0, 1}:  # one of the two itself, as for most methods
+        chosen = x if a else y
+        return chosen, np.zeros_like(chosen)
     ax, ax_low = two_product(float(a), x)
     by, by_low = two_product(float(b), y)
     total, total_low = two_sum(ax, by)

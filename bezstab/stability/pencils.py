@@ -129,7 +129,7 @@ def roots_in_z(pencil: Pencil, mu: ComplexArray) -> ComplexArray:
     NumericalError if one leaves the range of float64, or is infinite: there an implicit step has no solution.
     """
     z = roots_of_table(pencil.table, mu)
-    finite = np.isfinite(z).all(axis=0)
+    finite = np.isfinite(z).all(axis=0) & ~has_infinite_root(pencil, mu)
     if not finite.all():
         raise_not_finite(pencil, mu[~finite])
     return z

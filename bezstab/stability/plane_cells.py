@@ -185,7 +185,7 @@ def plane_shape(strips: PlaneStrips, edges: Edges, name: str) -> PlaneShape | No
         return None
     corners = _turns(edges, cells)
     extent = _extent(cells, corners)
-    view = _view(cells, corners)
+    view = _view(extent, corners)
     bounded = bool(np.isfinite(extent).all())
     area = _area(edges, cells, name) if bounded else None
     return PlaneShape(cells, area, extent, view, tuple(_curves(edges, cells, view, bounded, name)))
@@ -310,16 +310,17 @@ def _extent(cells: tuple[Cell, ...], corners: FloatArray) -> Extent:
     return (left, right), (min(cell.low for cell in cells), max(cell.high for cell in cells))
 
 
-def _view(cells: tuple[Cell, ...], corners: FloatArray) -> Extent:
-    """Return finite ranges that hold all corners and turns; at least LEAST_VIEW where the region goes on."""
-    (left, right), (bottom, top) = _extent(cells, corners)
-    ranges = []
-    for axis, (low, high) in enumerate(((left, right), (bottom, top))):
-        within = corners[:, axis] if corners.size else np.zeros(1)
-        seen_low = low if np.isfinite(low) else float(min(within.min(initial=0.0), 0.0))
-        seen_high = high if np.isfinite(high) else float(max(within.max(initial=0.0), LEAST_VIEW))
-        ranges.append((seen_low, seen_high))
-    return ranges[0], ranges[1]
+def _view(extent: Extent, corners: FloatArray) -> Extent:
+    """Return the extent of a bounded region; else ranges that hold all corners and turns with alpha_hat, beta_hat >= 0.
+
+    What has no limit mostly goes on where a feedback would drive away, to corners a thousandfold further out, which
+    would leave nothing to see of the rest. At least LEAST_VIEW.
+    """
+    if np.isfinite(extent).all():
+        return extent
+    seen = corners[(corners >= 0).all(axis=1)]
+    alpha_hat_max, beta_hat_max = (float(seen[:, axis].max(initial=LEAST_VIEW)) for axis in (0, 1))
+    return (0.0, alpha_hat_max), (0.0, beta_hat_max)
 
 
 def _area(edges: Edges, cells: tuple[Cell, ...], name: str) -> float:

@@ -4,6 +4,7 @@ Such a scheme has no pi(z, mu), and its P is not a product over two mu. Its pole
 most of these schemes, which a formula gives, or three, or as many as it looks back.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 
@@ -14,9 +15,9 @@ from bezstab.methods import Method, closed_loop_table, reduced_table
 from bezstab.stability.arrays import ComplexArray, FloatArray
 from bezstab.stability.exact_sums import double_polynomial, double_product, double_sum, split
 from bezstab.stability.low_degrees import cubic_parts, largest_quadratic_root, quadratic_roots
-from bezstab.stability.root_finding import CHUNK, roots_of_rows
+from bezstab.stability.root_finding import CHUNK, largest_of_rows, roots_of_rows
 
-CANCELS = 1e-4  # of (b/2)^2: where the discriminant is below it, more than four digits are lost, and won back
+CANCELS = 1e-5  # of (b/2)^2: where the discriminant is below it, its root would be good to 1e-13 or less
 
 Term = tuple[int, int, float]
 """A power of alpha_hat, one of beta_hat, and the coefficient."""
@@ -58,33 +59,20 @@ def plane_pencil_of(method: Method, free: bool = False) -> PlanePencil:
 
 def coefficients_at(pencil: PlanePencil, alpha_hat: FloatArray, beta_hat: FloatArray) -> list[FloatArray]:
     """Return P's coefficients in z, ascending, each with the shape of a row of points."""
-    powers = _powers(pencil, alpha_hat, beta_hat)
-    return [_sum_of(terms, *powers) for terms in pencil.terms]
+    values = (
+        _horner([_horner([c for c, _ in row], beta_hat) for row in in_plane], alpha_hat) for in_plane in pencil.split
+    )
+    return [np.full_like(alpha_hat, value) if isinstance(value, float) else value for value in values]
 
 
-def _powers(
-    pencil: PlanePencil, alpha_hat: FloatArray, beta_hat: FloatArray
-) -> tuple[list[FloatArray], list[FloatArray]]:
-    """Return the powers of both coordinates as far as P needs them."""
-    highest = [max((term[axis] for terms in pencil.terms for term in terms), default=0) for axis in (0, 1)]
-    powers = []
-    for x, most in zip((alpha_hat, beta_hat), highest, strict=True):
-        of_x = [np.ones_like(x), x]
-        while len(of_x) <= most:
-            of_x.append(of_x[-1] * x)
-        powers.append(of_x)
-    return powers[0], powers[1]
-
-
-def _sum_of(terms: tuple[Term, ...], of_alpha: list[FloatArray], of_beta: list[FloatArray]) -> FloatArray:
-    total = np.zeros_like(of_alpha[0])
-    for i, j, c in terms:
-        if i and j:
-            total += c * (of_alpha[i] * of_beta[j])
-        elif i or j:
-            total += c * (of_alpha[i] if i else of_beta[j])
-        else:
-            total += c
+def _horner(ascending: Sequence[float | FloatArray], x: FloatArray) -> float | FloatArray:
+    """Return a polynomial's values; no pass over the points for what is zero or constant."""
+    total: float | FloatArray = 0.0
+    for coefficient in reversed(ascending):
+        if not isinstance(total, float) or total:
+            total = total * x
+        if not isinstance(coefficient, float) or coefficient:
+            total = total + coefficient
     return total
 
 
@@ -151,9 +139,7 @@ def largest_plane_root(pencil: PlanePencil, alpha_hat: FloatArray, beta_hat: Flo
 def _write_largest(pencil: PlanePencil, alpha_hat: FloatArray, beta_hat: FloatArray, into: ComplexArray) -> None:
     with np.errstate(all="ignore"):
         if pencil.degree > 3:
-            z = _roots_of_chunk(pencil, alpha_hat, beta_hat)
-            into[:] = np.take_along_axis(z, np.argmax(np.abs(z), axis=0)[np.newaxis], axis=0)[0]
-            np.abs(into.imag, out=into.imag)
+            into[:] = largest_of_rows(np.stack(coefficients_at(pencil, alpha_hat, beta_hat)))
             return
         coefficients = coefficients_at(pencil, alpha_hat, beta_hat)
         if pencil.degree == 2:

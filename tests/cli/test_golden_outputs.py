@@ -1,7 +1,8 @@
 """Every command prints the JSON that it printed before the package moved into its rooms.
 
 golden/outputs.json holds exit status, rows and written files of each command, without processor times, which no two
-runs share. Changed since, on purpose: the row on Eq. 23, of which the paper prints five entries, not six.
+runs share. Changed since, on purpose: the row on Eq. 23, of which the paper prints five entries, not six; the source of
+SIE, which says what it is not.
 """
 
 import json
@@ -63,10 +64,11 @@ TOLERANCES = (
 ADDED = (
     *("beta_hat_min", "best_reason", "searched"),
     *("bounded", "stable_for_all", "unconditional_damping_ratio", "critical_damping_limit"),
+    *("implicit", "digits", "order_position_forces", "order_velocity_forces", "group"),
     "iterations",
 )
 """Keys that rows have got since, in their place: of a region its least beta_hat, and for which steps it is stable; of a
-run its number of Newton's iterations."""
+method what it is; of a run its number of Newton's iterations."""
 
 
 def tolerance(command: str, key: str) -> Tolerance:
@@ -106,6 +108,9 @@ def test_a_command_prints_what_it_printed_before(golden: dict[str, Any], tmp_pat
     result = run(*shlex.split(command), "--format", "json")
     assert result.exit_code == golden["status"], result.stderr
     printed = json.loads(result.stdout)
+    if command == "methods":  # which lists more methods since
+        known = {row["method"] for row in golden["rows"]}
+        printed = [row for row in printed if row["method"] in known]
     assert len(printed) == len(golden["rows"])
     for row, expected in zip(printed, golden["rows"], strict=True):
         added = [key for key in ADDED if key not in expected]

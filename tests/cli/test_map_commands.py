@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from bezstab.methods import GROUPS
 from tests.cli.running import arrays, rows, run
 
 
@@ -53,6 +54,43 @@ def test_methods_lists_and_shows() -> None:
     text = run("methods", "B4").stdout
     for piece in ("175 z^3 - 81 z^2 + 15 z - 1", "11664 z^8", "0.8096847184", "11/36", "0.625883502", "1.588235294"):
         assert piece in text
+
+
+def test_the_list_of_methods_is_grouped_and_fits_80_columns() -> None:
+    lines = run("methods").stdout.splitlines()
+    assert max(map(len, lines)) <= 80
+    for group in GROUPS:
+        place = lines.index(group.heading)
+        assert lines[place - 1] == ""
+        first = place + 1 + bool(group.note)
+        assert [line.split()[0] for line in lines[first : first + len(group.methods)]] == list(group.methods)
+    assert "forest-ruth           1      3            1 (4)  3.274868243" in lines  # with and without damping
+
+
+def test_the_list_of_methods_has_a_row_for_each_with_its_group_in_json() -> None:
+    listed = rows("methods")
+    assert [(row["group"], row["method"]) for row in listed] == [
+        (group.heading, name) for group in GROUPS for name in group.methods
+    ]
+    assert {row["method"] for row in listed if row["digits"]} == {
+        *("tsit5", "forest-ruth", "yoshida4", "sdirk2", "dirk3", "gauss4")
+    }
+    assert all(row["source"] for row in listed)
+
+
+def test_sie_is_said_not_to_be_semi_implicit_euler() -> None:
+    assert "not what engines call semi-implicit Euler" in " ".join(run("methods", "--help").stdout.split()).replace(
+        "semi- implicit", "semi-implicit"
+    )
+    assert "not that of engines, which is SYM" in run("methods").stdout
+
+
+@pytest.mark.parametrize("name", ["leapfrog", "velocity-verlet"])
+def test_an_ambiguous_method_is_answered_with_a_choice(name: str) -> None:
+    result = run("poles", "--method", name, "--alpha", "1", "--beta", "1")
+    assert result.exit_code == 2
+    assert "which velocity does your feedback use?" in result.stderr
+    assert "SIE" not in result.stderr
 
 
 def test_region_needs_no_option_and_writes_two_files(tmp_path: Path) -> None:

@@ -1,4 +1,6 @@
+import math
 import re
+from collections.abc import Callable
 
 import pytest
 import sympy as sp
@@ -8,6 +10,7 @@ from bezstab.methods import (
     ALPHA_HAT,
     BETA_HAT,
     REGISTRY,
+    Method,
     Z,
     characteristic_text,
     closed_loop_polynomial,
@@ -16,7 +19,8 @@ from bezstab.methods import (
     recursion_text,
 )
 
-NAMES = [*REGISTRY, "RK4@5", "B3@5/2"]
+NAMES = [*REGISTRY, "RK4@5", "B3@5/2", "hht@1/3"]
+ROUNDED = [name for name in REGISTRY if lookup(name).digits]
 
 
 def test_paper_equations_12_14_and_17_as_text() -> None:
@@ -35,7 +39,31 @@ def test_every_kind_of_recursion() -> None:
     assert recursion_text(lookup("RK1@5")).endswith("y_{k+1} = y_k + h (5 K_1)")
 
 
-@pytest.mark.parametrize("name", NAMES)
+def test_a_second_order_scheme_is_written_with_its_powers_of_h() -> None:
+    assert recursion_text(lookup("verlet-half")) == (
+        "x_{k+1} = x_k + h v_k + h^2/2 a_k; vh = v_k + h/2 a_k; a_{k+1} = a(x_{k+1}, vh); v_{k+1} = vh + h/2 a_{k+1}"
+    )
+    assert mapping_text(lookup("verlet-half")) == "none: positions and velocities are stepped differently"
+    assert characteristic_text(lookup("verlet-half")) == "z^2 + (α̂ + β̂ - 2) z + 1 - α̂ = 0"
+    assert recursion_text(lookup("imex-euler@1/2"), latex=True) == (
+        r"a_{k+1} = a(x_k, v_{k+1}); v_{k+1} = v_k + \frac{h}{2} a_{k+1}; x_{k+1} = x_k + \frac{h}{2} v_{k+1}"
+    )
+
+
+@pytest.mark.parametrize("name", ROUNDED)
+@pytest.mark.parametrize("write", [recursion_text, mapping_text, characteristic_text])
+def test_irrational_coefficients_are_shown_as_decimals(name: str, write: Callable[[Method], str]) -> None:
+    assert not re.search(r"\d{17}", write(lookup(name)))
+
+
+def test_decimals_of_irrational_coefficients_are_those_of_the_method() -> None:
+    gamma = 1 - math.sqrt(0.5)
+    assert f"K_1 = f(y_k + h ({gamma:.10g} K_1))" in recursion_text(lookup("sdirk2"))
+    assert f"{gamma**2:.10g} h^2 s^2 - {2 * gamma:.10g} h s + 1" in mapping_text(lookup("sdirk2"))
+    assert f"({gamma**2:.10g} α̂^2 + " in characteristic_text(lookup("sdirk2"))
+
+
+@pytest.mark.parametrize("name", [name for name in NAMES if name not in ROUNDED])
 def test_the_printed_polynomial_is_the_derived_one_in_whole_numbers(name: str) -> None:
     text = characteristic_text(lookup(name)).removesuffix(" = 0").replace("α̂", "a").replace("β̂", "b").replace("^", "**")
     product = re.sub(r"(?<=[\w)]) (?=[\w(])", " * ", text)

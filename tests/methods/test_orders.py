@@ -1,5 +1,8 @@
 """Order of accuracy: the literature's orders and constants, and the order at which a nonlinear solution converges."""
 
+import math
+from collections.abc import Callable
+from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from typing import Any
@@ -10,17 +13,22 @@ import pytest
 
 from bezstab.methods import (
     Method,
+    SecondOrder,
     accuracy,
+    accuracy_by_force,
     adams_bashforth,
     adams_bashforth_moulton,
     bezier,
     characteristic_polynomial,
     lookup,
+    second_order_form,
     steps,
 )
 from bezstab.methods.orders import _trees
+from tests.methods import kinds
 from tests.methods.kinds import EXPLICIT
 from tests.reference.orders import DORMAND_PRINCE, JAMESON, adams_constant, tableau_method
+from tests.reference.second_order_steps import final_state
 from tests.reference.steppers import State, trajectory
 
 METHODS = [pytest.param(lookup(name), id=name) for name in [*EXPLICIT, "B4@1/2", "RK4@5", "ABM3@2", "SYM@3"]]
@@ -118,3 +126,94 @@ def test_rooted_trees_are_as_many_as_there_are_and_none_comes_twice() -> None:
     trees = [list(_trees(order)) for order in range(1, 9)]
     assert [len(of_this_order) for of_this_order in trees] == [1, 1, 2, 4, 9, 20, 48, 115]
     assert [len(set(of_this_order)) for of_this_order in trees] == [1, 1, 2, 4, 9, 20, 48, 115]
+
+
+# Second-order schemes and implicit ones: run by a stepper that knows nothing but their equations
+
+Motion = Callable[[float], tuple[float, float]]
+NONLINEAR: dict[str, tuple[Callable[[float, float], float], Motion]] = {
+    "both": (lambda x, v: -2 * x * v, lambda t: (1 / (1 + t), -1 / (1 + t) ** 2)),
+    "position": (lambda x, v: 2 * x**3, lambda t: (1 / (1 + t), -1 / (1 + t) ** 2)),
+    "velocity": (lambda x, v: -(v**2), lambda t: (math.log1p(t), 1 / (1 + t))),
+}
+"""Forces and exact motions: x'' = -2 x x' and x'' = 2 x^3, solved by 1/(1 + t), and x'' = -x'^2 by ln(1 + t)."""
+
+
+def measured_order(scheme: SecondOrder, kind: str, count: int) -> float:
+    """Return by how much the error after a unit of time falls where the step is halved, in powers of two."""
+    force, motion = NONLINEAR[kind]
+    errors = []
+    for steps_taken in (count, 2 * count):
+        x, v = final_state(scheme, force, motion, 1 / steps_taken, steps_taken)
+        exact_x, exact_v = motion(1.0)
+        errors.append(max(abs(x - exact_x), abs(v - exact_v)))
+    return math.log2(errors[0] / errors[1])
+
+
+@pytest.mark.parametrize("name", [*kinds.SECOND_ORDER, *kinds.IMPLICIT])
+def test_measured_orders_of_second_order_and_implicit_methods(name: str) -> None:
+    """In float64, from exact starting values; the steps are such that rounding, some 1e-14, does not show."""
+    method = lookup(name)
+    by_force = accuracy_by_force(method)
+    expected = {"both": accuracy(method)[0], "position": by_force.position[0], "velocity": by_force.velocity[0]}
+    scheme = second_order_form(method.scheme)
+    for kind, order in expected.items():
+        # the error has a term of the next order: O(h) off, 0.2 at worst with these steps
+        assert abs(measured_order(scheme, kind, count=128 if order <= 3 else 64) - order) < 0.3
+
+
+@pytest.mark.parametrize("name", [*kinds.MU_METHODS, "RK4@5"])
+def test_accuracy_by_force_is_that_of_the_coefficients_where_there_is_one_map(name: str) -> None:
+    """Where position and velocity are stepped alike both forces see the order and constant of y' = lambda y."""
+    method = lookup(name)
+    by_force = accuracy_by_force(method)
+    order, constant = accuracy(method)
+    assert by_force.velocity[0] == order
+    if method.digits is None:
+        assert by_force.velocity == (order, constant)
+        assert by_force.position == (order, constant if name != "SYM" else -constant)
+    else:
+        assert float(by_force.velocity[1]) == pytest.approx(float(constant), rel=1e-9)  # decimals of 15 digits
+
+
+@pytest.mark.parametrize(
+    ("name", "position", "velocity"),
+    [
+        ("verlet-half", (2, Fraction(1, 24)), (1, Fraction(1, 2))),
+        ("verlet-predicted", (2, Fraction(1, 24)), (2, Fraction(5, 12))),  # damping: AB2
+        ("verlet-old", (2, Fraction(1, 24)), (1, Fraction(1))),
+        ("verlet-implicit", (2, Fraction(1, 24)), (2, Fraction(-1, 12))),  # damping: the trapezoidal rule
+        ("verlet-kdk", (2, Fraction(1, 24)), (1, Fraction(1, 4))),
+        ("average-acceleration", (2, Fraction(-1, 12)), (2, Fraction(-1, 12))),
+        ("imex-euler", (1, Fraction(-1, 2)), (1, Fraction(-1, 2))),
+        ("ruth3", (3, Fraction(-1, 36)), (1, Fraction(187, 576))),
+        ("rkn4", (4, Fraction(1, 320)), (4, Fraction(1, 120))),  # damping: RK4
+    ],
+)
+def test_orders_and_constants_by_force(
+    name: str, position: tuple[int, Fraction], velocity: tuple[int, Fraction]
+) -> None:
+    by_force = accuracy_by_force(lookup(name))
+    assert (by_force.position, by_force.velocity) == (position, velocity)
+
+
+@pytest.mark.parametrize(
+    ("name", "order", "constant"),
+    [
+        *((f"bdf{n}", n, Fraction(-1, n + 1)) for n in range(1, 7)),
+        *((f"am{n}", n, adams_constant(n, -1)) for n in range(2, 7)),
+        ("implicit-midpoint", 2, Fraction(-1, 12)),
+        ("radau3", 3, Fraction(1, 72)),
+    ],
+)
+def test_orders_and_constants_of_implicit_methods_are_classical(name: str, order: int, constant: Fraction) -> None:
+    assert accuracy(lookup(name)) == (order, constant)
+
+
+@pytest.mark.parametrize(
+    ("name", "order"), [("sdirk2", 2), ("dirk3", 3), ("gauss4", 4), ("tsit5", 5), ("forest-ruth", 1)]
+)
+def test_conditions_need_hold_only_to_the_digits_of_irrational_coefficients(name: str, order: int) -> None:
+    assert accuracy(lookup(name))[0] == order
+    exact_only = replace(lookup(name), digits=None)
+    assert accuracy(exact_only)[0] < order or name == "forest-ruth"

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.methods import LinearMultistep, Method, Partitioned, PredictorCorrector, RungeKutta, steps
+from bezstab.methods import LinearMultistep, Method, Partitioned, PredictorCorrector, RungeKutta, SecondOrder, steps
 
 State = NDArray[Any]  # of any exact or floating kind of number
 Slope = Callable[[State], State]
@@ -46,6 +46,8 @@ def one_step(method: Method, f: Slope, past: Sequence[State], h: Any, number: Nu
             new_v = v + h * number(velocity.sigma[1]) * slope[1]
             new_q = q + h * (number(position.sigma[0]) * new_v + number(position.sigma[1]) * v)
             return np.array([new_q, new_v])
+        case SecondOrder():
+            raise TypeError("a second-order scheme has a stepper of its own: second_order_steps.py")
 
 
 def trajectory(method: Method, f: Slope, start: Sequence[State], h: Any, count: int, number: Number) -> list[State]:

@@ -5,8 +5,9 @@ from numpy.polynomial.polynomial import polyval2d
 from bezstab.errors import NumericalError
 from bezstab.methods import LinearMultistep, lookup
 from bezstab.stability import FloatArray, Region, pencil_of, region, spectral_radius
-from bezstab.stability.boundary_locus import Arc, bounds_of
+from bezstab.stability.boundary_locus import Arc, RimPiece, bounds_of
 from bezstab.stability.dominant_roots import dominant_root
+from bezstab.stability.line_slices import rim_radius
 from tests.methods.kinds import EXPLICIT
 from tests.reference.companion_poles import radius
 from tests.reference.sliced_areas import sliced_area
@@ -123,3 +124,34 @@ def test_a_region_of_which_a_strip_lies_far_away_is_not_empty() -> None:
     assert shape.area == pytest.approx(conjugate - near**3 / 6 + strip, rel=1e-4)  # pixels of 1/200
     assert shape.extent
     assert shape.extent[1][1] > 1e7
+
+
+def test_a_piece_of_the_rim_adds_to_the_area_what_green_says() -> None:
+    half_disc = RimPiece(2.0, 0.0, np.pi)
+    assert half_disc.area() == pytest.approx(4 * 2 / 3 * 2.0**3, rel=1e-14)  # int int 4 y over it
+    assert half_disc.plane() == pytest.approx(np.array([[-4, 4], [4, 4]]), abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("name", "intervals", "stable_angle"),
+    [
+        ("implicit-euler", [(-128, 0), (2, 128)], np.pi),
+        ("trapezoid", [(-128, 0)], np.pi / 2),
+        ("bdf2", [(-256, 0), (4, 256)], np.pi),
+    ],
+)
+def test_an_unbounded_set_is_cut_off_at_its_rim(
+    name: str, intervals: list[tuple[float, float]], stable_angle: float
+) -> None:
+    pencil = pencil_of(lookup(name))
+    bounds = bounds_of(pencil, 1.0, 1, rim_radius(pencil, 1.0))
+    assert np.array(bounds.intervals) == pytest.approx(np.array(intervals), abs=1e-9)
+    assert sum(piece.end - piece.start for piece in bounds.rim) == pytest.approx(stable_angle, abs=1e-9)
+    assert not bounds.bounded
+
+
+def test_a_bounded_set_of_an_implicit_method_does_not_reach_its_rim() -> None:
+    pencil = pencil_of(lookup("am3"))
+    bounds = bounds_of(pencil, 1.0, 1, rim_radius(pencil, 1.0))
+    assert bounds.bounded
+    assert np.array(bounds.intervals) == pytest.approx(np.array([(-6, 0)]), abs=1e-12)

@@ -16,8 +16,10 @@ from bezstab.methods import (
     closed_loop_at,
     lookup,
 )
+from bezstab.rationals import rational
 from bezstab.stability import dominant_pole, poles, spectral_radius, verdict
-from tests.methods.kinds import EXPLICIT
+from tests.methods.kinds import EXPLICIT, IMPLICIT
+from tests.reference.companion_poles import radius
 from tests.reference.fifty_digit_poles import poles_with_errors
 
 F = Fraction
@@ -195,3 +197,37 @@ def test_away_from_the_boundary_the_proof_agrees_with_the_number(name: str, a: F
 def test_overflow_is_reported_never_returned(name: str, point: tuple[float, float]) -> None:
     with contextlib.suppress(NumericalError):
         assert np.isfinite(poles(lookup(name), *point)).all()
+
+
+# Implicit methods: on P's leading coefficient a pole is infinite.
+
+NO_SOLUTION = [("implicit-euler", "-2", "1"), ("trapezoid", "-3", "2"), ("bdf2", "-3", "9/4"), ("radau3", "-4", "6")]
+
+
+@pytest.mark.parametrize(("name", "alpha_hat", "beta_hat"), NO_SOLUTION)
+def test_where_a_step_has_no_solution_a_pole_is_infinite(name: str, alpha_hat: str, beta_hat: str) -> None:
+    method, point = lookup(name), (F(alpha_hat), F(beta_hat))
+    assert closed_loop_at(method, *point)[0] == 0
+    assert verdict(method, *point) == "diverges"
+    assert spectral_radius(method, *map(float, point)) > 1e14  # infinite, or as rounding of its coefficients has it
+    for ask in (poles, dominant_pole):
+        with pytest.raises(NumericalError, match="no solution"):
+            ask(method, *map(float, point))
+
+
+@pytest.mark.parametrize("name", IMPLICIT)
+def test_implicit_poles_are_the_companions_eigenvalues(name: str) -> None:
+    random = np.random.default_rng(5)
+    alpha_hat, beta_hat = random.uniform(-1, 12, 400), random.uniform(-1, 30, 400)
+    z_abs = spectral_radius(lookup(name), alpha_hat, beta_hat)
+    assert z_abs == pytest.approx(radius(lookup(name), alpha_hat, beta_hat), rel=1e-6)  # near double poles half of them
+
+
+@pytest.mark.parametrize("name", IMPLICIT)
+def test_the_verdict_of_an_implicit_method_is_that_of_its_poles(name: str) -> None:
+    random = np.random.default_rng(6)
+    for alpha_hat, beta_hat in np.round(random.uniform(-2, 10, (40, 2)), 3):
+        proven = verdict(lookup(name), rational(str(alpha_hat)), rational(str(beta_hat)))
+        z_abs = spectral_radius(lookup(name), alpha_hat, beta_hat)
+        if abs(z_abs - 1) > 1e-9:
+            assert (proven == "converges") == (z_abs < 1)

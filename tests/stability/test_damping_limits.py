@@ -11,8 +11,23 @@ from tests.reference.companion_poles import radius
 from tests.stability.made_methods import multistep
 
 F = Fraction
-EXPLICIT_LIMITS = {"B1": 2, "B2": 1, "B3": F(6, 7), "AB3": F(6, 11), "AB4": F(3, 10), "SIE": 1, "RK2": 2}
-IMPLICIT_LIMITS = {"am3": 6, "am4": 3, "am5": F(90, 49), "am6": F(45, 38)}  # theory, section 10
+Limits = dict[str, float | Fraction]
+
+EXPLICIT_LIMITS: Limits = {
+    "B1": 2,
+    "B2": 1,
+    "B3": F(6, 7),
+    "AB3": F(6, 11),
+    "AB4": F(3, 10),
+    "SIE": 1,
+    "RK2": 2,
+}
+IMPLICIT_LIMITS: Limits = {
+    "am3": 6,
+    "am4": 3,
+    "am5": F(90, 49),
+    "am6": F(45, 38),
+}  # theory, section 10
 SECOND_ORDER_LIMITS = {
     "central-difference": 2,
     "verlet-kdk": 2,
@@ -22,7 +37,7 @@ SECOND_ORDER_LIMITS = {
     "SYM": 8**0.5 - 2,
     "imex-euler": 2 + 8**0.5,  # s^2 = 4 + 4 s
 }
-LIMITS: dict[str, float | Fraction] = {**EXPLICIT_LIMITS, **IMPLICIT_LIMITS, **SECOND_ORDER_LIMITS}
+LIMITS = {**EXPLICIT_LIMITS, **IMPLICIT_LIMITS, **SECOND_ORDER_LIMITS}
 
 RATIOS = {"bdf3": 0.069193, "bdf4": 0.286497, "bdf5": 0.617863, "bdf6": 0.951917}
 

@@ -15,7 +15,7 @@ from bezstab.stability import (
 )
 from bezstab.stability.dominant_roots import _follow, _twins
 from bezstab.stability.root_finding import STRIDE
-from tests.methods.kinds import EXPLICIT
+from tests.methods.kinds import EXPLICIT, IMPLICIT
 
 
 @pytest.mark.parametrize("name", EXPLICIT)
@@ -74,3 +74,13 @@ def test_newtons_starts_are_off_by_the_square_of_the_spacing(name: str, monkeypa
         every = roots_in_z(pencil, blocks.ravel())
         errors.append(np.abs(found.ravel() - every).min(axis=0).max())
     assert errors[0] / errors[1] == pytest.approx(4, rel=0.05)
+
+
+@pytest.mark.parametrize("name", IMPLICIT)
+def test_the_pole_of_an_implicit_method_is_followed_past_where_one_is_infinite(name: str) -> None:
+    method = lookup(name)
+    for low, high in (((-9, -6), (9, 12)), ((0, 0), (40, 900))):  # infinite at positive mu; far outside
+        alpha_hat, beta_hat = np.linspace(low, high, 120).T
+        grid = (alpha_hat, beta_hat[:, np.newaxis])
+        every = np.abs(poles(method, *grid)).max(axis=-1)
+        assert np.allclose(spectral_radius(method, *grid), every, rtol=1e-10, atol=0)

@@ -9,7 +9,7 @@ import pytest
 
 from bezstab.methods import lookup
 from bezstab.stability import pencil_of
-from bezstab.stability.line_slices import all_inside, mu_bound, real_events, slices
+from bezstab.stability.line_slices import RIM, all_inside, mu_bound, real_events, rim_radius, slices
 from bezstab.stability.self_checks import proven_inside
 from tests.reference.slice_integral import slice_area
 
@@ -41,3 +41,32 @@ def test_schurs_recursion_agrees_with_the_roots() -> None:
     mu = np.random.default_rng(2).uniform(-1, 0.3, 200) + 1j * np.random.default_rng(3).uniform(0, 1, 200)
     largest = [np.abs(np.roots([1, *(pencil.table[::-1] @ [1, m])[1:]])).max() for m in mu]
     assert (all_inside(pencil, mu, 0.9) == (np.array(largest) < 0.9)).all()
+
+
+IMPLICIT_NAMES = ["implicit-euler", "trapezoid", "bdf3", "am4", "radau3", "gauss4"]
+
+
+@pytest.mark.parametrize("name", IMPLICIT_NAMES)
+@pytest.mark.parametrize("level", [1.0, 0.8])
+def test_slices_of_an_implicit_method_are_stable_where_proven_within_the_rim(name: str, level: float) -> None:
+    pencil = pencil_of(lookup(name))
+    bound, events = mu_bound(pencil, level), real_events(pencil, level)
+    q = np.array([-2.0, -0.3, 0.2, 1.7, 9.3, 55.0])
+    found = slices(pencil, level, q, events, bound)
+    for line, (ends, stable) in enumerate(zip(found.ends, found.stable, strict=True)):
+        for (low, high), expected in zip(pairwise(ends[np.isfinite(ends)]), stable, strict=False):
+            middle = (low + high) / 2
+            if high - low > 1e-6 * bound and abs(middle) < 0.9 * bound:
+                assert proven_inside(pencil, level, Fraction(middle), Fraction(q[line])) == expected
+
+
+@pytest.mark.parametrize("name", IMPLICIT_NAMES)
+def test_beyond_the_features_of_an_implicit_method_the_verdict_depends_on_the_direction_alone(name: str) -> None:
+    pencil = pencil_of(lookup(name))
+    far = rim_radius(pencil, 1.0) / RIM * np.array([[4.0], [16.0], [64.0]])
+    inside = all_inside(pencil, far * np.exp(1j * np.linspace(0.01, np.pi - 0.01, 101)), 1.0)
+    half_plane = np.cos(np.linspace(0.01, np.pi - 0.01, 101)) < -1e-9
+    off_axis = np.abs(np.linspace(0.01, np.pi - 0.01, 101) - np.pi / 2) > 0.01
+    expected = {"trapezoid": half_plane, "gauss4": half_plane, "am4": np.full(101, False)}
+    for row in inside:
+        assert (row == expected.get(name, np.full(101, True)))[off_axis].all()

@@ -7,7 +7,7 @@ from numpy.polynomial.polynomial import polyval2d
 from bezstab.errors import NumericalError
 from bezstab.methods import Method, RungeKutta, lookup, steps
 from bezstab.stability import pencil_of, poles, roots_in_z
-from bezstab.stability.pencils import roots_in_mu
+from bezstab.stability.pencils import has_infinite_root, moduli_in_z, roots_in_mu
 from tests.methods.kinds import EXPLICIT
 
 NAMES = [*EXPLICIT, "RK4@5", "SYM@1/3"]
@@ -65,3 +65,33 @@ def test_coefficients_beyond_float64_are_reported() -> None:
     method = Method("huge", RungeKutta(((Fraction(0),) * 2, (huge, Fraction(0))), (1 - huge, huge)), "constructed")
     with pytest.raises(NumericalError, match="huge: products of its coefficients"):
         poles(method, 0.5, 0.1)
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        *[("implicit-euler", [1]), ("trapezoid", [2]), ("bdf2", [1.5]), ("B4", []), ("RK4", [])],
+        *[("radau3", [2 - 2**0.5 * 1j, 2 + 2**0.5 * 1j]), ("gauss4", [3 - 3**0.5 * 1j, 3 + 3**0.5 * 1j])],
+    ],
+)
+def test_a_root_is_infinite_at_the_zeros_of_the_leading_coefficient(name: str, expected: list[complex]) -> None:
+    pencil = pencil_of(lookup(name))
+    assert pencil.implicit == bool(expected)
+    found = np.sort_complex(pencil.infinite_at)
+    assert found == pytest.approx(np.array(expected), abs=1e-12)
+    assert has_infinite_root(pencil, found).all()
+    assert not has_infinite_root(pencil, found + 1e-6).any()
+
+
+def test_moduli_are_infinite_where_a_root_is() -> None:
+    moduli = moduli_in_z(pencil_of(lookup("bdf2")), np.array([1.5, 1.4], complex))
+    assert np.isinf(moduli[:, 0]).all()
+    assert np.isfinite(moduli[:, 1]).all()
+
+
+def test_branch_points_of_a_rational_function_are_its_values_where_it_is_flat_and_at_infinity() -> None:
+    # R = (1 + mu/3) / (1 - 2 mu/3 + mu^2/6): R' = 0 at mu^2 + 6 mu - 18 = 0, R(infinity) = 0
+    flat = np.array([-3 + 27**0.5, -3 - 27**0.5])
+    values = (1 + flat / 3) / (1 - 2 * flat / 3 + flat**2 / 6)
+    found = np.sort(pencil_of(lookup("radau3")).branch_points_in_z.real)
+    assert found == pytest.approx(np.sort([*values, 0]), abs=1e-12)

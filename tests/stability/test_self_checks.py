@@ -11,6 +11,7 @@ from bezstab.errors import NumericalError
 from bezstab.methods import Method, lookup
 from bezstab.stability import boundary_locus, pencil_of, region, regions
 from bezstab.stability.boundary_locus import Arc, Bounds, bounds_of
+from bezstab.stability.line_slices import rim_radius
 from bezstab.stability.locus_tracks import Track, tracks
 from bezstab.stability.pencils import Pencil
 from bezstab.stability.self_checks import check_region, proven_inside
@@ -41,8 +42,8 @@ def identify(case: object) -> str:
 def with_bounds(monkeypatch: pytest.MonkeyPatch, wrong: Wrong, finest: int) -> None:
     """Have regions made from wrong bounds, up to a sampling that is so many times finer."""
 
-    def made_wrong(pencil: Pencil, level: float, finer: int) -> Bounds:
-        right = bounds_of(pencil, level, finer)
+    def made_wrong(pencil: Pencil, level: float, finer: int, radius: float) -> Bounds:
+        right = bounds_of(pencil, level, finer, radius)
         return wrong(right) if finer <= finest else right
 
     monkeypatch.setattr(regions, "bounds_of", made_wrong)
@@ -134,3 +135,34 @@ def test_inside_is_proven_on_either_side_of_an_end() -> None:
     pencil = pencil_of(lookup("AB2"))
     assert proven_inside(pencil, 1.0, 2 * (1 - beside), (1 - beside) ** 2)
     assert not proven_inside(pencil, 1.0, 2 * (1 + beside), (1 + beside) ** 2)
+
+
+UNBOUNDED = [lookup(name) for name in ("implicit-euler", "trapezoid", "bdf3", "radau3")]
+
+
+def cut_off(method: Method) -> tuple[Pencil, Bounds]:
+    pencil = pencil_of(method)
+    return pencil, bounds_of(pencil, 1.0, 1, rim_radius(pencil, 1.0))
+
+
+@pytest.mark.parametrize("method", UNBOUNDED, ids=identify)
+def test_an_unbounded_region_without_its_rim_is_no_answer(method: Method) -> None:
+    pencil, bounds = cut_off(method)
+    with pytest.raises(NumericalError):
+        check_region(pencil, 1.0, replace(bounds, intervals=bounds.intervals[:-1]), 1.0, [])
+
+
+@pytest.mark.parametrize("method", UNBOUNDED, ids=identify)
+def test_an_unbounded_region_without_an_arc_is_no_answer(method: Method, monkeypatch: pytest.MonkeyPatch) -> None:
+    def without_arcs(pencil: Pencil, level: float, finer: int, radius: float) -> Bounds:
+        return replace(bounds_of(pencil, level, finer, radius), arcs=())
+
+    monkeypatch.setattr(regions, "bounds_of", without_arcs)
+    region.cache_clear()
+    with pytest.raises(NumericalError):
+        region(method)
+    region.cache_clear()
+
+
+def test_where_a_pole_is_infinite_nothing_is_inside() -> None:
+    assert not proven_inside(pencil_of(lookup("implicit-euler")), 1.0, Fraction(-2), Fraction(1))

@@ -1,0 +1,129 @@
+"""Recipes as text: a linear grammar, exact, and one line with equation and word for everything else."""
+
+from fractions import Fraction
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bezstab.errors import InputError
+from bezstab.methods import Assignment, Evaluation, Quantity, recipe
+
+F = Fraction
+VERLET = {
+    "x1": "x0 + v0 + 1/2 a0",
+    "vh": "v0 + 1/2 a0",
+    "a1": "acceleration(x1, vh)",
+    "v1": "vh + 1/2 a1",
+}  # fmt: skip
+
+
+def combination(text: str) -> dict[str, Fraction]:
+    """Return what a helper that nobody needs is equal to."""
+    equation = recipe(VERLET | {"w": text}).equations[-1]
+    assert isinstance(equation, Assignment)
+    return {str(quantity): coefficient for coefficient, quantity in equation.value}
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("x0", {"x0": 1}),
+        ("-x0", {"x0": -1}),
+        ("+ x0 - v0", {"x0": 1, "v0": -1}),
+        ("1/2 a0", {"a0": F(1, 2)}),
+        ("1/2*a0", {"a0": F(1, 2)}),
+        ("0.1a0", {"a0": F(1, 10)}),
+        ("2. a0", {"a0": 2}),
+        ("a0/2", {"a0": F(1, 2)}),
+        ("3 a0 / 2 / 5", {"a0": F(3, 10)}),
+        ("2 (x1 - x0)", {"x1": 2, "x0": -2}),
+        ("(x1 - x0)/2", {"x1": F(1, 2), "x0": F(-1, 2)}),
+        ("1/2 (x0 - 1/3 (v0 + a0))", {"x0": F(1, 2), "v0": F(-1, 6), "a0": F(-1, 6)}),
+        ("x0 + x0", {"x0": 2}),
+        ("x0 - x0 + v0", {"v0": 1}),
+        ("0 x0", {}),
+        ("x[-1] + v[ 0 ] + a[1]", {"x[-1]": 1, "v0": 1, "a1": 1}),
+        ("vh + vh[0] + vh[-1]", {"vh": 1, "vh[0]": 1, "vh[-1]": 1}),
+        ("  x0+v0  ", {"x0": 1, "v0": 1}),
+        ("0.3333333333333333333333333333333333333333 a0", {"a0": F(int("3" * 40), 10**40)}),
+    ],
+)
+def test_sums_are_read_exactly(text: str, expected: dict[str, Fraction]) -> None:
+    assert combination(text) == expected
+
+
+def test_an_evaluation_has_a_position_and_a_velocity() -> None:
+    equation = recipe(VERLET | {"b": "acceleration(1/2 x0 + 1/2 x1, v0 + a0)"}).equations[-1]
+    assert equation == Evaluation(
+        Quantity("b", 1),
+        position=((F(1, 2), Quantity("x", 0)), (F(1, 2), Quantity("x", 1))),
+        velocity=((F(1), Quantity("v", 0)), (F(1), Quantity("a", 0))),
+    )
+
+
+def test_a_result_may_be_written_with_brackets() -> None:
+    bracketed = {"x[1]": VERLET["x1"], "vh[1]": VERLET["vh"], "a[1]": VERLET["a1"], "v[1]": VERLET["v1"]}
+    assert recipe(bracketed) == recipe(VERLET)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "w = ...: found the end, expected a quantity such as x0, v1 or a helper's name"),
+        ("1", "w = ...: found the end, expected a quantity such as x0, v1 or a helper's name"),
+        ("x0 +", "w = ...: found the end, expected a quantity such as x0, v1 or a helper's name"),
+        ("x0 v0", "w = ...: found 'v0', expected +, - or the end"),
+        ("x0 * v0", "w = ...: found '*', expected +, - or the end"),
+        ("x0 - - v0", "w = ...: found '-', expected a quantity such as x0, v1 or a helper's name"),
+        ("2 3 x0", "w = ...: found '3', expected a quantity such as x0, v1 or a helper's name"),
+        ("x0 / v0", "w = ...: found 'v0', expected a number other than 0 to divide by"),
+        ("x0 / 0", "w = ...: found '0', expected a number other than 0 to divide by"),
+        ("x0 / 0.0", "w = ...: found '0.0', expected a number other than 0 to divide by"),
+        ("1/0 x0", "w = ...: found '1/0', expected a number like 1/2 or 0.5"),
+        ("(x0", "w = ...: found the end, expected ')'"),
+        ("x0)", "w = ...: found ')', expected +, - or the end"),
+        ("x", "w = ...: found 'x', expected a step with it, such as x0, x1 or x[-1]"),
+        ("x0[1]", "w = ...: found 'x0[1]', expected x[1]"),
+        ("x0; v0", "w = ...: found ';', expected a sum of numbers times quantities"),
+        ("x0 = v0", "w = ...: found '=', expected a sum of numbers times quantities"),
+        ("sin(x0)", "w = ...: found '(', expected +, - or the end"),
+        ("x0.real", "w = ...: found '.', expected a sum of numbers times quantities"),
+        ("x0\nv0", "w = ...: found 'v0', expected +, - or the end"),
+        ("lambda: 0", "w = ...: found ':', expected a sum of numbers times quantities"),
+        ("acceleration(x0)", "w = ...: found ')', expected ','"),
+        ("acceleration(x0, v0", "w = ...: found the end, expected ')'"),
+        ("acceleration(x0, v0) + x0", "w = ...: found '+', expected +, - or the end"),
+        (
+            "2 acceleration(x0, v0)",
+            "w = ...: found 'acceleration', expected a sum: acceleration(position, velocity) stands alone on the right",
+        ),
+    ],
+)
+def test_what_is_not_a_sum_is_refused_with_equation_and_word(text: str, message: str) -> None:
+    with pytest.raises(InputError) as caught:
+        recipe(VERLET | {"w": text})
+    assert str(caught.value) == message
+
+
+@pytest.mark.parametrize("result", ["", "2", "x", "w v", "acceleration", "w +", "x0[0]", "a\nb", "é", "w" * 31, "(w)"])
+def test_what_is_no_quantity_is_no_result(result: str) -> None:
+    with pytest.raises(InputError) as caught:
+        recipe(VERLET | {result: "x0"})
+    assert len(str(caught.value).splitlines()) == 1
+    assert len(str(caught.value)) < 200
+
+
+ANYTHING = st.text(max_size=60) | st.text(alphabet="xva01[]-+*/(). ,acceleration", max_size=80)
+
+
+@settings(deadline=None, max_examples=80)
+@given(ANYTHING, ANYTHING)
+def test_any_text_is_a_scheme_or_one_short_line(result: str, text: str) -> None:
+    try:
+        recipe(VERLET | {result: text})
+    except InputError as error:
+        message = str(error)
+        assert len(message.splitlines()) <= 1
+        assert len(message) < 300
+        assert message.isprintable()

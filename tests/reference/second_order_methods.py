@@ -1,0 +1,57 @@
+"""Second-order schemes as text, and the region's area and poles of any P by brute force."""
+
+import numpy as np
+
+from bezstab.methods import Method, closed_loop_table, lookup, recipe, second_order_form
+from bezstab.stability import ComplexArray, FloatArray
+
+RECIPES = {
+    "half": {"x1": "x0 + v0 + 1/2 a0", "vh": "v0 + 1/2 a0", "a1": "acceleration(x1, vh)", "v1": "vh + 1/2 a1"},
+    "predicted": {
+        "x1": "x0 + v0 + 1/2 a0",
+        "vp": "v0 + a0",
+        "a1": "acceleration(x1, vp)",
+        "v1": "v0 + 1/2 a0 + 1/2 a1",
+    },
+    "old": {"x1": "x0 + v0 + 1/2 a0", "a1": "acceleration(x1, v0)", "v1": "v0 + 1/2 a0 + 1/2 a1"},
+    "implicit": {"x1": "x0 + v0 + 1/2 a0", "a1": "acceleration(x1, v1)", "v1": "v0 + 1/2 a0 + 1/2 a1"},
+    "kdk": {
+        "a0": "acceleration(x0, v0)",
+        "vh": "v0 + 1/2 a0",
+        "x1": "x0 + vh",
+        "b1": "acceleration(x1, vh)",
+        "v1": "vh + 1/2 b1",
+    },
+    "imex": {"a1": "acceleration(x0, v1)", "v1": "v0 + a1", "x1": "x0 + v1"},
+    "implicit euler": {"a1": "acceleration(x1, v1)", "v1": "v0 + a1", "x1": "x0 + v1"},
+}
+
+
+def second_order(name: str) -> Method:
+    """Return one of the recipes as a method."""
+    return Method(name, recipe(RECIPES[name]), "")
+
+
+def newmark(by_position: str, rest: str) -> Method:
+    """Return Newmark's method with g = 1/2: the share of the new acceleration in the position, and that of the old."""
+    position = f"x0 + v0 + {rest} a0 + {by_position} a1"
+    equations = {"x1": position, "v1": "v0 + 1/2 a0 + 1/2 a1", "a1": "acceleration(x1, v1)"}
+    return Method(f"newmark {by_position}", recipe(equations), "")
+
+
+def as_second_order(name: str) -> Method:
+    """Return a registered method written as a second-order scheme."""
+    method = lookup(name)
+    return Method(f"{name} as x, v, a", second_order_form(method.scheme), "", method.step_multiple)
+
+
+def companion_poles(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
+    """Return P's roots as eigenvalues of companion matrices; shape of the points plus an axis for the roots."""
+    table = np.array(closed_loop_table(method), float)
+    coefficients = [np.polynomial.polynomial.polyval2d(alpha_hat, beta_hat, in_plane) for in_plane in table]
+    n = len(coefficients) - 1
+    companion = np.zeros((*np.shape(alpha_hat), n, n))
+    companion[..., range(1, n), range(n - 1)] = 1
+    for k in range(n):
+        companion[..., k, -1] = -coefficients[k] / coefficients[n]
+    return np.linalg.eigvals(companion).astype(complex)

@@ -1,0 +1,93 @@
+import numpy as np
+import pytest
+
+from bezstab.methods import Method, lookup
+from bezstab.stability import best_point, falls_towards, spectral_radius
+from bezstab.stability.plane_best_points import critical_point
+from bezstab.stability.plane_pencils import plane_pencil_of
+from tests.reference.second_order_methods import as_second_order, companion_poles, newmark, second_order
+
+DEADBEAT = {
+    "half": (1, 1),  # z^2 = 0 where 1 - alpha = 0 and alpha + beta = 2
+    "implicit": (2, 2),  # alpha = 2, 2 beta = 4
+    "kdk": (2, 2),  # (1 - alpha / 2)^2 = 0
+}
+
+
+@pytest.mark.parametrize("name", DEADBEAT)
+def test_all_poles_are_zero_where_both_coefficients_vanish(name: str) -> None:
+    best = best_point(second_order(name))
+    assert best
+    assert best.z_abs == 0
+    assert (best.alpha_hat, best.beta_hat) == pytest.approx(DEADBEAT[name], abs=1e-12)
+
+
+def test_average_acceleration_is_deadbeat_at_four() -> None:
+    best = best_point(newmark("1/4", "1/4"))
+    assert best
+    assert (best.alpha_hat, best.beta_hat) == pytest.approx((4, 4), abs=1e-12)
+
+
+def test_with_the_old_velocity_three_poles_meet() -> None:
+    # 2 z^3 + (a + 2b - 4) z^2 + 2 z - a = 2 (z - p)^3 asks for 3 p^2 = 1, a = 2 p^3, 2 b = 4 - a - 6 p
+    best = best_point(second_order("old"))
+    assert best
+    p = 3**-0.5
+    assert best.z_abs == pytest.approx(p, rel=1e-12)
+    assert (best.alpha_hat, best.beta_hat) == pytest.approx((2 * p**3, 2 - p**3 - 3 * p), rel=1e-11)
+    assert best.multiplicity == 3
+
+
+def test_with_the_predicted_velocity_three_poles_meet_at_a_negative_place() -> None:
+    best = best_point(second_order("predicted"))
+    assert best
+    assert best.multiplicity == 3
+    assert best.meeting[0].real < 0
+
+
+@pytest.mark.parametrize("name", ["SYM", "RK2", "SIE", "RK4"])
+def test_a_method_of_mu_written_as_second_order_has_the_same_best_point(name: str) -> None:
+    by_plane, by_mu = best_point(as_second_order(name)), best_point(lookup(name))
+    assert by_plane
+    assert by_mu
+    places = [(by_mu.alpha_hat, by_mu.beta_hat), *by_mu.elsewhere]
+    assert min(np.hypot(by_plane.alpha_hat - a, by_plane.beta_hat - b) for a, b in places) < 1e-7
+
+
+@pytest.mark.parametrize(
+    ("method", "limit"),
+    [
+        (second_order("implicit euler"), 0),
+        (second_order("imex"), 0),
+        (lookup("implicit-euler"), 0),
+        (lookup("bdf2"), 0),
+        (lookup("bdf4"), 0),
+    ],
+    ids=str,
+)
+def test_some_have_no_best_point_because_the_modulus_falls_on(method: Method, limit: float) -> None:
+    assert best_point(method) is None
+    assert falls_towards(method) == limit
+
+
+def test_what_has_a_best_point_falls_towards_nothing() -> None:
+    assert falls_towards(second_order("half")) is None
+    assert falls_towards(lookup("trapezoid")) is None
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["predicted", "old", "kdk", "implicit", "half"])
+def test_no_point_of_a_fine_grid_is_better(name: str) -> None:
+    best = best_point(second_order(name))
+    assert best
+    alpha_hat, beta_hat = np.meshgrid(np.linspace(1e-3, 5, 500), np.linspace(1e-3, 5, 500))
+    z_abs = np.abs(companion_poles(second_order(name), alpha_hat, beta_hat)).max(axis=-1)
+    assert z_abs.min() >= best.z_abs
+
+
+@pytest.mark.parametrize(("name", "place"), [("half", (1, 1)), ("old", (2 * 3**-1.5, 2 - 3**-1.5 - 3**0.5))])
+def test_the_double_pole_is_followed_down_to_where_it_ends(name: str, place: tuple[float, float]) -> None:
+    found = critical_point(plane_pencil_of(second_order(name)), (8.0, 16.0))
+    assert found == pytest.approx(place, rel=1e-6)
+    z_abs = float(spectral_radius(second_order(name), *found)) if found else np.nan
+    assert z_abs < 0.578

@@ -1,0 +1,98 @@
+import numpy as np
+import pytest
+
+from bezstab.methods import lookup, plane_strips
+from bezstab.rationals import exact
+from bezstab.stability import Region, region
+from bezstab.stability.plane_cells import Edges, plane_shape, tanh_sinh
+from tests.reference.enclosed_points import enclosed
+from tests.reference.second_order_methods import as_second_order, companion_poles, newmark, second_order
+
+
+@pytest.mark.parametrize("level", [1.0, 0.9])
+@pytest.mark.parametrize("name", ["SYM", "RK2", "B2", "AB2", "SIE", "B3"])
+def test_a_method_of_mu_written_as_second_order_has_the_same_region(name: str, level: float) -> None:
+    by_strips, by_locus = region(as_second_order(name), level), region(lookup(name), level)
+    assert by_strips.area == pytest.approx(by_locus.area, rel=1e-12)  # what either route promises
+    assert np.array(by_strips.extent) == pytest.approx(np.array(by_locus.extent), rel=1e-11, abs=1e-12)
+    assert len(by_strips.boundary) == len(by_locus.boundary)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("level", [1.0, 0.9, 0.61])
+@pytest.mark.parametrize("name", ["RK3", "RK4", "B4", "AB3", "AB4", "ABM2", "ABM3", "ABM4", "B6"])
+def test_longer_methods_of_mu_have_the_same_region_as_well(name: str, level: float) -> None:
+    by_strips, by_locus = region(as_second_order(name), level), region(lookup(name), level)
+    assert by_strips.area == pytest.approx(by_locus.area, rel=2e-11, abs=1e-12)  # of the locus: 1e-12 absolute
+
+
+AREAS = {("half", 1.0): 4, ("half", 0.9): 0.9**2 * 3.6, ("predicted", 1.0): 2}
+
+
+@pytest.mark.parametrize(("name", "level"), AREAS)
+def test_areas_that_are_known(name: str, level: float) -> None:
+    assert region(second_order(name), level).area == pytest.approx(AREAS[name, level], rel=1e-13)
+
+
+def test_where_the_feedback_sees_the_old_velocity_half_the_region_needs_negative_damping() -> None:
+    stable = region(second_order("old"))
+    assert stable.area == pytest.approx(4, rel=1e-13)  # two triangles that meet at beta_hat = 2
+    assert np.array(stable.extent) == pytest.approx(np.array([(-2, 2), (0, 4)]))
+    alpha_hat, beta_hat = np.meshgrid(np.linspace(0.01, 3, 60), np.linspace(0.01, 3.99, 80))
+    expected = alpha_hat < 2 - beta_hat
+    clear = np.abs(alpha_hat + beta_hat - 2) > 1e-6
+    assert (stable.contains(alpha_hat, beta_hat) == expected)[clear].all()
+
+
+LIMITS = {("0", "1/2"): 4, ("1/12", "5/12"): 6, ("1/6", "1/3"): 12}
+
+
+@pytest.mark.parametrize("shares", LIMITS, ids=str)
+def test_newmarks_limits_hold_for_any_damping(shares: tuple[str, str]) -> None:
+    stable = region(newmark(*shares))
+    assert not stable.bounded
+    assert stable.area is None
+    assert stable.extent == ((0, np.inf), (0, LIMITS[shares]))
+
+
+def test_average_acceleration_is_stable_in_the_quadrant_and_nowhere_else() -> None:
+    stable = region(newmark("1/4", "1/4"))
+    assert stable.extent == ((0, np.inf), (0, np.inf))
+
+
+def test_implicit_in_the_velocity_alone_the_boundary_is_a_line() -> None:
+    stable = region(second_order("imex"))
+    edges = np.concatenate(stable.boundary)
+    right = edges[(edges[:, 0] > 0) & (edges[:, 1] > 1e-9)]
+    assert np.abs(right[:, 1] - 4 - 2 * right[:, 0]).max() < 1e-12
+
+
+def level_region(name: str, level: float) -> Region:
+    """Return the region of one of the recipes."""
+    return region(second_order(name), level)
+
+
+@pytest.mark.parametrize(("name", "level"), [("predicted", 0.9), ("kdk", 0.9), ("implicit", 0.5), ("old", 0.9)])
+def test_the_curves_enclose_what_eigenvalues_say(name: str, level: float) -> None:
+    stable = level_region(name, level)
+    assert stable.extent
+    (left, right), (low, high) = stable.extent
+    generator = np.random.default_rng(3)
+    points = generator.uniform((left, low), (right, high), (4000, 2))
+    z_abs = np.abs(companion_poles(stable.method, points[:, 0], points[:, 1])).max(axis=-1)
+    clear = np.abs(z_abs - level) > 1e-3  # chords between drawn points
+    inside = enclosed(stable.boundary, points)
+    assert (inside == (z_abs < level))[clear].all()
+
+
+def test_an_empty_region_has_no_shape() -> None:
+    strips = plane_strips(second_order("old"), exact(0.5))
+    assert strips
+    assert plane_shape(strips, Edges(strips), "old") is None
+    assert region(second_order("old"), 0.5).extent is None
+
+
+@pytest.mark.parametrize("power", [0.5, 1 / 3, 1.5, -0.25])
+def test_the_quadrature_does_not_mind_powers_at_the_ends(power: float) -> None:
+    x, weights = tanh_sinh(0.0, 2.0)
+    assert weights @ x**power == pytest.approx(2 ** (power + 1) / (power + 1), rel=1e-12)

@@ -1,0 +1,62 @@
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+import pytest
+
+from bezstab.errors import NumericalError
+from bezstab.methods import Method, closed_loop_at
+from bezstab.stability import dominant_pole, poles, spectral_radius, verdict
+from bezstab.stability.plane_pencils import plane_pencil_of
+from tests.reference.second_order_methods import RECIPES, as_second_order, companion_poles, newmark, second_order
+
+METHODS = [second_order(name) for name in RECIPES] + [as_second_order(name) for name in ("SYM", "B2", "RK4", "AB3")]
+
+
+@pytest.mark.parametrize("method", METHODS, ids=str)
+def test_poles_are_eigenvalues_of_the_companion(method: Method) -> None:
+    alpha_hat, beta_hat = np.meshgrid(np.linspace(0.03, 2.1, 23), np.linspace(0.02, 2.3, 29))
+    z = np.sort(np.abs(poles(method, alpha_hat, beta_hat)), axis=-1)
+    expected = np.sort(np.abs(companion_poles(method, alpha_hat, beta_hat)), axis=-1)
+    assert np.abs(z - expected).max() < 1e-6  # eigenvalues keep half the digits of double poles
+    assert np.median(np.abs(z - expected)) < 1e-14
+    largest = np.abs(poles(method, alpha_hat, beta_hat)[..., 0])
+    assert np.abs(spectral_radius(method, alpha_hat, beta_hat) - largest).max() < 1e-13
+
+
+@pytest.mark.parametrize("method", METHODS, ids=str)
+def test_dominant_poles_are_right_to_fifty_digits_but_for_their_condition(method: Method) -> None:
+    generator = np.random.default_rng(5)
+    for alpha_hat, beta_hat in generator.uniform(0.01, 2, (25, 2)):
+        with mpmath.workdps(50):
+            exact = closed_loop_at(method, Fraction(alpha_hat), Fraction(beta_hat))
+            roots = mpmath.polyroots(
+                [mpmath.mpf(c.numerator) / c.denominator for c in exact], maxsteps=500, extraprec=200
+            )
+            z = dominant_pole(method, alpha_hat, beta_hat)
+            nearest = min(roots, key=lambda root: abs(root - mpmath.mpc(complex(z))))
+            gap = min((abs(nearest - other) for other in roots if other is not nearest), default=1)
+            # rounding of the coefficients, times the condition of a root among others
+            assert abs(nearest - mpmath.mpc(complex(z))) < 1e-13 * max(1, abs(nearest)) / min(1, gap) ** 2
+
+
+def test_where_two_poles_meet_no_digits_are_lost() -> None:
+    # the half-step recipe is SYM: (alpha + beta - 2)^2 = 4 (1 - alpha); one digit of alpha more parts the poles by 1e-8
+    method = second_order("half")
+    alpha_hat = Fraction(3, 4)
+    z = poles(method, 0.75, 0.25)  # (1 - 2)^2 = 4 / 4
+    assert np.abs(z - 0.5).max() == 0
+    assert verdict(method, alpha_hat, Fraction(1, 4)) == "converges"
+
+
+def test_where_an_implicit_step_has_no_solution_a_pole_is_infinite() -> None:
+    method = second_order("implicit euler")  # leading coefficient 1 + alpha + beta
+    assert np.isinf(spectral_radius(method, -2.0, 1.0))
+    assert verdict(method, Fraction(-2), Fraction(1)) == "diverges"
+    with pytest.raises(NumericalError, match="no solution"):
+        dominant_pole(method, -2.0, 1.0)
+
+
+def test_a_pencil_knows_its_degree_and_name() -> None:
+    assert plane_pencil_of(newmark("1/4", "1/4")).degree == 2
+    assert repr(plane_pencil_of(second_order("old"))) == "PlanePencil(old)"
