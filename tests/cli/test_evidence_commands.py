@@ -97,7 +97,7 @@ def test_simulate_shows_the_iterations_of_an_implicit_method_only() -> None:
     iterations, evaluations = row["iterations"], row["evaluations"]
     assert isinstance(iterations, int)
     assert isinstance(evaluations, int)
-    assert 40 <= iterations < evaluations
+    assert 60 <= iterations < evaluations
     (row,) = rows(*common, "--method", "verlet-half")
     assert row["iterations"] is None
 
