@@ -55,7 +55,10 @@ def characteristic_polynomial(method: Method) -> sp.Poly:
             # det(I - mu A + mu 1 b^T) / det(I - mu A) = R(mu) (Hairer & Wanner II, Proposition IV.3.2)
             denominator = sp.eye(len(weights)) - MU * sp.Matrix(tableau)
             numerator = denominator + MU * sp.ones(len(weights), 1) * sp.Matrix([weights])
-            expression = Z * _determinant(denominator) - _determinant(numerator)
+            (above, below) = (sp.Poly(_determinant(each), MU, domain="QQ") for each in (numerator, denominator))
+            unused = sp.gcd(above, below)  # a factor of stages that the step does not depend on
+            above, below = (each.quo(unused) * unused.eval(0) for each in (above, below))
+            expression = Z * below.as_expr() - above.as_expr()
         case Partitioned(velocity=velocity):
             expression = multistep_polynomial(velocity)
         case SecondOrder():

@@ -114,7 +114,7 @@ def sampled_angles(pencil: Pencil, level: float, finer: int) -> FloatArray:
     towards_ends = np.geomspace(1e-5, 1e-2, 30 * finer)  # near a kink S_r is a lens whose arcs lie close to 0 and pi
     even = np.linspace(1e-2, np.pi - 1e-2, SAMPLES * finer)
     points = pencil.branch_points_in_z
-    at_branch_points = np.angle(points[points.imag >= 0])
+    at_branch_points = np.abs(np.angle(points[points.imag >= 0]))  # -0j counts as on the axis from below
     theta = np.unique(np.concatenate([[0], towards_ends, even, np.pi - towards_ends, [np.pi], at_branch_points]))
     theta = theta[np.append(True, np.diff(theta) > SHORTEST)]
     while True:

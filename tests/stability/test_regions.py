@@ -523,3 +523,28 @@ def test_a_map_passes_points_at_which_an_implicit_step_has_no_solution() -> None
     regular = np.isfinite(z_abs)
     alpha_hat, beta_hat = (grid[regular] for grid in np.meshgrid(axis, axis))
     assert z_abs[regular] == pytest.approx(radius(lookup("implicit-euler"), alpha_hat, beta_hat), rel=1e-9)
+
+
+def implicit_runge_kutta(rows: str, weights: str) -> Method:
+    tableau = tuple(tuple(map(rational, row.split())) for row in rows.split(";"))
+    return Method("made", RungeKutta(tableau, tuple(map(rational, weights.split()))), "")
+
+
+@pytest.mark.parametrize(
+    ("rows", "weights"),
+    [
+        ("0 0;1 1", "-1 2"),
+        pytest.param("1/6 0;3/5 1/2", "-1/2 3/2", marks=pytest.mark.slow),
+        pytest.param("-1/6 0 0;-1/4 0 0;3/5 2 1", "1/4 -2/3 17/12", marks=pytest.mark.slow),
+    ],
+)
+def test_each_arc_counts_once_where_a_branch_point_is_real(rows: str, weights: str) -> None:
+    method = implicit_runge_kutta(rows, weights)
+    assert sliced_area(method, 1.0) == pytest.approx(region(method).area, rel=1e-9)
+
+
+def test_an_implicit_stage_that_is_not_used_changes_nothing() -> None:
+    unused = implicit_runge_kutta("1/2 0;-1/6 1", "1 0")  # implicit midpoint, and a stage with a pole at mu = 1
+    shape, plain = region(unused), region(lookup("implicit-midpoint"))
+    assert found_extent(shape) == found_extent(plain)
+    assert [len(curve) for curve in shape.boundary] == [len(curve) for curve in plain.boundary]
