@@ -130,7 +130,7 @@ REGIONS = [
     unbounded_column("α̂ to", "alpha_hat_max", ".8g"),
     unbounded_column("β̂ from", "beta_hat_min", ".6g"),
     unbounded_column("β̂ to", "beta_hat_max", ".8g"),
-    Column("stable steps", stable_steps_words),
+    Column("βh to (α = β)", stable_steps_words),
     column("least |z_p|", "best_z_abs", ".8f"),
     column("at α̂", "best_alpha_hat", ".8f"),
     column("at β̂", "best_beta_hat", ".8f"),

@@ -148,21 +148,27 @@ def _limits(region: Region) -> dict[str, float | None]:
 
 
 def with_unbounded(row: Row) -> Row:
-    """Return a row of region_row for reading: the word "unbounded" for an area or a limit that there is none of."""
-    missing = () if row["bounded"] else [key for key in ("area", *LIMITS) if row[key] is None]
-    return {**row, "bounded": "yes" if row["bounded"] else "no", **dict.fromkeys(missing, "unbounded")}
+    """Return a row of region_row for reading: words for what there is none of, an area or a limit of any kind."""
+    words: dict[str, Value] = {"bounded": "yes" if row["bounded"] else "no"}
+    if not row["bounded"]:
+        words |= {key: "unbounded" for key in ("area", *LIMITS) if row[key] is None}
+    if row["critical_damping_limit"] is None:
+        words["critical_damping_limit"] = "unlimited"
+    if row["unconditional_damping_ratio"] is None:
+        words["unconditional_damping_ratio"] = "none"
+    return {**row, **words}
 
 
 def stable_steps_words(row: Row) -> str:
-    """Return from a row of region_row in words which steps are stable: what an engineer looks for first."""
+    """Return from a row of region_row up to which beta h all are stable at alpha = beta, and what all of them need."""
     ratio, limit = row["unconditional_damping_ratio"], row["critical_damping_limit"]
-    if row["stable_for_all"] == "proven":
-        return "every one (proven)"
-    if isinstance(ratio, float):
-        return f"every one from α/β = {ratio:.6g}" if ratio else "no unstable one found"
     if isinstance(limit, float):
-        return f"βh to {limit:.6g} at α = β" if limit else "none at α = β"
-    return "every one at α = β"
+        return f"{limit:.6g}"
+    if row["stable_for_all"] == "proven":
+        return "all (proven for any α, β)"
+    if ratio is None:
+        return "all"
+    return f"all, as from α/β = {ratio:.6g}" if ratio else "all (no unstable α, β found)"
 
 
 def _nowhere(region: Region) -> str | None:

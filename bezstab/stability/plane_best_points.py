@@ -298,6 +298,7 @@ def _solutions(pencil: PlanePencil, start: FloatArray) -> Iterator[PlaneLeast]:
         if found is None:
             continue
         alpha_hat, beta_hat, meeting, residual = found
+        alpha_hat, beta_hat = (0.0 if abs(x) < SETTLED else x for x in (alpha_hat, beta_hat))
         if not (alpha_hat >= 0 and beta_hat >= 0):
             continue
         if not kind.starts:

@@ -269,7 +269,6 @@ def _turns(edges: Edges, cells: tuple[Cell, ...]) -> FloatArray:
         inside = np.isfinite([cell.low, cell.high])
         for crossing in (cell.left, cell.right):
             if crossing is None:
-                points.append([(0.0, level) for level in (cell.low, cell.high) if np.isfinite(level)])
                 continue
             place = edges.places(crossing, cell.low, levels)
             points.append(

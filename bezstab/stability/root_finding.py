@@ -236,9 +236,9 @@ def followed_roots(table: FloatArray, x: ComplexArray, starts: ComplexArray, bou
     return np.where(settled & (np.abs(y) > bound), y, np.nan)
 
 
-# Of a row of real polynomials the largest root alone, from that of a neighbour by Newton's method. That no other root is
-# larger is not taken on trust: divided by z - r, or by (z - r)(z - conj r), what is left has all its roots within |r|,
-# which Schur's recursion tells in few operations. Where it does not, near kinks, the runner-up of the neighbour is
+# Of a row of real polynomials the largest root alone, from that of a neighbour by Newton's method. That no other root
+# is larger is not taken on trust: divided by z - r, or by (z - r)(z - conj r), what is left has all its roots within
+# |r|, which Schur's recursion tells in few operations. Where it does not, near kinks, the runner-up of the neighbour is
 # tried, and then all roots are solved for.
 
 
@@ -275,7 +275,7 @@ def _followed_largest(coefficients: FloatArray, starts: ComplexArray, steps: int
     """Return the roots that Newton's method reaches from the starts; nan where not settled, or not proven largest."""
     z = starts
     for _ in range(steps):
-        step = newton_correction(coefficients, z)
+        step = newton_correction(list(coefficients), z)
         z = z - step
         settled = np.abs(step) <= CONVERGED * np.abs(z)
         if settled.all():

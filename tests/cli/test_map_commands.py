@@ -159,3 +159,20 @@ def test_family_ends_with_its_limit(tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["family_bezier.png"]
     found = rows("family", "adams-bashforth", "--figure", "none")
     assert [row["order"] for row in found] == list(range(2, 9))
+
+
+def test_region_and_methods_say_what_has_no_limit() -> None:
+    command = ("region", "--method", "trapezoid", "--figure", "none", "--table", "none")
+    (row,) = rows(*command)
+    assert row["bounded"] is False
+    assert (row["area"], row["alpha_hat_min"], row["alpha_hat_max"], row["beta_hat_max"]) == (None, 0, None, None)
+    assert (row["stable_for_all"], row["unconditional_damping_ratio"], row["critical_damping_limit"]) == (
+        "proven",
+        0,
+        None,
+    )
+    assert "unbounded" in run(*command).stdout
+    assert "all (proven for any α, β)" in run(*command).stdout
+    text = run("methods", "am3").stdout
+    assert "critical damping limit       6" in text
+    assert "unconditional damping ratio  none" in text

@@ -1,12 +1,13 @@
 import numpy as np
 import pytest
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bezstab.evidence import map_rows, simulated_verdicts, verdict_map
 from bezstab.mechanism import compiled_mechanism, initial_state, load_scene, simulated
 from bezstab.methods import lookup
 from bezstab.show import plot
-from bezstab.stability import best_point, family_members, region, spectral_radius
+from bezstab.stability import best_point, family_members, region, spectral_radius, window
 
 B4 = lookup("B4")
 
@@ -92,3 +93,23 @@ def test_a_mechanism_is_a_line_for_each_body() -> None:
     scene = load_scene("slider_crank")
     lines = plot.mechanism(scene, initial_state(compiled_mechanism(scene))[0])
     assert [line.get_label() for line in lines] == [body.name for body in scene.bodies]
+
+
+def test_an_unbounded_region_makes_room_for_its_window_and_points_to_where_it_goes_on() -> None:
+    shape = region(lookup("bdf6"))
+    line = plot.region(shape)
+    assert line.get_label() == "bdf6 (unbounded)"
+    axes = line.axes
+    assert isinstance(axes, Axes)
+    (_, alpha_max), (_, beta_max) = window(shape)
+    assert axes.get_xlim()[1] < 1.2 * alpha_max
+    assert axes.get_ylim()[1] < 1.2 * beta_max
+    arrow = plot.goes_on(shape, axes)
+    assert arrow is not None
+    assert arrow.get_text() == "unbounded"
+
+
+def test_a_bounded_or_empty_region_does_not_go_on() -> None:
+    axes = Figure().add_subplot()
+    for shape in (region(lookup("B4")), region(lookup("AB4"), 0.1)):
+        assert plot.goes_on(shape, axes) is None

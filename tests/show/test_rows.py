@@ -6,7 +6,18 @@ import pytest
 
 from bezstab.engines import ENGINES
 from bezstab.methods import Method, lookup
-from bezstab.show.rows import alpha_and_beta, choice_row, engine_row, row, whole_row
+from bezstab.show.columns import Row
+from bezstab.show.rows import (
+    LIMITS,
+    alpha_and_beta,
+    choice_row,
+    engine_row,
+    region_row,
+    row,
+    stable_steps_words,
+    whole_row,
+    with_unbounded,
+)
 from bezstab.stability import best_point, describe_point, region
 from bezstab.units import to_dimensionless
 
@@ -70,3 +81,40 @@ def test_an_engine_without_a_setting_says_why() -> None:
     assert engine_row(ENGINES["ode"], point, Fraction(1, 500))["set"] == "ERP = 0.2"
     assert "reaches" in str(engine_row(ENGINES["box2d"], point, Fraction(1, 500))["set"])
     assert engine_row(ENGINES["ode"], None, Fraction(1, 500))["set"] is None
+
+
+def region_words(name: str) -> Row:
+    return with_unbounded(region_row(region(lookup(name)), None))
+
+
+def test_a_region_without_limits_says_so_in_words_and_has_no_numbers() -> None:
+    row = region_row(region(lookup("bdf3")), None)
+    assert row["bounded"] is False
+    assert [row[key] for key in ("area", *LIMITS)] == [None] * 5
+    words = with_unbounded(row)
+    assert [words[key] for key in ("area", *LIMITS)] == ["unbounded"] * 5
+    assert words["critical_damping_limit"] == "unlimited"
+    assert region_words("B4")["area"] == region(lookup("B4")).area
+    assert region_words("B4")["unconditional_damping_ratio"] == "none"
+    assert region_words("trapezoid")["alpha_hat_min"] == 0
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("trapezoid", "all (proven for any α, β)"),
+        ("bdf3", "all, as from α/β = 0.0691929"),
+        ("am3", "6"),
+        ("B2", "1"),
+    ],
+)
+def test_which_steps_are_stable_is_said_in_a_few_words(name: str, words: str) -> None:
+    assert stable_steps_words(region_row(region(lookup(name)), None)) == words
+
+
+def test_other_words_for_stable_steps() -> None:
+    row = region_row(region(lookup("B2")), None)
+    assert stable_steps_words({**row, "critical_damping_limit": 0.0}) == "0"
+    unsure: Row = {**row, "critical_damping_limit": None}
+    assert stable_steps_words(unsure) == "all"
+    assert stable_steps_words({**unsure, "unconditional_damping_ratio": 0.0}) == "all (no unstable α, β found)"

@@ -230,3 +230,44 @@ def test_a_time_to_settle_goes_with_the_goal_gentle_and_is_met() -> None:
     for goal, time in (("gentle", None), ("fastest", settle)):
         with pytest.raises(InputError, match="settle"):
             choose_at_step(lookup("RK2"), goal, h=h, settle=time)  # type: ignore[arg-type]
+
+
+UNBOUNDED = ["trapezoid", "implicit-euler", "bdf2", "imex-euler", "average-acceleration", "hht", "verlet-implicit"]
+
+
+@pytest.mark.parametrize("goal", ["robust", "fastest", "critical"])
+@pytest.mark.parametrize("name", UNBOUNDED)
+def test_where_the_region_goes_on_a_choice_says_how_far_it_looked(name: str, goal: Goal) -> None:
+    choice = choose(lookup(name), goal)
+    assert choice.verdict == "converges"
+    found_anywhere = goal == "fastest" and best_point(lookup(name)) is not None
+    assert choice.searched == (None if found_anywhere else 4)
+    if not found_anywhere:  # up to rounding within alpha h, beta h <= 4
+        assert choice.alpha_hat <= 8 * (1 + 1e-12)
+        assert choice.beta_hat <= 16 * (1 + 1e-12)
+
+
+def test_of_implicit_euler_the_strongest_feedback_that_is_looked_at_is_the_fastest() -> None:
+    choice = choose(lookup("implicit-euler"), "fastest")  # |z| = 1 / |1 - mu|, for a double mu = -4 a fifth
+    assert abs(choice.pole) == pytest.approx(1 / 5, abs=1e-7)
+    assert choice.margins
+    assert np.isinf(choice.margins.h)
+
+
+def test_of_the_trapezoidal_rule_feedback_may_be_too_strong() -> None:
+    choice = choose(lookup("trapezoid"), "fastest")
+    assert (choice.alpha_hat, choice.beta_hat) == pytest.approx((4, 4))  # mu = -2 twice: R = 0
+    assert float(spectral_radius(lookup("trapezoid"), 400, 40000)) > 0.98
+
+
+def test_a_step_of_two_h_is_searched_to_half_the_feedback() -> None:
+    once, twice = choose(lookup("implicit-euler"), "fastest"), choose(lookup("implicit-euler@2"), "fastest")
+    assert twice.alpha_hat == pytest.approx(once.alpha_hat / 2)
+    assert twice.beta_hat == pytest.approx(once.beta_hat / 4)
+
+
+@pytest.mark.parametrize("goal", ["robust", "fastest", "critical"])
+def test_the_half_step_recipe_is_chosen_as_symplectic_euler(goal: Goal) -> None:
+    by_plane, by_mu = choose(lookup("verlet-half"), goal), choose(lookup("SYM"), goal)
+    assert (by_plane.alpha_hat, by_plane.beta_hat) == pytest.approx((by_mu.alpha_hat, by_mu.beta_hat), rel=1e-6)
+    assert by_plane.searched is None
