@@ -14,7 +14,7 @@ class InputError(ValueError):
     """A user's mistake: one line that names what was given, its value and what is accepted.
 
     Names that do not exist, values out of range, TOML files that are not as documented and methods that cannot be
-    (implicit, inconsistent, unstable already at h = 0) all end here.
+    (inconsistent, unstable already at h = 0) all end here.
     """
 
 

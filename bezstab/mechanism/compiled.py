@@ -1,10 +1,11 @@
 """A mechanism: a scene with its equations of motion, and the functions that are generated and compiled from them."""
 
-import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
+
+import numpy as np
 
 from bezstab.mechanism.equations import Equations, equations_of_motion
 from bezstab.mechanism.generated_code import (
@@ -120,11 +121,14 @@ def implicit_solver(mechanism: Mechanism, method: Method, library: Any, work: Wo
     residuals = compiled_residuals(mechanism, method, library)
     tolerance = TOLERANCE * rounding_of(library)
 
+    inverses: dict[int, Any] = {}  # of the Jacobians, by group: kept from step to step
+    arrays = library is np
+
     def solve(number: int, *situation_known_guess: Any) -> tuple[Sequence[Any], Any]:
         *situation, known, guess = situation_known_guess
-        if library is math or not hasattr(library, "ndarray"):
-            return newton_solution(residuals[number], situation, known, guess, tolerance, work)
-        return newton_solutions(residuals[number], situation, known, guess, tolerance)
+        problem = residuals[number], situation, known, guess, inverses.get(number), tolerance
+        found, pivot, inverses[number] = newton_solutions(*problem) if arrays else newton_solution(*problem, work)
+        return found, pivot
 
     return solve
 

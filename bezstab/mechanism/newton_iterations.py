@@ -5,9 +5,10 @@ imaginary step eps in one unknown, Im r(A + i eps e_l) / eps is the derivative o
 is subtracted, and eps^2 = 1e-100 is lost in any rounding). That costs one complex evaluation for each unknown, about
 twice the price of a real one; to derive the chain of assignments in text would cost three times as many operations.
 
-The Jacobian at the first guess is kept as long as each correction is at most a thousandth of the one before; one that
-is more is not made, but computed anew with the Jacobian there. The iteration ends with a correction within some hundred
-roundings of what it corrects: what it leaves is far less than that.
+Jacobians are kept, from one iteration to the next and from step to step, as long as each correction is at most a
+thirtieth of the one before; one that is more is not made, but computed anew with the Jacobian there. The iteration ends
+with one correction more after one within some hundred roundings of what it corrects: what is left then is far below
+rounding, and so does not add up over thousands of steps, to all of which it might have the same sign.
 """
 
 import cmath
@@ -22,11 +23,12 @@ from numpy.typing import NDArray
 from bezstab.mechanism.linear_equations import inverses, solution
 
 FloatArray = NDArray[np.float64]
+Matrix = list[list[Any]]
 
 IMAGINARY_STEP = 1e-50
-MOST_ITERATIONS = 15  # two to four are usual; from far away Newton's method may first wander
+MOST_ITERATIONS = 25  # three are usual in float64; from far away Newton's method may first wander
 TOLERANCE = 500.0  # roundings (1e-13 in float64) of X, V and A together: what h^2 acceleration cannot be relied upon
-FALL = 1e-3  # of a correction to the next, with a Jacobian good enough to keep: 1e-5 is usual at 1 ms
+FALL = 1 / 30  # of a correction to the next, with a Jacobian good enough to keep: each gains a digit and a half
 
 
 class NotConvergedError(ArithmeticError):
@@ -68,32 +70,38 @@ def newton_solution(
     situation: Sequence[Any],
     known: Sequence[Any],
     guess: Sequence[Any],
+    inverse: Matrix | None,
     tolerance: Any,
     work: Work,
-) -> tuple[tuple[Any, ...], Any]:
-    """Return the unknowns that make the residual zero, and the least pivot met last; numbers, not arrays.
+) -> tuple[tuple[Any, ...], Any, Matrix]:
+    """Return the unknowns that make the residual zero, the least pivot met last, and the inverse Jacobian used last.
 
-    `tolerance` is relative to the sum of all that is known and unknown. NotConvergedError after MOST_ITERATIONS, or
-    where the iteration leaves the numbers; ArithmeticError where the Jacobian is singular.
+    Of numbers, not arrays. `inverse` is that of the step before, None at first; `tolerance` is relative to the sum of
+    all that is known and unknown. NotConvergedError after MOST_ITERATIONS, or where the iteration leaves the numbers;
+    ArithmeticError where the Jacobian is singular.
     """
     unknown = list(guess)
     size_of_known = sum(map(abs, known))
-    inverse: list[list[Any]] = []
-    last = 0.0
+    last: Any = math.inf
+    moved: Any = math.inf
+    settled = False
     for _ in range(MOST_ITERATIONS):
         values, pivot = residual.real(*situation, known, unknown)
         work.iterations += 1
         work.evaluations += residual.evaluations
-        corrections = _product(inverse, values)
-        if not inverse or not sum(map(abs, corrections)) <= FALL * last:
+        if inverse:
+            corrections = _product(inverse, values)
+            moved = sum(map(abs, corrections))
+        if not inverse or not (settled or moved <= FALL * last):
             inverse = _inverse_jacobian(residual, situation, known, unknown, work)
             corrections = _product(inverse, values)
-        unknown = [entry - correction for entry, correction in zip(unknown, corrections, strict=True)]
-        moved = sum(map(abs, corrections))
+            moved = sum(map(abs, corrections))
         if not moved < math.inf:
             raise NotConvergedError("Newton's method did not converge: its iterates are not finite")
-        if moved <= tolerance * (size_of_known + sum(map(abs, unknown))):
-            return tuple(unknown), pivot
+        unknown = [entry - correction for entry, correction in zip(unknown, corrections, strict=True)]
+        if settled:
+            return tuple(unknown), pivot, inverse
+        settled = moved <= tolerance * (size_of_known + sum(map(abs, unknown)))
         last = moved
     raise NotConvergedError(
         f"Newton's method did not converge in {MOST_ITERATIONS} iterations (last correction {float(moved):.2g})"
@@ -120,42 +128,50 @@ def _inverse_jacobian(
 
 
 def newton_solutions(
-    residual: Residual, situation: Sequence[Any], known: Sequence[Any], guess: Sequence[Any], tolerance: Any
-) -> tuple[tuple[FloatArray, ...], Any]:
+    residual: Residual,
+    situation: Sequence[Any],
+    known: Sequence[Any],
+    guess: Sequence[Any],
+    inverse: FloatArray | None,
+    tolerance: Any,
+) -> tuple[tuple[FloatArray, ...], Any, FloatArray]:
     """Return the same for a batch: arrays of any broadcastable shapes. What does not converge is not a number there.
 
-    `situation` may hold arrays too. A point that has converged or failed is left out of what follows, so that a few
-    that run away cost the others nothing; the others' Jacobians are renewed together.
+    `situation` may hold arrays too; inverse Jacobians have shape (m, m, points). A point that has converged or failed
+    is left out of what follows, and only Jacobians that do not serve are renewed: a few points that run away cost the
+    others nothing.
     """
     entries = np.broadcast_arrays(*situation, *known, *guess)
     batch = entries[0].shape
     flat = np.array(entries, np.float64).reshape(len(entries), -1)
-    given, unknown = flat[: len(situation)], flat[len(flat) - len(guess) :]
-    known_parts = flat[len(situation) : len(flat) - len(guess)]
-    pivots = np.full(flat.shape[1], np.nan)
-    points = np.arange(flat.shape[1])  # that still iterate
-    last = np.zeros(flat.shape[1])
-    inverse: FloatArray | None = None
+    situations, knowns, unknown = np.split(flat, [len(situation), len(situation) + len(known)])
+    count, size = flat.shape[1], len(unknown)
+    if inverse is None or inverse.shape[2] != count:
+        inverse = np.full((size, size, count), np.nan)
+    pivots = np.full(count, np.nan)
+    points = np.arange(count)  # that still iterate
+    last = np.full(count, np.inf)
+    settled = np.zeros(count, bool)
     for _ in range(MOST_ITERATIONS):
-        here = given[:, points], known_parts[:, points], unknown[:, points]
-        values, pivots[points] = residual.real(*here[0], *here[1:])
-        corrections = None if inverse is None else (inverse * np.array(values)).sum(axis=1)
-        if corrections is None or not (np.abs(corrections).sum(axis=0) <= FALL * last).all():
-            inverse = _inverse_jacobians(residual, *here)
-            corrections = (inverse * np.array(values)).sum(axis=1)
+        values, pivots[points] = residual.real(*situations[:, points], knowns[:, points], unknown[:, points])
+        corrections = (inverse[:, :, points] * np.array(values)).sum(axis=1)
+        bad = ~(settled | (np.abs(corrections).sum(axis=0) <= FALL * last))  # one that is not a number included
+        if bad.any():
+            renewed = points[bad]
+            here = situations[:, renewed], knowns[:, renewed], unknown[:, renewed]
+            inverse[:, :, renewed] = _inverse_jacobians(residual, *here)
+            corrections[:, bad] = (inverse[:, :, renewed] * np.array(values)[:, bad]).sum(axis=1)
         unknown[:, points] -= corrections
         moved = np.abs(corrections).sum(axis=0)
-        size = np.abs(known_parts[:, points]).sum(axis=0) + np.abs(unknown[:, points]).sum(axis=0)
+        sizes = np.abs(knowns[:, points]).sum(axis=0) + np.abs(unknown[:, points]).sum(axis=0)
         failed = ~np.isfinite(moved)
         unknown[:, points[failed]] = np.nan
-        waiting = ~failed & (moved > tolerance * size)
-        points, last = points[waiting], moved[waiting]
-        if not waiting.any():
+        waiting = ~failed & ~settled
+        points, last, settled = points[waiting], moved[waiting], (moved <= tolerance * sizes)[waiting]
+        if not points.size:
             break
-        assert inverse is not None
-        inverse = inverse[:, :, waiting]
     unknown[:, points] = np.nan
-    return tuple(unknown.reshape(len(guess), *batch)), pivots.reshape(batch)
+    return tuple(unknown.reshape(size, *batch)), pivots.reshape(batch), inverse
 
 
 def _inverse_jacobians(residual: Residual, situation: FloatArray, known: FloatArray, unknown: FloatArray) -> FloatArray:

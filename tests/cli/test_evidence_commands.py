@@ -48,8 +48,10 @@ def test_simulate_shows_the_iterations_of_an_implicit_method_only() -> None:
     assert "Newton's iterations" in implicit
     assert "Newton's iterations" not in explicit
     (row,) = rows(*common, "--method", "trapezoid")
-    assert isinstance(row["iterations"], int)
-    assert 40 <= row["iterations"] < row["evaluations"]
+    iterations, evaluations = row["iterations"], row["evaluations"]
+    assert isinstance(iterations, int)
+    assert isinstance(evaluations, int)
+    assert 60 <= iterations < evaluations
     (row,) = rows(*common, "--method", "verlet-half")
     assert row["iterations"] is None
 

@@ -220,9 +220,11 @@ def test_iterations_and_evaluations_of_an_implicit_run_are_counted() -> None:
     mechanism = compiled_mechanism(load_scene("slider_crank"))
     run = simulate(mechanism, lookup("trapezoid"), H, 0.1, (20.0, 100.0))
     assert run.iterations is not None
-    assert 200 <= run.iterations <= 400  # a correction and one to see that it was enough, for each of a hundred steps
+    assert 300 <= run.iterations <= 400  # a correction, one to see that it was enough, and one more: a hundred times
     jacobians = (run.evaluations - 1 - run.iterations) / mechanism.size  # and one evaluation for the first acceleration
-    assert jacobians in range(100, 201)
+    assert jacobians in range(
+        1, 20
+    )  # one serves as long as the crank, at 6 degrees in a hundred steps, has hardly turned
     explicit = simulate(mechanism, lookup("verlet-half"), H, 0.1, (20.0, 100.0))
     assert explicit.iterations is None
     assert explicit.evaluations == 101

@@ -61,7 +61,8 @@ def _precise_second_order_run(
 
     def solve(number: int, *entries: Any) -> tuple[Sequence[Any], Any]:
         *situation, known, guess = entries
-        return newton_solution(residuals[number], situation, known, guess, TOLERANCE * mp.eps, Work())
+        found, pivot, _ = newton_solution(residuals[number], situation, known, guess, None, TOLERANCE * mp.eps, Work())
+        return found, pivot
 
     carried = carried_quantities(mechanism, scheme, h, gains, states, None, mp, Work())
     return _precise_stepper(mechanism, method)((len(states) - 1) * h, h, *gains, carried, solve)
