@@ -125,6 +125,7 @@ def region(method: str | Method, level: float = 1.0) -> stability.Region:
 def best_point(method: str | Method) -> stability.BestPoint | None:
     """Return the point with the smallest |z_p| and what meets there, dimensionless; None if no point is stable.
 
+    None, too, where |z_p| falls on as the parameters grow, as for implicit Euler: then no point has the least.
     NumericalError if no solution of the defining equations is as small as a sampled |z_p|. The paper's section 5.1.
     """
     return stability.best_point(_method(method))

@@ -17,7 +17,7 @@ ALIASES = {
     **dict.fromkeys(("backward-euler", "euler-backward", "euler-implicit"), "implicit-euler"),
     **dict.fromkeys(("symplectic-euler", "semi-implicit-euler", "semiimplicit-euler", "euler-cromer"), "SYM"),
     **dict.fromkeys(("trapezoidal", "trapezoidal-rule", "trapezium", "trapezium-rule", "crank-nicolson"), "trapezoid"),
-    **dict.fromkeys(("gauss1", "gauss2", "implicit-midpoint-rule", "midpoint-implicit"), "implicit-midpoint"),
+    **dict.fromkeys(("gauss1", "implicit-midpoint-rule", "midpoint-implicit"), "implicit-midpoint"),
     "explicit-midpoint": "RK2",
     "matsuno": "SIE",
     # pairs
@@ -26,7 +26,7 @@ ALIASES = {
     **dict.fromkeys(("tsit", "tsitouras", "tsit54", "tsitouras5"), "tsit5"),
     **dict.fromkeys(("cashkarp", "rkck"), "cash-karp"),
     **dict.fromkeys(("ssp3", "ssprk33", "ssp-rk3", "tvd-rk3", "shu-osher"), "ssprk3"),
-    **dict.fromkeys(("heun2", "improved-euler", "modified-euler", "explicit-trapezoid"), "heun"),
+    **dict.fromkeys(("heun2", "improved-euler", "explicit-trapezoid"), "heun"),
     "ralston2": "ralston",
     "kutta3": "RK3",
     **dict.fromkeys(("classical-runge-kutta", "runge-kutta4", "runge-kutta-4"), "RK4"),
@@ -67,10 +67,10 @@ ADVICE = {
         ("verlet", "velocity-verlet", "vv", "leapfrog", "leap-frog", "kick-drift-kick", "kdk"), f"{VELOCITY} {VERLETS}"
     ),
     **dict.fromkeys(
-        ("stormer", "störmer", "stoermer", "stormer-verlet", "störmer-verlet", "stoermer-verlet", "position-verlet"),
+        ("stormer", "störmer", "stoermer", "stormer-verlet", "störmer-verlet", "stoermer-verlet"),
         f"{VELOCITY} central-difference ((x1 - x[-1])/2h, implicit), SYM ((x0 - x[-1])/h)",
     ),
-    **dict.fromkeys(("drift-kick-drift", "dkd"), f"not built in; {VELOCITY} {VERLETS}"),
+    **dict.fromkeys(("position-verlet", "drift-kick-drift", "dkd"), f"not built in; {VELOCITY} {VERLETS}"),
     "euler": f"which of Euler's? {EULERS}",
     "semi-implicit": "SYM (symplectic Euler, 'semi-implicit' in engines), SIE (the paper's 'Euler semi-implicit')",
     **dict.fromkeys(
@@ -78,6 +78,7 @@ ADVICE = {
     ),
     "symplectic": "SYM (symplectic Euler), ruth3, forest-ruth, yoshida4, verlet-half (see also `verlet`)",
     "midpoint": "RK2 (explicit), implicit-midpoint",
+    "modified-euler": "RK2 (the explicit midpoint rule), heun (the mean of both slopes)",
     "adams": f"AB1 to AB8 (explicit), {MOULTON}",
     **dict.fromkeys(("adams-bashforth", "ab"), "AB1 to AB8, by number of steps"),
     **dict.fromkeys(("adams-moulton", "am"), MOULTON),
@@ -96,7 +97,8 @@ ADVICE = {
         "built in is radau3 (Radau IIA, 2 stages, order 3)",
     ),
     **dict.fromkeys(
-        ("gauss", "gauss-legendre", "gauss6"), "implicit-midpoint (1 stage, order 2), gauss4 (2 stages, order 4)"
+        ("gauss", "gauss2", "gauss-legendre", "gauss6"),
+        "implicit-midpoint (1 stage, order 2), gauss4 (2 stages, order 4)",
     ),
     **dict.fromkeys(("sdirk", "dirk", "dirk2"), "sdirk2 (order 2), dirk3 (order 3), both of Alexander, L-stable"),
     **dict.fromkeys(

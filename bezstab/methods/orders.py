@@ -76,9 +76,11 @@ def accuracy_by_force(method: Method) -> ForceAccuracy:
 
     Two things err: z, whose error grows from step to step, and the ratio of v to x at that z, whose error does not. The
     order is that of the worse, over the exact motions e^(mu t); the constant is c where z = e^mu - c mu^(p+1) + ...,
-    as for `accuracy`, or v = mu (1 + c mu^p + ...) x if that is what errs. For other schemes than second-order ones it
-    is of their linear motions as well.
+    as for `accuracy`, or v = mu (1 + c mu^p + ...) x if that is what errs. Where position and velocity are stepped
+    alike both are what `accuracy` returns.
     """
+    if not isinstance(method.scheme, Partitioned | SecondOrder):
+        return ForceAccuracy(accuracy(method), accuracy(method))
     scheme = second_order_form(method.scheme)
     rounding = _rounding(method)
     return ForceAccuracy(

@@ -275,7 +275,7 @@ def _followed_largest(coefficients: FloatArray, starts: ComplexArray, steps: int
     """Return the roots that Newton's method reaches from the starts; nan where not settled, or not proven largest."""
     z = starts
     for _ in range(steps):
-        step = newton_correction(coefficients, z)
+        step = newton_correction(list(coefficients), z)
         z = z - step
         settled = np.abs(step) <= CONVERGED * np.abs(z)
         if settled.all():

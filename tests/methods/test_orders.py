@@ -12,7 +12,9 @@ import numpy as np
 import pytest
 
 from bezstab.methods import (
+    LinearMultistep,
     Method,
+    RungeKutta,
     SecondOrder,
     accuracy,
     accuracy_by_force,
@@ -162,11 +164,31 @@ def test_measured_orders_of_second_order_and_implicit_methods(name: str) -> None
         assert abs(measured_order(scheme, kind, count=128 if order <= 3 else 64) - order) < 0.3
 
 
+@pytest.mark.parametrize("method", [lookup("RK4@5"), lookup("bdf3"), JAMESON], ids=lambda method: method.name)
+def test_both_forces_see_one_order_where_position_and_velocity_are_stepped_alike(method: Method) -> None:
+    assert accuracy_by_force(method).position == accuracy_by_force(method).velocity == accuracy(method)
+
+
+def test_the_order_of_a_method_of_many_steps_or_stages_is_found() -> None:
+    """Explicit Euler a hundred steps back, and forty stages of equal Euler steps: no second-order form is so long."""
+    zeros = (Fraction(0),) * 99
+    one = Fraction(1)
+    assert (
+        accuracy_by_force(
+            Method("long", LinearMultistep((one, -one, *zeros), (Fraction(0), one, *zeros)), "")
+        ).velocity[0]
+        == 1
+    )
+    part = Fraction(1, 40)
+    rows = tuple(tuple(part if j < i else Fraction(0) for j in range(40)) for i in range(40))
+    assert accuracy_by_force(Method("many", RungeKutta(rows, (part,) * 40), "")).position[0] == 1
+
+
 @pytest.mark.parametrize("name", [*kinds.MU_METHODS, "RK4@5"])
-def test_accuracy_by_force_is_that_of_the_coefficients_where_there_is_one_map(name: str) -> None:
+def test_the_second_order_form_has_the_order_of_the_scheme(name: str) -> None:
     """Where position and velocity are stepped alike both forces see the order and constant of y' = lambda y."""
     method = lookup(name)
-    by_force = accuracy_by_force(method)
+    by_force = accuracy_by_force(replace(method, scheme=second_order_form(method.scheme)))
     order, constant = accuracy(method)
     assert by_force.velocity[0] == order
     if method.digits is None:

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from bezstab.methods import Method, lookup
-from bezstab.stability import best_point, falls_towards, spectral_radius
+from bezstab.methods import Method, lookup, recipe
+from bezstab.stability import best_point, choose, falls_towards, region, spectral_radius
 from bezstab.stability.plane_best_points import critical_point
 from bezstab.stability.plane_pencils import plane_pencil_of
 from tests.reference.second_order_methods import as_second_order, companion_poles, newmark, second_order
@@ -91,3 +91,16 @@ def test_the_double_pole_is_followed_down_to_where_it_ends(name: str, place: tup
     assert found == pytest.approx(place, rel=1e-6)
     z_abs = float(spectral_radius(second_order(name), *found)) if found else np.nan
     assert z_abs < 0.578
+
+
+def test_a_pole_that_nothing_moves_stays_and_hides_nothing() -> None:
+    equations = {"a1": "acceleration(x0, v0)", "v1": "v0 + a1", "x1": "x0 + v1", "u": "1/2 u[0] + 1/2 x1"}
+    method = Method("beside", recipe(equations), "")  # symplectic Euler, and a helper that follows x by halves
+    best = best_point(method)
+    assert best
+    assert (best.z_abs, best.fixed) == (0.5, 0.5)
+    assert (best.alpha_hat, best.beta_hat) == pytest.approx((1, 1))
+    assert region(method).area == pytest.approx(4)
+    assert region(method, 0.6).area == pytest.approx(region(lookup("SYM"), 0.6).area)
+    assert region(method, 0.4).extent is None
+    assert choose(method, "fastest").alpha_hat == pytest.approx(1)
