@@ -211,7 +211,8 @@ def region(
     """Draw where each method is stable, and tabulate |z_p| there.
 
     Writes region_METHOD.png and region_METHOD.csv and prints the axis limits of the exact region, its area, the
-    smallest |z_p| and where. The table holds α̂, β̂, |z_p| and ∠z_p; with --compare, the boundary curves.
+    smallest |z_p| and where. The table holds α̂, β̂, |z_p| and ∠z_p; with --compare, the boundary curves. With --scene
+    also the region of that mechanism as it moves, into region_METHOD_SCENE.
 
     Example: bezstab region --method B4
     """
@@ -241,8 +242,10 @@ def region(
         for method in methods:
             points = grid or QUALITY[quality]
             moving = _moving_regions(method, turnings, step)
+            names = [file_name(name) for name in (method.name, *([Path(scene).stem] if scene else []))]
+            path = output / "_".join(["region", *names])
             row = _map_region(
-                method, chosen_levels, alpha_range, beta_range, points, step, marks, output, figure, table, moving
+                method, chosen_levels, alpha_range, beta_range, points, step, marks, path, figure, table, moving
             )
             rows += [
                 {**row, "speed": speed, "kappa": kappa, "area_moving": of_speed.area}
@@ -298,12 +301,15 @@ def _map_region(
     points: int,
     h: float | None,
     marks: Mapping[str, tuple[float, float]],
-    output: Path,
+    path: Path,
     figure: FigureForm,
     table: TableForm,
     moving: "Mapping[tuple[float, float], MovingRegion]",
 ) -> Row:
-    """Write the |z_p| map of one method as table and figure, with the regions as a scene moves; return its row."""
+    """Write the |z_p| map of one method as table and figure at `path`; return its row.
+
+    `moving` has the regions as a scene moves by speed and kappa (1/s): drawn as well.
+    """
     import numpy as np
 
     from bezstab import stability
@@ -334,7 +340,6 @@ def _map_region(
             {speed: each for (speed, _), each in moving.items()},
         )
 
-    path = output / f"region_{file_name(method.name)}"
     write_table(path, map_arrays(alpha_hat, beta_hat, z, h), table)
     write_figure(path, draw, figure)
     return row
