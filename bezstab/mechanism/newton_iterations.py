@@ -6,7 +6,8 @@ is subtracted, and eps^2 = 1e-100 is lost in any rounding). That costs one compl
 twice the price of a real one; to derive the chain of assignments in text would cost three times as many operations.
 
 Jacobians are kept, from one iteration to the next and from step to step, as long as each correction is at most a
-thirtieth of the one before; one that is more is not made, but computed anew with the Jacobian there. The iteration ends
+thirtieth of the one before; one that is more is not made, but computed anew with the Jacobian there. Where it was an
+earlier step's Jacobian that did not serve, all it did is undone: the step starts again with its own. The iteration ends
 with one correction more after one within some hundred roundings of what it corrects: what is left then is far below
 rounding, and so does not add up over thousands of steps, to all of which it might have the same sign.
 """
@@ -85,14 +86,19 @@ def newton_solution(
     last: Any = math.inf
     moved: Any = math.inf
     settled = False
+    inherited = inverse is not None
+    at_guess: Sequence[Any] = ()
     for _ in range(MOST_ITERATIONS):
         values, pivot = residual.real(*situation, known, unknown)
+        at_guess = at_guess or values
         work.iterations += 1
         work.evaluations += residual.evaluations
         if inverse:
             corrections = _product(inverse, values)
             moved = sum(map(abs, corrections))
         if not inverse or not (settled or moved <= FALL * last):
+            if inherited:
+                unknown, values, inherited = list(guess), at_guess, False
             inverse = _inverse_jacobian(residual, situation, known, unknown, work)
             corrections = _product(inverse, values)
             moved = sum(map(abs, corrections))
@@ -152,15 +158,24 @@ def newton_solutions(
     points = np.arange(count)  # that still iterate
     last = np.full(count, np.inf)
     settled = np.zeros(count, bool)
+    guesses = unknown.copy()
+    at_guess: FloatArray | None = None
+    inherited = np.ones(count, bool)
     for _ in range(MOST_ITERATIONS):
-        values, pivots[points] = residual.real(*situations[:, points], knowns[:, points], unknown[:, points])
-        corrections = (inverse[:, :, points] * np.array(values)).sum(axis=1)
+        found, pivots[points] = residual.real(*situations[:, points], knowns[:, points], unknown[:, points])
+        values = np.array(found)
+        at_guess = values if at_guess is None else at_guess
+        corrections = (inverse[:, :, points] * values).sum(axis=1)
         bad = ~(settled | (np.abs(corrections).sum(axis=0) <= FALL * last))  # one that is not a number included
         if bad.any():
+            again = bad & inherited[points]
+            unknown[:, points[again]] = guesses[:, points[again]]
+            values[:, again] = at_guess[:, points[again]]
             renewed = points[bad]
+            inherited[renewed] = False
             here = situations[:, renewed], knowns[:, renewed], unknown[:, renewed]
             inverse[:, :, renewed] = _inverse_jacobians(residual, *here)
-            corrections[:, bad] = (inverse[:, :, renewed] * np.array(values)[:, bad]).sum(axis=1)
+            corrections[:, bad] = (inverse[:, :, renewed] * values[:, bad]).sum(axis=1)
         unknown[:, points] -= corrections
         moved = np.abs(corrections).sum(axis=0)
         sizes = np.abs(knowns[:, points]).sum(axis=0) + np.abs(unknown[:, points]).sum(axis=0)
