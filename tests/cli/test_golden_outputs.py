@@ -66,8 +66,10 @@ ADDED = (
     *("bounded", "stable_for_all", "unconditional_damping_ratio", "critical_damping_limit"),
     *("implicit", "digits", "order_position_forces", "order_velocity_forces", "group"),
     *("driver_work", "force_work", "iterations", "singular_passages"),
+    *("law_abs", "law_verdict", "floquet_abs", "measured_rate", "right"),
 )
-"""Keys that rows have got since, in their place: more of what a region, a choice and a method is, and work in a run."""
+"""Keys that rows have got since, in their place: more of what a region, a choice and a method is, work in a run,
+and what the motion does to a measured pole."""
 
 
 def tolerance(command: str, key: str) -> Tolerance:

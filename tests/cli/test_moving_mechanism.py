@@ -1,5 +1,7 @@
 """--scene and --speed of poles, choose, check and region."""
 
+import json
+
 import pytest
 
 from tests.cli.running import rows, run
@@ -31,8 +33,9 @@ def test_check_prints_up_to_which_speed_a_choice_is_safe() -> None:
     (given, _) = rows(*point)
     speed = given["safe_speed"]
     assert isinstance(speed, float)
-    slower, faster = (rows(*point, "--speed", f"{share * speed:.4f}")[0]["z_abs_moving"] for share in (0.99, 1.01))
-    assert slower < 1 < faster  # type: ignore[operator]
+    printed = [run(*point, "--speed", f"{share * speed:.4f}", "--format", "json").stdout for share in (0.99, 1.01)]
+    slower, faster = (json.loads(text)[0]["z_abs_moving"] for text in printed)
+    assert slower < 1 < faster
 
 
 def test_choose_allows_for_the_motion() -> None:

@@ -17,6 +17,7 @@ from tests.reference import sampled_responses
 H = 1e-3  # s
 # The feedback that AB7 and AB8 bear is hardly faster than the falling pendulum: their poles move during the fit.
 SLOW_FEEDBACK = ("AB7", "AB8")
+LARGEST_BIAS = 1e-3  # of |z|, by which both mechanisms at 10 rpm move a pole at most
 COMPOSITIONS = ("ruth3", "forest-ruth", "yoshida4", "rkn4")
 
 
@@ -41,7 +42,7 @@ def check(scene: str, name: str, count: int) -> None:
     assert len(wrong) > count / 2
     stages = steps(lookup(name)) == 1 and not isinstance(lookup(name).scheme, LinearMultistep)
     assert np.median(wrong) < (3e-4 if stages else 1e-5)
-    assert max(wrong) < (1e-2 if scene == "pendulum" and name in SLOW_FEEDBACK else CLOSE)
+    assert max(wrong) < (1e-2 if scene == "pendulum" and name in SLOW_FEEDBACK else LARGEST_BIAS)
     assert not contradictions(found)
     for one in found:
         if one.measured is not None:
@@ -71,7 +72,7 @@ def check_promise(scene: str, name: str, count: int) -> None:
     without_stages = isinstance(lookup(name).scheme, LinearMultistep)
     # Forest and Ruth's poles move most with the mechanism: they are off by 3.6e-5, at a tenth of the step by 5e-6
     assert np.median(wrong) < (1e-5 if without_stages else 5e-5 if name == "forest-ruth" else 3e-5)
-    assert max(wrong) < CLOSE
+    assert max(wrong) < LARGEST_BIAS
     assert not contradictions(found)
 
 

@@ -83,4 +83,6 @@ def test_the_pole_of_an_implicit_method_is_followed_past_where_one_is_infinite(n
         alpha_hat, beta_hat = np.linspace(low, high, 120).T
         grid = (alpha_hat, beta_hat[:, np.newaxis])
         every = np.abs(poles(method, *grid)).max(axis=-1)
-        assert np.allclose(spectral_radius(method, *grid), every, rtol=1e-10, atol=0)
+        # where a pole is 1e6, of P's leading coefficient a millionth is left: it is that much less well known
+        apart = np.abs(spectral_radius(method, *grid) - every) / every
+        assert (apart < 1e-10 * np.maximum(1, every)).all()
