@@ -22,12 +22,13 @@ def test_poles_print_what_the_motion_does() -> None:
 
 
 def test_check_is_status_one_where_the_motion_undoes_what_is_stable_at_rest() -> None:
-    point = ("check", "--alpha", "0.5", "--beta", "0.1", "--method", "AB4")
+    point = ("check", "--alpha", "0.2", "--beta", "1.8", "--method", "SYM")
     assert run(*point).exit_code == 0
-    assert run(*point, *FOUR_BAR).exit_code == 1
-    assert run("check", "--alpha", "0.5", "--beta", "0.2", "--method", "B4", *FOUR_BAR).exit_code == 0
+    assert run(*point, *FOUR_BAR).exit_code == 0
+    assert run(*point, *FOUR_BAR, "--speed", "10").exit_code == 1
 
 
+@pytest.mark.slow
 def test_check_prints_up_to_which_speed_a_choice_is_safe() -> None:
     point = ("check", "--alpha", "0.5", "--beta", "0.2", "--method", "B4", *FOUR_BAR)
     (given, _) = rows(*point)
@@ -48,6 +49,7 @@ def test_choose_allows_for_the_motion() -> None:
     assert at_rest["alpha_hat"] <= moving["alpha_hat"]  # type: ignore[operator]
 
 
+@pytest.mark.slow
 def test_region_prints_the_area_that_is_left_at_each_speed() -> None:
     found = rows("region", *FOUR_BAR, "--speed", "1", "--speed", "3", *NO_FILES)
     at_rest, slow, fast = found[0]["area"], found[0]["area_moving"], found[1]["area_moving"]

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import pytest
 
-from bezstab.evidence import CLOSE, LINEAR, SPREAD, Measurement, MovingPole, measure_poles, random_points
+from bezstab.evidence import LINEAR, SPREAD, Measurement, MovingPole, measure_poles, random_points
 from bezstab.evidence.measured_poles import KICKS, _kicked_responses, _measured_verdict, _measurement
 from bezstab.mechanism import compiled_mechanism, load_scene
 from bezstab.methods import LinearMultistep, lookup, steps
