@@ -1,5 +1,10 @@
 """Names of built-in methods by kind, for tests that hold for some kinds only."""
 
+from collections.abc import Sequence
+from typing import Any
+
+import pytest
+
 from bezstab.methods import (
     REGISTRY,
     LinearMultistep,
@@ -27,3 +32,11 @@ MULTISTEP = [name for name in MU_METHODS if isinstance(lookup(name).scheme, Line
 RUNGE_KUTTA = [name for name in MU_METHODS if isinstance(lookup(name).scheme, RungeKutta)]
 PARTITIONED = [name for name in MU_METHODS if isinstance(lookup(name).scheme, Partitioned)]
 PECE = [name for name in MU_METHODS if isinstance(lookup(name).scheme, PredictorCorrector)]
+
+SAMPLE = ("B1", "B2", "B4", "B6", "AB2", "AB4", "AB8", "ABM3", "RK1", "RK4", "SIE", "SYM", "dopri5")
+"""Of the explicit methods some of each family, the smallest and the largest among them."""
+
+
+def sampled(names: Sequence[str], quick: Sequence[str] = SAMPLE) -> list[Any]:
+    """Return the names as parameters, all but a few marked as slow: `make test-slow` runs these."""
+    return [pytest.param(name, marks=[] if name in quick else [pytest.mark.slow]) for name in names]

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from bezstab.errors import NumericalError
 from bezstab.methods import LinearMultistep, Method, RungeKutta, lookup
 from bezstab.stability import BestPoint, Pencil, best_point, best_points, region, spectral_radius, window
-from tests.methods.kinds import EXPLICIT
+from tests.methods.kinds import EXPLICIT, sampled
 
 F = Fraction
 KINKS = [f"B{n}" for n in range(3, 13)] + [f"AB{n}" for n in range(3, 9)]
@@ -22,7 +22,7 @@ def best(name: str) -> BestPoint:
     return found
 
 
-@pytest.mark.parametrize("name", KINKS)
+@pytest.mark.parametrize("name", sampled(KINKS))
 def test_the_kink_where_two_opposite_real_roots_meet(name: str) -> None:
     scheme = lookup(name).scheme
     assert isinstance(scheme, LinearMultistep)
@@ -85,7 +85,7 @@ def test_a_double_root_of_pi_at_one_third() -> None:
     assert (found.z_abs, found.alpha_hat, found.beta_hat) == pytest.approx((1 / 3, 4 / 3, 4 / 9), rel=1e-9)
 
 
-@pytest.mark.parametrize("name", [*EXPLICIT, "B4@2"])
+@pytest.mark.parametrize("name", sampled([*EXPLICIT, "B4@2"]))
 def test_nothing_in_the_plane_is_faster(name: str) -> None:
     method, found, random = lookup(name), best(name), np.random.default_rng(5)
     (a_low, a_high), (b_low, b_high) = window(region(method))

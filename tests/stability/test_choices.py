@@ -22,6 +22,7 @@ from bezstab.stability import (
     verdict,
     window,
 )
+from tests.methods.kinds import sampled
 from tests.reference.robust_decay import worst_decay
 from tests.stability.made_methods import multistep
 
@@ -47,7 +48,7 @@ def test_no_point_is_more_robust(name: str) -> None:
                 assert worst_decay(lookup(name), a, b, shares, 0.1) > best * (1 - 2e-6)
 
 
-@pytest.mark.parametrize("name", ["B2", "B4", "AB4", "RK4"])
+@pytest.mark.parametrize("name", sampled(["B2", "B4", "AB4", "RK4"], quick=["B2", "RK4"]))
 def test_the_robust_choice_bears_the_spread_better_than_the_fastest(name: str) -> None:
     robust, fastest = choose(lookup(name), "robust", 0.1), choose(lookup(name), "fastest", 0.1)
     assert abs(fastest.pole) <= abs(robust.pole)
@@ -148,7 +149,7 @@ def test_margins_of_symplectic_euler_are_those_of_its_triangle(a: float, share: 
     assert (found.alpha[0], found.beta[0]) == (0, 0)
 
 
-@pytest.mark.parametrize("name", ["B2", "B4", "B12", "AB4", "ABM3", "RK4", "SYM", "RK4@5"])
+@pytest.mark.parametrize("name", sampled(["B2", "B4", "B12", "AB4", "ABM3", "RK4", "SYM", "RK4@5"]))
 def test_each_end_of_a_margin_lies_between_two_proven_verdicts(name: str) -> None:
     """One part in 1e9 nearer the point converges, one part further diverges, in exact arithmetic."""
     method, part = lookup(name), Fraction(1, 10**9)

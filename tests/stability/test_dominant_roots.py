@@ -15,10 +15,10 @@ from bezstab.stability import (
 )
 from bezstab.stability.dominant_roots import _follow, _twins
 from bezstab.stability.root_finding import STRIDE
-from tests.methods.kinds import EXPLICIT, IMPLICIT
+from tests.methods.kinds import EXPLICIT, IMPLICIT, sampled
 
 
-@pytest.mark.parametrize("name", EXPLICIT)
+@pytest.mark.parametrize("name", sampled(EXPLICIT))
 def test_a_map_follows_the_pole_that_is_largest_everywhere(name: str) -> None:
     method = lookup(name)
     for low, high in (((-3, -2), (5, 6)), ((0, 0), (40, 900))):  # kinks and branch points; far outside
