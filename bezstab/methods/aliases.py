@@ -127,8 +127,8 @@ def unknown_method(name: str, known: Iterable[str]) -> InputError:
     if advice:
         return InputError(f"method {name!r}: {advice}")
     near = near_names(name, list(known))
-    suggestion = f" did you mean {' or '.join(_explained(each) for each in near)}?" if near else ""
-    return InputError(f"unknown method {name!r}:{suggestion} (`bezstab methods` lists all; or give a .toml file)")
+    suggestion = f": did you mean {' or '.join(_explained(each) for each in near)}?" if near else ""
+    return InputError(f"unknown method {name!r}{suggestion} (`bezstab methods` lists all; or give a .toml file)")
 
 
 def _explained(name: str) -> str:

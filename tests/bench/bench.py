@@ -22,7 +22,7 @@ import mpmath as mp
 import numpy as np
 import sympy as sp
 
-from bezstab.evidence import model_xml
+from bezstab.evidence import floquet_rates, model_xml
 from bezstab.mechanism import Mechanism, T, compiled_mechanism, initial_state, load_scene, march, parse_scene, simulate
 from bezstab.methods import (
     ALPHA_HAT,
@@ -43,6 +43,7 @@ HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent.parent))  # run as a script, the tests are no package yet
 
 from tests.bench.stable_mask import stable_mask  # noqa: E402
+from tests.reference.perturbed_revolutions import runner_multipliers  # noqa: E402
 
 BASELINE, REPORT = HERE / "bench.json", HERE.parent.parent / "figures" / "bench.md"
 FALLEN = 2 / 3  # of the ratio in BASELINE
@@ -61,6 +62,8 @@ STEPS = 200  # of a run
 RUNS = 10  # the fastest of so many: runs are short
 INSTANCES = 10_000
 SAME = 1e-12  # SI units: rounding; less, even 0, where h times a slope's rounding is under half a digit of the state
+FLOQUET_POINTS = 1000
+STEPS_A_TURN = 200
 ENGINE_STEPS = 20_000  # of a run of MuJoCo, of Exudyn and of ours beside them
 
 
@@ -228,6 +231,20 @@ def maps_of_other_kinds() -> Iterator[Line]:
         )  # near double roots eigenvalues keep half the digits
         note = f"{ours:.3f} s, {kind}; 99 of 100 points differ by less than {off:.0e}"
         yield Line("map", f"{name}: batched eigenvalues, one core", theirs / ours, 18.0, note)
+
+
+def moving_mechanisms() -> Iterator[Line]:
+    """Yield how much faster exact rates of a moving mechanism come in batch than by the runner on complex numbers."""
+    random = np.random.default_rng(1)
+    mechanism = compiled_mechanism(load_scene("driven_slider_crank"))
+    for name in ("B4", "AB4", "AB2"):
+        method = lookup(name)
+        alpha_hat, beta_hat = random.uniform([0.05, 0.02], [0.3, 0.15], (FLOQUET_POINTS, 2)).T
+        ours, _ = fastest(partial(floquet_rates, mechanism, method, 1 / STEPS_A_TURN, alpha_hat, beta_hat, 1.0), 3)
+        theirs, _ = fastest(partial(runner_multipliers, mechanism, method, STEPS_A_TURN, 0.2, 0.1), 1)
+        each = ours / FLOQUET_POINTS
+        note = f"{1e3 * each:.2f} ms a point, {FLOQUET_POINTS} together, {STEPS_A_TURN} steps a revolution"
+        yield Line("moving", f"{name}: the runner on complex numbers", theirs / each, 100.0, note)
 
 
 def self_checks() -> Iterator[Line]:
@@ -504,7 +521,7 @@ def main() -> int:
     """Measure, print and write everything; return 1 if a promise is broken or a ratio has fallen by a third."""
     before: dict[str, float] = json.loads(BASELINE.read_text(encoding="utf-8")) if BASELINE.exists() else {}
     lines = []
-    for section in (maps, maps_of_other_kinds, self_checks, starts, runs, engines):
+    for section in (maps, maps_of_other_kinds, moving_mechanisms, self_checks, starts, runs, engines):
         for line in section():
             lines.append(line)
             print(f"{line.section:9} {line.what:50} {line.ratio:8.3g}  {line.note}", flush=True)
