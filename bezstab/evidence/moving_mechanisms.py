@@ -22,7 +22,7 @@ from bezstab.mechanism import TurningNormals
 from bezstab.methods import Method
 from bezstab.stability import ComplexArray, FloatArray, poles, turning_sensitivity
 
-SLOWEST = 1e-3  # of |z_p|: a pole so much smaller dies out within a step, whatever the motion does to it
+SLOWEST = 0.5  # of |z_p|: within the law a pole grows by e^(1/2) a step at most, and one so small never leads
 BEYOND_FIRST_ORDER = 0.5  # |chi| kappa h: from here on the terms left out are as large as those kept
 
 LARGEST_CHI = 32.0  # of the table: ten times what is seen on a boundary; further out the law does not hold at any speed
@@ -152,10 +152,11 @@ def moving_poles(
         at_rest = np.log(np.abs(z))
     counts = np.abs(z) > SLOWEST * np.abs(z[:, :1])
     chi = turning_sensitivity(method, alpha_hat[:, np.newaxis], beta_hat[:, np.newaxis], z)
-    usable = np.where(np.isfinite(chi) & counts, chi, 0)
-    growth = step * growth_rates(turning, usable)
-    worst = np.where(counts, at_rest + step * momentary_rates(turning, usable), -np.inf)
-    growth = np.where(counts, growth, 0)
+    counts &= (z.imag >= 0) & np.isfinite(chi)  # of a conjugate pair both grow alike
+    growth = np.zeros(z.shape)
+    growth[counts] = step * growth_rates(turning, chi[counts])
+    worst = np.full(z.shape, -np.inf)
+    worst[counts] = at_rest[counts] + step * momentary_rates(turning, chi[counts])
     return [_moving_pole(z[i], at_rest[i], chi[i], growth[i], worst[i], turning.kappa, step) for i in range(len(z))]
 
 
