@@ -6,19 +6,22 @@
 This is the only place where the two meet. What is exact on the way in stays exact; what comes out is float64.
 """
 
-from fractions import Fraction
-from typing import Any, TypeVar, overload
+from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 from bezstab.errors import InputError
 from bezstab.rationals import within_float64
 
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
 LEAST_STEP = 1e-100  # s, and the inverse of the longest: so their squares are within float64
 LONGEST_STEP = 1e100
 
-FloatOrArray = TypeVar("FloatOrArray", float, NDArray[np.float64])
+FloatOrArray = TypeVar("FloatOrArray", float, "NDArray[np.float64]")
 
 
 @overload
@@ -34,6 +37,8 @@ def to_dimensionless(alpha: Any, beta: Any, h: Any) -> tuple[Any, Any]:
     alpha_hat, beta_hat = 2 * alpha * h, beta * beta * h * h
     if isinstance(alpha_hat, Fraction) and isinstance(beta_hat, Fraction):
         return within_float64(alpha_hat, "α̂ = 2αh"), within_float64(beta_hat, "β̂ = β²h²")
+    import numpy as np  # exact numbers do without, and --help
+
     if not (np.isfinite(alpha_hat).all() and np.isfinite(beta_hat).all()):
         raise InputError(f"α̂ = 2αh or β̂ = β²h² is outside the range of float64 for h = {float(h):g} s")
     return alpha_hat, beta_hat
@@ -45,6 +50,8 @@ def from_dimensionless(alpha_hat: FloatOrArray, beta_hat: FloatOrArray, h: float
     InputError where a beta_hat is negative: it is the beta^2 of no real beta, and only `feedback_gains` has a value
     there. InputError, too, for h outside 1e-100 to 1e100 s and where a result leaves float64's range. Paper Eq. 16.
     """
+    import numpy as np
+
     if not LEAST_STEP <= h <= LONGEST_STEP:
         raise InputError(f"h = {h:g} s: expected {LEAST_STEP:g} to {LONGEST_STEP:g} s")
     imaginary = ~(np.asarray(beta_hat) >= 0)  # not a number included

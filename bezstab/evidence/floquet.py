@@ -41,7 +41,7 @@ SPARE = 2  # multipliers found besides the leading ones
 RESCALED = 16  # steps between two looks at how large the changes have grown, lest they overflow
 FIRST_SHARE = 1 / 3  # of those steps: there the lesser poles still count
 STANDS_OUT = 1e-7  # of the change of the coordinates: the free motion of a method has a constraint error of this size
-BATCH = 256  # points at a time: their arrays stay within a core's cache
+BATCH = 256  # points at a time: fewer spend their time in Python, more do not fit a core's cache
 
 Values = dict[Quantity, FloatArray]
 
@@ -135,11 +135,8 @@ def _right_side(equation: Assignment | Evaluation, known: Values, jacobians: Jac
 
 def _combined(combination: Combination, values: Values) -> FloatArray:
     """Return the sum of coefficients times values; of none of them, 0."""
-    total: FloatArray = np.zeros(1)
-    for coefficient, quantity in combination:
-        term = values[quantity] if coefficient == 1 else float(coefficient) * values[quantity]
-        total = total + term
-    return total
+    terms = [values[quantity] if c == 1 else float(c) * values[quantity] for c, quantity in combination]
+    return np.asarray(sum(terms[1:], start=terms[0])) if terms else np.zeros(1)
 
 
 def _solved_together(

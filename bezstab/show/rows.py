@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import fields
 from fractions import Fraction
+from statistics import median
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 from bezstab.errors import InputError
 from bezstab.methods import Method, evaluations, implicit, steps
@@ -61,7 +61,7 @@ def _cell(field: str, value: object) -> Value:
 
 def complex_parts(prefix: str, z: complex) -> dict[str, float]:
     """Return real and imaginary part, modulus and angle (degrees), as `prefix` + real, imag, abs, angle_deg."""
-    parts = {"real": z.real, "imag": z.imag, "abs": abs(z), "angle_deg": float(np.degrees(np.angle(z)))}
+    parts = {"real": z.real, "imag": z.imag, "abs": abs(z), "angle_deg": math.degrees(cmath.phase(z))}
     return {f"{prefix}{key}": value for key, value in parts.items()}
 
 
@@ -159,8 +159,9 @@ def region_row(region: Region, best: BestPoint | None) -> Row:
 
 def _limits(region: Region) -> dict[str, float | None]:
     """Return the ends of a region's ranges by name; None where it is empty, or goes on without end."""
-    ends = np.ravel(region.extent or [math.inf] * 4).tolist()
-    return {key: end if math.isfinite(end) else None for key, end in zip(LIMITS, ends, strict=True)}
+    (alpha_min, alpha_max), (beta_min, beta_max) = region.extent or ((math.inf, math.inf), (math.inf, math.inf))
+    ends = (alpha_min, alpha_max, beta_min, beta_max)
+    return {key: float(end) if math.isfinite(end) else None for key, end in zip(LIMITS, ends, strict=True)}
 
 
 def with_unbounded(row: Row) -> Row:
@@ -229,8 +230,8 @@ def simulation_row(simulation: Simulation) -> Row:
             h=simulation.h,
             time=float(simulation.t[-1]),
         ),
-        "c_max": float(np.abs(simulation.c).max()),
-        "cdot_max": float(np.abs(simulation.cdot).max()),
+        "c_max": float(abs(simulation.c).max()),
+        "cdot_max": float(abs(simulation.cdot).max()),
         "energy_drift": float(simulation.energy_drift[-1]),
         "driver_work": float(simulation.driver_work[-1]),
         "force_work": float(simulation.force_work[-1]),
@@ -270,13 +271,13 @@ def summary_row(measurements: Sequence[Row]) -> Row:
         """Return the median difference of a prediction from the rate over whole revolutions."""
         pairs = [(each[key], each["measured_rate"]) for each in measurements]
         apart = [abs(a - b) for a, b in pairs if isinstance(a, float) and isinstance(b, float)]
-        return float(np.median(apart)) if apart else None
+        return float(median(apart)) if apart else None
 
     return {
         "method": measurements[0]["method"],
         "points": len(measurements),
         "measured": len(errors),
-        "median_error": float(np.median(errors)) if errors else None,
+        "median_error": float(median(errors)) if errors else None,
         "largest_error": max(errors, default=None),
         "called": sum(each["verdicts_agree"] is not None for each in measurements),
         "wrong": sum(each["verdicts_agree"] is False for each in measurements),

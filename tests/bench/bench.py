@@ -244,7 +244,7 @@ def moving_mechanisms() -> Iterator[Line]:
         theirs, _ = fastest(partial(runner_multipliers, mechanism, method, STEPS_A_TURN, 0.2, 0.1), 1)
         each = ours / FLOQUET_POINTS
         note = f"{1e3 * each:.2f} ms a point, {FLOQUET_POINTS} together, {STEPS_A_TURN} steps a revolution"
-        yield Line("moving", f"{name}: the runner on complex numbers", theirs / each, 100.0, note)
+        yield Line("moving", f"{name}: the runner on complex numbers", theirs / each, 10.0, note)
 
 
 def self_checks() -> Iterator[Line]:
