@@ -53,7 +53,6 @@ if TYPE_CHECKING:
 MOST_STEPS = 10**8  # a run keeps its whole history: 10 GB and an hour for the slider-crank
 MOST_SWEPT = 10**6  # the reference takes up to 32 times as many
 MOST_LISTED = 20  # times in a message
-RANDOM_POINTS = 20  # of verify, unless told otherwise
 
 EVALUATIONS = column("evaluations", "evaluations", "d")
 ITERATIONS = column("Newton's iterations", "iterations", "d")

@@ -150,14 +150,15 @@ def moving_poles(
     step = h * float(method.step_multiple)
     with np.errstate(divide="ignore"):
         at_rest = np.log(np.abs(z))
-    counts = np.abs(z) > SLOWEST * np.abs(z[:, :1])
+    counts = (np.abs(z) >= SLOWEST * np.abs(z[:, :1])) & (z.imag >= 0)  # of a conjugate pair both grow alike
     chi = turning_sensitivity(method, alpha_hat[:, np.newaxis], beta_hat[:, np.newaxis], z)
-    counts &= (z.imag >= 0) & np.isfinite(chi)  # of a conjugate pair both grow alike
-    growth = np.zeros(z.shape)
-    growth[counts] = step * growth_rates(turning, chi[counts])
+    turned = counts & np.isfinite(chi)
+    growth = np.where(counts, 0.0, -np.inf)
+    growth[turned] = step * growth_rates(turning, chi[turned])
     worst = np.full(z.shape, -np.inf)
-    worst[counts] = at_rest[counts] + step * momentary_rates(turning, chi[counts])
-    return [_moving_pole(z[i], at_rest[i], chi[i], growth[i], worst[i], turning.kappa, step) for i in range(len(z))]
+    worst[turned] = at_rest[turned] + step * momentary_rates(turning, chi[turned])
+    kappa = turning.kappa
+    return [_moving_pole(z[i], at_rest[i], chi[i], growth[i], worst[i], kappa, step) for i in range(len(z))]
 
 
 def _moving_pole(
@@ -171,7 +172,8 @@ def _moving_pole(
 ) -> MovingPole:
     """Return what becomes of the poles at one point: ln|z| at rest, its growth over the motion, its worst for a moment.
 
-    All but kappa (1/s) of shape (poles,), the dominant pole first; `step` (s) is the method's own.
+    All but kappa (1/s) of shape (poles,), the dominant pole first; `step` (s) is the method's own. The growth of a pole
+    that does not count is minus infinity.
     """
     turned = kappa * step
     apart = np.abs(z[0] - z[1:])

@@ -20,7 +20,17 @@ import numpy as np
 from bezstab.evidence.moving_mechanisms import tabulated_rates
 from bezstab.mechanism import TurningNormals
 from bezstab.methods import Method
-from bezstab.stability import BoolArray, FloatArray, Modulus, dominant_pole, poles, region, turning_sensitivity, window
+from bezstab.stability import (
+    BoolArray,
+    FloatArray,
+    Modulus,
+    bisected,
+    dominant_pole,
+    poles,
+    region,
+    turning_sensitivity,
+    window,
+)
 
 LINES = 160  # of constant beta_hat, at Gauss and Legendre's nodes: the length of a line has kinks, so 1e-4 of the area
 SAMPLES = 241  # along a line; what is narrower than 1/240 of the window is not seen
@@ -67,7 +77,7 @@ def moving_growth(
         at_rest = np.log(np.abs(candidates))
     furthest = np.abs(chi) * turning.largest_norm * step
     matters = (candidates.imag >= 0) & (np.abs(at_rest) < furthest) & np.isfinite(at_rest)
-    growth = np.array(at_rest)
+    growth = np.where(candidates.imag >= 0, at_rest, -np.inf)  # of a conjugate pair both grow alike
     growth[matters] += step * tabulated_rates(turning, chi[matters])
     return np.asarray(growth.max(axis=-1))
 
@@ -118,13 +128,11 @@ def _stable_lengths(
     held = decays(samples, lines[:, np.newaxis])
     row, step = np.nonzero(held[:, 1:] != held[:, :-1])
     after = held[row, step + 1]
-    low, high = samples[step], samples[step + 1]
-    for _ in range(HALVINGS):
-        middle = (low + high) / 2
-        beyond = decays(middle, lines[row]) == after
-        low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
+    _, changed = bisected(
+        lambda middle: decays(middle, lines[row]) == after, samples[step], samples[step + 1], halvings=HALVINGS
+    )
     lengths = np.where(held[:, -1], samples[-1], 0.0) - np.where(held[:, 0], samples[0], 0.0)
-    np.add.at(lengths, row, np.where(after, -high, high))
+    np.add.at(lengths, row, np.where(after, -changed, changed))
     return lengths
 
 

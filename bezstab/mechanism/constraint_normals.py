@@ -20,12 +20,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.mechanism.compiled import Mechanism
+from bezstab.mechanism.linearized import IMAGINARY_STEP
 from bezstab.mechanism.motions import motion
 from bezstab.mechanism.start import geometry
 
 FloatArray = NDArray[np.float64]
 
-COMPLEX_STEP = 1e-30  # of time: the derivative is exact to rounding, as nothing is subtracted
 SAMPLES = 400  # over the motion, an even number: K turns a few times a revolution, so its integrals are good to 1e-8
 
 
@@ -87,8 +87,8 @@ def _rate(mechanism: Mechanism, t: float, q: FloatArray, v: FloatArray) -> tuple
     """Return K and S at one moment; Cdot_q is C_q's derivative along the motion, by a complex step."""
     at = geometry(mechanism)
     jacobian = np.asarray(at.jacobian(q, t), float)
-    ahead: Any = at.jacobian(q + 1j * COMPLEX_STEP * v, t + 1j * COMPLEX_STEP)  # type: ignore[arg-type]
-    turning = np.asarray(ahead.imag / COMPLEX_STEP, float)
+    ahead: Any = at.jacobian(q + 1j * IMAGINARY_STEP * v, t + 1j * IMAGINARY_STEP)  # type: ignore[arg-type]
+    turning = np.asarray(ahead.imag / IMAGINARY_STEP, float)
     by_forces = jacobian.T / np.array(mechanism.equations.mass, float)[:, np.newaxis]  # M^-1 C_q^T
     metric = jacobian @ by_forces
     return np.linalg.solve(metric, (turning @ by_forces).T).T, metric  # S is symmetric

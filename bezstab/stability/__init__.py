@@ -52,7 +52,7 @@ from bezstab.stability.closed_loop import dominant_pole, poles, spectral_radius,
 from bezstab.stability.grid_maps import QUALITY, pole_map
 from bezstab.stability.pencils import Pencil, pencil_of, roots_in_z
 from bezstab.stability.regions import Extent, Region, pole_place, region, window
-from bezstab.stability.searches import first_where
+from bezstab.stability.searches import bisected, first_where
 from bezstab.stability.step_families import FAMILIES, Limit, Member, bezier_limit, family_members
 from bezstab.stability.turning import turning_sensitivity
 
@@ -89,6 +89,7 @@ __all__ = [
     "StableForAll",
     "best_point",
     "bezier_limit",
+    "bisected",
     "choose",
     "choose_at_step",
     "critical_damping_limit",

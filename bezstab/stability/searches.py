@@ -18,13 +18,13 @@ GOLDEN_ANGLE = 2.4  # rad, about pi (3 - sqrt 5): grids turned by it from one to
 
 
 def bisected(
-    holds: Callable[[FloatArray], BoolArray], before: FloatArray, after: FloatArray
+    holds: Callable[[FloatArray], BoolArray], before: FloatArray, after: FloatArray, halvings: int = BISECTIONS
 ) -> tuple[FloatArray, FloatArray]:
-    """Return brackets narrowed to float64's spacing: at `before` the condition does not hold yet, at `after` it does.
+    """Return brackets narrowed, by default to float64's spacing: at `before` the condition fails, at `after` it holds.
 
     `before` and `after` have one shape, that of the returned ends; `holds` takes and returns arrays of that shape.
     """
-    for _ in range(BISECTIONS):
+    for _ in range(halvings):
         middle = (before + after) / 2
         held = holds(middle)
         before, after = np.where(held, before, middle), np.where(held, middle, after)
