@@ -185,6 +185,7 @@ MOVING_REGIONS = [
 )
 @click.option("--compare", is_flag=True, help="One figure with the boundaries of all methods (default level 1).")
 @click.option("--h", type=SECONDS, help="Step size in s: axes become 2α (1/s) and β² (1/s²).")
+@click.option("--physical", is_flag=True, help="α and β in 1/s are marked on the axes of the figure; needs --h.")
 @click.option("--engine", type=ENGINE, help="Mark that engine's defaults and rules; needs --h.")
 @moving_scene_option("Also the region of this mechanism as it moves; needs --h.")
 @click.option(
@@ -203,6 +204,7 @@ def region(
     levels: Sequence[Fraction],
     compare: bool,
     h: Fraction | None,
+    physical: bool,
     engine: str | None,
     scene: str | None,
     speeds: Sequence[Fraction],
@@ -224,6 +226,8 @@ def region(
         raise InputError(f"--level {float(max(levels)):g}: must be at most 1, the stability boundary")
     if engine and (h is None or compare):
         raise click.UsageError("--engine marks one map and needs --h: the step in s")
+    if physical and h is None:
+        raise click.UsageError("--physical marks the axes in α and β and needs --h: the step in s")
     if scene and compare:
         raise click.UsageError("--scene draws one map for each method: not with --compare")
     turnings = {float(speed): turning_of(scene, speed, h) for speed in speeds or [Fraction(1)]}
@@ -235,7 +239,7 @@ def region(
     step = None if h is None else float(h)
     if compare:
         level = chosen_levels[0] if chosen_levels else 1.0
-        rows = _compare_regions(methods, level, alpha_range, beta_range, step, output, figure, table)
+        rows = _compare_regions(methods, level, alpha_range, beta_range, step, physical, output, figure, table)
     else:
         marks = _engine_marks(engine, h) if engine and h else {}
         rows = []
@@ -245,7 +249,18 @@ def region(
             names = [file_name(name) for name in (method.name, *([Path(scene).stem] if scene else []))]
             path = output / "_".join(["region", *names])
             row = _map_region(
-                method, chosen_levels, alpha_range, beta_range, points, step, marks, path, figure, table, moving
+                method,
+                chosen_levels,
+                alpha_range,
+                beta_range,
+                points,
+                step,
+                physical,
+                marks,
+                path,
+                figure,
+                table,
+                moving,
             )
             rows += [
                 {**row, "speed": speed, "kappa": kappa, "area_moving": of_speed.area}
@@ -271,6 +286,7 @@ def _compare_regions(
     alpha_range: Window | None,
     beta_range: Window | None,
     h: float | None,
+    physical: bool,
     output: Path,
     figure: FigureForm,
     table: TableForm,
@@ -286,7 +302,7 @@ def _compare_regions(
     def draw() -> "Figure":
         from bezstab.show import comparison_figure
 
-        return comparison_figure(regions, alpha_range, beta_range, h)
+        return comparison_figure(regions, alpha_range, beta_range, h, alpha_and_beta=physical)
 
     write_table(path, boundary_arrays(regions, h), table)
     write_figure(path, draw, figure)
@@ -300,6 +316,7 @@ def _map_region(
     beta_range: Window | None,
     points: int,
     h: float | None,
+    physical: bool,
     marks: Mapping[str, tuple[float, float]],
     path: Path,
     figure: FigureForm,
@@ -338,6 +355,8 @@ def _map_region(
             h,
             marks,
             {speed: each for (speed, _), each in moving.items()},
+            chosen=stability.choose(method, "robust") if best else None,
+            alpha_and_beta=physical,
         )
 
     write_table(path, map_arrays(alpha_hat, beta_hat, z, h), table)
@@ -504,7 +523,7 @@ def family(name: str, first: int, last: int | None, output: Path, figure: Figure
         families = {}
         for other, most in largest.items():
             families[other] = members if other == name else family_members(other, 2, most)
-        return family_figure(families, limit)
+        return family_figure(families, name, limit if name == "bezier" else None)
 
     show_rows(rows, FAMILY, form)
     write_figure(output / f"family_{name}", draw, figure)

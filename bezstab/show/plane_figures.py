@@ -13,12 +13,14 @@ from bezstab.show.style import (
     DASHES,
     NO_FAMILY,
     column_figure,
+    keep_markers_whole,
+    mark_in_alpha_and_beta,
     method_line,
     plane_axes,
     plane_coordinates,
     styled,
 )
-from bezstab.stability import BestPoint, FloatArray, Limit, Member, Region
+from bezstab.stability import BestPoint, Choice, FloatArray, Limit, Member, Region
 
 
 def region_figure(
@@ -31,14 +33,17 @@ def region_figure(
     h: float | None = None,
     marks: Mapping[str, Point] | None = None,
     moving: Mapping[float, MovingRegion] | None = None,
+    chosen: Choice | None = None,
+    alpha_and_beta: bool = False,
 ) -> Figure:
     """Return the |z_p| map with exact boundary, faster regions, best point and critical damping (paper Fig. 1).
 
-    Of an unbounded region it says that it goes on.
+    With the point of a choice, where given and inside the map. Of an unbounded region it says that it goes on.
 
     z_abs has shape (beta_hat.size, alpha_hat.size). With h (s) the axes are 2 alpha (1/s) and beta^2 (1/s^2), else
     alpha_hat and beta_hat; `marks` are points (alpha_hat, beta_hat) by their labels. Of a mechanism that moves its own
-    boundaries are drawn as well, by speed, and where the law behind the first of them does not hold.
+    boundaries are drawn as well, by speed, and where the law behind the first of them does not hold. With
+    `alpha_and_beta` the axes 2 alpha and beta^2 are marked in alpha and beta.
     """
     with styled():
         figure, axes = plane_axes(region.method.name, h)
@@ -55,22 +60,35 @@ def region_figure(
         plot.critical_damping((alpha_hat[0], alpha_hat[-1]), axes, h)
         if best:
             plot.best_point(best, axes, h)
+        if chosen and _inside(chosen.alpha_hat, alpha_hat) and _inside(chosen.beta_hat, beta_hat):
+            plot.choice(chosen, axes, h)
         plot.goes_on(region, axes)
         plot.marks(marks or {}, axes, h)
         left, bottom = plane_coordinates(alpha_hat[0], beta_hat[0], h)
         right, top = plane_coordinates(alpha_hat[-1], beta_hat[-1], h)
         axes.set(xlim=(left, right), ylim=(bottom, top), facecolor="0.93")
+        keep_markers_whole(axes)
+        if alpha_and_beta:
+            mark_in_alpha_and_beta(axes)
         figure.legend(loc="outside lower center", ncols=2, facecolor="0.75")
         return figure
 
 
+def _inside(value: float, axis: FloatArray) -> bool:
+    return bool(axis[0] <= value <= axis[-1])
+
+
 def comparison_figure(
-    regions: Sequence[Region], alpha_range: Range | None = None, beta_range: Range | None = None, h: float | None = None
+    regions: Sequence[Region],
+    alpha_range: Range | None = None,
+    beta_range: Range | None = None,
+    h: float | None = None,
+    alpha_and_beta: bool = False,
 ) -> Figure:
     """Return the boundaries of several methods in one plane (paper Fig. 2; with h in s, at equal h, Fig. 3).
 
     The ranges are in alpha_hat and beta_hat whatever the axes; without them all of every bounded region shows, and of
-    an unbounded one, which its label says it is, its window.
+    an unbounded one, which its label says it is, its window. `alpha_and_beta` is as for region_figure.
     """
     with styled():
         figure, axes = plane_axes(rf"$|z_p| = {regions[0].level:g}$", h)
@@ -88,6 +106,8 @@ def comparison_figure(
             _, bottom = plane_coordinates(0.0, float(beta_range[0]), h)
             _, top = plane_coordinates(0.0, float(beta_range[1]), h)
             axes.set_ylim(bottom, top)
+        if alpha_and_beta:
+            mark_in_alpha_and_beta(axes)
         longer_labels = any(not region.bounded for region in regions)
         figure.legend(loc="outside lower center", ncols=2 if longer_labels else 4)
         return figure
@@ -107,8 +127,11 @@ def verdict_figure(verdicts: VerdictMap, region: Region) -> Figure:
         return figure
 
 
-def family_figure(families: Mapping[str, Sequence[Member]], limit: Limit) -> Figure:
-    """Return area, least |z_p| and error constant against n, and the Bezier regions with their limit."""
+def family_figure(families: Mapping[str, Sequence[Member]], shown: str, limit: Limit | None) -> Figure:
+    """Return area, least |z_p| and error constant of families against n, and the regions of the one that is `shown`.
+
+    `limit` is what the Bezier methods tend to: a line in each of the three, and with its region where those are shown.
+    """
     with styled():
         figure = column_figure(1.3)
         (area, fastest), (constant, regions) = figure.subplots(2, 2)
@@ -118,10 +141,12 @@ def family_figure(families: Mapping[str, Sequence[Member]], limit: Limit) -> Fig
             plot.family(members, "area", area, label=label)
             plot.family(members, "least |z_p|", fastest, label=label)
             plot.family(members, "error constant", constant, label=label)
-        _draw_regions(regions, families["bezier"])
-        for axes, value in ((area, limit.area), (fastest, limit.z_abs), (constant, float(limit.error_constant))):
-            axes.axhline(value, color=ACCENT, linestyle=DASHES[1], label="Bézier limit")
-        regions.plot(limit.boundary[:, 0], limit.boundary[:, 1], color=ACCENT, linestyle=DASHES[1])
+        _draw_regions(regions, families[shown])
+        if limit is not None:
+            values = ((area, limit.area), (fastest, limit.z_abs), (constant, float(limit.error_constant)))
+            for axes, value in values:
+                axes.axhline(value, color=ACCENT, linestyle=DASHES[1], label="Bézier limit")
+            regions.plot(limit.boundary[:, 0], limit.boundary[:, 1], color=ACCENT, linestyle=DASHES[1])
         area.set(ylabel="area of the region", yscale="log", xlabel="n")
         fastest.set(ylabel="least $|z_p|$", xlabel="n")
         constant.set(ylabel="error constant", xlabel="n")

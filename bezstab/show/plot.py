@@ -35,7 +35,7 @@ from bezstab.show.style import (
     plane_coordinates,
     styled,
 )
-from bezstab.stability import BestPoint, FloatArray, Member, Region
+from bezstab.stability import BestPoint, Choice, FloatArray, Member, Region
 from bezstab.stability import spectral_radius as spectral_radius_at
 
 Range = tuple[SupportsFloat, SupportsFloat]
@@ -44,11 +44,13 @@ Point = tuple[float, float]
 
 __all__ = [
     "best_point",
+    "choice",
     "critical_damping",
     "disagreements",
     "family",
     "goes_on",
     "history",
+    "largest_error",
     "marks",
     "mechanism",
     "modulus_map",
@@ -67,7 +69,7 @@ GOES_ON: Mapping[tuple[bool, bool], tuple[Point, Point]] = {
 }
 """From where to where an arrow points, in shares of the axes: to the right, upwards."""
 PARABOLA = 400  # points of a smooth curve: more than its pixels tell apart
-MARK_SHAPES = "oDs^v"
+MARK_SHAPES = "Ds^vP"
 
 
 def region(region: Region, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
@@ -172,6 +174,22 @@ def best_point(best: BestPoint, axes: Axes | None = None, h: float | None = None
         **line,
     }
     (drawn,) = _plane(axes, best.method.name, h).plot(x, y, **style)
+    return drawn
+
+
+def choice(choice: Choice, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
+    """Draw a circle at the point that was chosen, labelled with its goal and |z_p|; return the line of one point."""
+    x, y = plane_coordinates(choice.alpha_hat, choice.beta_hat, h)
+    style = {
+        "linestyle": "none",
+        "marker": "o",
+        "color": "white",
+        "markeredgecolor": "black",
+        "markersize": 5,
+        "label": f"choose {choice.goal}: {abs(choice.pole):.4f}",
+        **line,
+    }
+    (drawn,) = _plane(axes, choice.method.name, h).plot(x, y, **style)
     return drawn
 
 
@@ -287,6 +305,21 @@ def history(
     return drawn
 
 
+def largest_error(simulation: Simulation, axes: Axes | None = None, **line: Any) -> Line2D:
+    """Draw the largest |c| over all constraints of a run against t (s) on a logarithmic axis and return the line; SI.
+
+    A gap where all constraints hold to the last bit.
+    """
+    trajectory = simulation.trajectory
+    if axes is None:
+        axes = _new_axes(f"{trajectory.mechanism.scene.name}, {trajectory.method.name}", "t (s)", "largest $|c|$ (SI)")
+    largest = np.abs(simulation.c).max(axis=1)
+    axes.set_yscale("log")
+    style = {"color": method_line(trajectory.method)["color"], **line}
+    (drawn,) = axes.plot(simulation.t, np.where(largest > 0, largest, np.nan), **style)
+    return drawn
+
+
 def mechanism(scene: Scene, q: FloatArray, axes: Axes | None = None) -> list[Line2D]:
     """Draw a scene's bodies in a state q (shape (n,), SI) as lines through the points of their joints; return them.
 
@@ -345,10 +378,10 @@ def work_precision(
 
 
 def pareto_front(runs: Iterable[Run], constraint: bool = False, floor: float = 0.0, axes: Axes | None = None) -> Line2D:
-    """Ring the runs of a Pareto front of work and error, as pareto_front finds them, and return the line of rings."""
+    """Back the runs of a Pareto front of work and error, as pareto_front finds them, with discs; return their line."""
     axes = _work_precision_axes(constraint) if axes is None else axes
     x, y = _work_and_error(sorted(runs, key=lambda run: run.evaluations), constraint, floor)
-    (drawn,) = axes.plot(x, y, "o", color="none", markeredgecolor="0.3", markersize=7, label="front")
+    (drawn,) = axes.plot(x, y, "o", color="0.8", markersize=10, zorder=1.5, label="front")
     return drawn
 
 

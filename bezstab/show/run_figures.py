@@ -1,5 +1,7 @@
 """Figures of simulations: a scene, the history of a run, and what accuracy costs."""
 
+from textwrap import wrap
+
 from matplotlib.figure import Figure
 
 from bezstab.evidence import SweptRuns
@@ -7,6 +9,9 @@ from bezstab.mechanism import Scene, Simulation
 from bezstab.show import plot
 from bezstab.show.style import MARKERS, column_figure, method_line, styled
 from bezstab.stability import FloatArray
+
+LARGEST_MARKER, MARKER_STEP = 7.0, 0.5  # points: hollow markers of falling size, so that coinciding curves all show
+TITLE_WIDTH = 48  # characters of a figure's title at column width
 
 
 def scene_figure(scene: Scene, q: FloatArray) -> Figure:
@@ -21,18 +26,29 @@ def scene_figure(scene: Scene, q: FloatArray) -> Figure:
 
 
 def history_figure(simulation: Simulation) -> Figure:
-    """Return the first constraint and its derivative against time in s, SI units (paper Figs. 5-9)."""
+    """Return the first constraint, its derivative and the largest |c| against time in s, SI units (paper Figs. 5-9).
+
+    |c| is the largest over all constraints, on a logarithmic axis, where decay and growth are straight lines. Above
+    stand scene, method, point and step and, in as many lines as it takes, why a run ended early.
+    """
+    method = simulation.trajectory.method
+    title = [
+        f"{simulation.trajectory.mechanism.scene.name}, {method.name}, $h$ = {simulation.h:g} s",
+        rf"$\hat\alpha$ = {simulation.alpha_hat:g}, $\hat\beta$ = {simulation.beta_hat:g}",
+    ]
+    if simulation.failure:
+        title += wrap(simulation.failure, TITLE_WIDTH)
     with styled():
-        figure = column_figure()
-        upper, lower = figure.subplots(2, 1, sharex=True)
+        figure = column_figure(1.3)
+        upper, middle, lower = figure.subplots(3, 1, sharex=True)
         plot.history(simulation, axes=upper)
-        plot.history(simulation, derivative=True, axes=lower)
-        title = f"{simulation.trajectory.mechanism.scene.name}, {simulation.trajectory.method.name}"
-        if simulation.failure:
-            title += f"\n{simulation.failure}"
-        upper.set(title=title, ylabel="$c_1$ (SI)")
-        lower.set(xlabel="t (s)", ylabel=r"$\dot c_1$ (SI)")
-        for axes in (upper, lower):
+        plot.history(simulation, derivative=True, axes=middle)
+        plot.largest_error(simulation, axes=lower)
+        figure.suptitle("\n".join(title))
+        upper.set(ylabel="$c_1$ (SI)")
+        middle.set(ylabel=r"$\dot c_1$ (SI)")
+        lower.set(xlabel="t (s)", ylabel="largest $|c|$ (SI)")
+        for axes in (upper, middle):
             axes.ticklabel_format(axis="y", scilimits=(-2, 3))
         return figure
 
@@ -50,7 +66,10 @@ def work_precision_figure(swept: SweptRuns, scene: str, constraint: bool, floor:
         top = 10 * max(known_errors, default=1.0)
         for number, method in enumerate(dict.fromkeys(run.method for run in runs)):
             own = [run for run in runs if run.method == method]
-            plot.work_precision(own, constraint, floor, axes, marker=MARKERS[number % len(MARKERS)])
+            of_this = number % len(MARKERS)
+            hollow = {"markersize": LARGEST_MARKER - MARKER_STEP * of_this, "markerfacecolor": "none"}
+            marker = {"marker": MARKERS[of_this], "markeredgewidth": 0.7, **hollow}
+            plot.work_precision(own, constraint, floor, axes, **marker)
             failed = [run.evaluations for run in own if run.failure]
             axes.plot(failed, [top] * len(failed), "x", color=method_line(method)["color"], markersize=4)
         front = swept.constraint_front if constraint else swept.trajectory_front

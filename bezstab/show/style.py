@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from bezstab.methods import Method
@@ -40,6 +41,8 @@ FAMILIES = {  # by family: colours of Okabe & Ito that differ in lightness too, 
 SINGLE = {"SIE", "symplectic Euler"}  # families of one: there is no number for the dashes to tell apart
 NO_FAMILY = "0.4"  # the colour of a user's method, and of families without one of their own
 ACCENT = FAMILIES["symplectic Euler"]  # for what must be seen first: a limit, a disagreement
+CLOSEST_TICKS = 0.06  # of an axis' length: labels nearer than that would overlap
+ABOVE_THE_AXES = 3  # their lines and ticks are drawn at 2.5
 MARKERS = "osD^v<>ph*"
 CONVERGES, DIVERGES = "#9ecae1", "0.45"
 DASHES: list[str | tuple[int, tuple[float, ...]]] = ["-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (5, 1.5, 1.2, 1.5))]
@@ -80,6 +83,33 @@ def plane_coordinates(alpha_hat: Number, beta_hat: Number, h: float | None) -> t
     if h is None:
         return alpha_hat, beta_hat
     return feedback_gains(alpha_hat, beta_hat, h)
+
+
+def mark_in_alpha_and_beta(axes: Axes) -> None:
+    """Put round values of alpha and beta (1/s) on the axes 2 alpha and beta^2 of plane_axes, whose limits are final.
+
+    The region keeps its shape; only what is written at its axes changes. Below beta^2 = 0 there is no real beta.
+    """
+    low, high = axes.get_xlim()
+    alpha = [tick for tick in MaxNLocator(5).tick_values(low / 2, high / 2) if low <= 2 * tick <= high]
+    low, high = axes.get_ylim()
+    beta = [tick for tick in MaxNLocator(7).tick_values(0, max(high, 0) ** 0.5) if tick >= 0 and tick**2 <= high]
+    apart = CLOSEST_TICKS * (high - low)
+    beta = [tick for tick in beta if tick == 0 or tick**2 >= apart]
+    axes.set_xticks([2 * tick for tick in alpha], [f"{tick:g}" for tick in alpha])
+    axes.set_yticks([tick**2 for tick in beta], [f"{tick:g}" for tick in beta])
+    axes.set(xlabel=r"$\alpha$ (1/s)", ylabel=r"$\beta$ (1/s), even in $\beta^2$")
+
+
+def keep_markers_whole(axes: Axes) -> None:
+    """Let no edge of the axes, whose limits are final, cut through the marker of a point that lies inside or on it."""
+    (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+    for line in axes.lines:
+        x, y = np.asarray(line.get_xdata(), dtype=float), np.asarray(line.get_ydata(), dtype=float)
+        if line.get_linestyle() != "None" or not x.size:
+            continue
+        if ((left <= x) & (x <= right) & (bottom <= y) & (y <= top)).all():
+            line.set(clip_on=False, zorder=ABOVE_THE_AXES)
 
 
 def curves(axes: Axes, region: Region, h: float | None, label: str, **line: Any) -> Line2D:

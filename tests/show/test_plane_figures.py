@@ -17,6 +17,7 @@ from bezstab.stability import (
     Member,
     best_point,
     bezier_limit,
+    choose,
     family_members,
     region,
     spectral_radius,
@@ -88,7 +89,7 @@ def test_the_verdict_figure_shows_cells_boundary_and_disagreement() -> None:
 def test_the_family_figure_has_a_point_per_method_and_the_limit() -> None:
     families = {"bezier": family_members("bezier", 2, 5), "adams-bashforth": family_members("adams-bashforth", 2, 4)}
     limit = bezier_limit()
-    area, fastest, constant, regions = family_figure(families, limit).axes
+    area, fastest, constant, regions = family_figure(families, "bezier", limit).axes
 
     def assert_drawn(axes: Axes, quantity: Callable[[Member], float | None]) -> None:
         lines = {str(line.get_label()): line for line in axes.lines}
@@ -102,6 +103,46 @@ def test_the_family_figure_has_a_point_per_method_and_the_limit() -> None:
     assert_drawn(constant, lambda member: float(member.error_constant))
     assert [np.array(axes.lines[-1].get_ydata())[0] for axes in (area, fastest)] == [limit.area, limit.z_abs]
     assert np.array(regions.lines[-1].get_xydata()) == pytest.approx(limit.boundary)
+
+
+def test_the_family_figure_shows_the_regions_of_the_family_asked_for() -> None:
+    families = {"bezier": family_members("bezier", 2, 3), "adams-bashforth": family_members("adams-bashforth", 2, 3)}
+    area, _, _, regions = family_figure(families, "adams-bashforth", None).axes
+    assert [line.get_label() for line in regions.lines] == ["AB2", "AB3"]
+    for line, member in zip(regions.lines, families["adams-bashforth"], strict=True):
+        assert np.array(line.get_xydata())[:-1] == pytest.approx(member.region.boundary[0])
+    assert len(area.lines) == 2  # no limit: theirs is nothing
+
+
+def test_axes_marked_in_alpha_and_beta_mark_the_same_points() -> None:
+    h = 0.001
+    figure = comparison_figure([region(lookup("B4"))], h=h, alpha_and_beta=True)
+    (axes,) = figure.axes
+    for ticks, labels, power, scale in (
+        (axes.get_xticks(), axes.get_xticklabels(), 1, 2),  # at 2 alpha
+        (axes.get_yticks(), axes.get_yticklabels(), 2, 1),  # at beta^2
+    ):
+        assert len(ticks) > 2
+        assert ticks == pytest.approx([scale * float(label.get_text()) ** power for label in labels])
+    assert axes.get_xlabel().startswith(r"$\alpha$")
+    assert axes.get_ylabel().startswith(r"$\beta$")
+
+
+def test_the_choice_is_marked_and_no_marker_inside_is_cut() -> None:
+    method = lookup("SYM")
+    alpha_hat, beta_hat = (np.linspace(low, high, 9) for low, high in window(region(method)))
+    z_abs = spectral_radius(method, alpha_hat, beta_hat[:, None])
+    chosen = choose(method, "robust")
+    corner, beyond = (float(alpha_hat[0]), float(beta_hat[0])), (2 * float(alpha_hat[-1]), 1.0)
+    marks = {"at the corner": corner, "beyond": beyond}
+    figure = region_figure(
+        region(method), [], best_point(method), alpha_hat, beta_hat, z_abs, marks=marks, chosen=chosen
+    )
+    lines = {str(line.get_label()): line for line in figure.axes[0].lines}
+    (label,) = (label for label in lines if label.startswith("choose robust"))
+    assert np.array(lines[label].get_xydata()).tolist() == [[chosen.alpha_hat, chosen.beta_hat]]
+    assert not lines["at the corner"].get_clip_on()
+    assert lines["beyond"].get_clip_on()
 
 
 def test_an_empty_region_can_be_drawn() -> None:

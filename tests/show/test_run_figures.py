@@ -2,11 +2,14 @@ from collections.abc import Sequence
 
 import numpy as np
 import pytest
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.lines import Line2D
 
 from bezstab.evidence import Run, Sweep, measured_runs, pareto_front, reference_motion, swept_runs, with_fronts
-from bezstab.mechanism import compiled_mechanism, initial_state, load_scene
+from bezstab.mechanism import compiled_mechanism, initial_state, load_scene, simulated
 from bezstab.methods import lookup
-from bezstab.show.run_figures import scene_figure, work_precision_figure
+from bezstab.show.run_figures import history_figure, scene_figure, work_precision_figure
 
 
 def test_the_scene_figure_joins_the_bodies_where_their_joints_are() -> None:
@@ -47,3 +50,40 @@ def test_the_work_precision_figure_has_every_run_and_rings_the_front(constraint:
     )
     assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
     assert "diverged" in lines
+    shapes = {
+        name: (line.get_marker(), line.get_markersize()) for name in ("B2", "AB4") for line in [lines_of(axes)[name]]
+    }
+    assert len(set(shapes.values())) == len(shapes)  # coinciding curves are told apart
+
+
+def lines_of(axes: Axes) -> dict[str, Line2D]:
+    return {str(line.get_label()): line for line in axes.lines}
+
+
+def test_the_history_figure_says_what_was_run_and_shows_decay_as_a_line() -> None:
+    pendulum = compiled_mechanism(load_scene("pendulum"))
+    run = simulated(pendulum, lookup("SYM"), h=0.002, duration=0.2, alpha_hat=0.5, beta_hat=0.1, perturb=1e-4)
+    figure = history_figure(run)
+    upper, middle, lower = figure.axes
+    assert np.array(upper.lines[0].get_ydata()).tolist() == run.c[:, 0].tolist()
+    assert np.array(middle.lines[0].get_ydata()).tolist() == run.cdot[:, 0].tolist()
+    assert np.array(lower.lines[0].get_ydata()).tolist() == np.abs(run.c).max(axis=1).tolist()
+    assert lower.get_yscale() == "log"
+    title = figure.get_suptitle()
+    for part in ("SYM", "0.002 s", r"\hat\alpha$ = 0.5", r"\hat\beta$ = 0.1"):
+        assert part in title
+
+
+def test_why_a_run_ended_is_written_whole_within_the_figure() -> None:
+    crank = compiled_mechanism(load_scene("slider_crank"))
+    run = simulated(crank, lookup("AB4"), h=0.001, duration=1, alpha_hat=1.5, beta_hat=0.8)
+    assert run.failure is not None
+    figure = history_figure(run)
+    assert run.failure in figure.get_suptitle().replace("\n", " ")
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    assert figure._suptitle is not None
+    box = figure._suptitle.get_window_extent(canvas.get_renderer())
+    assert box.x0 >= 0
+    assert box.x1 <= figure.bbox.x1
+    assert box.y1 <= figure.bbox.y1
