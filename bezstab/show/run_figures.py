@@ -54,7 +54,7 @@ def history_figure(simulation: Simulation) -> Figure:
 
 
 def work_precision_figure(swept: SweptRuns, scene: str, constraint: bool, floor: float = 0.0) -> Figure:
-    """Return the error of each run against its evaluations, the Pareto front ringed, failed runs on top.
+    """Return the error of each run against its evaluations, discs behind the Pareto front, failed runs on top.
 
     The trajectory's error (SI), not drawn below `floor`, that of the reference; or with `constraint` the largest |c|.
     """

@@ -1,10 +1,11 @@
 from collections.abc import Sequence
+from io import BytesIO
 
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.lines import Line2D
+from matplotlib.text import Text
 
 from bezstab.evidence import Run, Sweep, measured_runs, pareto_front, reference_motion, swept_runs, with_fronts
 from bezstab.mechanism import compiled_mechanism, initial_state, load_scene, simulated
@@ -80,10 +81,8 @@ def test_why_a_run_ended_is_written_whole_within_the_figure() -> None:
     assert run.failure is not None
     figure = history_figure(run)
     assert run.failure in figure.get_suptitle().replace("\n", " ")
-    canvas = FigureCanvasAgg(figure)
-    canvas.draw()
-    assert figure._suptitle is not None
-    box = figure._suptitle.get_window_extent(canvas.get_renderer())
+    figure.savefig(BytesIO())  # which lays it out
+    (box,) = (text.get_window_extent() for text in figure.findobj(Text) if text.get_text() == figure.get_suptitle())
     assert box.x0 >= 0
     assert box.x1 <= figure.bbox.x1
     assert box.y1 <= figure.bbox.y1
