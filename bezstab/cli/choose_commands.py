@@ -102,10 +102,10 @@ def choice_sentence(row: Row) -> str:
     """Return whether a point is safe, how fast errors shrink, and by how much h, α and β may grow."""
     if row["verdict"] != "converges":
         return f"{safety_words(row)}."
-    step = seconds_words(row["h_limit"]) if isinstance(row["h_limit"], float) else growth_words(row["h_factor"])
-    h_words = f"h may grow to {step}" if isinstance(row["h_limit"], float) else f"h may grow {step}"
+    limit = row["h_limit"]
+    h = f"to {seconds_words(limit)}" if isinstance(limit, float) else growth_words(row["h_factor"])
     alpha, beta = growth_words(row["alpha_factor_max"]), growth_words(row["beta_factor_max"])
-    return f"{safety_words(row)}; {h_words}, α {alpha}, β {beta}."
+    return f"{safety_words(row)}; h may grow {h}, α {alpha}, β {beta}."
 
 
 @click.command()
@@ -271,7 +271,7 @@ ENGINES_LISTED = [
 def engine_sentence(row: Row) -> str:
     """Return what to write for the point, or what the engine calls the feedback where none is given."""
     if row["setting"] is None:
-        return f"{row['engine']} has {row['parameters']}."
+        return f"In {row['engine']} the feedback is set by {row['parameters']}."
     return f"At this point: {row['setting']}."
 
 

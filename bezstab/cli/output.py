@@ -14,7 +14,7 @@ import click
 from bezstab.cli.options import FigureForm, TableForm
 from bezstab.cli.terminal import output_encoding, spelled, text_width, visible
 from bezstab.files import write_whole
-from bezstab.show import Column, Format, Row, block, fits, render, wrapped
+from bezstab.show import Column, Format, Row, block, finite, fits, render, wrapped
 from bezstab.stopping import if_stopped
 
 if TYPE_CHECKING:
@@ -55,8 +55,10 @@ def show_blocks(rows: Sequence[Row], columns: Sequence[Column], sentence: Senten
     encoding = output_encoding()
     presentable = [_presentable(column, encoding) for column in columns]
     width = text_width() or UNLIMITED
-    sentences = [visible(spelled(sentence(row), encoding)) if sentence else "" for row in rows]
-    blocks = [block(row, presentable, width, words) for row, words in zip(rows, sentences, strict=True)]
+    blocks = []
+    for row in map(finite, rows):
+        words = visible(spelled(sentence(row), encoding)) if sentence else ""
+        blocks.append(block(row, presentable, width, words))
     click.echo("\n\n".join(blocks))
 
 

@@ -17,7 +17,13 @@ if TYPE_CHECKING:  # so that `bezstab --help`, which lists this command, loads n
 
 
 @click.command()
-@click.option("--only", type=click.Choice(PARTS), multiple=True, help="This part alone. Repeatable.")
+@click.option(
+    "--only",
+    metavar="PART",
+    type=click.Choice(PARTS),
+    multiple=True,
+    help="One of table1 to table6 and fig1 to fig9. Repeatable.",
+)
 @output_option
 @figure_option
 @format_option

@@ -84,15 +84,17 @@ VOCABULARY: Mapping[str, Key] = {
     "beta_hat_min": Key("number", "Smallest beta_hat of the region", null=UNBOUNDED),
     "beta_hat_max": Key("number", "Largest beta_hat of the region", null=UNBOUNDED),
     "best_z_abs": Key("number", "Smallest modulus of the dominant pole over the region", null=NO_BEST),
-    "best_alpha_hat": Key("number", "alpha_hat where that modulus is smallest", null=NO_BEST),
-    "best_beta_hat": Key("number", "beta_hat where that modulus is smallest", null=NO_BEST),
+    "best_alpha_hat": Key("number", "Where that modulus is smallest, in alpha_hat", null=NO_BEST),
+    "best_beta_hat": Key("number", "Where that modulus is smallest, in beta_hat", null=NO_BEST),
     "best_where": Key("text", "Which poles meet where the modulus is smallest, in words", null="where nothing is"),
     "best_reason": Key("text", "Why there is no best point", null="where there is one"),
     "bounded": Key("truth", "Whether the region is bounded"),
     "stable_for_all": Key(
         "text", "Whether all alpha_hat, beta_hat > 0 are stable", values=("proven", "no unstable point found", "no")
     ),
-    "unconditional_damping_ratio": Key("number", "alpha / beta above which every step is stable", null="if none is"),
+    "unconditional_damping_ratio": Key(
+        "number", "Damping ratio alpha / beta above which every step is stable", null="if none is"
+    ),
     "critical_damping_limit": Key("number", "Largest beta h on alpha = beta up to which all are stable", null="if all"),
     # a method by itself
     "steps": Key("integer", "Number of steps of the method", null="for the limit of a family"),
@@ -193,7 +195,7 @@ VOCABULARY: Mapping[str, Key] = {
     "reason": Key("text", "Why nothing could be measured, or what disturbs it; empty where nothing does"),
     "measurable": Key("truth", "Whether the pole could be measured"),
     "verdicts_agree": Key("truth", "Whether predicted and measured verdict agree", null="where either is not settled"),
-    "right": Key("text", "Which predictions have the measured verdict: map, law, exact"),
+    "right": Key("text", "Which predictions have the measured verdict: at rest, law, exact"),
     # maps of simulated verdicts
     "runs": Key("integer", "Number of runs"),
     "broken": Key("integer", "Runs in which the mechanism itself broke down: no verdict"),

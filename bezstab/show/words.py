@@ -33,7 +33,7 @@ def change_words(z_abs: float, verdict: Value) -> str:
     verb = "shrinks" if converges else "grows"
     if z_abs == 0:
         return "is gone within a few steps"
-    if (z_abs < 1) != converges:
+    if not (z_abs < 1 if converges else z_abs > 1):
         return f"{verb}, by less at a step than rounding shows"
     digits = next(digits for digits in range(2, MOST_DIGITS + 1) if float(f"{z_abs:.{digits}g}") != 1)
     return f"{verb} {z_abs:.{digits}g}-fold a step"
