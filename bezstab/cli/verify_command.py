@@ -229,7 +229,7 @@ def _show_measurements(
     floquet: bool,
     form: Format,
 ) -> None:
-    """Print the poles measured at one point, else at random ones, and where there is room how well they agree."""
+    """Print the poles measured at one point, else at random ones, and where there are several how well they agree."""
     import numpy as np
 
     from bezstab.evidence import measure_poles, random_points
@@ -248,7 +248,7 @@ def _show_measurements(
         rows += own_rows
         summaries.append(summary_row(own_rows))
     show_rows(rows, MEASUREMENTS + (EXACT if floquet else []), form, sentence=measurement_sentence)
-    if for_reading(form):
+    if for_reading(form) and len(rows) > len(methods):  # of one point each there is nothing to sum up
         click.echo()
         show_rows(summaries, SUMMARIES + (MOTION_SUMMARIES if floquet else []), form, sentence=summary_sentence)
 
