@@ -4,6 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from bezstab.show import Row
 from bezstab.show.words import change_words, growth_words, safety_words, seconds_words
 
 
@@ -51,11 +52,17 @@ def test_growth_has_a_factor_or_no_limit() -> None:
 
 
 def test_the_motion_is_said_as_well() -> None:
-    row = {"safe": False, "verdict": "converges", "z_abs": 0.98, "z_abs_moving": 1.25, "moving_verdict": "diverges"}
+    row: Row = {
+        "safe": False,
+        "verdict": "converges",
+        "z_abs": 0.98,
+        "z_abs_moving": 1.25,
+        "moving_verdict": "diverges",
+    }
     assert safety_words(row) == (
         "Not safe. At rest the error shrinks 0.98-fold a step, over the motion it grows 1.2-fold a step"
     )
-    unsettled = {**row, "moving_verdict": "not settled for this mechanism"}
+    unsettled: Row = {**row, "moving_verdict": "not settled for this mechanism"}
     assert safety_words(unsettled).endswith("; over the motion it is not settled for this mechanism")
-    at_rest = {"safe": True, "verdict": "converges", "z_abs": 0.98}
+    at_rest: Row = {"safe": True, "verdict": "converges", "z_abs": 0.98}
     assert safety_words(at_rest) == "Safe. The error shrinks 0.98-fold a step"
