@@ -98,7 +98,7 @@ JSON_TYPES: Mapping[Kind, Mapping[str, Any]] = {
     "text": {"type": "string"},
     "truth": {"type": "boolean"},
     "numbers": {"type": "array", "items": {"type": "number"}},
-    "texts": {"type": "array", "items": {"type": "string"}},
+    "text rows": {"type": "array", "items": {"type": "array", "items": {"type": "string"}}},
 }
 
 

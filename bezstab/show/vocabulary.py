@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-Kind = Literal["number", "integer", "text", "truth", "numbers", "texts"]
-"""Of a value; numbers and texts are lists."""
+Kind = Literal["number", "integer", "text", "truth", "numbers", "text rows"]
+"""Of a value; numbers are a list, text rows a list of lists of texts."""
 
 
 @dataclass(frozen=True)
@@ -131,15 +131,39 @@ VOCABULARY: Mapping[str, Key] = {
     "alpha_factor_max": Key("number", "Largest factor by which alpha alone may be scaled", null=f"{UNSTABLE}, or any"),
     "beta_factor_min": Key("number", "Least factor by which beta alone may be scaled", null=UNSTABLE),
     "beta_factor_max": Key("number", "Largest factor by which beta alone may be scaled", null=f"{UNSTABLE}, or any"),
-    "varying": Key("text", "Whether any sequence of the steps is stable", values=("proven", "refuted", "not known")),
-    "certificate": Key("texts", "Rational numbers that prove it for every sequence of steps", null="without a proof"),
-    "sequence": Key("numbers", "Steps that, repeated, make errors grow", "s", "where none are known"),
+    "varying": Key(
+        "text", "Whether errors decay for every sequence of steps", values=("proven", "refuted", "not known")
+    ),
+    "varying_h_min": Key("number", "Smallest step of such a sequence", "s"),
+    "varying_h_max": Key("number", "Largest step of such a sequence", "s"),
+    "hold": Key("truth", "Whether alpha_hat and beta_hat are held while the step varies, not alpha and beta"),
+    "certificate_kind": Key("text", "What the certificate is", null="without a proof"),
+    "certificate": Key("text rows", "Rational numbers that prove it, as rows", null="where it takes none"),
+    "sequence": Key("numbers", "Steps that do not let errors decay when they are repeated", "s", "unless refuted"),
     # engines
     "engine": Key("text", "Name of an engine"),
     "level": Key("text", "Where the engine's feedback acts", values=("acceleration", "velocity")),
     "parameters": Key("text", "What the engine calls the feedback's parameters"),
     "setting": Key("text", "What to write in the engine's words", null="where no point is given"),
     "excludes": Key("text", "What the conversion leaves out"),
+    "optional": Key("text", "Which of the parameters may be left away"),
+    "units": Key("text", "Units of the parameters, in their order"),
+    "witness": Key(
+        "text", "With which engine a run has confirmed the conversion", null="where its source alone says it"
+    ),
+    "applied": Key(
+        "text", "What the engine does to its values before it uses them", null="where nothing is known of it"
+    ),
+    # drives
+    "drive": Key("text", "How the drive is applied", null="where the method is no drive's"),
+    "kp": Key("number", "Stiffness of the drive", "N m/rad or N/m"),
+    "kd": Key("number", "Damping of the drive", "N m s/rad or N s/m"),
+    "inertia": Key("number", "Inertia that the drive feels", "kg m^2 or kg"),
+    "kp_max": Key("number", "Largest stable stiffness with this damping", "N m/rad or N/m", "without a limit"),
+    "kd_max": Key("number", "Largest stable damping with this stiffness", "N m s/rad or N s/m", "without a limit"),
+    "used_up": Key(
+        "text", "Which gain is at its limit or nearest to it", null="where none has one", values=("kp", "kd")
+    ),
     # models and logs
     "element": Key("text", "Name of the element of a model"),
     "kind": Key("text", "What the element is"),
@@ -149,7 +173,15 @@ VOCABULARY: Mapping[str, Key] = {
     "samples": Key("integer", "Samples that the fit has used"),
     "distance": Key("number", "Distance of the fitted pole from that of the method", null=NOT_MEASURED),
     "fits": Key("truth", "Whether the method agrees with the log within its uncertainty"),
+    "column": Key("text", "Name of the column of the log"),
+    "rows": Key("integer", "Rows of the log that hold numbers"),
     "predicted_abs": Key("number", "Modulus of the pole that the method would show in a log"),
+    "predicted_angle_deg": Key("number", "Angle of the pole that the method would show in a log", "degrees"),
+    "allowed": Key("number", "Largest distance that still fits"),
+    "dominant": Key("truth", "Whether the method's nearest pole is its dominant one"),
+    "same_as": Key("text", "Methods that no log can tell from this one"),
+    "alpha_hat_error": Key("number", "How far alpha_hat may be off by the error of the fit"),
+    "beta_hat_error": Key("number", "How far beta_hat may be off by the error of the fit"),
     # runs
     "scene": Key("text", "Name of the scene"),
     "time": Key("number", "When the run ended", "s"),

@@ -8,9 +8,11 @@ from bezstab.show.schemas import ROW_KINDS
 USED = {key for kinds in ROW_KINDS.values() for kind in kinds for key in (*kind.keys, *kind.added)}
 AWAITED = {
     *("element", "kind", "map", "advice", "uncertainty", "samples", "distance", "fits", "predicted_abs"),
-    *("varying", "certificate", "sequence"),
+    *("column", "rows", "predicted_angle_deg", "allowed", "dominant", "same_as", "alpha_hat_error", "beta_hat_error"),
+    *("varying", "varying_h_min", "varying_h_max", "hold", "certificate_kind", "certificate", "sequence"),
+    *("optional", "units", "witness", "applied", "drive", "kp", "kd", "inertia", "kp_max", "kd_max", "used_up"),
 }
-"""Words of commands that are being written."""
+"""Words of commands and options that are being written."""
 
 
 def test_every_key_of_every_command_is_a_word_and_every_word_a_key() -> None:
@@ -37,7 +39,7 @@ def test_moduli_and_angles_of_poles_are_called_alike() -> None:
         if re.search("modulus of the .*pole|modulus predicted|exact modulus", key.meaning, re.IGNORECASE):
             assert "z_abs" in name or name in ("worst", "predicted_abs"), name
         if name.endswith("_deg"):
-            assert name.endswith("z_angle_deg")
+            assert name.endswith("z_angle_deg") or name == "predicted_angle_deg"
             assert key.unit == "degrees"
 
 
