@@ -13,6 +13,7 @@ from bezstab.rationals import rational
 Point = tuple[float, float]
 
 LEAST = 1e-100  # of a number that is not 0, and of the inverse of the largest: so their squares are within float64
+LISTED = 200  # characters of the keys that are there, where one is missing
 SIZE = "0 or of size 1e-100 to 1e100"
 RATIONAL_STRINGS = 'rational strings like "175/108"'
 
@@ -41,7 +42,8 @@ class TomlTable:
         if key not in self.known:
             self.known.append(key)
         if key not in self.data and default is None:
-            raise self.mistake(f"{key} is missing")
+            found = ", ".join(self.data)[:LISTED] or "nothing"  # a misspelt key is missing under its right name
+            raise self.mistake(f"{key} is missing: found {found}")
         value = self.data.get(key, default)
         if not valid(value):
             raise self.mistake(f"{key} = {value!r}: expected {expected}")

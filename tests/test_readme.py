@@ -23,6 +23,9 @@ INLINE = sorted(
         )
     )
 )
+ON_A_PIPE = {"COLUMNS": None}
+"""Environment in which nothing says how wide a line may be."""
+
 LONG = ("paper", "tradeoff", "verify --map", "verify --witness", "choose --method B4 --method AB4 --method SYM")
 """Beginnings of commands that take more than a few seconds; `make test-slow` runs these."""
 
@@ -41,7 +44,7 @@ def prompted(session: str) -> str:
 @pytest.mark.parametrize("session", by_length(SESSIONS, prompted))
 def test_a_session_prints_what_the_readme_shows(session: str) -> None:
     command, shown = prompted(session), session.partition("\n")[2]
-    result = CliRunner().invoke(main, shlex.split(command))
+    result = CliRunner(env=ON_A_PIPE).invoke(main, shlex.split(command))
     assert result.exit_code == ("check" in command and "diverges" in shown)  # 1 for an unsafe choice
     assert result.stdout.strip() == shown.strip()
 

@@ -47,7 +47,8 @@ def test_what_is_absent_takes_its_default() -> None:
 
 
 def test_what_is_absent_without_a_default_is_missing() -> None:
-    assert refusal(lambda: TomlTable({}, "body 'bob'").positive_number("mass")) == "body 'bob': mass is missing"
+    assert refusal(lambda: TomlTable({}, "bob").positive_number("mass")) == "bob: mass is missing: found nothing"
+    assert refusal(lambda: TomlTable({"mas": 1}).positive_number("mass")) == "mass is missing: found mas"
 
 
 def test_a_message_has_the_place_the_key_the_value_and_what_is_expected() -> None:

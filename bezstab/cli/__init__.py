@@ -3,6 +3,7 @@
 A file imports only from those above it:
 
     terminal            words for what a terminal cannot show
+    completion          what the shell offers after a press of the tab key
     options             parameter types and the options that commands share
     output              rows, files, messages, progress
     moving_mechanism    what several ask about a mechanism that moves
@@ -10,6 +11,7 @@ A file imports only from those above it:
     choose_commands     choose, check, engines, explore
     evidence_commands   simulate, tradeoff, extremes
     verify_command      verify
+    schema_command      schema
     command_group       the group of all commands
 """
 

@@ -27,11 +27,21 @@ from bezstab.cli.options import (
     physical_option,
     step_option,
 )
-from bezstab.cli.output import progress, show_rows
+from bezstab.cli.output import for_reading, progress, show_rows, show_text
 from bezstab.engines import ENGINES
 from bezstab.errors import InputError
 from bezstab.methods import Method, lookup
-from bezstab.show import MISSING, Column, Format, Row, column, formatted
+from bezstab.show import (
+    MISSING,
+    Column,
+    Format,
+    Row,
+    column,
+    formatted,
+    growth_words,
+    safety_words,
+    seconds_words,
+)
 from bezstab.units import to_dimensionless
 
 if TYPE_CHECKING:
@@ -52,9 +62,9 @@ def range_column(heading: str, low_key: str, high_key: str) -> Column:
 
 def _largest_step(row: Row) -> str:
     """Return the largest stable step; a stable point without one is stable at any."""
-    if row["h_max"] is None and row["h"] is not None and row["verdict"] == "converges":
+    if row["h_limit"] is None and row["h"] is not None and row["verdict"] == "converges":
         return "unlimited"
-    return formatted(row["h_max"], ".4g")
+    return formatted(row["h_limit"], ".4g")
 
 
 def _searched(row: Row) -> str:
@@ -72,20 +82,30 @@ CHOICES = [
     column("verdict", "verdict"),
     column("|z_p|", "z_abs", ".4f"),
     column("∠z_p (deg)", "z_angle_deg", ".1f"),
-    column("within the spread", "worst", ".4f"),
+    column("|z_p| within the spread", "worst", ".4f"),
     column("steps to 1/1000", "settle_steps", "d"),
-    column("s", "settle_seconds", ".3g"),
+    column("seconds to 1/1000", "settle_seconds", ".3g"),
     Column("stable for h (s) to", _largest_step),
     range_column("α times", "alpha_factor_min", "alpha_factor_max"),
     range_column("β times", "beta_factor_min", "beta_factor_max"),
 ]
-PASTE = column("to paste", "engine")
+PASTE = column("to paste", "setting")
 SEARCHED = Column("searched", _searched)
 
 
 def choice_columns(rows: Sequence[Row]) -> list[Column]:
     """Return the columns of choices; how strong a feedback was searched where some region has no end."""
     return [*CHOICES, SEARCHED] if any(row["searched"] is not None for row in rows) else CHOICES
+
+
+def choice_sentence(row: Row) -> str:
+    """Return whether a point is safe, how fast errors shrink, and by how much h, α and β may grow."""
+    if row["verdict"] != "converges":
+        return f"{safety_words(row)}."
+    limit = row["h_limit"]
+    h = f"to {seconds_words(limit)}" if isinstance(limit, float) else growth_words(row["h_factor"])
+    alpha, beta = growth_words(row["alpha_factor_max"]), growth_words(row["beta_factor_max"])
+    return f"{safety_words(row)}; h may grow {h}, α {alpha}, β {beta}."
 
 
 @click.command()
@@ -152,9 +172,10 @@ def choose(
         )
         row = choice_row(choice, float(h))
         if engine:
-            row["engine"] = ENGINES[engine].setting((Fraction(choice.alpha_hat), Fraction(choice.beta_hat)), h)
+            row["setting"] = ENGINES[engine].setting((Fraction(choice.alpha_hat), Fraction(choice.beta_hat)), h)
         rows += moving_rows([row], [method], [(choice.alpha_hat, choice.beta_hat)], turning, h)
-    show_rows(rows, [*choice_columns(rows), *moving_columns(turning), *([PASTE] if engine else [])], form)
+    columns = [*choice_columns(rows), *moving_columns(turning), *([PASTE] if engine else [])]
+    show_rows(rows, columns, form, sentence=choice_sentence)
 
 
 @click.command()
@@ -201,11 +222,15 @@ def check(
     rows = moving_rows(
         [choice_row(choice, step) for choice in choices], [choice.method for choice in choices], points, turning, h
     )
-    show_rows(rows, choice_columns(rows) + moving_columns(turning), form)
-    safe = all(choice.verdict == "converges" for choice in given)
-    if turning:
-        safe = safe and all(row["moving_verdict"] == "converges" for row in rows[::2])
-    context.exit(0 if safe else 1)
+    columns = choice_columns(rows) + moving_columns(turning)
+    as_given, instead = rows[::2], rows[1::2]
+    if for_reading(form):
+        show_rows(as_given, columns, form, sentence=choice_sentence)
+        show_text("\nWhat `choose` gives instead:\n")
+        show_rows(instead, columns, form, sentence=choice_sentence)
+    else:
+        show_rows(rows, columns, form)
+    context.exit(0 if all(row["safe"] for row in as_given) else 1)
 
 
 def _point_to_check(
@@ -235,12 +260,19 @@ def _point_to_check(
 
 
 ENGINES_LISTED = [
-    column("engine", "name"),
+    column("engine", "engine"),
     column("level", "level"),
     column("parameters", "parameters"),
-    column("for this point", "set"),
+    column("for this point", "setting"),
     column("left out", "excludes"),
 ]
+
+
+def engine_sentence(row: Row) -> str:
+    """Return what to write for the point, or what the engine calls the feedback where none is given."""
+    if row["setting"] is None:
+        return f"In {row['engine']} the feedback is set by {row['parameters']}."
+    return f"At this point: {row['setting']}."
 
 
 @click.command()
@@ -259,7 +291,8 @@ def engines(h: Fraction, alpha: Fraction | None, beta: Fraction | None, form: Fo
     from bezstab.show import engine_row
 
     point = both_or_none(alpha, beta)
-    show_rows([engine_row(engine, point, h) for engine in ENGINES.values()], ENGINES_LISTED, form)
+    rows = [engine_row(engine, point, h) for engine in ENGINES.values()]
+    show_rows(rows, ENGINES_LISTED, form, sentence=engine_sentence)
 
 
 @click.command()

@@ -13,6 +13,7 @@ from bezstab.cli.choose_commands import check, choose, engines, explore
 from bezstab.cli.evidence_commands import extremes, simulate, tradeoff
 from bezstab.cli.map_commands import family, methods, poles, region
 from bezstab.cli.output import say
+from bezstab.cli.schema_command import schema
 from bezstab.cli.verify_command import verify
 from bezstab.errors import InputError, NumericalError
 
@@ -20,11 +21,16 @@ SECTIONS: Mapping[str, Sequence[click.Command]] = {
     "Maps": (poles, region, methods, family),
     "Choose": (choose, check, engines, explore),
     "Evidence": (simulate, verify, tradeoff, extremes),
+    "Programs": (schema,),
 }
 """What `bezstab --help` lists under which heading, in this order."""
 
 LOADED_LATE: Mapping[str, Mapping[str, str]] = {"Paper": {"paper": "bezstab.paper.command:paper"}}
 """Extensions by heading and name, each as module:command: nothing imports them, the group finds them by name."""
+
+
+COMPLETE = "_BEZSTAB_COMPLETE"
+"""Environment variable in which a shell says that it wants to complete a command."""
 
 
 class BezstabGroup(click.Group):
@@ -70,6 +76,8 @@ class BezstabGroup(click.Group):
 
     def main(self, *args: Any, **kwargs: Any) -> NoReturn:
         """Run the command line and exit."""
+        if COMPLETE in os.environ:  # the shell asks what it may offer
+            importlib.import_module("bezstab.cli.completion")
         try:
             status = super().main(*args, **{**kwargs, "standalone_mode": False})
         except click.ClickException as error:
@@ -117,10 +125,14 @@ def _give_up_output() -> None:
     cls=BezstabGroup,
     commands=[command for commands in SECTIONS.values() for command in commands],
     context_settings={"help_option_names": ["-h", "--help"], "show_default": True},
+    invoke_without_command=True,
 )
 @click.version_option(__version__)
-def main() -> None:
+@click.pass_context
+def main(context: click.Context) -> None:
     """Which Baumgarte parameters are safe, and best, for an explicit integrator at its step size?
 
     Everywhere α̂ = 2αh and β̂ = β²h² (dimensionless) for the feedback c̈ + 2αċ + β²c = 0 and a step of h seconds.
     """
+    if context.invoked_subcommand is None:
+        click.echo(context.get_help())

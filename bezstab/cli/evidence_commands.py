@@ -36,13 +36,14 @@ from bezstab.cli.output import (
     results_of_chunks,
     say,
     show_rows,
+    show_text,
     write_figure,
     write_table,
 )
 from bezstab.errors import InputError, NumericalError
 from bezstab.files import output_directory
 from bezstab.methods import Method
-from bezstab.show import Column, Format, Row, column, formatted, yes_no_column
+from bezstab.show import Column, Format, Row, column, formatted, seconds_words, yes_no_column
 from bezstab.units import to_dimensionless
 
 if TYPE_CHECKING:
@@ -54,7 +55,7 @@ MOST_STEPS = 10**8  # a run keeps its whole history: 10 GB and an hour for the s
 MOST_SWEPT = 10**6  # the reference takes up to 32 times as many
 MOST_LISTED = 20  # times in a message
 
-EVALUATIONS = column("evaluations", "evaluations", "d")
+EVALUATIONS = column("evaluations", "run_evaluations", "d")
 ITERATIONS = column("Newton's iterations", "iterations", "d")
 SIMULATIONS = [
     column("scene", "scene"),
@@ -63,17 +64,25 @@ SIMULATIONS = [
     column("β̂", "beta_hat", ".6g"),
     column("h (s)", "h", "g"),
     column("until (s)", "time", ".6g"),
-    column("largest |c|", "c_max", ".3e"),
-    column("largest |ċ|", "cdot_max", ".3e"),
+    column("largest |c| (m, rad)", "c_max", ".3e"),
+    column("largest |ċ| (m/s, rad/s)", "cdot_max", ".3e"),
     column("energy drift (J)", "energy_drift", ".3e"),
     column("work of drivers (J)", "driver_work", ".3e"),
-    column("of forces (J)", "force_work", ".3e"),
+    column("work of forces (J)", "force_work", ".3e"),
     EVALUATIONS,
     column("least pivot", "least_pivot", ".1e"),
-    column("at (s)", "pivot_time", ".6g"),
+    column("least pivot at (s)", "pivot_time", ".6g"),
     column("singular passages", "singular_passages", "d"),
     column("failure", "failure"),
 ]
+
+
+def run_sentence(row: Row) -> str:
+    """Return how long a run of a mechanism went well, and how far it stayed from its constraints."""
+    time = row["time"]
+    assert isinstance(time, float)
+    end = f"broke down after {seconds_words(time)}" if row["failure"] else f"went through to {seconds_words(time)}"
+    return f"{row['method']} {end}; the largest |c| is {formatted(row['c_max'], '.1e')}."
 
 
 @click.command()
@@ -154,7 +163,7 @@ def simulate(
     columns = list(SIMULATIONS)
     if simulation.trajectory.iterations is not None:  # an implicit method
         columns.insert(columns.index(EVALUATIONS) + 1, ITERATIONS)
-    show_rows([simulation_row(simulation)], columns, form)
+    show_rows([simulation_row(simulation)], columns, form, sentence=run_sentence)
     if len(simulation.singular_times):
         say(f"bezstab: {_passages_text(simulation.singular_times.tolist())}")
     if simulation.failure:
@@ -199,18 +208,28 @@ RUNS = [
     column("α̂", "alpha_hat", ".4g"),
     column("β̂", "beta_hat", ".4g"),
     column("|z_p|", "z_abs", ".4f"),
-    Column("trajectory error", _error_or_diverged),
-    column("order", "order", ".2f"),
-    column("largest |c|", "c_max", ".1e"),
-    column("rms", "c_rms", ".1e"),
-    column("largest |ċ|", "cdot_max", ".1e"),
-    column("rms ċ", "cdot_rms", ".1e"),
+    Column("trajectory error (m, rad)", _error_or_diverged),
+    column("order seen", "observed_order", ".2f"),
+    column("largest |c| (m, rad)", "c_max", ".1e"),
+    column("rms c (m, rad)", "c_rms", ".1e"),
+    column("largest |ċ| (m/s, rad/s)", "cdot_max", ".1e"),
+    column("rms ċ (m/s, rad/s)", "cdot_rms", ".1e"),
     column("energy drift (J)", "energy_drift", ".1e"),
-    column("evaluations", "evaluations", "d"),
+    column("evaluations", "run_evaluations", "d"),
     Column("time (ms)", _milliseconds),
     column("front", "front"),
     column("failure", "failure"),
 ]
+
+
+def cost_sentence(row: Row) -> str:
+    """Return what one run costs and what it buys."""
+    h = row["h"]
+    assert isinstance(h, float)
+    with_step = f"{row['method']} with h = {seconds_words(h)}"
+    if row["failure"]:
+        return f"{with_step} diverged."
+    return f"{with_step}: a trajectory error of {_error_or_diverged(row)} for {row['run_evaluations']} evaluations."
 
 
 @click.command()
@@ -256,11 +275,14 @@ def tradeoff(
     range) and the order observed, and in words the cheapest run within --tolerance and where the Bézier methods win and
     lose. Writes the table, without times, and two figures. A run that fails is marked as diverged.
 
-    Example: bezstab tradeoff --method B4 --method AB4 --h 0.002 --h 0.004 --time 1
+    The default choice holds α̂ and β̂ while h shrinks: then methods with stages lose order. So does the start of a
+    multistep method, which is RK4, and in a run as short as 1 s its error is the largest.
+
+    Example: bezstab tradeoff --method B4 --method AB4 --h 0.002 --h 0.004 --time 2
     """
     from bezstab import evidence
     from bezstab.mechanism import at_speed, load_scene
-    from bezstab.show import row, untimed_arrays
+    from bezstab.show import run_row, untimed_arrays
 
     point = both_or_none(alpha, beta)
     if physical and point is None:
@@ -278,7 +300,7 @@ def tradeoff(
     job = f"{methods} {(loaded_scene, step_sizes, float(time), given, physical, repeats)}"
     with results_of_chunks(evidence.measured_runs, sweeps, path, job, workers, scheduler, resume) as results:
         swept = evidence.whole_sweep(sweeps, results)
-        rows = [row(run, front=front) for run, front in zip(swept.runs, swept.front_labels, strict=True)]
+        rows = [run_row(run, front) for run, front in zip(swept.runs, swept.front_labels, strict=True)]
 
         def draw(constraint: bool, floor: float) -> "Figure":
             from bezstab.show import work_precision_figure
@@ -290,11 +312,11 @@ def tradeoff(
         write_figure(path.with_name(f"{path.name}_trajectory"), for_trajectory, figure)
         for_constraint = partial(draw, constraint=True, floor=0.0)
         write_figure(path.with_name(f"{path.name}_constraint"), for_constraint, figure)
-    show_rows(rows, RUNS, form)
+    show_rows(rows, RUNS, form, sentence=cost_sentence)
     if for_reading(form):
-        click.echo(f"\nThe reference is known to {reference.error:.0e} (m, rad).")
+        show_text(f"\nThe reference is known to {reference.error:.0e} (m, rad).")
         for sentence in evidence.sweep_sentences(swept.runs, float(tolerance), physical):
-            click.echo(sentence)
+            show_text(sentence)
 
 
 def _check_swept_time(time: float, step_sizes: Sequence[float], methods: Sequence[Method]) -> None:
@@ -312,6 +334,11 @@ CHECKS = [
     column("seen", "seen"),
     yes_no_column("held", "held"),
 ]
+
+
+def check_sentence(row: Row) -> str:
+    """Return whether what was expected came out."""
+    return "As expected." if row["held"] else "NOT as expected."
 
 
 @click.command()
@@ -332,5 +359,5 @@ def extremes(context: click.Context, short: bool, form: Format) -> None:
 
     checks = list(extreme_checks(not short))
     outcomes = [check() for check in progress(checks, "extremes")]
-    show_rows([row(outcome) for outcome in outcomes], CHECKS, form)
+    show_rows([row(outcome) for outcome in outcomes], CHECKS, form, sentence=check_sentence)
     context.exit(0 if all(outcome.held for outcome in outcomes) else 1)

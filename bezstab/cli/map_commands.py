@@ -31,7 +31,7 @@ from bezstab.cli.options import (
     physical_option,
     table_option,
 )
-from bezstab.cli.output import file_name, progress, show_groups, show_rows, write_figure, write_table
+from bezstab.cli.output import file_name, progress, show_blocks, show_groups, show_rows, write_figure, write_table
 from bezstab.engines import ENGINES
 from bezstab.errors import InputError
 from bezstab.files import output_directory
@@ -44,6 +44,7 @@ from bezstab.show import (
     column,
     formatted,
     pole_column,
+    safety_words,
     stable_steps_words,
     transposed,
     with_unbounded,
@@ -81,6 +82,16 @@ POLES = [
     column("∠z (deg)", "z_angle_deg", ".3f"),
     column("verdict", "verdict"),
 ]
+
+
+def pole_sentence(row: Row) -> str:
+    """Return whether the method of a dominant pole is safe at its point, and how fast errors shrink."""
+    return f"{safety_words(row)}."
+
+
+def one_pole_sentence(row: Row) -> str:
+    """Return what the part of the error does that belongs to one pole of several."""
+    return f"{row['method']} {row['verdict']}. The part of the error with this pole is |z| times as large each step."
 
 
 @click.command()
@@ -127,7 +138,9 @@ def poles(
         of_method = pole_rows(method, alpha_hat, beta_hat, z, stability.verdict(method, alpha, beta))
         points = [(alpha_hat, beta_hat)] * len(of_method)
         rows += moving_rows(of_method, [method] * len(of_method), points, turning, h)
-    show_rows(rows, POLES + moving_columns(turning), form, heading=f"α̂ = {alpha_hat:.10g}, β̂ = {beta_hat:.10g}")
+    columns = POLES + moving_columns(turning)
+    sentence = one_pole_sentence if all_poles else pole_sentence
+    show_rows(rows, columns, form, f"α̂ = {alpha_hat:.10g}, β̂ = {beta_hat:.10g}", sentence)
 
 
 def unbounded_column(heading: str, key: str, form: str) -> Column:
@@ -149,10 +162,21 @@ REGIONS = [
     unbounded_column("β̂ to", "beta_hat_max", ".8g"),
     Column("βh to (α = β)", stable_steps_words),
     column("least |z_p|", "best_z_abs", ".8f"),
-    column("at α̂", "best_alpha_hat", ".8f"),
-    column("at β̂", "best_beta_hat", ".8f"),
-    column("there", "best_where"),
+    column("best α̂", "best_alpha_hat", ".8f"),
+    column("best β̂", "best_beta_hat", ".8f"),
+    column("poles there", "best_where"),
 ]
+
+
+def region_sentence(row: Row) -> str:
+    """Return how large the region of a method is, and where in it errors shrink fastest."""
+    if row["alpha_hat_max"] is None and row["bounded"]:
+        return f"{row['method']} is stable nowhere."
+    size = "in a region without end" if row["area"] is None else f"in a region of area {row['area']:.3g}"
+    if row["best_z_abs"] is None:
+        return f"{row['method']} is stable {size}."
+    best = f"({row['best_alpha_hat']:.4g}, {row['best_beta_hat']:.4g})"
+    return f"{row['method']} is stable {size}; the least |z_p| is {row['best_z_abs']:.3g}, at α̂, β̂ = {best}."
 
 
 MOVING_REGIONS = [
@@ -266,7 +290,7 @@ def region(
                 {**row, "speed": speed, "kappa": kappa, "area_moving": of_speed.area}
                 for (speed, kappa), of_speed in moving.items()
             ] or [row]
-    show_rows(rows, REGIONS + (MOVING_REGIONS if scene else []), form)
+    show_rows(rows, REGIONS + (MOVING_REGIONS if scene else []), form, sentence=region_sentence)
 
 
 def _check_window(option: str, window: Window | None) -> None:
@@ -413,12 +437,19 @@ def _order_text(row: Row) -> str:
     return str(order) if order == without_velocity else f"{order} ({without_velocity})"
 
 
+def _constant_text(row: Row) -> str:
+    """Return the error constant as a rational, or as a decimal where it is none."""
+    return formatted(
+        row["error_constant_exact"] or row["error_constant"], "" if row["error_constant_exact"] else ".10g"
+    )
+
+
 METHODS = [
     column("method", "method"),
     column("steps", "steps", "d"),
     column("evaluations", "evaluations", "d"),
     column("order of accuracy", "order", "d"),
-    column("error constant", "error_constant"),
+    column("error constant", "error_constant", ".10g"),
     column("source", "source"),
 ]
 LISTED = [
@@ -426,10 +457,18 @@ LISTED = [
     column("steps", "steps", "d"),
     column("evaluations", "evaluations", "d"),
     Column("order", _order_text),
-    column("error constant", "error_constant"),
+    Column("error constant", _constant_text),
     Column("implicit", lambda row: "yes" if row["implicit"] else ""),
 ]
 """What fits into a line of 80 characters."""
+
+
+def method_sentence(row: Row) -> str:
+    """Return what a method is: explicit or not, its order, what a step of it costs."""
+    kind = "implicit" if row["implicit"] else "explicit"
+    count = "1 evaluation" if row["evaluations"] == 1 else f"{row['evaluations']} evaluations"
+    each = "iteration" if row["implicit"] else "step"
+    return f"{row['method']} is {kind}, of order {_order_text(row)}, with {count} in each {each}."
 
 
 @click.command()
@@ -456,7 +495,9 @@ def methods(methods: Sequence[Method], latex: bool, form: Format) -> None:
         ]
         if form == "text":
             show_groups(
-                [("\n".join(filter(None, (group.heading, group.note))), rows) for group, rows in listed], LISTED
+                [("\n".join(filter(None, (group.heading, group.note))), rows) for group, rows in listed],
+                LISTED,
+                method_sentence,
             )
         else:
             show_rows([row for _, rows in listed for row in rows], METHODS, form)
@@ -467,24 +508,42 @@ def methods(methods: Sequence[Method], latex: bool, form: Format) -> None:
     if form in ("json", "csv"):
         show_rows(rows, METHODS, form)
         return
-    for row in rows:
-        show_rows(transposed(with_unbounded(row)), PROPERTIES, form)
+    for number, row in enumerate(rows):
+        if form == "markdown":
+            show_rows(transposed(with_unbounded(row)), PROPERTIES, form)
+            continue
+        if number:
+            click.echo()
+        shown = with_unbounded(row)
+        show_blocks([shown], [property_column(key, shown) for key in shown], method_sentence)
 
 
-def _n_or_limit(row: Row) -> str:
-    return formatted(row["n"]) if row["n"] else "limit"
+def property_column(key: str, row: Row) -> Column:
+    """Return the column of a key as a row is read from top to bottom: numbers to ten digits."""
+    return column(key.replace("_", " "), key, ".10g" if isinstance(row[key], float) else "")
+
+
+def _steps_or_limit(row: Row) -> str:
+    return formatted(row["steps"]) if row["steps"] else "limit"
 
 
 FAMILY = [
-    Column("n", _n_or_limit),
+    Column("steps", _steps_or_limit),
     column("method", "method"),
     column("area", "area", ".10g"),
     column("α̂ to", "alpha_hat_max", ".8g"),
     column("β̂ to", "beta_hat_max", ".8g"),
-    column("least |z_p|", "z_abs", ".8f"),
+    column("least |z_p|", "best_z_abs", ".8f"),
     column("order of accuracy", "order", "d"),
     column("error constant", "error_constant", ".6f"),
 ]
+
+
+def member_sentence(row: Row) -> str:
+    """Return how large a member's region is, and how fast errors can shrink in it."""
+    if row["area"] is None or row["best_z_abs"] is None:
+        return f"{row['method']} is stable nowhere."
+    return f"{row['method']} has a region of area {row['area']:.3g} and a least |z_p| of {row['best_z_abs']:.3g}."
 
 
 @click.command()
@@ -525,5 +584,5 @@ def family(name: str, first: int, last: int | None, output: Path, figure: Figure
             families[other] = members if other == name else family_members(other, 2, most)
         return family_figure(families, name, limit if name == "bezier" else None)
 
-    show_rows(rows, FAMILY, form)
+    show_rows(rows, FAMILY, form, sentence=member_sentence)
     write_figure(output / f"family_{name}", draw, figure)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from bezstab.cli.options import SPEED, Decorator
+from bezstab.cli.options import SPEED, Decorator, scene_option
 from bezstab.show import Column, Row, column, formatted
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ moving_speed_option = click.option(
 
 def moving_scene_option(help_text: str) -> Decorator:
     """Return the option --scene of a command that also works without one."""
-    return click.option("--scene", help=help_text)
+    return scene_option(None, help_text)
 
 
 def turning_of(scene: str | None, speed: Fraction, h: Fraction | None) -> "TurningNormals | None":
@@ -55,9 +55,14 @@ def moving_rows(
     from bezstab.show import moving_row
 
     return [
-        {**row, **moving_row(moving_pole(method, turning, float(h), *point))}
+        _safe_as_it_moves({**row, **moving_row(moving_pole(method, turning, float(h), *point))})
         for row, method, point in zip(rows, methods, points, strict=True)
     ]
+
+
+def _safe_as_it_moves(row: Row) -> Row:
+    """Return the row, safe only if errors shrink over the motion as well."""
+    return {**row, "safe": row["safe"] and row["moving_verdict"] == "converges"}
 
 
 def moving_columns(turning: "TurningNormals | None") -> list[Column]:
@@ -68,7 +73,7 @@ def moving_columns(turning: "TurningNormals | None") -> list[Column]:
         column("κ (1/s)", "kappa", ".4g"),
         column("|χ|", "chi_abs", ".3f"),
         column("|z| moving", "z_abs_moving", ".6f"),
-        column("at worst", "z_abs_worst", ".6f"),
+        column("|z| at worst", "z_abs_worst", ".6f"),
         column("moving verdict", "moving_verdict"),
         Column("safe to speed", _safe_speed),
     ]

@@ -1,16 +1,19 @@
 """What the commands share of their options: the types of what is typed, and the options that several have."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, Literal, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
 
 import click
 
 from bezstab.engines import ENGINES, Engine
 from bezstab.errors import InputError
-from bezstab.methods import lookup
+from bezstab.methods import REGISTRY, lookup
 from bezstab.rationals import rational
+
+if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
 
 FigureForm = Literal["png", "svg", "pdf", "none"]
 TableForm = Literal["csv", "npz", "none"]
@@ -30,11 +33,18 @@ USUAL_METHODS = ("B2", "B3", "B4", "AB2", "AB3", "AB4", "RK4@5", "SIE")
 """What poles and explore show unless told otherwise: the Bezier methods and what one would take instead."""
 
 
-class ParsedType(click.ParamType):  # type: ignore[type-arg]  # generic since click 8.3
-    """What a function makes of the text that was typed; its InputError names the option, too."""
+WITH_PARAMETERS = ("newmark(1/4,1/2)", "hht(-1/20)", "generalized-alpha(4/5)")
+"""Names that the shell offers of methods whose name has parameters, with their usual values."""
 
-    def __init__(self, name: str, parse: Callable[[str], object]) -> None:
-        self.name, self.parse = name, parse
+
+class ParsedType(click.ParamType):  # type: ignore[type-arg]  # generic since click 8.3
+    """What a function makes of the text that was typed; its InputError names the option, too.
+
+    `names` are what the shell may offer to complete it.
+    """
+
+    def __init__(self, name: str, parse: Callable[[str], object], names: Iterable[str] = ()) -> None:
+        self.name, self.parse, self.names = name, parse, names
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Return what was parsed; fails, naming the option, where nothing can be."""
@@ -42,6 +52,24 @@ class ParsedType(click.ParamType):  # type: ignore[type-arg]  # generic since cl
             return self.parse(value) if isinstance(value, str) else value
         except InputError as error:
             self.fail(str(error), param, ctx)
+
+    def shell_complete(
+        self, ctx: click.Context, param: click.Parameter, incomplete: str
+    ) -> "list[CompletionItem[Any]]":
+        """Return what begins as typed, for the shell to offer."""
+        if not self.names:
+            return []
+        from bezstab.cli.completion import offered
+
+        return offered(self.names, incomplete)
+
+
+def _offered_scenes(ctx: click.Context, param: click.Parameter, incomplete: str) -> "list[CompletionItem[Any]]":
+    """Return the shipped scenes that begin as typed, for the shell to offer."""
+    from bezstab.cli.completion import offered
+    from bezstab.mechanism import shipped_scenes
+
+    return offered(shipped_scenes(), incomplete)
 
 
 def _positive(text: str) -> Fraction:
@@ -81,9 +109,9 @@ NUMBER = ParsedType("number", rational)
 POSITIVE = ParsedType("number", _positive)
 SECONDS = ParsedType("seconds", _seconds)
 SPEED = ParsedType("number", _speed)
-METHOD = ParsedType("method", lookup)
+METHOD = ParsedType("method", lookup, (*REGISTRY, *WITH_PARAMETERS))
 ENGINE = click.Choice(list(ENGINES))
-ENGINE_VALUES = ParsedType("name=values", _engine_values)
+ENGINE_VALUES = ParsedType("name=values", _engine_values, [f"{name}=" for name in ENGINES])
 
 
 def methods_option(*default: str) -> Decorator:
@@ -98,9 +126,9 @@ def methods_option(*default: str) -> Decorator:
     )
 
 
-def scene_option(default: str) -> Decorator:
-    """Return the option --scene."""
-    return click.option("--scene", default=default, help="A shipped scene's name, or a .toml file.")
+def scene_option(default: str | None, help_text: str = "A shipped scene's name, or a .toml file.") -> Decorator:
+    """Return the option --scene; without a default the command works without a scene, too."""
+    return click.option("--scene", default=default, help=help_text, shell_complete=_offered_scenes)
 
 
 speed_option = click.option(

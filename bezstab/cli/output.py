@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 import click
 
 from bezstab.cli.options import FigureForm, TableForm
-from bezstab.cli.terminal import output_encoding, spelled, visible
+from bezstab.cli.terminal import output_encoding, spelled, text_width, visible
 from bezstab.files import write_whole
-from bezstab.show import Column, Format, Row, render
+from bezstab.show import Column, Format, Row, block, finite, fits, render, wrapped
 from bezstab.stopping import if_stopped
 
 if TYPE_CHECKING:
@@ -25,28 +25,68 @@ if TYPE_CHECKING:
     from bezstab.evidence import Arrays
 
 Item = TypeVar("Item")
+Sentence = Callable[[Row], str]
+"""Says in words what a row does in numbers."""
+
+UNLIMITED = sys.maxsize
+"""Characters of a line of text where no terminal limits it, as on a pipe: there nothing wraps."""
 
 
-def show_rows(rows: Sequence[Row], columns: Sequence[Column], form: Format, heading: str = "") -> None:
-    """Print rows on standard output, below a heading where people read them."""
+def show_rows(
+    rows: Sequence[Row], columns: Sequence[Column], form: Format, heading: str = "", sentence: Sentence | None = None
+) -> None:
+    """Print rows on standard output, below a heading where people read them.
+
+    As text, a single row is a block of lines below its sentence; so is each row of a table wider than the terminal.
+    """
     encoding = output_encoding()
     if heading and for_reading(form):
-        click.echo(f"{heading}\n")
+        show_text(f"{heading}\n")
     answer = render(rows, [_presentable(column, encoding) for column in columns], form)
-    click.echo(_escaped_json(answer, encoding) if form == "json" else answer)
+    as_blocks = len(rows) == 1 or not fits(answer, text_width() or UNLIMITED)
+    if form == "text" and rows and as_blocks:
+        show_blocks(rows, columns, sentence)
+    else:
+        click.echo(_escaped_json(answer, encoding) if form == "json" else answer)
 
 
-def show_groups(groups: Sequence[tuple[str, Sequence[Row]]], columns: Sequence[Column]) -> None:
-    """Print groups of rows for reading, each below its heading, all in one table's columns."""
+def show_blocks(rows: Sequence[Row], columns: Sequence[Column], sentence: Sentence | None = None) -> None:
+    """Print a block of lines for each row, below its sentence, on standard output."""
+    encoding = output_encoding()
+    presentable = [_presentable(column, encoding) for column in columns]
+    width = text_width() or UNLIMITED
+    blocks = []
+    for row in map(finite, rows):
+        words = visible(spelled(sentence(row), encoding)) if sentence else ""
+        blocks.append(block(row, presentable, width, words))
+    click.echo("\n\n".join(blocks))
+
+
+def show_groups(
+    groups: Sequence[tuple[str, Sequence[Row]]], columns: Sequence[Column], sentence: Sentence | None = None
+) -> None:
+    """Print groups of rows for reading, each below its heading, all in one table's columns if that is not too wide."""
     encoding = output_encoding()
     rows = [row for _, rows in groups for row in rows]
-    head, *lines = render(rows, [_presentable(column, encoding) for column in columns], "text").splitlines()
+    table = render(rows, [_presentable(column, encoding) for column in columns], "text")
+    if not fits(table, text_width() or UNLIMITED):
+        for heading, of_group in groups:
+            show_text(f"{heading}\n")
+            show_blocks(of_group, columns, sentence)
+            click.echo()
+        return
+    head, *lines = table.splitlines()
     click.echo(head)
     for heading, of_group in groups:
-        click.echo(f"\n{spelled(heading, encoding)}")
+        show_text(f"\n{heading}")
         for line in lines[: len(of_group)]:
             click.echo(line)
         del lines[: len(of_group)]
+
+
+def show_text(text: str) -> None:
+    """Print a text on standard output, its lines no longer than the terminal's."""
+    click.echo(wrapped(spelled(text, output_encoding()), text_width() or UNLIMITED))
 
 
 def _presentable(column: Column, encoding: str) -> Column:

@@ -65,6 +65,20 @@ def visible(text: str) -> str:
     )
 
 
+def text_width() -> int | None:
+    """Return how many characters a line on standard output can have; None where nothing says, as on a pipe.
+
+    COLUMNS, if it is set to a positive number, counts more than the terminal, as everywhere.
+    """
+    columns = os.environ.get("COLUMNS", "")
+    if columns.isdecimal() and int(columns) > 0:
+        return int(columns)
+    try:
+        return os.get_terminal_size(sys.stdout.fileno()).columns or None  # a terminal may not know: 0
+    except (OSError, ValueError):  # no terminal, or no file at all
+        return None
+
+
 def output_encoding() -> str:
     """Return the encoding of what standard output can show."""
     stream = sys.stdout

@@ -35,7 +35,7 @@ from bezstab.cli.output import (
     write_table,
 )
 from bezstab.methods import Method
-from bezstab.show import Format, Row, column, yes_no_column
+from bezstab.show import Format, Row, column, formatted, yes_no_column
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -49,62 +49,96 @@ MEASUREMENTS = [
     column("method", "method"),
     column("α̂", "alpha_hat", ".6f"),
     column("β̂", "beta_hat", ".6f"),
-    column("predicted |z|", "predicted_abs", ".6f"),
-    column("by the law", "law_abs", ".6f"),
-    column("measured |z|", "measured_abs", ".6f"),
-    column("difference", "difference_abs", "+.1e"),
-    column("predicted ∠z (deg)", "predicted_angle_deg", ".3f"),
-    column("measured ∠z (deg)", "measured_angle_deg", ".3f"),
-    column("difference (deg)", "difference_angle_deg", "+.0e"),
-    column("predicted", "predicted_verdict"),
-    column("measured", "measured_verdict"),
+    column("predicted |z|", "predicted_z_abs", ".6f"),
+    column("|z| by the law", "law_z_abs", ".6f"),
+    column("measured |z|", "measured_z_abs", ".6f"),
+    column("difference of |z|", "difference_z_abs", "+.1e"),
+    column("predicted ∠z (deg)", "predicted_z_angle_deg", ".3f"),
+    column("measured ∠z (deg)", "measured_z_angle_deg", ".3f"),
+    column("difference of ∠z (deg)", "difference_z_angle_deg", "+.0e"),
+    column("predicted verdict", "predicted_verdict"),
+    column("measured verdict", "measured_verdict"),
     yes_no_column("verdicts agree", "verdicts_agree"),
     column("not measurable because", "reason"),
 ]
+
+
+def measurement_sentence(row: Row) -> str:
+    """Return the predicted and the measured modulus, and whether the verdicts agree."""
+    if not row["measurable"]:
+        return f"Not measurable: {row['reason']}."
+    predicted, measured = formatted(row["predicted_z_abs"], ".6f"), formatted(row["measured_z_abs"], ".6f")
+    ends = {True: "the verdicts agree", False: "the verdicts DISAGREE", None: "too close to call"}
+    agree = row["verdicts_agree"]
+    assert agree is None or isinstance(agree, bool)
+    return f"Predicted |z| {predicted}, measured {measured}: {ends[agree]}."
+
+
 EXACT = [
     column("measured over the motion", "measured_rate", ".6f"),
-    column("exact |z|", "floquet_abs", ".6f"),
+    column("exact |z|", "floquet_z_abs", ".6f"),
     column("whose verdict was right", "right"),
 ]
 SUMMARIES = [
     column("method", "method"),
     column("points", "points", "d"),
-    column("measured", "measured", "d"),
+    column("measured points", "measured", "d"),
     column("median error of |z|", "median_error", ".1e"),
-    column("largest", "largest_error", ".1e"),
+    column("largest error of |z|", "largest_error", ".1e"),
     column("verdicts called", "called", "d"),
-    column("of which wrong", "wrong", "d"),
+    column("wrong verdicts", "wrong", "d"),
 ]
 MOTION_SUMMARIES = [
     column("followed over the motion", "revolutions_measured", "d"),
     column("median error at rest", "map_error", ".1e"),
-    column("of the law", "law_error", ".1e"),
-    column("exact", "floquet_error", ".1e"),
+    column("median error of the law", "law_error", ".1e"),
+    column("median error of the exact rate", "floquet_error", ".1e"),
 ]
+
+
+def summary_sentence(row: Row) -> str:
+    """Return at how many points the poles could be measured, and how many verdicts were wrong."""
+    return f"{row['method']}: {row['measured']} of {row['points']} points measured, {row['wrong']} wrong verdicts."
+
+
 VERDICT_MAPS = [
     column("scene", "scene"),
     column("method", "method"),
     column("runs", "runs", "d"),
-    column("steps", "run", "d"),
+    column("steps of each", "run_steps", "d"),
     column("broke down", "broken", "d"),
-    column("agreement", "agreement", ".2%"),
+    column("agreement", "agreeing_share", ".2%"),
     column("too close to call: | |z_p| - 1 | below", "band", "g"),
     column("largest | |z_p| - 1 | that disagrees", "farthest", ".2e"),
     column("disagreeing beyond", "disagreeing", "d"),
 ]
+
+
+def verdict_map_sentence(row: Row) -> str:
+    """Return what share of simulated verdicts is as predicted."""
+    share = formatted(row["agreeing_share"], ".2%")
+    return f"{row['method']}: {share} of the verdicts are as predicted; {row['disagreeing']} beyond the band are not."
+
+
 WITNESSED = [
     column("scene", "scene"),
-    column("MuJoCo's", "integrator"),
+    column("MuJoCo's integrator", "integrator"),
     column("method", "method"),
     column("α̂", "alpha_hat", ".4f"),
     column("β̂", "beta_hat", ".4f"),
     column("times the boundary", "times_boundary", "g"),
-    column("predicted |z|", "predicted_abs", ".4f"),
-    column("predicted", "predicted_verdict"),
-    column("seen", "measured_verdict"),
+    column("predicted |z|", "predicted_z_abs", ".4f"),
+    column("predicted verdict", "predicted_verdict"),
+    column("verdict seen", "measured_verdict"),
     column("largest |c| at the end (m)", "remaining", ".1e"),
-    column("after steps", "steps", "d"),
+    column("after steps", "run_steps", "d"),
 ]
+
+
+def witness_sentence(row: Row) -> str:
+    """Return what the other engine did against what was predicted."""
+    as_predicted = "as" if row["measured_verdict"] == row["predicted_verdict"] else "NOT as"
+    return f"MuJoCo's {row['integrator']}: {row['measured_verdict']}, {as_predicted} predicted."
 
 
 @click.command()
@@ -162,7 +196,7 @@ def verify(
         raise click.UsageError("choose one of --alpha with --beta, --points, --map and --witness")
     mechanism = compiled_mechanism(at_speed(load_scene(scene), float(speed)))
     if witness:
-        show_rows(_witness_rows(mechanism, float(h)), WITNESSED, form)
+        show_rows(_witness_rows(mechanism, float(h)), WITNESSED, form, sentence=witness_sentence)
     elif cells is None:
         _show_measurements(mechanism, methods, float(h), point, points or RANDOM_POINTS, floquet, form)
     else:
@@ -174,16 +208,16 @@ def verify(
                 mechanism, method, float(h), cells, path, job, workers, scheduler, resume, figure, table
             )
             rows.append(verdict_map_row(verdicts))
-        show_rows(rows, VERDICT_MAPS, form)
+        show_rows(rows, VERDICT_MAPS, form, sentence=verdict_map_sentence)
 
 
 def _witness_rows(mechanism: "Mechanism", h: float) -> list[Row]:
     """Return a row for each run of MuJoCo's integrators; h in s."""
     from bezstab.evidence import mujoco_witnesses, witness_count
-    from bezstab.show import row
+    from bezstab.show import witness_row
 
     witnesses = progress(mujoco_witnesses(mechanism, h), "MuJoCo", witness_count())
-    return [row(witnessed, scene=mechanism.scene.name) for witnessed in witnesses]
+    return [witness_row(mechanism.scene.name, witnessed) for witnessed in witnesses]
 
 
 def _show_measurements(
@@ -195,7 +229,7 @@ def _show_measurements(
     floquet: bool,
     form: Format,
 ) -> None:
-    """Print the poles measured at one point, else at random ones, and where there is room how well they agree."""
+    """Print the poles measured at one point, else at random ones, and where there are several how well they agree."""
     import numpy as np
 
     from bezstab.evidence import measure_poles, random_points
@@ -213,10 +247,10 @@ def _show_measurements(
         own_rows = [measurement_row(mechanism.scene.name, measurement) for measurement in measurements]
         rows += own_rows
         summaries.append(summary_row(own_rows))
-    show_rows(rows, MEASUREMENTS + (EXACT if floquet else []), form)
-    if for_reading(form):
+    show_rows(rows, MEASUREMENTS + (EXACT if floquet else []), form, sentence=measurement_sentence)
+    if for_reading(form) and len(rows) > len(methods):  # of one point each there is nothing to sum up
         click.echo()
-        show_rows(summaries, SUMMARIES + (MOTION_SUMMARIES if floquet else []), form)
+        show_rows(summaries, SUMMARIES + (MOTION_SUMMARIES if floquet else []), form, sentence=summary_sentence)
 
 
 def _map_verdicts(

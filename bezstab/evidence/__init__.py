@@ -54,7 +54,7 @@ from bezstab.evidence.moving_mechanisms import (
     tabulated_rates,
 )
 from bezstab.evidence.moving_regions import MovingRegion, moving_growth, moving_modulus, moving_region
-from bezstab.evidence.mujoco_witness import TIMES, model_xml, mujoco_witnesses, witness_count
+from bezstab.evidence.mujoco_witness import TIMES, Witnessed, model_xml, mujoco_witnesses, witness_count
 from bezstab.evidence.pareto import pareto_front
 from bezstab.evidence.reference_motions import ReferenceMotion, reference_motion
 from bezstab.evidence.sweep_summaries import FINE, Summary, summary, sweep_sentences
@@ -85,6 +85,7 @@ __all__ = [
     "Sweep",
     "SweptRuns",
     "VerdictMap",
+    "Witnessed",
     "chunk_store",
     "completed_chunks",
     "extreme_checks",

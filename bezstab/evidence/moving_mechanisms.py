@@ -203,5 +203,6 @@ def _safe_speed(at_rest: FloatArray, growth: FloatArray) -> float:
     """Return by what growth, which is proportional to the speed, can be multiplied until it equals a pole's decay."""
     if at_rest.max() >= 0:
         return float("nan")
-    with np.errstate(divide="ignore"):
-        return float(np.min(np.where(growth > 0, -at_rest / growth, np.inf)))
+    speeds = np.full_like(growth, np.inf)
+    np.divide(-at_rest, growth, out=speeds, where=growth > 0)  # elsewhere both may be infinite
+    return float(speeds.min())

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from bezstab.evidence.accuracy_costs import Run
-from bezstab.methods import Method, accuracy, evaluations, implicit, steps
+from bezstab.methods import LinearMultistep, Method, accuracy, evaluations, implicit, steps
 from bezstab.stability import critical_damping_limit, region, spectral_radius
 
 FINE = 1e-8
@@ -145,13 +145,29 @@ def _order_sentences(summaries: Sequence[Summary], physical: bool) -> Iterator[s
         if one.order is None:
             continue
         text = f"{one.method.name} {one.order:.1f} (of {one.stated_order})"
-        if one.order < one.stated_order - ORDER_LOST:
+        if _lost(one):
             lost.append(text)
         else:
             kept.append(text)
     for verb, texts in (("lost", lost), ("kept", kept)):
         if texts:
             yield f"Order of accuracy with {held} held while h shrinks, {verb}: {', '.join(texts)}."
+    started = [one.method.name for one in summaries if _lost(one) and _has_start_of_stages(one.method)]
+    if started and not physical:
+        yield (
+            f"{' and '.join(started)} would keep the order; the start by RK4 loses it, and in a short run its error is "
+            "the largest."
+        )
+
+
+def _has_start_of_stages(method: Method) -> bool:
+    """Return whether a method keeps its order at fixed alpha_hat and beta_hat, but not its start, which is RK4."""
+    return isinstance(method.scheme, LinearMultistep) and steps(method) > 1 and not implicit(method)
+
+
+def _lost(one: Summary) -> bool:
+    """Return whether the observed order is well below the stated one."""
+    return one.order is not None and one.order < one.stated_order - ORDER_LOST
 
 
 def _comparison_sentence(bezier: Summary, other: Summary) -> str:

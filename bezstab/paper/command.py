@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import click
 
 from bezstab.cli.options import FigureForm, figure_option, format_option, output_option
-from bezstab.cli.output import progress, show_rows, write_figure, write_file
+from bezstab.cli.output import progress, show_blocks, show_rows, write_figure, write_file
 from bezstab.files import output_directory
 from bezstab.paper.printed import PARTS
 
@@ -17,7 +17,13 @@ if TYPE_CHECKING:  # so that `bezstab --help`, which lists this command, loads n
 
 
 @click.command()
-@click.option("--only", type=click.Choice(PARTS), multiple=True, help="This part alone. Repeatable.")
+@click.option(
+    "--only",
+    metavar="PART",
+    type=click.Choice(PARTS),
+    multiple=True,
+    help="One of table1 to table6 and fig1 to fig9. Repeatable.",
+)
 @output_option
 @figure_option
 @format_option
@@ -63,10 +69,10 @@ def write_text(path: Path, text: str) -> None:
 
 
 def show_findings(findings: "list[Finding]", form: "Format") -> None:
-    """Print what came out; as text one claim below the other."""
-    from bezstab.paper.ledger import FINDINGS, finding_rows, findings_to_read
+    """Print what came out; as text one claim below the other, as a table of them is too wide for any terminal."""
+    from bezstab.paper.ledger import FINDINGS, finding_rows, finding_sentence
 
     if form == "text":
-        click.echo(findings_to_read(findings))
+        show_blocks(finding_rows(findings), FINDINGS, finding_sentence)
     else:
         show_rows(finding_rows(findings), FINDINGS, form)

@@ -38,7 +38,6 @@ FINDINGS = [
     column("here", "here"),
     column("agreement", "agreement"),
 ]
-PROPERTIES = [column("property", "property"), column("value", "value")]
 
 
 def finding_rows(findings: Sequence[Finding]) -> list[Row]:
@@ -54,10 +53,6 @@ def ledger_text(findings: Sequence[Finding]) -> str:
     return f"# What the paper claims, and what came out\n\nWritten by `bezstab paper`: {total}.\n\n{rows}\n"
 
 
-def findings_to_read(findings: Sequence[Finding]) -> str:
-    """Return every claim as text, one below the other: a table of them would be too wide for a terminal."""
-    blocks = []
-    for row in finding_rows(findings):
-        properties: list[Row] = [{"property": name, "value": value} for name, value in row.items()]
-        blocks.append(render(properties, PROPERTIES, "text"))
-    return "\n\n".join(blocks)
+def finding_sentence(row: Row) -> str:
+    """Return whether a claim is confirmed."""
+    return f"{str(row['agreement']).capitalize()}."

@@ -3,6 +3,10 @@
 A file imports only from those above it; what draws is not loaded before it is used:
 
     columns             typed columns, and rows as text, Markdown, CSV or JSON
+    blocks              rows as blocks of lines, and text that wraps
+    words               numbers as sentences have them
+    vocabulary          what every key of every row means
+    schemas             which keys the rows of each command have
     best_point_text     a best point in words
     rows                results as rows
     arrays              histories and maps as arrays for files
@@ -16,6 +20,7 @@ A file imports only from those above it; what draws is not loaded before it is u
 from typing import TYPE_CHECKING
 
 from bezstab.lazy import lazy_names
+from bezstab.show.blocks import block, fits, wrapped
 from bezstab.show.columns import (
     MISSING,
     PROPERTIES,
@@ -24,9 +29,11 @@ from bezstab.show.columns import (
     Row,
     Value,
     column,
+    finite,
     formatted,
     pole_column,
     render,
+    shown_width,
     transposed,
     yes_no_column,
 )
@@ -43,13 +50,18 @@ from bezstab.show.rows import (
     pole_rows,
     region_row,
     row,
+    run_row,
     simulation_row,
     stable_steps_words,
     summary_row,
     verdict_map_row,
     whole_row,
     with_unbounded,
+    witness_row,
 )
+from bezstab.show.schemas import ROW_KINDS, json_schema
+from bezstab.show.vocabulary import VOCABULARY
+from bezstab.show.words import growth_words, safety_words, seconds_words
 
 if TYPE_CHECKING:
     from bezstab.show import plot
@@ -103,10 +115,13 @@ __all__ = [
     "DASHES",
     "MISSING",
     "PROPERTIES",
+    "ROW_KINDS",
+    "VOCABULARY",
     "Column",
     "Format",
     "Row",
     "Value",
+    "block",
     "boundary_arrays",
     "choice_row",
     "column",
@@ -116,10 +131,14 @@ __all__ = [
     "engine_row",
     "family_figure",
     "family_row",
+    "finite",
+    "fits",
     "formatted",
     "formula_row",
+    "growth_words",
     "history_arrays",
     "history_figure",
+    "json_schema",
     "limit_row",
     "map_arrays",
     "measurement_row",
@@ -134,8 +153,12 @@ __all__ = [
     "region_row",
     "render",
     "row",
+    "run_row",
+    "safety_words",
     "save",
     "scene_figure",
+    "seconds_words",
+    "shown_width",
     "simulation_row",
     "stable_steps_words",
     "styled",
@@ -147,7 +170,9 @@ __all__ = [
     "verdict_map_row",
     "whole_row",
     "with_unbounded",
+    "witness_row",
     "work_precision_figure",
+    "wrapped",
     "write_arrays",
     "yes_no_column",
 ]

@@ -79,7 +79,7 @@ def render(rows: Sequence[Row], columns: Sequence[Column], form: Format) -> str:
     What is infinite or not a number is missing: null, an empty cell, a dash. So is, in csv, a key that only other rows
     have. KeyError if a row lacks the key of a chosen column.
     """
-    finite_rows: list[Row] = [{key: _finite(value) for key, value in row.items()} for row in rows]
+    finite_rows = [finite(row) for row in rows]
     if form == "json":
         return json.dumps(finite_rows, indent=2, ensure_ascii=False, allow_nan=False)
     if form == "csv":
@@ -89,11 +89,9 @@ def render(rows: Sequence[Row], columns: Sequence[Column], form: Format) -> str:
     return _markdown(lines) if form == "markdown" else _aligned(lines)
 
 
-def _finite(value: Value) -> Value:
-    """Return the value, None for one that is infinite or not a number."""
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value
+def finite(row: Row) -> Row:
+    """Return the row with None for every value that is infinite or not a number."""
+    return {key: None if isinstance(value, float) and not math.isfinite(value) else value for key, value in row.items()}
 
 
 def _comma_separated(rows: Sequence[Row]) -> str:
@@ -111,16 +109,18 @@ def _aligned(lines: Sequence[Sequence[str]]) -> str:
 
 def _markdown(lines: Sequence[Sequence[str]]) -> str:
     padded = _padded([[cell.replace("|", "\\|") for cell in line] for line in lines])
-    rule = ["-" * _width(cell) for cell in padded[0]]
+    rule = ["-" * shown_width(cell) for cell in padded[0]]
     return "\n".join(f"| {' | '.join(line)} |" for line in (padded[0], rule, *padded[1:]))
 
 
 def _padded(lines: Sequence[Sequence[str]]) -> list[list[str]]:
     """Return the cells filled up with spaces to the width of their column."""
-    widths = [max(map(_width, column)) for column in zip(*lines, strict=True)]
-    return [[cell + " " * (width - _width(cell)) for cell, width in zip(line, widths, strict=True)] for line in lines]
+    widths = [max(map(shown_width, column)) for column in zip(*lines, strict=True)]
+    return [
+        [cell + " " * (width - shown_width(cell)) for cell, width in zip(line, widths, strict=True)] for line in lines
+    ]
 
 
-def _width(text: str) -> int:
+def shown_width(text: str) -> int:
     """Return the number of character cells; the hat of alpha-hat is a combining character and takes none."""
     return sum(not unicodedata.combining(character) for character in text)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
     from _typeshed import DataclassInstance
 
     from bezstab.engines import Engine
-    from bezstab.evidence import Measurement, MovingPole, VerdictMap
+    from bezstab.evidence import Measurement, MovingPole, Run, VerdictMap, Witnessed
     from bezstab.mechanism import Simulation
     from bezstab.methods import Verdict
     from bezstab.stability import BestPoint, Choice, Limit, Member, Region
@@ -70,7 +70,8 @@ def pole_rows(
 ) -> list[Row]:
     """Return a row for each pole of one method at one point (dimensionless), angles in degrees."""
     point: Row = {"method": method.name, "alpha_hat": alpha_hat, "beta_hat": beta_hat}
-    return [{**point, **complex_parts("z_", complex(z)), "verdict": verdict} for z in poles]
+    safe = verdict == "converges"
+    return [{**point, **complex_parts("z_", complex(z)), "verdict": verdict, "safe": safe} for z in poles]
 
 
 def moving_row(moving: MovingPole) -> Row:
@@ -90,10 +91,10 @@ def moving_row(moving: MovingPole) -> Row:
 
 
 def method_row(method: Method) -> Row:
-    """Return steps, evaluations per step, order of accuracy, error constant (exact, as text) and source.
+    """Return steps, evaluations per step, order of accuracy, error constant (as number, and exact as text) and source.
 
-    The error constant is a decimal where rationals stand for irrational coefficients; `digits` says to how many digits
-    they do, None where they do not. `order_position_forces` and `order_velocity_forces` are the orders where forces
+    The exact one is None where rationals stand for irrational coefficients; `digits` says to how many digits they do,
+    None where they do not. `order_position_forces` and `order_velocity_forces` are the orders where forces
     depend on the position alone, and on the velocity alone; `implicit` is whether a step solves equations.
     """
     from bezstab.methods import accuracy, accuracy_by_force  # loads sympy
@@ -105,7 +106,8 @@ def method_row(method: Method) -> Row:
         "steps": steps(method),
         "evaluations": evaluations(method),
         "order": order,
-        "error_constant": str(constant) if method.digits is None else f"{float(constant):.10g}",
+        "error_constant": float(constant),
+        "error_constant_exact": str(constant) if method.digits is None else None,
         "source": method.source,
         "implicit": implicit(method),
         "digits": method.digits,
@@ -201,16 +203,34 @@ def _nowhere(region: Region) -> str | None:
 
 
 def family_row(member: Member) -> Row:
-    """Return what has become of a family at its number of steps n; None where its region is empty."""
+    """Return what has become of a family at its number of steps; None where its region is empty."""
     alpha_max = beta_max = None
     if member.region.extent:
         (_, alpha_max), (_, beta_max) = member.region.extent
-    return row(member, without={"region"}, area=member.region.area, alpha_hat_max=alpha_max, beta_hat_max=beta_max)
+    return {
+        "steps": member.n,
+        "method": member.method.name,
+        "area": member.region.area,
+        "alpha_hat_max": alpha_max,
+        "beta_hat_max": beta_max,
+        "best_z_abs": member.z_abs,
+        "order": member.order,
+        "error_constant": float(member.error_constant),
+    }
 
 
 def limit_row(limit: Limit) -> Row:
-    """Return the row of the Bezier family's limit, of order two, which has no n."""
-    return row(limit, without={"boundary"}, n=None, method="B∞", order=2)
+    """Return the row of the Bezier family's limit, of order two, which has no number of steps."""
+    return {
+        "steps": None,
+        "method": "B∞",
+        "area": limit.area,
+        "alpha_hat_max": limit.alpha_hat_max,
+        "beta_hat_max": limit.beta_hat_max,
+        "best_z_abs": limit.z_abs,
+        "order": 2,
+        "error_constant": float(limit.error_constant),
+    }
 
 
 def simulation_row(simulation: Simulation) -> Row:
@@ -224,7 +244,8 @@ def simulation_row(simulation: Simulation) -> Row:
         "scene": trajectory.mechanism.scene.name,
         **row(
             trajectory,
-            without={"mechanism", "t", "q", "v"},
+            without={"mechanism", "t", "q", "v", "evaluations"},
+            run_evaluations=trajectory.evaluations,
             alpha_hat=simulation.alpha_hat,
             beta_hat=simulation.beta_hat,
             h=simulation.h,
@@ -244,17 +265,29 @@ def measurement_row(scene: str, measurement: Measurement) -> Row:
 
     None where nothing was measured; verdicts agree if both or neither diverge.
     """
-    predicted = complex_parts("", measurement.predicted)
+    predicted = complex_parts("z_", measurement.predicted)
     measured: dict[str, float | None] = dict.fromkeys(predicted)
     difference: dict[str, float | None] = dict.fromkeys(predicted)
     if measurement.measured is not None:
-        parts = complex_parts("", measurement.measured)
+        parts = complex_parts("z_", measurement.measured)
         measured |= parts
         difference |= {key: parts[key] - predicted[key] for key in parts}
     return {
-        **row(measurement, scene=scene, measurable=measurement.measured is not None),
+        "scene": scene,
+        "method": measurement.method.name,
+        "alpha_hat": measurement.alpha_hat,
+        "beta_hat": measurement.beta_hat,
+        **{f"predicted_{key}": value for key, value in predicted.items()},
+        "predicted_verdict": measurement.predicted_verdict,
+        "law_z_abs": measurement.law_abs,
+        "law_verdict": measurement.law_verdict,
+        "floquet_z_abs": measurement.floquet_abs,
         **{f"measured_{key}": value for key, value in measured.items()},
+        "measured_rate": measurement.measured_rate,
+        "measured_verdict": measurement.measured_verdict,
         **{f"difference_{key}": value for key, value in difference.items()},
+        "reason": measurement.reason,
+        "measurable": measurement.measured is not None,
         "verdicts_agree": measurement.verdicts_agree,
         "right": measurement.right,
     }
@@ -265,7 +298,7 @@ def summary_row(measurements: Sequence[Row]) -> Row:
 
     From its rows by measurement_row, at least one.
     """
-    errors = [abs(each["difference_abs"]) for each in measurements if isinstance(each["difference_abs"], float)]
+    errors = [abs(each["difference_z_abs"]) for each in measurements if isinstance(each["difference_z_abs"], float)]
 
     def median_over_the_motion(key: str) -> float | None:
         """Return the median difference of a prediction from the rate over whole revolutions."""
@@ -282,9 +315,9 @@ def summary_row(measurements: Sequence[Row]) -> Row:
         "called": sum(each["verdicts_agree"] is not None for each in measurements),
         "wrong": sum(each["verdicts_agree"] is False for each in measurements),
         "revolutions_measured": sum(isinstance(each["measured_rate"], float) for each in measurements),
-        "map_error": median_over_the_motion("predicted_abs"),
-        "law_error": median_over_the_motion("law_abs"),
-        "floquet_error": median_over_the_motion("floquet_abs"),
+        "map_error": median_over_the_motion("predicted_z_abs"),
+        "law_error": median_over_the_motion("law_z_abs"),
+        "floquet_error": median_over_the_motion("floquet_z_abs"),
     }
 
 
@@ -292,25 +325,48 @@ def verdict_map_row(verdicts: VerdictMap) -> Row:
     """Return how far simulated verdicts agree with |z_p| < 1, and how near to one those lie that do not."""
     return row(
         verdicts,
-        without={"alpha_hat", "beta_hat", "z_abs", "diverges"},
+        without={"alpha_hat", "beta_hat", "z_abs", "diverges", "run"},
+        run_steps=verdicts.run,
         runs=verdicts.broken.size,
         broken=int(verdicts.broken.sum()),
-        agreement=verdicts.agreement,
+        agreeing_share=verdicts.agreement,
         band=verdicts.band,
         farthest=verdicts.farthest_disagreement,
         disagreeing=verdicts.disagreements_beyond_band,
     )
 
 
+def witness_row(scene: str, witnessed: Witnessed) -> Row:
+    """Return what another engine's integrator did in one run, and the method's pole that foretells it."""
+    return row(
+        witnessed,
+        without={"predicted_abs", "steps"},
+        scene=scene,
+        predicted_z_abs=witnessed.predicted_abs,
+        run_steps=witnessed.steps,
+    )
+
+
+def run_row(run: Run, front: str) -> Row:
+    """Return one run of a sweep: its errors (SI), its cost (s of processor time), the fronts it is on."""
+    return row(
+        run,
+        without={"evaluations", "order"},
+        run_evaluations=run.evaluations,
+        observed_order=run.order,
+        front=front,
+    )
+
+
 def choice_row(choice: Choice, h: float | None) -> dict[str, Value]:
     """Return a point, with h (s) in 1/s too, how fast it settles and by what it may be off; None for no limit."""
-    alpha = beta = settle_seconds = h_max = None
+    alpha = beta = settle_seconds = h_limit = None
     if h is not None:
         alpha, beta = alpha_and_beta(choice.alpha_hat, choice.beta_hat, h)
         if choice.settle_steps is not None:
             settle_seconds = choice.settle_steps * h * float(choice.method.step_multiple)
         if choice.margins:
-            h_max = choice.margins.h * h
+            h_limit = choice.margins.h * h
     h_factor = alpha_min = alpha_max = beta_min = beta_max = None
     if choice.margins:
         h_factor = choice.margins.h
@@ -318,14 +374,15 @@ def choice_row(choice: Choice, h: float | None) -> dict[str, Value]:
         beta_min, beta_max = choice.margins.beta
     return row(
         choice,
-        without={"margins"} if choice.margins else (),  # where there are none the row says so: margins is None
+        without={"margins"},
+        safe=choice.verdict == "converges",
         h=h,
         alpha=alpha,
         beta=beta,
         settle_steps=choice.settle_steps,
         settle_seconds=settle_seconds,
         h_factor=h_factor,
-        h_max=h_max,
+        h_limit=h_limit,
         alpha_factor_min=alpha_min,
         alpha_factor_max=alpha_max,
         beta_factor_min=beta_min,
@@ -347,4 +404,10 @@ def engine_row(engine: Engine, point: tuple[Fraction, Fraction] | None, h: Fract
             setting = engine.setting(point, h)
         except InputError as error:
             setting = str(error)
-    return row(engine, without={"read", "write", "marks"}, parameters=", ".join(engine.parameters), set=setting)
+    return row(
+        engine,
+        without={"name", "read", "write", "marks"},
+        engine=engine.name,
+        parameters=", ".join(engine.parameters),
+        setting=setting,
+    )

@@ -9,19 +9,19 @@ from tests.cli.running import rows, run
 
 def test_choose_prints_what_to_set() -> None:
     (row,) = rows("choose", "--h", "0.001", "--goal", "fastest")
-    keys = "method h goal alpha_hat beta_hat alpha beta z_abs z_angle_deg settle_steps settle_seconds h_max"
+    keys = "method h goal alpha_hat beta_hat alpha beta z_abs z_angle_deg settle_steps settle_seconds h_limit"
     assert set(keys.split()) <= set(row)
     assert row["z_abs"] == pytest.approx(0.625883502027, abs=1e-7)  # a double mu: half the digits
     assert row["alpha"] == pytest.approx(1000 * 1.0126978003 / 2)
     assert row["beta"] == pytest.approx(1000 * 0.2563892087**0.5)
-    assert row["h_max"] == pytest.approx(0.0015683, rel=1e-4)
+    assert row["h_limit"] == pytest.approx(0.0015683, rel=1e-4)
     (gentle,) = rows("choose", "--h", "0.001", "--goal", "gentle", "--settle", "0.5")
     assert gentle["settle_steps"] == 500
     assert gentle["alpha"] == pytest.approx(gentle["beta"])
     (finer,) = rows("choose", "--h", "0.001", "--h-max", "0.002", "--method", "SYM")
     (coarse,) = rows("choose", "--h", "0.002", "--method", "SYM")
-    assert (finer["alpha"], finer["beta"], finer["h_max"]) == pytest.approx(
-        (coarse["alpha"], coarse["beta"], coarse["h_max"])
+    assert (finer["alpha"], finer["beta"], finer["h_limit"]) == pytest.approx(
+        (coarse["alpha"], coarse["beta"], coarse["h_limit"])
     )
 
 
@@ -30,11 +30,11 @@ def test_an_engines_own_words_are_read_and_printed(tmp_path: Path) -> None:
     assert (given["alpha_hat"], given["beta_hat"], given["z_abs"]) == (1, 0.25, 0.75)
     (row,) = rows("choose", "--engine", "mujoco", "--h", "0.002")
     assert row["method"] == "SYM"
-    k, c = re.findall(r"-([\d.]+)", str(row["engine"]))
+    k, c = re.findall(r"-([\d.]+)", str(row["setting"]))
     assert (float(c) * 0.002, float(k) * 0.002**2) == pytest.approx((row["alpha_hat"], row["beta_hat"]))
-    listed = {str(row["name"]): row for row in rows("engines", "--alpha", "1", "--beta", "0.2", "--h", "0.002")}
-    assert listed["ode"]["set"] == "ERP = 0.2"
-    assert "reaches" in str(listed["box2d"]["set"])
+    listed = {str(row["engine"]): row for row in rows("engines", "--alpha", "1", "--beta", "0.2", "--h", "0.002")}
+    assert listed["ode"]["setting"] == "ERP = 0.2"
+    assert "reaches" in str(listed["box2d"]["setting"])
     assert all(row["excludes"] and row["source"] for row in listed.values())
     rows("region", "--method", "SYM", "--engine", "mujoco", "--h", "0.002", "--figure", "svg", "--table", "none")
     assert "timeconst" in (tmp_path / "region_SYM.svg").read_text(encoding="utf-8")

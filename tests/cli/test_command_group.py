@@ -25,13 +25,18 @@ NAMES = main.list_commands(CONTEXT)
 def test_help_has_a_heading_for_each_group_and_a_whole_sentence_for_each_command() -> None:
     text = CliRunner().invoke(main, ["--help"], terminal_width=80).stdout
     sections = dict(re.findall(r"^(\w+):\n((?:  .+\n)+)", text, re.MULTILINE))
-    assert list(sections) == ["Options", "Maps", "Choose", "Evidence", "Paper"]
+    assert list(sections) == ["Options", "Maps", "Choose", "Evidence", "Programs", "Paper"]
     listed = [line.split(maxsplit=1) for title in list(sections)[1:] for line in sections[title].splitlines()]
     assert [name for name, _ in listed] == NAMES
     for _, sentence in listed:
         assert sentence[0].isupper()
         assert sentence.endswith(".")
         assert not sentence.endswith("...")
+
+
+def test_without_a_command_there_is_help() -> None:
+    bare, asked = run(), run("--help")
+    assert (bare.exit_code, bare.stdout, bare.stderr) == (0, asked.stdout, "")
 
 
 def test_an_extension_is_found_by_name_and_an_unknown_command_is_not() -> None:

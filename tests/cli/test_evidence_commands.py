@@ -94,7 +94,7 @@ def test_simulate_shows_the_iterations_of_an_implicit_method_only() -> None:
     assert "Newton's iterations" in implicit
     assert "Newton's iterations" not in explicit
     (row,) = rows(*common, "--method", "trapezoid")
-    iterations, evaluations = row["iterations"], row["evaluations"]
+    iterations, evaluations = row["iterations"], row["run_evaluations"]
     assert isinstance(iterations, int)
     assert isinstance(evaluations, int)
     assert 60 <= iterations < evaluations

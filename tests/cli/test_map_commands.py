@@ -12,7 +12,17 @@ from tests.cli.running import arrays, rows, run
 def test_poles_prints_the_default_methods_and_keys() -> None:
     found = rows("poles", "--alpha", "0.5", "--beta", "0.1")
     assert [row["method"] for row in found] == ["B2", "B3", "B4", "AB2", "AB3", "AB4", "RK4@5", "SIE"]
-    assert list(found[0]) == ["method", "alpha_hat", "beta_hat", "z_real", "z_imag", "z_abs", "z_angle_deg", "verdict"]
+    assert list(found[0]) == [
+        "method",
+        "alpha_hat",
+        "beta_hat",
+        "z_real",
+        "z_imag",
+        "z_abs",
+        "z_angle_deg",
+        "verdict",
+        "safe",
+    ]
     assert {row["verdict"] for row in found} == {"converges"}
 
 
@@ -154,7 +164,7 @@ def test_a_users_method(tmp_path: Path) -> None:
 
 def test_family_ends_with_its_limit(tmp_path: Path) -> None:
     found = rows("family", "bezier", "--from", "3", "--to", "5")
-    assert [row["n"] for row in found] == [3, 4, 5, None]
+    assert [row["steps"] for row in found] == [3, 4, 5, None]
     assert [row["method"] for row in found] == ["B3", "B4", "B5", "B∞"]
     assert [path.name for path in tmp_path.iterdir()] == ["family_bezier.png"]
     found = rows("family", "adams-bashforth", "--figure", "none")

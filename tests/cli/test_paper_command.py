@@ -13,4 +13,4 @@ def test_paper_writes_the_chosen_parts_and_prints_findings(tmp_path: Path) -> No
     assert r"\|z_p\|" in table[2]  # a bare bar would end the cell
     timed = run("paper", "--only", "table6")
     assert "processor time" in timed.stdout
-    assert "property" in timed.stdout
+    assert "\n\nNot confirmed.\n\nwhere " in timed.stdout

@@ -9,7 +9,7 @@ def test_verify_takes_implicit_and_second_order_methods() -> None:
     for name in ("radau3", "hht", "verlet-old"):
         point = ("--alpha", "0.5", "--beta", "0.4", "--method", name)
         (row,) = rows("verify", "--scene", "pendulum", *point)
-        assert row["measured_abs"] == pytest.approx(row["predicted_abs"], abs=1e-5)
+        assert row["measured_z_abs"] == pytest.approx(row["predicted_z_abs"], abs=1e-5)
         assert row["verdicts_agree"] is True
 
 
@@ -17,13 +17,13 @@ def test_verify_prints_predicted_and_measured_pole(tmp_path: Path) -> None:
     (row,) = rows("verify", "--alpha", "0.5", "--beta", "0.1", "--method", "AB4")
     assert row["scene"] == "slider-crank"
     assert row["measurable"] is True
-    assert row["predicted_abs"] == pytest.approx(0.998848, abs=1e-6)
-    assert row["measured_abs"] == pytest.approx(row["predicted_abs"], abs=1e-4)
-    assert row["measured_angle_deg"] == pytest.approx(row["predicted_angle_deg"], abs=0.01)
+    assert row["predicted_z_abs"] == pytest.approx(0.998848, abs=1e-6)
+    assert row["measured_z_abs"] == pytest.approx(row["predicted_z_abs"], abs=1e-4)
+    assert row["measured_z_angle_deg"] == pytest.approx(row["predicted_z_angle_deg"], abs=0.01)
     assert row["predicted_verdict"] == row["measured_verdict"] == "converges"
     (gone,) = rows("verify", "--alpha", "2", "--beta", "2", "--method", "RK2")  # deadbeat: nothing is left to measure
     assert gone["measurable"] is False
-    assert gone["measured_abs"] is None
+    assert gone["measured_z_abs"] is None
     assert gone["reason"]
     assert gone["measured_verdict"] == "converges"
     assert len(rows("verify", "--points", "3", "--method", "B4", "--method", "SYM")) == 6
@@ -32,7 +32,7 @@ def test_verify_prints_predicted_and_measured_pole(tmp_path: Path) -> None:
 
 def test_verify_map_writes_verdicts_and_figure(tmp_path: Path) -> None:
     (row,) = rows("verify", "--map", "5", "--scene", "pendulum", "--method", "SYM", "--table", "npz")
-    assert (row["runs"], row["agreement"], row["disagreeing"]) == (25, 1, 0)
+    assert (row["runs"], row["agreeing_share"], row["disagreeing"]) == (25, 1, 0)
     assert row["band"] == 0.005
     assert sorted(path.suffix for path in tmp_path.iterdir()) == [".npz", ".png"]
     columns = arrays(tmp_path / "verify_pendulum_SYM.npz")
@@ -43,7 +43,7 @@ def test_verify_tells_what_the_motion_does_to_a_prediction() -> None:
     """The driven four-bar at omega h = 0.063: AB4 converges by the map, diverges by the law and by exact rates."""
     point = ("--method", "AB4", "--alpha", "0.5", "--beta", "0.1", "--h", "0.01")
     (row,) = rows("verify", "--scene", "driven_four_bar", *point, "--floquet")
-    at_rest, law, exact = row["predicted_abs"], row["law_abs"], row["floquet_abs"]
+    at_rest, law, exact = row["predicted_z_abs"], row["law_z_abs"], row["floquet_z_abs"]
     assert isinstance(at_rest, float)
     assert isinstance(law, float)
     assert isinstance(exact, float)
@@ -55,7 +55,7 @@ def test_verify_tells_what_the_motion_does_to_a_prediction() -> None:
 
 def test_without_floquet_nothing_exact_is_computed() -> None:
     (row,) = rows("verify", "--scene", "driven_four_bar", "--alpha", "0.5", "--beta", "0.2", "--h", "0.01")
-    assert row["floquet_abs"] is None
+    assert row["floquet_z_abs"] is None
     assert "exact |z|" not in run("verify", "--alpha", "0.5", "--beta", "0.2").stdout
 
 

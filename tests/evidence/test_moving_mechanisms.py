@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from bezstab.evidence import floquet_rates, growth_rates, momentary_rates, moving_pole, tabulated_rates
+from bezstab.evidence.moving_mechanisms import _safe_speed
 from bezstab.mechanism import compiled_mechanism, load_scene, simulate, turning_normals
 from bezstab.methods import lookup
 from bezstab.stability import poles, spectral_radius
@@ -89,3 +90,10 @@ def test_symplectic_euler_keeps_a_mass_on_a_circle_up_to_a_known_speed(share: fl
     radius = np.hypot(run.q[-500:, 0], run.q[-500:, 1]) / length
     steady = run.failure is None and float(np.ptp(radius)) < 1e-6
     assert steady == turns_round
+
+
+def test_a_pole_at_zero_limits_no_speed() -> None:
+    """SYM at (1, 1/2) has the poles 1/2 and 0; what does not count has minus infinity for decay and for growth."""
+    decay, growth = np.array([np.log(0.5), -np.inf]), np.array([0.1, -np.inf])
+    assert _safe_speed(decay, growth) == pytest.approx(-np.log(0.5) / 0.1)
+    assert _safe_speed(decay, np.array([-0.1, -np.inf])) == np.inf

@@ -27,6 +27,15 @@ def test_the_sentences_name_the_cheapest_run_and_the_numbers() -> None:
     assert sweep_sentences(both, 1e-20, physical=True)[0].startswith("No run meets")
 
 
+@pytest.mark.parametrize(("name", "own"), [("AB4", True), ("RK2", False), ("ABM2", False)])
+def test_an_order_lost_by_the_start_is_not_put_down_to_a_multistep_method(name: str, own: bool) -> None:
+    run = swept("B4", (2e-4, 4e-4), SOFT)[-1]
+    lost = [replace(run, method=lookup(name), order=1.0)]
+    told = [sentence for sentence in sweep_sentences(lost, 1e-7, physical=False) if "the start by RK4" in sentence]
+    assert [sentence.partition(" would keep the order; ")[0] for sentence in told] == ([name] if own else [])
+    assert not any("start" in sentence for sentence in sweep_sentences(lost, 1e-7, physical=True))
+
+
 def test_evaluations_for_an_error_follow_the_power_law() -> None:
     made_up = [
         replace(run, trajectory_error=1e6 * float(run.evaluations) ** -3) for run in swept("B4", (2e-4, 4e-4), SOFT)

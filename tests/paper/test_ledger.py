@@ -2,7 +2,7 @@ from typing import get_args
 
 from bezstab.paper import lost, methods, regions, slider_crank
 from bezstab.paper.findings import Agreement, finding
-from bezstab.paper.ledger import SUBJECTS, findings_to_read, ledger_text
+from bezstab.paper.ledger import SUBJECTS, finding_rows, finding_sentence, ledger_text
 from bezstab.paper.printed import PARTS
 
 
@@ -17,14 +17,8 @@ def test_every_row_says_what_the_paper_says_and_what_came_out() -> None:
     assert {f.agreement for f in lost.findings()} == {"cannot be tested"}
 
 
-def test_the_ledger_counts_and_escapes_and_the_text_has_a_line_for_each_property() -> None:
+def test_the_ledger_counts_and_escapes_and_the_text_says_whether_a_claim_is_confirmed() -> None:
     found = [finding(where="Fig. 1", claim="|z_p| < 1", paper="yes", here="no", holds=[False])]
     assert "0 confirmed, 0 confirmed with a correction, 1 not confirmed, 0 cannot be tested" in ledger_text(found)
     assert r"\|z_p\| < 1" in ledger_text(found)
-    assert [line.split()[0] for line in findings_to_read(found).splitlines()[1:]] == [
-        "where",
-        "claim",
-        "paper",
-        "here",
-        "agreement",
-    ]
+    assert [finding_sentence(row) for row in finding_rows(found)] == ["Not confirmed."]

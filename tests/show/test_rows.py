@@ -58,7 +58,8 @@ def test_a_row_takes_what_is_said_instead_of_a_field() -> None:
 
 def test_a_whole_row_says_that_b4_is_of_order_two() -> None:
     whole = whole_row(lookup("B4"), region(lookup("B4")), best_point(lookup("B4")), latex=False)
-    assert (whole["order"], whole["error_constant"], whole["steps"], whole["evaluations"]) == (2, "11/36", 4, 1)
+    assert (whole["order"], whole["error_constant_exact"], whole["steps"], whole["evaluations"]) == (2, "11/36", 4, 1)
+    assert whole["error_constant"] == 11 / 36
 
 
 def test_alpha_and_beta_come_back() -> None:
@@ -67,20 +68,21 @@ def test_alpha_and_beta_come_back() -> None:
     assert alpha_and_beta(0.1, -0.1, 0.002)[1] is None
 
 
-def test_a_choice_has_its_margins_or_says_that_there_are_none() -> None:
+def test_a_choice_has_its_margins_or_none() -> None:
     stable = choice_row(describe_point(lookup("SYM"), "as given", Fraction(1), Fraction(1, 2)), 0.002)
     unstable = choice_row(describe_point(lookup("SYM"), "as given", Fraction(2), Fraction(2)), 0.002)
-    assert "margins" not in stable
-    assert stable["h_max"] == pytest.approx(0.002 * float(str(stable["h_factor"])))
-    assert (unstable["margins"], unstable["h_max"], unstable["settle_seconds"]) == (None, None, None)
+    assert list(stable) == list(unstable)
+    assert (stable["safe"], unstable["safe"]) == (True, False)
+    assert stable["h_limit"] == pytest.approx(0.002 * float(str(stable["h_factor"])))
+    assert (unstable["h_limit"], unstable["alpha_factor_max"], unstable["settle_seconds"]) == (None, None, None)
     assert unstable["alpha"] == 500
 
 
 def test_an_engine_without_a_setting_says_why() -> None:
     point = (Fraction(1), Fraction(1, 5))
-    assert engine_row(ENGINES["ode"], point, Fraction(1, 500))["set"] == "ERP = 0.2"
-    assert "reaches" in str(engine_row(ENGINES["box2d"], point, Fraction(1, 500))["set"])
-    assert engine_row(ENGINES["ode"], None, Fraction(1, 500))["set"] is None
+    assert engine_row(ENGINES["ode"], point, Fraction(1, 500))["setting"] == "ERP = 0.2"
+    assert "reaches" in str(engine_row(ENGINES["box2d"], point, Fraction(1, 500))["setting"])
+    assert engine_row(ENGINES["ode"], None, Fraction(1, 500))["setting"] is None
 
 
 def region_words(name: str) -> Row:

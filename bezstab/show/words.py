@@ -1,0 +1,55 @@
+"""Numbers as sentences have them: times, factors, and what becomes of an error from step to step."""
+
+from bezstab.show.columns import Row, Value
+
+MOST_DIGITS = 17  # of float64: with so many every number other than one is shown as another
+THOUSAND = 1000.0
+UNITS = ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"))
+"""Of times, the largest first: each with its seconds."""
+
+
+def seconds_words(seconds: float) -> str:
+    """Return a time (s) to three digits, in the unit that suits it: 1.56 ms; powers of ten where none does."""
+    for size, unit in UNITS:
+        if size <= seconds < THOUSAND * size:
+            return f"{seconds / size:.3g} {unit}"
+    return f"{seconds:.3g} s"
+
+
+def growth_words(factor: Value) -> str:
+    """Return how far something may be scaled up: to 1.32 times, or without limit where there is no factor."""
+    return f"to {factor:.3g} times" if isinstance(factor, float) else "without limit"
+
+
+def change_words(z_abs: float, verdict: Value) -> str:
+    """Return what an error does at every step by its proven verdict: shrinks 0.65-fold a step, grows, or neither.
+
+    Two digits of the modulus, and as many more as it takes to tell it from one. Where rounding has left it on the wrong
+    side of one, the verdict alone.
+    """
+    if verdict == "marginal":
+        return "neither shrinks nor grows"
+    converges = verdict == "converges"
+    verb = "shrinks" if converges else "grows"
+    if z_abs == 0:
+        return "is gone within a few steps"
+    if not (z_abs < 1 if converges else z_abs > 1):
+        return f"{verb}, by less at a step than rounding shows"
+    digits = next(digits for digits in range(2, MOST_DIGITS + 1) if float(f"{z_abs:.{digits}g}") != 1)
+    return f"{verb} {z_abs:.{digits}g}-fold a step"
+
+
+def safety_words(row: Row, error: str = "the error") -> str:
+    """Return whether a point is safe and how fast errors shrink, from a row with `safe`, `verdict` and `z_abs`.
+
+    With --scene also what they do over the motion. Without the last full stop.
+    """
+    safe = "Safe" if row["safe"] else "Not safe"
+    z_abs, moving = row["z_abs"], row.get("z_abs_moving")
+    assert isinstance(z_abs, float)
+    at_rest = f"{error} {change_words(z_abs, row['verdict'])}"
+    if not isinstance(moving, float):
+        return f"{safe}. {at_rest[0].upper()}{at_rest[1:]}"
+    if row["moving_verdict"] in ("converges", "diverges"):
+        return f"{safe}. At rest {at_rest}, over the motion it {change_words(moving, row['moving_verdict'])}"
+    return f"{safe}. At rest {at_rest}; over the motion it is {row['moving_verdict']}"

@@ -1,0 +1,70 @@
+"""Examples of every command: what holds of all of them is tested on these."""
+
+import json
+import shlex
+from typing import Any
+
+import pytest
+
+from tests.cli.running import run
+
+SMALL = "--figure none --table none"
+
+EXAMPLES: dict[str, list[str]] = {
+    "poles": ["poles --alpha 0.5 --beta 0.1", "poles --alpha 1 --beta 2 --method SYM --all-poles"],
+    "region": [f"region --method SYM --method bdf3 {SMALL}"],
+    "methods": ["methods", "methods SYM RK4@5"],
+    "family": ["family bezier --from 2 --to 3 --figure none"],
+    "choose": ["choose --engine mujoco --h 0.002"],
+    "check": ["check --method SYM --alpha 2 --beta 2 --h 0.01"],
+    "engines": ["engines", "engines --alpha 1 --beta 0.2 --h 0.002"],
+    "simulate": [f"simulate --scene pendulum --method SYM --time 0.02 {SMALL}"],
+    "verify": [
+        "verify --scene pendulum --method SYM --points 3",
+        "verify --scene pendulum --method RK2 --alpha 2 --beta 2",
+    ],
+    "tradeoff": [f"tradeoff --scene pendulum --method SYM --h 0.01 --h 0.02 --time 0.1 {SMALL}"],
+    "extremes": ["extremes --short"],
+    "paper": ["paper --only fig7 --figure none"],
+}
+"""Of every command that prints rows; together they print every kind of row."""
+
+LONG = {
+    "poles": ["poles --alpha 0.5 --beta 0.1 --scene driven_four_bar --h 0.005"],
+    "region": [f"region --method SYM --scene driven_four_bar --h 0.01 {SMALL}"],
+    "choose": ["choose --method SYM --h 0.01 --scene driven_four_bar", "choose --method SYM --method bdf3 --h 0.01"],
+    "check": [
+        "check --method SYM --method RK2 --alpha 2 --beta 2",
+        "check --method SYM --alpha 1 --beta 0.5 --h 0.01 --scene driven_four_bar",
+    ],
+    "verify": [
+        f"verify --scene pendulum --method SYM --map 3 {SMALL}",
+        "verify --witness mujoco",
+        "verify --scene driven_four_bar --h 0.01 --alpha 0.5 --beta 0.1 --floquet",
+    ],
+    "paper": ["paper --only table6 --figure none"],
+}
+"""More of them, which take longer."""
+
+SLOW_COMMANDS = ("extremes", "family", "paper", "tradeoff", "verify")
+WITHOUT_ROWS = {"explore", "schema"}
+"""Commands that open a window, or print a schema."""
+
+
+def each_example() -> list[Any]:
+    """Return every example as a parameter of a test, long ones marked as slow."""
+    quick = [
+        pytest.param(text, marks=[pytest.mark.slow] if name in SLOW_COMMANDS else [], id=text)
+        for name, texts in EXAMPLES.items()
+        for text in texts
+    ]
+    return quick + [pytest.param(text, marks=pytest.mark.slow, id=text) for texts in LONG.values() for text in texts]
+
+
+def printed_rows(text: str) -> list[dict[str, Any]]:
+    """Return the rows of an example; a choice that is not safe ends with status one."""
+    result = run(*shlex.split(text), "--format", "json")
+    assert result.exit_code in (0, 1), result.stderr
+    assert result.exception is None or isinstance(result.exception, SystemExit)
+    rows: list[dict[str, Any]] = json.loads(result.stdout)
+    return rows

@@ -1,0 +1,68 @@
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bezstab.show import Row
+from bezstab.show.words import change_words, growth_words, safety_words, seconds_words
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [
+        (0.0015573785, "1.56 ms"),
+        (1.0, "1 s"),
+        (0.001, "1 ms"),
+        (2.5e-5, "25 µs"),
+        (90.0, "90 s"),
+        (1e-9, "1e-09 s"),
+        (1e6, "1e+06 s"),
+    ],
+)
+def test_a_time_has_the_unit_that_suits_it(seconds: float, words: str) -> None:
+    assert seconds_words(seconds) == words
+
+
+@given(st.floats(1e-100, 1e100))
+def test_a_time_in_words_is_the_time_to_three_digits(seconds: float) -> None:
+    number, unit = seconds_words(seconds).split()
+    assert float(number) * {"s": 1, "ms": 1e-3, "µs": 1e-6}[unit] == pytest.approx(seconds, rel=0.005)
+
+
+@given(st.floats(1e-3, 1e3).filter(lambda z_abs: z_abs != 1))
+def test_what_shrinks_is_never_said_to_be_times_one(z_abs: float) -> None:
+    verb, fold = change_words(z_abs, "converges" if z_abs < 1 else "diverges").split()[:2]
+    assert verb == ("shrinks" if z_abs < 1 else "grows")
+    assert (float(fold.removesuffix("-fold")) < 1) == (z_abs < 1)
+    assert float(fold.removesuffix("-fold")) == pytest.approx(z_abs, rel=0.05)
+
+
+def test_the_proven_verdict_counts_more_than_a_rounded_modulus() -> None:
+    assert change_words(1.0000000000000002, "converges") == "shrinks, by less at a step than rounding shows"
+    assert (
+        change_words(1.0, "diverges") == "grows, by less at a step than rounding shows"
+    )  # a repeated root on the circle
+    assert change_words(math.nextafter(1, 2), "marginal") == "neither shrinks nor grows"
+    assert change_words(0.0, "converges") == "is gone within a few steps"
+
+
+def test_growth_has_a_factor_or_no_limit() -> None:
+    assert (growth_words(1.3174), growth_words(None)) == ("to 1.32 times", "without limit")
+
+
+def test_the_motion_is_said_as_well() -> None:
+    row: Row = {
+        "safe": False,
+        "verdict": "converges",
+        "z_abs": 0.98,
+        "z_abs_moving": 1.25,
+        "moving_verdict": "diverges",
+    }
+    assert safety_words(row) == (
+        "Not safe. At rest the error shrinks 0.98-fold a step, over the motion it grows 1.2-fold a step"
+    )
+    unsettled: Row = {**row, "moving_verdict": "not settled for this mechanism"}
+    assert safety_words(unsettled).endswith("; over the motion it is not settled for this mechanism")
+    at_rest: Row = {"safe": True, "verdict": "converges", "z_abs": 0.98}
+    assert safety_words(at_rest) == "Safe. The error shrinks 0.98-fold a step"
