@@ -59,9 +59,9 @@ APPOINTED = {
     },
     "click": {f"cli/{name}.py" for name in ("options", "output", "command_group")}
     | {f"cli/{name}_commands.py" for name in ("map", "choose", "evidence")}
-    | {"cli/verify_command.py", "cli/moving_mechanism.py"}
+    | {"cli/verify_command.py", "cli/lint_command.py", "cli/moving_mechanism.py"}
     | {"paper/command.py"},
-    "mujoco": {"evidence/mujoco_witness.py"},
+    "mujoco": {"evidence/mujoco_models.py"},
     "distributed": {"evidence/worker_pools.py"},
     "mpmath": {"evidence/extremes.py", "evidence/root_digits.py"},
 }
