@@ -1,14 +1,15 @@
 """What the parameters of a MuJoCo model mean in (alpha_hat, beta_hat), and whether they are safe at its time step.
 
-A constraint's reference is aref = -b cdot - k c, and MuJoCo gives the constraint the share d of it that solimp says:
+A constraint's reference is aref = -b c' - k d c, and MuJoCo gives the constraint the share d of it that solimp says:
 
     c'' = -d (b c' + k d c),   b = 2 / (dmax tc),   k = 1 / (dmax tc zeta)^2      (solref = tc, zeta)
 
 so that with r = d / dmax alpha_hat = r 2h / tc and beta_hat = (r h / (tc zeta))^2 (MuJoCo documentation, Modeling,
 Constraint parameters; source: mj_makeImpedance). Where MuJoCo's estimate of masses is off, the shares are not d but the
-eigenvalues of A (A + R)^-1, A = J M^-1 J', of which the least and the largest are taken. Euler and the two implicit integrators are
-symplectic Euler for constraints. They divide whatever accelerates by their implicit damping D: M' = M + h D stands for
-M, and the shares are those of J M'^-1 J' (A + R)^-1. With one mass m and damping d that is 1 / (1 + h d / m).
+eigenvalues of A (A + R)^-1, A = J M^-1 J', of which the least and the largest are taken. Euler and the two implicit
+integrators are symplectic Euler for constraints. They divide whatever accelerates by their implicit damping D, as
+M' = M + h D stands for M: the shares are those of J M'^-1 J' (A + R)^-1. With one mass m and damping d that divides by
+1 + h d / m.
 
 A spring, damper or drive with stiffness kp and damping kv on inertia I is alpha_hat = kv h / I, beta_hat = kp h^2 / I:
 IMEX-Euler where all damping is implicit, RK4 under RK4, else symplectic Euler, of a point that is divided likewise.
@@ -23,6 +24,7 @@ from itertools import accumulate
 import numpy as np
 
 from bezstab.engines import ENGINES
+from bezstab.errors import NumericalError
 from bezstab.evidence.mujoco_models import Constraint, Feedback, ModelData
 from bezstab.methods import Method, Verdict, closed_loop_at, lookup, recursion_verdict
 from bezstab.rationals import exact
@@ -30,6 +32,9 @@ from bezstab.stability import BoolArray, FloatArray, first_where, poles, spectra
 
 Point = tuple[Fraction, Fraction]
 """alpha_hat and beta_hat."""
+
+Shares = Callable[[float, float], tuple[float, float]]
+"""Of impedance and step (s): the least and the largest share of its reference that a constraint gets."""
 
 DEFAULT_SOLREF = (0.02, 1.0)
 """What MuJoCo takes where one number of solref is positive and the other not."""
@@ -60,6 +65,12 @@ FREE = 1e-5
 
 SOFT = 5
 """Times slower than need be: then an equality or a limit is called soft."""
+
+DEADBEAT = 1e-9
+"""Of |z|: what is less is gone at once."""
+
+LEAST_HOLD = 0.1
+"""Of d at the constraint: with less, a small error hardly feels it, and |z| says only that."""
 
 HARD = ("contact", "contact pair", "joint friction", "tendon friction")
 """Kinds whose softness is a property of the material: nobody is told to change it."""
@@ -93,13 +104,16 @@ class Linted:
 
 
 def linted_model(model: ModelData) -> Iterator[Linted]:
-    """Yield what every constraint, spring, damper and drive of a model means, then all that hold both ways together."""
+    """Yield what every constraint, spring, damper and drive of a model means, then all that hold both ways together.
+
+    NumericalError where the mass matrix is singular, and where a pole leaves the range of float64.
+    """
     modes = _damping_modes(model)
     for constraint in model.constraints:
         yield _linted_constraint(model, modes, constraint)
     groups = _along_one_direction(model.feedbacks)
     for group in groups:
-        yield _linted_drive(model, group)
+        yield _linted_drive(model, modes, group)
     for each in model.unjudged:
         yield _not_judged(each.element, each.kind, each.reason)
     bilateral = [constraint for constraint in model.constraints if constraint.active and constraint.positional]
@@ -144,7 +158,8 @@ def _moduli(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> Floa
         return spectral_radius(method, alpha_hat, beta_hat)
     z = poles(method, alpha_hat, beta_hat)
     others = np.argsort(np.abs(z - 1), axis=-1)[..., 1:]
-    return np.abs(np.take_along_axis(z, others, axis=-1)).max(axis=-1)
+    moduli: FloatArray = np.abs(np.take_along_axis(z, others, axis=-1)).max(axis=-1)
+    return moduli
 
 
 def _h_factor(unstable: Callable[[FloatArray], BoolArray]) -> float | None:
@@ -163,8 +178,7 @@ def _end_of(points: Callable[[Fraction], Sequence[Point]], method: Method) -> fl
         at = np.array([[[float(x) for x in point] for point in points(exact(factor))] for factor in factors])
         alpha_hat, beta_hat = at[..., 0], at[..., 1]
         limit = 1.0 if alpha_hat.all() else 1 + UNDAMPED
-        grows: BoolArray = (_moduli(method, alpha_hat, beta_hat) >= limit).any(axis=-1)
-        return grows
+        return np.asarray((_moduli(method, alpha_hat, beta_hat) >= limit).any(axis=-1))
 
     return _h_factor(unstable)
 
@@ -190,13 +204,21 @@ class _DampingModes:
 
 def _damping_modes(model: ModelData) -> _DampingModes:
     """Return the modes of the damping D that the integrator treats implicitly: D B = M B diag(rates), B' M B = 1."""
-    damping = np.zeros_like(model.mass)
-    for feedback in model.feedbacks:
-        if _implicit(model, feedback):
-            damping += feedback.damping * np.outer(feedback.direction, feedback.direction)
-    root = np.linalg.inv(np.linalg.cholesky(model.mass))
+    _, damping = _springs_and_dampers(model, [each for each in model.feedbacks if _implicit(model, each)])
+    try:
+        root = np.linalg.inv(np.linalg.cholesky(model.mass))
+    except np.linalg.LinAlgError:
+        raise NumericalError("the mass matrix at qpos0 is singular to rounding") from None
     rates, turned = np.linalg.eigh(root @ damping @ root.T)
     return _DampingModes(basis=root.T @ turned, rates=rates)
+
+
+def _springs_and_dampers(model: ModelData, feedbacks: Sequence[Feedback]) -> tuple[FloatArray, FloatArray]:
+    """Return the stiffness and the damping matrix of feedbacks; shape (dofs, dofs) each, SI."""
+    directions = np.array([each.direction for each in feedbacks]).reshape(len(feedbacks), len(model.mass))
+    stiffness = np.array([each.stiffness for each in feedbacks])
+    damping = np.array([each.damping for each in feedbacks])
+    return (directions.T * stiffness) @ directions, (directions.T * damping) @ directions
 
 
 def _implicit(model: ModelData, feedback: Feedback) -> bool:
@@ -208,9 +230,10 @@ def _implicit(model: ModelData, feedback: Feedback) -> bool:
 
 def _linted_constraint(model: ModelData, modes: _DampingModes, constraint: Constraint) -> Linted:
     method = _map(model)
+    shares = _shares(modes, constraint)
 
     def points(factor: Fraction) -> list[Point]:
-        return _constraint_points(model, modes, constraint, constraint.solref, factor)
+        return _constraint_points(model, constraint, shares, constraint.solref, factor)
 
     point, verdict, z_abs = _worst(method, points(Fraction(1)))
     return Linted(
@@ -223,12 +246,12 @@ def _linted_constraint(model: ModelData, modes: _DampingModes, constraint: Const
         verdict=verdict,
         z_abs=z_abs,
         h_factor=_end_of(points, method),
-        advice=_constraint_advice(model, modes, constraint, verdict, z_abs),
+        advice=_constraint_advice(model, constraint, shares, verdict, z_abs),
     )
 
 
 def _constraint_points(
-    model: ModelData, modes: _DampingModes, constraint: Constraint, solref: tuple[float, float], factor: Fraction
+    model: ModelData, constraint: Constraint, shares: Shares, solref: tuple[float, float], factor: Fraction
 ) -> list[Point]:
     """Return the points that a constraint takes with that solref, at the constraint and past solimp's width.
 
@@ -246,53 +269,60 @@ def _constraint_points(
     found: list[Point] = []
     for impedance in impedances:
         d = exact(impedance)
-        shares = [exact(round(share, DIGITS)) for share in _shares(modes, constraint, impedance, float(h))]
+        taken = [exact(round(share, DIGITS)) for share in shares(impedance, float(h))]
         if constraint.kind in ("contact", "contact pair"):
-            shares.append(Fraction(1))
+            taken.append(Fraction(1))
         scale = exact(largest)
-        found += [(alpha_hat * share / scale, beta_hat * d * share / scale**2) for share in shares]
+        found += [(alpha_hat * share / scale, beta_hat * d * share / scale**2) for share in taken]
     return found
 
 
-def _shares(modes: _DampingModes, constraint: Constraint, impedance: float, h: float) -> tuple[float, float]:
-    """Return the least and the largest share of its reference that a constraint's directions get.
+def _shares(modes: _DampingModes, constraint: Constraint) -> Shares:
+    """Return a function of impedance and step: the least and largest share of the reference that directions get.
 
-    The impedance, but for MuJoCo's estimate of masses and for implicit damping.
+    They are the impedance, but for MuJoCo's estimate of masses and for implicit damping.
     """
-    if constraint.jacobian is None or constraint.diagonal is None:
-        return impedance, impedance
-    moved = constraint.jacobian @ modes.basis
-    softening = np.maximum(LEAST_SOFTENING, constraint.diagonal * (1 - impedance) / impedance)
-    regularized = moved @ moved.T + np.diag(softening)
-    damped = (moved / (1 + h * modes.rates)) @ moved.T
-    shares = np.linalg.eigvals(np.linalg.solve(regularized, damped)).real
-    moving = shares[shares > MOVING]  # a direction that moves nothing has no error either
-    return (float(moving.min()), float(moving.max())) if moving.size else (impedance, impedance)
+    jacobian, diagonal = constraint.jacobian, constraint.diagonal
+    if jacobian is None or diagonal is None:
+        return lambda impedance, h: (impedance, impedance)
+    moved = jacobian @ modes.basis
+
+    def shares(impedance: float, h: float) -> tuple[float, float]:
+        softening = np.maximum(LEAST_SOFTENING, diagonal * (1 - impedance) / impedance)
+        regularized = moved @ moved.T + np.diag(softening)
+        damped = (moved / (1 + h * modes.rates)) @ moved.T
+        found = np.linalg.eigvals(np.linalg.solve(regularized, damped)).real
+        moving = found[found > MOVING]  # a direction that moves nothing has no error either
+        return (float(moving.min()), float(moving.max())) if moving.size else (impedance, impedance)
+
+    return shares
 
 
-def _constraint_advice(
-    model: ModelData, modes: _DampingModes, constraint: Constraint, verdict: Verdict, z_abs: float
-) -> str:
+def _constraint_advice(model: ModelData, constraint: Constraint, shares: Shares, verdict: Verdict, z_abs: float) -> str:
     """Return what to write instead, and why; nothing where all is well."""
     first, second = constraint.solref
     least = 2 * model.h
     firm = (least, 1.0)
     if not _of_one_sign(constraint.solref):
-        return (
-            f'MuJoCo takes {_numbers(DEFAULT_SOLREF)}, as the signs differ: write solref="{_numbers(DEFAULT_SOLREF)}"'
-        )
-    if verdict != "converges" and (first or second):
+        taken = _numbers(DEFAULT_SOLREF)
+        return f'MuJoCo takes {taken}, as the signs differ: write solref="{taken}"'
+    if constraint.positional and not first:
+        return f'no stiffness: errors stay; write solref="{_numbers(firm)}"'
+    if verdict != "converges":
         return f'write solref="{_numbers(firm)}"'
-    if not (first or second):
-        return f'no feedback at all: errors stay; write solref="{_numbers(firm)}"'
     if model.refsafe and 0 < first < least:
         return f'relies on refsafe, which raises its timeconst to 2h: write solref="{_numbers((least, second))}"'
-    if constraint.kind not in HARD:
-        faster = _worst(_map(model), _constraint_points(model, modes, constraint, firm, Fraction(1)))[2]
-        times = float(np.log(faster) / np.log(z_abs))
-        if times > SOFT:
-            return f'needlessly soft: solref="{_numbers(firm)}" settles {times:.0f} times as fast'
-    return ""
+    return "" if constraint.kind in HARD else _softness(model, constraint, shares, z_abs)
+
+
+def _softness(model: ModelData, constraint: Constraint, shares: Shares, z_abs: float) -> str:
+    """Return whether a safe equality or limit is needlessly soft, and what would be firm."""
+    if constraint.solimp[0] < LEAST_HOLD and constraint.solimp[2] > 0:
+        return f"solimp leaves small errors alone: d = {constraint.solimp[0]:g} at the constraint itself"
+    firm = (2 * model.h, 1.0)
+    faster = _worst(_map(model), _constraint_points(model, constraint, shares, firm, Fraction(1)))[2]
+    times = float(np.log(max(DEADBEAT, faster)) / np.log(max(DEADBEAT, z_abs)))
+    return f'needlessly soft: solref="{_numbers(firm)}" settles {times:.0f} times as fast' if times > SOFT else ""
 
 
 def _of_one_sign(solref: tuple[float, float]) -> bool:
@@ -326,8 +356,8 @@ class _Drive:
     inertia: Fraction
 
 
-def _linted_drive(model: ModelData, group: Sequence[Feedback]) -> Linted:
-    drive = _drive(model, group)
+def _linted_drive(model: ModelData, modes: _DampingModes, group: Sequence[Feedback]) -> Linted:
+    drive = _drive(model, modes, group)
     h = exact(model.h)
     method, points = _drive_map(model, drive)
     point, verdict, z_abs = _worst(method, points(Fraction(1)))
@@ -347,7 +377,7 @@ def _linted_drive(model: ModelData, group: Sequence[Feedback]) -> Linted:
     )
 
 
-def _drive(model: ModelData, group: Sequence[Feedback]) -> _Drive:
+def _drive(model: ModelData, modes: _DampingModes, group: Sequence[Feedback]) -> _Drive:
     """Return what acts along the direction of a group, per unit of its one joint, else of its first element."""
     direction = group[0].direction
     moved = np.flatnonzero(direction)
@@ -361,7 +391,7 @@ def _drive(model: ModelData, group: Sequence[Feedback]) -> _Drive:
             implicit += arm_squared * feedback.damping
         else:
             damping += arm_squared * feedback.damping
-    inertia = 1 / float(direction @ np.linalg.solve(model.mass, direction))
+    inertia = 1 / float(np.sum((direction @ modes.basis) ** 2))  # 1 / (u M^-1 u')
     return _Drive(exact(stiffness), exact(damping), exact(implicit), exact(float(f"{inertia:.{DIGITS}g}")))
 
 
@@ -466,11 +496,7 @@ def _together_modulus(
     model: ModelData, modes: _DampingModes, constraints: Sequence[Constraint], factor: float
 ) -> float:
     """Return the largest |z| of one step of all equalities, springs, dampers and drives; 0 where nothing is held."""
-    stiffness, damping = np.zeros_like(model.mass), np.zeros_like(model.mass)
-    for feedback in model.feedbacks:
-        outer = np.outer(feedback.direction, feedback.direction)
-        stiffness += feedback.stiffness * outer
-        damping += feedback.damping * outer
+    stiffness, damping = _springs_and_dampers(model, model.feedbacks)
     h = factor * model.h
     inverse = modes.basis @ modes.basis.T  # of the mass
     by_position, by_velocity = -inverse @ stiffness, -inverse @ damping  # of the acceleration

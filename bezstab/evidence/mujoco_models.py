@@ -25,6 +25,9 @@ LEAST_IMPEDANCE, MOST_IMPEDANCE = 0.0001, 0.9999
 LEAST_MIX = 1e-15
 """MuJoCo's mjMINVAL: a solmix below it counts as none."""
 
+LEAST_SIZE, LARGEST_SIZE = 1e-15, 1e15
+"""Of numbers that are not zero: below MuJoCo's mjMINVAL nothing counts, and beyond its inverse nobody means it."""
+
 MOST_ROWS = 300
 """Of one equality, such as a flex's: beyond, its masses are left out."""
 
@@ -132,28 +135,49 @@ def read_mujoco_model(path: Path) -> ModelData:
 
 
 def model_data(mujoco: types.ModuleType, model: Any) -> ModelData:
-    """Return what a loaded model says. The model's choice of Jacobian is set to dense."""
+    """Return what a loaded model says, whose choice of Jacobian is set to dense; InputError for what means nothing."""
     model.opt.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
     data = mujoco.MjData(model)
     data.eq_active[:] = 1  # to have the rows of all of them
     mujoco.mj_forward(model, data)
     mass = np.zeros((model.nv, model.nv))
-    for column, unit in zip(mass, np.eye(model.nv), strict=True):  # symmetric: rows are columns
-        mujoco.mj_mulM(model, data, column, unit)
+    for dof, column in enumerate(mass):  # symmetric: rows are columns
+        mujoco.mj_mulM(model, data, column, _unit(model, dof))
     actuators = list(_actuators(mujoco, model, data))
+    constraints = tuple(_constraints(mujoco, model, data))
+    feedbacks = (*_passive(mujoco, model, data), *(each for each in actuators if isinstance(each, Feedback)))
+    _require_sizes("timestep", (model.opt.timestep,))
+    if model.opt.timestep <= 0:
+        raise InputError(f"timestep = {model.opt.timestep:g}: expected a positive number")
+    for constraint in constraints:
+        _require_sizes(f"{constraint.element}: solref", constraint.solref)
+        _require_sizes(f"{constraint.element}: solimp", constraint.solimp)
+    for feedback in feedbacks:
+        _require_sizes(f"{feedback.element}: kp, kv", (feedback.stiffness, feedback.damping))
     return ModelData(
         h=model.opt.timestep,
         integrator=INTEGRATORS[model.opt.integrator],
         refsafe=not _disabled(mujoco, model, "REFSAFE"),
         euler_damping=not _disabled(mujoco, model, "EULERDAMP"),
         mass=mass,
-        constraints=tuple(_constraints(mujoco, model, data)),
-        feedbacks=(
-            *_passive(mujoco, model, data),
-            *(each for each in actuators if isinstance(each, Feedback)),
-        ),
+        constraints=constraints,
+        feedbacks=feedbacks,
         unjudged=tuple(each for each in actuators if isinstance(each, Unjudged)),
     )
+
+
+def _require_sizes(name: str, values: Sequence[float]) -> None:
+    """Raise InputError unless every number is zero or of a size that somebody may mean."""
+    if not all(value == 0 or LEAST_SIZE <= abs(value) <= LARGEST_SIZE for value in values):
+        listed = " ".join(f"{value:g}" for value in values)
+        raise InputError(f"{name} = {listed}: expected 0, or sizes from {LEAST_SIZE:g} to {LARGEST_SIZE:g}")
+
+
+def _unit(model: Any, dof: int) -> FloatArray:
+    """Return one degree of freedom's direction; shape (dofs,)."""
+    direction = np.zeros(model.nv)
+    direction[dof] = 1.0
+    return direction
 
 
 def _disabled(mujoco: types.ModuleType, model: Any, flag: str) -> bool:
@@ -219,7 +243,7 @@ def _equalities(mujoco: types.ModuleType, model: Any, data: Any) -> Iterator[Con
 
 
 def _joint_limits(mujoco: types.ModuleType, model: Any) -> Iterator[Constraint]:
-    for joint in np.flatnonzero(model.jnt_limited):
+    for joint in np.flatnonzero(model.jnt_limited).tolist():
         dof = model.jnt_dofadr[joint]
         ball = (
             mujoco.mjtJoint(model.jnt_type[joint]) == mujoco.mjtJoint.mjJNT_BALL
@@ -229,13 +253,13 @@ def _joint_limits(mujoco: types.ModuleType, model: Any) -> Iterator[Constraint]:
             kind="joint limit",
             solref=_solref(model.jnt_solref[joint]),
             solimp=_solimp(model.jnt_solimp[joint]),
-            jacobian=None if ball else np.eye(model.nv)[[dof]],
+            jacobian=None if ball else _unit(model, dof)[np.newaxis],
             diagonal=None if ball else model.dof_invweight0[[dof]].copy(),
         )
 
 
 def _tendon_limits(mujoco: types.ModuleType, model: Any, data: Any) -> Iterator[Constraint]:
-    for tendon in np.flatnonzero(model.tendon_limited):
+    for tendon in np.flatnonzero(model.tendon_limited).tolist():
         yield Constraint(
             element=_named(mujoco, model, "tendon", tendon),
             kind="tendon limit",
@@ -247,17 +271,17 @@ def _tendon_limits(mujoco: types.ModuleType, model: Any, data: Any) -> Iterator[
 
 
 def _friction_losses(mujoco: types.ModuleType, model: Any, data: Any) -> Iterator[Constraint]:
-    for dof in np.flatnonzero(model.dof_frictionloss > 0):
+    for dof in np.flatnonzero(model.dof_frictionloss > 0).tolist():
         yield Constraint(
             element=_named(mujoco, model, "joint", model.dof_jntid[dof]),
             kind="joint friction",
             solref=_solref(model.dof_solref[dof]),
             solimp=_solimp(model.dof_solimp[dof]),
-            jacobian=np.eye(model.nv)[[dof]],
+            jacobian=_unit(model, dof)[np.newaxis],
             diagonal=model.dof_invweight0[[dof]].copy(),
             positional=False,
         )
-    for tendon in np.flatnonzero(model.tendon_frictionloss > 0):
+    for tendon in np.flatnonzero(model.tendon_frictionloss > 0).tolist():
         yield Constraint(
             element=_named(mujoco, model, "tendon", tendon),
             kind="tendon friction",
@@ -375,7 +399,7 @@ def _passive(mujoco: types.ModuleType, model: Any, data: Any) -> Iterator[Feedba
         damping = dampers * float(model.dof_damping[dof])
         if stiffness or damping:
             element = _named(mujoco, model, "joint", joint)
-            yield Feedback(element, "joint", np.eye(model.nv)[dof], stiffness, damping, euler_implicit=True)
+            yield Feedback(element, "joint", _unit(model, dof), stiffness, damping, euler_implicit=True)
     directions = _tendon_directions(model, data)
     for tendon in range(model.ntendon):
         stiffness = springs * float(model.tendon_stiffness[tendon])
