@@ -23,7 +23,12 @@ def test_lint_tells_what_relies_on_refsafe(tmp_path: Path) -> None:
     """At its floor the point is 0.947 (1, 0.25), and growing steps take the floor along."""
     (row,) = rows("lint", written(tmp_path / "model.xml", MODEL.format(flag="")))
     assert tuple(row) == KEYS
-    assert (row["element"], row["kind"], row["map"], row["verdict"]) == ("equality 'lock'", "joint", "SYM", "converges")
+    assert (row["element"], row["kind"], row["map"], row["verdict"]) == (
+        "equality 'lock'",
+        "joint equality",
+        "SYM",
+        "converges",
+    )
     assert row["alpha_hat"] == pytest.approx(0.9 / 0.95)
     assert row["beta_hat"] == pytest.approx(0.25 * (0.9 / 0.95) ** 2)
     assert row["h_factor"] is None

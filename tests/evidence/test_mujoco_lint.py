@@ -59,17 +59,19 @@ def equality(text: str) -> str:
     return f"<equality>{text}</equality>"
 
 
+JOINT = f'<joint joint1="x" solref=".01 .7" {FLAT}/>'
+DIRECT = f'<joint joint1="x" solref="-9000 -150" {FLAT}/>'
+CONNECT = f'<connect body1="b" anchor=".2 0 0" solref=".01 .7" {FLAT}/>'
+WELD = f'<weld body1="b" solref=".01 .7" {FLAT}/>'
+ALIKE = f'<tendon tendon1="t" solref="-9000 -150" {FLAT}/>'
+LOW = f'<joint joint1="x" solref=".05 .3" {FLAT}/>'  # zeta so low that refsafe's floor is unsafe
 EQUALITIES = {
-    "joint": Case("joint", SLIDE.format(""), equality(f'<joint joint1="x" solref=".01 .7" {FLAT}/>'), UNSAFE),
-    "direct": Case("joint", SLIDE.format(""), equality(f'<joint joint1="x" solref="-9000 -150" {FLAT}/>'), UNSAFE),
-    "connect": Case(
-        "connect", FREE.format(0), equality(f'<connect body1="b" anchor=".2 0 0" solref=".01 .7" {FLAT}/>'), UNSAFE
-    ),
-    "weld": Case("weld", FREE.format(".1"), equality(f'<weld body1="b" solref=".01 .7" {FLAT}/>'), UNSAFE),
-    "tendon": Case(
-        "tendon", TWO, TENDON.format("") + equality(f'<tendon tendon1="t" solref="-9000 -150" {FLAT}/>'), UNSAFE
-    ),
-    "refsafe": Case("joint", SLIDE.format(""), equality(f'<joint joint1="x" solref=".05 .3" {FLAT}/>')),
+    "joint": Case("joint equality", SLIDE.format(""), equality(JOINT), UNSAFE),
+    "direct": Case("joint equality", SLIDE.format(""), equality(DIRECT), UNSAFE),
+    "connect": Case("connect equality", FREE.format(0), equality(CONNECT), UNSAFE),
+    "weld": Case("weld equality", FREE.format(".1"), equality(WELD), UNSAFE),
+    "tendon": Case("tendon equality", TWO, TENDON.format("") + equality(ALIKE), UNSAFE),
+    "refsafe": Case("joint equality", SLIDE.format(""), equality(LOW)),
 }
 LIMIT = 'limited="true" range="0 1" solreflimit=".01 .7" solimplimit="0.9 0.9 0.001"'
 OTHERS = {
@@ -116,6 +118,9 @@ def lint(model: Any) -> list[Linted]:
 )
 def test_every_kind_of_row_is_what_mujoco_does(name: str, integrator: str) -> None:
     """Equal |z| to 1e-5, the error of differences, at 0.97 and 1.03 of the limit; runs settle and grow there."""
+    version = tuple(map(int, mujoco.__version__.split(".")[:2]))
+    if version < (3, 9) and name in ("connect", "weld") and integrator.startswith("implicit"):
+        pytest.skip("this version moves free bodies by the midpoint rule, which is stable further out")
     case = CASES[name]
     row = lint(case.model(integrator))[0]
     assert (row.kind, row.verdict, row.unsafe) == (case.kind, "converges", False)
@@ -268,3 +273,52 @@ def test_what_is_no_constant_gain_is_not_judged() -> None:
     rows = lint(case.model("Euler"))
     assert [row.verdict for row in rows] == [None, None]
     assert all(row.advice.startswith("not judged") and not row.unsafe for row in rows)
+
+
+def random_arm(rng: np.random.Generator) -> Case:
+    """Return a chain of links with springs, dampers, drives, a tendon and equalities of any strength."""
+    links = int(rng.integers(2, 5))
+    names = [f"j{number}" for number in range(links)]
+
+    def strength(low: float, high: float) -> str:
+        return f"{10 ** rng.uniform(low, high):.6g}"
+
+    world = ""
+    for name in reversed(names):
+        axis = " ".join(f"{value:.3f}" for value in rng.normal(size=3))
+        passive = f'damping="{strength(-4, 0)}" stiffness="{strength(-2, 1)}" armature="{strength(-4, -2)}"'
+        joint = f'<joint name="{name}" type="{rng.choice(["hinge", "slide"])}" axis="{axis}" {passive}/>'
+        shape = f'<geom type="capsule" fromto="0 0 0 .3 0 0" size=".02" {WEIGHTLESS}/>'
+        world = f'<body pos=".3 0 0">{joint}{shape}{world}</body>'
+    first, second = (str(name) for name in rng.choice(names, 2, replace=False))
+    coupled = f'<joint joint="{first}" coef="2"/><joint joint="{second}" coef="-1"/>'
+    tendon = (
+        f'<tendon><fixed name="t" stiffness="{strength(-1, 2)}" damping="{strength(-2, 0)}">{coupled}</fixed></tendon>'
+    )
+    drives = "".join(
+        f'<position joint="{name}" kp="{strength(0, 3)}" kv="{strength(-2, 1)}" gear="{strength(-0.5, 0.5)}"/>'
+        for name in names
+        if rng.random() < 0.7
+    )
+    solref = f'solref="{strength(-2.5, -1)} {strength(-0.3, 0.3)}" solimp="0.8 0.95 0.01"'
+    equalities = f'<joint joint1="{first}" joint2="{second}" {solref}/>' if rng.random() < 0.5 else ""
+    flags = rng.choice(["", UNSAFE, 'eulerdamp="disable"'])
+    return Case("", world, tendon + actuator(drives) + equality(equalities), str(flags))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("integrator", ["Euler", "RK4", "implicit", "implicitfast"])
+def test_all_together_is_mujocos_own_step_on_random_arms(integrator: str) -> None:
+    """Verdicts agree, and |z| to 1e-4: differences are as exact as that where steps are ill-conditioned."""
+    rng = np.random.default_rng(16)
+    verdicts = set()
+    for _ in range(25):
+        model = random_arm(rng).model(integrator)
+        together = lint(model)[-1]
+        assert together.z_abs is not None
+        moduli = step_moduli(mujoco, model, mujoco.MjData(model))
+        assert moduli[0] == pytest.approx(together.z_abs, rel=1e-4)
+        if abs(together.z_abs - 1) > 1e-4:
+            assert together.verdict == ("diverges" if moduli[0] > 1 else "converges")
+            verdicts.add(together.verdict)
+    assert verdicts == {"converges", "diverges"}

@@ -45,13 +45,11 @@ def solrefs(robot: ModelData, kind: str) -> dict[str, tuple[float, float]]:
 
 
 def test_defaults_and_classes_are_resolved(robot: ModelData) -> None:
-    assert solrefs(robot, "connect") == {"equality 'pin'": (0.03, 0.8)}
-    assert solrefs(robot, "weld") == {"equality 1": (-100, -20)}
+    assert solrefs(robot, "connect equality") == {"equality 'pin'": (0.03, 0.8)}
+    assert solrefs(robot, "weld equality") == {"equality 1": (-100, -20)}
     assert solrefs(robot, "joint limit") == {"joint 'slide'": (0.05, 2)}
-    assert {each.solimp for each in robot.constraints if each.kind in ("connect", "weld", "joint")} == {
-        (0.8, 0.99, 0.002)
-    }
-    assert [each.active for each in robot.constraints if each.kind in ("connect", "weld", "joint")] == [1, 1, 0]
+    assert {each.solimp for each in robot.constraints if each.kind.endswith("equality")} == {(0.8, 0.99, 0.002)}
+    assert [each.active for each in robot.constraints if each.kind.endswith("equality")] == [1, 1, 0]
     assert (robot.h, robot.integrator, robot.refsafe, robot.euler_damping) == (0.002, "Euler", True, True)
 
 
@@ -105,6 +103,13 @@ def test_what_is_switched_off_is_left_out() -> None:
     assert not found.constraints
     assert {each.kind for each in found.feedbacks} == {"drive"}
     assert (found.refsafe, found.euler_damping) == (False, False)
+
+
+def test_actuators_of_a_group_that_is_switched_off_are_left_out() -> None:
+    text = ROBOT.replace("<default>", '<option actuatorgroupdisable="2"/><default>', 1)
+    text = text.replace('<position name="motor"', '<position group="2" name="motor"')
+    found = model_data(mujoco, mujoco.MjModel.from_xml_string(text))
+    assert [each.element for each in found.feedbacks if each.kind == "drive"] == ["actuator 1"]
 
 
 def test_an_override_holds_for_every_contact() -> None:
