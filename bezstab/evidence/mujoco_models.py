@@ -19,8 +19,8 @@ from bezstab.stability import FloatArray
 LEAST_VERSION = (3, 7)
 """Before it connect and weld lacked the term of turning normals, dJ/dt v: a moving mechanism was another system.
 
-Up to 3.8.0 the implicit integrators still move free bodies by the midpoint rule, which is stable beyond what is said
-here of their constraints; 3.10, 3.11 and 4.0 do as is said (measured).
+Up to 3.8.0 the implicit integrators still move free bodies by the midpoint rule, which is stable beyond what lint says
+of their constraints; 3.8.1, 3.10, 3.11 and 4.0 do as it says (measured).
 """
 
 LEAST_IMPEDANCE, MOST_IMPEDANCE = 0.0001, 0.9999
