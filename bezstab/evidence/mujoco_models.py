@@ -7,6 +7,7 @@ has them registered already. Everything is read at the model's own configuration
 
 import types
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -125,15 +126,23 @@ def mujoco_module(wanted_by: str) -> types.ModuleType:
 def read_mujoco_model(path: Path) -> ModelData:
     """Return what a model file (MJCF or URDF, as XML) says; InputError, in one line, for what MuJoCo refuses."""
     mujoco = mujoco_module("lint")
-    mujoco.set_mju_user_warning(lambda _: None)  # it would print, and write a file
     try:
         with path.open("rb"):  # for the system's own words on why not
             pass
-        return model_data(mujoco, mujoco.MjModel.from_xml_path(str(path)))
+        with _silent(mujoco):
+            return model_data(mujoco, mujoco.MjModel.from_xml_path(str(path)))
     except OSError as error:
         raise InputError(f"MuJoCo model {path}: {error.strerror}") from None
     except (ValueError, RuntimeError, mujoco.FatalError) as error:  # RuntimeError: what its decoders raise
         raise InputError(" ".join(f"MuJoCo model {path}: {error}".split())) from None
+
+
+@contextmanager
+def _silent(mujoco: types.ModuleType) -> Iterator[None]:
+    """Keep MuJoCo from printing its warnings, and from writing them into a file of the current directory."""
+    mujoco.set_mju_user_warning(lambda _: None)
+    try:
+        yield
     finally:
         mujoco.set_mju_user_warning(None)
 

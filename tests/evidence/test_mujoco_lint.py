@@ -1,6 +1,7 @@
 """What lint says of each kind of row is what MuJoCo does: a little inside and a little outside of every limit."""
 
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,13 @@ from bezstab.stability import spectral_radius
 from tests.reference.mujoco_steps import grown, settled, step_moduli
 
 mujoco: Any = pytest.importorskip("mujoco")
+
+
+@pytest.fixture(autouse=True)
+def _away_from_here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """MuJoCo writes its warnings, of what diverges, into a file of the current directory."""
+    monkeypatch.chdir(tmp_path)
+
 
 H = 0.004
 FLAT = 'solimp="0.9 0.9 0.001"'  # d = 0.9 everywhere
