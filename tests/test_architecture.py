@@ -59,9 +59,10 @@ APPOINTED = {
     },
     "click": {f"cli/{name}.py" for name in ("options", "output", "command_group")}
     | {f"cli/{name}_commands.py" for name in ("map", "choose", "evidence")}
-    | {"cli/verify_command.py", "cli/moving_mechanism.py", "cli/schema_command.py", "cli/completion.py"}
+    | {f"cli/{name}_command.py" for name in ("verify", "schema", "lint")}
+    | {"cli/moving_mechanism.py", "cli/completion.py"}
     | {"paper/command.py"},
-    "mujoco": {"evidence/mujoco_witness.py"},
+    "mujoco": {"evidence/mujoco_models.py"},
     "distributed": {"evidence/worker_pools.py"},
     "mpmath": {"evidence/extremes.py", "evidence/root_digits.py"},
 }

@@ -12,6 +12,7 @@ A file imports only from those above it:
     evidence_commands   simulate, tradeoff, extremes
     verify_command      verify
     schema_command      schema
+    lint_command        lint
     command_group       the group of all commands
 """
 

@@ -11,6 +11,7 @@ import click
 from bezstab import __version__
 from bezstab.cli.choose_commands import check, choose, engines, explore
 from bezstab.cli.evidence_commands import extremes, simulate, tradeoff
+from bezstab.cli.lint_command import lint
 from bezstab.cli.map_commands import family, methods, poles, region
 from bezstab.cli.output import say
 from bezstab.cli.schema_command import schema
@@ -19,7 +20,7 @@ from bezstab.errors import InputError, NumericalError
 
 SECTIONS: Mapping[str, Sequence[click.Command]] = {
     "Maps": (poles, region, methods, family),
-    "Choose": (choose, check, engines, explore),
+    "Choose": (choose, check, lint, engines, explore),
     "Evidence": (simulate, verify, tradeoff, extremes),
     "Programs": (schema,),
 }

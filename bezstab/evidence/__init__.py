@@ -11,6 +11,8 @@ The only room in which stability and mechanism meet. A file imports only from th
     floquet             the exact rates of a mechanism that moves
     measured_poles      predicted against measured poles of a running mechanism
     verdict_maps        simulated verdicts over the plane against |z_p| < 1
+    mujoco_models       a MuJoCo model's step, constraints, springs, drives and masses
+    mujoco_lint         what they mean in alpha_hat and beta_hat, and whether they are safe
     mujoco_witness      an engine that is not ours must diverge where the map says
     reference_motions   a motion known to some thirteen digits
     pareto              which runs no other beats
@@ -54,6 +56,8 @@ from bezstab.evidence.moving_mechanisms import (
     tabulated_rates,
 )
 from bezstab.evidence.moving_regions import MovingRegion, moving_growth, moving_modulus, moving_region
+from bezstab.evidence.mujoco_lint import Linted, linted_model
+from bezstab.evidence.mujoco_models import ModelData, model_data, mujoco_module, read_mujoco_model
 from bezstab.evidence.mujoco_witness import TIMES, Witnessed, model_xml, mujoco_witnesses, witness_count
 from bezstab.evidence.pareto import pareto_front
 from bezstab.evidence.reference_motions import ReferenceMotion, reference_motion
@@ -73,8 +77,10 @@ __all__ = [
     "Arrays",
     "Check",
     "Fit",
+    "Linted",
     "MapRows",
     "Measurement",
+    "ModelData",
     "MovingPole",
     "MovingRegion",
     "MovingVerdict",
@@ -93,9 +99,11 @@ __all__ = [
     "floquet_rates",
     "growth_rates",
     "kicked_constraint_errors",
+    "linted_model",
     "map_rows",
     "measure_poles",
     "measured_runs",
+    "model_data",
     "model_xml",
     "momentary_rates",
     "moving_growth",
@@ -103,9 +111,11 @@ __all__ = [
     "moving_pole",
     "moving_poles",
     "moving_region",
+    "mujoco_module",
     "mujoco_witnesses",
     "pareto_front",
     "random_points",
+    "read_mujoco_model",
     "reference_motion",
     "simulated_verdicts",
     "summary",

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.errors import InputError
+from bezstab.evidence.mujoco_models import mujoco_module
 from bezstab.mechanism import GROUND, Body, Mechanism, Revolute, Scene, constraint_errors, perturbed_state
 from bezstab.methods import Method, lookup
 from bezstab.stability import FloatArray, first_where, region, spectral_radius
@@ -73,7 +74,7 @@ def mujoco_witnesses(mechanism: Mechanism, h: float) -> Iterator[Witnessed]:
 
     InputError without MuJoCo, or for a scene that is not made of revolute joints alone.
     """
-    mujoco = _mujoco()
+    mujoco = mujoco_module("--witness mujoco")
     for integrator, name in INTEGRATORS.items():
         method = lookup(name)
         for boundary in _boundary_points(method):
@@ -164,15 +165,6 @@ def _body_xml(body: Body, sites: str) -> str:
         <inertial pos="{center_x!r} {center_y!r} 0" mass="{mass!r}" diaginertia="{inertia!r} {inertia!r} {inertia!r}"/>
         {joints}{sites}
     </body>"""
-
-
-def _mujoco() -> types.ModuleType:
-    try:
-        import mujoco
-    except ImportError:
-        raise InputError("--witness mujoco needs an optional package: pip install 'bezstab[mujoco]'") from None
-    module: types.ModuleType = mujoco
-    return module
 
 
 def _boundary_points(method: Method) -> Iterator[FloatArray]:

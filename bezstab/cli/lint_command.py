@@ -1,0 +1,56 @@
+"""The command that judges a MuJoCo model: lint."""
+
+from pathlib import Path
+
+import click
+
+from bezstab.cli.options import format_option
+from bezstab.cli.output import progress, show_rows
+from bezstab.show import Column, Format, Row, column, formatted
+
+
+def _factor(row: Row) -> str:
+    """Return up to how many times the step it is stable: any where there is no end, none where no step is."""
+    if row["h_factor"] is None and row["verdict"] is not None:
+        return "none" if row["verdict"] == "diverges" else "any"
+    return formatted(row["h_factor"], ".4g")
+
+
+LINTED = [
+    column("element", "element"),
+    column("kind", "kind"),
+    column("α̂", "alpha_hat", ".4f"),
+    column("β̂", "beta_hat", ".4f"),
+    column("map", "map"),
+    column("verdict", "verdict"),
+    column("|z|", "z_abs", ".4f"),
+    Column("stable for h times", _factor),
+    column("advice", "advice"),
+]
+
+
+@click.command()
+@click.argument("model", type=click.Path(path_type=Path))
+@format_option
+@click.pass_context
+def lint(context: click.Context, model: Path, form: Format) -> None:
+    """Judge a MuJoCo model: exit status 1 if anything is unsafe.
+
+    MODEL is MuJoCo's XML; MuJoCo also opens what it includes, its meshes, textures and height fields, and nothing is
+    simulated. A row for each equality, limit, friction loss, pair of contact parameters, spring, damper and drive: its
+    point, the method that MuJoCo's integrator is there, and the line to write where it is unsafe, relies on refsafe or
+    is needlessly soft. Of the points that solimp makes of one setting the one with the largest |z| is shown. "stable
+    for h times" is up to which multiple of the time step it stays stable at the same physical parameters. The last row
+    is of all equalities, springs and drives together, which may be unsafe where each alone is not. Needs mujoco 3.7 or
+    later, since when connect and weld have the term of turning normals.
+
+    Example: bezstab lint robot.xml
+    """
+    from bezstab.evidence import linted_model, read_mujoco_model
+    from bezstab.show import row
+
+    model_data = read_mujoco_model(model)
+    linted = list(progress(linted_model(model_data), "lint", model_data.size))
+    heading = f"{model.name}: timestep {model_data.h:g} s, integrator {model_data.integrator}"
+    show_rows([row(each) for each in linted], LINTED, form, heading)
+    context.exit(1 if any(each.unsafe for each in linted) else 0)

@@ -1,0 +1,544 @@
+"""What the parameters of a MuJoCo model mean in (alpha_hat, beta_hat), and whether they are safe at its time step.
+
+A constraint's reference is aref = -b c' - k d c, and MuJoCo gives the constraint the share d of it that solimp says:
+
+    c'' = -d (b c' + k d c),   b = 2 / (dmax tc),   k = 1 / (dmax tc zeta)^2      (solref = tc, zeta)
+
+so that with r = d / dmax alpha_hat = r 2h / tc and beta_hat = (r h / (tc zeta))^2 (MuJoCo documentation, Modeling,
+Constraint parameters; source: mj_makeImpedance). Where MuJoCo's estimate of masses is off, the shares are not d but the
+eigenvalues of A (A + R)^-1, A = J M^-1 J', of which the least and the largest are taken. Euler and the two implicit
+integrators are symplectic Euler for constraints. They divide whatever accelerates by their implicit damping D, as
+M' = M + h D stands for M: the shares are those of J M'^-1 J' (A + R)^-1. With one mass m and damping d that divides by
+1 + h d / m.
+
+A spring, damper or drive with stiffness kp and damping kv on inertia I is alpha_hat = kv h / I, beta_hat = kp h^2 / I:
+IMEX-Euler where all damping is implicit, RK4 under RK4, else symplectic Euler, of a point that is divided likewise.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache
+from itertools import accumulate
+
+import numpy as np
+
+from bezstab.engines import ENGINES
+from bezstab.errors import NumericalError
+from bezstab.evidence.mujoco_models import Constraint, Feedback, ModelData
+from bezstab.methods import Method, Verdict, closed_loop_at, lookup, recursion_verdict
+from bezstab.rationals import exact
+from bezstab.stability import BoolArray, FloatArray, first_where, poles, spectral_radius
+
+Point = tuple[Fraction, Fraction]
+"""alpha_hat and beta_hat."""
+
+Shares = Callable[[float, float], tuple[float, float]]
+"""Of impedance and step (s): the least and the largest share of its reference that a constraint gets."""
+
+DEFAULT_SOLREF = (0.02, 1.0)
+"""What MuJoCo takes where one number of solref is positive and the other not."""
+
+DIGITS = 12
+"""Of a share: what linear algebra in float64 leaves of small matrices."""
+
+MOVING = 1e-9
+"""Least share: below, a direction has no mass, but for rounding."""
+
+FURTHEST = 1e3
+"""Factor on the step beyond which nobody asks, and its inverse."""
+
+FACTORS = np.geomspace(1, FURTHEST, 120)
+"""Where an end of stability is looked for first: the maps here have no gap of 6 %."""
+
+UNDAMPED = 1e-9
+"""Of |z|: without damping it is one to rounding, and only what is larger grows."""
+
+MOST_DOFS = 100
+"""That are judged together: the eigenvalues of twice as many are found some two hundred times, within seconds."""
+
+LEAST_SOFTENING = 1e-15
+"""MuJoCo's mjMINVAL, its least R: it keeps rows that move nothing from being singular."""
+
+FREE = 1e-5
+"""Of z: double poles at one, of joints that nothing holds, are split so far by the root of rounding, and masses."""
+
+SOFT = 5
+"""Times slower than need be: then an equality or a limit is called soft."""
+
+DEADBEAT = 1e-9
+"""Of |z|: what is less is gone at once."""
+
+LEAST_HOLD = 0.1
+"""Of d at the constraint: with less, a small error hardly feels it, and |z| says only that."""
+
+HARD = ("contact", "contact pair", "joint friction", "tendon friction")
+"""Kinds whose softness is a property of the material: nobody is told to change it."""
+
+
+@dataclass(frozen=True)
+class Linted:
+    """What one element of a MuJoCo model means, and whether it is safe at the model's step.
+
+    `setting` is what the model says, in its own words. (alpha_hat, beta_hat) is the point with the largest |z| of those
+    that it takes, proven by `verdict`; both are None where several elements move together and no one point stands for
+    them. `map` is the method, None where nothing was judged. `h_factor` is the factor on the step up to which it is
+    stable at the same physical parameters (below one where it is not); None where there is no such end.
+    """
+
+    element: str
+    kind: str
+    setting: str
+    alpha_hat: float | None
+    beta_hat: float | None
+    map: str | None
+    verdict: Verdict | None
+    z_abs: float | None
+    h_factor: float | None
+    advice: str
+
+    @property
+    def unsafe(self) -> bool:
+        """Whether errors grow, or would at the smallest change; without damping they are only kept, at any step."""
+        return self.verdict == "diverges" or (self.verdict == "marginal" and bool(self.alpha_hat))
+
+
+def linted_model(model: ModelData) -> Iterator[Linted]:
+    """Yield what every constraint, spring, damper and drive of a model means, then all that hold both ways together.
+
+    NumericalError where the mass matrix is singular, and where a pole leaves the range of float64.
+    """
+    modes = _damping_modes(model)
+    for constraint in model.constraints:
+        yield _linted_constraint(model, modes, constraint)
+    groups = _along_one_direction(model.feedbacks)
+    for group in groups:
+        yield _linted_drive(model, modes, group)
+    for each in model.unjudged:
+        yield _not_judged(each.element, each.kind, each.reason)
+    bilateral = [constraint for constraint in model.constraints if constraint.active and constraint.positional]
+    if len(bilateral) + len(groups) > 1:
+        yield _linted_together(model, modes, bilateral)
+
+
+def _not_judged(element: str, kind: str, reason: str) -> Linted:
+    return Linted(
+        element=element,
+        kind=kind,
+        setting="",
+        alpha_hat=None,
+        beta_hat=None,
+        map=None,
+        verdict=None,
+        z_abs=None,
+        h_factor=None,
+        advice=f"not judged: {reason}",
+    )
+
+
+def _map(model: ModelData) -> Method:
+    """Return the method that the model's integrator is for constraints."""
+    return lookup("RK4" if model.integrator == "RK4" else "SYM")
+
+
+# One point
+
+
+def _verdict(method: Method, point: Point) -> Verdict:
+    """Return the proven verdict; where there is no stiffness, that on the velocity alone."""
+    polynomial = closed_loop_at(method, *point)
+    if point[1] == 0:  # nothing holds the position: P = (z - 1) Q, and Q's coefficients are the running sums of P's
+        polynomial = list(accumulate(polynomial))[:-1]
+    return recursion_verdict(polynomial)
+
+
+def _moduli(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
+    """Return |z_p|; where there is no stiffness, of the velocity alone: without the pole at one."""
+    if beta_hat.any():
+        return spectral_radius(method, alpha_hat, beta_hat)
+    z = poles(method, alpha_hat, beta_hat)
+    others = np.argsort(np.abs(z - 1), axis=-1)[..., 1:]
+    moduli: FloatArray = np.abs(np.take_along_axis(z, others, axis=-1)).max(axis=-1)
+    return moduli
+
+
+def _h_factor(unstable: Callable[[FloatArray], BoolArray]) -> float | None:
+    """Return the factor on the step at which stability ends, or, where it is lost already, begins; None for neither."""
+    if unstable(np.ones(1))[0]:
+        found = first_where(lambda factors: ~unstable(factors), 1 / FACTORS)
+        return found[1] if found else None
+    found = first_where(unstable, FACTORS)
+    return found[0] if found else None
+
+
+def _end_of(points: Callable[[Fraction], Sequence[Point]], method: Method) -> float | None:
+    """Return the factor on the step up to which all points stay stable, from the points at a factor."""
+
+    def unstable(factors: FloatArray) -> BoolArray:
+        at = np.array([[[float(x) for x in point] for point in points(exact(factor))] for factor in factors])
+        alpha_hat, beta_hat = at[..., 0], at[..., 1]
+        limit = 1.0 if alpha_hat.all() else 1 + UNDAMPED
+        return np.asarray((_moduli(method, alpha_hat, beta_hat) >= limit).any(axis=-1))
+
+    return _h_factor(unstable)
+
+
+def _worst(method: Method, points: Sequence[Point]) -> tuple[Point, Verdict, float]:
+    """Return the point with the largest |z|, its verdict, and |z|."""
+    alpha_hat, beta_hat = np.array([[float(x) for x in point] for point in points]).T
+    moduli = _moduli(method, alpha_hat, beta_hat)
+    worst = int(np.argmax(moduli))
+    return points[worst], _verdict(method, points[worst]), float(moduli[worst])
+
+
+# Constraints
+
+
+@dataclass(frozen=True)
+class _DampingModes:
+    """(M + h D)^-1 for every h at once: `basis` diag(1 / (1 + h rates)) `basis`'; the rates are in 1/s."""
+
+    basis: FloatArray
+    rates: FloatArray
+
+
+def _damping_modes(model: ModelData) -> _DampingModes:
+    """Return the modes of the damping D that the integrator treats implicitly: D B = M B diag(rates), B' M B = 1."""
+    _, damping = _springs_and_dampers(model, [each for each in model.feedbacks if _implicit(model, each)])
+    try:
+        root = np.linalg.inv(np.linalg.cholesky(model.mass))
+    except np.linalg.LinAlgError:
+        raise NumericalError("the mass matrix at qpos0 is singular to rounding") from None
+    rates, turned = np.linalg.eigh(root @ damping @ root.T)
+    return _DampingModes(basis=root.T @ turned, rates=rates)
+
+
+def _springs_and_dampers(model: ModelData, feedbacks: Sequence[Feedback]) -> tuple[FloatArray, FloatArray]:
+    """Return the stiffness and the damping matrix of feedbacks; shape (dofs, dofs) each, SI."""
+    directions = np.array([each.direction for each in feedbacks]).reshape(len(feedbacks), len(model.mass))
+    stiffness = np.array([each.stiffness for each in feedbacks])
+    damping = np.array([each.damping for each in feedbacks])
+    return (directions.T * stiffness) @ directions, (directions.T * damping) @ directions
+
+
+def _implicit(model: ModelData, feedback: Feedback) -> bool:
+    """Return whether the integrator treats a damping implicitly."""
+    if model.integrator == "Euler":
+        return model.euler_damping and feedback.euler_implicit
+    return model.integrator != "RK4"
+
+
+def _linted_constraint(model: ModelData, modes: _DampingModes, constraint: Constraint) -> Linted:
+    method = _map(model)
+    shares = _shares(modes, constraint)
+
+    def points(factor: Fraction) -> list[Point]:
+        return _constraint_points(model, constraint, shares, constraint.solref, factor)
+
+    point, verdict, z_abs = _worst(method, points(Fraction(1)))
+    return Linted(
+        element=constraint.element,
+        kind=constraint.kind,
+        setting=f'solref="{_numbers(constraint.solref)}" solimp="{_numbers(constraint.solimp)}"',
+        alpha_hat=float(point[0]),
+        beta_hat=float(point[1]),
+        map=method.name,
+        verdict=verdict,
+        z_abs=z_abs,
+        h_factor=_end_of(points, method),
+        advice=_constraint_advice(model, constraint, shares, verdict, z_abs),
+    )
+
+
+def _constraint_points(
+    model: ModelData, constraint: Constraint, shares: Shares, solref: tuple[float, float], factor: Fraction
+) -> list[Point]:
+    """Return the points that a constraint takes with that solref, at the constraint and past solimp's width.
+
+    `factor` is on the step. Contacts also with all of the reference, the most that several of them share out.
+    """
+    h = exact(model.h) * factor
+    first, second = (exact(value) for value in (solref if _of_one_sign(solref) else DEFAULT_SOLREF))
+    if model.refsafe and first > 0:
+        first = max(first, 2 * h)
+    alpha_hat, beta_hat = ENGINES["mujoco"].read(h, first, second)
+    at_rest, largest, width = constraint.solimp
+    impedances = (at_rest, largest) if width > 0 else ((at_rest + largest) / 2,)
+    if not constraint.positional:  # friction has no position to be off: it stays at rest
+        beta_hat, impedances = Fraction(0), impedances[:1]
+    found: list[Point] = []
+    for impedance in impedances:
+        d = exact(impedance)
+        taken = [exact(round(share, DIGITS)) for share in shares(impedance, float(h))]
+        if constraint.kind in ("contact", "contact pair"):
+            taken.append(Fraction(1))
+        scale = exact(largest)
+        found += [(alpha_hat * share / scale, beta_hat * d * share / scale**2) for share in taken]
+    return found
+
+
+def _shares(modes: _DampingModes, constraint: Constraint) -> Shares:
+    """Return a function of impedance and step: the least and largest share of the reference that directions get.
+
+    They are the impedance, but for MuJoCo's estimate of masses and for implicit damping.
+    """
+    jacobian, diagonal = constraint.jacobian, constraint.diagonal
+    if jacobian is None or diagonal is None:
+        return lambda impedance, h: (impedance, impedance)
+    moved = jacobian @ modes.basis
+
+    def shares(impedance: float, h: float) -> tuple[float, float]:
+        softening = np.maximum(LEAST_SOFTENING, diagonal * (1 - impedance) / impedance)
+        regularized = moved @ moved.T + np.diag(softening)
+        damped = (moved / (1 + h * modes.rates)) @ moved.T
+        found = np.linalg.eigvals(np.linalg.solve(regularized, damped)).real
+        moving = found[found > MOVING]  # a direction that moves nothing has no error either
+        return (float(moving.min()), float(moving.max())) if moving.size else (impedance, impedance)
+
+    return shares
+
+
+def _constraint_advice(model: ModelData, constraint: Constraint, shares: Shares, verdict: Verdict, z_abs: float) -> str:
+    """Return what to write instead, and why; nothing where all is well."""
+    first, second = constraint.solref
+    least = 2 * model.h
+    firm = (least, 1.0)
+    if not _of_one_sign(constraint.solref):
+        taken = _numbers(DEFAULT_SOLREF)
+        return f'MuJoCo takes {taken}, as the signs differ: write solref="{taken}"'
+    if constraint.positional and not first:
+        return f'no stiffness: errors stay; write solref="{_numbers(firm)}"'
+    if verdict != "converges":
+        return f'write solref="{_numbers(firm)}"'
+    if model.refsafe and 0 < first < least:
+        return f'relies on refsafe, which raises its timeconst to 2h: write solref="{_numbers((least, second))}"'
+    return "" if constraint.kind in HARD else _softness(model, constraint, shares, z_abs)
+
+
+def _softness(model: ModelData, constraint: Constraint, shares: Shares, z_abs: float) -> str:
+    """Return whether a safe equality or limit is needlessly soft, and what would be firm."""
+    if constraint.solimp[0] < LEAST_HOLD and constraint.solimp[2] > 0:
+        return f"solimp leaves small errors alone: d = {constraint.solimp[0]:g} at the constraint itself"
+    firm = (2 * model.h, 1.0)
+    faster = _worst(_map(model), _constraint_points(model, constraint, shares, firm, Fraction(1)))[2]
+    times = float(np.log(max(DEADBEAT, faster)) / np.log(max(DEADBEAT, z_abs)))
+    return f'needlessly soft: solref="{_numbers(firm)}" settles {times:.0f} times as fast' if times > SOFT else ""
+
+
+def _of_one_sign(solref: tuple[float, float]) -> bool:
+    return (solref[0] > 0) == (solref[1] > 0)
+
+
+def _numbers(values: Sequence[float]) -> str:
+    return " ".join(f"{value:.9g}" for value in values)
+
+
+# Springs, dampers and drives
+
+
+def _along_one_direction(feedbacks: Sequence[Feedback]) -> list[list[Feedback]]:
+    """Return the feedbacks in groups that act along one joint or one tendon together."""
+    groups: dict[tuple[float, ...], list[Feedback]] = {}
+    for feedback in feedbacks:
+        if feedback.direction.any():
+            first = feedback.direction[np.flatnonzero(feedback.direction)[0]]
+            groups.setdefault(tuple((feedback.direction / first).round(DIGITS).tolist()), []).append(feedback)
+    return list(groups.values())
+
+
+@dataclass(frozen=True)
+class _Drive:
+    """Stiffness and damping along one direction, and the inertia there with all other joints free (SI)."""
+
+    stiffness: Fraction
+    explicit_damping: Fraction
+    implicit_damping: Fraction
+    inertia: Fraction
+
+
+def _linted_drive(model: ModelData, modes: _DampingModes, group: Sequence[Feedback]) -> Linted:
+    drive = _drive(model, modes, group)
+    h = exact(model.h)
+    method, points = _drive_map(model, drive)
+    point, verdict, z_abs = _worst(method, points(Fraction(1)))
+    end = _end_of(points, method)
+    damping = drive.explicit_damping + drive.implicit_damping
+    return Linted(
+        element=", ".join(dict.fromkeys(feedback.element for feedback in group)),
+        kind=_drive_kind(group, drive),
+        setting=f"kp {float(drive.stiffness):.6g}, kv {float(damping):.6g}, inertia {float(drive.inertia):.6g}",
+        alpha_hat=float(point[0]),
+        beta_hat=float(point[1]),
+        map=method.name,
+        verdict=verdict,
+        z_abs=z_abs,
+        h_factor=end,
+        advice=_drive_advice(model, drive, verdict, end, h),
+    )
+
+
+def _drive(model: ModelData, modes: _DampingModes, group: Sequence[Feedback]) -> _Drive:
+    """Return what acts along the direction of a group, per unit of its one joint, else of its first element."""
+    direction = group[0].direction
+    moved = np.flatnonzero(direction)
+    if moved.size == 1:
+        direction = direction / direction[moved[0]]
+    stiffness = damping = implicit = 0.0
+    for feedback in group:
+        arm_squared = float(feedback.direction[moved[0]] / direction[moved[0]]) ** 2
+        stiffness += arm_squared * feedback.stiffness
+        if _implicit(model, feedback):
+            implicit += arm_squared * feedback.damping
+        else:
+            damping += arm_squared * feedback.damping
+    inertia = 1 / float(np.sum((direction @ modes.basis) ** 2))  # 1 / (u M^-1 u')
+    return _Drive(exact(stiffness), exact(damping), exact(implicit), exact(float(f"{inertia:.{DIGITS}g}")))
+
+
+def _drive_map(model: ModelData, drive: _Drive) -> tuple[Method, Callable[[Fraction], list[Point]]]:
+    """Return the method that the integrator is for a drive, and its one point at a factor on the step."""
+    steps = exact(model.h) / drive.inertia
+
+    def whole(factor: Fraction) -> list[Point]:
+        damping = drive.explicit_damping + drive.implicit_damping
+        return [(damping * factor * steps, drive.stiffness * exact(model.h) * factor**2 * steps)]
+
+    def divided(factor: Fraction) -> list[Point]:
+        ((alpha_hat, beta_hat),) = whole(factor)
+        divisor = 1 + drive.implicit_damping * factor * steps
+        return [(alpha_hat / divisor, beta_hat / divisor)]
+
+    if drive.implicit_damping and not drive.explicit_damping:
+        return lookup("imex-euler"), whole
+    return _map(model), divided
+
+
+def _drive_kind(group: Sequence[Feedback], drive: _Drive) -> str:
+    if any(feedback.kind == "drive" for feedback in group):
+        return "position drive" if drive.stiffness else "velocity drive"
+    return f"{group[0].kind} {'spring' if drive.stiffness else 'damping'}"
+
+
+def _drive_advice(model: ModelData, drive: _Drive, verdict: Verdict, end: float | None, h: Fraction) -> str:
+    """Return what to write instead where a drive is unsafe, and which gain uses up the limit of its map."""
+    damping = drive.explicit_damping + drive.implicit_damping
+    if drive.stiffness < 0 or damping < 0:
+        return "pushes away at any step: a gain has the wrong sign"
+    if not damping:
+        return "undamped" if verdict != "diverges" else f"undamped; {_smaller_step(end, h)}"
+    if verdict == "converges":
+        return ""
+    used = _used_up(model, drive, h)
+    all_implicit = _Drive(drive.stiffness, Fraction(0), damping, drive.inertia)
+    _, points = _drive_map(model, all_implicit)
+    imex = lookup("imex-euler")
+    if drive.explicit_damping and _verdict(imex, points(Fraction(1))[0]) == "converges":
+        return f'{used}write integrator="implicitfast"'
+    return f"{used}{_smaller_step(end, h)}"
+
+
+def _used_up(model: ModelData, drive: _Drive, h: Fraction) -> str:
+    """Return which share of symplectic Euler's limit, 2 alpha_hat + beta_hat < 4, damping and stiffness take."""
+    if model.integrator == "RK4":
+        return ""
+    divisor = 4 * (drive.inertia + drive.implicit_damping * h)
+    damping = 2 * (drive.explicit_damping + drive.implicit_damping) * h / divisor
+    stiffness = drive.stiffness * h**2 / divisor
+    return f"kv takes {float(damping):.0%} of the limit, kp {float(stiffness):.0%}; "
+
+
+def _smaller_step(end: float | None, h: Fraction) -> str:
+    """Return the line with a step that leaves a tenth to the limit."""
+    if end is None:
+        return "no step is small enough"
+    return f'write timestep="{0.9 * end * float(h):.2g}"'
+
+
+# All together
+
+
+def _linted_together(model: ModelData, modes: _DampingModes, constraints: Sequence[Constraint]) -> Linted:
+    """Judge what holds both ways, as one linear system at qpos0: what is safe alone need not be safe together.
+
+    Without gravity, limits and contacts; in float64, so nothing is proven.
+    """
+    if len(model.mass) > MOST_DOFS:
+        return _not_judged("all at qpos0", "together", f"{len(model.mass)} degrees of freedom, at most {MOST_DOFS}")
+
+    @cache
+    def modulus(factor: float) -> float:
+        return _together_modulus(model, modes, constraints, factor)
+
+    def unstable(factors: FloatArray) -> BoolArray:
+        return np.array([modulus(float(factor)) > 1 + UNDAMPED for factor in factors])
+
+    z_abs = modulus(1.0)
+    if z_abs > 1 + UNDAMPED:
+        verdict: Verdict = "diverges"
+    else:
+        verdict = "converges" if z_abs < 1 - UNDAMPED else "marginal"
+    end = _h_factor(unstable)
+    return Linted(
+        element="all at qpos0",
+        kind="together",
+        setting="",
+        alpha_hat=None,
+        beta_hat=None,
+        map=_map(model).name,
+        verdict=verdict,
+        z_abs=z_abs,
+        h_factor=end,
+        advice=_smaller_step(end, exact(model.h)) if verdict == "diverges" else "",
+    )
+
+
+def _together_modulus(
+    model: ModelData, modes: _DampingModes, constraints: Sequence[Constraint], factor: float
+) -> float:
+    """Return the largest |z| of one step of all equalities, springs, dampers and drives; 0 where nothing is held."""
+    stiffness, damping = _springs_and_dampers(model, model.feedbacks)
+    h = factor * model.h
+    inverse = modes.basis @ modes.basis.T  # of the mass
+    by_position, by_velocity = -inverse @ stiffness, -inverse @ damping  # of the acceleration
+    known = [each for each in constraints if each.jacobian is not None and each.diagonal is not None]
+    if known:
+        jacobian = np.vstack([each.jacobian for each in known if each.jacobian is not None])
+        regularization, damper, spring = _regularized(model, known, factor)
+        forces = np.linalg.inv(jacobian @ inverse @ jacobian.T + np.diag(regularization))
+        to_acceleration = inverse @ jacobian.T @ forces
+        by_position = by_position - to_acceleration @ (spring[:, np.newaxis] * jacobian + jacobian @ by_position)
+        by_velocity = by_velocity - to_acceleration @ (damper[:, np.newaxis] * jacobian + jacobian @ by_velocity)
+    slower = (modes.basis / (1 + h * modes.rates)) @ modes.basis.T @ model.mass  # what implicit damping leaves of it
+    by_position, by_velocity = slower @ by_position, slower @ by_velocity
+    identity, zero = np.eye(len(model.mass)), np.zeros_like(model.mass)
+    if model.integrator == "RK4":
+        rates = np.linalg.eigvals(np.block([[zero, identity], [by_position, by_velocity]]))
+        mu = h * rates
+        z = 1 + mu * (1 + mu / 2 * (1 + mu / 3 * (1 + mu / 4)))
+    else:  # v' = v + h a(x, v), x' = x + h v'; velocities in units of 1/h
+        new_velocity = np.block([h * h * by_position, identity + h * by_velocity])
+        z = np.linalg.eigvals(np.vstack([new_velocity + np.block([identity, zero]), new_velocity]))
+    held = np.abs(z[np.abs(z - 1) > FREE])
+    return float(held.max(initial=0.0))
+
+
+def _regularized(
+    model: ModelData, constraints: Sequence[Constraint], factor: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return R, b and k d of the constraints' rows: what softens them, their damping (1/s) and stiffness (1/s^2)."""
+    softening: list[float] = []
+    damper: list[float] = []
+    spring: list[float] = []
+    h = model.h * factor
+    for constraint in constraints:
+        assert constraint.diagonal is not None
+        first, second = constraint.solref if _of_one_sign(constraint.solref) else DEFAULT_SOLREF
+        if model.refsafe and first > 0:
+            first = max(first, 2 * h)
+        alpha_hat, beta_hat = ENGINES["mujoco"].read(exact(h), exact(first), exact(second))
+        at_rest, largest, width = constraint.solimp
+        d = at_rest if width > 0 else (at_rest + largest) / 2
+        softening += np.maximum(LEAST_SOFTENING, constraint.diagonal * (1 - d) / d).tolist()
+        damper += [float(alpha_hat) / h / largest] * len(constraint.diagonal)
+        spring += [float(beta_hat) / h**2 * d / largest**2] * len(constraint.diagonal)
+    return np.array(softening), np.array(damper), np.array(spring)

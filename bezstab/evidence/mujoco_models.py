@@ -1,0 +1,471 @@
+"""A MuJoCo model as data: its step, what pulls its constraints back, and what acts along its joints and tendons.
+
+MuJoCo itself reads the file, so defaults, classes and angles are resolved as in a run; nothing is simulated. It opens
+the file, the files that this includes, and the meshes, textures and height fields named there; plugins only if MuJoCo
+has them registered already. Everything is read at the model's own configuration qpos0.
+"""
+
+import types
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from bezstab.errors import InputError
+from bezstab.stability import FloatArray
+
+LEAST_VERSION = (3, 7)
+"""Before it connect and weld lacked the term of turning normals, dJ/dt v: a moving mechanism was another system.
+
+Up to 3.8.0 the implicit integrators still move free bodies by the midpoint rule, which is stable beyond what lint says
+of their constraints; 3.8.1, 3.10, 3.11 and 4.0 do as it says (measured).
+"""
+
+LEAST_IMPEDANCE, MOST_IMPEDANCE = 0.0001, 0.9999
+"""MuJoCo keeps d in between (mjMINIMP, mjMAXIMP)."""
+
+LEAST_MIX = 1e-15
+"""MuJoCo's mjMINVAL: a solmix below it counts as none."""
+
+LEAST_SIZE, LARGEST_SIZE = 1e-15, 1e15
+"""Of numbers that are not zero: below MuJoCo's mjMINVAL nothing counts, and beyond its inverse nobody means it."""
+
+MOST_ROWS = 300
+"""Of one equality, such as a flex's: beyond, its masses are left out."""
+
+Integrator = Literal["Euler", "RK4", "implicit", "implicitfast"]
+INTEGRATORS: tuple[Integrator, ...] = ("Euler", "RK4", "implicit", "implicitfast")
+"""In the order of MuJoCo's own numbers."""
+
+
+@dataclass(frozen=True)
+class Constraint:
+    """One constraint's solref and solimp (d0, dmax, width in m or rad), defaults of classes and mixtures resolved.
+
+    `jacobian` (rows, dofs) is that at qpos0, `diagonal` MuJoCo's estimate of the diagonal of J M^-1 J' (1/kg, 1/(kg
+    m^2)); both are None where they depend on the configuration, as those of contacts. `positional` is False for
+    friction, which has damping but no stiffness. `active` is whether it holds both ways from the start.
+    """
+
+    element: str
+    kind: str
+    solref: tuple[float, float]
+    solimp: tuple[float, float, float]
+    jacobian: FloatArray | None = None
+    diagonal: FloatArray | None = None
+    positional: bool = True
+    active: bool = False
+
+
+@dataclass(frozen=True)
+class Feedback:
+    """A spring and damper along one direction of the joint space: a passive one, or an actuator's gains.
+
+    `direction` (dofs,) is the moment arm, gear included; `stiffness` (N/m, N m/rad) and `damping` (N s/m, N m s/rad)
+    are those along it. `euler_implicit` is whether MuJoCo's Euler treats the damping implicitly: that of joints alone.
+    """
+
+    element: str
+    kind: str
+    direction: FloatArray
+    stiffness: float
+    damping: float
+    euler_implicit: bool
+
+
+@dataclass(frozen=True)
+class Unjudged:
+    """An element whose feedback is no constant, and why."""
+
+    element: str
+    kind: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class ModelData:
+    """What a MuJoCo model says of its feedback; h in s, mass (dofs, dofs) in kg and kg m^2 with armatures, at qpos0.
+
+    `refsafe` raises a timeconst below 2h; `euler_damping` makes Euler implicit in the damping of joints.
+    """
+
+    h: float
+    integrator: Integrator
+    refsafe: bool
+    euler_damping: bool
+    mass: FloatArray
+    constraints: tuple[Constraint, ...]
+    feedbacks: tuple[Feedback, ...]
+    unjudged: tuple[Unjudged, ...]
+
+    @property
+    def size(self) -> int:
+        """Return the number of elements."""
+        return len(self.constraints) + len(self.feedbacks) + len(self.unjudged)
+
+
+def mujoco_module(wanted_by: str) -> types.ModuleType:
+    """Return MuJoCo; InputError, which begins with what wants it, where it is missing or older than 3.7."""
+    try:
+        import mujoco
+    except ImportError:
+        raise InputError(f"{wanted_by} needs an optional package: pip install 'bezstab[mujoco]'") from None
+    version = tuple(int(part) for part in mujoco.__version__.split(".")[:2])
+    if version < LEAST_VERSION:
+        raise InputError(
+            f"{wanted_by} needs mujoco 3.7 or later, found {mujoco.__version__}: before, connect and weld lacked the "
+            "term of turning normals"
+        )
+    module: types.ModuleType = mujoco
+    return module
+
+
+def read_mujoco_model(path: Path) -> ModelData:
+    """Return what a model file (MJCF or URDF, as XML) says; InputError, in one line, for what MuJoCo refuses."""
+    mujoco = mujoco_module("lint")
+    try:
+        with path.open("rb"):  # for the system's own words on why not
+            pass
+        with _silent(mujoco):
+            return model_data(mujoco, mujoco.MjModel.from_xml_path(str(path)))
+    except OSError as error:
+        raise InputError(f"MuJoCo model {path}: {error.strerror}") from None
+    except (ValueError, RuntimeError, mujoco.FatalError) as error:  # RuntimeError: what its decoders raise
+        raise InputError(" ".join(f"MuJoCo model {path}: {error}".split())) from None
+
+
+@contextmanager
+def _silent(mujoco: types.ModuleType) -> Iterator[None]:
+    """Keep MuJoCo from printing its warnings, and from writing them into a file of the current directory."""
+    mujoco.set_mju_user_warning(lambda _: None)
+    try:
+        yield
+    finally:
+        mujoco.set_mju_user_warning(None)
+
+
+def model_data(mujoco: types.ModuleType, model: Any) -> ModelData:
+    """Return what a loaded model says, whose choice of Jacobian is set to dense; InputError for what means nothing."""
+    model.opt.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
+    data = mujoco.MjData(model)
+    data.eq_active[:] = 1  # to have the rows of all of them
+    mujoco.mj_forward(model, data)
+    mass = np.zeros((model.nv, model.nv))
+    for dof, column in enumerate(mass):  # symmetric: rows are columns
+        mujoco.mj_mulM(model, data, column, _unit(model, dof))
+    actuators = list(_actuators(mujoco, model, data))
+    constraints = tuple(_constraints(mujoco, model, data))
+    feedbacks = (*_passive(mujoco, model, data), *(each for each in actuators if isinstance(each, Feedback)))
+    _require_sizes("timestep", (model.opt.timestep,))
+    if model.opt.timestep <= 0:
+        raise InputError(f"timestep = {model.opt.timestep:g}: expected a positive number")
+    for constraint in constraints:
+        _require_sizes(f"{constraint.element}: solref", constraint.solref)
+        _require_sizes(f"{constraint.element}: solimp", constraint.solimp)
+    for feedback in feedbacks:
+        _require_sizes(f"{feedback.element}: kp, kv", (feedback.stiffness, feedback.damping))
+    return ModelData(
+        h=model.opt.timestep,
+        integrator=INTEGRATORS[model.opt.integrator],
+        refsafe=not _disabled(mujoco, model, "REFSAFE"),
+        euler_damping=not _disabled(mujoco, model, "EULERDAMP"),
+        mass=mass,
+        constraints=constraints,
+        feedbacks=feedbacks,
+        unjudged=tuple(each for each in actuators if isinstance(each, Unjudged)),
+    )
+
+
+def _require_sizes(name: str, values: Sequence[float]) -> None:
+    """Raise InputError unless every number is zero or of a size that somebody may mean."""
+    if not all(value == 0 or LEAST_SIZE <= abs(value) <= LARGEST_SIZE for value in values):
+        listed = " ".join(f"{value:g}" for value in values)
+        raise InputError(f"{name} = {listed}: expected 0, or sizes from {LEAST_SIZE:g} to {LARGEST_SIZE:g}")
+
+
+def _unit(model: Any, dof: int) -> FloatArray:
+    """Return one degree of freedom's direction; shape (dofs,)."""
+    direction = np.zeros(model.nv)
+    direction[dof] = 1.0
+    return direction
+
+
+def _disabled(mujoco: types.ModuleType, model: Any, flag: str) -> bool:
+    return bool(model.opt.disableflags & getattr(mujoco.mjtDisableBit, f"mjDSBL_{flag}"))
+
+
+def _enabled(mujoco: types.ModuleType, model: Any, flag: str) -> bool:
+    return bool(model.opt.enableflags & getattr(mujoco.mjtEnableBit, f"mjENBL_{flag}"))
+
+
+def _named(mujoco: types.ModuleType, model: Any, kind: str, number: int) -> str:
+    """Return what an element is called: joint 'elbow', and joint 3 (from zero) where it has no name."""
+    name = mujoco.mj_id2name(model, getattr(mujoco.mjtObj, f"mjOBJ_{kind.upper()}"), number)
+    return f"{kind} {name!r}" if name else f"{kind} {number}"
+
+
+# Constraints
+
+
+def _constraints(mujoco: types.ModuleType, model: Any, data: Any) -> Iterator[Constraint]:
+    """Yield every constraint that the model can have, those whose kind is switched off left out."""
+    if _disabled(mujoco, model, "CONSTRAINT"):
+        return
+    if not _disabled(mujoco, model, "EQUALITY"):
+        yield from _equalities(mujoco, model, data)
+    if not _disabled(mujoco, model, "LIMIT"):
+        yield from _joint_limits(mujoco, model)
+        yield from _tendon_limits(mujoco, model, data)
+    if not _disabled(mujoco, model, "FRICTIONLOSS"):
+        yield from _friction_losses(mujoco, model, data)
+    if not _disabled(mujoco, model, "CONTACT"):
+        yield from _contact_pairs(mujoco, model)
+        yield from _geom_contacts(mujoco, model)
+
+
+def _solref(values: FloatArray) -> tuple[float, float]:
+    return float(values[0]), float(values[1])
+
+
+def _solimp(values: FloatArray) -> tuple[float, float, float]:
+    first, last = np.clip(values[:2], LEAST_IMPEDANCE, MOST_IMPEDANCE).tolist()
+    return first, last, max(0.0, float(values[2]))
+
+
+def _equalities(mujoco: types.ModuleType, model: Any, data: Any) -> Iterator[Constraint]:
+    kinds = {value: name.removeprefix("mjEQ_").lower() for name, value in mujoco.mjtEq.__members__.items()}
+    jacobian = data.efc_J.reshape(-1, model.nv) if data.nefc else np.zeros((0, model.nv))
+    for number in range(model.neq):
+        own = (data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY) & (data.efc_id == number)
+        known = 0 < own.sum() <= MOST_ROWS
+        impedance = data.efc_KBIP[own, 2]
+        diagonal = data.efc_R[own] * impedance / (1 - impedance)  # as R = (1 - d) / d times the diagonal
+        yield Constraint(
+            element=_named(mujoco, model, "equality", number),
+            kind=f"{kinds[mujoco.mjtEq(model.eq_type[number])]} equality",
+            solref=_solref(model.eq_solref[number]),
+            solimp=_solimp(model.eq_solimp[number]),
+            jacobian=jacobian[own].copy() if known else None,
+            diagonal=diagonal if known else None,
+            active=bool(model.eq_active0[number]),
+        )
+
+
+def _joint_limits(mujoco: types.ModuleType, model: Any) -> Iterator[Constraint]:
+    for joint in np.flatnonzero(model.jnt_limited).tolist():
+        dof = model.jnt_dofadr[joint]
+        ball = (
+            mujoco.mjtJoint(model.jnt_type[joint]) == mujoco.mjtJoint.mjJNT_BALL
+        )  # whose axis depends on the configuration
+        yield Constraint(
+            element=_named(mujoco, model, "joint", joint),
+            kind="joint limit",
+            solref=_solref(model.jnt_solref[joint]),
+            solimp=_solimp(model.jnt_solimp[joint]),
+            jacobian=None if ball else _unit(model, dof)[np.newaxis],
+            diagonal=None if ball else model.dof_invweight0[[dof]].copy(),
+        )
+
+
+def _tendon_limits(mujoco: types.ModuleType, model: Any, data: Any) -> Iterator[Constraint]:
+    for tendon in np.flatnonzero(model.tendon_limited).tolist():
+        yield Constraint(
+            element=_named(mujoco, model, "tendon", tendon),
+            kind="tendon limit",
+            solref=_solref(model.tendon_solref_lim[tendon]),
+            solimp=_solimp(model.tendon_solimp_lim[tendon]),
+            jacobian=_tendon_directions(model, data)[[tendon]],
+            diagonal=model.tendon_invweight0[[tendon]].copy(),
+        )
+
+
+def _friction_losses(mujoco: types.ModuleType, model: Any, data: Any) -> Iterator[Constraint]:
+    for dof in np.flatnonzero(model.dof_frictionloss > 0).tolist():
+        yield Constraint(
+            element=_named(mujoco, model, "joint", model.dof_jntid[dof]),
+            kind="joint friction",
+            solref=_solref(model.dof_solref[dof]),
+            solimp=_solimp(model.dof_solimp[dof]),
+            jacobian=_unit(model, dof)[np.newaxis],
+            diagonal=model.dof_invweight0[[dof]].copy(),
+            positional=False,
+        )
+    for tendon in np.flatnonzero(model.tendon_frictionloss > 0).tolist():
+        yield Constraint(
+            element=_named(mujoco, model, "tendon", tendon),
+            kind="tendon friction",
+            solref=_solref(model.tendon_solref_fri[tendon]),
+            solimp=_solimp(model.tendon_solimp_fri[tendon]),
+            jacobian=_tendon_directions(model, data)[[tendon]],
+            diagonal=model.tendon_invweight0[[tendon]].copy(),
+            positional=False,
+        )
+
+
+def _contact_pairs(mujoco: types.ModuleType, model: Any) -> Iterator[Constraint]:
+    """Yield the contacts of pairs that the model lists, which have a solref of their own."""
+    for pair in range(model.npair):
+        geoms = (model.pair_geom1[pair], model.pair_geom2[pair])
+        yield Constraint(
+            element=" and ".join(_named(mujoco, model, "geom", geom) for geom in geoms),
+            kind="contact pair",
+            solref=_solref(_or_override(mujoco, model, "o_solref", model.pair_solref[pair])),
+            solimp=_solimp(_or_override(mujoco, model, "o_solimp", model.pair_solimp[pair])),
+        )
+
+
+def _or_override(mujoco: types.ModuleType, model: Any, name: str, own: FloatArray) -> FloatArray:
+    """Return what takes the place of every contact's parameters where the flag `override` says so."""
+    values: FloatArray = getattr(model.opt, name) if _enabled(mujoco, model, "OVERRIDE") else own
+    return values
+
+
+def _geom_contacts(mujoco: types.ModuleType, model: Any) -> Iterator[Constraint]:
+    """Yield a contact for each mixture of parameters that two geoms can meet with: for the first two that can.
+
+    Geoms of equal parameters are looked at as one class, as a model has thousands of geoms and few parameters.
+    """
+    classes: dict[tuple[object, ...], list[int]] = {}
+    for geom in range(model.ngeom):
+        key = (
+            *(int(values[geom]) for values in (model.geom_contype, model.geom_conaffinity, model.geom_priority)),
+            *(float(model.geom_solmix[geom]), *model.geom_solref[geom].tolist(), *model.geom_solimp[geom].tolist()),
+        )
+        classes.setdefault(key, []).append(geom)
+    excluded = set(model.exclude_signature.tolist())
+    parents = not _disabled(mujoco, model, "FILTERPARENT")
+    members = list(classes.values())
+    seen: dict[tuple[tuple[float, float], tuple[float, float, float]], tuple[int, int]] = {}
+    for index, ones in enumerate(members):
+        for others in members[index:]:
+            met = _first_that_meet(model, ones, others, excluded, parents)
+            if met:
+                solref, solimp = _mixed(model, *met)
+                solref = _or_override(mujoco, model, "o_solref", solref)
+                solimp = _or_override(mujoco, model, "o_solimp", solimp)
+                seen.setdefault((_solref(solref), _solimp(solimp)), met)
+    for (settled_solref, settled_solimp), met in seen.items():
+        yield Constraint(
+            element=" and ".join(_named(mujoco, model, "geom", geom) for geom in met),
+            kind="contact",
+            solref=settled_solref,
+            solimp=settled_solimp,
+        )
+
+
+def _first_that_meet(
+    model: Any, ones: Sequence[int], others: Sequence[int], excluded: set[int], parents: bool
+) -> tuple[int, int] | None:
+    """Return the first two geoms of two classes that MuJoCo would test for contact, if any (its Collision filters)."""
+    first, second = ones[0], others[0]
+    if not (
+        model.geom_contype[first] & model.geom_conaffinity[second]
+        or model.geom_contype[second] & model.geom_conaffinity[first]
+    ):
+        return None
+    for one in ones:
+        for other in others:
+            if one != other and _bodies_meet(model, one, other, excluded, parents):
+                return one, other
+    return None
+
+
+def _bodies_meet(model: Any, one: int, other: int, excluded: set[int], parents: bool) -> bool:
+    """Return whether the bodies of two geoms can touch: not welded together, excluded, or parent and child."""
+    bodies = sorted((int(model.geom_bodyid[one]), int(model.geom_bodyid[other])))
+    welded = [int(model.body_weldid[body]) for body in bodies]
+    if welded[0] == welded[1] or (bodies[0] << 16) + bodies[1] in excluded:
+        return False
+    above = [int(model.body_weldid[model.body_parentid[body]]) for body in welded]
+    kin = 0 not in welded and (above[0] == welded[1] or above[1] == welded[0])
+    return not (parents and kin)
+
+
+def _mixed(model: Any, one: int, other: int) -> tuple[FloatArray, FloatArray]:
+    """Return solref and solimp of a contact (MuJoCo documentation, Computation, Contact: parameters are mixed)."""
+    solref, solimp = model.geom_solref, model.geom_solimp
+    if model.geom_priority[one] != model.geom_priority[other]:
+        chosen = one if model.geom_priority[one] > model.geom_priority[other] else other
+        return solref[chosen], solimp[chosen]
+    mix = model.geom_solmix[[one, other]]
+    mix = np.where(mix < LEAST_MIX, 0.0, mix)
+    share = mix[0] / mix.sum() if mix.sum() > 0 else 0.5
+    mixed_solimp = share * solimp[one] + (1 - share) * solimp[other]
+    if solref[one, 0] > 0 and solref[other, 0] > 0:
+        return share * solref[one] + (1 - share) * solref[other], mixed_solimp
+    return np.minimum(solref[one], solref[other]), mixed_solimp
+
+
+# Springs, dampers and drives
+
+
+def _passive(mujoco: types.ModuleType, model: Any, data: Any) -> Iterator[Feedback]:
+    """Yield the springs and dampers of joints and tendons."""
+    springs, dampers = not _disabled(mujoco, model, "SPRING"), not _disabled(mujoco, model, "DAMPER")
+    for dof in range(model.nv):
+        joint = model.dof_jntid[dof]
+        stiffness = springs * float(model.jnt_stiffness[joint])
+        damping = dampers * float(model.dof_damping[dof])
+        if stiffness or damping:
+            element = _named(mujoco, model, "joint", joint)
+            yield Feedback(element, "joint", _unit(model, dof), stiffness, damping, euler_implicit=True)
+    directions = _tendon_directions(model, data)
+    for tendon in range(model.ntendon):
+        stiffness = springs * float(model.tendon_stiffness[tendon])
+        damping = dampers * float(model.tendon_damping[tendon])
+        if stiffness or damping:
+            element = _named(mujoco, model, "tendon", tendon)
+            yield Feedback(element, "tendon", directions[tendon], stiffness, damping, euler_implicit=False)
+
+
+def _actuators(mujoco: types.ModuleType, model: Any, data: Any) -> Iterator[Feedback | Unjudged]:
+    """Yield the position and velocity gains of actuators: those of an affine bias, and a damping of their own."""
+    if _disabled(mujoco, model, "ACTUATION"):
+        return
+    directions = _rows(model, data.actuator_moment, data.moment_rownnz, data.moment_rowadr, data.moment_colind)
+    of_joints = (mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtTrn.mjTRN_JOINTINPARENT)
+    count = getattr(model, "nactuator", model.nu)  # later versions have actuators of several controls and outputs
+    outputs = getattr(model, "actuator_outadr", np.arange(count))
+    for actuator in range(count):
+        if model.opt.disableactuator >> max(0, int(model.actuator_group[actuator])) & 1:
+            continue  # its group is switched off
+        element = _named(mujoco, model, "actuator", actuator)
+        bias = mujoco.mjtBias(model.actuator_biastype[actuator])
+        gain = mujoco.mjtGain(model.actuator_gaintype[actuator])
+        if bias not in (mujoco.mjtBias.mjBIAS_NONE, mujoco.mjtBias.mjBIAS_AFFINE) or (
+            gain not in (mujoco.mjtGain.mjGAIN_FIXED, mujoco.mjtGain.mjGAIN_AFFINE)
+        ):
+            yield Unjudged(element, "drive", "its force is no constant stiffness and damping")
+            continue
+        if gain == mujoco.mjtGain.mjGAIN_AFFINE and model.actuator_gainprm[actuator, 1:3].any():
+            yield Unjudged(element, "drive", "its gain depends on the control")
+            continue
+        direction = directions[outputs[actuator]]
+        if bias == mujoco.mjtBias.mjBIAS_AFFINE:
+            stiffness, damping = (-model.actuator_biasprm[actuator, 1:3]).tolist()
+            if stiffness or damping:
+                yield Feedback(element, "drive", direction, stiffness, damping, euler_implicit=False)
+        own_damping = getattr(model, "actuator_damping", np.zeros(count))[actuator]
+        if own_damping and not _disabled(mujoco, model, "DAMPER"):  # added to that of its joint, if it has one
+            at_joint = mujoco.mjtTrn(model.actuator_trntype[actuator]) in of_joints
+            yield Feedback(element, "drive", direction, 0.0, float(own_damping), euler_implicit=at_joint)
+
+
+def _tendon_directions(model: Any, data: Any) -> FloatArray:
+    """Return how the lengths of tendons change with the joints; shape (tendons, dofs), m or rad each."""
+    holder = model if hasattr(model, "ten_J_rownnz") else data  # until 3.7 it was data's
+    return _rows(model, data.ten_J, holder.ten_J_rownnz, holder.ten_J_rowadr, holder.ten_J_colind)
+
+
+def _rows(model: Any, values: FloatArray, counts: Any, starts: Any, columns: Any) -> FloatArray:
+    """Return a matrix that MuJoCo keeps by rows of entries that are not zero; shape (rows, dofs)."""
+    values, columns = np.ravel(values), np.ravel(columns)
+    dense = np.zeros((len(counts), model.nv))
+    if values.size == dense.size and not columns.size:  # kept whole
+        return values.reshape(dense.shape).copy()
+    for row, start, count in zip(dense, starts, counts, strict=True):
+        row[columns[start : start + count]] = values[start : start + count]
+    return dense

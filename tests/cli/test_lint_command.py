@@ -1,0 +1,62 @@
+import json
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.cli.running import rows, run
+
+pytest.importorskip("mujoco")
+
+MODEL = """<mujoco><option timestep="0.004"><flag {flag}/></option>
+<worldbody><body><joint name="x"/><geom size=".1" pos=".3 0 0"/></body></worldbody>
+<equality><joint name="lock" joint1="x" solref="0.002 1"/></equality></mujoco>"""
+KEYS = ("element", "kind", "setting", "alpha_hat", "beta_hat", "map", "verdict", "z_abs", "h_factor", "advice")
+
+
+def written(path: Path, text: str) -> str:
+    path.write_text(text, encoding="utf-8")
+    return str(path)
+
+
+def test_lint_tells_what_relies_on_refsafe(tmp_path: Path) -> None:
+    """At its floor the point is 0.947 (1, 0.25), and growing steps take the floor along."""
+    (row,) = rows("lint", written(tmp_path / "model.xml", MODEL.format(flag="")))
+    assert tuple(row) == KEYS
+    assert (row["element"], row["kind"], row["map"], row["verdict"]) == (
+        "equality 'lock'",
+        "joint equality",
+        "SYM",
+        "converges",
+    )
+    assert row["alpha_hat"] == pytest.approx(0.9 / 0.95)
+    assert row["beta_hat"] == pytest.approx(0.25 * (0.9 / 0.95) ** 2)
+    assert row["h_factor"] is None
+    assert row["setting"] == 'solref="0.002 1" solimp="0.9 0.95 0.001"'
+    assert row["advice"] == 'relies on refsafe, which raises its timeconst to 2h: write solref="0.008 1"'
+
+
+def test_what_is_unsafe_ends_with_status_one(tmp_path: Path) -> None:
+    model = written(tmp_path / "model.xml", MODEL.format(flag='refsafe="disable"'))
+    result = run("lint", model)
+    assert result.exit_code == 1
+    assert "timestep 0.004 s, integrator Euler" in result.stdout
+    assert 'write solref="0.008 1"' in result.stdout
+    (row,) = json.loads(run("lint", model, "--format", "json").stdout)
+    assert row["verdict"] == "diverges"
+    assert row["h_factor"] == pytest.approx((32**0.5 - 4) / 4)  # a = 2h / tc at the limit of zeta = 1
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["model.xml"]
+
+
+def test_a_model_with_nothing_to_judge_is_safe(tmp_path: Path) -> None:
+    assert rows("lint", written(tmp_path / "empty.xml", "<mujoco/>")) == []
+
+
+def test_what_cannot_be_read_ends_with_status_two(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    result = run("lint", written(tmp_path / "broken.xml", "<mujoco>"))
+    assert result.exit_code == 2
+    assert len(result.stderr.splitlines()) == 1
+    monkeypatch.setitem(sys.modules, "mujoco", None)
+    result = run("lint", str(tmp_path / "broken.xml"))
+    assert result.exit_code == 2
+    assert "pip install 'bezstab[mujoco]'" in result.stderr

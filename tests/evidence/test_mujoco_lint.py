@@ -1,0 +1,332 @@
+"""What lint says of each kind of row is what MuJoCo does: a little inside and a little outside of every limit."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from bezstab.evidence import Linted, linted_model, model_data
+from bezstab.methods import lookup
+from bezstab.stability import spectral_radius
+from tests.reference.mujoco_steps import grown, settled, step_moduli
+
+mujoco: Any = pytest.importorskip("mujoco")
+
+
+@pytest.fixture(autouse=True)
+def _away_from_here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """MuJoCo writes its warnings, of what diverges, into a file of the current directory."""
+    monkeypatch.chdir(tmp_path)
+
+
+H = 0.004
+FLAT = 'solimp="0.9 0.9 0.001"'  # d = 0.9 everywhere
+UNSAFE = 'refsafe="disable"'
+WEIGHTLESS = 'contype="0" conaffinity="0"'
+SLIDE = f'<body><joint name="x" type="slide" axis="0 0 1" {{}}/><geom size=".1" mass="2" {WEIGHTLESS}/></body>'
+FREE = f'<body name="b"><freejoint/><geom size=".1" mass="2" pos="{{}} 0 0" {WEIGHTLESS}/></body>'
+TWO = (
+    f'<body><joint name="x" type="slide" axis="0 0 1"/><geom size=".1" mass="2" {WEIGHTLESS}/>'
+    f'<body><joint name="y" type="slide" axis="1 0 .5"/><geom size=".1" mass="3" {WEIGHTLESS}/></body></body>'
+)
+TENDON = '<tendon><fixed name="t" {}><joint joint="x" coef="2"/><joint joint="y" coef="-1"/></fixed></tendon>'
+DROP = (
+    '<geom type="plane" size="1 1 .1" {0}/>'
+    '<body pos="0 0 .1"><joint type="slide" axis="0 0 1"/><geom type="{1}" size=".1 .1 .1" mass="2" {0}/></body>'
+)
+CONTACT = f'condim="1" solref=".01 .7" {FLAT}'
+
+
+@dataclass(frozen=True)
+class Case:
+    """A small model whose first row is of the kind that is looked at, at a step inside its limit."""
+
+    kind: str
+    world: str
+    more: str = ""
+    flags: str = ""
+    gravity: float = 0.0
+    settle: int = 0  # small steps
+
+    def model(self, integrator: str, h: float = H) -> Any:
+        return mujoco.MjModel.from_xml_string(
+            f"""<mujoco><compiler angle="radian"/>
+            <option timestep="{h!r}" integrator="{integrator}" gravity="0 0 {self.gravity}" tolerance="0">
+              <flag {self.flags} autoreset="disable"/>
+            </option><worldbody>{self.world}</worldbody>{self.more}</mujoco>"""
+        )
+
+
+def actuator(text: str) -> str:
+    return f"<actuator>{text}</actuator>"
+
+
+def equality(text: str) -> str:
+    return f"<equality>{text}</equality>"
+
+
+JOINT = f'<joint joint1="x" solref=".01 .7" {FLAT}/>'
+DIRECT = f'<joint joint1="x" solref="-9000 -150" {FLAT}/>'
+CONNECT = f'<connect body1="b" anchor=".2 0 0" solref=".01 .7" {FLAT}/>'
+WELD = f'<weld body1="b" solref=".01 .7" {FLAT}/>'
+ALIKE = f'<tendon tendon1="t" solref="-9000 -150" {FLAT}/>'
+LOW = f'<joint joint1="x" solref=".05 .3" {FLAT}/>'  # zeta so low that refsafe's floor is unsafe
+EQUALITIES = {
+    "joint": Case("joint equality", SLIDE.format(""), equality(JOINT), UNSAFE),
+    "direct": Case("joint equality", SLIDE.format(""), equality(DIRECT), UNSAFE),
+    "connect": Case("connect equality", FREE.format(0), equality(CONNECT), UNSAFE),
+    "weld": Case("weld equality", FREE.format(".1"), equality(WELD), UNSAFE),
+    "tendon": Case("tendon equality", TWO, TENDON.format("") + equality(ALIKE), UNSAFE),
+    "refsafe": Case("joint equality", SLIDE.format(""), equality(LOW)),
+}
+LIMIT = 'limited="true" range="0 1" solreflimit=".01 .7" solimplimit="0.9 0.9 0.001"'
+OTHERS = {
+    "joint limit": Case("joint limit", SLIDE.format(LIMIT), flags=UNSAFE, gravity=-10, settle=4000),
+    "tendon limit": Case("tendon limit", TWO, TENDON.format(LIMIT), UNSAFE, gravity=-1, settle=2000),
+    "joint friction": Case("joint friction", SLIDE.format('frictionloss="100" solreffriction=".01 1"'), flags=UNSAFE),
+    "tendon friction": Case(
+        "tendon friction", TWO, TENDON.format('frictionloss="100" solreffriction=".01 1"'), flags=UNSAFE
+    ),
+}
+DRIVES = {
+    "position": Case("position drive", SLIDE.format(""), actuator('<position joint="x" kp="3000" kv="100"/>')),
+    "geared": Case("position drive", SLIDE.format(""), actuator('<position joint="x" kp="90" kv="4" gear="5"/>')),
+    "split": Case(  # one actuator for each gain, on a damped joint with an armature
+        "position drive",
+        SLIDE.format('damping="50" armature="1"'),
+        actuator('<position joint="x" kp="3000"/><velocity joint="x" kv="100"/>'),
+    ),
+    "velocity": Case("velocity drive", SLIDE.format(""), actuator('<velocity joint="x" kv="100" gear="2"/>')),
+    "own damping": Case(
+        "position drive", SLIDE.format(""), actuator('<position joint="x" kp="3000" damping="40" gear="2"/>')
+    ),
+    "on a tendon": Case("position drive", TWO, TENDON.format("") + actuator('<position tendon="t" kp="3e3" kv="99"/>')),
+    "spring": Case("joint spring", SLIDE.format('damping="100" stiffness="4000"')),
+    "explicit": Case("joint spring", SLIDE.format('damping="100" stiffness="4000"'), flags='eulerdamp="disable"'),
+    "tendon spring": Case("tendon spring", TWO, TENDON.format('stiffness="3000" damping="100"')),
+}
+CASES = {**EQUALITIES, **OTHERS, **DRIVES}
+QUICK = {("joint", "Euler"), ("weld", "implicit"), ("joint limit", "implicitfast"), ("position", "implicitfast")}
+QUICK |= {("joint friction", "Euler"), ("split", "Euler"), ("tendon", "RK4"), ("explicit", "Euler")}
+
+
+def lint(model: Any) -> list[Linted]:
+    return list(linted_model(model_data(mujoco, model)))
+
+
+@pytest.mark.parametrize(
+    ("name", "integrator"),
+    [
+        pytest.param(name, integrator, marks=[] if (name, integrator) in QUICK else pytest.mark.slow)
+        for name in CASES
+        for integrator in ("Euler", "RK4", "implicit", "implicitfast")
+    ],
+)
+def test_every_kind_of_row_is_what_mujoco_does(name: str, integrator: str) -> None:
+    """Equal |z| to 1e-5, the error of differences, at 0.97 and 1.03 of the limit; runs settle and grow there."""
+    version = tuple(map(int, mujoco.__version__.split(".")[:2]))
+    if version < (3, 9) and name in ("connect", "weld") and integrator.startswith("implicit"):
+        pytest.skip("this version moves free bodies by the midpoint rule, which is stable further out")
+    case = CASES[name]
+    row = lint(case.model(integrator))[0]
+    assert (row.kind, row.verdict, row.unsafe) == (case.kind, "converges", False)
+    for times in (0.97, 1.03) if row.h_factor else (1.0, 10.0):
+        model = case.model(integrator, H * times * (row.h_factor or 1))
+        found = lint(model)[0]
+        assert found.verdict == ("diverges" if row.h_factor and times > 1 else "converges")
+        assert found.unsafe is (found.verdict == "diverges")
+        data = settled(mujoco, model, case.settle)
+        moduli = step_moduli(mujoco, model, data)
+        away_from_one = moduli[np.abs(moduli - 1) > 1e-4]  # what nothing holds stays where it is
+        assert away_from_one[0] == pytest.approx(found.z_abs, abs=1e-5)
+        growth = grown(mujoco, model, data, kick=1e-9, steps=100)
+        drifts = len(away_from_one) < len(moduli)  # what nothing holds keeps its velocity
+        assert growth > 50 if found.unsafe else growth < (10 if drifts else 0.1)
+
+
+@pytest.mark.parametrize("integrator", ["Euler", pytest.param("RK4", marks=pytest.mark.slow)])
+def test_a_contact_is_judged_by_the_most_that_contacts_share(integrator: str) -> None:
+    """One sphere gets d of the reference, a box on four corners nearly all of it: it diverges beyond the limit."""
+    sphere, box = (
+        Case("contact", DROP.format(CONTACT, shape), flags=UNSAFE, gravity=-10, settle=4000)
+        for shape in ("sphere", "box")
+    )
+    (row,) = lint(sphere.model(integrator))
+    assert row.h_factor is not None
+    for times in (0.97, 1.04):
+        h = H * times * row.h_factor
+        (found,) = lint(box.model(integrator, h))
+        assert found.verdict == ("converges" if times < 1 else "diverges")
+        model = box.model(integrator, h)
+        box_moduli = step_moduli(mujoco, model, settled(mujoco, model, 4000))
+        assert bool(box_moduli[0] < 1) is (times < 1)
+        model = sphere.model(integrator, h)
+        alpha_hat = 2 * h / 0.01  # r = 1
+        beta_hat = (h / (0.01 * 0.7)) ** 2
+        nominal = spectral_radius(lookup({"Euler": "SYM"}.get(integrator, integrator)), alpha_hat, beta_hat)
+        assert step_moduli(mujoco, model, settled(mujoco, model, 4000))[0] == pytest.approx(float(nominal), abs=1e-5)
+
+
+def test_the_default_solimp_scales_by_0_947() -> None:
+    case = replace(EQUALITIES["joint"], more=equality('<joint joint1="x" solref="0.02 1"/>'))
+    row = lint(case.model("Euler", 0.002))[0]
+    assert row.alpha_hat == pytest.approx(0.2 * 0.9 / 0.95)
+    assert row.beta_hat == pytest.approx(0.01 * (0.9 / 0.95) ** 2)
+    model = case.model("Euler", 0.002)
+    assert step_moduli(mujoco, model, mujoco.MjData(model))[0] == pytest.approx(row.z_abs, abs=1e-6)
+
+
+def test_where_r_is_one_a_large_error_grows_though_a_small_one_settles() -> None:
+    """Past solimp's width r = 1: b = 2.2 at a = 1 is outside, 0.947 of it inside."""
+    solref = f"{-2.2 / H**2!r} {-1.0 / H!r}"
+    case = replace(EQUALITIES["joint"], more=equality(f'<joint joint1="x" solref="{solref}"/>'))
+    model = case.model("Euler")
+    row = lint(model)[0]
+    assert row.verdict == "diverges"
+    assert [row.alpha_hat, row.beta_hat] == pytest.approx([1, 2.2])
+    data = mujoco.MjData(model)
+    assert grown(mujoco, model, data, kick=1e-6, steps=300) < 1e-3
+    assert grown(mujoco, model, data, kick=1e-2, steps=300) > 1e3
+
+
+def test_implicit_damping_divides_the_point() -> None:
+    """By 1 + h d / m: with 1 + 1 the limit 4 - 2a of b becomes 8 - 2a."""
+    case = replace(EQUALITIES["direct"], world=SLIDE.format(f'damping="{2 / H!r}"'))
+    for a, b, verdict in ((1.0, 5.8, "converges"), (1.0, 6.2, "diverges")):
+        solref = f"{-b / H**2!r} {-a / H!r}"
+        made = replace(case, more=equality(f'<joint joint1="x" solref="{solref}" {FLAT}/>'))
+        row = lint(made.model("Euler"))[0]
+        assert [row.alpha_hat, row.beta_hat] == pytest.approx([a / 2, b / 2])
+        assert row.verdict == verdict
+
+
+@pytest.mark.parametrize("integrator", ["Euler", "implicitfast", "RK4"])
+def test_what_is_safe_alone_may_be_unsafe_together(integrator: str) -> None:
+    """Two drives along a chain: each sees the other joint free, both together see less inertia."""
+    arm = (
+        '<body><joint name="x" axis="0 1 0"/><geom type="capsule" fromto="0 0 0 .3 0 0" size=".03"/>'
+        '<body pos=".3 0 0"><joint name="y" axis="0 1 0"/><geom type="capsule" fromto="0 0 0 .3 0 0" size=".02"/>'
+        "</body></body>"
+    ).replace("size=", f"{WEIGHTLESS} size=")
+    drives = '<position joint="x" kp="30" kv="0.1"/><position joint="y" kp="30" kv="0.1"/>'
+    case = Case("position drive", arm, actuator(drives))
+    together = lint(case.model(integrator))[-1]
+    assert together.kind == "together"
+    assert together.h_factor is not None
+    for times, verdict in ((0.97, "converges"), (1.03, "diverges")):
+        model = case.model(integrator, H * times * together.h_factor)
+        *alone, found = lint(model)
+        assert found.verdict == verdict
+        assert found.z_abs == pytest.approx(step_moduli(mujoco, model, mujoco.MjData(model))[0], abs=1e-5)
+    assert all(row.verdict == "converges" for row in alone)
+    assert "timestep" in found.advice
+
+
+def test_the_line_to_write_is_safe() -> None:
+    """What is unsafe, relies on refsafe, is soft or mixes signs: the advised solref has no advice left."""
+    for solref, flags, words in (
+        (".002 1", UNSAFE, "write"),
+        ("-900000 -100", UNSAFE, "write"),
+        (".002 1", "", "relies on refsafe"),
+        (".5 1", "", "needlessly soft"),
+        (".02 -1", "", "signs differ"),
+        ("0 0", "", "no stiffness"),
+        ("0 -50", "", "no stiffness"),
+    ):
+        case = replace(EQUALITIES["joint"], flags=flags)
+        before = lint(replace(case, more=equality(f'<joint joint1="x" solref="{solref}"/>')).model("Euler"))[0]
+        assert words in before.advice
+        line = before.advice.split('solref="')[1].split('"')[0]
+        after = lint(replace(case, more=equality(f'<joint joint1="x" solref="{line}"/>')).model("Euler"))[0]
+        assert (after.verdict, after.unsafe, after.advice) == ("converges", False, "")
+
+
+def test_a_drive_is_told_which_gain_uses_up_its_limit_and_what_to_write() -> None:
+    case = replace(DRIVES["position"], more=actuator('<position joint="x" kp="1000" kv="1400"/>'))
+    row = lint(case.model("Euler"))[0]
+    assert row.advice.startswith("kv takes 140% of the limit, kp 0%")
+    assert row.advice.endswith('write integrator="implicitfast"')
+    assert lint(case.model("implicitfast"))[0].unsafe is False
+    stiff = replace(case, more=actuator('<position joint="x" kp="1e6" kv="100"/>'))
+    row = lint(stiff.model("Euler"))[0]
+    h = float(row.advice.split('timestep="')[1].split('"')[0])
+    assert h < H * (row.h_factor or 0)
+    assert lint(stiff.model("Euler", h))[0].unsafe is False
+    assert lint(stiff.model("implicitfast"))[0].unsafe is True
+
+
+def test_what_has_no_damping_rings_on_and_is_not_called_unsafe() -> None:
+    case = replace(DRIVES["spring"], world=SLIDE.format('stiffness="4000"'))
+    row = lint(case.model("Euler"))[0]
+    assert (row.verdict, row.unsafe, row.advice) == ("marginal", False, "undamped")
+    assert row.h_factor is not None
+    assert row.h_factor == pytest.approx(2 / (H * (4000 / 2) ** 0.5), rel=1e-6)  # b = 4
+    assert lint(case.model("Euler", 1.01 * row.h_factor * H))[0].verdict == "diverges"
+
+
+def test_a_gain_of_the_wrong_sign_is_unsafe_at_any_step() -> None:
+    case = replace(
+        DRIVES["position"], more=actuator('<general joint="x" gainprm="1" biastype="affine" biasprm="0 9 -1"/>')
+    )
+    row = lint(case.model("Euler"))[0]
+    assert row.unsafe
+    assert "wrong sign" in row.advice
+
+
+def test_what_is_no_constant_gain_is_not_judged() -> None:
+    drives = '<damper joint="x" kv="2" ctrlrange="0 1"/><muscle joint="x" lengthrange="0 1"/>'
+    case = replace(DRIVES["position"], more=actuator(drives))
+    rows = lint(case.model("Euler"))
+    assert [row.verdict for row in rows] == [None, None]
+    assert all(row.advice.startswith("not judged") and not row.unsafe for row in rows)
+
+
+def random_arm(rng: np.random.Generator) -> Case:
+    """Return a chain of links with springs, dampers, drives, a tendon and equalities of any strength."""
+    links = int(rng.integers(2, 5))
+    names = [f"j{number}" for number in range(links)]
+
+    def strength(low: float, high: float) -> str:
+        return f"{10 ** rng.uniform(low, high):.6g}"
+
+    world = ""
+    for name in reversed(names):
+        axis = " ".join(f"{value:.3f}" for value in rng.normal(size=3))
+        passive = f'damping="{strength(-4, 0)}" stiffness="{strength(-2, 1)}" armature="{strength(-4, -2)}"'
+        joint = f'<joint name="{name}" type="{rng.choice(["hinge", "slide"])}" axis="{axis}" {passive}/>'
+        shape = f'<geom type="capsule" fromto="0 0 0 .3 0 0" size=".02" {WEIGHTLESS}/>'
+        world = f'<body pos=".3 0 0">{joint}{shape}{world}</body>'
+    first, second = (str(name) for name in rng.choice(names, 2, replace=False))
+    coupled = f'<joint joint="{first}" coef="2"/><joint joint="{second}" coef="-1"/>'
+    tendon = (
+        f'<tendon><fixed name="t" stiffness="{strength(-1, 2)}" damping="{strength(-2, 0)}">{coupled}</fixed></tendon>'
+    )
+    drives = "".join(
+        f'<position joint="{name}" kp="{strength(0, 3)}" kv="{strength(-2, 1)}" gear="{strength(-0.5, 0.5)}"/>'
+        for name in names
+        if rng.random() < 0.7
+    )
+    solref = f'solref="{strength(-2.5, -1)} {strength(-0.3, 0.3)}" solimp="0.8 0.95 0.01"'
+    equalities = f'<joint joint1="{first}" joint2="{second}" {solref}/>' if rng.random() < 0.5 else ""
+    flags = rng.choice(["", UNSAFE, 'eulerdamp="disable"'])
+    return Case("", world, tendon + actuator(drives) + equality(equalities), str(flags))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("integrator", ["Euler", "RK4", "implicit", "implicitfast"])
+def test_all_together_is_mujocos_own_step_on_random_arms(integrator: str) -> None:
+    """Verdicts agree, and |z| to 1e-4: differences are as exact as that where steps are ill-conditioned."""
+    rng = np.random.default_rng(16)
+    verdicts = set()
+    for _ in range(25):
+        model = random_arm(rng).model(integrator)
+        together = lint(model)[-1]
+        assert together.z_abs is not None
+        moduli = step_moduli(mujoco, model, mujoco.MjData(model))
+        assert moduli[0] == pytest.approx(together.z_abs, rel=1e-4)
+        if abs(together.z_abs - 1) > 1e-4:
+            assert together.verdict == ("diverges" if moduli[0] > 1 else "converges")
+            verdicts.add(together.verdict)
+    assert verdicts == {"converges", "diverges"}

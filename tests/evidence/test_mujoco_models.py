@@ -1,0 +1,161 @@
+"""What is read of a MuJoCo model is what MuJoCo itself makes of it, and what it refuses is one line."""
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from bezstab.errors import InputError
+from bezstab.evidence import ModelData, model_data, mujoco_module, read_mujoco_model
+
+mujoco: Any = pytest.importorskip("mujoco")
+
+
+@pytest.fixture(autouse=True)
+def _away_from_here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """MuJoCo writes its warnings, of what diverges, into a file of the current directory."""
+    monkeypatch.chdir(tmp_path)
+
+
+ROBOT = """<mujoco><compiler angle="radian"/>
+<default>
+  <equality solref="0.03 0.8" solimp="0.8 0.99 0.002 0.5 2"/>
+  <default class="soft"><joint solreflimit="0.05 2" limited="true" range="0 1"/></default>
+</default>
+<worldbody>
+  <geom name="floor" type="plane" size="1 1 .1" solref="0.03 1" solmix="2"/>
+  <body name="a"><joint name="swing" damping="0.1" stiffness="3" armature="0.2"/><geom name="a" size=".1" pos=".3 0 0"/>
+    <body name="b" pos=".5 0 0"><joint name="slide" type="slide" class="soft"/><geom name="b" size=".1"/>
+      <body name="c" pos=".5 0 0"><joint type="ball"/><geom name="c" size=".1" solref="0.01 1"/></body></body></body>
+  <body name="d" pos="2 0 0"><freejoint/><geom name="d" size=".1" solref="-900 -40" priority="0"/></body>
+  <body name="e" pos="3 0 0"><freejoint/><geom name="e" size=".1" solref="0.07 1" priority="5"/></body>
+</worldbody>
+<contact><pair geom1="b" geom2="d" solref="0.008 1.5"/><exclude body1="a" body2="c"/></contact>
+<tendon><fixed name="pull" limited="true" range="0 1" stiffness="5" frictionloss="1">
+  <joint joint="swing" coef="2"/><joint joint="slide" coef="-1"/></fixed></tendon>
+<equality><connect name="pin" body1="d" anchor="0 0 0"/><weld body1="e" solref="-100 -20"/>
+  <joint joint1="swing" joint2="slide" active="false"/></equality>
+<actuator><position name="motor" joint="swing" kp="10" kv="2" gear="3"/><velocity tendon="pull" kv="4"/>
+  <motor joint="slide"/></actuator>
+</mujoco>"""
+
+
+@pytest.fixture(scope="module")
+def robot() -> ModelData:
+    return model_data(mujoco, mujoco.MjModel.from_xml_string(ROBOT))
+
+
+def solrefs(robot: ModelData, kind: str) -> dict[str, tuple[float, float]]:
+    return {each.element: each.solref for each in robot.constraints if each.kind == kind}
+
+
+def test_defaults_and_classes_are_resolved(robot: ModelData) -> None:
+    assert solrefs(robot, "connect equality") == {"equality 'pin'": (0.03, 0.8)}
+    assert solrefs(robot, "weld equality") == {"equality 1": (-100, -20)}
+    assert solrefs(robot, "joint limit") == {"joint 'slide'": (0.05, 2)}
+    assert {each.solimp for each in robot.constraints if each.kind.endswith("equality")} == {(0.8, 0.99, 0.002)}
+    assert [each.active for each in robot.constraints if each.kind.endswith("equality")] == [1, 1, 0]
+    assert (robot.h, robot.integrator, robot.refsafe, robot.euler_damping) == (0.002, "Euler", True, True)
+
+
+def test_mixtures_of_contacts_are_mujocos_own(robot: ModelData) -> None:
+    """Where two geoms touch in a model of their own, MuJoCo's contact has the same solref."""
+    contacts = solrefs(robot, "contact")
+    assert contacts["geom 'floor' and geom 'a'"] == pytest.approx((0.08 / 3, 1))  # 2 : 1
+    assert contacts["geom 'floor' and geom 'd'"] == (-900, -40)  # direct: the smaller
+    assert contacts["geom 'floor' and geom 'e'"] == (0.07, 1)  # by priority
+    assert solrefs(robot, "contact pair") == {"geom 'b' and geom 'd'": (0.008, 1.5)}
+    for first, second in (("0.03 1", "0.01 1"), ("0.03 1", "-900 -40"), ("-500 -60", "-900 -40")):
+        for mixes in ((2, 1), (0, 1), (0, 0), (1, 0)):
+            touching = mujoco.MjModel.from_xml_string(
+                f"""<mujoco><worldbody><geom type="plane" size="1 1 .1" solref="{first}" solmix="{mixes[0]}"/>
+                <body pos="0 0 .09"><freejoint/><geom size=".1" solref="{second}" solmix="{mixes[1]}"/></body>
+                </worldbody></mujoco>"""
+            )
+            data = mujoco.MjData(touching)
+            mujoco.mj_forward(touching, data)
+            (contact,) = (each for each in model_data(mujoco, touching).constraints if each.kind == "contact")
+            assert contact.solref == pytest.approx(tuple(data.contact[0].solref))
+            assert contact.solimp == pytest.approx(tuple(data.contact[0].solimp[:3]))
+
+
+def test_geoms_that_cannot_touch_make_no_contact(robot: ModelData) -> None:
+    """Parent and child, excluded bodies, and what is welded to the world."""
+    pairs = {each.element for each in robot.constraints if each.kind == "contact"}
+    assert not pairs & {"geom 'a' and geom 'b'", "geom 'a' and geom 'c'", "geom 'b' and geom 'c'"}
+
+
+def test_masses_and_directions_are_mujocos_own(robot: ModelData) -> None:
+    assert robot.mass[0, 0] > 0.2  # the armature
+    assert np.linalg.eigvalsh(robot.mass).min() > 0
+    by_element = {each.element: each for each in robot.feedbacks}
+    motor = by_element["actuator 'motor'"]
+    assert (motor.stiffness, motor.damping, motor.direction[0]) == (10, 2, 3)
+    spring = by_element["tendon 'pull'"]
+    assert spring.direction[:2].tolist() == [2, -1]
+    assert (by_element["joint 'swing'"].stiffness, by_element["joint 'swing'"].damping) == (3, 0.1)
+    assert "actuator 2" not in by_element  # no gain on position or velocity
+
+
+def test_what_is_switched_off_is_left_out() -> None:
+    flags = "".join(
+        f' {flag}="disable"' for flag in ("equality", "limit", "frictionloss", "contact", "spring", "damper")
+    )
+    text = ROBOT.replace(
+        "<default>", f'<option><flag refsafe="disable" eulerdamp="disable"{flags}/></option><default>', 1
+    )
+    found = model_data(mujoco, mujoco.MjModel.from_xml_string(text))
+    assert not found.constraints
+    assert {each.kind for each in found.feedbacks} == {"drive"}
+    assert (found.refsafe, found.euler_damping) == (False, False)
+
+
+def test_actuators_of_a_group_that_is_switched_off_are_left_out() -> None:
+    text = ROBOT.replace("<default>", '<option actuatorgroupdisable="2"/><default>', 1)
+    text = text.replace('<position name="motor"', '<position group="2" name="motor"')
+    found = model_data(mujoco, mujoco.MjModel.from_xml_string(text))
+    assert [each.element for each in found.feedbacks if each.kind == "drive"] == ["actuator 1"]
+
+
+def test_an_override_holds_for_every_contact() -> None:
+    text = ROBOT.replace("<default>", '<option o_solref="0.2 1"><flag override="enable"/></option><default>', 1)
+    found = model_data(mujoco, mujoco.MjModel.from_xml_string(text))
+    assert {each.solref for each in found.constraints if each.kind.startswith("contact")} == {(0.2, 1)}
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "words"),
+    [
+        ("none.xml", None, "No such file"),
+        ("broken.xml", "<mujoco><worldbody>", "XML"),
+        ("empty.xml", "", "XML"),
+        ("wrong.xml", "<mujoco><oops/></mujoco>", "oops"),
+        ("nan.xml", '<mujoco><option timestep="nan"/></mujoco>', "timestep = nan"),
+        ("backwards.xml", '<mujoco><option timestep="-1"/></mujoco>', "timestep = -1"),
+        (
+            "infinite.xml",
+            ROBOT.replace("0.05 2", "0.05 inf"),
+            "'slide': solref = 0.05 inf: expected 0, or sizes from 1e-15 to 1e",
+        ),
+        ("includes.xml", '<mujoco><include file="nowhere.xml"/></mujoco>', "nowhere.xml"),
+    ],
+)
+def test_what_mujoco_refuses_is_one_line(name: str, text: str | None, words: str, tmp_path: Path) -> None:
+    path = tmp_path / name
+    if text is not None:
+        path.write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match=words) as caught:
+        read_mujoco_model(path)
+    assert name in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_without_mujoco_or_with_an_old_one_the_message_says_what_to_get(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(mujoco, "__version__", "3.6.0")
+    with pytest.raises(InputError, match=r"lint needs mujoco 3\.7 or later, found 3\.6\.0"):
+        mujoco_module("lint")
+    monkeypatch.setitem(sys.modules, "mujoco", None)
+    with pytest.raises(InputError, match=r"bezstab\[mujoco\]"):
+        mujoco_module("lint")
