@@ -10,6 +10,7 @@ A file imports only from those above it:
     choose_commands     choose, check, engines, explore
     evidence_commands   simulate, tradeoff, extremes
     verify_command      verify
+    probe_command       probe
     command_group       the group of all commands
 """
 

@@ -13,13 +13,14 @@ from bezstab.cli.choose_commands import check, choose, engines, explore
 from bezstab.cli.evidence_commands import extremes, simulate, tradeoff
 from bezstab.cli.map_commands import family, methods, poles, region
 from bezstab.cli.output import say
+from bezstab.cli.probe_command import probe
 from bezstab.cli.verify_command import verify
 from bezstab.errors import InputError, NumericalError
 
 SECTIONS: Mapping[str, Sequence[click.Command]] = {
     "Maps": (poles, region, methods, family),
     "Choose": (choose, check, engines, explore),
-    "Evidence": (simulate, verify, tradeoff, extremes),
+    "Evidence": (simulate, verify, probe, tradeoff, extremes),
 }
 """What `bezstab --help` lists under which heading, in this order."""
 
