@@ -1,5 +1,6 @@
 """The command that tells from a log which integrator and which feedback made it: probe."""
 
+import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -293,7 +294,11 @@ def _read(path: Path) -> "Log":
     """Return the log in a file, or on standard input for the path -."""
     from bezstab.evidence import log_from, read_log
 
-    return log_from(click.get_binary_stream("stdin"), "standard input") if str(path) == "-" else read_log(path)
+    if str(path) != "-":
+        return read_log(path)
+    if sys.stdin is None:  # as Python has it where it was closed
+        raise InputError("standard input is closed: there is no log to read")
+    return log_from(sys.stdin.buffer, "standard input")
 
 
 def _columns_of(other: "Log", data: "Log", places: Sequence[int]) -> "FloatArray":

@@ -63,6 +63,9 @@ FORMAL_ERRORS = 3.0
 """Standard errors of one window's fit that are stated: its equations share samples, so that their errors are not
 independent."""
 
+TIMES_FARTHEST = 2.0
+"""Times the farthest pole of the better half of the fits, that is stated: windows overlap, and err alike."""
+
 SPREAD = 1e-3
 """Of |z|, and rad: fits that differ by more have not found one and the same pole."""
 
@@ -74,10 +77,9 @@ class Fit:
     `pole` lies in the closed upper half plane, for its conjugate is a pole too. `residual` is the relative error of the
     recursion in the window that gave it, `order` the number of poles in that recursion, `start` the window's first
     sample and `samples` its length. `spread_abs` (relative) and `spread_angle` (rad) say by how much the better half of
-    all fits differ.
-    `uncertainty` bounds the error of the pole in the plane, as far as samples can tell: the farthest pole among these
-    fits, or what the residual leaves open where that is more. `poles` are all that carry amplitude in the window, by
-    modulus, those of the closed upper half plane.
+    all fits differ. `uncertainty` bounds the error of the pole in the plane, as far as samples can tell: by how much
+    these fits are off it, or what the residual leaves open where that is more. `poles` are all that carry amplitude in
+    the window, by modulus, those of the closed upper half plane.
     """
 
     pole: complex
@@ -171,7 +173,7 @@ def fit_dominant_pole(
         samples=median.stop - median.start,
         spread_abs=spread_abs,
         spread_angle=spread_angle,
-        uncertainty=max(float(np.abs(z - median.pole).max()), FORMAL_ERRORS * median.formal_error),
+        uncertainty=max(TIMES_FARTHEST * float(np.abs(z - median.pole).max()), FORMAL_ERRORS * median.formal_error),
         poles=median.poles,
     )
 

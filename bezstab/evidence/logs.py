@@ -83,7 +83,7 @@ def parse_log(text: str, name: str) -> Log:
     filled = [(number, line) for number, line in lines if line.strip() and not line.strip().startswith(COMMENTS)]
     if not filled:
         raise InputError(f"{name}: is empty")
-    delimiter = _delimiter(filled[-1][1])
+    delimiter = _delimiter(filled[min(1, len(filled) - 1)][1])  # the first line may hold names, the last be cut off
     cells = [_cells(line, delimiter) for _, line in filled]
     numbers_of = {number: row for (number, _), row in zip(filled, cells, strict=True)}
     names: tuple[str, ...] = ()
@@ -190,8 +190,10 @@ def row_step(log: Log, time: int) -> float:
     if not step > 0:
         raise InputError(f"{log.name}: the times in column {log.columns[time]} do not rise")
     late = np.abs(t - (t[0] + step * np.arange(len(t))))
-    # A time that was rounded to the last of its decimals is off by half of it, and so are both ends of the row.
-    allowed = UNEVEN * step + min(decimal_place(t), step / 2)
+    # A time that was rounded to the last of its decimals is off by half of it, and so are the ends of the mean step. A
+    # place that is no small part of the step is no rounding of it: then a row that is left out would pass as well.
+    place = decimal_place(t)
+    allowed = UNEVEN * step + (place if place < step / 2 else 0.0)
     if late.max() > allowed:
         row = int(np.argmax(late))
         raise InputError(
@@ -210,9 +212,9 @@ def _rises_evenly(t: FloatArray) -> bool:
 def decimal_place(values: FloatArray) -> float:
     """Return the value of the last decimal that any of these numbers shows, such as 1e-6; 0 without a number.
 
-    The numbers of a log that was written with a fixed number of decimals are multiples of it.
+    The numbers of a log that was written with a fixed number of decimals are multiples of it. Zero shows none.
     """
-    shown = (repr(value).lower() for value in values[np.isfinite(values)].tolist())
+    shown = (repr(value) for value in values[np.isfinite(values) & (values != 0)].tolist())
     places = [_last_place(text) for text in shown]
     return 10.0 ** min(places) if places else 0.0
 

@@ -70,6 +70,9 @@ HIDDEN = 30.0
 KICK_SHARES = (1.0, 1e-2, 1e-4)
 """Of the kick that a user gives for a step of theirs."""
 
+UNHEARD = 1e9
+"""Times a pole may grow over a log and still not be seen: from the last of nine digits."""
+
 SLOW = 0.05
 """From 1: poles so near to it change from row to row as little as what a motion forces."""
 
@@ -88,13 +91,15 @@ FORCED = (
 class ProbedPole:
     """The dominant pole in one response, per row of the log; `pole` is None, and `reason` says why, if none is claimed.
 
-    `uncertainty` is the error of the fit in the plane, `samples` the number of rows that it rests on, `poles` are all
-    that are seen, by modulus, in the closed upper half plane. With a pole `reason` says what is to be kept in mind.
+    `uncertainty` is the error of the fit in the plane, `samples` the number of rows that it rests on, of `rows` that
+    hold numbers; `poles` are all that are seen, by modulus, in the closed upper half plane. With a pole `reason` says
+    what is to be kept in mind.
     """
 
     pole: complex | None
     uncertainty: float | None
     samples: int
+    rows: int
     poles: tuple[complex, ...]
     reason: str
 
@@ -173,12 +178,13 @@ def probed_pole(c: ArrayLike, minus: ArrayLike | None = None, differenced: bool 
     cut = f"row {end + 1} holds no number: only what comes before is used" if end < len(samples) else ""
     samples = _from_the_kick_on(samples[:end], rounding)
     if len(samples) < FEWEST:
-        return _refused(f"{len(samples)} samples: at least {FEWEST} are needed", cut)
+        return _refused(len(samples), f"{len(samples)} samples: at least {FEWEST} are needed", cut)
     largest = float(np.nanmax(np.abs(samples)))
     if largest == 0 or not np.ptp(samples, axis=0).any():
-        return _refused("nothing changes", cut)
+        return _refused(len(samples), "nothing changes", cut)
     if rounding > SETTLED * largest:
-        return _refused(f"rounded to {rounding:.3g}, which is more than {SETTLED:g} of the largest, {largest:.3g}", cut)
+        coarse = f"rounded to {rounding:.3g}, which is more than {SETTLED:g} of the largest, {largest:.3g}"
+        return _refused(len(samples), coarse, cut)
     return _fitted(samples, rounding, differenced or minus is not None, cut)
 
 
@@ -194,16 +200,18 @@ def _fitted(samples: FloatArray, rounding: float, of_two_runs: bool, cut: str) -
         fit = fit_dominant_pole(changes, ORDER, limits=_limits(changes), floor=floor)
         fits.append(fit)
         if isinstance(fit, Fit) and not _on_the_circle(fit) and (of_two_runs or _is_not_forced(fit, changes)):
-            return _claimed(fit, _joined(DIFFERENCED if times else "", cut))
+            return _claimed(fit, len(samples), _joined(DIFFERENCED if times else "", cut))
         changes, floor = np.diff(changes, axis=0), 2 * floor  # each of two roundings adds to that of a difference
     as_given = fits[0]
     if isinstance(as_given, Refusal):
-        return _refused(as_given.reason, cut)
+        return _refused(len(samples), as_given.reason, cut)
+    if of_two_runs:  # or it had been claimed
+        return _claimed(as_given, len(samples), _joined(ON_THE_CIRCLE, cut))
     if _on_the_circle(as_given):
-        return _claimed(as_given, _joined(ON_THE_CIRCLE, cut)) if of_two_runs else _refused(ON_THE_CIRCLE, cut)
+        return _refused(len(samples), ON_THE_CIRCLE, cut)
     if _explains_the_start(as_given, samples) and _agree(as_given, fits[1]):
-        return _claimed(as_given, _joined(SLOWLY, cut))
-    return _refused(FORCED, cut)
+        return _claimed(as_given, len(samples), _joined(SLOWLY, cut))
+    return _refused(len(samples), FORCED, cut)
 
 
 def _is_not_forced(fit: Fit, samples: FloatArray) -> bool:
@@ -229,12 +237,12 @@ def _explains_the_start(fit: Fit, samples: FloatArray) -> bool:
     return bool(before.max(initial=0.0) <= HIDDEN * traced_back)
 
 
-def _claimed(fit: Fit, reason: str) -> ProbedPole:
-    return ProbedPole(fit.pole, fit.uncertainty, fit.samples, fit.poles, reason)
+def _claimed(fit: Fit, rows: int, reason: str) -> ProbedPole:
+    return ProbedPole(fit.pole, fit.uncertainty, fit.samples, rows, fit.poles, reason)
 
 
-def _refused(reason: str, cut: str) -> ProbedPole:
-    return ProbedPole(None, None, 0, (), _joined(reason, cut))
+def _refused(rows: int, *reasons: str) -> ProbedPole:
+    return ProbedPole(None, None, 0, rows, (), _joined(*reasons))
 
 
 def _joined(*reasons: str) -> str:
@@ -251,7 +259,8 @@ def _response(c: ArrayLike, minus: ArrayLike | None) -> tuple[FloatArray, float]
             raise InputError(f"minus has {other.shape[1]} responses, c has {samples.shape[1]}")
         rounding += _rounding(other)
         shared = min(len(samples), len(other))  # of two runs one may have ended early
-        samples = samples[:shared] - other[:shared]
+        with np.errstate(invalid="ignore", over="ignore"):  # what is infinite is cut off
+            samples = samples[:shared] - other[:shared]
     return samples, rounding
 
 
@@ -302,12 +311,12 @@ def likenesses(
     methods: Sequence[Method],
     alpha_hat: Fraction,
     beta_hat: Fraction,
-    steps_between_rows: Callable[[Method], int | None] | int = 1,
+    between: Callable[[Method], int | None] | int = 1,
     turned: float | None = None,
 ) -> list[Likeness]:
     """Return how far a probed pole is from that of each method at a point (dimensionless), the nearest first.
 
-    `steps_between_rows` of a method's own steps lie between two rows of the log; a method for which that is None has
+    `between` of a method's own steps lie between two rows of the log; a method for which that is None has
     longer steps than the log and is left out. `turned` is kappa h, the angle by which the directions of the constraints
     turn in a step of the user's; None takes TURNED. No likenesses without a pole. NumericalError if a predicted pole
     leaves the range of float64. Roots of paper Eq. 17; the motion by the first-order law.
@@ -316,20 +325,18 @@ def likenesses(
         return []
     compared: list[tuple[Method, int]] = []
     for method in methods:
-        between = steps_between_rows if isinstance(steps_between_rows, int) else steps_between_rows(method)
-        if between is not None:
-            compared.append((method, between))
+        own_steps = between if isinstance(between, int) else between(method)
+        if own_steps is not None:
+            compared.append((method, own_steps))
     polynomials = [(_polynomial_without_zeros(method, alpha_hat, beta_hat), k) for method, k in compared]
     found = []
-    for (method, between), polynomial in zip(compared, polynomials, strict=True):
+    for (method, own_steps), polynomial in zip(compared, polynomials, strict=True):
         equal = [
             other.name
             for (other, _), others in zip(compared, polynomials, strict=True)
             if others == polynomial and other is not method
         ]
-        found.append(
-            _likeness(probed.pole, probed.uncertainty, method, alpha_hat, beta_hat, between, turned, ", ".join(equal))
-        )
+        found.append(_likeness(probed, method, alpha_hat, beta_hat, own_steps, turned, ", ".join(equal)))
     return sorted(found, key=lambda one: one.distance)
 
 
@@ -382,8 +389,7 @@ def _polynomial_without_zeros(method: Method, alpha_hat: Fraction, beta_hat: Fra
 
 
 def _likeness(
-    measured: complex,
-    uncertainty: float,
+    probed: ProbedPole,
     method: Method,
     alpha_hat: Fraction,
     beta_hat: Fraction,
@@ -391,14 +397,19 @@ def _likeness(
     turned: float | None,
     same_as: str,
 ) -> Likeness:
+    assert probed.pole is not None
+    assert probed.uncertainty is not None
     a, b = float(alpha_hat), float(beta_hat)
     z = poles(method, a, b)
-    per_row = z**between
+    with np.errstate(over="ignore", invalid="ignore"):  # a pole far outside the circle, over many steps
+        per_row = z**between
     per_row = per_row.real + 1j * np.abs(per_row.imag)
-    distances = np.abs(per_row - measured)
-    # A pole that dies out while the dominant one is still there answers only if the kick has hardly excited that one.
-    nearest = int(np.argmin(distances))
     leading = np.abs(z) > (1 - 1 / SAMPLES) * np.abs(z[0])
+    # Another pole answers only if the kick has hardly excited the dominant one, and that has not grown out of rounding.
+    distances = np.abs(per_row - probed.pole)
+    if probed.rows * np.log(max(np.abs(per_row[0]), 1.0)) > np.log(UNHEARD):
+        distances[~leading] = np.inf
+    nearest = int(np.argmin(distances))
     angle = (TURNED if turned is None else turned) * float(method.step_multiple)
     chi = float(np.abs(turning_sensitivity(method, a, b, z[nearest])))
     apart = np.abs(z - z[nearest])
@@ -412,8 +423,8 @@ def _likeness(
         method=method,
         predicted=complex(per_row[0]),
         distance=float(distances[nearest]),
-        error=uncertainty,
-        allowed=uncertainty + moved,
+        error=probed.uncertainty,
+        allowed=probed.uncertainty + moved,
         dominant=bool(leading[nearest]),
         same_as=same_as,
     )
@@ -423,42 +434,51 @@ def points_like(probed: ProbedPole, method: Method, between: int = 1) -> list[Li
     """Return the points at which a method has the probed pole for its dominant one; `between` as in `likenesses`.
 
     A complex pole is two real equations P(z; alpha_hat, beta_hat) = 0 for the two unknowns, and so are two real poles;
-    there may be several solutions, or none. Of z per row the root per step of least angle is taken. InputError where
-    one real pole is all there is: it leaves a curve of points. Newton's method, from places all over the method's
-    region and from the point that an exact integrator would have.
+    there may be several solutions, that nearest to what an exact integrator would have first, or none. Of z per row the
+    root per step of least angle is taken. InputError where the poles leave a curve of points: one real pole does, and
+    so do poles that belong to one mu. Newton's method, from places all over the method's region.
     """
     if probed.pole is None or probed.uncertainty is None:
         return []
     step_poles = [z ** (1 / between) for z in probed.poles]
     error = probed.uncertainty / (between * abs(step_poles[0]) ** (between - 1))
-    found: list[LikePoint] = []
-    if step_poles[0].imag > error:
-        found = _solutions(method, np.array([step_poles[0], step_poles[0].conjugate()]), error)
-    else:
-        real = [z.real for z in step_poles if abs(z.imag) <= error]
-        if len(real) < 2:
-            raise InputError("one real pole leaves a curve of points (α̂, β̂): a second pole has to show in the log")
-        for other in real[1:]:
-            found += _solutions(method, np.array([real[0], other], complex), error)
-    return sorted(found, key=lambda point: (point.alpha_hat, point.beta_hat))
+    pairs = [(step_poles[0], step_poles[0].conjugate())]
+    if step_poles[0].imag <= error:
+        real = [complex(z.real) for z in step_poles if z.imag <= error]
+        pairs = [(real[0], other) for other in real[1:]]
+    solutions = [_solutions(method, np.array(pair), error) for pair in pairs]
+    found = [point for regular, _ in solutions for point in regular]
+    if not found and (not pairs or any(singular for _, singular in solutions)):
+        raise InputError(f"what shows of {method.name}'s poles leaves a curve of points (α̂, β̂): another pole is needed")
+    exact_alpha, exact_beta = _exact_integrators_point(np.array(pairs[0]))
+    return sorted(found, key=lambda one: abs(one.alpha_hat - exact_alpha) + abs(one.beta_hat - exact_beta))
 
 
-def _solutions(method: Method, z: ComplexArray, error: float) -> list[LikePoint]:
-    """Return the points at which both z are poles, the first the dominant one; shape of z (2,), `error` of each."""
+def _solutions(method: Method, z: ComplexArray, error: float) -> tuple[list[LikePoint], bool]:
+    """Return the points at which both z are poles, the first the dominant one; shape of z (2,), `error` of each.
+
+    And whether there are others which are no points but a curve.
+    """
     equations = _equations(closed_loop_array(method), z)
     points = _starting_points(method, z)
     with np.errstate(all="ignore"):  # what leaves the range is left out below
         for _ in range(ITERATIONS):
             points = points - _newton_step(equations, points)
         last = np.abs(_newton_step(equations, points)).max(axis=1)
+        residual = np.abs([polyval2d(points[:, 0], points[:, 1], equation) for equation in equations]).max(axis=0)
+    scale = np.abs(equations).max()
+    singular = False
     found: list[LikePoint] = []
-    for a, b in points[last < SOLVED * (1 + np.abs(points).max(axis=1))].tolist():
+    for a, b in points[(last < SOLVED * (1 + np.abs(points).max(axis=1))) | (residual < SOLVED**2 * scale)].tolist():
         known = any(abs(a - one.alpha_hat) + abs(b - one.beta_hat) < SAME * (1 + abs(a) + abs(b)) for one in found)
         if known or abs(poles(method, a, b)[0]) > abs(z[0]) + 10 * error + SAME:
             continue
+        if np.linalg.cond(_jacobian(equations, np.array([[a, b]]))[:, :, 0]) > 1 / SAME:
+            singular = True
+            continue
         alpha_hat_error, beta_hat_error = _point_errors(method, z, error, a, b)
         found.append(LikePoint(method, a, b, alpha_hat_error, beta_hat_error))
-    return found
+    return found, singular
 
 
 def closed_loop_array(method: Method) -> FloatArray:
@@ -482,9 +502,13 @@ def _starting_points(method: Method, z: ComplexArray) -> FloatArray:
     alpha_hat, beta_hat = np.meshgrid(
         np.linspace(low_alpha, high_alpha, STARTS), np.linspace(low_beta, high_beta, STARTS)
     )
+    return np.concatenate([[_exact_integrators_point(z)], np.stack([alpha_hat.ravel(), beta_hat.ravel()], axis=1)])
+
+
+def _exact_integrators_point(z: ComplexArray) -> tuple[float, float]:
+    """Return alpha_hat and beta_hat for which an integrator without errors, z = e^mu, had both z; real parts only."""
     mu = np.log(z)
-    exact_point = [[-float(mu.sum().real), float(mu.prod().real)]]
-    return np.concatenate([exact_point, np.stack([alpha_hat.ravel(), beta_hat.ravel()], axis=1)])
+    return -float(mu.sum().real), float(mu.prod().real)
 
 
 def _newton_step(equations: FloatArray, points: FloatArray) -> FloatArray:
@@ -511,11 +535,9 @@ def _jacobian(equations: FloatArray, points: FloatArray) -> FloatArray:
 def _point_errors(
     method: Method, z: ComplexArray, error: float, alpha_hat: float, beta_hat: float
 ) -> tuple[float, float]:
-    """Return by what alpha_hat and beta_hat may be off if each pole is by `error`; infinite at a double pole."""
+    """Return by what alpha_hat and beta_hat may be off if each pole is by `error`."""
     table = closed_loop_array(method)
     jacobian = _jacobian(_equations(table, z), np.array([[alpha_hat, beta_hat]]))[:, :, 0]
     slopes = np.abs([polyval3d(pole, alpha_hat, beta_hat, polyder(table)) for pole in z])
-    if np.linalg.cond(jacobian) > 1 / np.finfo(float).eps:
-        return np.inf, np.inf
     alpha_hat_error, beta_hat_error = np.abs(np.linalg.inv(jacobian)) @ (slopes * error)
     return float(alpha_hat_error), float(beta_hat_error)

@@ -293,7 +293,7 @@ def probed_pole_row(column: str, found: ProbedPole) -> Row:
     parts: dict[str, float | None] = dict.fromkeys(complex_parts("z_", 0))
     if found.pole is not None:
         parts |= complex_parts("z_", found.pole)
-    return {"column": column, **parts, **row(found, without={"pole", "poles"})}
+    return {"column": column, **parts, **row(found, without={"pole", "poles", "rows"})}
 
 
 def likeness_row(column: str, likeness: Likeness) -> Row:
