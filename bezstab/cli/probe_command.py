@@ -31,6 +31,9 @@ if TYPE_CHECKING:
     from bezstab.evidence import Likeness, Log, ProbedPole
     from bezstab.stability import FloatArray
 
+SAME_STEP = 1e-3
+"""Of the time between rows: by as much that of two runs may differ, as times are rounded."""
+
 NAMED = 3
 """Excluded methods that a sentence names; of more it gives the number and the nearest."""
 
@@ -129,9 +132,9 @@ def probe(
     turning: Fraction | None,
     form: Format,
 ) -> None:
-    """Tell from a log which pole an error decays with, and which integrator has it.
+    """Tell from a simulator's log which integrator made it.
 
-    LOG is a CSV file, or - for standard input, with a row for each step from the kick on. Prints each column's pole;
+    LOG is a CSV file, or - for standard input, with a row for each step from the kick on. Prints with which pole each column's error decays;
     with --alpha and --beta how far it is from every method's, the nearest first; without them, the α and β that it
     means under --method. What cannot be told is said, with exit status 3.
 
@@ -302,10 +305,20 @@ def _read(path: Path) -> "Log":
 
 
 def _columns_of(other: "Log", data: "Log", places: Sequence[int]) -> "FloatArray":
-    """Return another run's values in the columns of the same names; InputError where it has not got them."""
+    """Return another run's values in the columns of the same names; InputError if it has others, or other steps."""
+    _check_same_step(other, data)
     if other.columns == data.columns:
         return other.values[:, list(places)]
     return other.values[:, [other.number_of(data.columns[place]) for place in places]]
+
+
+def _check_same_step(other: "Log", data: "Log") -> None:
+    """Raise InputError where two logs have columns of times with different steps."""
+    from bezstab.evidence import time_column
+
+    own, others = _row_step(data, time_column(data)), _row_step(other, time_column(other))
+    if own is not None and others is not None and abs(own - others) > SAME_STEP * own:
+        raise InputError(f"--minus: {other.name} has rows every {others:.6g} s, {data.name} every {own:.6g} s")
 
 
 def _row_step(data: "Log", time: int | None) -> float | None:

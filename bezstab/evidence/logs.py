@@ -26,6 +26,9 @@ COMMENTS = ("#", "%")
 TIMES = ("t", "time", "times", "zeit", "sec", "seconds", "timestamp")
 """Names of a time column, without units."""
 
+UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6}
+"""Of times, in s, as the name of a column has them in brackets: time [ms]."""
+
 COUNTERS = ("step", "steps", "index", "k", "i", "n", "frame", "row")
 """Names of columns that count rows: no error decays in them."""
 
@@ -179,7 +182,7 @@ def _plain(column: str) -> str:
 
 
 def row_step(log: Log, time: int) -> float:
-    """Return the time between two rows, in the unit of the time column.
+    """Return the time between two rows in s; the name of the time column may say another unit (UNITS).
 
     InputError, naming the row, where times are missing, do not rise, or are uneven by more than their own rounding.
     """
@@ -200,7 +203,8 @@ def row_step(log: Log, time: int) -> float:
             f"{log.name}: uneven times: row {row + 1} is {late[row]:.3g} off the mean step of {step:.6g}; "
             "a pole is per step, so log every step of one size"
         )
-    return step
+    unit = re.search(r"[\[(/]\s*(\w+)", log.columns[time])
+    return step * UNITS.get(unit[1], 1.0) if unit else step
 
 
 def _rises_evenly(t: FloatArray) -> bool:

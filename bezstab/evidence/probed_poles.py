@@ -14,6 +14,7 @@ one run does not tell from another method's pole.
 """
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -21,7 +22,7 @@ import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval2d, polyval3d
 from numpy.typing import ArrayLike
 
-from bezstab.errors import InputError
+from bezstab.errors import InputError, NumericalError
 from bezstab.evidence.linear_prediction import SAMPLES, SETTLED, SPREAD, Fit, Refusal, fit_dominant_pole
 from bezstab.evidence.logs import UNEVEN, decimal_place
 from bezstab.evidence.measured_poles import CLOSE
@@ -316,10 +317,10 @@ def likenesses(
 ) -> list[Likeness]:
     """Return how far a probed pole is from that of each method at a point (dimensionless), the nearest first.
 
-    `between` of a method's own steps lie between two rows of the log; a method for which that is None has
-    longer steps than the log and is left out. `turned` is kappa h, the angle by which the directions of the constraints
-    turn in a step of the user's; None takes TURNED. No likenesses without a pole. NumericalError if a predicted pole
-    leaves the range of float64. Roots of paper Eq. 17; the motion by the first-order law.
+    `between` of a method's own steps lie between two rows of the log; a method for which that is None has longer steps
+    than the log and is left out, and so is one whose poles are infinite at the point: it has made no log. `turned` is
+    kappa h, the angle by which the directions of the constraints turn in a step of the user's; None takes TURNED. No
+    likenesses without a pole. Roots of paper Eq. 17; the motion by the first-order law.
     """
     if probed.pole is None or probed.uncertainty is None:
         return []
@@ -336,7 +337,8 @@ def likenesses(
             for (other, _), others in zip(compared, polynomials, strict=True)
             if others == polynomial and other is not method
         ]
-        found.append(_likeness(probed, method, alpha_hat, beta_hat, own_steps, turned, ", ".join(equal)))
+        with suppress(NumericalError):
+            found.append(_likeness(probed, method, alpha_hat, beta_hat, own_steps, turned, ", ".join(equal)))
     return sorted(found, key=lambda one: one.distance)
 
 
@@ -363,17 +365,20 @@ def kicked_responses(
 
     `step` takes a state, an array of any shape, to the next, and is not to change it in place; `constraint` is the
     error in a state. The state is kicked by `kick`, of its shape, and by small parts of it (KICK_SHARES): decay is seen
-    longest after the largest, growth after the smallest. From where an error is not finite all is nan.
+    longest after the largest, growth after the smallest. From where an error is not finite all is nan, and no step is
+    taken. InputError for a kick of another shape.
     """
     start, change = np.asarray(state, np.float64), np.asarray(kick, np.float64)
     if start.shape != change.shape:
         raise InputError(f"kick has shape {change.shape}, the state has {start.shape}")
-    responses = np.empty((steps + 1, len(KICK_SHARES)))
+    responses = np.full((steps + 1, len(KICK_SHARES)), np.nan)
     with np.errstate(all="ignore"):  # what diverges runs into infinity, and is cut off there
         for place, share in enumerate(KICK_SHARES):
             up, down = start + share * change, start - share * change
             for k in range(steps + 1):
                 responses[k, place] = (float(constraint(up)) - float(constraint(down))) / 2
+                if not np.isfinite(responses[k, place]):
+                    break
                 up, down = np.asarray(step(up.copy())), np.asarray(step(down.copy()))
     return responses
 
@@ -507,7 +512,8 @@ def _starting_points(method: Method, z: ComplexArray) -> FloatArray:
 
 def _exact_integrators_point(z: ComplexArray) -> tuple[float, float]:
     """Return alpha_hat and beta_hat for which an integrator without errors, z = e^mu, had both z; real parts only."""
-    mu = np.log(z)
+    with np.errstate(divide="ignore"):  # a pole at zero is that of no such integrator
+        mu = np.log(z)
     return -float(mu.sum().real), float(mu.prod().real)
 
 

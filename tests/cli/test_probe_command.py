@@ -144,6 +144,8 @@ def test_columns_and_times_that_are_not_there_are_one_line() -> None:
         assert (result.exit_code, result.stdout) == (2, "")
         assert said in result.stderr
         assert result.stderr.count("\n") == 1
+    write("slower.csv", t=np.arange(20) / 5, c=np.zeros(20))
+    assert "every 0.2 s" in run("probe", "log.csv", "--minus", "slower.csv").stderr
     write("log.csv", c=np.zeros(20))
     assert "--turning is a rate" in run("probe", "log.csv", "--turning", "1").stderr
 
