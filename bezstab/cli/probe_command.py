@@ -134,9 +134,9 @@ def probe(
 ) -> None:
     """Tell from a simulator's log which integrator made it.
 
-    LOG is a CSV file, or - for standard input, with a row for each step from the kick on. Prints with which pole each column's error decays;
-    with --alpha and --beta how far it is from every method's, the nearest first; without them, the α and β that it
-    means under --method. What cannot be told is said, with exit status 3.
+    LOG is a CSV file, or - for standard input, with a row for each step from the kick on. Prints the pole with which
+    each column's error decays; with --alpha and --beta how far it is from every method's, the nearest first; without
+    them, the α and β that it means under --method. What cannot be told is said, with exit status 3.
 
     Example: bezstab probe log.csv --minus unkicked.csv --alpha 1 --beta 0.25
     """

@@ -1,6 +1,8 @@
 """probe: logs as files and on standard input, and the words that it answers with."""
 
+import csv
 import doctest
+import io
 import json
 import re
 import shlex
@@ -78,6 +80,15 @@ def test_a_sentence_says_what_it_behaves_like_and_what_is_excluded() -> None:
     assert re.fullmatch(expected, said)
     said = run(*command.replace("SYM", "AB4").split()).stdout.splitlines()[-1]
     assert said.startswith("c: nothing fits at (0.5, 0.25): the nearest is ")
+
+
+def test_every_format_has_all_rows() -> None:
+    write("log.csv", c=response("SYM", 0.5, 0.25))
+    command = "probe log.csv --alpha 0.5 --beta 0.25 --method SYM --method B4 --format"
+    table = list(csv.DictReader(io.StringIO(run(*command.split(), "csv").stdout)))
+    assert [row["method"] for row in table] == ["", "SYM", "B4"]
+    shown = run(*command.split(), "markdown").stdout
+    assert len(re.findall(r"^\|", shown, re.MULTILINE)) == 7  # two tables of a head, a rule and three rows in all
 
 
 def test_sentences_in_full() -> None:
