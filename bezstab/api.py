@@ -6,6 +6,7 @@ with the step `h=` in s. A method is a name as on the command line ("B4", "RK4@5
 of one; a scene is a shipped scene's name, the path of a TOML file, or what `scene` made of one.
 """
 
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 
 import numpy as np
@@ -14,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from bezstab import evidence, mechanism, stability
 from bezstab.errors import InputError
 from bezstab.mechanism import Scene, Simulation
-from bezstab.methods import Method, Verdict, lookup
+from bezstab.methods import REGISTRY, Method, Verdict, lookup
 from bezstab.rationals import exact, rational
 from bezstab.units import to_dimensionless
 
@@ -232,6 +233,78 @@ def verify(
     a, b = np.broadcast_arrays(*_plane_arrays(alpha_hat, beta_hat, alpha, beta, h))
     compiled = mechanism.compiled_mechanism(_scene(scene))
     return evidence.measure_poles(compiled, _method(method), h, np.atleast_1d(a).ravel(), np.atleast_1d(b).ravel())
+
+
+def probe(
+    c: ArrayLike,
+    *,
+    minus: ArrayLike | None = None,
+    differenced: bool = False,
+    methods: Sequence[str | Method] | None = None,
+    alpha_hat: Number | None = None,
+    beta_hat: Number | None = None,
+    alpha: Number | None = None,
+    beta: Number | None = None,
+    h: Number | None = None,
+    every: int = 1,
+    turning: float | None = None,
+) -> evidence.Probe:
+    """Return the dominant pole in samples of a decaying error, and which integrator has it; poles are dimensionless.
+
+    `c` has shape (samples,), or (samples, responses) of one system, in any unit; `minus` is another run of that shape
+    to subtract, unless c is such a difference already (`differenced`). With a point, given in one of the two ways,
+    `likenesses` compares each of `methods` [all built-in ones], the nearest first; without one `points` are those at
+    which `methods` have the pole. `every` steps of h (s) lie between two samples. `turning` is how fast the directions
+    of the constraints turn, in 1/s, and needs h. What cannot be told is said in `found.reason`. InputError unless
+    point, shapes and h fit together. Method: linear prediction (Prony).
+    """
+    has_point = not (alpha_hat is None and beta_hat is None and alpha is None and beta is None)
+    point = _plane_point(alpha_hat, beta_hat, alpha, beta, h) if has_point else None
+    if turning is not None and h is None:
+        raise InputError("turning in 1/s needs the step h in s")
+    turned = None if turning is None or h is None else turning * float(_exact(h))
+    found = evidence.probed_pole(c, minus, differenced)
+    if point is None:
+        named = [_method(name) for name in methods or ()]
+        points = [one for own in named for one in evidence.points_like(found, own, every)]
+        return evidence.Probe(found, (), tuple(points))
+    compared = [_method(name) for name in (REGISTRY if methods is None else methods)]
+    return evidence.Probe(found, tuple(evidence.likenesses(found, compared, *point, every, turned)), ())
+
+
+def probe_step(
+    step: Callable[[FloatArray], FloatArray],
+    state: ArrayLike,
+    constraint: Callable[[FloatArray], float],
+    kick: ArrayLike,
+    *,
+    steps: int = 600,
+    methods: Sequence[str | Method] | None = None,
+    alpha_hat: Number | None = None,
+    beta_hat: Number | None = None,
+    alpha: Number | None = None,
+    beta: Number | None = None,
+    h: Number | None = None,
+    turning: float | None = None,
+) -> evidence.Probe:
+    """Return what `probe` does, of a simulator's own function from a state to the next.
+
+    `constraint` is the error in a state, in any unit, and `kick` is added to `state`, an array of the same shape, and
+    subtracted from it; so are parts of it, to see growth as long as decay. `step` is called six times `steps` times.
+    The keywords are those of `probe`, dimensionless or 1/s and s, and so are the errors: InputError for shapes that
+    differ too.
+    """
+    return probe(
+        evidence.kicked_responses(step, state, constraint, kick, steps),
+        differenced=True,
+        methods=methods,
+        alpha_hat=alpha_hat,
+        beta_hat=beta_hat,
+        alpha=alpha,
+        beta=beta,
+        h=h,
+        turning=turning,
+    )
 
 
 def _method(method_or_name: str | Method) -> Method:

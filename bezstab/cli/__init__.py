@@ -13,6 +13,7 @@ A file imports only from those above it:
     verify_command      verify
     schema_command      schema
     lint_command        lint
+    probe_command       probe
     command_group       the group of all commands
 """
 

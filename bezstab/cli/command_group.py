@@ -14,6 +14,7 @@ from bezstab.cli.evidence_commands import extremes, simulate, tradeoff
 from bezstab.cli.lint_command import lint
 from bezstab.cli.map_commands import family, methods, poles, region
 from bezstab.cli.output import say
+from bezstab.cli.probe_command import probe
 from bezstab.cli.schema_command import schema
 from bezstab.cli.verify_command import verify
 from bezstab.errors import InputError, NumericalError
@@ -21,7 +22,7 @@ from bezstab.errors import InputError, NumericalError
 SECTIONS: Mapping[str, Sequence[click.Command]] = {
     "Maps": (poles, region, methods, family),
     "Choose": (choose, check, lint, engines, explore),
-    "Evidence": (simulate, verify, tradeoff, extremes),
+    "Evidence": (simulate, verify, probe, tradeoff, extremes),
     "Programs": (schema,),
 }
 """What `bezstab --help` lists under which heading, in this order."""

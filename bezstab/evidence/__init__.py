@@ -10,6 +10,8 @@ The only room in which stability and mechanism meet. A file imports only from th
     moving_regions      the region of a mechanism that moves
     floquet             the exact rates of a mechanism that moves
     measured_poles      predicted against measured poles of a running mechanism
+    logs                logs of somebody else's simulator, as columns of numbers
+    probed_poles        the dominant pole in a log, and whose it is
     verdict_maps        simulated verdicts over the plane against |z_p| < 1
     mujoco_models       a MuJoCo model's step, constraints, springs, drives and masses
     mujoco_lint         what they mean in alpha_hat and beta_hat, and whether they are safe
@@ -38,6 +40,7 @@ from bezstab.evidence.chunks import ATTEMPTS, completed_chunks
 from bezstab.evidence.extremes import Check, extreme_checks
 from bezstab.evidence.floquet import floquet_rates
 from bezstab.evidence.linear_prediction import SPREAD, Fit, Refusal, fit_dominant_pole
+from bezstab.evidence.logs import Log, error_columns, log_from, parse_log, read_log, row_step, time_column
 from bezstab.evidence.measured_poles import (
     CLOSE,
     LINEAR,
@@ -60,6 +63,17 @@ from bezstab.evidence.mujoco_lint import Linted, linted_model
 from bezstab.evidence.mujoco_models import ModelData, model_data, mujoco_module, read_mujoco_model
 from bezstab.evidence.mujoco_witness import TIMES, Witnessed, model_xml, mujoco_witnesses, witness_count
 from bezstab.evidence.pareto import pareto_front
+from bezstab.evidence.probed_poles import (
+    Likeness,
+    LikePoint,
+    Probe,
+    ProbedPole,
+    kicked_responses,
+    likenesses,
+    points_like,
+    probed_pole,
+    steps_between_rows,
+)
 from bezstab.evidence.reference_motions import ReferenceMotion, reference_motion
 from bezstab.evidence.sweep_summaries import FINE, Summary, summary, sweep_sentences
 from bezstab.evidence.verdict_maps import MapRows, VerdictMap, map_rows, simulated_verdicts, verdict_map
@@ -77,13 +91,18 @@ __all__ = [
     "Arrays",
     "Check",
     "Fit",
+    "LikePoint",
+    "Likeness",
     "Linted",
+    "Log",
     "MapRows",
     "Measurement",
     "ModelData",
     "MovingPole",
     "MovingRegion",
     "MovingVerdict",
+    "Probe",
+    "ProbedPole",
     "ReferenceMotion",
     "Refusal",
     "Run",
@@ -94,12 +113,16 @@ __all__ = [
     "Witnessed",
     "chunk_store",
     "completed_chunks",
+    "error_columns",
     "extreme_checks",
     "fit_dominant_pole",
     "floquet_rates",
     "growth_rates",
     "kicked_constraint_errors",
+    "kicked_responses",
+    "likenesses",
     "linted_model",
+    "log_from",
     "map_rows",
     "measure_poles",
     "measured_runs",
@@ -114,14 +137,21 @@ __all__ = [
     "mujoco_module",
     "mujoco_witnesses",
     "pareto_front",
+    "parse_log",
+    "points_like",
+    "probed_pole",
     "random_points",
+    "read_log",
     "read_mujoco_model",
     "reference_motion",
+    "row_step",
     "simulated_verdicts",
+    "steps_between_rows",
     "summary",
     "sweep_sentences",
     "swept_runs",
     "tabulated_rates",
+    "time_column",
     "verdict_map",
     "whole_sweep",
     "with_fronts",

@@ -59,6 +59,13 @@ RESIDUAL = 1e-4
 CARRIES = 1e-3
 """Of the largest amplitude: a root with less belongs to the noise."""
 
+FORMAL_ERRORS = 3.0
+"""Standard errors of one window's fit that are stated: its equations share samples, so that their errors are not
+independent."""
+
+TIMES_FARTHEST = 2.0
+"""Times the farthest pole of the better half of the fits, that is stated: windows overlap, and err alike."""
+
 SPREAD = 1e-3
 """Of |z|, and rad: fits that differ by more have not found one and the same pole."""
 
@@ -68,16 +75,22 @@ class Fit:
     """The dominant pole of a response, per sample, and how well it is known.
 
     `pole` lies in the closed upper half plane, for its conjugate is a pole too. `residual` is the relative error of the
-    recursion in the window that gave it, `order` the number of poles in that recursion and `samples` the window's
-    length. `spread_abs` (relative) and `spread_angle` (rad) say by how much the better half of all fits differ.
+    recursion in the window that gave it, `order` the number of poles in that recursion, `start` the window's first
+    sample and `samples` its length. `spread_abs` (relative) and `spread_angle` (rad) say by how much the better half of
+    all fits differ. `uncertainty` bounds the error of the pole in the plane, as far as samples can tell: by how much
+    these fits are off it, or what the residual leaves open where that is more. `poles` are all that carry amplitude in
+    the window, by modulus, those of the closed upper half plane.
     """
 
     pole: complex
     residual: float
     order: int
+    start: int
     samples: int
     spread_abs: float
     spread_angle: float
+    uncertainty: float
+    poles: tuple[complex, ...]
 
 
 @dataclass(frozen=True)
@@ -89,13 +102,23 @@ class Refusal:
 
 @dataclass(frozen=True)
 class WindowFit:
-    """What one window gives: the recursion's residual, its order and dominant pole, and the window's ends (samples)."""
+    """What one window gives: the recursion's residual, its order and poles, and the window's ends (samples).
+
+    `poles` carry amplitude and lie in the closed upper half plane, by modulus; `formal_error` is the standard error of
+    the dominant one if what the recursion leaves is noise.
+    """
 
     residual: float
     order: int
-    pole: complex
+    poles: tuple[complex, ...]
+    formal_error: float
     start: int
     stop: int
+
+    @property
+    def pole(self) -> complex:
+        """The dominant pole."""
+        return self.poles[0]
 
 
 def fit_dominant_pole(
@@ -103,13 +126,15 @@ def fit_dominant_pole(
     order: int,
     sizes: FloatArray | None = None,
     limits: Sequence[float] = (np.inf,),
+    floor: float = 0.0,
 ) -> Fit | Refusal:
     """Return the dominant pole that several responses of one linear system share, or why it cannot be had.
 
     `responses` has shape (samples, responses), equally spaced in time; unit as the user likes, for the pole has none.
     `order` is the largest number of poles to look for. `sizes`, of the same shape and by default |responses|, is what
-    must stay below a limit for the system to answer linearly; every one of `limits` is tried. A number that is not
-    finite ends a response. No errors are raised: what cannot be fitted is a Refusal.
+    must stay below a limit for the system to answer linearly; every one of `limits` is tried. `floor`, in the unit of
+    the samples, is what their rounding amounts to: like what is forced, it stays far below a window. A number that is
+    not finite ends a response. No errors are raised: what cannot be fitted is a Refusal.
 
     Every window of every response gives a fit. Of the half with the smaller residuals the one of median |z| is taken;
     if these differ, or stem from one window only, no pole is claimed (Prony's method: Hildebrand, Introduction to
@@ -120,7 +145,7 @@ def fit_dominant_pole(
     fits: list[WindowFit] = []
     longest = 0
     for response, size in zip(responses.T, sizes.T, strict=True):
-        for window in response_windows(response, size, limits):
+        for window in response_windows(response, size, limits, floor):
             samples = response[window]
             longest = max(longest, len(samples))
             fit = fit_window(samples, order, window.start)
@@ -144,21 +169,29 @@ def fit_dominant_pole(
         pole=median.pole,
         residual=median.residual,
         order=median.order,
+        start=median.start,
         samples=median.stop - median.start,
         spread_abs=spread_abs,
         spread_angle=spread_angle,
+        uncertainty=max(TIMES_FARTHEST * float(np.abs(z - median.pole).max()), FORMAL_ERRORS * median.formal_error),
+        poles=median.poles,
     )
 
 
-def response_windows(response: FloatArray, size: FloatArray, limits: Sequence[float]) -> Iterator[slice]:
-    """Yield the stretches of one response, shape (samples,), that lie in the linear range and above what is forced."""
+def response_windows(
+    response: FloatArray, size: FloatArray, limits: Sequence[float], floor: float = 0.0
+) -> Iterator[slice]:
+    """Yield the stretches of one response, shape (samples,), that lie in the linear range and above what is forced.
+
+    What is forced is at least `floor`, the rounding of the samples.
+    """
     ends: set[int] = set()
     for limit in limits:
         outside = np.flatnonzero(~(size < limit))  # not a number included
         end = int(outside[0]) if outside.size else len(response)
         within = np.abs(response[:end])
         largest = within.max(initial=0.0)
-        remaining = within[len(within) // 2 :].max(initial=0.0)
+        remaining = max(within[len(within) // 2 :].max(initial=0.0), floor)
         if remaining < SETTLED * largest:
             # It has decayed to what is forced: end where it is last well above that.
             for factor in ABOVE_FORCED:
@@ -192,13 +225,29 @@ def fit_window(samples: FloatArray, order: int, start: int = 0) -> WindowFit | N
         residual = float(np.linalg.norm(before @ coefficients - after) / np.linalg.norm(after))
         if residual < RESIDUAL:
             z = np.roots([1.0, *-coefficients[::-1]])
-            pole = _dominant_with_amplitude(samples, z)
-            return WindowFit(residual, terms, pole, start, start + len(samples))
+            poles = _poles_with_amplitude(samples, z)
+            left_over = before @ coefficients - after
+            error = _formal_error(before, left_over, coefficients, poles[0])
+            return WindowFit(residual, terms, poles, error, start, start + len(samples))
     return None
 
 
-def _dominant_with_amplitude(samples: FloatArray, z: InexactArray) -> complex:
-    """Return the largest of the roots z that carries an amplitude in the samples, in the upper half plane."""
+def _formal_error(before: FloatArray, left_over: FloatArray, coefficients: FloatArray, pole: complex) -> float:
+    """Return the standard error of a root of z^p - c_(p-1) z^(p-1) - ... - c_0 if what least squares left is noise.
+
+    A change dc of the coefficients moves a root by sum_j dc_j z^j / p'(z); infinite at a double root.
+    """
+    terms = len(coefficients)
+    slope = np.polyval(np.polyder(np.array([1.0, *-coefficients[::-1]])), pole)
+    if slope == 0:
+        return float("inf")
+    deviation = np.linalg.norm(left_over) / np.sqrt(len(left_over) - terms)
+    response = (pole ** np.arange(terms) / slope) @ np.linalg.pinv(before)
+    return float(deviation * np.linalg.norm(response))
+
+
+def _poles_with_amplitude(samples: FloatArray, z: InexactArray) -> tuple[complex, ...]:
+    """Return those of the roots z that carry an amplitude in the samples, largest first, of the upper half plane."""
     k = np.arange(len(samples))
     growth = np.abs(z).max()
     # Powers and samples are both divided by growth^k, so that neither overflows; amplitudes are the same.
@@ -206,5 +255,5 @@ def _dominant_with_amplitude(samples: FloatArray, z: InexactArray) -> complex:
     scaled = samples * np.exp(-k * np.log(growth))
     amplitudes = np.abs(np.linalg.lstsq(powers, scaled, rcond=None)[0])
     carrying = z[amplitudes > CARRIES * amplitudes.max()]
-    dominant = carrying[np.argmax(np.abs(carrying))]
-    return complex(dominant.real, abs(dominant.imag))
+    upper = sorted((complex(root) for root in carrying if root.imag >= 0), key=abs, reverse=True)
+    return tuple(upper)

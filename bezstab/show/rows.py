@@ -22,7 +22,7 @@ if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
     from _typeshed import DataclassInstance
 
     from bezstab.engines import Engine
-    from bezstab.evidence import Measurement, MovingPole, Run, VerdictMap, Witnessed
+    from bezstab.evidence import Likeness, LikePoint, Measurement, MovingPole, ProbedPole, Run, VerdictMap, Witnessed
     from bezstab.mechanism import Simulation
     from bezstab.methods import Verdict
     from bezstab.stability import BestPoint, Choice, Limit, Member, Region
@@ -319,6 +319,32 @@ def summary_row(measurements: Sequence[Row]) -> Row:
         "law_error": median_over_the_motion("law_z_abs"),
         "floquet_error": median_over_the_motion("floquet_z_abs"),
     }
+
+
+def probed_pole_row(column: str, found: ProbedPole) -> Row:
+    """Return the dominant pole in a column of a log, per row of it, angle in degrees; None where none is claimed."""
+    parts: dict[str, float | None] = dict.fromkeys(complex_parts("z_", 0))
+    if found.pole is not None:
+        parts |= complex_parts("z_", found.pole)
+    return {"column": column, **parts, **row(found, without={"pole", "poles", "rows"})}
+
+
+def likeness_row(column: str, likeness: Likeness) -> Row:
+    """Return how far the pole in a column of a log is from a method's, per row of the log, angle in degrees."""
+    return row(
+        likeness,
+        without={"predicted", "error"},
+        column=column,
+        predicted_abs=abs(likeness.predicted),
+        predicted_angle_deg=complex_parts("", likeness.predicted)["angle_deg"],
+        fits=likeness.fits,
+    )
+
+
+def like_point_row(column: str, point: LikePoint, h: float | None) -> Row:
+    """Return a point at which a method has the pole in a column of a log, with h (s) in 1/s too."""
+    alpha, beta = (None, None) if h is None else alpha_and_beta(point.alpha_hat, point.beta_hat, h)
+    return row(point, column=column, h=h, alpha=alpha, beta=beta)
 
 
 def verdict_map_row(verdicts: VerdictMap) -> Row:

@@ -78,6 +78,13 @@ def test_an_extension_is_found_by_name_and_an_unknown_command_is_not() -> None:
         ("simulate --time 1e9", "--time"),
         ("simulate --start late", "--start"),
         ("simulate --perturb 1e300", "start"),
+        ("probe", "LOG"),
+        ("probe missing.csv", "missing.csv"),
+        ("probe file", "file: is empty"),
+        ("probe file --minus file --alpha 1", "--beta"),
+        ("probe file --alpha 1 --beta 1 --physical", "--h"),
+        ("probe file --every 0", "--every"),
+        ("probe file --turning -1", "--turning"),
         ("verify --scene pendulm", "did you mean pendulum"),
         ("verify --alpha 1", "--beta"),
         ("verify --alpha 1 --beta 1 --points 3", "--points"),
@@ -228,11 +235,11 @@ def test_the_example_in_the_help_runs(name: str) -> None:
     shown = run(name, "--help").stdout
     example = re.search(r"Example: bezstab ((?:[^\n]|\n  \S)*)", shown)
     assert example, shown
-    needs_a_screen = name == "explore"
+    needs_more = name in ("explore", "probe")  # a screen, and logs of the user's own
     if name == "lint":
         pytest.importorskip("mujoco")
         Path("robot.xml").write_text("<mujoco/>", encoding="utf-8")
-    assert run(*shlex.split(example[1])).exit_code == (2 if needs_a_screen else 0)
+    assert run(*shlex.split(example[1])).exit_code == (2 if needs_more else 0)
 
 
 @pytest.mark.parametrize("name", NAMES)

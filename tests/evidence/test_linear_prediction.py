@@ -9,7 +9,7 @@ from bezstab.evidence import LINEAR, SPREAD, Fit, Refusal, fit_dominant_pole
 from bezstab.evidence.linear_prediction import (
     ABOVE_FORCED,
     SAMPLES,
-    _dominant_with_amplitude,
+    _poles_with_amplitude,
     fit_window,
     response_windows,
 )
@@ -90,4 +90,4 @@ def test_a_window_ends_with_the_last_sample_that_is_well_above_what_remains() ->
 @pytest.mark.parametrize(("amplitude", "dominant"), [(1e-5, 0.9), (1e-2, 0.99)])
 def test_a_root_with_less_than_a_thousandth_of_the_amplitude_is_noise(amplitude: float, dominant: float) -> None:
     samples = geometric(60, 0.9) + amplitude * geometric(60, 0.99)
-    assert _dominant_with_amplitude(samples, np.array([0.9, 0.99])) == pytest.approx(dominant)
+    assert _poles_with_amplitude(samples, np.array([0.9, 0.99]))[0] == pytest.approx(dominant)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from bezstab.stability import FloatArray
+from bezstab.stability import ComplexArray, FloatArray
 
 KICKS = (1e-4, 1e-6, 1e-8, 1e-11)
 """SI units; a linear system's responses to them differ by a factor only."""
@@ -25,3 +25,15 @@ def for_every_kick(response: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return a response that all kicks share, shape (steps, kicks), and its size."""
     responses = np.multiply.outer(response, KICKS)
     return responses, np.abs(responses)
+
+
+def of_poles(z: ComplexArray, count: int, seed: int) -> FloatArray:
+    """Return sum a z^k with random amplitudes a of order one, conjugate for conjugate poles; real, shape (count,)."""
+    random = np.random.default_rng(seed)
+    k = np.arange(count)
+    response = np.zeros(count)
+    for pole in z:
+        if pole.imag >= 0:
+            phase = random.uniform(0.3, 1.2) if pole.imag else 0.0  # no part of a pair vanishes
+            response += random.uniform(0.5, 1.5) * (np.exp(1j * phase) * pole**k).real
+    return response

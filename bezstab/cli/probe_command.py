@@ -1,0 +1,353 @@
+"""The command that tells from a log which integrator and which feedback made it: probe."""
+
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from bezstab.cli.options import (
+    METHOD,
+    NUMBER,
+    SECONDS,
+    ParsedType,
+    both_or_none,
+    format_option,
+    left_at_default,
+    physical_option,
+)
+from bezstab.cli.output import for_reading, show_rows
+from bezstab.cli.terminal import output_encoding, spelled
+from bezstab.errors import InputError, NumericalError
+from bezstab.methods import REGISTRY, Method, lookup
+from bezstab.rationals import rational
+from bezstab.show import Column, Format, Row, column, formatted, yes_no_column
+from bezstab.units import to_dimensionless
+
+if TYPE_CHECKING:
+    from bezstab.evidence import Likeness, Log, ProbedPole
+    from bezstab.stability import FloatArray
+
+SAME_STEP = 1e-3
+"""Of the time between rows: by as much that of two runs may differ, as times are rounded."""
+
+NAMED = 3
+"""Excluded methods that a sentence names; of more it gives the number and the nearest."""
+
+
+def _pole_text(row: Row) -> str:
+    real, imaginary = row["z_real"], row["z_imag"]
+    if not isinstance(real, float) or not isinstance(imaginary, float):
+        return formatted(None)
+    return f"{real:.7f} ± {imaginary:.7f}i" if imaginary else f"{real:.7f}"
+
+
+FITS: Sequence[Column] = (
+    column("column", "column"),
+    Column("pole z, per row", _pole_text),
+    column("|z|", "z_abs", ".7f"),
+    column("∠z (deg)", "z_angle_deg", ".4f"),
+    column("± of z", "uncertainty", ".1e"),
+    column("rows", "samples"),
+    column("what is to be said of it", "reason"),
+)
+
+LIKENESSES: Sequence[Column] = (
+    column("column", "column"),
+    column("method", "method"),
+    column("|z| there", "predicted_abs", ".7f"),
+    column("∠z (deg)", "predicted_angle_deg", ".4f"),
+    column("distance", "distance", ".1e"),
+    column("allowed", "allowed", ".1e"),
+    yes_no_column("fits", "fits"),
+    column("the same there", "same_as"),
+)
+
+
+def _with_error(key: str, error_key: str) -> Callable[[Row], str]:
+    """Return what shows a number with its error."""
+    return lambda row: f"{formatted(row[key], '.7g')} ± {formatted(row[error_key], '.1e')}"
+
+
+POINTS: Sequence[Column] = (
+    column("column", "column"),
+    column("method", "method"),
+    Column("α̂", _with_error("alpha_hat", "alpha_hat_error")),
+    Column("β̂", _with_error("beta_hat", "beta_hat_error")),
+)
+
+POINTS_IN_SECONDS: Sequence[Column] = (column("α (1/s)", "alpha", ".7g"), column("β (1/s)", "beta", ".7g"))
+
+
+def _turning(text: str) -> Fraction:
+    number = rational(text)
+    if number < 0:
+        raise InputError(f"{text}: expected 0 or more, in 1/s")
+    return number
+
+
+@click.command()
+@click.argument("log", type=click.Path(path_type=Path, allow_dash=True))
+@click.option("--column", "columns", multiple=True, help="A column by name or number, from 1 [all]. Repeatable.")
+@click.option("--time", "time_name", help="The column of times in s, by name or number [t or time, if there is one].")
+@click.option(
+    "--minus",
+    type=click.Path(path_type=Path, allow_dash=True),
+    help="Another run's log to subtract: not kicked, or kicked the other way.",
+)
+@click.option("--jointly", is_flag=True, help="One fit for all columns: they show one and the same pole.")
+@click.option("--every", type=click.IntRange(1, 10000), default=1, help="Steps of the integrator from row to row.")
+@click.option("--h", type=SECONDS, help="Step size of the integrator in s, for α and β in 1/s and a column of times.")
+@click.option("--alpha", type=NUMBER, help="α̂ that was set; α in 1/s with --physical.")
+@click.option("--beta", type=NUMBER, help="β̂ that was set; β in 1/s with --physical.")
+@physical_option
+@click.option(
+    "--method",
+    "methods",
+    type=METHOD,
+    multiple=True,
+    help="A method to compare with [all built-in ones], or whose α and β to find. Repeatable.",
+)
+@click.option(
+    "--turning",
+    type=ParsedType("number", _turning),
+    help="How fast the directions of the constraints turn, in 1/s: about half the angular speed, 0 at rest.",
+)
+@format_option
+def probe(
+    log: Path,
+    columns: Sequence[str],
+    time_name: str | None,
+    minus: Path | None,
+    jointly: bool,
+    every: int,
+    h: Fraction | None,
+    alpha: Fraction | None,
+    beta: Fraction | None,
+    physical: bool,
+    methods: Sequence[Method],
+    turning: Fraction | None,
+    form: Format,
+) -> None:
+    """Tell from a simulator's log which integrator made it.
+
+    LOG is a CSV file, or - for standard input, with a row for each step from the kick on. Prints the pole with which
+    each column's error decays; with --alpha and --beta how far it is from every method's, the nearest first; without
+    them, the α and β that it means under --method. What cannot be told is said, with exit status 3.
+
+    Example: bezstab probe log.csv --minus unkicked.csv --alpha 1 --beta 0.25
+    """
+    from bezstab.evidence import error_columns, probed_pole, steps_between_rows, time_column
+    from bezstab.show import probed_pole_row
+
+    point = _point(alpha, beta, h, physical)
+    data = _read(log)
+    time = time_column(data, time_name)
+    places = error_columns(data, columns, time)
+    other = None if minus is None else _columns_of(_read(minus), data, places)
+    step = None if h is None else float(h)
+    row = _row_step(data, time)
+    turned = _turned(turning, step, row, every)
+
+    def between(method: Method) -> int | None:
+        return steps_between_rows(method, step, row, every)
+
+    compared_methods = methods or ([lookup(name) for name in REGISTRY] if point else [])
+    _check_rows(compared_methods, between, step, row, every)
+    answers = Answers([], [], [], [])
+    reasons: list[str] = []
+    groups = [places] if jointly else [[place] for place in places]
+    for group in groups:
+        name = ", ".join(data.columns[place] for place in group)
+        subtracted = None if other is None else other[:, [places.index(place) for place in group]]
+        found = probed_pole(data.values[:, group], subtracted)
+        answers.fits.append(probed_pole_row(name, found))
+        if found.pole is None:
+            reasons.append(f"{name}: {found.reason}")
+        elif point:
+            _compare(answers, name, found, compared_methods, point, between, turned)
+        else:
+            _invert(answers, name, found, compared_methods, between, step)
+    _show(answers, form, in_seconds=step is not None)
+    if len(reasons) == len(groups):
+        raise NumericalError(f"no pole can be told: {'; '.join(reasons)}")
+
+
+@dataclass(frozen=True)
+class Answers:
+    """Rows and sentences as they are collected, column by column."""
+
+    fits: list[Row]
+    likenesses: list[Row]
+    points: list[Row]
+    sentences: list[str]
+
+
+def _compare(
+    answers: Answers,
+    column_name: str,
+    found: "ProbedPole",
+    methods: Sequence[Method],
+    point: tuple[Fraction, Fraction],
+    between: Callable[[Method], int | None],
+    turned: float | None,
+) -> None:
+    """Add how far a column's pole is from each method's at a point, and what follows."""
+    from bezstab.evidence import likenesses
+    from bezstab.show import likeness_row
+
+    like = likenesses(found, methods, *point, between, turned)
+    answers.likenesses.extend(likeness_row(column_name, one) for one in like)
+    answers.sentences.append(f"{column_name}: {likeness_sentence(like, point)}")
+
+
+def _invert(
+    answers: Answers,
+    column_name: str,
+    found: "ProbedPole",
+    methods: Sequence[Method],
+    between: Callable[[Method], int | None],
+    h: float | None,
+) -> None:
+    """Add the points at which each method has a column's pole, or why there is none; h in s."""
+    from bezstab.evidence import points_like
+    from bezstab.show import like_point_row
+
+    for method in methods:
+        steps = between(method)
+        try:
+            points = [] if steps is None else points_like(found, method, steps)
+        except InputError as error:
+            answers.sentences.append(f"{column_name}: {error}.")
+            continue
+        answers.points.extend(like_point_row(column_name, one, h) for one in points)
+        if not points:
+            answers.sentences.append(f"{column_name}: {method.name} has this pole for its dominant one nowhere.")
+
+
+def _show(answers: Answers, form: Format, in_seconds: bool) -> None:
+    """Print all rows; for reading in a table of each kind, with the sentences below."""
+    if not for_reading(form):
+        show_rows([*answers.fits, *answers.likenesses, *answers.points], FITS, form)
+        return
+    show_rows(answers.fits, FITS, form)
+    for rows, columns in (
+        (answers.likenesses, LIKENESSES),
+        (answers.points, [*POINTS, *(POINTS_IN_SECONDS if in_seconds else ())]),
+    ):
+        if rows:
+            click.echo()
+            show_rows(rows, columns, form)
+    for sentence in answers.sentences:
+        click.echo(f"\n{spelled(sentence, output_encoding())}")
+
+
+def likeness_sentence(like: "Sequence[Likeness]", point: tuple[Fraction, Fraction]) -> str:
+    """Return in words which methods a measured pole fits at a point, the nearest first, and which are excluded."""
+    at = f"({float(point[0]):.6g}, {float(point[1]):.6g})"
+    fitting = [one for one in like if one.fits]
+    excluded = [one for one in like if not one.fits]
+    if not fitting:
+        nearest = like[0]
+        return (
+            f"nothing fits at {at}: the nearest is {nearest.method.name}, {nearest.distance:.1g} off where "
+            f"{nearest.allowed:.1g} is allowed. Is α, β or h another, does the mechanism move faster (--turning), or "
+            "are there several steps from row to row (--every)?"
+        )
+    first = fitting[0]
+    equal = first.same_as.split(", ") if first.same_as else []
+    parts = [f"this behaves like {first.method.name} at {at} to {max(first.distance, first.error):.1g}"]
+    if not first.dominant:
+        parts[0] += ", by a lesser pole of it"
+    if equal:
+        parts.append(f"{_listed(equal)} {'has' if len(equal) == 1 else 'have'} the same poles there")
+    others = [one.method.name for one in fitting[1:] if one.method.name not in equal]
+    if others:
+        parts.append(f"{_listed(others)} {'cannot be told from it' if len(others) == 1 else 'cannot be told apart'}")
+    if excluded:
+        names = [one.method.name for one in excluded]
+        if len(names) <= NAMED:
+            parts.append(f"{_listed(names)} {'is' if len(names) == 1 else 'are'} excluded")
+        else:
+            parts.append(f"{len(names)} others are excluded, the nearest {names[0]}, {excluded[0].distance:.1g} off")
+    return "; ".join(parts) + "."
+
+
+def _listed(names: Sequence[str]) -> str:
+    """Return names as 'A', 'A and B' or 'A, B and C'."""
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+def _point(
+    alpha: Fraction | None, beta: Fraction | None, h: Fraction | None, physical: bool
+) -> tuple[Fraction, Fraction] | None:
+    """Return (alpha_hat, beta_hat) as given, None if not; UsageError for half a point or units without a step."""
+    point = both_or_none(alpha, beta)
+    if not physical:
+        return point
+    if point is None or h is None:
+        raise click.UsageError("--physical goes with --alpha, --beta and --h: α and β in 1/s need the step in s")
+    return to_dimensionless(*point, h)
+
+
+def _read(path: Path) -> "Log":
+    """Return the log in a file, or on standard input for the path -."""
+    from bezstab.evidence import log_from, read_log
+
+    if str(path) != "-":
+        return read_log(path)
+    if sys.stdin is None:  # as Python has it where it was closed
+        raise InputError("standard input is closed: there is no log to read")
+    return log_from(sys.stdin.buffer, "standard input")
+
+
+def _columns_of(other: "Log", data: "Log", places: Sequence[int]) -> "FloatArray":
+    """Return another run's values in the columns of the same names; InputError if it has others, or other steps."""
+    _check_same_step(other, data)
+    if other.columns == data.columns:
+        return other.values[:, list(places)]
+    return other.values[:, [other.number_of(data.columns[place]) for place in places]]
+
+
+def _check_same_step(other: "Log", data: "Log") -> None:
+    """Raise InputError where two logs have columns of times with different steps."""
+    from bezstab.evidence import time_column
+
+    own, others = _row_step(data, time_column(data)), _row_step(other, time_column(other))
+    if own is not None and others is not None and abs(own - others) > SAME_STEP * own:
+        raise InputError(f"--minus: {other.name} has rows every {others:.6g} s, {data.name} every {own:.6g} s")
+
+
+def _row_step(data: "Log", time: int | None) -> float | None:
+    """Return the time between rows in s, None without a column of times."""
+    from bezstab.evidence import row_step
+
+    return None if time is None else row_step(data, time)
+
+
+def _turned(turning: Fraction | None, h: float | None, row: float | None, every: int) -> float | None:
+    """Return kappa h for a rate in 1/s, None if none is given; UsageError without a step in s."""
+    if turning is None:
+        return None
+    if h is None and row is None:
+        raise click.UsageError("--turning is a rate in 1/s: it needs --h, or a column of times in the log")
+    return float(turning) * (h if h is not None else (row or 0.0) / every)
+
+
+def _check_rows(
+    methods: Sequence[Method],
+    between: Callable[[Method], int | None],
+    h: float | None,
+    row: float | None,
+    every: int,
+) -> None:
+    """Raise InputError where the rows are no multiple of any method's step, or of another than --every says."""
+    if h is None or row is None:
+        return
+    if methods and all(between(method) is None for method in methods):
+        raise InputError(f"the log's times are {row:.6g} s apart: expected a multiple of the step, --h {h:g}")
+    if not left_at_default("every") and round(row / h) != every:
+        raise InputError(f"--every {every}: the log's times are {row:.6g} s apart, {row / h:.4g} times --h {h:g}")

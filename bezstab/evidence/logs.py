@@ -1,0 +1,229 @@
+"""Logs of somebody else's simulator: columns of numbers from delimited text, and the step between its rows.
+
+A log is text: one row for each sample, cells separated by commas, semicolons, tabs or blanks, a line with names above
+or none. Nothing in it is executed.
+"""
+
+import csv
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import BinaryIO
+
+import numpy as np
+
+from bezstab.errors import InputError
+from bezstab.stability import FloatArray
+
+LARGEST = 200_000_000
+"""Bytes: minutes to read. A pole needs some hundred rows."""
+
+COMMENTS = ("#", "%")
+"""What lines begin with that are no data; the last of them above the data may hold the names, as numpy writes it."""
+
+TIMES = ("t", "time", "times", "zeit", "sec", "seconds", "timestamp")
+"""Names of a time column, without units."""
+
+UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6}
+"""Of times, in s, as the name of a column has them in brackets: time [ms]."""
+
+COUNTERS = ("step", "steps", "index", "k", "i", "n", "frame", "row")
+"""Names of columns that count rows: no error decays in them."""
+
+UNEVEN = 0.01
+"""Of the step: by more than that, and the rounding of the times, no sample may be early or late."""
+
+
+@dataclass(frozen=True)
+class Log:
+    """Columns of numbers by name; `values` has shape (rows, columns), a missing number is nan.
+
+    `name` is what messages call the log. A log without names has columns "1", "2" and so on.
+    """
+
+    name: str
+    columns: tuple[str, ...]
+    values: FloatArray
+
+    def number_of(self, column: str) -> int:
+        """Return the place of a column, given by its name or by its number from 1; InputError if there is none."""
+        if self.columns.count(column) == 1:
+            return self.columns.index(column)
+        if column in self.columns:
+            raise InputError(f"{self.name}: {self.columns.count(column)} columns are called {column!r}: give a number")
+        if column.isascii() and column.isdigit() and 1 <= int(column) <= len(self.columns):
+            return int(column) - 1
+        listed = ", ".join(self.columns)
+        raise InputError(f"{self.name}: no column {column[:50]!r} (columns: {listed}; or 1 to {len(self.columns)})")
+
+
+def read_log(path: Path) -> Log:
+    """Return the log in a file; InputError, with the path and the line, for what cannot be read as one."""
+    try:
+        with path.open("rb") as file:
+            return log_from(file, str(path))
+    except OSError as error:
+        raise InputError(f"log {path}: {error.strerror}") from None
+
+
+def log_from(file: BinaryIO, name: str) -> Log:
+    """Return the log that an open file holds, called `name` in messages; InputError as `read_log`."""
+    content = file.read(LARGEST + 1)
+    if len(content) > LARGEST:
+        raise InputError(f"log {name}: more than {LARGEST // 10**6} MB: give the some hundred rows after the kick")
+    try:
+        return parse_log(content.decode("utf-8-sig"), f"log {name}")
+    except UnicodeDecodeError:
+        raise InputError(f"log {name}: is not text (UTF-8)") from None
+
+
+def parse_log(text: str, name: str) -> Log:
+    """Return the log that a text holds; InputError, naming the line, for cells that are no numbers and ragged rows."""
+    lines = list(enumerate(text.splitlines(), start=1))
+    comments = [line.strip() for _, line in lines if line.strip().startswith(COMMENTS)]
+    filled = [(number, line) for number, line in lines if line.strip() and not line.strip().startswith(COMMENTS)]
+    if not filled:
+        raise InputError(f"{name}: is empty")
+    delimiter = _delimiter(filled[min(1, len(filled) - 1)][1])  # the first line may hold names, the last be cut off
+    cells = [_cells(line, delimiter) for _, line in filled]
+    numbers_of = {number: row for (number, _), row in zip(filled, cells, strict=True)}
+    names: tuple[str, ...] = ()
+    if not all(_is_number_or_missing(cell) for cell in cells[0]):
+        names = tuple(cell.strip() for cell in cells[0])
+        del numbers_of[filled[0][0]]
+    elif comments:
+        of_comment = _cells(comments[-1].lstrip("".join(COMMENTS)), delimiter)
+        if len(of_comment) == len(cells[0]):
+            names = tuple(cell.strip() for cell in of_comment)
+    width = len(cells[0])
+    if not numbers_of:
+        raise InputError(f"{name}: has names, but no rows of numbers")
+    values = np.empty((len(numbers_of), width))
+    for place, (number, row) in enumerate(numbers_of.items()):
+        if len(row) != width:
+            raise InputError(f"{name}, line {number}: {len(row)} cells, expected {width} as above")
+        values[place] = _numbers(row, f"{name}, line {number}")
+    return Log(name, names or tuple(str(k) for k in range(1, width + 1)), values)
+
+
+def _delimiter(line: str) -> str | None:
+    """Return what separates the cells of a line of numbers; None for blanks."""
+    return next((delimiter for delimiter in (";", "\t", ",") if delimiter in line.strip()), None)
+
+
+def _cells(line: str, delimiter: str | None) -> list[str]:
+    if delimiter is None:
+        return line.split()
+    return next(csv.reader([line.strip(" ")], delimiter=delimiter, skipinitialspace=True))
+
+
+def _numbers(row: Sequence[str], place: str) -> list[float]:
+    """Return the numbers of a row's cells; InputError for a cell that holds none."""
+    try:
+        return [float(cell) if cell.strip() else math.nan for cell in row]
+    except ValueError:
+        pass
+    numbers = []
+    for cell in row:
+        if not _is_number_or_missing(cell):
+            raise InputError(f"{place}: {cell[:50]!r} is not a number")
+        numbers.append(float(cell.replace(",", ".")) if cell.strip() else math.nan)
+    return numbers
+
+
+def _is_number_or_missing(cell: str) -> bool:
+    """Return whether a cell holds a number, with a decimal point or a decimal comma, or nothing."""
+    if not cell.strip():
+        return True
+    try:
+        float(cell.replace(",", "."))
+    except ValueError:
+        return False
+    return True
+
+
+def time_column(log: Log, chosen: str | None = None) -> int | None:
+    """Return the place of the time column: the chosen one, else one that is called so; None if there is none.
+
+    In a log without names the first of several columns is taken if it rises by equal steps. InputError if the chosen
+    column is not there.
+    """
+    if chosen is not None:
+        return log.number_of(chosen)
+    for place, column in enumerate(log.columns):
+        if _plain(column) in TIMES:
+            return place
+    unnamed = log.columns == tuple(str(k) for k in range(1, len(log.columns) + 1))
+    if unnamed and len(log.columns) > 1 and len(log.values) > 2 and _rises_evenly(log.values[:, 0]):
+        return 0
+    return None
+
+
+def error_columns(log: Log, chosen: Sequence[str], time: int | None) -> list[int]:
+    """Return the places of the chosen columns, else of all but those that hold times or count rows.
+
+    InputError for a column that is not there, and where none is left.
+    """
+    if chosen:
+        return [log.number_of(column) for column in chosen]
+    left = [
+        place for place, column in enumerate(log.columns) if place != time and _plain(column) not in (*COUNTERS, *TIMES)
+    ]
+    if not left:
+        raise InputError(f"{log.name}: no column holds an error (columns: {', '.join(log.columns)})")
+    return left
+
+
+def _plain(column: str) -> str:
+    """Return a column's name without its unit: 'Time [s]' is time."""
+    return re.split(r"[\s(\[/]", column.strip().casefold(), maxsplit=1)[0]
+
+
+def row_step(log: Log, time: int) -> float:
+    """Return the time between two rows in s; the name of the time column may say another unit (UNITS).
+
+    InputError, naming the row, where times are missing, do not rise, or are uneven by more than their own rounding.
+    """
+    t = log.values[:, time]
+    if len(t) < 2 or not np.isfinite(t).all():
+        raise InputError(f"{log.name}: column {log.columns[time]} has no time in every row, or one row only")
+    step = float(t[-1] - t[0]) / (len(t) - 1)
+    if not step > 0:
+        raise InputError(f"{log.name}: the times in column {log.columns[time]} do not rise")
+    late = np.abs(t - (t[0] + step * np.arange(len(t))))
+    # A time that was rounded to the last of its decimals is off by half of it, and so are the ends of the mean step. A
+    # place that is no small part of the step is no rounding of it: then a row that is left out would pass as well.
+    place = decimal_place(t)
+    allowed = UNEVEN * step + (place if place < step / 2 else 0.0)
+    if late.max() > allowed:
+        row = int(np.argmax(late))
+        raise InputError(
+            f"{log.name}: uneven times: row {row + 1} is {late[row]:.3g} off the mean step of {step:.6g}; "
+            "a pole is per step, so log every step of one size"
+        )
+    unit = re.search(r"[\[(/]\s*(\w+)", log.columns[time])
+    return step * UNITS.get(unit[1], 1.0) if unit else step
+
+
+def _rises_evenly(t: FloatArray) -> bool:
+    """Return whether numbers rise by equal steps."""
+    steps = np.diff(t)
+    return bool(np.isfinite(t).all() and steps.min() > 0 and np.ptp(steps) < UNEVEN * steps.mean())
+
+
+def decimal_place(values: FloatArray) -> float:
+    """Return the value of the last decimal that any of these numbers shows, such as 1e-6; 0 without a number.
+
+    The numbers of a log that was written with a fixed number of decimals are multiples of it. Zero shows none.
+    """
+    shown = (repr(value) for value in values[np.isfinite(values) & (values != 0)].tolist())
+    places = [_last_place(text) for text in shown]
+    return 10.0 ** min(places) if places else 0.0
+
+
+def _last_place(text: str) -> int:
+    mantissa, _, exponent = text.partition("e")
+    decimals = mantissa.partition(".")[2]
+    return int(exponent or 0) - (0 if decimals == "0" else len(decimals))

@@ -1,0 +1,549 @@
+"""The dominant pole in the log of somebody else's simulator, and which method and feedback it is the pole of.
+
+A log knows nothing of mechanisms, methods or steps: what is asked of it is asked of samples alone, and what a log
+cannot show is stated beside the answer:
+
+    log ---> response ---> linear prediction ---> z_log +- fit        probed_pole
+                                                    |
+             poles of each method there, z^k  ------+---> distances   likenesses
+             P(z; alpha_hat, beta_hat) = 0    ------+---> a point     points_like
+
+k is the number of steps between two rows. Errors of the fit are one part of what is allowed to a distance. The other is
+the motion of the mechanism, which shifts each pole by up to |chi| kappa h (`moving_mechanisms`) and which the log of
+one run does not tell from another method's pole.
+"""
+
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+from numpy.polynomial.polynomial import polyder, polyval2d, polyval3d
+from numpy.typing import ArrayLike
+
+from bezstab.errors import InputError, NumericalError
+from bezstab.evidence.linear_prediction import SAMPLES, SETTLED, SPREAD, Fit, Refusal, fit_dominant_pole
+from bezstab.evidence.logs import UNEVEN, decimal_place
+from bezstab.evidence.measured_poles import CLOSE
+from bezstab.methods import Method, closed_loop_at, closed_loop_table
+from bezstab.stability import ComplexArray, FloatArray, poles, region, turning_sensitivity, window
+
+ORDER = 8
+"""Poles that are looked for: as many as four-step methods have. Of longer ones the lesser poles die out first."""
+
+FEWEST = 12
+"""Samples: two windows that differ, each with more equations than a pair of poles has unknowns."""
+
+GROWS = 100.0
+"""Times the start: what ends up so much larger is taken to grow, and to leave the linear range on its way."""
+
+FIRST = 3
+"""Rows that count as the start: one of them may be next to zero in an oscillation."""
+
+LAST_SHARE = 0.8
+"""Of the rows: what grows is largest after these."""
+
+LINEAR_SHARES = (np.inf, 1e-1, 1e-2, 1e-3, 1e-4)
+"""Of the largest sample of a response that grows, up to which it is tried as linear."""
+
+STARTS = 9
+"""Of Newton's method along each side of the region's window."""
+
+ITERATIONS = 40
+"""Of Newton's method: from a start that leads anywhere it settles within some twenty."""
+
+SOLVED = 1e-9
+"""Of a point's size: the last change of Newton's method where it has settled."""
+
+SAME = 1e-6
+"""Of a point's size, and of |z|: solutions nearer than that are one, which Newton's method reached from two places."""
+
+TURNED = 5e-4
+"""kappa h where nobody has said how fast the mechanism moves: some 10 to 30 revolutions a minute at 1 ms."""
+
+DIFFERENCES = 3
+"""Times that samples are differenced at most: each takes off a factor omega h of what a motion forces."""
+
+HIDDEN = 30.0
+"""Times what a pole explains: larger samples before its window belong to something that has decayed since."""
+
+KICK_SHARES = (1.0, 1e-2, 1e-4)
+"""Of the kick that a user gives for a step of theirs."""
+
+UNHEARD = 1e9
+"""Times a pole may grow over a log and still not be seen: from the last of nine digits."""
+
+SLOW = 0.05
+"""From 1: poles so near to it change from row to row as little as what a motion forces."""
+
+DIFFERENCED = "what changes slowly or not at all was taken off by differences"
+ON_THE_CIRCLE = (
+    "|z| is one as far as can be told: forced by the motion, or marginal; two runs, kicked and not, tell them apart"
+)
+SLOWLY = "a pole so near to 1 may be forced by the motion; two runs, kicked and not, would tell"
+FORCED = (
+    "what is left after the start hardly decays: forced by the motion, or a slow pole; two runs, kicked and not, "
+    "tell them apart"
+)
+
+
+@dataclass(frozen=True)
+class ProbedPole:
+    """The dominant pole in one response, per row of the log; `pole` is None, and `reason` says why, if none is claimed.
+
+    `uncertainty` is the error of the fit in the plane, `samples` the number of rows that it rests on, of `rows` that
+    hold numbers; `poles` are all that are seen, by modulus, in the closed upper half plane. With a pole `reason` says
+    what is to be kept in mind.
+    """
+
+    pole: complex | None
+    uncertainty: float | None
+    samples: int
+    rows: int
+    poles: tuple[complex, ...]
+    reason: str
+
+
+@dataclass(frozen=True)
+class Likeness:
+    """How far a measured pole is from a method's own at one point.
+
+    `predicted` is the method's dominant pole, per row of the log; `distance` is that of the nearest of its poles, and
+    `dominant` says whether that is the dominant one. It fits if the distance is at most `allowed`: the `error` of the
+    fit and what the motion of the mechanism may do. `same_as` names methods with the same polynomial there but for
+    factors of z, which no log can tell from this one.
+    """
+
+    method: Method
+    predicted: complex
+    distance: float
+    error: float
+    allowed: float
+    dominant: bool
+    same_as: str
+
+    @property
+    def fits(self) -> bool:
+        """Whether the measured pole may be this method's."""
+        return self.distance <= self.allowed
+
+
+@dataclass(frozen=True)
+class LikePoint:
+    """A point at which a method has the measured pole for its dominant one; errors by the error of the fit."""
+
+    method: Method
+    alpha_hat: float
+    beta_hat: float
+    alpha_hat_error: float
+    beta_hat_error: float
+
+
+@dataclass(frozen=True)
+class Probe:
+    """What a log says: the pole, and what was asked of it besides.
+
+    `likenesses` say how far each method's pole is from it at the point that was given, the nearest first; `points` are
+    those at which the methods that were named without a point have it. Either is empty if it was not asked for.
+    """
+
+    found: ProbedPole
+    likenesses: tuple[Likeness, ...]
+    points: tuple[LikePoint, ...]
+
+    @property
+    def pole(self) -> complex | None:
+        """The dominant pole per row, None if none is claimed."""
+        return self.found.pole
+
+    @property
+    def fitting(self) -> tuple[str, ...]:
+        """The names of the methods that fit, the nearest first."""
+        return tuple(one.method.name for one in self.likenesses if one.fits)
+
+
+def probed_pole(c: ArrayLike, minus: ArrayLike | None = None, differenced: bool = False) -> ProbedPole:
+    """Return the dominant pole in samples of an error at equal distances in time, dimensionless, per sample.
+
+    `c` has shape (samples,), or (samples, responses) for several of one linear system, which are fitted jointly; its
+    unit is the user's. `minus`, of the same shape, is another run to be subtracted: what both have in common, such as
+    the forcing by truncation errors, goes. `differenced` says that this has been done. No errors are raised for samples
+    that show no pole: `reason` says so. InputError for arrays of other shapes. Method: linear prediction
+    (`fit_dominant_pole`).
+    """
+    samples, rounding = _response(c, minus)
+    usable = np.logical_and.accumulate(np.isfinite(samples), axis=0)  # what is no number ends a response
+    samples = np.where(usable, samples, np.nan)
+    end = int(usable.any(axis=1).sum())
+    cut = f"row {end + 1} holds no number: only what comes before is used" if end < len(samples) else ""
+    samples = _from_the_kick_on(samples[:end], rounding)
+    if len(samples) < FEWEST:
+        return _refused(len(samples), f"{len(samples)} samples: at least {FEWEST} are needed", cut)
+    largest = float(np.nanmax(np.abs(samples)))
+    if largest == 0 or not np.ptp(samples, axis=0).any():
+        return _refused(len(samples), "nothing changes", cut)
+    if rounding > SETTLED * largest:
+        coarse = f"rounded to {rounding:.3g}, which is more than {SETTLED:g} of the largest, {largest:.3g}"
+        return _refused(len(samples), coarse, cut)
+    return _fitted(samples, rounding, differenced or minus is not None, cut)
+
+
+def _fitted(samples: FloatArray, rounding: float, of_two_runs: bool, cut: str) -> ProbedPole:
+    """Return the pole in responses, shape (samples, responses), or in their differences if that is what is forced.
+
+    What a motion forces changes slowly from row to row: differences take it off, all but what poles answer themselves.
+    Two runs have it in common; in one run a pole near 1 is believed only if differences show no other.
+    """
+    fits: list[Fit | Refusal] = []
+    changes, floor = samples, rounding / 2
+    for times in range(DIFFERENCES + 1):
+        fit = fit_dominant_pole(changes, ORDER, limits=_limits(changes), floor=floor)
+        fits.append(fit)
+        if isinstance(fit, Fit) and not _on_the_circle(fit) and (of_two_runs or _is_not_forced(fit, changes)):
+            return _claimed(fit, len(samples), _joined(DIFFERENCED if times else "", cut))
+        changes, floor = np.diff(changes, axis=0), 2 * floor  # each of two roundings adds to that of a difference
+    as_given = fits[0]
+    if isinstance(as_given, Refusal):
+        return _refused(len(samples), as_given.reason, cut)
+    if of_two_runs:  # or it had been claimed
+        return _claimed(as_given, len(samples), _joined(ON_THE_CIRCLE, cut))
+    if _on_the_circle(as_given):
+        return _refused(len(samples), ON_THE_CIRCLE, cut)
+    if _explains_the_start(as_given, samples) and _agree(as_given, fits[1]):
+        return _claimed(as_given, len(samples), _joined(SLOWLY, cut))
+    return _refused(len(samples), FORCED, cut)
+
+
+def _is_not_forced(fit: Fit, samples: FloatArray) -> bool:
+    """Return whether one run's pole is none that a motion could force, and nothing larger has decayed before it."""
+    return abs(fit.pole - 1) > SLOW and _explains_the_start(fit, samples)
+
+
+def _agree(fit: Fit, other: Fit | Refusal) -> bool:
+    """Return whether two fits have found the same pole."""
+    return isinstance(other, Fit) and abs(fit.pole - other.pole) < max(SPREAD, fit.uncertainty + other.uncertainty)
+
+
+def _on_the_circle(fit: Fit) -> bool:
+    return abs(abs(fit.pole) - 1) < max(CLOSE, fit.uncertainty)
+
+
+def _explains_the_start(fit: Fit, samples: FloatArray) -> bool:
+    """Return whether samples before the fit's window are no larger than its pole makes them, traced back."""
+    sizes = np.nanmax(np.abs(samples), axis=1)
+    before, within = sizes[: fit.start], sizes[fit.start : fit.start + fit.samples]
+    with np.errstate(over="ignore"):
+        traced_back = within.max() * abs(fit.pole) ** -fit.start if abs(fit.pole) < 1 else within.max()
+    return bool(before.max(initial=0.0) <= HIDDEN * traced_back)
+
+
+def _claimed(fit: Fit, rows: int, reason: str) -> ProbedPole:
+    return ProbedPole(fit.pole, fit.uncertainty, fit.samples, rows, fit.poles, reason)
+
+
+def _refused(rows: int, *reasons: str) -> ProbedPole:
+    return ProbedPole(None, None, 0, rows, (), _joined(*reasons))
+
+
+def _joined(*reasons: str) -> str:
+    return "; ".join(reason for reason in reasons if reason)
+
+
+def _response(c: ArrayLike, minus: ArrayLike | None) -> tuple[FloatArray, float]:
+    """Return the responses, shape (samples, responses), and what they are rounded to; 0 if that is not to be seen."""
+    samples = _columns(c, "c")
+    rounding = _rounding(samples)
+    if minus is not None:
+        other = _columns(minus, "minus")
+        if other.shape[1] != samples.shape[1]:
+            raise InputError(f"minus has {other.shape[1]} responses, c has {samples.shape[1]}")
+        rounding += _rounding(other)
+        shared = min(len(samples), len(other))  # of two runs one may have ended early
+        with np.errstate(invalid="ignore", over="ignore"):  # what is infinite is cut off
+            samples = samples[:shared] - other[:shared]
+    return samples, rounding
+
+
+def _from_the_kick_on(samples: FloatArray, rounding: float) -> FloatArray:
+    """Return the samples without those at the beginning that are zero: two runs are the same until one is kicked."""
+    answers = np.flatnonzero((np.abs(samples) > rounding).any(axis=1))
+    return samples[answers[0] :] if answers.size else samples
+
+
+def _columns(c: ArrayLike, name: str) -> FloatArray:
+    samples = np.asarray(c, np.float64)
+    if samples.ndim not in (1, 2):
+        raise InputError(f"{name} has {samples.ndim} dimensions: expected (samples,) or (samples, responses)")
+    return samples[:, np.newaxis] if samples.ndim == 1 else samples
+
+
+def _rounding(samples: FloatArray) -> float:
+    """Return the largest unit to which a column of samples is rounded: its last decimal, or steps of a quantiser."""
+    return max(max(decimal_place(column), _quantum(column)) for column in samples.T)
+
+
+def _quantum(column: FloatArray) -> float:
+    """Return the unit of which all samples are multiples, 0 unless some of them are the same."""
+    values = column[np.isfinite(column)]
+    levels = np.unique(np.append(np.abs(values), 0.0))
+    if len(levels) < 2 or len(np.unique(values)) >= len(values) - 1:
+        return 0.0
+    unit = float(np.diff(levels).min())
+    multiples = levels / unit
+    # Float64 resolves multiples up to 1e9 of a unit to a thousandth of it and far better.
+    if multiples.max() < 1e9 and np.abs(multiples - np.round(multiples)).max() < 1e-3:
+        return unit
+    return 0.0
+
+
+def _limits(samples: FloatArray) -> Sequence[float]:
+    """Return the sizes up to which the samples are tried as linear: those of a response that grows may leave it."""
+    sizes = np.nanmax(np.abs(samples), axis=1)
+    largest = float(sizes.max())
+    at_the_end = int(np.argmax(sizes)) >= LAST_SHARE * len(sizes)
+    if at_the_end and largest > GROWS * sizes[:FIRST].max():
+        return [share * largest for share in LINEAR_SHARES]
+    return (np.inf,)
+
+
+def likenesses(
+    probed: ProbedPole,
+    methods: Sequence[Method],
+    alpha_hat: Fraction,
+    beta_hat: Fraction,
+    between: Callable[[Method], int | None] | int = 1,
+    turned: float | None = None,
+) -> list[Likeness]:
+    """Return how far a probed pole is from that of each method at a point (dimensionless), the nearest first.
+
+    `between` of a method's own steps lie between two rows of the log; a method for which that is None has longer steps
+    than the log and is left out, and so is one whose poles are infinite at the point: it has made no log. `turned` is
+    kappa h, the angle by which the directions of the constraints turn in a step of the user's; None takes TURNED. No
+    likenesses without a pole. Roots of paper Eq. 17; the motion by the first-order law.
+    """
+    if probed.pole is None or probed.uncertainty is None:
+        return []
+    compared: list[tuple[Method, int]] = []
+    for method in methods:
+        own_steps = between if isinstance(between, int) else between(method)
+        if own_steps is not None:
+            compared.append((method, own_steps))
+    polynomials = [(_polynomial_without_zeros(method, alpha_hat, beta_hat), k) for method, k in compared]
+    found = []
+    for (method, own_steps), polynomial in zip(compared, polynomials, strict=True):
+        equal = [
+            other.name
+            for (other, _), others in zip(compared, polynomials, strict=True)
+            if others == polynomial and other is not method
+        ]
+        with suppress(NumericalError):
+            found.append(_likeness(probed, method, alpha_hat, beta_hat, own_steps, turned, ", ".join(equal)))
+    return sorted(found, key=lambda one: one.distance)
+
+
+def steps_between_rows(method: Method, h: float | None, row: float | None, every: int = 1) -> int | None:
+    """Return how many of a method's own steps lie between two rows of a log; None if the rows are no multiple of one.
+
+    `h` is the user's step and `row` the time between two rows, both in s; without either it is `every`, as it was said.
+    """
+    if h is None or row is None:
+        return every
+    ratio = row / (h * float(method.step_multiple))
+    nearest = round(ratio)
+    return nearest if nearest >= 1 and abs(ratio - nearest) <= UNEVEN else None
+
+
+def kicked_responses(
+    step: Callable[[FloatArray], FloatArray],
+    state: ArrayLike,
+    constraint: Callable[[FloatArray], float],
+    kick: ArrayLike,
+    steps: int,
+) -> FloatArray:
+    """Return half the difference of constraint errors after kicks up and down, shape (steps + 1, kicks).
+
+    `step` takes a state, an array of any shape, to the next, and is not to change it in place; `constraint` is the
+    error in a state. The state is kicked by `kick`, of its shape, and by small parts of it (KICK_SHARES): decay is seen
+    longest after the largest, growth after the smallest. From where an error is not finite all is nan, and no step is
+    taken. InputError for a kick of another shape.
+    """
+    start, change = np.asarray(state, np.float64), np.asarray(kick, np.float64)
+    if start.shape != change.shape:
+        raise InputError(f"kick has shape {change.shape}, the state has {start.shape}")
+    responses = np.full((steps + 1, len(KICK_SHARES)), np.nan)
+    with np.errstate(all="ignore"):  # what diverges runs into infinity, and is cut off there
+        for place, share in enumerate(KICK_SHARES):
+            up, down = start + share * change, start - share * change
+            for k in range(steps + 1):
+                responses[k, place] = (float(constraint(up)) - float(constraint(down))) / 2
+                if not np.isfinite(responses[k, place]):
+                    break
+                up, down = np.asarray(step(up.copy())), np.asarray(step(down.copy()))
+    return responses
+
+
+def _polynomial_without_zeros(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> tuple[Fraction, ...]:
+    """Return P at one point in descending powers of z, monic and without roots at zero, which leave no trace."""
+    descending = list(closed_loop_at(method, alpha_hat, beta_hat))
+    while descending and descending[-1] == 0:
+        descending.pop()
+    while descending and descending[0] == 0:
+        descending.pop(0)
+    return tuple(coefficient / descending[0] for coefficient in descending)
+
+
+def _likeness(
+    probed: ProbedPole,
+    method: Method,
+    alpha_hat: Fraction,
+    beta_hat: Fraction,
+    between: int,
+    turned: float | None,
+    same_as: str,
+) -> Likeness:
+    assert probed.pole is not None
+    assert probed.uncertainty is not None
+    a, b = float(alpha_hat), float(beta_hat)
+    z = poles(method, a, b)
+    with np.errstate(over="ignore", invalid="ignore"):  # a pole far outside the circle, over many steps
+        per_row = z**between
+    per_row = per_row.real + 1j * np.abs(per_row.imag)
+    leading = np.abs(z) > (1 - 1 / SAMPLES) * np.abs(z[0])
+    # Another pole answers only if the kick has hardly excited the dominant one, and that has not grown out of rounding.
+    distances = np.abs(per_row - probed.pole)
+    if probed.rows * np.log(max(np.abs(per_row[0]), 1.0)) > np.log(UNHEARD):
+        distances[~leading] = np.inf
+    nearest = int(np.argmin(distances))
+    angle = (TURNED if turned is None else turned) * float(method.step_multiple)
+    chi = float(np.abs(turning_sensitivity(method, a, b, z[nearest])))
+    apart = np.abs(z - z[nearest])
+    apart[nearest] = np.inf
+    apart[np.abs(z - z[nearest].conj()) == 0] = np.inf
+    shift = (chi if np.isfinite(chi) else 0.0) * angle
+    if bool((apart < np.sqrt(angle) * np.abs(z[nearest])).any()) or not np.isfinite(chi):
+        shift = min(shift, np.sqrt(angle)) + np.sqrt(angle)  # at a double pole the change is like a root
+    moved = float(between * shift * np.abs(per_row[nearest]))
+    return Likeness(
+        method=method,
+        predicted=complex(per_row[0]),
+        distance=float(distances[nearest]),
+        error=probed.uncertainty,
+        allowed=probed.uncertainty + moved,
+        dominant=bool(leading[nearest]),
+        same_as=same_as,
+    )
+
+
+def points_like(probed: ProbedPole, method: Method, between: int = 1) -> list[LikePoint]:
+    """Return the points at which a method has the probed pole for its dominant one; `between` as in `likenesses`.
+
+    A complex pole is two real equations P(z; alpha_hat, beta_hat) = 0 for the two unknowns, and so are two real poles;
+    there may be several solutions, that nearest to what an exact integrator would have first, or none. Of z per row the
+    root per step of least angle is taken. InputError where the poles leave a curve of points: one real pole does, and
+    so do poles that belong to one mu. Newton's method, from places all over the method's region.
+    """
+    if probed.pole is None or probed.uncertainty is None:
+        return []
+    step_poles = [z ** (1 / between) for z in probed.poles]
+    error = probed.uncertainty / (between * abs(step_poles[0]) ** (between - 1))
+    pairs = [(step_poles[0], step_poles[0].conjugate())]
+    if step_poles[0].imag <= error:
+        real = [complex(z.real) for z in step_poles if z.imag <= error]
+        pairs = [(real[0], other) for other in real[1:]]
+    solutions = [_solutions(method, np.array(pair), error) for pair in pairs]
+    found = [point for regular, _ in solutions for point in regular]
+    if not found and (not pairs or any(singular for _, singular in solutions)):
+        raise InputError(f"what shows of {method.name}'s poles leaves a curve of points (α̂, β̂): another pole is needed")
+    exact_alpha, exact_beta = _exact_integrators_point(np.array(pairs[0]))
+    return sorted(found, key=lambda one: abs(one.alpha_hat - exact_alpha) + abs(one.beta_hat - exact_beta))
+
+
+def _solutions(method: Method, z: ComplexArray, error: float) -> tuple[list[LikePoint], bool]:
+    """Return the points at which both z are poles, the first the dominant one; shape of z (2,), `error` of each.
+
+    And whether there are others which are no points but a curve.
+    """
+    equations = _equations(closed_loop_array(method), z)
+    points = _starting_points(method, z)
+    with np.errstate(all="ignore"):  # what leaves the range is left out below
+        for _ in range(ITERATIONS):
+            points = points - _newton_step(equations, points)
+        last = np.abs(_newton_step(equations, points)).max(axis=1)
+        residual = np.abs([polyval2d(points[:, 0], points[:, 1], equation) for equation in equations]).max(axis=0)
+    scale = np.abs(equations).max()
+    singular = False
+    found: list[LikePoint] = []
+    for a, b in points[(last < SOLVED * (1 + np.abs(points).max(axis=1))) | (residual < SOLVED**2 * scale)].tolist():
+        known = any(abs(a - one.alpha_hat) + abs(b - one.beta_hat) < SAME * (1 + abs(a) + abs(b)) for one in found)
+        if known or abs(poles(method, a, b)[0]) > abs(z[0]) + 10 * error + SAME:
+            continue
+        if np.linalg.cond(_jacobian(equations, np.array([[a, b]]))[:, :, 0]) > 1 / SAME:
+            singular = True
+            continue
+        alpha_hat_error, beta_hat_error = _point_errors(method, z, error, a, b)
+        found.append(LikePoint(method, a, b, alpha_hat_error, beta_hat_error))
+    return found, singular
+
+
+def closed_loop_array(method: Method) -> FloatArray:
+    """Return P's coefficients by powers of z, alpha_hat and beta_hat, in float64."""
+    return np.array(closed_loop_table(method), float)
+
+
+def _equations(table: FloatArray, z: ComplexArray) -> FloatArray:
+    """Return two real polynomials in alpha_hat and beta_hat, shape (2, powers, powers), that vanish with P at both z.
+
+    Of a conjugate pair these are real and imaginary part of P(z), of two real poles P at each.
+    """
+    of_each = np.tensordot(z[:, np.newaxis] ** np.arange(len(table)), table, axes=1)
+    second = of_each[0].imag if z[0].imag else of_each[1].real
+    return np.stack([of_each[0].real, second])
+
+
+def _starting_points(method: Method, z: ComplexArray) -> FloatArray:
+    """Return points, shape (starts, 2): that of an exact integrator, z = e^mu, and some over a method's region."""
+    (low_alpha, high_alpha), (low_beta, high_beta) = window(region(method))
+    alpha_hat, beta_hat = np.meshgrid(
+        np.linspace(low_alpha, high_alpha, STARTS), np.linspace(low_beta, high_beta, STARTS)
+    )
+    return np.concatenate([[_exact_integrators_point(z)], np.stack([alpha_hat.ravel(), beta_hat.ravel()], axis=1)])
+
+
+def _exact_integrators_point(z: ComplexArray) -> tuple[float, float]:
+    """Return alpha_hat and beta_hat for which an integrator without errors, z = e^mu, had both z; real parts only."""
+    with np.errstate(divide="ignore"):  # a pole at zero is that of no such integrator
+        mu = np.log(z)
+    return -float(mu.sum().real), float(mu.prod().real)
+
+
+def _newton_step(equations: FloatArray, points: FloatArray) -> FloatArray:
+    """Return Newton's change of each of a row of points, shape (points, 2); not finite where there is none."""
+    first, second = (polyval2d(points[:, 0], points[:, 1], equation) for equation in equations)
+    jacobian = _jacobian(equations, points)
+    (by_alpha, by_beta), (second_by_alpha, second_by_beta) = jacobian
+    determinant = by_alpha * second_by_beta - by_beta * second_by_alpha
+    alpha_change = (first * second_by_beta - second * by_beta) / determinant
+    beta_change = (second * by_alpha - first * second_by_alpha) / determinant
+    return np.stack([alpha_change, beta_change], axis=1)
+
+
+def _jacobian(equations: FloatArray, points: FloatArray) -> FloatArray:
+    """Return the derivatives of both equations by alpha_hat and beta_hat, shape (2, 2, points)."""
+    return np.array(
+        [
+            [polyval2d(points[:, 0], points[:, 1], polyder(equation, axis=axis)) for axis in range(2)]
+            for equation in equations
+        ]
+    )
+
+
+def _point_errors(
+    method: Method, z: ComplexArray, error: float, alpha_hat: float, beta_hat: float
+) -> tuple[float, float]:
+    """Return by what alpha_hat and beta_hat may be off if each pole is by `error`."""
+    table = closed_loop_array(method)
+    jacobian = _jacobian(_equations(table, z), np.array([[alpha_hat, beta_hat]]))[:, :, 0]
+    slopes = np.abs([polyval3d(pole, alpha_hat, beta_hat, polyder(table)) for pole in z])
+    alpha_hat_error, beta_hat_error = np.abs(np.linalg.inv(jacobian)) @ (slopes * error)
+    return float(alpha_hat_error), float(beta_hat_error)

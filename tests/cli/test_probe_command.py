@@ -1,0 +1,219 @@
+"""probe: logs as files and on standard input, and the words that it answers with."""
+
+import csv
+import doctest
+import io
+import json
+import re
+import shlex
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from numpy.typing import NDArray
+
+import bezstab
+from bezstab.cli import main
+from bezstab.cli.probe_command import likeness_sentence
+from bezstab.errors import InputError
+from bezstab.evidence import Likeness, model_xml
+from bezstab.mechanism import compiled_mechanism, constraint_errors, load_scene, perturbed_state
+from bezstab.methods import REGISTRY, lookup
+from bezstab.stability import FloatArray, poles
+from tests.cli.running import rows, run
+from tests.reference.sampled_responses import of_poles
+
+PAGE = Path(__file__).parent.parent.parent / "configs" / "logs" / "README.md"
+TEXT = PAGE.read_text(encoding="utf-8")
+SESSIONS = re.findall(r"```console\n(.*?)```", TEXT, re.DOTALL)
+
+
+def write(name: str, **columns: NDArray[np.floating[Any]]) -> None:
+    np.savetxt(name, np.stack(list(columns.values()), axis=1), "%.9g", ",", header=",".join(columns), comments="")
+
+
+def response(name: str, alpha_hat: float, beta_hat: float, count: int = 300) -> FloatArray:
+    return 1e-3 * of_poles(poles(lookup(name), alpha_hat, beta_hat), count, seed=2)
+
+
+def test_the_page_about_logs_is_true() -> None:
+    (program,) = re.findall(r"```python\n(.*?)```", TEXT, re.DOTALL)
+    assert len(program.splitlines()) <= 12  # ten, and the import
+    exec(program, {})
+    assert len(SESSIONS) == 2
+    for session in SESSIONS:
+        command, _, shown = session.partition("\n")
+        result = run(*shlex.split(command.removeprefix("$ bezstab ")))
+        assert result.exit_code == 0, result.stderr
+        assert result.stdout.strip() == shown.strip()
+    found = doctest.testfile(str(PAGE), module_relative=False, encoding="utf-8")
+    assert (found.attempted > 5, found.failed) == (True, 0)
+
+
+def test_a_row_for_each_fit_and_for_each_method_in_order() -> None:
+    write("log.csv", t=np.arange(300) / 240, c_1=response("B4", 0.5, 0.1), c_2=response("AB4", 0.4, 0.1))
+    write("zero.csv", t=np.arange(300) / 240, c_1=np.zeros(300), c_2=np.zeros(300))
+    answer = rows(*shlex.split("probe log.csv --minus zero.csv --alpha 1/2 --beta 0.1 --h 1/240 --turning 0"))
+    fits = [row for row in answer if "z_abs" in row]
+    assert [list(row) for row in fits] == [
+        ["column", "z_real", "z_imag", "z_abs", "z_angle_deg", "uncertainty", "samples", "reason"]
+    ] * 2
+    assert [row["column"] for row in fits] == ["c_1", "c_2"]
+    assert fits[0]["z_abs"] == pytest.approx(abs(poles(lookup("B4"), 0.5, 0.1)[0]), abs=1e-6)
+    for column, true in (("c_1", "B4"), ("c_2", None)):
+        methods: list[dict[str, Any]] = [row for row in answer if row["column"] == column and "method" in row]
+        assert {"predicted_abs", "distance", "fits", "same_as"} <= set(methods[0])
+        assert [row["distance"] for row in methods] == sorted(row["distance"] for row in methods)
+        assert len(methods) == len(REGISTRY)
+        assert [row["method"] for row in methods if row["fits"]] == ([true] if true else [])
+
+
+def test_a_sentence_says_what_it_behaves_like_and_what_is_excluded() -> None:
+    write("log.csv", c=response("SYM", 0.5, 0.25))
+    write("zero.csv", c=np.zeros(300))
+    command = "probe log.csv --minus zero.csv --alpha 0.5 --beta 0.25 --method SYM --method RK4 --method B4"
+    said = run(*command.split()).stdout.splitlines()[-1]
+    expected = r"c: this behaves like SYM at \(0\.5, 0\.25\) to \de-\d+; (RK4 and B4|B4 and RK4) are excluded\."
+    assert re.fullmatch(expected, said)
+    said = run(*command.replace("SYM", "AB4").split()).stdout.splitlines()[-1]
+    assert said.startswith("c: nothing fits at (0.5, 0.25): the nearest is ")
+
+
+def test_every_format_has_all_rows() -> None:
+    write("log.csv", c=response("SYM", 0.5, 0.25))
+    command = "probe log.csv --alpha 0.5 --beta 0.25 --method SYM --method B4 --format"
+    table = list(csv.DictReader(io.StringIO(run(*command.split(), "csv").stdout)))
+    assert [row["method"] for row in table] == ["", "SYM", "B4"]
+    shown = run(*command.split(), "markdown").stdout
+    assert len(re.findall(r"^\|", shown, re.MULTILINE)) == 7  # two tables of a head, a rule and three rows in all
+
+
+def test_sentences_in_full() -> None:
+    def like(name: str, distance: float, same_as: str = "", dominant: bool = True) -> Likeness:
+        return Likeness(lookup(name), 0.5 + 0j, distance, 1e-6, 1e-3, dominant, same_as)
+
+    point = (Fraction(1), Fraction(1, 4))
+    found = [like("B2", 2e-6, "AB2"), like("AB2", 2e-6, "B2"), like("heun", 1e-4), like("RK4", 0.1)]
+    assert likeness_sentence(found, point) == (
+        "this behaves like B2 at (1, 0.25) to 2e-06; AB2 has the same poles there; heun cannot be told from it; "
+        "RK4 is excluded."
+    )
+    found = [like("SYM", 1e-9, dominant=False), *(like(f"AB{k}", 0.1 * k) for k in range(2, 7))]
+    assert likeness_sentence(found, point) == (
+        "this behaves like SYM at (1, 0.25) to 1e-06, by a lesser pole of it; 5 others are excluded, the nearest AB2, "
+        "0.2 off."
+    )
+
+
+def test_without_a_point_the_point_is_found_in_both_units() -> None:
+    write("log.csv", time=np.arange(300) / 100, c=response("B4", 0.5, 0.1))
+    write("zero.csv", time=np.arange(300) / 100, c=np.zeros(300))
+    (_, row) = rows(*shlex.split("probe log.csv --minus zero.csv --method B4 --h 0.01"))
+    assert (row["alpha_hat"], row["beta_hat"]) == pytest.approx((0.5, 0.1), abs=1e-6)
+    assert (row["alpha"], row["beta"]) == pytest.approx((25, np.sqrt(0.1) / 0.01), abs=1e-4)
+    assert "α (1/s)" in run(*shlex.split("probe log.csv --minus zero.csv --method B4 --h 0.01")).stdout
+    write("log.csv", c=0.9 ** np.arange(300.0))
+    shown = run(*shlex.split("probe log.csv --minus zero.csv --method SYM --column c"))
+    assert "curve of points" in shown.stdout
+
+
+def test_standard_input_is_read_for_a_dash() -> None:
+    text = "\n".join(f"{value:.9g}" for value in response("B4", 0.5, 0.1))
+    result = CliRunner().invoke(main, ["probe", "-", "--format", "json"], input=text)
+    assert result.exit_code == 0
+    (row,) = json.loads(result.stdout)
+    assert row["column"] == "1"
+    assert row["z_abs"] == pytest.approx(abs(poles(lookup("B4"), 0.5, 0.1)[0]), abs=1e-6)
+
+
+def test_rows_several_steps_apart_by_the_times_and_by_the_option() -> None:
+    every_third = response("SYM", 0.1, 0.02, 900)[::3]
+    write("log.csv", t=np.arange(300) * 3e-3, c=every_third)
+    common = "probe log.csv --column c --method SYM --method B4 --alpha 0.1 --beta 0.02 --turning 1"
+    for options in ("--h 0.001", "--h 0.001 --every 3", "--every 3"):
+        nearest = rows(*shlex.split(f"{common} {options}"))[1]
+        assert (nearest["method"], nearest["fits"]) == ("SYM", True)
+    for options, said in (("--h 0.002", "multiple of the step, --h 0.002"), ("--h 0.001 --every 2", "--every 2")):
+        result = run(*shlex.split(f"{common} {options}"))
+        assert result.exit_code == 2
+        assert said in result.stderr
+
+
+def test_columns_and_times_that_are_not_there_are_one_line() -> None:
+    write("log.csv", t=np.arange(20) / 10, c=np.zeros(20))
+    (Path("uneven.csv")).write_text("t,c\n0,1\n1,0.5\n1.5,0.2\n3,0.1\n", encoding="utf-8")
+    for command, said in (
+        ("probe log.csv --column d", "no column 'd' (columns: t, c"),
+        ("probe log.csv --time s", "no column 's'"),
+        ("probe uneven.csv", "uneven times: row"),
+        ("probe log.csv --minus uneven.csv --turning 1 --column 3", "no column '3'"),
+    ):
+        result = run(*shlex.split(command))
+        assert (result.exit_code, result.stdout) == (2, "")
+        assert said in result.stderr
+        assert result.stderr.count("\n") == 1
+    write("slower.csv", t=np.arange(20) / 5, c=np.zeros(20))
+    assert "every 0.2 s" in run("probe", "log.csv", "--minus", "slower.csv").stderr
+    write("log.csv", c=np.zeros(20))
+    assert "--turning is a rate" in run("probe", "log.csv", "--turning", "1").stderr
+
+
+def test_noise_and_quantisation_are_status_three_with_their_reason() -> None:
+    clean = response("B4", 0.5, 0.1)
+    noisy = clean + 1e-5 * np.random.default_rng(1).normal(size=clean.size)
+    write("log.csv", noisy=noisy, rounded=np.round(clean, 5))
+    result = run("probe", "log.csv", "--alpha", "0.5", "--beta", "0.1", "--format", "json")
+    assert result.exit_code == 3
+    assert [row["z_abs"] for row in json.loads(result.stdout)] == [None, None]
+    assert "no pole can be told: noisy: " in result.stderr
+    assert "rounded: rounded to 1e-05" in result.stderr
+    write("log.csv", noisy=noisy, clean=clean)
+    result = run("probe", "log.csv", "--format", "json")  # one of two can be told
+    assert result.exit_code == 0
+    assert [row["z_abs"] is None for row in json.loads(result.stdout)] == [True, False]
+
+
+def test_columns_are_fitted_jointly_if_asked_for() -> None:
+    write("log.csv", c_1=response("B4", 0.5, 0.1), c_2=-0.1 * response("B4", 0.5, 0.1))
+    (row,) = rows("probe", "log.csv", "--jointly")
+    assert row["column"] == "c_1, c_2"
+
+
+def test_from_python_the_same() -> None:
+    c = response("B4", 0.5, 0.1)
+    found = bezstab.probe(c, minus=0 * c, alpha=25, beta="1/10", h=0.01, methods=["B4", "RK4"])
+    assert found.fitting == ()
+    found = bezstab.probe(c, differenced=True, alpha_hat=0.5, beta_hat=0.1)
+    assert "B4" in found.fitting
+    found = bezstab.probe(c, differenced=True, methods=["B4"], h=0.01)
+    assert (found.points[0].alpha_hat, found.points[0].beta_hat) == pytest.approx((0.5, 0.1), abs=1e-6)
+    incomplete: list[dict[str, Any]] = [{"alpha": 1}, {"turning": 1}, {"alpha": 1, "beta": 1}]
+    for options in incomplete:
+        with pytest.raises(InputError, match=r"h=? in s"):
+            bezstab.probe(c, **options)
+
+
+def test_a_log_that_mujoco_made_behaves_like_symplectic_euler() -> None:
+    """The slider-crank in MuJoCo's Euler integrator, kicked and not, as a user would log it."""
+    mujoco: Any = pytest.importorskip("mujoco")
+    h, alpha_hat, beta_hat = 1e-3, 0.6, 0.25
+    mechanism = compiled_mechanism(load_scene("slider_crank"))
+    model = mujoco.MjModel.from_xml_string(model_xml(mechanism.scene, "Euler", h, alpha_hat, beta_hat))
+    for name, kick in (("kicked.csv", 1e-4), ("unkicked.csv", 0.0)):
+        data = mujoco.MjData(model)
+        data.qpos[:], data.qvel[:] = perturbed_state(mechanism, kick)
+        c = []
+        for _ in range(200):
+            c.append(float(constraint_errors(mechanism, 0.0, list(data.qpos))[0]))
+            mujoco.mj_step(model, data)
+        write(name, time=h * np.arange(200.0), c=np.array(c))
+    command = "probe kicked.csv --minus unkicked.csv --h 0.001 --alpha 0.6 --beta 0.25"
+    answer = rows(*command.split())
+    assert (answer[1]["fits"], {answer[1]["method"], answer[1]["same_as"]}) == (True, {"SYM", "verlet-half"})
+    fitting = {row["method"] for row in answer[1:] if row["fits"]}
+    assert not fitting & {"RK4", "B4", "AB2", "AB4", "SIE", "implicit-euler"}
+    said = run(*command.split(), "--method", "SYM", "--method", "RK4", "--method", "B4").stdout
+    assert re.search(r"this behaves like SYM at \(0\.6, 0\.25\) to \de-0\d; (RK4 and B4|B4 and RK4) are excluded", said)

@@ -1,0 +1,81 @@
+"""Logs of runs that were chosen at random, as a user's simulator would write them: with nine digits."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache
+from itertools import islice
+
+import numpy as np
+
+from bezstab.evidence import kicked_constraint_errors
+from bezstab.evidence.measured_poles import SURROUNDINGS
+from bezstab.mechanism import Mechanism, compiled_mechanism, load_scene, shipped_scenes, turning_normals
+from bezstab.methods import REGISTRY, Method, lookup
+from bezstab.rationals import exact
+from bezstab.stability import FloatArray, region, spectral_radius, window
+
+H = 1e-3  # s
+DIGITS = 9
+LARGEST = 1.0  # m: beyond it a simulator has long stopped
+KICK, SMALL_KICK = 1e-4, 1e-8  # m: the smaller one where it grows
+FORMS = ("up and down", "kicked and not", "one run")
+# Andrews's mechanism breaks down at this step; a chain of 40 bodies takes minutes where each step solves equations.
+LEFT_OUT = ("andrews", "n_four_bar")
+
+
+@dataclass(frozen=True)
+class RandomLog:
+    """A method, a point and a scene, and what their run has written; `minus` is None where one run is all there is."""
+
+    method: Method
+    scene: str
+    alpha_hat: Fraction
+    beta_hat: Fraction
+    form: str
+    kappa: float
+    c: FloatArray
+    minus: FloatArray | None
+
+
+def random_logs(count: int, seed: int, rows: int) -> Iterator[RandomLog]:
+    """Yield logs of random methods at random points in and around their regions, in random scenes, always the same."""
+    random = np.random.default_rng(seed)
+    names = list(REGISTRY)
+    scenes = [name for name in sorted(shipped_scenes()) if name not in LEFT_OUT]
+    for _ in range(count):
+        method, scene = lookup(str(random.choice(names))), str(random.choice(scenes))
+        low, high = np.transpose(window(region(method)))
+        margin = SURROUNDINGS * (high - low)
+        alpha_hat, beta_hat = np.round(random.uniform(low - margin, high + margin), 6).tolist()
+        form = str(random.choice(FORMS))
+        up, down, alone = _written(method, scene, alpha_hat, beta_hat, rows)
+        minus = {"up and down": down, "kicked and not": alone, "one run": None}[form]
+        yield RandomLog(method, scene, exact(alpha_hat), exact(beta_hat), form, _kappa(scene), up, minus)
+
+
+def _written(method: Method, scene: str, alpha_hat: float, beta_hat: float, rows: int) -> FloatArray:
+    """Return c_1 kicked up, kicked down and not kicked, rounded to DIGITS, until a run is useless; shape (3, rows)."""
+    stable = float(spectral_radius(method, alpha_hat, beta_hat)) < 1
+    kicks = (KICK if stable else SMALL_KICK, 0.0)
+    written: list[list[float]] = []
+    with np.errstate(all="ignore"):
+        errors = kicked_constraint_errors(
+            _mechanism(scene), method, H, np.array([alpha_hat]), np.array([beta_hat]), kicks
+        )
+        for c in islice(errors, rows):
+            row = [float(c[0, 0, 0, 0]), float(c[0, 1, 0, 0]), float(c[0, 0, 1, 0])]
+            if not np.abs(row).max() < LARGEST:
+                break
+            written.append([float(f"{value:.{DIGITS}g}") for value in row])
+    return np.array(written).reshape(-1, 3).T
+
+
+@cache
+def _mechanism(scene: str) -> Mechanism:
+    return compiled_mechanism(load_scene(scene))
+
+
+@cache
+def _kappa(scene: str) -> float:
+    return turning_normals(_mechanism(scene), 0.6).kappa

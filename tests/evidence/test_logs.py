@@ -1,0 +1,148 @@
+"""Logs as people write them: what is read, what is refused, and with which words."""
+
+import io
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bezstab.errors import InputError
+from bezstab.evidence import Log, error_columns, log_from, parse_log, read_log, row_step, time_column
+from bezstab.evidence.logs import decimal_place
+
+ROWS = [[0.0, 1.0], [0.5, -0.25], [1.0, 0.0625]]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "t,c\n0,1\n0.5,-0.25\n1,0.0625\n",
+        "t;c\n0;1\n0,5;-0,25\n1;0,0625\n",
+        "t\tc\n0\t1\n0.5\t-.25\n1.0\t6.25e-2",
+        "# made by numpy\n# t c\n0 1\n5e-1 -2.5e-1\n1 6.25e-2\n",
+        '"t", "c"\r\n0, 1\r\n\r\n0.5, -0.25\r\n# a remark\r\n1, 0.0625\r\n',
+        "\ufefft,c\n0,1\n0.5,-0.25\n1,0.0625\n",
+    ],
+)
+def test_a_log_is_the_same_however_it_is_written(text: str) -> None:
+    log = log_from(io.BytesIO(text.encode()), "run")
+    assert log.columns == ("t", "c")
+    assert log.values.tolist() == ROWS
+
+
+def test_columns_without_names_are_numbered() -> None:
+    log = parse_log("0 1\n0.5 -0.25\n1 0.0625\n", "log")
+    assert log.columns == ("1", "2")
+    assert log.values.tolist() == ROWS
+    assert (time_column(log), error_columns(log, (), 0)) == (0, [1])
+
+
+@given(st.lists(st.lists(st.floats(allow_nan=False), min_size=3, max_size=3), min_size=1, max_size=5))
+def test_numbers_are_read_as_they_were_written(rows: list[list[float]]) -> None:
+    text = "\n".join(",".join(repr(value) for value in row) for row in [*rows])
+    assert parse_log(f"a,b,c\n{text}", "log").values.tolist() == rows
+
+
+def test_a_missing_number_is_none() -> None:
+    log = parse_log("t,c,d\n0,1,\n1,nan,2\n", "log")
+    assert np.isnan(log.values).tolist() == [[False, False, True], [False, True, False]]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "is empty"),
+        ("\n  \n# nothing\n", "is empty"),
+        ("t,c\n", "no rows of numbers"),
+        ("t,c\n0,1\n1,x\n", "line 3: 'x' is not a number"),
+        ("t,c\n0,1\n1\n", "line 3: 1 cells, expected 2"),
+        ("t,c\n0,1\n\n# remark\n1,2,3\n", "line 5: 3 cells, expected 2"),
+    ],
+)
+def test_what_is_no_log_is_refused_with_its_line(text: str, said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        parse_log(text, "log")
+
+
+def test_files_that_cannot_be_read_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(InputError, match=r"missing\.csv: No such file"):
+        read_log(tmp_path / "missing.csv")
+    with pytest.raises(InputError, match="directory"):
+        read_log(tmp_path)
+    (tmp_path / "picture.png").write_bytes(b"\x89PNG\xff")
+    with pytest.raises(InputError, match="not text"):
+        read_log(tmp_path / "picture.png")
+    monkeypatch.setattr("bezstab.evidence.logs.LARGEST", 10)
+    with pytest.raises(InputError, match="more than"):
+        log_from(io.BytesIO(b"0,1\n" * 10), "endless")
+
+
+def log_of(*columns: str, values: object = None) -> Log:
+    return Log("log", columns, np.zeros((3, len(columns))) if values is None else np.asarray(values, float))
+
+
+def test_columns_are_found_by_name_and_number() -> None:
+    log = log_of("Time [s]", "step", "c1", "3")
+    assert time_column(log) == 0
+    assert error_columns(log, (), 0) == [2, 3]
+    assert error_columns(log, ("c1", "1", "3"), 0) == [2, 0, 3]  # a name before a number
+    assert time_column(log, "2") == 1
+    assert time_column(log_of("a", "b")) is None
+    for chosen in ("c", "0", "5", "²"):
+        with pytest.raises(InputError, match="no column"):
+            error_columns(log, (chosen,), None)
+    with pytest.raises(InputError, match="2 columns are called 'c'"):
+        log_of("c", "c").number_of("c")
+    with pytest.raises(InputError, match="no column holds an error"):
+        error_columns(log_of("t", "k"), (), 0)
+
+
+def timed(t: object) -> Log:
+    return Log("log", ("t",), np.asarray(t, float)[:, np.newaxis])
+
+
+@pytest.mark.parametrize("decimals", [3, 4, 12])
+def test_the_step_is_that_of_the_times_but_for_their_rounding(decimals: int) -> None:
+    t = 7 + np.arange(240) / 240
+    assert row_step(timed(np.round(t, decimals)), 0) == pytest.approx(1 / 240, rel=10.0**-decimals)
+
+
+@pytest.mark.parametrize(("name", "seconds"), [("t", 1.0), ("Time [ms]", 1e-3), ("time (us)", 1e-6), ("t/s", 1.0)])
+def test_the_name_of_the_times_may_say_their_unit(name: str, seconds: float) -> None:
+    log = Log("log", (name, "c"), np.stack([np.arange(5) * 2.0, np.zeros(5)], axis=1))
+    assert row_step(log, 0) == pytest.approx(2 * seconds)
+    assert time_column(log) == 0
+
+
+@pytest.mark.parametrize(
+    ("t", "said"),
+    [
+        (np.delete(np.arange(20) / 100, 9), r"uneven times: row \d+ is"),
+        (np.cumsum(1.01 ** np.arange(30)), "uneven times"),
+        ([0.0, 0.0, 0.0], "do not rise"),
+        ([2.0, 1.0, 0.0], "do not rise"),
+        ([0.0, np.nan, 2.0], "no time in every row"),
+        ([0.0], "one row only"),
+    ],
+)
+def test_times_that_are_uneven_are_refused(t: object, said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        row_step(timed(t), 0)
+
+
+@pytest.mark.parametrize(
+    ("values", "place"),
+    [
+        ([1.5, 0.25], 0.01),
+        ([3.0, 10.0], 1.0),
+        ([1e-7, 1.0], 1e-7),
+        ([1.25e-7], 1e-9),
+        ([np.nan, 0.0], 0.0),
+        ([0.0, 0.5], 0.1),
+        ([1e22], 1e22),
+    ],
+)
+def test_the_last_decimal_that_is_shown(values: list[float], place: float) -> None:
+    assert decimal_place(np.array(values)) == pytest.approx(place, rel=1e-12)
