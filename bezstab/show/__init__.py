@@ -33,6 +33,7 @@ from bezstab.show.columns import (
 from bezstab.show.rows import (
     choice_row,
     complex_parts,
+    drive_row,
     engine_row,
     family_row,
     formula_row,
@@ -113,6 +114,7 @@ __all__ = [
     "column_figure",
     "comparison_figure",
     "complex_parts",
+    "drive_row",
     "engine_row",
     "family_figure",
     "family_row",
