@@ -199,8 +199,8 @@ MOVING_REGIONS = [
     help="Points per axis of the map: fast 50, balanced 200, fine 1000.",
 )
 @click.option("--grid", type=click.IntRange(2, 4000), help="Points per axis, instead.")
-@click.option("--alpha-range", type=NUMBER, nargs=2, help="Window in α̂ [all of the region].")
-@click.option("--beta-range", type=NUMBER, nargs=2, help="Window in β̂ [all of the region].")
+@click.option("--alpha-range", type=NUMBER, nargs=2, help="α̂ from and to: the window [all of the region].")
+@click.option("--beta-range", type=NUMBER, nargs=2, help="β̂ from and to: the window [all of the region].")
 @click.option(
     "--level",
     "levels",

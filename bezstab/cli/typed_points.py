@@ -187,7 +187,7 @@ def say_if_units_were_mistaken(methods: Sequence[Method], alpha: Fraction, beta:
         command = f"bezstab {click.get_current_context().info_name}"
         given = "" if left_at_default("methods") else "".join(f" --method {method.name}" for method in methods)
         line = f"{command}{given} --alpha {_typed(alpha)} --beta {_typed(beta)} --h {_typed(h)} --physical"
-        say(f"note: --alpha and --beta were taken as α̂ and β̂, without unit; in 1/s it would be: {line}")
+        say(f"note: --alpha and --beta were taken as α̂ and β̂, without unit; if they are in 1/s, add --physical: {line}")
 
 
 def _typed(number: Fraction) -> str:

@@ -55,7 +55,7 @@ def test_impedances_are_clamped() -> None:
 
 
 def mujocos_step(solref: str, solimp: str, size: float) -> Step:
-    """Return what MuJoCo itself makes of (c, v) in a step, both of a given size, for a body held at a point of a line."""
+    """Return what MuJoCo itself makes of (c, v) in a step, both of a given size, for a body on a line."""
     mujoco: Any = pytest.importorskip("mujoco")
     model = mujoco.MjModel.from_xml_string(f"""<mujoco><option timestep="{float(H)!r}" gravity="0 0 0" tolerance="0"/>
         <worldbody><body><joint name="x" type="slide" axis="1 0 0"/>

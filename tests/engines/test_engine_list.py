@@ -169,7 +169,7 @@ def test_who_is_said_to_be_witnessed_has_a_test_that_exists() -> None:
         path, _, test = witness.partition("::")
         text = (root / path).read_text(encoding="utf-8")
         assert re.search(rf"^def {test}\(", text, re.MULTILINE)
-        assert f"importorskip(\"{'mujoco' if name == 'mujoco' else name}\")" in text
+        assert f'importorskip("{"mujoco" if name == "mujoco" else name}")' in text
 
 
 @pytest.mark.parametrize("name", ENGINES)

@@ -142,9 +142,7 @@ def chrono_linearized(h: float) -> Step:
     return step
 
 
-def drake_sap(
-    h: float, stiffness: float = math.inf, relaxation_time: float = 0.0, inverse_mass: float = 1.0
-) -> Step:
+def drake_sap(h: float, stiffness: float = math.inf, relaxation_time: float = 0.0, inverse_mass: float = 1.0) -> Step:
     """Return the step of Drake's SAP: the impulse g = -(v1 - v_hat) / R with v1 = v + w g, near rigid where R is."""
     regularization = 1 / (h * (h + relaxation_time) * stiffness)
     near_rigid = 0.1**2 / (4 * math.pi**2) * inverse_mass
