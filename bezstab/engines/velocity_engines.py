@@ -108,7 +108,7 @@ def _read_chrono(h: Fraction) -> Point:
 
 
 def _write_chrono(point: Point, h: Fraction) -> str:
-    if point != (1, 1):
+    if point != (ONE, ONE):
         raise InputError(f"chrono-linearized is (1, 1), not ({float(point[0]):g}, {float(point[1]):g})")
     return "EULER_IMPLICIT_LINEARIZED"
 

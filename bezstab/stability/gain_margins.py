@@ -48,15 +48,15 @@ def gain_limits(choice: Choice) -> GainLimits:
             _largest_stable(lambda factor: spectral_radius(choice.method, a, factor * b)),
         )
     # the distance is the ratio of the gain and its limit, whichever is larger
-    ratios: dict[Gain, float] = {
-        gain: max(factor, 1 / factor)
-        for gain, factor in (("alpha_hat", factors[0]), ("beta_hat", factors[1]))
-        if factor is not None and np.isfinite(factor)
+    by_gain: dict[Gain, float | None] = {"alpha_hat": factors[0], "beta_hat": factors[1]}
+    ratios = {
+        gain: max(factor, 1 / factor) for gain, factor in by_gain.items() if factor is not None and np.isfinite(factor)
     }
+    nearest_first = sorted(ratios, key=lambda gain: ratios[gain])
     return GainLimits(
-        None if factors[0] is None else factors[0] * a,
-        None if factors[1] is None else factors[1] * b,
-        min(ratios, key=lambda gain: ratios[gain]) if ratios else None,
+        alpha_hat=None if factors[0] is None else factors[0] * a,
+        beta_hat=None if factors[1] is None else factors[1] * b,
+        nearest=nearest_first[0] if nearest_first else None,
     )
 
 

@@ -18,8 +18,8 @@ def test_rules_of_thumb_are_where_they_are_known_to_be() -> None:
     assert marks["bullet: ERP = 0.2"] == marks["ode: ERP = 0.2"] == (Fraction(1), Fraction(1, 5))
     assert marks["RBDL: T_stab = 0.1"] == (Fraction(1, 25), Fraction(1, 2500))
     assert marks["RigidBodyDynamics.jl: PDGains(100, 20)"] == (Fraction(1, 25), Fraction(1, 2500))
-    assert marks["Pinocchio: Kp = Kd = 0"] == (0, 0)
-    assert marks["Jolt: 0.2, 2 position steps"] == (1, Fraction(9, 25))
+    assert marks["Pinocchio: Kp = Kd = 0"] == (Fraction(0), Fraction(0))
+    assert marks["Jolt: 0.2, 2 position steps"] == (Fraction(1), Fraction(9, 25))
     assert marks["Brax positional: 0.5"] == (Fraction(1, 2), Fraction(1, 2))
 
 
@@ -29,21 +29,21 @@ def test_crocoddyl_has_stiffness_first_and_so_has_pinocchio() -> None:
 
 
 def test_chronos_explicit_integrators_have_no_feedback() -> None:
-    assert CHRONO_EXPLICIT.point((), H) == (0, 0)
+    assert CHRONO_EXPLICIT.point((), H) == (Fraction(0), Fraction(0))
 
 
 def test_refsafe_raises_a_time_constant_below_two_steps() -> None:
     raised = MUJOCO.applied((Fraction(1, 1000), Fraction(1), Fraction("0.9"), Fraction("0.9")), H)
-    assert raised.point == MUJOCO.point((2 * H, Fraction(1)), H) == (1, Fraction(1, 4))
+    assert raised.point == MUJOCO.point((2 * H, Fraction(1)), H) == (Fraction(1), Fraction(1, 4))
     assert raised.notes == ("refsafe raises timeconst 0.001 s to 2h = 0.004 s",)
-    assert MUJOCO.point((Fraction(1, 1000), Fraction(1)), H) == (4, 4)  # as typed
+    assert MUJOCO.point((Fraction(1, 1000), Fraction(1)), H) == (Fraction(4), Fraction(4))  # as typed
 
 
 def test_the_default_solimp_scales_small_errors_and_large_ones_are_told_too() -> None:
     applied = MUJOCO.applied((2 * H, Fraction(1)), H)
     ratio = Fraction(18, 19)
     assert applied.point == (ratio, ratio**2 / 4)
-    assert applied.also == (("past solimp's width", (1, Fraction(1, 4))),)
+    assert applied.also == (("past solimp's width", (Fraction(1), Fraction(1, 4))),)
     assert float(ratio) == pytest.approx(0.947, abs=5e-4)
 
 
