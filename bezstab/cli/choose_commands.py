@@ -208,10 +208,10 @@ def check(
     is applied first; what the conversion leaves out is said.
 
     --pd kp,kd,inertia asks about a joint's drive, applied in four ways: explicit (SYM), implicit in velocity
-    (imex-euler), as stable PD (stable-pd), fully implicit (implicit-euler); name your engine's with --method. Gains
-    that were stable in an implicit engine explode in an explicit one: is it kp or kd? "used up" says which of the two
-    is at its limit, or nearest to it, and "to" how far each may go alone. Explicit needs 2 kd h + kp h² < 4 inertia.
-    Mostly it is kd, which has no limit where the velocity is implicit.
+    (imex-euler, as MuJoCo's implicitfast), as stable PD (stable-pd), fully implicit (implicit-euler, as PhysX). All
+    four count unless --method names yours. Gains that were stable in an implicit engine explode in an explicit one: is
+    it kp or kd? "used up" says which of the two is at its limit, or nearest to it, and "to" how far each may go alone.
+    Explicit needs 2 kd h + kp h² < 4 inertia. Mostly it is kd, which has no limit where the velocity is implicit.
 
     Example: bezstab check --method RK2 --h 0.002 --alpha 50 --beta 50 --physical
     """

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from fractions import Fraction
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bezstab.engines import DRIVE_METHODS, Drive
@@ -39,6 +39,7 @@ def test_each_way_of_applying_a_drive_has_its_proven_limit(method: str, alpha_ha
 
 
 @pytest.mark.parametrize("method", DRIVE_METHODS)
+@settings(max_examples=20, deadline=None)
 @given(kp=st.floats(1, 5e4), kd=st.floats(0.1, 100))
 def test_a_simulated_drive_grows_as_the_pole_says(method: str, kp: float, kd: float) -> None:
     inertia = 0.1

@@ -63,7 +63,7 @@ def integrator(engine: Engine) -> str:
 
 
 @pytest.mark.parametrize("name", ENGINES)
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(st.data())
 def test_an_engines_step_has_the_poles_of_its_point(name: str, data: st.DataObject) -> None:
     engine, h = ENGINES[name], Fraction(data.draw(H))
@@ -75,7 +75,7 @@ def test_an_engines_step_has_the_poles_of_its_point(name: str, data: st.DataObje
 
 
 @pytest.mark.parametrize("name", ENGINES)
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(st.data())
 def test_a_point_written_in_an_engines_words_is_read_back(name: str, data: st.DataObject) -> None:
     engine, h = ENGINES[name], Fraction(data.draw(H))
@@ -142,7 +142,7 @@ def test_what_has_a_limit_turns_there(name: str, last: str) -> None:
 
 
 @pytest.mark.parametrize("name", [name for name, engine in ENGINES.items() if engine.method == "implicit-euler"])
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=10, deadline=None)
 @given(st.data())
 def test_what_is_solved_implicitly_is_always_stable(name: str, data: st.DataObject) -> None:
     engine, h = ENGINES[name], Fraction(data.draw(H))
@@ -172,6 +172,7 @@ def test_who_is_said_to_be_witnessed_has_a_test_that_exists() -> None:
 
 
 @pytest.mark.parametrize("name", ENGINES)
+@settings(max_examples=12, deadline=None)
 @given(st.floats(-1e300, 1e300), st.floats(-1e300, 1e300), st.sampled_from(["1e-100", "0.01", "1e100"]))
 def test_every_point_has_a_setting_or_is_refused(name: str, a: float, b: float, step: str) -> None:
     try:

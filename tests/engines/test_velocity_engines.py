@@ -2,7 +2,7 @@ import math
 from fractions import Fraction
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bezstab.engines.velocity_engines import BOX2D, BULLET, CHIPMUNK, DRAKE_SAP, NEAR_RIGID, ODE, RAPIER
@@ -10,12 +10,14 @@ from bezstab.methods import lookup
 from bezstab.stability import poles
 
 
+@settings(max_examples=20, deadline=None)
 @given(st.floats(0.01, 1.99))
 def test_an_erp_is_symplectic_euler_at_alpha_hat_one(erp: float) -> None:
     a, b = map(float, BULLET.point((Fraction(erp),), Fraction(1, 60)))
     assert sorted(abs(poles(lookup("SYM"), a, b))) == pytest.approx([0, abs(1 - erp)], abs=1e-12)
 
 
+@settings(max_examples=20, deadline=None)
 @given(st.floats(0.1, 1e4), st.floats(0.1, 100), st.floats(1e-4, 0.05))
 def test_a_spring_and_damper_as_erp_and_cfm_is_implicit_euler(kp: float, kd: float, h: float) -> None:
     # ODE's manual: ERP = h kp / (h kp + kd) and CFM = 1 / (h kp + kd) are an implicit spring and damper
@@ -41,6 +43,7 @@ def test_box2ds_default_joint_is_where_it_was_measured() -> None:
     assert 1 - float(beta_hat) == pytest.approx(0.746948, abs=1e-6)  # a compiled Box2D, per substep
 
 
+@settings(max_examples=20, deadline=None)
 @given(st.floats(0.5, 500), st.floats(0.05, 10))
 def test_rapiers_softness_stays_when_it_relaxes_and_box2ds_does_not(hertz: float, zeta: float) -> None:
     h, values = Fraction(1, 240), (Fraction(hertz), Fraction(zeta))
