@@ -152,8 +152,8 @@ def _used_up(row: Row) -> str:
     if gain is None:
         return formatted(gain)
     value, limit = row[f"{gain}"], row[f"{gain}_max"]
-    assert isinstance(value, float)
-    assert isinstance(limit, float)
+    if not (isinstance(value, float) and isinstance(limit, float) and limit):  # out of range, or none of it
+        return str(gain)
     return f"{gain} {100 * value / limit:.0f} %"
 
 

@@ -21,6 +21,9 @@ from bezstab.stability.searches import first_where
 LOWERED = np.geomspace(1, 1e-6, 600)
 """Factors on a gain that is lowered: neighbours are 2.3 % apart, and nobody is off by more than a million."""
 
+ON_THE_CIRCLE = 1e-12
+"""Within which of one a computed modulus is no decay: some thousand roundings, more than a pole on the circle has."""
+
 Gain = Literal["alpha_hat", "beta_hat"]
 
 
@@ -50,7 +53,7 @@ def gain_limits(choice: Choice) -> GainLimits:
     # the distance is the ratio of the gain and its limit, whichever is larger
     by_gain: dict[Gain, float | None] = {"alpha_hat": factors[0], "beta_hat": factors[1]}
     ratios = {
-        gain: max(factor, 1 / factor) for gain, factor in by_gain.items() if factor is not None and np.isfinite(factor)
+        gain: max(factor, 1 / factor) for gain, factor in by_gain.items() if factor is not None and 0 < factor < np.inf
     }
     nearest_first = sorted(ratios, key=lambda gain: ratios[gain])
     return GainLimits(
@@ -62,5 +65,5 @@ def gain_limits(choice: Choice) -> GainLimits:
 
 def _largest_stable(modulus: Callable[[FloatArray], FloatArray]) -> float | None:
     """Return the largest of LOWERED's factors, and between them, with a modulus below one; None if none is."""
-    met = first_where(lambda factor: modulus(factor) < 1, LOWERED)
+    met = first_where(lambda factor: modulus(factor) < 1 - ON_THE_CIRCLE, LOWERED)
     return met[1] if met else None

@@ -151,7 +151,8 @@ def test_other_numbers_are_taken_without_a_word(
 
 
 def test_what_is_given_in_one_over_seconds_is_taken_without_a_word() -> None:
-    assert run(*"check --method SYM --alpha 20 --beta 20 --h 1/240 --physical".split()).stderr == ""
+    typed = "check --method SYM --alpha 20 --beta 20 --h 1/240 --physical"
+    assert run(*typed.split()).stderr == ""
 
 
 def test_a_number_is_shown_as_it_would_be_typed() -> None:
@@ -194,3 +195,10 @@ def test_a_map_for_an_engine_is_its_own_integrators(tmp_path: Path, monkeypatch:
     monkeypatch.chdir(tmp_path)
     (row,) = rows("region", "--engine", "box2d", "--h", "1/240", "--figure", "none", "--table", "none")
     assert row["method"] == "SYM"
+
+
+@pytest.mark.parametrize("gains", ["1,0,1", "0,1,1", "0,0,1", "-1,1,1"])
+def test_a_drive_without_one_of_its_gains_is_shown_too(gains: str) -> None:
+    result = run("poles", "--pd", gains, "--h", "0.01")
+    assert result.exit_code == 0, result.stderr
+    assert "SYM" in result.stdout

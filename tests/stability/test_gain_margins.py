@@ -41,3 +41,7 @@ def test_an_implicit_velocity_leaves_a_limit_of_the_stiffness_alone() -> None:
 
 def test_where_both_are_too_much_neither_alone_helps() -> None:
     assert limits("SYM", "3", "5") == GainLimits(None, None, None)
+
+
+def test_rounding_on_the_circle_is_no_decay() -> None:
+    assert limits("SYM", "0", "1/100") == GainLimits(None, None, None)
