@@ -16,7 +16,9 @@ other; only appointed files see a library.
       |      /
     methods                schemes as exact data
       |
-    errors, rationals, files, toml_tables, units, engines, stopping, lazy
+    engines                what others call the feedback
+      |
+    errors, rationals, files, toml_tables, units, stopping, lazy
 """
 
 import ast
@@ -30,17 +32,18 @@ import pytest
 
 PACKAGE = Path(__file__).parent.parent / "bezstab"
 TESTS = PACKAGE.parent / "tests"
-ROOMS = ("methods", "stability", "mechanism", "evidence", "show", "cli", "paper")
-FOUNDATIONS = ("lazy", "stopping", "errors", "rationals", "files", "toml_tables", "units", "engines")
+ROOMS = ("engines", "methods", "stability", "mechanism", "evidence", "show", "cli", "paper")
+FOUNDATIONS = ("lazy", "stopping", "errors", "rationals", "files", "toml_tables", "units")
 """Beside the rooms, each importing only from those before it."""
 
 BELOW = {
+    "engines": {*FOUNDATIONS},
     "methods": {*FOUNDATIONS},
     "stability": {*FOUNDATIONS, "methods"},
     "mechanism": {*FOUNDATIONS, "methods"},
     "evidence": {*FOUNDATIONS, "methods", "stability", "mechanism"},
-    "show": {*FOUNDATIONS, "methods", "stability", "mechanism", "evidence"},
-    "cli": {*FOUNDATIONS, "methods", "stability", "mechanism", "evidence", "show"},
+    "show": {*FOUNDATIONS, "engines", "methods", "stability", "mechanism", "evidence"},
+    "cli": {*FOUNDATIONS, "engines", "methods", "stability", "mechanism", "evidence", "show"},
     "paper": {*FOUNDATIONS, "methods", "stability", "mechanism", "evidence", "show", "cli"},
     "api": {*FOUNDATIONS, "methods", "stability", "mechanism", "evidence"},
 }
@@ -60,7 +63,7 @@ APPOINTED = {
     "click": {f"cli/{name}.py" for name in ("options", "output", "command_group")}
     | {f"cli/{name}_commands.py" for name in ("map", "choose", "evidence")}
     | {f"cli/{name}_command.py" for name in ("verify", "schema", "lint", "probe")}
-    | {"cli/moving_mechanism.py", "cli/completion.py"}
+    | {"cli/moving_mechanism.py", "cli/completion.py", "cli/typed_points.py"}
     | {"paper/command.py"},
     "mujoco": {"evidence/mujoco_models.py"},
     "distributed": {"evidence/worker_pools.py"},

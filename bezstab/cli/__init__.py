@@ -6,6 +6,7 @@ A file imports only from those above it:
     completion          what the shell offers after a press of the tab key
     options             parameter types and the options that commands share
     output              rows, files, messages, progress
+    typed_points        how a point is typed: in α̂, β̂, in 1/s, in an engine's words, as a drive's gains
     moving_mechanism    what several ask about a mechanism that moves
     map_commands        poles, region, methods, family
     choose_commands     choose, check, engines, explore

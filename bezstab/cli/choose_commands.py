@@ -15,22 +15,31 @@ from bezstab.cli.moving_mechanism import (
 )
 from bezstab.cli.options import (
     ENGINE,
-    ENGINE_VALUES,
     NUMBER,
     SECONDS,
     USUAL_METHODS,
     EngineValues,
     both_or_none,
     format_option,
-    left_at_default,
     methods_option,
     physical_option,
     step_option,
 )
 from bezstab.cli.output import for_reading, progress, show_rows, show_text
-from bezstab.engines import ENGINES
+from bezstab.cli.typed_points import (
+    DRIVE_COLUMNS,
+    as_typed_option,
+    drive_option,
+    engine_keys,
+    engine_values_option,
+    methods_asked,
+    say_if_units_were_mistaken,
+    say_what_was_made,
+    typed_point,
+)
+from bezstab.engines import ENGINES, Drive
 from bezstab.errors import InputError
-from bezstab.methods import Method, lookup
+from bezstab.methods import Method
 from bezstab.show import (
     MISSING,
     Column,
@@ -42,7 +51,6 @@ from bezstab.show import (
     safety_words,
     seconds_words,
 )
-from bezstab.units import to_dimensionless
 
 if TYPE_CHECKING:
     from bezstab.stability import Choice, Goal
@@ -123,6 +131,7 @@ def choice_sentence(row: Row) -> str:
 @click.option("--settle", type=SECONDS, help="gentle: the time in s in which c falls a thousandfold.")
 @click.option("--keep", type=click.Choice(["alpha=beta"]), help="Only points with α = β.")
 @click.option("--engine", type=ENGINE, help="Also print what to paste into that engine.")
+@drive_option
 @moving_scene_option("Choose for this mechanism as it moves.")
 @moving_speed_option
 @format_option
@@ -135,6 +144,7 @@ def choose(
     settle: Fraction | None,
     keep: str | None,
     engine: str | None,
+    drive: Drive | None,
     scene: str | None,
     speed: Fraction,
     form: Format,
@@ -144,11 +154,12 @@ def choose(
     The answer is proven stable, and the margins that remain are printed. The fastest point is a kink: towards more
     damping |z_p| rises like a square root. Hence robust is the default. "within the spread" is the largest |z_p| with α
     and β off by --spread. Where no feedback is too strong, those up to αh, βh = 4 are searched, and "searched" says so.
-    With --engine the method is SYM unless given: that is how engines step.
+    With --engine the method is the engine's own unless given. With --pd each way of applying a joint drive is shown,
+    with the kp and kd to set instead.
 
     Example: bezstab choose --method B4 --h 0.001
     """
-    from bezstab.show import choice_row
+    from bezstab.show import choice_row, drive_row
     from bezstab.stability import choose_at_step
 
     if not 0 <= spread < 1:
@@ -157,8 +168,9 @@ def choose(
         raise InputError(f"--h-max {float(h_max):g}: only for --goal robust, and at least --h {float(h):g}")
     if (settle is not None) != (goal == "gentle"):
         raise click.UsageError("--settle and --goal gentle go together")
-    if engine and left_at_default("methods"):
-        methods = [lookup("SYM")]
+    if engine and drive:
+        raise click.UsageError("--engine and --pd print two kinds of words: give one")
+    methods = methods_asked(methods, ENGINES[engine] if engine else None, drive)
     turning = turning_of(scene, speed, h)
     rows: list[Row] = []
     for method in progress(methods, goal):
@@ -173,18 +185,22 @@ def choose(
         row = choice_row(choice, float(h))
         if engine:
             row["setting"] = ENGINES[engine].setting((Fraction(choice.alpha_hat), Fraction(choice.beta_hat)), h)
+        if drive:
+            row |= drive_row(choice, drive, float(h))
         rows += moving_rows([row], [method], [(choice.alpha_hat, choice.beta_hat)], turning, h)
-    columns = [*choice_columns(rows), *moving_columns(turning), *([PASTE] if engine else [])]
-    show_rows(rows, columns, form, sentence=choice_sentence)
+    more = [*moving_columns(turning), *([PASTE] if engine else []), *(DRIVE_COLUMNS if drive else [])]
+    show_rows(rows, [*choice_columns(rows), *more], form, sentence=choice_sentence)
 
 
 @click.command()
 @methods_option("B4")
 @click.option("--alpha", type=NUMBER, help="α̂; α in 1/s with --physical.")
 @click.option("--beta", type=NUMBER, help="β̂; β in 1/s with --physical.")
-@click.option("--h", type=SECONDS, help="Step size in s; needed with --physical and --engine.")
+@click.option("--h", type=SECONDS, help="Step size in s; needed with --physical, --engine and --pd.")
 @physical_option
-@click.option("--engine", type=ENGINE_VALUES, help="An engine's own values, such as mujoco=0.02,1, instead.")
+@engine_values_option
+@as_typed_option
+@drive_option
 @moving_scene_option("Safe for this mechanism as it moves? Needs --h.")
 @moving_speed_option
 @format_option
@@ -197,6 +213,8 @@ def check(
     h: Fraction | None,
     physical: bool,
     engine: EngineValues | None,
+    as_typed: bool,
+    drive: Drive | None,
     scene: str | None,
     speed: Fraction,
     form: Format,
@@ -206,64 +224,60 @@ def check(
     Safe is what is proven stable for every method. Prints the verdict, the margins and the largest stable step, and
     what `choose` would give instead.
 
+    With --engine the method is the engine's own unless given, and what the engine does to its values (clamps, scaling)
+    is applied first; what the conversion leaves out is said.
+
+    --pd kp,kd,inertia asks about a joint's drive, applied in four ways: explicit (SYM), implicit in velocity
+    (imex-euler, as MuJoCo's implicitfast), as stable PD (stable-pd), fully implicit (implicit-euler, as PhysX). All
+    four count unless --method names yours. Gains that were stable in an implicit engine explode in an explicit one: is
+    it kp or kd? "used up" says which of the two is at its limit, or nearest to it, and "to" how far each may go alone.
+    Explicit needs 2 kd h + kp h² < 4 inertia. Mostly it is kd, which has no limit where the velocity is implicit.
+
     Example: bezstab check --method RK2 --h 0.002 --alpha 50 --beta 50 --physical
     """
     from bezstab import stability
-    from bezstab.show import choice_row
+    from bezstab.show import choice_row, drive_row
 
-    alpha_hat, beta_hat = _point_to_check(methods, alpha, beta, h, physical, engine)
+    typed = typed_point(alpha, beta, h, physical, engine, drive, as_typed)
+    methods = methods_asked(methods, typed.engine, drive)
+    if alpha is not None and beta is not None and not physical:
+        say_if_units_were_mistaken(methods, alpha, beta, h)
     step = None if h is None else float(h)
     turning = turning_of(scene, speed, h)
-    given = [stability.describe_point(method, "as given", alpha_hat, beta_hat) for method in methods]
     choices: list[Choice] = []
-    for choice in given:
-        choices += [choice, stability.choose(choice.method, "robust")]
+    for method in methods:
+        choices += [
+            stability.describe_point(method, label, *point) for label, point in (("as given", typed.point), *typed.also)
+        ]
+        choices.append(stability.choose(method, "robust"))
+    rows: list[Row] = [
+        {**choice_row(choice, step), **engine_keys(typed, choice.goal == "as given")} for choice in choices
+    ]
+    if drive and step is not None:
+        rows = [{**row, **drive_row(choice, drive, step)} for row, choice in zip(rows, choices, strict=True)]
     points = [(choice.alpha_hat, choice.beta_hat) for choice in choices]
-    rows = moving_rows(
-        [choice_row(choice, step) for choice in choices], [choice.method for choice in choices], points, turning, h
-    )
-    columns = choice_columns(rows) + moving_columns(turning)
-    as_given, instead = rows[::2], rows[1::2]
+    rows = moving_rows(rows, [choice.method for choice in choices], points, turning, h)
+    columns = [*choice_columns(rows), *moving_columns(turning), *(DRIVE_COLUMNS if drive else [])]
+    asked = [row for row in rows if row["goal"] != "robust"]
     if for_reading(form):
-        show_rows(as_given, columns, form, sentence=choice_sentence)
+        show_rows(asked, columns, form, sentence=choice_sentence)
         show_text("\nWhat `choose` gives instead:\n")
-        show_rows(instead, columns, form, sentence=choice_sentence)
+        show_rows([row for row in rows if row["goal"] == "robust"], columns, form, sentence=choice_sentence)
     else:
         show_rows(rows, columns, form)
-    context.exit(0 if all(row["safe"] for row in as_given) else 1)
-
-
-def _point_to_check(
-    methods: Sequence[Method],
-    alpha: Fraction | None,
-    beta: Fraction | None,
-    h: Fraction | None,
-    physical: bool,
-    engine: EngineValues | None,
-) -> tuple[Fraction, Fraction]:
-    """Return (alpha_hat, beta_hat) as given in one of three ways; UsageError for anything else."""
-    if (physical or engine) and h is None:
-        raise click.UsageError("--physical and --engine need --h: the step in s")
-    if engine and h is not None:
-        if alpha is not None or beta is not None or physical:
-            raise click.UsageError("--engine takes the place of --alpha, --beta and --physical")
-        words, values = engine
-        point = words.point(values, h)
-        if words.level == "velocity" and [method.name for method in methods] != ["SYM"]:
-            raise click.UsageError(f"{words.name} works at velocity level: only with --method SYM")
-        return point
-    if alpha is None or beta is None:
-        raise click.UsageError("--alpha and --beta are needed, or --engine")
-    if physical and h is not None:
-        return to_dimensionless(alpha, beta, h)
-    return alpha, beta
+    say_what_was_made(typed, form)
+    context.exit(0 if all(row["safe"] for row in asked) else 1)
 
 
 ENGINES_LISTED = [
     column("engine", "engine"),
     column("level", "level"),
+    Column("method", lambda row: formatted(row["method"] or "yours")),
     column("parameters", "parameters"),
+    column("then", "optional"),
+    column("units", "units"),
     column("for this point", "setting"),
+    Column("rests on", lambda row: "a run" if row["witness"] else "its source"),
     column("left out", "excludes"),
 ]
 
@@ -283,8 +297,9 @@ def engine_sentence(row: Row) -> str:
 def engines(h: Fraction, alpha: Fraction | None, beta: Fraction | None, form: Format) -> None:
     """List what other engines call the feedback, and what to set.
 
-    acceleration: true Baumgarte feedback, where the integrator decides. velocity: an impulse engine, which is SYM at an
-    equivalent point. Each row says what the conversion leaves out.
+    acceleration: true Baumgarte feedback, where the integrator decides. velocity and position: what feeds the error
+    back into velocities or positions, which is the method named at an equivalent point. Each row says what the
+    conversion leaves out, and whether a run of the engine itself witnessed it or it rests on its source alone.
 
     Example: bezstab engines --alpha 1 --beta 0.2 --h 0.002
     """

@@ -18,6 +18,7 @@ from bezstab.cli.options import (
     both_or_none,
     figure_option,
     format_option,
+    left_at_default,
     methods_option,
     output_option,
     physical_option,
@@ -40,6 +41,7 @@ from bezstab.cli.output import (
     write_figure,
     write_table,
 )
+from bezstab.cli.typed_points import say_if_units_were_mistaken
 from bezstab.errors import InputError, NumericalError
 from bezstab.files import output_directory
 from bezstab.methods import Method
@@ -136,6 +138,8 @@ def simulate(
 
     if physical:
         alpha, beta = to_dimensionless(alpha, beta, h)
+    elif not no_stabilization and not left_at_default("h"):
+        say_if_units_were_mistaken([method], alpha, beta, h)
     if no_stabilization:
         alpha = beta = Fraction(0)
     _check_number_of_steps(time, h, method)
@@ -238,8 +242,8 @@ def cost_sentence(row: Row) -> str:
 @methods_option("B2", "B3", "B4", "AB2", "AB4", "ABM4", "RK4", "SIE", "SYM")
 @click.option("--h", "steps", type=SECONDS, multiple=True, help="Step in s [ten from 0.0001 to 0.02].")
 @click.option("--time", type=SECONDS, default="2", help="Duration in s.")
-@click.option("--alpha", type=NUMBER, help="α̂ of every run [each method's robust choice].")
-@click.option("--beta", type=NUMBER, help="β̂ of every run.")
+@click.option("--alpha", type=NUMBER, help="α̂ of every run; α in 1/s with --physical [each method's robust choice].")
+@click.option("--beta", type=NUMBER, help="β̂ of every run; β in 1/s with --physical.")
 @physical_option
 @click.option("--tolerance", type=POSITIVE, default="1e-6", help="In m and rad.")
 @click.option("--repeats", type=click.IntRange(1, 100), default=3, help="Of each timing.")
@@ -287,6 +291,8 @@ def tradeoff(
     point = both_or_none(alpha, beta)
     if physical and point is None:
         raise click.UsageError("--physical needs --alpha and --beta")
+    if point and steps and not physical:
+        say_if_units_were_mistaken(methods, *point, max(steps))
     step_sizes = tuple(sorted({float(step) for step in steps or evidence.STEPS}))
     _check_swept_time(float(time), step_sizes, methods)
     loaded_scene = at_speed(load_scene(scene), float(speed))

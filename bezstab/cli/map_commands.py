@@ -22,6 +22,7 @@ from bezstab.cli.options import (
     SECONDS,
     SPEED,
     USUAL_METHODS,
+    EngineValues,
     FigureForm,
     TableForm,
     figure_option,
@@ -32,7 +33,17 @@ from bezstab.cli.options import (
     table_option,
 )
 from bezstab.cli.output import file_name, progress, show_blocks, show_groups, show_rows, write_figure, write_table
-from bezstab.engines import ENGINES
+from bezstab.cli.typed_points import (
+    DRIVE_COLUMNS,
+    as_typed_option,
+    drive_option,
+    engine_keys,
+    engine_values_option,
+    methods_asked,
+    say_what_was_made,
+    typed_point,
+)
+from bezstab.engines import ENGINES, Drive
 from bezstab.errors import InputError
 from bezstab.files import output_directory
 from bezstab.methods import GROUPS, Method, lookup
@@ -49,7 +60,6 @@ from bezstab.show import (
     transposed,
     with_unbounded,
 )
-from bezstab.units import to_dimensionless
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -96,20 +106,26 @@ def one_pole_sentence(row: Row) -> str:
 
 @click.command()
 @methods_option(*USUAL_METHODS)
-@click.option("--alpha", type=NUMBER, required=True, help="α̂, a decimal or fraction, read exactly.")
-@click.option("--beta", type=NUMBER, required=True, help="β̂, a decimal or fraction, read exactly.")
-@click.option("--h", type=SECONDS, help="Step size in s, for --physical and --scene.")
+@click.option("--alpha", type=NUMBER, help="α̂, a decimal or fraction, read exactly; α in 1/s with --physical.")
+@click.option("--beta", type=NUMBER, help="β̂, a decimal or fraction, read exactly; β in 1/s with --physical.")
+@click.option("--h", type=SECONDS, help="Step size in s, for --physical, --engine, --pd and --scene.")
 @physical_option
+@engine_values_option
+@as_typed_option
+@drive_option
 @click.option("--all-poles", is_flag=True, help="Every root, not only the dominant one.")
 @moving_scene_option("Also what the motion of this mechanism does to the poles; needs --h.")
 @moving_speed_option
 @format_option
 def poles(
     methods: Sequence[Method],
-    alpha: Fraction,
-    beta: Fraction,
+    alpha: Fraction | None,
+    beta: Fraction | None,
     h: Fraction | None,
     physical: bool,
+    engine: EngineValues | None,
+    as_typed: bool,
+    drive: Drive | None,
     all_poles: bool,
     scene: str | None,
     speed: Fraction,
@@ -123,24 +139,32 @@ def poles(
     Example: bezstab poles --alpha 0.5 --beta 0.1
     """
     from bezstab import stability
-    from bezstab.show import pole_rows
+    from bezstab.show import drive_row, pole_rows
 
-    if (physical and h is None) or (h is not None and not physical and scene is None):
+    in_seconds = physical or engine is not None or drive is not None
+    if (physical and h is None) or (h is not None and not in_seconds and scene is None):
         raise click.UsageError("--physical and --h go together: α and β in 1/s need the step in s")
+    typed = typed_point(alpha, beta, h, physical, engine, drive, as_typed)
+    methods = methods_asked(methods, typed.engine, drive)
     turning = turning_of(scene, speed, h)
-    if physical and h is not None:
-        alpha, beta = to_dimensionless(alpha, beta, h)
-    alpha_hat, beta_hat = float(alpha), float(beta)
+    alpha_hat, beta_hat = map(float, typed.point)
     poles_of = stability.poles if all_poles else stability.dominant_pole
     rows: list[Row] = []
     for method in methods:
         z = poles_of(method, alpha_hat, beta_hat).reshape(-1)
-        of_method = pole_rows(method, alpha_hat, beta_hat, z, stability.verdict(method, alpha, beta))
+        of_method = [
+            {**row, **engine_keys(typed, given=True)}
+            for row in pole_rows(method, alpha_hat, beta_hat, z, stability.verdict(method, *typed.point))
+        ]
+        if drive and h is not None:
+            gains = drive_row(stability.describe_point(method, "as given", *typed.point), drive, float(h))
+            of_method = [{**row, **gains} for row in of_method]
         points = [(alpha_hat, beta_hat)] * len(of_method)
         rows += moving_rows(of_method, [method] * len(of_method), points, turning, h)
-    columns = POLES + moving_columns(turning)
+    columns = [*POLES, *moving_columns(turning), *(DRIVE_COLUMNS if drive else [])]
     sentence = one_pole_sentence if all_poles else pole_sentence
     show_rows(rows, columns, form, f"α̂ = {alpha_hat:.10g}, β̂ = {beta_hat:.10g}", sentence)
+    say_what_was_made(typed, form)
 
 
 def unbounded_column(heading: str, key: str, form: str) -> Column:
@@ -198,8 +222,8 @@ MOVING_REGIONS = [
     help="Points per axis of the map: fast 50, balanced 200, fine 1000.",
 )
 @click.option("--grid", type=click.IntRange(2, 4000), help="Points per axis, instead.")
-@click.option("--alpha-range", type=NUMBER, nargs=2, help="Window in α̂ [all of the region].")
-@click.option("--beta-range", type=NUMBER, nargs=2, help="Window in β̂ [all of the region].")
+@click.option("--alpha-range", type=NUMBER, nargs=2, help="α̂ from and to: the window [all of the region].")
+@click.option("--beta-range", type=NUMBER, nargs=2, help="β̂ from and to: the window [all of the region].")
 @click.option(
     "--level",
     "levels",
@@ -252,6 +276,7 @@ def region(
         raise click.UsageError("--engine marks one map and needs --h: the step in s")
     if physical and h is None:
         raise click.UsageError("--physical marks the axes in α and β and needs --h: the step in s")
+    methods = methods_asked(methods, ENGINES[engine] if engine else None, None)
     if scene and compare:
         raise click.UsageError("--scene draws one map for each method: not with --compare")
     turnings = {float(speed): turning_of(scene, speed, h) for speed in speeds or [Fraction(1)]}

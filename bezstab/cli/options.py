@@ -99,10 +99,12 @@ def _engine_values(text: str) -> EngineValues:
     if name not in ENGINES:
         raise InputError(f"unknown engine {name!r} (known: {', '.join(ENGINES)})")
     engine = ENGINES[name]
+    if not numbers and not engine.parameters:  # it has none, or none that it needs
+        return engine, ()
     try:
         return engine, tuple(rational(number) for number in numbers.split(","))
     except InputError as error:
-        raise InputError(f"{error}: expected {name}={','.join(engine.parameters)}") from None
+        raise InputError(f"{error}: expected {name}={engine.words()}") from None
 
 
 NUMBER = ParsedType("number", rational)

@@ -40,6 +40,7 @@ from bezstab.show.columns import (
 from bezstab.show.rows import (
     choice_row,
     complex_parts,
+    drive_row,
     engine_row,
     family_row,
     formula_row,
@@ -131,6 +132,7 @@ __all__ = [
     "column_figure",
     "comparison_figure",
     "complex_parts",
+    "drive_row",
     "engine_row",
     "family_figure",
     "family_row",

@@ -10,6 +10,7 @@ from fractions import Fraction
 from statistics import median
 from typing import TYPE_CHECKING
 
+from bezstab.engines import DRIVE_METHODS, witness_of
 from bezstab.errors import InputError
 from bezstab.methods import Method, evaluations, implicit, steps
 from bezstab.show.columns import Row, Value
@@ -21,7 +22,7 @@ LIMITS = ("alpha_hat_min", "alpha_hat_max", "beta_hat_min", "beta_hat_max")
 if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
     from _typeshed import DataclassInstance
 
-    from bezstab.engines import Engine
+    from bezstab.engines import Drive, Engine
     from bezstab.evidence import Likeness, LikePoint, Measurement, MovingPole, ProbedPole, Run, VerdictMap, Witnessed
     from bezstab.mechanism import Simulation
     from bezstab.methods import Verdict
@@ -432,8 +433,33 @@ def engine_row(engine: Engine, point: tuple[Fraction, Fraction] | None, h: Fract
             setting = str(error)
     return row(
         engine,
-        without={"name", "read", "write", "marks"},
+        without={"name", "read", "write", "apply", "marks"},
         engine=engine.name,
         parameters=", ".join(engine.parameters),
+        optional=", ".join(engine.optional),
+        units=", ".join(engine.units),
+        witness=witness_of(engine.name),
         setting=setting,
     )
+
+
+def drive_row(choice: Choice, drive: Drive, h: float) -> dict[str, Value]:
+    """Return the gains that a point is on a drive's inertia at a step of h (s), their limits, and which is used up.
+
+    A limit is infinite where there is none, None where lowering that gain alone does not help. The largest kp goes with
+    this kd, the largest kd with this kp.
+    """
+    from bezstab.stability import gain_limits
+
+    limits = gain_limits(choice)
+    kp, kd = drive.gains(choice.alpha_hat, choice.beta_hat, h)
+    kp_of_one, kd_of_one = drive.gains(1.0, 1.0, h)
+    return {
+        "drive": DRIVE_METHODS.get(choice.method.name),
+        "kp": kp,
+        "kd": kd,
+        "inertia": float(drive.inertia),
+        "kp_max": None if limits.beta_hat is None else limits.beta_hat * kp_of_one,
+        "kd_max": None if limits.alpha_hat is None else limits.alpha_hat * kd_of_one,
+        "used_up": {"alpha_hat": "kd", "beta_hat": "kp", None: None}[limits.nearest],
+    }

@@ -27,6 +27,7 @@ From a method's polynomial in float64 (its pencil) upwards; a file imports only 
     plane_best_points the smallest |z_p| of a second-order scheme
     best_points       the smallest |z_p|
     choices           which parameters to take
+    gain_margins      which of two gains is used up
     step_families     methods by their number of steps, and their limit
 
 What needs sympy's polynomials is loaded when first used: poles and maps do not.
@@ -49,6 +50,7 @@ from bezstab.stability.choices import (
     stability_margins,
 )
 from bezstab.stability.closed_loop import dominant_pole, poles, spectral_radius, verdict
+from bezstab.stability.gain_margins import GainLimits, gain_limits
 from bezstab.stability.grid_maps import QUALITY, pole_map
 from bezstab.stability.pencils import Pencil, pencil_of, roots_in_z
 from bezstab.stability.regions import Extent, Region, pole_place, region, window
@@ -79,6 +81,7 @@ __all__ = [
     "ComplexArray",
     "Extent",
     "FloatArray",
+    "GainLimits",
     "Goal",
     "Limit",
     "Margins",
@@ -98,6 +101,7 @@ __all__ = [
     "falls_towards",
     "family_members",
     "first_where",
+    "gain_limits",
     "pencil_of",
     "pole_map",
     "pole_place",

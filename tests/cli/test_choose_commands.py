@@ -26,7 +26,7 @@ def test_choose_prints_what_to_set() -> None:
 
 
 def test_an_engines_own_words_are_read_and_printed(tmp_path: Path) -> None:
-    (given, _) = rows("check", "--engine", "mujoco=0.004,1", "--h", "0.002", "--method", "SYM")
+    (given, _) = rows("check", "--engine", "mujoco=0.004,1", "--h", "0.002", "--as-typed")
     assert (given["alpha_hat"], given["beta_hat"], given["z_abs"]) == (1, 0.25, 0.75)
     (row,) = rows("choose", "--engine", "mujoco", "--h", "0.002")
     assert row["method"] == "SYM"
@@ -34,7 +34,8 @@ def test_an_engines_own_words_are_read_and_printed(tmp_path: Path) -> None:
     assert (float(c) * 0.002, float(k) * 0.002**2) == pytest.approx((row["alpha_hat"], row["beta_hat"]))
     listed = {str(row["engine"]): row for row in rows("engines", "--alpha", "1", "--beta", "0.2", "--h", "0.002")}
     assert listed["ode"]["setting"] == "ERP = 0.2"
-    assert "reaches" in str(listed["box2d"]["setting"])
+    assert "dampingRatio = 2" in str(listed["box2d"]["setting"])
+    assert "α̂ = β̂" in str(listed["pbd"]["setting"])
     assert all(row["excludes"] and row["source"] for row in listed.values())
     rows("region", "--method", "SYM", "--engine", "mujoco", "--h", "0.002", "--figure", "svg", "--table", "none")
     assert "timeconst" in (tmp_path / "region_SYM.svg").read_text(encoding="utf-8")

@@ -1,0 +1,257 @@
+"""Engines whose feedback is Baumgarte's: c'' + 2 alpha c' + beta^2 c = 0 in their equations, then an integrator."""
+
+from fractions import Fraction
+
+from bezstab.engines.conversions import Applied, Engine, Point, in_words, refuse_unless_positive
+from bezstab.errors import InputError
+from bezstab.units import feedback_gains, from_dimensionless, from_feedback_gains, to_dimensionless
+
+
+def _read_gains(h: Fraction, stiffness: Fraction, damping: Fraction) -> Point:
+    """Stiffness is beta^2 (1/s^2), damping 2 alpha (1/s)."""
+    return from_feedback_gains(damping, stiffness, h)
+
+
+def _gains_in_words(point: Point, h: Fraction) -> tuple[str, str]:
+    """Return beta^2 (1/s^2) and 2 alpha (1/s) of a point as they are pasted."""
+    damping, stiffness = feedback_gains(*point, h)
+    return in_words(float(stiffness)), in_words(float(damping))
+
+
+# Crocoddyl, Pinocchio, RigidBodyDynamics.jl: two gains
+
+
+def _write_crocoddyl(point: Point, h: Fraction) -> str:
+    stiffness, damping = _gains_in_words(point, h)
+    return f"gains = [{stiffness}, {damping}]"
+
+
+CROCODDYL = Engine(
+    name="crocoddyl",
+    level="acceleration",
+    method="SYM",
+    parameters=("gains[0]", "gains[1]"),
+    units=("1/s^2", "1/s"),
+    read=_read_gains,
+    write=_write_crocoddyl,
+    source="Crocoddyl source, contact-3d.hxx; integrator/euler.hxx (its Euler moves with the new velocity)",
+    excludes="friction cones and impulses",
+)
+
+
+def _write_pinocchio(point: Point, h: Fraction) -> str:
+    stiffness, damping = _gains_in_words(point, h)
+    return f"Kp = {stiffness}, Kd = {damping}"
+
+
+def _pinocchio_default(h: Fraction) -> Point:
+    return Fraction(0), Fraction(0)
+
+
+PINOCCHIO = Engine(
+    name="pinocchio",
+    level="acceleration",
+    method=None,
+    parameters=("Kp", "Kd"),
+    units=("1/s^2", "1/s"),
+    read=_read_gains,
+    write=_write_pinocchio,
+    marks=(("Pinocchio: Kp = Kd = 0", _pinocchio_default),),
+    source="Pinocchio source, contact-info.hpp (corrector, 0 and 0 unless set); constrained-dynamics.hxx",
+    excludes="errors of orientation, which are logarithms of rotations; the proximal solver's mu",
+)
+
+
+def _write_rigid_body_dynamics(point: Point, h: Fraction) -> str:
+    stiffness, damping = _gains_in_words(point, h)
+    return f"PDGains({stiffness}, {damping})"
+
+
+def _rigid_body_dynamics_default(h: Fraction) -> Point:
+    return _read_gains(h, Fraction(100), Fraction(20))
+
+
+RIGID_BODY_DYNAMICS = Engine(
+    name="rigidbodydynamics.jl",
+    level="acceleration",
+    method="RK4",
+    parameters=("k", "d"),
+    units=("1/s^2", "1/s"),
+    read=_read_gains,
+    write=_write_rigid_body_dynamics,
+    marks=(("RigidBodyDynamics.jl: PDGains(100, 20)", _rigid_body_dynamics_default),),
+    source="RigidBodyDynamics.jl source, mechanism_algorithms.jl, pdcontrol.jl, simulate.jl (Munthe-Kaas with RK4)",
+    excludes="errors of orientation; integrators other than its simulate",
+)
+
+
+# RBDL: one time constant, on the curve of critical damping
+
+
+def _read_rbdl(h: Fraction, time_constant: Fraction) -> Point:
+    refuse_unless_positive("rbdl", T_stab=time_constant)
+    return to_dimensionless(1 / time_constant, 1 / time_constant, h)
+
+
+def _write_rbdl(point: Point, h: Fraction) -> str:
+    alpha_hat, beta_hat = map(float, point)
+    nearest = alpha_hat**2 / 4
+    if not alpha_hat > 0 or abs(beta_hat - nearest) > 1e-9 * nearest:  # rounding of a point that was computed
+        raise InputError(f"rbdl has one time constant, so β̂ = α̂²/4 ({nearest:g}), not {beta_hat:g}")
+    return f"T_stab = {in_words(2 * float(h) / alpha_hat)}"
+
+
+def _rbdl_default(h: Fraction) -> Point:
+    return _read_rbdl(h, Fraction("0.1"))
+
+
+RBDL = Engine(
+    name="rbdl",
+    level="acceleration",
+    method=None,
+    parameters=("T_stab",),
+    units=("s",),
+    read=_read_rbdl,
+    write=_write_rbdl,
+    marks=(("RBDL: T_stab = 0.1", _rbdl_default),),
+    source="RBDL source, Constraint.h (setBaumgarteTimeConstant, default 0.1 s, off unless enabled)",
+    excludes="contact constraints, which have it on velocities alone",
+)
+
+
+# MapleSim, Drake's older solver: alpha and beta themselves
+
+
+def _read_alpha_beta(h: Fraction, alpha: Fraction, beta: Fraction) -> Point:
+    return to_dimensionless(alpha, beta, h)
+
+
+def _write_alpha_beta(point: Point, h: Fraction) -> str:
+    alpha, beta = from_dimensionless(float(point[0]), float(point[1]), float(h))
+    return f"alpha = {in_words(alpha)}, beta = {in_words(beta)}"
+
+
+def _engine_with_alpha_and_beta(name: str, source: str) -> Engine:
+    return Engine(
+        name=name,
+        level="acceleration",
+        method=None,
+        parameters=("alpha", "beta"),
+        units=("1/s", "1/s"),
+        read=_read_alpha_beta,
+        write=_write_alpha_beta,
+        source=source,
+        excludes="nothing: these are the coefficients of c'' + 2 alpha c' + beta^2 c = 0",
+    )
+
+
+MAPLESIM = _engine_with_alpha_and_beta("maplesim", "MapleSim documentation, Multibody Dynamic Exports: SetBaumgarte")
+DRAKE = _engine_with_alpha_and_beta(
+    "drake", "Drake documentation, constraint stabilization (the older constraint solver)"
+)
+
+
+# Chrono's explicit integrators solve for accelerations with c'' = 0 and nothing else
+
+
+def _read_nothing(h: Fraction) -> Point:
+    return Fraction(0), Fraction(0)
+
+
+def _write_nothing(point: Point, h: Fraction) -> str:
+    raise InputError("chrono-explicit has no stabilisation: there is nothing to set")
+
+
+CHRONO_EXPLICIT = Engine(
+    name="chrono-explicit",
+    level="acceleration",
+    method=None,
+    parameters=(),
+    units=(),
+    read=_read_nothing,
+    write=_write_nothing,
+    source="Chrono source, ChIntegrable.cpp (StateSolveA: c'' = 0 by differences), ChTimestepperExplicit.cpp",
+    excludes="nothing: Euler, Runge-Kutta, Heun and leapfrog add no feedback; lumped masses take penalties instead",
+)
+
+
+# MuJoCo. With impedance d and its value dmax at full width, aref = -(damping / dmax) c' - (stiffness d / dmax^2) c, of
+# which d takes part: r = d / dmax scales damping once and stiffness twice. r = d0 / dmax at c = 0, 1 past the width.
+
+LEAST_IMPEDANCE, LARGEST_IMPEDANCE = Fraction("0.0001"), Fraction("0.9999")
+DEFAULT_SOLIMP = Fraction("0.9"), Fraction("0.95")
+LEAST_TIME_CONSTANT = 2  # steps: below, refsafe raises it
+
+
+def _read_solref(
+    h: Fraction, first: Fraction, second: Fraction, d0: Fraction | None = None, dmax: Fraction | None = None
+) -> Point:
+    """Return the point of MuJoCo's solref, for an impedance that is the same for all errors (r = 1).
+
+    Two positive numbers or two that are not mean different things.
+    """
+    if first > 0 and second > 0:
+        time_constant, damping_ratio = first, second  # s, -: alpha = 1 / T and beta = 1 / (T zeta)
+        alpha, beta = 1 / time_constant, 1 / (time_constant * damping_ratio)
+        return from_feedback_gains(2 * alpha, beta**2, h)
+    if first <= 0 and second <= 0:
+        return _read_gains(h, stiffness=-first, damping=-second)
+    raise InputError(f"--engine mujoco: solref = {float(first):g} {float(second):g}: expected two of one sign")
+
+
+def _apply_mujoco(
+    h: Fraction,
+    first: Fraction,
+    second: Fraction,
+    d0: Fraction = DEFAULT_SOLIMP[0],
+    dmax: Fraction = DEFAULT_SOLIMP[1],
+) -> Applied:
+    notes = []
+    least = LEAST_TIME_CONSTANT * h
+    if first > 0 and second > 0 and first < least:
+        notes.append(f"refsafe raises timeconst {float(first):g} s to {LEAST_TIME_CONSTANT}h = {float(least):g} s")
+        first = least
+    d0, dmax = (min(max(each, LEAST_IMPEDANCE), LARGEST_IMPEDANCE) for each in (d0, dmax))
+    ratio = d0 / dmax
+    alpha_hat, beta_hat = _read_solref(h, first, second)
+    if ratio == 1:
+        return Applied((alpha_hat, beta_hat), tuple(notes))
+    notes.append(
+        f"solimp {float(d0):g} {float(dmax):g} scales α̂ by r = {float(ratio):.3f} and β̂ by r² where the error is small"
+    )
+    return Applied(
+        (ratio * alpha_hat, ratio**2 * beta_hat),
+        tuple(notes),
+        also=(("past solimp's width", (alpha_hat, beta_hat)),),
+    )
+
+
+def _write_solref(point: Point, h: Fraction) -> str:
+    damping, stiffness = feedback_gains(*point, h)
+    impedance = float(DEFAULT_SOLIMP[1])  # of d0 as well: r = 1 whatever the error
+    return f'solref="{in_words(-float(stiffness))} {in_words(-float(damping))}" solimp="{impedance:g} {impedance:g}"'
+
+
+def _least_time_constant(h: Fraction) -> Point:
+    return _read_solref(h, LEAST_TIME_CONSTANT * h, Fraction(1))
+
+
+def _default_solref(h: Fraction) -> Point:
+    return _read_solref(h, Fraction("0.02"), Fraction(1))
+
+
+MUJOCO = Engine(
+    name="mujoco",
+    level="acceleration",
+    method="SYM",
+    parameters=("solref[0]", "solref[1]"),
+    optional=("solimp[0]", "solimp[1]"),
+    units=("s or -1/s^2", "- or -1/s", "-", "-"),
+    read=_read_solref,
+    write=_write_solref,
+    apply=_apply_mujoco,
+    marks=(("MuJoCo: timeconst = 2h", _least_time_constant), ("MuJoCo: solref = 0.02 1", _default_solref)),
+    source="MuJoCo documentation, Modeling, Constraint parameters: Reference; engine_core_constraint.c",
+    excludes="the soft bias of 1 - d; the shape of solimp between no error and its width; implicit joint damping; "
+    "contacts; integrator RK4, for which give --method RK4",
+)

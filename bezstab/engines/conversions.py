@@ -1,0 +1,122 @@
+"""What an engine is: its own words for the feedback, what it makes of them, and the method it steps with."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Literal
+
+from bezstab.errors import InputError
+from bezstab.rationals import within_float64
+
+Point = tuple[Fraction, Fraction]
+"""alpha_hat and beta_hat."""
+
+
+@dataclass(frozen=True)
+class Applied:
+    """The point that an engine makes of values, what it did to them (sentences), and points it also takes, labelled.
+
+    `also` is for feedback that changes with the size of the error: safe is what is safe at those points, too.
+    """
+
+    point: Point
+    notes: tuple[str, ...] = ()
+    also: tuple[tuple[str, Point], ...] = ()
+
+
+@dataclass(frozen=True)
+class Engine:
+    """An engine's own constraint parameters and what they mean in (alpha_hat, beta_hat) at a step of h seconds.
+
+    acceleration: true Baumgarte feedback, so that the integrator decides. velocity, position: an engine that feeds the
+    error back into velocities or positions; for one constraint its step is that of `method` at that point, no other.
+    `method` is the name of the engine's own integrator, None for a library that has none: the user's decides.
+    `read(h, *values)` and `write(point, h)` raise InputError where the other has nothing. `parameters` are the values
+    needed, `optional` those that may follow, `units` the units of both. `apply(h, *values)` is what the engine does to
+    values before it uses them (clamps, scaling), None if nothing. `marks` are the settings everybody meets: a label,
+    and the point as a function of h. `excludes` is what the conversion leaves out.
+    """
+
+    name: str
+    level: Literal["acceleration", "velocity", "position"]
+    method: str | None
+    parameters: tuple[str, ...]
+    units: tuple[str, ...]
+    read: Callable[..., Point]
+    write: Callable[[Point, Fraction], str]
+    source: str
+    excludes: str
+    optional: tuple[str, ...] = ()
+    apply: Callable[..., Applied] | None = None
+    marks: tuple[tuple[str, Callable[[Fraction], Point]], ...] = ()
+
+    def point(self, values: tuple[Fraction, ...], h: Fraction) -> Point:
+        """Return (alpha_hat, beta_hat) for values as typed, in their order and the engine's units; h in s.
+
+        InputError for another number of values, for those that mean nothing and for a point outside float64's range.
+        """
+        self._check_number(values)
+        return self._within_range(self.read(h, *values))
+
+    def applied(self, values: tuple[Fraction, ...], h: Fraction) -> Applied:
+        """Return what the engine makes of such values: the point after its clamps and scaling, and what they did.
+
+        InputError as for `point`.
+        """
+        self._check_number(values)
+        if self.apply is None:
+            return Applied(self._within_range(self.read(h, *values)))
+        made = self.apply(h, *values)
+        return Applied(
+            self._within_range(made.point),
+            made.notes,
+            tuple((label, self._within_range(point)) for label, point in made.also),
+        )
+
+    def setting(self, point: Point, h: Fraction) -> str:
+        """Return what to write in the engine's own words for a point, h in s; InputError where there is nothing."""
+        alpha_hat, beta_hat = point
+        if alpha_hat < 0 or beta_hat < 0:
+            raise InputError(
+                f"{self.name}: negative feedback ({float(alpha_hat):g}, {float(beta_hat):g}) is not to be had"
+            )
+        try:
+            return self.write(point, h)
+        except (OverflowError, ZeroDivisionError):
+            raise InputError(f"{self.name}: its parameters would leave the range of float64") from None
+
+    def words(self) -> str:
+        """Return the parameters as they are typed, the optional ones in brackets: solref[0],solref[1][,solimp[0]]."""
+        optional = "".join(f"[,{name}" for name in self.optional) + "]" * len(self.optional)
+        return ",".join(self.parameters) + (optional if self.parameters else optional.replace("[,", "[", 1))
+
+    def _check_number(self, values: tuple[Fraction, ...]) -> None:
+        needed, most = len(self.parameters), len(self.parameters) + len(self.optional)
+        if not needed <= len(values) <= most:
+            expected = ", ".join(self.parameters) or "none"
+            then = f", then {', '.join(self.optional)} if you like" if self.optional else ""
+            raise InputError(f"--engine {self.name}: {len(values)} values, expected {expected}{then}")
+
+    def _within_range(self, point: Point) -> Point:
+        alpha_hat, beta_hat = point
+        option = f"--engine {self.name}"
+        return within_float64(alpha_hat, f"{option}: α̂"), within_float64(beta_hat, f"{option}: β̂")
+
+
+def in_words(value: float) -> str:
+    """Return a value as it stands in a line to paste: nine digits, so that what is read back agrees to 1e-8."""
+    return f"{value:.9g}"
+
+
+def refuse_below_zero(option: str, **values: Fraction) -> None:
+    """Raise InputError, naming the engine and the values, unless none is below zero."""
+    if min(values.values()) < 0:
+        typed = ", ".join(f"{name} = {float(value):g}" for name, value in values.items())
+        raise InputError(f"--engine {option}: {typed}: expected none below 0")
+
+
+def refuse_unless_positive(option: str, **values: Fraction) -> None:
+    """Raise InputError, naming the engine and the values, unless all are above zero."""
+    if min(values.values()) <= 0:
+        typed = ", ".join(f"{name} = {float(value):g}" for name, value in values.items())
+        raise InputError(f"--engine {option}: {typed}: expected above 0")

@@ -1,0 +1,131 @@
+"""Springs and drives: those solved implicitly are implicit Euler, stable for all; Brax's are not.
+
+Implicit Euler for one constraint: c1' = (c0' - (beta_hat / h) c0) / (1 + alpha_hat + beta_hat), c1 = c0 + h c1', so
+(1 + alpha_hat + beta_hat) z^2 - (2 + alpha_hat) z + 1 = 0. alpha_hat = damping h and beta_hat = stiffness h^2, each per
+unit of mass.
+"""
+
+import math
+from fractions import Fraction
+
+from bezstab.engines.conversions import Engine, Point, in_words, refuse_below_zero, refuse_unless_positive
+from bezstab.errors import InputError
+from bezstab.units import feedback_gains, from_feedback_gains
+
+# Catto's soft constraint, without relaxation
+
+
+def _read_jolt_spring(h: Fraction, frequency: Fraction, damping: Fraction) -> Point:
+    refuse_unless_positive("jolt-spring", mFrequency=frequency)
+    refuse_below_zero("jolt-spring", mDamping=damping)
+    turn = Fraction(2 * math.pi) * frequency * h
+    return 2 * damping * turn, turn**2
+
+
+def _write_jolt_spring(point: Point, h: Fraction) -> str:
+    alpha_hat, beta_hat = map(float, point)
+    if not beta_hat > 0:
+        raise InputError("jolt-spring with a frequency of 0 is hard: see jolt")
+    turn = math.sqrt(beta_hat)
+    frequency, damping = turn / (2 * math.pi * float(h)), alpha_hat / (2 * turn)
+    return f"mFrequency = {in_words(frequency)}, mDamping = {in_words(damping)}"
+
+
+JOLT_SPRING = Engine(
+    name="jolt-spring",
+    level="velocity",
+    method="implicit-euler",
+    parameters=("mFrequency", "mDamping"),
+    units=("Hz", "-"),
+    read=_read_jolt_spring,
+    write=_write_jolt_spring,
+    source="Jolt source, SpringPart.h (Catto, Soft constraints, GDC 2011, without relaxation)",
+    excludes="its modes by stiffness; the error of iterations; for a hard constraint see jolt",
+)
+
+
+def _read_physx(h: Fraction, stiffness: Fraction, damping: Fraction) -> Point:
+    refuse_below_zero("physx-drive", stiffness=stiffness, damping=damping)
+    return from_feedback_gains(damping, stiffness, h)
+
+
+def _write_physx(point: Point, h: Fraction) -> str:
+    damping, stiffness = feedback_gains(*point, h)
+    return f"stiffness = {in_words(float(stiffness))}, damping = {in_words(float(damping))}"
+
+
+PHYSX_DRIVE = Engine(
+    name="physx-drive",
+    level="velocity",
+    method="implicit-euler",
+    parameters=("stiffness", "damping"),
+    units=("1/s^2", "1/s"),
+    read=_read_physx,
+    write=_write_physx,
+    source="PhysX source, DyCpuGpuArticulation.h (computeImplicitDriveParamsAccelerationDrive)",
+    excludes="the inertia, by which both are divided in force drives (see --pd); force limits; h is TGS's substep",
+)
+
+
+# XPBD with one iteration: with alpha~ = compliance / h^2 and gamma = compliance damping / h its move is
+# -(c* + gamma h c0') / ((1 + gamma) w + alpha~) w: implicit Euler of a spring 1 / compliance and that damping
+
+
+def _read_xpbd(
+    h: Fraction, compliance: Fraction, damping: Fraction = Fraction(0), inverse_mass: Fraction = Fraction(1)
+) -> Point:
+    refuse_unless_positive("xpbd", compliance=compliance, w=inverse_mass)
+    refuse_below_zero("xpbd", damping=damping)
+    return damping * h * inverse_mass, h * h * inverse_mass / compliance
+
+
+def _write_xpbd(point: Point, h: Fraction) -> str:
+    alpha_hat, beta_hat = point
+    if beta_hat == 0:
+        raise InputError("xpbd with β̂ = 0 has no spring: its compliance would be infinite")
+    compliance, damping = float(h * h / beta_hat), float(alpha_hat / h)
+    return f"compliance = {in_words(compliance)}, damping = {in_words(damping)}, w = 1"
+
+
+XPBD = Engine(
+    name="xpbd",
+    level="position",
+    method="implicit-euler",
+    parameters=("compliance",),
+    optional=("damping", "w"),
+    units=("m/N", "N s/m", "1/kg"),
+    read=_read_xpbd,
+    write=_write_xpbd,
+    source="Macklin, Mueller & Chentanez, XPBD, Motion in Games 2016, Eqs 18 and 26; derived",
+    excludes="one iteration; h is the substep's; no compliance at all is the rigid limit: see pbd with stiffness 1",
+)
+
+
+# Brax's spring pipeline: forces of the old state, the new velocity moves
+
+
+def _read_brax_spring(h: Fraction, stiffness: Fraction, damping: Fraction, mass: Fraction = Fraction(1)) -> Point:
+    refuse_unless_positive("brax-spring", mass=mass)
+    return from_feedback_gains(damping / mass, stiffness / mass, h)
+
+
+def _write_brax_spring(point: Point, h: Fraction) -> str:
+    damping, stiffness = feedback_gains(*point, h)
+    return (
+        f"constraint_stiffness = {in_words(float(stiffness))}, "
+        f"constraint_vel_damping = {in_words(float(damping))} for a mass of 1 kg"
+    )
+
+
+BRAX_SPRING = Engine(
+    name="brax-spring",
+    level="acceleration",
+    method="SYM",
+    parameters=("constraint_stiffness", "constraint_vel_damping"),
+    optional=("mass",),
+    units=("N/m", "N s/m", "kg"),
+    read=_read_brax_spring,
+    write=_write_brax_spring,
+    source="Brax source, spring/joints.py, spring/pipeline.py, spring/integrator.py; io/mjcf.py (2000, 0 unless set)",
+    excludes="angles (constraint_ang_damping); vel_damping and ang_damping; spring_mass_scale; contacts: brax-contact",
+)

@@ -1,0 +1,113 @@
+"""Engines that move positions to where the constraint holds better, and the velocities that they take from that.
+
+Two kinds, for one constraint of unit mass, c* = c0 + h c0' and a share s that a step takes back:
+
+    the velocity is that of the whole move      c1 = (1 - s) c*,  c1' = (c1 - c0) / h     SYM at (s, s)
+    the move leaves the velocity as it is       c' = 0 by an impulse, c1 = (1 - s) c*     SYM at (1, s)
+"""
+
+from fractions import Fraction
+
+from bezstab.engines.conversions import Engine, Point, in_words
+from bezstab.errors import InputError
+
+ONE = Fraction(1)
+MOST_ITERATIONS = 1000  # more than anybody runs, and the powers stay short
+
+
+def _share_of_all(engine: str, share: Fraction, iterations: Fraction) -> Fraction:
+    """Return what so many iterations take back together, each its share of what is left."""
+    if iterations.denominator != 1 or not 1 <= iterations <= MOST_ITERATIONS:
+        raise InputError(f"--engine {engine}: {float(iterations):g} iterations: expected 1 to {MOST_ITERATIONS}, whole")
+    return 1 - (1 - share) ** int(iterations)
+
+
+def _refuse_unless_equal(name: str, point: Point) -> Fraction:
+    """Return alpha_hat, which is beta_hat; InputError if it is not."""
+    if point[0] != point[1]:
+        raise InputError(f"{name} is α̂ = β̂, not ({float(point[0]):g}, {float(point[1]):g})")
+    return point[0]
+
+
+def _read_pbd(h: Fraction, share: Fraction, iterations: Fraction = ONE) -> Point:
+    share_of_all = _share_of_all("pbd", share, iterations)
+    return share_of_all, share_of_all
+
+
+def _write_pbd(point: Point, h: Fraction) -> str:
+    return f"stiffness = {in_words(float(_refuse_unless_equal('pbd', point)))}"
+
+
+def _pbd_default(h: Fraction) -> Point:
+    return ONE, ONE
+
+
+PBD = Engine(
+    name="pbd",
+    level="position",
+    method="SYM",
+    parameters=("stiffness",),
+    optional=("iterations",),
+    units=("-", "-"),
+    read=_read_pbd,
+    write=_write_pbd,
+    marks=(("PBD: stiffness 1", _pbd_default),),
+    source="Mueller et al., Position based dynamics, J. Vis. Commun. Image R. 18, 2007; derived",
+    excludes="other constraints in between; above 1 it is over-relaxation; velocity damping",
+)
+
+
+def _read_brax_positional(h: Fraction, share: Fraction) -> Point:
+    return share, share
+
+
+def _write_brax_positional(point: Point, h: Fraction) -> str:
+    return f"joint_scale_pos = {in_words(float(_refuse_unless_equal('brax-positional', point)))}"
+
+
+def _brax_default(h: Fraction) -> Point:
+    return Fraction("0.5"), Fraction("0.5")
+
+
+BRAX_POSITIONAL = Engine(
+    name="brax-positional",
+    level="position",
+    method="SYM",
+    parameters=("joint_scale_pos",),
+    units=("-",),
+    read=_read_brax_positional,
+    write=_write_brax_positional,
+    marks=(("Brax positional: 0.5", _brax_default),),
+    source="Brax source, positional/pipeline.py, joints.py, integrator.py (project_xd); io/mjcf.py (default)",
+    excludes="joint_scale_ang (0.2 unless set), the same for angles; constraint_vel_damping; joints that share bodies",
+)
+
+
+def _read_jolt(h: Fraction, baumgarte: Fraction, position_steps: Fraction = Fraction(2)) -> Point:
+    return ONE, _share_of_all("jolt", baumgarte, position_steps)
+
+
+def _write_jolt(point: Point, h: Fraction) -> str:
+    alpha_hat, beta_hat = map(float, point)
+    if alpha_hat != 1 or beta_hat > 1:
+        raise InputError(f"jolt is α̂ = 1 and β̂ <= 1, not ({alpha_hat:g}, {beta_hat:g})")
+    return f"mBaumgarte = {1 - (1 - beta_hat) ** 0.5:.17g}, mNumPositionSteps = 2"  # all digits: it may be small
+
+
+def _jolt_default(h: Fraction) -> Point:
+    return _read_jolt(h, Fraction("0.2"))
+
+
+JOLT = Engine(
+    name="jolt",
+    level="position",
+    method="SYM",
+    parameters=("mBaumgarte",),
+    optional=("mNumPositionSteps",),
+    units=("-", "-"),
+    read=_read_jolt,
+    write=_write_jolt,
+    marks=(("Jolt: 0.2, 2 position steps", _jolt_default),),
+    source="Jolt source, PhysicsSettings.h, AxisConstraintPart.h (SolvePositionConstraint)",
+    excludes="constraints with springs, which are jolt-spring; contacts' slop; constraints that share bodies",
+)

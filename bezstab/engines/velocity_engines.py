@@ -1,0 +1,342 @@
+"""Impulse engines: the new velocity is made to take back a part of the error.
+
+For one constraint of unit mass each of them is a linear recursion of c and c'. Symplectic Euler's is, with v = h c',
+
+    v1 = (1 - alpha_hat) v0 - beta_hat c0          c1 = c0 + v1
+    z^2 - (2 - alpha_hat - beta_hat) z + (1 - alpha_hat) = 0
+
+and an engine whose two roots are those of this polynomial is symplectic Euler at that point. A step that ends with
+c' = 0, whatever it was, has alpha_hat = 1 and the roots 0 and 1 - beta_hat.
+"""
+
+import math
+from fractions import Fraction
+
+from bezstab.engines.conversions import Applied, Engine, Point, in_words, refuse_below_zero, refuse_unless_positive
+from bezstab.errors import InputError
+
+ONE = Fraction(1)
+
+
+def _refuse_unless_one(name: str, alpha_hat: Fraction) -> None:
+    if alpha_hat != 1:
+        raise InputError(f"{name} is α̂ = 1, not {float(alpha_hat):g}")
+
+
+# ERP is the share of the error that one step takes back: v1 = -ERP c0. Constraint force mixing softens that: the
+# velocity then keeps a share, J v1 = -(ERP / h) c - CFM f with f the force that was needed, so that
+# alpha_hat = h / (h + CFM m) and beta_hat = alpha_hat ERP for an effective mass m = 1 / (J M^-1 J').
+
+
+def _engine_with_erp(name: str, default: str, source: str, excludes: str) -> Engine:
+    def read(h: Fraction, erp: Fraction) -> Point:
+        return ONE, erp
+
+    def write(point: Point, h: Fraction) -> str:
+        _refuse_unless_one(f"{name} with CFM = 0", point[0])
+        return f"ERP = {in_words(float(point[1]))}"
+
+    def default_point(h: Fraction) -> Point:
+        return read(h, Fraction(default))
+
+    return Engine(
+        name=name,
+        level="velocity",
+        method="SYM",
+        parameters=("ERP",),
+        units=("-",),
+        read=read,
+        write=write,
+        marks=((f"{name}: ERP = {default}", default_point),),
+        source=source,
+        excludes=excludes,
+    )
+
+
+IMPULSES = "contacts, clamps, warm starts and the error of iterative solvers are left out"
+BULLET = _engine_with_erp("bullet", "0.2", "Bullet source, btContactSolverInfo.h", f"CFM = 0; {IMPULSES}")
+DART = _engine_with_erp("dart", "0.01", "DART issue 317", f"CFM = 0; {IMPULSES}")
+BRAX_CONTACT = _engine_with_erp(
+    "brax-contact",
+    "0.1",
+    "Brax source, spring/collisions.py (baumgarte_erp), io/mjcf.py (default)",
+    "contacts of its spring pipeline only, as long as they touch; its joints are brax-spring",
+)
+
+
+def _read_ode(h: Fraction, erp: Fraction, cfm: Fraction = Fraction(0), mass: Fraction = ONE) -> Point:
+    refuse_below_zero("ode", CFM=cfm)
+    refuse_unless_positive("ode", mass=mass)
+    alpha_hat = h / (h + cfm * mass)
+    return alpha_hat, alpha_hat * erp
+
+
+def _write_ode(point: Point, h: Fraction) -> str:
+    alpha_hat, beta_hat = point
+    if alpha_hat == 1:
+        return f"ERP = {in_words(float(beta_hat))}"
+    if not 0 < alpha_hat < 1:
+        raise InputError(f"ode reaches 0 < α̂ <= 1 only, not {float(alpha_hat):g}")
+    erp, cfm = float(beta_hat / alpha_hat), float(h * (1 / alpha_hat - 1))
+    return f"ERP = {in_words(erp)}, CFM = {in_words(cfm)} for an effective mass of 1 kg"
+
+
+def _ode_default(h: Fraction) -> Point:
+    return _read_ode(h, Fraction("0.2"))
+
+
+ODE = Engine(
+    name="ode",
+    level="velocity",
+    method="SYM",
+    parameters=("ERP",),
+    optional=("CFM", "mass"),
+    units=("-", "s/kg", "kg"),
+    read=_read_ode,
+    write=_write_ode,
+    marks=(("ode: ERP = 0.2", _ode_default),),
+    source="ODE wiki, Manual: Concepts",
+    excludes=f"CFM = 0 unless given, with the effective mass 1 / (J M^-1 J'); {IMPULSES}",
+)
+
+
+# Chrono's usual integrator, linearised implicit Euler: v1 = -c / h
+
+
+def _read_chrono(h: Fraction) -> Point:
+    return ONE, ONE
+
+
+def _write_chrono(point: Point, h: Fraction) -> str:
+    if point != (ONE, ONE):
+        raise InputError(f"chrono-linearized is (1, 1), not ({float(point[0]):g}, {float(point[1]):g})")
+    return "EULER_IMPLICIT_LINEARIZED"
+
+
+CHRONO_LINEARIZED = Engine(
+    name="chrono-linearized",
+    level="velocity",
+    method="SYM",
+    parameters=(),
+    units=(),
+    read=_read_chrono,
+    write=_write_chrono,
+    source="Chrono source, ChTimestepperImplicit.cpp (EulerImplicitLinearized: Qc = C / dt)",
+    excludes="the recovery speed (0.6 m/s unless set), above which an error is taken back at that speed; contacts",
+)
+
+
+# Chipmunk: errorBias is the share of an error that is left after a second, so errorBias^h after a step. It moves first,
+# with the old velocity, and sees the error after that: the roots are the same.
+
+
+def _read_chipmunk(h: Fraction, error_bias: Fraction) -> Point:
+    refuse_below_zero("chipmunk", errorBias=error_bias)
+    return ONE, 1 - Fraction(float(error_bias) ** float(h))
+
+
+def _write_chipmunk(point: Point, h: Fraction) -> str:
+    _refuse_unless_one("chipmunk", point[0])
+    left = 1 - float(point[1])
+    if left < 0:
+        raise InputError(f"chipmunk reaches β̂ <= 1 only, not {float(point[1]):g}")
+    error_bias = left ** (1 / float(h))
+    if left > 0 and error_bias == 0:
+        raise InputError(f"chipmunk: the errorBias that leaves {left:g} after this step is below float64's range")
+    return f"errorBias = {error_bias:.17g}"  # all digits: for a small beta_hat it is next to one
+
+
+def _chipmunk_default(h: Fraction) -> Point:
+    return _read_chipmunk(h, Fraction("0.9") ** 60)
+
+
+CHIPMUNK = Engine(
+    name="chipmunk",
+    level="velocity",
+    method="SYM",
+    parameters=("errorBias",),
+    units=("- (per second)",),
+    read=_read_chipmunk,
+    write=_write_chipmunk,
+    marks=(("Chipmunk: errorBias = 0.9^60", _chipmunk_default),),
+    source="Chipmunk source, cpConstraint.c, cpPivotJoint.c, cpSpaceStep.c (pymunk: error_bias)",
+    excludes="maxBias and maxForce (infinite unless set); warm starts and the error of iterations; damped springs",
+)
+
+
+# Soft constraints by frequency and damping ratio. With the turn t = 2 pi hertz h and x = t (2 zeta + t), the velocity
+# is solved as v1 = (1 - s) v0 - s e c0 with s = x / (1 + x), e = t / (2 zeta + t), so that s e = t^2 / (1 + x), and the
+# constraint moves with it. Then it is relaxed: solved again, without error.
+#
+#     Box2D    relaxed hard: c' = 0. Roots 0 and 1 - s e.
+#     Rapier   relaxed as soft as before: c' = (1 - s) c'. Roots 1 - s and 1 - s e.
+
+
+def _turn(hertz: Fraction, h: Fraction) -> Fraction:
+    return Fraction(2 * math.pi) * hertz * h
+
+
+MOST_TURNS = Fraction("0.25")  # per substep: Box2D's joints are no faster
+USUAL_DAMPING_RATIO = 2.0  # of Box2D's joints
+
+
+def _read_box2d(h: Fraction, hertz: Fraction, damping_ratio: Fraction) -> Point:
+    refuse_below_zero("box2d", hertz=hertz, dampingRatio=damping_ratio)
+    turn = _turn(hertz, h)
+    return ONE, turn**2 / (1 + turn * (2 * damping_ratio + turn))
+
+
+def _apply_box2d(h: Fraction, hertz: Fraction, damping_ratio: Fraction) -> Applied:
+    if hertz * h <= MOST_TURNS:
+        return Applied(_read_box2d(h, hertz, damping_ratio))
+    fastest = MOST_TURNS / h
+    note = f"hertz {float(hertz):g} is clamped to {float(MOST_TURNS):g}/h = {float(fastest):g}"
+    return Applied(_read_box2d(h, fastest, damping_ratio), (note,))
+
+
+def _write_box2d(point: Point, h: Fraction) -> str:
+    _refuse_unless_one("box2d", point[0])
+    share = float(point[1])
+    most = float(_turn(MOST_TURNS / h, h))
+    reached = most**2 / (1 + most**2)  # without damping
+    if not 0 < share <= reached:
+        raise InputError(f"box2d reaches 0 < β̂ <= {reached:.4g} only, not {share:g}")
+    zeta = USUAL_DAMPING_RATIO
+    # the turn at which t^2 / (1 + 2 zeta t + t^2) is the share
+    turn = (zeta * share + math.sqrt((zeta * share) ** 2 + share * (1 - share))) / (1 - share)
+    if turn > most:  # as fast as may be, and damped less
+        turn = most * (1 - 1e-10)  # so that its twelve digits are not above the clamp
+        zeta = max(0.0, (turn**2 * (1 - share) - share) / (2 * turn * share))
+    return f"hertz = {turn / (2 * math.pi * float(h)):.12g}, dampingRatio = {in_words(zeta)}"
+
+
+def _box2d_default(h: Fraction) -> Point:
+    return _apply_box2d(h, Fraction(60), Fraction(2)).point
+
+
+BOX2D = Engine(
+    name="box2d",
+    level="velocity",
+    method="SYM",
+    parameters=("hertz", "dampingRatio"),
+    units=("Hz", "-"),
+    read=_read_box2d,
+    write=_write_box2d,
+    apply=_apply_box2d,
+    marks=(("Box2D joints: 60 Hz, 2", _box2d_default),),
+    source="Box2D v3 source, solver.h: b2MakeSoft; joint.c; revolute_joint.c (solved, then relaxed without bias)",
+    excludes="h is the substep's; contacts, joint springs, warm starts and the error of Gauss-Seidel sweeps",
+)
+
+
+def _read_rapier(h: Fraction, natural_frequency: Fraction, damping_ratio: Fraction) -> Point:
+    refuse_unless_positive("rapier", natural_frequency=natural_frequency, damping_ratio=damping_ratio)
+    turn = _turn(natural_frequency, h)
+    x = turn * (2 * damping_ratio + turn)
+    scale, share = x / (1 + x), turn**2 / (1 + x)
+    return scale + share - scale * share, scale * share
+
+
+def _write_rapier(point: Point, h: Fraction) -> str:
+    alpha_hat, beta_hat = map(float, point)
+    half = (alpha_hat + beta_hat) / 2  # of scale + share, while scale * share is beta_hat
+    difference = half**2 - beta_hat
+    if not (0 < beta_hat < 1 and 0 < alpha_hat < 1 and difference >= 0):
+        raise InputError(f"rapier reaches β̂ < 1 and α̂ < 1 with two real poles only, not ({alpha_hat:g}, {beta_hat:g})")
+    scale = half + math.sqrt(difference)
+    share = beta_hat / scale
+    x = scale / (1 - scale)
+    turn = math.sqrt(share / (1 - scale))
+    zeta = (x / turn - turn) / 2
+    if not zeta > 0:
+        raise InputError(f"rapier reaches no ({alpha_hat:g}, {beta_hat:g}) with a damping ratio above 0")
+    natural_frequency = turn / (2 * math.pi * float(h))
+    return f"natural_frequency = {natural_frequency:.17g}, damping_ratio = {zeta:.17g}"  # all: 1 - scale may be small
+
+
+def _rapier_default(h: Fraction) -> Point:
+    return _read_rapier(h, Fraction(1_000_000), ONE)
+
+
+RAPIER = Engine(
+    name="rapier",
+    level="velocity",
+    method="SYM",
+    parameters=("natural_frequency", "damping_ratio"),
+    units=("Hz", "-"),
+    read=_read_rapier,
+    write=_write_rapier,
+    marks=(("Rapier joints: 1e6 Hz, 1", _rapier_default),),
+    source="Rapier source, integration_parameters.rs; joint_velocity_constraint.rs; staged_island_solver/solve.rs",
+    excludes="h is the substep's, dt / num_solver_iterations; limits' largest corrective speed; warmstart_joints",
+)
+
+
+# Drake's SAP: the impulse is -(J v1 - v_hat) / R with v_hat = -c / (h + tau) and R = 1 / (h (h + tau) k), but R is at
+# least beta^2 w / (4 pi^2) with beta = 0.1 and the constraint's inverse mass w: then it is "near rigid", and tau = h.
+# With q = w / R: alpha_hat = q / (1 + q), beta_hat = alpha_hat h / (h + tau).
+
+NEAR_RIGID = Fraction(4 * math.pi**2) / Fraction("0.1") ** 2
+"""The largest q."""
+
+
+def _sap_point(h: Fraction, q: Fraction, relaxation_time: Fraction) -> Point:
+    alpha_hat = q / (1 + q)
+    return alpha_hat, alpha_hat * h / (h + relaxation_time)
+
+
+def _sap_q(h: Fraction, stiffness: Fraction, relaxation_time: Fraction, inverse_mass: Fraction) -> Fraction:
+    refuse_unless_positive("drake-sap", k=stiffness, w=inverse_mass)
+    refuse_below_zero("drake-sap", tau=relaxation_time)
+    return inverse_mass * h * (h + relaxation_time) * stiffness
+
+
+def _read_sap(
+    h: Fraction, stiffness: Fraction | None = None, relaxation_time: Fraction | None = None, w: Fraction | None = None
+) -> Point:
+    if stiffness is None:
+        return _sap_point(h, NEAR_RIGID, h)
+    if relaxation_time is None or w is None:
+        raise InputError("--engine drake-sap: k, tau and w go together; none of them for a ball or a weld")
+    return _sap_point(h, _sap_q(h, stiffness, relaxation_time, w), relaxation_time)
+
+
+def _apply_sap(
+    h: Fraction, stiffness: Fraction | None = None, relaxation_time: Fraction | None = None, w: Fraction | None = None
+) -> Applied:
+    as_typed = _read_sap(h, stiffness, relaxation_time, w)
+    if stiffness is None or relaxation_time is None or w is None:
+        return Applied(as_typed)
+    if _sap_q(h, stiffness, relaxation_time, w) <= NEAR_RIGID:
+        return Applied(as_typed)
+    note = f"near rigid: k is lowered until w/R = {float(NEAR_RIGID):.0f}, and tau is h"
+    return Applied(_sap_point(h, NEAR_RIGID, h), (note,))
+
+
+def _write_sap(point: Point, h: Fraction) -> str:
+    alpha_hat, beta_hat = map(float, point)
+    step = float(h)
+    if point == _sap_point(h, NEAR_RIGID, h):
+        return "k = inf"
+    if not (0 < beta_hat <= alpha_hat < 1 and alpha_hat / (1 - alpha_hat) <= NEAR_RIGID):
+        most = float(NEAR_RIGID / (1 + NEAR_RIGID))
+        raise InputError(f"drake-sap reaches 0 < β̂ <= α̂ <= {most:.6g} only, not ({alpha_hat:g}, {beta_hat:g})")
+    relaxation_time = step * (alpha_hat / beta_hat - 1)
+    stiffness = alpha_hat / (1 - alpha_hat) / (step * (step + relaxation_time))
+    return f"k = {stiffness:.17g}, tau = {relaxation_time:.17g}, w = 1"  # all: tau may be next to 0
+
+
+DRAKE_SAP = Engine(
+    name="drake-sap",
+    level="velocity",
+    method="SYM",
+    parameters=(),
+    optional=("k", "tau", "w"),
+    units=("N/m", "s", "1/kg"),
+    read=_read_sap,
+    write=_write_sap,
+    apply=_apply_sap,
+    marks=(("Drake SAP: near rigid", _read_sap),),
+    source="Drake source, sap_holonomic_constraint.h and .cc; sap_ball_constraint.cc",
+    excludes="without values a ball or a weld, which are near rigid; limits of impulses; constraints that share bodies",
+)

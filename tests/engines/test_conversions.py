@@ -1,0 +1,77 @@
+from fractions import Fraction
+
+import pytest
+
+from bezstab.engines import ENGINES
+from bezstab.engines.conversions import Applied, in_words
+from bezstab.errors import InputError
+
+H = Fraction(1, 100)
+
+
+@pytest.mark.parametrize(
+    ("name", "typed", "said"),
+    [
+        ("mujoco", (1, -1), "one sign"),
+        ("mujoco", (1,), "solimp"),
+        ("bullet", (1, 2), "expected ERP"),
+        ("box2d", (), "hertz, dampingRatio"),
+        ("box2d", (-1, 1), "none below 0"),
+        ("chrono-explicit", (1,), "expected none"),
+        ("rapier", (30, 0), "above 0"),
+        ("drake-sap", (1, 1), "go together"),
+        ("rbdl", (0,), "above 0"),
+        ("xpbd", (0,), "above 0"),
+        ("pbd", ("1/2", "3/2"), "whole"),
+        ("jolt", ("1/5", 0), "whole"),
+        ("bullet", ("1e-310",), "range of float64"),
+    ],
+)
+def test_values_that_mean_nothing_are_refused(name: str, typed: tuple[str | int, ...], said: str) -> None:
+    for read in (ENGINES[name].point, ENGINES[name].applied):
+        with pytest.raises(InputError, match=f"--engine {name}.*{said}"):
+            read(tuple(map(Fraction, typed)), H)
+
+
+@pytest.mark.parametrize(
+    ("name", "point"),
+    [
+        ("bullet", ("1/2", "1/2")),
+        ("ode", ("3/2", "1/2")),
+        ("box2d", ("1/2", "1/5")),
+        ("box2d", ("1", "3/4")),
+        ("rbdl", ("1", "1/5")),
+        ("chipmunk", ("1", "3/2")),
+        ("jolt", ("1", "3/2")),
+        ("pbd", ("1", "1/2")),
+        ("rapier", ("1/2", "1/2")),
+        ("drake-sap", ("1/2", "3/4")),
+        ("chrono-linearized", ("1", "1/2")),
+        ("xpbd", ("1", "0")),
+    ],
+)
+def test_a_point_that_an_engine_cannot_reach_is_refused_with_what_it_can(name: str, point: tuple[str, str]) -> None:
+    with pytest.raises(InputError, match="^(--engine )?" + name + ".*[α̂β̂(]"):
+        ENGINES[name].setting((Fraction(point[0]), Fraction(point[1])), H)
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_no_engine_takes_negative_feedback(name: str) -> None:
+    with pytest.raises(InputError, match=name):
+        ENGINES[name].setting((Fraction(1), Fraction(-1)), H)
+
+
+def test_what_is_typed_is_told_with_what_may_follow() -> None:
+    assert ENGINES["mujoco"].words() == "solref[0],solref[1][,solimp[0][,solimp[1]]]"
+    assert ENGINES["bullet"].words() == "ERP"
+    assert ENGINES["drake-sap"].words() == "[k[,tau[,w]]]"
+    assert ENGINES["chrono-explicit"].words() == ""
+
+
+def test_an_engine_that_does_nothing_to_its_values_applies_them_as_typed() -> None:
+    typed = (Fraction(1, 5),)
+    assert ENGINES["bullet"].applied(typed, H) == Applied(ENGINES["bullet"].point(typed, H))
+
+
+def test_nine_digits_stand_in_a_line() -> None:
+    assert in_words(1 / 3) == "0.333333333"

@@ -1,0 +1,59 @@
+"""A drive's gains on an inertia, applied in the ways that engines have: where each begins to explode."""
+
+from collections.abc import Callable
+from fractions import Fraction
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bezstab.engines import DRIVE_METHODS, Drive
+from bezstab.errors import InputError
+from bezstab.methods import lookup
+from bezstab.stability import spectral_radius, verdict
+from tests.reference.drive_steps import DRIVE_STEPS, growth
+
+H = Fraction(1, 240)
+LIMITS: dict[str, Callable[[Fraction], Fraction]] = {  # of beta_hat, at an alpha_hat: shared facts about drives
+    "SYM": lambda a: 4 - 2 * a,
+    "imex-euler": lambda a: 4 + 2 * a,
+    "stable-pd": lambda a: (4 + 2 * a) / 3,
+}
+
+
+def test_gains_are_a_point_and_a_point_is_gains() -> None:
+    drive = Drive(Fraction(1000), Fraction(20), Fraction(1, 10))
+    alpha_hat, beta_hat = drive.point(H)
+    assert (alpha_hat, beta_hat) == (20 * H * 10, 1000 * H**2 * 10)
+    assert drive.gains(float(alpha_hat), float(beta_hat), float(H)) == pytest.approx((1000, 20))
+
+
+@pytest.mark.parametrize("method", LIMITS)
+@pytest.mark.parametrize("alpha_hat", ["1/10", "1", "3/2"])
+def test_each_way_of_applying_a_drive_has_its_proven_limit(method: str, alpha_hat: str) -> None:
+    a = Fraction(alpha_hat)
+    limit = LIMITS[method](a)
+    sliver = Fraction(1, 10**9)
+    assert verdict(lookup(method), a, limit - sliver) == "converges"
+    assert verdict(lookup(method), a, limit + sliver) == "diverges"
+
+
+@pytest.mark.parametrize("method", DRIVE_METHODS)
+@settings(max_examples=20, deadline=None)
+@given(kp=st.floats(1, 5e4), kd=st.floats(0.1, 100))
+def test_a_simulated_drive_grows_as_the_pole_says(method: str, kp: float, kd: float) -> None:
+    inertia = 0.1
+    point = Drive(*map(Fraction, (kp, kd, inertia))).point(H)
+    z_abs = float(spectral_radius(lookup(method), *map(float, point)))
+    assert growth(DRIVE_STEPS[method], kp, kd, inertia, float(H)) == pytest.approx(z_abs, rel=1e-6)  # a double pole
+
+
+def test_gains_that_an_implicit_engine_takes_explode_in_an_explicit_one() -> None:
+    a, b = Drive(Fraction(1000), Fraction(80), Fraction(1, 10)).point(H)
+    assert verdict(lookup("SYM"), a, b) == "diverges"
+    assert {verdict(lookup(name), a, b) for name in set(DRIVE_METHODS) - {"SYM"}} == {"converges"}
+
+
+def test_an_inertia_is_above_zero() -> None:
+    with pytest.raises(InputError, match="inertia"):
+        Drive(Fraction(1), Fraction(1), Fraction(0))

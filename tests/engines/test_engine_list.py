@@ -1,0 +1,183 @@
+"""Every engine of the list: its steps, its words there and back, its defaults, and who witnessed it."""
+
+import math
+import re
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bezstab.engines import ENGINES, WITNESSES, Engine, witness_of
+from bezstab.errors import InputError
+from bezstab.methods import lookup
+from bezstab.stability import poles, spectral_radius
+from tests.reference.engine_steps import STEPS, matrix
+
+LIKELY = {  # ranges of what people set, by unit: wide, but within what a line of nine digits keeps
+    "s": (1e-3, 1.0),
+    "1/s": (0.1, 300.0),
+    "1/s^2": (1.0, 1e4),
+    "Hz": (0.5, 300.0),
+    "N/m": (10.0, 1e5),
+    "N s/m": (0.1, 100.0),
+    "m/N": (1e-7, 1e-2),
+    "kg": (0.1, 10.0),
+    "1/kg": (0.1, 10.0),
+    "s/kg": (1e-6, 1e-2),
+    "- (per second)": (1e-3, 0.9),
+    "-": (0.05, 1.5),
+}
+H = st.floats(1 / 1000, 1 / 30)
+
+
+def values(text: str) -> tuple[Fraction, ...]:
+    """Return the numbers in a line to paste."""
+    return tuple(Fraction(number) for number in re.findall(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[-+]?\d+)?", text))
+
+
+@st.composite
+def likely_values(draw: st.DrawFn, engine: Engine) -> tuple[Fraction, ...]:
+    """Draw values that an engine takes: those needed, and sometimes those that may follow."""
+    if engine.name == "mujoco":
+        direct = draw(st.booleans())
+        solref = (
+            (-draw(st.floats(1, 1e5)), -draw(st.floats(1, 1e3)))
+            if direct
+            else (draw(st.floats(1e-3, 0.1)), draw(st.floats(0.1, 2)))
+        )
+        numbers = [*solref, draw(st.floats(0.5, 0.99)), draw(st.floats(0.5, 0.99))][: draw(st.sampled_from([2, 4]))]
+    elif engine.name in ("jolt", "pbd"):
+        numbers = [draw(st.floats(0.05, 1.0)), draw(st.integers(1, 4))][: draw(st.integers(1, 2))]
+    else:
+        count = len(engine.parameters) + draw(st.sampled_from([0, len(engine.optional)]))
+        numbers = [draw(st.floats(*LIKELY[unit])) for unit in engine.units[:count]]
+    return tuple(map(Fraction, numbers))
+
+
+def integrator(engine: Engine) -> str:
+    """Return the method whose steps the reference takes for an engine: its own, else symplectic Euler."""
+    return engine.method if engine.method and engine.level != "acceleration" else "SYM"
+
+
+@pytest.mark.parametrize("name", ENGINES)
+@settings(max_examples=12, deadline=None)
+@given(st.data())
+def test_an_engines_step_has_the_poles_of_its_point(name: str, data: st.DataObject) -> None:
+    engine, h = ENGINES[name], Fraction(data.draw(H))
+    numbers = data.draw(likely_values(engine))
+    alpha_hat, beta_hat = map(float, engine.applied(numbers, h).point)
+    theirs = np.poly(matrix(STEPS[name](float(h), *map(float, numbers))))
+    ours = np.poly(poles(lookup(integrator(engine)), alpha_hat, beta_hat)).real
+    assert ours == pytest.approx(theirs, rel=1e-7, abs=1e-7 * max(1, np.abs(theirs).max()))  # a double pole: half
+
+
+@pytest.mark.parametrize("name", ENGINES)
+@settings(max_examples=12, deadline=None)
+@given(st.data())
+def test_a_point_written_in_an_engines_words_is_read_back(name: str, data: st.DataObject) -> None:
+    engine, h = ENGINES[name], Fraction(data.draw(H))
+    point = engine.applied(data.draw(likely_values(engine)), h).point
+    if name == "chrono-explicit":
+        with pytest.raises(InputError, match="nothing to set"):
+            engine.setting(point, h)
+        return
+    line = engine.setting(point, h)
+    back = engine.applied(values(line) if "inf" not in line and engine.units else (), h)
+    assert not back.notes
+    assert not back.also
+    assert tuple(map(float, back.point)) == pytest.approx(tuple(map(float, point)), rel=1e-6)  # nine digits
+
+
+PRESETS = {  # shared facts about engines: spectral radii of preset points
+    (2, 2): (2.4142, 1.0, 0, 0.4714, 0.3727, 1.6801, 2.5147, 3.3330),
+    (2, 1): (1.6180, 0, 0.5, 0.3333, 0.3750, 1.0, 1.7910, 2.5283),
+    (1, 0.25): (0.75, 0.5, 0.625, 0.6042, 0.6068, 0.6404, 0.9239, 1.4373),
+    (1, 0.2): (0.8, 0.7236, 0.7618, 0.7583, 0.7585, 0.7659, 1.3041, 1.9231),
+    (0.2, 0.01): (0.9270, 0.9, 0.9050, 0.9048, 0.9048, 0.9052, 0.9048, 0.9048),
+    (0.01, 2.5e-5): (0.9953, 0.9950, 0.9950, 0.9950, 0.9950, 0.9950, 0.9950, 0.9950),
+}
+
+
+@pytest.mark.parametrize("point", PRESETS)
+def test_preset_points(point: tuple[float, float]) -> None:
+    names = ("SYM", "RK1", "RK2", "RK3", "RK4", "AB2", "AB3", "AB4")
+    assert [spectral_radius(lookup(name), *point) for name in names] == pytest.approx(PRESETS[point], abs=5.1e-5)
+
+
+DEFAULTS: dict[str, tuple[tuple[str | int | Fraction, ...], Fraction, float]] = {
+    "box2d": ((60, 2), Fraction(1, 240), 0.746948),  # measured on a compiled Box2D
+    "rapier": ((1_000_000, 1), Fraction(1, 240), 1 - 0.99992),
+    "jolt": (("0.2",), Fraction(1, 60), 0.64),  # measured
+    "brax-positional": (("0.5",), Fraction(1, 100), math.sqrt(0.5)),
+    "bullet": (("0.2",), Fraction(1, 240), 0.8),
+    "chipmunk": ((Fraction("0.9") ** 60,), Fraction(1, 60), 0.9),
+    "chrono-linearized": ((), Fraction(1, 100), 0.0),
+    "drake-sap": ((), Fraction(1, 100), 0.49987),
+    "mujoco": ((Fraction(1, 50), 1, "0.9", "0.9"), Fraction(1, 100), 0.75),
+    "pbd": ((1,), Fraction(1, 60), 0.0),
+}
+"""What an engine does unless told otherwise: its values, a step (s), and |z_p|, known from its source or from a run."""
+
+
+@pytest.mark.parametrize("name", DEFAULTS)
+def test_the_pole_of_an_engines_defaults_is_the_known_one(name: str) -> None:
+    typed, h, z_abs = DEFAULTS[name]
+    engine = ENGINES[name]
+    point = engine.applied(tuple(Fraction(value) for value in typed), h).point
+    assert engine.method
+    assert spectral_radius(lookup(engine.method), *map(float, point)) == pytest.approx(z_abs, abs=5e-6)
+
+
+@pytest.mark.parametrize(("name", "last"), [("bullet", "2"), ("pbd", "4/3"), ("brax-positional", "4/3"), ("jolt", "2")])
+def test_what_has_a_limit_turns_there(name: str, last: str) -> None:
+    engine, h = ENGINES[name], Fraction(1, 60)
+    inside, outside = (
+        float(spectral_radius(lookup("SYM"), *map(float, engine.point((Fraction(last) * factor,), h))))
+        for factor in (Fraction("0.99"), Fraction("1.01"))
+    )
+    assert inside < 1 < outside
+
+
+@pytest.mark.parametrize("name", [name for name, engine in ENGINES.items() if engine.method == "implicit-euler"])
+@settings(max_examples=10, deadline=None)
+@given(st.data())
+def test_what_is_solved_implicitly_is_always_stable(name: str, data: st.DataObject) -> None:
+    engine, h = ENGINES[name], Fraction(data.draw(H))
+    alpha_hat, beta_hat = map(float, engine.point(data.draw(likely_values(engine)), h))
+    assert spectral_radius(lookup("implicit-euler"), alpha_hat, beta_hat) < 1
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_an_engine_says_where_its_formula_is_from_and_what_it_leaves_out(name: str) -> None:
+    engine = ENGINES[name]
+    assert engine.source
+    assert engine.excludes
+    assert len(engine.units) == len(engine.parameters) + len(engine.optional)
+    assert engine.method is None or lookup(engine.method).name == engine.method
+    assert engine.method is not None or engine.level == "acceleration"
+
+
+def test_who_is_said_to_be_witnessed_has_a_test_that_exists() -> None:
+    root = Path(__file__).parents[2]
+    assert set(WITNESSES) <= set(ENGINES)
+    assert witness_of("crocoddyl") is None
+    for witness in WITNESSES.values():
+        path, _, test = witness.partition("::")
+        text = (root / path).read_text(encoding="utf-8")
+        assert re.search(rf"^def {test}\(", text, re.MULTILINE)
+        assert "importorskip(" in text
+
+
+@pytest.mark.parametrize("name", ENGINES)
+@settings(max_examples=12, deadline=None)
+@given(st.floats(-1e300, 1e300), st.floats(-1e300, 1e300), st.sampled_from(["1e-100", "0.01", "1e100"]))
+def test_every_point_has_a_setting_or_is_refused(name: str, a: float, b: float, step: str) -> None:
+    try:
+        setting = ENGINES[name].setting((Fraction(a), Fraction(b)), Fraction(step))
+    except InputError:
+        return
+    assert min(a, b) >= 0
+    assert all(abs(float(value)) < math.inf for value in values(setting))

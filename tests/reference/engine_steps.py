@@ -1,0 +1,252 @@
+"""One step of one constraint as each engine takes it, in its own words: what its source does, not what we made of it.
+
+A unit mass whose coordinate is the constraint's error c, with velocity v; the state is (c, v). Each function takes the
+step h in s and the engine's values, and returns a function from state to state. Sources: as the rows of the engines
+say. Nothing here knows alpha_hat or beta_hat.
+"""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+Step = Callable[[float, float], tuple[float, float]]
+
+
+def matrix(step: Step) -> NDArray[np.float64]:
+    """Return the matrix of a step, which is linear: its columns are what becomes of (1, 0) and (0, 1)."""
+    return np.array([step(1.0, 0.0), step(0.0, 1.0)]).T
+
+
+def _symplectic(h: float, acceleration: Callable[[float, float], float]) -> Step:
+    def step(c: float, v: float) -> tuple[float, float]:
+        v = v + h * acceleration(c, v)
+        return c + h * v, v
+
+    return step
+
+
+def mujoco(h: float, first: float, second: float, d0: float = 0.9, dmax: float = 0.95) -> Step:
+    """Return MuJoCo's step at a small error: a1 = (1 - d) a0 + d aref, without other forces a0 = 0."""
+    impedance, full = min(max(d0, 1e-4), 0.9999), min(max(dmax, 1e-4), 0.9999)
+    if first > 0:
+        time_constant, zeta = max(first, 2 * h), second
+        stiffness = impedance / (full**2 * time_constant**2 * zeta**2)
+        damping = 2 / (full * time_constant)
+    else:
+        stiffness, damping = -first * impedance / full**2, -second / full
+    return _symplectic(h, lambda c, v: impedance * (-damping * v - stiffness * c))
+
+
+def two_gains(h: float, proportional: float, derivative: float) -> Step:
+    """Return a step with c'' = -kp c - kd c', as Crocoddyl, Pinocchio and RigidBodyDynamics.jl have it."""
+    return _symplectic(h, lambda c, v: -proportional * c - derivative * v)
+
+
+def rbdl(h: float, time_constant: float) -> Step:
+    """Return a step with RBDL's stabilisation, both parameters 1 / T."""
+    parameter = 1 / time_constant
+    return _symplectic(h, lambda c, v: -2 * parameter * v - parameter * parameter * c)
+
+
+def alpha_and_beta(h: float, alpha: float, beta: float) -> Step:
+    """Return a step with Baumgarte's own two parameters."""
+    return _symplectic(h, lambda c, v: -2 * alpha * v - beta**2 * c)
+
+
+def nothing(h: float) -> Step:
+    """Return a step that keeps c'' = 0: Chrono's explicit integrators."""
+    return _symplectic(h, lambda c, v: 0.0)
+
+
+def brax_spring(h: float, stiffness: float, damping: float, mass: float = 1.0) -> Step:
+    """Return the step of Brax's spring pipeline: the force of the old state, then the new velocity moves."""
+    return _symplectic(h, lambda c, v: (-c * stiffness - v * damping) / mass)
+
+
+def erp(h: float, share: float, mixing: float = 0.0, mass: float = 1.0) -> Step:
+    """Return ODE's step: the force f for which J v1 = -(ERP / h) c - CFM f, solved for as one unknown."""
+
+    def step(c: float, v: float) -> tuple[float, float]:
+        # v + (h / m) f + CFM f = -(ERP / h) c
+        force = (-share * c / h - v) / (h / mass + mixing)
+        v = v + h * force / mass
+        return c + h * v, v
+
+    return step
+
+
+def _soft(h: float, hertz: float, zeta: float) -> tuple[float, float, float]:
+    """Return Catto's bias rate (1/s), mass scale and impulse scale."""
+    omega = 2 * math.pi * hertz
+    denominator = 2 * zeta + h * omega
+    product = h * omega * denominator
+    return omega / denominator, product / (1 + product), 1 / (1 + product)
+
+
+def box2d(h: float, hertz: float, zeta: float) -> Step:
+    """Return Box2D's substep, hertz clamped: solved with bias, moved, relaxed without bias, impulses accumulated."""
+    bias_rate, mass_scale, impulse_scale = _soft(h, min(hertz, 0.25 / h), zeta)
+
+    def step(c: float, v: float) -> tuple[float, float]:
+        impulse = 0.0
+        for _ in range(3):  # repeated sweeps change nothing: the accumulated impulse is the solution
+            change = -mass_scale * (v + bias_rate * c) - impulse_scale * impulse
+            impulse, v = impulse + change, v + change
+        c = c + h * v
+        change = -v
+        return c, v + change
+
+    return step
+
+
+def rapier(h: float, natural_frequency: float, damping_ratio: float) -> Step:
+    """Return Rapier's substep: the relaxation removes the bias, and the softness stays."""
+    angular = 2 * math.pi * natural_frequency
+    erp_inv_dt = angular / (h * angular + 2 * damping_ratio)
+    inverse_less_one = 1 / (h * erp_inv_dt) - 1
+    softness = inverse_less_one**2 / ((1 + inverse_less_one) * 4 * damping_ratio**2)
+
+    def step(c: float, v: float) -> tuple[float, float]:
+        impulse = 0.0
+        for moves in (True, False):
+            right_side = v + (erp_inv_dt * c if moves else 0.0)
+            total = impulse + (right_side - softness * impulse) / (1 + softness)
+            v -= total - impulse
+            impulse = total
+            if moves:
+                c += h * v
+        return c, v
+
+    return step
+
+
+def chipmunk(h: float, error_bias: float) -> Step:
+    """Return Chipmunk's step: positions first, then velocities against the error that is left."""
+
+    def step(c: float, v: float) -> tuple[float, float]:
+        c = c + h * v
+        return c, -(1 - error_bias**h) * c / h
+
+    return step
+
+
+def chrono_linearized(h: float) -> Step:
+    """Return Chrono's linearised implicit Euler: the new velocity takes back C / dt."""
+
+    def step(c: float, v: float) -> tuple[float, float]:
+        v = -c / h
+        return c + h * v, v
+
+    return step
+
+
+def drake_sap(h: float, stiffness: float = math.inf, relaxation_time: float = 0.0, inverse_mass: float = 1.0) -> Step:
+    """Return the step of Drake's SAP: the impulse g = -(v1 - v_hat) / R with v1 = v + w g, near rigid where R is."""
+    regularization = 1 / (h * (h + relaxation_time) * stiffness)
+    near_rigid = 0.1**2 / (4 * math.pi**2) * inverse_mass
+    if regularization < near_rigid:
+        regularization, relaxation_time = near_rigid, h
+
+    def step(c: float, v: float) -> tuple[float, float]:
+        target = -c / (h + relaxation_time)
+        impulse = -(v - target) / (regularization + inverse_mass)
+        v = v + inverse_mass * impulse
+        return c + h * v, v
+
+    return step
+
+
+def jolt_spring(h: float, frequency: float, damping_ratio: float) -> Step:
+    """Return Jolt's step with a spring: softness and bias of k and c, no relaxation."""
+    omega = 2 * math.pi * frequency
+    stiffness, damping = omega**2, 2 * damping_ratio * omega
+    softness = 1 / (h * (damping + h * stiffness))
+
+    def step(c: float, v: float) -> tuple[float, float]:
+        impulse = -(v + h * stiffness * softness * c) / (1 + softness)
+        v = v + impulse
+        return c + h * v, v
+
+    return step
+
+
+def physx_drive(h: float, stiffness: float, damping: float) -> Step:
+    """Return PhysX's step with an acceleration drive: one impulse from the old state."""
+
+    def step(c: float, v: float) -> tuple[float, float]:
+        a = h * (h * stiffness + damping)
+        x = 1 / (1 + a)
+        v = v + stiffness * x * h * -c - x * a * v
+        return c + h * v, v
+
+    return step
+
+
+def jolt(h: float, share: float, position_steps: float = 2.0) -> Step:
+    """Return Jolt's step with a hard constraint: velocity zero, then moves that leave the velocity alone."""
+
+    def step(c: float, v: float) -> tuple[float, float]:
+        v = 0.0
+        c = c + h * v
+        for _ in range(int(position_steps)):
+            c = c - share * c
+        return c, v
+
+    return step
+
+
+def pbd(h: float, share: float, iterations: float = 1.0) -> Step:
+    """Return the step of position based dynamics: predict, project, take the velocity of the whole move."""
+
+    def step(c: float, v: float) -> tuple[float, float]:
+        moved = c + h * v
+        for _ in range(int(iterations)):
+            moved -= share * moved
+        return moved, (moved - c) / h
+
+    return step
+
+
+def xpbd(h: float, compliance: float, damping: float = 0.0, inverse_mass: float = 1.0) -> Step:
+    """Return the step of XPBD with one iteration: its Eq. 26, damping included."""
+    scaled = compliance / h**2
+    gamma = scaled * (h**2 * damping) / h
+
+    def step(c: float, v: float) -> tuple[float, float]:
+        moved = c + h * v
+        multiplier = (-moved - gamma * (moved - c)) / ((1 + gamma) * inverse_mass + scaled)
+        moved += inverse_mass * multiplier
+        return moved, (moved - c) / h
+
+    return step
+
+
+STEPS: dict[str, Callable[..., Step]] = {
+    "mujoco": mujoco,
+    "crocoddyl": two_gains,
+    "pinocchio": two_gains,
+    "rigidbodydynamics.jl": two_gains,
+    "rbdl": rbdl,
+    "maplesim": alpha_and_beta,
+    "drake": alpha_and_beta,
+    "chrono-explicit": nothing,
+    "brax-spring": brax_spring,
+    "bullet": erp,
+    "ode": erp,
+    "dart": erp,
+    "brax-contact": erp,
+    "box2d": box2d,
+    "rapier": rapier,
+    "chipmunk": chipmunk,
+    "chrono-linearized": chrono_linearized,
+    "drake-sap": drake_sap,
+    "jolt-spring": jolt_spring,
+    "physx-drive": physx_drive,
+    "jolt": jolt,
+    "pbd": pbd,
+    "xpbd": xpbd,
+    "brax-positional": pbd,
+}
+"""By the engine's name. Where the integrator is the user's, symplectic Euler, as the simplest that moves last."""
