@@ -183,6 +183,9 @@ def probed_pole(c: ArrayLike, minus: ArrayLike | None = None, differenced: bool 
     largest = float(np.nanmax(np.abs(samples)))
     if largest == 0 or not np.ptp(samples, axis=0).any():
         return _refused(len(samples), "nothing changes", cut)
+    answering = int((np.abs(samples) > 0).any(axis=1).sum())
+    if answering < FEWEST // 2:
+        return _refused(len(samples), f"the error is gone after {answering} rows: too soon for a pole to be told", cut)
     if rounding > SETTLED * largest:
         coarse = f"rounded to {rounding:.3g}, which is more than {SETTLED:g} of the largest, {largest:.3g}"
         return _refused(len(samples), coarse, cut)

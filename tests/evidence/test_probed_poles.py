@@ -41,7 +41,7 @@ def told(c: FloatArray, minus: FloatArray | None = None) -> ProbedPole:
     return found
 
 
-@settings(max_examples=30, deadline=None)  # each fits some thirty windows
+@settings(max_examples=15, deadline=None)  # each fits some thirty windows
 @given(st.floats(0.6, 0.98), st.floats(0.2, 2.9), st.floats(0.3, 0.8), st.integers(0, 5))
 def test_the_pole_is_the_one_that_was_put_in_to_the_stated_error(
     modulus: float, angle: float, ratio: float, seed: int
@@ -246,7 +246,7 @@ def test_fine_rounding_is_no_hindrance_and_the_error_covers_it() -> None:
 def test_noise_and_rounding_together_are_never_answered_wrongly() -> None:
     random = np.random.default_rng(4)
     answered = 0
-    for _ in range(60):
+    for _ in range(30):
         modulus, angle = random.uniform(0.6, 0.99), random.uniform(0.1, 3.0)
         noise = 10 ** random.uniform(-9, -2) * random.normal(size=400)
         c = np.round(two_poles(400, modulus, angle, 1.0, 0.5) + noise, int(random.integers(3, 10)))
@@ -254,7 +254,7 @@ def test_noise_and_rounding_together_are_never_answered_wrongly() -> None:
         if found.pole is not None and found.uncertainty is not None:
             answered += 1
             assert abs(found.pole - modulus * np.exp(1j * angle)) < 10 * found.uncertainty + 1e-6
-    assert answered > 5
+    assert answered > 2
 
 
 def test_powers_of_one_half_are_not_taken_for_a_quantiser() -> None:
@@ -269,6 +269,7 @@ def test_powers_of_one_half_are_not_taken_for_a_quantiser() -> None:
         (geometric(FEWEST - 1, 0.5), "11 samples"),
         (np.full(100, 0.25), "nothing changes"),
         (np.zeros(100), "nothing changes"),
+        (np.append([1.0, -0.5], np.zeros(98)), "gone after 2 rows"),
         (np.append(geometric(5, 0.5), np.full(95, np.nan)), "row 6 holds no number"),
     ],
 )
