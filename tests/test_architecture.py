@@ -59,7 +59,7 @@ APPOINTED = {
     },
     "click": {f"cli/{name}.py" for name in ("options", "output", "command_group")}
     | {f"cli/{name}_commands.py" for name in ("map", "choose", "evidence")}
-    | {"cli/verify_command.py", "cli/moving_mechanism.py"}
+    | {"cli/verify_command.py", "cli/moving_mechanism.py", "cli/varying_steps.py"}
     | {"paper/command.py"},
     "mujoco": {"evidence/mujoco_witness.py"},
     "distributed": {"evidence/worker_pools.py"},

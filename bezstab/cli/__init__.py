@@ -6,6 +6,7 @@ A file imports only from those above it:
     options             parameter types and the options that commands share
     output              rows, files, messages, progress
     moving_mechanism    what several ask about a mechanism that moves
+    varying_steps       what several ask about steps that vary
     map_commands        poles, region, methods, family
     choose_commands     choose, check, engines, explore
     evidence_commands   simulate, tradeoff, extremes

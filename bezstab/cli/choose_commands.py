@@ -28,6 +28,15 @@ from bezstab.cli.options import (
     step_option,
 )
 from bezstab.cli.output import progress, show_rows
+from bezstab.cli.varying_steps import (
+    h_min_option,
+    hold_option,
+    say_varying,
+    step_range,
+    varying_columns,
+    varying_results,
+    with_varying,
+)
 from bezstab.engines import ENGINES
 from bezstab.errors import InputError
 from bezstab.methods import Method, lookup
@@ -75,7 +84,7 @@ CHOICES = [
     column("within the spread", "worst", ".4f"),
     column("steps to 1/1000", "settle_steps", "d"),
     column("s", "settle_seconds", ".3g"),
-    Column("stable for h (s) to", _largest_step),
+    Column("stable for constant h (s) to", _largest_step),
     range_column("α times", "alpha_factor_min", "alpha_factor_max"),
     range_column("β times", "beta_factor_min", "beta_factor_max"),
 ]
@@ -98,7 +107,9 @@ def choice_columns(rows: Sequence[Row]) -> list[Column]:
     help="robust: fastest at worst over smaller steps and the spread; fastest: least |z_p|; critical: fastest without "
     "oscillation; gentle: the mildest α = β that settles in time.",
 )
-@click.option("--h-max", type=SECONDS, help="robust: the largest step in s that may occur [--h].")
+@click.option("--h-max", type=SECONDS, help="robust, or with --h-min: the largest step in s that may occur [--h].")
+@h_min_option
+@hold_option
 @click.option("--spread", type=NUMBER, default="0.1", help="By what share α and β may be off.")
 @click.option("--settle", type=SECONDS, help="gentle: the time in s in which c falls a thousandfold.")
 @click.option("--keep", type=click.Choice(["alpha=beta"]), help="Only points with α = β.")
@@ -111,6 +122,8 @@ def choose(
     h: Fraction,
     goal: "Goal",
     h_max: Fraction | None,
+    h_min: Fraction | None,
+    hold: bool,
     spread: Fraction,
     settle: Fraction | None,
     keep: str | None,
@@ -124,7 +137,8 @@ def choose(
     The answer is proven stable, and the margins that remain are printed. The fastest point is a kink: towards more
     damping |z_p| rises like a square root. Hence robust is the default. "within the spread" is the largest |z_p| with α
     and β off by --spread. Where no feedback is too strong, those up to αh, βh = 4 are searched, and "searched" says so.
-    With --engine the method is SYM unless given: that is how engines step.
+    With --engine the method is SYM unless given: that is how engines step. With --h-min steps may vary from one to the
+    next, and "varying steps" says whether every sequence of them up to --h-max decays.
 
     Example: bezstab choose --method B4 --h 0.001
     """
@@ -133,28 +147,42 @@ def choose(
 
     if not 0 <= spread < 1:
         raise InputError(f"--spread {float(spread):g}: expected a share from 0 to 1")
-    if h_max is not None and (goal != "robust" or h_max < h):
-        raise InputError(f"--h-max {float(h_max):g}: only for --goal robust, and at least --h {float(h):g}")
+    if h_max is not None and ((goal != "robust" and h_min is None) or h_max < h):
+        raise InputError(f"--h-max {float(h_max):g}: only for --goal robust or --h-min, and at least --h {float(h):g}")
+    steps = step_range(h, h_min, h_max, hold)
     if (settle is not None) != (goal == "gentle"):
         raise click.UsageError("--settle and --goal gentle go together")
     if engine and left_at_default("methods"):
         methods = [lookup("SYM")]
     turning = turning_of(scene, speed, h)
     rows: list[Row] = []
+    chosen: list[tuple[Fraction, Fraction]] = []
     for method in progress(methods, goal):
         modulus = None
         if turning:
             from bezstab.evidence import moving_modulus
 
             modulus = moving_modulus(method, turning, float(h_max or h))
+        robust_up_to = h_max if goal == "robust" else None
         choice = choose_at_step(
-            method, goal, h=h, h_max=h_max, settle=settle, spread=float(spread), equal=keep is not None, modulus=modulus
+            method,
+            goal,
+            h=h,
+            h_max=robust_up_to,
+            settle=settle,
+            spread=float(spread),
+            equal=keep is not None,
+            modulus=modulus,
         )
         row = choice_row(choice, float(h))
         if engine:
-            row["engine"] = ENGINES[engine].setting((Fraction(choice.alpha_hat), Fraction(choice.beta_hat)), h)
+            row["engine"] = ENGINES[engine].setting(_exact_point(choice), h)
         rows += moving_rows([row], [method], [(choice.alpha_hat, choice.beta_hat)], turning, h)
-    show_rows(rows, [*choice_columns(rows), *moving_columns(turning), *([PASTE] if engine else [])], form)
+        chosen.append(_exact_point(choice))
+    varying = varying_results(steps, methods, chosen)
+    columns = [*choice_columns(rows), *moving_columns(turning), *varying_columns(steps), *([PASTE] if engine else [])]
+    show_rows(with_varying(rows, varying), columns, form)
+    say_varying(methods, varying, form)
 
 
 @click.command()
@@ -164,6 +192,9 @@ def choose(
 @click.option("--h", type=SECONDS, help="Step size in s; needed with --physical and --engine.")
 @physical_option
 @click.option("--engine", type=ENGINE_VALUES, help="An engine's own values, such as mujoco=0.02,1, instead.")
+@h_min_option
+@click.option("--h-max", type=SECONDS, help="With --h-min: the longest step in s [--h].")
+@hold_option
 @moving_scene_option("Safe for this mechanism as it moves? Needs --h.")
 @moving_speed_option
 @format_option
@@ -176,6 +207,9 @@ def check(
     h: Fraction | None,
     physical: bool,
     engine: EngineValues | None,
+    h_min: Fraction | None,
+    h_max: Fraction | None,
+    hold: bool,
     scene: str | None,
     speed: Fraction,
     form: Format,
@@ -183,13 +217,18 @@ def check(
     """Tell whether a choice is safe: exit status 0 if so, 1 if not.
 
     Safe is what is proven stable for every method. Prints the verdict, the margins and the largest stable step, and
-    what `choose` would give instead.
+    what `choose` would give instead. All that is about constant steps, and steps that are each stable alone may grow
+    when they alternate: with --h-min and --h-max safe is what is proven for every sequence of steps in that range.
 
     Example: bezstab check --method RK2 --h 0.002 --alpha 50 --beta 50 --physical
     """
     from bezstab import stability
     from bezstab.show import choice_row
 
+    steps = step_range(h, h_min, h_max, hold)
+    if h_max is not None and steps is None:
+        raise click.UsageError("--h-max goes with --h-min: the range of steps that vary")
+    h = h if steps is None else steps.h
     alpha_hat, beta_hat = _point_to_check(methods, alpha, beta, h, physical, engine)
     step = None if h is None else float(h)
     turning = turning_of(scene, speed, h)
@@ -201,11 +240,22 @@ def check(
     rows = moving_rows(
         [choice_row(choice, step) for choice in choices], [choice.method for choice in choices], points, turning, h
     )
-    show_rows(rows, choice_columns(rows) + moving_columns(turning), form)
+    of_each = [choice.method for choice in choices]
+    exact_points = [(alpha_hat, beta_hat) if i % 2 == 0 else _exact_point(choice) for i, choice in enumerate(choices)]
+    varying = varying_results(steps, of_each, exact_points)
+    columns = [*choice_columns(rows), *moving_columns(turning), *varying_columns(steps)]
+    show_rows(with_varying(rows, varying), columns, form)
+    say_varying(methods, varying[::2], form)
     safe = all(choice.verdict == "converges" for choice in given)
+    safe = safe and all(each.varying == "proven" for each in varying[::2])
     if turning:
         safe = safe and all(row["moving_verdict"] == "converges" for row in rows[::2])
     context.exit(0 if safe else 1)
+
+
+def _exact_point(choice: "Choice") -> tuple[Fraction, Fraction]:
+    """Return a choice's alpha_hat and beta_hat, exactly as in float64."""
+    return Fraction(choice.alpha_hat), Fraction(choice.beta_hat)
 
 
 def _point_to_check(

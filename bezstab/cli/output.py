@@ -49,6 +49,12 @@ def show_groups(groups: Sequence[tuple[str, Sequence[Row]]], columns: Sequence[C
         del lines[: len(of_group)]
 
 
+def show_text(text: str) -> None:
+    """Print text on standard output, with words for what its encoding lacks."""
+    encoding = output_encoding()
+    click.echo("\n".join(visible(spelled(line, encoding)) for line in text.splitlines()))
+
+
 def _presentable(column: Column, encoding: str) -> Column:
     """Return the column with words for what the encoding lacks, and no cell that would command a terminal.
 

@@ -5,6 +5,7 @@ A file imports only from those above it; what draws is not loaded before it is u
     columns             typed columns, and rows as text, Markdown, CSV or JSON
     best_point_text     a best point in words
     rows                results as rows
+    varying_rows        what steps that vary do, as keys of a row and in a sentence
     arrays              histories and maps as arrays for files
     style               what all figures share
     plot                one result on one Axes
@@ -50,6 +51,7 @@ from bezstab.show.rows import (
     whole_row,
     with_unbounded,
 )
+from bezstab.show.varying_rows import sequence_text, varying_row, varying_words
 
 if TYPE_CHECKING:
     from bezstab.show import plot
@@ -136,12 +138,15 @@ __all__ = [
     "row",
     "save",
     "scene_figure",
+    "sequence_text",
     "simulation_row",
     "stable_steps_words",
     "styled",
     "summary_row",
     "transposed",
     "untimed_arrays",
+    "varying_row",
+    "varying_words",
     "verdict_arrays",
     "verdict_figure",
     "verdict_map_row",

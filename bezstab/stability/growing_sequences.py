@@ -1,8 +1,8 @@
 """Sequences of steps whose product grows: proof that steps that vary within a range do not always decay.
 
-What is worst is seen to be one long step or a few, then many of another length: so many that the state turns to where
-the long steps stretch it again. Such words a^p b^q are tried, the shortest first, and the first that grows is proven
-in exact arithmetic, by the Schur test on the characteristic polynomial of the product.
+What is worst is seen to be some steps of one length, then some of another: so many of each as turn the state to where
+the others stretch it. Such words a^p b^q are tried, the shortest first, and the first that grows is proven in exact
+arithmetic, by the Schur test on the characteristic polynomial of the product.
 """
 
 from collections.abc import Iterator, Sequence
@@ -13,10 +13,10 @@ import numpy as np
 from bezstab.methods import StepMatrix, characteristic, matrix_product, recursion_verdict
 from bezstab.stability.arrays import FloatArray
 
-LENGTHS = 60  # tried for either kind of step
+LENGTHS = 40  # tried for either kind of step
 SMALLEST_SHARE = 200  # of the longest step: shorter ones are but a finer division of the same time
-PERIODS = (*range(2, 17), 20, 24, 32, 40, 48, 64)  # steps in a word
-MOST_REPEATED = 3  # of the kind of step there are fewer of
+COUNTS = (*range(1, 13), 14, 16, 18, 20, 24, 28, 32, 40, 48, 64)  # of steps of either length
+MOST_STEPS = 80  # in a word
 CLEARLY = 1e-6  # by which |z| of the product exceeds one, far above rounding
 
 
@@ -31,27 +31,29 @@ def growing_words(matrix: StepMatrix, shortest: Fraction) -> Iterator[list[Fract
     """Yield sequences of lengths, shortest sequences first, whose product seems to grow in float64."""
     lengths = lengths_tried(shortest)
     matrices = np.array([[[float(entry) for entry in row] for row in matrix.at(s)] for s in lengths])
-    powers = [matrices]
-    while len(powers) < max(PERIODS):
-        powers.append(powers[-1] @ matrices)
-    for period in PERIODS:
-        for repeated in range(1, min(MOST_REPEATED, period // 2) + 1):
-            products = powers[period - repeated - 1][:, np.newaxis] @ powers[repeated - 1][np.newaxis]
-            radii = _radii(products)
-            many, few = np.unravel_index(radii.argmax(), radii.shape)
-            if radii[many, few] > 1 + CLEARLY:
-                yield [lengths[few]] * repeated + [lengths[many]] * (period - repeated)
+    powers = {1: matrices}
+    for count in range(2, max(COUNTS) + 1):
+        powers[count] = powers[count - 1] @ matrices
+    words = [(few, many) for few in COUNTS for many in COUNTS if few <= many and few + many <= MOST_STEPS]
+    for few, many in sorted(words, key=sum):
+        radii = _radii(powers[many][:, np.newaxis] @ powers[few][np.newaxis])
+        first, second = np.unravel_index(radii.argmax(), radii.shape)
+        if radii[first, second] > 1 + CLEARLY:
+            yield [lengths[second]] * few + [lengths[first]] * many
 
 
 def _radii(products: FloatArray) -> FloatArray:
     """Return the spectral radii of stacked matrices; of two rows from trace and determinant, which is faster."""
     if products.shape[-1] != 2:
-        radii: FloatArray = np.abs(np.linalg.eigvals(products)).max(axis=-1)
-        return radii
+        moduli: FloatArray = np.abs(np.linalg.eigvals(products))
+        return moduli.max(axis=-1, initial=0.0)
     half = (products[..., 0, 0] + products[..., 1, 1]) / 2
     determinant = products[..., 0, 0] * products[..., 1, 1] - products[..., 0, 1] * products[..., 1, 0]
-    root = np.emath.sqrt(half * half - determinant)
-    return np.maximum(np.abs(half + root), np.abs(half - root))
+    square = half * half - determinant
+    # a real pair |half| +- root, or a complex one whose product is the determinant
+    radii = np.asarray(np.abs(half) + np.sqrt(np.maximum(square, 0)), np.float64)
+    radii[square < 0] = np.sqrt(determinant[square < 0])
+    return radii
 
 
 def grows(matrix: StepMatrix, word: Sequence[Fraction]) -> bool:

@@ -124,7 +124,8 @@ def _decays(steps: FloatArray, matrices: FloatArray) -> FloatArray:
     """Return by what -log |z| each step decays, at most at the rate of the shortest: so that none counts as sudden."""
     radii = np.abs(np.linalg.eigvals(matrices)).max(axis=1)
     decays: FloatArray = -np.log(np.maximum(radii, np.finfo(np.float64).tiny))
-    return np.minimum(decays, decays[0] * steps / steps[0])
+    slowest: FloatArray = np.minimum(decays, decays[0] * steps / steps[0])
+    return slowest
 
 
 def _growth_to_come(matrices: FloatArray, flow: FloatArray | None, circle: FloatArray) -> FloatArray | None:
@@ -141,10 +142,10 @@ def _growth_to_come(matrices: FloatArray, flow: FloatArray | None, circle: Float
         gain = np.concatenate([gain, flow_gain])
         below, above = np.concatenate([below, flow_below]), np.concatenate([above, flow_above])
         share = np.concatenate([share, np.zeros_like(flow_gain)])
-    growth = np.zeros(RAYS)
+    growth: FloatArray = np.zeros(RAYS)
     for _ in range(SWEEPS):
         to_come = gain + (1 - share) * growth[below] + share * growth[above]
-        larger = np.maximum(growth, to_come.max(axis=0))
+        larger: FloatArray = np.maximum(growth, to_come.max(axis=0))
         change = (larger - growth).max()
         growth = larger
         if change < SETTLED:

@@ -115,7 +115,7 @@ def varying_steps(
     if word:
         return result("refuted", word=word)
     if matrix.size == 2:
-        frame = np.linalg.cholesky(form).T
+        frame: FloatArray = np.linalg.cholesky(form).T.astype(np.float64)
         flow = _flow(matrix) if not hold and shortest < samples[0] else None
         corners = invariant_polygon(matrix, lengths, matrices, flow, frame, shortest)
         if corners:
