@@ -138,7 +138,8 @@ def choose(
     damping |z_p| rises like a square root. Hence robust is the default. "within the spread" is the largest |z_p| with α
     and β off by --spread. Where no feedback is too strong, those up to αh, βh = 4 are searched, and "searched" says so.
     With --engine the method is SYM unless given: that is how engines step. With --h-min steps may vary from one to the
-    next, and "varying steps" says whether every sequence of them up to --h-max decays.
+    next, and "varying steps" says whether every sequence of them up to --h-max decays; exit status 1 if that is not
+    proven.
 
     Example: bezstab choose --method B4 --h 0.001
     """
@@ -149,11 +150,11 @@ def choose(
         raise InputError(f"--spread {float(spread):g}: expected a share from 0 to 1")
     if h_max is not None and ((goal != "robust" and h_min is None) or h_max < h):
         raise InputError(f"--h-max {float(h_max):g}: only for --goal robust or --h-min, and at least --h {float(h):g}")
-    steps = step_range(h, h_min, h_max, hold)
     if (settle is not None) != (goal == "gentle"):
         raise click.UsageError("--settle and --goal gentle go together")
     if engine and left_at_default("methods"):
         methods = [lookup("SYM")]
+    steps = step_range(methods, h, h_min, h_max, hold)
     turning = turning_of(scene, speed, h)
     rows: list[Row] = []
     chosen: list[tuple[Fraction, Fraction]] = []
@@ -183,6 +184,8 @@ def choose(
     columns = [*choice_columns(rows), *moving_columns(turning), *varying_columns(steps), *([PASTE] if engine else [])]
     show_rows(with_varying(rows, varying), columns, form)
     say_varying(methods, varying, form)
+    if any(each.varying != "proven" for each in varying):
+        click.get_current_context().exit(1)
 
 
 @click.command()
@@ -225,7 +228,7 @@ def check(
     from bezstab import stability
     from bezstab.show import choice_row
 
-    steps = step_range(h, h_min, h_max, hold)
+    steps = step_range(methods, h, h_min, h_max, hold)
     if h_max is not None and steps is None:
         raise click.UsageError("--h-max goes with --h-min: the range of steps that vary")
     h = h if steps is None else steps.h

@@ -10,6 +10,7 @@ import click
 from bezstab.cli.options import SECONDS
 from bezstab.cli.output import for_reading, show_text
 from bezstab.errors import InputError
+from bezstab.methods import check_one_step
 from bezstab.show import Column, Format, Row, column
 
 if TYPE_CHECKING:
@@ -35,11 +36,11 @@ class StepRange:
 
 
 def step_range(
-    h: Fraction | None, h_min: Fraction | None, h_max: Fraction | None, hold: bool
-) -> StepRange | None:  # fmt: skip
+    methods: "Sequence[Method]", h: Fraction | None, h_min: Fraction | None, h_max: Fraction | None, hold: bool
+) -> StepRange | None:
     """Return the range that --h-min begins, up to --h-max, by default --h; None without --h-min.
 
-    UsageError for --hold without it; InputError unless the range is one.
+    UsageError for --hold without it; InputError unless the range is one, and each method takes one step at a time.
     """
     if h_min is None:
         if hold:
@@ -50,6 +51,8 @@ def step_range(
         raise click.UsageError("--h-min needs --h-max or --h: the longest step in s")
     if highest < h_min:
         raise InputError(f"--h-min {float(h_min):g}: expected at most the longest step, {float(highest):g} s")
+    for method in methods:
+        check_one_step(method)
     return StepRange(h or highest, h_min, highest, hold)
 
 

@@ -17,7 +17,7 @@ from bezstab.mechanism.observation import observe
 from bezstab.mechanism.runner import Trajectory, _breakdown, _history
 from bezstab.mechanism.simulation import Simulation
 from bezstab.mechanism.start import perturbed_state
-from bezstab.methods import Method, evaluations, steps
+from bezstab.methods import Method, check_one_step, evaluations
 from bezstab.units import feedback_gains
 
 FloatArray = NDArray[np.float64]
@@ -89,11 +89,7 @@ def simulated_with_steps(
 
 def check_steps_may_vary(method: Method) -> None:
     """Raise InputError unless a run of the method may change the length of its steps."""
-    if steps(method) > 1:
-        raise InputError(
-            f"{method.name} uses values of several steps, and its coefficients assume that these are of equal length: "
-            "its steps cannot vary"
-        )
+    check_one_step(method)
     if run_as_second_order(method):
         raise InputError(f"{method.name}: steps vary in runs of explicit Runge-Kutta methods and SYM only")
 

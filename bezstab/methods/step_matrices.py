@@ -113,7 +113,7 @@ def _plane_matrix(method: Method, hold: bool) -> tuple[tuple[str, ...], list[lis
     By Cramer's rule on the scheme's equations, which are linear in what a step finds.
     """
     scheme = second_order_form(method.scheme)
-    _check_one_step(method, scheme)
+    check_one_step(method)
     equations = list(scheme.equations)
     known = {
         quantity: Quantity(quantity.name, quantity.step)
@@ -150,8 +150,9 @@ def _plane_matrix(method: Method, hold: bool) -> tuple[tuple[str, ...], list[lis
     return state, entries, denominator
 
 
-def _check_one_step(method: Method, scheme: SecondOrder) -> None:
+def check_one_step(method: Method) -> None:
     """Raise InputError unless the state at the end of a step follows from x, v and a at its start alone."""
+    scheme = second_order_form(method.scheme)
     latest = {equation.result.name: equation.result.step for equation in scheme.equations}
     if steps(method) > 1 or latest[POSITION] != 1 or latest[VELOCITY] != 1:
         raise InputError(

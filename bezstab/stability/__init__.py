@@ -27,7 +27,7 @@ From a method's polynomial in float64 (its pencil) upwards; a file imports only 
     lyapunov_quadratics  a quadratic form that every step of a range makes smaller
     lyapunov_polygons    a polygon that every step of a range maps into its inside
     growing_sequences    sequences of steps whose product grows
-    varying_steps     whether feedback decays for every sequence of steps within a range
+    step_sequences    whether feedback decays for every sequence of steps within a range
     damping_limits    up to which steps, by damping ratio
     plane_best_points the smallest |z_p| of a second-order scheme
     best_points       the smallest |z_p|
@@ -59,8 +59,8 @@ from bezstab.stability.pencils import Pencil, pencil_of, roots_in_z
 from bezstab.stability.regions import Extent, Region, pole_place, region, window
 from bezstab.stability.searches import bisected, first_where
 from bezstab.stability.step_families import FAMILIES, Limit, Member, bezier_limit, family_members
+from bezstab.stability.step_sequences import VaryingSteps, varying_steps
 from bezstab.stability.turning import turning_sensitivity
-from bezstab.stability.varying_steps import VaryingSteps, varying_steps
 
 if TYPE_CHECKING:
     from bezstab.stability.damping_limits import critical_damping_limit, unconditional_damping_ratio

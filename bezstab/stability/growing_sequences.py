@@ -45,8 +45,8 @@ def growing_words(matrix: StepMatrix, shortest: Fraction) -> Iterator[list[Fract
 def _radii(products: FloatArray) -> FloatArray:
     """Return the spectral radii of stacked matrices; of two rows from trace and determinant, which is faster."""
     if products.shape[-1] != 2:
-        moduli: FloatArray = np.abs(np.linalg.eigvals(products))
-        return moduli.max(axis=-1, initial=0.0)
+        largest: FloatArray = np.abs(np.linalg.eigvals(products)).max(axis=-1)
+        return largest
     half = (products[..., 0, 0] + products[..., 1, 1]) / 2
     determinant = products[..., 0, 0] * products[..., 1, 1] - products[..., 0, 1] * products[..., 1, 0]
     square = half * half - determinant
