@@ -115,18 +115,14 @@ def _plane_matrix(method: Method, hold: bool) -> tuple[tuple[str, ...], list[lis
     scheme = second_order_form(method.scheme)
     check_one_step(method)
     equations = list(scheme.equations)
-    known = {
-        quantity: Quantity(quantity.name, quantity.step)
-        for equation in equations
-        for quantity in equation.used
-        if quantity not in {each.result for each in equations}
-    }
+    results = {equation.result for equation in equations}
+    known = {quantity for equation in equations for quantity in equation.used} - results
     stored = Quantity(ACCELERATION, 0)
     if stored in known and not hold and _ends_with_its_acceleration(scheme):
         # with alpha and beta fixed the stored acceleration is that of the state: it says nothing new
         at_start = ((ONE, Quantity(POSITION, 0)),), ((ONE, Quantity(VELOCITY, 0)),)
         equations.append(Evaluation(stored, *at_start))
-        del known[stored]
+        known.remove(stored)
     state = STATE if stored in known else STATE[:2]
     column = {equation.result: number for number, equation in enumerate(equations)}
     rows: Matrix = [[{} for _ in equations] for _ in equations]

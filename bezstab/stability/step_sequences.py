@@ -130,17 +130,19 @@ def _single_step(matrix: StepMatrix, shortest: Fraction) -> Fraction | bool:
     circle if and only if its values at 1 and -1 and d^2 - D are positive (Jury). A state of three is tested in samples:
     what proves sequences proves single steps, too.
     """
+    square = polynomial_product(matrix.denominator, matrix.denominator)
+    without_solution = positivity(whole_rows([square]), shortest, Fraction(1)).exception
+    if without_solution is not None:
+        return without_solution
     if matrix.size != 2:
         for length in _samples(shortest):
             if recursion_verdict(characteristic(matrix.at(length))) != "converges":
                 return length
         return True
     (a, b), (c, d) = matrix.entries
-    square = polynomial_product(matrix.denominator, matrix.denominator)
     trace = polynomial_product(_combined(1, a, 1, d), matrix.denominator)
     determinant = _combined(1, polynomial_product(a, d), -1, polynomial_product(b, c))
     conditions = [
-        square,  # a step has a solution
         _combined(1, _combined(1, square, 1, determinant), -1, trace),
         _combined(1, _combined(1, square, 1, determinant), 1, trace),
         _combined(1, square, -1, determinant),

@@ -24,7 +24,7 @@ def positive(expression: sp.Expr, low: Fraction, high: Fraction) -> bool:
     numerator, denominator = sp.fraction(sp.together(expression))
     polynomial = sp.Poly(numerator * denominator, S)  # of the same sign
     low_end, high_end = sp.Rational(low), sp.Rational(high)
-    return polynomial.eval(low_end) > 0 and polynomial.count_roots(low_end, high_end) == 0
+    return bool(polynomial.eval(low_end) > 0 and polynomial.count_roots(low_end, high_end) == 0)
 
 
 def form_decreases(form: sp.Matrix, step: sp.Matrix, low: Fraction, high: Fraction) -> bool:

@@ -9,7 +9,7 @@ ONE, HALF = Fraction(1), Fraction(1, 2)
 
 def test_the_lengths_tried_span_the_range() -> None:
     lengths = lengths_tried(Fraction(1, 10))
-    assert (lengths[0], lengths[-1]) == (Fraction(1, 10), 1)
+    assert (lengths[0], lengths[-1]) == (Fraction(1, 10), ONE)
     assert lengths_tried(ONE) == [1]
 
 
