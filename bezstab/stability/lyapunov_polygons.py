@@ -17,6 +17,7 @@ Proven in exact arithmetic: corner p, edge from e to f, M = N(s) / d(s). The ima
 if and only if (e x f) d(s) + (f - e) x N(s) p > 0, a polynomial in the length s of the step.
 """
 
+import math
 from collections.abc import Iterator
 from fractions import Fraction
 from itertools import pairwise
@@ -39,7 +40,7 @@ MOST_GROWTH = 3.0  # of V: in the frame of the best ellipse the polygons that we
 LEAST_TURNING = 1e-3  # of growth: near a direction that the flow keeps, it takes for ever to the next ray
 SETTLED = 1e-9  # change of V in a sweep, far below any reserve
 CORNERS = (9, 18, 36, 72, 144, 360, 720)  # in the half plane, on rays: the fewest that do are the certificate
-DIGITS = 10**9  # denominator of the corners, whose largest coordinate is about one
+DIGITS = 10**9  # denominator of the corners, in units in which their largest coordinates are about one
 CHUNK = 64  # edges whose polynomials are made at a time: memory
 
 
@@ -196,6 +197,9 @@ def _seems_invariant(corners: FloatArray, matrices: FloatArray) -> bool:
 
 
 def _rational(corners: FloatArray) -> list[Corner]:
-    """Return the corners in units of their largest coordinate, rounded to rationals."""
-    scaled = np.rint(corners / np.abs(corners).max() * DIGITS)
-    return [(Fraction(int(x), DIGITS), Fraction(int(v), DIGITS)) for x, v in scaled.T]
+    """Return the corners rounded to rationals, each coordinate by its largest size, a power of two."""
+    largest = np.abs(corners).max(axis=1)
+    sizes = [Fraction(2) ** round(math.log2(size / largest[0])) for size in largest]
+    unit = np.array([float(size) for size in sizes]) * largest[0]
+    scaled = np.rint(corners / unit[:, np.newaxis] * DIGITS)
+    return [(Fraction(int(x), DIGITS) * sizes[0], Fraction(int(v), DIGITS) * sizes[1]) for x, v in scaled.T]

@@ -5,6 +5,7 @@ X is sought in float64 for a sample of steps, by a barrier method, and rounded. 
 M = N / d the leading minors of X d^2 - N^T X N are polynomials in s, which must be positive on the range (Sylvester).
 """
 
+import math
 from fractions import Fraction
 
 import numpy as np
@@ -15,7 +16,7 @@ from bezstab.stability.positive_polynomials import positivity, whole_rows
 
 Form = list[list[Fraction]]
 
-DIGITS = 10**9  # denominator of the entries, the largest of which is about one
+DIGITS = 10**9  # denominator of the entries, in units of the state in which those on the diagonal are about one
 NEWTON_STEPS = 40  # in each stage; some ten are taken
 STAGES = 24  # each halves what the barrier keeps away from the optimum
 DECREMENT = 1e-8  # Newton's decrement of a centre, which need not be accurate
@@ -32,12 +33,13 @@ def centred_form(matrices: FloatArray, decays: FloatArray) -> FloatArray:
     size = matrices.shape[1]
     basis = _symmetric_basis(size)
     lost = basis[:, np.newaxis] - np.swapaxes(matrices, 1, 2) @ basis[:, np.newaxis] @ matrices
-    lost /= np.maximum(decays, LEAST_DECAY)[:, np.newaxis, np.newaxis]
+    least = np.maximum(decays, LEAST_DECAY)[:, np.newaxis, np.newaxis]
+    lost /= least
     unit = np.eye(size)
     slopes = np.concatenate([lost, np.broadcast_to(unit, (1, *lost.shape[1:]))])  # (variables, steps, n, n)
     own = np.concatenate([basis, np.zeros((1, size, size))])
     slopes = np.concatenate([slopes, own[:, np.newaxis]], axis=1)  # the last condition: X itself
-    constant = np.concatenate([(unit - np.swapaxes(matrices, 1, 2) @ matrices) / decays[:, None, None], unit[None]])
+    constant = np.concatenate([(unit - np.swapaxes(matrices, 1, 2) @ matrices) / least, unit[np.newaxis]])
     values = np.zeros(len(slopes))
     values[-1] = max(0.0, -float(np.linalg.eigvalsh(constant[:-1]).min())) + 1
     weight = 1.0
@@ -84,9 +86,17 @@ def _symmetric_basis(size: int) -> FloatArray:
 
 
 def rational_form(form: FloatArray) -> Form:
-    """Return a symmetric matrix in units of its largest entry, rounded to rationals."""
-    scaled = np.rint(form / np.abs(form).max() * DIGITS)
-    return [[Fraction(int(entry), DIGITS) for entry in row] for row in scaled]
+    """Return a positive symmetric matrix rounded to rationals, each entry by the sizes of those on the diagonal.
+
+    These sizes are powers of two, relative to the last: they are exact.
+    """
+    sizes = [Fraction(2) ** round(math.log2(entry / form[-1, -1]) / 2) for entry in np.diag(form)]
+    unit = np.array([float(size) for size in sizes])
+    scaled = np.rint(form / form[-1, -1] / np.outer(unit, unit) * DIGITS)
+    return [
+        [Fraction(int(entry), DIGITS) * own * other for entry, other in zip(row, sizes, strict=True)]
+        for row, own in zip(scaled, sizes, strict=True)
+    ]
 
 
 def proves_decay(form: Form, matrix: StepMatrix, shortest: Fraction) -> bool:

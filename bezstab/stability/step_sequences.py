@@ -12,6 +12,7 @@ their steps commute, and any sequence of steps that decay alone decays.
 """
 
 import math
+from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal
@@ -104,18 +105,21 @@ def varying_steps(
         return result("refuted", word=(alone,))
     if matrix.commuting:
         return result("proven", "commuting") if alone else result("not known")
-    samples = _samples(shortest)
+    samples = _samples(shortest, down=hold or matrix.size == 3)
     matrices = np.array([[[float(entry) for entry in row] for row in matrix.at(s)] for s in samples])
     lengths = np.array([float(s) for s in samples])
-    form = _form(lengths, matrices, *(float(each) for each in at_longest))
-    rounded = rational_form(form)
-    if proves_decay(rounded, matrix, shortest):
+    form: FloatArray | None = None
+    frame: FloatArray | None = None
+    with suppress(np.linalg.LinAlgError):  # where what decays is lost in rounding
+        form = _form(lengths, matrices, *(float(each) for each in at_longest))
+        frame = np.linalg.cholesky(form).T.astype(np.float64)
+    rounded = None if form is None or frame is None else rational_form(form)
+    if rounded and proves_decay(rounded, matrix, shortest):
         return result("proven", "quadratic", tuple(tuple(row) for row in rounded))
     word = _growing_word(matrix, h_min, h_max)
     if word:
         return result("refuted", word=word)
-    if matrix.size == 2:
-        frame: FloatArray = np.linalg.cholesky(form).T.astype(np.float64)
+    if matrix.size == 2 and frame is not None:
         flow = _flow(matrix) if not hold and shortest < samples[0] else None
         corners = invariant_polygon(matrix, lengths, matrices, flow, frame, shortest)
         if corners:
@@ -135,7 +139,7 @@ def _single_step(matrix: StepMatrix, shortest: Fraction) -> Fraction | bool:
     if without_solution is not None:
         return without_solution
     if matrix.size != 2:
-        for length in _samples(shortest):
+        for length in _samples(shortest, down=True):
             if recursion_verdict(characteristic(matrix.at(length))) != "converges":
                 return length
         return True
@@ -158,10 +162,14 @@ def _combined(factor: int, first: StepPolynomial, other_factor: int, second: Ste
     return tuple(factor * a + other_factor * b for a, b in zip(*filled, strict=True))
 
 
-def _samples(shortest: Fraction) -> list[Fraction]:
-    """Return lengths of steps from the shortest, or a sixty-fourth, to 1."""
+def _samples(shortest: Fraction, down: bool) -> list[Fraction]:
+    """Return lengths of steps from the shortest, or a sixty-fourth, to 1; with `down` shorter ones by halving, too."""
     low = max(shortest, Fraction(1, SAMPLED_SHARE))
-    return sorted({low + (1 - low) * Fraction(k, SAMPLES - 1) for k in range(SAMPLES)})
+    lengths = {low + (1 - low) * Fraction(k, SAMPLES - 1) for k in range(SAMPLES)}
+    while down and low > shortest:
+        low = max(low / 2, shortest)
+        lengths.add(low)
+    return sorted(lengths)
 
 
 def _flow(matrix: StepMatrix) -> FloatArray:

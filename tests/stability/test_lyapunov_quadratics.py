@@ -44,5 +44,5 @@ def test_a_form_of_another_point_proves_nothing() -> None:
     assert not proves_decay(IDENTITY, step_matrix(lookup("SYM"), HALF, Fraction(3)), HALF)
 
 
-def test_rounding_is_to_a_thousand_millionth_of_the_largest_entry() -> None:
-    assert rational_form(np.array([[4.0, 1.0], [1.0, 2.0]])) == [[ONE, Fraction(1, 4)], [Fraction(1, 4), HALF]]
+def test_rounding_keeps_small_entries_exact_in_units_of_the_last() -> None:
+    assert rational_form(np.array([[8.0, 1.0], [1.0, 2.0]])) == [[Fraction(4), HALF], [HALF, ONE]]
