@@ -63,7 +63,7 @@ APPOINTED = {
     "click": {f"cli/{name}.py" for name in ("options", "output", "command_group")}
     | {f"cli/{name}_commands.py" for name in ("map", "choose", "evidence")}
     | {f"cli/{name}_command.py" for name in ("verify", "schema", "lint", "probe")}
-    | {"cli/moving_mechanism.py", "cli/completion.py", "cli/typed_points.py"}
+    | {f"cli/{name}.py" for name in ("moving_mechanism", "completion", "typed_points", "varying_steps")}
     | {"paper/command.py"},
     "mujoco": {"evidence/mujoco_models.py"},
     "distributed": {"evidence/worker_pools.py"},

@@ -8,6 +8,7 @@ A file imports only from those above it:
     output              rows, files, messages, progress
     typed_points        how a point is typed: in α̂, β̂, in 1/s, in an engine's words, as a drive's gains
     moving_mechanism    what several ask about a mechanism that moves
+    varying_steps       what several ask about steps that vary
     map_commands        poles, region, methods, family
     choose_commands     choose, check, engines, explore
     evidence_commands   simulate, tradeoff, extremes

@@ -28,6 +28,7 @@ from bezstab.cli.options import (
 from bezstab.cli.output import for_reading, progress, show_rows, show_text
 from bezstab.cli.typed_points import (
     DRIVE_COLUMNS,
+    TypedPoint,
     as_typed_option,
     drive_option,
     engine_keys,
@@ -36,6 +37,15 @@ from bezstab.cli.typed_points import (
     say_if_units_were_mistaken,
     say_what_was_made,
     typed_point,
+)
+from bezstab.cli.varying_steps import (
+    h_min_option,
+    hold_option,
+    say_varying,
+    step_range,
+    varying_columns,
+    varying_results,
+    with_varying,
 )
 from bezstab.engines import ENGINES, Drive
 from bezstab.errors import InputError
@@ -93,7 +103,7 @@ CHOICES = [
     column("|z_p| within the spread", "worst", ".4f"),
     column("steps to 1/1000", "settle_steps", "d"),
     column("seconds to 1/1000", "settle_seconds", ".3g"),
-    Column("stable for h (s) to", _largest_step),
+    Column("stable for constant h (s) to", _largest_step),
     range_column("α times", "alpha_factor_min", "alpha_factor_max"),
     range_column("β times", "beta_factor_min", "beta_factor_max"),
 ]
@@ -126,7 +136,9 @@ def choice_sentence(row: Row) -> str:
     help="robust: fastest at worst over smaller steps and the spread; fastest: least |z_p|; critical: fastest without "
     "oscillation; gentle: the mildest α = β that settles in time.",
 )
-@click.option("--h-max", type=SECONDS, help="robust: the largest step in s that may occur [--h].")
+@click.option("--h-max", type=SECONDS, help="robust, or with --h-min: the largest step in s that may occur [--h].")
+@h_min_option
+@hold_option
 @click.option("--spread", type=NUMBER, default="0.1", help="By what share α and β may be off.")
 @click.option("--settle", type=SECONDS, help="gentle: the time in s in which c falls a thousandfold.")
 @click.option("--keep", type=click.Choice(["alpha=beta"]), help="Only points with α = β.")
@@ -140,6 +152,8 @@ def choose(
     h: Fraction,
     goal: "Goal",
     h_max: Fraction | None,
+    h_min: Fraction | None,
+    hold: bool,
     spread: Fraction,
     settle: Fraction | None,
     keep: str | None,
@@ -155,7 +169,8 @@ def choose(
     damping |z_p| rises like a square root. Hence robust is the default. "within the spread" is the largest |z_p| with α
     and β off by --spread. Where no feedback is too strong, those up to αh, βh = 4 are searched, and "searched" says so.
     With --engine the method is the engine's own unless given. With --pd each way of applying a joint drive is shown,
-    with the kp and kd to set instead.
+    with the kp and kd to set instead. With --h-min steps may vary from one to the next, and "varying steps" says
+    whether every sequence of them up to --h-max decays; exit status 1 if that is not proven.
 
     Example: bezstab choose --method B4 --h 0.001
     """
@@ -164,32 +179,49 @@ def choose(
 
     if not 0 <= spread < 1:
         raise InputError(f"--spread {float(spread):g}: expected a share from 0 to 1")
-    if h_max is not None and (goal != "robust" or h_max < h):
-        raise InputError(f"--h-max {float(h_max):g}: only for --goal robust, and at least --h {float(h):g}")
+    if h_max is not None and ((goal != "robust" and h_min is None) or h_max < h):
+        raise InputError(f"--h-max {float(h_max):g}: only for --goal robust or --h-min, and at least --h {float(h):g}")
     if (settle is not None) != (goal == "gentle"):
         raise click.UsageError("--settle and --goal gentle go together")
     if engine and drive:
         raise click.UsageError("--engine and --pd print two kinds of words: give one")
     methods = methods_asked(methods, ENGINES[engine] if engine else None, drive)
+    steps = step_range(methods, h, h_min, h_max, hold)
     turning = turning_of(scene, speed, h)
     rows: list[Row] = []
+    chosen: list[tuple[Fraction, Fraction]] = []
     for method in progress(methods, goal):
         modulus = None
         if turning:
             from bezstab.evidence import moving_modulus
 
             modulus = moving_modulus(method, turning, float(h_max or h))
+        robust_up_to = h_max if goal == "robust" else None
         choice = choose_at_step(
-            method, goal, h=h, h_max=h_max, settle=settle, spread=float(spread), equal=keep is not None, modulus=modulus
+            method,
+            goal,
+            h=h,
+            h_max=robust_up_to,
+            settle=settle,
+            spread=float(spread),
+            equal=keep is not None,
+            modulus=modulus,
         )
         row = choice_row(choice, float(h))
         if engine:
-            row["setting"] = ENGINES[engine].setting((Fraction(choice.alpha_hat), Fraction(choice.beta_hat)), h)
+            row["setting"] = ENGINES[engine].setting(_exact_point(choice), h)
         if drive:
             row |= drive_row(choice, drive, float(h))
         rows += moving_rows([row], [method], [(choice.alpha_hat, choice.beta_hat)], turning, h)
-    more = [*moving_columns(turning), *([PASTE] if engine else []), *(DRIVE_COLUMNS if drive else [])]
+        chosen.append(_exact_point(choice))
+    varying = varying_results(steps, methods, chosen)
+    rows = with_varying(rows, varying)
+    more = [*moving_columns(turning), *varying_columns(steps)]
+    more += [*([PASTE] if engine else []), *(DRIVE_COLUMNS if drive else [])]
     show_rows(rows, [*choice_columns(rows), *more], form, sentence=choice_sentence)
+    say_varying(methods, varying, form)
+    if any(each.varying != "proven" for each in varying):
+        click.get_current_context().exit(1)
 
 
 @click.command()
@@ -201,6 +233,9 @@ def choose(
 @engine_values_option
 @as_typed_option
 @drive_option
+@h_min_option
+@click.option("--h-max", type=SECONDS, help="With --h-min: the longest step in s [--h].")
+@hold_option
 @moving_scene_option("Safe for this mechanism as it moves? Needs --h.")
 @moving_speed_option
 @format_option
@@ -215,6 +250,9 @@ def check(
     engine: EngineValues | None,
     as_typed: bool,
     drive: Drive | None,
+    h_min: Fraction | None,
+    h_max: Fraction | None,
+    hold: bool,
     scene: str | None,
     speed: Fraction,
     form: Format,
@@ -222,7 +260,8 @@ def check(
     """Tell whether a choice is safe: exit status 0 if so, 1 if not.
 
     Safe is what is proven stable for every method. Prints the verdict, the margins and the largest stable step, and
-    what `choose` would give instead.
+    what `choose` would give instead. All that is about constant steps, and steps that are each stable alone may grow
+    when they alternate: with --h-min and --h-max safe is what is proven for every sequence of steps in that range.
 
     With --engine the method is the engine's own unless given, and what the engine does to its values (clamps, scaling)
     is applied first; what the conversion leaves out is said.
@@ -238,8 +277,13 @@ def check(
     from bezstab import stability
     from bezstab.show import choice_row, drive_row
 
+    if h_max is not None and h_min is None:
+        raise click.UsageError("--h-max goes with --h-min: the range of steps that vary")
+    if h_min is not None:
+        h = h or h_max
     typed = typed_point(alpha, beta, h, physical, engine, drive, as_typed)
     methods = methods_asked(methods, typed.engine, drive)
+    steps = step_range(methods, h, h_min, h_max, hold)
     if alpha is not None and beta is not None and not physical:
         say_if_units_were_mistaken(methods, alpha, beta, h)
     step = None if h is None else float(h)
@@ -257,16 +301,33 @@ def check(
         rows = [{**row, **drive_row(choice, drive, step)} for row, choice in zip(rows, choices, strict=True)]
     points = [(choice.alpha_hat, choice.beta_hat) for choice in choices]
     rows = moving_rows(rows, [choice.method for choice in choices], points, turning, h)
-    columns = [*choice_columns(rows), *moving_columns(turning), *(DRIVE_COLUMNS if drive else [])]
+    exact_points = _exact_points(typed, choices)
+    varying = varying_results(steps, [choice.method for choice in choices], exact_points)
+    rows = with_varying(rows, varying)
+    columns = [*choice_columns(rows), *moving_columns(turning), *varying_columns(steps)]
+    columns += DRIVE_COLUMNS if drive else []
     asked = [row for row in rows if row["goal"] != "robust"]
     if for_reading(form):
         show_rows(asked, columns, form, sentence=choice_sentence)
+        judged = [(choice, each) for choice, each in zip(choices, varying, strict=False) if choice.goal != "robust"]
+        say_varying([choice.method for choice, _ in judged], [each for _, each in judged], form)
         show_text("\nWhat `choose` gives instead:\n")
         show_rows([row for row in rows if row["goal"] == "robust"], columns, form, sentence=choice_sentence)
     else:
         show_rows(rows, columns, form)
     say_what_was_made(typed, form)
     context.exit(0 if all(row["safe"] for row in asked) else 1)
+
+
+def _exact_point(choice: "Choice") -> tuple[Fraction, Fraction]:
+    """Return a choice's alpha_hat and beta_hat, exactly as in float64."""
+    return Fraction(choice.alpha_hat), Fraction(choice.beta_hat)
+
+
+def _exact_points(typed: TypedPoint, choices: "Sequence[Choice]") -> list[tuple[Fraction, Fraction]]:
+    """Return the points of choices as they were typed, exactly; what `choose` found as it is in float64."""
+    as_typed = {"as given": typed.point, **dict(typed.also)}
+    return [as_typed.get(choice.goal) or _exact_point(choice) for choice in choices]
 
 
 ENGINES_LISTED = [

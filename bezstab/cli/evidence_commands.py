@@ -13,6 +13,7 @@ from bezstab.cli.options import (
     NUMBER,
     POSITIVE,
     SECONDS,
+    SEQUENCE,
     FigureForm,
     TableForm,
     both_or_none,
@@ -96,6 +97,14 @@ def run_sentence(row: Row) -> str:
 @physical_option
 @click.option("--no-stabilization", is_flag=True, help="No feedback: α = β = 0.")
 @step_option
+@click.option(
+    "--steps",
+    "sequence",
+    type=SEQUENCE,
+    help="Steps in s that are taken in turn, over and over, such as 1/60,0.00917 or 3*0.01,0.02, or a file of them; "
+    "--h is then only what α̂ and β̂ belong to.",
+)
+@click.option("--hold", is_flag=True, help="With --steps: α̂ and β̂ stay as steps vary; not α and β.")
 @click.option("--time", type=SECONDS, default="10", help="Duration in s.")
 @click.option("--perturb", type=NUMBER, default="0", help="Initial error of the first constraint.")
 @click.option(
@@ -118,6 +127,8 @@ def simulate(
     physical: bool,
     no_stabilization: bool,
     h: Fraction,
+    sequence: Sequence[Fraction] | None,
+    hold: bool,
     time: Fraction,
     perturb: Fraction,
     start: "Start",
@@ -129,7 +140,8 @@ def simulate(
     """Run a mechanism and see what its constraint error does.
 
     Prints largest |c| and |ċ|, energy drift and evaluations, and writes the history and a figure of the first
-    constraint and its derivative. Exit status 3 if the run broke down; what came before is kept.
+    constraint and its derivative. Exit status 3 if the run broke down; what came before is kept. With --steps their
+    lengths vary, and work and drift of energy are integrated less exactly, by the trapezoidal rule.
 
     Example: bezstab simulate --method AB4 --alpha 0.5 --beta 0.101 --time 2
     """
@@ -142,19 +154,20 @@ def simulate(
         say_if_units_were_mistaken([method], alpha, beta, h)
     if no_stabilization:
         alpha = beta = Fraction(0)
-    _check_number_of_steps(time, h, method)
+    if hold and not sequence:
+        raise click.UsageError("--hold goes with --steps: it is about steps that vary")
+    _check_number_of_steps(time, min(sequence) if sequence else h, method)
+    if sequence:
+        mechanism.check_steps_may_vary(method)
     if figure != "none" or table != "none":
         output_directory(output)
-    simulation = mechanism.simulated(
-        mechanism.compiled_mechanism(mechanism.at_speed(mechanism.load_scene(scene), float(speed))),
-        method,
-        h=float(h),
-        duration=float(time),
-        alpha_hat=float(alpha),
-        beta_hat=float(beta),
-        perturb=float(perturb),
-        start=start,
-    )
+    moving = mechanism.compiled_mechanism(mechanism.at_speed(mechanism.load_scene(scene), float(speed)))
+    run = {"duration": float(time), "alpha_hat": float(alpha), "beta_hat": float(beta), "perturb": float(perturb)}
+    if sequence:
+        lengths = [float(step) for step in sequence]
+        simulation = mechanism.simulated_with_steps(moving, method, sequence=lengths, h=float(h), hold=hold, **run)
+    else:
+        simulation = mechanism.simulated(moving, method, h=float(h), start=start, **run)
 
     def draw() -> "Figure":
         from bezstab.show import history_figure

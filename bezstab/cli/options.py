@@ -1,5 +1,6 @@
 """What the commands share of their options: the types of what is typed, and the options that several have."""
 
+import re
 from collections.abc import Callable, Iterable
 from fractions import Fraction
 from pathlib import Path
@@ -28,6 +29,7 @@ class Decorator(Protocol):
         """Return the function, with the option."""
 
 
+MOST_IN_SEQUENCE = 10**6  # steps: a run of minutes
 SHORTEST = Fraction("1e-100")  # s, and the longest time's inverse: their squares are within float64
 USUAL_METHODS = ("B2", "B3", "B4", "AB2", "AB3", "AB4", "RK4@5", "SIE")
 """What poles and explore show unless told otherwise: the Bezier methods and what one would take instead."""
@@ -107,10 +109,29 @@ def _engine_values(text: str) -> EngineValues:
         raise InputError(f"{error}: expected {name}={engine.words()}") from None
 
 
+def _sequence(text: str) -> list[Fraction]:
+    """Return steps in s from text such as 3*0.01,0.02 (three of the first, then the other), or from a file of such."""
+    path = Path(text)
+    try:
+        if path.is_file():
+            text = path.read_text(encoding="utf-8")
+    except (OSError, ValueError) as error:  # no name of a file, or no text in it
+        raise InputError(f"cannot read {text[:50]!r}: {error}") from None
+    sequence: list[Fraction] = []
+    for part in re.split(r"[,\s]+", text.strip()):
+        count, star, step = part.rpartition("*")
+        times = rational(count) if star else Fraction(1)
+        if times.denominator != 1 or not 1 <= times <= MOST_IN_SEQUENCE - len(sequence):
+            raise InputError(f"{part[:50]!r}: expected a number of steps from 1, and {MOST_IN_SEQUENCE} in all")
+        sequence += [_seconds(step)] * int(times)
+    return sequence
+
+
 NUMBER = ParsedType("number", rational)
 POSITIVE = ParsedType("number", _positive)
 SECONDS = ParsedType("seconds", _seconds)
 SPEED = ParsedType("number", _speed)
+SEQUENCE = ParsedType("steps", _sequence)
 METHOD = ParsedType("method", lookup, (*REGISTRY, *WITH_PARAMETERS))
 ENGINE = click.Choice(list(ENGINES))
 ENGINE_VALUES = ParsedType("name=values", _engine_values, [f"{name}=" for name in ENGINES])

@@ -21,6 +21,7 @@ From data upwards; a file imports only from those above it:
     linearized          how the acceleration changes with position and velocity
     constraint_normals  how fast the directions of the constraints turn along a motion
     simulation          a run and its observation as one value
+    varying_runs        the same with steps that vary
 """
 
 from bezstab.mechanism.compiled import (
@@ -57,6 +58,7 @@ from bezstab.mechanism.scenes import (
 from bezstab.mechanism.second_order_memory import Memory, memory
 from bezstab.mechanism.simulation import Simulation, simulated
 from bezstab.mechanism.start import constraint_errors, constraint_jacobian, initial_state, perturbed_state
+from bezstab.mechanism.varying_runs import check_steps_may_vary, simulated_with_steps
 
 __all__ = [
     "COORDINATES",
@@ -85,6 +87,7 @@ __all__ = [
     "acceleration_function",
     "acceleration_jacobians",
     "at_speed",
+    "check_steps_may_vary",
     "compiled_mechanism",
     "compiled_source",
     "constraint_errors",
@@ -105,6 +108,7 @@ __all__ = [
     "shipped_scenes",
     "simulate",
     "simulated",
+    "simulated_with_steps",
     "singular_passages",
     "states_needed",
     "stepper_code",

@@ -39,9 +39,14 @@ class Observation:
 
 
 def observe(
-    mechanism: Mechanism, t: FloatArray, q: FloatArray, v: FloatArray, two_alpha: float, beta_squared: float
+    mechanism: Mechanism,
+    t: FloatArray,
+    q: FloatArray,
+    v: FloatArray,
+    two_alpha: float | FloatArray,
+    beta_squared: float | FloatArray,
 ) -> Observation:
-    """Return what the constraints do along a history with the gains 2 alpha (1/s) and beta^2 (1/s^2).
+    """Return what the constraints do along a history with the gains 2 alpha (1/s) and beta^2 (1/s^2), or one per time.
 
     t (s) has shape (times,), q and v (SI units) (times, n). The multipliers are those of paper Eq. 9; where a run broke
     down the last of them may not be finite.

@@ -21,6 +21,7 @@ From exact numbers upwards; a file imports only from those above it:
     shared_factors      poles that no feedback moves
     plane_edges         where a second-order scheme's plane turns from stable to unstable, exactly
     orders              order of accuracy and error constant
+    step_matrices       one step of a one-step method as an exact matrix, for steps that differ in length
     second_order_formulas  the equations of a second-order scheme as text or LaTeX
     formulas            all that as text or LaTeX
 
@@ -48,6 +49,16 @@ from bezstab.methods.schemes import (
 from bezstab.methods.schur import Polynomial, Verdict, is_schur, recursion_verdict
 from bezstab.methods.second_order import Assignment, Combination, Evaluation, PlaneTable, Quantity, SecondOrder
 from bezstab.methods.second_order_forms import second_order_form
+from bezstab.methods.step_matrices import (
+    StepMatrix,
+    StepPolynomial,
+    characteristic,
+    check_one_step,
+    matrix_product,
+    polynomial_determinant,
+    polynomial_product,
+    step_matrix,
+)
 
 if TYPE_CHECKING:
     from bezstab.methods.derivation import (
@@ -124,6 +135,8 @@ __all__ = [
     "RungeKutta",
     "S",
     "SecondOrder",
+    "StepMatrix",
+    "StepPolynomial",
     "Strip",
     "Verdict",
     "Z",
@@ -133,8 +146,10 @@ __all__ = [
     "adams_bashforth_moulton",
     "bezier",
     "branch_polynomial",
+    "characteristic",
     "characteristic_polynomial",
     "characteristic_text",
+    "check_one_step",
     "closed_loop_at",
     "closed_loop_polynomial",
     "closed_loop_table",
@@ -148,13 +163,17 @@ __all__ = [
     "lookup",
     "mapping_equations",
     "mapping_text",
+    "matrix_product",
     "plane_strips",
+    "polynomial_determinant",
+    "polynomial_product",
     "read_method",
     "recipe",
     "recursion_text",
     "recursion_verdict",
     "reduced_table",
     "second_order_form",
+    "step_matrix",
     "steps",
     "without_shared_factor",
 ]

@@ -9,6 +9,7 @@ A file imports only from those above it; what draws is not loaded before it is u
     schemas             which keys the rows of each command have
     best_point_text     a best point in words
     rows                results as rows
+    varying_rows        what steps that vary do, as keys of a row and in a sentence
     arrays              histories and maps as arrays for files
     style               what all figures share
     plot                one result on one Axes
@@ -64,6 +65,7 @@ from bezstab.show.rows import (
     witness_row,
 )
 from bezstab.show.schemas import ROW_KINDS, json_schema
+from bezstab.show.varying_rows import sequence_text, varying_row, varying_words
 from bezstab.show.vocabulary import VOCABULARY
 from bezstab.show.words import growth_words, safety_words, seconds_words
 
@@ -166,6 +168,7 @@ __all__ = [
     "save",
     "scene_figure",
     "seconds_words",
+    "sequence_text",
     "shown_width",
     "simulation_row",
     "stable_steps_words",
@@ -173,6 +176,8 @@ __all__ = [
     "summary_row",
     "transposed",
     "untimed_arrays",
+    "varying_row",
+    "varying_words",
     "verdict_arrays",
     "verdict_figure",
     "verdict_map_row",

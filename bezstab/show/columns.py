@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-Value = str | float | int | None
+Value = str | float | int | Sequence[float] | Sequence[Sequence[str]] | None
 Row = Mapping[str, Value]
 Format = Literal["text", "json", "csv", "markdown"]
 
@@ -99,8 +99,13 @@ def _comma_separated(rows: Sequence[Row]) -> str:
     text = io.StringIO()
     writer = csv.DictWriter(text, keys, lineterminator="\n")
     writer.writeheader()
-    writer.writerows(rows)
+    writer.writerows({key: _in_one_cell(value) for key, value in row.items()} for row in rows)
     return text.getvalue().rstrip("\n")
+
+
+def _in_one_cell(value: Value) -> Value:
+    """Return a value as one cell of a table; a list as JSON has it."""
+    return json.dumps(value) if isinstance(value, list) else value
 
 
 def _aligned(lines: Sequence[Sequence[str]]) -> str:

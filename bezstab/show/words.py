@@ -42,12 +42,16 @@ def change_words(z_abs: float, verdict: Value) -> str:
 def safety_words(row: Row, error: str = "the error") -> str:
     """Return whether a point is safe and how fast errors shrink, from a row with `safe`, `verdict` and `z_abs`.
 
-    With --scene also what they do over the motion. Without the last full stop.
+    With --scene also what they do over the motion, with --h-min that they do so with constant steps. Without the last
+    full stop.
     """
     safe = "Safe" if row["safe"] else "Not safe"
     z_abs, moving = row["z_abs"], row.get("z_abs_moving")
     assert isinstance(z_abs, float)
+    constant = f" with steps that vary: {row['varying']}. With constant steps" if "varying" in row else ""
     at_rest = f"{error} {change_words(z_abs, row['verdict'])}"
+    if constant and not isinstance(moving, float):
+        return f"{safe}{constant} {at_rest}"
     if not isinstance(moving, float):
         return f"{safe}. {at_rest[0].upper()}{at_rest[1:]}"
     if row["moving_verdict"] in ("converges", "diverges"):

@@ -23,6 +23,11 @@ From a method's polynomial in float64 (its pencil) upwards; a file imports only 
     regions           the exact region in alpha_hat and beta_hat
     grid_maps         |z_p| on a grid
     quadrant_proofs   whether all of alpha_hat, beta_hat > 0 is stable
+    positive_polynomials whether polynomials are positive on an interval, exactly
+    lyapunov_quadratics  a quadratic form that every step of a range makes smaller
+    lyapunov_polygons    a polygon that every step of a range maps into its inside
+    growing_sequences    sequences of steps whose product grows
+    step_sequences    whether feedback decays for every sequence of steps within a range
     damping_limits    up to which steps, by damping ratio
     plane_best_points the smallest |z_p| of a second-order scheme
     best_points       the smallest |z_p|
@@ -56,6 +61,7 @@ from bezstab.stability.pencils import Pencil, pencil_of, roots_in_z
 from bezstab.stability.regions import Extent, Region, pole_place, region, window
 from bezstab.stability.searches import bisected, first_where
 from bezstab.stability.step_families import FAMILIES, Limit, Member, bezier_limit, family_members
+from bezstab.stability.step_sequences import VaryingSteps, varying_steps
 from bezstab.stability.turning import turning_sensitivity
 
 if TYPE_CHECKING:
@@ -90,6 +96,7 @@ __all__ = [
     "Pencil",
     "Region",
     "StableForAll",
+    "VaryingSteps",
     "best_point",
     "bezier_limit",
     "bisected",
@@ -113,6 +120,7 @@ __all__ = [
     "stable_for_all",
     "turning_sensitivity",
     "unconditional_damping_ratio",
+    "varying_steps",
     "verdict",
     "window",
 ]

@@ -1,0 +1,71 @@
+"""What sequences of steps do that vary within a range: as keys of a row, and in one sentence."""
+
+from __future__ import annotations
+
+from itertools import groupby
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from fractions import Fraction
+
+    from bezstab.show.columns import Row
+    from bezstab.stability import VaryingSteps
+
+
+def varying_row(varying: VaryingSteps) -> Row:
+    """Return the verdict on a range of steps, and what proves it; h in s.
+
+    `certificate` is a list of rows of rational strings, which `certificate_kind` explains: a "quadratic" form X, or the
+    corners of one half of a "polygon", for the state (c, h_max cdot[, h_max^2 cddot]) with h_max = `varying_h_max`;
+    None where every single step is stable and steps commute ("commuting"), and where nothing is proven. `sequence` has
+    the steps (s) of a sequence that does not decay when it is repeated; None unless it was refuted.
+    """
+    certificate, sequence = varying.certificate, varying.sequence
+    return {
+        "varying": varying.varying,
+        "varying_h_min": float(varying.h_min),
+        "varying_h_max": float(varying.h_max),
+        "hold": varying.hold,
+        "certificate_kind": varying.kind,
+        "certificate": None if certificate is None else [[str(number) for number in row] for row in certificate],
+        "sequence": None if sequence is None else [float(step) for step in sequence],
+    }
+
+
+def varying_words(name: str, varying: VaryingSteps) -> str:
+    """Return the verdict on a range of steps of the method of that name, and why, in one sentence."""
+    held = "α̂ and β̂ held" if varying.hold else "α and β fixed"
+    of_range = f"steps between {_seconds(varying.h_min)} and {_seconds(varying.h_max)}"
+    match varying.varying:
+        case "proven":
+            return f"{name}, {held}: proven to decay for every sequence of {of_range} ({_reason(varying)})."
+        case "refuted":
+            assert varying.sequence
+            steps = sequence_text(varying.sequence)
+            if len(varying.sequence) == 1:
+                return f"{name}, {held}: refuted for {of_range}: a step of {steps} alone does not decay."
+            return f"{name}, {held}: refuted for {of_range}: {steps}, over and over, do not decay."
+        case "not known":
+            return f"{name}, {held}: not known whether every sequence of {of_range} decays."
+
+
+def sequence_text(sequence: Sequence[Fraction]) -> str:
+    """Return steps in s as text, with how often each is taken: 3 of 0.01 s, then 0.02 s."""
+    runs = [(step, len(list(same))) for step, same in groupby(sequence)]
+    return ", then ".join(_seconds(step) if count == 1 else f"{count} of {_seconds(step)}" for step, count in runs)
+
+
+def _seconds(step: Fraction) -> str:
+    return f"{float(step):.6g} s"
+
+
+def _reason(varying: VaryingSteps) -> str:
+    match varying.kind:
+        case "quadratic":
+            return "a quadratic form falls with each step"
+        case "polygon":
+            assert varying.certificate
+            return f"each step maps a polygon of {2 * len(varying.certificate)} corners into itself"
+        case _:
+            return "each step decays alone, and steps commute"

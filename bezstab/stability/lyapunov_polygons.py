@@ -1,0 +1,205 @@
+"""Polygons that every step of a range maps into their inside: proof that any sequence of such steps decays.
+
+A convex polygon that is symmetric about zero is the unit circle of a norm. If the matrix of every step takes each
+corner into the inside, all steps shrink the norm, by a common factor as the range is closed, whatever their order.
+
+Found in float64, as the largest growth still to come: with the norm |.| of a frame in which the motion is round,
+
+    V(theta) = sup over all sequences of steps of log |M_n ... M_1 u(theta)|,   u(theta) a unit vector,
+
+is a fixed point of V <- max(0, max over steps of log |M u| + V(direction of M u)), and its unit ball |x| exp V <= 1 is
+convex and invariant, as a supremum of norms. Its corners are rounded to rationals. Each step is taken a little too
+large, by a share of its own decay, so that what is found has room for the corners and the rounding. Steps too short to
+be sampled are a flow, M = 1 + s G: it takes a ray to the next with growth (u^T G u) / (n^T G u) times the angle, where
+n is normal to u.
+
+Proven in exact arithmetic: corner p, edge from e to f, M = N(s) / d(s). The image lies on the inner side of the edge
+if and only if (e x f) d(s) + (f - e) x N(s) p > 0, a polynomial in the length s of the step.
+"""
+
+import math
+from collections.abc import Iterator
+from fractions import Fraction
+from itertools import pairwise
+from math import lcm
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bezstab.methods import StepMatrix
+from bezstab.stability.arrays import FloatArray
+from bezstab.stability.positive_polynomials import ExactArray, positivity
+
+Corner = tuple[Fraction, Fraction]
+IntArray = NDArray[np.int_]
+
+RAYS = 720  # directions in the half plane: linear interpolation of V errs by 1e-6 there
+RESERVES = (0.5, 0.2, 0.1, 0.05, 0.025)  # shares of each step's decay; the first that leaves V finite is taken
+SWEEPS = 3000  # V grows by a fixed amount each turn if it grows for ever: some hundred turns
+MOST_GROWTH = 3.0  # of V: in the frame of the best ellipse the polygons that were found stay below one
+LEAST_TURNING = 1e-3  # of growth: near a direction that the flow keeps, it takes for ever to the next ray
+SETTLED = 1e-9  # change of V in a sweep, far below any reserve
+CORNERS = (9, 18, 36, 72, 144, 360, 720)  # in the half plane, on rays: the fewest that do are the certificate
+DIGITS = 10**9  # denominator of the corners, in units in which their largest coordinates are about one
+CHUNK = 64  # edges whose polynomials are made at a time: memory
+
+
+def invariant_polygon(
+    matrix: StepMatrix,
+    steps: FloatArray,
+    matrices: FloatArray,
+    flow: FloatArray | None,
+    frame: FloatArray,
+    shortest: Fraction,
+) -> list[Corner] | None:
+    """Return corners of half a polygon that every step from `shortest` to 1 maps inside; None if none was found.
+
+    The other half is their negatives. `matrices` (steps, 2, 2) belong to the lengths `steps`, a sample of the range,
+    `flow` (2, 2) is the G of shorter ones where the range has them, and `frame` (2, 2) maps the state to where its
+    motion is round. Proven for all of the range.
+    """
+    directions = np.arange(RAYS) * np.pi / RAYS
+    circle = np.stack([np.cos(directions), np.sin(directions)])
+    back = np.linalg.inv(frame)
+    decays = _decays(steps, matrices)
+    for reserve in RESERVES:
+        factors = np.exp(reserve * decays)[:, np.newaxis, np.newaxis]
+        between = None
+        if flow is not None:
+            between = frame @ flow @ back + reserve * decays[0] / steps[0] * np.eye(2)
+        growth = _growth_to_come(frame @ matrices @ back * factors, between, circle)
+        if growth is None:
+            continue
+        ball = back @ (circle * np.exp(-growth))
+        for count in CORNERS:
+            chosen = ball[:, np.arange(count) * RAYS // count]
+            if _seems_invariant(chosen, matrices):
+                corners = _rational(chosen)
+                if proves_decay(corners, matrix, shortest):
+                    return corners
+    return None
+
+
+def proves_decay(corners: list[Corner], matrix: StepMatrix, shortest: Fraction) -> bool:
+    """Return whether the corners and their negatives are a convex polygon that all steps to 1 map inside: exact."""
+    ring = [*corners, (-corners[0][0], -corners[0][1])]
+    edges = [(f[0] - e[0], f[1] - e[1]) for e, f in pairwise(ring)]
+    turned = [*edges, (-edges[0][0], -edges[0][1])]
+    once_around = all(_cross(corners[0], corner) > 0 for corner in corners[1:])
+    convex = all(_cross(e, f) > 0 for e, f in pairwise(turned))
+    if not (once_around and convex and all(_cross(e, f) > 0 for e, f in pairwise(ring))):
+        return False
+    return all(positivity(rows, shortest, Fraction(1)).proven for rows in _polynomials(ring, matrix))
+
+
+def _polynomials(ring: list[Corner], matrix: StepMatrix) -> Iterator[ExactArray]:
+    """Yield the denominator, then (e x f) d +- (f - e) x N p for all edges and corners, as rows of whole numbers."""
+    parts = [*(entry for row in matrix.entries for entry in row), matrix.denominator]
+    length = max(len(part) for part in parts)
+    scale = lcm(*(coefficient.denominator for part in parts for coefficient in part))
+    filled = [[int(c * scale) for c in part] + [0] * (length - len(part)) for part in parts]
+    upper_left, upper_right, lower_left, lower_right, denominator = (np.array(part, dtype=object) for part in filled)
+    yield denominator[np.newaxis]
+    common = lcm(*(coordinate.denominator for corner in ring for coordinate in corner))
+    whole = np.array([[int(coordinate * common) for coordinate in corner] for corner in ring], dtype=object)
+    points = whole[:-1]
+    image_x = points[:, :1] * upper_left + points[:, 1:] * upper_right  # (corners, powers of s)
+    image_y = points[:, :1] * lower_left + points[:, 1:] * lower_right
+    for first in range(0, len(points), CHUNK):
+        start, end = whole[:-1][first : first + CHUNK], whole[1:][first : first + CHUNK]
+        edge = end - start
+        span = start[:, 0] * end[:, 1] - start[:, 1] * end[:, 0]
+        beside = (
+            edge[:, 0, np.newaxis, np.newaxis] * image_y[np.newaxis]
+            - edge[:, 1, np.newaxis, np.newaxis] * image_x[np.newaxis]
+        )
+        room = span[:, np.newaxis, np.newaxis] * denominator[np.newaxis, np.newaxis]
+        yield np.concatenate([room + beside, room - beside]).reshape(-1, length)
+
+
+def _cross(a: Corner, b: Corner) -> Fraction:
+    return a[0] * b[1] - a[1] * b[0]
+
+
+def _decays(steps: FloatArray, matrices: FloatArray) -> FloatArray:
+    """Return by what -log |z| each step decays, at most at the rate of the shortest: so that none counts as sudden."""
+    radii = np.abs(np.linalg.eigvals(matrices)).max(axis=1)
+    decays: FloatArray = -np.log(np.maximum(radii, np.finfo(np.float64).tiny))
+    slowest: FloatArray = np.minimum(decays, decays[0] * steps / steps[0])
+    return slowest
+
+
+def _growth_to_come(matrices: FloatArray, flow: FloatArray | None, circle: FloatArray) -> FloatArray | None:
+    """Return V on the rays, by sweeps; None where it does not settle."""
+    images = np.concatenate([matrices, *_powers(matrices[0])]) @ circle
+    gain = np.log(np.maximum(np.hypot(images[:, 0], images[:, 1]), np.finfo(np.float64).tiny))
+    place = np.arctan2(images[:, 1], images[:, 0]) % np.pi * (RAYS / np.pi)
+    below = np.floor(place).astype(int)
+    share = place - below
+    below %= RAYS
+    above = (below + 1) % RAYS
+    if flow is not None:
+        flow_gain, flow_below, flow_above = _flow_to_next_ray(flow)
+        gain = np.concatenate([gain, flow_gain])
+        below, above = np.concatenate([below, flow_below]), np.concatenate([above, flow_above])
+        share = np.concatenate([share, np.zeros_like(flow_gain)])
+    growth: FloatArray = np.zeros(RAYS)
+    for _ in range(SWEEPS):
+        to_come = gain + (1 - share) * growth[below] + share * growth[above]
+        larger: FloatArray = np.maximum(growth, to_come.max(axis=0))
+        change = (larger - growth).max()
+        growth = larger
+        if change < SETTLED:
+            return growth
+        if growth.max() > MOST_GROWTH:
+            return None
+    return None
+
+
+def _flow_to_next_ray(flow: FloatArray) -> tuple[FloatArray, IntArray, IntArray]:
+    """Return the growth of the flow from each ray to the next one forwards or backwards, and the number of that ray.
+
+    Each of shape (2, rays): forwards, backwards; a growth of -inf where the flow goes the other way. By the values half
+    way between the rays, which is of second order. Both numbers are the same: no interpolation.
+    """
+    numbers = np.arange(RAYS)
+    gains, targets = [], []
+    for direction in (1, -1):
+        middle = (numbers + direction / 2) * np.pi / RAYS
+        unit = np.stack([np.cos(middle), np.sin(middle)])
+        moved = flow @ unit
+        radial = (unit * moved).sum(axis=0)
+        turning = unit[0] * moved[1] - unit[1] * moved[0]
+        ways = direction * turning > LEAST_TURNING * np.abs(radial)
+        rate = np.divide(radial, np.abs(turning), out=np.full(RAYS, -np.inf), where=ways)
+        gains.append(rate * np.pi / RAYS)
+        targets.append((numbers + direction) % RAYS)
+    return np.array(gains), np.array(targets), np.array(targets)
+
+
+def _powers(matrix: FloatArray) -> list[FloatArray]:
+    """Return 2, 4, 8, ... steps of the shortest length at once, so that V settles in fewer sweeps."""
+    powers = []
+    for _ in range(6):  # 64 steps
+        matrix = matrix @ matrix
+        powers.append(matrix[np.newaxis])
+    return powers
+
+
+def _seems_invariant(corners: FloatArray, matrices: FloatArray) -> bool:
+    """Return whether the polygon is invariant under a sample of the steps, in float64: before it is proven."""
+    ends = np.concatenate([corners[:, 1:], -corners[:, :1]], axis=1)
+    span = corners[0] * ends[1] - corners[1] * ends[0]
+    edge = ends - corners
+    images = matrices @ corners  # (steps, 2, corners)
+    beside = edge[0, :, np.newaxis] * images[:, 1, np.newaxis] - edge[1, :, np.newaxis] * images[:, 0, np.newaxis]
+    return bool((span > 0).all() and (np.abs(beside) < span[:, np.newaxis]).all())
+
+
+def _rational(corners: FloatArray) -> list[Corner]:
+    """Return the corners rounded to rationals, each coordinate by its largest size, a power of two."""
+    largest = np.abs(corners).max(axis=1)
+    sizes = [Fraction(2) ** round(math.log2(size / largest[0])) for size in largest]
+    unit = np.array([float(size) for size in sizes]) * largest[0]
+    scaled = np.rint(corners / unit[:, np.newaxis] * DIGITS)
+    return [(Fraction(int(x), DIGITS) * sizes[0], Fraction(int(v), DIGITS) * sizes[1]) for x, v in scaled.T]

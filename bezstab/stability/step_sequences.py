@@ -1,0 +1,205 @@
+"""Whether feedback decays for every sequence of steps within a range: proven, refuted or not known.
+
+Each step stable alone is not enough: products of different matrices may grow. In turn are tried
+
+    one step of the range            that does not decay alone refutes, and is all that can where steps commute
+    a quadratic form                 that every step makes smaller (lyapunov_quadratics)
+    a sequence of steps              whose product grows (growing_sequences)
+    a polygon                        that every step maps into its inside (lyapunov_polygons)
+
+Runge-Kutta and one-step linear methods step y by R(hA) with one and the same A as long as alpha and beta stay: all
+their steps commute, and any sequence of steps that decay alone decays.
+"""
+
+import math
+from contextlib import suppress
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Literal
+
+import numpy as np
+
+from bezstab.errors import InputError
+from bezstab.methods import (
+    Method,
+    StepMatrix,
+    StepPolynomial,
+    characteristic,
+    polynomial_product,
+    recursion_verdict,
+    step_matrix,
+)
+from bezstab.stability.arrays import FloatArray
+from bezstab.stability.growing_sequences import growing_words, grows
+from bezstab.stability.lyapunov_polygons import invariant_polygon
+from bezstab.stability.lyapunov_quadratics import centred_form, proves_decay, rational_form
+from bezstab.stability.positive_polynomials import positivity, whole_rows
+
+Varying = Literal["proven", "refuted", "not known"]
+Certificate = Literal["commuting", "quadratic", "polygon"]
+
+FIGURES = 4  # significant digits of the steps in a sequence, where it grows with as few
+LEAST_FRAME = 0.3  # of beta: as far as a frame for overdamped feedback is still stretched
+SAMPLES = 40  # of the range, evenly spaced; the proofs are of all of it
+SAMPLED_SHARE = 64  # the shortest step sampled, as a share of the longest: the limit of small steps to 2 %
+SHORT = Fraction(1, 10**6)  # a step from which the flow of shorter ones is told: to 1e-6
+LONGEST_RANGE = Fraction(10**12)  # h_max / h_min: beyond, steps so short are as good as zero
+
+
+@dataclass(frozen=True)
+class VaryingSteps:
+    """What sequences of steps from h_min to h_max (s) do at one point of a method.
+
+    `kind` is how it was proven: "commuting" (every single step decays, and steps commute), or by a `certificate` whose
+    numbers belong to the state (c, h_max cdot) or, of a method that stores an acceleration, (c, h_max cdot,
+    h_max^2 cddot): a "quadratic" form, by rows, or a "polygon", by the corners of one half, the others being their
+    negatives. `sequence` holds the steps (s) of a sequence that does not decay when repeated.
+    """
+
+    varying: Varying
+    h_min: Fraction
+    h_max: Fraction
+    hold: bool
+    kind: Certificate | None = None
+    certificate: tuple[tuple[Fraction, ...], ...] | None = None
+    sequence: tuple[Fraction, ...] | None = None
+
+
+def varying_steps(
+    method: Method,
+    alpha_hat: Fraction,
+    beta_hat: Fraction,
+    *,
+    h: Fraction,
+    h_min: Fraction,
+    h_max: Fraction,
+    hold: bool = False,
+) -> VaryingSteps:
+    """Return whether every sequence of steps from h_min to h_max (s) decays.
+
+    alpha_hat and beta_hat are those of a step of h (s); the alpha and beta that belong to them stay as they are, or
+    with `hold` alpha_hat and beta_hat do. InputError for a method of several steps, whose coefficients assume equal
+    steps, and unless 0 < h_min <= h_max. Lyapunov functions: Liberzon, Switching in Systems and Control, chapter 2.
+    """
+    if not 0 < h_min <= h_max <= LONGEST_RANGE * h_min:
+        raise InputError(
+            f"steps from {float(h_min):g} to {float(h_max):g} s: expected a range of positive steps, the longest at "
+            f"most {float(LONGEST_RANGE):g} times the shortest"
+        )
+    longest = Fraction(1) if hold else h_max / h
+    at_longest = alpha_hat * longest, beta_hat * longest**2
+    matrix = step_matrix(method, *at_longest, hold)
+    shortest = h_min / h_max
+
+    def result(
+        varying: Varying,
+        kind: Certificate | None = None,
+        certificate: tuple[tuple[Fraction, ...], ...] | None = None,
+        word: tuple[Fraction, ...] | None = None,
+    ) -> VaryingSteps:
+        sequence = None if word is None else tuple(length * h_max for length in word)
+        return VaryingSteps(varying, h_min, h_max, hold, kind, certificate, sequence)
+
+    alone = _single_step(matrix, shortest)
+    if isinstance(alone, Fraction):
+        return result("refuted", word=(alone,))
+    if matrix.commuting:
+        return result("proven", "commuting") if alone else result("not known")
+    samples = _samples(shortest, down=hold or matrix.size == 3)
+    matrices = np.array([[[float(entry) for entry in row] for row in matrix.at(s)] for s in samples])
+    lengths = np.array([float(s) for s in samples])
+    form: FloatArray | None = None
+    frame: FloatArray | None = None
+    with suppress(np.linalg.LinAlgError):  # where what decays is lost in rounding
+        form = _form(lengths, matrices, *(float(each) for each in at_longest))
+        frame = np.linalg.cholesky(form).T.astype(np.float64)
+    rounded = None if form is None or frame is None else rational_form(form)
+    if rounded and proves_decay(rounded, matrix, shortest):
+        return result("proven", "quadratic", tuple(tuple(row) for row in rounded))
+    word = _growing_word(matrix, h_min, h_max)
+    if word:
+        return result("refuted", word=word)
+    if matrix.size == 2 and frame is not None:
+        flow = _flow(matrix) if not hold and shortest < samples[0] else None
+        corners = invariant_polygon(matrix, lengths, matrices, flow, frame, shortest)
+        if corners:
+            return result("proven", "polygon", tuple(corners))
+    return result("not known")
+
+
+def _single_step(matrix: StepMatrix, shortest: Fraction) -> Fraction | bool:
+    """Return a length whose step does not decay alone; else whether it is proven that every step does.
+
+    For a state of two z^2 d^2 - z d t + D, with trace t / d and determinant D / d^2, has its roots inside the unit
+    circle if and only if its values at 1 and -1 and d^2 - D are positive (Jury). A state of three is tested in samples:
+    what proves sequences proves single steps, too.
+    """
+    square = polynomial_product(matrix.denominator, matrix.denominator)
+    without_solution = positivity(whole_rows([square]), shortest, Fraction(1)).exception
+    if without_solution is not None:
+        return without_solution
+    if matrix.size != 2:
+        for length in _samples(shortest, down=True):
+            if recursion_verdict(characteristic(matrix.at(length))) != "converges":
+                return length
+        return True
+    (a, b), (c, d) = matrix.entries
+    trace = polynomial_product(_combined(1, a, 1, d), matrix.denominator)
+    determinant = _combined(1, polynomial_product(a, d), -1, polynomial_product(b, c))
+    conditions = [
+        _combined(1, _combined(1, square, 1, determinant), -1, trace),
+        _combined(1, _combined(1, square, 1, determinant), 1, trace),
+        _combined(1, square, -1, determinant),
+    ]
+    found = positivity(whole_rows(conditions), shortest, Fraction(1))
+    return found.proven if found.exception is None else found.exception
+
+
+def _combined(factor: int, first: StepPolynomial, other_factor: int, second: StepPolynomial) -> StepPolynomial:
+    """Return the sum of two multiples of polynomials."""
+    length = max(len(first), len(second))
+    filled = [(*each, *[Fraction(0)] * (length - len(each))) for each in (first, second)]
+    return tuple(factor * a + other_factor * b for a, b in zip(*filled, strict=True))
+
+
+def _samples(shortest: Fraction, down: bool) -> list[Fraction]:
+    """Return lengths of steps from the shortest, or a sixty-fourth, to 1; with `down` shorter ones by halving, too."""
+    low = max(shortest, Fraction(1, SAMPLED_SHARE))
+    lengths = {low + (1 - low) * Fraction(k, SAMPLES - 1) for k in range(SAMPLES)}
+    while down and low > shortest:
+        low = max(low / 2, shortest)
+        lengths.add(low)
+    return sorted(lengths)
+
+
+def _flow(matrix: StepMatrix) -> FloatArray:
+    """Return the G of short steps, M = 1 + s G: its entries are those of M for a step without length, derived."""
+    return (np.array([[float(entry) for entry in row] for row in matrix.at(SHORT)]) - np.eye(2)) / float(SHORT)
+
+
+def _form(lengths: FloatArray, matrices: FloatArray, alpha_hat: float, beta_hat: float) -> FloatArray:
+    """Return the quadratic form that all sampled steps make smaller by the largest share, or nearly so."""
+    radii = np.abs(np.linalg.eigvals(matrices)).max(axis=1)
+    size = matrices.shape[1]
+    frame = np.eye(size)
+    rate, stiffness = alpha_hat / 2, math.sqrt(abs(beta_hat))
+    turning = math.sqrt(abs(stiffness**2 - rate**2))
+    frame[:2, :2] = [[max(turning, LEAST_FRAME * stiffness), 0.0], [rate, 1.0]]
+    round_matrices = frame @ matrices @ np.linalg.inv(frame)
+    form: FloatArray = frame.T @ centred_form(round_matrices, 1 - radii**2) @ frame
+    return form
+
+
+def _growing_word(matrix: StepMatrix, h_min: Fraction, h_max: Fraction) -> tuple[Fraction, ...] | None:
+    """Return a sequence of lengths proven to grow, of few digits in s where that does; None if none was found."""
+    for word in growing_words(matrix, h_min / h_max):
+        rounded = [min(max(_short(length * h_max), h_min), h_max) / h_max for length in word]
+        for candidate in (rounded, word):
+            if grows(matrix, candidate):
+                return tuple(candidate)
+    return None
+
+
+def _short(step: Fraction) -> Fraction:
+    """Return a number rounded to a few significant digits."""
+    return Fraction(f"{float(step):.{FIGURES - 1}e}")

@@ -1,0 +1,107 @@
+import json
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import pytest
+import sympy as sp
+
+from tests.cli.running import run
+from tests.reference.symbolic_steps import form_decreases, symplectic_euler
+
+EXAMPLE = ("--method", "SYM", "--alpha", "2", "--beta", "100", "--physical")
+NOTHING = ("--figure", "none", "--table", "none")
+
+
+def rows_of(*arguments: str, status: int = 0) -> list[dict[str, Any]]:
+    """Return the rows that a command prints with this exit status."""
+    result = run(*arguments, "--format", "json")
+    assert result.exit_code == status, result.stderr
+    printed: list[dict[str, Any]] = json.loads(result.stdout)
+    return printed
+
+
+def test_steps_that_are_stable_alone_are_refuted_together_and_simulate_shows_it() -> None:
+    given, _ = rows_of("check", *EXAMPLE, "--h-min", "0.00917", "--h-max", "1/60", status=1)
+    assert given["verdict"] == "converges"
+    assert given["varying"] == "refuted"
+    assert given["h_max"] == pytest.approx(0.0196, abs=1e-4)  # every constant step up to here decays
+    assert len(given["sequence"]) == 2
+    steps = ",".join(map(repr, given["sequence"]))
+    at = ("simulate", *EXAMPLE, "--h", "1/60", "--perturb", "1e-6", "--time", "0.5", *NOTHING)
+    (grown,) = rows_of(*at, "--steps", steps)
+    for step in given["sequence"]:
+        (alone,) = rows_of(*at, "--steps", repr(step))
+        assert alone["c_max"] < 1e-4
+    assert grown["c_max"] > 1e-2
+
+
+def test_anyone_can_verify_the_certificate_that_is_printed() -> None:
+    point = ("--alpha", "1", "--beta", "1/4", "--h", "0.001")
+    given, _ = rows_of("check", "--method", "SYM", *point, "--h-min", "0.0001")
+    assert (given["varying"], given["certificate_kind"]) == ("proven", "quadratic")
+    form = sp.Matrix([[sp.Rational(number) for number in row] for row in given["certificate"]])
+    assert form_decreases(form, symplectic_euler(Fraction(1), Fraction(1, 4)), Fraction(1, 10), Fraction(1))
+
+
+def test_a_sentence_says_it_below_the_table() -> None:
+    result = run("check", "--method", "RK4", "--alpha", "1", "--beta", "1/4", "--h", "0.01", "--h-min", "0.001")
+    assert result.exit_code == 0
+    assert result.stdout.splitlines()[-1] == (
+        "RK4, α and β fixed: proven to decay for every sequence of steps between 0.001 s and 0.01 s "
+        "(each step decays alone, and steps commute)."
+    )
+
+
+def test_held_parameters_are_another_question() -> None:
+    # the same method and point: proven with alpha and beta fixed, refuted with alpha_hat and beta_hat held
+    at = ("check", "--method", "verlet-implicit", "--alpha", "0.1", "--beta", "1", "--h", "0.01", "--h-min", "0.0025")
+    fixed, _ = rows_of(*at)
+    held, _ = rows_of(*at, "--hold", status=1)
+    assert (fixed["varying"], fixed["hold"]) == ("proven", False)
+    assert (held["varying"], held["hold"]) == ("refuted", True)
+
+
+def test_a_choice_is_proven_for_steps_that_vary() -> None:
+    (chosen,) = rows_of("choose", "--method", "SYM", "--h", "0.001", "--h-min", "0.0001", "--h-max", "0.0012")
+    assert (chosen["varying"], chosen["varying_h_max"]) == ("proven", 0.0012)
+
+
+def test_without_a_range_nothing_is_said_of_it() -> None:
+    (chosen,) = rows_of("choose", "--method", "SYM", "--h", "0.001")
+    assert "varying" not in chosen
+
+
+def test_a_list_is_one_cell_of_a_csv_table() -> None:
+    result = run("check", *EXAMPLE, "--h-min", "0.00917", "--h-max", "1/60", "--format", "csv")
+    assert '"[0.016' in result.stdout
+
+
+def test_a_sequence_is_read_from_a_file(tmp_path: Path) -> None:
+    (tmp_path / "steps.txt").write_text("2*0.005\n0.01\n", encoding="utf-8")
+    at = ("simulate", "--method", "SYM", "--h", "0.01", "--time", "0.2", *NOTHING, "--steps")
+    from_file, typed = (rows_of(*at, steps) for steps in (str(tmp_path / "steps.txt"), "0.005,0.005,0.01"))
+    assert from_file[0]["c_max"] == typed[0]["c_max"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        (("check", *EXAMPLE, "--h-min", "0.1", "--h-max", "0.01"), "--h-min 0.1: expected at most the longest step"),
+        (("check", "--alpha", "1", "--beta", "1", "--h-min", "0.1"), "--h-min needs --h-max or --h"),
+        (("check", *EXAMPLE, "--h", "0.1", "--h-max", "0.2"), "--h-max goes with --h-min"),
+        (("check", *EXAMPLE, "--h", "0.1", "--hold"), "--hold goes with --h-min"),
+        (("check", "--alpha", "1", "--beta", "1", "--h", "1", "--h-min", "0.5"), "B4 uses values of several steps"),
+        (("choose", "--h", "0.1", "--h-min", "0.05"), "B4 uses values of several steps"),
+        (("simulate", "--steps", "0.1"), "B4 uses values of several steps"),
+        (("simulate", "--hold"), "--hold goes with --steps"),
+        (("simulate", "--method", "SYM", "--steps", "0.1,no"), "'no' is not a finite decimal or fraction"),
+        (("simulate", "--method", "SYM", "--steps", "0.5*0.1"), "expected a number of steps from 1"),
+        (("simulate", "--method", "gauss4", "--steps", "0.1"), "explicit Runge-Kutta methods and SYM only"),
+    ],
+)
+def test_what_is_refused(arguments: tuple[str, ...], reason: str) -> None:
+    result = run(*arguments)
+    assert result.exit_code == 2
+    assert reason in " ".join(result.stderr.split())
+    assert result.stdout == ""

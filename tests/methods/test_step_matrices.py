@@ -1,0 +1,80 @@
+from fractions import Fraction
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bezstab.errors import InputError
+from bezstab.methods import closed_loop_at, lookup, step_matrix
+from bezstab.methods.step_matrices import characteristic, matrix_product, polynomial_determinant, polynomial_product
+
+ONE_STEP = (
+    *("B1", "RK2", "RK4", "RK4@5", "SIE", "tsit5", "gauss4", "radau3", "implicit-euler", "trapezoid"),
+    *("SYM", "imex-euler", "stable-pd", "ruth3", "yoshida4", "rkn4", "verlet-half", "verlet-predicted", "verlet-old"),
+    *("verlet-implicit", "verlet-kdk", "average-acceleration", "hht", "generalized-alpha"),
+)
+fractions = st.fractions(min_value=Fraction(1, 20), max_value=Fraction(2), max_denominator=40)
+
+
+def without_zero_roots(polynomial: list[Fraction]) -> list[Fraction]:
+    """Return the monic polynomial without its roots at zero."""
+    monic = [coefficient / polynomial[0] for coefficient in polynomial]
+    while monic[-1] == 0:
+        monic.pop()
+    return monic
+
+
+@pytest.mark.parametrize("name", ONE_STEP)
+@pytest.mark.parametrize("hold", [False, True])
+def test_its_characteristic_polynomial_is_the_closed_loop_of_that_step(name: str, hold: bool) -> None:
+    alpha_hat, beta_hat, step = Fraction(1, 2), Fraction(1, 3), Fraction(3, 4)
+    matrix = step_matrix(lookup(name), alpha_hat, beta_hat, hold)
+    point = (alpha_hat, beta_hat) if hold else (alpha_hat * step, beta_hat * step**2)
+    closed_loop = closed_loop_at(lookup(name), *point)
+    assert without_zero_roots(characteristic(matrix.at(step))) == without_zero_roots(list(closed_loop))
+
+
+@given(alpha_hat=fractions, beta_hat=fractions, s=fractions)
+def test_symplectic_euler_as_it_is_written(alpha_hat: Fraction, beta_hat: Fraction, s: Fraction) -> None:
+    # v1 = v - s (alpha_hat v + beta_hat x), x1 = x + s v1, in the unit of time in which alpha_hat, beta_hat are meant
+    matrix = step_matrix(lookup("SYM"), alpha_hat, beta_hat).at(s)
+    assert matrix == [
+        [1 - s * s * beta_hat, s * (1 - s * alpha_hat)],
+        [-s * beta_hat, 1 - s * alpha_hat],
+    ]
+
+
+def test_held_gains_follow_the_step() -> None:
+    # with alpha_hat and beta_hat held alpha is alpha_hat / 2s and beta^2 is beta_hat / s^2
+    held = step_matrix(lookup("SYM"), Fraction(1, 2), Fraction(1, 3), hold=True).at(Fraction(1, 4))
+    fixed = step_matrix(lookup("SYM"), Fraction(1, 2) * 4, Fraction(1, 3) * 16).at(Fraction(1, 4))
+    assert held == fixed
+
+
+@pytest.mark.parametrize(("name", "commutes"), [("RK4", True), ("gauss4", True), ("trapezoid", True), ("SYM", False)])
+def test_which_steps_commute(name: str, commutes: bool) -> None:
+    matrix = step_matrix(lookup(name), Fraction(1), Fraction(1, 2))
+    long, short = matrix.at(Fraction(1)), matrix.at(Fraction(1, 3))
+    assert matrix.commuting == commutes
+    assert (matrix_product(long, short) == matrix_product(short, long)) == commutes
+
+
+def test_a_stored_acceleration_belongs_to_the_state_only_where_it_says_something_new() -> None:
+    newmark, predicted = lookup("average-acceleration"), lookup("verlet-predicted")
+    assert step_matrix(newmark, Fraction(1), Fraction(1)).size == 2
+    assert step_matrix(newmark, Fraction(1), Fraction(1), hold=True).size == 3
+    assert step_matrix(predicted, Fraction(1), Fraction(1)).size == 3
+
+
+@pytest.mark.parametrize("name", ["B4", "AB2", "ABM2", "bdf2"])
+def test_methods_of_several_steps_are_refused(name: str) -> None:
+    with pytest.raises(InputError, match=f"{name} uses values of several steps, and its coefficients assume"):
+        step_matrix(lookup(name), Fraction(1), Fraction(1))
+
+
+def test_polynomials() -> None:
+    one, s = (Fraction(1),), (Fraction(0), Fraction(1))
+    assert polynomial_product((Fraction(1), Fraction(2)), (Fraction(1), Fraction(-2))) == tuple(
+        map(Fraction, (1, 0, -4))
+    )
+    assert polynomial_determinant([[one, s], [s, one]]) == tuple(map(Fraction, (1, 0, -1)))

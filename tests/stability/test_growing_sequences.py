@@ -1,0 +1,34 @@
+from fractions import Fraction
+from itertools import islice
+
+from bezstab.methods import lookup, step_matrix
+from bezstab.stability.growing_sequences import growing_words, grows, lengths_tried
+
+ONE, HALF = Fraction(1), Fraction(1, 2)
+
+
+def test_the_lengths_tried_span_the_range() -> None:
+    lengths = lengths_tried(Fraction(1, 10))
+    assert (lengths[0], lengths[-1]) == (Fraction(1, 10), ONE)
+    assert lengths_tried(ONE) == [1]
+
+
+def test_the_first_word_is_short_and_grows() -> None:
+    # theory: alpha = 2, beta = 100 at 1/60 s
+    matrix = step_matrix(lookup("SYM"), Fraction(4, 60), Fraction(100, 60) ** 2)
+    word = next(growing_words(matrix, HALF))
+    assert len(word) == 2
+    assert grows(matrix, word)
+    assert not any(grows(matrix, [length]) for length in word)
+
+
+def test_there_is_none_where_steps_commute_and_decay() -> None:
+    assert not list(islice(growing_words(step_matrix(lookup("RK4"), HALF, ONE), HALF), 1))
+
+
+def test_a_product_on_the_unit_circle_does_not_decay() -> None:
+    # average acceleration without damping keeps the energy, whatever the step
+    matrix = step_matrix(lookup("average-acceleration"), Fraction(0), ONE)
+    assert grows(matrix, [ONE, HALF])
+    # with damping it loses some
+    assert not grows(step_matrix(lookup("average-acceleration"), HALF, ONE), [ONE, HALF])

@@ -1,0 +1,51 @@
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from bezstab.methods import lookup, step_matrix
+from bezstab.stability.lyapunov_polygons import invariant_polygon, proves_decay
+
+ONE, HALF, NONE = Fraction(1), Fraction(1, 2), Fraction(0)
+SQUARE = [(ONE, NONE), (NONE, ONE)]
+
+
+def test_a_polygon_is_proven_exactly_as_far_as_it_holds() -> None:
+    # implicit Euler without damping turns by arctan s and shrinks by (1 + s^2)^(-1/2): (1, 0) goes to
+    # (1, -s) / (1 + s^2), inside the square |x| + |v| < 1 if and only if 1 + s < 1 + s^2, that is s > 1
+    slow = step_matrix(lookup("implicit-euler"), NONE, ONE)
+    fast = step_matrix(lookup("implicit-euler"), NONE, Fraction(9))  # the same where s is measured in h / 3
+    in_thirds = [(Fraction(1, 3), NONE), (NONE, ONE)]
+    assert not proves_decay(SQUARE, slow, HALF)
+    assert proves_decay(in_thirds, fast, HALF)
+    assert proves_decay(in_thirds, fast, Fraction(34, 100))
+    assert not proves_decay(in_thirds, fast, Fraction(1, 3))
+
+
+@pytest.mark.parametrize(
+    "corners",
+    [
+        [(ONE, NONE), (-ONE, NONE)],  # flat
+        [(NONE, ONE), (ONE, NONE)],  # the wrong way round
+        [(ONE, NONE), (Fraction(1, 9), Fraction(1, 9)), (NONE, ONE)],  # not convex
+        [(ONE, NONE), (NONE, ONE), (-ONE, NONE), (NONE, -ONE), (ONE, NONE), (NONE, ONE)],  # three half turns
+    ],
+)
+def test_what_is_no_convex_polygon_proves_nothing(corners: list[tuple[Fraction, Fraction]]) -> None:
+    # deadbeat: every corner goes to where it is inside whatever polygon there is
+    assert not proves_decay(corners, step_matrix(lookup("implicit-euler"), NONE, Fraction(10**6)), HALF)
+
+
+def test_a_polygon_is_found_where_one_exists() -> None:
+    matrix = step_matrix(lookup("SYM"), HALF, ONE)
+    lengths = [HALF + Fraction(k, 20) for k in range(11)]
+    matrices = np.array([[[float(entry) for entry in row] for row in matrix.at(s)] for s in lengths])
+    found = invariant_polygon(matrix, np.array([float(s) for s in lengths]), matrices, None, np.eye(2), HALF)
+    assert found
+    assert proves_decay(found, matrix, HALF)
+
+
+def test_none_is_found_where_a_step_grows() -> None:
+    matrix = step_matrix(lookup("SYM"), Fraction(1, 10), Fraction(5))
+    matrices = np.array([[[float(entry) for entry in row] for row in matrix.at(s)] for s in (HALF, ONE)])
+    assert invariant_polygon(matrix, np.array([0.5, 1.0]), matrices, None, np.eye(2), HALF) is None

@@ -1,0 +1,140 @@
+import math
+from fractions import Fraction
+
+import pytest
+import sympy as sp
+
+from bezstab.errors import InputError
+from bezstab.methods import lookup
+from bezstab.stability import VaryingSteps, varying_steps
+from tests.reference.symbolic_steps import form_decreases, polygon_is_entered, spectral_radius, symplectic_euler
+
+TINY = Fraction(1, 10**9)
+
+
+def symplectic(
+    ratio: str, share: str, shortest: Fraction, hold: bool = False
+) -> tuple[VaryingSteps, tuple[Fraction, Fraction]]:
+    """Return the verdict at alpha / beta = ratio, up to a share of the longest step that is stable, and the point."""
+    damping = Fraction(ratio)
+    longest = Fraction(2 * (math.sqrt(damping**2 + 1) - damping)).limit_denominator(10**6)  # beta h, at z = -1
+    h = longest * Fraction(share)
+    point = 2 * damping * h, h * h
+    found = varying_steps(lookup("SYM"), *point, h=h, h_min=h * shortest, h_max=h, hold=hold)
+    return found, point
+
+
+def shortest_step(found: VaryingSteps) -> Fraction:
+    return found.h_min / found.h_max
+
+
+@pytest.mark.parametrize(
+    ("ratio", "share", "shortest", "hold"),
+    [("1/2", "0.94", TINY, False), ("2", "0.999", TINY, False), ("1", "0.9", Fraction(1, 2), True)],
+)
+def test_sympy_confirms_a_quadratic_certificate(ratio: str, share: str, shortest: Fraction, hold: bool) -> None:
+    found, point = symplectic(ratio, share, shortest, hold)
+    assert (found.varying, found.kind) == ("proven", "quadratic")
+    assert found.certificate
+    form = sp.Matrix([[sp.Rational(number) for number in row] for row in found.certificate])
+    assert form_decreases(form, symplectic_euler(*point, hold), shortest_step(found), Fraction(1))
+
+
+@pytest.mark.slow
+def test_sympy_confirms_a_polygon() -> None:
+    found, point = symplectic("1/5", "3/4", Fraction(1, 2))
+    assert (found.varying, found.kind) == ("proven", "polygon")
+    assert found.certificate
+    corners = [sp.Matrix([sp.Rational(number) for number in corner]) for corner in found.certificate]
+    assert polygon_is_entered(corners, symplectic_euler(*point), shortest_step(found), Fraction(1))
+
+
+@pytest.mark.parametrize(("ratio", "share"), [("1/10", "2/5"), ("1/5", "7/10"), ("1/2", "0.99")])
+def test_sympy_confirms_a_growing_sequence(ratio: str, share: str) -> None:
+    found, point = symplectic(ratio, share, TINY)
+    assert found.varying == "refuted"
+    assert found.sequence
+    assert all(found.h_min <= step <= found.h_max for step in found.sequence)
+    lengths = [step / found.h_max for step in found.sequence]
+    assert spectral_radius(symplectic_euler(*point), lengths) >= 1
+
+
+def test_alternating_steps_that_are_each_stable() -> None:
+    # theory: alpha = 2, beta = 100, steps of 1/60 s and 9.17 ms, while each alone decays up to 0.0196 s
+    h, other = Fraction(1, 60), Fraction("0.00917")
+    point = 4 * h, (100 * h) ** 2
+    alone = [varying_steps(lookup("SYM"), *point, h=h, h_min=step, h_max=step) for step in (h, other)]
+    assert [each.varying for each in alone] == ["proven", "proven"]
+    both = varying_steps(lookup("SYM"), *point, h=h, h_min=other, h_max=h)
+    assert both.varying == "refuted"
+    assert both.sequence
+    assert set(both.sequence) == {h, other}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("ratio", "proven", "refuted"),
+    # shares of the longest stable step, steps from next to nothing: never more than 5 % apart
+    [("1/10", "0.31", "0.36"), ("1/5", "0.60", "0.645"), ("3/10", "0.755", "0.80"), ("1/2", "0.965", "0.985")],
+)
+def test_the_gap_is_at_most_five_percent_of_the_longest_stable_step(ratio: str, proven: str, refuted: str) -> None:
+    assert Fraction(refuted) - Fraction(proven) <= Fraction("0.05")
+    assert symplectic(ratio, proven, TINY)[0].varying == "proven"
+    assert symplectic(ratio, refuted, TINY)[0].varying == "refuted"
+
+
+@pytest.mark.parametrize("ratio", ["7/10", "1", "3/2", "2"])
+def test_with_enough_damping_the_limit_is_that_of_constant_steps(ratio: str) -> None:
+    assert symplectic(ratio, "0.995", TINY)[0].varying == "proven"
+    beyond = symplectic(ratio, "1.005", TINY)[0]
+    assert beyond.varying == "refuted"
+    assert beyond.sequence
+    assert len(beyond.sequence) == 1
+
+
+@pytest.mark.parametrize("name", ["RK4", "RK4@2", "tsit5", "implicit-euler", "gauss4", "trapezoid"])
+def test_steps_that_commute_need_only_be_stable_alone(name: str) -> None:
+    found = varying_steps(lookup(name), Fraction("0.1"), Fraction(1, 4), h=Fraction(1), h_min=TINY, h_max=Fraction(1))
+    assert (found.varying, found.kind, found.certificate) == ("proven", "commuting", None)
+
+
+def test_one_step_of_the_range_that_does_not_decay_refutes() -> None:
+    # RK4 without damping decays for 0 < beta h < sqrt 8
+    method, h = lookup("RK4"), Fraction(1)
+    within = varying_steps(method, Fraction(0), Fraction(79, 10), h=h, h_min=Fraction(1, 10), h_max=h)
+    beyond = varying_steps(method, Fraction(0), Fraction(81, 10), h=h, h_min=Fraction(1, 10), h_max=h)
+    assert (within.varying, beyond.varying) == ("proven", "refuted")
+    assert beyond.sequence
+    assert Fraction(81, 10) * beyond.sequence[0] ** 2 >= 8
+
+
+def test_held_parameters_bear_what_fixed_ones_do_not() -> None:
+    # central differences, implicit in the velocity: two lengths in turn grow where each decays
+    method, h = lookup("verlet-implicit"), Fraction(1)
+    found = varying_steps(method, Fraction(1, 10), Fraction(1), h=h, h_min=h / 4, h_max=h, hold=True)
+    assert found.varying == "refuted"
+    assert found.sequence
+    assert len(found.sequence) > 1
+
+
+@pytest.mark.parametrize("name", ["verlet-half", "verlet-predicted", "hht", "generalized-alpha"])
+def test_a_state_of_three_is_proven_by_a_form(name: str) -> None:
+    h = Fraction(1, 2)
+    found = varying_steps(lookup(name), h / 2, h * h, h=h, h_min=h / 10, h_max=h)
+    assert (found.varying, found.kind) == ("proven", "quadratic")
+    assert found.certificate
+    assert len(found.certificate) == 3
+
+
+def test_feedback_without_stiffness_does_not_decay() -> None:
+    found = varying_steps(lookup("SYM"), Fraction(1), Fraction(0), h=Fraction(1), h_min=TINY, h_max=Fraction(1))
+    assert found.varying == "refuted"
+
+
+def test_what_is_refused() -> None:
+    one = Fraction(1)
+    with pytest.raises(InputError, match="assume that these are of equal length"):
+        varying_steps(lookup("B4"), one, one, h=one, h_min=one, h_max=one)
+    for h_min in (2 * one, Fraction(1, 10**15)):
+        with pytest.raises(InputError, match="expected a range of positive steps"):
+            varying_steps(lookup("SYM"), one, one, h=one, h_min=h_min, h_max=one)
