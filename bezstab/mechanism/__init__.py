@@ -13,6 +13,7 @@ From data upwards; a file imports only from those above it:
     second_order_code   generated source of second-order schemes and of all that are implicit
     newton_iterations   Newton's method for the accelerations of an implicit step
     compiled            a scene with its compiled functions, made once
+    compiled_steps      steps as machine code, by numba, the same to the last bit
     observation         what the constraints do along a history
     energies            work of drivers and forces, and the drift that is left
     start               consistent initial states, and perturbed ones
