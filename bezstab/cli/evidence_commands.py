@@ -16,6 +16,7 @@ from bezstab.cli.options import (
     FigureForm,
     TableForm,
     both_or_none,
+    compiled_option,
     figure_option,
     format_option,
     methods_option,
@@ -94,6 +95,7 @@ SIMULATIONS = [
     help="What gives a multistep method's first values: RK4, its family's shorter members, or explicit Euler; "
     "for an implicit method Gauss's of order four, shorter BDF methods, or implicit Euler.",
 )
+@compiled_option
 @output_option
 @figure_option
 @table_option
@@ -224,6 +226,7 @@ RUNS = [
 @physical_option
 @click.option("--tolerance", type=POSITIVE, default="1e-6", help="In m and rad.")
 @click.option("--repeats", type=click.IntRange(1, 100), default=3, help="Of each timing.")
+@compiled_option
 @output_option
 @workers_option
 @scheduler_option
@@ -270,8 +273,9 @@ def tradeoff(
     loaded_scene = at_speed(load_scene(scene), float(speed))
     reference = evidence.reference_motion(loaded_scene, step_sizes[0], float(time))
     given = None if point is None else (float(point[0]), float(point[1]))
+    compiled = evidence.sweep_compiled(loaded_scene, methods, step_sizes, float(time), repeats)
     sweeps = [
-        evidence.Sweep(method, loaded_scene, step_sizes, float(time), given, physical, repeats, reference)
+        evidence.Sweep(method, loaded_scene, step_sizes, float(time), given, physical, repeats, reference, compiled)
         for method in dict.fromkeys(methods)
     ]
     path = output / f"tradeoff_{file_name(Path(scene).stem)}"
@@ -316,6 +320,7 @@ CHECKS = [
 
 @click.command()
 @click.option("--short", is_flag=True, help="Fewer methods and runs of 1e5 steps, in seconds instead of minutes.")
+@compiled_option
 @format_option
 @click.pass_context
 def extremes(context: click.Context, short: bool, form: Format) -> None:

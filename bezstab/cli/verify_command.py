@@ -13,6 +13,7 @@ from bezstab.cli.options import (
     FigureForm,
     TableForm,
     both_or_none,
+    compiled_option,
     figure_option,
     format_option,
     methods_option,
@@ -118,6 +119,7 @@ WITNESSED = [
 @click.option("--floquet", is_flag=True, help="Also the exact rates of the moving mechanism, by its linearised steps.")
 @click.option("--witness", type=click.Choice(["mujoco"]), help="Its own integrators.")
 @step_option
+@compiled_option
 @output_option
 @workers_option
 @scheduler_option

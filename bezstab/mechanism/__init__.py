@@ -32,6 +32,7 @@ from bezstab.mechanism.compiled import (
     multipliers_function,
     stepper_code,
 )
+from bezstab.mechanism.compiled_steps import COMPILED_CHOICE, check_numba, runs_compiled
 from bezstab.mechanism.constraint_normals import TurningNormals, turning_normals
 from bezstab.mechanism.energies import EnergyBalance, energy_balance
 from bezstab.mechanism.equations import Equations, T, equations_of_motion
@@ -39,7 +40,7 @@ from bezstab.mechanism.generated_code import compiled_source
 from bezstab.mechanism.linearized import acceleration_jacobians
 from bezstab.mechanism.motions import Motion, motion
 from bezstab.mechanism.observation import Observation, observe, singular_passages
-from bezstab.mechanism.runner import Start, Trajectory, march, resume, simulate, states_needed
+from bezstab.mechanism.runner import Start, Trajectory, march, march_in_blocks, resume, simulate, states_needed
 from bezstab.mechanism.scene_files import load_scene, parse_scene, read_scene, shipped_scenes
 from bezstab.mechanism.scenes import (
     COORDINATES,
@@ -60,6 +61,7 @@ from bezstab.mechanism.simulation import Simulation, simulated
 from bezstab.mechanism.start import constraint_errors, constraint_jacobian, initial_state, perturbed_state
 
 __all__ = [
+    "COMPILED_CHOICE",
     "COORDINATES",
     "GROUND",
     "SINGULAR",
@@ -86,6 +88,7 @@ __all__ = [
     "acceleration_function",
     "acceleration_jacobians",
     "at_speed",
+    "check_numba",
     "compiled_mechanism",
     "compiled_source",
     "constraint_errors",
@@ -95,6 +98,7 @@ __all__ = [
     "initial_state",
     "load_scene",
     "march",
+    "march_in_blocks",
     "memory",
     "motion",
     "multipliers_function",
@@ -103,6 +107,7 @@ __all__ = [
     "perturbed_state",
     "read_scene",
     "resume",
+    "runs_compiled",
     "shipped_scenes",
     "simulate",
     "simulated",

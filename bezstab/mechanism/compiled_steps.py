@@ -50,7 +50,7 @@ WORTH_COMPILING = 10**6
 to load and to compile it as Python takes for half of these; both grow with the mechanism."""
 
 NEEDS_NUMBA = "compiled runs need an optional package: pip install 'bezstab[fast]'"
-CHOICE = "BEZSTAB_COMPILED"
+COMPILED_CHOICE = "BEZSTAB_COMPILED"
 """The environment variable that says whether runs are compiled: auto (also if it is not set), yes or no."""
 
 SIGNATURE = (
@@ -70,8 +70,13 @@ class Block:
     pivots: FloatArray
 
 
-def numba_is_installed() -> bool:
-    """Return whether the compiler is there, without loading it."""
+def check_numba() -> None:
+    """Raise InputError unless the compiler is there; it is not loaded."""
+    if not _numba_is_installed():
+        raise InputError(NEEDS_NUMBA)
+
+
+def _numba_is_installed() -> bool:
     return importlib.util.find_spec("numba") is not None
 
 
@@ -81,16 +86,15 @@ def runs_compiled(mechanism: Mechanism, method: Method, evaluations: int) -> boo
     By default where numba is there and it pays: the run is long, or has been compiled before. Methods that solve
     equations run in Python, whatever is asked for.
     """
-    choice = os.environ.get(CHOICE, "auto")
+    choice = os.environ.get(COMPILED_CHOICE, "auto")
     if choice not in ("auto", "yes", "no"):
-        raise InputError(f"{CHOICE}={choice}: expected auto, yes or no")
+        raise InputError(f"{COMPILED_CHOICE}={choice}: expected auto, yes or no")
     if choice == "no" or implicit(method):
         return False
     if choice == "yes":
-        if not numba_is_installed():
-            raise InputError(NEEDS_NUMBA)
+        check_numba()
         return True
-    return numba_is_installed() and (evaluations >= WORTH_COMPILING or (mechanism, method) in _compiled)
+    return _numba_is_installed() and (evaluations >= WORTH_COMPILING or (mechanism, method) in _compiled)
 
 
 def block_source(stepper: str, pivot_limit: float, size_limit: float) -> str:

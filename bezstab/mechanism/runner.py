@@ -22,7 +22,7 @@ from bezstab.mechanism.compiled import (
     implicit_solver,
     run_as_second_order,
 )
-from bezstab.mechanism.compiled_steps import blocks_of_steps, runs_compiled
+from bezstab.mechanism.compiled_steps import Block, blocks_of_steps, runs_compiled
 from bezstab.mechanism.newton_iterations import NotConvergedError, Work
 from bezstab.mechanism.second_order_memory import implicit_evaluations, memory
 from bezstab.mechanism.start import initial_state
@@ -107,7 +107,8 @@ def simulate(
     if compiled is None:
         compiled = runs_compiled(mechanism, method, step_count * evaluations(method))
     if compiled and not implicit(method):
-        history = _history_in_blocks(mechanism, method, whole_step, gains, first, start, step_count, work)
+        blocks = march_in_blocks(mechanism, method, whole_step, gains, first, start, step_count, work)
+        history = _history_in_blocks(first, blocks)
     else:
         run = march(mechanism, method, whole_step, gains, first, start, math, work)
         history = _history(first, islice(run, step_count))
@@ -158,6 +159,40 @@ def march(
             slopes.append(slope)
             yield new_state, slope, pivot
     yield from resume(mechanism, method, h, gains, states, slopes, library, work)
+
+
+def march_in_blocks(
+    mechanism: Mechanism,
+    method: Method,
+    h: float,
+    gains: tuple[float, float],
+    state: State,
+    start: Start,
+    count: int,
+    work: Work | None = None,
+) -> Iterator[Block]:
+    """Yield the first `count` steps of an explicit method, on floats, as `march` takes them, compiled and many at a time.
+
+    A block ends at the latest where a run may break down: only its last state can be one to which no run gets. What goes
+    wrong else raises an ArithmeticError or ValueError, as there; InputError without numba.
+    """
+    work = work or Work()
+    states = [state]
+    slopes: list[State] = []
+    starting = min(states_needed(method) - 1, count)
+    for new_state, slope, pivot in islice(march(mechanism, method, h, gains, state, start, math, work), starting):
+        states.append(new_state)
+        slopes.append(slope)
+        yield Block(np.array([new_state]), np.array([pivot]))
+    remaining = count - starting
+    if not remaining:
+        return
+    moment, remembered, repeated = _first_turn(mechanism, method, h, gains, states, slopes, None, math, work)
+    for block in blocks_of_steps(mechanism, method, moment, h, gains, remembered, repeated + remaining):
+        new = Block(block.states[repeated:], block.pivots[repeated:])
+        repeated -= len(block.states) - len(new.states)
+        if len(new.states):
+            yield new
 
 
 def resume(
@@ -273,51 +308,23 @@ def _history(first: State, run: Iterator[Step]) -> _History:
     return _History(np.array(states, dtype=np.float64), cause, least_pivot, pivot_step)
 
 
-def _history_in_blocks(
-    mechanism: Mechanism,
-    method: Method,
-    h: float,
-    gains: tuple[float, float],
-    first: State,
-    start: Start,
-    step_count: int,
-    work: Work,
-) -> _History:
-    """Return the same by compiled steps, after those that start a multistep method; h in s."""
-    states = [first]
-    slopes: list[State] = []
-
-    def started() -> Iterator[Step]:
-        for step in march(mechanism, method, h, gains, first, start, math, work):
-            states.append(step[0])
-            slopes.append(step[1])
-            yield step
-
-    starting = min(states_needed(method) - 1, step_count)
-    history = _history(first, islice(started(), starting))
-    if history.cause or starting == step_count:
-        return history
-    parts = [history.states]
-    least_pivot, pivot_step = history.least_pivot, history.pivot_step
-    steps_taken = starting
+def _history_in_blocks(first: State, blocks: Iterator[Block]) -> _History:
+    """Return the same from blocks of steps, of which only the last one can have led to a breakdown."""
+    parts = [np.array([first], dtype=np.float64)]
     cause = None
+    least_pivot = 1.0
+    pivot_step = steps_taken = 0
     try:
-        moment, remembered, repeated = _first_turn(mechanism, method, h, gains, states, slopes, None, math, work)
-        blocks = blocks_of_steps(mechanism, method, moment, h, gains, remembered, repeated + step_count - starting)
         for block in blocks:
-            new_states, pivots = block.states[repeated:], block.pivots[repeated:]
-            repeated -= len(block.states) - len(new_states)
-            if not len(new_states):
-                continue
-            # a block ends where a state may have broken down: only its last one can have
-            cause = _breakdown(tuple(new_states[-1].tolist()), float(pivots[-1]))
+            states, pivots = block.states, block.pivots
+            cause = _breakdown(tuple(states[-1].tolist()), float(pivots[-1]))
             if cause:
-                new_states, pivots = new_states[:-1], pivots[:-1]
+                states, pivots = states[:-1], pivots[:-1]
             if len(pivots) and pivots.min() < least_pivot:
                 least_pivot = float(pivots.min())
                 pivot_step = steps_taken + int(pivots.argmin())
-            parts.append(new_states)
-            steps_taken += len(new_states)
+            parts.append(states)
+            steps_taken += len(states)
             if cause:
                 break
     except (OverflowError, ValueError, ZeroDivisionError) as error:

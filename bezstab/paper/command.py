@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from bezstab.cli.options import FigureForm, figure_option, format_option, output_option
+from bezstab.cli.options import FigureForm, compiled_option, figure_option, format_option, output_option
 from bezstab.cli.output import progress, show_rows, write_figure, write_file
 from bezstab.files import output_directory
 from bezstab.paper.printed import PARTS
@@ -18,6 +18,7 @@ if TYPE_CHECKING:  # so that `bezstab --help`, which lists this command, loads n
 
 @click.command()
 @click.option("--only", type=click.Choice(PARTS), multiple=True, help="This part alone. Repeatable.")
+@compiled_option
 @output_option
 @figure_option
 @format_option
