@@ -36,6 +36,7 @@ from bezstab.cli.output import (
     progress,
     results_of_chunks,
     say,
+    say_what_stays_in_python,
     show_rows,
     write_figure,
     write_table,
@@ -132,6 +133,7 @@ def simulate(
     if no_stabilization:
         alpha = beta = Fraction(0)
     _check_number_of_steps(time, h, method)
+    say_what_stays_in_python([method])
     if figure != "none" or table != "none":
         output_directory(output)
     simulation = mechanism.simulated(
@@ -270,6 +272,7 @@ def tradeoff(
         raise click.UsageError("--physical needs --alpha and --beta")
     step_sizes = tuple(sorted({float(step) for step in steps or evidence.STEPS}))
     _check_swept_time(float(time), step_sizes, methods)
+    say_what_stays_in_python(methods)
     loaded_scene = at_speed(load_scene(scene), float(speed))
     reference = evidence.reference_motion(loaded_scene, step_sizes[0], float(time))
     given = None if point is None else (float(point[0]), float(point[1]))

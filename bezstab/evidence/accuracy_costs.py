@@ -1,6 +1,5 @@
 """Speed against accuracy: what a method and a step size cost in simulation, and what they buy."""
 
-import os
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -11,9 +10,9 @@ from numpy.typing import NDArray
 from bezstab.evidence.pareto import pareto_front
 from bezstab.evidence.reference_motions import ReferenceMotion
 from bezstab.mechanism import (
-    COMPILED_CHOICE,
     Scene,
     Trajectory,
+    compiled_asked_for,
     compiled_mechanism,
     energy_balance,
     observe,
@@ -121,7 +120,7 @@ def sweep_compiled(
         runs_compiled(mechanism, method, round(user_steps / float(method.step_multiple)) * evaluations(method))
         for method in methods
     ]
-    return any(wanted) if os.environ.get(COMPILED_CHOICE) == "yes" else all(wanted)
+    return any(wanted) if compiled_asked_for() else all(wanted)
 
 
 def measured_runs(sweep: Sweep) -> dict[str, NDArray[np.generic]]:

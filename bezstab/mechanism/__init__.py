@@ -32,7 +32,7 @@ from bezstab.mechanism.compiled import (
     multipliers_function,
     stepper_code,
 )
-from bezstab.mechanism.compiled_steps import COMPILED_CHOICE, check_numba, runs_compiled
+from bezstab.mechanism.compiled_steps import COMPILED_CHOICE, check_numba, compiled_asked_for, runs_compiled
 from bezstab.mechanism.constraint_normals import TurningNormals, turning_normals
 from bezstab.mechanism.energies import EnergyBalance, energy_balance
 from bezstab.mechanism.equations import Equations, T, equations_of_motion
@@ -89,6 +89,7 @@ __all__ = [
     "acceleration_jacobians",
     "at_speed",
     "check_numba",
+    "compiled_asked_for",
     "compiled_mechanism",
     "compiled_source",
     "constraint_errors",

@@ -46,10 +46,14 @@ NEARLY_BLOWN_UP = BLOWN_UP * (1 - 1e-9)
 """Below what blows up by more than any rounding of the sum: what is beyond, Python judges."""
 
 WORTH_COMPILING = 10**6
-"""Evaluations of a run: Python takes some 4 microseconds for each of the slider-crank's, and numba about as many seconds
-to load and to compile it as Python takes for half of these; both grow with the mechanism."""
+"""Evaluations of a run: Python takes twice as long for so many as numba takes to be loaded and to compile the method.
+
+Both grow with the mechanism and with the evaluations of a step alike."""
 
 NEEDS_NUMBA = "compiled runs need an optional package: pip install 'bezstab[fast]'"
+MOST_LINES = 3000
+"""Of a stepper that is compiled without being asked for: what numba takes grows faster than the text."""
+
 COMPILED_CHOICE = "BEZSTAB_COMPILED"
 """The environment variable that says whether runs are compiled: auto (also if it is not set), yes or no."""
 
@@ -80,21 +84,34 @@ def _numba_is_installed() -> bool:
     return importlib.util.find_spec("numba") is not None
 
 
+def compiled_asked_for() -> bool:
+    """Return whether runs are to be compiled even where that does not pay."""
+    return _choice() == "yes"
+
+
+def _choice() -> str:
+    choice = os.environ.get(COMPILED_CHOICE, "auto")
+    if choice not in ("auto", "yes", "no"):
+        raise InputError(f"{COMPILED_CHOICE}={choice}: expected auto, yes or no")
+    return choice
+
+
 def runs_compiled(mechanism: Mechanism, method: Method, evaluations: int) -> bool:
     """Return whether a run of so many evaluations is to be compiled. InputError if it must be and numba is missing.
 
     By default where numba is there and it pays: the run is long, or has been compiled before. Methods that solve
     equations run in Python, whatever is asked for.
     """
-    choice = os.environ.get(COMPILED_CHOICE, "auto")
-    if choice not in ("auto", "yes", "no"):
-        raise InputError(f"{COMPILED_CHOICE}={choice}: expected auto, yes or no")
+    choice = _choice()
     if choice == "no" or implicit(method):
         return False
     if choice == "yes":
         check_numba()
         return True
-    return _numba_is_installed() and (evaluations >= WORTH_COMPILING or (mechanism, method) in _compiled)
+    if not _numba_is_installed():
+        return False
+    pays = evaluations >= WORTH_COMPILING and stepper_code(mechanism, method).count("\n") <= MOST_LINES
+    return pays or (mechanism, method) in _compiled
 
 
 def block_source(stepper: str, pivot_limit: float, size_limit: float) -> str:
@@ -178,7 +195,7 @@ def _machine_block(mechanism: Mechanism, method: Method) -> Callable[..., int]:
     except ImportError:
         raise InputError(NEEDS_NUMBA) from None
     if numba.config.USING_SVML:
-        raise InputError("compiled runs need numba without Intel's SVML, which rounds otherwise: NUMBA_DISABLE_INTEL_SVML=1")
+        raise InputError("compiled runs need NUMBA_DISABLE_INTEL_SVML=1: Intel's functions round otherwise than Python's")
 
     # what `math` refuses: Python's own words come from the step that is taken again
     def checked_sin(x: float) -> float:
