@@ -177,7 +177,9 @@ def _timed_run(sweep: Sweep, h: float, gains: tuple[float, float]) -> tuple[Traj
     """Return a run and the processor time (s) of each of its repeats, without what has to be compiled first."""
     mechanism, method = compiled_mechanism(sweep.scene), sweep.method
     one_step_of_its_own = (steps(method) + 1) * h * float(method.step_multiple)
-    simulate(mechanism, method, h, one_step_of_its_own, gains, compiled=sweep.compiled)  # compiles the method and what starts it
+    simulate(
+        mechanism, method, h, one_step_of_its_own, gains, compiled=sweep.compiled
+    )  # compiles the method and what starts it
     seconds = []
     for _ in range(sweep.repeats):
         begin = time.process_time()

@@ -51,6 +51,9 @@ WORTH_COMPILING = 10**6
 Both grow with the mechanism and with the evaluations of a step alike."""
 
 NEEDS_NUMBA = "compiled runs need an optional package: pip install 'bezstab[fast]'"
+CHEAPER_TOGETHER = 20
+"""Times: what an evaluation costs in a batch of numpy, against one of a run alone in Python."""
+
 MOST_LINES = 3000
 """Of a stepper that is compiled without being asked for: what numba takes grows faster than the text."""
 
@@ -114,6 +117,26 @@ def runs_compiled(mechanism: Mechanism, method: Method, evaluations: int) -> boo
     return pays or (mechanism, method) in _compiled
 
 
+@dataclass(frozen=True)
+class ParsedStepper:
+    """A stepper's statements: the names that it unpacks at its start, what else it does there, what it does each turn."""
+
+    unpacked: tuple[str, ...]
+    preparations: tuple[str, ...]
+    turn: tuple[ast.stmt, ...]
+
+
+def parsed_stepper(stepper: str) -> ParsedStepper:
+    """Return the statements of generated source whose first function is a stepper."""
+    function = ast.parse(stepper).body[0]
+    assert isinstance(function, ast.FunctionDef)
+    *head, loop = function.body
+    assert isinstance(loop, ast.While)
+    unpacked = [name for statement in head for name in _unpacked_names(statement)]
+    others = [ast.unparse(statement) for statement in head if not _unpacked_names(statement)]
+    return ParsedStepper(tuple(unpacked), tuple(line for line in others if line != "k = 0"), tuple(loop.body))
+
+
 def block_source(stepper: str, pivot_limit: float, size_limit: float) -> str:
     """Return the source of block(start, h, two_alpha, beta_squared, k, last, memory, states, pivots, reached).
 
@@ -122,18 +145,13 @@ def block_source(stepper: str, pivot_limit: float, size_limit: float) -> str:
     after the other, `pivots` the least pivots, reached[0] after each step the number of the next. After a step whose
     pivot is not above `pivot_limit`, or whose state is not below `size_limit` in the sum of its sizes, it returns.
     """
-    function = ast.parse(stepper).body[0]
-    assert isinstance(function, ast.FunctionDef)
-    *head, loop = function.body
-    assert isinstance(loop, ast.While)
-    unpacked = [name for statement in head for name in _unpacked_names(statement)]
-    lines = [f"{name} = memory[{place}]" for place, name in enumerate(unpacked)]
-    lines += [ast.unparse(statement) for statement in head if not _unpacked_names(statement) and not _sets_k(statement)]
-    lines += ["row = 0", "place = 0", "while k < last:"]
-    for statement in loop.body:
+    parsed = parsed_stepper(stepper)
+    lines = [f"{name} = memory[{place}]" for place, name in enumerate(parsed.unpacked)]
+    lines += [*parsed.preparations, "row = 0", "place = 0", "while k < last:"]
+    for statement in parsed.turn:
         lines += [f" {line}" for line in _rewritten(statement, pivot_limit, size_limit)]
     lines.append(" if not calm: break")
-    lines += [f"memory[{place}] = {name}" for place, name in enumerate(unpacked)]
+    lines += [f"memory[{place}] = {name}" for place, name in enumerate(parsed.unpacked)]
     lines.append("return k")
     head_line = "def block(start, h, two_alpha, beta_squared, k, last, memory, states, pivots, reached):"
     return "\n".join([head_line, *(f" {line}" for line in lines)])
@@ -144,10 +162,6 @@ def _unpacked_names(statement: ast.stmt) -> list[str]:
     if isinstance(statement, ast.Assign) and isinstance(statement.targets[0], ast.Tuple):
         return [node.id for node in ast.walk(statement.targets[0]) if isinstance(node, ast.Name)]
     return []
-
-
-def _sets_k(statement: ast.stmt) -> bool:
-    return isinstance(statement, ast.Assign) and ast.unparse(statement.targets[0]) == "k"
 
 
 def _rewritten(statement: ast.stmt, pivot_limit: float, size_limit: float) -> list[str]:
@@ -187,15 +201,23 @@ def _least_lines(target: str, values: Sequence[ast.expr]) -> list[str]:
     return lines
 
 
-@cache
-def _machine_block(mechanism: Mechanism, method: Method) -> Callable[..., int]:
-    """Return the block function as machine code. InputError without numba."""
+def compiler() -> Any:
+    """Return numba. InputError without it, or where it calls functions that round otherwise than the C library's."""
     try:
         import numba
     except ImportError:
         raise InputError(NEEDS_NUMBA) from None
     if numba.config.USING_SVML:
-        raise InputError("compiled runs need NUMBA_DISABLE_INTEL_SVML=1: Intel's functions round otherwise than Python's")
+        raise InputError(
+            "compiled runs need NUMBA_DISABLE_INTEL_SVML=1: Intel's functions round otherwise than Python's"
+        )
+    return numba
+
+
+@cache
+def _machine_block(mechanism: Mechanism, method: Method) -> Callable[..., int]:
+    """Return the block function as machine code."""
+    numba = compiler()
 
     # what `math` refuses: Python's own words come from the step that is taken again
     def checked_sin(x: float) -> float:
@@ -251,7 +273,7 @@ def blocks_of_steps(
     Python would refuse an operation it does: ArithmeticError or ValueError, after the steps before.
     """
     machine_block = _machine_block(mechanism, method)
-    memory = np.array(list(_flat(remembered)), dtype=np.float64)
+    memory = np.array(list(flat(remembered)), dtype=np.float64)
     size = 2 * mechanism.size
     reached = np.zeros(1, dtype=np.int64)
     k = 0
@@ -269,16 +291,14 @@ def blocks_of_steps(
         if taken:
             yield Block(states[: taken * size].reshape(taken, size), pivots[:taken])
         if refused:
-            _python_block(mechanism, method)(
-                start, h, *gains, k, k + 1, memory.tolist(), [0.0] * size, [0.0], [k]
-            )
+            _python_block(mechanism, method)(start, h, *gains, k, k + 1, memory.tolist(), [0.0] * size, [0.0], [k])
             raise AssertionError("a step that machine code refuses was taken by Python")
 
 
-def _flat(remembered: Any) -> Iterator[float]:
-    """Yield the numbers of nested tuples and lists, in their order."""
+def flat(remembered: Any) -> Iterator[Any]:
+    """Yield the numbers or arrays of nested tuples and lists, in their order."""
     if isinstance(remembered, (tuple, list)):
         for part in remembered:
-            yield from _flat(part)
+            yield from flat(part)
     else:
         yield remembered

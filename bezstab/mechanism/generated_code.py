@@ -120,6 +120,12 @@ def _entry_lines(entries: dict[str, sp.Expr]) -> list[str]:
     return [f"{name} = {printer.doprint(expression)}" for name, expression in assigned]
 
 
+def constraint_texts(equations: Equations) -> list[str]:
+    """Return the entries of c as expressions in q0, q1, ... and t."""
+    printer = _Arithmetic({"fully_qualified_modules": False})
+    return [str(printer.doprint(expression)) for expression in equations.constraints]
+
+
 class _Arithmetic(PythonCodePrinter):  # type: ignore[misc]  # sympy has no types
     """Prints whole powers as products: x**2 is rounded otherwise for floats than for arrays, x*x alike for all."""
 

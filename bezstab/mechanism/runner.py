@@ -22,6 +22,7 @@ from bezstab.mechanism.compiled import (
     implicit_solver,
     run_as_second_order,
 )
+from bezstab.mechanism.compiled_batches import constraint_errors_in_groups
 from bezstab.mechanism.compiled_steps import Block, blocks_of_steps, runs_compiled
 from bezstab.mechanism.newton_iterations import NotConvergedError, Work
 from bezstab.mechanism.second_order_memory import implicit_evaluations, memory
@@ -213,15 +214,47 @@ def resume(
     the last one those of what it was before (`undisturbed`, by default itself).
     """
     work = work or Work()
-    moment, remembered, repeated = _first_turn(
-        mechanism, method, h, gains, history, slopes, undisturbed, library, work
-    )
+    moment, remembered, repeated = _first_turn(mechanism, method, h, gains, history, slopes, undisturbed, library, work)
     run = compiled_stepper(mechanism, method, library)
     if run_as_second_order(method):
         turns = run(moment, h, *gains, remembered, implicit_solver(mechanism, method, library, work))
         # of turns whose states are in the history already only what they give beyond them matters: the next needs it
         return islice(turns, repeated, None)
     return run(moment, h, *gains, *remembered)
+
+
+def resume_in_groups(
+    mechanism: Mechanism,
+    method: Method,
+    h: float,
+    gains: Gains,
+    history: Sequence[State],
+    slopes: Sequence[State],
+    undisturbed: State,
+    count: int,
+) -> Iterator[tuple[slice, Iterator[FloatArray]]]:
+    """Yield c after each of the `count` steps after `history`, as `resume` takes them with numpy, compiled, by groups.
+
+    A group is a slice of the batch's last axis; its errors come in blocks of shape (steps, m, *batch, the last axis
+    cut to the group), SI units. Explicit methods only. InputError without numba.
+    """
+    moment, remembered, repeated = _first_turn(mechanism, method, h, gains, history, slopes, undisturbed, np, Work())
+    index = len(history) - 1 - repeated
+    shape = np.broadcast_shapes(*(np.shape(entry) for entry in (*history[-1], *gains)))
+
+    def new(blocks: Iterator[FloatArray]) -> Iterator[FloatArray]:
+        left_out = repeated
+        for block in blocks:
+            kept = block[left_out:]
+            left_out -= len(block) - len(kept)
+            if len(kept):
+                yield kept
+
+    groups = constraint_errors_in_groups(
+        mechanism, method, moment, h, gains, remembered, shape, index, repeated + count
+    )
+    for some, blocks in groups:
+        yield some, new(blocks)
 
 
 def _first_turn(

@@ -93,7 +93,9 @@ class OneCoordinate:
     size: int = 1
 
 
-@pytest.mark.parametrize("refused", ["1.0 / q0", "sqrt(q0 - 0.5)", "sin(1e308 * (2.0 - q0))", "cos(1e308 * (2.0 - q0))"])
+@pytest.mark.parametrize(
+    "refused", ["1.0 / q0", "sqrt(q0 - 0.5)", "sin(1e308 * (2.0 - q0))", "cos(1e308 * (2.0 - q0))"]
+)
 def test_what_python_refuses_is_refused_after_the_steps_before(refused: str, monkeypatch: pytest.MonkeyPatch) -> None:
     stepper = f"""
 def run(start, h, two_alpha, beta_squared, state, past):
