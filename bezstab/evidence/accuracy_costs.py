@@ -111,8 +111,8 @@ def sweep_compiled(
 ) -> bool:
     """Return whether the runs of a sweep are compiled: all or none, so that their times can be compared.
 
-    `runs_compiled` says so for each method's runs together, step sizes and duration in s. If that is asked for they are,
-    but for methods that solve equations; by default none are where one is not.
+    `runs_compiled` says so for each method's runs together, step sizes and duration in s. If that is asked for all
+    are, but for methods that solve equations; by default none are where one is not.
     """
     mechanism = compiled_mechanism(scene)
     user_steps = repeats * sum(duration / h for h in step_sizes)

@@ -18,8 +18,8 @@ differ in their gains and states. The text becomes
        memory[192 + i] = memory[320 + i]              what was new is now one step back
       ...
 
-As in the batches of numpy nothing is refused: what divides by zero is infinite. No sum is regrouped, so each bit is that
-of numpy's batch, as far as its sine and cosine are the C library's.
+As in the batches of numpy nothing is refused: what divides by zero is infinite. No sum is regrouped, so each bit is
+that of numpy's batch, as far as its sine and cosine are the C library's.
 """
 
 import ast
@@ -53,8 +53,8 @@ OF_PIVOTS = ("worst", "worst_pivot")
 class Batch:
     """Generated source of batch(start, h, gains, index, k, last, memory, errors), and how many entries its memory has.
 
-    It takes the steps k to last - 1 of LANES runs and returns the number of the next. `gains` holds 2 alpha of all runs,
-    then beta^2; `memory` each entry of what the stepper unpacks at its start, of all runs, and then room for what is
+    It takes the steps k to last - 1 of LANES runs and returns the number of the next. `gains` holds 2 alpha of all
+    runs, then beta^2; `memory` each entry of what the stepper unpacks at its start, of all runs, then room for what is
     new; `errors` gets c after each step, entry by entry, at the time (index + k) h.
     """
 
@@ -106,7 +106,7 @@ def batch_code(stepper: str, constraints: Sequence[str]) -> Batch:
 
 
 def _moves(parsed: ParsedStepper) -> list[tuple[str, str]]:
-    """Return the assignments that only move something one step back: what is unpacked at the start gets a name's value."""
+    """Return the assignments that only move something one step back: what was unpacked gets a name's value."""
     return [
         (ast.unparse(statement.targets[0]), statement.value.id)
         for statement in parsed.turn

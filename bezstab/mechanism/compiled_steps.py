@@ -3,7 +3,7 @@
 A generator gives its steps one by one, which would cost more than the step itself. So the stepper's text is rewritten
 once more, statement by statement, into a function that takes many steps and stores their states:
 
-    def run(start, h, ..., state, past):              def block(start, h, ..., k, last, memory, states, pivots, reached):
+    def run(start, h, ..., state, past):              def block(start, h, ..., k, last, memory, states, ...):
      k = 0
      (q0, v0,) = state                                 q0 = memory[0]
      ...                                               ...
@@ -14,10 +14,12 @@ once more, statement by statement, into a function that takes many steps and sto
                                                         if value < worst: worst = value
       yield (q0, v0,), (...), worst_pivot               states[place + 0] = q0 ...
 
-Every operation is the one that Python would do, in its order, rounded as there: no sum is regrouped and no product fused
-with a sum, sin, cos and sqrt are those of the C library that `math` has too, and what `math` refuses is refused. So each
-bit of a run is the same. A block ends early where a state looks like a breakdown; where something is refused, the step
-is taken again in Python. Thus it is Python that decides, and says, why a run ends.
+Every operation is the one that Python would do, in its order, rounded as there: no sum is regrouped, no product fused
+with a sum; sin, cos and sqrt are those of the C library that `math` has too, and what `math` refuses is refused. So
+each bit of a run is the same. A block ends early where a state looks like a breakdown; where something is refused, the
+step is taken again in Python. Thus it is Python that decides, and says, why a run ends.
+
+Implicit methods stay in Python: their Newton iterations work on Python's complex numbers and lists.
 """
 
 import ast
@@ -119,7 +121,7 @@ def runs_compiled(mechanism: Mechanism, method: Method, evaluations: int) -> boo
 
 @dataclass(frozen=True)
 class ParsedStepper:
-    """A stepper's statements: the names that it unpacks at its start, what else it does there, what it does each turn."""
+    """A stepper's statements: the names that it unpacks at its start, what else it does there, and each turn."""
 
     unpacked: tuple[str, ...]
     preparations: tuple[str, ...]
@@ -168,10 +170,10 @@ def _rewritten(statement: ast.stmt, pivot_limit: float, size_limit: float) -> li
     """Return the lines that stand for one of the stepper's."""
     if isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Yield):
         return _storing_lines(statement.value, pivot_limit, size_limit)
-    if isinstance(statement, ast.Assign) and isinstance(statement.value, ast.Call):
-        if ast.unparse(statement.value.func) == "least":
-            return _least_lines(ast.unparse(statement.targets[0]), statement.value.args)
-    return [ast.unparse(statement)]
+    text = ast.unparse(statement)
+    if isinstance(statement, ast.Assign) and isinstance(statement.value, ast.Call) and " = least(" in text:
+        return _least_lines(ast.unparse(statement.targets[0]), statement.value.args)
+    return [text]
 
 
 def _storing_lines(yielded: ast.Yield, pivot_limit: float, size_limit: float) -> list[str]:

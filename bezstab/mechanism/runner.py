@@ -70,7 +70,7 @@ class Trajectory:
 
 @dataclass(frozen=True)
 class _History:
-    """The states of a run from the start on, shape (steps + 1, 2n), why it ended early, and the step of the least pivot."""
+    """The states of a run from the start on, shape (steps + 1, 2n), why it ended early, the step of the least pivot."""
 
     states: FloatArray
     cause: str | None
@@ -172,10 +172,10 @@ def march_in_blocks(
     count: int,
     work: Work | None = None,
 ) -> Iterator[Block]:
-    """Yield the first `count` steps of an explicit method, on floats, as `march` takes them, compiled and many at a time.
+    """Yield the first `count` steps of an explicit method, on floats, as `march` takes them, compiled, in blocks.
 
-    A block ends at the latest where a run may break down: only its last state can be one to which no run gets. What goes
-    wrong else raises an ArithmeticError or ValueError, as there; InputError without numba.
+    A block ends at the latest where a run may break down: only its last state can be one to which no run gets. What
+    goes wrong else raises an ArithmeticError or ValueError, as there; InputError without numba.
     """
     work = work or Work()
     states = [state]

@@ -115,9 +115,9 @@ def run(start, h, two_alpha, beta_squared, state, past):
     mechanism, method = cast(Mechanism, OneCoordinate()), lookup("SYM")
     for cached in (module._machine_block, module._python_block):
         cached.cache_clear()
+    blocks = blocks_of_steps(mechanism, method, 0.0, 0.1, (0.0, 0.0), ((4.0, 0.0), ()), 9)
     with pytest.raises(type(wanted.value)) as seen:
-        for block in blocks_of_steps(mechanism, method, 0.0, 0.1, (0.0, 0.0), ((4.0, 0.0), ()), 9):
-            states += block.states.tolist()
+        states.extend(state for block in blocks for state in block.states.tolist())
     assert str(seen.value) == str(wanted.value)
     assert len(states) == 3
     assert [state[0] for state in states] == [3.0, 2.0, 1.0]
