@@ -209,7 +209,7 @@ def compiler() -> Any:
         import numba
     except ImportError:
         raise InputError(NEEDS_NUMBA) from None
-    if numba.config.USING_SVML:
+    if getattr(numba.config, "USING_SVML", False):
         raise InputError(
             "compiled runs need NUMBA_DISABLE_INTEL_SVML=1: Intel's functions round otherwise than Python's"
         )

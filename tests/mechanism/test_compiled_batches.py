@@ -15,18 +15,17 @@ from bezstab.mechanism import (
     march,
     resume,
     resume_in_groups,
-    shipped_scenes,
     states_needed,
 )
 from bezstab.mechanism.compiled_batches import LANES, batch_code
-from bezstab.methods import REGISTRY, Method, implicit, lookup
+from bezstab.methods import Method, lookup
 from bezstab.units import feedback_gains
+from tests.mechanism.test_compiled_steps import PAIRS
 
 FloatArray = NDArray[np.float64]
 H = 1e-3  # s
 STEPS = 300  # more than a block
 QUICK = ("AB3", "SYM", "verlet-half")
-KINDS = ("B4", "ABM4", "RK4", "SYM", "yoshida4")
 POINTS = 70
 """No multiple of LANES // 2: the last group is short."""
 
@@ -73,16 +72,9 @@ def test_each_kind_of_method_is_the_same_to_the_last_bit(name: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scene", [name for name in shipped_scenes() if name != "n_four_bar"])
-@pytest.mark.parametrize("name", KINDS)
+@pytest.mark.parametrize(("scene", "name"), PAIRS)
 def test_every_scene_is_the_same_to_the_last_bit(scene: str, name: str) -> None:
     assert_same(compiled_mechanism(load_scene(scene)), lookup(name))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", [name for name in REGISTRY if not implicit(lookup(name))])
-def test_every_explicit_method_is_the_same_to_the_last_bit(name: str) -> None:
-    assert_same(compiled_mechanism(load_scene("pendulum")), lookup(name))
 
 
 STEPPER = """
