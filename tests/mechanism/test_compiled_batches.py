@@ -20,7 +20,7 @@ from bezstab.mechanism import (
 from bezstab.mechanism.compiled_batches import LANES, batch_code
 from bezstab.methods import Method, lookup
 from bezstab.units import feedback_gains
-from tests.mechanism.test_compiled_steps import PAIRS
+from tests.mechanism.test_compiled_steps import PAIRS, step_for
 
 FloatArray = NDArray[np.float64]
 H = 1e-3  # s
@@ -30,11 +30,11 @@ POINTS = 70
 """No multiple of LANES // 2: the last group is short."""
 
 
-def both(mechanism: Mechanism, method: Method) -> tuple[FloatArray, FloatArray]:
+def both(mechanism: Mechanism, method: Method, h: float) -> tuple[FloatArray, FloatArray]:
     """Return c of runs kicked up and down, some of which diverge, by numpy and compiled: (steps, m, 2, points)."""
-    step = H * float(method.step_multiple)
+    step = h * float(method.step_multiple)
     alpha_hat, beta_hat = np.linspace(0.1, 2.5, POINTS), np.linspace(0.02, 2.0, POINTS)
-    gains = feedback_gains(alpha_hat, beta_hat, H)
+    gains = feedback_gains(alpha_hat, beta_hat, h)
     history = [tuple(np.full(POINTS, x) for x in np.concatenate(initial_state(mechanism)))]
     slopes = []
     with np.errstate(all="ignore"):  # what diverges runs into infinity
@@ -58,9 +58,9 @@ def both(mechanism: Mechanism, method: Method) -> tuple[FloatArray, FloatArray]:
     return by_numpy, compiled
 
 
-def assert_same(mechanism: Mechanism, method: Method) -> None:
+def assert_same(mechanism: Mechanism, method: Method, h: float = H) -> None:
     """Check that each number is the same, and so are the places where there is none."""
-    by_numpy, compiled = both(mechanism, method)
+    by_numpy, compiled = both(mechanism, method, h)
     np.testing.assert_array_equal(compiled, by_numpy)
     assert np.isfinite(by_numpy[-1]).any()
     assert np.abs(np.nan_to_num(by_numpy)).max() > 0
@@ -74,7 +74,7 @@ def test_each_kind_of_method_is_the_same_to_the_last_bit(name: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize(("scene", "name"), PAIRS)
 def test_every_scene_is_the_same_to_the_last_bit(scene: str, name: str) -> None:
-    assert_same(compiled_mechanism(load_scene(scene)), lookup(name))
+    assert_same(compiled_mechanism(load_scene(scene)), lookup(name), step_for(scene))
 
 
 STEPPER = """
