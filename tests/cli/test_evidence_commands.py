@@ -135,7 +135,10 @@ def test_tradeoff_writes_a_table_without_times_and_two_figures(tmp_path: Path) -
     [
         "simulate --scene pendulum --method SYM --time 0.1",
         "verify --scene pendulum --method SYM --points 2",
-        "tradeoff --scene pendulum --method SYM --h 0.01 --h 0.02 --time 0.1 --alpha 0.3 --beta 0.04",
+        pytest.param(
+            "tradeoff --scene pendulum --method SYM --h 0.01 --h 0.02 --time 0.1 --alpha 0.3 --beta 0.04",
+            marks=pytest.mark.slow,  # starts worker processes
+        ),
     ],
 )
 def test_compiled_runs_answer_the_same(command: str) -> None:
