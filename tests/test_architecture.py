@@ -67,6 +67,7 @@ APPOINTED = {
     | {"paper/command.py"},
     "mujoco": {"evidence/mujoco_models.py"},
     "distributed": {"evidence/worker_pools.py"},
+    "numba": {"mechanism/compiled_steps.py"},
     "mpmath": {"evidence/extremes.py", "evidence/root_digits.py"},
 }
 """The files that may import a library when they run; for types anybody may."""

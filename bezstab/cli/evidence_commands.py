@@ -17,6 +17,7 @@ from bezstab.cli.options import (
     FigureForm,
     TableForm,
     both_or_none,
+    compiled_option,
     figure_option,
     format_option,
     left_at_default,
@@ -37,6 +38,7 @@ from bezstab.cli.output import (
     progress,
     results_of_chunks,
     say,
+    say_what_stays_in_python,
     show_rows,
     show_text,
     write_figure,
@@ -114,6 +116,7 @@ def run_sentence(row: Row) -> str:
     help="What gives a multistep method's first values: RK4, its family's shorter members, or explicit Euler; "
     "for an implicit method Gauss's of order four, shorter BDF methods, or implicit Euler.",
 )
+@compiled_option
 @output_option
 @figure_option
 @table_option
@@ -159,6 +162,7 @@ def simulate(
     _check_number_of_steps(time, min(sequence) if sequence else h, method)
     if sequence:
         mechanism.check_steps_may_vary(method)
+    say_what_stays_in_python([method])
     if figure != "none" or table != "none":
         output_directory(output)
     moving = mechanism.compiled_mechanism(mechanism.at_speed(mechanism.load_scene(scene), float(speed)))
@@ -260,6 +264,7 @@ def cost_sentence(row: Row) -> str:
 @physical_option
 @click.option("--tolerance", type=POSITIVE, default="1e-6", help="In m and rad.")
 @click.option("--repeats", type=click.IntRange(1, 100), default=3, help="Of each timing.")
+@compiled_option
 @output_option
 @workers_option
 @scheduler_option
@@ -308,11 +313,13 @@ def tradeoff(
         say_if_units_were_mistaken(methods, *point, max(steps))
     step_sizes = tuple(sorted({float(step) for step in steps or evidence.STEPS}))
     _check_swept_time(float(time), step_sizes, methods)
+    say_what_stays_in_python(methods)
     loaded_scene = at_speed(load_scene(scene), float(speed))
     reference = evidence.reference_motion(loaded_scene, step_sizes[0], float(time))
     given = None if point is None else (float(point[0]), float(point[1]))
+    compiled = evidence.sweep_compiled(loaded_scene, methods, step_sizes, float(time), repeats)
     sweeps = [
-        evidence.Sweep(method, loaded_scene, step_sizes, float(time), given, physical, repeats, reference)
+        evidence.Sweep(method, loaded_scene, step_sizes, float(time), given, physical, repeats, reference, compiled)
         for method in dict.fromkeys(methods)
     ]
     path = output / f"tradeoff_{file_name(Path(scene).stem)}"
@@ -362,6 +369,7 @@ def check_sentence(row: Row) -> str:
 
 @click.command()
 @click.option("--short", is_flag=True, help="Fewer methods and runs of 1e5 steps, in seconds instead of minutes.")
+@compiled_option
 @format_option
 @click.pass_context
 def extremes(context: click.Context, short: bool, form: Format) -> None:

@@ -1,5 +1,6 @@
 """What the commands share of their options: the types of what is typed, and the options that several have."""
 
+import os
 import re
 from collections.abc import Callable, Iterable
 from fractions import Fraction
@@ -182,6 +183,38 @@ workers_option = click.option(
 )
 scheduler_option = click.option("--scheduler", help="Address of a Dask scheduler, tcp://host:port, instead.")
 resume_option = click.option("--resume", is_flag=True, help="Go on with what a killed run of the same job has left.")
+
+
+def _choose_compiled(context: click.Context, parameter: click.Parameter, choice: str) -> None:
+    """Let the environment variable say what the option says: worker processes inherit it.
+
+    InputError where numba is asked for and missing.
+    """
+    if context.get_parameter_source(str(parameter.name)) != click.core.ParameterSource.COMMANDLINE:
+        return
+    from bezstab.mechanism import COMPILED_CHOICE, check_numba
+
+    if choice == "yes":
+        check_numba()
+    before = os.environ.get(COMPILED_CHOICE)
+    os.environ[COMPILED_CHOICE] = choice
+
+    def restore() -> None:
+        os.environ.pop(COMPILED_CHOICE)
+        if before is not None:
+            os.environ[COMPILED_CHOICE] = before
+
+    context.call_on_close(restore)
+
+
+compiled_option = click.option(
+    "--compiled",
+    type=click.Choice(["auto", "yes", "no"]),
+    default="auto",
+    expose_value=False,
+    callback=_choose_compiled,
+    help="Runs as machine code by numba, the same to the last bit: auto where it is installed and pays.",
+)
 
 
 def both_or_none(alpha: Fraction | None, beta: Fraction | None) -> tuple[Fraction, Fraction] | None:

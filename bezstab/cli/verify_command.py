@@ -13,6 +13,7 @@ from bezstab.cli.options import (
     FigureForm,
     TableForm,
     both_or_none,
+    compiled_option,
     figure_option,
     format_option,
     methods_option,
@@ -30,6 +31,7 @@ from bezstab.cli.output import (
     for_reading,
     progress,
     results_of_chunks,
+    say_what_stays_in_python,
     show_rows,
     write_figure,
     write_table,
@@ -152,6 +154,7 @@ def witness_sentence(row: Row) -> str:
 @click.option("--floquet", is_flag=True, help="Also the exact rates of the moving mechanism, by its linearised steps.")
 @click.option("--witness", type=click.Choice(["mujoco"]), help="Its own integrators.")
 @step_option
+@compiled_option
 @output_option
 @workers_option
 @scheduler_option
@@ -194,6 +197,7 @@ def verify(
     point = both_or_none(alpha, beta)
     if sum(choice is not None for choice in (point, points, cells, witness)) > 1:
         raise click.UsageError("choose one of --alpha with --beta, --points, --map and --witness")
+    say_what_stays_in_python(methods)
     mechanism = compiled_mechanism(at_speed(load_scene(scene), float(speed)))
     if witness:
         show_rows(_witness_rows(mechanism, float(h)), WITNESSED, form, sentence=witness_sentence)

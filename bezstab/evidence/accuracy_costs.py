@@ -9,8 +9,17 @@ from numpy.typing import NDArray
 
 from bezstab.evidence.pareto import pareto_front
 from bezstab.evidence.reference_motions import ReferenceMotion
-from bezstab.mechanism import Scene, Trajectory, compiled_mechanism, energy_balance, observe, simulate
-from bezstab.methods import Method, steps
+from bezstab.mechanism import (
+    Scene,
+    Trajectory,
+    compiled_asked_for,
+    compiled_mechanism,
+    energy_balance,
+    observe,
+    runs_compiled,
+    simulate,
+)
+from bezstab.methods import Method, evaluations, steps
 from bezstab.rationals import exact
 from bezstab.stability import choose, spectral_radius
 from bezstab.units import feedback_gains, to_dimensionless
@@ -30,6 +39,7 @@ class Sweep:
     """The runs of one method: its steps and the duration (s), repeats of each timing, the motion to compare with.
 
     `point` holds alpha_hat and beta_hat, or with `physical` alpha and beta in 1/s; by default `choose` finds it.
+    `compiled` says whether machine code takes the steps of explicit methods, which changes nothing but their time.
     """
 
     method: Method = field(repr=False)
@@ -40,6 +50,7 @@ class Sweep:
     physical: bool
     repeats: int
     reference: ReferenceMotion
+    compiled: bool = False
 
 
 @dataclass(frozen=True)
@@ -93,6 +104,23 @@ class SweptRuns:
                 letters.append("c")
             labels.append(" ".join(letters))
         return labels
+
+
+def sweep_compiled(
+    scene: Scene, methods: Sequence[Method], step_sizes: Sequence[float], duration: float, repeats: int
+) -> bool:
+    """Return whether the runs of a sweep are compiled: all or none, so that their times can be compared.
+
+    `runs_compiled` says so for each method's runs together, step sizes and duration in s. If that is asked for all
+    are, but for methods that solve equations; by default none are where one is not.
+    """
+    mechanism = compiled_mechanism(scene)
+    user_steps = repeats * sum(duration / h for h in step_sizes)
+    wanted = [
+        runs_compiled(mechanism, method, round(user_steps / float(method.step_multiple)) * evaluations(method))
+        for method in methods
+    ]
+    return any(wanted) if compiled_asked_for() else all(wanted)
 
 
 def measured_runs(sweep: Sweep) -> dict[str, NDArray[np.generic]]:
@@ -149,11 +177,13 @@ def _timed_run(sweep: Sweep, h: float, gains: tuple[float, float]) -> tuple[Traj
     """Return a run and the processor time (s) of each of its repeats, without what has to be compiled first."""
     mechanism, method = compiled_mechanism(sweep.scene), sweep.method
     one_step_of_its_own = (steps(method) + 1) * h * float(method.step_multiple)
-    simulate(mechanism, method, h, one_step_of_its_own, gains)  # compiles the method and what starts it
+    simulate(
+        mechanism, method, h, one_step_of_its_own, gains, compiled=sweep.compiled
+    )  # compiles the method and what starts it
     seconds = []
     for _ in range(sweep.repeats):
         begin = time.process_time()
-        run = simulate(mechanism, method, h, sweep.duration, gains)
+        run = simulate(mechanism, method, h, sweep.duration, gains, compiled=sweep.compiled)
         seconds.append(time.process_time() - begin)
     return run, seconds
 

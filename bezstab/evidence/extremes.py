@@ -22,12 +22,14 @@ from bezstab.mechanism import (
     initial_state,
     load_scene,
     march,
+    march_in_blocks,
     multipliers_function,
     observe,
     perturbed_state,
+    runs_compiled,
     simulate,
 )
-from bezstab.methods import LinearMultistep, Method, PredictorCorrector, lookup, steps
+from bezstab.methods import LinearMultistep, Method, PredictorCorrector, evaluations, lookup, steps
 from bezstab.stability import EPS, FloatArray, describe_point, poles, region, spectral_radius, verdict
 from bezstab.units import feedback_gains
 
@@ -221,8 +223,13 @@ def _largest_in_each_tenth(method: Method, count: int, gains: tuple[float, float
     mechanism = compiled_mechanism(load_scene("slider_crank"))
     q, v = initial_state(mechanism)
     largest = np.zeros(10)
-    run = march(mechanism, method, H, gains, (*q.tolist(), *v.tolist()), "rk4", math)
-    for k, (state, _, _) in enumerate(islice(run, count)):
+    first = (*q.tolist(), *v.tolist())
+    if runs_compiled(mechanism, method, count * evaluations(method)):
+        blocks = march_in_blocks(mechanism, method, H, gains, first, "rk4", count)
+        states = (state for block in blocks for state in block.states)
+    else:
+        states = (state for state, _, _ in islice(march(mechanism, method, H, gains, first, "rk4", math), count))
+    for k, state in enumerate(states):
         if k % EVERY == 0:
             c = float(np.abs(constraint_errors(mechanism, 0.0, state[: mechanism.size])).max())
             tenth = k // (count // 10)

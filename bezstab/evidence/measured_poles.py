@@ -14,7 +14,7 @@ Linear prediction finds the poles of that recursion.
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import islice
+from itertools import chain, islice
 from typing import Literal
 
 import numpy as np
@@ -23,16 +23,19 @@ from bezstab.evidence.floquet import floquet_rates
 from bezstab.evidence.linear_prediction import SAMPLES, SETTLED, SPREAD, Refusal, fit_dominant_pole
 from bezstab.evidence.moving_mechanisms import MovingPole, MovingVerdict, moving_poles
 from bezstab.mechanism import (
+    CHEAPER_TOGETHER,
     Mechanism,
     constraint_errors,
     initial_state,
     march,
     perturbed_state,
     resume,
+    resume_in_groups,
+    runs_compiled,
     states_needed,
     turning_normals,
 )
-from bezstab.methods import Method, SecondOrder, Verdict, closed_loop_table, steps
+from bezstab.methods import Method, SecondOrder, Verdict, closed_loop_table, evaluations, steps
 from bezstab.rationals import exact
 from bezstab.stability import ComplexArray, FloatArray, dominant_pole, poles, region, verdict, window
 from bezstab.units import feedback_gains
@@ -166,8 +169,15 @@ def _kicked_responses(
     shape = (RUN + 1, len(KICKS), alpha_hat.size)
     difference = np.zeros(shape)
     size = np.full(shape, np.inf)
+    point = mechanism, method, h, alpha_hat, beta_hat, KICKS
+    compiled = runs_compiled(mechanism, method, size.size * 2 * evaluations(method) // CHEAPER_TOGETHER)
     with np.errstate(all="ignore"):  # what diverges runs into infinity, and is cut off there
-        kicked = kicked_constraint_errors(mechanism, method, h, alpha_hat, beta_hat, KICKS)
+        if compiled:
+            for some, blocks in kicked_constraint_errors_in_groups(*point, RUN):
+                responses = np.concatenate(list(blocks))
+                difference[:, :, some] = (responses[:, 0, 0] - responses[:, 0, 1]) / 2
+                size[:, :, some] = np.abs(responses).max(axis=(1, 2))
+        kicked = iter(()) if compiled else kicked_constraint_errors(*point)
         for k, c in zip(progress(range(RUN + 1)), kicked, strict=False):
             up, down = c[0]
             difference[k] = (up - down) / 2
@@ -299,6 +309,60 @@ def kicked_constraint_errors(
     remembers of before is left alone, and so is what a second-order scheme remembers of accelerations: its recursion is
     linear, and its poles are the same from any first values.
     """
+    run_up = _run_up_to_the_kick(mechanism, method, h, alpha_hat, beta_hat, kicks)
+    h_step, history = run_up.h_step, run_up.history
+    run = resume(mechanism, method, h_step, run_up.gains, history, run_up.slopes, np, undisturbed=run_up.undisturbed)
+    state = history[-1]
+    k = len(history) - 1
+    while True:
+        yield constraint_errors(mechanism, k * h_step, state[: mechanism.size])
+        state, _, _ = next(run)
+        k += 1
+
+
+def kicked_constraint_errors_in_groups(
+    mechanism: Mechanism,
+    method: Method,
+    h: float,
+    alpha_hat: FloatArray,
+    beta_hat: FloatArray,
+    kicks: Sequence[float],
+    count: int,
+) -> Iterator[tuple[slice, Iterator[FloatArray]]]:
+    """Yield the same of the kick and the `count` steps after it by groups of points, of explicit methods, compiled.
+
+    With each slice of the points come blocks of c of shape (steps, constraints, 2, kicks, points in the slice).
+    InputError without numba.
+    """
+    run_up = _run_up_to_the_kick(mechanism, method, h, alpha_hat, beta_hat, kicks)
+    h_step, history = run_up.h_step, run_up.history
+    at_the_kick = constraint_errors(mechanism, (len(history) - 1) * h_step, history[-1][: mechanism.size])
+    groups = resume_in_groups(
+        mechanism, method, h_step, run_up.gains, history, run_up.slopes, run_up.undisturbed, count
+    )
+    for some, blocks in groups:
+        yield some, chain([at_the_kick[np.newaxis, ..., some]], blocks)
+
+
+@dataclass(frozen=True)
+class _RunUp:
+    """A batch of runs up to the kick, which the last state of the history has had; h_step in s."""
+
+    h_step: float
+    gains: tuple[FloatArray, FloatArray]
+    history: list[tuple[FloatArray, ...]]
+    slopes: list[tuple[FloatArray, ...]]
+    undisturbed: tuple[FloatArray, ...]
+
+
+def _run_up_to_the_kick(
+    mechanism: Mechanism,
+    method: Method,
+    h: float,
+    alpha_hat: FloatArray,
+    beta_hat: FloatArray,
+    kicks: Sequence[float],
+) -> _RunUp:
     h_step = h * float(method.step_multiple)
     gains = feedback_gains(alpha_hat, beta_hat, h)
     q, v = initial_state(mechanism)
@@ -315,9 +379,4 @@ def kicked_constraint_errors(
     undisturbed = history[-1]
     state = tuple(value + amounts * change for value, change in zip(undisturbed, direction, strict=True))
     history[-1] = state
-    run = resume(mechanism, method, h_step, gains, history, slopes, np, undisturbed=undisturbed)
-    k = len(history) - 1
-    while True:
-        yield constraint_errors(mechanism, k * h_step, state[: mechanism.size])
-        state, _, _ = next(run)
-        k += 1
+    return _RunUp(h_step, gains, history, slopes, undisturbed)

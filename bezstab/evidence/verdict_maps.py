@@ -1,15 +1,20 @@
 """Maps of simulated verdicts: a run at every cell of the plane, diverging or not, against |z_p| from the polynomial."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.evidence.linear_prediction import SETTLED
-from bezstab.evidence.measured_poles import GROWN, LINEAR, kicked_constraint_errors
-from bezstab.mechanism import Scene, compiled_mechanism
-from bezstab.methods import Method
+from bezstab.evidence.measured_poles import (
+    GROWN,
+    LINEAR,
+    kicked_constraint_errors,
+    kicked_constraint_errors_in_groups,
+)
+from bezstab.mechanism import CHEAPER_TOGETHER, Scene, compiled_mechanism, runs_compiled
+from bezstab.methods import Method, evaluations
 from bezstab.stability import FloatArray, pole_map, region, window
 
 BoolArray = NDArray[np.bool_]
@@ -95,17 +100,23 @@ class MapRows:
     h: float
     alpha_hat: FloatArray = field(repr=False)
     beta_hat: FloatArray = field(repr=False)
+    compiled: bool = False
 
 
 def map_rows(scene: Scene, method: Method, h: float, count: int) -> list[MapRows]:
-    """Return the count x count cells of the window that shows the region, by rows (constant beta_hat); h in s."""
+    """Return the count x count cells of the window that shows the region, by rows (constant beta_hat); h in s.
+
+    They are compiled where that is asked for or pays. InputError where it is asked for and numba is missing.
+    """
+    mechanism = compiled_mechanism(scene)
+    compiled = runs_compiled(mechanism, method, 2 * count**2 * MAP_RUN * evaluations(method) // CHEAPER_TOGETHER)
     centres = (np.arange(count) + 0.5) / count
     alpha_window, beta_window = window(region(method))
     alpha_hat = _inside(alpha_window, centres)
     beta_hat = _inside(beta_window, centres)
     rows_at_once = max(1, BATCH // count)
     return [
-        MapRows(scene, method, h, alpha_hat, beta_hat[first : first + rows_at_once])
+        MapRows(scene, method, h, alpha_hat, beta_hat[first : first + rows_at_once], compiled)
         for first in range(0, count, rows_at_once)
     ]
 
@@ -127,10 +138,12 @@ def simulated_verdicts(rows: MapRows) -> dict[str, BoolArray]:
     steps_of_a_part = MAP_RUN // PARTS
     largest = np.zeros((PARTS + 1, alpha_hat.size))  # the one step more than eight eighths is a part of its own
     linear = np.full(alpha_hat.size, True)
+    kicks = compiled_mechanism(rows.scene), rows.method, rows.h, alpha_hat, beta_hat, (MAP_KICK,)
     with np.errstate(all="ignore"):  # what diverges runs into infinity, and is cut off there
-        kicked = kicked_constraint_errors(
-            compiled_mechanism(rows.scene), rows.method, rows.h, alpha_hat, beta_hat, (MAP_KICK,)
-        )
+        if rows.compiled:
+            for some, blocks in kicked_constraint_errors_in_groups(*kicks, MAP_RUN):
+                linear[some] = _largest_in_parts(blocks, largest[:, some])
+        kicked = iter(()) if rows.compiled else kicked_constraint_errors(*kicks)
         for k, c in zip(range(MAP_RUN + 1), kicked, strict=False):
             linear &= np.abs(c).max(axis=(0, 1, 2)) < LINEAR[0]  # not so where it is not a number
             up, down = c[0, :, 0]
@@ -143,6 +156,28 @@ def simulated_verdicts(rows: MapRows) -> dict[str, BoolArray]:
     diverges = np.where(linear, grows_within, grows_out)
     shape = (rows.beta_hat.size, rows.alpha_hat.size)
     return {"diverges": diverges.reshape(shape), "broken": (~linear & ~diverges).reshape(shape)}
+
+
+def _largest_in_parts(blocks: Iterator[FloatArray], largest: FloatArray) -> BoolArray:
+    """Return which runs of a group stay linear; `largest` gets the largest difference in each part while they do.
+
+    A block of c has shape (steps, constraints, 2, 1, points). Where no run is linear any more, the rest is left out.
+    """
+    linear = np.full(largest.shape[1], True)
+    steps_of_a_part = MAP_RUN // PARTS
+    k = 0
+    for c in blocks:
+        still = np.logical_and.accumulate(np.abs(c).max(axis=(1, 2, 3)) < LINEAR[0], axis=0) & linear
+        differences = np.where(still, np.abs(c[:, 0, 0, 0] - c[:, 0, 1, 0]) / 2, 0.0)
+        part_of_step = np.arange(k, k + len(c)) // steps_of_a_part
+        for part in np.unique(part_of_step):
+            in_part = differences[part_of_step == part].max(axis=0)
+            largest[part] = np.maximum(largest[part], in_part)
+        linear = still[-1]
+        k += len(c)
+        if not linear.any():
+            break
+    return linear
 
 
 def verdict_map(chunks: Sequence[MapRows], found: Sequence[Mapping[str, NDArray[np.generic]]]) -> VerdictMap:

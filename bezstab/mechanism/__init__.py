@@ -13,6 +13,8 @@ From data upwards; a file imports only from those above it:
     second_order_code   generated source of second-order schemes and of all that are implicit
     newton_iterations   Newton's method for the accelerations of an implicit step
     compiled            a scene with its compiled functions, made once
+    compiled_steps      steps as machine code, by numba, the same to the last bit
+    compiled_batches    the same of many runs at a time, of which only constraint errors matter
     observation         what the constraints do along a history
     energies            work of drivers and forces, and the drift that is left
     start               consistent initial states, and perturbed ones
@@ -32,6 +34,13 @@ from bezstab.mechanism.compiled import (
     multipliers_function,
     stepper_code,
 )
+from bezstab.mechanism.compiled_steps import (
+    CHEAPER_TOGETHER,
+    COMPILED_CHOICE,
+    check_numba,
+    compiled_asked_for,
+    runs_compiled,
+)
 from bezstab.mechanism.constraint_normals import TurningNormals, turning_normals
 from bezstab.mechanism.energies import EnergyBalance, energy_balance
 from bezstab.mechanism.equations import Equations, T, equations_of_motion
@@ -39,7 +48,16 @@ from bezstab.mechanism.generated_code import compiled_source
 from bezstab.mechanism.linearized import acceleration_jacobians
 from bezstab.mechanism.motions import Motion, motion
 from bezstab.mechanism.observation import Observation, observe, singular_passages
-from bezstab.mechanism.runner import Start, Trajectory, march, resume, simulate, states_needed
+from bezstab.mechanism.runner import (
+    Start,
+    Trajectory,
+    march,
+    march_in_blocks,
+    resume,
+    resume_in_groups,
+    simulate,
+    states_needed,
+)
 from bezstab.mechanism.scene_files import load_scene, parse_scene, read_scene, shipped_scenes
 from bezstab.mechanism.scenes import (
     COORDINATES,
@@ -61,6 +79,8 @@ from bezstab.mechanism.start import constraint_errors, constraint_jacobian, init
 from bezstab.mechanism.varying_runs import check_steps_may_vary, simulated_with_steps
 
 __all__ = [
+    "CHEAPER_TOGETHER",
+    "COMPILED_CHOICE",
     "COORDINATES",
     "GROUND",
     "SINGULAR",
@@ -87,7 +107,9 @@ __all__ = [
     "acceleration_function",
     "acceleration_jacobians",
     "at_speed",
+    "check_numba",
     "check_steps_may_vary",
+    "compiled_asked_for",
     "compiled_mechanism",
     "compiled_source",
     "constraint_errors",
@@ -97,6 +119,7 @@ __all__ = [
     "initial_state",
     "load_scene",
     "march",
+    "march_in_blocks",
     "memory",
     "motion",
     "multipliers_function",
@@ -105,6 +128,8 @@ __all__ = [
     "perturbed_state",
     "read_scene",
     "resume",
+    "resume_in_groups",
+    "runs_compiled",
     "shipped_scenes",
     "simulate",
     "simulated",

@@ -39,6 +39,8 @@ StateFunction = Callable[[Any, Any, Any, Any, Any], tuple[Any, ...]]
 
 SINGULAR = 1e-12  # of a row's own size: a pivot of S = C_q M^-1 C_q^T this small has lost all digits to cancellation
 
+BLOWN_UP = 1e9  # SI units, sum of all coordinates and velocities: far beyond any mechanism, far below overflow
+
 
 @dataclass(frozen=True, eq=False, repr=False)  # one per scene: compared by identity
 class Mechanism:

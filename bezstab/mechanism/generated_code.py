@@ -20,6 +20,8 @@ from typing import Any
 
 import numpy as np
 import sympy as sp
+from sympy.printing.precedence import PRECEDENCE
+from sympy.printing.pycode import PythonCodePrinter
 
 from bezstab.mechanism.equations import Equations, variable_names
 from bezstab.methods import LinearMultistep, Method, Partitioned, PredictorCorrector, RungeKutta, SecondOrder, steps
@@ -114,7 +116,25 @@ def _entry_lines(entries: dict[str, sp.Expr]) -> list[str]:
     common, remaining = sp.cse(list(entries.values()), symbols=sp.numbered_symbols("x"))
     assigned = [(str(symbol), expression) for symbol, expression in common]
     assigned += zip(entries, remaining, strict=True)
-    return [f"{name} = {sp.pycode(expression, fully_qualified_modules=False)}" for name, expression in assigned]
+    printer = _Arithmetic({"fully_qualified_modules": False})
+    return [f"{name} = {printer.doprint(expression)}" for name, expression in assigned]
+
+
+def constraint_texts(equations: Equations) -> list[str]:
+    """Return the entries of c as expressions in q0, q1, ... and t."""
+    printer = _Arithmetic({"fully_qualified_modules": False})
+    return [str(printer.doprint(expression)) for expression in equations.constraints]
+
+
+class _Arithmetic(PythonCodePrinter):  # type: ignore[misc]  # sympy has no types
+    """Prints whole powers as products: x**2 is rounded otherwise for floats than for arrays, x*x alike for all."""
+
+    def _print_Pow(self, expr: sp.Pow, rational: bool = False) -> str:  # noqa: N802  # the name by which sympy calls it
+        if not expr.exp.is_Integer or expr.exp == -1:
+            return str(super()._print_Pow(expr, rational=rational))
+        base = self.parenthesize(expr.base, PRECEDENCE["Pow"])
+        product = f"({'*'.join([base] * abs(int(expr.exp)))})"
+        return product if expr.exp > 0 else f"(1/{product})"
 
 
 def _right_side_lines(

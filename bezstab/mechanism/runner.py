@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from bezstab.errors import InputError
 from bezstab.mechanism.compiled import (
+    BLOWN_UP,
     SINGULAR,
     Mechanism,
     State,
@@ -21,6 +22,8 @@ from bezstab.mechanism.compiled import (
     implicit_solver,
     run_as_second_order,
 )
+from bezstab.mechanism.compiled_batches import constraint_errors_in_groups
+from bezstab.mechanism.compiled_steps import Block, blocks_of_steps, runs_compiled
 from bezstab.mechanism.newton_iterations import NotConvergedError, Work
 from bezstab.mechanism.second_order_memory import implicit_evaluations, memory
 from bezstab.mechanism.start import initial_state
@@ -35,8 +38,6 @@ fewer steps, or implicit Euler.
 Gains = tuple[Any, Any]
 """2 alpha (1/s) and beta^2 (1/s^2), as `units.feedback_gains` returns them: floats, or arrays over a batch."""
 FloatArray = NDArray[np.float64]
-
-BLOWN_UP = 1e9  # SI units: far beyond any mechanism, far below overflow
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -69,9 +70,9 @@ class Trajectory:
 
 @dataclass(frozen=True)
 class _History:
-    """The states of a run from the start on, why it ended early, and the number of the step with the least pivot."""
+    """The states of a run from the start on, shape (steps + 1, 2n), why it ended early, the step of the least pivot."""
 
-    states: list[State]
+    states: FloatArray
     cause: str | None
     least_pivot: float
     pivot_step: int
@@ -85,14 +86,16 @@ def simulate(
     gains: tuple[float, float],
     state: tuple[FloatArray, FloatArray] | None = None,
     start: Start = "rk4",
+    compiled: bool | None = None,
 ) -> Trajectory:
     """Return the run over `duration` (s) from `state` (q, v, shape (n,) each; default the scene's initial one).
 
     `gains` are 2 alpha and beta^2 (1/s, 1/s^2; paper Eq. 6). A step of the method lasts h (s) times its step multiple.
     The first values of a multistep method come from RK4, from its family's members of fewer steps ("ramp") or from
     explicit Euler. A blow-up, a singular S, a number that is not finite or an implicit step that Newton's method does
-    not solve ends the run, and `failure` says so.
-    InputError for a start that has blown up before.
+    not solve ends the run, and `failure` says so. `compiled` says whether machine code takes the steps, the same to the
+    last bit (`compiled_steps`); by default that is as BEZSTAB_COMPILED says, or where it pays.
+    InputError for a start that has blown up before, or where numba is asked for and missing.
     """
     whole_step = h * float(method.step_multiple)
     step_count = round(duration / whole_step)
@@ -102,15 +105,21 @@ def simulate(
     if blown_up:
         raise InputError(f"the start: {blown_up}")
     work = Work()
-    run = march(mechanism, method, whole_step, gains, first, start, math, work)
-    history = _history(first, islice(run, step_count))
+    if compiled is None:
+        compiled = runs_compiled(mechanism, method, step_count * evaluations(method))
+    if compiled and not implicit(method):
+        blocks = march_in_blocks(mechanism, method, whole_step, gains, first, start, step_count, work)
+        history = _history_in_blocks(first, blocks)
+    else:
+        run = march(mechanism, method, whole_step, gains, first, start, math, work)
+        history = _history(first, islice(run, step_count))
 
     steps_taken = len(history.states) - 1
     failure = None
     if history.cause:
         steps_taken += 1  # the step that failed is not in the history, but was computed
         failure = f"at t = {steps_taken * whole_step:.6g} s: {history.cause}"
-    rows = np.array(history.states, dtype=np.float64)
+    rows = history.states
     return Trajectory(
         mechanism=mechanism,
         method=method,
@@ -153,6 +162,40 @@ def march(
     yield from resume(mechanism, method, h, gains, states, slopes, library, work)
 
 
+def march_in_blocks(
+    mechanism: Mechanism,
+    method: Method,
+    h: float,
+    gains: tuple[float, float],
+    state: State,
+    start: Start,
+    count: int,
+    work: Work | None = None,
+) -> Iterator[Block]:
+    """Yield the first `count` steps of an explicit method, on floats, as `march` takes them, compiled, in blocks.
+
+    A block ends at the latest where a run may break down: only its last state can be one to which no run gets. What
+    goes wrong else raises an ArithmeticError or ValueError, as there; InputError without numba.
+    """
+    work = work or Work()
+    states = [state]
+    slopes: list[State] = []
+    starting = min(states_needed(method) - 1, count)
+    for new_state, slope, pivot in islice(march(mechanism, method, h, gains, state, start, math, work), starting):
+        states.append(new_state)
+        slopes.append(slope)
+        yield Block(np.array([new_state]), np.array([pivot]))
+    remaining = count - starting
+    if not remaining:
+        return
+    moment, remembered, repeated = _first_turn(mechanism, method, h, gains, states, slopes, None, math, work)
+    for block in blocks_of_steps(mechanism, method, moment, h, gains, remembered, repeated + remaining):
+        new = Block(block.states[repeated:], block.pivots[repeated:])
+        repeated -= len(block.states) - len(new.states)
+        if len(new.states):
+            yield new
+
+
 def resume(
     mechanism: Mechanism,
     method: Method,
@@ -170,18 +213,72 @@ def resume(
     A second-order scheme starts from the states alone: the accelerations that it remembers are those of the states, at
     the last one those of what it was before (`undisturbed`, by default itself).
     """
-    scheme = run_as_second_order(method)
-    if scheme:
-        carried = carried_quantities(mechanism, scheme, h, gains, history, undisturbed, library, work or Work())
-        first = len(history) - 1 - memory(scheme).newest  # of the history: the state at step 0 of the first turn
-        run = compiled_stepper(mechanism, method, library)
-        turns = run(first * h, h, *gains, carried, implicit_solver(mechanism, method, library, work or Work()))
-        # of turns whose states are in the history already only what they give beyond them matters: the next needs it
-        return islice(turns, memory(scheme).newest, None)
-    past = [(history[-1 - back], slopes[-back]) for back in range(1, steps(method))]
-    two_alpha, beta_squared = gains
+    work = work or Work()
+    moment, remembered, repeated = _first_turn(mechanism, method, h, gains, history, slopes, undisturbed, library, work)
     run = compiled_stepper(mechanism, method, library)
-    return run((len(history) - 1) * h, h, two_alpha, beta_squared, history[-1], past)
+    if run_as_second_order(method):
+        turns = run(moment, h, *gains, remembered, implicit_solver(mechanism, method, library, work))
+        # of turns whose states are in the history already only what they give beyond them matters: the next needs it
+        return islice(turns, repeated, None)
+    return run(moment, h, *gains, *remembered)
+
+
+def resume_in_groups(
+    mechanism: Mechanism,
+    method: Method,
+    h: float,
+    gains: Gains,
+    history: Sequence[State],
+    slopes: Sequence[State],
+    undisturbed: State,
+    count: int,
+) -> Iterator[tuple[slice, Iterator[FloatArray]]]:
+    """Yield c after each of the `count` steps after `history`, as `resume` takes them with numpy, compiled, by groups.
+
+    A group is a slice of the batch's last axis; its errors come in blocks of shape (steps, m, *batch, the last axis
+    cut to the group), SI units. Explicit methods only. InputError without numba.
+    """
+    moment, remembered, repeated = _first_turn(mechanism, method, h, gains, history, slopes, undisturbed, np, Work())
+    index = len(history) - 1 - repeated
+    shape = np.broadcast_shapes(*(np.shape(entry) for entry in (*history[-1], *gains)))
+
+    def new(blocks: Iterator[FloatArray]) -> Iterator[FloatArray]:
+        left_out = repeated
+        for block in blocks:
+            kept = block[left_out:]
+            left_out -= len(block) - len(kept)
+            if len(kept):
+                yield kept
+
+    groups = constraint_errors_in_groups(
+        mechanism, method, moment, h, gains, remembered, shape, index, repeated + count
+    )
+    for some, blocks in groups:
+        yield some, new(blocks)
+
+
+def _first_turn(
+    mechanism: Mechanism,
+    method: Method,
+    h: float,
+    gains: Gains,
+    history: Sequence[State],
+    slopes: Sequence[State],
+    undisturbed: State | None,
+    library: Any,
+    work: Work,
+) -> tuple[float, Sequence[Any], int]:
+    """Return when a stepper's first turn after a history begins (s), what it is given, and how many turns it repeats.
+
+    It is given the last state and the past before it; a second-order scheme what it carries.
+    """
+    scheme = run_as_second_order(method)
+    if scheme is None:
+        past = [(history[-1 - back], slopes[-back]) for back in range(1, steps(method))]
+        return (len(history) - 1) * h, (history[-1], past), 0
+    carried = carried_quantities(mechanism, scheme, h, gains, history, undisturbed, library, work)
+    repeated = memory(scheme).newest
+    return (len(history) - 1 - repeated) * h, carried, repeated
 
 
 def carried_quantities(
@@ -240,8 +337,36 @@ def _history(first: State, run: Iterator[Step]) -> _History:
     except NotConvergedError as error:
         cause = str(error)
     except (OverflowError, ValueError, ZeroDivisionError) as error:
-        cause = f"arithmetic broke down ({error})"
-    return _History(states, cause, least_pivot, pivot_step)
+        cause = _refusal(error)
+    return _History(np.array(states, dtype=np.float64), cause, least_pivot, pivot_step)
+
+
+def _history_in_blocks(first: State, blocks: Iterator[Block]) -> _History:
+    """Return the same from blocks of steps, of which only the last one can have led to a breakdown."""
+    parts = [np.array([first], dtype=np.float64)]
+    cause = None
+    least_pivot = 1.0
+    pivot_step = steps_taken = 0
+    try:
+        for block in blocks:
+            states, pivots = block.states, block.pivots
+            cause = _breakdown(tuple(states[-1].tolist()), float(pivots[-1]))
+            if cause:
+                states, pivots = states[:-1], pivots[:-1]
+            if len(pivots) and pivots.min() < least_pivot:
+                least_pivot = float(pivots.min())
+                pivot_step = steps_taken + int(pivots.argmin())
+            parts.append(states)
+            steps_taken += len(states)
+            if cause:
+                break
+    except (OverflowError, ValueError, ZeroDivisionError) as error:
+        cause = _refusal(error)
+    return _History(np.concatenate(parts), cause, least_pivot, pivot_step)
+
+
+def _refusal(error: Exception) -> str:
+    return f"arithmetic broke down ({error})"
 
 
 def _breakdown(state: State, pivot: float) -> str | None:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from bezstab.cli.options import FigureForm, figure_option, format_option, output_option
+from bezstab.cli.options import FigureForm, compiled_option, figure_option, format_option, output_option
 from bezstab.cli.output import progress, show_blocks, show_rows, write_figure, write_file
 from bezstab.files import output_directory
 from bezstab.paper.printed import PARTS
@@ -24,6 +24,7 @@ if TYPE_CHECKING:  # so that `bezstab --help`, which lists this command, loads n
     multiple=True,
     help="One of table1 to table6 and fig1 to fig9. Repeatable.",
 )
+@compiled_option
 @output_option
 @figure_option
 @format_option

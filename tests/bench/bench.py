@@ -22,7 +22,7 @@ import mpmath as mp
 import numpy as np
 import sympy as sp
 
-from bezstab.evidence import floquet_rates, model_xml
+from bezstab.evidence import floquet_rates, map_rows, model_xml, simulated_verdicts
 from bezstab.mechanism import Mechanism, T, compiled_mechanism, initial_state, load_scene, march, parse_scene, simulate
 from bezstab.methods import (
     ALPHA_HAT,
@@ -64,6 +64,9 @@ INSTANCES = 10_000
 SAME = 1e-12  # SI units: rounding; less, even 0, where h times a slope's rounding is under half a digit of the state
 FLOQUET_POINTS = 1000
 STEPS_A_TURN = 200
+COMPILED_STEPS = 200_000  # of a run that pays for compiling
+COMPILED_CELLS = 44  # per axis of a map of verdicts: as many as one batch of numpy takes
+MUJOCO = {"SYM": "Euler", "RK4": "RK4"}
 ENGINE_STEPS = 20_000  # of a run of MuJoCo, of Exudyn and of ours beside them
 
 
@@ -357,7 +360,7 @@ def batch_run(method: Method, moving: Mechanism) -> FloatArray:
 
 def alone(moving: Mechanism, method: Method, state: tuple[FloatArray, FloatArray], count: int = STEPS) -> FloatArray:
     """Return the state after `count` steps of our run."""
-    run = simulate(moving, method, STEP, count * STEP, GAINS, state)
+    run = simulate(moving, method, STEP, count * STEP, GAINS, state, compiled=False)
     return np.concatenate((run.q[-1], run.v[-1]))
 
 
@@ -393,7 +396,7 @@ def engines() -> Iterator[Line]:
 
     moving = compiled_mechanism(load_scene("slider_crank"))
     state = initial_state(moving)
-    for name, integrator in (("SYM", "Euler"), ("RK4", "RK4")):
+    for name, integrator in MUJOCO.items():
         ours, end = fastest(partial(alone, moving, lookup(name), state, ENGINE_STEPS), 2)
         model = mujoco.MjModel.from_xml_string(model_xml(moving.scene, integrator, STEP, 0.5, 0.1))
 
@@ -412,6 +415,56 @@ def engines() -> Iterator[Line]:
     assert abs(angles[2] - end[0]) < 1e-2
     note = f"{ENGINE_STEPS / ours:.1e} steps/s against {ENGINE_STEPS / theirs:.1e}, in C++"
     yield Line("engine", "B4: Exudyn's generalized-alpha (implicit)", theirs / ours, None, note)
+
+
+def compiled_runs() -> Iterator[Line]:
+    """Yield how much faster compiled runs are than Python's and MuJoCo's, and what compiling takes."""
+    import mujoco
+
+    moving = compiled_mechanism(load_scene("slider_crank"))
+    state = initial_state(moving)
+    for name in ("B4", "RK4", "SYM"):
+        method = lookup(name)
+        begin = time.process_time()
+        compiled_alone(moving, method, state, True, 10)
+        compiling = time.process_time() - begin
+        yield Line("compiled", f"{name}: 3 s, compiling", 3 / compiling, 1.0, f"{compiling:.2f} s of processor time")
+        slow, other = fastest(partial(compiled_alone, moving, method, state, False, COMPILED_STEPS), 1)
+        ours, end = fastest(partial(compiled_alone, moving, method, state, True, COMPILED_STEPS), REPEATS)
+        assert end.tobytes() == other.tobytes()
+        note = f"{COMPILED_STEPS / ours:.1e} steps/s against {COMPILED_STEPS / slow:.1e}"
+        yield Line("compiled", f"{name}: the same run in Python", slow / ours, 20.0, note)
+        if name in MUJOCO:
+            model = mujoco.MjModel.from_xml_string(model_xml(moving.scene, MUJOCO[name], STEP, 0.5, 0.1))
+            data = mujoco.MjData(model)
+            data.qpos[:], data.qvel[:] = state
+            begin = time.perf_counter()
+            mujoco.mj_step(model, data, nstep=ENGINE_STEPS)
+            theirs = (time.perf_counter() - begin) * COMPILED_STEPS / ENGINE_STEPS
+            note = f"{COMPILED_STEPS / ours:.1e} steps/s against {COMPILED_STEPS / theirs:.1e}, in C"
+            yield Line("compiled", f"{name}: MuJoCo's {MUJOCO[name]}", theirs / ours, 20.0, note)
+    with ProcessPoolExecutor(2) as pool:
+        for name in ("B4", "RK4"):
+            rows = map_rows(moving.scene, lookup(name), STEP, COMPILED_CELLS)
+            halves = [replace(rows[0], beta_hat=half) for half in np.array_split(rows[0].beta_hat, 2)]
+            times, verdicts = [], []
+            for compiled in (False, True):
+                chunks = [replace(half, compiled=compiled) for half in halves]
+                list(pool.map(simulated_verdicts, chunks))  # so that both processes have compiled
+                taken, found = fastest(lambda: list(pool.map(simulated_verdicts, chunks)), 2)  # noqa: B023
+                times.append(taken)
+                verdicts.append(found)
+            assert all(np.array_equal(a["diverges"], b["diverges"]) for a, b in zip(*verdicts, strict=True))
+            note = f"{COMPILED_CELLS**2} runs in {times[1]:.2f} s by two processes that have compiled"
+            yield Line("compiled", f"{name}: a map of verdicts by numpy", times[0] / times[1], 4.0, note)
+
+
+def compiled_alone(
+    moving: Mechanism, method: Method, state: tuple[FloatArray, FloatArray], compiled: bool, count: int
+) -> FloatArray:
+    """Return the history of `count` steps, compiled or not."""
+    run = simulate(moving, method, STEP, count * STEP, GAINS, state, compiled=compiled)
+    return np.hstack((run.q, run.v))
 
 
 def by_exudyn() -> FloatArray:
@@ -521,7 +574,7 @@ def main() -> int:
     """Measure, print and write everything; return 1 if a promise is broken or a ratio has fallen by a third."""
     before: dict[str, float] = json.loads(BASELINE.read_text(encoding="utf-8")) if BASELINE.exists() else {}
     lines = []
-    for section in (maps, maps_of_other_kinds, moving_mechanisms, self_checks, starts, runs, engines):
+    for section in (maps, maps_of_other_kinds, moving_mechanisms, self_checks, starts, runs, engines, compiled_runs):
         for line in section():
             lines.append(line)
             print(f"{line.section:9} {line.what:50} {line.ratio:8.3g}  {line.note}", flush=True)

@@ -268,7 +268,13 @@ def test_a_closed_pipe_is_no_error_to_read() -> None:
 
 
 @pytest.mark.parametrize(
-    "command", ["region --grid 4000 --method B12", "simulate --time 10000", "verify --points 1000 --method B12"]
+    "command",
+    [
+        "region --grid 4000 --method B12",
+        "simulate --time 10000 --compiled no",
+        "simulate --time 100000 --method RK4 --compiled yes",
+        "verify --points 1000 --method B12",
+    ],
 )
 def test_an_interrupt_stops_cleanly(command: str, tmp_path: Path) -> None:
     running = subprocess.Popen(

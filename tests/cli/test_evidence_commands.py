@@ -1,6 +1,8 @@
 import csv
+import importlib.util
 import io
 import json
+import os
 from pathlib import Path
 
 import numpy as np
@@ -126,3 +128,48 @@ def test_tradeoff_writes_a_table_without_times_and_two_figures(tmp_path: Path) -
     first = (tmp_path / f"{name}.csv").read_bytes()
     assert "diverged" in run("tradeoff", *options, "--workers", "1").stdout
     assert (tmp_path / f"{name}.csv").read_bytes() == first
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "simulate --scene pendulum --method SYM --time 0.1",
+        "verify --scene pendulum --method SYM --points 2",
+        pytest.param(
+            "tradeoff --scene pendulum --method SYM --h 0.01 --h 0.02 --time 0.1 --alpha 0.3 --beta 0.04",
+            marks=pytest.mark.slow,  # starts worker processes
+        ),
+    ],
+)
+def test_compiled_runs_answer_the_same(command: str) -> None:
+    timed = {"seconds", "seconds_min", "seconds_max"}
+    answers = []
+    for choice in ("no", "yes"):
+        unwritten = () if command.startswith("verify") else ("--figure", "none", "--table", "none")
+        found = rows(*command.split(), *unwritten, "--compiled", choice)
+        answers.append([{key: value for key, value in row.items() if key not in timed} for row in found])
+    assert answers[0] == answers[1]
+    assert "BEZSTAB_COMPILED" not in os.environ
+
+
+@pytest.mark.parametrize("command", ["simulate", "verify", "verify --map 5", "tradeoff", "extremes", "paper"])
+def test_without_numba_compiled_runs_are_refused_in_a_line(command: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    refused = run(*command.split(), "--compiled", "yes")
+    assert refused.exit_code == 2
+    assert refused.stderr == "bezstab: compiled runs need an optional package: pip install 'bezstab[fast]'\n"
+
+
+def test_what_stays_in_python_is_said() -> None:
+    common = ("simulate", "--scene", "pendulum", "--time", "0.01", "--figure", "none", "--table", "none")
+    plain, asked = (run(*common, "--method", "bdf2", "--compiled", choice) for choice in ("auto", "yes"))
+    assert plain.stderr == ""
+    assert asked.stderr == "bezstab: --compiled yes: bdf2 solves equations in each step, and does so in Python\n"
+    assert asked.stdout == plain.stdout
+
+
+def test_the_environment_may_ask_for_compiled_runs_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("BEZSTAB_COMPILED", "perhaps")
+    refused = run("simulate", "--time", "0.01", "--figure", "none", "--table", "none")
+    assert refused.exit_code == 2
+    assert refused.stderr == "bezstab: BEZSTAB_COMPILED=perhaps: expected auto, yes or no\n"

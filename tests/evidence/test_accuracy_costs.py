@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from bezstab.evidence import METHODS, STEPS, measured_runs, swept_runs, whole_sweep
+from bezstab.evidence import METHODS, STEPS, measured_runs, sweep_compiled, swept_runs, whole_sweep
+from bezstab.mechanism import load_scene
 from bezstab.methods import accuracy, lookup
 from tests.evidence.small_sweeps import DURATION, SOFT, small_sweep, swept
 from tests.reference.undominated import undominated
@@ -91,3 +92,16 @@ def test_a_sweep_knows_its_fronts() -> None:
 def test_the_default_steps_are_ten_from_a_tenth_of_a_millisecond_to_twenty() -> None:
     assert len(set(STEPS)) == 10
     assert (min(map(float, STEPS)), max(map(float, STEPS))) == (1e-4, 0.02)
+
+
+def test_all_runs_of_a_sweep_are_compiled_or_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = load_scene("four_bar")
+    fast, implicit = lookup("AB2"), lookup("bdf2")
+    monkeypatch.setenv("BEZSTAB_COMPILED", "auto")
+    assert not sweep_compiled(scene, [fast], (1e-3,), 1.0, 3)
+    assert sweep_compiled(scene, [fast], (1e-3, 1e-5), 10.0, 3)
+    assert not sweep_compiled(scene, [fast, implicit], (1e-3, 1e-5), 10.0, 3)
+    monkeypatch.setenv("BEZSTAB_COMPILED", "yes")
+    assert sweep_compiled(scene, [fast, implicit], (1e-3,), 1.0, 3)
+    monkeypatch.setenv("BEZSTAB_COMPILED", "no")
+    assert not sweep_compiled(scene, [fast], (1e-3, 1e-5), 10.0, 3)

@@ -92,3 +92,21 @@ def test_the_band_is_ten_over_the_number_of_steps() -> None:
     assert verdicts.run == 2000
     assert verdicts.band == pytest.approx(10 / 2000)
     assert replace(verdicts, run=100).band == pytest.approx(0.1)
+
+
+def maps_both_ways(scene: str, name: str, count: int) -> None:
+    """Check that a map by compiled runs is that of numpy's."""
+    for rows in map_rows(load_scene(scene), lookup(name), 1e-3, count):
+        by_numpy, compiled = (simulated_verdicts(replace(rows, compiled=choice)) for choice in (False, True))
+        for key in ("diverges", "broken"):
+            np.testing.assert_array_equal(compiled[key], by_numpy[key])
+
+
+def test_compiled_verdicts_are_those_of_numpy() -> None:
+    maps_both_ways("pendulum", "SYM", 7)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("scene", "name"), [("slider_crank", "B4"), ("driven_four_bar", "verlet-kdk")])
+def test_compiled_verdicts_are_those_of_numpy_for_more(scene: str, name: str) -> None:
+    maps_both_ways(scene, name, 12)

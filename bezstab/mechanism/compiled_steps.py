@@ -1,0 +1,306 @@
+"""Steps as machine code: the generated stepper, compiled by numba, in blocks of steps.
+
+A generator gives its steps one by one, which would cost more than the step itself. So the stepper's text is rewritten
+once more, statement by statement, into a function that takes many steps and stores their states:
+
+    def run(start, h, ..., state, past):              def block(start, h, ..., k, last, memory, states, ...):
+     k = 0
+     (q0, v0,) = state                                 q0 = memory[0]
+     ...                                               ...
+     while True:                                       while k < last:
+      ...                                               ...                             the same lines
+      worst = least(1.0, D0 / S0)                       worst = 1.0
+                                                        value = D0 / S0
+                                                        if value < worst: worst = value
+      yield (q0, v0,), (...), worst_pivot               states[place + 0] = q0 ...
+
+Every operation is the one that Python would do, in its order, rounded as there: no sum is regrouped, no product fused
+with a sum; sin, cos and sqrt are those of the C library that `math` has too, and what `math` refuses is refused. So
+each bit of a run is the same. A block ends early where a state looks like a breakdown; where something is refused, the
+step is taken again in Python. Thus it is Python that decides, and says, why a run ends.
+
+Implicit methods stay in Python: their Newton iterations work on Python's complex numbers and lists.
+"""
+
+import ast
+import importlib.util
+import math
+import os
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bezstab.errors import InputError
+from bezstab.mechanism.compiled import BLOWN_UP, SINGULAR, Mechanism, stepper_code
+from bezstab.mechanism.generated_code import compiled_source
+from bezstab.methods import Method, implicit
+
+FloatArray = NDArray[np.float64]
+
+BLOCK = 4096
+"""Steps between two looks at what the user wants (Ctrl-C): milliseconds for a mechanism of some bodies."""
+
+NEARLY_BLOWN_UP = BLOWN_UP * (1 - 1e-9)
+"""Below what blows up by more than any rounding of the sum: what is beyond, Python judges."""
+
+WORTH_COMPILING = 10**6
+"""Evaluations of a run: Python takes twice as long for so many as numba takes to be loaded and to compile the method.
+
+Both grow with the mechanism and with the evaluations of a step alike."""
+
+NEEDS_NUMBA = "compiled runs need an optional package: pip install 'bezstab[fast]'"
+CHEAPER_TOGETHER = 20
+"""Times: what an evaluation costs in a batch of numpy, against one of a run alone in Python."""
+
+MOST_LINES = 3000
+"""Of a stepper that is compiled without being asked for: what numba takes grows faster than the text."""
+
+COMPILED_CHOICE = "BEZSTAB_COMPILED"
+"""The environment variable that says whether runs are compiled: auto (also if it is not set), yes or no."""
+
+SIGNATURE = (
+    "int64(float64, float64, float64, float64, int64, int64, float64[::1], float64[::1], float64[::1], int64[::1])"
+)
+
+
+_compiled: set[tuple[Mechanism, Method]] = set()
+"""What this process has compiled."""
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """States after each of some steps, shape (steps, 2n), SI units, and the least relative pivots on the way."""
+
+    states: FloatArray
+    pivots: FloatArray
+
+
+def check_numba() -> None:
+    """Raise InputError unless the compiler is there; it is not loaded."""
+    if not _numba_is_installed():
+        raise InputError(NEEDS_NUMBA)
+
+
+def _numba_is_installed() -> bool:
+    return importlib.util.find_spec("numba") is not None
+
+
+def compiled_asked_for() -> bool:
+    """Return whether runs are to be compiled even where that does not pay."""
+    return _choice() == "yes"
+
+
+def _choice() -> str:
+    choice = os.environ.get(COMPILED_CHOICE, "auto")
+    if choice not in ("auto", "yes", "no"):
+        raise InputError(f"{COMPILED_CHOICE}={choice}: expected auto, yes or no")
+    return choice
+
+
+def runs_compiled(mechanism: Mechanism, method: Method, evaluations: int) -> bool:
+    """Return whether a run of so many evaluations is to be compiled. InputError if it must be and numba is missing.
+
+    By default where numba is there and it pays: the run is long, or has been compiled before. Methods that solve
+    equations run in Python, whatever is asked for.
+    """
+    choice = _choice()
+    if choice == "no" or implicit(method):
+        return False
+    if choice == "yes":
+        check_numba()
+        return True
+    if not _numba_is_installed():
+        return False
+    pays = evaluations >= WORTH_COMPILING and stepper_code(mechanism, method).count("\n") <= MOST_LINES
+    return pays or (mechanism, method) in _compiled
+
+
+@dataclass(frozen=True)
+class ParsedStepper:
+    """A stepper's statements: the names that it unpacks at its start, what else it does there, and each turn."""
+
+    unpacked: tuple[str, ...]
+    preparations: tuple[str, ...]
+    turn: tuple[ast.stmt, ...]
+
+
+def parsed_stepper(stepper: str) -> ParsedStepper:
+    """Return the statements of generated source whose first function is a stepper."""
+    function = ast.parse(stepper).body[0]
+    assert isinstance(function, ast.FunctionDef)
+    *head, loop = function.body
+    assert isinstance(loop, ast.While)
+    unpacked = [name for statement in head for name in _unpacked_names(statement)]
+    others = [ast.unparse(statement) for statement in head if not _unpacked_names(statement)]
+    return ParsedStepper(tuple(unpacked), tuple(line for line in others if line != "k = 0"), tuple(loop.body))
+
+
+def block_source(stepper: str, pivot_limit: float, size_limit: float) -> str:
+    """Return the source of block(start, h, two_alpha, beta_squared, k, last, memory, states, pivots, reached).
+
+    It takes the steps k to last - 1 of an explicit stepper and returns the number of the next. `memory` holds what the
+    stepper unpacks at its start, in its order, and is brought up to date at the end; `states` gets the new states one
+    after the other, `pivots` the least pivots, reached[0] after each step the number of the next. After a step whose
+    pivot is not above `pivot_limit`, or whose state is not below `size_limit` in the sum of its sizes, it returns.
+    """
+    parsed = parsed_stepper(stepper)
+    lines = [f"{name} = memory[{place}]" for place, name in enumerate(parsed.unpacked)]
+    lines += [*parsed.preparations, "row = 0", "place = 0", "while k < last:"]
+    for statement in parsed.turn:
+        lines += [f" {line}" for line in _rewritten(statement, pivot_limit, size_limit)]
+    lines.append(" if not calm: break")
+    lines += [f"memory[{place}] = {name}" for place, name in enumerate(parsed.unpacked)]
+    lines.append("return k")
+    head_line = "def block(start, h, two_alpha, beta_squared, k, last, memory, states, pivots, reached):"
+    return "\n".join([head_line, *(f" {line}" for line in lines)])
+
+
+def _unpacked_names(statement: ast.stmt) -> list[str]:
+    """Return the names that a statement such as (q0, v0,) = state unpacks into; none for other statements."""
+    if isinstance(statement, ast.Assign) and isinstance(statement.targets[0], ast.Tuple):
+        return [node.id for node in ast.walk(statement.targets[0]) if isinstance(node, ast.Name)]
+    return []
+
+
+def _rewritten(statement: ast.stmt, pivot_limit: float, size_limit: float) -> list[str]:
+    """Return the lines that stand for one of the stepper's."""
+    if isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Yield):
+        return _storing_lines(statement.value, pivot_limit, size_limit)
+    text = ast.unparse(statement)
+    if isinstance(statement, ast.Assign) and isinstance(statement.value, ast.Call) and " = least(" in text:
+        return _least_lines(ast.unparse(statement.targets[0]), statement.value.args)
+    return [text]
+
+
+def _storing_lines(yielded: ast.Yield, pivot_limit: float, size_limit: float) -> list[str]:
+    """Return what stands for the yield of (state, slope, pivot)."""
+    assert isinstance(yielded.value, ast.Tuple)
+    state, _, pivot = yielded.value.elts
+    assert isinstance(state, ast.Tuple)
+    size = len(state.elts)
+    lines = [f"states[place + {i}] = {ast.unparse(entry)}" for i, entry in enumerate(state.elts)]
+    lines += [f"pivots[row] = {ast.unparse(pivot)}", "total = 0.0"]
+    lines += [f"total = total + abs(states[place + {i}])" for i in range(size)]
+    return [
+        *lines,
+        f"calm = {ast.unparse(pivot)} > {pivot_limit!r} and total < {size_limit!r}",
+        "row = row + 1",
+        f"place = place + {size}",
+        "reached[0] = k",
+    ]
+
+
+def _least_lines(target: str, values: Sequence[ast.expr]) -> list[str]:
+    """Return what stands for target = least(...): Python's min, which keeps the first unless a later one is less."""
+    first, *others = (ast.unparse(value) for value in values)
+    lines = [] if first == target else [f"{target} = {first}"]
+    for other in others:
+        lines += [f"value = {other}", f"if value < {target}: {target} = value"]
+    return lines
+
+
+def compiler() -> Any:
+    """Return numba. InputError without it, or where it calls functions that round otherwise than the C library's."""
+    try:
+        import numba
+    except ImportError:
+        raise InputError(NEEDS_NUMBA) from None
+    if getattr(numba.config, "USING_SVML", False):
+        raise InputError(
+            "compiled runs need NUMBA_DISABLE_INTEL_SVML=1: Intel's functions round otherwise than Python's"
+        )
+    return numba
+
+
+@cache
+def _machine_block(mechanism: Mechanism, method: Method) -> Callable[..., int]:
+    """Return the block function as machine code."""
+    numba = compiler()
+
+    # what `math` refuses: Python's own words come from the step that is taken again
+    def checked_sin(x: float) -> float:
+        if math.isinf(x):
+            raise ValueError
+        return math.sin(x)
+
+    def checked_cos(x: float) -> float:
+        if math.isinf(x):
+            raise ValueError
+        return math.cos(x)
+
+    def checked_sqrt(x: float) -> float:
+        if x < 0:
+            raise ValueError
+        return math.sqrt(x)
+
+    namespace: dict[str, Any] = {
+        "sin": numba.njit(checked_sin),
+        "cos": numba.njit(checked_cos),
+        "sqrt": numba.njit(checked_sqrt),
+    }
+    exec(_source(mechanism, method), namespace)
+    machine_block: Callable[..., int] = numba.njit(SIGNATURE, no_cfunc_wrapper=True)(namespace["block"])
+    _compiled.add((mechanism, method))
+    return machine_block
+
+
+@cache
+def _python_block(mechanism: Mechanism, method: Method) -> Callable[..., int]:
+    """Return the same function as Python takes it."""
+    block: Callable[..., int] = compiled_source(_source(mechanism, method), math)["block"]
+    return block
+
+
+def _source(mechanism: Mechanism, method: Method) -> str:
+    return block_source(stepper_code(mechanism, method), SINGULAR, NEARLY_BLOWN_UP)
+
+
+def blocks_of_steps(
+    mechanism: Mechanism,
+    method: Method,
+    start: float,
+    h: float,
+    gains: tuple[float, float],
+    remembered: Sequence[Any],
+    count: int,
+) -> Iterator[Block]:
+    """Yield `count` steps of an explicit method in blocks, as machine code takes them; a block ends where it may break.
+
+    `start` (s), h (s, the whole step), the gains 2 alpha (1/s) and beta^2 (1/s^2) are those of the generated stepper;
+    `remembered` is what it is called with beyond them: state and past, or what a second-order scheme carries. Where
+    Python would refuse an operation it does: ArithmeticError or ValueError, after the steps before.
+    """
+    machine_block = _machine_block(mechanism, method)
+    memory = np.array(list(flat(remembered)), dtype=np.float64)
+    size = 2 * mechanism.size
+    reached = np.zeros(1, dtype=np.int64)
+    k = 0
+    while k < count:
+        last = min(k + BLOCK, count)
+        states, pivots = np.empty((last - k) * size), np.empty(last - k)
+        refused = False
+        try:
+            machine_block(start, h, *gains, k, last, memory, states, pivots, reached)
+        except (ArithmeticError, ValueError):  # memory is as it was before the block
+            refused = True
+            machine_block(start, h, *gains, k, int(reached[0]), memory, states, pivots, reached)
+        taken = int(reached[0]) - k
+        k += taken
+        if taken:
+            yield Block(states[: taken * size].reshape(taken, size), pivots[:taken])
+        if refused:
+            _python_block(mechanism, method)(start, h, *gains, k, k + 1, memory.tolist(), [0.0] * size, [0.0], [k])
+            raise AssertionError("a step that machine code refuses was taken by Python")
+
+
+def flat(remembered: Any) -> Iterator[Any]:
+    """Yield the numbers or arrays of nested tuples and lists, in their order."""
+    if isinstance(remembered, (tuple, list)):
+        for part in remembered:
+            yield from flat(part)
+    else:
+        yield remembered

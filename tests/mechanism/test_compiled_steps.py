@@ -1,0 +1,192 @@
+"""Compiled steps against Python's: every bit of every run, and whatever ends one."""
+
+import importlib.util
+import math
+from dataclasses import dataclass
+from typing import cast
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bezstab.errors import InputError
+from bezstab.mechanism import Mechanism, Trajectory, compiled_mechanism, load_scene, shipped_scenes, simulate
+from bezstab.mechanism import compiled_steps as module
+from bezstab.mechanism.compiled_steps import COMPILED_CHOICE, block_source, blocks_of_steps, runs_compiled
+from bezstab.mechanism.generated_code import compiled_source
+from bezstab.methods import Method, lookup
+from bezstab.units import feedback_gains
+
+H = 1e-3  # s
+QUICK = ("AB3", "ABM2", "RK2", "SYM", "verlet-half")
+"""Of each kind of method one that compiles fast: multistep, PECE, Runge-Kutta, partitioned, second order."""
+KINDS = ("B4", "ABM4", "RK4", "SYM", "yoshida4")
+SCENES = [name for name in shipped_scenes() if name != "n_four_bar"]
+"""Of the four-bar chain with its 160 constraints numba takes a minute and more: it runs in Python unless asked for."""
+PAIRS = [("slider_crank", name) for name in KINDS]
+PAIRS += [(scene, QUICK[number % len(QUICK)]) for number, scene in enumerate(SCENES)]
+"""Every scene with some kind, and every kind with some scene."""
+
+
+def step_for(scene: str) -> float:
+    """Return a step (s) that the scene bears: Andrews' mechanism turns a hundred times as fast as the others."""
+    return 1e-5 if scene == "andrews" else H
+
+
+def assert_same(one: Trajectory, other: Trajectory) -> None:
+    """Check that two runs are the same in every bit, signs of zeros included, and in all that is said of them."""
+    for a, b in ((one.t, other.t), (one.q, other.q), (one.v, other.v)):
+        assert a.tobytes() == b.tobytes()
+    for key in ("evaluations", "failure", "least_pivot", "pivot_time", "iterations"):
+        assert getattr(one, key) == getattr(other, key)
+
+
+def both(mechanism: Mechanism, method: Method, steps: int, gains: tuple[float, float], h: float = H) -> Trajectory:
+    """Return a run of the scene, the same by Python and by compiled steps; h in s."""
+    duration = steps * h * float(method.step_multiple)
+    runs = [simulate(mechanism, method, h, duration, gains, compiled=compiled) for compiled in (False, True)]
+    assert_same(*runs)
+    return runs[1]
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_each_kind_of_method_is_the_same_to_the_last_bit(name: str) -> None:
+    run = both(compiled_mechanism(load_scene("pendulum")), lookup(name), 500, feedback_gains(0.3, 0.04, H))
+    assert run.failure is None
+    assert len(run.t) == 501
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("scene", "name"), PAIRS)
+def test_every_scene_is_the_same_to_the_last_bit(scene: str, name: str) -> None:
+    h = step_for(scene)
+    run = both(compiled_mechanism(load_scene(scene)), lookup(name), 3000, feedback_gains(0.3, 0.04, h), h)
+    assert len(run.t) > 100
+
+
+def test_a_block_may_end_after_any_number_of_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "BLOCK", 7)
+    mechanism = compiled_mechanism(load_scene("pendulum"))
+    for name, steps in (("AB3", 2), ("AB3", 3), ("AB3", 9), ("AB3", 50), ("verlet-half", 50)):
+        both(mechanism, lookup(name), steps, feedback_gains(0.3, 0.04, H))
+
+
+def test_a_blow_up_comes_at_the_same_step_in_the_same_words() -> None:
+    run = both(compiled_mechanism(load_scene("pendulum")), lookup("AB3"), 3000, feedback_gains(3.0, 3.0, H))
+    assert "blow-up" in str(run.failure)
+    assert 1 < len(run.t) < 3001
+
+
+def test_a_singular_configuration_ends_both_alike() -> None:
+    mechanism = compiled_mechanism(load_scene("pendulum"))
+    state = (np.array([1e-160, 0.0]), np.array([0.0, 0.0]))  # the square of its length is no normal number
+    runs = [
+        simulate(mechanism, lookup("AB3"), H, 0.1, (0.0, 0.0), state, "euler", compiled=compiled)
+        for compiled in (False, True)
+    ]
+    assert_same(*runs)
+    assert runs[1].failure
+
+
+@dataclass(frozen=True)
+class OneCoordinate:
+    """As much of a mechanism as steps need."""
+
+    size: int = 1
+
+
+@pytest.mark.parametrize(
+    "refused", ["1.0 / q0", "sqrt(q0 - 0.5)", "sin(1e308 * (2.0 - q0))", "cos(1e308 * (2.0 - q0))"]
+)
+def test_what_python_refuses_is_refused_after_the_steps_before(refused: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    stepper = f"""
+def run(start, h, two_alpha, beta_squared, state, past):
+ k = 0
+ (q0, v0,) = state
+ while True:
+  q0 = q0 - 1.0
+  v0 = {refused}
+  k = k + 1
+  yield (q0, v0,), (v0, v0,), 1.0
+"""
+    in_python = []
+    with pytest.raises((ArithmeticError, ValueError)) as wanted:
+        in_python.extend(compiled_source(stepper, math)["run"](0.0, 0.1, 0.0, 0.0, (4.0, 0.0), ()))
+    monkeypatch.setattr(module, "stepper_code", lambda mechanism, method: stepper)
+    states: list[list[float]] = []
+    mechanism, method = cast(Mechanism, OneCoordinate()), lookup("SYM")
+    for cached in (module._machine_block, module._python_block):
+        cached.cache_clear()
+    blocks = blocks_of_steps(mechanism, method, 0.0, 0.1, (0.0, 0.0), ((4.0, 0.0), ()), 9)
+    with pytest.raises(type(wanted.value)) as seen:
+        states.extend(state for block in blocks for state in block.states.tolist())
+    assert str(seen.value) == str(wanted.value)
+    assert len(states) == 3
+    assert [state[0] for state in states] == [3.0, 2.0, 1.0]
+
+
+@given(st.lists(st.sampled_from([1.0, 0.5, -2.0, 0.0, -0.0, math.inf, -math.inf, math.nan]), min_size=1, max_size=5))
+def test_the_least_is_that_of_python(values: list[float]) -> None:
+    stepper = f"def run(start):\n while True:\n  worst = least({', '.join(f'v{i}' for i in range(len(values)))})"
+    lines = block_source(stepper, 0.0, 1.0).splitlines()
+    wanted = [line.strip() for line in lines if "worst" in line or "value" in line]
+    scope = {f"v{i}": value for i, value in enumerate(values)}
+    exec("\n".join(wanted), {}, scope)
+    assert np.float64(scope["worst"]).tobytes() == np.float64(min(values)).tobytes()
+
+
+def test_a_block_is_the_stepper_with_its_states_stored() -> None:
+    stepper = """
+def run(start, h, two_alpha, beta_squared, state, past):
+ k = 0
+ (q0, v0,) = state
+ while True:
+  f0 = v0
+  v0 = v0 + h * -q0
+  q0 = q0 + h * f0
+  k = k + 1
+  yield (q0, v0,), (f0,), 1.0
+"""
+    source = block_source(stepper, 0.0, 1e9)
+    memory, states, pivots, reached = [1.0, 0.0], [0.0] * 6, [0.0] * 3, [0]
+    block = compiled_source(source, math)["block"]
+    assert block(0.0, 0.5, 0.0, 0.0, 4, 7, memory, states, pivots, reached) == 7
+    assert states == [1.0, -0.5, 0.75, -1.0, 0.25, -1.375]
+    assert (memory, pivots, reached) == ([0.25, -1.375], [1.0] * 3, [7])
+
+
+def test_a_block_ends_at_a_state_that_python_has_to_judge() -> None:
+    stepper = "def run(start, h, two_alpha, beta_squared, state, past):\n k = 0\n (q0,) = state\n while True:\n"
+    stepper += "  q0 = 10 * q0\n  k = k + 1\n  yield (q0,), (q0,), 1.0"
+    memory, states, pivots, reached = [1.0], [0.0] * 9, [0.0] * 9, [0]
+    block = compiled_source(block_source(stepper, 0.0, 500.0), math)["block"]
+    assert block(0.0, 0.0, 0.0, 0.0, 0, 9, memory, states, pivots, reached) == 3
+    assert memory == [1000.0]
+    assert reached == [3]
+
+
+def test_runs_are_compiled_where_that_pays_or_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    mechanism, method = compiled_mechanism(load_scene("four_bar")), lookup("AB2")
+    for choice, evaluations, expected in (
+        ("auto", 10, False),
+        ("auto", 10**8, True),
+        ("no", 10**8, False),
+        ("yes", 10, True),
+    ):
+        monkeypatch.setenv(COMPILED_CHOICE, choice)
+        assert runs_compiled(mechanism, method, evaluations) is expected
+        assert not runs_compiled(mechanism, lookup("bdf2"), evaluations)
+    monkeypatch.setenv(COMPILED_CHOICE, "maybe")
+    with pytest.raises(InputError, match="BEZSTAB_COMPILED=maybe: expected auto, yes or no"):
+        runs_compiled(mechanism, method, 10)
+
+
+def test_without_numba_runs_are_pythons_unless_it_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    mechanism, method = compiled_mechanism(load_scene("four_bar")), lookup("AB2")
+    monkeypatch.delenv(COMPILED_CHOICE, raising=False)
+    assert not runs_compiled(mechanism, method, 10**8)
+    monkeypatch.setenv(COMPILED_CHOICE, "yes")
+    with pytest.raises(InputError, match=r"pip install 'bezstab\[fast\]'"):
+        runs_compiled(mechanism, method, 10)
