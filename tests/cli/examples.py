@@ -42,7 +42,6 @@ LONG = {
         "verify --witness mujoco",
         "verify --scene driven_four_bar --h 0.01 --alpha 0.5 --beta 0.1 --floquet",
     ],
-    "paper": ["paper --only table6 --figure none"],
 }
 """More of them, which take longer."""
 
