@@ -117,13 +117,14 @@ def choice_columns(rows: Sequence[Row]) -> list[Column]:
 
 
 def choice_sentence(row: Row) -> str:
-    """Return whether a point is safe, how fast errors shrink, and by how much h, α and β may grow."""
-    if row["verdict"] != "converges":
+    """Return whether a point is safe, how fast errors shrink, and by how much h, α and β may grow, at rest."""
+    if not row["safe"]:
         return f"{safety_words(row)}."
     limit = row["h_limit"]
     h = f"to {seconds_words(limit)}" if isinstance(limit, float) else growth_words(row["h_factor"])
     alpha, beta = growth_words(row["alpha_factor_max"]), growth_words(row["beta_factor_max"])
-    return f"{safety_words(row)}; h may grow {h}, α {alpha}, β {beta}."
+    margins = f"h may grow {h}, α {alpha}, β {beta}"
+    return f"{safety_words(row)}; {'at rest ' if 'z_abs_moving' in row else ''}{margins}."
 
 
 @click.command()

@@ -36,6 +36,7 @@ LINES = 160  # of constant beta_hat, at Gauss and Legendre's nodes: the length o
 SAMPLES = 241  # along a line; what is narrower than 1/240 of the window is not seen
 ALIKE = 4.0  # omega h: an angle so near to 0 or pi, in rad, is in an excluded sector
 HALVINGS = 20  # of a sample's width: 1e-6 of it, well below what the lines make of the area
+HOPELESS = 10.0  # of ln|z| a step: nothing is chosen there, and `choose` can still raise |z| to a power
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -83,10 +84,13 @@ def moving_growth(
 
 
 def moving_modulus(method: Method, turning: TurningNormals, h: float) -> Modulus:
-    """Return the function that gives |z| a step over the motion for arrays of alpha_hat and beta_hat; h in s."""
+    """Return the function that gives |z| a step over the motion for arrays of alpha_hat and beta_hat; h in s.
+
+    Where the first-order law makes it larger than exp(HOPELESS) that number stands for it.
+    """
 
     def modulus(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
-        return np.asarray(np.exp(moving_growth(method, turning, h, alpha_hat, beta_hat)))
+        return np.exp(np.minimum(moving_growth(method, turning, h, alpha_hat, beta_hat), HOPELESS))
 
     return modulus
 

@@ -32,7 +32,7 @@ EXAMPLES: dict[str, list[str]] = {
 LONG = {
     "poles": ["poles --alpha 0.5 --beta 0.1 --scene driven_four_bar --h 0.005"],
     "region": [f"region --method SYM --scene driven_four_bar --h 0.01 {SMALL}"],
-    "choose": ["choose --method SYM --h 0.01 --scene driven_four_bar", "choose --method SYM --method bdf3 --h 0.01"],
+    "choose": ["choose --method SYM --h 0.01 --scene driven_four_bar", "choose --method SYM --method RK1 --h 0.01"],
     "check": [
         "check --method SYM --method RK2 --alpha 2 --beta 2",
         "check --method SYM --alpha 1 --beta 0.5 --h 0.01 --scene driven_four_bar",
@@ -42,7 +42,6 @@ LONG = {
         "verify --witness mujoco",
         "verify --scene driven_four_bar --h 0.01 --alpha 0.5 --beta 0.1 --floquet",
     ],
-    "paper": ["paper --only table6 --figure none"],
 }
 """More of them, which take longer."""
 

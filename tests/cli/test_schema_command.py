@@ -26,6 +26,7 @@ def test_a_schema_is_printed_and_is_one(name: str) -> None:
     Draft202012Validator.check_schema(schema)
 
 
+@pytest.mark.usefixtures("_few_extremes")
 @pytest.mark.parametrize("example", each_example())
 def test_an_example_is_valid_and_every_row_has_the_same_keys(example: str) -> None:
     rows = printed_rows(example)

@@ -24,6 +24,7 @@ def text_of(command: str, columns: str) -> str:
     return result.stdout
 
 
+@pytest.mark.usefixtures("_few_extremes")
 @pytest.mark.parametrize("columns", [80, pytest.param(120, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("example", each_example())
 def test_no_line_is_wider_than_the_terminal(example: str, columns: int) -> None:
