@@ -63,7 +63,7 @@ APPOINTED = {
     | {"paper/command.py"},
     "mujoco": {"evidence/mujoco_witness.py"},
     "distributed": {"evidence/worker_pools.py"},
-    "mpmath": {"evidence/extremes.py", "evidence/root_digits.py"},
+    "mpmath": {"evidence/extremes.py", "evidence/root_digits.py", "stability/path_crossings.py"},
 }
 """The files that may import a library when they run; for types anybody may."""
 

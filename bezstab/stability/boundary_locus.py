@@ -259,11 +259,11 @@ def _bounding_arcs(track: Track, radius: float) -> Iterator[Arc]:
         return _largest_other(track, theta) + MARGIN
 
     inner = track.theta[1:-1]
-    cuts = [track.theta[[0, -1]], _sign_changes(height, inner)]
+    cuts = [track.theta[[0, -1]], sign_changes(height, inner)]
     if not one_step:
-        cuts.append(_sign_changes(outside, inner))
+        cuts.append(sign_changes(outside, inner))
     if isfinite(radius):
-        cuts.append(_sign_changes(lambda theta: np.abs(track.at(theta)) - radius, inner))
+        cuts.append(sign_changes(lambda theta: np.abs(track.at(theta)) - radius, inner))
     for start, end in pairwise(np.unique(np.concatenate(cuts)).tolist()):
         middle = np.array([(start + end) / 2])
         if not one_step and outside(middle)[0] >= 0:
@@ -306,7 +306,7 @@ def _drawn_angles(track: Track, start: float, end: float) -> FloatArray:
     return np.unique(np.append(theta, followed))
 
 
-def _sign_changes(values_at: Callable[[FloatArray], FloatArray], samples: FloatArray) -> FloatArray:
+def sign_changes(values_at: Callable[[FloatArray], FloatArray], samples: FloatArray) -> FloatArray:
     """Return where a continuous function changes sign along ascending samples, to rounding; shape (changes,)."""
     theta = _with_dips(values_at, samples)
     positive = values_at(theta) >= 0  # all in one go again: dips judged alone may be noise, and would pass for changes

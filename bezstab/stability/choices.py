@@ -12,8 +12,8 @@ import numpy as np
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method, Verdict, steps
 from bezstab.rationals import exact
-from bezstab.stability.answer_checks import check_least, check_least_equal, check_margin
-from bezstab.stability.arrays import BoolArray, FloatArray
+from bezstab.stability.answer_checks import check_least, check_least_equal
+from bezstab.stability.arrays import FloatArray
 from bezstab.stability.best_points import best_point
 from bezstab.stability.closed_loop import (
     AnyPencil,
@@ -24,6 +24,7 @@ from bezstab.stability.closed_loop import (
     verdict,
 )
 from bezstab.stability.dominant_roots import dominant_root
+from bezstab.stability.margins import Margins, stability_margins
 from bezstab.stability.pencils import Pencil
 from bezstab.stability.plane_best_points import critical_point
 from bezstab.stability.plane_pencils import PlanePencil
@@ -48,21 +49,7 @@ ASIDE = 1e-7  # of mu: a double mu splits by 1e-8 in float64, which must not let
 DEADBEAT = 1e-6  # a double pole at zero, as far as float64 tells it
 SLOW = 1e-12  # 1 - |z_p| of which rounding leaves three digits: the decay takes 1e13 steps
 REAL = 1e-9  # of |z|: an imaginary part below it is rounding
-FURTHEST = 1e4  # factor on h, alpha or beta beyond which nobody asks
 SEARCHED = 4.0  # alpha h and beta h: there e^-4, a fiftieth, is left after a step, and nobody asks for faster decay
-NEAREST = 1e-4  # and below which |z_p| is one to rounding
-
-
-@dataclass(frozen=True)
-class Margins:
-    """The factors by which h (up), alpha and beta (down, up) can be scaled alone before |z_p| = 1.
-
-    An upper end is infinite, and a lower end zero, where there is no such factor.
-    """
-
-    h: float
-    alpha: tuple[float, float]
-    beta: tuple[float, float]
 
 
 @dataclass(frozen=True, repr=False)
@@ -215,42 +202,8 @@ def describe_point(method: Method, goal: str, alpha_hat: Fraction, beta_hat: Fra
         verdict=proven,
         pole=complex(largest_pole(pencil, a, b)),
         worst=float(largest_modulus(pencil, near_a.ravel(), near_b.ravel()).max()),
-        margins=stability_margins(method, a, b) if proven == "converges" else None,
+        margins=stability_margins(method, alpha_hat, beta_hat) if proven == "converges" else None,
     )
-
-
-def stability_margins(method: Method, alpha_hat: float, beta_hat: float) -> Margins:
-    """Return how far a stable, dimensionless point is from |z_p| = 1 along three lines, as factors.
-
-    A factor s on h makes (s alpha_hat, s^2 beta_hat), on alpha (s alpha_hat, beta_hat), on beta (alpha_hat,
-    s^2 beta_hat): paper Eq. 16. An end without |z_p| = 1 (a pole of paper Eq. 17) is infinite, or zero.
-    NumericalError if a pole leaves the range of float64.
-    """
-    pencil = any_pencil_of(method)
-
-    def end(power_of_alpha_hat: int, power_of_beta_hat: int, furthest: float) -> float | None:
-        def unstable(factor: FloatArray) -> BoolArray:
-            scaled_alpha_hat = alpha_hat * factor**power_of_alpha_hat
-            scaled_beta_hat = beta_hat * factor**power_of_beta_hat
-            reached: BoolArray = largest_modulus(pencil, scaled_alpha_hat, scaled_beta_hat) >= 1
-            return reached
-
-        found = first_where(unstable, np.geomspace(1, furthest, SAMPLES))
-        return found[0] if found else None
-
-    def up(power_of_alpha_hat: int, power_of_beta_hat: int) -> float:
-        found = end(power_of_alpha_hat, power_of_beta_hat, FURTHEST)
-        return math.inf if found is None else found
-
-    def down(power_of_alpha_hat: int, power_of_beta_hat: int) -> float:
-        found = end(power_of_alpha_hat, power_of_beta_hat, NEAREST)
-        return 0.0 if found is None else found
-
-    margins = Margins(h=up(1, 2), alpha=(down(1, 0), up(1, 0)), beta=(down(0, 2), up(0, 2)))
-    check_margin(pencil, alpha_hat, beta_hat, (1, 2), [margins.h])
-    check_margin(pencil, alpha_hat, beta_hat, (1, 0), margins.alpha)
-    check_margin(pencil, alpha_hat, beta_hat, (0, 2), margins.beta)
-    return margins
 
 
 def _slowest(method: Method, modulus: Modulus, spread: float) -> Objective:
