@@ -15,7 +15,8 @@ from bezstab.stability.pencils import Pencil
 from bezstab.stability.plane_pencils import PlanePencil
 
 Extent = tuple[tuple[float, float], tuple[float, float]]
-Objective = Callable[[FloatArray, FloatArray], FloatArray]
+Objective = Callable[[FloatArray, FloatArray, float], FloatArray]
+"""What is to be least, over rows of alpha_hat and beta_hat; above the last argument it may say any larger value."""
 
 SAMPLES = 400  # over the region's box: a few thousandths of what the search itself looks at
 NEIGHBOURS = 32  # on each ring
@@ -131,8 +132,8 @@ def _compare(
     beta_hats: FloatArray,
 ) -> None:
     positive = (alpha_hats > 0) & (beta_hats > 0)
-    values = objective(alpha_hats[positive], beta_hats[positive])
-    here = float(objective(np.array([alpha_hat]), np.array([beta_hat]))[0])
+    values = objective(alpha_hats[positive], beta_hats[positive], np.inf)
+    here = float(objective(np.array([alpha_hat]), np.array([beta_hat]), np.inf)[0])
     least = int(np.argmin(values))
     if values[least] < here * (1 - BETTER) - NO_LESS:
         place = f"({alpha_hats[positive][least]:.6g}, {beta_hats[positive][least]:.6g})"
