@@ -244,9 +244,9 @@ def _fraction(c: sp.Rational) -> Fraction:
 
 def branch_polynomial(method: Method) -> tuple[Fraction, ...]:
     """Return the polynomial in z, ascending, that is zero wherever two roots of pi(., mu) meet: Res_mu(pi, d pi/dz)."""
-    pi = characteristic_polynomial(method)
-    meeting = sp.Poly(sp.resultant(pi.as_expr(), pi.diff(Z).as_expr(), MU), Z)
-    return tuple(Fraction(c) for c in reversed(meeting.all_coeffs()))
+    pi = characteristic_polynomial(method).reorder(MU, Z)  # its first symbol is the one that is eliminated
+    meeting = pi.resultant(pi.diff(Z))
+    return tuple(_fraction(c) for c in reversed(meeting.rep.to_list()))
 
 
 def mapping_equations(method: Method) -> list[sp.Equality]:

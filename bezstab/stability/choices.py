@@ -43,10 +43,11 @@ THOUSANDFOLD = 1e-3  # what "settled" means for the constraint error
 SAMPLES = 4000  # along a line: |z_p| has no features as narrow as that
 FIRST_GRID = 52  # points per axis of the first grid over the region's box: every valley is seen
 GRID = 13  # points per axis of a zoom
-ZOOM = 0.75  # from one grid to the next
-ZOOMS = 90  # 0.75^89 = 8e-12 of the region at least, where the objective is flat to rounding
+ZOOM = 0.6  # from one grid to the next
+ZOOMS = 54  # 0.6^53 = 2e-12 of the region at least, where the objective is flat to rounding
 SPREAD_POINTS = 9  # per axis, of the points among which the worst is looked for
 AS_SMALL = 1e-10  # relative: a value by so much above the least so far is looked at; Schur's recursion rounds by less
+SCOUTS = 16  # of a row one point in so many is looked at first, for a value that the others must be below
 SHARES = 8  # of the largest step, besides the limit of small ones: in practice either end is the slowest
 AT_DEADBEAT = 0.01  # of alpha_hat, beta_hat: a double pole that is so near to zero may be followed no further
 ASIDE = 1e-7  # of mu: a double mu splits by 1e-8 in float64, which must not let a rival of equal modulus win
@@ -256,6 +257,8 @@ def _slowest(method: Method, modulus: Modulus, within: Within | None, spread: fl
 
     def objective(alpha_hat: FloatArray, beta_hat: FloatArray, reached: float) -> FloatArray:
         worst = limit(alpha_hat, beta_hat)
+        if within and np.isinf(reached) and worst.size > SCOUTS:
+            reached = float(objective(alpha_hat[::SCOUTS], beta_hat[::SCOUTS], reached).min())
         left = np.flatnonzero(worst <= reached)
         if within and np.isfinite(reached):
             for shares in (largest_step, smaller_steps):  # in this order: most points fail at the largest
