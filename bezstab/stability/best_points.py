@@ -29,6 +29,7 @@ from bezstab.methods import Method, SecondOrder, fixed_poles, implicit, without_
 from bezstab.stability.answer_checks import check_best_point, check_deadbeat, check_plane_best_point
 from bezstab.stability.arrays import ComplexArray, FloatArray
 from bezstab.stability.dominant_roots import dominant_root
+from bezstab.stability.line_slices import all_inside
 from bezstab.stability.pencils import Pencil, pencil_of, roots_in_mu, roots_in_z
 from bezstab.stability.plane_best_points import plane_least
 from bezstab.stability.plane_pencils import plane_pencil_of
@@ -40,6 +41,7 @@ DOUBLE = 1e-6  # relative; two roots closer than this are one double root, which
 REACH = 1e150  # of mu, whose square is beta_hat; one zero of R is always within its degree, as R(0) = R'(0) = 1
 NEWTON_STEPS = 30
 STEP_SETTLED = ROUNDING**1.5  # relative, 3e-14: a Newton step this small changes nothing that is compared
+AS_SMALL = 1e-10  # relative: a value by so much above the least so far is looked at; Schur's recursion rounds by less
 NEAR_LOWEST = 0.01  # relative: a narrowed minimum is above its kink by the root of 4e-7 of a spacing, less than that
 SAME_MINIMUM = 1e-5  # of |mu|: minima that were narrowed to less than that and lie closer are one
 STARTS = 6  # local minima of the sampled f that are followed up
@@ -278,18 +280,30 @@ def _local_minima(pencil: Pencil) -> list[_Candidate]:
     corners = np.abs(seen @ pencil.to_feedback.T)
     reach = float(np.max(corners[:, 0] + np.sqrt(corners[:, 1])))  # of both roots of the feedback
     x, y = np.linspace(-reach, reach / 4, 151), np.linspace(0, reach, 121)
-    sampled = _largest_modulus(pencil, x + 1j * y[:, np.newaxis])
+    grid = x + 1j * y[:, np.newaxis]
+    sampled = np.full(grid.shape, np.inf)
+    stable_mu = all_inside(pencil, grid, 1.0)
+    sampled[stable_mu] = _largest_modulus(pencil, grid[stable_mu])
     padded = np.pad(sampled, 1, mode="reflect")
     shifts = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1)]
     least_around = np.min([np.roll(padded, shift, (0, 1)) for shift in shifts], axis=0)[1:-1, 1:-1]
-    rows, columns = np.nonzero(sampled == least_around)
+    rows, columns = np.nonzero((sampled == least_around) & stable_mu)
     lowest = np.argsort(sampled[rows, columns])[:STARTS]
 
     def to_upper_half(points: FloatArray) -> FloatArray:
         return np.stack([points[..., 0], np.abs(points[..., 1])], axis=-1)
 
+    reached = sampled[rows[lowest], columns[lowest]]  # by each search, whose grids hold the place where it was
+
     def modulus(points: FloatArray) -> FloatArray:
-        return _largest_modulus(pencil, points[..., 0] + 1j * points[..., 1])
+        """Return f, exact where it is as small as what was reached: else infinite, which Schur's recursion tells."""
+        mu = points[..., 0] + 1j * points[..., 1]
+        as_small = all_inside(pencil, mu, reached[:, np.newaxis] * (1 + AS_SMALL))
+        as_small[~as_small.any(axis=1)] = True  # next to a double root even the place where it was may seem larger
+        values = np.full(mu.shape, np.inf)
+        values[as_small] = _largest_modulus(pencil, mu[as_small])
+        np.minimum(reached, values.min(axis=1), out=reached)
+        return values
 
     places, z_abs = zoom_on_minimum(
         modulus,

@@ -14,7 +14,7 @@ from bezstab.methods import Method, Verdict, steps
 from bezstab.rationals import exact
 from bezstab.stability.answer_checks import Objective, check_least, check_least_equal
 from bezstab.stability.arrays import BoolArray, FloatArray
-from bezstab.stability.best_points import best_point
+from bezstab.stability.best_points import AS_SMALL, best_point
 from bezstab.stability.closed_loop import (
     AnyPencil,
     any_pencil_of,
@@ -46,7 +46,6 @@ GRID = 13  # points per axis of a zoom
 ZOOM = 0.6  # from one grid to the next
 ZOOMS = 54  # 0.6^53 = 2e-12 of the region at least, where the objective is flat to rounding
 SPREAD_POINTS = 9  # per axis, of the points among which the worst is looked for
-AS_SMALL = 1e-10  # relative: a value by so much above the least so far is looked at; Schur's recursion rounds by less
 SCOUTS = 16  # of a row one point in so many is looked at first, for a value that the others must be below
 SHARES = 8  # of the largest step, besides the limit of small ones: in practice either end is the slowest
 AT_DEADBEAT = 0.01  # of alpha_hat, beta_hat: a double pole that is so near to zero may be followed no further
@@ -261,11 +260,12 @@ def _slowest(method: Method, modulus: Modulus, within: Within | None, spread: fl
             reached = float(objective(alpha_hat[::SCOUTS], beta_hat[::SCOUTS], reached).min())
         left = np.flatnonzero(worst <= reached)
         if within and np.isfinite(reached):
+            kept = left
             for shares in (largest_step, smaller_steps):  # in this order: most points fail at the largest
-                left = left[below(reached * (1 + AS_SMALL), shares, alpha_hat[left], beta_hat[left])]
-            out = np.full(worst.shape, True)
-            out[left] = False
-            worst[out] = np.inf
+                kept = kept[below(reached * (1 + AS_SMALL), shares, alpha_hat[kept], beta_hat[kept])]
+            if kept.size:  # next to a double pole even the point that was reached may seem larger
+                worst[np.setdiff1d(left, kept)] = np.inf
+                left = kept
         if not left.size:
             return worst
 
