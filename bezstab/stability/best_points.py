@@ -42,10 +42,10 @@ REACH = 1e150  # of mu, whose square is beta_hat; one zero of R is always within
 NEWTON_STEPS = 30
 STEP_SETTLED = ROUNDING**1.5  # relative, 3e-14: a Newton step this small changes nothing that is compared
 AS_SMALL = 1e-10  # relative: a value by so much above the least so far is looked at; Schur's recursion rounds by less
-NEAR_LOWEST = 0.01  # relative: a narrowed minimum is above its kink by the root of 4e-7 of a spacing, less than that
+NEAR_LOWEST = 1e-3  # relative: a narrowed minimum is above its kink by the root of 6e-7 of a spacing of 0.02 at most
 SAME_MINIMUM = 1e-5  # of |mu|: minima that were narrowed to less than that and lie closer are one
 STARTS = 6  # local minima of the sampled f that are followed up
-ZOOM_POINTS, ZOOM, ZOOMS = 13, 0.6, 30  # 0.6^29 = 4e-7 of the grid's spacing: a start, from which Newton takes over
+ZOOM_POINTS, ZOOM, ZOOMS = 13, 0.45, 19  # 0.45^18 = 6e-7 of the grid's spacing: a start, from which Newton takes over
 ARC_SAMPLES = 4097  # of theta, where a curve of equal |z_p| is looked for
 ARC_SHARE = 1 / 10  # of the samples lie on such a curve, if there is one; a kink shows at isolated theta only
 ARC_ZOOM_POINTS, ARC_ZOOMS = 65, 7  # each by 1/32: the curve's end, to rounding
