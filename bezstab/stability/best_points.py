@@ -19,7 +19,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache
-from itertools import pairwise, product
+from itertools import product
 
 import numpy as np
 from numpy.polynomial.polynomial import polyroots, polyval2d
@@ -325,8 +325,8 @@ def _largest_modulus(pencil: Pencil, mu: ComplexArray) -> FloatArray:
 def _kinks(pencil: Pencil, mu: complex) -> list[_Kink]:
     """Return the kinds of least value, the roots at a nearby mu as their starts.
 
-    The unknowns are mu and the roots z that meet there, as complex numbers x[0] and x[1:]; equations are real. Both have
-    a second axis, of as many places as they are asked for at once.
+    The unknowns are mu and the roots z that meet there, as complex numbers x[0] and x[1:]; equations are real. Both
+    have a second axis, of as many places as they are asked for at once.
     """
 
     def on_the_locus(x: ComplexArray) -> FloatArray:

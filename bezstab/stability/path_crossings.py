@@ -9,9 +9,10 @@ Feedback that grows by a factor s, or a step that does, moves a point along a pa
                |  '      /    /
                +----------------- alpha_hat
 
-Of a method with mu the locus (locus_tracks) is followed to where it lies on the path, and lines on which one real mu is
-held meet it in a quadratic of s. What float64 finds there is refined to DIGITS digits, because a weak feedback's mu lies
-next to the imaginary axis, from which rounding cannot tell it. Of a second-order scheme the edges are exact curves.
+Of a method with mu the locus (locus_tracks) is followed to where it lies on the path, and lines on which one real mu
+is held meet it in a quadratic of s. What float64 finds there is refined to DIGITS digits, because a weak feedback's mu
+lies next to the imaginary axis, from which rounding cannot tell it. Of a second-order scheme the edges are exact
+curves.
 """
 
 from collections.abc import Iterator
@@ -38,7 +39,8 @@ from bezstab.stability.pencils import Pencil, pencil_of
 DIGITS = 60  # three times those that a weak feedback's -Re mu = 1e-20 takes away
 NEWTON_STEPS = 20  # from a start that is good to some digits five suffice
 SETTLED = 1e-20  # relative: of the next step, the square of that
-NEARLY_DOUBLE = 1e-6  # of a factor: a double one splits by the root of rounding into the complex plane
+ON_THE_AXIS = 1e-9  # rad: a root that is so near to z = -1 is there, or Newton's method finds where it is
+NEARLY_DOUBLE = 1e-6  # relative: a double factor splits by the root of rounding into the complex plane
 
 
 @dataclass(frozen=True)
@@ -64,6 +66,19 @@ class _Start:
     mu: complex
 
 
+@dataclass(frozen=True)
+class _Digits:
+    """A method's pi(z, mu) and the feedback's p and q along a path, all in DIGITS digits.
+
+    table[k][j] belongs to z^k mu^j; p and q are of_alpha s^i + of_beta s^j, each for (p, q), and (i, j) the powers.
+    """
+
+    table: list[list[mp.mpf]]
+    of_alpha: tuple[mp.mpf, mp.mpf]
+    of_beta: tuple[mp.mpf, mp.mpf]
+    powers: tuple[int, int]
+
+
 def crossing_factors(path: Path) -> list[float]:
     """Return, ascending, every factor s > 0 at which a root z may pass the circle |z| = 1 along the path.
 
@@ -76,27 +91,81 @@ def crossing_factors(path: Path) -> list[float]:
         found = crossing_factors_in_plane(method, path.alpha_hat, path.beta_hat, path.powers)
     else:
         pencil = pencil_of(without_shared_factor(method))
-        starts = [*_at_real_mu(path, pencil), *_on_the_locus(path, pencil)]
-        found = [_refined(path, pencil.method, start) for start in starts]
+        with mp.workdps(DIGITS):
+            digits = _in_digits(path, pencil.method)
+            found = [_refined(digits, start) for start in _on_the_locus(path, pencil)]
+            for mu in real_events(pencil, 1.0).tolist():
+                found += _factors_with_one_mu(digits, _refined_real_mu(digits, pencil, mu))
     return sorted({factor for factor in found if 0 < factor < np.inf})
 
 
-def _at_real_mu(path: Path, pencil: Pencil) -> Iterator[_Start]:
-    """Yield where one real mu has a root on the circle: mu^2 + p mu + q = 0, a quadratic in s.
+def _in_digits(path: Path, method: Method) -> _Digits:
+    def of(c: Fraction) -> mp.mpf:
+        return mp.mpf(c.numerator) / c.denominator
 
-    Of a double factor, which rounding parts, the middle.
+    alpha_hat, beta_hat = of(path.alpha_hat), of(path.beta_hat)
+    (p_alpha, p_beta), (q_alpha, q_beta) = feedback_matrix(method)
+    return _Digits(
+        table=[[of(c) for c in row] for row in coefficient_table(method)],
+        of_alpha=(of(p_alpha) * alpha_hat, of(q_alpha) * alpha_hat),
+        of_beta=(of(p_beta) * beta_hat, of(q_beta) * beta_hat),
+        powers=path.powers,
+    )
+
+
+def _factors_with_one_mu(digits: _Digits, mu: mp.mpf) -> list[float]:
+    """Return the factors at which a real mu is one of the path's: mu^2 + p mu + q = 0, a quadratic in s.
+
+    Of a factor that is double but for the rounding of mu, the middle.
     """
-    for mu in real_events(pencil, 1.0).tolist():
-        of_alpha, of_beta = mu * pencil.to_feedback[0] + pencil.to_feedback[1]
-        coefficients = np.zeros(3)
-        coefficients[0] = mu * mu
-        coefficients[path.powers[0]] += of_alpha * float(path.alpha_hat)
-        coefficients[path.powers[1]] += of_beta * float(path.beta_hat)
-        z = np.roots((pencil.table @ mu ** np.arange(pencil.table.shape[1]))[::-1])
-        on_circle = z[np.argmin(np.abs(np.abs(z) - 1))] if z.size else 1.0
-        for factor in np.roots(coefficients[::-1]):
-            if factor.real > 0 and abs(factor.imag) <= NEARLY_DOUBLE * abs(factor):
-                yield _Start(abs(float(np.angle(on_circle))), float(factor.real), mu)
+    coefficients = [mu * mu, mp.mpf(0), mp.mpf(0)]
+    for power, (of_p, of_q) in zip(digits.powers, (digits.of_alpha, digits.of_beta), strict=True):
+        coefficients[power] += of_p * mu + of_q
+    constant, linear, square = coefficients
+    if square == 0:
+        return [float(-constant / linear)] if linear else []
+    half = linear / square / 2
+    discriminant = half * half - constant / square
+    if discriminant < -(NEARLY_DOUBLE**2) * half * half:
+        return []
+    root = mp.sqrt(max(discriminant, mp.mpf(0)))
+    return [float(-half - root), float(-half + root)]
+
+
+def _refined_real_mu(digits: _Digits, pencil: Pencil, mu: float) -> mp.mpf:
+    """Return the real mu with a root on the circle next to one that float64 found, by Newton's method for both.
+
+    What float64 found where that does not settle.
+    """
+    z = np.roots((pencil.table @ mu ** np.arange(pencil.table.shape[1]))[::-1])
+    on_circle = z[np.argmin(np.abs(np.abs(z) - 1))] if z.size else 1.0
+    half_turns, better = _in_half_turns(abs(float(np.angle(on_circle)))), mp.mpf(mu)
+    for _ in range(NEWTON_STEPS):
+        z = mp.expjpi(half_turns)
+        value, by_z, by_mu = _value_and_slopes(digits.table, z, mp.mpc(better))
+        steps = _real_steps(value, mp.pi * 1j * z * by_z, by_mu)
+        if steps is None:
+            break
+        half_turns += steps[0]
+        better += steps[1]
+        if abs(steps[1]) <= SETTLED * abs(better):
+            return better
+    return mp.mpf(mu)
+
+
+def _in_half_turns(theta: float) -> mp.mpf:
+    """Return an angle in units of pi; one exactly, where it is to rounding."""
+    return mp.mpf(1) if abs(theta - np.pi) < ON_THE_AXIS else mp.mpf(theta) / mp.pi
+
+
+def _real_steps(value: mp.mpc, along_first: mp.mpc, along_second: mp.mpc) -> tuple[mp.mpf, mp.mpf] | None:
+    """Return the two real steps that take a complex value to zero, to first order; None if none do."""
+    determinant = along_first.real * along_second.imag - along_first.imag * along_second.real
+    if determinant == 0:
+        return None
+    first = (value.imag * along_second.real - value.real * along_second.imag) / determinant
+    second = (along_first.imag * value.real - along_first.real * value.imag) / determinant
+    return first, second
 
 
 def _on_the_locus(path: Path, pencil: Pencil) -> Iterator[_Start]:
@@ -117,8 +186,12 @@ def _on_the_locus(path: Path, pencil: Pencil) -> Iterator[_Start]:
             return of_alpha - alpha_hat
         return of_alpha - alpha_hat * np.sqrt(np.maximum(ratio, 0))
 
+    unit = 1.0 if path.powers == (1, 0) else abs(alpha_hat)
     for track in tracks(pencil, 1.0, finer=1):
-        theta = sign_changes(lambda at, track=track: beside_the_path(track, at), track.theta)  # type: ignore[misc]
+        ends = track.theta[[0, -1]]  # where branches meet their conjugates a zero may be without a change of sign
+        touched = ends[np.abs(beside_the_path(track, ends)) <= NEARLY_DOUBLE * unit]
+        crossed = sign_changes(lambda at, track=track: beside_the_path(track, at), track.theta)  # type: ignore[misc]
+        theta = np.append(crossed, touched)
         of_alpha, ratio = place(track, theta)
         factors = of_alpha / alpha_hat if path.powers == (1, 0) else np.sqrt(np.abs(ratio))
         for angle, factor, mu in zip(theta.tolist(), np.abs(factors).tolist(), track.at(theta).tolist(), strict=True):
@@ -126,42 +199,34 @@ def _on_the_locus(path: Path, pencil: Pencil) -> Iterator[_Start]:
                 yield _Start(angle, factor, mu)
 
 
-def _refined(path: Path, method: Method, start: _Start) -> float:
+def _refined(digits: _Digits, start: _Start) -> float:
     """Return the factor at which pi(e^(i theta), mu(s)) = 0 next to a start, by Newton's method in DIGITS digits.
 
     theta and s are real, the equation complex. Where it does not settle (next to a double mu, where float64 is as
-    good): the start's factor.
+    good): the start's factor. Zero where it leads to a factor below zero, as there is no path.
     """
-    with mp.workdps(DIGITS):
-        table = [[_in_digits(c) for c in row] for row in coefficient_table(method)]
-        feedback = [[_in_digits(c) for c in row] for row in feedback_matrix(method)]
-        i, j = path.powers
-        of_alpha, of_beta = ([row[0] * _in_digits(path.alpha_hat) for row in feedback],
-                             [row[1] * _in_digits(path.beta_hat) for row in feedback])  # fmt: skip
-        half_turns, s, mu = mp.mpf(start.theta) / mp.pi, mp.mpf(start.factor), mp.mpc(start.mu)
-        if abs(start.theta - np.pi) < SETTLED:
-            half_turns = mp.mpf(1)
-        for _ in range(NEWTON_STEPS):
-            p, q = (a * s**i + b * s**j for a, b in zip(of_alpha, of_beta, strict=True))
-            by_s = [(i * a * s**i + j * b * s**j) / s for a, b in zip(of_alpha, of_beta, strict=True)]
-            root = mp.sqrt(p * p / 4 - q)
-            mu = min((-p / 2 + root, -p / 2 - root), key=lambda candidate: abs(candidate - mu))  # noqa: B023
-            z = mp.expjpi(half_turns)
-            value, by_z, by_mu = _value_and_slopes(table, z, mu)
-            if root == 0:
-                break
-            along_theta = mp.pi * 1j * z * by_z
-            along_s = -by_mu * (by_s[0] * mu + by_s[1]) / (2 * mu + p)
-            determinant = along_theta.real * along_s.imag - along_theta.imag * along_s.real
-            if determinant == 0:
-                break
-            step = (along_theta.imag * value.real - along_theta.real * value.imag) / determinant
-            half_turns += (value.imag * along_s.real - value.real * along_s.imag) / determinant
-            s += step
-            if s <= 0:
-                return 0.0  # on the other side of zero there is no path
-            if abs(step) <= SETTLED * s:
-                return float(s)
+    i, j = digits.powers
+    half_turns, s, mu = _in_half_turns(start.theta), mp.mpf(start.factor), mp.mpc(start.mu)
+    for _ in range(NEWTON_STEPS):
+        of_p_and_q = list(zip(digits.of_alpha, digits.of_beta, strict=True))
+        p, q = (a * s**i + b * s**j for a, b in of_p_and_q)
+        p_by_s, q_by_s = ((i * a * s**i + j * b * s**j) / s for a, b in of_p_and_q)
+        root = mp.sqrt(p * p / 4 - q)
+        if root == 0:
+            break
+        one, other = -p / 2 + root, -p / 2 - root
+        mu = one if abs(one - mu) < abs(other - mu) else other
+        z = mp.expjpi(half_turns)
+        value, by_z, by_mu = _value_and_slopes(digits.table, z, mu)
+        steps = _real_steps(value, mp.pi * 1j * z * by_z, -by_mu * (p_by_s * mu + q_by_s) / (2 * mu + p))
+        if steps is None:
+            break
+        half_turns += steps[0]
+        s += steps[1]
+        if s <= 0:
+            return 0.0
+        if abs(steps[1]) <= SETTLED * s:
+            return float(s)
     return start.factor
 
 
@@ -177,7 +242,3 @@ def _value_and_slopes(table: list[list[mp.mpf]], z: mp.mpc, mu: mp.mpc) -> tuple
         value = value * z + of_row
         by_mu = by_mu * z + slope_of_row
     return value, by_z, by_mu
-
-
-def _in_digits(c: Fraction) -> mp.mpf:
-    return mp.mpf(c.numerator) / c.denominator
