@@ -43,8 +43,8 @@ THOUSANDFOLD = 1e-3  # what "settled" means for the constraint error
 SAMPLES = 4000  # along a line: |z_p| has no features as narrow as that
 FIRST_GRID = 52  # points per axis of the first grid over the region's box: every valley is seen
 GRID = 13  # points per axis of a zoom
-ZOOM = 0.6  # from one grid to the next
-ZOOMS = 54  # 0.6^53 = 2e-12 of the region at least, where the objective is flat to rounding
+ZOOM = 0.75  # from one grid to the next; faster ones lose valleys of ABM2 and BDF5
+ZOOMS = 90  # 0.75^89 = 8e-12 of the region at least, where the objective is flat to rounding
 SPREAD_POINTS = 9  # per axis, of the points among which the worst is looked for
 SCOUTS = 16  # of a row one point in so many is looked at first, for a value that the others must be below
 SHARES = 8  # of the largest step, besides the limit of small ones: in practice either end is the slowest

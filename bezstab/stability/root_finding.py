@@ -133,8 +133,8 @@ def newton_polygon_starts(coefficients: ComplexArray) -> ComplexArray:
         chords = (size[lower] - size[lower + 1 :]) / np.arange(1, n - lower + 1)[:, np.newaxis]
         least = np.minimum.accumulate(chords[::-1])[::-1]  # entry i - lower: of the chords to upper > i
         np.maximum(log_radii[lower:], least, out=log_radii[lower:])
-    radii = np.exp(log_radii)
-    return radii * _spread_directions(n)
+    starts: ComplexArray = np.exp(log_radii) * _spread_directions(n)
+    return starts
 
 
 def _aberth(coefficients: ComplexArray, starts: ComplexArray) -> ComplexArray:
