@@ -18,6 +18,7 @@ curves.
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache, partial
 
 import mpmath as mp
 import numpy as np
@@ -40,6 +41,7 @@ DIGITS = 60  # three times those that a weak feedback's -Re mu = 1e-20 takes awa
 NEWTON_STEPS = 20  # from a start that is good to some digits five suffice
 SETTLED = 1e-20  # relative: of the next step, the square of that
 ON_THE_AXIS = 1e-9  # rad: a root that is so near to z = -1 is there, or Newton's method finds where it is
+HALVINGS = 24  # of a sample's spacing: to 1e-10 rad, from where Newton's method goes on
 NEARLY_DOUBLE = 1e-6  # relative: a double factor splits by the root of rounding into the complex plane
 
 
@@ -168,6 +170,12 @@ def _real_steps(value: mp.mpc, along_first: mp.mpc, along_second: mp.mpc) -> tup
     return first, second
 
 
+@cache
+def _branches(pencil: Pencil) -> tuple[Track, ...]:
+    """Return the branches of the locus of |z| = 1, the same for every path."""
+    return tuple(tracks(pencil, 1.0, finer=1))
+
+
 def _on_the_locus(path: Path, pencil: Pencil) -> Iterator[_Start]:
     """Yield where a pair of mu on the locus is the path's: a zero of a function of theta along each branch."""
     alpha_hat, beta_hat = float(path.alpha_hat), float(path.beta_hat)
@@ -187,10 +195,10 @@ def _on_the_locus(path: Path, pencil: Pencil) -> Iterator[_Start]:
         return of_alpha - alpha_hat * np.sqrt(np.maximum(ratio, 0))
 
     unit = 1.0 if path.powers == (1, 0) else abs(alpha_hat)
-    for track in tracks(pencil, 1.0, finer=1):
+    for track in _branches(pencil):
         ends = track.theta[[0, -1]]  # where branches meet their conjugates a zero may be without a change of sign
         touched = ends[np.abs(beside_the_path(track, ends)) <= NEARLY_DOUBLE * unit]
-        crossed = sign_changes(lambda at, track=track: beside_the_path(track, at), track.theta)  # type: ignore[misc]
+        crossed = sign_changes(partial(beside_the_path, track), track.theta, HALVINGS)
         theta = np.append(crossed, touched)
         of_alpha, ratio = place(track, theta)
         factors = of_alpha / alpha_hat if path.powers == (1, 0) else np.sqrt(np.abs(ratio))

@@ -315,7 +315,7 @@ def explorer_updates() -> Line:
     figure = Figure(figsize=(9, 5))
     canvas = FigureCanvasAgg(figure)
     explorer = Explorer(figure, [lookup("B4")], 0.001, print)
-    canvas.draw()
+    canvas.draw()  # type: ignore[no-untyped-call]
     places = [explorer.map.transData.transform((0.1 + 0.01 * k, 0.1 + 0.005 * k)) for k in range(UPDATES)]
 
     def move() -> None:

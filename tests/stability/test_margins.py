@@ -52,7 +52,7 @@ def test_margins_of_explicit_euler_have_formulas() -> None:
     found = stability_margins(lookup("B1"), a, b)
     assert found.h == pytest.approx(a / b, rel=1e-14)
     assert found.alpha == pytest.approx((b / a, (4 + b) / (2 * a)), rel=1e-14)
-    assert found.beta == (0, pytest.approx(math.sqrt(a / b), rel=1e-14))
+    assert found.beta == pytest.approx((0, math.sqrt(a / b)), rel=1e-14)
 
 
 @pytest.mark.parametrize(
