@@ -281,7 +281,7 @@ def beside_imports(section: str, what: str, command: Sequence[str], packages: st
         for _ in range(rounds):
             for k, each in enumerate(([python, "-c", f"import {packages}"], [python, "-m", "bezstab", *command])):
                 before = os.times()
-                subprocess.run(each, check=True, stdout=subprocess.DEVNULL, cwd=folder)
+                subprocess.run(each, check=True, capture_output=True, cwd=folder)
                 after = os.times()
                 spent = after.children_user + after.children_system
                 least[k] = min(least[k], spent - before.children_user - before.children_system)
