@@ -68,7 +68,7 @@ APPOINTED = {
     "mujoco": {"evidence/mujoco_models.py"},
     "distributed": {"evidence/worker_pools.py"},
     "numba": {"mechanism/compiled_steps.py"},
-    "mpmath": {"evidence/extremes.py", "evidence/root_digits.py"},
+    "mpmath": {"evidence/extremes.py", "evidence/root_digits.py", "stability/path_crossings.py"},
 }
 """The files that may import a library when they run; for types anybody may."""
 

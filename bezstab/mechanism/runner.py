@@ -69,7 +69,7 @@ class Trajectory:
 
 
 @dataclass(frozen=True)
-class _History:
+class History:
     """The states of a run from the start on, shape (steps + 1, 2n), why it ended early, the step of the least pivot."""
 
     states: FloatArray
@@ -101,7 +101,7 @@ def simulate(
     step_count = round(duration / whole_step)
     q, v = initial_state(mechanism) if state is None else state
     first: State = (*q.tolist(), *v.tolist())
-    blown_up = _breakdown(first, pivot=1.0)
+    blown_up = breakdown(first, pivot=1.0)
     if blown_up:
         raise InputError(f"the start: {blown_up}")
     work = Work()
@@ -109,10 +109,10 @@ def simulate(
         compiled = runs_compiled(mechanism, method, step_count * evaluations(method))
     if compiled and not implicit(method):
         blocks = march_in_blocks(mechanism, method, whole_step, gains, first, start, step_count, work)
-        history = _history_in_blocks(first, blocks)
+        history = recorded_in_blocks(first, blocks)
     else:
         run = march(mechanism, method, whole_step, gains, first, start, math, work)
-        history = _history(first, islice(run, step_count))
+        history = recorded_history(first, islice(run, step_count))
 
     steps_taken = len(history.states) - 1
     failure = None
@@ -319,7 +319,7 @@ def carried_quantities(
     return carried
 
 
-def _history(first: State, run: Iterator[Step]) -> _History:
+def recorded_history(first: State, run: Iterator[Step]) -> History:
     """Return the states of a run on floats, up to where it breaks down."""
     states = [first]
     cause = None
@@ -327,7 +327,7 @@ def _history(first: State, run: Iterator[Step]) -> _History:
     pivot_step = 0
     try:
         for state, _, pivot in run:
-            cause = _breakdown(state, pivot)
+            cause = breakdown(state, pivot)
             if cause:
                 break
             if pivot < least_pivot:
@@ -338,10 +338,10 @@ def _history(first: State, run: Iterator[Step]) -> _History:
         cause = str(error)
     except (OverflowError, ValueError, ZeroDivisionError) as error:
         cause = _refusal(error)
-    return _History(np.array(states, dtype=np.float64), cause, least_pivot, pivot_step)
+    return History(np.array(states, dtype=np.float64), cause, least_pivot, pivot_step)
 
 
-def _history_in_blocks(first: State, blocks: Iterator[Block]) -> _History:
+def recorded_in_blocks(first: State, blocks: Iterator[Block]) -> History:
     """Return the same from blocks of steps, of which only the last one can have led to a breakdown."""
     parts = [np.array([first], dtype=np.float64)]
     cause = None
@@ -350,7 +350,7 @@ def _history_in_blocks(first: State, blocks: Iterator[Block]) -> _History:
     try:
         for block in blocks:
             states, pivots = block.states, block.pivots
-            cause = _breakdown(tuple(states[-1].tolist()), float(pivots[-1]))
+            cause = breakdown(tuple(states[-1].tolist()), float(pivots[-1]))
             if cause:
                 states, pivots = states[:-1], pivots[:-1]
             if len(pivots) and pivots.min() < least_pivot:
@@ -362,14 +362,14 @@ def _history_in_blocks(first: State, blocks: Iterator[Block]) -> _History:
                 break
     except (OverflowError, ValueError, ZeroDivisionError) as error:
         cause = _refusal(error)
-    return _History(np.concatenate(parts), cause, least_pivot, pivot_step)
+    return History(np.concatenate(parts), cause, least_pivot, pivot_step)
 
 
 def _refusal(error: Exception) -> str:
     return f"arithmetic broke down ({error})"
 
 
-def _breakdown(state: State, pivot: float) -> str | None:
+def breakdown(state: State, pivot: float) -> str | None:
     """Return why a run on floats cannot go on from a state that it reached with this least pivot; None if it can."""
     if pivot <= SINGULAR:
         return f"singular configuration: C_q M^-1 C_q^T has lost its rank (relative pivot {pivot:.2g})"

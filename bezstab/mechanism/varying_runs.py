@@ -14,7 +14,7 @@ from bezstab.errors import InputError
 from bezstab.mechanism.compiled import Mechanism, State, Step, compiled_stepper, run_as_second_order
 from bezstab.mechanism.energies import EnergyBalance
 from bezstab.mechanism.observation import observe
-from bezstab.mechanism.runner import Trajectory, _breakdown, _history
+from bezstab.mechanism.runner import Trajectory, breakdown, recorded_history
 from bezstab.mechanism.simulation import Simulation
 from bezstab.mechanism.start import perturbed_state
 from bezstab.methods import Method, check_one_step, evaluations
@@ -47,14 +47,14 @@ def simulated_with_steps(
     check_steps_may_vary(method)
     q, v = perturbed_state(mechanism, perturb)
     first: State = (*q.tolist(), *v.tolist())
-    blown_up = _breakdown(first, pivot=1.0)
+    blown_up = breakdown(first, pivot=1.0)
     if blown_up:
         raise InputError(f"the start: {blown_up}")
     lengths = _lengths([step * float(method.step_multiple) for step in sequence], duration)
     own_steps = [length / float(method.step_multiple) if hold else h for length in lengths.tolist()]
     gains = [feedback_gains(alpha_hat, beta_hat, step) for step in own_steps]
     t = np.concatenate([[0.0], np.cumsum(lengths)])
-    history = _history(first, _march(mechanism, method, t.tolist(), lengths.tolist(), gains, first))
+    history = recorded_history(first, _march(mechanism, method, t.tolist(), lengths.tolist(), gains, first))
     rows = np.array(history.states, dtype=np.float64)
     steps_taken = len(rows) - 1
     failure = None

@@ -80,7 +80,7 @@ if TYPE_CHECKING:
     )
     from bezstab.methods.formulas import characteristic_text, mapping_text, recursion_text
     from bezstab.methods.orders import ForceAccuracy, accuracy, accuracy_by_force
-    from bezstab.methods.plane_edges import CurveTable, PlaneStrips, Strip, plane_strips
+    from bezstab.methods.plane_edges import CurveTable, PlaneStrips, Strip, crossing_factors_in_plane, plane_strips
     from bezstab.methods.shared_factors import fixed_poles, reduced_table, without_shared_factor
 
 DERIVED = {
@@ -103,7 +103,7 @@ DERIVED = {
     ),
     "formulas": ("characteristic_text", "mapping_text", "recursion_text"),
     "orders": ("ForceAccuracy", "accuracy", "accuracy_by_force"),
-    "plane_edges": ("CurveTable", "PlaneStrips", "Strip", "plane_strips"),
+    "plane_edges": ("CurveTable", "PlaneStrips", "Strip", "crossing_factors_in_plane", "plane_strips"),
     "shared_factors": ("fixed_poles", "reduced_table", "without_shared_factor"),
 }
 """What is loaded when first used, by module."""
@@ -154,6 +154,7 @@ __all__ = [
     "closed_loop_polynomial",
     "closed_loop_table",
     "coefficient_table",
+    "crossing_factors_in_plane",
     "evaluations",
     "feedback_matrix",
     "feedback_polynomial",

@@ -6,6 +6,7 @@ mu^2 + alpha_hat mu + beta_hat = 0. Eliminating mu from the two by a resultant g
 
 from fractions import Fraction
 from functools import cache
+from math import lcm
 
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
@@ -181,10 +182,17 @@ def closed_loop_at(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> l
     q = q_alpha * alpha_hat + q_beta * beta_hat
     descending = coefficient_table(method)[::-1]
     powers = _reduced_powers(p, q, highest=len(descending[0]) - 1)
-    A = [sum((c * u for c, (u, _) in zip(row, powers, strict=True)), ZERO) for row in descending]
-    B = [sum((c * v for c, (_, v) in zip(row, powers, strict=True)), ZERO) for row in descending]
+    A, scale_of_A = _whole([sum((c * u for c, (u, _) in zip(row, powers, strict=True)), ZERO) for row in descending])
+    B, scale_of_B = _whole([sum((c * v for c, (_, v) in zip(row, powers, strict=True)), ZERO) for row in descending])
+    (on_AA, on_AB, on_BB), scale = _whole([1 / scale_of_A**2, -p / scale_of_A / scale_of_B, q / scale_of_B**2])
     terms = zip(_product(A, A), _product(A, B), _product(B, B), strict=True)
-    return [aa - p * ab + q * bb for aa, ab, bb in terms]
+    return [(on_AA * aa + on_AB * ab + on_BB * bb) / scale for aa, ab, bb in terms]
+
+
+def _whole(numbers: list[Fraction]) -> tuple[list[int], Fraction]:
+    """Return multiples of rational numbers that are whole, and the factor: products of whole ones are fast."""
+    scale = lcm(*(number.denominator for number in numbers))
+    return [number.numerator * (scale // number.denominator) for number in numbers], Fraction(scale)
 
 
 def _reduced_powers(p: Fraction, q: Fraction, highest: int) -> list[tuple[Fraction, Fraction]]:
@@ -196,9 +204,9 @@ def _reduced_powers(p: Fraction, q: Fraction, highest: int) -> list[tuple[Fracti
     return powers
 
 
-def _product(first: list[Fraction], second: list[Fraction]) -> list[Fraction]:
+def _product(first: list[int], second: list[int]) -> list[int]:
     """Return the coefficients of the product of two polynomials."""
-    product = [ZERO] * (len(first) + len(second) - 1)
+    product = [0] * (len(first) + len(second) - 1)
     for i, a in enumerate(first):
         for k, b in enumerate(second):
             product[i + k] += a * b
@@ -236,9 +244,9 @@ def _fraction(c: sp.Rational) -> Fraction:
 
 def branch_polynomial(method: Method) -> tuple[Fraction, ...]:
     """Return the polynomial in z, ascending, that is zero wherever two roots of pi(., mu) meet: Res_mu(pi, d pi/dz)."""
-    pi = characteristic_polynomial(method)
-    meeting = sp.Poly(sp.resultant(pi.as_expr(), pi.diff(Z).as_expr(), MU), Z)
-    return tuple(Fraction(c) for c in reversed(meeting.all_coeffs()))
+    pi = characteristic_polynomial(method).reorder(MU, Z)  # its first symbol is the one that is eliminated
+    meeting = pi.resultant(pi.diff(Z))
+    return tuple(_fraction(c) for c in reversed(meeting.rep.to_list()))
 
 
 def mapping_equations(method: Method) -> list[sp.Equality]:

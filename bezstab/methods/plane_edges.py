@@ -94,6 +94,31 @@ def plane_strips(method: Method, level: Fraction) -> PlaneStrips | None:
     return PlaneStrips(tuple(_table(curve) for curve in curves), tuple(strips), tuple(lost))
 
 
+def crossing_factors_in_plane(
+    method: Method, alpha_hat: Fraction, beta_hat: Fraction, powers: tuple[int, int]
+) -> list[float]:
+    """Return every factor s > 0 at which the path (s^i alpha_hat, s^j beta_hat) meets an edge of |z_p| < 1, or a level.
+
+    Of a second-order scheme; (i, j) are the powers. Good to rounding; in no order.
+    """
+    strips = plane_strips(method, ONE)
+    if strips is None:
+        return []
+    found: list[Fraction | float] = []
+    for curve in strips.curves:
+        along = [ZERO] * (powers[0] * (len(curve) - 1) + powers[1] * (len(curve[0]) - 1) + 1)
+        for i, row in enumerate(curve):
+            for j, c in enumerate(row):
+                along[powers[0] * i + powers[1] * j] += c * alpha_hat**i * beta_hat**j
+        line = sp.Poly([sp.Rational(c.numerator, c.denominator) for c in reversed(along)], A, domain=sp.QQ)
+        if not line.is_zero:
+            found += _line_roots(line.sqf_part())
+    if powers[1] and beta_hat:
+        levels = [strip.high / beta_hat for strip in strips.strips if strip.high is not None]
+        found += [float(level) ** (1 / powers[1]) for level in levels if level > 0]
+    return [float(factor) for factor in found if factor > 0]
+
+
 def _coefficients(table: Iterable[CurveTable], level: Fraction) -> list[sp.Poly]:
     """Return the coefficients of P(level z), ascending, without a factor that all of them share."""
     coefficients = []

@@ -6,10 +6,13 @@ Polynomials are sequences of Fraction in descending powers of z.
 from collections.abc import Sequence
 from fractions import Fraction
 from itertools import zip_longest
+from math import gcd, lcm
 from typing import Literal
 
 Verdict = Literal["converges", "marginal", "diverges"]
 Polynomial = Sequence[Fraction]
+
+WORKING_BITS = 1024  # a step loses up to 25 of them where 24 roots lie near z = 1; what they leave open takes all bits
 
 
 def recursion_verdict(polynomial: Polynomial) -> Verdict:
@@ -39,17 +42,36 @@ def recursion_verdict(polynomial: Polynomial) -> Verdict:
 def is_schur(polynomial: Polynomial) -> bool:
     """Return whether every root has |z| < 1; True for a constant, which has none.
 
-    By Schur's recursion p <- (p - k p*) / z with k = p(0) / lead(p), p* the coefficients in reverse: as long as
-    |k| < 1 it takes a polynomial with all roots inside to one of a degree less with all roots inside, and back
-    (I. Schur, J. reine angew. Math. 147, 1917). The polynomial is as in `recursion_verdict`.
+    By Schur's recursion p <- (lead(p) p - p(0) p*) / z, p* the coefficients in reverse: as long as |p(0)| < |lead(p)|
+    it takes a polynomial with all roots inside to one of a degree less with all roots inside, and back (I. Schur,
+    J. reine angew. Math. 147, 1917). The polynomial is as in `recursion_verdict`.
+
+    A proof either way: whole numbers, whose last bits are dropped as long as their sum of errors decides nothing.
     """
     p = _trimmed(polynomial)
+    scale = lcm(*(a.denominator for a in p))
+    whole = [a.numerator * (scale // a.denominator) for a in p]
+    decided = _whole_is_schur(whole, WORKING_BITS)
+    return bool(_whole_is_schur(whole, None)) if decided is None else decided
+
+
+def _whole_is_schur(p: list[int], bits: int | None) -> bool | None:
+    """Return is_schur of whole coefficients, kept to so many bits (None: all); None if what is dropped might decide."""
+    error = 0  # of every coefficient, at most
     while len(p) > 1:
-        k = p[-1] / p[0]
-        if abs(k) >= 1:
-            return False
-        difference = [(a - k * b) / (1 - k * k) for a, b in zip(p, p[::-1], strict=True)]  # monic again
-        p = difference[:-1]  # whose last coefficient, p(0) - k lead(p), is 0
+        lead, last = abs(p[0]), abs(p[-1])
+        if lead - last <= 2 * error:
+            return False if last - lead >= 2 * error else None
+        error *= lead + last + 2 * max(abs(a) for a in p) + 2 * error  # of two products, each factor off by it
+        p = [p[0] * a - p[-1] * b for a, b in zip(p[:-1], p[:0:-1], strict=True)]  # p(0) - k lead(p) is 0
+        if bits is None:
+            shared = gcd(*p)
+            p = [a // shared for a in p]
+            continue
+        beyond = p[0].bit_length() - bits
+        if beyond > 0:
+            p = [a >> beyond for a in p]
+            error = (error >> beyond) + 2  # rounding of p, and of the error itself
     return True
 
 

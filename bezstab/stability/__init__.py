@@ -16,10 +16,12 @@ From a method's polynomial in float64 (its pencil) upwards; a file imports only 
     boundary_locus    that curve cut where it bounds the region, integrated
     line_crossings    where an arc crosses lines
     line_slices       where lines across the region are stable, by a second route
+    path_crossings    where a path from a point crosses the boundary
     self_checks       every answer held against a second route
     plane_cells       the stable cells of a second-order scheme's plane: area, extent, curves
     plane_checks      those held against points, lines and the D-decomposition
     answer_checks     best points, choices and margins held against samples and proofs
+    margins           how far h, alpha and beta are from the boundary, by factors
     regions           the exact region in alpha_hat and beta_hat
     grid_maps         |z_p| on a grid
     quadrant_proofs   whether all of alpha_hat, beta_hat > 0 is stable
@@ -47,16 +49,15 @@ from bezstab.stability.choices import (
     THOUSANDFOLD,
     Choice,
     Goal,
-    Margins,
     Modulus,
     choose,
     choose_at_step,
     describe_point,
-    stability_margins,
 )
 from bezstab.stability.closed_loop import dominant_pole, poles, spectral_radius, verdict
 from bezstab.stability.gain_margins import GainLimits, gain_limits
 from bezstab.stability.grid_maps import QUALITY, pole_map
+from bezstab.stability.margins import Margins, stability_margins
 from bezstab.stability.pencils import Pencil, pencil_of, roots_in_z
 from bezstab.stability.regions import Extent, Region, pole_place, region, window
 from bezstab.stability.searches import bisected, first_where

@@ -1,6 +1,6 @@
 """Best points, choices and margins held against sampled points and proven verdicts before they are given."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from fractions import Fraction
 
 import numpy as np
@@ -8,13 +8,15 @@ import numpy as np
 from bezstab.errors import NumericalError
 from bezstab.methods import Method
 from bezstab.stability.arrays import EPS, FloatArray
-from bezstab.stability.closed_loop import AnyPencil, largest_modulus, verdict
+from bezstab.stability.closed_loop import any_pencil_of, converges, largest_modulus
 from bezstab.stability.line_slices import mu_bound, real_events, slices, turning_radii
+from bezstab.stability.path_crossings import Path
 from bezstab.stability.pencils import Pencil
 from bezstab.stability.plane_pencils import PlanePencil
 
 Extent = tuple[tuple[float, float], tuple[float, float]]
-Objective = Callable[[FloatArray, FloatArray], FloatArray]
+Objective = Callable[[FloatArray, FloatArray, float], FloatArray]
+"""What is to be least, over rows of alpha_hat and beta_hat; above the last argument it may say any larger value."""
 
 SAMPLES = 400  # over the region's box: a few thousandths of what the search itself looks at
 NEIGHBOURS = 32  # on each ring
@@ -28,10 +30,10 @@ ROOT_OF_ROUNDING = 1e-7  # a double pole at zero, as far as float64 tells it
 EMPTY_BELOW = 1e-4  # relative: so far below the least |z_p| a slice must be empty
 NO_LENGTH = 1e-6  # of the bound on mu: a slice through a double root splits by the root of rounding
 SLICES = 128
-EITHER_SIDE = Fraction(1, 10**8)  # relative: a margin's end is good to 1e-12, and at a double pole to 1e-8
-UNDECIDED = 1e-12  # of |z_p|: nearer to one, an end is as good as float64 tells (a decay of 1e12 steps)
-BETWEEN = 40  # factors on the way to an end, at which |z_p| must be below one
-FURTHEST = (1e-4, 1e4)  # factors up to which an end was looked for
+EITHER_SIDE = Fraction(1, 10**9)  # relative: from a margin's end, which is good to rounding
+BETWEEN = 80  # factors on the way to an end, at which |z_p| must be below one
+FURTHEST = (1e-8, 1e8)  # factors on the way to which |z_p| is looked at where there is no end
+ONE = Fraction(1)
 PLASTIC = 1.32471795724474602596  # x^3 = x + 1: multiples of 1/x and 1/x^2 fill a square evenly (M. Roberts, 2018)
 
 
@@ -130,36 +132,34 @@ def _compare(
     beta_hats: FloatArray,
 ) -> None:
     positive = (alpha_hats > 0) & (beta_hats > 0)
-    values = objective(alpha_hats[positive], beta_hats[positive])
-    here = float(objective(np.array([alpha_hat]), np.array([beta_hat]))[0])
+    values = objective(alpha_hats[positive], beta_hats[positive], np.inf)
+    here = float(objective(np.array([alpha_hat]), np.array([beta_hat]), np.inf)[0])
     least = int(np.argmin(values))
     if values[least] < here * (1 - BETTER) - NO_LESS:
         place = f"({alpha_hats[positive][least]:.6g}, {beta_hats[positive][least]:.6g})"
         raise NumericalError(f"{method.name}: the point chosen has {here:.9g}, but {place} has {values[least]:.9g}")
 
 
-def check_margin(
-    pencil: AnyPencil, alpha_hat: float, beta_hat: float, powers: tuple[int, int], ends: Sequence[float]
-) -> None:
-    """Raise NumericalError unless the proven verdict turns at each end of a margin, and not before.
+def check_margin(path: Path, ends: tuple[float, float]) -> None:
+    """Raise NumericalError unless the proven verdict turns at both ends of a margin, and |z_p| < 1 between them.
 
-    powers: of the factor on alpha_hat and on beta_hat. ends: factors; 0 and infinity for none.
+    ends: factors below and above one; 0 and infinity for none. The verdict is asked EITHER_SIDE of an end, |z_p| at
+    factors on the way, up to FURTHEST where there is no end; where rounding has it one or more, the verdict again.
     """
-    for end in ends:
+    name = path.method.name
+    pencil = any_pencil_of(path.method)
+    for outwards, end, furthest in zip((-1, 1), ends, FURTHEST, strict=True):
         finite = 0 < end < np.inf
-        furthest = end if finite else FURTHEST[end > 1]
-        factors = np.geomspace(1, furthest, BETWEEN + 2)[1:-1]
-        on_the_way = largest_modulus(pencil, alpha_hat * factors ** powers[0], beta_hat * factors ** powers[1])
-        if (on_the_way >= 1 + UNDECIDED).any():
-            raise NumericalError(f"{pencil.method.name}: unstable before the margin {end:.9g}")
+        factors = np.geomspace(1, end if finite else furthest, BETWEEN + 2)[1:-1]
+        alpha_hats, beta_hats = (float(x) * factors**k for x, k in zip(path.at(ONE), path.powers, strict=True))
+        suspicious = factors[largest_modulus(pencil, alpha_hats, beta_hats) >= 1]
+        if not all(converges(path.method, *path.at(Fraction(factor))) for factor in suspicious.tolist()):
+            raise NumericalError(f"{name}: unstable before the margin {end:.9g}")
         if not finite:
             continue
-        outwards = 1 if end > 1 else -1
         for side, stable in ((-1, True), (1, False)):
             factor = Fraction(end) * (1 + side * outwards * EITHER_SIDE)
             if (factor - 1) * outwards <= 0:
                 continue  # the margin is one to rounding
-            point = Fraction(alpha_hat) * factor ** powers[0], Fraction(beta_hat) * factor ** powers[1]
-            z_abs = float(largest_modulus(pencil, float(point[0]), float(point[1])))
-            if abs(z_abs - 1) > UNDECIDED and (verdict(pencil.method, *point) == "converges") != stable:
-                raise NumericalError(f"{pencil.method.name}: the margin {end:.9g} is not where the verdict turns")
+            if converges(path.method, *path.at(factor)) != stable:
+                raise NumericalError(f"{name}: the margin {end:.9g} is not where the verdict turns")

@@ -19,7 +19,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache
-from itertools import pairwise, product
+from itertools import product
 
 import numpy as np
 from numpy.polynomial.polynomial import polyroots, polyval2d
@@ -29,6 +29,7 @@ from bezstab.methods import Method, SecondOrder, fixed_poles, implicit, without_
 from bezstab.stability.answer_checks import check_best_point, check_deadbeat, check_plane_best_point
 from bezstab.stability.arrays import ComplexArray, FloatArray
 from bezstab.stability.dominant_roots import dominant_root
+from bezstab.stability.line_slices import all_inside
 from bezstab.stability.pencils import Pencil, pencil_of, roots_in_mu, roots_in_z
 from bezstab.stability.plane_best_points import plane_least
 from bezstab.stability.plane_pencils import plane_pencil_of
@@ -40,8 +41,11 @@ DOUBLE = 1e-6  # relative; two roots closer than this are one double root, which
 REACH = 1e150  # of mu, whose square is beta_hat; one zero of R is always within its degree, as R(0) = R'(0) = 1
 NEWTON_STEPS = 30
 STEP_SETTLED = ROUNDING**1.5  # relative, 3e-14: a Newton step this small changes nothing that is compared
+AS_SMALL = 1e-10  # relative: a value by so much above the least so far is looked at; Schur's recursion rounds by less
+NEAR_LOWEST = 1e-3  # relative: a narrowed minimum is above its kink by the root of 6e-7 of a spacing of 0.02 at most
+SAME_MINIMUM = 1e-5  # of |mu|: minima that were narrowed to less than that and lie closer are one
 STARTS = 6  # local minima of the sampled f that are followed up
-ZOOM_POINTS, ZOOM, ZOOMS = 13, 0.6, 30  # 0.6^29 = 4e-7 of the grid's spacing: a start, from which Newton takes over
+ZOOM_POINTS, ZOOM, ZOOMS = 13, 0.45, 19  # 0.45^18 = 6e-7 of the grid's spacing: a start, from which Newton takes over
 ARC_SAMPLES = 4097  # of theta, where a curve of equal |z_p| is looked for
 ARC_SHARE = 1 / 10  # of the samples lie on such a curve, if there is one; a kink shows at isolated theta only
 ARC_ZOOM_POINTS, ARC_ZOOMS = 65, 7  # each by 1/32: the curve's end, to rounding
@@ -78,7 +82,7 @@ class BestPoint:
 class _Kink:
     """One kind of least value: its equations in (mu, z_1, ...), where the z start, and how often each is a root."""
 
-    equations: Callable[[ComplexArray], list[float]]
+    equations: Callable[[ComplexArray], FloatArray]
     starts: list[complex]
     multiplicity: int = 1
 
@@ -252,9 +256,14 @@ def _meeting_poles(pencil: Pencil, z_abs: float, mu: ComplexArray) -> tuple[comp
 
 def _smallest(pencil: Pencil) -> _Candidate:
     """Return min f and a mu that has it, a real one if there is one."""
-    sampled = list(_local_minima(pencil))
+    sampled = _local_minima(pencil)
     lowest = min(candidate.z_abs for candidate in sampled)
-    solved = [solution for candidate in sampled for solution in _solutions(pencil, candidate.mu)]
+    followed: list[_Candidate] = []
+    for candidate in sampled:
+        known = any(abs(candidate.mu - other.mu) <= SAME_MINIMUM * abs(candidate.mu) for other in followed)
+        if not known and candidate.z_abs <= lowest * (1 + NEAR_LOWEST):
+            followed.append(candidate)
+    solved = [solution for candidate in followed for solution in _solutions(pencil, candidate.mu)]
     best = min((solution.z_abs for solution in solved), default=np.inf)
     if not best <= lowest * (1 + ROUNDING):
         name = pencil.method.name
@@ -263,38 +272,49 @@ def _smallest(pencil: Pencil) -> _Candidate:
     return min(as_low, key=lambda solution: (abs(solution.mu.imag), solution.z_abs))
 
 
-def _local_minima(pencil: Pencil) -> Iterator[_Candidate]:
-    """Yield the lowest local minima of f on a grid over S_1, each narrowed by a sequence of smaller grids."""
+def _local_minima(pencil: Pencil) -> list[_Candidate]:
+    """Return the lowest local minima of f on a grid over S_1, each narrowed by a sequence of smaller grids."""
     stable = region(pencil.method)
     assert stable.view
     seen = np.concatenate(stable.boundary) if stable.bounded else np.array(list(product(*stable.view)))
     corners = np.abs(seen @ pencil.to_feedback.T)
     reach = float(np.max(corners[:, 0] + np.sqrt(corners[:, 1])))  # of both roots of the feedback
     x, y = np.linspace(-reach, reach / 4, 151), np.linspace(0, reach, 121)
-    sampled = _largest_modulus(pencil, x + 1j * y[:, np.newaxis])
+    grid = x + 1j * y[:, np.newaxis]
+    sampled = np.full(grid.shape, np.inf)
+    stable_mu = all_inside(pencil, grid, 1.0)
+    sampled[stable_mu] = _largest_modulus(pencil, grid[stable_mu])
     padded = np.pad(sampled, 1, mode="reflect")
     shifts = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1)]
     least_around = np.min([np.roll(padded, shift, (0, 1)) for shift in shifts], axis=0)[1:-1, 1:-1]
-    rows, columns = np.nonzero(sampled == least_around)
+    rows, columns = np.nonzero((sampled == least_around) & stable_mu)
     lowest = np.argsort(sampled[rows, columns])[:STARTS]
 
     def to_upper_half(points: FloatArray) -> FloatArray:
         return np.stack([points[..., 0], np.abs(points[..., 1])], axis=-1)
 
-    def modulus(points: FloatArray) -> FloatArray:
-        return _largest_modulus(pencil, points[..., 0] + 1j * points[..., 1])
+    reached = sampled[rows[lowest], columns[lowest]]  # by each search, whose grids hold the place where it was
 
-    for row, column in zip(rows[lowest], columns[lowest], strict=True):
-        place, z_abs = zoom_on_minimum(
-            modulus,
-            np.array([x[column], y[row]]),
-            np.full(2, x[1] - x[0]),
-            points=ZOOM_POINTS,
-            shrink=ZOOM,
-            rounds=ZOOMS,
-            fold=to_upper_half,
-        )
-        yield _Candidate(float(z_abs), complex(*place))
+    def modulus(points: FloatArray) -> FloatArray:
+        """Return f, exact where it is as small as what was reached: else infinite, which Schur's recursion tells."""
+        mu = points[..., 0] + 1j * points[..., 1]
+        as_small = all_inside(pencil, mu, reached[:, np.newaxis] * (1 + AS_SMALL))
+        as_small[~as_small.any(axis=1)] = True  # next to a double root even the place where it was may seem larger
+        values = np.full(mu.shape, np.inf)
+        values[as_small] = _largest_modulus(pencil, mu[as_small])
+        np.minimum(reached, values.min(axis=1), out=reached)
+        return values
+
+    places, z_abs = zoom_on_minimum(
+        modulus,
+        np.stack([x[columns[lowest]], y[rows[lowest]]], axis=-1),
+        np.full((len(lowest), 2), x[1] - x[0]),
+        points=ZOOM_POINTS,
+        shrink=ZOOM,
+        rounds=ZOOMS,
+        fold=to_upper_half,
+    )
+    return [_Candidate(least, complex(*place)) for least, place in zip(z_abs.tolist(), places, strict=True)]
 
 
 def _largest_modulus(pencil: Pencil, mu: ComplexArray) -> FloatArray:
@@ -305,31 +325,34 @@ def _largest_modulus(pencil: Pencil, mu: ComplexArray) -> FloatArray:
 def _kinks(pencil: Pencil, mu: complex) -> list[_Kink]:
     """Return the kinds of least value, the roots at a nearby mu as their starts.
 
-    The unknowns are mu and the roots z that meet there, as complex numbers x[0] and x[1:]; equations are real.
+    The unknowns are mu and the roots z that meet there, as complex numbers x[0] and x[1:]; equations are real. Both
+    have a second axis, of as many places as they are asked for at once.
     """
 
-    def on_the_locus(x: ComplexArray) -> list[float]:
-        residuals = [polyval2d(z, x[0], pencil.table) for z in x[1:]]
-        return [part for residual in residuals for part in (residual.real, residual.imag)]
+    def on_the_locus(x: ComplexArray) -> FloatArray:
+        z = x[1:]
+        residuals = polyval2d(z, np.broadcast_to(x[0], z.shape), pencil.table)
+        return np.concatenate([residuals.real, residuals.imag])
 
-    def equal_moduli(x: ComplexArray) -> list[float]:
-        return [float(np.log(abs(z / following))) for z, following in pairwise(x[1:])]
+    def equal_moduli(x: ComplexArray) -> FloatArray:
+        return np.asarray(np.log(np.abs(x[1:-1] / x[2:])))
 
-    def two_on_the_axis(x: ComplexArray) -> list[float]:
-        return [*on_the_locus(x), *equal_moduli(x), x[0].imag]
+    def two_on_the_axis(x: ComplexArray) -> FloatArray:
+        return np.concatenate([on_the_locus(x), equal_moduli(x), x[:1].imag])
 
-    def two_opposed(x: ComplexArray) -> list[float]:
-        z, same_mu = x[1:], np.full(2, x[0])
+    def two_opposed(x: ComplexArray) -> FloatArray:
+        z = x[1:]
+        same_mu = np.broadcast_to(x[0], z.shape)
         by_mu, by_z = polyval2d(z, same_mu, pencil.table_by_mu), polyval2d(z, same_mu, pencil.table_by_z)
         first, second = -by_mu / (z * by_z)  # d log z / d mu: parallel if their ratio is real
-        return [*on_the_locus(x), *equal_moduli(x), (first / second).imag]
+        return np.concatenate([on_the_locus(x), equal_moduli(x), [(first / second).imag]])
 
-    def three(x: ComplexArray) -> list[float]:
-        return [*on_the_locus(x), *equal_moduli(x)]
+    def three(x: ComplexArray) -> FloatArray:
+        return np.concatenate([on_the_locus(x), equal_moduli(x)])
 
-    def double_root(x: ComplexArray) -> list[float]:
-        slope = polyval2d(x[1], x[0], pencil.table_by_z)
-        return [*on_the_locus(x), slope.real, slope.imag]
+    def double_root(x: ComplexArray) -> FloatArray:
+        slope = polyval2d(x[1:], x[:1], pencil.table_by_z)
+        return np.concatenate([on_the_locus(x), slope.real, slope.imag])
 
     roots = roots_in_z(pencil, np.array([mu]))[:, 0]
     z = roots[np.argsort(-np.abs(roots))]
@@ -367,20 +390,22 @@ def _upper(mu: complex) -> complex:
     return complex(mu.real, abs(mu.imag) if abs(mu.imag) > ROUNDING * abs(mu) else 0)
 
 
-def _newton(equations: Callable[[ComplexArray], list[float]], x: ComplexArray) -> ComplexArray:
+def _newton(equations: Callable[[ComplexArray], FloatArray], x: ComplexArray) -> ComplexArray:
     """Return a zero by Gauss-Newton steps with central differences; nan where none is reached.
 
     Least squares, because along an arc of equal |z_p| the equations are dependent.
     """
     scale = np.abs(x).max()
     directions = 1e-6 * scale * np.concatenate([np.eye(len(x)), 1j * np.eye(len(x))])  # truncation 1e-12, noise 1e-10
+    around = np.concatenate([directions, -directions, np.zeros((1, len(x)))]).T
     with np.errstate(all="ignore"):
         for _ in range(NEWTON_STEPS):
-            columns = [np.subtract(equations(x + d), equations(x - d)) / 2 for d in directions]
-            residual = np.array(equations(x))
-            if not np.isfinite([*columns, residual]).all():
+            values = equations(x[:, np.newaxis] + around)
+            if not np.isfinite(values).all():
                 break
-            step = np.linalg.lstsq(np.stack(columns, axis=1), residual, rcond=1e-9)[0] @ directions
+            forward, backward, residual = np.split(values, [len(directions), 2 * len(directions)], axis=1)
+            slopes = (forward - backward) / 2
+            step = np.linalg.lstsq(slopes, residual[:, 0], rcond=1e-9)[0] @ directions
             x = x - step
             if np.abs(step).max() < STEP_SETTLED * scale:
                 return x

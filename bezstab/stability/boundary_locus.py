@@ -42,7 +42,7 @@ from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
 from bezstab.stability.locus_tracks import Track, tracks
 from bezstab.stability.pencils import Pencil, moduli_in_z, roots_in_mu
 from bezstab.stability.root_finding import roots_of_table
-from bezstab.stability.searches import bisected, zoom_on_minimum
+from bezstab.stability.searches import BISECTIONS, bisected, zoom_on_minimum
 
 ARC_POINTS = 400  # drawn per arc: chords stay within 1e-5 of the curve
 NODES = 16  # of Gauss and Legendre on a panel
@@ -259,11 +259,11 @@ def _bounding_arcs(track: Track, radius: float) -> Iterator[Arc]:
         return _largest_other(track, theta) + MARGIN
 
     inner = track.theta[1:-1]
-    cuts = [track.theta[[0, -1]], _sign_changes(height, inner)]
+    cuts = [track.theta[[0, -1]], sign_changes(height, inner)]
     if not one_step:
-        cuts.append(_sign_changes(outside, inner))
+        cuts.append(sign_changes(outside, inner))
     if isfinite(radius):
-        cuts.append(_sign_changes(lambda theta: np.abs(track.at(theta)) - radius, inner))
+        cuts.append(sign_changes(lambda theta: np.abs(track.at(theta)) - radius, inner))
     for start, end in pairwise(np.unique(np.concatenate(cuts)).tolist()):
         middle = np.array([(start + end) / 2])
         if not one_step and outside(middle)[0] >= 0:
@@ -306,15 +306,20 @@ def _drawn_angles(track: Track, start: float, end: float) -> FloatArray:
     return np.unique(np.append(theta, followed))
 
 
-def _sign_changes(values_at: Callable[[FloatArray], FloatArray], samples: FloatArray) -> FloatArray:
-    """Return where a continuous function changes sign along ascending samples, to rounding; shape (changes,)."""
+def sign_changes(
+    values_at: Callable[[FloatArray], FloatArray], samples: FloatArray, halvings: int = BISECTIONS
+) -> FloatArray:
+    """Return where a continuous function changes sign along ascending samples, shape (changes,).
+
+    To rounding, unless the spacing of the samples is to be halved less often.
+    """
     theta = _with_dips(values_at, samples)
     positive = values_at(theta) >= 0  # all in one go again: dips judged alone may be noise, and would pass for changes
     change = np.flatnonzero(positive[1:] != positive[:-1])
     if not change.size:
         return np.empty(0)
     after = positive[change + 1]
-    low, high = bisected(lambda middle: (values_at(middle) >= 0) == after, theta[change], theta[change + 1])
+    low, high = bisected(lambda middle: (values_at(middle) >= 0) == after, theta[change], theta[change + 1], halvings)
     return (low + high) / 2
 
 

@@ -12,9 +12,9 @@ import numpy as np
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method, Verdict, steps
 from bezstab.rationals import exact
-from bezstab.stability.answer_checks import check_least, check_least_equal, check_margin
+from bezstab.stability.answer_checks import Objective, check_least, check_least_equal
 from bezstab.stability.arrays import BoolArray, FloatArray
-from bezstab.stability.best_points import best_point
+from bezstab.stability.best_points import AS_SMALL, best_point
 from bezstab.stability.closed_loop import (
     AnyPencil,
     any_pencil_of,
@@ -24,6 +24,9 @@ from bezstab.stability.closed_loop import (
     verdict,
 )
 from bezstab.stability.dominant_roots import dominant_root
+from bezstab.stability.line_crossings import IntArray
+from bezstab.stability.line_slices import all_within
+from bezstab.stability.margins import Margins, stability_margins
 from bezstab.stability.pencils import Pencil
 from bezstab.stability.plane_best_points import critical_point
 from bezstab.stability.plane_pencils import PlanePencil
@@ -31,38 +34,26 @@ from bezstab.stability.regions import Extent, Region, pole_place, region
 from bezstab.stability.searches import first_where, zoom_on_minimum
 
 Goal = Literal["robust", "fastest", "critical", "gentle"]
-Objective = Callable[[FloatArray, FloatArray], FloatArray]
 Modulus = Callable[[FloatArray, FloatArray], FloatArray]
 """|z_p|, or what takes its place, over arrays of alpha_hat and beta_hat."""
+Within = Callable[[FloatArray, FloatArray, FloatArray], BoolArray]
+"""Whether |z_p| is below a bound, over arrays of alpha_hat, beta_hat and bounds."""
 
 THOUSANDFOLD = 1e-3  # what "settled" means for the constraint error
 SAMPLES = 4000  # along a line: |z_p| has no features as narrow as that
 FIRST_GRID = 52  # points per axis of the first grid over the region's box: every valley is seen
 GRID = 13  # points per axis of a zoom
-ZOOM = 0.75  # from one grid to the next
+ZOOM = 0.75  # from one grid to the next; faster ones lose valleys of ABM2 and BDF5
 ZOOMS = 90  # 0.75^89 = 8e-12 of the region at least, where the objective is flat to rounding
 SPREAD_POINTS = 9  # per axis, of the points among which the worst is looked for
+SCOUTS = 16  # of a row one point in so many is looked at first, for a value that the others must be below
 SHARES = 8  # of the largest step, besides the limit of small ones: in practice either end is the slowest
 AT_DEADBEAT = 0.01  # of alpha_hat, beta_hat: a double pole that is so near to zero may be followed no further
 ASIDE = 1e-7  # of mu: a double mu splits by 1e-8 in float64, which must not let a rival of equal modulus win
 DEADBEAT = 1e-6  # a double pole at zero, as far as float64 tells it
 SLOW = 1e-12  # 1 - |z_p| of which rounding leaves three digits: the decay takes 1e13 steps
 REAL = 1e-9  # of |z|: an imaginary part below it is rounding
-FURTHEST = 1e4  # factor on h, alpha or beta beyond which nobody asks
 SEARCHED = 4.0  # alpha h and beta h: there e^-4, a fiftieth, is left after a step, and nobody asks for faster decay
-NEAREST = 1e-4  # and below which |z_p| is one to rounding
-
-
-@dataclass(frozen=True)
-class Margins:
-    """The factors by which h (up), alpha and beta (down, up) can be scaled alone before |z_p| = 1.
-
-    An upper end is infinite, and a lower end zero, where there is no such factor.
-    """
-
-    h: float
-    alpha: tuple[float, float]
-    beta: tuple[float, float]
 
 
 @dataclass(frozen=True, repr=False)
@@ -140,11 +131,12 @@ def choose(
                 f"--keep alpha=beta: the double mu of {method.name} is not at alpha = beta; no --goal critical"
             )
     elif goal == "robust":
-        point = _checked_least(pencil, box, _slowest(method, modulus, spread), equal, cut)
+        within = partial(all_within, pencil) if at_rest and isinstance(pencil, Pencil) else None
+        point = _checked_least(pencil, box, _slowest(method, modulus, within, spread), equal, cut)
     elif not equal and at_rest and (best := best_point(method)):
         point, cut = (best.alpha_hat, best.beta_hat), False
     else:  # on a line, or where |z_p| falls on as the feedback grows, or for a mechanism that moves
-        point = _checked_least(pencil, box, modulus, equal, cut)
+        point = _checked_least(pencil, box, _throughout(modulus), equal, cut)
     choice = describe_point(method, goal, exact(point[0]), exact(point[1]), spread)
     if choice.verdict != "converges":
         raise NumericalError(f"{method.name}: the point {point} found for {goal} is not stable")
@@ -215,67 +207,88 @@ def describe_point(method: Method, goal: str, alpha_hat: Fraction, beta_hat: Fra
         verdict=proven,
         pole=complex(largest_pole(pencil, a, b)),
         worst=float(largest_modulus(pencil, near_a.ravel(), near_b.ravel()).max()),
-        margins=stability_margins(method, a, b) if proven == "converges" else None,
+        margins=stability_margins(method, alpha_hat, beta_hat) if proven == "converges" else None,
     )
 
 
-def stability_margins(method: Method, alpha_hat: float, beta_hat: float) -> Margins:
-    """Return how far a stable, dimensionless point is from |z_p| = 1 along three lines, as factors.
-
-    A factor s on h makes (s alpha_hat, s^2 beta_hat), on alpha (s alpha_hat, beta_hat), on beta (alpha_hat,
-    s^2 beta_hat): paper Eq. 16. An end without |z_p| = 1 (a pole of paper Eq. 17) is infinite, or zero.
-    NumericalError if a pole leaves the range of float64.
-    """
-    pencil = any_pencil_of(method)
-
-    def end(power_of_alpha_hat: int, power_of_beta_hat: int, furthest: float) -> float | None:
-        def unstable(factor: FloatArray) -> BoolArray:
-            scaled_alpha_hat = alpha_hat * factor**power_of_alpha_hat
-            scaled_beta_hat = beta_hat * factor**power_of_beta_hat
-            reached: BoolArray = largest_modulus(pencil, scaled_alpha_hat, scaled_beta_hat) >= 1
-            return reached
-
-        found = first_where(unstable, np.geomspace(1, furthest, SAMPLES))
-        return found[0] if found else None
-
-    def up(power_of_alpha_hat: int, power_of_beta_hat: int) -> float:
-        found = end(power_of_alpha_hat, power_of_beta_hat, FURTHEST)
-        return math.inf if found is None else found
-
-    def down(power_of_alpha_hat: int, power_of_beta_hat: int) -> float:
-        found = end(power_of_alpha_hat, power_of_beta_hat, NEAREST)
-        return 0.0 if found is None else found
-
-    margins = Margins(h=up(1, 2), alpha=(down(1, 0), up(1, 0)), beta=(down(0, 2), up(0, 2)))
-    check_margin(pencil, alpha_hat, beta_hat, (1, 2), [margins.h])
-    check_margin(pencil, alpha_hat, beta_hat, (1, 0), margins.alpha)
-    check_margin(pencil, alpha_hat, beta_hat, (0, 2), margins.beta)
-    return margins
+# `robust` asks for the least of a largest value among SHARES * 5 + 5. Most of them need not be looked at: a point at
+# which one is above what another point has at all cannot be the least.
+#
+#     largest so far   x       . limits alone: cheap, and half of the points are out
+#        |          x          - - - - - - - - reached: the largest of all, at the point that is best so far
+#        |    x  .    .  x     the others, at the points below that line alone
+#        +--------------------
+#
+# Whether a value is below a line needs no pole: Schur's recursion tells whether all are within a circle.
 
 
-def _slowest(method: Method, modulus: Modulus, spread: float) -> Objective:
+def _slowest(method: Method, modulus: Modulus, within: Within | None, spread: float) -> Objective:
     """Return the objective of `robust`: the largest decay factor per largest step, over smaller steps and the spread.
 
     A step of share s of the largest turns (alpha_hat, beta_hat) into (s alpha_hat, s^2 beta_hat) and takes 1/s steps;
     in the limit of small steps what remains is exp(Re mu), the continuous decay. Of the spread the corners and the
-    centre are taken.
+    centre are taken. Of a row of points the least value is exact, and so is every one that is as small; of the others
+    no more is said than that they are larger. `within` tells whether |z_p| is below a bound, faster than `modulus`.
     """
-    shares = np.linspace(0, 1, SHARES + 1)[1:, np.newaxis]
-    offsets = [(-1, -1), (-1, 1), (0, 0), (1, -1), (1, 1)]
+    of_alpha, of_beta = np.array([(-1, -1), (-1, 1), (0, 0), (1, -1), (1, 1)]).T[:, :, np.newaxis] * spread + 1
+    all_shares = np.linspace(0, 1, SHARES + 1)[1:]
+    smaller_steps, largest_step = all_shares[:-1], all_shares[-1:]
     multiple = float(method.step_multiple)
 
-    def objective(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
-        worst = np.zeros(alpha_hat.shape)
-        for of_alpha, of_beta in offsets:
-            off_alpha_hat = (1 + spread * of_alpha) * alpha_hat
-            off_beta_hat = (1 + spread * of_beta) ** 2 * beta_hat
-            slower_mu = -off_alpha_hat / 2 + np.sqrt(np.maximum(0, off_alpha_hat**2 / 4 - off_beta_hat))
-            at_shares = modulus(shares * off_alpha_hat, shares**2 * off_beta_hat)
-            per_largest_step = (at_shares ** (1 / shares)).max(axis=0)
-            worst = np.maximum(worst, np.maximum(np.exp(multiple * slower_mu), per_largest_step))
+    def limit(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
+        half, square = of_alpha * alpha_hat / 2, of_beta**2 * beta_hat
+        slower_mu = -half + np.sqrt(np.maximum(0, half**2 - square))
+        return np.asarray(np.exp(multiple * slower_mu).max(axis=0))
+
+    def scaled(shares: FloatArray, alpha_hat: FloatArray, beta_hat: FloatArray) -> tuple[FloatArray, ...]:
+        """Return the shares, and alpha_hat and beta_hat at them with every spread; shape (shares, 5, points)."""
+        share = shares[:, np.newaxis, np.newaxis]
+        return np.broadcast_arrays(share, share * of_alpha * alpha_hat, share**2 * (of_beta**2 * beta_hat))
+
+    def at_shares(shares: FloatArray, alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
+        share, scaled_alpha, scaled_beta = scaled(shares, alpha_hat, beta_hat)
+        return np.asarray((modulus(scaled_alpha, scaled_beta) ** (1 / share)).max(axis=(0, 1)))
+
+    def below(bound: float | FloatArray, shares: FloatArray, alpha_hat: FloatArray, beta_hat: FloatArray) -> BoolArray:
+        assert within
+        share, scaled_alpha, scaled_beta = scaled(shares, alpha_hat, beta_hat)
+        return np.asarray(within(scaled_alpha, scaled_beta, bound**share).all(axis=(0, 1)))
+
+    def objective(alpha_hat: FloatArray, beta_hat: FloatArray, reached: float) -> FloatArray:
+        worst = limit(alpha_hat, beta_hat)
+        if within and np.isinf(reached) and worst.size > SCOUTS:
+            reached = float(objective(alpha_hat[::SCOUTS], beta_hat[::SCOUTS], reached).min())
+        left = np.flatnonzero(worst <= reached)
+        if within and np.isfinite(reached):
+            kept = left
+            for shares in (largest_step, smaller_steps):  # in this order: most points fail at the largest
+                kept = kept[below(reached * (1 + AS_SMALL), shares, alpha_hat[kept], beta_hat[kept])]
+            if kept.size:  # next to a double pole even the point that was reached may seem larger
+                worst[np.setdiff1d(left, kept)] = np.inf
+                left = kept
+        if not left.size:
+            return worst
+
+        def complete(some: IntArray) -> None:
+            """Let the smaller steps count as well, where one of them is the worst."""
+            if within:
+                some = some[~below(worst[some], smaller_steps, alpha_hat[some], beta_hat[some])]
+            if some.size:
+                worst[some] = np.maximum(worst[some], at_shares(smaller_steps, alpha_hat[some], beta_hat[some]))
+
+        worst[left] = np.maximum(worst[left], at_shares(largest_step, alpha_hat[left], beta_hat[left]))
+        best = left[[np.argmin(worst[left])]]
+        complete(best)
+        reached = min(reached, float(worst[best[0]]))
+        complete(left[worst[left] <= reached])
         return worst
 
     return objective
+
+
+def _throughout(modulus: Modulus) -> Objective:
+    """Return |z_p| as an objective: exact at every point, whatever has been reached."""
+    return lambda alpha_hat, beta_hat, _: modulus(alpha_hat, beta_hat)
 
 
 def _checked_least(
@@ -301,11 +314,15 @@ def _least(extent: Extent, objective: Objective, equal: bool, cut: bool) -> tupl
     if equal:
         centre = np.array([centre.min()])
 
+    reached = math.inf
+
     def over_positive_points(points: FloatArray) -> FloatArray:
+        nonlocal reached
         alpha, beta = points[:, 0], points[:, -1]  # times h; with `equal` the same
         values = np.full(len(points), np.inf)
         positive = (points > 0).all(axis=-1)
-        values[positive] = objective(2 * alpha[positive], beta[positive] ** 2)
+        values[positive] = objective(2 * alpha[positive], beta[positive] ** 2, reached)
+        reached = min(reached, float(values.min()))  # the next grid has this point as its centre
         return values
 
     best, _ = zoom_on_minimum(

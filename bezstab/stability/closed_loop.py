@@ -11,7 +11,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method, SecondOrder, Verdict, closed_loop_at, recursion_verdict, without_shared_factor
+from bezstab.methods import (
+    Method,
+    SecondOrder,
+    Verdict,
+    closed_loop_at,
+    is_schur,
+    recursion_verdict,
+    without_shared_factor,
+)
 from bezstab.stability.arrays import EPS, ComplexArray, FloatArray
 from bezstab.stability.dominant_roots import FEWEST, dominant_root
 from bezstab.stability.exact_sums import feedback_roots
@@ -34,6 +42,12 @@ def verdict(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> Verdict:
     """
     polynomial = closed_loop_at(method, alpha_hat, beta_hat)
     return recursion_verdict(polynomial) if polynomial[0] else "diverges"
+
+
+def converges(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> bool:
+    """Return whether the verdict is 'converges': proven as `verdict`, without asking what else it might be."""
+    polynomial = closed_loop_at(method, alpha_hat, beta_hat)
+    return polynomial[0] != 0 and is_schur(polynomial)
 
 
 def poles(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexArray:

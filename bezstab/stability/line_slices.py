@@ -22,6 +22,7 @@ import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval
 
 from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
+from bezstab.stability.exact_sums import feedback_roots
 from bezstab.stability.pencils import Pencil, roots_in_mu
 
 COSINE_SLACK = 1e-6  # a double zero splits by sqrt(eps) = 1e-8 into the complex plane; more candidates do no harm
@@ -327,11 +328,9 @@ def _quadratic_locus(pencil: Pencil, level: float) -> _QuadraticLocus:
     return _QuadraticLocus(pencil.table, level, theta, np.abs(unsampled.both(theta)))
 
 
-def all_inside(pencil: Pencil, mu: ComplexArray, level: float) -> BoolArray:
-    """Return whether every root z of pi(., mu) has |z| < level, by Schur's recursion; shape of mu."""
-    table = pencil.table
-    scaled = level ** np.arange(len(table))
-    p = np.stack([polyval(mu, row) for row in table]) * scaled.reshape(-1, *[1] * mu.ndim)
+def all_inside(pencil: Pencil, mu: ComplexArray, level: float | FloatArray) -> BoolArray:
+    """Return whether every root z of pi(., mu) has |z| < level, by Schur's recursion; shape of mu, and of levels."""
+    p = np.stack([polyval(mu, row) * level**k for k, row in enumerate(pencil.table)])
     inside = np.ones(mu.shape, bool)
     with np.errstate(all="ignore"):
         while len(p) > 1:
@@ -339,6 +338,15 @@ def all_inside(pencil: Pencil, mu: ComplexArray, level: float) -> BoolArray:
             p = (p[-1].conj() * p - p[0] * p[::-1].conj())[1:]
             p = p / np.abs(p).max(axis=0)
     return inside
+
+
+def all_within(pencil: Pencil, alpha_hat: FloatArray, beta_hat: FloatArray, level: FloatArray) -> BoolArray:
+    """Return whether every pole has |z| < level at each point; arrays of one shape."""
+    first, second = feedback_roots(pencil.feedback, alpha_hat, beta_hat)
+    within = all_inside(pencil, first, level)
+    real = within & (first.imag == 0)  # of a conjugate pair both have the same moduli
+    within[real] = all_inside(pencil, second[real], level[real])
+    return within
 
 
 @dataclass(frozen=True)

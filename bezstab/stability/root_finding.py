@@ -14,6 +14,8 @@ from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
 
 CHUNK = 16384  # points at a time: all the work arrays of one chunk stay in a core's cache
 STRIDE = 16  # of a row of points one in so many has all its roots solved for, the others start from them
+FEW = 2 * STRIDE  # polynomials: to solve them in two turns would take longer than all at once
+TOGETHER = 2**14  # pairs of roots, 256 kB: up to there one call for all of them is faster than one for each
 ITERATIONS = 200  # Aberth's iteration needs about ten; a multiple root, where it is linear, about sixty
 FAR = 1e15  # |z| whose 16th power still fits float64
 NEAR = 0.2  # relative distance of x within which the roots of a neighbour are better starts than the polygon's
@@ -64,6 +66,8 @@ def _roots_of_chunk(table: FloatArray, x: ComplexArray) -> ComplexArray:
 def _roots_from_neighbours(coefficients: ComplexArray, too_far: BoolArray) -> ComplexArray:
     """Return the roots of a row of polynomials: one in STRIDE from scratch, others near it from its roots."""
     points = coefficients.shape[1]
+    if points <= FEW:
+        return _aberth(coefficients, newton_polygon_starts(coefficients))
     solved_coefficients = coefficients[:, ::STRIDE]
     solved = _aberth(solved_coefficients, newton_polygon_starts(solved_coefficients))
     # Nudged apart: coinciding starts would never part, and real ones never leave the axis of a real polynomial.
@@ -124,14 +128,13 @@ def newton_polygon_starts(coefficients: ComplexArray) -> ComplexArray:
     """
     n = len(coefficients) - 1
     size = np.maximum(np.log(np.abs(coefficients)), LOG_OF_ZERO)
-    radii = np.empty((n, coefficients.shape[1]))
-    for i in range(n):
-        least_slopes = []
-        for lower in range(i + 1):
-            chords = [(size[lower] - size[upper]) / (upper - lower) for upper in range(i + 1, n + 1)]
-            least_slopes.append(np.min(chords, axis=0))
-        radii[i] = np.exp(np.max(least_slopes, axis=0))
-    return radii * _spread_directions(n)
+    log_radii = np.full((n, coefficients.shape[1]), -np.inf)
+    for lower in range(n):
+        chords = (size[lower] - size[lower + 1 :]) / np.arange(1, n - lower + 1)[:, np.newaxis]
+        least = np.minimum.accumulate(chords[::-1])[::-1]  # entry i - lower: of the chords to upper > i
+        np.maximum(log_radii[lower:], least, out=log_radii[lower:])
+    starts: ComplexArray = np.exp(log_radii) * _spread_directions(n)
+    return starts
 
 
 def _aberth(coefficients: ComplexArray, starts: ComplexArray) -> ComplexArray:
@@ -196,6 +199,10 @@ def _quotient(numerator: ComplexArray, denominator: ComplexArray) -> ComplexArra
 
 def _repulsion(z: ComplexArray) -> ComplexArray:
     """Return the sums of 1 / (z_i - z_j) over the other roots j, coinciding ones left out."""
+    if z.size * len(z) <= TOGETHER:
+        differences = z[:, np.newaxis] - z
+        reciprocals = np.divide(1, differences, out=np.zeros_like(differences), where=differences != 0)
+        return np.asarray(reciprocals.sum(axis=1))
     repulsion = np.zeros_like(z)
     for i in range(len(z)):
         for j in range(i):

@@ -26,6 +26,8 @@ def bisected(
     """
     for _ in range(halvings):
         middle = (before + after) / 2
+        if ((middle == before) | (middle == after)).all():
+            break  # neighbours all
         held = holds(middle)
         before, after = np.where(held, before, middle), np.where(held, middle, after)
     return before, after

@@ -19,7 +19,7 @@ FAMILIES: dict[str, tuple[Callable[[int], Method], int]] = {
 }
 """What makes a member, and the largest number of steps."""
 
-NODES = 400  # of Gauss and Legendre on half the circle: the integrand is analytic, a fourth of them is enough
+NODES = 128  # of Gauss and Legendre on half the circle: the integrand is analytic, three quarters of them are enough
 FINE_POINTS = 100_000  # of the locus, from which its largest coordinates are taken: to (pi / 1e5)^2 of them
 DRAWN_EVERY = 100  # of the fine points one in so many is drawn
 LIMIT_ERROR_CONSTANT = Fraction(1, 4)  # of 1/4 + 1/(6 (n - 1)), which B_n has

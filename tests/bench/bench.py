@@ -8,9 +8,10 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 import time
 import tracemalloc
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from functools import partial
@@ -21,8 +22,12 @@ from typing import TypeVar
 import mpmath as mp
 import numpy as np
 import sympy as sp
+from matplotlib.backend_bases import MouseEvent
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
-from bezstab.evidence import floquet_rates, map_rows, model_xml, simulated_verdicts
+from bezstab.evidence import MapRows, floquet_rates, map_rows, model_xml, simulated_verdicts
 from bezstab.mechanism import Mechanism, T, compiled_mechanism, initial_state, load_scene, march, parse_scene, simulate
 from bezstab.methods import (
     ALPHA_HAT,
@@ -35,6 +40,7 @@ from bezstab.methods import (
     lookup,
     steps,
 )
+from bezstab.show.explorer import Explorer
 from bezstab.stability import FloatArray, Pencil, Region, pencil_of, region, roots_in_z, spectral_radius, window
 from bezstab.stability.boundary_locus import bounds_of
 from bezstab.stability.self_checks import check_region
@@ -67,6 +73,7 @@ STEPS_A_TURN = 200
 COMPILED_STEPS = 200_000  # of a run that pays for compiling
 COMPILED_CELLS = 44  # per axis of a map of verdicts: as many as one batch of numpy takes
 MUJOCO = {"SYM": "Euler", "RK4": "RK4"}
+UPDATES = 60  # of the window, as the mouse moves
 ENGINE_STEPS = 20_000  # of a run of MuJoCo, of Exudyn and of ours beside them
 
 
@@ -268,22 +275,63 @@ def self_checks() -> Iterator[Line]:
         yield Line("check", f"{name}: a region and its check", (whole - check) / check, 3.0, note)
 
 
+def beside_imports(section: str, what: str, command: Sequence[str], packages: str, promise: float, rounds: int) -> Line:
+    """Return how far a command's processor time is from that of importing the packages it needs; `promise`: at most.
+
+    The least of both over some rounds, taken in turn, in a folder of its own for what it writes.
+    """
+    python, least = sys.executable, [np.inf, np.inf]
+    with tempfile.TemporaryDirectory() as folder:
+        for _ in range(rounds):
+            for k, each in enumerate(([python, "-c", f"import {packages}"], [python, "-m", "bezstab", *command])):
+                before = os.times()
+                subprocess.run(each, check=True, capture_output=True, cwd=folder)
+                after = os.times()
+                spent = after.children_user + after.children_system
+                least[k] = min(least[k], spent - before.children_user - before.children_system)
+    note = f"{least[1]:.2f} s, {least[1] / least[0]:.2f} times as long"
+    return Line(section, f"{what}: import {packages}", least[0] / least[1], 1 / promise, note)
+
+
 def starts() -> Iterator[Line]:
     """Yield how far start-up is from that of the packages it cannot do without: 1 / 1.5 at least."""
-    python, bezstab = sys.executable, [sys.executable, "-m", "bezstab"]
-    poles = [*bezstab, "poles", "--alpha", "0.5", "--beta", "0.1"]
-    for what, command, packages in (
-        ("bezstab --help", [*bezstab, "--help"], "numpy, click"),
-        ("bezstab poles", poles, "numpy, click, sympy"),
-    ):
-        least = [np.inf, np.inf]
-        for _ in range(15):  # interleaved
-            for k, each in enumerate(([python, "-c", f"import {packages}"], command)):
-                begin = time.perf_counter()
-                subprocess.run(each, check=True, stdout=subprocess.DEVNULL)
-                least[k] = min(least[k], time.perf_counter() - begin)
-        note = f"{least[1]:.2f} s, {least[1] / least[0]:.2f} times as long"
-        yield Line("start-up", f"{what}: import {packages}", least[0] / least[1], 1 / 1.5, note)
+    yield beside_imports("start-up", "bezstab --help", ["--help"], "numpy, click", 1.5, 15)
+    poles = ["poles", "--alpha", "0.5", "--beta", "0.1"]
+    yield beside_imports("start-up", "bezstab poles", poles, "numpy, click, sympy", 1.5, 15)
+
+
+def waiting() -> Iterator[Line]:
+    """Yield how far what people wait for is from the imports it needs: a half, or a third, at least."""
+    without_figure = "numpy, click, sympy"
+    with_figure = f"{without_figure}, matplotlib.figure, matplotlib.backends.backend_svg"
+    for name, promise in (("B4", 2.0), ("AB8", 3.0), ("B12", 3.0)):
+        step = ["--method", name, "--h", "0.001"]
+        yield beside_imports("waiting", f"choose, {name}", ["choose", *step], without_figure, promise, 5)
+        check = ["check", *step, "--alpha", "5", "--beta", "5", "--physical"]
+        yield beside_imports("waiting", f"check, {name}", check, without_figure, promise, 5)
+    yield beside_imports("waiting", "region, B4", ["region", "--method", "B4"], with_figure, 2.0, 5)
+    yield beside_imports("waiting", "family bezier", ["family", "bezier"], with_figure, 3.0, 3)
+    yield explorer_updates()
+
+
+def explorer_updates() -> Line:
+    """Return how many times 30 the window's updates a second of processor time are, as the mouse moves over it."""
+    figure = Figure(figsize=(9, 5))
+    canvas = FigureCanvasAgg(figure)
+    explorer = Explorer(figure, [lookup("B4")], 0.001, print)
+    canvas.draw()  # type: ignore[no-untyped-call]
+    places = [explorer.map.transData.transform((0.1 + 0.01 * k, 0.1 + 0.005 * k)) for k in range(UPDATES)]
+
+    def move() -> None:
+        for x, y in places:
+            name = "motion_notify_event"
+            canvas.callbacks.process(name, MouseEvent(name, canvas, x, y))
+
+    start = time.process_time()
+    move()
+    spent = time.process_time() - start
+    note = f"{UPDATES / spent:.0f} updates a second"
+    return Line("waiting", "explore, B4: 30 updates a second", UPDATES / spent / 30, 1.0, note)
 
 
 Slope = Callable[[float, FloatArray], FloatArray]
@@ -450,13 +498,18 @@ def compiled_runs() -> Iterator[Line]:
             times, verdicts = [], []
             for compiled in (False, True):
                 chunks = [replace(half, compiled=compiled) for half in halves]
-                list(pool.map(simulated_verdicts, chunks))  # so that both processes have compiled
-                taken, found = fastest(lambda: list(pool.map(simulated_verdicts, chunks)), 2)  # noqa: B023
+                judged_by(pool, chunks)  # so that both processes have compiled
+                taken, found = fastest(partial(judged_by, pool, chunks), 2)
                 times.append(taken)
                 verdicts.append(found)
             assert all(np.array_equal(a["diverges"], b["diverges"]) for a, b in zip(*verdicts, strict=True))
             note = f"{COMPILED_CELLS**2} runs in {times[1]:.2f} s by two processes that have compiled"
             yield Line("compiled", f"{name}: a map of verdicts by numpy", times[0] / times[1], 4.0, note)
+
+
+def judged_by(pool: ProcessPoolExecutor, chunks: list[MapRows]) -> list[Mapping[str, NDArray[np.generic]]]:
+    """Return the verdicts of chunks of a map, from the processes of a pool."""
+    return list(pool.map(simulated_verdicts, chunks))
 
 
 def compiled_alone(
@@ -574,7 +627,18 @@ def main() -> int:
     """Measure, print and write everything; return 1 if a promise is broken or a ratio has fallen by a third."""
     before: dict[str, float] = json.loads(BASELINE.read_text(encoding="utf-8")) if BASELINE.exists() else {}
     lines = []
-    for section in (maps, maps_of_other_kinds, moving_mechanisms, self_checks, starts, runs, engines, compiled_runs):
+    sections = (
+        maps,
+        maps_of_other_kinds,
+        moving_mechanisms,
+        self_checks,
+        starts,
+        waiting,
+        runs,
+        engines,
+        compiled_runs,
+    )
+    for section in sections:
         for line in section():
             lines.append(line)
             print(f"{line.section:9} {line.what:50} {line.ratio:8.3g}  {line.note}", flush=True)

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -15,12 +16,13 @@ from bezstab.stability import (
     best_points,
     choices,
     choose,
-    first_where,
+    margins,
     pencil_of,
     region,
     stability_margins,
 )
 from bezstab.stability.answer_checks import check_best_point, check_margin
+from bezstab.stability.path_crossings import Path
 
 
 @pytest.fixture(autouse=True)
@@ -79,18 +81,22 @@ def test_a_choice_that_a_neighbour_betters_is_no_answer(
         choose(lookup(name), goal, equal=equal)
 
 
-@pytest.mark.parametrize("name", ["B4", "AB4", "RK4", "SYM"])
-@pytest.mark.parametrize("off", [1 - 1e-6, 1 + 1e-6])
-def test_a_margin_beside_its_place_is_no_answer(name: str, off: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    def beside(holds: Any, samples: Any) -> tuple[float, float] | None:
-        found = first_where(holds, samples)
-        return (found[0] * off, found[1] * off) if found else None
-
-    monkeypatch.setattr(choices, "first_where", beside)
-    with pytest.raises(NumericalError, match="margin"):
-        stability_margins(lookup(name), 0.3, 0.06)
+PATHS = [(1, 2), (1, 0), (0, 2)]
 
 
-def test_a_margin_that_is_not_there_is_no_answer() -> None:
+@pytest.mark.parametrize("name", ["B4", "RK4", "SYM", "verlet-kdk"])
+@pytest.mark.parametrize("off", [1 - 1e-8, 1 + 1e-8])
+def test_a_margin_beside_its_place_is_no_answer(name: str, off: float) -> None:
+    found = stability_margins(lookup(name), 0.3, 0.06)
+    for powers, ends in zip(PATHS, [(0.0, found.h), found.alpha, found.beta], strict=True):
+        path = Path(lookup(name), Fraction(3, 10), Fraction(6, 100), powers)
+        check_margin(path, ends)
+        with pytest.raises(NumericalError, match="margin"):
+            check_margin(path, (ends[0], off * ends[1]))
+
+
+@pytest.mark.parametrize("name", ["B4", "RK4"])
+def test_a_crossing_that_was_missed_is_no_answer(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(margins, "crossing_factors", lambda path: [])
     with pytest.raises(NumericalError, match="before the margin"):
-        check_margin(pencil_of(lookup("B4")), 0.3, 0.06, (1, 2), [float("inf")])
+        stability_margins(lookup(name), 0.3, 0.06)

@@ -3,8 +3,6 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from bezstab.errors import InputError
 from bezstab.methods import lookup
@@ -15,12 +13,8 @@ from bezstab.stability import (
     choose_at_step,
     describe_point,
     pencil_of,
-    region,
     roots_in_z,
     spectral_radius,
-    stability_margins,
-    verdict,
-    window,
 )
 from tests.methods.kinds import sampled
 from tests.reference.robust_decay import worst_decay
@@ -135,40 +129,6 @@ def test_alpha_and_beta_can_be_kept_equal(goal: Goal) -> None:
     t = np.linspace(0.01, 2.7, 2000)
     if goal == "fastest":
         assert abs(chosen.pole) <= spectral_radius(lookup("RK4"), 2 * t, t**2).min() + 1e-9
-
-
-@given(st.floats(0.05, 1.9), st.floats(0.05, 0.95))
-@settings(deadline=None)
-def test_margins_of_symplectic_euler_are_those_of_its_triangle(a: float, share: float) -> None:
-    b = share * (4 - 2 * a)
-    found = stability_margins(lookup("SYM"), a, b)
-    exact = pytest.approx  # 0 < alpha_hat < 2 and 0 < beta_hat < 4 - 2 alpha_hat
-    assert found.h == exact(min((-2 * a + math.sqrt(4 * a * a + 16 * b)) / (2 * b), 2 / a), rel=1e-9)
-    assert found.alpha[1] == exact((4 - b) / (2 * a), rel=1e-9)
-    assert found.beta[1] == exact(math.sqrt((4 - 2 * a) / b), rel=1e-9)
-    assert (found.alpha[0], found.beta[0]) == (0, 0)
-
-
-@pytest.mark.parametrize("name", sampled(["B2", "B4", "B12", "AB4", "ABM3", "RK4", "SYM", "RK4@5"]))
-def test_each_end_of_a_margin_lies_between_two_proven_verdicts(name: str) -> None:
-    """One part in 1e9 nearer the point converges, one part further diverges, in exact arithmetic."""
-    method, part = lookup(name), Fraction(1, 10**9)
-    (_, alpha_hat_max), (_, beta_hat_max) = window(region(method))
-    alpha_hat, beta_hat = Fraction(0.4 * alpha_hat_max), Fraction(0.2 * beta_hat_max)
-    assert verdict(method, alpha_hat, beta_hat) == "converges"
-    found = stability_margins(method, float(alpha_hat), float(beta_hat))
-    # an end, the powers with which its factor enters alpha_hat and beta_hat, and the way outwards
-    ends = [(found.h, 1, 2, 1), (found.alpha[1], 1, 0, 1), (found.alpha[0], 1, 0, -1)]
-    ends += [(found.beta[1], 0, 2, 1), (found.beta[0], 0, 2, -1)]
-    assert math.isfinite(found.h)
-    for end, of_alpha_hat, of_beta_hat, outwards in ends:
-        if 0 < end < math.inf:
-            nearer, further = (Fraction(end) * (1 + outwards * side * part) for side in (-1, 1))
-            inside, outside = (
-                verdict(method, alpha_hat * factor**of_alpha_hat, beta_hat * factor**of_beta_hat)
-                for factor in (nearer, further)
-            )
-            assert (inside, outside) == ("converges", "diverges")
 
 
 def test_a_choice_is_proven_and_described() -> None:

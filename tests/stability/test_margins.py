@@ -1,0 +1,113 @@
+"""Margins against formulas, proven verdicts and a scan of |z_p|."""
+
+import math
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bezstab.methods import lookup
+from bezstab.stability import Margins, region, spectral_radius, stability_margins, verdict, window
+from tests.methods.kinds import sampled
+
+PART = Fraction(1, 10**9)
+
+
+def outer_ends(margins: Margins) -> list[tuple[float, int, int, int]]:
+    """Return every end, the powers with which its factor enters alpha_hat and beta_hat, and the way outwards."""
+    ends = [(margins.h, 1, 2, 1), (margins.alpha[1], 1, 0, 1), (margins.alpha[0], 1, 0, -1)]
+    return [*ends, (margins.beta[1], 0, 2, 1), (margins.beta[0], 0, 2, -1)]
+
+
+def assert_each_end_is_proven(name: str, alpha_hat: Fraction, beta_hat: Fraction) -> None:
+    """One part in 1e9 nearer the point converges, one part further does not, in exact arithmetic."""
+    method = lookup(name)
+    for end, of_alpha_hat, of_beta_hat, outwards in outer_ends(stability_margins(method, alpha_hat, beta_hat)):
+        if 0 < end < math.inf:
+            nearer, further = (Fraction(end) * (1 + outwards * side * PART) for side in (-1, 1))
+            inside, outside = (
+                verdict(method, alpha_hat * factor**of_alpha_hat, beta_hat * factor**of_beta_hat)
+                for factor in (nearer, further)
+            )
+            assert (inside, outside) == ("converges", "diverges")
+
+
+@given(st.floats(0.05, 1.9), st.floats(0.05, 0.95))
+@settings(deadline=None, max_examples=20)
+def test_margins_of_symplectic_euler_are_those_of_its_triangle(a: float, share: float) -> None:
+    b = share * (4 - 2 * a)
+    found = stability_margins(lookup("SYM"), a, b)
+    exact = pytest.approx  # 0 < alpha_hat < 2 and 0 < beta_hat < 4 - 2 alpha_hat
+    assert found.h == exact(min((-2 * a + math.sqrt(4 * a * a + 16 * b)) / (2 * b), 2 / a), rel=1e-12)
+    assert found.alpha[1] == exact((4 - b) / (2 * a), rel=1e-12)
+    assert found.beta[1] == exact(math.sqrt((4 - 2 * a) / b), rel=1e-12)
+    assert (found.alpha[0], found.beta[0]) == (0, 0)
+
+
+def test_margins_of_explicit_euler_have_formulas() -> None:
+    """z = 1 + mu: a conjugate pair is inside for beta_hat < alpha_hat, a real pair for mu > -2."""
+    a, b = 0.01, 0.0025
+    found = stability_margins(lookup("B1"), a, b)
+    assert found.h == pytest.approx(a / b, rel=1e-14)
+    assert found.alpha == pytest.approx((b / a, (4 + b) / (2 * a)), rel=1e-14)
+    assert found.beta == pytest.approx((0, math.sqrt(a / b)), rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    "name",
+    sampled(
+        ["B2", "B4", "B12", "AB4", "ABM3", "RK4", "SYM", "RK4@5", "bdf3", "am4", "verlet-kdk", "yoshida4"],
+        quick=["B4", "RK4", "verlet-kdk"],
+    ),
+)
+def test_each_end_of_a_margin_lies_between_two_proven_verdicts(name: str) -> None:
+    (_, alpha_hat_max), (_, beta_hat_max) = window(region(lookup(name)))
+    alpha_hat, beta_hat = Fraction(0.4 * alpha_hat_max), Fraction(0.2 * beta_hat_max)
+    if verdict(lookup(name), alpha_hat, beta_hat) != "converges":
+        beta_hat = Fraction(0.05 * beta_hat_max)
+    assert verdict(lookup(name), alpha_hat, beta_hat) == "converges"
+    assert_each_end_is_proven(name, alpha_hat, beta_hat)
+
+
+@pytest.mark.parametrize("name", ["B4", "RK4", "bdf3"])
+@pytest.mark.parametrize("exponent", [3, 5, 7])
+def test_margins_of_weak_feedback_are_right_however_far(name: str, exponent: int) -> None:
+    """Rounding cannot tell such a mu from the imaginary axis; factors reach from 1e-20 to 1e8."""
+    alpha_hat, beta_hat = Fraction(2, 10**exponent), Fraction(1, 10 ** (2 * exponent))
+    found = stability_margins(lookup(name), alpha_hat, beta_hat)
+    assert found.alpha[1] > 10 ** (exponent - 1)
+    assert_each_end_is_proven(name, alpha_hat, beta_hat)
+
+
+def test_the_least_alpha_of_a_bezier_method_falls_with_the_third_power_of_beta() -> None:
+    """mu = i theta + C theta^3 i - D theta^4 + ...: order two, whose leading error is imaginary, so alpha_hat ~ q^2."""
+    lower = [
+        stability_margins(lookup("B4"), Fraction(2, 10**k), Fraction(1, 10 ** (2 * k))).alpha[0] for k in (3, 4, 5)
+    ]
+    assert lower[0] / lower[1] == pytest.approx(1000, rel=1e-4)
+    assert lower[1] / lower[2] == pytest.approx(1000, rel=1e-6)
+
+
+@pytest.mark.parametrize("name", ["B4", "RK4"])
+def test_at_critical_damping_both_mu_cross_together(name: str) -> None:
+    """On alpha = beta the double mu leaves S_1 where it meets the end of its real interval."""
+    t = Fraction(1, 10)
+    found = stability_margins(lookup(name), 2 * t, t**2)
+    assert verdict(lookup(name), 2 * t * Fraction(found.h) * (1 - PART), (t * Fraction(found.h) * (1 - PART)) ** 2) == (
+        "converges"
+    )
+    end = {"B4": 27 / 34, "RK4": 2.785293563405282}[name]  # -mu(-1), and that of R(mu) = 1
+    assert found.h * float(t) == pytest.approx(end, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", ["B4", "AB4", "ABM3", "RK4", "hht", "verlet-kdk"])
+def test_between_the_ends_of_a_margin_every_sampled_pole_is_inside(name: str) -> None:
+    (_, alpha_hat_max), (_, beta_hat_max) = window(region(lookup(name)))
+    alpha_hat, beta_hat = 0.2 * alpha_hat_max, 0.05 * beta_hat_max
+    for end, of_alpha_hat, of_beta_hat, _ in outer_ends(stability_margins(lookup(name), alpha_hat, beta_hat)):
+        furthest = end if 0 < end < math.inf else (1e3 if end else 1e-3)
+        factors = np.geomspace(1, furthest, 500)[:-1]
+        z_abs = spectral_radius(lookup(name), alpha_hat * factors**of_alpha_hat, beta_hat * factors**of_beta_hat)
+        assert z_abs.max() < 1
