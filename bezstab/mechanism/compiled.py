@@ -15,6 +15,8 @@ from bezstab.mechanism.generated_code import (
     compiled_source,
     multipliers_source,
     observation_source,
+    residuals_source,
+    second_order_stepper_source,
     stepper_source,
 )
 from bezstab.mechanism.newton_iterations import (
@@ -27,7 +29,7 @@ from bezstab.mechanism.newton_iterations import (
     rounding_of,
 )
 from bezstab.mechanism.scenes import Scene
-from bezstab.mechanism.second_order_code import implicit_groups, residuals_source, second_order_stepper_source
+from bezstab.mechanism.second_order_turns import implicit_groups
 from bezstab.methods import Method, SecondOrder, implicit, second_order_form
 
 State = tuple[Any, ...]
@@ -83,11 +85,7 @@ def stepper_code(mechanism: Mechanism, method: Method) -> str:
     scheme = run_as_second_order(method)
     if scheme is None:
         return stepper_source(mechanism.acceleration_code, method)
-    parts = [
-        second_order_stepper_source(mechanism.acceleration_code, scheme),
-        residuals_source(mechanism.acceleration_code, scheme, with_pivots=True),
-    ]
-    return "\n".join(parts)
+    return second_order_stepper_source(mechanism.acceleration_code, scheme)
 
 
 def run_as_second_order(method: Method) -> SecondOrder | None:
