@@ -7,11 +7,12 @@ import numpy as np
 
 from bezstab.errors import NumericalError
 from bezstab.methods import Method
-from bezstab.stability.arrays import EPS, FloatArray
-from bezstab.stability.closed_loop import AnyPencil, largest_modulus, verdict
+from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, FloatArray
+from bezstab.stability.closed_loop import AnyPencil, largest_modulus, largest_pole, verdict
 from bezstab.stability.line_slices import mu_bound, real_events, slices, turning_radii
 from bezstab.stability.pencils import Pencil
 from bezstab.stability.plane_pencils import PlanePencil
+from bezstab.stability.searches import bisected
 
 Extent = tuple[tuple[float, float], tuple[float, float]]
 Objective = Callable[[FloatArray, FloatArray], FloatArray]
@@ -19,6 +20,7 @@ Objective = Callable[[FloatArray, FloatArray], FloatArray]
 SAMPLES = 400  # over the region's box: a few thousandths of what the search itself looks at
 NEIGHBOURS = 32  # on each ring
 RINGS = 10.0 ** -np.arange(1, 6)  # radii, as shares of the region's box
+CLOSE_RINGS = RINGS[1:]  # as shares of a point's own coordinates
 BETTER = 1e-6  # relative: a search ends where its objective is flat to this, along a kink's bed
 KINK = 1e-3  # a pole of multiplicity m, however small, is good to eps^(1/m) of what it is a difference of, which is
 # near one; m = 4 among the best points
@@ -103,10 +105,7 @@ def check_least(
 
     cut: only points within the extent are an answer.
     """
-    alpha_hats, beta_hats = sampled_points(extent, alpha_hat, beta_hat)
-    if cut:
-        within = (alpha_hats <= extent[0][1]) & (beta_hats <= extent[1][1])
-        alpha_hats, beta_hats = alpha_hats[within], beta_hats[within]
+    alpha_hats, beta_hats = _positive_samples(extent, alpha_hat, beta_hat, cut)
     _compare(method, objective, alpha_hat, beta_hat, alpha_hats, beta_hats)
 
 
@@ -119,6 +118,78 @@ def check_least_equal(
     if cut:
         alpha_hats = alpha_hats[alpha_hats <= min(extent[0][1], 2 * np.sqrt(extent[1][1]))]
     _compare(method, objective, alpha_hat, alpha_hat**2 / 4, alpha_hats, alpha_hats**2 / 4)
+
+
+def check_critical(pencil: AnyPencil, alpha_hat: float, beta_hat: float) -> None:
+    r"""Raise NumericalError unless the dominant pole is real and positive at a point, and smaller at no neighbour.
+
+    Neighbours lie on rings around it where the dominant pole is real and positive, too:
+
+          .-----.        the ends of such a piece of a ring, found by bisection, are where the pole is double or as
+        /    \###\      large as another: there it is smallest, and a curve of such places leads through the point
+       |      x####|
+        \    /###/
+          '-----'
+    """
+    name = pencil.method.name
+    here = complex(largest_pole(pencil, alpha_hat, beta_hat))
+    if abs(here) < KINK:
+        return  # every pole is zero to rounding: none is faster
+    # where a rival is as large as the double pole, on one side of the point it is smaller
+    beside = np.array([1 - BETTER, 1, 1 + BETTER])
+    if not _real_and_positive(largest_pole(pencil, alpha_hat * beside, beta_hat * beside**2), KINK).any():
+        raise NumericalError(f"{name}: the dominant pole {here:.6g} of the critical point is not real and positive")
+
+    def poles_at(radius: FloatArray, angle: FloatArray) -> ComplexArray:
+        alpha_hats, beta_hats = alpha_hat * (1 + radius * np.cos(angle)), beta_hat * (1 + radius * np.sin(angle))
+        return largest_pole(pencil, alpha_hats, beta_hats)
+
+    angles = np.linspace(0, 2 * np.pi, NEIGHBOURS + 1)
+    counts = _real_and_positive(poles_at(CLOSE_RINGS[:, np.newaxis], angles), EPS)
+    ring, k = np.nonzero(counts[:, 1:] != counts[:, :-1])
+    radius = CLOSE_RINGS[ring]
+    first_counts = counts[ring, k]
+    _, ends = bisected(
+        lambda angle: _real_and_positive(poles_at(radius, angle), EPS),
+        before=np.where(first_counts, angles[k + 1], angles[k]),
+        after=np.where(first_counts, angles[k], angles[k + 1]),
+    )
+    smallest = poles_at(radius, ends).real.min(initial=np.inf)
+    if smallest < abs(here) * (1 - BETTER) - ROOT_OF_ROUNDING:
+        raise NumericalError(f"{name}: the critical point has {abs(here):.9g}, but a neighbour has {smallest:.9g}")
+
+
+def _real_and_positive(poles: ComplexArray, tolerance: float) -> BoolArray:
+    return np.asarray((np.abs(poles.imag) <= tolerance * np.abs(poles)) & (poles.real > 0))
+
+
+def check_gentle(method: Method, modulus: Objective, alpha_hat: float, rate: float) -> None:
+    """Raise NumericalError unless |z_p| is at most the rate at alpha = beta, and above it at every sampled smaller one.
+
+    `alpha_hat` = 2 alpha h; modulus: |z_p|, or what takes its place.
+    """
+    smaller = alpha_hat * np.concatenate([1 - CLOSE_RINGS, np.arange(1, SAMPLES) / SAMPLES])
+    here = float(modulus(np.array([alpha_hat]), np.array([alpha_hat**2 / 4]))[0])
+    if here > rate + ROOT_OF_ROUNDING:
+        raise NumericalError(f"{method.name}: |z_p| = {here:.9g} at the gentle point, needed {rate:.9g}")
+    values = modulus(smaller, smaller**2 / 4)
+    enough = np.flatnonzero(values < rate - ROOT_OF_ROUNDING)
+    if enough.size:
+        first = smaller[enough].min()
+        raise NumericalError(
+            f"{method.name}: alpha_hat = {first:.9g} with alpha = beta is gentler than {alpha_hat:.9g}"
+        )
+
+
+def _positive_samples(
+    extent: Extent, alpha_hat: float, beta_hat: float, cut: bool = False
+) -> tuple[FloatArray, FloatArray]:
+    """Return those of the sampled points with alpha, beta > 0; cut: within the extent."""
+    alpha_hats, beta_hats = sampled_points(extent, alpha_hat, beta_hat)
+    kept = (alpha_hats > 0) & (beta_hats > 0)
+    if cut:
+        kept &= (alpha_hats <= extent[0][1]) & (beta_hats <= extent[1][1])
+    return alpha_hats[kept], beta_hats[kept]
 
 
 def _compare(

@@ -12,7 +12,7 @@ import numpy as np
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method, Verdict, steps
 from bezstab.rationals import exact
-from bezstab.stability.answer_checks import check_least, check_least_equal, check_margin
+from bezstab.stability.answer_checks import check_critical, check_gentle, check_least, check_least_equal, check_margin
 from bezstab.stability.arrays import BoolArray, FloatArray
 from bezstab.stability.best_points import best_point
 from bezstab.stability.closed_loop import (
@@ -28,7 +28,7 @@ from bezstab.stability.pencils import Pencil
 from bezstab.stability.plane_best_points import critical_point
 from bezstab.stability.plane_pencils import PlanePencil
 from bezstab.stability.regions import Extent, Region, pole_place, region
-from bezstab.stability.searches import first_where, zoom_on_minimum
+from bezstab.stability.searches import bisected, first_where, zoom_on_minimum
 
 Goal = Literal["robust", "fastest", "critical", "gentle"]
 Objective = Callable[[FloatArray, FloatArray], FloatArray]
@@ -49,6 +49,8 @@ DEADBEAT = 1e-6  # a double pole at zero, as far as float64 tells it
 SLOW = 1e-12  # 1 - |z_p| of which rounding leaves three digits: the decay takes 1e13 steps
 REAL = 1e-9  # of |z|: an imaginary part below it is rounding
 FURTHEST = 1e4  # factor on h, alpha or beta beyond which nobody asks
+BESIDE = 1e-3  # relative: an end of a margin where poles meet is no further from its place
+VERDICTS = 30  # halvings of that range, each a proven verdict: to 2e-12
 SEARCHED = 4.0  # alpha h and beta h: there e^-4, a fiftieth, is left after a step, and nobody asks for faster decay
 NEAREST = 1e-4  # and below which |z_p| is one to rounding
 
@@ -113,7 +115,8 @@ def choose(
 ) -> Choice:
     """Return the point that a goal asks for, dimensionless and proven stable.
 
-    fastest: the smallest |z_p|. critical: the fastest whose dominant pole is real and positive. robust: the fastest at
+    fastest: the smallest |z_p|. critical: from small parameters on along those with a double pole, the fastest before
+    another pole overtakes it, so that nothing oscillates; no neighbour is faster without. robust: the fastest at
     worst over every smaller step at the same alpha, beta, and alpha and beta off by the spread (a share), where
     fast means decay per second. gentle: the smallest alpha = beta with |z_p| <= rate. `equal` keeps alpha = beta.
     `modulus` takes the place of |z_p| at rest, for a mechanism that moves; critical asks for poles at rest.
@@ -132,9 +135,12 @@ def choose(
         modulus = partial(largest_modulus, pencil)
     if goal == "gentle":
         of_all = partial(largest_modulus, any_pencil_of(method)) if at_rest else modulus
-        point, cut = _gentle(method, of_all, box, 0.0 if rate is None else rate), False
+        rate = 0.0 if rate is None else rate
+        point, cut = _gentle(method, of_all, box, rate), False
+        check_gentle(method, of_all, point[0], rate)
     elif goal == "critical":
         point = _critical_point(pencil, box, cut)
+        check_critical(pencil, *point)
         if equal and not math.isclose(point[1], point[0] ** 2 / 4):
             raise InputError(
                 f"--keep alpha=beta: the double mu of {method.name} is not at alpha = beta; no --goal critical"
@@ -246,11 +252,47 @@ def stability_margins(method: Method, alpha_hat: float, beta_hat: float) -> Marg
         found = end(power_of_alpha_hat, power_of_beta_hat, NEAREST)
         return 0.0 if found is None else found
 
-    margins = Margins(h=up(1, 2), alpha=(down(1, 0), up(1, 0)), beta=(down(0, 2), up(0, 2)))
-    check_margin(pencil, alpha_hat, beta_hat, (1, 2), [margins.h])
-    check_margin(pencil, alpha_hat, beta_hat, (1, 0), margins.alpha)
-    check_margin(pencil, alpha_hat, beta_hat, (0, 2), margins.beta)
-    return margins
+    return Margins(
+        h=_checked_end(pencil, alpha_hat, beta_hat, (1, 2), up(1, 2)),
+        alpha=(
+            _checked_end(pencil, alpha_hat, beta_hat, (1, 0), down(1, 0)),
+            _checked_end(pencil, alpha_hat, beta_hat, (1, 0), up(1, 0)),
+        ),
+        beta=(
+            _checked_end(pencil, alpha_hat, beta_hat, (0, 2), down(0, 2)),
+            _checked_end(pencil, alpha_hat, beta_hat, (0, 2), up(0, 2)),
+        ),
+    )
+
+
+def _checked_end(pencil: AnyPencil, alpha_hat: float, beta_hat: float, powers: tuple[int, int], end: float) -> float:
+    """Return the end of a margin, a factor, held against proven verdicts; NumericalError if it is none.
+
+    On alpha = beta two mu meet, and with them poles, in some methods four: float64 parts those by up to a thousandth.
+    An end that is beside its place for that is sought by the verdicts themselves.
+    """
+    try:
+        check_margin(pencil, alpha_hat, beta_hat, powers, [end])
+    except NumericalError:
+        if not 0 < end < math.inf:
+            raise
+    else:
+        return end
+    exact_alpha_hat, exact_beta_hat = Fraction(alpha_hat), Fraction(beta_hat)
+
+    def not_stable(factors: FloatArray) -> BoolArray:
+        verdicts = []
+        for factor in map(Fraction, factors.tolist()):
+            scaled = exact_alpha_hat * factor ** powers[0], exact_beta_hat * factor ** powers[1]
+            verdicts.append(verdict(pencil.method, *scaled) != "converges")
+        return np.array(verdicts)
+
+    outwards = 1 if end > 1 else -1
+    inner, outer = np.array([end * (1 - outwards * BESIDE)]), np.array([end * (1 + outwards * BESIDE)])
+    last_stable, _ = bisected(not_stable, inner, outer, VERDICTS)
+    proven = float(last_stable[0])
+    check_margin(pencil, alpha_hat, beta_hat, powers, [proven])
+    return proven
 
 
 def _slowest(method: Method, modulus: Modulus, spread: float) -> Objective:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,7 @@ from bezstab.stability import (
     pencil_of,
     region,
     stability_margins,
+    verdict,
 )
 from bezstab.stability.answer_checks import check_best_point, check_margin
 
@@ -79,16 +81,65 @@ def test_a_choice_that_a_neighbour_betters_is_no_answer(
         choose(lookup(name), goal, equal=equal)
 
 
+@pytest.mark.parametrize("name", ["B4", "RK4", "ABM3", "hht"])
+@pytest.mark.parametrize("off", [0.99, 1.01])
+def test_a_critical_point_beside_its_place_is_no_answer(name: str, off: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    critical_point = choices._critical_point
+
+    def beside(pencil: Any, box: Any, cut: bool) -> tuple[float, float]:
+        alpha_hat, beta_hat = critical_point(pencil, box, cut)
+        return off * alpha_hat, off**2 * beta_hat
+
+    monkeypatch.setattr(choices, "_critical_point", beside)
+    with pytest.raises(NumericalError, match="critical point"):
+        choose(lookup(name), "critical")
+
+
+@pytest.mark.parametrize("name", ["B4", "RK4", "bdf2"])
+@pytest.mark.parametrize("off", [1 - 1e-5, 1 + 1e-4])
+def test_a_gentle_point_beside_its_place_is_no_answer(name: str, off: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    gentle = choices._gentle
+
+    def beside(method: Any, modulus: Any, box: Any, rate: float) -> tuple[float, float]:
+        alpha_hat, beta_hat = gentle(method, modulus, box, rate)
+        return off * alpha_hat, off**2 * beta_hat
+
+    monkeypatch.setattr(choices, "_gentle", beside)
+    with pytest.raises(NumericalError, match="gentle"):
+        choose(lookup(name), "gentle", rate=0.9)
+
+
 @pytest.mark.parametrize("name", ["B4", "AB4", "RK4", "SYM"])
-@pytest.mark.parametrize("off", [1 - 1e-6, 1 + 1e-6])
-def test_a_margin_beside_its_place_is_no_answer(name: str, off: float, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(("off", "repaired"), [(1 - 1e-6, True), (1 + 1e-6, True), (0.99, False), (1.01, False)])
+def test_a_margin_beside_its_place_is_put_there_by_verdicts_or_is_no_answer(
+    name: str, off: float, repaired: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    right = stability_margins(lookup(name), 0.3, 0.06)
+
     def beside(holds: Any, samples: Any) -> tuple[float, float] | None:
         found = first_where(holds, samples)
         return (found[0] * off, found[1] * off) if found else None
 
     monkeypatch.setattr(choices, "first_where", beside)
-    with pytest.raises(NumericalError, match="margin"):
-        stability_margins(lookup(name), 0.3, 0.06)
+    if repaired:
+        found = stability_margins(lookup(name), 0.3, 0.06)
+        assert found.h == pytest.approx(right.h, rel=1e-11)
+        assert found.alpha == pytest.approx(right.alpha, rel=1e-11)
+        assert found.beta == pytest.approx(right.beta, rel=1e-11)
+    else:
+        with pytest.raises(NumericalError, match="margin"):
+            stability_margins(lookup(name), 0.3, 0.06)
+
+
+@pytest.mark.parametrize("rate", [0.99, 0.9, 0.7])
+def test_margins_of_a_fourfold_pole_are_where_the_verdict_turns(rate: float) -> None:
+    """On alpha = beta four poles of ABM2 meet, and float64 alone is off by more than the check allows."""
+    gentle = choose(lookup("ABM2"), "gentle", rate=rate)
+    assert gentle.margins
+    for side, expected in ((Fraction(1, 10**9), "diverges"), (-Fraction(1, 10**9), "converges")):
+        factor = Fraction(gentle.margins.h) * (1 + side)
+        point = Fraction(gentle.alpha_hat) * factor, Fraction(gentle.beta_hat) * factor**2
+        assert verdict(lookup("ABM2"), *point) == expected
 
 
 def test_a_margin_that_is_not_there_is_no_answer() -> None:
