@@ -19,8 +19,8 @@ Objective = Callable[[FloatArray, FloatArray], FloatArray]
 
 SAMPLES = 400  # over the region's box: a few thousandths of what the search itself looks at
 NEIGHBOURS = 32  # on each ring
-RINGS = 10.0 ** -np.arange(1, 6)  # radii, as shares of the region's box
-CLOSE_RINGS = RINGS[1:]  # as shares of a point's own coordinates
+RINGS: FloatArray = 10.0 ** -np.arange(1, 6)  # radii, as shares of the region's box
+CLOSE_RINGS: FloatArray = RINGS[1:]  # as shares of a point's own coordinates
 BETTER = 1e-6  # relative: a search ends where its objective is flat to this, along a kink's bed
 KINK = 1e-3  # a pole of multiplicity m, however small, is good to eps^(1/m) of what it is a difference of, which is
 # near one; m = 4 among the best points
