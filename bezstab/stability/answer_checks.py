@@ -19,11 +19,13 @@ Objective = Callable[[FloatArray, FloatArray], FloatArray]
 
 SAMPLES = 400  # over the region's box: a few thousandths of what the search itself looks at
 NEIGHBOURS = 32  # on each ring
-RINGS: FloatArray = 10.0 ** -np.arange(1, 6)  # radii, as shares of the region's box
+RINGS: FloatArray = np.array([1e-1, 1e-2, 1e-3, 1e-4, 1e-5])  # radii, as shares of the region's box
 CLOSE_RINGS: FloatArray = RINGS[1:]  # as shares of a point's own coordinates
 BETTER = 1e-6  # relative: a search ends where its objective is flat to this, along a kink's bed
 KINK = 1e-3  # a pole of multiplicity m, however small, is good to eps^(1/m) of what it is a difference of, which is
 # near one; m = 4 among the best points
+ROUNDINGS = 8  # of a point's coordinates, either way: what they do to |z_p| is how well it is known there
+PARTED = 4.0  # times that: the point itself is found from poles of the same rounding
 NO_LESS = 1e-9  # of one: the search for a least value of zero ends so far from it
 NEAR = (8.0, 64.0)  # alpha_hat, beta_hat: corners of a region may lie a thousandfold further out, least values do not
 ROOT_OF_ROUNDING = 1e-7  # a double pole at zero, as far as float64 tells it
@@ -120,42 +122,52 @@ def check_least_equal(
     _compare(method, objective, alpha_hat, alpha_hat**2 / 4, alpha_hats, alpha_hats**2 / 4)
 
 
-def check_critical(pencil: AnyPencil, alpha_hat: float, beta_hat: float) -> None:
+def check_critical(pencil: AnyPencil, alpha_hat: float, beta_hat: float, extent: Extent, cut: bool = False) -> None:
     r"""Raise NumericalError unless the dominant pole is real and positive at a point, and smaller at no neighbour.
 
-    Neighbours lie on rings around it where the dominant pole is real and positive, too:
+    Neighbours are where the dominant pole is double, real and positive, too (cut: and within the extent). Bisection
+    finds them on rings around the point, between two real poles and a conjugate pair:
 
-          .-----.        the ends of such a piece of a ring, found by bisection, are where the pole is double or as
-        /    \###\      large as another: there it is smallest, and a curve of such places leads through the point
-       |      x####|
-        \    /###/
-          '-----'
+          .--x--.
+        / pair ##\       A curve of double poles leads through the point, and on it |z_p| must be least there.
+       |     x####|
+        \  ##### /        #: two real poles
+          'x----'
     """
     name = pencil.method.name
     here = complex(largest_pole(pencil, alpha_hat, beta_hat))
     if abs(here) < KINK:
-        return  # every pole is zero to rounding: none is faster
+        return  # every pole is zero to its rounding: none is faster
     # where a rival is as large as the double pole, on one side of the point it is smaller
     beside = np.array([1 - BETTER, 1, 1 + BETTER])
     if not _real_and_positive(largest_pole(pencil, alpha_hat * beside, beta_hat * beside**2), KINK).any():
         raise NumericalError(f"{name}: the dominant pole {here:.6g} of the critical point is not real and positive")
 
-    def poles_at(radius: FloatArray, angle: FloatArray) -> ComplexArray:
-        alpha_hats, beta_hats = alpha_hat * (1 + radius * np.cos(angle)), beta_hat * (1 + radius * np.sin(angle))
-        return largest_pole(pencil, alpha_hats, beta_hats)
+    def places(radius: FloatArray, angle: FloatArray) -> tuple[FloatArray, FloatArray]:
+        return alpha_hat * (1 + radius * np.cos(angle)), beta_hat * (1 + radius * np.sin(angle))
+
+    def real(radius: FloatArray, angle: FloatArray) -> BoolArray:
+        return _real_and_positive(largest_pole(pencil, *places(radius, angle)), EPS)
 
     angles = np.linspace(0, 2 * np.pi, NEIGHBOURS + 1)
-    counts = _real_and_positive(poles_at(CLOSE_RINGS[:, np.newaxis], angles), EPS)
-    ring, k = np.nonzero(counts[:, 1:] != counts[:, :-1])
-    radius = CLOSE_RINGS[ring]
-    first_counts = counts[ring, k]
-    _, ends = bisected(
-        lambda angle: _real_and_positive(poles_at(radius, angle), EPS),
-        before=np.where(first_counts, angles[k + 1], angles[k]),
-        after=np.where(first_counts, angles[k], angles[k + 1]),
+    is_real = real(CLOSE_RINGS[:, np.newaxis], angles)
+    ring, k = np.nonzero(is_real[:, 1:] != is_real[:, :-1])
+    radius, first = CLOSE_RINGS[ring], is_real[ring, k]
+    pair_end, real_end = bisected(
+        lambda angle: real(radius, angle),
+        before=np.where(first, angles[k + 1], angles[k]),
+        after=np.where(first, angles[k], angles[k + 1]),
     )
-    smallest = poles_at(radius, ends).real.min(initial=np.inf)
-    if smallest < abs(here) * (1 - BETTER) - ROOT_OF_ROUNDING:
+    alpha_hats, beta_hats = places(radius, real_end)
+    poles = largest_pole(pencil, alpha_hats, beta_hats)
+    # else it is another pole that becomes the larger one there
+    double = np.abs(poles - largest_pole(pencil, *places(radius, pair_end))) <= KINK * np.abs(poles)
+    if cut:
+        double &= (alpha_hats <= extent[0][1]) & (beta_hats <= extent[1][1])
+    smallest = np.abs(poles[double]).min(initial=np.inf)
+    near = 1 + EPS * np.arange(-ROUNDINGS, ROUNDINGS + 1)
+    parted = float(np.ptp(largest_modulus(pencil, alpha_hat * near, beta_hat * near[:, np.newaxis])))
+    if smallest < abs(here) * (1 - BETTER) - PARTED * parted:
         raise NumericalError(f"{name}: the critical point has {abs(here):.9g}, but a neighbour has {smallest:.9g}")
 
 

@@ -47,8 +47,8 @@ def test_a_wrong_best_point_is_no_answer(name: str, factor: float, moved: float)
 def test_a_kink_that_is_not_the_least_is_no_answer(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     smallest = best_points._smallest
 
-    def another(pencil: Any) -> Any:
-        least = smallest(pencil)
+    def another(pencil: Any, finer: int) -> Any:
+        least = smallest(pencil, 1)
         mu = 0.9 * least.mu
         return replace(least, mu=mu, z_abs=float(best_points._largest_modulus(pencil, np.array([mu]))[0]))
 
@@ -65,15 +65,22 @@ def test_a_deadbeat_point_that_is_none_is_no_answer(name: str, monkeypatch: pyte
         best_point(lookup(name))
 
 
-@pytest.mark.parametrize(("goal", "equal"), [("robust", False), ("robust", True), ("fastest", True)])
-@pytest.mark.parametrize("name", ["B4", "RK4"])
+@pytest.mark.parametrize(
+    ("name", "goal", "equal"),
+    [
+        pytest.param("B4", "robust", False, marks=pytest.mark.slow),
+        pytest.param("B4", "robust", True, marks=pytest.mark.slow),
+        ("RK4", "robust", True),
+        ("RK4", "fastest", True),
+    ],
+)
 def test_a_choice_that_a_neighbour_betters_is_no_answer(
     name: str, goal: Goal, equal: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     least = choices._least
 
-    def beside(extent: Any, objective: Any, equal: bool, cut: bool) -> tuple[float, float]:
-        alpha_hat, beta_hat = least(extent, objective, equal, cut)
+    def beside(extent: Any, objective: Any, equal: bool, cut: bool, finer: int) -> tuple[float, float]:
+        alpha_hat, beta_hat = least(extent, objective, equal, cut, 1)
         return 0.99 * alpha_hat, 0.99**2 * beta_hat
 
     monkeypatch.setattr(choices, "_least", beside)
@@ -81,7 +88,33 @@ def test_a_choice_that_a_neighbour_betters_is_no_answer(
         choose(lookup(name), goal, equal=equal)
 
 
-@pytest.mark.parametrize("name", ["B4", "RK4", "ABM3", "hht"])
+@pytest.mark.slow
+def test_what_fails_at_first_is_searched_more_finely(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A first search that ends beside the least value, of either kind: the second one finds it."""
+    method = lookup("AB3")
+    right_best, right_choice = best_point(method), choose(method, "fastest", equal=True)
+    assert right_best
+    smallest, least = best_points._smallest, choices._least
+
+    def another(pencil: Any, finer: int) -> Any:
+        found = smallest(pencil, finer)
+        return found if finer > 1 else replace(found, mu=0.9 * found.mu)
+
+    def beside(extent: Any, objective: Any, equal: bool, cut: bool, finer: int) -> tuple[float, float]:
+        alpha_hat, beta_hat = least(extent, objective, equal, cut, finer)
+        return (alpha_hat, beta_hat) if finer > 1 else (0.99 * alpha_hat, 0.99**2 * beta_hat)
+
+    monkeypatch.setattr(best_points, "_smallest", another)
+    monkeypatch.setattr(choices, "_least", beside)
+    best_point.cache_clear()
+    found = best_point(method)
+    assert found
+    assert found.z_abs == pytest.approx(right_best.z_abs, rel=1e-12)
+    # an objective that is flat to rounding near its least value says no more of the place
+    assert choose(method, "fastest", equal=True).alpha_hat == pytest.approx(right_choice.alpha_hat, rel=1e-7)
+
+
+@pytest.mark.parametrize("name", [pytest.param("B4", marks=pytest.mark.slow), "RK4", "generalized-alpha"])
 @pytest.mark.parametrize("off", [0.99, 1.01])
 def test_a_critical_point_beside_its_place_is_no_answer(name: str, off: float, monkeypatch: pytest.MonkeyPatch) -> None:
     critical_point = choices._critical_point
@@ -109,7 +142,7 @@ def test_a_gentle_point_beside_its_place_is_no_answer(name: str, off: float, mon
         choose(lookup(name), "gentle", rate=0.9)
 
 
-@pytest.mark.parametrize("name", ["B4", "AB4", "RK4", "SYM"])
+@pytest.mark.parametrize("name", ["B4", "SYM"])
 @pytest.mark.parametrize(("off", "repaired"), [(1 - 1e-6, True), (1 + 1e-6, True), (0.99, False), (1.01, False)])
 def test_a_margin_beside_its_place_is_put_there_by_verdicts_or_is_no_answer(
     name: str, off: float, repaired: bool, monkeypatch: pytest.MonkeyPatch
