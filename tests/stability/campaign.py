@@ -9,7 +9,7 @@ is 1 if a difference was silent.
 import sys
 import time
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
@@ -92,12 +92,20 @@ def other_compared(method: Method, level: float) -> Case:
 
 
 def cases_of(number: int) -> list[Case]:
-    """Return the cases of two random methods, one of either half, and forget what was remembered of them."""
-    method, other = random_method(number), other_random_method(number)
-    cases = [compared(method, level) for level in LEVELS] + [other_compared(other, level) for level in LEVELS]
-    region.cache_clear()
-    bounds_of.cache_clear()
-    closed_loop_tables.cache_clear()
+    """Return the cases of one random explicit method."""
+    return _cases(compared, random_method(number))
+
+
+def other_cases_of(number: int) -> list[Case]:
+    """Return the cases of one random implicit or second-order method."""
+    return _cases(other_compared, other_random_method(number))
+
+
+def _cases(of_level: Callable[[Method, float], Case], method: Method) -> list[Case]:
+    """Return the cases of a method, and forget what was remembered of it."""
+    cases = [of_level(method, level) for level in LEVELS]
+    for remembering in (region, bounds_of, closed_loop_tables):
+        remembering.cache_clear()
     return cases
 
 
@@ -107,7 +115,8 @@ def all_cases(methods: int, seconds: float, first_method: int) -> Iterator[Case]
     with ProcessPoolExecutor(2) as pool:
         last_method = first_method + methods
         for first in range(first_method, last_method, 20):
-            for cases in pool.map(cases_of, range(first, min(first + 20, last_method))):
+            numbers = range(first, min(first + 20, last_method))
+            for cases in [*pool.map(cases_of, numbers), *pool.map(other_cases_of, numbers)]:
                 yield from cases
             if time.monotonic() - start > seconds:
                 return
