@@ -16,18 +16,14 @@ from bezstab.cli.options import (
     FigureForm,
     TableForm,
     both_or_none,
-    figure_option,
+    file_options,
     format_option,
     methods_option,
-    output_option,
     physical_option,
-    resume_option,
     scene_option,
-    scheduler_option,
     speed_option,
     step_option,
-    table_option,
-    workers_option,
+    work_options,
 )
 from bezstab.cli.output import (
     file_name,
@@ -94,9 +90,7 @@ SIMULATIONS = [
     help="What gives a multistep method's first values: RK4, its family's shorter members, or explicit Euler; "
     "for an implicit method Gauss's of order four, shorter BDF methods, or implicit Euler.",
 )
-@output_option
-@figure_option
-@table_option
+@file_options
 @format_option
 def simulate(
     scene: str,
@@ -224,12 +218,8 @@ RUNS = [
 @physical_option
 @click.option("--tolerance", type=POSITIVE, default="1e-6", help="In m and rad.")
 @click.option("--repeats", type=click.IntRange(1, 100), default=3, help="Of each timing.")
-@output_option
-@workers_option
-@scheduler_option
-@resume_option
-@figure_option
-@table_option
+@work_options
+@file_options
 @format_option
 def tradeoff(
     scene: str,

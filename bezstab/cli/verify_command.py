@@ -13,17 +13,13 @@ from bezstab.cli.options import (
     FigureForm,
     TableForm,
     both_or_none,
-    figure_option,
+    file_options,
     format_option,
     methods_option,
-    output_option,
-    resume_option,
     scene_option,
-    scheduler_option,
     speed_option,
     step_option,
-    table_option,
-    workers_option,
+    work_options,
 )
 from bezstab.cli.output import (
     file_name,
@@ -118,12 +114,8 @@ WITNESSED = [
 @click.option("--floquet", is_flag=True, help="Also the exact rates of the moving mechanism, by its linearised steps.")
 @click.option("--witness", type=click.Choice(["mujoco"]), help="Its own integrators.")
 @step_option
-@output_option
-@workers_option
-@scheduler_option
-@resume_option
-@figure_option
-@table_option
+@work_options
+@file_options
 @format_option
 def verify(
     scene: str,

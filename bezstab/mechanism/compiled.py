@@ -148,7 +148,10 @@ def compiled_residuals(mechanism: Mechanism, method: Method, library: Any) -> di
 
 @cache
 def acceleration_function(mechanism: Mechanism, library: Any) -> StateFunction:
-    """Return the function of (t, two_alpha, beta_squared, q, v) that gives all of qddot."""
+    """Return the function of (t, two_alpha, beta_squared, q, v) that gives all of qddot: paper Eq. 9.
+
+    Arguments as for multipliers_function; the n accelerations are in SI units.
+    """
     source = acceleration_source(mechanism.acceleration_code)
     acceleration: StateFunction = compiled_source(source, library)["acceleration"]
     return acceleration
