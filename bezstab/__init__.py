@@ -7,9 +7,9 @@
 The names below are loaded when first used, so that `import bezstab` stays light. bezstab/README.md has examples.
 """
 
-from typing import TYPE_CHECKING
-
 from bezstab.lazy import lazy_names
+
+TYPE_CHECKING = False  # as type checkers know it; to import typing would take longer than all the rest
 
 if TYPE_CHECKING:
     from bezstab.api import (

@@ -1,9 +1,15 @@
 """Run the command line, as `bezstab` and as `python -m bezstab`."""
 
-from bezstab.stopping import end_when_told, ignore_signals
+try:
+    from bezstab.stopping import end_when_told, ignore_signals
+except KeyboardInterrupt:  # so early that there is no handler yet; earlier still, the interpreter itself is starting
+    import os
 
-# What a signal does is settled before anything that takes time is imported: on the line above and the lines below,
-# so nothing else stands at the top of this module.
+    os.write(2, b"bezstab: interrupted\n")
+    os._exit(130)
+
+# What a signal does is settled before anything that takes time is imported: on the lines above and below, so nothing
+# else stands at the top of this module.
 
 
 def run() -> None:

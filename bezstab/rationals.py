@@ -1,6 +1,7 @@
-"""Exact numbers: what a text or a float says, as a rational, within the range of float64."""
+"""Exact numbers: what a text or a float says, as a rational, within the range of float64; exact bisection."""
 
 import re
+from collections.abc import Callable
 from fractions import Fraction
 
 from bezstab.errors import InputError
@@ -41,3 +42,15 @@ def within_float64(value: Fraction, name: str) -> Fraction:
     if value != 0 and not SMALLEST < abs(value) < LARGEST:
         raise InputError(f"{name} is outside the range of float64 (1e-307 to 1e308)")
     return value
+
+
+def bisected_integers(holds: Callable[[int], bool], before: int, after: int) -> tuple[int, int]:
+    """Return neighbours: at the first, `before` or above it, the condition fails; at the second it holds.
+
+    That it fails at `before` and holds at `after` > `before` is taken for granted: neither is asked. So the roots of
+    polynomials are enclosed exactly, on a grid of as many digits as asked for.
+    """
+    while after - before > 1:
+        middle = (before + after) // 2
+        before, after = (before, middle) if holds(middle) else (middle, after)
+    return before, after

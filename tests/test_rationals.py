@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bezstab.errors import InputError
-from bezstab.rationals import exact, rational, within_float64
+from bezstab.rationals import bisected_integers, exact, rational, within_float64
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False))
@@ -102,3 +102,15 @@ def test_any_text_is_an_exact_number_or_refused(text: str) -> None:
         return
     assert value == Fraction(text.strip())
     assert value == 0 or 1e-307 < abs(value) < 1e308
+
+
+@given(st.integers(-(10**50), 10**50), st.integers(1, 10**50), st.integers(0, 10**50))
+def test_bisecting_integers_ends_at_the_two_neighbours(first: int, below: int, above: int) -> None:
+    assert bisected_integers(lambda n: n >= first, first - below, first + above) == (first - 1, first)
+
+
+def test_bisecting_integers_asks_neither_end() -> None:
+    def refuse(number: int) -> bool:
+        raise AssertionError(number)
+
+    assert bisected_integers(refuse, 7, 8) == (7, 8)

@@ -37,6 +37,21 @@ def test_a_signal_ends_a_process_with_one_line(name: str, word: str, status: int
     assert (ended.returncode, ended.stdout, ended.stderr) == (status, "", f"bezstab: {word}\n")
 
 
+def test_before_there_is_a_handler_an_interrupt_is_one_line_too() -> None:
+    """Ctrl-C while the module that makes the handlers is looked for, the first of the command line's."""
+    early = """
+import sys
+class Interrupted:
+    def find_spec(self, name, path, target=None):
+        if name == "bezstab.stopping":
+            raise KeyboardInterrupt
+sys.meta_path.insert(0, Interrupted())
+import bezstab.__main__
+"""
+    ended = subprocess.run([sys.executable, "-c", early], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (130, "", "bezstab: interrupted\n")
+
+
 def test_even_where_python_would_forget_an_exception() -> None:
     ended = run("class A:\n    def __del__(self): signal.raise_signal(number)\nA()\nprint('still here')", "SIGINT")
     assert (ended.returncode, ended.stdout, ended.stderr) == (130, "", "bezstab: interrupted\n")

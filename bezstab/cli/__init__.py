@@ -1,6 +1,7 @@
 """The command line: parse, call, show, save, exit status.
 
-A file imports only from those above it:
+One file for each group of commands that `bezstab --help` shows; verify, with its three ways to measure, has one beside
+the other evidence. A file imports only from those above it:
 
     terminal            words for what a terminal cannot show
     completion          what the shell offers after a press of the tab key

@@ -18,19 +18,15 @@ from bezstab.cli.options import (
     TableForm,
     both_or_none,
     compiled_option,
-    figure_option,
+    file_options,
     format_option,
     left_at_default,
     methods_option,
-    output_option,
     physical_option,
-    resume_option,
     scene_option,
-    scheduler_option,
     speed_option,
     step_option,
-    table_option,
-    workers_option,
+    work_options,
 )
 from bezstab.cli.output import (
     file_name,
@@ -117,9 +113,7 @@ def run_sentence(row: Row) -> str:
     "for an implicit method Gauss's of order four, shorter BDF methods, or implicit Euler.",
 )
 @compiled_option
-@output_option
-@figure_option
-@table_option
+@file_options
 @format_option
 def simulate(
     scene: str,
@@ -265,12 +259,8 @@ def cost_sentence(row: Row) -> str:
 @click.option("--tolerance", type=POSITIVE, default="1e-6", help="In m and rad.")
 @click.option("--repeats", type=click.IntRange(1, 100), default=3, help="Of each timing.")
 @compiled_option
-@output_option
-@workers_option
-@scheduler_option
-@resume_option
-@figure_option
-@table_option
+@work_options
+@file_options
 @format_option
 def tradeoff(
     scene: str,

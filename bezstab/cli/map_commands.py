@@ -26,11 +26,11 @@ from bezstab.cli.options import (
     FigureForm,
     TableForm,
     figure_option,
+    file_options,
     format_option,
     methods_option,
     output_option,
     physical_option,
-    table_option,
 )
 from bezstab.cli.output import file_name, progress, show_blocks, show_groups, show_rows, write_figure, write_table
 from bezstab.cli.typed_points import (
@@ -212,9 +212,7 @@ MOVING_REGIONS = [
 
 @click.command()
 @methods_option("B4")
-@output_option
-@figure_option
-@table_option
+@file_options
 @click.option(
     "--quality",
     type=click.Choice(["balanced", "fast", "fine"]),

@@ -217,6 +217,21 @@ compiled_option = click.option(
 )
 
 
+def together(*options: Decorator) -> Decorator:
+    """Return one decorator that adds several options, in this order."""
+
+    def with_options(function: Function, /) -> Function:
+        for option in reversed(options):
+            function = option(function)
+        return function
+
+    return with_options
+
+
+file_options = together(output_option, figure_option, table_option)
+work_options = together(workers_option, scheduler_option, resume_option)
+
+
 def both_or_none(alpha: Fraction | None, beta: Fraction | None) -> tuple[Fraction, Fraction] | None:
     """Return the point that --alpha and --beta are, None without them; UsageError if one is missing."""
     if alpha is None and beta is None:

@@ -14,17 +14,13 @@ from bezstab.cli.options import (
     TableForm,
     both_or_none,
     compiled_option,
-    figure_option,
+    file_options,
     format_option,
     methods_option,
-    output_option,
-    resume_option,
     scene_option,
-    scheduler_option,
     speed_option,
     step_option,
-    table_option,
-    workers_option,
+    work_options,
 )
 from bezstab.cli.output import (
     file_name,
@@ -155,12 +151,8 @@ def witness_sentence(row: Row) -> str:
 @click.option("--witness", type=click.Choice(["mujoco"]), help="Its own integrators.")
 @step_option
 @compiled_option
-@output_option
-@workers_option
-@scheduler_option
-@resume_option
-@figure_option
-@table_option
+@work_options
+@file_options
 @format_option
 def verify(
     scene: str,

@@ -7,10 +7,10 @@ From data upwards; a file imports only from those above it:
     scenes              bodies, joints, forces, springs and initial state as checked data
     scene_files         their file format
     equations           M, c, C_q, gamma and g by sympy
-    generated_code      the one place that compiles generated Python source: accelerations, steppers
     linear_equations    small systems of linear equations: exact, in any numbers, or many at a time
     second_order_memory what a second-order scheme carries from step to step, and when it evaluates
-    second_order_code   generated source of second-order schemes and of all that are implicit
+    second_order_turns  a step of a second-order scheme, and of all that are implicit, as a list of actions
+    generated_code      the one place that writes and compiles Python source: accelerations, steppers
     newton_iterations   Newton's method for the accelerations of an implicit step
     compiled            a scene with its compiled functions, made once
     compiled_steps      steps as machine code, by numba, the same to the last bit

@@ -15,6 +15,8 @@ from bezstab.mechanism.generated_code import (
     compiled_source,
     multipliers_source,
     observation_source,
+    residuals_source,
+    second_order_stepper_source,
     stepper_source,
 )
 from bezstab.mechanism.newton_iterations import (
@@ -27,7 +29,7 @@ from bezstab.mechanism.newton_iterations import (
     rounding_of,
 )
 from bezstab.mechanism.scenes import Scene
-from bezstab.mechanism.second_order_code import implicit_groups, residuals_source, second_order_stepper_source
+from bezstab.mechanism.second_order_turns import implicit_groups
 from bezstab.methods import Method, SecondOrder, implicit, second_order_form
 
 State = tuple[Any, ...]
@@ -85,11 +87,7 @@ def stepper_code(mechanism: Mechanism, method: Method) -> str:
     scheme = run_as_second_order(method)
     if scheme is None:
         return stepper_source(mechanism.acceleration_code, method)
-    parts = [
-        second_order_stepper_source(mechanism.acceleration_code, scheme),
-        residuals_source(mechanism.acceleration_code, scheme, with_pivots=True),
-    ]
-    return "\n".join(parts)
+    return second_order_stepper_source(mechanism.acceleration_code, scheme)
 
 
 def run_as_second_order(method: Method) -> SecondOrder | None:
@@ -152,7 +150,10 @@ def compiled_residuals(mechanism: Mechanism, method: Method, library: Any) -> di
 
 @cache
 def acceleration_function(mechanism: Mechanism, library: Any) -> StateFunction:
-    """Return the function of (t, two_alpha, beta_squared, q, v) that gives all of qddot."""
+    """Return the function of (t, two_alpha, beta_squared, q, v) that gives all of qddot: paper Eq. 9.
+
+    Arguments as for multipliers_function; the n accelerations are in SI units.
+    """
     source = acceleration_source(mechanism.acceleration_code)
     acceleration: StateFunction = compiled_source(source, library)["acceleration"]
     return acceleration

@@ -1,5 +1,8 @@
 """Generated source: accelerations, multipliers, observations and time steps as Python text, and its compilation.
 
+Only this file writes source, and only here it is compiled; others hand it data (equations, methods, turns) and take
+functions.
+
 All of it is plain arithmetic on numbered variables, one assignment a line, with `sin`, `cos`, `sqrt` and `least` as the
 only functions. What they are is decided when the text is compiled, so one source serves three kinds of numbers:
 
@@ -24,7 +27,25 @@ from sympy.printing.precedence import PRECEDENCE
 from sympy.printing.pycode import PythonCodePrinter
 
 from bezstab.mechanism.equations import Equations, variable_names
-from bezstab.methods import LinearMultistep, Method, Partitioned, PredictorCorrector, RungeKutta, SecondOrder, steps
+from bezstab.mechanism.second_order_memory import ACCELERATION, POSITION, VELOCITY, memory
+from bezstab.mechanism.second_order_turns import (
+    Assigned,
+    Evaluated,
+    Solved,
+    Sum,
+    solved_groups,
+    turn,
+)
+from bezstab.methods import (
+    LinearMultistep,
+    Method,
+    Partitioned,
+    PredictorCorrector,
+    Quantity,
+    RungeKutta,
+    SecondOrder,
+    steps,
+)
 
 AT_THE_START = Fraction(0)  # of a step
 AT_THE_END = Fraction(1)
@@ -69,14 +90,14 @@ def _least_of_arrays(*values: Any) -> Any:
 class AccelerationCode:
     """Assignments that compute a_i = qddot_i and l_j = lambda_j from t, q_i, v_i, two_alpha and beta_squared.
 
-    On the way c_j and cdot_j get their values. `least_pivot_line` is one assignment more: `worst`, the least of the
-    pivots D_j relative to S_jj, at most 1; where it is small, S is nearly singular.
+    On the way c_j and cdot_j get their values. `least_pivot` is the text of the least of the pivots D_j relative to
+    S_jj, at most 1; where it is small, S is nearly singular.
     """
 
     coordinates: int
     constraints: int
     lines: tuple[str, ...]
-    least_pivot_line: str
+    least_pivot: str
 
 
 def acceleration_code(equations: Equations) -> AccelerationCode:
@@ -96,7 +117,7 @@ def acceleration_code(equations: Equations) -> AccelerationCode:
         *_acceleration_lines(columns_of_row, inverse_masses, entries),
     ]
     relative_pivots = ", ".join(f"D{j} / S{j}" for j in range(constraints))
-    return AccelerationCode(coordinates, constraints, tuple(lines), f"worst = least(1.0, {relative_pivots})")
+    return AccelerationCode(coordinates, constraints, tuple(lines), f"least(1.0, {relative_pivots})")
 
 
 def _nonzero_entries(equations: Equations) -> dict[str, sp.Expr]:
@@ -228,8 +249,7 @@ def observation_source(acceleration: AccelerationCode) -> str:
     """Return the source of observation(t, two_alpha, beta_squared, q, v): all c, all cdot, all l, the least pivot."""
     constraints = acceleration.constraints
     results = [name for prefix in ("c", "cdot", "l") for name in variable_names(prefix, constraints)]
-    _, _, least_pivot = acceleration.least_pivot_line.partition(" = ")
-    return _function_source("observation", acceleration, [*results, least_pivot])
+    return _function_source("observation", acceleration, [*results, acceleration.least_pivot])
 
 
 def multipliers_source(acceleration: AccelerationCode) -> str:
@@ -246,27 +266,48 @@ def _function_source(name: str, acceleration: AccelerationCode, results: Sequenc
     """Return the source of a function that returns some of the variables that the acceleration code assigns."""
     coordinates = acceleration.coordinates
     lines = [
-        f"{tuple_text(variable_names('q', coordinates))} = q",
-        f"{tuple_text(variable_names('v', coordinates))} = v",
+        f"{_tuple_text(variable_names('q', coordinates))} = q",
+        f"{_tuple_text(variable_names('v', coordinates))} = v",
         *acceleration.lines,
-        f"return {tuple_text(results)}",
+        f"return {_tuple_text(results)}",
     ]
-    return "\n".join([f"def {name}(t, two_alpha, beta_squared, q, v):", *indented(lines, 1)])
+    return "\n".join([f"def {name}(t, two_alpha, beta_squared, q, v):", *_indented(lines, 1)])
 
 
-def tuple_text(entries: Iterable[str]) -> str:
+def _tuple_text(entries: Iterable[str]) -> str:
     """Return the text of a tuple."""
     return f"({', '.join(entries)},)"
 
 
-def indented(lines: Iterable[str], depth: int) -> list[str]:
+def _indented(lines: Iterable[str], depth: int) -> list[str]:
     """Return lines of source so many blocks deep."""
     return [" " * depth + line for line in lines]
 
 
-# The stepper
+# Steppers
 #
-# A generator that runs for ever, one turn of its loop a step. For AB2 and one coordinate it reads
+# A stepper is a generator that runs for ever, one turn of its loop a step. What all have in common:
+
+COUNT = "k = k + 1"
+FORGET_PIVOTS = "worst_pivot = 1.0"
+REMEMBER_PIVOT = "worst_pivot = least(worst_pivot, worst)"
+
+
+def _acceleration_lines_at(acceleration: AccelerationCode, moment: Fraction) -> list[str]:
+    """Return the assignments to a, at the current q and v and so many steps after the turn has begun."""
+    return [f"t = start + (k + {float(moment)!r}) * h", *acceleration.lines]
+
+
+def _worst_line(acceleration: AccelerationCode) -> str:
+    """Return the assignment to the least relative pivot of the last acceleration."""
+    return f"worst = {acceleration.least_pivot}"
+
+
+def _product_text(coefficient: Fraction, variable: str) -> str:
+    return f"{float(coefficient)!r} * {variable}"
+
+
+# Steppers of multistep and Runge-Kutta methods, and of their predictor-corrector pairs. For AB2 and one coordinate
 #
 #     def run(start, h, two_alpha, beta_squared, state, past):
 #      k = 0
@@ -311,7 +352,7 @@ def stepper_source(acceleration: AccelerationCode, method: Method) -> str:
     """
     size = 2 * acceleration.coordinates
     state = _state_variables(acceleration)
-    lines = ["worst_pivot = 1.0"]
+    lines = [FORGET_PIVOTS]
     lines += [f"y{i} = {name}" for i, name in enumerate(state)]
     lines += _evaluation_lines(acceleration, "f", AT_THE_START)
     match method.scheme:
@@ -328,18 +369,17 @@ def stepper_source(acceleration: AccelerationCode, method: Method) -> str:
         case SecondOrder():
             raise TypeError(f"{method.name}: a second-order scheme has steps of its own")
     lines += _shift_lines(size, method)
-    lines += ["k = k + 1", f"yield {tuple_text(state)}, {tuple_text(variable_names('f', size))}, worst_pivot"]
+    lines += [COUNT, f"yield {_tuple_text(state)}, {_tuple_text(variable_names('f', size))}, worst_pivot"]
 
-    head = ["k = 0", f"{tuple_text(state)} = state"]
+    head = ["k = 0", f"{_tuple_text(state)} = state"]
     for back in range(1, steps(method)):
-        past_state = tuple_text(variable_names(f"y_{back}_", size))
-        past_slope = tuple_text(variable_names(f"f_{back}_", size))
+        past_state = _tuple_text(variable_names(f"y_{back}_", size))
+        past_slope = _tuple_text(variable_names(f"f_{back}_", size))
         head.append(f"{past_state}, {past_slope} = past[{back - 1}]")
     return "\n".join([
         "def run(start, h, two_alpha, beta_squared, state, past):",
-        *indented(head, 1),
-        " while True:",
-        *indented(lines, 2),
+        *_indented([*head, "while True:"], 1),
+        *_indented(lines, 2),
     ])  # fmt: skip
 
 
@@ -353,11 +393,10 @@ def _evaluation_lines(acceleration: AccelerationCode, slope: str, moment: Fracti
     coordinates = acceleration.coordinates
     derivatives = [*variable_names("v", coordinates), *variable_names("a", coordinates)]
     return [
-        f"t = start + (k + {float(moment)!r}) * h",
-        *acceleration.lines,
-        acceleration.least_pivot_line,
+        *_acceleration_lines_at(acceleration, moment),
+        _worst_line(acceleration),
         *(f"{slope}{i} = {derivative}" for i, derivative in enumerate(derivatives)),
-        "worst_pivot = least(worst_pivot, worst)",
+        REMEMBER_PIVOT,
     ]
 
 
@@ -365,14 +404,10 @@ def _update_lines(state: Sequence[str], states: Sequence[Term], slopes: Sequence
     """Return the assignments that set q and v to a sum of states plus h times a sum of slopes."""
     lines = []
     for i, variable in enumerate(state):
-        value = " + ".join(_product_text(term, i) for term in states if term.coefficient)
-        rise = " + ".join(_product_text(term, i) for term in slopes if term.coefficient)
+        value = " + ".join(_product_text(term.coefficient, f"{term.prefix}{i}") for term in states if term.coefficient)
+        rise = " + ".join(_product_text(term.coefficient, f"{term.prefix}{i}") for term in slopes if term.coefficient)
         lines.append(f"{variable} = {value} + h * ({rise or '0.0'})")
     return lines
-
-
-def _product_text(term: Term, entry: int) -> str:
-    return f"{float(term.coefficient)!r} * {term.prefix}{entry}"
 
 
 def _multistep_lines(state: Sequence[str], scheme: LinearMultistep, slope_at_the_end: str | None) -> list[str]:
@@ -439,3 +474,213 @@ def _shift_lines(size: int, method: Method) -> list[str]:
         newer = "" if back == 1 else f"_{back - 1}_"
         lines += [f"{kind}_{back}_{i} = {kind}{newer}{i}" for kind in kinds for i in range(size)]
     return lines
+
+
+# Steppers of second-order schemes, and of every implicit one, which runs as such: the actions of a turn as text
+#
+# Inside, h = 1: X, V and A stand for q, h v and h^2 a, H1, H2, ... for the scheme's helpers, with the step and the
+# coordinate: V_1_0 is the velocity of coordinate 0 at the end of the turn, A_m1_3 an acceleration one step before its
+# start. For velocity Verlet with the feedback at the half-step velocity and one coordinate the source reads
+#
+#     def run(start, h, two_alpha, beta_squared, carried, solve):
+#      (X_0_0,), (V_0_0,), (A_0_0,), = carried
+#      k = 0
+#      h_squared = h * h
+#      while True:
+#       worst_pivot = 1.0
+#       X_1_0 = X_0_0 + V_0_0 + 0.5 * A_0_0                 the actions, in order
+#       H1_1_0 = V_0_0 + 0.5 * A_0_0
+#       q0 = X_1_0
+#       v0 = (H1_1_0) / h
+#       t = start + (k + 1.0) * h
+#       ...                                                 the acceleration code: a0 from t, q0 and v0
+#       worst = least(1.0, D0 / S0)
+#       A_1_0 = h_squared * a0
+#       worst_pivot = least(worst_pivot, worst)
+#       V_1_0 = H1_1_0 + 0.5 * A_1_0
+#       k = k + 1
+#       yield (X_1_0, V_1_0 / h,), (V_0_0 / h, A_0_0 / h_squared,), worst_pivot
+#       X_0_0 = X_1_0                                       what the next turn needs, one step back
+#       V_0_0 = V_1_0
+#       A_0_0 = A_1_0
+#
+# A group that is solved has K for what is known of its positions and velocities, two for each evaluation, and calls
+#
+#       K0 = X_0_0 + V_0_0 + 0.25 * A_0_0
+#       K1 = V_0_0 + 0.5 * A_0_0
+#       (A_1_0,), worst = solve(0, start, k, h, two_alpha, beta_squared, (K0, K1,), (A_0_0,))
+#
+# where solve seeks the zero of residual_0 from the last acceleration on, U for the unknown,
+#
+#     def residual_0(start, k, h, two_alpha, beta_squared, known, unknown):
+#      (K0, K1,) = known
+#      (U0,) = unknown
+#      h_squared = h * h
+#      q0 = K0 + 0.25 * U0
+#      v0 = (K1 + 0.5 * U0) / h
+#      ...                                                  the acceleration code
+#      R0 = U0 - h_squared * a0
+#      return (R0,)
+
+
+def second_order_stepper_source(acceleration: AccelerationCode, scheme: SecondOrder) -> str:
+    """Return the source of run(start, h, two_alpha, beta_squared, carried, solve), a generator of turns, and residuals.
+
+    Each turn yields q and v at its end, then v and a at its start (where the scheme has no a there: zeros), and the
+    least relative pivot of S met on the way. `start` (s) is the time of step 0 of the first turn, h (s) the whole step,
+    and `carried` has what `memory` says, n entries each, in units in which h = 1. An implicit scheme calls
+    solve(number of the group, start, k, h, two_alpha, beta_squared, known, guess), which returns what makes all of
+    residual_<number> zero, and the least pivot there; these functions follow (residuals_source, with pivots).
+    """
+    names = _Names(scheme, acceleration.coordinates)
+    carried = memory(scheme).carried
+    lines = [FORGET_PIVOTS]
+    for action in turn(scheme):
+        match action:
+            case Assigned(result, value):
+                lines += names.assignments(result, value)
+            case Evaluated():
+                lines += _evaluated_lines(names, acceleration, action)
+            case Solved():
+                lines += _solving_lines(names, action)
+    reported = [*names.of(Quantity(POSITION, 1)), *_over(names.of(Quantity(VELOCITY, 1)), "h")]
+    lines += [COUNT, f"yield {_tuple_text(reported)}, {_tuple_text(_slope(names, carried))}, worst_pivot"]
+    for quantity in carried:  # each name's oldest first: none is overwritten before it has been moved on
+        newer = names.of(Quantity(quantity.name, quantity.step + 1))
+        lines += [f"{old} = {new}" for old, new in zip(names.of(quantity), newer, strict=True)]
+    unpacked = _tuple_text(_tuple_text(names.of(quantity)) for quantity in carried)
+    return "\n".join([
+        "def run(start, h, two_alpha, beta_squared, carried, solve):",
+        *_indented([f"{unpacked} = carried", "k = 0", "h_squared = h * h", "while True:"], 1),
+        *_indented(lines, 2),
+        residuals_source(acceleration, scheme, with_pivots=True),
+    ])  # fmt: skip
+
+
+def residuals_source(acceleration: AccelerationCode, scheme: SecondOrder, with_pivots: bool) -> str:
+    """Return the source of residual_<number>(start, k, h, two_alpha, beta_squared, known, unknown) for implicit groups.
+
+    Each returns A - h^2 acceleration for all that the group evaluates; with pivots also the least relative pivot of S.
+    Without them the functions also work on complex numbers, which have no least.
+    """
+    return "\n".join(_residual_function(acceleration, solved, with_pivots) for solved in solved_groups(scheme))
+
+
+class _Names:
+    """The variables of a scheme's quantities: those of helpers are numbered, for a user's names stay outside."""
+
+    def __init__(self, scheme: SecondOrder, coordinates: int) -> None:
+        self.coordinates = coordinates
+        self.prefixes = {POSITION: "X", VELOCITY: "V", ACCELERATION: "A"}
+        for equation in scheme.equations:
+            self.prefixes.setdefault(equation.result.name, f"H{len(self.prefixes) - 2}")
+
+    def of(self, quantity: Quantity) -> list[str]:
+        """Return the variables of a quantity, one for each coordinate."""
+        step = str(quantity.step).replace("-", "m")
+        return variable_names(f"{self.prefixes[quantity.name]}_{step}_", self.coordinates)
+
+    def sums(self, terms: Sum) -> list[str]:
+        """Return the texts of a sum, one for each coordinate."""
+        return [
+            " + ".join(_term_text(c, self.of(quantity)[i]) for quantity, c in terms.items() if c) or "0.0"
+            for i in range(self.coordinates)
+        ]
+
+    def assignments(self, result: Quantity, terms: Sum) -> list[str]:
+        """Return the lines that give a quantity the value of a sum."""
+        return [f"{name} = {value}" for name, value in zip(self.of(result), self.sums(terms), strict=True)]
+
+
+def _term_text(coefficient: Fraction, variable: str) -> str:
+    """Return a product, a factor of one left out."""
+    return variable if coefficient == 1 else _product_text(coefficient, variable)
+
+
+def _over(variables: Iterable[str], divisor: str) -> list[str]:
+    return [f"{variable} / {divisor}" for variable in variables]
+
+
+def _slope(names: _Names, carried: Sequence[Quantity]) -> list[str]:
+    """Return v and a at the start of the turn, where the scheme carries them."""
+    slope = []
+    for name, divisor in ((VELOCITY, "h"), (ACCELERATION, "h_squared")):
+        quantity = Quantity(name, 0)
+        slope += _over(names.of(quantity), divisor) if quantity in carried else ["0.0"] * names.coordinates
+    return slope
+
+
+def _evaluated_lines(names: _Names, acceleration: AccelerationCode, evaluated: Evaluated) -> list[str]:
+    """Return the lines of an evaluation at a position, velocity and time that are known."""
+    return [
+        *_state_lines(names.sums(evaluated.position), names.sums(evaluated.velocity)),
+        *_acceleration_lines_at(acceleration, evaluated.moment),
+        _worst_line(acceleration),
+        *(f"{name} = h_squared * a{i}" for i, name in enumerate(names.of(evaluated.result))),
+        REMEMBER_PIVOT,
+    ]
+
+
+def _state_lines(positions: Sequence[str], velocities: Sequence[str]) -> list[str]:
+    """Return the assignments to q and v of positions and velocities given as texts, in units in which h = 1."""
+    return [
+        *(f"q{i} = {position}" for i, position in enumerate(positions)),
+        *(f"v{i} = ({velocity}) / h" for i, velocity in enumerate(velocities)),
+    ]
+
+
+def _solving_lines(names: _Names, solved: Solved) -> list[str]:
+    """Return the lines that have a group solved for its accelerations, from those one step back on."""
+    parts: list[str] = []
+    for evaluation in solved.evaluations:
+        parts += [*names.sums(evaluation.known_position), *names.sums(evaluation.known_velocity)]
+    known = variable_names("K", len(parts))
+    unknowns = [evaluation.result for evaluation in solved.evaluations]
+    guesses = [Quantity(unknown.name, unknown.step - 1) for unknown in unknowns]
+    found = _tuple_text(name for unknown in unknowns for name in names.of(unknown))
+    guess = _tuple_text(name for quantity in guesses for name in names.of(quantity))
+    situation = "start, k, h, two_alpha, beta_squared"
+    return [
+        *(f"{name} = {part}" for name, part in zip(known, parts, strict=True)),
+        f"{found}, worst = solve({solved.number}, {situation}, {_tuple_text(known)}, {guess})",
+        REMEMBER_PIVOT,
+    ]
+
+
+def _residual_function(acceleration: AccelerationCode, solved: Solved, with_pivots: bool) -> str:
+    """Return the source of the residual of one group."""
+    coordinates = acceleration.coordinates
+    count = coordinates * len(solved.evaluations)
+    lines = [
+        f"{_tuple_text(variable_names('K', 2 * count))} = known",
+        f"{_tuple_text(variable_names('U', count))} = unknown",
+        "h_squared = h * h",
+    ]
+    if with_pivots:
+        lines.append(FORGET_PIVOTS)
+    for own, evaluation in enumerate(solved.evaluations):
+        first = own * coordinates  # of its unknowns; of what is known, there are two for each
+        lines += _state_lines(
+            positions=_known_and_sought(solved, evaluation.sought_position, 2 * first, coordinates),
+            velocities=_known_and_sought(solved, evaluation.sought_velocity, 2 * first + coordinates, coordinates),
+        )
+        lines += _acceleration_lines_at(acceleration, evaluation.moment)
+        if with_pivots:
+            lines += [_worst_line(acceleration), REMEMBER_PIVOT]
+        lines += [f"R{first + i} = U{first + i} - h_squared * a{i}" for i in range(coordinates)]
+    residuals = _tuple_text(variable_names("R", count))
+    results = f"{residuals}, worst_pivot" if with_pivots else residuals
+    head = f"def residual_{solved.number}(start, k, h, two_alpha, beta_squared, known, unknown):"
+    return "\n".join([head, *_indented([*lines, f"return {results}"], 1)])
+
+
+def _known_and_sought(solved: Solved, sought: Sum, first_known: int, coordinates: int) -> list[str]:
+    """Return texts, one for each coordinate, of a known part K and multiples of the unknowns U."""
+    results = [evaluation.result for evaluation in solved.evaluations]
+    return [
+        " + ".join([
+            f"K{first_known + i}",
+            *(_term_text(c, f"U{results.index(unknown) * coordinates + i}") for unknown, c in sought.items() if c),
+        ])
+        for i in range(coordinates)
+    ]  # fmt: skip

@@ -4,6 +4,8 @@ from collections.abc import Callable
 from fractions import Fraction
 from math import ceil, floor
 
+from bezstab.rationals import bisected_integers
+
 DIGITS = 40
 """Decimals of what stands for an irrational coefficient: every proof is about that rational."""
 
@@ -18,12 +20,10 @@ def decimal_root(polynomial: Callable[[Fraction], Fraction], low: Fraction, high
     rising = polynomial(high) > 0
     if (polynomial(low) > 0) == rising:
         raise ValueError(f"no change of sign between {low} and {high}")
-    before, after = floor(low * scale), ceil(high * scale)
-    while after - before > 1:
-        middle = (before + after) // 2
-        value = polynomial(Fraction(middle, scale))
-        if value == 0 or (value > 0) == rising:
-            after = middle
-        else:
-            before = middle
+
+    def has_come_to_the_root(decimal: int) -> bool:
+        value = polynomial(Fraction(decimal, scale))
+        return value == 0 or (value > 0) == rising
+
+    _, after = bisected_integers(has_come_to_the_root, floor(low * scale), ceil(high * scale))
     return Fraction(after, scale)

@@ -140,7 +140,10 @@ def _expression_of(table: PlaneTable) -> sp.Expr:
 
 @cache
 def closed_loop_table(method: Method) -> PlaneTable:
-    """Return C with P = sum_kij C[k][i][j] z^k alpha_hat^i beta_hat^j, exact, in the user's alpha_hat and beta_hat."""
+    """Return C with P = sum_kij C[k][i][j] z^k alpha_hat^i beta_hat^j (paper Eq. 17), exact, in the user's parameters.
+
+    Dimensionless; one plane for each power of z, ascending, all of one shape.
+    """
     if isinstance(method.scheme, SecondOrder):
         m = method.step_multiple
         return tuple(

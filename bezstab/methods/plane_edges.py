@@ -33,6 +33,7 @@ from sympy.polys.matrices import DomainMatrix
 from bezstab.methods.schemes import ONE, ZERO, Method
 from bezstab.methods.schur import is_schur
 from bezstab.methods.shared_factors import reduced_table
+from bezstab.rationals import bisected_integers
 
 A, B = sp.symbols("alpha_hat beta_hat")
 RING = sp.QQ[A, B]
@@ -292,7 +293,7 @@ def _refined(whole: tuple[int, ...], low: Fraction, high: Fraction) -> Fraction:
     bits += max(0, -_exponent(size)) + 4
     while True:
         below, above = int(low * (1 << bits)) - 1, int(high * (1 << bits)) + 1
-        below, above = _bisected(
+        below, above = _neighbours(
             whole, bits, max(low, Fraction(below, 1 << bits)), min(high, Fraction(above, 1 << bits))
         )
         root = Fraction(below + above, 2 << bits)
@@ -301,17 +302,16 @@ def _refined(whole: tuple[int, ...], low: Fraction, high: Fraction) -> Fraction:
         bits *= 2  # nearer to zero than the interval told
 
 
-def _bisected(whole: tuple[int, ...], bits: int, low: Fraction, high: Fraction) -> tuple[int, int]:
+def _neighbours(whole: tuple[int, ...], bits: int, low: Fraction, high: Fraction) -> tuple[int, int]:
     """Return neighbours on the grid of 2^-bits that enclose the root."""
     slope = tuple(c * (len(whole) - 1 - i) for i, c in enumerate(whole[:-1]))
     rising = (_sign(whole, low) or _sign(slope, low)) < 0  # another root may lie at the end of the interval
-    below, above = int(low * (1 << bits)) - 1, int(high * (1 << bits)) + 1
-    while above - below > 1:
-        middle = (below + above) // 2
-        place = Fraction(middle, 1 << bits)
-        before = place <= low or (place < high and (_sign(whole, place) < 0) == rising)
-        below, above = (middle, above) if before else (below, middle)
-    return below, above
+
+    def has_passed_the_root(number: int) -> bool:
+        place = Fraction(number, 1 << bits)
+        return place > low and (place >= high or (_sign(whole, place) < 0) != rising)
+
+    return bisected_integers(has_passed_the_root, int(low * (1 << bits)) - 1, int(high * (1 << bits)) + 1)
 
 
 def _sign(whole: tuple[int, ...], x: Fraction) -> int:

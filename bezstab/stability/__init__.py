@@ -43,13 +43,13 @@ What needs sympy's polynomials is loaded when first used: poles and maps do not.
 from typing import TYPE_CHECKING
 
 from bezstab.lazy import lazy_names
+from bezstab.stability.answer_checks import Modulus
 from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, FloatArray
 from bezstab.stability.best_points import BestPoint, best_point, falls_towards
 from bezstab.stability.choices import (
     THOUSANDFOLD,
     Choice,
     Goal,
-    Modulus,
     choose,
     choose_at_step,
     describe_point,

@@ -7,23 +7,29 @@ import numpy as np
 
 from bezstab.errors import NumericalError
 from bezstab.methods import Method
-from bezstab.stability.arrays import EPS, FloatArray
-from bezstab.stability.closed_loop import any_pencil_of, converges, largest_modulus
+from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, FloatArray
+from bezstab.stability.closed_loop import AnyPencil, any_pencil_of, converges, largest_modulus, largest_pole
 from bezstab.stability.line_slices import mu_bound, real_events, slices, turning_radii
 from bezstab.stability.path_crossings import Path
 from bezstab.stability.pencils import Pencil
 from bezstab.stability.plane_pencils import PlanePencil
+from bezstab.stability.searches import bisected
 
 Extent = tuple[tuple[float, float], tuple[float, float]]
+Modulus = Callable[[FloatArray, FloatArray], FloatArray]
+"""|z_p|, or what takes its place, over arrays of alpha_hat and beta_hat."""
 Objective = Callable[[FloatArray, FloatArray, float], FloatArray]
 """What is to be least, over rows of alpha_hat and beta_hat; above the last argument it may say any larger value."""
 
 SAMPLES = 400  # over the region's box: a few thousandths of what the search itself looks at
 NEIGHBOURS = 32  # on each ring
-RINGS = 10.0 ** -np.arange(1, 6)  # radii, as shares of the region's box
+RINGS: FloatArray = np.array([1e-1, 1e-2, 1e-3, 1e-4, 1e-5])  # radii, as shares of the region's box
+CLOSE_RINGS: FloatArray = RINGS[1:]  # as shares of a point's own coordinates
 BETTER = 1e-6  # relative: a search ends where its objective is flat to this, along a kink's bed
 KINK = 1e-3  # a pole of multiplicity m, however small, is good to eps^(1/m) of what it is a difference of, which is
 # near one; m = 4 among the best points
+ROUNDINGS = 8  # of a point's coordinates, either way: what they do to |z_p| is how well it is known there
+PARTED = 4.0  # times that: the point itself is found from poles of the same rounding
 NO_LESS = 1e-9  # of one: the search for a least value of zero ends so far from it
 NEAR = (8.0, 64.0)  # alpha_hat, beta_hat: corners of a region may lie a thousandfold further out, least values do not
 ROOT_OF_ROUNDING = 1e-7  # a double pole at zero, as far as float64 tells it
@@ -105,10 +111,7 @@ def check_least(
 
     cut: only points within the extent are an answer.
     """
-    alpha_hats, beta_hats = sampled_points(extent, alpha_hat, beta_hat)
-    if cut:
-        within = (alpha_hats <= extent[0][1]) & (beta_hats <= extent[1][1])
-        alpha_hats, beta_hats = alpha_hats[within], beta_hats[within]
+    alpha_hats, beta_hats = _positive_samples(extent, alpha_hat, beta_hat, cut)
     _compare(method, objective, alpha_hat, beta_hat, alpha_hats, beta_hats)
 
 
@@ -121,6 +124,88 @@ def check_least_equal(
     if cut:
         alpha_hats = alpha_hats[alpha_hats <= min(extent[0][1], 2 * np.sqrt(extent[1][1]))]
     _compare(method, objective, alpha_hat, alpha_hat**2 / 4, alpha_hats, alpha_hats**2 / 4)
+
+
+def check_critical(pencil: AnyPencil, alpha_hat: float, beta_hat: float, extent: Extent, cut: bool = False) -> None:
+    r"""Raise NumericalError unless the dominant pole is real and positive at a point, and smaller at no neighbour.
+
+    Neighbours are where the dominant pole is double, real and positive, too (cut: and within the extent). Bisection
+    finds them on rings around the point, between two real poles and a conjugate pair:
+
+          .--x--.
+        / pair ##\       A curve of double poles leads through the point, and on it |z_p| must be least there.
+       |     x####|
+        \  ##### /        #: two real poles
+          'x----'
+    """
+    name = pencil.method.name
+    here = complex(largest_pole(pencil, alpha_hat, beta_hat))
+    if abs(here) < KINK:
+        return  # every pole is zero to its rounding: none is faster
+    # where a rival is as large as the double pole, on one side of the point it is smaller
+    beside = np.array([1 - BETTER, 1, 1 + BETTER])
+    if not _real_and_positive(largest_pole(pencil, alpha_hat * beside, beta_hat * beside**2), KINK).any():
+        raise NumericalError(f"{name}: the dominant pole {here:.6g} of the critical point is not real and positive")
+
+    def places(radius: FloatArray, angle: FloatArray) -> tuple[FloatArray, FloatArray]:
+        return alpha_hat * (1 + radius * np.cos(angle)), beta_hat * (1 + radius * np.sin(angle))
+
+    def real(radius: FloatArray, angle: FloatArray) -> BoolArray:
+        return _real_and_positive(largest_pole(pencil, *places(radius, angle)), EPS)
+
+    angles = np.linspace(0, 2 * np.pi, NEIGHBOURS + 1)
+    is_real = real(CLOSE_RINGS[:, np.newaxis], angles)
+    ring, k = np.nonzero(is_real[:, 1:] != is_real[:, :-1])
+    radius, first = CLOSE_RINGS[ring], is_real[ring, k]
+    pair_end, real_end = bisected(
+        lambda angle: real(radius, angle),
+        before=np.where(first, angles[k + 1], angles[k]),
+        after=np.where(first, angles[k], angles[k + 1]),
+    )
+    alpha_hats, beta_hats = places(radius, real_end)
+    poles = largest_pole(pencil, alpha_hats, beta_hats)
+    # else it is another pole that becomes the larger one there
+    double = np.abs(poles - largest_pole(pencil, *places(radius, pair_end))) <= KINK * np.abs(poles)
+    if cut:
+        double &= (alpha_hats <= extent[0][1]) & (beta_hats <= extent[1][1])
+    smallest = np.abs(poles[double]).min(initial=np.inf)
+    near = 1 + EPS * np.arange(-ROUNDINGS, ROUNDINGS + 1)
+    parted = float(np.ptp(largest_modulus(pencil, alpha_hat * near, beta_hat * near[:, np.newaxis])))
+    if smallest < abs(here) * (1 - BETTER) - PARTED * parted:
+        raise NumericalError(f"{name}: the critical point has {abs(here):.9g}, but a neighbour has {smallest:.9g}")
+
+
+def _real_and_positive(poles: ComplexArray, tolerance: float) -> BoolArray:
+    return np.asarray((np.abs(poles.imag) <= tolerance * np.abs(poles)) & (poles.real > 0))
+
+
+def check_gentle(method: Method, modulus: Modulus, alpha_hat: float, rate: float) -> None:
+    """Raise NumericalError unless |z_p| is at most the rate at alpha = beta, and above it at every sampled smaller one.
+
+    `alpha_hat` = 2 alpha h; modulus: |z_p|, or what takes its place.
+    """
+    smaller = alpha_hat * np.concatenate([1 - CLOSE_RINGS, np.arange(1, SAMPLES) / SAMPLES])
+    here = float(modulus(np.array([alpha_hat]), np.array([alpha_hat**2 / 4]))[0])
+    if here > rate + ROOT_OF_ROUNDING:
+        raise NumericalError(f"{method.name}: |z_p| = {here:.9g} at the gentle point, needed {rate:.9g}")
+    values = modulus(smaller, smaller**2 / 4)
+    enough = np.flatnonzero(values < rate - ROOT_OF_ROUNDING)
+    if enough.size:
+        first = smaller[enough].min()
+        raise NumericalError(
+            f"{method.name}: alpha_hat = {first:.9g} with alpha = beta is gentler than {alpha_hat:.9g}"
+        )
+
+
+def _positive_samples(
+    extent: Extent, alpha_hat: float, beta_hat: float, cut: bool = False
+) -> tuple[FloatArray, FloatArray]:
+    """Return those of the sampled points with alpha, beta > 0; cut: within the extent."""
+    alpha_hats, beta_hats = sampled_points(extent, alpha_hat, beta_hat)
+    kept = (alpha_hats > 0) & (beta_hats > 0)
+    if cut:
+        kept &= (alpha_hats <= extent[0][1]) & (beta_hats <= extent[1][1])
+    return alpha_hats[kept], beta_hats[kept]
 
 
 def _compare(

@@ -31,9 +31,9 @@ from bezstab.stability.arrays import ComplexArray, FloatArray
 from bezstab.stability.dominant_roots import dominant_root
 from bezstab.stability.line_slices import all_inside
 from bezstab.stability.pencils import Pencil, pencil_of, roots_in_mu, roots_in_z
-from bezstab.stability.plane_best_points import plane_least
+from bezstab.stability.plane_best_points import PlaneLeast, plane_least
 from bezstab.stability.plane_pencils import plane_pencil_of
-from bezstab.stability.regions import region
+from bezstab.stability.regions import Extent, region
 from bezstab.stability.searches import zoom_on_minimum
 
 ROUNDING = 1e-9  # relative; a solved kink's moduli agree to about 1e-15, neighbouring candidates differ far more
@@ -45,6 +45,7 @@ AS_SMALL = 1e-10  # relative: a value by so much above the least so far is looke
 NEAR_LOWEST = 1e-3  # relative: a narrowed minimum is above its kink by the root of 6e-7 of a spacing of 0.02 at most
 SAME_MINIMUM = 1e-5  # of |mu|: minima that were narrowed to less than that and lie closer are one
 STARTS = 6  # local minima of the sampled f that are followed up
+FINER = 4  # times as many samples along either axis, and starts, where the first sampling failed the check
 ZOOM_POINTS, ZOOM, ZOOMS = 13, 0.45, 19  # 0.45^18 = 6e-7 of the grid's spacing: a start, from which Newton takes over
 ARC_SAMPLES = 4097  # of theta, where a curve of equal |z_p| is looked for
 ARC_SHARE = 1 / 10  # of the samples lie on such a curve, if there is one; a kink shows at isolated theta only
@@ -143,6 +144,14 @@ def _deadbeat(pencil: Pencil) -> BestPoint | float:
 
 def _kink(pencil: Pencil) -> BestPoint | float | None:
     """Return the best point of a method of several steps, or the value its |z_p| falls towards."""
+    try:
+        return _checked_kink(pencil, finer=1)
+    except NumericalError:
+        return _checked_kink(pencil, finer=FINER)
+
+
+def _checked_kink(pencil: Pencil, finer: int) -> BestPoint | float | None:
+    """Return the same from one sampling of f; NumericalError if it fails its check."""
     stable = region(pencil.method)
     extent = stable.view
     if extent is None:
@@ -150,7 +159,7 @@ def _kink(pencil: Pencil) -> BestPoint | float | None:
     limit = math.inf if stable.bounded else _limit(pencil)
     if limit == 0:
         return limit
-    least = _smallest(pencil)
+    least = _smallest(pencil, finer)
     if limit < least.z_abs:
         return limit
     end = _other_end(pencil, least)
@@ -172,11 +181,12 @@ def _in_the_plane(method: Method) -> BestPoint | float | None:
     stable = region(method)
     if stable.view is None:
         return None
-    pencil = plane_pencil_of(method, free=True)
-    least = plane_least(pencil, stable.view, unbounded=not stable.bounded)
+    try:
+        least = _checked_plane_least(method, stable.view, unbounded=not stable.bounded, finer=1)
+    except NumericalError:
+        least = _checked_plane_least(method, stable.view, unbounded=not stable.bounded, finer=FINER)
     if isinstance(least, float):
         return least
-    check_plane_best_point(pencil, least.z_abs, least.alpha_hat, least.beta_hat, stable.view)
     return BestPoint(
         method=method,
         z_abs=least.z_abs,
@@ -188,6 +198,15 @@ def _in_the_plane(method: Method) -> BestPoint | float | None:
         arc=False,
         multiplicity=least.multiplicity,
     )
+
+
+def _checked_plane_least(method: Method, view: Extent, unbounded: bool, finer: int) -> PlaneLeast | float:
+    """Return the least |z_p| from one sampling of the plane; NumericalError if it fails its check."""
+    pencil = plane_pencil_of(method, free=True)
+    least = plane_least(pencil, view, unbounded, finer)
+    if isinstance(least, PlaneLeast):
+        check_plane_best_point(pencil, least.z_abs, least.alpha_hat, least.beta_hat, view)
+    return least
 
 
 def _beside_a_fixed_pole(method: Method, fixed: complex) -> BestPoint | float | None:
@@ -254,9 +273,9 @@ def _meeting_poles(pencil: Pencil, z_abs: float, mu: ComplexArray) -> tuple[comp
     return tuple(meeting)
 
 
-def _smallest(pencil: Pencil) -> _Candidate:
-    """Return min f and a mu that has it, a real one if there is one."""
-    sampled = _local_minima(pencil)
+def _smallest(pencil: Pencil, finer: int) -> _Candidate:
+    """Return min f and a mu that has it, a real one if there is one; `finer`: so many times the samples and starts."""
+    sampled = _local_minima(pencil, finer)
     lowest = min(candidate.z_abs for candidate in sampled)
     followed: list[_Candidate] = []
     for candidate in sampled:
@@ -272,14 +291,14 @@ def _smallest(pencil: Pencil) -> _Candidate:
     return min(as_low, key=lambda solution: (abs(solution.mu.imag), solution.z_abs))
 
 
-def _local_minima(pencil: Pencil) -> list[_Candidate]:
+def _local_minima(pencil: Pencil, finer: int) -> list[_Candidate]:
     """Return the lowest local minima of f on a grid over S_1, each narrowed by a sequence of smaller grids."""
     stable = region(pencil.method)
     assert stable.view
     seen = np.concatenate(stable.boundary) if stable.bounded else np.array(list(product(*stable.view)))
     corners = np.abs(seen @ pencil.to_feedback.T)
     reach = float(np.max(corners[:, 0] + np.sqrt(corners[:, 1])))  # of both roots of the feedback
-    x, y = np.linspace(-reach, reach / 4, 151), np.linspace(0, reach, 121)
+    x, y = np.linspace(-reach, reach / 4, 150 * finer + 1), np.linspace(0, reach, 120 * finer + 1)
     grid = x + 1j * y[:, np.newaxis]
     sampled = np.full(grid.shape, np.inf)
     stable_mu = all_inside(pencil, grid, 1.0)
@@ -288,7 +307,7 @@ def _local_minima(pencil: Pencil) -> list[_Candidate]:
     shifts = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1)]
     least_around = np.min([np.roll(padded, shift, (0, 1)) for shift in shifts], axis=0)[1:-1, 1:-1]
     rows, columns = np.nonzero((sampled == least_around) & stable_mu)
-    lowest = np.argsort(sampled[rows, columns])[:STARTS]
+    lowest = np.argsort(sampled[rows, columns])[: finer * STARTS]
 
     def to_upper_half(points: FloatArray) -> FloatArray:
         return np.stack([points[..., 0], np.abs(points[..., 1])], axis=-1)

@@ -12,7 +12,14 @@ import numpy as np
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method, Verdict, steps
 from bezstab.rationals import exact
-from bezstab.stability.answer_checks import Objective, check_least, check_least_equal
+from bezstab.stability.answer_checks import (
+    Modulus,
+    Objective,
+    check_critical,
+    check_gentle,
+    check_least,
+    check_least_equal,
+)
 from bezstab.stability.arrays import BoolArray, FloatArray
 from bezstab.stability.best_points import AS_SMALL, best_point
 from bezstab.stability.closed_loop import (
@@ -34,8 +41,6 @@ from bezstab.stability.regions import Extent, Region, pole_place, region
 from bezstab.stability.searches import first_where, zoom_on_minimum
 
 Goal = Literal["robust", "fastest", "critical", "gentle"]
-Modulus = Callable[[FloatArray, FloatArray], FloatArray]
-"""|z_p|, or what takes its place, over arrays of alpha_hat and beta_hat."""
 Within = Callable[[FloatArray, FloatArray, FloatArray], BoolArray]
 """Whether |z_p| is below a bound, over arrays of alpha_hat, beta_hat and bounds."""
 
@@ -45,6 +50,7 @@ FIRST_GRID = 52  # points per axis of the first grid over the region's box: ever
 GRID = 13  # points per axis of a zoom
 ZOOM = 0.75  # from one grid to the next; faster ones lose valleys of ABM2 and BDF5
 ZOOMS = 90  # 0.75^89 = 8e-12 of the region at least, where the objective is flat to rounding
+FINER = 3  # times as many of all these, where the first search failed its check
 SPREAD_POINTS = 9  # per axis, of the points among which the worst is looked for
 SCOUTS = 16  # of a row one point in so many is looked at first, for a value that the others must be below
 SHARES = 8  # of the largest step, besides the limit of small ones: in practice either end is the slowest
@@ -104,9 +110,10 @@ def choose(
 ) -> Choice:
     """Return the point that a goal asks for, dimensionless and proven stable.
 
-    fastest: the smallest |z_p|. critical: the fastest whose dominant pole is real and positive. robust: the fastest at
-    worst over every smaller step at the same alpha, beta, and alpha and beta off by the spread (a share), where
-    fast means decay per second. gentle: the smallest alpha = beta with |z_p| <= rate. `equal` keeps alpha = beta.
+    fastest: the smallest |z_p|. critical: the fastest dominant pole that is double, real and positive, on the way from
+    small parameters on, before another pole overtakes it. robust: the fastest at worst over every smaller step at the
+    same alpha, beta, and alpha and beta off by the spread (a share), where fast means decay per second. gentle: the
+    smallest alpha = beta with |z_p| <= rate. `equal` keeps alpha = beta.
     `modulus` takes the place of |z_p| at rest, for a mechanism that moves; critical asks for poles at rest.
     InputError if nothing stable meets the goal. The poles are those of paper Eq. 17; the goals are this package's.
     """
@@ -123,9 +130,12 @@ def choose(
         modulus = partial(largest_modulus, pencil)
     if goal == "gentle":
         of_all = partial(largest_modulus, any_pencil_of(method)) if at_rest else modulus
-        point, cut = _gentle(method, of_all, box, 0.0 if rate is None else rate), False
+        rate = 0.0 if rate is None else rate
+        point, cut = _gentle(method, of_all, box, rate), False
+        check_gentle(method, of_all, point[0], rate)
     elif goal == "critical":
         point = _critical_point(pencil, box, cut)
+        check_critical(pencil, point[0], point[1], box, cut)
         if equal and not math.isclose(point[1], point[0] ** 2 / 4):
             raise InputError(
                 f"--keep alpha=beta: the double mu of {method.name} is not at alpha = beta; no --goal critical"
@@ -294,20 +304,28 @@ def _throughout(modulus: Modulus) -> Objective:
 def _checked_least(
     pencil: AnyPencil, extent: Extent, objective: Objective, equal: bool, cut: bool
 ) -> tuple[float, float]:
-    """Return where the objective is least; NumericalError if a sampled point is better (answer_checks)."""
-    alpha_hat, beta_hat = _least(extent, objective, equal, cut)
-    if equal:
-        check_least_equal(pencil.method, objective, alpha_hat, extent, cut)
-    else:
-        check_least(pencil.method, objective, alpha_hat, beta_hat, extent, cut)
-    return alpha_hat, beta_hat
+    """Return where the objective is least; NumericalError if after a finer search, too, a sampled point is better."""
+
+    def found(finer: int) -> tuple[float, float]:
+        alpha_hat, beta_hat = _least(extent, objective, equal, cut, finer)
+        if equal:
+            check_least_equal(pencil.method, objective, alpha_hat, extent, cut)
+        else:
+            check_least(pencil.method, objective, alpha_hat, beta_hat, extent, cut)
+        return alpha_hat, beta_hat
+
+    try:
+        return found(finer=1)
+    except NumericalError:
+        return found(finer=FINER)
 
 
-def _least(extent: Extent, objective: Objective, equal: bool, cut: bool) -> tuple[float, float]:
+def _least(extent: Extent, objective: Objective, equal: bool, cut: bool, finer: int) -> tuple[float, float]:
     """Return where the objective is least over the region's box; with `equal` on the line alpha = beta.
 
-    Its valleys are narrow, curved and have kinks for beds, so the grids are turned, and wait where the valley leads on;
-    out of a box that cuts off the region they are not led.
+    `finer`: so many times the points along an axis of the first grid, and so many times the zooms, each by a lesser
+    factor. Its valleys are narrow, curved and have kinks for beds, so the grids are turned, and wait where the valley
+    leads on; out of a box that cuts off the region they are not led.
     """
     largest = np.array([extent[0][1] / 2, math.sqrt(extent[1][1])])  # alpha h and beta h
     centre = largest / 2
@@ -329,10 +347,10 @@ def _least(extent: Extent, objective: Objective, equal: bool, cut: bool) -> tupl
         over_positive_points,
         centre,
         reach=centre,
-        first_points=SAMPLES if equal else FIRST_GRID,
+        first_points=finer * (SAMPLES if equal else FIRST_GRID),
         points=GRID,
-        shrink=ZOOM,
-        rounds=ZOOMS,
+        shrink=ZOOM ** (1 / finer),
+        rounds=finer * ZOOMS,
         turned=not equal,
         patient=True,
         fold=(lambda points: np.minimum(points, 2 * centre)) if cut else None,

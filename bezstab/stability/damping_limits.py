@@ -30,13 +30,13 @@ from bezstab.methods import (
     fixed_poles,
     without_shared_factor,
 )
-from bezstab.stability.arrays import FloatArray
+from bezstab.stability.arrays import BoolArray, FloatArray
 from bezstab.stability.boundary_locus import Arc, Bounds, bounds_of
 from bezstab.stability.closed_loop import verdict
 from bezstab.stability.line_slices import rim_radius
 from bezstab.stability.pencils import pencil_of
 from bezstab.stability.quadrant_proofs import coefficients_in_w, hurwitz_determinant, stable_for_all
-from bezstab.stability.searches import zoom_on_minimum
+from bezstab.stability.searches import bisected, zoom_on_minimum
 
 AT_ZERO = 1e-9  # of the size of S_1: an interval that ends there ends at mu = 0
 ON_THE_RIM = 1 - 1e-9  # of its radius
@@ -193,11 +193,10 @@ def _ratio_by_halving(method: Method) -> float | None:
     """Return the damping ratio from which on there is no limit, if there is none for the strongest."""
     if _limit_at(method, STRONGEST) is not None:
         return None
-    limited, unlimited = Fraction(0), STRONGEST
-    for _ in range(HALVINGS):
-        middle = (limited + unlimited) / 2
-        if _limit_at(method, middle) is None:
-            unlimited = middle
-        else:
-            limited = middle
-    return float(unlimited)
+
+    def is_unlimited(ratios: FloatArray) -> BoolArray:
+        return np.array([_limit_at(method, Fraction(ratio)) is None for ratio in ratios.tolist()])
+
+    # the halves of a thousand are float64 numbers, so that nothing is rounded
+    _, unlimited = bisected(is_unlimited, np.zeros(1), np.array([float(STRONGEST)]), HALVINGS)
+    return float(unlimited[0])

@@ -94,15 +94,16 @@ def _derivative(table: FloatArray, axis: int) -> FloatArray:
     return np.asarray(polyder(table, axis=axis), float)
 
 
-def plane_least(pencil: PlanePencil, view: Extent, unbounded: bool) -> PlaneLeast | float:
+def plane_least(pencil: PlanePencil, view: Extent, unbounded: bool, finer: int = 1) -> PlaneLeast | float:
     """Return where |z_p| is least over alpha_hat, beta_hat >= 0, or the value it falls towards without end.
 
-    `view` holds every corner of the region. NumericalError if no solution is as small as a sampled value.
+    `view` holds every corner of the region; `finer`: so many times the samples and starts. NumericalError if no
+    solution is as small as a sampled value.
     """
     high = np.array([max(view[0][1], 0.0), np.sqrt(max(view[1][1], 0.0))])
     if unbounded:
         high = np.maximum(high, FAR)
-    sampled = sorted(_local_minima(pencil, high), key=lambda minimum: minimum[0])
+    sampled = sorted(_local_minima(pencil, high, finer), key=lambda minimum: minimum[0])
     lowest = min(value for value, _ in sampled)
     solved: list[PlaneLeast] = []
     for value, place in sampled:
@@ -181,9 +182,9 @@ def _spacing(axis: FloatArray, k: int) -> float:
     return float(np.diff(axis)[max(k - 1, 0) : k + 1].max())
 
 
-def _local_minima(pencil: PlanePencil, high: FloatArray) -> Iterator[tuple[float, FloatArray]]:
+def _local_minima(pencil: PlanePencil, high: FloatArray, finer: int) -> Iterator[tuple[float, FloatArray]]:
     """Yield the lowest local minima over alpha_hat and sqrt(beta_hat) up to `high`, each narrowed by smaller grids."""
-    x, y = (_axis(end, count) for end, count in zip(high, GRID, strict=True))
+    x, y = (_axis(end, finer * (count - 1) + 1) for end, count in zip(high, GRID, strict=True))
 
     def modulus(points: FloatArray) -> FloatArray:
         return largest_modulus(pencil, points[..., 0], points[..., 1] ** 2)
@@ -193,7 +194,7 @@ def _local_minima(pencil: PlanePencil, high: FloatArray) -> Iterator[tuple[float
     padded = np.pad(sampled, 1, mode="edge")
     around = np.min([np.roll(padded, (i, j), (0, 1)) for i in (-1, 0, 1) for j in (-1, 0, 1)], axis=0)[1:-1, 1:-1]
     rows, columns = np.nonzero(sampled <= around)
-    for k in np.argsort(sampled[rows, columns], kind="stable")[:STARTS]:
+    for k in np.argsort(sampled[rows, columns], kind="stable")[: finer * STARTS]:
         place, value = zoom_on_minimum(
             modulus,
             np.array([x[columns[k]], y[rows[k]]]),

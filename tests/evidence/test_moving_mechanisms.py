@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bezstab.evidence import floquet_rates, growth_rates, momentary_rates, moving_pole, tabulated_rates
-from bezstab.evidence.moving_mechanisms import _safe_speed
+from bezstab.evidence.moving_mechanisms import _moving_pole, _safe_speed
 from bezstab.mechanism import compiled_mechanism, load_scene, simulate, turning_normals
 from bezstab.methods import lookup
 from bezstab.stability import poles, spectral_radius
@@ -97,3 +97,26 @@ def test_a_pole_at_zero_limits_no_speed() -> None:
     decay, growth = np.array([np.log(0.5), -np.inf]), np.array([0.1, -np.inf])
     assert _safe_speed(decay, growth) == pytest.approx(-np.log(0.5) / 0.1)
     assert _safe_speed(decay, np.array([-0.1, -np.inf])) == np.inf
+
+
+@pytest.mark.parametrize(
+    ("other", "double"),
+    [
+        (0.9 - 0.01j, False),  # the conjugate of the pole itself: flat, but one pole of one mu
+        (0.9 + 0.03j, True),  # another pole, nearer than the motion moves either: sqrt(kappa h) = 0.1 of its size
+        (0.5 + 0.01j, False),
+    ],
+)
+def test_a_pole_is_double_beside_another_but_not_beside_its_own_conjugate(other: complex, double: bool) -> None:
+    z = np.array([0.9 + 0.01j, other])
+    nothing = np.zeros(2)
+    found = _moving_pole(
+        z,
+        at_rest=np.log(np.abs(z)),
+        chi=np.array([1 + 0j, 1 + 0j]),
+        growth=nothing,
+        worst=nothing,
+        kappa=1.0,
+        step=0.01,
+    )
+    assert found.double == double

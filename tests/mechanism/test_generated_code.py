@@ -17,7 +17,7 @@ from bezstab.mechanism import (
     simulate,
     stepper_code,
 )
-from bezstab.methods import accuracy, lookup, steps
+from bezstab.methods import Method, accuracy, lookup, recipe, steps
 from tests.mechanism.test_scenes import pendulum
 from tests.methods.kinds import EXPLICIT, IMPLICIT, sampled
 from tests.reference.literal_equation_9 import literal_slope
@@ -144,3 +144,18 @@ def test_names_never_reach_the_generated_code() -> None:
     mechanism = compiled_mechanism(parse_scene(pendulum(**changes)))
     assert not any("import" in line for line in mechanism.acceleration_code.lines)
     assert initial_state(mechanism)[0] == pytest.approx([0.6, 0.8])
+
+
+def test_steps_of_a_recipe_are_plain_assignments_without_its_names() -> None:
+    hostile = "__import__"
+    scheme = recipe(
+        {
+            "x1": "x0 + v0 + 1/2 a0",
+            hostile: "v0 + 1/2 a0",
+            "a1": f"acceleration(x1, 1/2 {hostile} + 1/2 v1)",
+            "v1": f"{hostile} + 1/2 a1",
+        }
+    )
+    source = stepper_code(compiled_mechanism(load_scene("slider_crank")), Method("hostile", scheme, "constructed"))
+    assert hostile not in source
+    assert set(CALL.findall(source)) - {"run", "residual_2", "in"} <= {"sin", "cos", "least", "solve"}

@@ -14,9 +14,10 @@ import mpmath as mp
 
 from bezstab.mechanism import Mechanism, compiled_source, stepper_code
 from bezstab.mechanism.compiled import run_as_second_order
+from bezstab.mechanism.generated_code import residuals_source
 from bezstab.mechanism.newton_iterations import TOLERANCE, Residual, Work, newton_solution
 from bezstab.mechanism.runner import carried_quantities
-from bezstab.mechanism.second_order_code import implicit_groups, residuals_source
+from bezstab.mechanism.second_order_turns import implicit_groups
 from bezstab.methods import Method, RungeKutta, lookup
 from tests.reference.one_coordinate_motion import DIGITS
 

@@ -4,7 +4,9 @@ import random
 from fractions import Fraction
 from functools import reduce
 
-from bezstab.methods import LinearMultistep, Method, PredictorCorrector, RungeKutta
+from bezstab.errors import InputError
+from bezstab.methods import LinearMultistep, Method, PredictorCorrector, RungeKutta, recipe
+from tests.methods.random_recipes import Seeded, random_recipe
 
 Polynomial = list[Fraction]  # descending powers of z
 
@@ -108,3 +110,20 @@ def random_method(number: int) -> Method:
             predictor, LinearMultistep(tuple(rho), tuple(random_sigma(rng, rho, explicit=False)))
         )
     return Method(f"{kind}{size}-{number}", scheme, "random")
+
+
+OTHER_KINDS = [("implicit", 1), ("recipe", 0), ("implicit", 2), ("recipe", 0), ("implicit", 3), ("recipe", 0)]
+
+
+def other_random_method(number: int) -> Method:
+    """Return method number 0, 1, 2, ... of a second sequence: implicit multistep methods and second-order recipes."""
+    rng = random.Random(f"other method {number}")
+    kind, size = OTHER_KINDS[number % len(OTHER_KINDS)]
+    name = f"{kind}{size or ''}-{number}"
+    if kind == "implicit":
+        return Method(name, random_multistep(rng, size, explicit=False), "random")
+    while True:
+        try:
+            return Method(name, recipe(random_recipe(Seeded(rng))), "random")
+        except InputError:  # equations that determine no step, or one whose evaluations do not wait in any order
+            continue

@@ -67,13 +67,17 @@ def slice_lengths(method: Method, level: float, alpha_hat: FloatArray, beta_rang
     return lengths
 
 
-def sliced_area(method: Method, level: float, panels: int = 8) -> float:
+def sliced_area(method: Method, level: float, panels: int = 8, widened: float = 1.0) -> float:
     """Return the area as the integral of the slices' lengths: no mu, no locus, no resultant in theta.
 
-    Clenshaw-Curtis panels are halved until they agree: a corner, a vertical tangent or a jump ends at a width of 2^-40.
-    Their nodes include the ends, or a jump just inside one would go unseen.
+    It is looked for in the region's window, or one so many times as wide about the same centre. Clenshaw-Curtis panels
+    are halved until they agree: a corner, a vertical tangent or a jump ends at a width of 2^-40. Their nodes include
+    the ends, or a jump just inside one would go unseen.
     """
-    box = window(region(method, level))
+    box = tuple(
+        ((low + high - widened * (high - low)) / 2, (low + high + widened * (high - low)) / 2)
+        for low, high in window(region(method, level))
+    )
     nodes, order = chebyshev.chebpts2(13), np.arange(0, 13, 2)
     moments = np.zeros(13)
     moments[order] = 2 / (1 - order**2)  # of T_k over (-1, 1)

@@ -20,6 +20,7 @@ from bezstab.stability import (
     pencil_of,
     region,
     stability_margins,
+    verdict,
 )
 from bezstab.stability.answer_checks import check_best_point, check_margin
 from bezstab.stability.path_crossings import Path
@@ -47,8 +48,8 @@ def test_a_wrong_best_point_is_no_answer(name: str, factor: float, moved: float)
 def test_a_kink_that_is_not_the_least_is_no_answer(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     smallest = best_points._smallest
 
-    def another(pencil: Any) -> Any:
-        least = smallest(pencil)
+    def another(pencil: Any, finer: int) -> Any:
+        least = smallest(pencil, 1)
         mu = 0.9 * least.mu
         return replace(least, mu=mu, z_abs=float(best_points._largest_modulus(pencil, np.array([mu]))[0]))
 
@@ -65,20 +66,92 @@ def test_a_deadbeat_point_that_is_none_is_no_answer(name: str, monkeypatch: pyte
         best_point(lookup(name))
 
 
-@pytest.mark.parametrize(("goal", "equal"), [("robust", False), ("robust", True), ("fastest", True)])
-@pytest.mark.parametrize("name", ["B4", "RK4"])
+@pytest.mark.parametrize(
+    ("name", "goal", "equal"),
+    [
+        pytest.param("B4", "robust", False, marks=pytest.mark.slow),
+        pytest.param("B4", "robust", True, marks=pytest.mark.slow),
+        ("RK4", "robust", True),
+        ("RK4", "fastest", True),
+    ],
+)
 def test_a_choice_that_a_neighbour_betters_is_no_answer(
     name: str, goal: Goal, equal: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     least = choices._least
 
-    def beside(extent: Any, objective: Any, equal: bool, cut: bool) -> tuple[float, float]:
-        alpha_hat, beta_hat = least(extent, objective, equal, cut)
+    def beside(extent: Any, objective: Any, equal: bool, cut: bool, finer: int) -> tuple[float, float]:
+        alpha_hat, beta_hat = least(extent, objective, equal, cut, 1)
         return 0.99 * alpha_hat, 0.99**2 * beta_hat
 
     monkeypatch.setattr(choices, "_least", beside)
     with pytest.raises(NumericalError, match="the point chosen"):
         choose(lookup(name), goal, equal=equal)
+
+
+@pytest.mark.slow
+def test_what_fails_at_first_is_searched_more_finely(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A first search that ends beside the least value, of either kind: the second one finds it."""
+    method = lookup("AB3")
+    right_best, right_choice = best_point(method), choose(method, "fastest", equal=True)
+    assert right_best
+    smallest, least = best_points._smallest, choices._least
+
+    def another(pencil: Any, finer: int) -> Any:
+        found = smallest(pencil, finer)
+        return found if finer > 1 else replace(found, mu=0.9 * found.mu)
+
+    def beside(extent: Any, objective: Any, equal: bool, cut: bool, finer: int) -> tuple[float, float]:
+        alpha_hat, beta_hat = least(extent, objective, equal, cut, finer)
+        return (alpha_hat, beta_hat) if finer > 1 else (0.99 * alpha_hat, 0.99**2 * beta_hat)
+
+    monkeypatch.setattr(best_points, "_smallest", another)
+    monkeypatch.setattr(choices, "_least", beside)
+    best_point.cache_clear()
+    found = best_point(method)
+    assert found
+    assert found.z_abs == pytest.approx(right_best.z_abs, rel=1e-12)
+    # an objective that is flat to rounding near its least value says no more of the place
+    assert choose(method, "fastest", equal=True).alpha_hat == pytest.approx(right_choice.alpha_hat, rel=1e-7)
+
+
+@pytest.mark.parametrize("name", [pytest.param("B4", marks=pytest.mark.slow), "RK4", "generalized-alpha"])
+@pytest.mark.parametrize("off", [0.99, 1.01])
+def test_a_critical_point_beside_its_place_is_no_answer(name: str, off: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    critical_point = choices._critical_point
+
+    def beside(pencil: Any, box: Any, cut: bool) -> tuple[float, float]:
+        alpha_hat, beta_hat = critical_point(pencil, box, cut)
+        return off * alpha_hat, off**2 * beta_hat
+
+    monkeypatch.setattr(choices, "_critical_point", beside)
+    with pytest.raises(NumericalError, match="critical point"):
+        choose(lookup(name), "critical")
+
+
+@pytest.mark.parametrize("name", ["B4", "RK4", "bdf2"])
+@pytest.mark.parametrize("off", [1 - 1e-5, 1 + 1e-4])
+def test_a_gentle_point_beside_its_place_is_no_answer(name: str, off: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    gentle = choices._gentle
+
+    def beside(method: Any, modulus: Any, box: Any, rate: float) -> tuple[float, float]:
+        alpha_hat, beta_hat = gentle(method, modulus, box, rate)
+        return off * alpha_hat, off**2 * beta_hat
+
+    monkeypatch.setattr(choices, "_gentle", beside)
+    with pytest.raises(NumericalError, match="gentle"):
+        choose(lookup(name), "gentle", rate=0.9)
+
+
+@pytest.mark.parametrize("rate", [0.99, 0.9, 0.7])
+def test_margins_of_a_fourfold_pole_are_where_the_verdict_turns(rate: float) -> None:
+    """On alpha = beta four poles of ABM2 meet, and float64 alone is off by more than the check allows."""
+    gentle = choose(lookup("ABM2"), "gentle", rate=rate)
+    assert gentle.margins
+    for side, expected in ((Fraction(1, 10**9), "diverges"), (-Fraction(1, 10**9), "converges")):
+        factor = Fraction(gentle.margins.h) * (1 + side)
+        point = Fraction(gentle.alpha_hat) * factor, Fraction(gentle.beta_hat) * factor**2
+        assert verdict(lookup("ABM2"), *point) == expected
 
 
 PATHS = [(1, 2), (1, 0), (0, 2)]

@@ -1,6 +1,5 @@
 """Steps of second-order and implicit schemes, against equations iterated plainly and against P(z) itself."""
 
-import re
 from fractions import Fraction
 from itertools import islice
 
@@ -16,9 +15,9 @@ from bezstab.mechanism import (
     perturbed_state,
     simulate,
     states_needed,
-    stepper_code,
 )
-from bezstab.methods import Method, SecondOrder, closed_loop_at, lookup, recipe, second_order_form
+from bezstab.mechanism.second_order_turns import Assigned, Solved, Sum, implicit_groups, turn
+from bezstab.methods import Method, Quantity, SecondOrder, closed_loop_at, lookup, second_order_form
 from bezstab.units import feedback_gains
 from tests.mechanism.test_scenes import pendulum
 from tests.mechanism.test_second_order_memory import LEAPFROG, STOERMER
@@ -27,7 +26,6 @@ from tests.reference.literal_equation_9 import literal_slope
 from tests.reference.plain_second_order import FloatArray, plain_second_order_run
 
 H = 1e-3  # s
-CALL = re.compile(r"(\w+)\(")
 RUN_HERE = [*SECOND_ORDER, *IMPLICIT]
 
 
@@ -139,16 +137,35 @@ def test_a_batch_is_as_many_single_runs(name: str) -> None:
         assert [entry[k] for entry in together] == pytest.approx([*alone.q[-1], *alone.v[-1]], abs=1e-10)
 
 
-def test_generated_source_is_plain_assignments_without_names() -> None:
-    hostile = "__import__"
-    scheme = recipe(
-        {
-            "x1": "x0 + v0 + 1/2 a0",
-            hostile: "v0 + 1/2 a0",
-            "a1": f"acceleration(x1, 1/2 {hostile} + 1/2 v1)",
-            "v1": f"{hostile} + 1/2 a1",
-        }
-    )
-    source = stepper_code(compiled_mechanism(load_scene("slider_crank")), Method("hostile", scheme, "constructed"))
-    assert hostile not in source
-    assert set(CALL.findall(source)) - {"run", "residual_2", "in"} <= {"sin", "cos", "least", "solve"}
+def test_the_trapezoidal_rule_is_solved_for_its_acceleration_and_then_assigned() -> None:
+    """x1 = x0 + v0/2 + v1/2 and v1 = v0 + a0/2 + a1/2, the first with the second in it."""
+    half, quarter, one = Fraction(1, 2), Fraction(1, 4), Fraction(1)
+    x, v, a, found = Quantity("x", 0), Quantity("v", 0), Quantity("a", 0), Quantity("a", 1)
+    solved, *assigned = turn(second_order_form(lookup("trapezoid").scheme))
+    assert isinstance(solved, Solved)
+    (evaluation,) = solved.evaluations
+    assert evaluation.result == found
+    assert evaluation.moment == 1
+    assert nonzero(evaluation.known_position) == {x: one, v: one, a: quarter}
+    assert nonzero(evaluation.known_velocity) == {v: one, a: half}
+    assert nonzero(evaluation.sought_position) == {found: quarter}
+    assert nonzero(evaluation.sought_velocity) == {found: half}
+    values = {action.result: nonzero(action.value) for action in assigned if isinstance(action, Assigned)}
+    assert values == {
+        Quantity("x", 1): {x: one, v: one, a: quarter, found: quarter},
+        Quantity("v", 1): {v: one, a: half, found: half},
+    }
+
+
+@pytest.mark.parametrize("name", ["verlet-half", "symplectic-euler", "yoshida4"])
+def test_what_is_explicit_waits_for_nothing(name: str) -> None:
+    assert implicit_groups(second_order_form(lookup(name).scheme)) == {}
+
+
+@pytest.mark.parametrize(("name", "together"), [("gauss4", [2]), ("sdirk2", [1, 1]), ("bdf3", [1])])
+def test_stages_that_wait_for_each_other_are_solved_together(name: str, together: list[int]) -> None:
+    assert list(implicit_groups(second_order_form(lookup(name).scheme)).values()) == together
+
+
+def nonzero(terms: Sum) -> Sum:
+    return {quantity: coefficient for quantity, coefficient in terms.items() if coefficient}
