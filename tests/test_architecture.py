@@ -41,7 +41,7 @@ BELOW = {
     "methods": {*FOUNDATIONS},
     "stability": {*FOUNDATIONS, "methods"},
     "mechanism": {*FOUNDATIONS, "methods"},
-    "evidence": {*FOUNDATIONS, "methods", "stability", "mechanism"},
+    "evidence": {*FOUNDATIONS, "engines", "methods", "stability", "mechanism"},
     "show": {*FOUNDATIONS, "engines", "methods", "stability", "mechanism", "evidence"},
     "cli": {*FOUNDATIONS, "engines", "methods", "stability", "mechanism", "evidence", "show"},
     "paper": {*FOUNDATIONS, "methods", "stability", "mechanism", "evidence", "show", "cli"},

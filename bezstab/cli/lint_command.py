@@ -47,10 +47,10 @@ def lint(context: click.Context, model: Path, form: Format) -> None:
     Example: bezstab lint robot.xml
     """
     from bezstab.evidence import linted_model, read_mujoco_model
-    from bezstab.show import row
+    from bezstab.show import linted_row
 
     model_data = read_mujoco_model(model)
     linted = list(progress(linted_model(model_data), "lint", model_data.size))
     heading = f"{model.name}: timestep {model_data.h:g} s, integrator {model_data.integrator}"
-    show_rows([row(each) for each in linted], LINTED, form, heading)
+    show_rows([linted_row(each) for each in linted], LINTED, form, heading)
     context.exit(1 if any(each.unsafe for each in linted) else 0)

@@ -231,7 +231,7 @@ MOVING_REGIONS = [
 )
 @click.option("--compare", is_flag=True, help="One figure with the boundaries of all methods (default level 1).")
 @click.option("--h", type=SECONDS, help="Step size in s: axes become 2α (1/s) and β² (1/s²).")
-@click.option("--physical", is_flag=True, help="α and β in 1/s are marked on the axes of the figure; needs --h.")
+@click.option("--alpha-beta", is_flag=True, help="Mark the axes of the figure in α and β (1/s); needs --h.")
 @click.option("--engine", type=ENGINE, help="Mark that engine's defaults and rules; needs --h.")
 @moving_scene_option("Also the region of this mechanism as it moves; needs --h.")
 @click.option(
@@ -250,7 +250,7 @@ def region(
     levels: Sequence[Fraction],
     compare: bool,
     h: Fraction | None,
-    physical: bool,
+    alpha_beta: bool,
     engine: str | None,
     scene: str | None,
     speeds: Sequence[Fraction],
@@ -272,8 +272,8 @@ def region(
         raise InputError(f"--level {float(max(levels)):g}: must be at most 1, the stability boundary")
     if engine and (h is None or compare):
         raise click.UsageError("--engine marks one map and needs --h: the step in s")
-    if physical and h is None:
-        raise click.UsageError("--physical marks the axes in α and β and needs --h: the step in s")
+    if alpha_beta and h is None:
+        raise click.UsageError("--alpha-beta marks the axes in α and β and needs --h: the step in s")
     methods = methods_asked(methods, ENGINES[engine] if engine else None, None)
     if scene and compare:
         raise click.UsageError("--scene draws one map for each method: not with --compare")
@@ -286,7 +286,7 @@ def region(
     step = None if h is None else float(h)
     if compare:
         level = chosen_levels[0] if chosen_levels else 1.0
-        rows = _compare_regions(methods, level, alpha_range, beta_range, step, physical, output, figure, table)
+        rows = _compare_regions(methods, level, alpha_range, beta_range, step, alpha_beta, output, figure, table)
     else:
         marks = _engine_marks(engine, h) if engine and h else {}
         rows = []
@@ -302,7 +302,7 @@ def region(
                 beta_range,
                 points,
                 step,
-                physical,
+                alpha_beta,
                 marks,
                 path,
                 figure,
@@ -333,7 +333,7 @@ def _compare_regions(
     alpha_range: Window | None,
     beta_range: Window | None,
     h: float | None,
-    physical: bool,
+    alpha_beta: bool,
     output: Path,
     figure: FigureForm,
     table: TableForm,
@@ -349,7 +349,7 @@ def _compare_regions(
     def draw() -> "Figure":
         from bezstab.show import comparison_figure
 
-        return comparison_figure(regions, alpha_range, beta_range, h, alpha_and_beta=physical)
+        return comparison_figure(regions, alpha_range, beta_range, h, alpha_and_beta=alpha_beta)
 
     write_table(path, boundary_arrays(regions, h), table)
     write_figure(path, draw, figure)
@@ -363,7 +363,7 @@ def _map_region(
     beta_range: Window | None,
     points: int,
     h: float | None,
-    physical: bool,
+    alpha_beta: bool,
     marks: Mapping[str, tuple[float, float]],
     path: Path,
     figure: FigureForm,
@@ -403,7 +403,7 @@ def _map_region(
             marks,
             {speed: each for (speed, _), each in moving.items()},
             chosen=stability.choose(method, "robust") if best else None,
-            alpha_and_beta=physical,
+            alpha_and_beta=alpha_beta,
         )
 
     write_table(path, map_arrays(alpha_hat, beta_hat, z, h), table)

@@ -129,9 +129,9 @@ def engine_keys(typed: TypedPoint, given: bool) -> Row:
     if not typed.engine:
         return {}
     if not given:
-        return {"applied": None, "left_out": None}
+        return {"applied": None, "excludes": None}
     notes = typed.applied.notes if typed.applied else ("as typed",)
-    return {"applied": "; ".join(notes), "left_out": typed.engine.excludes}
+    return {"applied": "; ".join(notes), "excludes": typed.engine.excludes}
 
 
 def _limit_text(gain: str) -> Column:

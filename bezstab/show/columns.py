@@ -76,14 +76,16 @@ def transposed(row: Row) -> list[Row]:
 def render(rows: Sequence[Row], columns: Sequence[Column], form: Format) -> str:
     """Return the rows in the given form: every key for json and csv, the chosen columns for text and markdown.
 
-    What is infinite or not a number is missing: null, an empty cell, a dash. So is, in csv, a key that only other rows
-    have. KeyError if a row lacks the key of a chosen column.
+    What is infinite or not a number is missing: null, an empty cell, a dash. So is, in json and csv, a key that only
+    other rows have: every row has the same. KeyError if a row lacks the key of a chosen column.
     """
     finite_rows = [finite(row) for row in rows]
-    if form == "json":
-        return json.dumps(finite_rows, indent=2, ensure_ascii=False, allow_nan=False)
-    if form == "csv":
-        return _comma_separated(finite_rows)
+    if form in ("json", "csv"):
+        nothing = dict.fromkeys(key for row in finite_rows for key in row)
+        full_rows = [{**nothing, **row} for row in finite_rows]
+        if form == "csv":
+            return _comma_separated(full_rows, list(nothing))
+        return json.dumps(full_rows, indent=2, ensure_ascii=False, allow_nan=False)
     headings = [column.heading for column in columns]
     lines = [headings, *([column.text(row) for column in columns] for row in finite_rows)]
     return _markdown(lines) if form == "markdown" else _aligned(lines)
@@ -94,8 +96,7 @@ def finite(row: Row) -> Row:
     return {key: None if isinstance(value, float) and not math.isfinite(value) else value for key, value in row.items()}
 
 
-def _comma_separated(rows: Sequence[Row]) -> str:
-    keys = list(dict.fromkeys(key for row in rows for key in row))  # of every row: some have more than the first
+def _comma_separated(rows: Sequence[Row], keys: Sequence[str]) -> str:
     text = io.StringIO()
     writer = csv.DictWriter(text, keys, lineterminator="\n")
     writer.writeheader()

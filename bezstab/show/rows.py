@@ -23,7 +23,17 @@ if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
     from _typeshed import DataclassInstance
 
     from bezstab.engines import Drive, Engine
-    from bezstab.evidence import Likeness, LikePoint, Measurement, MovingPole, ProbedPole, Run, VerdictMap, Witnessed
+    from bezstab.evidence import (
+        Likeness,
+        LikePoint,
+        Linted,
+        Measurement,
+        MovingPole,
+        ProbedPole,
+        Run,
+        VerdictMap,
+        Witnessed,
+    )
     from bezstab.mechanism import Simulation
     from bezstab.methods import Verdict
     from bezstab.stability import BestPoint, Choice, Limit, Member, Region
@@ -346,6 +356,11 @@ def like_point_row(column: str, point: LikePoint, h: float | None) -> Row:
     """Return a point at which a method has the pole in a column of a log, with h (s) in 1/s too."""
     alpha, beta = (None, None) if h is None else alpha_and_beta(point.alpha_hat, point.beta_hat, h)
     return row(point, column=column, h=h, alpha=alpha, beta=beta)
+
+
+def linted_row(linted: Linted) -> Row:
+    """Return what an element of a MuJoCo model means, and whether it is safe: None where that was not judged."""
+    return row(linted, safe=None if linted.verdict is None else not linted.unsafe)
 
 
 def verdict_map_row(verdicts: VerdictMap) -> Row:

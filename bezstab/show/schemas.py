@@ -12,11 +12,15 @@ DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 @dataclass(frozen=True)
 class RowKind:
-    """One kind of row that a command prints: what it is, the keys that it always has, those that options add."""
+    """One kind of row that a command prints: what it is, the keys that it always has, those that options add.
+
+    `sometimes` are keys that are null in some rows of this command, though elsewhere they never are.
+    """
 
     title: str
     keys: tuple[str, ...]
     added: tuple[str, ...] = ()
+    sometimes: tuple[str, ...] = ()
 
 
 def _keys(text: str) -> tuple[str, ...]:
@@ -34,8 +38,21 @@ METHOD = """method steps evaluations order order_position_forces order_velocity_
 CHOICE = f"""method goal alpha_hat beta_hat verdict safe {POLE} worst searched h alpha beta settle_steps settle_seconds
     h_factor h_limit alpha_factor_min alpha_factor_max beta_factor_min beta_factor_max"""
 
+APPLIED = ("applied", "excludes")
+"""What --engine adds."""
+DRIVE = _keys("drive kp kd inertia kp_max kd_max used_up")
+"""What --pd adds."""
+VARYING = _keys("varying varying_h_min varying_h_max hold certificate_kind certificate sequence")
+"""What --h-min adds."""
+LIKENESS = _keys("method predicted_abs predicted_angle_deg distance allowed dominant same_as fits")
+LIKE_POINT = _keys("alpha_hat beta_hat alpha_hat_error beta_hat_error h alpha beta")
+
 ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
-    "poles": [RowKind("a pole of a method", _keys(f"method alpha_hat beta_hat {POLE} verdict safe"), MOVING)],
+    "poles": [
+        RowKind(
+            "a pole of a method", _keys(f"method alpha_hat beta_hat {POLE} verdict safe"), (*APPLIED, *DRIVE, *MOVING)
+        )
+    ],
     "region": [RowKind("the region of a method", _keys(f"method {REGION}"), _keys("speed kappa area_moving"))],
     "methods": [
         RowKind("a method in the list", _keys(f"{METHOD} group")),
@@ -50,9 +67,29 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
             _keys("steps method area alpha_hat_max beta_hat_max best_z_abs order error_constant"),
         )
     ],
-    "choose": [RowKind("a choice", _keys(CHOICE), ("setting", *MOVING))],
-    "check": [RowKind("a point, or what to take instead", _keys(CHOICE), MOVING)],
-    "engines": [RowKind("an engine", _keys("engine level source excludes parameters setting"))],
+    "choose": [RowKind("a choice", _keys(CHOICE), ("setting", *DRIVE, *MOVING, *VARYING))],
+    "check": [
+        RowKind(
+            "a point, or what to take instead",
+            _keys(CHOICE),
+            (*APPLIED, *DRIVE, *MOVING, *VARYING),
+            sometimes=("excludes",),
+        )
+    ],
+    "lint": [
+        RowKind(
+            "an element of a model",
+            _keys("element kind setting alpha_hat beta_hat map verdict safe z_abs h_factor advice"),
+            sometimes=("alpha_hat", "beta_hat", "map", "verdict", "safe", "z_abs"),
+        )
+    ],
+    "engines": [
+        RowKind(
+            "an engine",
+            _keys("engine level method source excludes parameters optional units witness setting"),
+            sometimes=("method",),
+        )
+    ],
     "simulate": [
         RowKind(
             "a run",
@@ -79,6 +116,14 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
             _keys("""scene integrator method alpha_hat beta_hat times_boundary predicted_z_abs predicted_verdict
                 measured_verdict remaining run_steps"""),
         ),
+    ],
+    "probe": [
+        RowKind(
+            "the pole in a column of a log, or a method beside it, or a point at which a method has it",
+            _keys("column z_real z_imag z_abs z_angle_deg uncertainty samples reason"),
+            (*LIKENESS, *LIKE_POINT),
+            sometimes=(*_keys("z_real z_imag z_abs z_angle_deg samples reason"), *LIKENESS, *LIKE_POINT),
+        )
     ],
     "tradeoff": [
         RowKind(
@@ -123,16 +168,20 @@ def _row_schema(kind: RowKind) -> dict[str, Any]:
     return {
         "title": kind.title,
         "type": "object",
-        "properties": {name: _value_schema(VOCABULARY[name]) for name in (*kind.keys, *kind.added)},
+        "properties": {
+            name: _value_schema(VOCABULARY[name], name in kind.sometimes) for name in (*kind.keys, *kind.added)
+        },
         "required": list(kind.keys),
         "additionalProperties": False,
     }
 
 
-def _value_schema(key: Key) -> dict[str, Any]:
+def _value_schema(key: Key, sometimes: bool) -> dict[str, Any]:
+    """Return the schema of one value, which is null where the key says so, or `sometimes`."""
     schema: dict[str, Any] = {"description": key.description, **JSON_TYPES[key.kind]}
+    may_be_null = bool(key.null) or sometimes
     if key.values:
-        schema["enum"] = [*key.values, *([None] if key.null else [])]
-    if key.null:
+        schema["enum"] = [*key.values, *([None] if may_be_null else [])]
+    if may_be_null:
         schema["type"] = [schema["type"], "null"]
     return schema

@@ -142,7 +142,7 @@ VOCABULARY: Mapping[str, Key] = {
     "sequence": Key("numbers", "Steps that do not let errors decay when they are repeated", "s", "unless refuted"),
     # engines
     "engine": Key("text", "Name of an engine"),
-    "level": Key("text", "Where the engine's feedback acts", values=("acceleration", "velocity")),
+    "level": Key("text", "Where the engine's feedback acts", values=("acceleration", "velocity", "position")),
     "parameters": Key("text", "What the engine calls the feedback's parameters"),
     "setting": Key("text", "What to write in the engine's words", null="where no point is given"),
     "excludes": Key("text", "What the conversion leaves out"),
@@ -174,7 +174,6 @@ VOCABULARY: Mapping[str, Key] = {
     "distance": Key("number", "Distance of the fitted pole from that of the method", null=NOT_MEASURED),
     "fits": Key("truth", "Whether the method agrees with the log within its uncertainty"),
     "column": Key("text", "Name of the column of the log"),
-    "rows": Key("integer", "Rows of the log that hold numbers"),
     "predicted_abs": Key("number", "Modulus of the pole that the method would show in a log"),
     "predicted_angle_deg": Key("number", "Angle of the pole that the method would show in a log", "degrees"),
     "allowed": Key("number", "Largest distance that still fits"),

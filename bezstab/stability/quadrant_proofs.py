@@ -36,7 +36,9 @@ DAMPING_RATIOS = [
     *(Fraction(part, 20) for part in (15, 18, 20, 25, 40)),
     *(Fraction(10**power) for power in (1, 2, 3)),
 ]
-BETA_STEPS = [Fraction(numerator, 12) * 10**power for power in range(-3, 7) for numerator in (12, 17, 25, 40, 60, 85)]
+BETA_STEPS = [
+    Fraction(numerator, 12) * Fraction(10) ** power for power in range(-3, 7) for numerator in (12, 17, 25, 40, 60, 85)
+]
 """beta h from 1e-3 to 7e6, six to the decade."""
 
 

@@ -2,6 +2,7 @@
 
 import json
 import shlex
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -9,6 +10,10 @@ import pytest
 from tests.cli.running import run
 
 SMALL = "--figure none --table none"
+DATA = Path(__file__).parent / "data"
+LOG = (
+    f"probe {shlex.quote(str(DATA / 'pendulum.csv'))}"  # an error of symplectic Euler's at alpha_hat 2/3, beta_hat 1/4
+)
 
 EXAMPLES: dict[str, list[str]] = {
     "poles": ["poles --alpha 0.5 --beta 0.1", "poles --alpha 1 --beta 2 --method SYM --all-poles"],
@@ -17,6 +22,11 @@ EXAMPLES: dict[str, list[str]] = {
     "family": ["family bezier --from 2 --to 3 --figure none"],
     "choose": ["choose --engine mujoco --h 0.002"],
     "check": ["check --method SYM --alpha 2 --beta 2 --h 0.01"],
+    "lint": [f"lint {shlex.quote(str(DATA / 'two_joints.xml'))}"],
+    "probe": [
+        f"{LOG} --alpha 2/3 --beta 1/4 --method SYM --method RK4",
+        f"{LOG} --method SYM --h 1/120",
+    ],
     "engines": ["engines", "engines --alpha 1 --beta 0.2 --h 0.002"],
     "simulate": [f"simulate --scene pendulum --method SYM --time 0.02 {SMALL}"],
     "verify": [
@@ -35,6 +45,9 @@ LONG = {
     "choose": ["choose --method SYM --h 0.01 --scene driven_four_bar", "choose --method SYM --method RK1 --h 0.01"],
     "check": [
         "check --method SYM --method RK2 --alpha 2 --beta 2",
+        "check --method SYM --alpha 2 --beta 100 --physical --h-min 0.00917 --h-max 1/60",
+        "check --engine mujoco=0.02,1 --h 0.002",
+        "check --pd 1000,80,0.1 --h 1/240",
         "check --method SYM --alpha 1 --beta 0.5 --h 0.01 --scene driven_four_bar",
     ],
     "verify": [

@@ -11,7 +11,7 @@ pytest.importorskip("mujoco")
 MODEL = """<mujoco><option timestep="0.004"><flag {flag}/></option>
 <worldbody><body><joint name="x"/><geom size=".1" pos=".3 0 0"/></body></worldbody>
 <equality><joint name="lock" joint1="x" solref="0.002 1"/></equality></mujoco>"""
-KEYS = ("element", "kind", "setting", "alpha_hat", "beta_hat", "map", "verdict", "z_abs", "h_factor", "advice")
+KEYS = ("element", "kind", "setting", "alpha_hat", "beta_hat", "map", "verdict", "z_abs", "h_factor", "advice", "safe")
 
 
 def written(path: Path, text: str) -> str:

@@ -62,14 +62,14 @@ def test_what_was_applied_and_left_out_is_in_json_and_not_among_the_messages() -
     result = run("check", "--engine", "box2d=120,2", "--h", "1/240", "--format", "json")
     given, instead = json.loads(result.stdout)
     assert "clamped to 0.25/h = 60" in given["applied"]
-    assert given["left_out"] == ENGINES["box2d"].excludes
-    assert (instead["applied"], instead["left_out"]) == (None, None)
+    assert given["excludes"] == ENGINES["box2d"].excludes
+    assert (instead["applied"], instead["excludes"]) == (None, None)
     assert result.stderr == ""
 
 
 def test_what_choose_prints_for_mujoco_is_what_check_reads() -> None:
     (chosen,) = rows("choose", "--engine", "mujoco", "--h", "0.002")
-    numbers = ",".join(re.findall(r"-?\d+(?:\.\d+)?", str(chosen["engine"])))
+    numbers = ",".join(re.findall(r"-?\d+(?:\.\d+)?", str(chosen["setting"])))
     given, _ = rows("check", "--engine", f"mujoco={numbers}", "--h", "0.002")
     assert (given["alpha_hat"], given["beta_hat"]) == pytest.approx((chosen["alpha_hat"], chosen["beta_hat"]), rel=1e-8)
 
@@ -184,7 +184,7 @@ def test_no_other_kind_of_thing_is_suggested_for_a_method(name: str) -> None:
 
 
 def test_engines_say_what_rests_on_a_run() -> None:
-    listed = {str(row["name"]): row for row in rows("engines")}
+    listed = {str(row["engine"]): row for row in rows("engines")}
     assert {name for name, row in listed.items() if row["witness"]} == {"mujoco"}
     table = run("engines").stdout
     assert len(re.findall(r" a run ", table)) == 1
