@@ -1,6 +1,8 @@
+import doctest
 import importlib
 import re
 import shlex
+import shutil
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
@@ -15,19 +17,41 @@ from bezstab.methods import read_method
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 LAYOUT = (ROOT / "bezstab" / "README.md").read_text(encoding="utf-8")
-SESSIONS = re.findall(r"```console\n(.*?)```", README, re.DOTALL)
-INLINE = sorted(
-    set(
-        re.findall(
-            r"`bezstab ((?:poles|region|methods|simulate|verify|paper|choose|check\s|engines|tradeoff)[^`|…]*)`", README
-        )
-    )
+DATA = ROOT / "tests" / "cli" / "data"
+PAGES = (
+    "README.md",
+    "bezstab/README.md",
+    "bezstab/stability/README.md",
+    "bezstab/evidence/README.md",
+    "bezstab/paper/README.md",
+    "configs/methods/README.md",
+    "configs/scenes/README.md",
+    "tests/README.md",
 )
-ON_A_PIPE = {"COLUMNS": None}
-"""Environment in which nothing says how wide a line may be."""
+"""The pages whose commands are run; that about logs has a test of its own, next to those of `probe`."""
 
-LONG = ("paper", "tradeoff", "verify --map", "verify --witness", "choose --method B4 --method AB4 --method SYM")
+LONG = (
+    *("paper", "tradeoff", "verify --map", "verify --witness", "verify --scene", "extremes", "simulate --method RK4"),
+    *("choose --method AB4 --h 0.01", "region --method B4 --scene", "choose --method ABM2", "choose --method B5"),
+)
 """Beginnings of commands that take more than a few seconds; `make test-slow` runs these."""
+UNSAFE = ("check", "lint")
+"""Commands whose exit status is 1 where what they judge is unsafe."""
+PLACEHOLDER = re.compile(r"\b(COMMAND|LOG|MODEL|NAME|PATH|FILE)\b")
+"""Words that stand for something else: what holds one is no command to type."""
+
+
+def sessions(page: str) -> list[str]:
+    """Return the console sessions of a page: a command after a prompt, and what it prints."""
+    return re.findall(r"```console\n(.*?)```", (ROOT / page).read_text(encoding="utf-8"), re.DOTALL)
+
+
+def commands(page: str) -> list[str]:
+    """Return the commands in the text of a page and in its indented lines, without comments; a name alone is none."""
+    text = re.sub(r"```.*?```", "", (ROOT / page).read_text(encoding="utf-8"), flags=re.DOTALL)
+    inline = re.findall(r"`bezstab ([^`|…]*)`", text)
+    indented = re.findall(r"^    bezstab ([^#\n]*)", text, re.MULTILINE)
+    return [found.strip() for found in (*inline, *indented) if " " in found.strip() and not PLACEHOLDER.search(found)]
 
 
 def by_length(texts: list[str], command_of: Callable[[str], str]) -> list[Any]:
@@ -41,19 +65,56 @@ def prompted(session: str) -> str:
     return session.partition("\n")[0].removeprefix("$ bezstab ")
 
 
-@pytest.mark.parametrize("session", by_length(SESSIONS, prompted))
-def test_a_session_prints_what_the_readme_shows(session: str) -> None:
-    command, shown = prompted(session), session.partition("\n")[2]
-    result = CliRunner(env=ON_A_PIPE).invoke(main, shlex.split(command))
-    assert result.exit_code == ("check" in command and "diverges" in shown)  # 1 for an unsafe choice
-    assert result.stdout.strip() == shown.strip()
+SESSIONS = [session for page in PAGES for session in sessions(page)]
+INLINE = sorted({command for page in PAGES for command in commands(page)})
 
 
-@pytest.mark.parametrize("command", by_length(INLINE, str))
-def test_a_command_in_the_text_runs(command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture
+def _with_the_files_of_the_pages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Work in a directory with files called as on the pages."""
     monkeypatch.chdir(tmp_path)
+    shutil.copy(DATA / "pendulum.csv", "log.csv")
+    shutil.copy(DATA / "two_joints.xml", "robot.xml")
+
+
+@pytest.mark.usefixtures("_with_the_files_of_the_pages")
+@pytest.mark.parametrize("session", by_length(SESSIONS, prompted))
+def test_a_session_prints_what_the_page_shows(session: str) -> None:
+    """Lines up to one with three dots alone are the first of what is printed."""
+    command, shown = prompted(session), session.partition("\n")[2].strip()
     result = CliRunner().invoke(main, shlex.split(command))
-    assert result.exit_code == 0, result.stderr
+    assert result.exit_code == (shown.startswith("Not safe"))  # 1 for an unsafe choice
+    printed = result.stdout.strip()
+    if shown.endswith("\n…"):
+        first_lines = shown.removesuffix("\n…").splitlines()
+        assert printed.splitlines()[: len(first_lines)] == first_lines
+    else:
+        assert printed == shown
+
+
+@pytest.mark.usefixtures("_with_the_files_of_the_pages")
+@pytest.mark.parametrize("command", by_length(INLINE, str))
+def test_a_command_in_the_text_runs(command: str) -> None:
+    if "own.toml" in command:
+        shutil.copy(own_file(command), "own.toml")
+    result = CliRunner().invoke(main, shlex.split(command))
+    assert result.exit_code in ((0, 1) if command.startswith(UNSAFE) else (0,)), result.stderr
+
+
+def own_file(command: str) -> Path:
+    """Return a shipped file of the kind that a command names own.toml: a scene, or a method."""
+    return ROOT / "configs" / ("scenes/pendulum.toml" if "--scene own.toml" in command else "methods/ebdf2.toml")
+
+
+def test_python_prints_what_the_readme_shows() -> None:
+    found = doctest.testfile(str(ROOT / "README.md"), module_relative=False, encoding="utf-8")
+    assert (found.attempted > 0, found.failed) == (True, 0)
+
+
+def test_the_readme_is_short() -> None:
+    lines = README.splitlines()
+    assert len(lines) <= 150
+    assert max(map(len, lines)) <= 100
 
 
 def test_there_is_something_to_check() -> None:
@@ -61,23 +122,16 @@ def test_there_is_something_to_check() -> None:
     assert INLINE
 
 
-def test_the_samples_in_the_readme_are_methods(tmp_path: Path) -> None:
-    samples = re.findall(r"```toml\n(.*?)```", README, re.DOTALL)
-    shipped = [read_method(path).scheme for path in (ROOT / "configs" / "methods").glob("*.toml")]
-    assert len(samples) == 2
-    for sample in samples:
-        (path := tmp_path / "sample.toml").write_text(sample, encoding="utf-8")
-        assert read_method(path).scheme in shipped
-
-
 @pytest.mark.parametrize("path", sorted((ROOT / "configs" / "methods").glob("*.toml")), ids=lambda path: path.name)
 def test_every_shipped_method_is_accepted(path: Path) -> None:
     assert read_method(path).name == tomllib.loads(path.read_text(encoding="utf-8"))["name"]
 
 
-def test_every_picture_and_link_is_there() -> None:
-    for target in re.findall(r"\]\(([^)#]+)\)", README):
-        assert (ROOT / target).exists(), target
+@pytest.mark.parametrize("page", [*PAGES, "configs/logs/README.md"])
+def test_every_picture_and_link_is_there(page: str) -> None:
+    for target in re.findall(r"\]\(([^)#]+)\)", (ROOT / page).read_text(encoding="utf-8")):
+        if not target.startswith("https://"):
+            assert ((ROOT / page).parent / target).exists(), target
 
 
 @pytest.mark.parametrize("room", ["methods", "stability", "mechanism", "evidence", "show", "cli", "paper"])
