@@ -143,7 +143,7 @@ def choice_sentence(row: Row) -> str:
 @click.option("--spread", type=NUMBER, default="0.1", help="By what share α and β may be off.")
 @click.option("--settle", type=SECONDS, help="gentle: the time in s in which c falls a thousandfold.")
 @click.option("--keep", type=click.Choice(["alpha=beta"]), help="Only points with α = β.")
-@click.option("--engine", type=ENGINE, help="Also print what to paste into that engine.")
+@click.option("--engine", metavar="NAME", type=ENGINE, help="Also print what to paste into that engine.")
 @drive_option
 @moving_scene_option("Choose for this mechanism as it moves.")
 @moving_speed_option

@@ -232,7 +232,7 @@ MOVING_REGIONS = [
 @click.option("--compare", is_flag=True, help="One figure with the boundaries of all methods (default level 1).")
 @click.option("--h", type=SECONDS, help="Step size in s: axes become 2α (1/s) and β² (1/s²).")
 @click.option("--alpha-beta", is_flag=True, help="Mark the axes of the figure in α and β (1/s); needs --h.")
-@click.option("--engine", type=ENGINE, help="Mark that engine's defaults and rules; needs --h.")
+@click.option("--engine", metavar="NAME", type=ENGINE, help="Mark that engine's defaults and rules; needs --h.")
 @moving_scene_option("Also the region of this mechanism as it moves; needs --h.")
 @click.option(
     "--speed", "speeds", type=SPEED, multiple=True, help="With --scene: times the scene's own. Repeatable [1]."

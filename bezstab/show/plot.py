@@ -378,7 +378,7 @@ def work_precision(
 
 
 def pareto_front(runs: Iterable[Run], constraint: bool = False, floor: float = 0.0, axes: Axes | None = None) -> Line2D:
-    """Back the runs of a Pareto front of work and error, as pareto_front finds them, with discs; return their line."""
+    """Draw discs behind the runs of a Pareto front of work and error, as pareto_front finds them; return their line."""
     axes = _work_precision_axes(constraint) if axes is None else axes
     x, y = _work_and_error(sorted(runs, key=lambda run: run.evaluations), constraint, floor)
     (drawn,) = axes.plot(x, y, "o", color="0.8", markersize=10, zorder=1.5, label="front")

@@ -38,8 +38,11 @@ def stability_margins(method: Method, alpha_hat: Fraction | float, beta_hat: Fra
 def _ends(path: Path) -> tuple[float, float]:
     """Return the factors below and above one up to which a path is stable."""
     factors = crossing_factors(path)
-    ends = (_first_end(path, [s for s in reversed(factors) if s <= 1], -1),
-            _first_end(path, [s for s in factors if s >= 1], 1))  # fmt: skip
+    smaller, larger = (
+        [factor for factor in reversed(factors) if factor <= 1],
+        [factor for factor in factors if factor >= 1],
+    )
+    ends = _first_end(path, smaller, -1), _first_end(path, larger, 1)
     check_margin(path, ends)
     return ends
 

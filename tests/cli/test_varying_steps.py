@@ -25,7 +25,7 @@ def test_steps_that_are_stable_alone_are_refuted_together_and_simulate_shows_it(
     given, _ = rows_of("check", *EXAMPLE, "--h-min", "0.00917", "--h-max", "1/60", status=1)
     assert given["verdict"] == "converges"
     assert given["varying"] == "refuted"
-    assert given["h_max"] == pytest.approx(0.0196, abs=1e-4)  # every constant step up to here decays
+    assert given["h_limit"] == pytest.approx(0.0196, abs=1e-4)  # every constant step up to here decays
     assert len(given["sequence"]) == 2
     steps = ",".join(map(repr, given["sequence"]))
     at = ("simulate", *EXAMPLE, "--h", "1/60", "--perturb", "1e-6", "--time", "0.5", *NOTHING)
@@ -47,10 +47,10 @@ def test_anyone_can_verify_the_certificate_that_is_printed() -> None:
 def test_a_sentence_says_it_below_the_table() -> None:
     result = run("check", "--method", "RK4", "--alpha", "1", "--beta", "1/4", "--h", "0.01", "--h-min", "0.001")
     assert result.exit_code == 0
-    assert result.stdout.splitlines()[-1] == (
+    assert (
         "RK4, α and β fixed: proven to decay for every sequence of steps between 0.001 s and 0.01 s "
         "(each step decays alone, and steps commute)."
-    )
+    ) in result.stdout.splitlines()
 
 
 def test_held_parameters_are_another_question() -> None:

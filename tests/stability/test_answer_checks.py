@@ -10,6 +10,7 @@ import pytest
 
 from bezstab.errors import NumericalError
 from bezstab.methods import lookup
+from bezstab.rationals import exact
 from bezstab.stability import (
     Goal,
     best_point,
@@ -150,7 +151,7 @@ def test_margins_of_a_fourfold_pole_are_where_the_verdict_turns(rate: float) -> 
     assert gentle.margins
     for side, expected in ((Fraction(1, 10**9), "diverges"), (-Fraction(1, 10**9), "converges")):
         factor = Fraction(gentle.margins.h) * (1 + side)
-        point = Fraction(gentle.alpha_hat) * factor, Fraction(gentle.beta_hat) * factor**2
+        point = exact(gentle.alpha_hat) * factor, exact(gentle.beta_hat) * factor**2
         assert verdict(lookup("ABM2"), *point) == expected
 
 
