@@ -311,7 +311,7 @@ def _shared_jacobians(
     for equation in scheme.equations:
         if not isinstance(equation, Evaluation) or not _is_on_the_motion(equation):
             continue
-        t = step * (np.arange(steps) + float(remembered.moments[equation.result]))
+        t = np.asarray(step * (np.arange(steps) + float(remembered.moments[equation.result])), float)
         q, v, _ = along.at(t)
         without, with_alpha, with_beta = (
             acceleration_jacobians(mechanism, t, *gains, q, v) for gains in ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))

@@ -87,13 +87,12 @@ def growth_rates(turning: TurningNormals, chi: ArrayLike) -> FloatArray:
             grown /= largest
             log_scale += np.log(largest)
     grown = grown.transpose(2, 0, 1).reshape(*chi.shape, size, size)
-    log_scale = log_scale.reshape(chi.shape)
     if turning.closed:
         growth = np.abs(np.linalg.eigvals(grown)).max(axis=-1)
     else:
         before, after = (np.linalg.cholesky(metric) for metric in turning.metric)
         growth = np.linalg.norm(np.linalg.solve(after, grown @ before), ord=2, axis=(-2, -1))
-    return np.asarray(beyond * (np.log(growth) + log_scale) / turning.duration)
+    return np.asarray(beyond * (np.log(growth) + log_scale.reshape(chi.shape)) / turning.duration)
 
 
 def _step_polynomials(turning: TurningNormals) -> FloatArray:
