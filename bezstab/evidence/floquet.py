@@ -13,6 +13,10 @@ of the steps after which they still stand out from what the free motion, which d
 The matrices M_k are never formed. Each quantity is held as its derivatives by everything carried at the start, an
 n x D array, and the method's equations are taken line by line, as they are for the quantities themselves.
 
+Lesser poles die out: after some steps the product C = M_{k-1} ... M_0 leads to few directions, the columns of B, to
+rounding. Then C = B R with R = B^T C, and the whole product M_{N-1} ... M_k B R has the eigenvalues of the small matrix
+R (M_{N-1} ... M_k B). So from step k on n x (columns of B) arrays are enough.
+
 Each step starts from the exact motion, so that nothing but the change grows. An evaluation at the state itself has
 Jacobians that all points share, affine in the gains; in a stage they are taken at the stage that the point's own gains
 lead to.
@@ -40,10 +44,14 @@ SQUARINGS = 8  # the product over 256 revolutions leaves of the lesser multiplie
 SPARE = 2  # multipliers found besides the leading ones
 RESCALED = 16  # steps between two looks at how large the changes have grown, lest they overflow
 FIRST_SHARE = 1 / 3  # of those steps: there the lesser poles still count
+FIRST_LOOK = 32  # steps until it is asked whether few directions are left, and then after twice as many again
+NEGLIGIBLE = 1e-14  # of the largest change: about what the rounding of so many steps leaves
 STANDS_OUT = 1e-7  # of the change of the coordinates: the free motion of a method has a constraint error of this size
 BATCH = 256  # points at a time: fewer spend their time in Python, more do not fit a core's cache
 
 Values = dict[Quantity, FloatArray]
+Jacobians = dict[Quantity, tuple[FloatArray, FloatArray]]
+"""By the result of an evaluation, of h^2 qddot by X and by V = h qdot: shape (points, n, n) each."""
 
 
 @dataclass(frozen=True)
@@ -64,17 +72,25 @@ def floquet_rates(
     """
     along = motion(mechanism, duration)
     steps = max(1, round(along.duration / (h * float(method.step_multiple))))
+    scheme = second_order_form(method.scheme)
+    shared = _shared_jacobians(mechanism, scheme, memory(scheme), along, along.duration / steps, steps)
     rates = [
-        _batch_rates(mechanism, method, along, steps, alpha_hat[i : i + BATCH], beta_hat[i : i + BATCH])
+        _batch_rates(mechanism, method, along, steps, shared, alpha_hat[i : i + BATCH], beta_hat[i : i + BATCH])
         for i in range(0, alpha_hat.size, BATCH)
     ]
     return np.concatenate(rates)
 
 
 def _batch_rates(
-    mechanism: Mechanism, method: Method, along: Motion, steps: int, alpha_hat: FloatArray, beta_hat: FloatArray
+    mechanism: Mechanism,
+    method: Method,
+    along: Motion,
+    steps: int,
+    shared: Jacobians,
+    alpha_hat: FloatArray,
+    beta_hat: FloatArray,
 ) -> FloatArray:
-    """Return |z| per step for a batch of points, in `steps` steps over the motion."""
+    """Return |z| per step for a batch of points, in `steps` steps over the motion; shared: from _shared_jacobians."""
     step = along.duration / steps
     user_step = step / float(method.step_multiple)
     points = _Points((alpha_hat / user_step)[:, np.newaxis], (beta_hat / user_step**2)[:, np.newaxis])
@@ -87,9 +103,12 @@ def _batch_rates(
         block = np.zeros((alpha_hat.size, size, len(carried) * size))
         block[:, np.arange(size), number * size + np.arange(size)] = 1
         changes[quantity] = block
-    evaluated = _Evaluated(mechanism, scheme, remembered, along, step, points, steps)
+    evaluated = _Evaluated(mechanism, scheme, remembered, along, step, points, steps, shared)
     log_scale = np.zeros(alpha_hat.size)
     errors = None if along.closed else _ConstraintErrors(mechanism, along, step, steps, carried, alpha_hat.size)
+    leading = 2 * mechanism.constraints + SPARE
+    by_start: FloatArray | None = None  # R above
+    next_look = FIRST_LOOK
     for k in range(steps):
         changes = _after_a_step(evaluated, scheme, carried, changes, k)
         if errors:
@@ -98,12 +117,36 @@ def _batch_rates(
             largest = np.max([np.abs(change).max(axis=(1, 2)) for change in changes.values()], axis=0)
             changes = {quantity: change / largest[:, np.newaxis, np.newaxis] for quantity, change in changes.items()}
             log_scale += np.log(largest)
+        if k + 1 == next_look and along.closed:
+            next_look *= 2
+            few = _few_directions(np.concatenate([changes[quantity] for quantity in carried], axis=1), leading)
+            if few:
+                basis, coordinates = few
+                by_start = coordinates if by_start is None else coordinates @ by_start
+                changes = dict(zip(carried, np.split(basis, len(carried), axis=1), strict=True))
     if errors:
         return errors.rates()
     product = np.concatenate([changes[quantity] for quantity in carried], axis=1)
-    return np.asarray(
-        np.exp((log_scale + np.log(_spectral_radius(product, 2 * mechanism.constraints + SPARE))) / steps)
-    )
+    if by_start is not None:
+        product = by_start @ product
+    return np.asarray(np.exp((log_scale + np.log(_spectral_radius(product, leading))) / steps))
+
+
+def _few_directions(product: FloatArray, count: int) -> tuple[FloatArray, FloatArray] | None:
+    """Return B (points, D, r) and R (points, r, D) with B R = the product, B orthonormal; None if r would be too large.
+
+    r is `count`, or twice that, where a second pair of poles for each constraint is about as large as the dominant one.
+    B spans what the product makes of random vectors, and that nothing is left out is looked at for every point.
+    """
+    size = product.shape[-1]
+    for columns in (count, 2 * count):
+        if columns < size:
+            basis, _ = np.linalg.qr(product @ np.random.default_rng(0).standard_normal((size, columns)))
+            coordinates = np.swapaxes(basis, 1, 2) @ product
+            left_out = np.abs(product - basis @ coordinates).max(axis=(1, 2))
+            if (left_out <= NEGLIGIBLE * np.abs(product).max(axis=(1, 2))).all():
+                return basis, coordinates
+    return None
 
 
 def _after_a_step(
@@ -120,10 +163,6 @@ def _after_a_step(
     return {quantity: known[Quantity(quantity.name, quantity.step + 1)] for quantity in carried}
 
 
-Jacobians = dict[Quantity, tuple[FloatArray, FloatArray]]
-"""By the result of an evaluation, of h^2 qddot by X and by V = h qdot: shape (points, n, n) each."""
-
-
 def _right_side(equation: Assignment | Evaluation, known: Values, jacobians: Jacobians) -> FloatArray:
     match equation:
         case Assignment(value=value):
@@ -135,8 +174,15 @@ def _right_side(equation: Assignment | Evaluation, known: Values, jacobians: Jac
 
 def _combined(combination: Combination, values: Values) -> FloatArray:
     """Return the sum of coefficients times values; of none of them, 0."""
-    terms = [values[quantity] if c == 1 else float(c) * values[quantity] for c, quantity in combination]
-    return np.asarray(sum(terms[1:], start=terms[0])) if terms else np.zeros(1)
+    if not combination:
+        return np.zeros(1)
+    (first, quantity), *others = combination
+    if first == 1 and not others:
+        return values[quantity]
+    total = float(first) * values[quantity]
+    for coefficient, quantity in others:
+        total = total + float(coefficient) * values[quantity]
+    return np.asarray(total)
 
 
 def _solved_together(
@@ -183,6 +229,7 @@ class _Evaluated:
         step: float,
         points: _Points,
         steps: int,
+        shared: Jacobians,
     ) -> None:
         self.mechanism = mechanism
         self.scheme = scheme
@@ -191,39 +238,23 @@ class _Evaluated:
         self.step = step
         self.points = points
         self.starts = step * np.arange(steps)
-        self.shared = {
-            equation.result: self._shared_jacobians(equation)
-            for equation in scheme.equations
-            if isinstance(equation, Evaluation) and _is_on_the_motion(equation)
-        }
+        self.shared = shared
+        gains = (np.ones_like(points.two_alpha), points.two_alpha, points.beta_squared)
+        self.gains = np.concatenate(gains, axis=1)
 
     def jacobians(self, k: int) -> Jacobians:
         """Return the Jacobians of the evaluations of step k."""
-        found: Jacobians = {}
-        two_alpha = self.points.two_alpha[:, :, np.newaxis]
-        beta_squared = self.points.beta_squared[:, :, np.newaxis]
-        for result, (by_q, by_v) in self.shared.items():
-            found[result] = (
-                self.step**2 * (by_q[0, k] + two_alpha * by_q[1, k] + beta_squared * by_q[2, k]),
-                self.step * (by_v[0, k] + two_alpha * by_v[1, k]),
+        size = self.mechanism.size
+        found: Jacobians = {
+            result: (
+                (self.gains @ by_position[k]).reshape(-1, size, size),
+                (self.gains @ by_velocity[k]).reshape(-1, size, size),
             )
+            for result, (by_position, by_velocity) in self.shared.items()
+        }
         if len(found) < self.scheme.evaluations:
             found |= self._stage_jacobians(k)
         return found
-
-    def _shared_jacobians(self, evaluation: Evaluation) -> tuple[FloatArray, FloatArray]:
-        """Return by_q and by_v without gains, and their slopes by 2 alpha and beta^2; shape (3, steps, n, n)."""
-        moment = float(self.remembered.moments[evaluation.result])
-        t = np.asarray(self.starts + moment * self.step, float)
-        q, v, _ = self.along.at(t)
-        without = acceleration_jacobians(self.mechanism, t, 0.0, 0.0, q, v)
-        with_alpha = acceleration_jacobians(self.mechanism, t, 1.0, 0.0, q, v)
-        with_beta = acceleration_jacobians(self.mechanism, t, 0.0, 1.0, q, v)
-        by_q, by_v = (
-            np.stack([base, by_alpha - base, by_beta - base])
-            for base, by_alpha, by_beta in zip(without, with_alpha, with_beta, strict=True)
-        )
-        return by_q, by_v
 
     def _stage_jacobians(self, k: int) -> Jacobians:
         """Return the Jacobians of the evaluations of step k that do not take place on the motion itself."""
@@ -267,6 +298,30 @@ class _Evaluated:
         q, v = (np.broadcast_to(part, (gains[0].size, self.mechanism.size)) for part in (q, v))
         a = acceleration_function(self.mechanism, np)(t, *gains, q.T, v.T)
         return np.stack(np.broadcast_arrays(*a), axis=-1)
+
+
+def _shared_jacobians(
+    mechanism: Mechanism, scheme: SecondOrder, remembered: Memory, along: Motion, step: float, steps: int
+) -> Jacobians:
+    """Return what is the same at every point of the evaluations that take place on the motion itself.
+
+    The Jacobians of h^2 qddot by X and V without gains, and their slopes by 2 alpha and beta^2; (steps, 3, n n) each.
+    """
+    shared: Jacobians = {}
+    for equation in scheme.equations:
+        if not isinstance(equation, Evaluation) or not _is_on_the_motion(equation):
+            continue
+        t = np.asarray(step * (np.arange(steps) + float(remembered.moments[equation.result])), float)
+        q, v, _ = along.at(t)
+        without, with_alpha, with_beta = (
+            acceleration_jacobians(mechanism, t, *gains, q, v) for gains in ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))
+        )
+        by_position, by_velocity = (
+            scale * np.stack([base, by_alpha - base, by_beta - base], axis=1).reshape(steps, 3, -1)
+            for scale, base, by_alpha, by_beta in zip((step**2, step), without, with_alpha, with_beta, strict=True)
+        )
+        shared[equation.result] = by_position, by_velocity
+    return shared
 
 
 def _is_on_the_motion(evaluation: Evaluation) -> bool:

@@ -12,7 +12,6 @@ Over a closed motion the integral of tr K is zero, so det Y = 1 and Lambda >= 0:
 
 from dataclasses import dataclass
 from functools import cache
-from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -74,28 +73,43 @@ def growth_rates(turning: TurningNormals, chi: ArrayLike) -> FloatArray:
     """
     chi = np.asarray(chi, complex)
     beyond = np.maximum(1, np.abs(chi) / LARGEST_CHI)
-    factor = (chi / beyond)[..., np.newaxis, np.newaxis]
+    factor = (chi / beyond).ravel()
     size = turning.rates.shape[1]
-    step = 2 * turning.duration / (len(turning.rates) - 1)
-    grown: ComplexArray = np.broadcast_to(np.eye(size, dtype=complex), (*chi.shape, size, size))
-    log_scale = np.zeros(chi.shape)
-    ends = turning.rates[::2]
-    for number, ((start, end), middle) in enumerate(zip(pairwise(ends), turning.rates[1::2], strict=True)):
-        first = factor * (start @ grown)
-        second = factor * (middle @ (grown + step / 2 * first))
-        third = factor * (middle @ (grown + step / 2 * second))
-        fourth = factor * (end @ (grown + step * third))
-        grown = grown + step / 6 * (first + 2 * second + 2 * third + fourth)
+    grown = np.zeros((size, size, chi.size), complex)  # chi last: K multiplies them all at once
+    grown[range(size), range(size)] = 1
+    log_scale = np.zeros(chi.size)
+    for number, powers in enumerate(_step_polynomials(turning)):
+        terms = (powers.reshape(-1, size) @ grown.reshape(size, -1).view(float)).view(complex)
+        first, second, third, fourth = terms.reshape(4, size, size, -1)
+        grown = grown + factor * (first + factor * (second + factor * (third + factor * fourth)))
         if number % RESCALED == 0:
-            largest = np.abs(grown).max(axis=(-2, -1))
-            grown = grown / largest[..., np.newaxis, np.newaxis]
+            largest = np.abs(grown).max(axis=(0, 1))
+            grown /= largest
             log_scale += np.log(largest)
+    grown = grown.transpose(2, 0, 1).reshape(*chi.shape, size, size)
     if turning.closed:
         growth = np.abs(np.linalg.eigvals(grown)).max(axis=-1)
     else:
         before, after = (np.linalg.cholesky(metric) for metric in turning.metric)
         growth = np.linalg.norm(np.linalg.solve(after, grown @ before), ord=2, axis=(-2, -1))
-    return np.asarray(beyond * (np.log(growth) + log_scale) / turning.duration)
+    return np.asarray(beyond * (np.log(growth) + log_scale.reshape(chi.shape)) / turning.duration)
+
+
+def _step_polynomials(turning: TurningNormals) -> FloatArray:
+    """Return what chi, chi^2, chi^3 and chi^4 are multiplied by in each of the rule's steps; shape (steps, 4, m, m).
+
+    The step is Y + chi (A_1 Y + chi (A_2 Y + chi (A_3 Y + chi A_4 Y))), and the A are the same at every chi.
+    """
+    step = 2 * turning.duration / (len(turning.rates) - 1)
+    start, middle, end = turning.rates[:-1:2], turning.rates[1::2], turning.rates[2::2]
+    twice = middle @ middle
+    powers = [
+        step / 6 * (start + 4 * middle + end),
+        step**2 / 6 * (middle @ start + twice + end @ middle),
+        step**3 / 12 * (twice @ start + end @ twice),
+        step**4 / 24 * (end @ twice @ start),
+    ]
+    return np.stack(powers, axis=1)
 
 
 def tabulated_rates(turning: TurningNormals, chi: ComplexArray) -> FloatArray:

@@ -13,7 +13,7 @@ K is m x m, in 1/s. The roots mu and poles z of the feedback move by it to first
 """
 
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
@@ -47,7 +47,7 @@ class TurningNormals:
         """The largest modulus of an eigenvalue of K along the motion (1/s)."""
         return float(np.abs(np.linalg.eigvals(self.rates)).max())
 
-    @property
+    @cached_property
     def largest_norm(self) -> float:
         """A bound on every rate that Y' = chi K(t) Y can grow at, for |chi| = 1 (1/s).
 

@@ -281,16 +281,18 @@ def _slowest(method: Method, modulus: Modulus, within: Within | None, spread: fl
 
         def complete(some: IntArray) -> None:
             """Let the smaller steps count as well, where one of them is the worst."""
-            if within:
-                some = some[~below(worst[some], smaller_steps, alpha_hat[some], beta_hat[some])]
-            if some.size:
-                worst[some] = np.maximum(worst[some], at_shares(smaller_steps, alpha_hat[some], beta_hat[some]))
+            share, scaled_alpha, scaled_beta = scaled(smaller_steps, alpha_hat[some], beta_hat[some])
+            counts = ~within(scaled_alpha, scaled_beta, worst[some] ** share) if within else np.full(share.shape, True)
+            if counts.any():
+                values = np.zeros(share.shape)
+                values[counts] = modulus(scaled_alpha[counts], scaled_beta[counts]) ** (1 / share[counts])
+                worst[some] = np.maximum(worst[some], values.max(axis=(0, 1)))
 
         worst[left] = np.maximum(worst[left], at_shares(largest_step, alpha_hat[left], beta_hat[left]))
-        best = left[[np.argmin(worst[left])]]
-        complete(best)
-        reached = min(reached, float(worst[best[0]]))
-        complete(left[worst[left] <= reached])
+        best = left[np.argmin(worst[left])]
+        complete(np.array([best]))
+        reached = min(reached, float(worst[best]))
+        complete(left[(worst[left] <= reached) & (left != best)])
         return worst
 
     return objective

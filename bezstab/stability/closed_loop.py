@@ -140,9 +140,12 @@ def _write_largest_poles(pencil: AnyPencil, alpha_hat: FloatArray, beta_hat: Flo
         chunk = slice(i, i + CHUNK)
         poles[chunk], second_mu[chunk] = feedback_roots(pencil.feedback, alpha_hat[chunk], beta_hat[chunk])
     real = np.flatnonzero(poles.imag == 0)
-    poles[:] = dominant_root(pencil, poles)
+    if poles.size + real.size < FEWEST:  # one call for all of them is faster than one for each
+        found = dominant_root(pencil, np.concatenate([poles, second_mu[real]]))
+        poles[:], others = found[: poles.size], found[poles.size :]
+    else:
+        poles[:], others = dominant_root(pencil, poles), dominant_root(pencil, second_mu[real])
     if real.size:
-        others = dominant_root(pencil, second_mu[real])
         larger = np.abs(others) > np.abs(poles[real])
         poles[real[larger]] = others[larger]
     poles.imag = np.abs(poles.imag)

@@ -24,6 +24,7 @@ from numpy.polynomial.polynomial import polyder, polyval
 from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
 from bezstab.stability.exact_sums import feedback_roots
 from bezstab.stability.pencils import Pencil, roots_in_mu
+from bezstab.stability.root_finding import horner
 
 COSINE_SLACK = 1e-6  # a double zero splits by sqrt(eps) = 1e-8 into the complex plane; more candidates do no harm
 TRUE_DEGREE = 1e-12  # relative: Chebyshev coefficients of a polynomial of lower degree are rounding, 1e-16 or so
@@ -330,13 +331,17 @@ def _quadratic_locus(pencil: Pencil, level: float) -> _QuadraticLocus:
 
 def all_inside(pencil: Pencil, mu: ComplexArray, level: float | FloatArray) -> BoolArray:
     """Return whether every root z of pi(., mu) has |z| < level, by Schur's recursion; shape of mu, and of levels."""
-    p = np.stack([polyval(mu, row) * level**k for k, row in enumerate(pencil.table)])
+    size = np.ones_like(mu.real)
+    p = np.empty((len(pencil.table), *mu.shape), complex)
+    for row, coefficients in zip(p, pencil.table, strict=True):
+        np.multiply(horner(coefficients, mu), size, out=row)
+        size = size * level
     inside = np.ones(mu.shape, bool)
-    with np.errstate(all="ignore"):
+    with np.errstate(all="ignore"):  # of a point that is out nothing more is asked
         while len(p) > 1:
-            inside &= np.abs(p[0]) < np.abs(p[-1])
-            p = (p[-1].conj() * p - p[0] * p[::-1].conj())[1:]
-            p = p / np.abs(p).max(axis=0)
+            k = p[0] / p[-1].conj()
+            inside &= np.abs(k) < 1
+            p = p[1:] - k * p[-2::-1].conj()
     return inside
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from bezstab.evidence import floquet_rates, kicked_constraint_errors, moving_poles
+from bezstab.evidence.floquet import _few_directions
 from bezstab.mechanism import compiled_mechanism, load_scene, turning_normals
 from bezstab.methods import Method, lookup, second_order_form
 from bezstab.stability import FloatArray, region, spectral_radius, window
@@ -80,6 +81,22 @@ def rates_of_runs(method: Method, count: int, points: FloatArray, revolutions: i
     growth = (sizes[last : last + window] ** 2).mean(axis=0) / (sizes[first : first + window] ** 2).mean(axis=0)
     linear = sizes.max(axis=0) < 1e-3  # m; what is not a number is not less
     return np.where(linear, growth ** (0.5 / (last - first)), np.nan)
+
+
+def test_few_directions_are_found_only_where_there_are_no_more() -> None:
+    random = np.random.default_rng(4)
+    product = random.standard_normal((5, 30, 6)) @ random.standard_normal((5, 6, 30))
+    found = _few_directions(product, 7)
+    assert found is not None
+    basis, coordinates = found
+    assert basis.shape == (5, 30, 7)
+    assert np.allclose(basis @ coordinates, product, rtol=0, atol=1e-13 * np.abs(product).max())
+    assert np.allclose(np.swapaxes(basis, 1, 2) @ basis, np.eye(7), rtol=0, atol=1e-13)
+    twice = _few_directions(product, 4)  # six directions: not within four, but within eight
+    assert twice is not None
+    assert twice[0].shape == (5, 30, 8)
+    product[3] += np.eye(30)  # at one point of the batch nothing has died out
+    assert _few_directions(product, 7) is None
 
 
 @pytest.mark.slow

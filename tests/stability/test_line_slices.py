@@ -36,11 +36,15 @@ def test_slices_add_up_to_areas_in_closed_form() -> None:
     assert slice_area(lookup("RK2"), 1.0).area == pytest.approx(4 + 2 * pi, rel=1e-8)
 
 
-def test_schurs_recursion_agrees_with_the_roots() -> None:
-    pencil = pencil_of(lookup("AB4"))
-    mu = np.random.default_rng(2).uniform(-1, 0.3, 200) + 1j * np.random.default_rng(3).uniform(0, 1, 200)
-    largest = [np.abs(np.roots([1, *(pencil.table[::-1] @ [1, m])[1:]])).max() for m in mu]
-    assert (all_inside(pencil, mu, 0.9) == (np.array(largest) < 0.9)).all()
+@pytest.mark.parametrize("name", ["AB4", "AB8", "B12", "ABM3", "bdf3", "radau3"])
+def test_schurs_recursion_agrees_with_the_roots(name: str) -> None:
+    pencil, random = pencil_of(lookup(name)), np.random.default_rng(2)
+    mu = random.uniform(-1, 0.3, 200) + 1j * random.uniform(0, 1, 200)
+    level = random.uniform(0.5, 1.2, 200)
+    powers = mu ** np.arange(pencil.table.shape[1])[:, np.newaxis]
+    largest = np.array([np.abs(np.roots(row)).max() for row in (pencil.table[::-1] @ powers).T])
+    assert (all_inside(pencil, mu, 0.9) == (largest < 0.9)).all()
+    assert (all_inside(pencil, mu, level) == (largest < level)).all()
 
 
 IMPLICIT_NAMES = ["implicit-euler", "trapezoid", "bdf3", "am4", "radau3", "gauss4"]
