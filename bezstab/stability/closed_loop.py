@@ -172,7 +172,7 @@ def _write_largest_poles(pencil: AnyPencil, alpha_hat: FloatArray, beta_hat: Flo
 
 def _ordinary(alpha_hat: FloatArray, beta_hat: FloatArray) -> bool:
     """Return whether all powers of a row of points are far from the ends of float64's range."""
-    return bool(np.abs(alpha_hat).max() < ORDINARY and np.abs(beta_hat).max() < ORDINARY)
+    return all(bool(row.min() > -ORDINARY and row.max() < ORDINARY) for row in (alpha_hat, beta_hat))
 
 
 def _without_rounding(z: ComplexArray) -> ComplexArray:

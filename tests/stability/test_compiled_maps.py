@@ -70,9 +70,9 @@ def test_a_compiled_map_does_not_depend_on_the_cores_or_on_the_way_it_is_asked_f
     monkeypatch.setattr(compiled_maps, "cores", lambda: 3)
     assert spectral_radius(method, alpha_hat, beta_hat[:, np.newaxis]).tobytes() == alone.tobytes()
     by_blocks = np.abs(np.concatenate(list(pole_map(method, alpha_hat, beta_hat))))
-    assert by_blocks == pytest.approx(alone, rel=1e-12)  # pieces begin elsewhere
+    assert np.abs(by_blocks / alone - 1).max() < 1e-12  # pieces begin elsewhere
     monkeypatch.setenv(COMPILED_CHOICE, "no")
-    assert spectral_radius(method, alpha_hat, beta_hat[:, np.newaxis]) == pytest.approx(alone, rel=1e-12)
+    assert np.abs(spectral_radius(method, alpha_hat, beta_hat[:, np.newaxis]) / alone - 1).max() < 1e-12
 
 
 @pytest.mark.slow
