@@ -117,17 +117,23 @@ def largest_pole(
     compiled: whether as machine code (compiled_maps); by default where that pays for so many points.
     """
     alpha_hat, beta_hat = np.broadcast_arrays(np.asarray(alpha_hat, float), np.asarray(beta_hat, float))
-    row_of_alpha, row_of_beta = alpha_hat.reshape(-1), beta_hat.reshape(-1)
+    grids = [each if each.ndim == 2 else each.reshape(1, -1) for each in (alpha_hat, beta_hat)]
     dominant = np.empty(alpha_hat.size, complex)
     if compiled is None:
         compiled = is_compiled(pencil, alpha_hat.size)
+    write = _write_compiled if compiled else _write_largest_poles
     for start in range(0, alpha_hat.size, BLOCK):
-        block = slice(start, start + BLOCK)
-        if compiled:
-            _write_compiled(pencil, row_of_alpha[block], row_of_beta[block], dominant[block])
-        else:
-            _write_largest_poles(pencil, row_of_alpha[block], row_of_beta[block], dominant[block])
+        stop = min(start + BLOCK, alpha_hat.size)
+        write(pencil, *(_points(grid, start, stop) for grid in grids), dominant[start:stop])
     return dominant.reshape(alpha_hat.shape)
+
+
+def _points(grid: FloatArray, start: int, stop: int) -> FloatArray:
+    """Return points `start` to `stop` of a grid in a row; only the rows that they lie in are copied."""
+    columns = grid.shape[1]
+    first = start // columns
+    rows = grid[first : -(-stop // columns)].reshape(-1)
+    return rows[start - first * columns : stop - first * columns]
 
 
 def largest_modulus(pencil: AnyPencil, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> FloatArray:
