@@ -117,14 +117,14 @@ def largest_pole(
     compiled: whether as machine code (compiled_maps); by default where that pays for so many points.
     """
     alpha_hat, beta_hat = np.broadcast_arrays(np.asarray(alpha_hat, float), np.asarray(beta_hat, float))
-    grids = [each if each.ndim == 2 else each.reshape(1, -1) for each in (alpha_hat, beta_hat)]
+    alphas, betas = (each if each.ndim == 2 else each.reshape(1, -1) for each in (alpha_hat, beta_hat))
     dominant = np.empty(alpha_hat.size, complex)
     if compiled is None:
         compiled = is_compiled(pencil, alpha_hat.size)
     write = _write_compiled if compiled else _write_largest_poles
     for start in range(0, alpha_hat.size, BLOCK):
         stop = min(start + BLOCK, alpha_hat.size)
-        write(pencil, *(_points(grid, start, stop) for grid in grids), dominant[start:stop])
+        write(pencil, _points(alphas, start, stop), _points(betas, start, stop), dominant[start:stop])
     return dominant.reshape(alpha_hat.shape)
 
 
