@@ -18,7 +18,7 @@ other; only appointed files see a library.
       |
     engines                what others call the feedback
       |
-    errors, rationals, files, toml_tables, units, stopping, lazy
+    errors, rationals, files, toml_tables, units, stopping, lazy, compiling
 """
 
 import ast
@@ -33,7 +33,7 @@ import pytest
 PACKAGE = Path(__file__).parent.parent / "bezstab"
 TESTS = PACKAGE.parent / "tests"
 ROOMS = ("engines", "methods", "stability", "mechanism", "evidence", "show", "cli", "paper")
-FOUNDATIONS = ("lazy", "stopping", "errors", "rationals", "files", "toml_tables", "units")
+FOUNDATIONS = ("lazy", "stopping", "errors", "rationals", "files", "toml_tables", "units", "compiling")
 """Beside the rooms, each importing only from those before it."""
 
 BELOW = {
@@ -67,7 +67,7 @@ APPOINTED = {
     | {"paper/command.py"},
     "mujoco": {"evidence/mujoco_models.py"},
     "distributed": {"evidence/worker_pools.py"},
-    "numba": {"mechanism/compiled_steps.py"},
+    "numba": {"compiling.py"},
     "mpmath": {"evidence/extremes.py", "evidence/root_digits.py", "stability/path_crossings.py"},
 }
 """The files that may import a library when they run; for types anybody may."""

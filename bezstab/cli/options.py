@@ -192,7 +192,7 @@ def _choose_compiled(context: click.Context, parameter: click.Parameter, choice:
     """
     if context.get_parameter_source(str(parameter.name)) != click.core.ParameterSource.COMMANDLINE:
         return
-    from bezstab.mechanism import COMPILED_CHOICE, check_numba
+    from bezstab.compiling import COMPILED_CHOICE, check_numba
 
     if choice == "yes":
         check_numba()

@@ -13,6 +13,7 @@ from multiprocessing.connection import Connection
 from multiprocessing.resource_tracker import ensure_running
 from typing import Any, ParamSpec, TypeVar
 
+from bezstab.compiling import cores
 from bezstab.errors import InputError
 from bezstab.stopping import if_stopped, signals_deferred
 
@@ -44,7 +45,7 @@ def worker_pool(count: int | None = None, scheduler: str | None = None) -> Itera
     """
     if scheduler is None:
         with if_stopped(_kill_processes):
-            yield WorkerPool(start=OneProcess, count=count or _cores(), lost=WorkerLostError)
+            yield WorkerPool(start=OneProcess, count=count or cores(), lost=WorkerLostError)
         return
     try:
         from distributed import Client, KilledWorker
@@ -57,13 +58,6 @@ def worker_pool(count: int | None = None, scheduler: str | None = None) -> Itera
     with client:
         threads = sum(client.nthreads().values())
         yield WorkerPool(start=client.get_executor, count=threads or 1, lost=KilledWorker)
-
-
-def _cores() -> int:
-    """Return the number of cores that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0)) or 1
-    return os.cpu_count() or 1
 
 
 def _kill_processes() -> None:

@@ -36,8 +36,6 @@ from bezstab.mechanism.compiled import (
 )
 from bezstab.mechanism.compiled_steps import (
     CHEAPER_TOGETHER,
-    COMPILED_CHOICE,
-    check_numba,
     compiled_asked_for,
     runs_compiled,
 )
@@ -80,7 +78,6 @@ from bezstab.mechanism.varying_runs import check_steps_may_vary, simulated_with_
 
 __all__ = [
     "CHEAPER_TOGETHER",
-    "COMPILED_CHOICE",
     "COORDINATES",
     "GROUND",
     "SINGULAR",
@@ -107,7 +104,6 @@ __all__ = [
     "acceleration_function",
     "acceleration_jacobians",
     "at_speed",
-    "check_numba",
     "check_steps_may_vary",
     "compiled_asked_for",
     "compiled_mechanism",

@@ -32,8 +32,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from bezstab.compiling import compiler
 from bezstab.mechanism.compiled import Mechanism, stepper_code
-from bezstab.mechanism.compiled_steps import ParsedStepper, compiler, flat, parsed_stepper
+from bezstab.mechanism.compiled_steps import ParsedStepper, flat, parsed_stepper
 from bezstab.mechanism.generated_code import constraint_texts
 from bezstab.methods import Method
 

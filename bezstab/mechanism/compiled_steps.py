@@ -23,9 +23,7 @@ Implicit methods stay in Python: their Newton iterations work on Python's comple
 """
 
 import ast
-import importlib.util
 import math
-import os
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -34,7 +32,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.errors import InputError
+from bezstab.compiling import check_numba, compiled_choice, compiler, numba_is_installed
 from bezstab.mechanism.compiled import BLOWN_UP, SINGULAR, Mechanism, stepper_code
 from bezstab.mechanism.generated_code import compiled_source
 from bezstab.methods import Method, implicit
@@ -52,15 +50,11 @@ WORTH_COMPILING = 10**6
 
 Both grow with the mechanism and with the evaluations of a step alike."""
 
-NEEDS_NUMBA = "compiled runs need an optional package: pip install 'bezstab[fast]'"
 CHEAPER_TOGETHER = 20
 """Times: what an evaluation costs in a batch of numpy, against one of a run alone in Python."""
 
 MOST_LINES = 3000
 """Of a stepper that is compiled without being asked for: what numba takes grows faster than the text."""
-
-COMPILED_CHOICE = "BEZSTAB_COMPILED"
-"""The environment variable that says whether runs are compiled: auto (also if it is not set), yes or no."""
 
 SIGNATURE = (
     "int64(float64, float64, float64, float64, int64, int64, float64[::1], float64[::1], float64[::1], int64[::1])"
@@ -79,26 +73,9 @@ class Block:
     pivots: FloatArray
 
 
-def check_numba() -> None:
-    """Raise InputError unless the compiler is there; it is not loaded."""
-    if not _numba_is_installed():
-        raise InputError(NEEDS_NUMBA)
-
-
-def _numba_is_installed() -> bool:
-    return importlib.util.find_spec("numba") is not None
-
-
 def compiled_asked_for() -> bool:
     """Return whether runs are to be compiled even where that does not pay."""
-    return _choice() == "yes"
-
-
-def _choice() -> str:
-    choice = os.environ.get(COMPILED_CHOICE, "auto")
-    if choice not in ("auto", "yes", "no"):
-        raise InputError(f"{COMPILED_CHOICE}={choice}: expected auto, yes or no")
-    return choice
+    return compiled_choice() == "yes"
 
 
 def runs_compiled(mechanism: Mechanism, method: Method, evaluations: int) -> bool:
@@ -107,13 +84,13 @@ def runs_compiled(mechanism: Mechanism, method: Method, evaluations: int) -> boo
     By default where numba is there and it pays: the run is long, or has been compiled before. Methods that solve
     equations run in Python, whatever is asked for.
     """
-    choice = _choice()
+    choice = compiled_choice()
     if choice == "no" or implicit(method):
         return False
     if choice == "yes":
         check_numba()
         return True
-    if not _numba_is_installed():
+    if not numba_is_installed():
         return False
     pays = evaluations >= WORTH_COMPILING and stepper_code(mechanism, method).count("\n") <= MOST_LINES
     return pays or (mechanism, method) in _compiled
@@ -201,19 +178,6 @@ def _least_lines(target: str, values: Sequence[ast.expr]) -> list[str]:
     for other in others:
         lines += [f"value = {other}", f"if value < {target}: {target} = value"]
     return lines
-
-
-def compiler() -> Any:
-    """Return numba. InputError without it, or where it calls functions that round otherwise than the C library's."""
-    try:
-        import numba
-    except ImportError:
-        raise InputError(NEEDS_NUMBA) from None
-    if getattr(numba.config, "USING_SVML", False):
-        raise InputError(
-            "compiled runs need NUMBA_DISABLE_INTEL_SVML=1: Intel's functions round otherwise than Python's"
-        )
-    return numba
 
 
 @cache

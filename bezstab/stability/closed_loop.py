@@ -21,6 +21,7 @@ from bezstab.methods import (
     without_shared_factor,
 )
 from bezstab.stability.arrays import EPS, ComplexArray, FloatArray
+from bezstab.stability.compiled_maps import is_compiled, write_followed
 from bezstab.stability.dominant_roots import FEWEST, dominant_root
 from bezstab.stability.exact_sums import feedback_roots
 from bezstab.stability.pencils import Pencil, pencil_of, roots_in_z
@@ -108,20 +109,46 @@ def spectral_radius(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -
     return largest_modulus(any_pencil_of(method), alpha_hat, beta_hat)
 
 
-def largest_pole(pencil: AnyPencil, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexArray:
-    """Return what dominant_pole does, from a pencil; infinite where an implicit step has no solution."""
+def largest_pole(
+    pencil: AnyPencil, alpha_hat: ArrayLike, beta_hat: ArrayLike, compiled: bool | None = None
+) -> ComplexArray:
+    """Return what dominant_pole does, from a pencil; infinite where an implicit step has no solution.
+
+    compiled: whether as machine code (compiled_maps); by default where that pays for so many points.
+    """
     alpha_hat, beta_hat = np.broadcast_arrays(np.asarray(alpha_hat, float), np.asarray(beta_hat, float))
-    row_of_alpha, row_of_beta = alpha_hat.reshape(-1), beta_hat.reshape(-1)
+    alphas, betas = (each if each.ndim == 2 else each.reshape(1, -1) for each in (alpha_hat, beta_hat))
     dominant = np.empty(alpha_hat.size, complex)
+    if compiled is None:
+        compiled = is_compiled(pencil, alpha_hat.size)
+    write = _write_compiled if compiled else _write_largest_poles
     for start in range(0, alpha_hat.size, BLOCK):
-        block = slice(start, start + BLOCK)
-        _write_largest_poles(pencil, row_of_alpha[block], row_of_beta[block], dominant[block])
+        stop = min(start + BLOCK, alpha_hat.size)
+        write(pencil, _points(alphas, start, stop), _points(betas, start, stop), dominant[start:stop])
     return dominant.reshape(alpha_hat.shape)
+
+
+def _points(grid: FloatArray, start: int, stop: int) -> FloatArray:
+    """Return points `start` to `stop` of a grid in a row; only the rows that they lie in are copied."""
+    columns = grid.shape[1]
+    first = start // columns
+    rows = grid[first : -(-stop // columns)].reshape(-1)
+    return rows[start - first * columns : stop - first * columns]
 
 
 def largest_modulus(pencil: AnyPencil, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> FloatArray:
     """Return what spectral_radius does, from a pencil."""
     return np.abs(largest_pole(pencil, alpha_hat, beta_hat))
+
+
+def _write_compiled(pencil: AnyPencil, alpha_hat: FloatArray, beta_hat: FloatArray, poles: ComplexArray) -> None:
+    """Write into `poles` what _write_largest_poles does, by machine code but for the points that it leaves."""
+    write_followed(pencil, alpha_hat, beta_hat, poles)
+    left = np.flatnonzero(np.isnan(poles.real))
+    if left.size:
+        few = np.empty(left.size, complex)
+        _write_largest_poles(pencil, alpha_hat[left], beta_hat[left], few)
+        poles[left] = few
 
 
 def _write_largest_poles(pencil: AnyPencil, alpha_hat: FloatArray, beta_hat: FloatArray, poles: ComplexArray) -> None:
@@ -154,7 +181,7 @@ def _write_largest_poles(pencil: AnyPencil, alpha_hat: FloatArray, beta_hat: Flo
 
 def _ordinary(alpha_hat: FloatArray, beta_hat: FloatArray) -> bool:
     """Return whether all powers of a row of points are far from the ends of float64's range."""
-    return bool(np.abs(alpha_hat).max() < ORDINARY and np.abs(beta_hat).max() < ORDINARY)
+    return all(bool(row.min() > -ORDINARY and row.max() < ORDINARY) for row in (alpha_hat, beta_hat))
 
 
 def _without_rounding(z: ComplexArray) -> ComplexArray:

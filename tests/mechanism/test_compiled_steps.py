@@ -10,10 +10,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from bezstab.compiling import COMPILED_CHOICE
 from bezstab.errors import InputError
 from bezstab.mechanism import Mechanism, Trajectory, compiled_mechanism, load_scene, shipped_scenes, simulate
 from bezstab.mechanism import compiled_steps as module
-from bezstab.mechanism.compiled_steps import COMPILED_CHOICE, block_source, blocks_of_steps, runs_compiled
+from bezstab.mechanism.compiled_steps import block_source, blocks_of_steps, runs_compiled
 from bezstab.mechanism.generated_code import compiled_source
 from bezstab.methods import Method, lookup
 from bezstab.units import feedback_gains

@@ -1,0 +1,63 @@
+"""Whether functions run as machine code, by numba, an optional package: one choice for runs and for maps."""
+
+import importlib.util
+import os
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+from bezstab.errors import InputError
+
+COMPILED_CHOICE = "BEZSTAB_COMPILED"
+"""The environment variable that says whether runs and maps are compiled: auto (also if it is not set), yes or no."""
+
+NEEDS_NUMBA = "compiled runs need an optional package: pip install 'bezstab[fast]'"
+
+Function = TypeVar("Function", bound=Callable[..., object])
+
+
+def compiled_choice() -> str:
+    """Return auto, yes or no; InputError for anything else."""
+    choice = os.environ.get(COMPILED_CHOICE, "auto")
+    if choice not in ("auto", "yes", "no"):
+        raise InputError(f"{COMPILED_CHOICE}={choice}: expected auto, yes or no")
+    return choice
+
+
+def check_numba() -> None:
+    """Raise InputError unless the compiler is there; it is not loaded."""
+    if not numba_is_installed():
+        raise InputError(NEEDS_NUMBA)
+
+
+def numba_is_installed() -> bool:
+    """Return whether the compiler is there; it is not loaded."""
+    return importlib.util.find_spec("numba") is not None
+
+
+def compiler() -> Any:
+    """Return numba. InputError without it, or where it calls functions that round otherwise than the C library's."""
+    try:
+        import numba
+    except ImportError:
+        raise InputError(NEEDS_NUMBA) from None
+    if getattr(numba.config, "USING_SVML", False):
+        raise InputError(
+            "compiled runs need NUMBA_DISABLE_INTEL_SVML=1: Intel's functions round otherwise than Python's"
+        )
+    return numba
+
+
+def machine_code(function: Function) -> Function:
+    """Return a function of numbers and arrays, to be compiled when it is first called; InputError without numba.
+
+    Every operation is rounded as Python's; divisions by zero give inf or nan. Threads run it at the same time.
+    """
+    compiled: Function = compiler().njit(nogil=True, error_model="numpy")(function)
+    return compiled
+
+
+def cores() -> int:
+    """Return the number of cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0)) or 1
+    return os.cpu_count() or 1
