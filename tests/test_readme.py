@@ -26,7 +26,14 @@ INLINE = sorted(
 ON_A_PIPE = {"COLUMNS": None}
 """Environment in which nothing says how wide a line may be."""
 
-LONG = ("paper", "tradeoff", "verify --map", "verify --witness", "choose --method B4 --method AB4 --method SYM")
+LONG = (
+    "paper",
+    "tradeoff",
+    "region --quality",
+    "verify --map",
+    "verify --witness",
+    "choose --method B4 --method AB4 --method SYM",
+)
 """Beginnings of commands that take more than a few seconds; `make test-slow` runs these."""
 
 

@@ -72,7 +72,9 @@ def test_bezier_weights_alternate_and_integrate_straight_lines_only(n: int) -> N
     assert moments == [1, Fraction(1, 2), Fraction(1, 3) - (Fraction(1, 3 * (n - 1)) + Fraction(1, 2))]
 
 
-@pytest.mark.parametrize("j", range(6))
+@pytest.mark.parametrize(
+    "j", [pytest.param(j, marks=[pytest.mark.slow] if j in (1, 2, 3, 4) else []) for j in range(6)]
+)
 def test_bezier_weights_converge_to_their_limit_like_one_over_m(j: int) -> None:
     limit, slope = limit_weight(j)
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from bezstab.methods import LinearMultistep, Method, RungeKutta, lookup
 from bezstab.rationals import rational
 from bezstab.stability import Extent, FloatArray, Region, region, spectral_radius, verdict, window
-from tests.methods.kinds import EXPLICIT
+from tests.methods.kinds import EXPLICIT, sampled
 from tests.reference.companion_poles import eigenvalues, polynomial_at, radius
 from tests.reference.enclosed_points import enclosed
 from tests.reference.fifty_digit_poles import modulus_from_p
@@ -64,7 +64,7 @@ def test_a_step_of_m_h_divides_the_area_by_m_cubed(name: str, level: float, mult
     assert scaled == pytest.approx(plain / float(rational(multiple)) ** 3, rel=1e-13)  # rounding alone
 
 
-FAST = ["B2", "B3", "B4", "AB2", "AB3", "AB4", "ABM2", "RK2", "RK3", "RK4", "SIE", "SYM"]
+FAST = ["B4", "AB2", "ABM2", "RK2", "SYM"]
 
 
 @pytest.mark.parametrize(
@@ -85,7 +85,7 @@ def test_slices_of_constant_alpha_hat_give_the_same_area(name: str, level: float
     assert sliced_area(lookup(name), level) == pytest.approx(shape.area, rel=1e-10)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", sampled(NAMES))
 @pytest.mark.parametrize("level", [1.0, 0.9])
 def test_counting_cells_converges_to_the_area(name: str, level: float) -> None:
     method = lookup(name)
@@ -97,7 +97,7 @@ def test_counting_cells_converges_to_the_area(name: str, level: float) -> None:
         assert abs(counted - region(method, level).area) < full / size  # cells that the edge cuts: a few a row
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", sampled(NAMES))
 @pytest.mark.parametrize("level", LEVELS)
 def test_every_boundary_point_has_the_modulus_of_the_level(name: str, level: float) -> None:
     method = lookup(name)
@@ -132,7 +132,7 @@ def test_boundary_points_in_fifty_digits(name: str, level: float) -> None:
         assert modulus_from_p(method, alpha_hat, beta_hat) == pytest.approx(level, abs=1e-10)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", sampled(NAMES))
 @pytest.mark.parametrize("level", [1.0, 0.95])
 def test_every_edge_separates_stable_from_unstable(name: str, level: float) -> None:
     method = lookup(name)
@@ -159,7 +159,7 @@ def test_every_edge_separates_stable_from_unstable(name: str, level: float) -> N
         assert (left * right < 0).all()
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", sampled(NAMES))
 @pytest.mark.parametrize("level", [1.0, 0.9])
 def test_the_boundary_encloses_exactly_the_stable_points(name: str, level: float) -> None:
     method, random = lookup(name), np.random.default_rng(3)
@@ -202,7 +202,7 @@ def test_a_region_is_empty_exactly_below_the_least_modulus(name: str) -> None:
     assert radius(method, np.array([(a_low + a_high) / 2]), np.array([(b_low + b_high) / 2])) < least + 1e-5
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", sampled(NAMES))
 @pytest.mark.parametrize("level", [1.0, 0.9])
 def test_the_curves_are_closed_and_enclose_the_area(name: str, level: float) -> None:
     shape = region(lookup(name), level)
@@ -214,7 +214,7 @@ def test_the_curves_are_closed_and_enclose_the_area(name: str, level: float) -> 
     assert shoelace == pytest.approx(shape.area, rel=1e-4)  # 400 chords an arc: (pi / 400)^2
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", sampled(NAMES))
 @pytest.mark.parametrize("level", [1.0, 0.9])
 def test_extents_contain_the_curve_and_are_attained(name: str, level: float) -> None:
     shape = region(lookup(name), level)
@@ -285,7 +285,7 @@ USERS = [
 
 @pytest.mark.parametrize(
     "method",
-    [pytest.param(method, marks=[pytest.mark.slow] if number > 2 else []) for number, method in enumerate(USERS)],
+    [pytest.param(method, marks=[pytest.mark.slow] if number != 1 else []) for number, method in enumerate(USERS)],
     ids=lambda method: method.name,
 )
 @pytest.mark.parametrize("level", [1.0, pytest.param(0.8, marks=pytest.mark.slow)])
