@@ -72,7 +72,9 @@ def test_json_for_an_ascii_terminal_holds_the_same_values(tmp_path: Path) -> Non
     assert row["method"] == "naive alpha_hat \\u4e2d \\U0001f600"
 
 
-@pytest.mark.parametrize("environment", [ASCII, OLD_LOCALE], ids=["ascii", "old-locale"])
+@pytest.mark.parametrize(
+    "environment", [pytest.param(ASCII, marks=SLOW, id="ascii"), pytest.param(OLD_LOCALE, id="old-locale")]
+)
 def test_a_name_that_the_file_system_lacks_is_spelled(environment: dict[str, str | None], tmp_path: Path) -> None:
     method = own_method(tmp_path, "é∞")
     run = finished("region", "--method", method, "--grid", "9", "-o", "out", cwd=tmp_path, environment=environment)

@@ -35,6 +35,10 @@ from tests.reference.closed_loops import multistep_closed_loop, polynomial_in_z,
 from tests.reference.steppers import State, one_step, trajectory
 
 METHODS = [pytest.param(lookup(name), id=name) for name in [*EXPLICIT, "B4@1/2", "RK4@5", "ABM3@2", "SYM@3"]]
+SAMPLED = [
+    pytest.param(*case.values, marks=[] if case.id in (*SAMPLE, "SYM@3") else [pytest.mark.slow], id=case.id)
+    for case in METHODS
+]
 MULTISTEP = [
     pytest.param(lookup(case.values[0]), id=case.values[0], marks=case.marks)
     for case in sampled(kinds.MULTISTEP, quick=[*SAMPLE, *SOLVED])
@@ -161,7 +165,7 @@ def test_coefficient_table_lists_the_characteristic_polynomial(method: Method) -
     assert all(type(c) is Fraction for row in table for c in row)
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", SAMPLED)
 def test_closed_loop_is_the_minimal_recursion_of_the_stabilised_constraint(method: Method) -> None:
     """P annihilates every exact trajectory of c' = v, v' = -alpha_hat v - beta_hat c; nothing of lower degree does."""
     a, b = Fraction(3, 7), Fraction(2, 11)

@@ -48,6 +48,7 @@ def test_schur_if_and_only_if_every_known_root_is_inside(factors: list[Factor]) 
     assert is_schur(product(factors)) == all(squared_modulus(f) < 1 for f in factors)
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=30)  # numbers of 20 digits to the power of the degree take their time
 @given(several(inside), st.lists(on_circle, unique=True, min_size=1, max_size=4))
 def test_one_part_in_ten_to_the_twenty_off_the_circle_decides(inner: list[Factor], circle: list[Factor]) -> None:

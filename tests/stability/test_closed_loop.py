@@ -18,7 +18,7 @@ from bezstab.methods import (
 )
 from bezstab.rationals import rational
 from bezstab.stability import dominant_pole, poles, spectral_radius, verdict
-from tests.methods.kinds import EXPLICIT, IMPLICIT, sampled
+from tests.methods.kinds import EXPLICIT, FEW, IMPLICIT, sampled
 from tests.reference.companion_poles import radius
 from tests.reference.fifty_digit_poles import poles_with_errors
 
@@ -85,7 +85,7 @@ POINTS = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("name", by_length(NAMES))
+@pytest.mark.parametrize("name", sampled(NAMES, quick=[*FEW, "AB8", "dopri5"]))
 def test_poles_agree_with_fifty_digits(name: str) -> None:
     method = lookup(name)
     with mpmath.workdps(50):
@@ -182,7 +182,7 @@ def test_the_taylor_rule_is_deadbeat_for_midpoint() -> None:
     assert float(spectral_radius(lookup("RK2"), 2, 2)) == 0
 
 
-@pytest.mark.parametrize("name", sampled(NAMES))
+@pytest.mark.parametrize("name", sampled(NAMES, quick=FEW))
 @given(st.fractions(-1, 6, max_denominator=1000), st.fractions(-1, 9, max_denominator=1000))
 @settings(max_examples=25, deadline=None)
 def test_away_from_the_boundary_the_proof_agrees_with_the_number(name: str, a: Fraction, b: Fraction) -> None:
