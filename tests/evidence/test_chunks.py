@@ -101,6 +101,7 @@ def cluster() -> Iterator[str]:
             process.wait(timeout=30)
 
 
+@pytest.mark.slow
 def test_a_cluster_does_the_same_work(cluster: str, tmp_path: Path) -> None:
     jobs = [Job(number, (tmp_path / "died",) if number == 2 else ()) for number in range(6)]
     deadline = time.monotonic() + 60
