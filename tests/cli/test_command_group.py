@@ -253,7 +253,7 @@ def test_every_command_prints_in_every_format(command: str, form: str) -> None:
         assert isinstance(json.loads(result.stdout), list)
 
 
-LONG_EXAMPLES = {"extremes", "tradeoff", "family", "choose"}
+LONG_EXAMPLES = {"extremes", "tradeoff", "family", "choose", "verify"}
 
 
 @pytest.mark.parametrize(
@@ -288,7 +288,7 @@ def test_a_closed_pipe_is_no_error_to_read() -> None:
 @pytest.mark.parametrize(
     "command",
     [
-        "region --grid 4000 --method B12",
+        pytest.param("region --grid 4000 --method B12", marks=pytest.mark.slow),
         "simulate --time 10000 --compiled no",
         pytest.param("simulate --time 100000 --method RK4 --compiled yes", marks=pytest.mark.slow),
         pytest.param("verify --points 1000 --method B12", marks=pytest.mark.slow),

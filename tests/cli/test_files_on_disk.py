@@ -168,7 +168,8 @@ def limit_of(size: int) -> Callable[[], None]:
     return lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
 
 
-@pytest.mark.parametrize("size", [pytest.param(0, marks=SLOW), pytest.param(100, marks=SLOW), 700])
+@SLOW
+@pytest.mark.parametrize("size", [0, 100, 700])
 def test_a_full_disk_takes_one_line_and_resume_goes_on(size: int, whole: bytes, tmp_path: Path) -> None:
     full = finished(*SMALL, cwd=tmp_path, prepare=limit_of(size))
     assert full.returncode == 2

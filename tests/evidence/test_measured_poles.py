@@ -104,7 +104,7 @@ def test_all_methods_that_solve_equations_have_the_predicted_pole(name: str, sce
 @pytest.mark.parametrize(
     "scene",
     [
-        "slider_crank_300rpm",
+        pytest.param("slider_crank_300rpm", marks=pytest.mark.slow),
         pytest.param("four_bar", marks=pytest.mark.slow),
         pytest.param("slider_crank_light", marks=pytest.mark.slow),
         pytest.param("n_four_bar", marks=pytest.mark.slow),

@@ -38,6 +38,7 @@ def test_the_momentary_rate_bounds_a_scalar_one() -> None:
     assert momentary_rates(TURNING, chi) == pytest.approx([(c * eigenvalues).real.max() for c in chi])
 
 
+@pytest.mark.slow
 def test_the_table_is_as_good_as_the_law() -> None:
     random = np.random.default_rng(3)
     chi = random.uniform(0.1, 12, 200) * np.exp(1j * random.uniform(-np.pi, np.pi, 200))
