@@ -253,7 +253,7 @@ def test_every_command_prints_in_every_format(command: str, form: str) -> None:
         assert isinstance(json.loads(result.stdout), list)
 
 
-LONG_EXAMPLES = {"extremes", "tradeoff", "family", "choose", "verify"}
+LONG_EXAMPLES = {"extremes", "tradeoff", "family", "choose", "verify", "region"}
 
 
 @pytest.mark.parametrize(

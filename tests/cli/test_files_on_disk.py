@@ -226,7 +226,10 @@ def test_a_directory_that_goes_away_midway_takes_one_line(below: str, becomes_a_
         wait_until(lambda: catches(signal.SIGHUP, resumed.pid), resumed)
 
 
-STREAMS = ["--help", "--version", "poles --alpha 1 --beta 1", "poles --alpha 1 --beta 1 --format json"]
+STREAMS = [
+    *("--version", "poles --alpha 1 --beta 1"),
+    *(pytest.param(text, marks=SLOW) for text in ("--help", "poles --alpha 1 --beta 1 --format json")),
+]
 
 
 @pytest.mark.parametrize("command", STREAMS)

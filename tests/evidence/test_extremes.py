@@ -25,7 +25,9 @@ def name(check: Callable[[], Check]) -> str:
 
 def takes_long(check: Callable[[], Check]) -> bool:
     """Return whether a check is left to `make test-slow`: of a kind that a shorter method or run shows as well."""
-    return name(check).startswith(("_sizes-B12", "_sizes-AB4", "_boundary-ABM4", "_long_run-SYM", "_long_run-AB4"))
+    return name(check).startswith(
+        ("_sizes-B12", "_sizes-AB4", "_sizes-ABM4", "_boundary-ABM4", "_long_run-SYM", "_long_run-AB4")
+    )
 
 
 @pytest.mark.parametrize(

@@ -203,7 +203,9 @@ def test_closed_loop_of_symplectic_euler_is_that_of_theory() -> None:
     assert same(closed_loop_polynomial(lookup("SYM")).as_expr(), expected)
 
 
-@pytest.mark.parametrize("name", [name for name in kinds.MU_METHODS if name != "SYM"])
+@pytest.mark.parametrize(
+    "name", sampled([name for name in kinds.MU_METHODS if name != "SYM"], quick=[*SAMPLE, *SOLVED])
+)
 def test_closed_loop_is_the_product_of_pi_over_both_mu(name: str) -> None:
     method, first, second = lookup(name), Fraction(-2, 3), Fraction(-1, 5)
     p = closed_loop_at(method, -(first + second), first * second)
