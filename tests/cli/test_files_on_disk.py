@@ -107,7 +107,7 @@ def put_pickle(chunk: Path) -> None:
 @pytest.mark.parametrize(
     "damage",
     [
-        put_hostile_archive,
+        pytest.param(put_hostile_archive, marks=SLOW),
         pytest.param(truncate, marks=SLOW),
         pytest.param(flip_a_bit, marks=SLOW),
         pytest.param(empty, marks=SLOW),
@@ -257,7 +257,8 @@ def test_without_any_stream_nothing_is_said_and_nothing_written(tmp_path: Path) 
     assert files_below(tmp_path) == []
 
 
-@pytest.mark.parametrize("how", [pytest.param("closed", marks=SLOW), "full"])
+@SLOW
+@pytest.mark.parametrize("how", ["closed", "full"])
 def test_an_answer_needs_no_standard_error(how: str, whole: bytes, tmp_path: Path) -> None:
     def close_errors() -> None:
         os.close(2)

@@ -73,7 +73,7 @@ def test_json_for_an_ascii_terminal_holds_the_same_values(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize(
-    "environment", [pytest.param(ASCII, marks=SLOW, id="ascii"), pytest.param(OLD_LOCALE, id="old-locale")]
+    "environment", [pytest.param(ASCII, marks=SLOW, id="ascii"), pytest.param(OLD_LOCALE, marks=SLOW, id="old-locale")]
 )
 def test_a_name_that_the_file_system_lacks_is_spelled(environment: dict[str, str | None], tmp_path: Path) -> None:
     method = own_method(tmp_path, "é∞")
@@ -160,6 +160,7 @@ def test_a_method_that_is_called_like_its_file(name: str, tmp_path: Path) -> Non
     assert not {"\x1b", "\x07"} & set(line)
 
 
+@pytest.mark.slow
 def test_a_method_whose_name_is_too_long_for_a_file(tmp_path: Path) -> None:
     run = finished("region", "--method", own_method(tmp_path, "x" * 300), "--grid", "9", cwd=tmp_path)
     assert run.returncode == 2
