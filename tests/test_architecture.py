@@ -26,6 +26,7 @@ import importlib
 import subprocess
 import sys
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -76,12 +77,18 @@ FILES = sorted(path.relative_to(PACKAGE) for path in PACKAGE.rglob("*.py"))
 IN_ROOMS = [path for path in FILES if len(path.parts) == 2 and path.name != "__init__.py"]
 
 
+@cache
 def tree_of(path: Path) -> ast.Module:
     return ast.parse((PACKAGE / path).read_text(encoding="utf-8"))
 
 
-def imports(path: Path, with_types: bool = True) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """Yield each module that a file imports, inside functions too, with the names taken from it."""
+@cache
+def imports(path: Path, with_types: bool = True) -> list[tuple[str, tuple[str, ...]]]:
+    """Return each module that a file imports, inside functions too, with the names taken from it."""
+    return list(_imports(path, with_types))
+
+
+def _imports(path: Path, with_types: bool) -> Iterator[tuple[str, tuple[str, ...]]]:
     for node in _nodes(tree_of(path), with_types):
         if isinstance(node, ast.ImportFrom) and node.module:
             yield node.module, tuple(alias.name for alias in node.names)

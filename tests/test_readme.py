@@ -33,8 +33,11 @@ PAGES = (
 LONG = (
     *("paper", "tradeoff", "verify --map", "verify --witness", "verify --scene", "extremes", "simulate --method RK4"),
     *("choose --method AB4 --h 0.01", "region --method B4 --scene", "choose --method ABM2", "choose --method B5"),
+    *("check --method B4 --alpha 0.5 --beta 0.1 --scene", "check --pd", "simulate --method AB4"),
 )
 """Beginnings of commands that take more than a few seconds; `make test-slow` runs these."""
+ON_A_PIPE = {"COLUMNS": None}
+"""Environment in which nothing says how wide a line may be."""
 UNSAFE = ("check", "lint")
 """Commands whose exit status is 1 where what they judge is unsafe."""
 PLACEHOLDER = re.compile(r"\b(COMMAND|LOG|MODEL|NAME|PATH|FILE)\b")
@@ -82,7 +85,7 @@ def _with_the_files_of_the_pages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 def test_a_session_prints_what_the_page_shows(session: str) -> None:
     """Lines up to one with three dots alone are the first of what is printed."""
     command, shown = prompted(session), session.partition("\n")[2].strip()
-    result = CliRunner().invoke(main, shlex.split(command))
+    result = CliRunner(env=ON_A_PIPE).invoke(main, shlex.split(command))
     assert result.exit_code == (shown.startswith("Not safe"))  # 1 for an unsafe choice
     printed = result.stdout.strip()
     if shown.endswith("\n…"):
@@ -97,7 +100,7 @@ def test_a_session_prints_what_the_page_shows(session: str) -> None:
 def test_a_command_in_the_text_runs(command: str) -> None:
     if "own.toml" in command:
         shutil.copy(own_file(command), "own.toml")
-    result = CliRunner().invoke(main, shlex.split(command))
+    result = CliRunner(env=ON_A_PIPE).invoke(main, shlex.split(command))
     assert result.exit_code in ((0, 1) if command.startswith(UNSAFE) else (0,)), result.stderr
 
 

@@ -1,8 +1,11 @@
+import pytest
+
 from bezstab.methods import lookup
 from bezstab.stability import QUALITY
 from tests.bench.map_costs import MAP_POINTS, map_cost
 
 
+@pytest.mark.slow
 def test_more_points_read_the_boundary_better_and_cost_more() -> None:
     rough, middle, fine = (map_cost(lookup("B4"), count) for count in sorted(QUALITY.values()))
     assert rough.boundary_error > 10 * middle.boundary_error > 100 * fine.boundary_error

@@ -4,7 +4,7 @@ import pytest
 from bezstab.methods import lookup
 from bezstab.stability import region, spectral_radius, window
 from tests.bench.stable_mask import stable_mask
-from tests.methods.kinds import EXPLICIT, sampled
+from tests.methods.kinds import EXPLICIT, FEW, sampled
 from tests.stability.made_methods import multistep
 
 
@@ -15,7 +15,7 @@ def test_the_first_row_of_a_mask_touches_the_region_and_is_outside() -> None:
     assert stable_mask(method, alpha_hat, np.array([1e-4])).any()
 
 
-@pytest.mark.parametrize("name", sampled([*EXPLICIT, "RK4@5"]))
+@pytest.mark.parametrize("name", sampled([*EXPLICIT, "RK4@5"], quick=FEW))
 def test_the_mask_is_where_the_largest_pole_is_below_the_level(name: str) -> None:
     method = lookup(name)
     for level in (1.0, 0.9):

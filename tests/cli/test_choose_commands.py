@@ -43,7 +43,10 @@ def test_an_engines_own_words_are_read_and_printed(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("name", "verdict"),
-    [("RK2", "converges"), ("RK1", "marginal"), *((name, "diverges") for name in ("SYM", "AB2", "AB3", "AB4"))],
+    [
+        *(("RK2", "converges"), ("RK1", "marginal"), ("SYM", "diverges")),
+        *(pytest.param(name, "diverges", marks=pytest.mark.slow) for name in ("AB2", "AB3", "AB4")),
+    ],
 )
 def test_check_judges_the_textbook_rule(name: str, verdict: str) -> None:
     rule = ("--h", "0.001", "--alpha", "1000", "--beta", "1414.2135623730951", "--physical")  # alpha = 1/h, sqrt(2)/h

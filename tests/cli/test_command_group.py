@@ -8,6 +8,7 @@ import signal
 import subprocess
 import time
 from pathlib import Path
+from typing import Any
 
 import click
 import pytest
@@ -206,24 +207,41 @@ def test_numerical_trouble_is_status_three(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("form", ["text", "json", "csv", "markdown"])
+ANY_FORM = ("text", "json", "csv", "markdown")
+LONG_ANSWERS = ("verify", "tradeoff")
+"""Commands whose answers take long: as CSV they are made each time, in the other formats by `make test-slow`."""
+
+
+def in_every_format(commands: list[str]) -> list[Any]:
+    """Return each command with each format as parameters, those that take long marked as slow."""
+    return [
+        pytest.param(
+            command, form, marks=[pytest.mark.slow] if command.startswith(LONG_ANSWERS) and form != "csv" else []
+        )
+        for command in commands
+        for form in ANY_FORM
+    ]
+
+
 @pytest.mark.parametrize(
-    "command",
-    [
-        "poles --alpha 1 --beta 1",
-        "methods",
-        "methods B3 SYM",
-        "region --method B3 --figure none --table none",
-        "simulate --time 0.01 --figure none --table none",
-        "verify --points 2",
-        "paper --only fig7 --figure none",
-        "choose --method SYM --h 0.01",
-        "engines --alpha 0.5 --beta 0.25",
-        "family bezier --from 3 --to 4 --figure none",
-        "check --method RK1 --alpha 1 --beta 0.25",
-        "verify --map 3 --figure none --table none",
-        "tradeoff --method SYM --h 0.01 --h 0.02 --time 0.1 --figure none --table none",
-    ],
+    ("command", "form"),
+    in_every_format(
+        [
+            "poles --alpha 1 --beta 1",
+            "methods",
+            "methods B3 SYM",
+            "region --method B3 --figure none --table none",
+            "simulate --time 0.01 --figure none --table none",
+            "verify --points 2",
+            "paper --only fig7 --figure none",
+            "choose --method SYM --h 0.01",
+            "engines --alpha 0.5 --beta 0.25",
+            "family bezier --from 3 --to 4 --figure none",
+            "check --method RK1 --alpha 1 --beta 0.25",
+            "verify --map 3 --figure none --table none",
+            "tradeoff --method SYM --h 0.01 --h 0.02 --time 0.1 --figure none --table none",
+        ]
+    ),
 )
 def test_every_command_prints_in_every_format(command: str, form: str) -> None:
     result = run(*command.split(), "--format", form)
@@ -235,7 +253,7 @@ def test_every_command_prints_in_every_format(command: str, form: str) -> None:
         assert isinstance(json.loads(result.stdout), list)
 
 
-LONG_EXAMPLES = {"extremes", "tradeoff", "family", "choose"}
+LONG_EXAMPLES = {"extremes", "tradeoff", "family", "choose", "verify", "region"}
 
 
 @pytest.mark.parametrize(
@@ -270,10 +288,10 @@ def test_a_closed_pipe_is_no_error_to_read() -> None:
 @pytest.mark.parametrize(
     "command",
     [
-        "region --grid 4000 --method B12",
+        pytest.param("region --grid 4000 --method B12", marks=pytest.mark.slow),
         "simulate --time 10000 --compiled no",
-        "simulate --time 100000 --method RK4 --compiled yes",
-        "verify --points 1000 --method B12",
+        pytest.param("simulate --time 100000 --method RK4 --compiled yes", marks=pytest.mark.slow),
+        pytest.param("verify --points 1000 --method B12", marks=pytest.mark.slow),
     ],
 )
 def test_an_interrupt_stops_cleanly(command: str, tmp_path: Path) -> None:

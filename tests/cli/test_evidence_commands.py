@@ -111,6 +111,7 @@ def test_a_step_that_does_not_converge_is_status_three() -> None:
     assert "at t = 0.5 s: Newton's method did not converge in" in result.stderr.splitlines()[-1]
 
 
+@pytest.mark.slow
 def test_tradeoff_writes_a_table_without_times_and_two_figures(tmp_path: Path) -> None:
     command = "--method B2 --method AB4 --h 0.004 --h 0.02 --time 0.6 --alpha 50 --beta 50 --physical"
     options = command.split()

@@ -107,8 +107,8 @@ def put_pickle(chunk: Path) -> None:
 @pytest.mark.parametrize(
     "damage",
     [
-        truncate,
-        put_hostile_archive,
+        pytest.param(put_hostile_archive, marks=SLOW),
+        pytest.param(truncate, marks=SLOW),
         pytest.param(flip_a_bit, marks=SLOW),
         pytest.param(empty, marks=SLOW),
         pytest.param(put_text, marks=SLOW),
@@ -133,6 +133,7 @@ def test_a_damaged_chunk_is_computed_again_to_the_same_bytes(
     assert (tmp_path / f"{NAME}.csv").read_bytes() == whole
 
 
+@SLOW
 def test_a_second_run_in_the_same_place_names_the_first_and_the_next_starts_when_that_was_killed(
     tmp_path: Path,
 ) -> None:
@@ -149,6 +150,7 @@ def test_a_second_run_in_the_same_place_names_the_first_and_the_next_starts_when
         wait_until(lambda: len(list(tmp_path.glob("*.chunks/[0-9]*.npz"))) > known, third)
 
 
+@SLOW
 def test_the_workers_of_a_killed_run_are_gone_and_nothing_is_said(tmp_path: Path) -> None:
     with started(*LONG, cwd=tmp_path) as running:
         wait_for_chunk(tmp_path, running)
@@ -166,7 +168,8 @@ def limit_of(size: int) -> Callable[[], None]:
     return lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
 
 
-@pytest.mark.parametrize("size", [pytest.param(0, marks=SLOW), pytest.param(100, marks=SLOW), 700])
+@SLOW
+@pytest.mark.parametrize("size", [0, 100, 700])
 def test_a_full_disk_takes_one_line_and_resume_goes_on(size: int, whole: bytes, tmp_path: Path) -> None:
     full = finished(*SMALL, cwd=tmp_path, prepare=limit_of(size))
     assert full.returncode == 2
@@ -181,7 +184,7 @@ def test_a_full_disk_takes_one_line_and_resume_goes_on(size: int, whole: bytes, 
     "command",
     [
         "region --method B2 --grid 20 --table npz",
-        "simulate --time 0.1",
+        pytest.param("simulate --time 0.1", marks=SLOW),
         pytest.param("region --method B2 --grid 20 --figure svg", marks=SLOW),
         pytest.param("region --method B2 --grid 20 --figure pdf --table none", marks=SLOW),
         pytest.param("simulate --time 0.1 --figure none --table npz", marks=SLOW),
@@ -198,7 +201,7 @@ def test_a_full_disk_leaves_no_part_of_a_result(command: str, tmp_path: Path) ->
 @pytest.mark.parametrize(
     ("below", "becomes_a_file"),
     [
-        (f"out/{NAME}.chunks", True),
+        pytest.param(f"out/{NAME}.chunks", True, marks=SLOW),
         pytest.param(f"out/{NAME}.chunks", False, marks=SLOW),
         pytest.param("out", True, marks=SLOW),
         pytest.param("out", False, marks=SLOW),
@@ -223,7 +226,10 @@ def test_a_directory_that_goes_away_midway_takes_one_line(below: str, becomes_a_
         wait_until(lambda: catches(signal.SIGHUP, resumed.pid), resumed)
 
 
-STREAMS = ["--help", "--version", "poles --alpha 1 --beta 1", "poles --alpha 1 --beta 1 --format json"]
+STREAMS = [
+    *("--version", "poles --alpha 1 --beta 1"),
+    *(pytest.param(text, marks=SLOW) for text in ("--help", "poles --alpha 1 --beta 1 --format json")),
+]
 
 
 @pytest.mark.parametrize("command", STREAMS)
@@ -251,6 +257,7 @@ def test_without_any_stream_nothing_is_said_and_nothing_written(tmp_path: Path) 
     assert files_below(tmp_path) == []
 
 
+@SLOW
 @pytest.mark.parametrize("how", ["closed", "full"])
 def test_an_answer_needs_no_standard_error(how: str, whole: bytes, tmp_path: Path) -> None:
     def close_errors() -> None:
@@ -287,7 +294,7 @@ def check_stopped(number: signal.Signals, running: "subprocess.Popen[bytes]", pa
     ("name", "to_all"),
     [
         ("SIGINT", True),  # as a terminal sends Ctrl-C, to the workers too
-        ("SIGTERM", False),
+        pytest.param("SIGTERM", False, marks=SLOW),
         pytest.param("SIGHUP", True, marks=SLOW),
         pytest.param("SIGINT", False, marks=SLOW),
         pytest.param("SIGTERM", True, marks=SLOW),

@@ -19,7 +19,7 @@ import pytest
 from tests.cli.running import run
 
 GOLDEN: list[dict[str, Any]] = json.loads((Path(__file__).parent / "golden" / "outputs.json").read_text("utf-8"))
-SLOW = ("extremes", "paper", "family", "tradeoff", "choose --method B4 --method AB4 --method SYM")
+SLOW = ("extremes", "paper", "family", "tradeoff", "verify", "choose --method B4 --method AB4 --method SYM")
 
 
 @dataclass(frozen=True)

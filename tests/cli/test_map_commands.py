@@ -162,6 +162,7 @@ def test_a_users_method(tmp_path: Path) -> None:
     assert rows("poles", "--alpha", "1", "--beta", "1/2", "--method", "mine.toml@2")[0]["method"] == "a/b@2"
 
 
+@pytest.mark.slow
 def test_family_ends_with_its_limit(tmp_path: Path) -> None:
     found = rows("family", "bezier", "--from", "3", "--to", "5")
     assert [row["steps"] for row in found] == [3, 4, 5, None]

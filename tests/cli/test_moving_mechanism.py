@@ -41,6 +41,7 @@ def test_check_prints_up_to_which_speed_a_choice_is_safe() -> None:
     assert slower < 1 < faster
 
 
+@pytest.mark.slow
 def test_choose_allows_for_the_motion() -> None:
     """The fastest point of AB4 at rest sits on an edge that the motion pushes beyond one within the spread."""
     common = ("choose", "--method", "AB4", "--goal", "gentle", "--settle", "1", "--h", "0.02")

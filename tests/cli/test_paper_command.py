@@ -1,8 +1,11 @@
 from pathlib import Path
 
+import pytest
+
 from tests.cli.running import rows, run
 
 
+@pytest.mark.slow
 def test_paper_writes_the_chosen_parts_and_prints_findings(tmp_path: Path) -> None:
     found = rows("paper", "--only", "table5", "--only", "fig7", "--figure", "svg", "-o", "out")
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["paper_fig7.svg", "paper_table5.md"]

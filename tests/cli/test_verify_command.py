@@ -5,6 +5,7 @@ import pytest
 from tests.cli.running import arrays, rows, run
 
 
+@pytest.mark.slow
 def test_verify_takes_implicit_and_second_order_methods() -> None:
     for name in ("radau3", "hht", "verlet-old"):
         point = ("--alpha", "0.5", "--beta", "0.4", "--method", name)

@@ -2,7 +2,7 @@
 
 from functools import cache
 
-from bezstab.evidence import Run, Sweep, measured_runs, reference_motion, swept_runs
+from bezstab.evidence import ReferenceMotion, Run, Sweep, measured_runs, reference_motion, swept_runs
 from bezstab.mechanism import load_scene
 from bezstab.methods import lookup
 
@@ -10,6 +10,12 @@ SCENE = "slider_crank_light"
 DURATION = 2.0  # s: in the first one AB4 shows the error of its RK4 start, of order 2
 SOFT = (50.0, 50.0)
 """alpha and beta in 1/s."""
+
+
+@cache
+def reference(h: float) -> ReferenceMotion:
+    """Return the motion that every method is compared with at steps of h s; it takes longer than most runs do."""
+    return reference_motion(load_scene(SCENE), h, DURATION)
 
 
 def small_sweep(name: str, steps: tuple[float, ...], point: tuple[float, float] | None = None) -> Sweep:
@@ -22,7 +28,7 @@ def small_sweep(name: str, steps: tuple[float, ...], point: tuple[float, float] 
         point=point,
         physical=point == SOFT,
         repeats=1,
-        reference=reference_motion(load_scene(SCENE), min(steps), DURATION),
+        reference=reference(min(steps)),
     )
 
 

@@ -113,6 +113,7 @@ def count_up(path: Path, times: int) -> None:
             continue  # in use
 
 
+@pytest.mark.slow
 def test_many_runs_that_come_and_go_never_meet(tmp_path: Path) -> None:
     (tmp_path / "count").write_text("0")
     spawn = multiprocessing.get_context("spawn")

@@ -101,6 +101,7 @@ def cluster() -> Iterator[str]:
             process.wait(timeout=30)
 
 
+@pytest.mark.slow
 def test_a_cluster_does_the_same_work(cluster: str, tmp_path: Path) -> None:
     jobs = [Job(number, (tmp_path / "died",) if number == 2 else ()) for number in range(6)]
     deadline = time.monotonic() + 60
@@ -128,6 +129,7 @@ def test_a_scheduler_that_does_not_answer_is_one_line() -> None:
         pass
 
 
+@pytest.mark.slow
 def test_a_resumed_sweep_writes_the_same_bytes(tmp_path: Path) -> None:
     swept = "tradeoff --h 0.01 --time 0.2 --alpha 50 --beta 50 --physical --method SYM --method RK4 --workers 1"
     command = [sys.executable, "-m", "bezstab", *swept.split()]
@@ -143,6 +145,7 @@ def test_a_resumed_sweep_writes_the_same_bytes(tmp_path: Path) -> None:
     assert len(resumed) == 3
 
 
+@pytest.mark.slow
 def test_a_killed_map_resumes_to_the_same_bytes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parent.parent.parent))
     whole, killed = tmp_path / "whole", tmp_path / "killed"

@@ -23,7 +23,17 @@ def name(check: Callable[[], Check]) -> str:
     return f"{check.func.__name__}-{'-'.join(str(getattr(value, 'name', value)) for value in values)}"
 
 
-@pytest.mark.parametrize("check", SHORT, ids=map(name, SHORT))
+def takes_long(check: Callable[[], Check]) -> bool:
+    """Return whether a check is left to `make test-slow`: of a kind that a shorter method or run shows as well."""
+    return name(check).startswith(
+        ("_sizes-B12", "_sizes-AB4", "_sizes-ABM4", "_boundary-ABM4", "_long_run-SYM", "_long_run-AB4")
+    )
+
+
+@pytest.mark.parametrize(
+    "check",
+    [pytest.param(check, id=name(check), marks=[pytest.mark.slow] if takes_long(check) else []) for check in SHORT],
+)
 def test_what_was_stated_beforehand_holds(check: Callable[[], Check]) -> None:
     found = check()
     assert found.held, found

@@ -18,6 +18,8 @@ from tests.mechanism.test_scenes import pendulum, small
 from tests.reference.newton import newtons_accelerations
 
 H = 1e-3
+MORE = ("slider_crank_light", "four_bar", "n_four_bar")
+SCENES = ["slider_crank", *(pytest.param(scene, marks=pytest.mark.slow) for scene in MORE)]
 mujoco: Any = pytest.importorskip("mujoco")
 
 
@@ -25,7 +27,7 @@ def model(scene: str, alpha_hat: float = 0.5, beta_hat: float = 0.1) -> Any:
     return mujoco.MjModel.from_xml_string(model_xml(small(scene), "Euler", H, alpha_hat, beta_hat))
 
 
-@pytest.mark.parametrize("scene", ["slider_crank", "slider_crank_light", "four_bar", "n_four_bar"])
+@pytest.mark.parametrize("scene", SCENES)
 def test_mujoco_settles_and_diverges_where_the_map_says(scene: str) -> None:
     witnessed = list(mujoco_witnesses(compiled_mechanism(small(scene)), H))
     assert len(witnessed) == witness_count()
@@ -37,6 +39,7 @@ def test_mujoco_settles_and_diverges_where_the_map_says(scene: str) -> None:
         assert (one.predicted_abs < 1) == (one.times_boundary == TIMES[0])
 
 
+@pytest.mark.slow
 def test_no_file_is_left_where_a_run_diverges(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     witnessed = list(mujoco_witnesses(compiled_mechanism(load_scene("four_bar")), H))

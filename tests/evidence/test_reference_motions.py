@@ -21,6 +21,7 @@ def test_the_reference_has_the_digits_it_claims() -> None:
     assert angles == pytest.approx([1.822086334469, 2.872938352485], abs=max(true.error, 5e-13))
 
 
+@pytest.mark.slow
 def test_between_its_steps_the_reference_is_as_good() -> None:
     true = reference_motion(load_scene(LIGHT), 1e-3, 2.0)
     other = reference_motion(load_scene(LIGHT), 1e-3 * np.sqrt(0.5), 2.0)

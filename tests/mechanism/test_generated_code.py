@@ -19,7 +19,7 @@ from bezstab.mechanism import (
 )
 from bezstab.methods import Method, accuracy, lookup, recipe, steps
 from tests.mechanism.test_scenes import pendulum
-from tests.methods.kinds import EXPLICIT, IMPLICIT, sampled
+from tests.methods.kinds import EXPLICIT, FEW, IMPLICIT, sampled
 from tests.reference.literal_equation_9 import literal_slope
 from tests.reference.one_coordinate_motion import DIGITS, distance, shared_times, shown_order, slider_crank_states
 from tests.reference.plain_steps import plain_step
@@ -30,7 +30,7 @@ CALL = re.compile(r"(\w+)\(")
 
 
 @pytest.mark.parametrize("scene", ["slider_crank", "four_bar"])
-@pytest.mark.parametrize("name", EXPLICIT)
+@pytest.mark.parametrize("name", sampled(EXPLICIT))
 def test_each_step_is_the_formula_applied_to_equation_9(scene: str, name: str) -> None:
     mechanism, method, gains = compiled_mechanism(load_scene(scene)), lookup(name), (300.0, 4e4)
     run = simulate(mechanism, method, H, (steps(method) + 5) * H, gains, perturbed_state(mechanism, 1e-4))
@@ -75,7 +75,7 @@ HIGH_ORDERS = [name for name in IMPLICIT if accuracy(lookup(name))[0] > 4]
 """Implicit methods whose order float64 and a start of order four do not show; Newton's method takes long here."""
 
 
-@pytest.mark.parametrize("name", sampled([*EXPLICIT, *HIGH_ORDERS]))
+@pytest.mark.parametrize("name", sampled([*EXPLICIT, *HIGH_ORDERS], quick=[*FEW, "AB8"]))
 def test_with_alpha_and_beta_fixed_a_method_keeps_its_order(name: str) -> None:
     """All from exact first values and in 30 digits: float64 ends the descent of AB7 and AB8 before 0.1 is reached."""
     method, mechanism = lookup(name), compiled_mechanism(load_scene("slider_crank_300rpm"))

@@ -24,7 +24,7 @@ from bezstab.methods import Method, accuracy, evaluations, lookup, steps
 from bezstab.units import feedback_gains
 from tests.mechanism.test_scenes import four_bars, pendulum, small
 from tests.mechanism.test_second_order_memory import STOERMER
-from tests.methods.kinds import EXPLICIT, IMPLICIT, SECOND_ORDER
+from tests.methods.kinds import EXPLICIT, IMPLICIT, SECOND_ORDER, sampled
 from tests.reference.one_coordinate_motion import (
     distance,
     four_bar_chain_energies,
@@ -56,7 +56,7 @@ def measured_order(name: str, count: int, gains: Callable[[float], tuple[float, 
     return shown_order(errors)
 
 
-@pytest.mark.parametrize("name", [name for name in EXPLICIT if accuracy(lookup(name))[0] <= 4])
+@pytest.mark.parametrize("name", sampled([name for name in EXPLICIT if accuracy(lookup(name))[0] <= 4]))
 def test_a_run_keeps_its_methods_order_up_to_that_of_its_start(name: str) -> None:
     # RK4's first steps, each with an error of order 5, decide the rest. The next term moves the order by 0.05 at most
     order, _ = accuracy(lookup(name))
@@ -247,7 +247,7 @@ def andrews_angles(name: str, h: float) -> FloatArray:
     return np.array([k1, k2 - k1, k3, k4 - k5, k5, k6 - k7, k7])
 
 
-@pytest.mark.parametrize(("name", "h"), [("ABM4", 2e-6), ("AB4", 5e-7)])
+@pytest.mark.parametrize(("name", "h"), [("ABM4", 2e-6), pytest.param("AB4", 5e-7, marks=pytest.mark.slow)])
 def test_andrews_squeezing_mechanism_ends_where_the_test_set_says(name: str, h: float) -> None:
     assert andrews_angles(name, h) == pytest.approx(ANDREWS, rel=ANDREWS_DIGITS, abs=0)
 

@@ -36,6 +36,12 @@ PECE = [name for name in MU_METHODS if isinstance(lookup(name).scheme, Predictor
 SAMPLE = ("B1", "B2", "B4", "B6", "AB2", "AB4", "AB8", "ABM3", "RK1", "RK4", "SIE", "SYM", "dopri5")
 """Of the explicit methods some of each family, the smallest and the largest among them."""
 
+FEW = ("B4", "AB4", "ABM3", "RK4", "SIE", "SYM")
+"""One explicit method of each family, for what takes long."""
+
+SOLVED = ("trapezoid", "bdf2", "am3", "sdirk2", "radau3", "verlet-half", "verlet-implicit", "hht", "rkn4")
+"""Some of each family of the methods that solve equations or that treat velocities differently."""
+
 
 def sampled(names: Sequence[str], quick: Sequence[str] = SAMPLE) -> list[Any]:
     """Return the names as parameters, all but a few marked as slow: `make test-slow` runs these."""

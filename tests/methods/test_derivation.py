@@ -30,12 +30,19 @@ from bezstab.methods import (
     steps,
 )
 from tests.methods import kinds
-from tests.methods.kinds import EXPLICIT
+from tests.methods.kinds import EXPLICIT, FEW, SAMPLE, SOLVED, sampled
 from tests.reference.closed_loops import multistep_closed_loop, polynomial_in_z, runge_kutta_closed_loop, sympy_rational
 from tests.reference.steppers import State, one_step, trajectory
 
 METHODS = [pytest.param(lookup(name), id=name) for name in [*EXPLICIT, "B4@1/2", "RK4@5", "ABM3@2", "SYM@3"]]
-MULTISTEP = [pytest.param(lookup(name), id=name) for name in kinds.MULTISTEP]
+SAMPLED = [
+    pytest.param(*case.values, marks=[] if case.id in (*SAMPLE, "SYM@3") else [pytest.mark.slow], id=case.id)
+    for case in METHODS
+]
+MULTISTEP = [
+    pytest.param(lookup(case.values[0]), id=case.values[0], marks=case.marks)
+    for case in sampled(kinds.MULTISTEP, quick=[*SAMPLE, *SOLVED])
+]
 RUNGE_KUTTA = [pytest.param(lookup(name), id=name) for name in kinds.RUNGE_KUTTA if name in EXPLICIT]
 
 
@@ -158,7 +165,7 @@ def test_coefficient_table_lists_the_characteristic_polynomial(method: Method) -
     assert all(type(c) is Fraction for row in table for c in row)
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", SAMPLED)
 def test_closed_loop_is_the_minimal_recursion_of_the_stabilised_constraint(method: Method) -> None:
     """P annihilates every exact trajectory of c' = v, v' = -alpha_hat v - beta_hat c; nothing of lower degree does."""
     a, b = Fraction(3, 7), Fraction(2, 11)
@@ -196,7 +203,9 @@ def test_closed_loop_of_symplectic_euler_is_that_of_theory() -> None:
     assert same(closed_loop_polynomial(lookup("SYM")).as_expr(), expected)
 
 
-@pytest.mark.parametrize("name", [name for name in kinds.MU_METHODS if name != "SYM"])
+@pytest.mark.parametrize(
+    "name", sampled([name for name in kinds.MU_METHODS if name != "SYM"], quick=[*SAMPLE, *SOLVED])
+)
 def test_closed_loop_is_the_product_of_pi_over_both_mu(name: str) -> None:
     method, first, second = lookup(name), Fraction(-2, 3), Fraction(-1, 5)
     p = closed_loop_at(method, -(first + second), first * second)
@@ -204,7 +213,10 @@ def test_closed_loop_is_the_product_of_pi_over_both_mu(name: str) -> None:
     assert same(polynomial_in_z(p), sp.prod(factor.as_expr() for factor in factors))
 
 
-@pytest.mark.parametrize("name", [*EXPLICIT, "bdf2", "sdirk2", "verlet-kdk", "newmark(1/6,1/2)"])
+@pytest.mark.parametrize(
+    "name",
+    sampled([*EXPLICIT, "bdf2", "sdirk2", "verlet-kdk", "newmark(1/6,1/2)"], quick=[*FEW, "bdf2", "verlet-kdk"]),
+)
 @pytest.mark.parametrize("m", [Fraction(5), Fraction(1, 3)], ids=str)
 def test_a_step_of_m_h_is_p_at_m_alpha_hat_and_m_squared_beta_hat(name: str, m: Fraction) -> None:
     method, a, b = lookup(name), Fraction(3, 7), Fraction(2, 11)

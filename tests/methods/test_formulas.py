@@ -18,6 +18,7 @@ from bezstab.methods import (
     mapping_text,
     recursion_text,
 )
+from tests.methods.kinds import FEW, SAMPLE, SOLVED, sampled
 
 NAMES = [*REGISTRY, "RK4@5", "B3@5/2", "hht@1/3"]
 ROUNDED = [name for name in REGISTRY if lookup(name).digits]
@@ -63,7 +64,7 @@ def test_decimals_of_irrational_coefficients_are_those_of_the_method() -> None:
     assert f"({gamma**2:.10g} α̂^2 + " in characteristic_text(lookup("sdirk2"))
 
 
-@pytest.mark.parametrize("name", [name for name in NAMES if name not in ROUNDED])
+@pytest.mark.parametrize("name", sampled([name for name in NAMES if name not in ROUNDED], quick=[*SAMPLE, *SOLVED]))
 def test_the_printed_polynomial_is_the_derived_one_in_whole_numbers(name: str) -> None:
     text = characteristic_text(lookup(name)).removesuffix(" = 0").replace("α̂", "a").replace("β̂", "b").replace("^", "**")
     product = re.sub(r"(?<=[\w)]) (?=[\w(])", " * ", text)
@@ -76,7 +77,7 @@ def test_the_printed_polynomial_is_the_derived_one_in_whole_numbers(name: str) -
     assert sp.igcd(*printed.coeffs(), 0) == 1
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", sampled(NAMES, quick=[*FEW, *SOLVED]))
 @pytest.mark.parametrize("write", [recursion_text, mapping_text, characteristic_text])
 def test_latex_can_be_typeset(name: str, write: object) -> None:
     assert callable(write)

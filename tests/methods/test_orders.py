@@ -28,12 +28,15 @@ from bezstab.methods import (
 )
 from bezstab.methods.orders import _trees
 from tests.methods import kinds
-from tests.methods.kinds import EXPLICIT
+from tests.methods.kinds import EXPLICIT, FEW, sampled
 from tests.reference.orders import DORMAND_PRINCE, JAMESON, adams_constant, tableau_method
 from tests.reference.second_order_steps import final_state
 from tests.reference.steppers import State, trajectory
 
-METHODS = [pytest.param(lookup(name), id=name) for name in [*EXPLICIT, "B4@1/2", "RK4@5", "ABM3@2", "SYM@3"]]
+SAMPLED = [
+    pytest.param(lookup(case.values[0]), id=case.values[0], marks=case.marks)
+    for case in sampled([*EXPLICIT, "B4@1/2", "RK4@5", "ABM3@2", "SYM@3"], quick=[*FEW, "B6", "AB8", "RK1", "RK4@5"])
+]
 
 
 @pytest.mark.parametrize("n", range(2, 13))
@@ -104,7 +107,7 @@ def nonlinear(y: State) -> State:
 
 
 @pytest.mark.parametrize(
-    "method", [*METHODS, pytest.param(JAMESON, id="Jameson"), pytest.param(DORMAND_PRINCE, id="DOPRI5")]
+    "method", [*SAMPLED, pytest.param(JAMESON, id="Jameson"), pytest.param(DORMAND_PRINCE, id="DOPRI5")]
 )
 def test_measured_order_of_convergence_is_the_order_of_accuracy(method: Method) -> None:
     """Error at t = 1 of a nonlinear system from exact starting values, in 50 digits so that no round-off shows."""

@@ -34,6 +34,7 @@ def test_equal_figures_are_equal_bytes_whatever_the_users_settings(form: str) ->
     assert outputs[0] == outputs[1]
 
 
+@pytest.mark.slow
 def test_two_processes_draw_the_same_bytes() -> None:
     code = (
         "import sys; from bezstab.show.plane_figures import comparison_figure; from bezstab.show.style import save;"

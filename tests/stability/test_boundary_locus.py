@@ -8,7 +8,7 @@ from bezstab.stability import FloatArray, Region, pencil_of, region, spectral_ra
 from bezstab.stability.boundary_locus import Arc, RimPiece, bounds_of
 from bezstab.stability.dominant_roots import dominant_root
 from bezstab.stability.line_slices import rim_radius
-from tests.methods.kinds import EXPLICIT
+from tests.methods.kinds import EXPLICIT, sampled
 from tests.reference.companion_poles import radius
 from tests.reference.sliced_areas import sliced_area
 from tests.stability.made_methods import multistep, runge_kutta
@@ -18,7 +18,7 @@ def arcs(name: str, level: float) -> tuple[Arc, ...]:
     return bounds_of(pencil_of(lookup(name)), level).arcs
 
 
-@pytest.mark.parametrize("name", EXPLICIT)
+@pytest.mark.parametrize("name", sampled(EXPLICIT))
 @pytest.mark.parametrize("level", [1.0, 0.9])
 def test_an_arc_lies_in_the_upper_half_on_the_level(name: str, level: float) -> None:
     for arc in arcs(name, level):
@@ -97,6 +97,7 @@ def test_an_arc_shorter_than_the_sampling_is_found() -> None:
     assert shape.area == pytest.approx(inside * pixel, rel=0.1)  # some 800 pixels, most of them at an edge
 
 
+@pytest.mark.slow
 def test_an_arc_that_ends_just_short_of_the_real_axis_bounds_an_interval() -> None:
     method = multistep("short of it", "1 -1 0 -3/8 3/8 1/4 -1/4", "0 1/4 5/3 -1 9/5 -1/4 -191/120")
     assert region(method).area == pytest.approx(sliced_area(method, 1.0), rel=1e-8)  # it ends 4e-9 of |mu| from it

@@ -197,7 +197,7 @@ UNBOUNDED = ["trapezoid", "implicit-euler", "bdf2", "imex-euler", "average-accel
 
 
 @pytest.mark.parametrize("goal", ["robust", "fastest", "critical"])
-@pytest.mark.parametrize("name", UNBOUNDED)
+@pytest.mark.parametrize("name", sampled(UNBOUNDED, quick=["trapezoid", "imex-euler", "verlet-implicit"]))
 def test_where_the_region_goes_on_a_choice_says_how_far_it_looked(name: str, goal: Goal) -> None:
     choice = choose(lookup(name), goal)
     assert choice.verdict == "converges"

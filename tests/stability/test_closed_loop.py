@@ -18,14 +18,14 @@ from bezstab.methods import (
 )
 from bezstab.rationals import rational
 from bezstab.stability import dominant_pole, poles, spectral_radius, verdict
-from tests.methods.kinds import EXPLICIT, IMPLICIT, sampled
+from tests.methods.kinds import EXPLICIT, FEW, IMPLICIT, sampled
 from tests.reference.companion_poles import radius
 from tests.reference.fifty_digit_poles import poles_with_errors
 
 F = Fraction
 NAMES = [*EXPLICIT, "RK4@5"]
-LONG = {"B6", "B7", "B8", "B9", "B10", "B11", "AB6", "AB7"}
-"""Methods of many steps, whose polynomials are long: B12 and AB8 are looked at each time, these in make test-slow."""
+LONG = {"B6", "B7", "B8", "B9", "B10", "B11", "B12", "AB6", "AB7"}
+"""Methods of many steps, whose polynomials are long: AB8 is looked at each time, these in make test-slow."""
 
 
 def by_length(names: Sequence[str]) -> list[Any]:
@@ -85,7 +85,7 @@ POINTS = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("name", by_length(NAMES))
+@pytest.mark.parametrize("name", sampled(NAMES, quick=[*FEW, "AB8", "dopri5"]))
 def test_poles_agree_with_fifty_digits(name: str) -> None:
     method = lookup(name)
     with mpmath.workdps(50):
@@ -96,7 +96,7 @@ def test_poles_agree_with_fifty_digits(name: str) -> None:
                 assert abs(found.pop(k) - exact) <= allowed, (alpha_hat, beta_hat, complex(exact))
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", sampled(NAMES))
 def test_a_pole_does_not_depend_on_its_neighbours_in_the_array(name: str) -> None:
     method, random = lookup(name), np.random.default_rng(1)
     axis = np.concatenate([[0.0], np.geomspace(1e-12, 1e12, 13), np.linspace(-2, 4, 27)])
@@ -126,7 +126,7 @@ def test_shapes_broadcast_with_the_root_axis_last() -> None:
     assert spectral_radius(method, np.empty((0, 3)), 0.1).shape == (0, 3)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", sampled(NAMES))
 @given(st.floats(-1, 4), st.floats(-1, 4))
 @settings(max_examples=25, deadline=None)
 def test_the_dominant_pole_is_the_largest_and_in_the_upper_half(name: str, alpha_hat: float, beta_hat: float) -> None:
@@ -182,7 +182,7 @@ def test_the_taylor_rule_is_deadbeat_for_midpoint() -> None:
     assert float(spectral_radius(lookup("RK2"), 2, 2)) == 0
 
 
-@pytest.mark.parametrize("name", sampled(NAMES))
+@pytest.mark.parametrize("name", sampled(NAMES, quick=FEW))
 @given(st.fractions(-1, 6, max_denominator=1000), st.fractions(-1, 9, max_denominator=1000))
 @settings(max_examples=25, deadline=None)
 def test_away_from_the_boundary_the_proof_agrees_with_the_number(name: str, a: Fraction, b: Fraction) -> None:

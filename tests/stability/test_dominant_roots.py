@@ -15,7 +15,7 @@ from bezstab.stability import (
 )
 from bezstab.stability.dominant_roots import _follow, _twins
 from bezstab.stability.root_finding import STRIDE
-from tests.methods.kinds import EXPLICIT, IMPLICIT, sampled
+from tests.methods.kinds import EXPLICIT, IMPLICIT, SOLVED, sampled
 
 
 @pytest.mark.parametrize("name", sampled(EXPLICIT))
@@ -76,7 +76,7 @@ def test_newtons_starts_are_off_by_the_square_of_the_spacing(name: str, monkeypa
     assert errors[0] / errors[1] == pytest.approx(4, rel=0.05)
 
 
-@pytest.mark.parametrize("name", IMPLICIT)
+@pytest.mark.parametrize("name", sampled(IMPLICIT, quick=SOLVED))
 def test_the_pole_of_an_implicit_method_is_followed_past_where_one_is_infinite(name: str) -> None:
     method = lookup(name)
     for low, high in (((-9, -6), (9, 12)), ((0, 0), (40, 900))):  # infinite at positive mu; far outside

@@ -47,6 +47,12 @@ def theta_method(theta: Fraction) -> Method:
     return Method("theta", LinearMultistep((Fraction(1), Fraction(-1)), (theta, 1 - theta)), "")
 
 
+@pytest.mark.parametrize("theta", ["1/2", "49/100"])
+def test_the_trapezoidal_rule_is_the_last_theta_method_that_is_stable_for_all(theta: str) -> None:
+    assert stable_for_all(theta_method(Fraction(theta))) == ("proven" if theta == "1/2" else "no")
+
+
+@pytest.mark.slow
 @settings(max_examples=8, deadline=None)
 @given(st.fractions(Fraction(1, 10), Fraction(9, 10), max_denominator=50))
 def test_a_theta_method_is_stable_for_all_from_one_half_on(theta: Fraction) -> None:

@@ -19,8 +19,14 @@ from tests.reference.region_areas import region_area
 from tests.stability.made_methods import CLOSE_BRANCHES, FAR_INTERVAL
 
 METHODS = [lookup(name) for name in ("B4", "AB4", "RK4", "ABM2", "SYM")]
-REGIONS = [(method, level) for method in METHODS for level in (1.0, 0.93)]
-REGIONS += [(CLOSE_BRANCHES, 0.93), (FAR_INTERVAL, 1.0), (FAR_INTERVAL, 0.5)]
+QUICK = {("B4", 1.0), ("RK4", 0.93), ("SYM", 1.0), (CLOSE_BRANCHES.name, 0.93), (FAR_INTERVAL.name, 1.0)}
+REGIONS = [
+    pytest.param(method, level, marks=[] if (method.name, level) in QUICK else [pytest.mark.slow])
+    for method, level in [
+        *((method, level) for method in METHODS for level in (1.0, 0.93)),
+        *((CLOSE_BRANCHES, 0.93), (FAR_INTERVAL, 1.0), (FAR_INTERVAL, 0.5)),
+    ]
+]
 
 Wrong = Callable[[Bounds], Bounds]
 

@@ -39,6 +39,7 @@ def test_the_limit_is_where_the_family_tends() -> None:
     assert extrapolated(constants, n) == pytest.approx(float(limit.error_constant), abs=1e-6)
 
 
+@pytest.mark.slow
 def test_the_weights_tend_to_those_of_the_limits_mapping() -> None:
     scheme = bezier(400).scheme
     assert isinstance(scheme, LinearMultistep)
