@@ -1,4 +1,5 @@
 import importlib.util
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -9,6 +10,8 @@ from bezstab.methods import lookup
 from bezstab.stability import compiled_maps, pole_map, spectral_radius
 from bezstab.stability.closed_loop import any_pencil_of, largest_pole
 from bezstab.stability.compiled_maps import FEWEST, WORTH_COMPILING, is_compiled
+from bezstab.stability.exact_sums import split
+from bezstab.stability.plane_pencils import PlanePencil
 from tests.methods.kinds import MU_METHODS
 
 LONG_ENOUGH = [name for name in MU_METHODS if is_compiled(any_pencil_of(lookup(name)), WORTH_COMPILING)]
@@ -57,6 +60,18 @@ def test_a_compiled_map_is_numpys(name: str) -> None:
         # where an implicit method's pole is 1e6, of P's leading coefficient a millionth is left
         close = 1e-4 if "ABM" in name else 1e-12 * np.maximum(1, plain)
         assert (np.abs(compiled - plain) <= close * np.maximum(1, plain)).all()
+
+
+@pytest.mark.slow
+def test_a_compiled_map_of_five_roots_in_the_plane_is_numpys() -> None:
+    random = np.random.default_rng(3)
+    exact = [[[Fraction(int(x), 10) for x in random.integers(-9, 9, 2)] for _ in range(2)] for _ in range(5)]
+    exact.append([[Fraction(3), Fraction(0)], [Fraction(0), Fraction(0)]])
+    halves = tuple(tuple(tuple(split(c) for c in row) for row in in_plane) for in_plane in exact)
+    pencil = PlanePencil(lookup("verlet-kdk"), 5, (), halves)
+    grid = np.linspace(-1, 3, 200), np.linspace(-1, 2, 150)[:, np.newaxis]
+    plain, compiled = (np.abs(largest_pole(pencil, *grid, choice)) for choice in (False, True))
+    assert np.abs(compiled / plain - 1).max() < 1e-12
 
 
 @pytest.mark.slow
