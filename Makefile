@@ -2,7 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: region figures test test-slow test-oldest mutants campaign extremes lint bench clean
+.PHONY: region figures test test-slow test-oldest witnesses mutants campaign extremes lint bench clean
 
 region: .venv/installed  ## draw where B4 is stable, into this directory
 	$(BIN)/bezstab region --method B4
@@ -27,6 +27,10 @@ test-oldest:  ## the same tests with the oldest versions that pyproject.toml all
 	    print("\n".join(p["dependencies"]).replace(">=", "=="))' > .venv-oldest/oldest.txt
 	.venv-oldest/bin/pip install --quiet --editable '.[test]' --constraint .venv-oldest/oldest.txt
 	.venv-oldest/bin/python -m pytest -m "not slow" -n 2 --dist loadfile
+
+witnesses: .venv/tested  ## engines that are not ours, run: PyBullet, pymunk, Exudyn, MuJoCo
+	$(BIN)/pip install --quiet --editable '.[witnesses]'
+	$(BIN)/python -m pytest tests/witnesses tests/evidence/test_mujoco_witness.py
 
 mutants: .venv/tested  ## are the tests able to fail? an hour or two; results stay in a temporary folder, so that it goes on
 	$(BIN)/python -m tests.mutation.campaign --count 200 --seed 1
