@@ -25,11 +25,17 @@ import ast
 import importlib
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Iterator
 from functools import cache
+from itertools import groupby
 from pathlib import Path
+from types import FrameType
 
 import pytest
+from click.testing import CliRunner
+
+from bezstab.cli import main
 
 PACKAGE = Path(__file__).parent.parent / "bezstab"
 TESTS = PACKAGE.parent / "tests"
@@ -211,3 +217,28 @@ def test_import_and_help_are_light(code: str) -> None:
     probe = f"import atexit, sys; atexit.register(lambda: print('heavy:', {heavy} & set(sys.modules)))\n"
     run = subprocess.run([sys.executable, "-c", probe + code], capture_output=True, text=True, check=True)
     assert run.stdout.rstrip().endswith("heavy: set()")
+
+
+@pytest.mark.slow
+def test_a_reader_of_region_is_not_led_into_a_file_ten_times(tmp_path: Path) -> None:
+    """Along every chain of calls of `region --method B4`, from the command to the last function of the package."""
+    entered: Counter[str] = Counter()
+    chain: list[str] = []
+
+    def note(frame: FrameType, event: str, _: object) -> None:
+        if event == "call":
+            chain.append(frame.f_code.co_filename)
+            if chain[-1].startswith(str(PACKAGE)):
+                files = [name for name, _ in groupby(name for name in chain if name.startswith(str(PACKAGE)))]
+                entered[chain[-1]] = max(entered[chain[-1]], files.count(chain[-1]))
+        elif event == "return" and chain:
+            chain.pop()
+
+    sys.setprofile(note)
+    try:
+        result = CliRunner().invoke(main, ["region", "--method", "B4", "-o", str(tmp_path)])
+    finally:
+        sys.setprofile(None)
+    assert result.exit_code == 0
+    assert len(entered) > 10
+    assert max(entered.values()) < 10
