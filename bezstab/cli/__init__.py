@@ -1,7 +1,7 @@
 """The command line: parse, call, show, save, exit status.
 
-One file for each group of commands that `bezstab --help` shows; verify, with its three ways to measure, has one beside
-the other evidence. A file imports only from those above it:
+One file for each group of commands that `bezstab --help` shows; commands with a subject of their own (verify, with its
+three ways to measure, lint, probe, schema) have one each beside it. A file imports only from those above it:
 
     terminal            words for what a terminal cannot show
     completion          what the shell offers after a press of the tab key

@@ -141,7 +141,10 @@ def _growth_table(turning: TurningNormals) -> tuple[FloatArray, FloatArray, Floa
 
 
 def momentary_rates(turning: TurningNormals, chi: ArrayLike) -> FloatArray:
-    """Return the largest real part of chi times an eigenvalue of K(t) along the motion (1/s); shape of chi."""
+    """Return the largest growth rate for a moment: of chi times an eigenvalue of K(t) along the motion (1/s).
+
+    float64, shape of chi, which has no unit. To first order in K, for each moment by itself (evidence/README.md).
+    """
     eigenvalues = np.linalg.eigvals(turning.rates).ravel()
     return np.asarray((np.multiply.outer(np.asarray(chi, complex), eigenvalues)).real.max(axis=-1))
 

@@ -183,6 +183,7 @@ def _largest_in_parts(blocks: Iterator[FloatArray], largest: FloatArray) -> Bool
 def verdict_map(chunks: Sequence[MapRows], found: Sequence[Mapping[str, NDArray[np.generic]]]) -> VerdictMap:
     """Return the map that these rows make up, from what `simulated_verdicts` found in each, with what is predicted.
 
+    Dimensionless, arrays of shape (rows of all chunks, columns); predicted is |z_p| at rest, of paper Eq. 17.
     NumericalError where a predicted pole leaves the range of float64.
     """
     first = chunks[0]
