@@ -66,9 +66,9 @@ def moving_growth(
 ) -> FloatArray:
     """Return ln|z| a step over the motion, of the pole that grows most; shape of alpha_hat and beta_hat broadcast.
 
-    h in s, the rest dimensionless. Where a pole at rest is so far from one that no motion of this kappa could matter its
-    value is that at rest. To first order in kappa h (evidence/README.md). NumericalError where a pole leaves the range of
-    float64.
+    h in s, the rest dimensionless. Where a pole at rest is so far from one that no motion of this kappa could matter
+    its value is that at rest. To first order in kappa h (evidence/README.md). NumericalError where a pole leaves the
+    range of float64.
     """
     z = poles(method, alpha_hat, beta_hat)
     candidates = z[..., : min(4, z.shape[-1])]  # two conjugate pairs: what may come to lead

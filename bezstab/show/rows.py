@@ -446,16 +446,16 @@ def engine_row(engine: Engine, point: tuple[Fraction, Fraction] | None, h: Fract
             setting = engine.setting(point, h)
         except InputError as error:
             setting = str(error)
-    return row(
+    words = row(
         engine,
         without={"name", "read", "write", "apply", "marks"},
-        engine=engine.name,
         parameters=", ".join(engine.parameters),
         optional=", ".join(engine.optional),
         units=", ".join(engine.units),
         witness=witness_of(engine.name),
         setting=setting,
     )
+    return {"engine": engine.name, **words}
 
 
 def drive_row(choice: Choice, drive: Drive, h: float) -> dict[str, Value]:
