@@ -2,7 +2,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: region figures test test-slow test-oldest witnesses mutants campaign extremes lint bench clean
+.PHONY: region figures test quick test-slow test-oldest witnesses mutants campaign extremes lint bench clean
 
 region: .venv/installed  ## draw where B4 is stable, into this directory
 	$(BIN)/bezstab region --method B4
@@ -15,7 +15,10 @@ figures: .venv/installed  ## draw what the README shows, into figures/
 	$(BIN)/bezstab paper -o figures
 	$(BIN)/bezstab tradeoff --table none -o figures
 
-test: .venv/tested lint  ## what CI runs
+test: .venv/tested  ## what CI runs: style and types, and at the same time the quick tests
+	$(MAKE) --no-print-directory --jobs 2 lint quick
+
+quick: .venv/tested
 	$(BIN)/python -m pytest -m "not slow" -n 2 --dist loadfile
 
 test-slow: .venv/tested  ## the checks that take minutes
