@@ -35,8 +35,8 @@ def test_at_every_crossing_a_root_lies_on_the_circle(
 ) -> None:
     """Second route: the eigenvalues of P's companion matrix at the crossing, which double poles would spoil."""
     path = Path(lookup(name), alpha_hat, Fraction(share) * alpha_hat**2 / 4, powers)
-    # on its edge three roots of ABM3 may meet: there the rounding of the factor alone moves them by its cube root, 6e-6
-    close = 1e-4 if name == "ABM3" else 1e-6
+    # up to four roots of ABM3 meet on its edge: float64 parts those by a few fourth roots of its rounding, 1.2e-4
+    close = 1e-3 if name == "ABM3" else 1e-6
     for factor in crossing_factors(path):
         polynomial = [float(c) for c in closed_loop_at(path.method, *path.at(Fraction(factor)))]
         if abs(polynomial[0]) < 1e-9 * max(map(abs, polynomial)):
