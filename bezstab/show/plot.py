@@ -163,33 +163,23 @@ def critical_damping(alpha_range: Range, axes: Axes | None = None, h: float | No
 
 def best_point(best: BestPoint, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
     """Draw a star at the point of least |z_p|, labelled with it, and return the line of one point."""
-    x, y = plane_coordinates(best.alpha_hat, best.beta_hat, h)
-    style = {
-        "linestyle": "none",
-        "marker": "*",
-        "color": "white",
-        "markeredgecolor": "black",
-        "markersize": 8,
-        "label": f"least $|z_p|$: {best.z_abs:.4f}",
-        **line,
-    }
-    (drawn,) = _plane(axes, best.method.name, h).plot(x, y, **style)
-    return drawn
+    label = f"least $|z_p|$: {best.z_abs:.4f}"
+    style = {"marker": "*", "markersize": 8, "label": label, **line}
+    return _one_point((best.alpha_hat, best.beta_hat), _plane(axes, best.method.name, h), h, **style)
 
 
 def choice(choice: Choice, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
     """Draw a circle at the point that was chosen, labelled with its goal and |z_p|; return the line of one point."""
-    x, y = plane_coordinates(choice.alpha_hat, choice.beta_hat, h)
-    style = {
-        "linestyle": "none",
-        "marker": "o",
-        "color": "white",
-        "markeredgecolor": "black",
-        "markersize": 5,
-        "label": f"choose {choice.goal}: {abs(choice.pole):.4f}",
-        **line,
-    }
-    (drawn,) = _plane(axes, choice.method.name, h).plot(x, y, **style)
+    label = f"choose {choice.goal}: {abs(choice.pole):.4f}"
+    style = {"marker": "o", "markersize": 5, "label": label, **line}
+    return _one_point((choice.alpha_hat, choice.beta_hat), _plane(axes, choice.method.name, h), h, **style)
+
+
+def _one_point(point: Point, axes: Axes, h: float | None, **line: Any) -> Line2D:
+    """Draw a white marker with a black edge at (alpha_hat, beta_hat), and return the line of one point."""
+    x, y = plane_coordinates(*point, h)
+    style = {"linestyle": "none", "color": "white", "markeredgecolor": "black", **line}
+    (drawn,) = axes.plot(x, y, **style)
     return drawn
 
 
@@ -226,10 +216,9 @@ def marks(points: Mapping[str, Point], axes: Axes | None = None, h: float | None
     """
     axes = _plane(axes, r"$(\hat\alpha, \hat\beta)$", h)
     drawn: list[Line2D] = []
-    for number, (label, (alpha_hat, beta_hat)) in enumerate(points.items()):
-        x, y = plane_coordinates(alpha_hat, beta_hat, h)
-        marker = MARK_SHAPES[number % len(MARK_SHAPES)]
-        drawn += axes.plot(x, y, marker, color="white", markeredgecolor="black", markersize=5, label=label)
+    for number, (label, point) in enumerate(points.items()):
+        shape = MARK_SHAPES[number % len(MARK_SHAPES)]
+        drawn.append(_one_point(point, axes, h, marker=shape, markersize=5, label=label))
     return drawn
 
 
