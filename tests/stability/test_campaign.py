@@ -6,7 +6,7 @@ from tests.reference.random_methods import other_random_method
 from tests.stability.campaign import cases_of, other_cases_of, other_compared
 
 SAMPLE = range(0, 6000, 101)  # 60 methods: 101 goes round the fifteen kinds
-OTHER_SAMPLE = range(0, 1800, 181)  # 10 methods: 181 goes round the six kinds
+OTHER_SAMPLE = range(0, 5000, 181)  # 28 methods: 181 goes round the six kinds
 
 
 @pytest.mark.slow
