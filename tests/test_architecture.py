@@ -23,6 +23,7 @@ other; only appointed files see a library.
 
 import ast
 import importlib
+import re
 import subprocess
 import sys
 from collections import Counter
@@ -185,6 +186,30 @@ def test_computation_neither_prints_nor_exits_nor_filters_warnings(path: Path) -
     if path.as_posix() != "show/explorer.py":  # pyplot is what opens a window
         assert "matplotlib.pyplot" not in modules
         assert ("matplotlib", ("pyplot",)) not in set(imports(path))
+
+
+WRITES_SOURCE = Path("mechanism/generated_code.py")
+TAKES_SOURCE = {f"mechanism/{name}.py" for name in ("__init__", "compiled", "compiled_steps", "compiled_batches")}
+
+
+def dealings_with_source(path: Path) -> set[str]:
+    """Return what in a file writes, takes apart or executes source: texts of functions, libraries, calls."""
+    nodes = list(ast.walk(tree_of(path)))
+    documented = (ast.Module, ast.ClassDef, ast.FunctionDef)
+    docstrings = {ast.get_docstring(node, clean=False) for node in nodes if isinstance(node, documented)}
+    texts = {node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str)}
+    functions = {text for text in texts - docstrings if re.search(r"\bdef \w", text)}
+    called = {ast.unparse(node.func) for node in nodes if isinstance(node, ast.Call)}
+    used = called | {module for module, _ in imports(path)}
+    return functions | used & {"exec", "eval", "compile", "ast", "inspect", "tokenize"}
+
+
+@pytest.mark.parametrize("path", [path for path in FILES if path != WRITES_SOURCE], ids=str)
+def test_one_file_writes_source_and_nobody_else_takes_it_apart_or_executes_it(path: Path) -> None:
+    assert {"exec", "def run(start, h, two_alpha, beta_squared, "} <= dealings_with_source(WRITES_SOURCE)
+    assert not dealings_with_source(path)
+    if "mechanism.generated_code" in {module for module, _ in own_imports(path)}:
+        assert path.as_posix() in TAKES_SOURCE
 
 
 @pytest.mark.parametrize("path", FILES, ids=str)

@@ -10,14 +10,16 @@ import numpy as np
 from bezstab.mechanism.equations import Equations, equations_of_motion
 from bezstab.mechanism.generated_code import (
     AccelerationCode,
+    Stepper,
     acceleration_code,
     acceleration_source,
     compiled_source,
+    first_order_stepper,
+    generator_source,
     multipliers_source,
     observation_source,
     residuals_source,
-    second_order_stepper_source,
-    stepper_source,
+    second_order_stepper,
 )
 from bezstab.mechanism.newton_iterations import (
     TOLERANCE,
@@ -84,10 +86,15 @@ def stepper_code(mechanism: Mechanism, method: Method) -> str:
     A second-order scheme, and every implicit one, has instead run(start, h, two_alpha, beta_squared, carried, solve)
     with what `second_order_memory` says that it carries, followed by its residuals.
     """
+    return generator_source(stepper_of(mechanism, method))
+
+
+def stepper_of(mechanism: Mechanism, method: Method) -> Stepper:
+    """Return the pieces of which the source of a method's steps is put together."""
     scheme = run_as_second_order(method)
     if scheme is None:
-        return stepper_source(mechanism.acceleration_code, method)
-    return second_order_stepper_source(mechanism.acceleration_code, scheme)
+        return first_order_stepper(mechanism.acceleration_code, method)
+    return second_order_stepper(mechanism.acceleration_code, scheme)
 
 
 def run_as_second_order(method: Method) -> SecondOrder | None:

@@ -1,18 +1,7 @@
 """Steps as machine code: the generated stepper, compiled by numba, in blocks of steps.
 
-A generator gives its steps one by one, which would cost more than the step itself. So the stepper's text is rewritten
-once more, statement by statement, into a function that takes many steps and stores their states:
-
-    def run(start, h, ..., state, past):              def block(start, h, ..., k, last, memory, states, ...):
-     k = 0
-     (q0, v0,) = state                                 q0 = memory[0]
-     ...                                               ...
-     while True:                                       while k < last:
-      ...                                               ...                             the same lines
-      worst = least(1.0, D0 / S0)                       worst = 1.0
-                                                        value = D0 / S0
-                                                        if value < worst: worst = value
-      yield (q0, v0,), (...), worst_pivot               states[place + 0] = q0 ...
+A generator gives its steps one by one, which would cost more than the step itself. So what is compiled is the same
+stepper as a block, a function that takes many steps and stores their states (see `generated_code`).
 
 Every operation is the one that Python would do, in its order, rounded as there: no sum is regrouped, no product fused
 with a sum; sin, cos and sqrt are those of the C library that `math` has too, and what `math` refuses is refused. So
@@ -22,19 +11,19 @@ step is taken again in Python. Thus it is Python that decides, and says, why a r
 Implicit methods stay in Python: their Newton iterations work on Python's complex numbers and lists.
 """
 
-import ast
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.compiling import check_numba, compiled_choice, compiler, numba_is_installed
-from bezstab.mechanism.compiled import BLOWN_UP, SINGULAR, Mechanism, stepper_code
-from bezstab.mechanism.generated_code import compiled_source
+from bezstab.mechanism.compiled import BLOWN_UP, SINGULAR, Mechanism, stepper_of
+from bezstab.mechanism.generated_code import block_source, compiled_source
 from bezstab.methods import Method, implicit
 
 FloatArray = NDArray[np.float64]
@@ -54,7 +43,7 @@ CHEAPER_TOGETHER = 20
 """Times: what an evaluation costs in a batch of numpy, against one of a run alone in Python."""
 
 MOST_LINES = 3000
-"""Of a stepper that is compiled without being asked for: what numba takes grows faster than the text."""
+"""Of a turn of a stepper that is compiled without being asked for: what numba takes grows faster than the text."""
 
 SIGNATURE = (
     "int64(float64, float64, float64, float64, int64, int64, float64[::1], float64[::1], float64[::1], int64[::1])"
@@ -92,92 +81,8 @@ def runs_compiled(mechanism: Mechanism, method: Method, evaluations: int) -> boo
         return True
     if not numba_is_installed():
         return False
-    pays = evaluations >= WORTH_COMPILING and stepper_code(mechanism, method).count("\n") <= MOST_LINES
+    pays = evaluations >= WORTH_COMPILING and len(stepper_of(mechanism, method).turn) <= MOST_LINES
     return pays or (mechanism, method) in _compiled
-
-
-@dataclass(frozen=True)
-class ParsedStepper:
-    """A stepper's statements: the names that it unpacks at its start, what else it does there, and each turn."""
-
-    unpacked: tuple[str, ...]
-    preparations: tuple[str, ...]
-    turn: tuple[ast.stmt, ...]
-
-
-def parsed_stepper(stepper: str) -> ParsedStepper:
-    """Return the statements of generated source whose first function is a stepper."""
-    function = ast.parse(stepper).body[0]
-    assert isinstance(function, ast.FunctionDef)
-    *head, loop = function.body
-    assert isinstance(loop, ast.While)
-    unpacked = [name for statement in head for name in _unpacked_names(statement)]
-    others = [ast.unparse(statement) for statement in head if not _unpacked_names(statement)]
-    return ParsedStepper(tuple(unpacked), tuple(line for line in others if line != "k = 0"), tuple(loop.body))
-
-
-def block_source(stepper: str, pivot_limit: float, size_limit: float) -> str:
-    """Return the source of block(start, h, two_alpha, beta_squared, k, last, memory, states, pivots, reached).
-
-    It takes the steps k to last - 1 of an explicit stepper and returns the number of the next. `memory` holds what the
-    stepper unpacks at its start, in its order, and is brought up to date at the end; `states` gets the new states one
-    after the other, `pivots` the least pivots, reached[0] after each step the number of the next. After a step whose
-    pivot is not above `pivot_limit`, or whose state is not below `size_limit` in the sum of its sizes, it returns.
-    """
-    parsed = parsed_stepper(stepper)
-    lines = [f"{name} = memory[{place}]" for place, name in enumerate(parsed.unpacked)]
-    lines += [*parsed.preparations, "row = 0", "place = 0", "while k < last:"]
-    for statement in parsed.turn:
-        lines += [f" {line}" for line in _rewritten(statement, pivot_limit, size_limit)]
-    lines.append(" if not calm: break")
-    lines += [f"memory[{place}] = {name}" for place, name in enumerate(parsed.unpacked)]
-    lines.append("return k")
-    head_line = "def block(start, h, two_alpha, beta_squared, k, last, memory, states, pivots, reached):"
-    return "\n".join([head_line, *(f" {line}" for line in lines)])
-
-
-def _unpacked_names(statement: ast.stmt) -> list[str]:
-    """Return the names that a statement such as (q0, v0,) = state unpacks into; none for other statements."""
-    if isinstance(statement, ast.Assign) and isinstance(statement.targets[0], ast.Tuple):
-        return [node.id for node in ast.walk(statement.targets[0]) if isinstance(node, ast.Name)]
-    return []
-
-
-def _rewritten(statement: ast.stmt, pivot_limit: float, size_limit: float) -> list[str]:
-    """Return the lines that stand for one of the stepper's."""
-    if isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Yield):
-        return _storing_lines(statement.value, pivot_limit, size_limit)
-    text = ast.unparse(statement)
-    if isinstance(statement, ast.Assign) and isinstance(statement.value, ast.Call) and " = least(" in text:
-        return _least_lines(ast.unparse(statement.targets[0]), statement.value.args)
-    return [text]
-
-
-def _storing_lines(yielded: ast.Yield, pivot_limit: float, size_limit: float) -> list[str]:
-    """Return what stands for the yield of (state, slope, pivot)."""
-    assert isinstance(yielded.value, ast.Tuple)
-    state, _, pivot = yielded.value.elts
-    assert isinstance(state, ast.Tuple)
-    size = len(state.elts)
-    lines = [f"states[place + {i}] = {ast.unparse(entry)}" for i, entry in enumerate(state.elts)]
-    lines += [f"pivots[row] = {ast.unparse(pivot)}", "total = 0.0"]
-    lines += [f"total = total + abs(states[place + {i}])" for i in range(size)]
-    return [
-        *lines,
-        f"calm = {ast.unparse(pivot)} > {pivot_limit!r} and total < {size_limit!r}",
-        "row = row + 1",
-        f"place = place + {size}",
-        "reached[0] = k",
-    ]
-
-
-def _least_lines(target: str, values: Sequence[ast.expr]) -> list[str]:
-    """Return what stands for target = least(...): Python's min, which keeps the first unless a later one is less."""
-    first, *others = (ast.unparse(value) for value in values)
-    lines = [] if first == target else [f"{target} = {first}"]
-    for other in others:
-        lines += [f"value = {other}", f"if value < {target}: {target} = value"]
-    return lines
 
 
 @cache
@@ -201,13 +106,13 @@ def _machine_block(mechanism: Mechanism, method: Method) -> Callable[..., int]:
             raise ValueError
         return math.sqrt(x)
 
-    namespace: dict[str, Any] = {
-        "sin": numba.njit(checked_sin),
-        "cos": numba.njit(checked_cos),
-        "sqrt": numba.njit(checked_sqrt),
-    }
-    exec(_source(mechanism, method), namespace)
-    machine_block: Callable[..., int] = numba.njit(SIGNATURE, no_cfunc_wrapper=True)(namespace["block"])
+    library = SimpleNamespace(
+        sin=numba.njit(checked_sin),
+        cos=numba.njit(checked_cos),
+        sqrt=numba.njit(checked_sqrt),
+    )
+    block = compiled_source(_source(mechanism, method), library)["block"]
+    machine_block: Callable[..., int] = numba.njit(SIGNATURE, no_cfunc_wrapper=True)(block)
     _compiled.add((mechanism, method))
     return machine_block
 
@@ -220,7 +125,7 @@ def _python_block(mechanism: Mechanism, method: Method) -> Callable[..., int]:
 
 
 def _source(mechanism: Mechanism, method: Method) -> str:
-    return block_source(stepper_code(mechanism, method), SINGULAR, NEARLY_BLOWN_UP)
+    return block_source(stepper_of(mechanism, method), SINGULAR, NEARLY_BLOWN_UP)
 
 
 def blocks_of_steps(

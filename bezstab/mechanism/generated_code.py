@@ -1,7 +1,17 @@
 """Generated source: accelerations, multipliers, observations and time steps as Python text, and its compilation.
 
-Only this file writes source, and only here it is compiled; others hand it data (equations, methods, turns) and take
-functions.
+Only this file writes source, and only here it is executed; others hand it data (equations, methods, turns) and take
+functions. From its top to its end, each part under a comment of its own:
+
+    compiled_source                        text becomes functions
+    accelerations and multipliers          the assignments that solve paper Eq. 9
+    functions of a state                   acceleration, multipliers, observation
+    steppers: their pieces                 what a step consists of, as data
+    a stepper as a generator               one run, step by step
+    a stepper as a block                   one run, many steps at a time
+    a stepper as a batch                   many runs, of which constraint errors are kept
+    steppers of first-order schemes        the pieces of multistep and Runge-Kutta methods
+    steppers of second-order schemes       those of all others; residuals
 
 All of it is plain arithmetic on numbered variables, one assignment a line, with `sin`, `cos`, `sqrt` and `least` as the
 only functions. What they are is decided when the text is compiled, so one source serves three kinds of numbers:
@@ -90,14 +100,14 @@ def _least_of_arrays(*values: Any) -> Any:
 class AccelerationCode:
     """Assignments that compute a_i = qddot_i and l_j = lambda_j from t, q_i, v_i, two_alpha and beta_squared.
 
-    On the way c_j and cdot_j get their values. `least_pivot` is the text of the least of the pivots D_j relative to
-    S_jj, at most 1; where it is small, S is nearly singular.
+    On the way c_j and cdot_j get their values. `pivots` are the texts of 1 and of the pivots D_j relative to S_jj;
+    where the least of these is small, S is nearly singular.
     """
 
     coordinates: int
     constraints: int
     lines: tuple[str, ...]
-    least_pivot: str
+    pivots: tuple[str, ...]
 
 
 def acceleration_code(equations: Equations) -> AccelerationCode:
@@ -116,8 +126,8 @@ def acceleration_code(equations: Equations) -> AccelerationCode:
         *_substitution_lines(constraints, factors),
         *_acceleration_lines(columns_of_row, inverse_masses, entries),
     ]
-    relative_pivots = ", ".join(f"D{j} / S{j}" for j in range(constraints))
-    return AccelerationCode(coordinates, constraints, tuple(lines), f"least(1.0, {relative_pivots})")
+    pivots = "1.0", *(f"D{j} / S{j}" for j in range(constraints))
+    return AccelerationCode(coordinates, constraints, tuple(lines), pivots)
 
 
 def _nonzero_entries(equations: Equations) -> dict[str, sp.Expr]:
@@ -249,7 +259,7 @@ def observation_source(acceleration: AccelerationCode) -> str:
     """Return the source of observation(t, two_alpha, beta_squared, q, v): all c, all cdot, all l, the least pivot."""
     constraints = acceleration.constraints
     results = [name for prefix in ("c", "cdot", "l") for name in variable_names(prefix, constraints)]
-    return _function_source("observation", acceleration, [*results, acceleration.least_pivot])
+    return _function_source("observation", acceleration, [*results, _least_text(acceleration.pivots)])
 
 
 def multipliers_source(acceleration: AccelerationCode) -> str:
@@ -279,18 +289,90 @@ def _tuple_text(entries: Iterable[str]) -> str:
     return f"({', '.join(entries)},)"
 
 
+def _least_text(values: Sequence[str]) -> str:
+    """Return the text of the least of some values; of one value, itself."""
+    return values[0] if len(values) == 1 else f"least({', '.join(values)})"
+
+
 def _indented(lines: Iterable[str], depth: int) -> list[str]:
     """Return lines of source so many blocks deep."""
     return [" " * depth + line for line in lines]
 
 
-# Steppers
+# Steppers: their pieces
 #
-# A stepper is a generator that runs for ever, one turn of its loop a step. What all have in common:
+# A stepper takes one step a turn of its loop. It is put together as data first, because three texts are made of it:
+# a generator, a block of steps, a batch of runs. Most pieces are lines that all three share; the others say what they
+# are for, since that is where the three differ.
 
+
+@dataclass(frozen=True)
+class Unpacked:
+    """Variables that get their first values from an argument of the generator, by a line such as (q0, v0,) = state."""
+
+    names: tuple[str, ...]
+    line: str
+
+
+@dataclass(frozen=True)
+class Pivot:
+    """A variable that gets the least of some values. They are pivots, relative: what tells that S becomes singular."""
+
+    result: str
+    values: tuple[str, ...]
+
+    @property
+    def line(self) -> str:
+        """The assignment."""
+        return f"{self.result} = {_least_text(self.values)}"
+
+
+@dataclass(frozen=True)
+class Moved:
+    """A variable of an earlier step that takes the value of the step after it: `older` = `newer`."""
+
+    older: str
+    newer: str
+
+
+@dataclass(frozen=True)
+class Yielded:
+    """The end of a step: the texts of its new state, q then v, and of the slope before it."""
+
+    state: tuple[str, ...]
+    slope: tuple[str, ...]
+
+
+Piece = str | Pivot | Moved | Yielded
+
+COUNT_FROM = "k = 0"
 COUNT = "k = k + 1"
-FORGET_PIVOTS = "worst_pivot = 1.0"
-REMEMBER_PIVOT = "worst_pivot = least(worst_pivot, worst)"
+FORGET_PIVOTS = Pivot("worst_pivot", ("1.0",))
+REMEMBER_PIVOT = Pivot("worst_pivot", ("worst_pivot", "worst"))
+
+
+@dataclass(frozen=True)
+class Stepper:
+    """The pieces of a stepper.
+
+    `arguments` are those of the generator beyond start, h and the gains; `opening` is what it does before its first
+    turn; `functions` are the sources of those that an implicit stepper has solved for their zeros.
+    """
+
+    arguments: str
+    opening: tuple[str | Unpacked, ...]
+    turn: tuple[Piece, ...]
+    functions: tuple[str, ...] = ()
+
+    @property
+    def remembered(self) -> list[str]:
+        """The variables with which a step begins, in the order in which they are unpacked."""
+        return [name for piece in self.opening if isinstance(piece, Unpacked) for name in piece.names]
+
+    @property
+    def preparations(self) -> list[str]:
+        """The lines of the opening that neither unpack nor count."""
+        return [piece for piece in self.opening if isinstance(piece, str) and piece != COUNT_FROM]
 
 
 def _acceleration_lines_at(acceleration: AccelerationCode, moment: Fraction) -> list[str]:
@@ -298,16 +380,203 @@ def _acceleration_lines_at(acceleration: AccelerationCode, moment: Fraction) -> 
     return [f"t = start + (k + {float(moment)!r}) * h", *acceleration.lines]
 
 
-def _worst_line(acceleration: AccelerationCode) -> str:
-    """Return the assignment to the least relative pivot of the last acceleration."""
-    return f"worst = {acceleration.least_pivot}"
+def _worst(acceleration: AccelerationCode) -> Pivot:
+    """Return the least relative pivot of the last acceleration."""
+    return Pivot("worst", acceleration.pivots)
 
 
 def _product_text(coefficient: Fraction, variable: str) -> str:
+    """Return the text of a product."""
     return f"{float(coefficient)!r} * {variable}"
 
 
-# Steppers of multistep and Runge-Kutta methods, and of their predictor-corrector pairs. For AB2 and one coordinate
+# A stepper as a generator: it runs for ever, and yields after each step
+
+
+def generator_source(stepper: Stepper) -> str:
+    """Return the source of run(start, h, two_alpha, beta_squared, <the stepper's arguments>), a generator of steps.
+
+    Each turn yields the new state, the slope before it and the least relative pivot of S met on the way.
+    """
+    opening = [piece.line if isinstance(piece, Unpacked) else piece for piece in stepper.opening]
+    turn = [line for piece in stepper.turn for line in _generator_lines(piece)]
+    return "\n".join([
+        f"def run(start, h, two_alpha, beta_squared, {stepper.arguments}):",
+        *_indented([*opening, "while True:"], 1),
+        *_indented(turn, 2),
+        *stepper.functions,
+    ])  # fmt: skip
+
+
+def _generator_lines(piece: Piece) -> list[str]:
+    """Return the lines of the generator that stand for a piece."""
+    match piece:
+        case str():
+            return [piece]
+        case Pivot():
+            return [piece.line]
+        case Moved(older, newer):
+            return [f"{older} = {newer}"]
+        case Yielded(state, slope):
+            return [COUNT, f"yield {_tuple_text(state)}, {_tuple_text(slope)}, worst_pivot"]
+
+
+# A stepper as a block: a function that takes many steps and stores their states, in plain loops over plain arrays
+#
+#     def run(start, h, ..., state, past):              def block(start, h, ..., k, last, memory, states, ...):
+#      k = 0
+#      (q0, v0,) = state                                 q0 = memory[0]
+#      ...                                               ...
+#      while True:                                       while k < last:
+#       ...                                               ...                             the same lines
+#       worst = least(1.0, D0 / S0)                       worst = 1.0
+#                                                         value = D0 / S0
+#                                                         if value < worst: worst = value
+#       k = k + 1                                         k = k + 1
+#       yield (q0, v0,), (...), worst_pivot               states[place + 0] = q0 ...
+
+
+def block_source(stepper: Stepper, pivot_limit: float, size_limit: float) -> str:
+    """Return the source of block(start, h, two_alpha, beta_squared, k, last, memory, states, pivots, reached).
+
+    It takes the steps k to last - 1 of an explicit stepper and returns the number of the next. `memory` holds what the
+    stepper remembers, in its order, and is brought up to date at the end; `states` gets the new states one
+    after the other, `pivots` the least pivots, reached[0] after each step the number of the next. After a step whose
+    pivot is not above `pivot_limit`, or whose state is not below `size_limit` in the sum of its sizes, it returns.
+    """
+    lines = [f"{name} = memory[{place}]" for place, name in enumerate(stepper.remembered)]
+    lines += [*stepper.preparations, "row = 0", "place = 0", "while k < last:"]
+    for piece in stepper.turn:
+        lines += _indented(_block_lines(piece, pivot_limit, size_limit), 1)
+    lines.append(" if not calm: break")
+    lines += [f"memory[{place}] = {name}" for place, name in enumerate(stepper.remembered)]
+    lines.append("return k")
+    head = "def block(start, h, two_alpha, beta_squared, k, last, memory, states, pivots, reached):"
+    return "\n".join([head, *_indented(lines, 1)])
+
+
+def _block_lines(piece: Piece, pivot_limit: float, size_limit: float) -> list[str]:
+    """Return the lines of the block that stand for a piece."""
+    match piece:
+        case Pivot():
+            return _compared_lines(piece)
+        case Yielded():
+            return [COUNT, *_storing_lines(piece, pivot_limit, size_limit)]
+        case str() | Moved():
+            return _generator_lines(piece)
+
+
+def _compared_lines(pivot: Pivot) -> list[str]:
+    """Return what stands for `least`: Python's min, which keeps the first unless a later one is less."""
+    first, *others = pivot.values
+    lines = [] if first == pivot.result else [f"{pivot.result} = {first}"]
+    for other in others:
+        lines += [f"value = {other}", f"if value < {pivot.result}: {pivot.result} = value"]
+    return lines
+
+
+def _storing_lines(step: Yielded, pivot_limit: float, size_limit: float) -> list[str]:
+    """Return what stores a step, and says whether it is calm: far from a breakdown."""
+    size = len(step.state)
+    return [
+        *(f"states[place + {i}] = {entry}" for i, entry in enumerate(step.state)),
+        "pivots[row] = worst_pivot",
+        "total = 0.0",
+        *(f"total = total + abs(states[place + {i}])" for i in range(size)),
+        f"calm = worst_pivot > {pivot_limit!r} and total < {size_limit!r}",
+        "row = row + 1",
+        f"place = place + {size}",
+        "reached[0] = k",
+    ]
+
+
+# A stepper as a batch: a function that takes many steps of many runs, which differ in their gains and states, and keeps
+# the constraint errors alone. Of 64 runs and one constraint:
+#
+#     def batch(start, h, gains, index, k, last, memory, errors):
+#      row = 0
+#      while k < last:
+#       for lane in range(64):
+#        two_alpha = gains[lane]
+#        q0 = memory[lane]                              what a step needs of before, each entry of all runs side by side
+#        ...                                            the stepper's lines, but those of pivots
+#        memory[lane] = q0                              the new state; what else is new goes to places of its own,
+#        memory[320 + lane] = f0                        so that no run reads what another writes
+#        t = (index + k) * h                            the time of the new state
+#        errors[row + lane] = ...                       c there
+#       for i in range(64):
+#        memory[192 + i] = memory[320 + i]              what was new is now one step back
+#       ...
+
+
+@dataclass(frozen=True)
+class BatchCode:
+    """The source of a batch function, and how many entries its memory has for each run."""
+
+    source: str
+    entries: int
+
+
+def batch_code(stepper: Stepper, constraints: Sequence[str], lanes: int) -> BatchCode:
+    """Return the source of batch(start, h, gains, index, k, last, memory, errors) of an explicit stepper.
+
+    It takes the steps k to last - 1 of so many runs as there are lanes and returns the number of the next. `gains`
+    holds 2 alpha of all runs, then beta^2; `memory` each entry of what the stepper remembers, of all runs, then room
+    for what is new; `errors` gets c after each step, entry by entry, at the time (index + k) h. The constraints are c
+    as expressions in q0, q1, ... and t.
+    """
+    remembered = stepper.remembered
+    moves = [piece for piece in stepper.turn if isinstance(piece, Moved)]
+    places = {name: place for place, name in enumerate(remembered)}
+    for move in moves:
+        places.setdefault(move.newer, len(places))
+    moved_to = {move.older for move in moves}
+    kept = [name for name in places if name not in moved_to]  # q and v; what a move takes back a step is new
+    (step,) = (piece for piece in stepper.turn if isinstance(piece, Yielded))
+    new_positions = step.state[: len(step.state) // 2]
+    body = [
+        "two_alpha = gains[lane]",
+        f"beta_squared = gains[{lanes} + lane]",
+        *(f"{name} = memory[{lanes * places[name]} + lane]" for name in remembered),
+        *(piece for piece in stepper.turn if isinstance(piece, str)),
+        *(f"memory[{lanes * places[name]} + lane] = {name}" for name in kept),
+        *(f"q{i} = {position}" for i, position in enumerate(new_positions) if position != f"q{i}"),
+        "t = (index + k) * h",
+        *(f"errors[row + {lanes * i} + lane] = {constraint}" for i, constraint in enumerate(constraints)),
+    ]
+    source = [
+        "def batch(start, h, gains, index, k, last, memory, errors):",
+        *_indented([*stepper.preparations, "row = 0", "while k < last:"], 1),
+        f"  for lane in range({lanes}):",
+        *_indented(body, 3),
+        *_indented(_moving_lines([(places[move.older], places[move.newer]) for move in moves], lanes), 2),
+        f"  row = row + {lanes * len(constraints)}",
+        f"  {COUNT}",
+        " return k",
+    ]
+    return BatchCode("\n".join(source), len(places))
+
+
+def _moving_lines(moves: Sequence[tuple[int, int]], lanes: int) -> list[str]:
+    """Return loops that do these moves, each to a place from a place, in their order, neighbours together."""
+    runs: list[tuple[int, int, int]] = []  # first place moved to, first place moved from, how many
+    for target, source in moves:
+        if runs:
+            first_target, first_source, count = runs[-1]
+            continued = (target, source) == (first_target + count, first_source + count)
+            if continued and not first_source < first_target <= source:  # else it would take what has been moved
+                runs[-1] = first_target, first_source, count + 1
+                continue
+        runs.append((target, source, 1))
+    return [
+        f"for i in range({lanes * count}): memory[{lanes * target} + i] = memory[{lanes * source} + i]"
+        for target, source, count in runs
+    ]
+
+
+# Steppers of first-order schemes, y' = f: of multistep and Runge-Kutta methods, predictor-corrector pairs and SYM
+#
+# For AB2 and one coordinate the generator reads
 #
 #     def run(start, h, two_alpha, beta_squared, state, past):
 #      k = 0
@@ -343,16 +612,16 @@ class Term:
     prefix: str
 
 
-def stepper_source(acceleration: AccelerationCode, method: Method) -> str:
-    """Return the source of run(start, h, two_alpha, beta_squared, state, past), a generator of steps.
+def first_order_stepper(acceleration: AccelerationCode, method: Method) -> Stepper:
+    """Return the stepper whose generator is run(start, h, two_alpha, beta_squared, state, past).
 
-    Each step yields the new state (q then v), the slope before it (their derivatives) and the least relative pivot of S
-    met on the way. `state` is the one at time `start` (s), h (s) the whole step of the method, and `past` holds the
-    earlier (state, slope) pairs that a method of several steps needs, newest first.
+    `state` is the one at time `start` (s), q then v, h (s) the whole step of the method, and `past` holds the
+    earlier (state, slope) pairs that a method of several steps needs, newest first; the slope of a state has its
+    derivatives. TypeError for a second-order scheme.
     """
     size = 2 * acceleration.coordinates
     state = _state_variables(acceleration)
-    lines = [FORGET_PIVOTS]
+    lines: list[Piece] = [FORGET_PIVOTS]
     lines += [f"y{i} = {name}" for i, name in enumerate(state)]
     lines += _evaluation_lines(acceleration, "f", AT_THE_START)
     match method.scheme:
@@ -368,33 +637,30 @@ def stepper_source(acceleration: AccelerationCode, method: Method) -> str:
             lines += _partitioned_lines(acceleration.coordinates, scheme)
         case SecondOrder():
             raise TypeError(f"{method.name}: a second-order scheme has steps of its own")
-    lines += _shift_lines(size, method)
-    lines += [COUNT, f"yield {_tuple_text(state)}, {_tuple_text(variable_names('f', size))}, worst_pivot"]
+    lines += _moves(size, method)
+    lines.append(Yielded(tuple(state), tuple(variable_names("f", size))))
 
-    head = ["k = 0", f"{_tuple_text(state)} = state"]
+    opening: list[str | Unpacked] = [COUNT_FROM, Unpacked(tuple(state), f"{_tuple_text(state)} = state")]
     for back in range(1, steps(method)):
-        past_state = _tuple_text(variable_names(f"y_{back}_", size))
-        past_slope = _tuple_text(variable_names(f"f_{back}_", size))
-        head.append(f"{past_state}, {past_slope} = past[{back - 1}]")
-    return "\n".join([
-        "def run(start, h, two_alpha, beta_squared, state, past):",
-        *_indented([*head, "while True:"], 1),
-        *_indented(lines, 2),
-    ])  # fmt: skip
+        past_state, past_slope = variable_names(f"y_{back}_", size), variable_names(f"f_{back}_", size)
+        line = f"{_tuple_text(past_state)}, {_tuple_text(past_slope)} = past[{back - 1}]"
+        opening.append(Unpacked((*past_state, *past_slope), line))
+    return Stepper("state, past", tuple(opening), tuple(lines))
 
 
 def _state_variables(acceleration: AccelerationCode) -> list[str]:
+    """Return the variables of a state: q, then v."""
     coordinates = acceleration.coordinates
     return [*variable_names("q", coordinates), *variable_names("v", coordinates)]
 
 
-def _evaluation_lines(acceleration: AccelerationCode, slope: str, moment: Fraction) -> list[str]:
+def _evaluation_lines(acceleration: AccelerationCode, slope: str, moment: Fraction) -> list[Piece]:
     """Return the assignments to the slope, so called, at the current q and v and at time t + moment h."""
     coordinates = acceleration.coordinates
     derivatives = [*variable_names("v", coordinates), *variable_names("a", coordinates)]
     return [
         *_acceleration_lines_at(acceleration, moment),
-        _worst_line(acceleration),
+        _worst(acceleration),
         *(f"{slope}{i} = {derivative}" for i, derivative in enumerate(derivatives)),
         REMEMBER_PIVOT,
     ]
@@ -424,12 +690,12 @@ def _multistep_lines(state: Sequence[str], scheme: LinearMultistep, slope_at_the
     return _update_lines(state, states, slopes)
 
 
-def _runge_kutta_lines(acceleration: AccelerationCode, scheme: RungeKutta) -> list[str]:
+def _runge_kutta_lines(acceleration: AccelerationCode, scheme: RungeKutta) -> list[Piece]:
     """Return the later stages, each evaluated at y + h sum A_ij (slope of stage j), and the step with the weights."""
     state = _state_variables(acceleration)
     old_state = [Term(Fraction(1), "y")]
     stages = ["f", *(f"stage_{number}_" for number in range(1, len(scheme.weights)))]
-    lines = []
+    lines: list[Piece] = []
     for number, stage in enumerate(stages):
         if number == 0:
             continue  # it is f, the slope at the start of the step
@@ -438,7 +704,7 @@ def _runge_kutta_lines(acceleration: AccelerationCode, scheme: RungeKutta) -> li
         lines += _update_lines(state, old_state, slopes)
         lines += _evaluation_lines(acceleration, stage, sum(row, Fraction(0)))
     weighted = [Term(weight, name) for weight, name in zip(scheme.weights, stages, strict=True)]
-    return lines + _update_lines(state, old_state, weighted)
+    return [*lines, *_update_lines(state, old_state, weighted)]
 
 
 def _partitioned_lines(coordinates: int, scheme: Partitioned) -> list[str]:
@@ -452,8 +718,8 @@ def _partitioned_lines(coordinates: int, scheme: Partitioned) -> list[str]:
     return lines
 
 
-def _shift_lines(size: int, method: Method) -> list[str]:
-    """Return the assignments that move the past on by one step, oldest first, as far as the method uses it.
+def _moves(size: int, method: Method) -> list[Moved]:
+    """Return what moves the past on by one step, oldest first, as far as the method uses it.
 
     Adams and Bezier methods use past slopes but no past states.
     """
@@ -469,11 +735,11 @@ def _shift_lines(size: int, method: Method) -> list[str]:
         kinds.append("y")
     if any(coefficient for scheme in schemes for coefficient in scheme.sigma[2:]):
         kinds.append("f")
-    lines = []
+    moves = []
     for back in reversed(range(1, steps(method))):
         newer = "" if back == 1 else f"_{back - 1}_"
-        lines += [f"{kind}_{back}_{i} = {kind}{newer}{i}" for kind in kinds for i in range(size)]
-    return lines
+        moves += [Moved(f"{kind}_{back}_{i}", f"{kind}{newer}{i}") for kind in kinds for i in range(size)]
+    return moves
 
 
 # Steppers of second-order schemes, and of every implicit one, which runs as such: the actions of a turn as text
@@ -483,7 +749,7 @@ def _shift_lines(size: int, method: Method) -> list[str]:
 # start. For velocity Verlet with the feedback at the half-step velocity and one coordinate the source reads
 #
 #     def run(start, h, two_alpha, beta_squared, carried, solve):
-#      (X_0_0,), (V_0_0,), (A_0_0,), = carried
+#      ((X_0_0,), (V_0_0,), (A_0_0,),) = carried
 #      k = 0
 #      h_squared = h * h
 #      while True:
@@ -523,8 +789,8 @@ def _shift_lines(size: int, method: Method) -> list[str]:
 #      return (R0,)
 
 
-def second_order_stepper_source(acceleration: AccelerationCode, scheme: SecondOrder) -> str:
-    """Return the source of run(start, h, two_alpha, beta_squared, carried, solve), a generator of turns, and residuals.
+def second_order_stepper(acceleration: AccelerationCode, scheme: SecondOrder) -> Stepper:
+    """Return the stepper whose generator is run(start, h, two_alpha, beta_squared, carried, solve), with residuals.
 
     Each turn yields q and v at its end, then v and a at its start (where the scheme has no a there: zeros), and the
     least relative pivot of S met on the way. `start` (s) is the time of step 0 of the first turn, h (s) the whole step,
@@ -534,7 +800,7 @@ def second_order_stepper_source(acceleration: AccelerationCode, scheme: SecondOr
     """
     names = _Names(scheme, acceleration.coordinates)
     carried = memory(scheme).carried
-    lines = [FORGET_PIVOTS]
+    lines: list[Piece] = [FORGET_PIVOTS]
     for action in turn(scheme):
         match action:
             case Assigned(result, value):
@@ -544,17 +810,18 @@ def second_order_stepper_source(acceleration: AccelerationCode, scheme: SecondOr
             case Solved():
                 lines += _solving_lines(names, action)
     reported = [*names.of(Quantity(POSITION, 1)), *_over(names.of(Quantity(VELOCITY, 1)), "h")]
-    lines += [COUNT, f"yield {_tuple_text(reported)}, {_tuple_text(_slope(names, carried))}, worst_pivot"]
+    lines.append(Yielded(tuple(reported), tuple(_slope(names, carried))))
     for quantity in carried:  # each name's oldest first: none is overwritten before it has been moved on
         newer = names.of(Quantity(quantity.name, quantity.step + 1))
-        lines += [f"{old} = {new}" for old, new in zip(names.of(quantity), newer, strict=True)]
-    unpacked = _tuple_text(_tuple_text(names.of(quantity)) for quantity in carried)
-    return "\n".join([
-        "def run(start, h, two_alpha, beta_squared, carried, solve):",
-        *_indented([f"{unpacked} = carried", "k = 0", "h_squared = h * h", "while True:"], 1),
-        *_indented(lines, 2),
-        residuals_source(acceleration, scheme, with_pivots=True),
-    ])  # fmt: skip
+        lines += [Moved(old, new) for old, new in zip(names.of(quantity), newer, strict=True)]
+    remembered = tuple(name for quantity in carried for name in names.of(quantity))
+    unpacking = f"{_tuple_text(_tuple_text(names.of(quantity)) for quantity in carried)} = carried"
+    return Stepper(
+        arguments="carried, solve",
+        opening=(Unpacked(remembered, unpacking), COUNT_FROM, "h_squared = h * h"),
+        turn=tuple(lines),
+        functions=(residuals_source(acceleration, scheme, with_pivots=True),),
+    )
 
 
 def residuals_source(acceleration: AccelerationCode, scheme: SecondOrder, with_pivots: bool) -> str:
@@ -598,6 +865,7 @@ def _term_text(coefficient: Fraction, variable: str) -> str:
 
 
 def _over(variables: Iterable[str], divisor: str) -> list[str]:
+    """Return the texts of quotients."""
     return [f"{variable} / {divisor}" for variable in variables]
 
 
@@ -610,12 +878,12 @@ def _slope(names: _Names, carried: Sequence[Quantity]) -> list[str]:
     return slope
 
 
-def _evaluated_lines(names: _Names, acceleration: AccelerationCode, evaluated: Evaluated) -> list[str]:
+def _evaluated_lines(names: _Names, acceleration: AccelerationCode, evaluated: Evaluated) -> list[Piece]:
     """Return the lines of an evaluation at a position, velocity and time that are known."""
     return [
         *_state_lines(names.sums(evaluated.position), names.sums(evaluated.velocity)),
         *_acceleration_lines_at(acceleration, evaluated.moment),
-        _worst_line(acceleration),
+        _worst(acceleration),
         *(f"{name} = h_squared * a{i}" for i, name in enumerate(names.of(evaluated.result))),
         REMEMBER_PIVOT,
     ]
@@ -629,7 +897,7 @@ def _state_lines(positions: Sequence[str], velocities: Sequence[str]) -> list[st
     ]
 
 
-def _solving_lines(names: _Names, solved: Solved) -> list[str]:
+def _solving_lines(names: _Names, solved: Solved) -> list[Piece]:
     """Return the lines that have a group solved for its accelerations, from those one step back on."""
     parts: list[str] = []
     for evaluation in solved.evaluations:
@@ -657,7 +925,7 @@ def _residual_function(acceleration: AccelerationCode, solved: Solved, with_pivo
         "h_squared = h * h",
     ]
     if with_pivots:
-        lines.append(FORGET_PIVOTS)
+        lines.append(FORGET_PIVOTS.line)
     for own, evaluation in enumerate(solved.evaluations):
         first = own * coordinates  # of its unknowns; of what is known, there are two for each
         lines += _state_lines(
@@ -666,7 +934,7 @@ def _residual_function(acceleration: AccelerationCode, solved: Solved, with_pivo
         )
         lines += _acceleration_lines_at(acceleration, evaluation.moment)
         if with_pivots:
-            lines += [_worst_line(acceleration), REMEMBER_PIVOT]
+            lines += [_worst(acceleration).line, REMEMBER_PIVOT.line]
         lines += [f"R{first + i} = U{first + i} - h_squared * a{i}" for i in range(coordinates)]
     residuals = _tuple_text(variable_names("R", count))
     results = f"{residuals}, worst_pivot" if with_pivots else residuals

@@ -7,15 +7,13 @@ from typing import cast
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from bezstab.compiling import COMPILED_CHOICE
 from bezstab.errors import InputError
 from bezstab.mechanism import Mechanism, Trajectory, compiled_mechanism, load_scene, shipped_scenes, simulate
 from bezstab.mechanism import compiled_steps as module
-from bezstab.mechanism.compiled_steps import block_source, blocks_of_steps, runs_compiled
-from bezstab.mechanism.generated_code import compiled_source
+from bezstab.mechanism.compiled_steps import blocks_of_steps, runs_compiled
+from bezstab.mechanism.generated_code import Stepper, Unpacked, Yielded, compiled_source, generator_source
 from bezstab.methods import Method, lookup
 from bezstab.units import feedback_gains
 
@@ -101,20 +99,15 @@ class OneCoordinate:
     "refused", ["1.0 / q0", "sqrt(q0 - 0.5)", "sin(1e308 * (2.0 - q0))", "cos(1e308 * (2.0 - q0))"]
 )
 def test_what_python_refuses_is_refused_after_the_steps_before(refused: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    stepper = f"""
-def run(start, h, two_alpha, beta_squared, state, past):
- k = 0
- (q0, v0,) = state
- while True:
-  q0 = q0 - 1.0
-  v0 = {refused}
-  k = k + 1
-  yield (q0, v0,), (v0, v0,), 1.0
-"""
+    stepper = Stepper(
+        arguments="state, past",
+        opening=("k = 0", Unpacked(("q0", "v0"), "(q0, v0,) = state")),
+        turn=("worst_pivot = 1.0", "q0 = q0 - 1.0", f"v0 = {refused}", Yielded(("q0", "v0"), ("v0", "v0"))),
+    )
     in_python = []
     with pytest.raises((ArithmeticError, ValueError)) as wanted:
-        in_python.extend(compiled_source(stepper, math)["run"](0.0, 0.1, 0.0, 0.0, (4.0, 0.0), ()))
-    monkeypatch.setattr(module, "stepper_code", lambda mechanism, method: stepper)
+        in_python.extend(compiled_source(generator_source(stepper), math)["run"](0.0, 0.1, 0.0, 0.0, (4.0, 0.0), ()))
+    monkeypatch.setattr(module, "stepper_of", lambda mechanism, method: stepper)
     states: list[list[float]] = []
     mechanism, method = cast(Mechanism, OneCoordinate()), lookup("SYM")
     for cached in (module._machine_block, module._python_block):
@@ -125,46 +118,6 @@ def run(start, h, two_alpha, beta_squared, state, past):
     assert str(seen.value) == str(wanted.value)
     assert len(states) == 3
     assert [state[0] for state in states] == [3.0, 2.0, 1.0]
-
-
-@given(st.lists(st.sampled_from([1.0, 0.5, -2.0, 0.0, -0.0, math.inf, -math.inf, math.nan]), min_size=1, max_size=5))
-def test_the_least_is_that_of_python(values: list[float]) -> None:
-    stepper = f"def run(start):\n while True:\n  worst = least({', '.join(f'v{i}' for i in range(len(values)))})"
-    lines = block_source(stepper, 0.0, 1.0).splitlines()
-    wanted = [line.strip() for line in lines if "worst" in line or "value" in line]
-    scope = {f"v{i}": value for i, value in enumerate(values)}
-    exec("\n".join(wanted), {}, scope)
-    assert np.float64(scope["worst"]).tobytes() == np.float64(min(values)).tobytes()
-
-
-def test_a_block_is_the_stepper_with_its_states_stored() -> None:
-    stepper = """
-def run(start, h, two_alpha, beta_squared, state, past):
- k = 0
- (q0, v0,) = state
- while True:
-  f0 = v0
-  v0 = v0 + h * -q0
-  q0 = q0 + h * f0
-  k = k + 1
-  yield (q0, v0,), (f0,), 1.0
-"""
-    source = block_source(stepper, 0.0, 1e9)
-    memory, states, pivots, reached = [1.0, 0.0], [0.0] * 6, [0.0] * 3, [0]
-    block = compiled_source(source, math)["block"]
-    assert block(0.0, 0.5, 0.0, 0.0, 4, 7, memory, states, pivots, reached) == 7
-    assert states == [1.0, -0.5, 0.75, -1.0, 0.25, -1.375]
-    assert (memory, pivots, reached) == ([0.25, -1.375], [1.0] * 3, [7])
-
-
-def test_a_block_ends_at_a_state_that_python_has_to_judge() -> None:
-    stepper = "def run(start, h, two_alpha, beta_squared, state, past):\n k = 0\n (q0,) = state\n while True:\n"
-    stepper += "  q0 = 10 * q0\n  k = k + 1\n  yield (q0,), (q0,), 1.0"
-    memory, states, pivots, reached = [1.0], [0.0] * 9, [0.0] * 9, [0]
-    block = compiled_source(block_source(stepper, 0.0, 500.0), math)["block"]
-    assert block(0.0, 0.0, 0.0, 0.0, 0, 9, memory, states, pivots, reached) == 3
-    assert memory == [1000.0]
-    assert reached == [3]
 
 
 def test_runs_are_compiled_where_that_pays_or_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,4 +1,8 @@
+"""Generated accelerations and steps against the formulas, and the texts that are made of a stepper."""
+
+import math
 import re
+from collections.abc import Iterator
 from functools import cache
 from itertools import islice
 from typing import Any
@@ -6,6 +10,8 @@ from typing import Any
 import mpmath as mp
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from bezstab.mechanism import (
     compiled_mechanism,
@@ -16,6 +22,17 @@ from bezstab.mechanism import (
     perturbed_state,
     simulate,
     stepper_code,
+)
+from bezstab.mechanism.generated_code import (
+    Moved,
+    Pivot,
+    Stepper,
+    Unpacked,
+    Yielded,
+    batch_code,
+    block_source,
+    compiled_source,
+    generator_source,
 )
 from bezstab.methods import Method, accuracy, lookup, recipe, steps
 from tests.mechanism.test_scenes import pendulum
@@ -159,3 +176,114 @@ def test_steps_of_a_recipe_are_plain_assignments_without_its_names() -> None:
     source = stepper_code(compiled_mechanism(load_scene("slider_crank")), Method("hostile", scheme, "constructed"))
     assert hostile not in source
     assert set(CALL.findall(source)) - {"run", "residual_2", "in"} <= {"sin", "cos", "least", "solve"}
+
+
+OPENING = ("k = 0", Unpacked(("q0", "v0"), "(q0, v0,) = state"))
+OSCILLATION = Stepper(
+    arguments="state, past",
+    opening=OPENING,
+    turn=(
+        Pivot("worst_pivot", ("1.0",)),
+        "f0 = v0",
+        "v0 = v0 + h * -q0",
+        "q0 = q0 + h * f0",
+        Yielded(("q0", "v0"), ("f0",)),
+    ),
+)
+
+
+def test_a_generator_is_the_pieces_in_their_order() -> None:
+    assert generator_source(OSCILLATION).splitlines() == [
+        "def run(start, h, two_alpha, beta_squared, state, past):",
+        " k = 0",
+        " (q0, v0,) = state",
+        " while True:",
+        "  worst_pivot = 1.0",
+        "  f0 = v0",
+        "  v0 = v0 + h * -q0",
+        "  q0 = q0 + h * f0",
+        "  k = k + 1",
+        "  yield (q0, v0,), (f0,), worst_pivot",
+    ]
+    run = compiled_source(generator_source(OSCILLATION), math)["run"](0.0, 0.5, 0.0, 0.0, (1.0, 0.0), ())
+    assert [next(run)[0] for _ in range(3)] == [(1.0, -0.5), (0.75, -1.0), (0.25, -1.375)]
+
+
+def test_a_block_is_the_stepper_with_its_states_stored() -> None:
+    memory, states, pivots, reached = [1.0, 0.0], [0.0] * 6, [0.0] * 3, [0]
+    block = compiled_source(block_source(OSCILLATION, 0.0, 1e9), math)["block"]
+    assert block(0.0, 0.5, 0.0, 0.0, 4, 7, memory, states, pivots, reached) == 7
+    assert states == [1.0, -0.5, 0.75, -1.0, 0.25, -1.375]
+    assert (memory, pivots, reached) == ([0.25, -1.375], [1.0] * 3, [7])
+
+
+def test_a_block_ends_at_a_state_that_python_has_to_judge() -> None:
+    growth = Stepper(
+        arguments="state, past",
+        opening=("k = 0", Unpacked(("q0",), "(q0,) = state")),
+        turn=("worst_pivot = 1.0", "q0 = 10 * q0", Yielded(("q0",), ("q0",))),
+    )
+    memory, states, pivots, reached = [1.0], [0.0] * 9, [0.0] * 9, [0]
+    block = compiled_source(block_source(growth, 0.0, 500.0), math)["block"]
+    assert block(0.0, 0.0, 0.0, 0.0, 0, 9, memory, states, pivots, reached) == 3
+    assert memory == [1000.0]
+    assert reached == [3]
+
+
+@given(st.lists(st.sampled_from([1.0, 0.5, -2.0, 0.0, -0.0, math.inf, -math.inf, math.nan]), min_size=1, max_size=5))
+def test_the_least_of_a_block_is_that_of_python(values: list[float]) -> None:
+    names = tuple(f"v{i}" for i in range(len(values)))
+    stepper = Stepper(
+        arguments="state, past",
+        opening=(Unpacked(names, ""),),
+        turn=(Pivot("worst_pivot", names), Yielded(("worst_pivot",), ())),
+    )
+    states, pivots = [0.0], [0.0]
+    block = compiled_source(block_source(stepper, 0.0, 1.0), math)["block"]
+    block(0.0, 0.0, 0.0, 0.0, 0, 1, values, states, pivots, [0])
+    assert np.float64(pivots[0]).tobytes() == np.float64(min(values)).tobytes()
+
+
+BATCH_OF = Stepper(
+    arguments="state, past",
+    opening=(*OPENING, Unpacked(("y_1_0", "y_1_1", "f_1_0", "f_1_1"), "(y_1_0, y_1_1,), (f_1_0, f_1_1,) = past[0]")),
+    turn=(
+        Pivot("worst_pivot", ("1.0",)),
+        "f0 = v0",
+        "f1 = -beta_squared * q0",
+        "v0 = v0 + h * f1",
+        "q0 = q0 + h * (1.5 * f0 + -0.5 * f_1_0)",
+        Moved("f_1_0", "f0"),
+        Moved("f_1_1", "f1"),
+        Yielded(("q0", "v0"), ("f0", "f1")),
+    ),
+)
+LANES = 5
+
+
+def test_a_batch_is_the_stepper_for_each_run() -> None:
+    code = batch_code(BATCH_OF, ["q0 + t"], LANES)
+    assert code.entries == 8  # q0, v0, what is unpacked of the past, and the new slopes
+    starts = [0.25 * lane for lane in range(LANES)]
+    memory = starts + [1.0] * LANES + [0.0] * (6 * LANES)
+    gains = [0.0] * LANES + [float(lane % 3) for lane in range(LANES)]
+    errors = [0.0] * (3 * LANES)
+    batch = compiled_source(code.source, math)["batch"]
+    assert batch(0.0, 0.5, gains, 1, 0, 3, memory, errors) == 3
+
+    def one(q: float, beta_squared: float) -> Iterator[float]:
+        v, before = 1.0, 0.0
+        for k in range(3):
+            slope = v
+            v, q = v - 0.5 * beta_squared * q, q + 0.5 * (1.5 * slope - 0.5 * before)
+            before = slope
+            yield q + (1 + k) * 0.5
+
+    for lane in range(LANES):
+        assert errors[lane::LANES] == list(one(starts[lane], float(lane % 3)))
+
+
+def test_pivots_and_what_no_run_needs_are_left_out_of_a_batch() -> None:
+    source = batch_code(BATCH_OF, ["q0"], LANES).source
+    assert "worst" not in source
+    assert "yield" not in source
