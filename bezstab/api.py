@@ -6,6 +6,7 @@ with the step `h=` in s. A method is a name as on the command line ("B4", "RK4@5
 of one; a scene is a shipped scene's name, the path of a TOML file, or what `scene` made of one.
 """
 
+import math
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 
@@ -17,7 +18,7 @@ from bezstab.errors import InputError
 from bezstab.mechanism import Scene, Simulation
 from bezstab.methods import REGISTRY, Method, Verdict, lookup
 from bezstab.rationals import exact, rational
-from bezstab.units import to_dimensionless
+from bezstab.units import check_step, to_dimensionless
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -107,8 +108,8 @@ def verdict(
 ) -> Verdict:
     """Return "converges", "marginal" or "diverges" for one point (dimensionless, or in 1/s with h), proven exactly.
 
-    Numbers are read exactly: 0.1 is one tenth. InputError unless the point is given in one of the two ways. The
-    Schur-Cohn test (I. Schur, J. reine angew. Math. 147, 1917) on the polynomial of paper Eq. 17.
+    Numbers are read exactly: 0.1 is one tenth. InputError unless they are finite and the point is given in one of the
+    two ways. The Schur-Cohn test (I. Schur, J. reine angew. Math. 147, 1917) on the polynomial of paper Eq. 17.
     """
     a, b = _plane_point(alpha_hat, beta_hat, alpha, beta, h)
     return stability.verdict(_method(method), a, b)
@@ -118,7 +119,8 @@ def region(method: str | Method, level: float = 1.0) -> stability.Region:
     """Return the exact region |z_p| < level, 0 < level <= 1, in the dimensionless plane.
 
     `boundary` has its closed curves as arrays of shape (points, 2), columns alpha_hat and beta_hat; `area`, `extent`,
-    and `contains(alpha_hat, beta_hat)`. NumericalError if an edge cannot be found. Boundary locus of paper Eq. 17.
+    and `contains(alpha_hat, beta_hat)`. InputError for another level; NumericalError if an edge cannot be found.
+    Boundary locus of paper Eq. 17.
     """
     return stability.region(_method(method), level)
 
@@ -147,11 +149,12 @@ def choose(
     robust: fastest at worst over smaller steps and over alpha, beta off by the share `spread`; with `h` and `h_max`
     (s) the steps up to h_max, for use at h. fastest: least |z_p|. critical: fastest without oscillation. gentle: the
     mildest alpha = beta whose error falls a thousandfold within `settle` (s) at the step `h` (s). `equal` keeps
-    alpha = beta. `from_dimensionless` turns the answer into 1/s. InputError if nothing stable meets the goal.
+    alpha = beta. `from_dimensionless` turns the answer into 1/s. InputError if nothing stable meets the goal, and
+    for a goal, spread or time that is none. The poles are those of paper Eq. 17, the goals this package's.
     """
     if h is None:
-        if h_max is not None or settle is not None:
-            raise InputError("h_max and settle need the step h in s")
+        if h_max is not None or settle is not None or goal == "gentle":
+            raise InputError("h_max, settle and the goal gentle need the step h in s")
         return stability.choose(_method(method), goal, spread=spread, equal=equal)
     return stability.choose_at_step(
         _method(method),
@@ -177,7 +180,8 @@ def check(
     """Return what there is to say of a point of your own: proven verdict, dominant pole, margins; dimensionless.
 
     `margins` has the factors by which h, alpha and beta may be scaled alone; None unless the point is stable.
-    Errors as for `verdict`, whose sources it shares.
+    Errors as for `verdict`, whose sources it shares; InputError, too, for a `spread` outside 0 to 1, and NumericalError
+    if a pole leaves the range of float64.
     """
     a, b = _plane_point(alpha_hat, beta_hat, alpha, beta, h)
     return stability.describe_point(_method(method), "as given", a, b, spread)
@@ -200,7 +204,8 @@ def simulate(
 
     t has shape (steps + 1,), the others a row for each time. The initial state is the scene's, its first constraint
     off by `perturb`. A run that breaks down ends early and says when and why in `failure`. InputError for a scene
-    that cannot start. Paper Eqs. 6 to 9.
+    that cannot start, a duration below one step, and unless the point is given in one of the two ways; NumericalError
+    for one that cannot be perturbed. Paper Eqs. 6 to 9.
     """
     a, b = _plane_arrays(alpha_hat, beta_hat, alpha, beta, h)
     return mechanism.simulated(
@@ -230,6 +235,7 @@ def verify(
     `measured` is None, and `reason` says why, where no pole can be measured. InputError for a scene that cannot
     start, or unless the points are given in one of the two ways. Method: opposite kicks and linear prediction (Prony).
     """
+    check_step(h)
     a, b = np.broadcast_arrays(*_plane_arrays(alpha_hat, beta_hat, alpha, beta, h))
     compiled = mechanism.compiled_mechanism(_scene(scene))
     return evidence.measure_poles(compiled, _method(method), h, np.atleast_1d(a).ravel(), np.atleast_1d(b).ravel())
@@ -316,9 +322,11 @@ def _scene(scene_or_name: str | Scene) -> Scene:
 
 
 def _exact(value: Number) -> Fraction:
-    """Return a number exactly: a text as it reads, a float as the decimal it shows."""
+    """Return a number exactly: a text as it reads, a float as the decimal it shows; InputError if it is not finite."""
     if isinstance(value, str):
         return rational(value)
+    if isinstance(value, float) and not math.isfinite(value):
+        raise InputError(f"{value} is not a finite number")
     return Fraction(value) if isinstance(value, int | Fraction) else exact(value)
 
 

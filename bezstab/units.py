@@ -24,6 +24,12 @@ LONGEST_STEP = 1e100
 FloatOrArray = TypeVar("FloatOrArray", float, "NDArray[np.float64]")
 
 
+def check_step(h: Fraction | float, name: str = "h") -> None:
+    """Raise InputError unless a step, so called, lies within 1e-100 to 1e100 s."""
+    if not LEAST_STEP <= h <= LONGEST_STEP:
+        raise InputError(f"{name} = {float(h):g} s: expected {LEAST_STEP:g} to {LONGEST_STEP:g} s")
+
+
 @overload
 def to_dimensionless(alpha: Fraction, beta: Fraction, h: Fraction) -> tuple[Fraction, Fraction]: ...
 @overload
@@ -32,8 +38,9 @@ def to_dimensionless(alpha: Any, beta: Any, h: Any) -> tuple[Any, Any]:
     """Return (alpha_hat, beta_hat) = (2 alpha h, beta^2 h^2); alpha and beta in 1/s, h in s (paper Eq. 16).
 
     Dimensionless and of the shape of alpha and beta: exact numbers if all three are Fractions, else float64.
-    InputError where they leave the range of float64.
+    InputError for h outside 1e-100 to 1e100 s, and where they leave the range of float64.
     """
+    check_step(h)
     alpha_hat, beta_hat = 2 * alpha * h, beta * beta * h * h
     if isinstance(alpha_hat, Fraction) and isinstance(beta_hat, Fraction):
         return within_float64(alpha_hat, "α̂ = 2αh"), within_float64(beta_hat, "β̂ = β²h²")
@@ -52,8 +59,7 @@ def from_dimensionless(alpha_hat: FloatOrArray, beta_hat: FloatOrArray, h: float
     """
     import numpy as np
 
-    if not LEAST_STEP <= h <= LONGEST_STEP:
-        raise InputError(f"h = {h:g} s: expected {LEAST_STEP:g} to {LONGEST_STEP:g} s")
+    check_step(h)
     imaginary = ~(np.asarray(beta_hat) >= 0)  # not a number included
     if imaginary.any():
         first = np.asarray(beta_hat)[imaginary][0]

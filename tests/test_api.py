@@ -1,9 +1,12 @@
 import doctest
 import inspect
+import re
 import subprocess
 import sys
+from collections.abc import Callable
 from fractions import Fraction
 from pathlib import Path
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -92,13 +95,62 @@ def test_a_region_knows_what_it_contains() -> None:
     assert (stable.contains(a, b) == (bezstab.spectral_radius("B4", alpha_hat=a, beta_hat=b) < 1)).all()
 
 
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        (lambda: bezstab.region("B4", level=2.0), "level 2: expected above 0 and at most 1"),
+        (lambda: bezstab.region("B4", level=float("nan")), "level nan: expected above 0 and at most 1"),
+        (
+            lambda: bezstab.choose("B4", goal=cast(Any, "quick")),
+            "goal 'quick': expected robust, fastest, critical, gentle",
+        ),
+        (lambda: bezstab.choose("B4", goal="gentle"), "the goal gentle need the step h in s"),
+        (lambda: bezstab.choose("B4", spread=-0.5), "spread -0.5: expected a share from 0 to 1"),
+        (lambda: bezstab.choose("B4", h=-1), "h = -1 s: expected 1e-100 to"),
+        (lambda: bezstab.choose("B4", goal="gentle", h=0.001, settle=-1), "settle = -1 s: expected a positive time"),
+        (lambda: bezstab.check("B4", alpha_hat=0.5, beta_hat=0.1, spread=1), "spread 1: expected a share from 0 to 1"),
+        (lambda: bezstab.verdict("B4", alpha_hat=float("nan"), beta_hat=0.1), "nan is not a finite number"),
+        (lambda: bezstab.poles("B4", alpha=1.0, beta=1.0, h=0.0), "h = 0 s: expected 1e-100 to"),
+        (lambda: bezstab.verify("pendulum", "B4", h=-1.0, alpha_hat=0.5, beta_hat=0.1), "h = -1 s: expected"),
+    ],
+)
+def test_a_mistake_is_refused_by_name_and_value(wrong: Callable[[], object], message: str) -> None:
+    with pytest.raises(InputError, match=re.escape(message)):
+        wrong()
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        ({"h": 0.0}, "h = 0 s: expected 1e-100 to"),
+        ({"duration": 1e-4}, "duration 0.0001 s: expected at least one step of 0.001 s"),
+        ({"duration": float("inf")}, "duration inf s: expected at least one step"),
+        ({"start": "heun"}, "start 'heun': expected rk4, ramp, euler"),
+    ],
+)
+def test_a_run_that_cannot_be_is_refused_by_name_and_value(wrong: dict[str, Any], message: str) -> None:
+    run: dict[str, Any] = {"h": 0.001, "duration": 0.1, "alpha_hat": 0.5, "beta_hat": 0.1}
+    with pytest.raises(InputError, match=re.escape(message)):
+        bezstab.simulate("pendulum", "AB3", **{**run, **wrong})
+
+
 def test_results_have_short_names_for_themselves() -> None:
     run = bezstab.simulate("pendulum", "SYM", alpha_hat=1.0, beta_hat=0.2, h=0.001, duration=0.1)
+    error = np.round(1e-4 * (bezstab.dominant_pole("B4", alpha_hat=0.5, beta_hat=0.1) ** np.arange(150)).real, 13)
+    found = bezstab.probe(error, differenced=True, methods=["B4"], alpha_hat=0.5, beta_hat=0.1)
+    placed = bezstab.probe(error, differenced=True, methods=["B4"])
+    (measured,) = bezstab.verify("pendulum", "SYM", alpha_hat=1.0, beta_hat=0.2, h=0.001)
     for result in (
+        found,
+        found.likenesses[0],
+        placed.points[0],
+        bezstab.probe(error[:3]),
+        measured,
         bezstab.region("B4"),
         bezstab.best_point("B4"),
         bezstab.check("B4", alpha_hat=0.5, beta_hat=0.1),
         run,
     ):
+        assert repr(result).startswith(f"{type(result).__name__}(")
         assert len(repr(result)) < 160
         assert "array" not in repr(result)

@@ -1,6 +1,7 @@
 """alpha, beta and h against alpha_hat and beta_hat: paper Eqs 6 and 16, both ways."""
 
 import math
+import re
 from fractions import Fraction
 
 import numpy as np
@@ -31,7 +32,14 @@ def test_what_leaves_float64_is_refused_by_name() -> None:
     with pytest.raises(InputError, match="β̂ = β²h² is outside the range of float64"):
         to_dimensionless(Fraction(1), huge, Fraction(1))
     with pytest.raises(InputError, match="α̂ = 2αh is outside the range of float64"):
-        to_dimensionless(huge, Fraction(0), huge)
+        to_dimensionless(huge**2, Fraction(0), Fraction(1))
+
+
+@pytest.mark.parametrize("h", [0, -1e-3, 1e101, math.nan])
+def test_a_step_that_is_none_is_refused_both_ways(h: float) -> None:
+    for convert in (to_dimensionless, from_dimensionless):
+        with pytest.raises(InputError, match=re.escape(f"h = {h:g} s: expected 1e-100 to 1e+100 s")):
+            convert(1.0, 1.0, h)
 
 
 def test_gains_are_the_coefficients_of_equation_6() -> None:

@@ -59,7 +59,7 @@ CLOSE = 1e-4
 """Of |z|: nearer to the circle than a hundred of the fit's errors no verdict is given; on a mechanism that moves not
 nearer than |chi| kappa h, by which its poles move."""
 
-AUDIBLE = 1e-12
+LEAST_RESPONSE = 1e-12
 """SI units: a response below it is lost in the rounding of coordinates of about a metre."""
 
 SETTLING = 30
@@ -72,7 +72,7 @@ SEED = 2024
 """Of the random points: the same every time."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Measurement:
     """Predicted and measured dominant pole at one point; `measured` is None, and `reason` says why, if it cannot be.
 
@@ -94,6 +94,11 @@ class Measurement:
     measured_rate: float | None
     measured_verdict: MeasuredVerdict
     reason: str
+
+    def __repr__(self) -> str:
+        point = f"{self.method.name} at alpha_hat {self.alpha_hat:g}, beta_hat {self.beta_hat:g}"
+        measured = "none measured" if self.measured is None else f"measured {abs(self.measured):.6g}"
+        return f"Measurement({point}: |z_p| = {abs(self.predicted):.6g}, {measured})"
 
     @property
     def verdicts_agree(self) -> bool | None:
@@ -119,7 +124,7 @@ class Measurement:
 def random_points(method: Method, count: int) -> tuple[FloatArray, FloatArray]:
     """Return alpha_hat and beta_hat of random points over region and surroundings, always the same, to six decimals.
 
-    Both have shape (count,).
+    Both have shape (count,) and no dimension. NumericalError as `region`.
     """
     low, high = np.transpose(window(region(method)))
     margin = SURROUNDINGS * (high - low)
@@ -140,10 +145,10 @@ def measure_poles(
     """Return what is predicted and what is measured at each of a row of points.
 
     alpha_hat and beta_hat have shape (points,), h is in s; `progress` sees the step numbers pass. All points run as one
-    batch. Where no pole can be measured the verdict still says whether the error grew or decayed. NumericalError where
-    a predicted pole leaves the range of float64. The prediction is the characteristic polynomial P(z) (paper Eq. 17,
-    Table 2), the first-order law of the motion and, with `floquet`, exact; the measurement is linear prediction
-    (`fit_dominant_pole`).
+    batch. Where no pole can be measured the verdict still says whether the error grew or decayed. InputError for a
+    scene that cannot start; NumericalError where a predicted pole leaves the range of float64. The prediction is the
+    characteristic polynomial P(z) (paper Eq. 17, Table 2), the first-order law of the motion and, with `floquet`,
+    exact; the measurement is linear prediction (`fit_dominant_pole`).
     """
     difference, size = _kicked_responses(mechanism, method, h, alpha_hat, beta_hat, progress)
     step = h * float(method.step_multiple)
@@ -169,15 +174,17 @@ def _kicked_responses(
     shape = (RUN + 1, len(KICKS), alpha_hat.size)
     difference = np.zeros(shape)
     size = np.full(shape, np.inf)
-    point = mechanism, method, h, alpha_hat, beta_hat, KICKS
+    kicked: Iterator[FloatArray] = iter(())
     compiled = runs_compiled(mechanism, method, size.size * 2 * evaluations(method) // CHEAPER_TOGETHER)
     with np.errstate(all="ignore"):  # what diverges runs into infinity, and is cut off there
         if compiled:
-            for some, blocks in kicked_constraint_errors_in_groups(*point, RUN):
+            groups = kicked_constraint_errors_in_groups(mechanism, method, h, alpha_hat, beta_hat, KICKS, RUN)
+            for some, blocks in groups:
                 responses = np.concatenate(list(blocks))
                 difference[:, :, some] = (responses[:, 0, 0] - responses[:, 0, 1]) / 2
                 size[:, :, some] = np.abs(responses).max(axis=(1, 2))
-        kicked = iter(()) if compiled else kicked_constraint_errors(*point)
+        else:
+            kicked = kicked_constraint_errors(mechanism, method, h, alpha_hat, beta_hat, KICKS)
         for k, c in zip(progress(range(RUN + 1)), kicked, strict=False):
             up, down = c[0]
             difference[k] = (up - down) / 2
@@ -242,8 +249,8 @@ def _rate_over_revolutions(revolution: int, difference: FloatArray, size: FloatA
         if end < SETTLING + window + revolution:
             continue
         strengths = np.sqrt(np.convolve(response[SETTLING:end] ** 2, np.ones(window) / window, "valid"))
-        audible = strengths > AUDIBLE
-        last = len(audible) if audible.all() else int(np.argmin(audible))
+        clear = strengths > LEAST_RESPONSE
+        last = len(clear) if clear.all() else int(np.argmin(clear))
         revolutions = (last - 1) // revolution
         if revolutions > longest:
             longest = revolutions
@@ -307,7 +314,8 @@ def kicked_constraint_errors(
 
     The kick of the first constraint (SI units) comes after as many steps as the method has; what a multistep method
     remembers of before is left alone, and so is what a second-order scheme remembers of accelerations: its recursion is
-    linear, and its poles are the same from any first values.
+    linear, and its poles are the same from any first values. h in s, alpha_hat and beta_hat of shape (points,).
+    InputError for a scene that cannot start.
     """
     run_up = _run_up_to_the_kick(mechanism, method, h, alpha_hat, beta_hat, kicks)
     h_step, history = run_up.h_step, run_up.history

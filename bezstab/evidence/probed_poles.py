@@ -71,7 +71,7 @@ HIDDEN = 30.0
 KICK_SHARES = (1.0, 1e-2, 1e-4)
 """Of the kick that a user gives for a step of theirs."""
 
-UNHEARD = 1e9
+UNSEEN_GROWTH = 1e9
 """Times a pole may grow over a log and still not be seen: from the last of nine digits."""
 
 SLOW = 0.05
@@ -88,7 +88,7 @@ FORCED = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ProbedPole:
     """The dominant pole in one response, per row of the log; `pole` is None, and `reason` says why, if none is claimed.
 
@@ -104,8 +104,13 @@ class ProbedPole:
     poles: tuple[complex, ...]
     reason: str
 
+    def __repr__(self) -> str:
+        if self.pole is None:
+            return f"ProbedPole(none: {self.reason})"
+        return f"ProbedPole({self.pole:.6g} to {self.uncertainty:.1g}, from {self.samples} of {self.rows} rows)"
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, repr=False)
 class Likeness:
     """How far a measured pole is from a method's own at one point.
 
@@ -123,13 +128,17 @@ class Likeness:
     dominant: bool
     same_as: str
 
+    def __repr__(self) -> str:
+        fit = "fits" if self.fits else "does not fit"
+        return f"Likeness({self.method.name} {fit}: {self.distance:.3g} of {self.allowed:.3g} allowed)"
+
     @property
     def fits(self) -> bool:
         """Whether the measured pole may be this method's."""
         return self.distance <= self.allowed
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class LikePoint:
     """A point at which a method has the measured pole for its dominant one; errors by the error of the fit."""
 
@@ -139,8 +148,11 @@ class LikePoint:
     alpha_hat_error: float
     beta_hat_error: float
 
+    def __repr__(self) -> str:
+        return f"LikePoint({self.method.name}: alpha_hat = {self.alpha_hat:.6g}, beta_hat = {self.beta_hat:.6g})"
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, repr=False)
 class Probe:
     """What a log says: the pole, and what was asked of it besides.
 
@@ -151,6 +163,10 @@ class Probe:
     found: ProbedPole
     likenesses: tuple[Likeness, ...]
     points: tuple[LikePoint, ...]
+
+    def __repr__(self) -> str:
+        answers = f"{len(self.likenesses)} likenesses, {len(self.points)} points"
+        return f"Probe({self.found!r}, {answers})"
 
     @property
     def pole(self) -> complex | None:
@@ -415,7 +431,7 @@ def _likeness(
     leading = np.abs(z) > (1 - 1 / SAMPLES) * np.abs(z[0])
     # Another pole answers only if the kick has hardly excited the dominant one, and that has not grown out of rounding.
     distances = np.abs(per_row - probed.pole)
-    if probed.rows * np.log(max(np.abs(per_row[0]), 1.0)) > np.log(UNHEARD):
+    if probed.rows * np.log(max(np.abs(per_row[0]), 1.0)) > np.log(UNSEEN_GROWTH):
         distances[~leading] = np.inf
     nearest = int(np.argmin(distances))
     angle = (TURNED if turned is None else turned) * float(method.step_multiple)
@@ -444,7 +460,8 @@ def points_like(probed: ProbedPole, method: Method, between: int = 1) -> list[Li
     A complex pole is two real equations P(z; alpha_hat, beta_hat) = 0 for the two unknowns, and so are two real poles;
     there may be several solutions, that nearest to what an exact integrator would have first, or none. Of z per row the
     root per step of least angle is taken. InputError where the poles leave a curve of points: one real pole does, and
-    so do poles that belong to one mu. Newton's method, from places all over the method's region.
+    so do poles that belong to one mu. Newton's method, from places all over the method's region; NumericalError
+    as `region`.
     """
     if probed.pole is None or probed.uncertainty is None:
         return []

@@ -106,7 +106,8 @@ class MapRows:
 def map_rows(scene: Scene, method: Method, h: float, count: int) -> list[MapRows]:
     """Return the count x count cells of the window that shows the region, by rows (constant beta_hat); h in s.
 
-    They are compiled where that is asked for or pays. InputError where it is asked for and numba is missing.
+    They are compiled where that is asked for or pays. InputError where it is asked for and numba is missing;
+    NumericalError as `region`.
     """
     mechanism = compiled_mechanism(scene)
     compiled = runs_compiled(mechanism, method, 2 * count**2 * MAP_RUN * evaluations(method) // CHEAPER_TOGETHER)
@@ -131,19 +132,23 @@ def simulated_verdicts(rows: MapRows) -> dict[str, BoolArray]:
     """Return where runs diverge, and where they broke down; shape (beta_hat.size, alpha_hat.size).
 
     A run diverges if the difference after the kick grows until c leaves the linear range, or is larger in the last
-    eighth of the run than in the eighth before its middle without having decayed to what is forced.
+    eighth of the run than in the eighth before its middle without having decayed to what is forced. InputError for a
+    scene that cannot start, and where rows are to be compiled without numba.
     """
     alpha_grid, beta_grid = np.meshgrid(rows.alpha_hat, rows.beta_hat)
     alpha_hat, beta_hat = alpha_grid.ravel(), beta_grid.ravel()
     steps_of_a_part = MAP_RUN // PARTS
     largest = np.zeros((PARTS + 1, alpha_hat.size))  # the one step more than eight eighths is a part of its own
     linear = np.full(alpha_hat.size, True)
-    kicks = compiled_mechanism(rows.scene), rows.method, rows.h, alpha_hat, beta_hat, (MAP_KICK,)
+    mechanism, method, h = compiled_mechanism(rows.scene), rows.method, rows.h
+    kicked: Iterator[FloatArray] = iter(())
     with np.errstate(all="ignore"):  # what diverges runs into infinity, and is cut off there
         if rows.compiled:
-            for some, blocks in kicked_constraint_errors_in_groups(*kicks, MAP_RUN):
+            groups = kicked_constraint_errors_in_groups(mechanism, method, h, alpha_hat, beta_hat, [MAP_KICK], MAP_RUN)
+            for some, blocks in groups:
                 linear[some] = _largest_in_parts(blocks, largest[:, some])
-        kicked = iter(()) if rows.compiled else kicked_constraint_errors(*kicks)
+        else:
+            kicked = kicked_constraint_errors(mechanism, method, h, alpha_hat, beta_hat, [MAP_KICK])
         for k, c in zip(range(MAP_RUN + 1), kicked, strict=False):
             linear &= np.abs(c).max(axis=(0, 1, 2)) < LINEAR[0]  # not so where it is not a number
             up, down = c[0, :, 0]

@@ -1,14 +1,17 @@
 """A run together with what its constraints did: what `simulate` on the command line and in Python shows."""
 
+import math
 from dataclasses import dataclass
+from typing import get_args
 
+from bezstab.errors import InputError
 from bezstab.mechanism.compiled import Mechanism
 from bezstab.mechanism.energies import EnergyBalance, energy_balance
 from bezstab.mechanism.observation import FloatArray, Observation, observe, singular_passages
 from bezstab.mechanism.runner import Start, Trajectory, simulate
 from bezstab.mechanism.start import perturbed_state
 from bezstab.methods import Method
-from bezstab.units import feedback_gains
+from bezstab.units import check_step, feedback_gains
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -107,9 +110,16 @@ def simulated(
 ) -> Simulation:
     """Return a run over `duration` (s) from the scene's initial state, its first constraint off by `perturb` (m).
 
-    h (s) is the user's step, a method's own is its step multiple of that. InputError for a scene that cannot start,
-    NumericalError where it cannot be perturbed; what goes wrong on the way is the run's `failure`. Paper Eqs 6 to 9.
+    h (s) is the user's step, a method's own is its step multiple of that. InputError for a scene that cannot start, an
+    h outside 1e-100 to 1e100 s, a duration below a step and another `start`; NumericalError where the scene cannot be
+    perturbed; what goes wrong on the way is the run's `failure`. Paper Eqs 6 to 9.
     """
+    check_step(h)
+    if start not in get_args(Start):
+        raise InputError(f"start {start!r}: expected {', '.join(get_args(Start))}")
+    whole_step = h * float(method.step_multiple)
+    if not whole_step / 2 < duration < math.inf:
+        raise InputError(f"duration {duration:g} s: expected at least one step of {whole_step:g} s")
     gains = feedback_gains(alpha_hat, beta_hat, h)
     state = perturbed_state(mechanism, perturb)
     trajectory = simulate(mechanism, method, h, duration, gains, state, start)

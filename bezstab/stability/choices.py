@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 
@@ -39,6 +39,7 @@ from bezstab.stability.plane_best_points import critical_point
 from bezstab.stability.plane_pencils import PlanePencil
 from bezstab.stability.regions import Extent, Region, pole_place, region
 from bezstab.stability.searches import first_where, zoom_on_minimum
+from bezstab.units import check_step
 
 Goal = Literal["robust", "fastest", "critical", "gentle"]
 Within = Callable[[FloatArray, FloatArray, FloatArray], BoolArray]
@@ -115,8 +116,13 @@ def choose(
     same alpha, beta, and alpha and beta off by the spread (a share), where fast means decay per second. gentle: the
     smallest alpha = beta with |z_p| <= rate. `equal` keeps alpha = beta.
     `modulus` takes the place of |z_p| at rest, for a mechanism that moves; critical asks for poles at rest.
-    InputError if nothing stable meets the goal. The poles are those of paper Eq. 17; the goals are this package's.
+    InputError if nothing stable meets the goal, for another goal and for a spread outside 0 to 1; NumericalError if a
+    second route contradicts the answer (answer_checks). The poles are those of paper Eq. 17; the goals are this
+    package's.
     """
+    if goal not in get_args(Goal):
+        raise InputError(f"goal {goal!r}: expected {', '.join(get_args(Goal))}")
+    _check_spread(spread)
     stable = region(method)
     if stable.extent is None:
         reason = ""
@@ -153,6 +159,11 @@ def choose(
     return replace(choice, searched=SEARCHED) if cut else choice
 
 
+def _check_spread(spread: float) -> None:
+    if not 0 <= spread < 1:
+        raise InputError(f"spread {spread:g}: expected a share from 0 to 1")
+
+
 def _box(stable: Region) -> tuple[Extent, bool]:
     """Return the ranges over which to search, and whether they cut off a region that goes on."""
     assert stable.extent
@@ -180,13 +191,17 @@ def choose_at_step(
 
     At a smaller step the same alpha and beta are a smaller alpha_hat = 2 alpha h and beta_hat = beta^2 h^2 (paper Eq.
     16). `settle` (s) is the time in which the error of `gentle` falls a thousandfold; `modulus`, of the largest step,
-    is as for `choose`. InputError as for `choose`, and for an h_max below h or without the goal robust, and for a
-    settle without the goal gentle, or that without it.
+    is as for `choose`. Errors as for `choose`; InputError, too, for a step outside 1e-100 to 1e100 s, for an h_max
+    below h or without the goal robust, and for a settle that is not positive or without the goal gentle, or that
+    without it.
     """
+    check_step(h)
     if h_max is not None and (goal != "robust" or h_max < h):
         raise InputError(f"h_max = {float(h_max):g} s: only for the goal robust, and at least h = {float(h):g} s")
     if (settle is not None) != (goal == "gentle"):
         raise InputError("settle, a time in s, and the goal gentle go together")
+    if settle is not None and settle <= 0:
+        raise InputError(f"settle = {float(settle):g} s: expected a positive time")
     rate = None
     if settle is not None:
         rate = THOUSANDFOLD ** float(h * method.step_multiple / settle)
@@ -202,8 +217,9 @@ def describe_point(method: Method, goal: str, alpha_hat: Fraction, beta_hat: Fra
     """Return what there is to say of an exact, dimensionless point; `goal` is only kept.
 
     `spread` is the share by which alpha and beta may be off. NumericalError if a pole (a root of paper Eq. 17) leaves
-    the range of float64.
+    the range of float64; InputError for a spread outside 0 to 1.
     """
+    _check_spread(spread)
     pencil = any_pencil_of(method)
     a, b = float(alpha_hat), float(beta_hat)
     proven = verdict(method, alpha_hat, beta_hat)

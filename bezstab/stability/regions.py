@@ -29,7 +29,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bezstab.errors import NumericalError
+from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method, SecondOrder, fixed_poles, plane_strips, without_shared_factor
 from bezstab.rationals import exact
 from bezstab.stability.arrays import BoolArray, FloatArray
@@ -100,10 +100,12 @@ def region(method: Method, level: float = 1.0) -> Region:
     """Return the region |z_p| < level, 0 < level <= 1; area and extent are good to about 1e-12.
 
     Dimensionless; from the boundary locus of paper Eq. 17, held against slices that share nothing with it
-    (self_checks). NumericalError if they disagree, or its edges leave a gap, on a finer sampling of the locus as well:
-    not found is an edge on which several roots have |z| = level, or one so short, where the level is hardly above the
-    least |z_p|, that it lies between two samples.
+    (self_checks). InputError for another level; NumericalError if they disagree, or its edges leave a gap, on a finer
+    sampling of the locus as well: not found is an edge on which several roots have |z| = level, or one so short, where
+    the level is hardly above the least |z_p|, that it lies between two samples.
     """
+    if not 0 < level <= 1:
+        raise InputError(f"level {level:g}: expected above 0 and at most 1, the stability boundary")
     stuck = fixed_poles(method)
     if stuck and abs(stuck[0]) >= level * (1 - ROUNDING):
         return Region(method, level, 0.0, (), None, stuck)
