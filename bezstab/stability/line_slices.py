@@ -15,7 +15,7 @@ Between two neighbours the verdict is constant, and Schur's recursion, which com
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from math import comb
 
 import numpy as np
@@ -25,6 +25,7 @@ from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
 from bezstab.stability.exact_sums import feedback_roots
 from bezstab.stability.pencils import Pencil, roots_in_mu
 from bezstab.stability.root_finding import horner
+from bezstab.stability.searches import false_position
 
 COSINE_SLACK = 1e-6  # a double zero splits by sqrt(eps) = 1e-8 into the complex plane; more candidates do no harm
 TRUE_DEGREE = 1e-12  # relative: Chebyshev coefficients of a polynomial of lower degree are rounding, 1e-16 or so
@@ -270,6 +271,11 @@ class _QuadraticLocus:
             mu = np.stack([c[0] / far, far / c[2]])
         return np.where(np.isfinite(mu), mu, FAR)
 
+    def _excess(self, which: int, target: FloatArray, theta: FloatArray) -> FloatArray:
+        """Return by how much the smaller or larger mu (`which`) exceeds a radius in modulus; shapes of one kind."""
+        excess: FloatArray = np.abs(self.both(theta)[which]) - target
+        return excess
+
     def crossings(self, radius: FloatArray) -> FloatArray:
         """Return Re mu wherever either modulus equals a radius, nan padded; shape (rows, candidates)."""
         order = np.argsort(radius)
@@ -281,20 +287,13 @@ class _QuadraticLocus:
             count = np.searchsorted(levels, np.maximum(values[1:], values[:-1]), "right") - first
             cell = np.repeat(np.arange(len(count)), count)
             row = np.arange(count.sum()) + np.repeat(first - np.cumsum(count) + count, count)
-            low, high, target = self.theta[cell], self.theta[cell + 1], levels[row]
-            below, above = values[cell] - target, values[cell + 1] - target
-            for _ in range(ILLINOIS):
-                middle = low - below * (high - low) / (above - below)
-                middle = np.where(np.isfinite(middle), middle, (low + high) / 2)
-                off = np.abs(self.both(middle)[which]) - target
-                same = np.sign(off) == np.sign(above)
-                low, below, above = (
-                    np.where(same, low, high),
-                    np.where(same, below / 2, above),
-                    off,
-                )
-                high = middle
-            real_parts.append(self.both(middle)[which].real)
+            angle = false_position(
+                partial(self._excess, which, levels[row]),
+                (self.theta[cell], values[cell] - levels[row]),
+                (self.theta[cell + 1], values[cell + 1] - levels[row]),
+                rounds=ILLINOIS,
+            )
+            real_parts.append(self.both(angle)[which].real)
             rows.append(row)
         row, real = np.concatenate(rows), np.concatenate(real_parts)
         by_row = np.argsort(row, kind="stable")

@@ -1,9 +1,9 @@
-"""The two kinds of search that this package needs: for where a condition comes to hold, and for a least value.
+"""The kinds of search that this package needs: where a condition comes to hold, a zero between signs, a least value.
 
-Both evaluate whole arrays of points, and many brackets side by side: one call for a thousand polynomials costs little
+All evaluate whole arrays of points, and many brackets side by side: one call for a thousand polynomials costs little
 more than one for a single polynomial. scipy's `brentq` and `minimize_scalar` would serve one bracket at a time, and
 need smooth functions to be fast, while |z_p| has kinks just where it is least. And they would make a fifth required
-package for two short functions. Bisecting until the ends are neighbours keeps the last digit.
+package for a few short functions. Bisecting until the ends are neighbours keeps the last digit.
 """
 
 from collections.abc import Callable
@@ -46,6 +46,32 @@ def first_where(holds: Callable[[FloatArray], BoolArray], samples: FloatArray) -
     after = samples[found[0]]
     ends = bisected(holds, np.array([before]), np.array([after]))
     return float(ends[0][0]), float(ends[1][0])
+
+
+def false_position(
+    values_at: Callable[[FloatArray], FloatArray],
+    first: tuple[FloatArray, FloatArray],
+    last: tuple[FloatArray, FloatArray],
+    rounds: int,
+) -> FloatArray:
+    """Return where smooth functions are zero between two places, each given with the values there, of unlike signs.
+
+    Arrays of one shape, one search for each entry; values_at takes and returns such arrays. Each round draws a chord
+    through the ends; an end that stays twice has its value halved (Illinois algorithm: Dowell & Jarratt, BIT 11, 1971).
+    It takes a handful of rounds where bisection takes fifty.
+    """
+    low, below = first
+    high, above = last
+    middle = high
+    for _ in range(rounds):
+        with np.errstate(divide="ignore", invalid="ignore"):  # a chord between equal values leads nowhere
+            middle = low - below * (high - low) / (above - below)
+        middle = np.where(np.isfinite(middle), middle, (low + high) / 2)
+        off = values_at(middle)
+        same = np.sign(off) == np.sign(above)
+        low, below = np.where(same, low, high), np.where(same, below / 2, above)
+        high, above = middle, off
+    return middle
 
 
 # A zoom: a grid around the centre, a smaller grid around its best point, and so on.
