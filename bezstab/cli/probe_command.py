@@ -332,9 +332,11 @@ def _turned(turning: Fraction | None, h: float | None, row: float | None, every:
     """Return kappa h for a rate in 1/s, None if none is given; UsageError without a step in s."""
     if turning is None:
         return None
-    if h is None and row is None:
-        raise click.UsageError("--turning is a rate in 1/s: it needs --h, or a column of times in the log")
-    return float(turning) * (h if h is not None else (row or 0.0) / every)
+    if h is not None:
+        return float(turning) * h
+    if row is not None:
+        return float(turning) * row / every
+    raise click.UsageError("--turning is a rate in 1/s: it needs --h, or a column of times in the log")
 
 
 def _check_rows(

@@ -129,12 +129,17 @@ def implicit_solver(mechanism: Mechanism, method: Method, library: Any, work: Wo
     tolerance = TOLERANCE * rounding_of(library)
 
     inverses: dict[int, Any] = {}  # of the Jacobians, by group: kept from step to step
-    arrays = library is np
 
     def solve(number: int, *situation_known_guess: Any) -> tuple[Sequence[Any], Any]:
         *situation, known, guess = situation_known_guess
-        problem = residuals[number], situation, known, guess, inverses.get(number), tolerance
-        found, pivot, inverses[number] = newton_solutions(*problem) if arrays else newton_solution(*problem, work)
+        residual, inverse = residuals[number], inverses.get(number)
+        found: Sequence[Any]
+        if library is np:
+            found, pivot, inverses[number] = newton_solutions(residual, situation, known, guess, inverse, tolerance)
+        else:
+            found, pivot, inverses[number] = newton_solution(
+                residual, situation, known, guess, inverse, tolerance, work
+            )
         return found, pivot
 
     return solve

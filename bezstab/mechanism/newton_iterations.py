@@ -173,8 +173,9 @@ def newton_solutions(
             values[:, again] = at_guess[:, points[again]]
             renewed = points[bad]
             inherited[renewed] = False
-            here = situations[:, renewed], knowns[:, renewed], unknown[:, renewed]
-            inverse[:, :, renewed] = _inverse_jacobians(residual, *here)
+            inverse[:, :, renewed] = _inverse_jacobians(
+                residual, situations[:, renewed], knowns[:, renewed], unknown[:, renewed]
+            )
             corrections[:, bad] = (inverse[:, :, renewed] * values[:, bad]).sum(axis=1)
         unknown[:, points] -= corrections
         moved = np.abs(corrections).sum(axis=0)
