@@ -16,7 +16,8 @@ Point = tuple[Fraction, Fraction]
 class Applied:
     """The point that an engine makes of values, what it did to them (sentences), and points it also takes, labelled.
 
-    `also` is for feedback that changes with the size of the error: safe is what is safe at those points, too.
+    Points are (alpha_hat, beta_hat), exact and dimensionless. `also` is for feedback that changes with the size of the
+    error: safe is what is safe at those points, too.
     """
 
     point: Point

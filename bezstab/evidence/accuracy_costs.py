@@ -112,7 +112,7 @@ def sweep_compiled(
     """Return whether the runs of a sweep are compiled: all or none, so that their times can be compared.
 
     `runs_compiled` says so for each method's runs together, step sizes and duration in s. If that is asked for all
-    are, but for methods that solve equations; by default none are where one is not.
+    are, but for methods that solve equations; by default none are where one is not. InputError as `runs_compiled`.
     """
     mechanism = compiled_mechanism(scene)
     user_steps = repeats * sum(duration / h for h in step_sizes)

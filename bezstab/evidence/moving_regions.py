@@ -88,7 +88,8 @@ def moving_growth(
 def moving_modulus(method: Method, turning: TurningNormals, h: float) -> Modulus:
     """Return the function that gives |z| a step over the motion for arrays of alpha_hat and beta_hat; h in s.
 
-    Where the first-order law makes it larger than exp(HOPELESS) that number stands for it.
+    Where the first-order law makes it larger than exp(HOPELESS) that number stands for it. NumericalError, when called,
+    as `moving_growth`; dimensionless, shape of the two broadcast.
     """
 
     def modulus(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:

@@ -72,7 +72,7 @@ class Witnessed:
 def mujoco_witnesses(mechanism: Mechanism, h: float) -> Iterator[Witnessed]:
     """Yield what each of MuJoCo's integrators does at 0.9 and 1.1 times the boundary along several rays; h in s.
 
-    InputError without MuJoCo, or for a scene that is not made of revolute joints alone.
+    InputError without MuJoCo, or for a scene that is not made of revolute joints and gravity alone.
     """
     mujoco = mujoco_module("--witness mujoco")
     for integrator, name in INTEGRATORS.items():
@@ -125,7 +125,8 @@ def witness_count() -> int:
 def model_xml(scene: Scene, integrator: str, h: float, alpha_hat: float, beta_hat: float) -> str:
     """Return the scene as MuJoCo's XML: a joint per free coordinate, in their order, and a connection per revolute.
 
-    It holds numbers and names made here, nothing else of the scene.
+    It holds numbers and names made here, nothing else of the scene; h in s, SI units. InputError for a scene that is
+    not made of revolute joints and gravity alone.
     """
     if scene.forces or scene.springs or not all(isinstance(joint, Revolute) for joint in scene.joints):
         raise InputError(f"--witness mujoco: {scene.name} has more than revolute joints and gravity: not supported")

@@ -45,7 +45,8 @@ def reference_motion(scene: Scene, h: float, duration: float) -> ReferenceMotion
     """Return the motion from RK4 at half of h (s) and less, until halving no longer changes it but by rounding.
 
     Feedback does not enter: the exact motion has c = 0. The error is the largest difference to the run at twice the
-    step, its interpolation included. NumericalError if the run fails. Duration in s.
+    step, its interpolation included. InputError for a scene that cannot start, NumericalError if the run fails.
+    Duration in s.
     """
     coarse: ReferenceMotion | None = None
     for halving in range(1, HALVINGS + 2):

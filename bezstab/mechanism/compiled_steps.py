@@ -63,7 +63,10 @@ class Block:
 
 
 def compiled_asked_for() -> bool:
-    """Return whether runs are to be compiled even where that does not pay."""
+    """Return whether runs are to be compiled even where that does not pay.
+
+    InputError where BEZSTAB_COMPILED says neither auto nor yes nor no.
+    """
     return compiled_choice() == "yes"
 
 
@@ -71,7 +74,7 @@ def runs_compiled(mechanism: Mechanism, method: Method, evaluations: int) -> boo
     """Return whether a run of so many evaluations is to be compiled. InputError if it must be and numba is missing.
 
     By default where numba is there and it pays: the run is long, or has been compiled before. Methods that solve
-    equations run in Python, whatever is asked for.
+    equations run in Python, whatever is asked for. InputError, too, as `compiled_asked_for`.
     """
     choice = compiled_choice()
     if choice == "no" or implicit(method):

@@ -42,7 +42,10 @@ class EnergyBalance:
 
 
 def energy_balance(observation: Observation, h: float) -> EnergyBalance:
-    """Return the energy balance of a run from what was observed at its times, evenly spaced by h (s)."""
+    """Return the energy balance of a run from what was observed at its times, evenly spaced by h (s).
+
+    In J, shape (times,) each; powers are integrated by polynomials through neighbouring times.
+    """
     with np.errstate(all="ignore"):  # of a broken-down run's last multipliers
         driver_work = running_integral(observation.driver_power, h)
         force_work = running_integral(observation.applied_power, h)

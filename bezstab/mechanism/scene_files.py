@@ -39,7 +39,10 @@ def shipped_scenes() -> dict[str, Path]:
 
 
 def load_scene(name: str) -> Scene:
-    """Return the shipped scene of that name, or the one in a .toml file; InputError, with the nearest name, if none."""
+    """Return the shipped scene of that name, or the one in a .toml file; InputError, with the nearest name, if none.
+
+    In SI units and rad. InputError, too, as `read_scene`.
+    """
     if name.endswith(".toml"):
         return read_scene(Path(name))
     shipped = shipped_scenes()

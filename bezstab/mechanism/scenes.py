@@ -31,7 +31,7 @@ class Body:
 
 @dataclass(frozen=True)
 class Revolute:
-    """One point of each body coincides: two constraints."""
+    """One point of each body coincides: two constraints, c in m; points in m in the body's frame."""
 
     bodies: tuple[str, str]
     points: tuple[Point, Point]
@@ -39,7 +39,7 @@ class Revolute:
 
 @dataclass(frozen=True)
 class PointOnLine:
-    """The second body's point stays on the line through the first's, along a direction fixed in the first."""
+    """The second body's point stays on the line through the first's, along a direction fixed in the first; c in m."""
 
     bodies: tuple[str, str]
     points: tuple[Point, Point]
@@ -48,7 +48,7 @@ class PointOnLine:
 
 @dataclass(frozen=True)
 class Distance:
-    """Two points keep their distance: c = (d^2 - length^2) / (2 length)."""
+    """Two points keep their distance: c = (d^2 - length^2) / (2 length), all in m."""
 
     bodies: tuple[str, str]
     points: tuple[Point, Point]
@@ -57,7 +57,10 @@ class Distance:
 
 @dataclass(frozen=True)
 class Driver:
-    """A coordinate follows offset + rate t + acceleration t^2 / 2 + amplitude sin(frequency t + phase)."""
+    """A coordinate follows offset + rate t + acceleration t^2 / 2 + amplitude sin(frequency t + phase).
+
+    In m or rad, as the coordinate is; t in s, frequency in rad/s, phase in rad.
+    """
 
     coordinate: str
     offset: float

@@ -220,7 +220,8 @@ def _product(first: list[int], second: list[int]) -> list[int]:
 def feedback_matrix(method: Method) -> Table:
     """Return the 2x2 matrix that takes (alpha_hat, beta_hat) to the coefficients of mu^1 and mu^0 in the feedback.
 
-    The identity for most; it holds the step multiple, and for a partitioned method the difference of its two maps.
+    Exact and dimensionless. The identity for most; it holds the step multiple, and for a partitioned method the
+    difference of its two maps.
     """
     by_power = feedback_polynomial(method).rep.to_dict()
     p, q = (by_power.get((j,), {}) for j in (1, 0))
@@ -229,7 +230,10 @@ def feedback_matrix(method: Method) -> Table:
 
 @cache
 def coefficient_table(method: Method) -> Table:
-    """Return C with pi(z, mu) = sum_kj C[k][j] z^k mu^j, exact; steps + 1 rows, one column for each power of mu."""
+    """Return C with pi(z, mu) = sum_kj C[k][j] z^k mu^j, exact; steps + 1 rows, one column for each power of mu.
+
+    TypeError for a second-order scheme, as `characteristic_polynomial`.
+    """
     return table_of(characteristic_polynomial(method))
 
 
@@ -246,7 +250,10 @@ def _fraction(c: sp.Rational) -> Fraction:
 
 
 def branch_polynomial(method: Method) -> tuple[Fraction, ...]:
-    """Return the polynomial in z, ascending, that is zero wherever two roots of pi(., mu) meet: Res_mu(pi, d pi/dz)."""
+    """Return the polynomial in z, ascending, that is zero wherever two roots of pi(., mu) meet: Res_mu(pi, d pi/dz).
+
+    Exact. TypeError for a second-order scheme, as `characteristic_polynomial`.
+    """
     pi = characteristic_polynomial(method).reorder(MU, Z)  # its first symbol is the one that is eliminated
     meeting = pi.resultant(pi.diff(Z))
     return tuple(_fraction(c) for c in reversed(meeting.rep.to_list()))

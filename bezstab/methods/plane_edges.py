@@ -100,7 +100,8 @@ def crossing_factors_in_plane(
 ) -> list[float]:
     """Return every factor s > 0 at which the path (s^i alpha_hat, s^j beta_hat) meets an edge of |z_p| < 1, or a level.
 
-    Of a second-order scheme; (i, j) are the powers. Good to rounding; in no order.
+    Of a second-order scheme, exactly cut (`plane_strips`); (i, j) are the powers, all is dimensionless. Good to
+    rounding; in no order.
     """
     strips = plane_strips(method, ONE)
     if strips is None:

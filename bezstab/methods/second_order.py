@@ -59,7 +59,7 @@ Combination = tuple[tuple[Fraction, Quantity], ...]
 
 @dataclass(frozen=True)
 class Assignment:
-    """result = value."""
+    """result = value, a sum of numbers times quantities, in units in which h = 1."""
 
     result: Quantity
     value: Combination

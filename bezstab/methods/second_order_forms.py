@@ -25,7 +25,10 @@ PREDICTED = {POSITION: "predicted_x", VELOCITY: "predicted_v", ACCELERATION: "pr
 
 
 def second_order_form(scheme: Scheme) -> SecondOrder:
-    """Return the scheme as a second-order one, with h = 1; the same P(z; alpha_hat, beta_hat) up to powers of z."""
+    """Return the scheme as a second-order one, with h = 1; the same P(z; alpha_hat, beta_hat) up to powers of z.
+
+    Exact. Theory: the docstring of this file.
+    """
     match scheme:
         case SecondOrder():
             return scheme

@@ -47,7 +47,10 @@ def _coefficients_in_z(method: Method) -> list[list[Fraction]]:
 
 @cache
 def reduced_table(method: Method) -> PlaneTable:
-    """Return `closed_loop_table` with the factor cancelled that all its coefficients share: without the fixed poles."""
+    """Return `closed_loop_table` with the factor cancelled that all its coefficients share: without the fixed poles.
+
+    Exact, of the same layout; dimensionless.
+    """
     table = closed_loop_table(method)
     factor = shared_factor(method) if isinstance(method.scheme, SecondOrder) else (Fraction(1),)
     if len(factor) == 1:

@@ -211,7 +211,7 @@ def matrix_product(first: list[list[Fraction]], second: list[list[Fraction]]) ->
 
 
 def polynomial_product(first: StepPolynomial, second: StepPolynomial) -> StepPolynomial:
-    """Return the product of two polynomials in s."""
+    """Return the product of two polynomials in s, exact, coefficients ascending."""
     terms = product(_terms(first), _terms(second), Work())
     return _ascending(terms, 0)
 
@@ -221,5 +221,5 @@ def _terms(polynomial: StepPolynomial) -> Terms:
 
 
 def polynomial_determinant(rows: list[list[StepPolynomial]]) -> StepPolynomial:
-    """Return the determinant of a matrix of polynomials in s."""
+    """Return the determinant of a matrix of polynomials in s, exact, coefficients ascending."""
     return _ascending(determinant([[_terms(entry) for entry in row] for row in rows]), 0)

@@ -140,7 +140,10 @@ def formula_row(method: Method, latex: bool = False) -> Row:
 
 
 def whole_row(method: Method, region: Region, best: BestPoint | None, latex: bool) -> Row:
-    """Return all that is known of one method: method_row, formula_row (as text or LaTeX) and region_row."""
+    """Return all that is known of one method: method_row, formula_row (as text or LaTeX) and region_row.
+
+    NumericalError as `region_row`.
+    """
     return {**method_row(method), **formula_row(method, latex), **region_row(region, best)}
 
 
@@ -150,6 +153,7 @@ def region_row(region: Region, best: BestPoint | None) -> Row:
     Area and limits are None where the region is empty, or has none. stable_for_all is about every alpha_hat,
     beta_hat > 0; unconditional_damping_ratio is the alpha / beta above which every step is stable (None if there is
     none); critical_damping_limit the largest beta h on alpha = beta up to which all are (None if there is none).
+    NumericalError where a pole leaves the range of float64.
     """
     from bezstab.show.best_point_text import best_point_words
     from bezstab.stability import critical_damping_limit, stable_for_all, unconditional_damping_ratio

@@ -53,7 +53,8 @@ CLOSE = sp.Rational(1, 10**30)  # width to which a zero is isolated
 def critical_damping_limit(method: Method) -> float | None:
     """Return the largest beta h on alpha = beta up to which every smaller one is stable; None if there is no limit.
 
-    Zero where not even small steps are stable. For a multistep or Runge-Kutta method good to rounding.
+    Zero where not even small steps are stable; dimensionless. For a multistep or Runge-Kutta method good to rounding.
+    NumericalError if a pole (a root of paper Eq. 17) leaves the range of float64.
     """
     if _sticks(method):
         return 0.0
@@ -75,7 +76,8 @@ def critical_damping_limit(method: Method) -> float | None:
 def unconditional_damping_ratio(method: Method) -> float | None:
     """Return the damping ratio alpha / beta above which every step is stable; None if there is none.
 
-    Zero where all of alpha_hat, beta_hat > 0 is stable. Good to about 1e-9.
+    Zero where all of alpha_hat, beta_hat > 0 is stable; dimensionless. Good to about 1e-9. NumericalError as
+    `critical_damping_limit`.
     """
     if _sticks(method):
         return None

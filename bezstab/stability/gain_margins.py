@@ -41,7 +41,10 @@ class GainLimits:
 
 
 def gain_limits(choice: Choice) -> GainLimits:
-    """Return how far each of a point's two gains is from its limit, upwards from a stable point, else downwards."""
+    """Return how far each of a point's two gains is from its limit, upwards from a stable point, else downwards.
+
+    Dimensionless. NumericalError if a pole (a root of paper Eq. 17) leaves the range of float64.
+    """
     a, b = choice.alpha_hat, choice.beta_hat
     if choice.margins:
         factors: tuple[float | None, float | None] = (choice.margins.alpha[1], choice.margins.beta[1] ** 2)

@@ -28,7 +28,7 @@ def stability_margins(method: Method, alpha_hat: Fraction | float, beta_hat: Fra
     A factor s on h makes (s alpha_hat, s^2 beta_hat), on alpha (s alpha_hat, beta_hat), on beta (alpha_hat,
     s^2 beta_hat): paper Eq. 16. An end without |z_p| = 1 (a pole of paper Eq. 17) is infinite, or zero.
     Ends are where the path crosses the exact boundary, and the proven verdict turns there: one part in 1e9 nearer it
-    converges, one part further it does not. NumericalError if it does not turn so.
+    converges, one part further it does not. NumericalError if it does not turn so, as from a point that is not stable.
     """
     exact_point = Fraction(alpha_hat), Fraction(beta_hat)
     by_h, by_alpha, by_beta = (Path(method, *exact_point, powers) for powers in ((1, 2), (1, 0), (0, 2)))

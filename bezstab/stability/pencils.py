@@ -99,7 +99,10 @@ class Pencil:
 
 @cache
 def pencil_of(method: Method) -> Pencil:
-    """Return the pencil of a method; NumericalError if its coefficients leave the range of float64."""
+    """Return the pencil of a method; NumericalError if its coefficients leave the range of float64.
+
+    TypeError for a second-order scheme, which has no pi(z, mu).
+    """
     table = _floats(method, coefficient_table(method))
     feedback = feedback_matrix(method)
     to_feedback = _floats(method, feedback)

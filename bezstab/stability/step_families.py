@@ -52,7 +52,7 @@ class Limit:
 def family_members(family: str, first: int, last: int) -> list[Member]:
     """Return the methods of a family (a key of FAMILIES) from `first` to `last` steps, with their regions.
 
-    NumericalError as for `region` and `best_point`.
+    KeyError for another family; NumericalError as for `region` and `best_point`. Dimensionless.
     """
     make, _ = FAMILIES[family]
     members = []

@@ -79,7 +79,8 @@ def varying_steps(
 
     alpha_hat and beta_hat are those of a step of h (s); the alpha and beta that belong to them stay as they are, or
     with `hold` alpha_hat and beta_hat do. InputError for a method of several steps, whose coefficients assume equal
-    steps, and unless 0 < h_min <= h_max. Lyapunov functions: Liberzon, Switching in Systems and Control, chapter 2.
+    steps, and unless 0 < h_min <= h_max <= 1e12 h_min. Lyapunov functions: Liberzon, Switching in Systems and Control,
+    chapter 2.
     """
     if not 0 < h_min <= h_max <= LONGEST_RANGE * h_min:
         raise InputError(
