@@ -132,7 +132,7 @@ def _give_up_output() -> None:
 @click.version_option(__version__)
 @click.pass_context
 def main(context: click.Context) -> None:
-    """Which Baumgarte parameters are safe, and best, for an explicit integrator at its step size?
+    """Which Baumgarte parameters are safe, and best, for an integrator at its step size?
 
     Everywhere α̂ = 2αh and β̂ = β²h² (dimensionless) for the feedback c̈ + 2αċ + β²c = 0 and a step of h seconds.
     """
