@@ -76,15 +76,15 @@ def _read_xpbd(
 ) -> Point:
     refuse_unless_positive("xpbd", compliance=compliance, w=inverse_mass)
     refuse_below_zero("xpbd", damping=damping)
-    return damping * h * inverse_mass, h * h * inverse_mass / compliance
+    return from_feedback_gains(damping * inverse_mass, inverse_mass / compliance, h)
 
 
 def _write_xpbd(point: Point, h: Fraction) -> str:
     alpha_hat, beta_hat = point
     if beta_hat == 0:
         raise InputError("xpbd with β̂ = 0 has no spring: its compliance would be infinite")
-    compliance, damping = float(h * h / beta_hat), float(alpha_hat / h)
-    return f"compliance = {in_words(compliance)}, damping = {in_words(damping)}, w = 1"
+    two_alpha, beta_squared = feedback_gains(alpha_hat, beta_hat, h)
+    return f"compliance = {in_words(float(1 / beta_squared))}, damping = {in_words(float(two_alpha))}, w = 1"
 
 
 XPBD = Engine(

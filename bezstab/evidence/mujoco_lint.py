@@ -29,6 +29,7 @@ from bezstab.evidence.mujoco_models import Constraint, Feedback, ModelData
 from bezstab.methods import Method, Verdict, closed_loop_at, lookup, recursion_verdict
 from bezstab.rationals import exact
 from bezstab.stability import BoolArray, FloatArray, first_where, poles, spectral_radius
+from bezstab.units import feedback_gains
 
 Point = tuple[Fraction, Fraction]
 """alpha_hat and beta_hat."""
@@ -539,6 +540,7 @@ def _regularized(
         at_rest, largest, width = constraint.solimp
         d = at_rest if width > 0 else (at_rest + largest) / 2
         softening += np.maximum(LEAST_SOFTENING, constraint.diagonal * (1 - d) / d).tolist()
-        damper += [float(alpha_hat) / h / largest] * len(constraint.diagonal)
-        spring += [float(beta_hat) / h**2 * d / largest**2] * len(constraint.diagonal)
+        two_alpha, beta_squared = feedback_gains(float(alpha_hat), float(beta_hat), h)
+        damper += [two_alpha / largest] * len(constraint.diagonal)
+        spring += [beta_squared * d / largest**2] * len(constraint.diagonal)
     return np.array(softening), np.array(damper), np.array(spring)
