@@ -149,8 +149,9 @@ def choose(
     robust: fastest at worst over smaller steps and over alpha, beta off by the share `spread`; with `h` and `h_max`
     (s) the steps up to h_max, for use at h. fastest: least |z_p|. critical: the fastest dominant pole that is double,
     real and positive. gentle: the mildest alpha = beta whose error falls a thousandfold within `settle` (s) at the step
-    `h` (s). `equal` keeps alpha = beta. `from_dimensionless` turns the answer into 1/s. InputError if nothing stable meets the goal, and
-    for a goal, spread or time that is none. The poles are those of paper Eq. 17, the goals this package's.
+    `h` (s). `equal` keeps alpha = beta. `from_dimensionless` turns the answer into 1/s. InputError if nothing stable
+    meets the goal, and for a goal, spread or time that is none. The poles are those of paper Eq. 17, the goals this
+    package's.
     """
     if h is None:
         if h_max is not None or settle is not None or goal == "gentle":
