@@ -26,6 +26,7 @@ BEYOND_FIRST_ORDER = 0.5  # |chi| kappa h: from here on the terms left out are a
 
 LARGEST_CHI = 32.0  # of the table: ten times what is seen on a boundary; further out the law does not hold at any speed
 RADII, ANGLES = 101, 61
+AT_A_TIME = 1024  # chi whose Y stay in a core's cache through all steps
 RESCALED = 20  # steps between two looks at how large Y has grown: e^(32 kappa T / 10) at most, within float64
 
 MovingVerdict = Literal["converges", "diverges", "not settled for this mechanism"]
@@ -72,8 +73,14 @@ def growth_rates(turning: TurningNormals, chi: ArrayLike) -> FloatArray:
     middle of a step. From |chi| = LARGEST_CHI on it is taken to grow in proportion.
     """
     chi = np.asarray(chi, complex)
+    parts = np.array_split(chi.ravel(), chi.size // AT_A_TIME + 1)
+    return np.concatenate([_growth_rates_of_row(turning, part) for part in parts]).reshape(chi.shape)
+
+
+def _growth_rates_of_row(turning: TurningNormals, chi: ComplexArray) -> FloatArray:
+    """Return growth_rates of a row of chi, shape (chi.size,)."""
     beyond = np.maximum(1, np.abs(chi) / LARGEST_CHI)
-    factor = (chi / beyond).ravel()
+    factor = chi / beyond
     size = turning.rates.shape[1]
     grown = np.zeros((size, size, chi.size), complex)  # chi last: K multiplies them all at once
     grown[range(size), range(size)] = 1
@@ -86,13 +93,13 @@ def growth_rates(turning: TurningNormals, chi: ArrayLike) -> FloatArray:
             largest = np.abs(grown).max(axis=(0, 1))
             grown /= largest
             log_scale += np.log(largest)
-    grown = grown.transpose(2, 0, 1).reshape(*chi.shape, size, size)
+    grown = grown.transpose(2, 0, 1)
     if turning.closed:
         growth = np.abs(np.linalg.eigvals(grown)).max(axis=-1)
     else:
         before, after = (np.linalg.cholesky(metric) for metric in turning.metric)
         growth = np.linalg.norm(np.linalg.solve(after, grown @ before), ord=2, axis=(-2, -1))
-    return np.asarray(beyond * (np.log(growth) + log_scale.reshape(chi.shape)) / turning.duration)
+    return np.asarray(beyond * (np.log(growth) + log_scale) / turning.duration)
 
 
 def _step_polynomials(turning: TurningNormals) -> FloatArray:

@@ -238,7 +238,7 @@ def in_every_format(commands: list[str]) -> list[Any]:
             "engines --alpha 0.5 --beta 0.25",
             "family bezier --from 3 --to 4 --figure none",
             "check --method RK1 --alpha 1 --beta 0.25",
-            "verify --map 3 --figure none --table none",
+            "verify --map 3 --workers 1 --figure none --table none",
             "tradeoff --method SYM --h 0.01 --h 0.02 --time 0.1 --figure none --table none",
         ]
     ),
@@ -278,7 +278,7 @@ def test_every_option_explains_itself(name: str) -> None:
 
 
 def test_a_closed_pipe_is_no_error_to_read() -> None:
-    with subprocess.Popen(interruptible("methods"), stdout=subprocess.PIPE, stderr=subprocess.PIPE) as source:
+    with subprocess.Popen(interruptible("engines"), stdout=subprocess.PIPE, stderr=subprocess.PIPE) as source:
         assert source.stdout
         assert source.stderr
         source.stdout.close()
@@ -286,19 +286,19 @@ def test_a_closed_pipe_is_no_error_to_read() -> None:
 
 
 @pytest.mark.parametrize(
-    "command",
+    ("command", "seconds"),
     [
-        pytest.param("region --grid 4000 --method B12", marks=pytest.mark.slow),
-        "simulate --time 10000 --compiled no",
-        pytest.param("simulate --time 100000 --method RK4 --compiled yes", marks=pytest.mark.slow),
-        pytest.param("verify --points 1000 --method B12", marks=pytest.mark.slow),
+        pytest.param("region --grid 4000 --method B12", 5, marks=pytest.mark.slow),
+        ("simulate --time 10000 --compiled no", 2),
+        pytest.param("simulate --time 100000 --method RK4 --compiled yes", 5, marks=pytest.mark.slow),
+        pytest.param("verify --points 1000 --method B12", 5, marks=pytest.mark.slow),
     ],
 )
-def test_an_interrupt_stops_cleanly(command: str, tmp_path: Path) -> None:
+def test_an_interrupt_stops_cleanly(command: str, seconds: float, tmp_path: Path) -> None:
     running = subprocess.Popen(
         interruptible(*command.split()), stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=tmp_path
     )
-    time.sleep(5)
+    time.sleep(seconds)  # until then it has begun to compute
     assert running.poll() is None
     os.kill(running.pid, signal.SIGINT)
     _, errors = running.communicate(timeout=60)

@@ -9,7 +9,7 @@ import signal
 import subprocess
 import time
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -227,8 +227,11 @@ def test_a_directory_that_goes_away_midway_takes_one_line(below: str, becomes_a_
 
 
 STREAMS = [
-    *("--version", "poles --alpha 1 --beta 1"),
-    *(pytest.param(text, marks=SLOW) for text in ("--help", "poles --alpha 1 --beta 1 --format json")),
+    *("--version", "engines"),
+    *(
+        pytest.param(text, marks=SLOW)
+        for text in ("--help", "poles --alpha 1 --beta 1", "poles --alpha 1 --beta 1 --format json")
+    ),
 ]
 
 
@@ -274,6 +277,9 @@ def test_an_answer_needs_no_standard_error(how: str, whole: bytes, tmp_path: Pat
     assert (tmp_path / f"{NAME}.csv").read_bytes() == whole
 
 
+MOMENTS = (0.02, 0.5, 2.0, 2.0)
+"""s after the start of a run until which it is told to end, at random; then it is started again."""
+
 SIGNALS = {signal.SIGINT: ("interrupted", 130), signal.SIGTERM: ("terminated", 143), signal.SIGHUP: ("hung up", 129)}
 
 
@@ -291,28 +297,29 @@ def check_stopped(number: signal.Signals, running: "subprocess.Popen[bytes]", pa
 
 
 @pytest.mark.parametrize(
-    ("name", "to_all"),
+    ("name", "to_all", "latest"),
     [
-        ("SIGINT", True),  # as a terminal sends Ctrl-C, to the workers too
-        pytest.param("SIGTERM", False, marks=SLOW),
-        pytest.param("SIGHUP", True, marks=SLOW),
-        pytest.param("SIGINT", False, marks=SLOW),
-        pytest.param("SIGTERM", True, marks=SLOW),
-        pytest.param("SIGHUP", False, marks=SLOW),
+        ("SIGINT", True, (1.5,)),  # as a terminal sends Ctrl-C, to the workers too
+        pytest.param("SIGINT", True, MOMENTS, marks=SLOW),
+        pytest.param("SIGTERM", False, MOMENTS, marks=SLOW),
+        pytest.param("SIGHUP", True, MOMENTS, marks=SLOW),
+        pytest.param("SIGINT", False, MOMENTS, marks=SLOW),
+        pytest.param("SIGTERM", True, MOMENTS, marks=SLOW),
+        pytest.param("SIGHUP", False, MOMENTS, marks=SLOW),
     ],
 )
 def test_a_signal_ends_a_run_at_any_moment_and_resume_goes_on(
-    name: str, to_all: bool, whole: bytes, tmp_path: Path
+    name: str, to_all: bool, latest: Sequence[float], whole: bytes, tmp_path: Path
 ) -> None:
     number = signal.Signals[name]
     moments = random.Random(f"{number} {to_all}")
     command = (*SMALL, "--workers", "2")
-    for latest in (0.02, 0.5, 2.0, 2.0):
+    for most in latest:
         with started(*command, "--resume", cwd=tmp_path) as running:
             wait_until(
                 lambda: catches(signal.SIGHUP, running.pid), running
             )  # until then it is Python alone that starts
-            time.sleep(moments.uniform(0, latest))
+            time.sleep(moments.uniform(0, most))
             if running.poll() is None:
                 os.killpg(running.pid, number) if to_all else running.send_signal(number)
             check_stopped(number, running, tmp_path)

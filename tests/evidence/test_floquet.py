@@ -7,13 +7,12 @@ import pytest
 
 from bezstab.evidence import floquet_rates, kicked_constraint_errors, moving_poles
 from bezstab.evidence.floquet import _few_directions
-from bezstab.mechanism import compiled_mechanism, load_scene, turning_normals
+from bezstab.mechanism import compiled_mechanism, load_scene
 from bezstab.methods import Method, lookup, second_order_form
 from bezstab.stability import FloatArray, region, spectral_radius, window
+from tests.evidence.driven_four_bar import four_bar, turning
 from tests.reference.perturbed_revolutions import runner_multipliers
 
-FOUR_BAR = compiled_mechanism(load_scene("driven_four_bar"))
-TURNING = turning_normals(FOUR_BAR, 1.0)
 STABLE = {
     "B4": (0.25, 0.2),
     "AB4": (0.2, 0.08),
@@ -30,8 +29,8 @@ def test_the_runner_itself_shows_the_same_rate(name: str) -> None:
     """Its run and the motion differ by truncation errors, of (omega h)^2 = 1e-3 and less in the Jacobians."""
     count = 200
     alpha_hat, beta_hat = STABLE[name]
-    found = floquet_rates(FOUR_BAR, lookup(name), 1 / count, np.array([alpha_hat]), np.array([beta_hat]), 1.0)
-    expected = runner_multipliers(FOUR_BAR, lookup(name), count, alpha_hat, beta_hat)
+    found = floquet_rates(four_bar(), lookup(name), 1 / count, np.array([alpha_hat]), np.array([beta_hat]), 1.0)
+    expected = runner_multipliers(four_bar(), lookup(name), count, alpha_hat, beta_hat)
     at_rest = float(spectral_radius(lookup(name), alpha_hat, beta_hat))
     assert found[0] == pytest.approx(expected, abs=1e-4)
     assert abs(found[0] - expected) < abs(at_rest - expected)
@@ -43,7 +42,9 @@ def test_a_mechanism_that_hardly_moves_has_the_poles_at_rest(name: str) -> None:
     method = lookup(name)
     alpha_hat, beta_hat = np.array([0.3, 0.4]), np.array([0.1, 0.08])
     at_rest = spectral_radius(method, alpha_hat, beta_hat)
-    moved = [np.abs(floquet_rates(FOUR_BAR, method, h, alpha_hat, beta_hat, 1.0) - at_rest).max() for h in (2e-2, 2e-3)]
+    moved = [
+        np.abs(floquet_rates(four_bar(), method, h, alpha_hat, beta_hat, 1.0) - at_rest).max() for h in (2e-2, 2e-3)
+    ]
     assert moved[1] < 0.2 * moved[0] < 0.2 * 2e-2
 
 
@@ -52,14 +53,14 @@ def test_a_method_and_its_second_order_form_have_the_same_rate(name: str) -> Non
     method = lookup(name)
     written_out = Method(name, second_order_form(method.scheme), "")
     point = np.array([0.4]), np.array([0.12])
-    rates = [floquet_rates(FOUR_BAR, each, 0.01, *point, 1.0) for each in (method, written_out)]
+    rates = [floquet_rates(four_bar(), each, 0.01, *point, 1.0) for each in (method, written_out)]
     assert rates[0] == pytest.approx(rates[1], rel=1e-12)
 
 
 def test_a_batch_gives_what_single_points_give() -> None:
     alpha_hat, beta_hat = np.array([0.3, 0.5, 0.7]), np.array([0.1, 0.2, 0.15])
-    together = floquet_rates(FOUR_BAR, lookup("RK2"), 0.02, alpha_hat, beta_hat, 1.0)
-    alone = [floquet_rates(FOUR_BAR, lookup("RK2"), 0.02, alpha_hat[[i]], beta_hat[[i]], 1.0)[0] for i in range(3)]
+    together = floquet_rates(four_bar(), lookup("RK2"), 0.02, alpha_hat, beta_hat, 1.0)
+    alone = [floquet_rates(four_bar(), lookup("RK2"), 0.02, alpha_hat[[i]], beta_hat[[i]], 1.0)[0] for i in range(3)]
     assert together == pytest.approx(alone, rel=1e-12)
 
 
@@ -74,7 +75,7 @@ def test_a_run_without_a_driver_has_the_rate_of_its_constraint_errors() -> None:
 
 def rates_of_runs(method: Method, count: int, points: FloatArray, revolutions: int) -> FloatArray:
     """Return |z| per step from kicked runs over many revolutions, compared at the same phase; nan where not linear."""
-    kicked = kicked_constraint_errors(FOUR_BAR, method, 1 / count, points[0], points[1], (1e-7,))
+    kicked = kicked_constraint_errors(four_bar(), method, 1 / count, points[0], points[1], (1e-7,))
     errors = np.array([c[:, 0, 0] - c[:, 1, 0] for c in islice(kicked, revolutions * count + 1)])
     sizes = np.sqrt((errors**2).sum(axis=1))
     first, last, window = revolutions // 2 * count, (revolutions - 1) * count, count // 2
@@ -113,14 +114,14 @@ def test_runs_over_many_revolutions_show_the_exact_rate(name: str, count: int, r
     points = np.random.default_rng(4).uniform(low, high, (6000, 2)).T
     at_rest = spectral_radius(method, points[0], points[1])
     points = points[:, np.abs(at_rest - 0.985) < 0.03][:, :600]
-    exact = floquet_rates(FOUR_BAR, method, 1 / count, points[0], points[1], 1.0)
+    exact = floquet_rates(four_bar(), method, 1 / count, points[0], points[1], 1.0)
     points = points[:, np.abs(exact - 1) < (0.003 if count > 100 else 0.006)][:, :60]
     with np.errstate(all="ignore"):  # of runs that leave the linear range
         shown = rates_of_runs(method, count, points, revolutions)
     points, shown = points[:, np.isfinite(shown)], shown[np.isfinite(shown)]
     assert shown.size >= 6
-    exact = floquet_rates(FOUR_BAR, method, 1 / count, points[0], points[1], 1.0)
-    law = np.array([each.z_abs_moving for each in moving_poles(method, TURNING, 1 / count, points[0], points[1])])
+    exact = floquet_rates(four_bar(), method, 1 / count, points[0], points[1], 1.0)
+    law = np.array([each.z_abs_moving for each in moving_poles(method, turning(), 1 / count, points[0], points[1])])
     at_rest = spectral_radius(method, points[0], points[1])
     apart = {label: np.median(np.abs(rates - shown)) for label, rates in (("law", law), ("exact", exact))}
     map_apart = np.median(np.abs(at_rest - shown))

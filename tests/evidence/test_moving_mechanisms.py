@@ -11,20 +11,19 @@ from bezstab.mechanism import compiled_mechanism, load_scene, simulate, turning_
 from bezstab.methods import lookup
 from bezstab.stability import poles, spectral_radius
 from bezstab.units import feedback_gains
+from tests.evidence.driven_four_bar import four_bar, turning
 from tests.methods.kinds import sampled
 
-FOUR_BAR = compiled_mechanism(load_scene("driven_four_bar"))
-TURNING = turning_normals(FOUR_BAR, 1.0)
 OMEGA = 2 * np.pi
 
 
 def test_the_motion_never_helps() -> None:
     """Over a closed motion det Y = 1: Lambda >= 0 for every chi; at chi = 2.4 theory has seen 0.2 to 0.43 omega."""
     chi = 2.4 * np.exp(1j * np.linspace(-np.pi, np.pi, 25))
-    rates = growth_rates(TURNING, chi) / OMEGA
+    rates = growth_rates(turning(), chi) / OMEGA
     assert rates.min() > -1e-9
     assert 0.19 < rates.min() < rates.max() < 0.44
-    assert growth_rates(TURNING, 0.0) == pytest.approx(0, abs=1e-9)
+    assert growth_rates(turning(), 0.0) == pytest.approx(0, abs=1e-9)
 
 
 def test_a_triangular_k_does_not_make_errors_grow() -> None:
@@ -35,16 +34,16 @@ def test_a_triangular_k_does_not_make_errors_grow() -> None:
 
 def test_the_momentary_rate_bounds_a_scalar_one() -> None:
     chi = np.array([1.0, -2j, 0.5 + 0.5j])
-    eigenvalues = np.linalg.eigvals(TURNING.rates)
-    assert momentary_rates(TURNING, chi) == pytest.approx([(c * eigenvalues).real.max() for c in chi])
+    eigenvalues = np.linalg.eigvals(turning().rates)
+    assert momentary_rates(turning(), chi) == pytest.approx([(c * eigenvalues).real.max() for c in chi])
 
 
 @pytest.mark.slow
 def test_the_table_is_as_good_as_the_law() -> None:
     random = np.random.default_rng(3)
     chi = random.uniform(0.1, 12, 200) * np.exp(1j * random.uniform(-np.pi, np.pi, 200))
-    exact = growth_rates(TURNING, chi)
-    assert np.abs(tabulated_rates(TURNING, chi) - exact).max() < 5e-3 * exact.max()
+    exact = growth_rates(turning(), chi)
+    assert np.abs(tabulated_rates(turning(), chi) - exact).max() < 5e-3 * exact.max()
 
 
 @pytest.mark.parametrize(
@@ -65,9 +64,9 @@ def test_the_law_closes_most_of_the_gap_to_the_exact_rate(name: str) -> None:
     far_from_the_corners = (angle > 4 * OMEGA / count) & (angle < np.pi - 4 * OMEGA / count)
     near_one = (at_rest > 0.8) & (at_rest < 1.1) & far_from_the_corners
     alpha_hat, beta_hat = points[near_one][:30].T
-    exact = floquet_rates(FOUR_BAR, method, 1 / count, alpha_hat, beta_hat, 1.0)
+    exact = floquet_rates(four_bar(), method, 1 / count, alpha_hat, beta_hat, 1.0)
     law = np.array([
-        moving_pole(method, TURNING, 1 / count, a, b).z_abs_moving for a, b in zip(alpha_hat, beta_hat, strict=True)
+        moving_pole(method, turning(), 1 / count, a, b).z_abs_moving for a, b in zip(alpha_hat, beta_hat, strict=True)
     ])  # fmt: skip
     map_error, law_error = np.abs(at_rest[near_one][:30] - exact), np.abs(law - exact)
     assert np.median(law_error) < 0.15 * np.median(map_error)
@@ -76,8 +75,8 @@ def test_the_law_closes_most_of_the_gap_to_the_exact_rate(name: str) -> None:
 
 def test_a_verdict_that_the_motion_can_turn_is_not_settled() -> None:
     step = 0.1 / OMEGA
-    safe = moving_pole(lookup("B4"), TURNING, step, 0.5, 0.2)
-    close = moving_pole(lookup("B4"), TURNING, step, 0.5, 0.1)
+    safe = moving_pole(lookup("B4"), turning(), step, 0.5, 0.2)
+    close = moving_pole(lookup("B4"), turning(), step, 0.5, 0.1)
     assert safe.settled
     assert safe.z_abs < safe.z_abs_moving < safe.z_abs_worst < 1
     assert not close.settled or close.z_abs_worst < 1

@@ -4,19 +4,17 @@ import numpy as np
 import pytest
 
 from bezstab.evidence import floquet_rates, moving_growth, moving_region
-from bezstab.mechanism import compiled_mechanism, load_scene, turning_normals
 from bezstab.methods import lookup
 from bezstab.stability import region
+from tests.evidence.driven_four_bar import four_bar, turning
 
-FOUR_BAR = compiled_mechanism(load_scene("driven_four_bar"))
-TURNING = turning_normals(FOUR_BAR, 1.0)
 OMEGA = 2 * np.pi
 
 
 @pytest.mark.parametrize("name", ["B4", "SYM", "verlet-old"])
 def test_it_shrinks_with_speed_from_the_region_at_rest(name: str) -> None:
     method = lookup(name)
-    areas = [moving_region(method, TURNING, turned / OMEGA, points=2).area for turned in (1e-4, 0.1, 0.3)]
+    areas = [moving_region(method, turning(), turned / OMEGA, points=2).area for turned in (1e-4, 0.1, 0.3)]
     at_rest = region(method).area
     assert at_rest is not None
     assert areas[0] == pytest.approx(at_rest, rel=3e-3)  # 160 lines across kinks and corners
@@ -33,15 +31,15 @@ def test_exact_rates_on_its_edge_are_one() -> None:
     inside = np.full(7, 0.3)
     for _ in range(40):  # the upper edge, from a point inside
         middle = (inside + high) / 2
-        decays = moving_growth(method, TURNING, h, alpha_hat, middle) < 0
+        decays = moving_growth(method, turning(), h, alpha_hat, middle) < 0
         inside, high = np.where(decays, middle, inside), np.where(decays, high, middle)
-    rates = floquet_rates(FOUR_BAR, method, h, alpha_hat, inside, 1.0)
+    rates = floquet_rates(four_bar(), method, h, alpha_hat, inside, 1.0)
     assert low.size == rates.size
     assert np.median(np.abs(rates - 1)) < 5e-4
 
 
 def test_its_grid_says_where_errors_decay_and_where_the_law_does_not_hold() -> None:
-    found = moving_region(lookup("B4"), TURNING, 0.1 / OMEGA, points=60)
+    found = moving_region(lookup("B4"), turning(), 0.1 / OMEGA, points=60)
     assert found.growth.shape == found.excluded.shape == (60, 60)
     assert 0.0 < found.excluded.mean() < 0.5
     decaying = (found.growth < 0).mean()

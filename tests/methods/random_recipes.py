@@ -7,8 +7,10 @@ from typing import Protocol
 
 from hypothesis import strategies as st
 
-SMALL = st.fractions(min_value=-1, max_value=1, max_denominator=6)
-INSIDE = st.fractions(min_value=Fraction(-4, 5), max_value=Fraction(4, 5), max_denominator=5)
+from tests.reference.rationals import rationals
+
+SMALL = rationals(-1, 1, max_denominator=6)
+INSIDE = rationals(Fraction(-4, 5), Fraction(4, 5), max_denominator=5)
 
 
 class Choices(Protocol):

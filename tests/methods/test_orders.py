@@ -3,11 +3,11 @@
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from decimal import Decimal, localcontext
 from fractions import Fraction
 from functools import cache
 from typing import Any
 
-import mpmath as mp
 import numpy as np
 import pytest
 
@@ -112,15 +112,15 @@ def nonlinear(y: State) -> State:
 def test_measured_order_of_convergence_is_the_order_of_accuracy(method: Method) -> None:
     """Error at t = 1 of a nonlinear system from exact starting values, in 50 digits so that no round-off shows."""
     errors = []
-    with mp.workdps(50):
-        number = cache(lambda c: mp.mpf(c.numerator) / c.denominator)
+    with localcontext(prec=50):
+        number = cache(lambda c: Decimal(c.numerator) / c.denominator)
         # Tsitouras' decimals show where the error is below their rounding, some 1e-16
         for count in (64, 128) if method.digits else (128, 256):
-            h = mp.mpf(1) / count
+            h = Decimal(1) / count
             start = [exact(k * h) for k in range(steps(method))]
             end = trajectory(method, nonlinear, start, h, count + 1, number)[-1]
-            errors.append(max(abs(end - exact(mp.mpf(1)))))
-        measured = float(mp.log(errors[0] / errors[1], 2))
+            errors.append(max(abs(end - exact(Decimal(1)))))
+        measured = math.log2(errors[0] / errors[1])
     # the error has a term of the next order: O(h) off, 0.17 at worst (B12, whose start takes 12 of 128 steps); that of
     # tsit5 is 30 times its leading one, so that it is half of it at 64 steps
     assert abs(measured - accuracy(method)[0]) < (0.4 if method.digits else 0.2)

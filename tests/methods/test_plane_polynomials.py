@@ -19,12 +19,13 @@ from bezstab.methods.plane_polynomials import (
     product,
     total,
 )
+from tests.reference.rationals import rationals
 
 F = Fraction
 
 TERMS = st.dictionaries(
     st.tuples(st.integers(-2, 2), st.integers(0, 1), st.integers(0, 1)),
-    st.fractions(min_value=-3, max_value=3, max_denominator=4).filter(bool),
+    rationals(-3, 3, max_denominator=4).filter(bool),
     max_size=2,
 )
 MATRICES = st.integers(1, 4).flatmap(

@@ -9,10 +9,10 @@ Only what computes is changed: no annotations, messages, docstrings, assertions 
 """
 
 import ast
-import copy
 import hashlib
 from collections import Counter
 from dataclasses import dataclass, replace
+from itertools import accumulate
 from pathlib import Path
 from typing import Literal, get_args
 
@@ -112,9 +112,7 @@ class _Changes(ast.NodeVisitor):
 
     def visit_BinOp(self, node: ast.BinOp) -> None:
         if type(node.op) in OPPOSITE and not any(_is_sequence(side) for side in (node.left, node.right)):
-            new = copy.deepcopy(node)
-            new.op = OPPOSITE[type(node.op)]()
-            self.add(node, new, "sign")
+            self.add(node, ast.BinOp(node.left, OPPOSITE[type(node.op)](), node.right), "sign")
         self.generic_visit(node)
 
     def visit_UnaryOp(self, node: ast.UnaryOp) -> None:
@@ -125,9 +123,8 @@ class _Changes(ast.NodeVisitor):
     def visit_Compare(self, node: ast.Compare) -> None:
         for others in (TURNED_ROUND, EDGE):
             if type(node.ops[0]) in others:
-                new = copy.deepcopy(node)
-                new.ops[0] = others[type(node.ops[0])]()
-                self.add(node, new, "comparison")
+                operators = [others[type(node.ops[0])](), *node.ops[1:]]
+                self.add(node, ast.Compare(node.left, operators, node.comparators), "comparison")
         self.generic_visit(node)
 
     def visit_Constant(self, node: ast.Constant) -> None:
@@ -159,10 +156,11 @@ def _is_sequence(node: ast.expr) -> bool:
 
 def mutants_of(path: Path) -> list[Mutant]:
     """Return every mutant of one file of the package, `path` relative to the root."""
-    source = (ROOT / path).read_text(encoding="utf-8")
+    raw = (ROOT / path).read_bytes()
     changes = _Changes()
-    changes.visit(ast.parse(source))
-    mutants = [_mutant(path, source, change) for change in changes.found]
+    changes.visit(ast.parse(raw))
+    starts = [0, *accumulate(len(line) + 1 for line in raw.split(b"\n"))]
+    mutants = [_mutant(path, raw, starts, change) for change in changes.found]
     times: Counter[str] = Counter()
     for number, mutant in enumerate(mutants):
         times[mutant.key] += 1
@@ -171,22 +169,20 @@ def mutants_of(path: Path) -> list[Mutant]:
     return mutants
 
 
-def _mutant(path: Path, source: str, change: Change) -> Mutant:
-    """Return the mutant that a change makes. Its key stays when lines move: file, function, line, old, new."""
+def _mutant(path: Path, raw: bytes, starts: list[int], change: Change) -> Mutant:
+    """Return the mutant that a change makes; `starts` is where the lines of `raw` begin, in bytes, as ast counts.
+
+    Its key stays when lines move: file, function, line, old, new.
+    """
     old, new = change.old, ast.unparse(change.new)
     assert old.end_lineno is not None
     assert old.end_col_offset is not None
-    lines = source.encode().split(b"\n")  # ast counts columns in bytes
-    starts = [0]
-    for text in lines:
-        starts.append(starts[-1] + len(text) + 1)
-    raw = source.encode()
     start = starts[old.lineno - 1] + old.col_offset
     end = starts[old.end_lineno - 1] + old.end_col_offset
     changed = raw[:start] + f"({new})".encode() + raw[end:]
     before = " ".join(raw[start:end].decode().split())
     place = f"{path.relative_to('bezstab').as_posix()} {change.function}".strip()
-    line = lines[old.lineno - 1].decode().strip()
+    line = raw[starts[old.lineno - 1] : starts[old.lineno] - 1].decode().strip()
     return Mutant(path, old.lineno, change.kind, f"{place} | {line} | {before} -> {new}", changed.decode())
 
 

@@ -3,14 +3,19 @@
 import ast
 from difflib import SequenceMatcher
 
+import pytest
+
 from tests.mutation.campaign import harmless_reasons
-from tests.mutation.mutants import KINDS, ROOT, all_mutants, sampled
-
-ALL = all_mutants()
+from tests.mutation.mutants import KINDS, ROOT, Mutant, all_mutants, sampled
 
 
-def test_every_mutant_is_a_python_file_that_differs_from_the_original_in_one_place() -> None:
-    for mutant in sampled(ALL, 40, seed=3):
+@pytest.fixture(scope="module")
+def every() -> list[Mutant]:
+    return all_mutants()
+
+
+def test_every_mutant_is_a_python_file_that_differs_from_the_original_in_one_place(every: list[Mutant]) -> None:
+    for mutant in sampled(every, 40, seed=3):
         original = (ROOT / mutant.path).read_text(encoding="utf-8")
         assert ast.dump(ast.parse(mutant.source)) != ast.dump(ast.parse(original))
         matcher = SequenceMatcher(None, original.splitlines(), mutant.source.splitlines(), autojunk=False)
@@ -18,17 +23,19 @@ def test_every_mutant_is_a_python_file_that_differs_from_the_original_in_one_pla
         assert changed[1] + 1 == mutant.line
 
 
-def test_keys_tell_mutants_apart() -> None:
-    assert len({mutant.key for mutant in ALL}) == len(ALL)
+def test_keys_tell_mutants_apart(every: list[Mutant]) -> None:
+    assert len({mutant.key for mutant in every}) == len(every)
 
 
-def test_a_sample_has_as_many_of_each_kind_and_is_the_same_for_the_same_seed() -> None:
-    sample = sampled(ALL, 201, seed=1)
+def test_a_sample_has_as_many_of_each_kind_and_is_the_same_for_the_same_seed(
+    every: list[Mutant],
+) -> None:
+    sample = sampled(every, 201, seed=1)
     counts = [sum(mutant.kind == kind for mutant in sample) for kind in KINDS]
     assert sorted(counts) == [50, 50, 50, 51]
-    assert sample == sampled(ALL[::-1], 201, seed=1)
-    assert {mutant.key for mutant in sampled(ALL, 100, seed=1)} < {mutant.key for mutant in sample}
-    assert sample != sampled(ALL, 201, seed=2)
+    assert sample == sampled(every[::-1], 201, seed=1)
+    assert {mutant.key for mutant in sampled(every, 100, seed=1)} < {mutant.key for mutant in sample}
+    assert sample != sampled(every, 201, seed=2)
 
 
 def test_what_is_listed_as_harmless_has_a_reason() -> None:

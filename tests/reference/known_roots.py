@@ -8,6 +8,7 @@ from functools import reduce
 from hypothesis import strategies as st
 
 from bezstab.methods import Polynomial, Verdict
+from tests.reference.rationals import rationals
 
 Factor = tuple[Fraction, ...]
 """Monic, irreducible over the reals: z - r, or z^2 - 2 a z + a^2 + b^2 for the pair a +- ib."""
@@ -60,12 +61,12 @@ def verdict_by_roots(factors: Sequence[Factor]) -> Verdict:
     return "marginal" if any(squared_modulus(factor) == 1 for factor in factors) else "converges"
 
 
-small_rationals = st.fractions(-2, 2, max_denominator=12)
+small_rationals = rationals(-2, 2, max_denominator=12)
 anywhere = st.builds(real, small_rationals) | st.builds(pair, small_rationals, small_rationals.filter(bool))
 inside = anywhere.filter(lambda factor: squared_modulus(factor) < 1)
 outside = anywhere.filter(lambda factor: squared_modulus(factor) > 1)
 # t = tan(theta/2) rational gives every rational point of the circle but -1: Pythagorean triples
-on_circle = st.sampled_from([real(ONE), real(-ONE)]) | st.fractions(-3, 3, max_denominator=9).filter(bool).map(
+on_circle = st.sampled_from([real(ONE), real(-ONE)]) | rationals(-3, 3, max_denominator=9).filter(bool).map(
     lambda t: pair((1 - t * t) / (1 + t * t), 2 * t / (1 + t * t))
 )
 

@@ -82,7 +82,9 @@ def motion(
         for time in sorted(times):
             new_angle = old_angle + (time - old_time) * rate_at(old_angle)
             for _ in range(NEWTON_STEPS):
-                late = mp.quad(lambda angle: 1 / rate_at(angle), [old_angle, new_angle]) - (time - old_time)
+                # between two times the rate is smooth, where Gauss's nodes are fewer than those of tanh-sinh
+                passed = mp.quad(lambda angle: 1 / rate_at(angle), [old_angle, new_angle], method="gauss-legendre")
+                late = passed - (time - old_time)
                 new_angle -= late * rate_at(new_angle)
                 if abs(late) < mp.mpf(10) ** (4 - digits):
                     break

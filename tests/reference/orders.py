@@ -4,8 +4,6 @@ from collections.abc import Sequence
 from fractions import Fraction
 from math import factorial
 
-import sympy as sp
-
 from bezstab.methods import Method, RungeKutta
 
 
@@ -15,9 +13,12 @@ def adams_constant(n: int, start: int) -> Fraction:
     gamma_n for Adams-Bashforth (start = 0), gamma*_n for Adams-Moulton (start = -1): Hairer, Norsett & Wanner I,
     section III.1.
     """
-    s = sp.Symbol("s")
-    integral = sp.integrate(sp.expand(sp.prod(s + k for k in range(n)) / factorial(n)), (s, start, start + 1))
-    return Fraction(int(integral.p), int(integral.q))
+    zero = Fraction(0)
+    product = [Fraction(1)]  # s (s + 1) ... (s + n - 1), ascending powers of s
+    for k in range(n):
+        product = [k * same + lower for same, lower in zip([*product, zero], [zero, *product], strict=True)]
+    powers = (Fraction((start + 1) ** (j + 1) - start ** (j + 1), j + 1) for j in range(n + 1))
+    return sum((c * power for c, power in zip(product, powers, strict=True)), zero) / factorial(n)
 
 
 def tableau_method(rows: Sequence[str], weights: str) -> Method:

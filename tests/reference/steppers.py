@@ -1,6 +1,6 @@
 """A stepper that is nothing but the definitions of the schemes: it never sees what is derived from them.
 
-It works on any kind of number: Fraction for identities, mpmath for measured orders.
+It works on any kind of number: Fraction for identities, Decimal for measured orders.
 """
 
 from collections.abc import Callable, Sequence

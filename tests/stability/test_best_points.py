@@ -5,12 +5,12 @@ import mpmath
 import numpy as np
 import pytest
 from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from bezstab.errors import NumericalError
 from bezstab.methods import LinearMultistep, Method, RungeKutta, lookup
 from bezstab.stability import BestPoint, Pencil, best_point, best_points, region, spectral_radius, window
 from tests.methods.kinds import EXPLICIT, sampled
+from tests.reference.rationals import rationals
 
 F = Fraction
 KINKS = [f"B{n}" for n in range(3, 13)] + [f"AB{n}" for n in range(3, 9)]
@@ -103,7 +103,7 @@ def test_without_a_stable_region_there_is_no_best_point() -> None:
     assert best_point(Method("leapfrog", scheme, "")) is None
 
 
-@given(st.fractions(-F(9, 10), F(9, 10), max_denominator=20), st.fractions(-1, 2, max_denominator=20))
+@given(rationals(-F(9, 10), F(9, 10), max_denominator=20), rationals(-1, 2, max_denominator=20))
 @settings(max_examples=8, deadline=None)
 def test_random_two_step_methods(root: Fraction, b: Fraction) -> None:
     scheme = LinearMultistep((F(1), -1 - root, root), (F(0), 1 - root - b, b))

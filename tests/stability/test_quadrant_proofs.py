@@ -18,6 +18,7 @@ from bezstab.stability.quadrant_proofs import (
 )
 from tests.methods.kinds import EXPLICIT
 from tests.reference.companion_poles import radius
+from tests.reference.rationals import rationals
 
 PROVEN = [
     *("implicit-euler", "bdf1", "bdf2", "trapezoid", "am2", "implicit-midpoint"),
@@ -54,13 +55,13 @@ def test_the_trapezoidal_rule_is_the_last_theta_method_that_is_stable_for_all(th
 
 @pytest.mark.slow
 @settings(max_examples=8, deadline=None)
-@given(st.fractions(Fraction(1, 10), Fraction(9, 10), max_denominator=50))
+@given(rationals(Fraction(1, 10), Fraction(9, 10), max_denominator=50))
 def test_a_theta_method_is_stable_for_all_from_one_half_on(theta: Fraction) -> None:
     assert stable_for_all(theta_method(theta)) == ("proven" if theta >= Fraction(1, 2) else "no")
 
 
 @settings(max_examples=10, deadline=None)
-@given(st.fractions(Fraction(2, 5), 1, max_denominator=20), st.fractions(Fraction(1, 20), 1, max_denominator=20))
+@given(rationals(Fraction(2, 5), 1, max_denominator=20), rationals(Fraction(1, 20), 1, max_denominator=20))
 def test_newmark_is_stable_for_all_where_hughes_says_so(velocity: Fraction, position: Fraction) -> None:
     # T. J. R. Hughes, The Finite Element Method, section 9.1.2: gamma >= 1/2 and 2 beta >= gamma
     def signed(coefficient: Fraction) -> str:
