@@ -72,6 +72,7 @@ from bezstab.mechanism.scenes import (
     at_speed,
 )
 from bezstab.mechanism.second_order_memory import Memory, memory
+from bezstab.mechanism.second_order_turns import Action, Assigned, Evaluated, turn
 from bezstab.mechanism.simulation import Simulation, simulated
 from bezstab.mechanism.start import constraint_errors, constraint_jacobian, initial_state, perturbed_state
 from bezstab.mechanism.varying_runs import check_steps_may_vary, simulated_with_steps
@@ -81,11 +82,14 @@ __all__ = [
     "COORDINATES",
     "GROUND",
     "SINGULAR",
+    "Action",
+    "Assigned",
     "Body",
     "Distance",
     "Driver",
     "EnergyBalance",
     "Equations",
+    "Evaluated",
     "Force",
     "Joint",
     "Mechanism",
@@ -133,5 +137,6 @@ __all__ = [
     "singular_passages",
     "states_needed",
     "stepper_code",
+    "turn",
     "turning_normals",
 ]

@@ -29,7 +29,17 @@ from numpy.typing import NDArray
 
 from bezstab.compiling import COMPILED_CHOICE, cores
 from bezstab.evidence import MapRows, floquet_rates, map_rows, model_xml, simulated_verdicts
-from bezstab.mechanism import Mechanism, T, compiled_mechanism, initial_state, load_scene, march, parse_scene, simulate
+from bezstab.mechanism import (
+    Mechanism,
+    T,
+    compiled_mechanism,
+    initial_state,
+    load_scene,
+    march,
+    motion,
+    parse_scene,
+    simulate,
+)
 from bezstab.methods import (
     ALPHA_HAT,
     BETA_HAT,
@@ -270,10 +280,11 @@ def moving_mechanisms() -> Iterator[Line]:
     """Yield how much faster exact rates of a moving mechanism come in batch than by the runner on complex numbers."""
     random = np.random.default_rng(1)
     mechanism = compiled_mechanism(load_scene("driven_slider_crank"))
-    for name in ("B4", "AB4", "AB2"):
+    h = motion(mechanism, 1.0).duration / STEPS_A_TURN
+    for name in ("B4", "AB4", "AB2", "B8", "AB8"):
         method = lookup(name)
         alpha_hat, beta_hat = random.uniform([0.05, 0.02], [0.3, 0.15], (FLOQUET_POINTS, 2)).T
-        ours, _ = fastest(partial(floquet_rates, mechanism, method, 1 / STEPS_A_TURN, alpha_hat, beta_hat, 1.0), 3)
+        ours, _ = fastest(partial(floquet_rates, mechanism, method, h, alpha_hat, beta_hat, 1.0), 3)
         theirs, _ = fastest(partial(runner_multipliers, mechanism, method, STEPS_A_TURN, 0.2, 0.1), 1)
         each = ours / FLOQUET_POINTS
         note = f"{1e3 * each:.2f} ms a point, {FLOQUET_POINTS} together, {STEPS_A_TURN} steps a revolution"

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from bezstab.evidence import floquet_rates, kicked_constraint_errors, moving_poles
-from bezstab.evidence.floquet import _few_directions
+from bezstab.evidence.floquet import _Course, _course, _leading_rates, _rates_of_all, _rates_over_revolutions
 from bezstab.mechanism import compiled_mechanism, load_scene
 from bezstab.methods import Method, lookup, second_order_form
 from bezstab.stability import FloatArray, region, spectral_radius, window
+from bezstab.units import feedback_gains
 from tests.evidence.driven_four_bar import four_bar, turning
 from tests.reference.perturbed_revolutions import runner_multipliers
 
@@ -84,20 +85,32 @@ def rates_of_runs(method: Method, count: int, points: FloatArray, revolutions: i
     return np.where(linear, growth ** (0.5 / (last - first)), np.nan)
 
 
-def test_few_directions_are_found_only_where_there_are_no_more() -> None:
-    random = np.random.default_rng(4)
-    product = random.standard_normal((5, 30, 6)) @ random.standard_normal((5, 6, 30))
-    found = _few_directions(product, 7)
-    assert found is not None
-    basis, coordinates = found
-    assert basis.shape == (5, 30, 7)
-    assert np.allclose(basis @ coordinates, product, rtol=0, atol=1e-13 * np.abs(product).max())
-    assert np.allclose(np.swapaxes(basis, 1, 2) @ basis, np.eye(7), rtol=0, atol=1e-13)
-    twice = _few_directions(product, 4)  # six directions: not within four, but within eight
-    assert twice is not None
-    assert twice[0].shape == (5, 30, 8)
-    product[3] += np.eye(30)  # at one point of the batch nothing has died out
-    assert _few_directions(product, 7) is None
+@pytest.mark.parametrize(("name", "columns"), [("B4", 12), ("AB4", 22), ("B8", 12), ("bdf2", 12)])
+def test_few_columns_show_the_same_rate_as_all(name: str, columns: int) -> None:
+    """Two poles of each of the five constraints, or four where others die out slowly, and two columns to spare."""
+    course, gains = course_of(name, [0.1, 0.2, 0.25], [0.02, 0.05, 0.1])
+    few, settled = _leading_rates(course, gains, columns)
+    assert settled.all()
+    assert columns < course.rows
+    assert few == pytest.approx(_rates_of_all(course, gains), rel=1e-12)
+
+
+def test_too_few_columns_are_found_out() -> None:
+    """Complex poles come in pairs, one for each of five constraints: nine columns do not hold them."""
+    course, gains = course_of("B4", [0.1, 0.2], [0.1, 0.2])
+    assert not _leading_rates(course, gains, 9)[1].any()
+
+
+def test_points_for_which_columns_do_not_suffice_are_taken_again() -> None:
+    course, gains = course_of("B4", [0.1, 0.2, 0.3], [0.1, 0.2, 0.1])
+    rates = _rates_over_revolutions(course, gains, np.array([2, 3, 12]))
+    assert rates == pytest.approx(_rates_of_all(course, gains), rel=1e-12)
+
+
+def course_of(name: str, alpha_hat: list[float], beta_hat: list[float]) -> tuple[_Course, FloatArray]:
+    """Return the course of 200 steps over the four-bar's revolution, and the gains of points."""
+    course = _course(four_bar(), lookup(name), 1 / 200, 1.0)
+    return course, np.array(feedback_gains(np.array(alpha_hat), np.array(beta_hat), course.step))
 
 
 @pytest.mark.slow
