@@ -285,7 +285,7 @@ def moving_mechanisms() -> Iterator[Line]:
         method = lookup(name)
         alpha_hat, beta_hat = random.uniform([0.05, 0.02], [0.3, 0.15], (FLOQUET_POINTS, 2)).T
         ours, _ = fastest(partial(floquet_rates, mechanism, method, h, alpha_hat, beta_hat, 1.0), 3)
-        theirs, _ = fastest(partial(runner_multipliers, mechanism, method, STEPS_A_TURN, 0.2, 0.1), 1)
+        theirs, _ = fastest(partial(runner_multipliers, mechanism, method, STEPS_A_TURN, 0.02, 0.0004), 1)
         each = ours / FLOQUET_POINTS
         note = f"{1e3 * each:.2f} ms a point, {FLOQUET_POINTS} together, {STEPS_A_TURN} steps a revolution"
         yield Line("moving", f"{name}: the runner on complex numbers", theirs / each, 10.0, note)
