@@ -16,6 +16,9 @@ figures: .venv/installed  ## draw what the README shows, into figures/
 	$(BIN)/bezstab family bezier -o figures
 	$(BIN)/bezstab paper -o figures
 	$(BIN)/bezstab tradeoff --table none -o figures
+	$(BIN)/bezstab tradeoff --scene andrews --time 0.01 --h 16e-6 --h 32e-6 --h 64e-6 --h 128e-6 --repeats 1 \
+	    --alpha 500 --beta 500 --physical --method ABM4 --method AB4 --method RK4 --method dopri5 --method B4 \
+	    --method trapezoid --table none -o figures
 
 test: .venv/tested  ## what CI runs: style and types, and at the same time the quick tests
 	$(MAKE) --no-print-directory --jobs 2 lint quick
