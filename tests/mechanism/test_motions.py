@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bezstab.errors import InputError
-from bezstab.mechanism import Body, compiled_mechanism, constraint_errors, load_scene, motion
+from bezstab.errors import InputError, NumericalError
+from bezstab.mechanism import Body, compiled_mechanism, constraint_errors, load_scene, motion, parse_scene
 
 MECHANISM = compiled_mechanism(load_scene("driven_four_bar"))
 
@@ -49,3 +49,17 @@ def test_a_motion_that_misses_its_start_is_refused_with_the_coordinate() -> None
     )
     with pytest.raises(InputError, match=r"free\.x is off by 0\.3 after one revolution"):
         motion(compiled_mechanism(drifting), 1.0)
+
+
+@pytest.mark.parametrize("offset", [np.pi / 2, 1.5])
+def test_a_motion_through_a_singular_configuration_is_refused(offset: float) -> None:
+    """A parallelogram's rods lie along the ground twice a turn: a step meets that, or two steps lie around it."""
+    scene = parse_scene(
+        {
+            "name": "parallelogram",
+            "four_bar_chain": {"count": 1, "length": 1.0, "mass": 1.0},
+            "joint": [{"type": "driver", "coordinate": "rod0.theta", "offset": offset, "rate": 2 * np.pi}],
+        }
+    )
+    with pytest.raises(NumericalError, match="singular configuration"):
+        motion(compiled_mechanism(scene), 1.0)
