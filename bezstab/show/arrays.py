@@ -1,19 +1,23 @@
 """Results as equally long arrays by name, and their files: CSV with every digit, or NPZ."""
 
+from __future__ import annotations
+
 import csv
 import io
 import math
 from collections.abc import Mapping, Sequence
-from typing import BinaryIO, Literal
+from typing import TYPE_CHECKING, BinaryIO, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.evidence import VerdictMap
-from bezstab.mechanism import Simulation
 from bezstab.show.columns import Row, Value
 from bezstab.stability import ComplexArray, FloatArray, Region
 from bezstab.units import feedback_gains
+
+if TYPE_CHECKING:  # so that an array of the plane does not load what runs mechanisms
+    from bezstab.evidence import VerdictMap
+    from bezstab.mechanism import Simulation
 
 Arrays = dict[str, NDArray[np.generic]]
 
