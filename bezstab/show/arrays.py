@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from collections.abc import Mapping, Sequence
+from itertools import chain
 from typing import TYPE_CHECKING, BinaryIO, Literal
 
 import numpy as np
@@ -122,8 +121,16 @@ def write_arrays(arrays: Mapping[str, NDArray[np.generic]], form: Literal["csv",
     if form == "npz":
         np.savez_compressed(file, **arrays)  # type: ignore[arg-type]  # its options have other names
         return
-    text = io.TextIOWrapper(file, encoding="utf-8", newline="", write_through=True)
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(arrays)
-    writer.writerows(zip(*(array.tolist() for array in arrays.values()), strict=True))
-    text.detach()  # the file stays open: who opened it closes it
+    header = ",".join(map(_csv_text, arrays))
+    rows = map(",".join, zip(*map(_csv_cells, arrays.values()), strict=True))
+    file.write("".join(f"{line}\n" for line in chain([header], rows)).encode("utf-8"))
+
+
+def _csv_cells(array: NDArray[np.generic]) -> list[str]:
+    """Return an array's values as CSV has them: of numbers every digit, as Python writes them."""
+    return list(map(_csv_text if array.dtype.kind == "U" else repr, array.tolist()))
+
+
+def _csv_text(text: str) -> str:
+    """Return a text as CSV has it: in quotes where it holds a character that means something there."""
+    return '"' + text.replace('"', '""') + '"' if any(each in text for each in ',"\r\n') else text
