@@ -94,8 +94,11 @@ def _coefficients(table: FloatArray, x: ComplexArray) -> ComplexArray:
 
 def horner(ascending: FloatArray, x: ComplexArray) -> ComplexArray:
     """Return the polynomial with these coefficients, in ascending powers, at each x."""
-    total = np.full_like(x, ascending[-1])
-    for coefficient in ascending[-2::-1]:
+    if len(ascending) == 1:
+        return np.full_like(x, ascending[0])
+    total: ComplexArray = ascending[-1] * x
+    total += ascending[-2]
+    for coefficient in ascending[-3::-1]:
         total *= x
         total += coefficient
     return total
@@ -154,7 +157,7 @@ def _starts_of_few(coefficients: ComplexArray) -> ComplexArray:
     finite = np.isfinite(companion[:, :, -1]).all(axis=1)
     companion[~finite] = 0
     try:
-        starts: ComplexArray = np.linalg.eigvals(companion).T
+        starts = np.linalg.eigvals(companion).T.astype(complex)
     except np.linalg.LinAlgError:
         return newton_polygon_starts(coefficients)
     apart = np.diff(np.sort(starts, axis=0), axis=0).all(axis=0) & starts.all(axis=0)
