@@ -415,12 +415,14 @@ def _moving_regions(
     method: Method, turnings: "Mapping[float, TurningNormals | None]", h: float | None
 ) -> "dict[tuple[float, float], MovingRegion]":
     """Return the region as a scene moves by speed and kappa (1/s); none without a scene. h in s."""
+    if h is None or all(turning is None for turning in turnings.values()):
+        return {}
     from bezstab.evidence import moving_region
 
     return {
         (speed, turning.kappa): moving_region(method, turning, h)
         for speed, turning in turnings.items()
-        if turning is not None and h is not None
+        if turning is not None
     }
 
 

@@ -183,19 +183,29 @@ def closed_loop_at(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> l
     (p_alpha, p_beta), (q_alpha, q_beta) = feedback_matrix(method)
     p = p_alpha * alpha_hat + p_beta * beta_hat
     q = q_alpha * alpha_hat + q_beta * beta_hat
-    descending = coefficient_table(method)[::-1]
-    powers = _reduced_powers(p, q, highest=len(descending[0]) - 1)
-    A, scale_of_A = _whole([sum((c * u for c, (u, _) in zip(row, powers, strict=True)), ZERO) for row in descending])
-    B, scale_of_B = _whole([sum((c * v for c, (_, v) in zip(row, powers, strict=True)), ZERO) for row in descending])
-    (on_AA, on_AB, on_BB), scale = _whole([1 / scale_of_A**2, -p / scale_of_A / scale_of_B, q / scale_of_B**2])
+    rows, scale_of_rows = _whole_rows(method)
+    powers, scale_of_powers = _whole([part for power in _reduced_powers(p, q, len(rows[0]) - 1) for part in power])
+    A = [sum(c * u for c, u in zip(row, powers[::2], strict=True)) for row in rows]
+    B = [sum(c * v for c, v in zip(row, powers[1::2], strict=True)) for row in rows]
+    (on_AA, on_AB, on_BB), scale_of_feedback = _whole([ONE, -p, q])
+    scale = scale_of_feedback * (scale_of_rows * scale_of_powers) ** 2
     terms = zip(_product(A, A), _product(A, B), _product(B, B), strict=True)
-    return [(on_AA * aa + on_AB * ab + on_BB * bb) / scale for aa, ab, bb in terms]
+    return [Fraction(on_AA * aa + on_AB * ab + on_BB * bb, scale) for aa, ab, bb in terms]
 
 
-def _whole(numbers: list[Fraction]) -> tuple[list[int], Fraction]:
+@cache
+def _whole_rows(method: Method) -> tuple[list[list[int]], int]:
+    """Return a multiple of the coefficient table that is whole, its rows by descending powers of z, and the factor."""
+    descending = coefficient_table(method)[::-1]
+    width = len(descending[0])
+    whole, scale = _whole([c for row in descending for c in row])
+    return [whole[start : start + width] for start in range(0, len(whole), width)], scale
+
+
+def _whole(numbers: list[Fraction]) -> tuple[list[int], int]:
     """Return multiples of rational numbers that are whole, and the factor: products of whole ones are fast."""
     scale = lcm(*(number.denominator for number in numbers))
-    return [number.numerator * (scale // number.denominator) for number in numbers], Fraction(scale)
+    return [number.numerator * (scale // number.denominator) for number in numbers], scale
 
 
 def _reduced_powers(p: Fraction, q: Fraction, highest: int) -> list[tuple[Fraction, Fraction]]:
@@ -254,6 +264,10 @@ def branch_polynomial(method: Method) -> tuple[Fraction, ...]:
 
     Exact. TypeError for a second-order scheme, as `characteristic_polynomial`.
     """
+    if len(coefficient_table(method)[0]) == 2:  # pi = A + mu B: the resultant is A B' - A' B
+        A, B = (sp.Poly(list(reversed(c)), Z, domain=sp.QQ) for c in zip(*coefficient_table(method), strict=True))
+        meeting = A * B.diff(Z) - A.diff(Z) * B
+        return tuple(_fraction(c) for c in reversed(meeting.rep.to_list()))
     pi = characteristic_polynomial(method).reorder(MU, Z)  # its first symbol is the one that is eliminated
     meeting = pi.resultant(pi.diff(Z))
     return tuple(_fraction(c) for c in reversed(meeting.rep.to_list()))

@@ -48,9 +48,10 @@ def is_schur(polynomial: Polynomial) -> bool:
 
     A proof either way: whole numbers, whose last bits are dropped as long as their sum of errors decides nothing.
     """
-    p = _trimmed(polynomial)
-    scale = lcm(*(a.denominator for a in p))
-    whole = [a.numerator * (scale // a.denominator) for a in p]
+    scale = lcm(*(a.denominator for a in polynomial))
+    whole = [a.numerator * (scale // a.denominator) for a in polynomial]
+    while len(whole) > 1 and whole[0] == 0:
+        del whole[0]
     decided = _whole_is_schur(whole, WORKING_BITS)
     return bool(_whole_is_schur(whole, None)) if decided is None else decided
 

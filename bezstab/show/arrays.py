@@ -1,19 +1,22 @@
 """Results as equally long arrays by name, and their files: CSV with every digit, or NPZ."""
 
-import csv
-import io
+from __future__ import annotations
+
 import math
 from collections.abc import Mapping, Sequence
-from typing import BinaryIO, Literal
+from itertools import chain
+from typing import TYPE_CHECKING, BinaryIO, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.evidence import VerdictMap
-from bezstab.mechanism import Simulation
 from bezstab.show.columns import Row, Value
 from bezstab.stability import ComplexArray, FloatArray, Region
 from bezstab.units import feedback_gains
+
+if TYPE_CHECKING:  # so that an array of the plane does not load what runs mechanisms
+    from bezstab.evidence import VerdictMap
+    from bezstab.mechanism import Simulation
 
 Arrays = dict[str, NDArray[np.generic]]
 
@@ -118,8 +121,16 @@ def write_arrays(arrays: Mapping[str, NDArray[np.generic]], form: Literal["csv",
     if form == "npz":
         np.savez_compressed(file, **arrays)  # type: ignore[arg-type]  # its options have other names
         return
-    text = io.TextIOWrapper(file, encoding="utf-8", newline="", write_through=True)
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(arrays)
-    writer.writerows(zip(*(array.tolist() for array in arrays.values()), strict=True))
-    text.detach()  # the file stays open: who opened it closes it
+    header = ",".join(map(_csv_text, arrays))
+    rows = map(",".join, zip(*map(_csv_cells, arrays.values()), strict=True))
+    file.write("".join(f"{line}\n" for line in chain([header], rows)).encode("utf-8"))
+
+
+def _csv_cells(array: NDArray[np.generic]) -> list[str]:
+    """Return an array's values as CSV has them: of numbers every digit, as Python writes them."""
+    return list(map(_csv_text if array.dtype.kind == "U" else repr, array.tolist()))
+
+
+def _csv_text(text: str) -> str:
+    """Return a text as CSV has it: in quotes where it holds a character that means something there."""
+    return '"' + text.replace('"', '""') + '"' if any(each in text for each in ',"\r\n') else text

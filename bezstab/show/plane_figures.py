@@ -1,11 +1,13 @@
 """Figures of the plane of alpha_hat and beta_hat: readable in grey, at column width, the same bytes each time."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bezstab.evidence import MovingRegion, VerdictMap
 from bezstab.show import plot
 from bezstab.show.plot import Point, Range
 from bezstab.show.style import (
@@ -21,6 +23,9 @@ from bezstab.show.style import (
     styled,
 )
 from bezstab.stability import BestPoint, Choice, FloatArray, Limit, Member, Region
+
+if TYPE_CHECKING:  # so that a picture of the plane does not load what runs mechanisms
+    from bezstab.evidence import MovingRegion, VerdictMap
 
 
 def region_figure(

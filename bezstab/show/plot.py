@@ -6,8 +6,10 @@ one picture. The plane is alpha_hat, beta_hat (dimensionless); with `h` in s it 
 Further keyword arguments are matplotlib's, for the line that is drawn.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, Literal, SupportsFloat
+from typing import TYPE_CHECKING, Any, Literal, SupportsFloat
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -19,8 +21,6 @@ from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 from matplotlib.text import Annotation
 
-from bezstab.evidence import MovingRegion, Run, VerdictMap
-from bezstab.mechanism import COORDINATES, Scene, Simulation
 from bezstab.methods import Method
 from bezstab.show.style import (
     ACCENT,
@@ -37,6 +37,10 @@ from bezstab.show.style import (
 )
 from bezstab.stability import BestPoint, Choice, FloatArray, Member, Region
 from bezstab.stability import spectral_radius as spectral_radius_at
+
+if TYPE_CHECKING:  # so that a picture of the plane does not load what runs mechanisms
+    from bezstab.evidence import MovingRegion, Run, VerdictMap
+    from bezstab.mechanism import Scene, Simulation
 
 Range = tuple[SupportsFloat, SupportsFloat]
 Quantity = Literal["area", "least |z_p|", "error constant"]
@@ -336,6 +340,8 @@ def _joints(scene: Scene, q: FloatArray) -> dict[str, list[Point]]:
 
     A body whose frame lies at the origin turns about it: that is one of its points.
     """
+    from bezstab.mechanism import COORDINATES
+
     free = dict(zip(scene.coordinates, q.tolist(), strict=True))
     frames: dict[str, list[float]] = {}
     for body in scene.bodies:

@@ -9,7 +9,7 @@ from bezstab.errors import NumericalError
 from bezstab.methods import Method
 from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, FloatArray
 from bezstab.stability.closed_loop import AnyPencil, any_pencil_of, converges, largest_modulus, largest_pole
-from bezstab.stability.line_slices import mu_bound, real_events, slices, turning_radii
+from bezstab.stability.line_slices import all_within, mu_bound, real_events, slices, turning_radii
 from bezstab.stability.path_crossings import Path
 from bezstab.stability.pencils import Pencil
 from bezstab.stability.plane_pencils import PlanePencil
@@ -75,11 +75,14 @@ def check_best_point(pencil: Pencil, z_abs: float, alpha_hat: float, beta_hat: f
     if abs(here - z_abs) > KINK:
         raise NumericalError(f"{name}: |z_p| is {here:.9g} at the best point, not {z_abs:.9g}")
     alpha_hats, beta_hats = sampled_points(extent, alpha_hat, beta_hat)
-    values = largest_modulus(pencil, alpha_hats, beta_hats)
-    least = int(np.argmin(values))
-    if values[least] < z_abs * (1 - BETTER):
-        place = f"({alpha_hats[least]:.6g}, {beta_hats[least]:.6g})"
-        raise NumericalError(f"{name}: |z_p| = {values[least]:.9g} at {place} is below the best point's {z_abs:.9g}")
+    better = z_abs * (1 - BETTER)
+    suspicious = np.flatnonzero(all_within(pencil, alpha_hats, beta_hats, np.full(alpha_hats.shape, better)))
+    for alpha, beta in zip(alpha_hats[suspicious], beta_hats[suspicious], strict=True):
+        value = float(largest_modulus(pencil, alpha, beta))
+        if value < better:
+            raise NumericalError(
+                f"{name}: |z_p| = {value:.9g} at ({alpha:.6g}, {beta:.6g}) is below the best point's {z_abs:.9g}"
+            )
     below = z_abs * (1 - EMPTY_BELOW)
     bound, events = mu_bound(pencil, below), real_events(pencil, below)
     t = np.concatenate([np.linspace(0, bound, SLICES + 2)[1:-1], np.abs(events), turning_radii(pencil, below)])

@@ -17,6 +17,7 @@ each kind, and the least solution that is a maximum over all roots is the answer
 
 import math
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import product
@@ -39,15 +40,13 @@ from bezstab.stability.searches import zoom_on_minimum
 ROUNDING = 1e-9  # relative; a solved kink's moduli agree to about 1e-15, neighbouring candidates differ far more
 DOUBLE = 1e-6  # relative; two roots closer than this are one double root, which float64 splits by sqrt(eps) = 1e-8
 REACH = 1e150  # of mu, whose square is beta_hat; one zero of R is always within its degree, as R(0) = R'(0) = 1
-NEWTON_STEPS = 30
+NEWTON_STEPS = 16  # from a narrowed minimum three to ten lead to its kink; most kinds have none there
 STEP_SETTLED = ROUNDING**1.5  # relative, 3e-14: a Newton step this small changes nothing that is compared
 AS_SMALL = 1e-10  # relative: a value by so much above the least so far is looked at; Schur's recursion rounds by less
-NEAR_LOWEST = 1e-3  # relative: a narrowed minimum is above its kink by the root of 6e-7 of a spacing of 0.02 at most
 SAME_MINIMUM = 1e-5  # of |mu|: minima that were narrowed to less than that and lie closer are one
-STARTS = 6  # local minima of the sampled f that are followed up
-FINER = 4  # times as many samples along either axis, and starts, where the first sampling failed the check
-ZOOM_POINTS, ZOOM, ZOOMS = 13, 0.45, 19  # 0.45^18 = 6e-7 of the grid's spacing: a start, from which Newton takes over
-ARC_SAMPLES = 4097  # of theta, where a curve of equal |z_p| is looked for
+FINER = 4  # times as many samples of the plane along either axis, where the first sampling failed the check
+ZOOM_POINTS, ZOOM = 13, 0.45
+ARC_SAMPLES = 513  # of theta, where a curve of equal |z_p| is looked for, a tenth of them at least
 ARC_SHARE = 1 / 10  # of the samples lie on such a curve, if there is one; a kink shows at isolated theta only
 ARC_ZOOM_POINTS, ARC_ZOOMS = 65, 7  # each by 1/32: the curve's end, to rounding
 
@@ -94,6 +93,30 @@ class _Candidate:
 
     z_abs: float
     mu: complex
+
+
+@dataclass(frozen=True)
+class _Search:
+    """How f is sampled: steps of the grid along Re and Im mu, local minima followed up, grids that narrow each.
+
+    After `zooms` grids a minimum is known to ZOOM^(zooms - 1) of the grid's step. What lies no more than `near` above
+    the least, relatively, may belong to it.
+    """
+
+    columns: int
+    rows: int
+    starts: int
+    zooms: int
+    near: float
+
+
+SEARCHES = (
+    _Search(columns=50, rows=40, starts=6, zooms=8, near=1e-2),
+    _Search(columns=150, rows=120, starts=6, zooms=19, near=1e-3),
+    _Search(columns=600, rows=480, starts=24, zooms=19, near=1e-3),
+)
+"""One after the other, until one passes its check. The first, all that built-in methods need, takes a quarter of the
+second's time: Newton's method makes up for what it leaves."""
 
 
 @cache
@@ -144,14 +167,14 @@ def _deadbeat(pencil: Pencil) -> BestPoint | float:
 
 def _kink(pencil: Pencil) -> BestPoint | float | None:
     """Return the best point of a method of several steps, or the value its |z_p| falls towards."""
-    try:
-        return _checked_kink(pencil, finer=1)
-    except NumericalError:
-        return _checked_kink(pencil, finer=FINER)
+    for search in SEARCHES[:-1]:
+        with suppress(NumericalError):
+            return _checked_kink(pencil, search)
+    return _checked_kink(pencil, SEARCHES[-1])
 
 
-def _checked_kink(pencil: Pencil, finer: int) -> BestPoint | float | None:
-    """Return the same from one sampling of f; NumericalError if it fails its check."""
+def _checked_kink(pencil: Pencil, search: _Search) -> BestPoint | float | None:
+    """Return the same from one search; NumericalError if it fails its check."""
     stable = region(pencil.method)
     extent = stable.view
     if extent is None:
@@ -159,7 +182,7 @@ def _checked_kink(pencil: Pencil, finer: int) -> BestPoint | float | None:
     limit = math.inf if stable.bounded else _limit(pencil)
     if limit == 0:
         return limit
-    least = _smallest(pencil, finer)
+    least = _smallest(pencil, search)
     if limit < least.z_abs:
         return limit
     end = _other_end(pencil, least)
@@ -273,14 +296,14 @@ def _meeting_poles(pencil: Pencil, z_abs: float, mu: ComplexArray) -> tuple[comp
     return tuple(meeting)
 
 
-def _smallest(pencil: Pencil, finer: int) -> _Candidate:
-    """Return min f and a mu that has it, a real one if there is one; `finer`: so many times the samples and starts."""
-    sampled = _local_minima(pencil, finer)
+def _smallest(pencil: Pencil, search: _Search) -> _Candidate:
+    """Return min f and a mu that has it, a real one if there is one."""
+    sampled = _local_minima(pencil, search)
     lowest = min(candidate.z_abs for candidate in sampled)
     followed: list[_Candidate] = []
     for candidate in sampled:
         known = any(abs(candidate.mu - other.mu) <= SAME_MINIMUM * abs(candidate.mu) for other in followed)
-        if not known and candidate.z_abs <= lowest * (1 + NEAR_LOWEST):
+        if not known and candidate.z_abs <= lowest * (1 + search.near):
             followed.append(candidate)
     solved = [solution for candidate in followed for solution in _solutions(pencil, candidate.mu)]
     best = min((solution.z_abs for solution in solved), default=np.inf)
@@ -291,14 +314,14 @@ def _smallest(pencil: Pencil, finer: int) -> _Candidate:
     return min(as_low, key=lambda solution: (abs(solution.mu.imag), solution.z_abs))
 
 
-def _local_minima(pencil: Pencil, finer: int) -> list[_Candidate]:
+def _local_minima(pencil: Pencil, search: _Search) -> list[_Candidate]:
     """Return the lowest local minima of f on a grid over S_1, each narrowed by a sequence of smaller grids."""
     stable = region(pencil.method)
     assert stable.view
     seen = np.concatenate(stable.boundary) if stable.bounded else np.array(list(product(*stable.view)))
     corners = np.abs(seen @ pencil.to_feedback.T)
     reach = float(np.max(corners[:, 0] + np.sqrt(corners[:, 1])))  # of both roots of the feedback
-    x, y = np.linspace(-reach, reach / 4, 150 * finer + 1), np.linspace(0, reach, 120 * finer + 1)
+    x, y = np.linspace(-reach, reach / 4, search.columns + 1), np.linspace(0, reach, search.rows + 1)
     grid = x + 1j * y[:, np.newaxis]
     sampled = np.full(grid.shape, np.inf)
     stable_mu = all_inside(pencil, grid, 1.0)
@@ -307,7 +330,7 @@ def _local_minima(pencil: Pencil, finer: int) -> list[_Candidate]:
     shifts = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1)]
     least_around = np.min([np.roll(padded, shift, (0, 1)) for shift in shifts], axis=0)[1:-1, 1:-1]
     rows, columns = np.nonzero((sampled == least_around) & stable_mu)
-    lowest = np.argsort(sampled[rows, columns])[: finer * STARTS]
+    lowest = np.argsort(sampled[rows, columns])[: search.starts]
 
     def to_upper_half(points: FloatArray) -> FloatArray:
         return np.stack([points[..., 0], np.abs(points[..., 1])], axis=-1)
@@ -330,7 +353,7 @@ def _local_minima(pencil: Pencil, finer: int) -> list[_Candidate]:
         np.full((len(lowest), 2), x[1] - x[0]),
         points=ZOOM_POINTS,
         shrink=ZOOM,
-        rounds=ZOOMS,
+        rounds=search.zooms,
         fold=to_upper_half,
     )
     return [_Candidate(least, complex(*place)) for least, place in zip(z_abs.tolist(), places, strict=True)]
@@ -389,12 +412,12 @@ def _solutions(pencil: Pencil, start: complex) -> Iterator[_Candidate]:
     A solution counts if its z are roots there indeed (along an arc of equal |z_p| the equations are dependent, and
     least squares may end at what solves nothing) and no other root is larger.
     """
-    for kink in _kinks(pencil, start):
-        x = _newton(kink.equations, np.array([start, *kink.starts]))
-        if not np.isfinite(x).all():
-            continue
+    ends = [(kink, _newton(kink.equations, np.array([start, *kink.starts]))) for kink in _kinks(pencil, start)]
+    solved = [(kink, x) for kink, x in ends if np.isfinite(x).all()]
+    all_roots = roots_in_z(pencil, np.array([x[0] for _, x in solved], complex))
+    for (kink, x), roots in zip(solved, all_roots.T, strict=True):
         z_abs = float(np.abs(x[1:]).max())
-        others = roots_in_z(pencil, x[:1])[:, 0]
+        others = roots
         matched = True
         for z in np.repeat(x[1:], kink.multiplicity):
             closest = np.argmin(np.abs(others - z))

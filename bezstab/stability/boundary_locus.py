@@ -48,6 +48,7 @@ ARC_POINTS = 400  # drawn per arc: chords stay within 1e-5 of the curve
 NODES = 16  # of Gauss and Legendre on a panel
 QUADRATURE = 1e-14  # of |mu|^3: a panel is split until its halves agree to this, a hundredfold above rounding
 PANEL_SAMPLES = 50  # of an arc to each of the first panels, where it may turn so fast that halves miss it alike
+CUT_POINTS = 15  # of each bracket at a time: to solve for the roots at one takes as long as at a dozen
 SPLITS = 40  # halvings of a panel at most: towards a corner of the locus they end at rounding
 FINER = 33  # samples of a bracket: from one zoom to the next by the spacing of the last, 1/16
 TURN_ZOOMS = 8  # each by 1/16: from a sample's spacing to where a smooth extreme is flat to rounding
@@ -233,6 +234,8 @@ def _integral(density: Callable[[FloatArray], FloatArray], edges: FloatArray, to
         both = parts[::2] + parts[1::2]
         rough = np.abs(both - whole) > tolerance
         total += float(np.sum(both[~rough]))
+        if not rough.any():
+            return total
         panels = halves[np.repeat(rough, 2)]
         whole = parts[np.repeat(rough, 2)]
     return total + float(whole.sum())
@@ -313,25 +316,29 @@ def sign_changes(
 
     To rounding, unless the spacing of the samples is to be halved less often.
     """
-    theta = _with_dips(values_at, samples)
-    positive = values_at(theta) >= 0  # all in one go again: dips judged alone may be noise, and would pass for changes
+    theta, values = _with_dips(values_at, samples)
+    positive = values >= 0
     change = np.flatnonzero(positive[1:] != positive[:-1])
     if not change.size:
         return np.empty(0)
     after = positive[change + 1]
-    low, high = bisected(lambda middle: (values_at(middle) >= 0) == after, theta[change], theta[change + 1], halvings)
+
+    def has_changed(inside: FloatArray) -> BoolArray:
+        return np.asarray((values_at(inside.ravel()).reshape(inside.shape) >= 0) == after)
+
+    low, high = bisected(has_changed, theta[change], theta[change + 1], halvings, at_once=CUT_POINTS)
     return (low + high) / 2
 
 
-def _with_dips(values_at: Callable[[FloatArray], FloatArray], theta: FloatArray) -> FloatArray:
-    """Return theta with a sample more wherever the function has the other sign only between two of them."""
+def _with_dips(values_at: Callable[[FloatArray], FloatArray], theta: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return theta with a sample more wherever the function has the other sign only between two of them, and values."""
     values = values_at(theta)
     size = np.abs(values)
     same_sign = (values[:-2] >= 0) == (values[1:-1] >= 0)
     same_sign &= (values[2:] >= 0) == (values[1:-1] >= 0)
     dip = 1 + np.flatnonzero(same_sign & (size[1:-1] < size[:-2]) & (size[1:-1] <= size[2:]))
     if not dip.size:
-        return theta
+        return theta, values
     sign = np.where(values[dip] >= 0, 1.0, -1.0)
     low, high = theta[dip - 1], theta[dip + 1]
 
@@ -346,7 +353,11 @@ def _with_dips(values_at: Callable[[FloatArray], FloatArray], theta: FloatArray)
         shrink=2 / (FINER - 1),
         rounds=DIP_ZOOMS,
     )
-    return np.sort(np.append(theta, found[least < 0, 0]))
+    found_dips = found[least < 0, 0]
+    if not found_dips.size:
+        return theta, values
+    theta = np.sort(np.append(theta, found_dips))
+    return theta, values_at(theta)  # all in one go: dips judged alone may be noise, and would pass for changes
 
 
 def _real_intervals(pencil: Pencil, level: float, arcs: list[Arc], radius: float) -> list[Interval]:

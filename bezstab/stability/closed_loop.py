@@ -6,6 +6,7 @@ where the roots of P pair up. A second-order scheme has no mu: there the poles a
 """
 
 from fractions import Fraction
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -30,6 +31,7 @@ from bezstab.stability.root_finding import CHUNK
 
 BLOCK = 8 * CHUNK  # points whose roots are followed in one go: enough to outweigh the calls for one in STRIDE
 
+PROVEN = 64  # verdicts that are remembered: a margin's end is asked for when it is found, and when it is checked
 ORDINARY = 1e12  # of alpha_hat and beta_hat: their products, of degree 12 at most, are within float64
 
 AnyPencil = Pencil | PlanePencil
@@ -45,6 +47,7 @@ def verdict(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> Verdict:
     return recursion_verdict(polynomial) if polynomial[0] else "diverges"
 
 
+@lru_cache(maxsize=PROVEN)
 def converges(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> bool:
     """Return whether the verdict is 'converges': proven as `verdict`, without asking what else it might be."""
     polynomial = closed_loop_at(method, alpha_hat, beta_hat)

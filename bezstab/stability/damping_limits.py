@@ -197,7 +197,8 @@ def _ratio_by_halving(method: Method) -> float | None:
         return None
 
     def is_unlimited(ratios: FloatArray) -> BoolArray:
-        return np.array([_limit_at(method, Fraction(ratio)) is None for ratio in ratios.tolist()])
+        unlimited = [_limit_at(method, Fraction(ratio)) is None for ratio in ratios.ravel().tolist()]
+        return np.array(unlimited).reshape(ratios.shape)
 
     # the halves of a thousand are float64 numbers, so that nothing is rounded
     _, unlimited = bisected(is_unlimited, np.zeros(1), np.array([float(STRONGEST)]), HALVINGS)

@@ -96,23 +96,39 @@ def crossing_factors(path: Path) -> list[float]:
         with mp.workdps(DIGITS):
             digits = _in_digits(path, pencil.method)
             found = [_refined(digits, start) for start in _on_the_locus(path, pencil)]
-            for mu in real_events(pencil, 1.0).tolist():
-                found += _factors_with_one_mu(digits, _refined_real_mu(digits, pencil, mu))
+            for mu in _real_mu_on_the_circle(pencil):
+                found += _factors_with_one_mu(digits, mu)
     return sorted({factor for factor in found if 0 < factor < np.inf})
 
 
 def _in_digits(path: Path, method: Method) -> _Digits:
-    def of(c: Fraction) -> mp.mpf:
-        return mp.mpf(c.numerator) / c.denominator
-
+    of = _in_mpmath
     alpha_hat, beta_hat = of(path.alpha_hat), of(path.beta_hat)
     (p_alpha, p_beta), (q_alpha, q_beta) = feedback_matrix(method)
     return _Digits(
-        table=[[of(c) for c in row] for row in coefficient_table(method)],
+        table=_table_in_digits(method),
         of_alpha=(of(p_alpha) * alpha_hat, of(q_alpha) * alpha_hat),
         of_beta=(of(p_beta) * beta_hat, of(q_beta) * beta_hat),
         powers=path.powers,
     )
+
+
+@cache
+def _table_in_digits(method: Method) -> list[list[mp.mpf]]:
+    with mp.workdps(DIGITS):
+        return [[_in_mpmath(c) for c in row] for row in coefficient_table(method)]
+
+
+def _in_mpmath(c: Fraction) -> mp.mpf:
+    return mp.mpf(c.numerator) / c.denominator
+
+
+@cache
+def _real_mu_on_the_circle(pencil: Pencil) -> tuple[mp.mpf, ...]:
+    """Return every real mu at which a root z has |z| = 1 (and perhaps others), in DIGITS digits, for every path."""
+    table = _table_in_digits(pencil.method)
+    with mp.workdps(DIGITS):
+        return tuple(_refined_real_mu(table, pencil, mu) for mu in real_events(pencil, 1.0).tolist())
 
 
 def _factors_with_one_mu(digits: _Digits, mu: mp.mpf) -> list[float]:
@@ -134,7 +150,7 @@ def _factors_with_one_mu(digits: _Digits, mu: mp.mpf) -> list[float]:
     return [float(-half - root), float(-half + root)]
 
 
-def _refined_real_mu(digits: _Digits, pencil: Pencil, mu: float) -> mp.mpf:
+def _refined_real_mu(table: list[list[mp.mpf]], pencil: Pencil, mu: float) -> mp.mpf:
     """Return the real mu with a root on the circle next to one that float64 found, by Newton's method for both.
 
     What float64 found where that does not settle.
@@ -144,7 +160,7 @@ def _refined_real_mu(digits: _Digits, pencil: Pencil, mu: float) -> mp.mpf:
     half_turns, better = _in_half_turns(abs(float(np.angle(on_circle)))), mp.mpf(mu)
     for _ in range(NEWTON_STEPS):
         z = mp.expjpi(half_turns)
-        value, by_z, by_mu = _value_and_slopes(digits.table, z, mp.mpc(better))
+        value, by_z, by_mu = _value_and_slopes(table, z, mp.mpc(better))
         steps = _real_steps(value, mp.pi * 1j * z * by_z, by_mu)
         if steps is None:
             break

@@ -126,7 +126,8 @@ def _check_lines(pencil: PlanePencil, level: float, shape: PlaneShape, area: flo
     entering = inside[turn + 1]
 
     def arrived(place: FloatArray) -> BoolArray:
-        found: BoolArray = _inside(pencil, level, lines[which[turn]], place) == entering
+        line = np.broadcast_to(lines[which[turn]], place.shape)
+        found: BoolArray = _inside(pencil, level, line, place) == entering
         return found
 
     place = bisected(arrived, beta_hat[turn], beta_hat[turn + 1])[1]

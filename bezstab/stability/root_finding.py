@@ -15,6 +15,7 @@ from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
 CHUNK = 16384  # points at a time: all the work arrays of one chunk stay in a core's cache
 STRIDE = 16  # of a row of points one in so many has all its roots solved for, the others start from them
 FEW = 2 * STRIDE  # polynomials: to solve them in two turns would take longer than all at once
+EIGENVALUES = 64  # roots, of all polynomials together: up to there LAPACK is faster than Aberth's first steps
 TOGETHER = 2**14  # pairs of roots, 256 kB: up to there one call for all of them is faster than one for each
 ITERATIONS = 200  # Aberth's iteration needs about ten; a multiple root, where it is linear, about sixty
 FAR = 1e15  # |z| whose 16th power still fits float64
@@ -67,9 +68,9 @@ def _roots_from_neighbours(coefficients: ComplexArray, too_far: BoolArray) -> Co
     """Return the roots of a row of polynomials: one in STRIDE from scratch, others near it from its roots."""
     points = coefficients.shape[1]
     if points <= FEW:
-        return _aberth(coefficients, newton_polygon_starts(coefficients))
+        return _aberth(coefficients, _starts_of_few(coefficients))
     solved_coefficients = coefficients[:, ::STRIDE]
-    solved = _aberth(solved_coefficients, newton_polygon_starts(solved_coefficients))
+    solved = _aberth(solved_coefficients, _starts_of_few(solved_coefficients))
     # Nudged apart: coinciding starts would never part, and real ones never leave the axis of a real polynomial.
     solved += NUDGE * np.abs(solved) * _spread_directions(len(solved))
     starts = np.repeat(solved, STRIDE, axis=1)[:, :points]
@@ -93,8 +94,11 @@ def _coefficients(table: FloatArray, x: ComplexArray) -> ComplexArray:
 
 def horner(ascending: FloatArray, x: ComplexArray) -> ComplexArray:
     """Return the polynomial with these coefficients, in ascending powers, at each x."""
-    total = np.full_like(x, ascending[-1])
-    for coefficient in ascending[-2::-1]:
+    if len(ascending) == 1:
+        return np.full_like(x, ascending[0])
+    total: ComplexArray = ascending[-1] * x
+    total += ascending[-2]
+    for coefficient in ascending[-3::-1]:
         total *= x
         total += coefficient
     return total
@@ -137,6 +141,32 @@ def newton_polygon_starts(coefficients: ComplexArray) -> ComplexArray:
     return starts
 
 
+def _starts_of_few(coefficients: ComplexArray) -> ComplexArray:
+    """Return starting points: of very few polynomials eigenvalues of companion matrices, roots but for their rounding.
+
+    Those spare Aberth's iteration ten steps, of which each takes as long for one polynomial as for a dozen. Where a
+    leading coefficient vanishes, or eigenvalues coincide or vanish, starts might never part: there, and of more
+    polynomials, they are those of the Newton polygon.
+    """
+    n, points = len(coefficients) - 1, coefficients.shape[1]
+    if n * points > EIGENVALUES:
+        return newton_polygon_starts(coefficients)
+    companion = np.zeros((points, n, n), complex)
+    companion[:, range(1, n), range(n - 1)] = 1
+    companion[:, :, -1] = -(coefficients[:-1] / coefficients[-1]).T
+    finite = np.isfinite(companion[:, :, -1]).all(axis=1)
+    companion[~finite] = 0
+    try:
+        starts = np.linalg.eigvals(companion).T.astype(complex)
+    except np.linalg.LinAlgError:
+        return newton_polygon_starts(coefficients)
+    apart = np.diff(np.sort(starts, axis=0), axis=0).all(axis=0) & starts.all(axis=0)
+    rest = ~(finite & apart)
+    if rest.any():
+        starts[:, rest] = newton_polygon_starts(coefficients[:, rest])
+    return starts
+
+
 def _aberth(coefficients: ComplexArray, starts: ComplexArray) -> ComplexArray:
     """Return the roots of sum_k a_k z^k, coefficients of shape (n + 1, points), from starts of shape (n, points).
 
@@ -165,9 +195,11 @@ def _aberth(coefficients: ComplexArray, starts: ComplexArray) -> ComplexArray:
 
 def _aberth_step(coefficients: ComplexArray, z: ComplexArray) -> ComplexArray:
     """Return Newton's correction N = p/p' repelled by the other roots: N / (1 - N sum 1/(z_i - z_j))."""
-    value = np.broadcast_to(coefficients[-1], z.shape).copy()
-    slope = np.zeros_like(z)
-    for coefficient in coefficients[-2::-1]:
+    slope = np.empty_like(z)
+    slope[:] = coefficients[-1]
+    value = coefficients[-1] * z
+    value += coefficients[-2]
+    for coefficient in coefficients[-3::-1]:
         slope *= z
         slope += value
         value *= z
@@ -193,7 +225,8 @@ def _far_aberth_step(coefficients: ComplexArray, z: ComplexArray) -> ComplexArra
 
 def _quotient(numerator: ComplexArray, denominator: ComplexArray) -> ComplexArray:
     """Return the quotient, and 0 where the numerator is 0."""
-    quotient: ComplexArray = np.divide(numerator, denominator, out=np.zeros_like(numerator), where=numerator != 0)
+    quotient: ComplexArray = numerator / denominator
+    quotient[numerator == 0] = 0
     return quotient
 
 
@@ -201,16 +234,27 @@ def _repulsion(z: ComplexArray) -> ComplexArray:
     """Return the sums of 1 / (z_i - z_j) over the other roots j, coinciding ones left out."""
     if z.size * len(z) <= TOGETHER:
         differences = z[:, np.newaxis] - z
-        reciprocals = np.divide(1, differences, out=np.zeros_like(differences), where=differences != 0)
-        return np.asarray(reciprocals.sum(axis=1))
-    repulsion = np.zeros_like(z)
-    for i in range(len(z)):
-        for j in range(i):
-            difference = z[i] - z[j]
-            reciprocal = np.divide(1, difference, out=np.zeros_like(difference), where=difference != 0)
-            repulsion[i] += reciprocal
-            repulsion[j] -= reciprocal
+        own = np.arange(len(z))
+        differences[own, own] = np.inf
+        repulsion = np.asarray((1 / differences).sum(axis=1))
+    else:
+        repulsion = np.zeros_like(z)
+        for i in range(len(z)):
+            for j in range(i):
+                reciprocal = 1 / (z[i] - z[j])
+                repulsion[i] += reciprocal
+                repulsion[j] -= reciprocal
+    infinite = ~np.isfinite(repulsion).all(axis=0)  # rare: to ask beforehand takes longer than all the rest
+    if infinite.any():
+        repulsion[:, infinite] = _repulsion_of_others(z[:, infinite])
     return repulsion
+
+
+def _repulsion_of_others(z: ComplexArray) -> ComplexArray:
+    """Return the same where some roots coincide."""
+    differences = z[:, np.newaxis] - z
+    reciprocals = np.divide(1, differences, out=np.zeros_like(differences), where=differences != 0)
+    return np.asarray(reciprocals.sum(axis=1))
 
 
 def newton_correction(coefficients: Sequence[Any] | FloatArray, y: ComplexArray) -> ComplexArray:

@@ -33,6 +33,14 @@ def test_written_arrays_come_back_exactly(h: float | None) -> None:
         assert all((back[name] == arrays[name]).all() for name in arrays)
 
 
+def test_texts_come_back_from_csv_as_they_are() -> None:
+    texts = ["B4", "newmark(1/4,1/2)", 'said "so"', "two\nlines", ""]
+    file = io.BytesIO()
+    write_arrays({"a,b": np.array(texts), "n": np.arange(len(texts))}, "csv", file)
+    rows = list(csv.reader(io.StringIO(file.getvalue().decode("utf-8"), newline="")))
+    assert rows == [["a,b", "n"], *([text, str(number)] for number, text in enumerate(texts))]
+
+
 def test_boundaries_as_arrays() -> None:
     shapes = [region(lookup("B4")), region(lookup("B4"), 0.5), region(lookup("RK4"), 0.25)]
     arrays = boundary_arrays(shapes, 0.5)

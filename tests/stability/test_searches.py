@@ -9,11 +9,12 @@ from bezstab.stability import FloatArray
 from bezstab.stability.searches import bisected, false_position, first_where, zoom_on_minimum
 
 
-@given(st.lists(st.floats(-1, 1), min_size=1, max_size=5))
+@given(st.lists(st.floats(-1, 1), min_size=1, max_size=5), st.integers(1, 20))
 @settings(deadline=None)
-def test_bisecting_ends_at_neighbours_on_both_sides(thresholds: list[float]) -> None:
+def test_bisecting_ends_at_neighbours_on_both_sides(thresholds: list[float], at_once: int) -> None:
     found = np.array(thresholds)
-    before, after = bisected(lambda x: x >= found, np.full(found.shape, -1.5), np.full(found.shape, 1.5))
+    ends = np.full(found.shape, -1.5), np.full(found.shape, 1.5)
+    before, after = bisected(lambda x: x >= found, *ends, at_once=at_once)
     assert (before < found).all()
     assert (after >= found).all()
     assert after - before == pytest.approx(np.zeros(found.shape), abs=1e-15)
