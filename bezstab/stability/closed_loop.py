@@ -124,7 +124,7 @@ def largest_pole(
     if compiled is None:
         compiled = is_compiled(pencil, alpha_hat.size)
     write = _write_compiled if compiled else _write_largest_poles
-    columns = alphas.shape[1]
+    columns = max(1, alphas.shape[1])  # of no points, too
     whole_rows = BLOCK // columns // SIDE * SIDE * columns
     block = whole_rows or BLOCK
     for start in range(0, alpha_hat.size, block):
