@@ -7,8 +7,10 @@ From a method's polynomial in float64 (its pencil) upwards; a file imports only 
     root_finding      all roots of many polynomials
     pencils           what float64 needs to know of a method, made once
     low_degrees       roots of quadratics and cubics
+    neighbourhoods    the points of a grid in blocks of neighbours
+    real_factors      the largest root of real polynomials, by a quadratic factor followed among neighbours
     plane_pencils     the same of a second-order scheme, and its poles
-    dominant_roots    the largest root along a row of mu, followed
+    dominant_roots    the largest root at many mu, followed among neighbours
     compiled_roots    as machine code: the largest root along a row of polynomials
     compiled_maps     whether a map is compiled, and its rows shared among the cores
     closed_loop       poles, |z_p|, the proven verdict

@@ -5,6 +5,7 @@ that halves the degree, needs one solve where the mu are conjugate, and keeps al
 where the roots of P pair up. A second-order scheme has no mu: there the poles are the roots of P (plane_pencils).
 """
 
+from collections.abc import Callable
 from fractions import Fraction
 from functools import lru_cache
 
@@ -23,8 +24,9 @@ from bezstab.methods import (
 )
 from bezstab.stability.arrays import EPS, ComplexArray, FloatArray
 from bezstab.stability.compiled_maps import is_compiled, write_followed
-from bezstab.stability.dominant_roots import FEWEST, dominant_root
+from bezstab.stability.dominant_roots import dominant_root, dominant_root_in_blocks, largest_of_one_step
 from bezstab.stability.exact_sums import feedback_roots
+from bezstab.stability.neighbourhoods import FEWEST, SIDE, blocks_of_neighbours
 from bezstab.stability.pencils import Pencil, pencil_of, roots_in_z
 from bezstab.stability.plane_pencils import PlanePencil, largest_plane_root, plane_pencil_of, plane_roots
 from bezstab.stability.root_finding import CHUNK
@@ -125,9 +127,13 @@ def largest_pole(
     if compiled is None:
         compiled = is_compiled(pencil, alpha_hat.size)
     write = _write_compiled if compiled else _write_largest_poles
-    for start in range(0, alpha_hat.size, BLOCK):
-        stop = min(start + BLOCK, alpha_hat.size)
-        write(pencil, _points(alphas, start, stop), _points(betas, start, stop), dominant[start:stop])
+    columns = max(1, alphas.shape[1])  # of no points, too
+    whole_rows = BLOCK // columns // SIDE * SIDE * columns
+    block = whole_rows or BLOCK
+    for start in range(0, alpha_hat.size, block):
+        stop = min(start + block, alpha_hat.size)
+        shape = ((stop - start) // columns, columns) if whole_rows else (1, stop - start)
+        write(pencil, _points(alphas, start, stop), _points(betas, start, stop), shape, dominant[start:stop])
     return dominant.reshape(alpha_hat.shape)
 
 
@@ -144,42 +150,61 @@ def largest_modulus(pencil: AnyPencil, alpha_hat: ArrayLike, beta_hat: ArrayLike
     return np.abs(largest_pole(pencil, alpha_hat, beta_hat))
 
 
-def _write_compiled(pencil: AnyPencil, alpha_hat: FloatArray, beta_hat: FloatArray, poles: ComplexArray) -> None:
+def _write_compiled(
+    pencil: AnyPencil, alpha_hat: FloatArray, beta_hat: FloatArray, _shape: tuple[int, int], poles: ComplexArray
+) -> None:
     """Write into `poles` what _write_largest_poles does, by machine code but for the points that it leaves."""
     write_followed(pencil, alpha_hat, beta_hat, poles)
     left = np.flatnonzero(np.isnan(poles.real))
     if left.size:
         few = np.empty(left.size, complex)
-        _write_largest_poles(pencil, alpha_hat[left], beta_hat[left], few)
+        _write_largest_poles(pencil, alpha_hat[left], beta_hat[left], (1, left.size), few)
         poles[left] = few
 
 
-def _write_largest_poles(pencil: AnyPencil, alpha_hat: FloatArray, beta_hat: FloatArray, poles: ComplexArray) -> None:
-    """Write into `poles` the dominant pole of each point of a row.
+def _write_largest_poles(
+    pencil: AnyPencil, alpha_hat: FloatArray, beta_hat: FloatArray, shape: tuple[int, int], poles: ComplexArray
+) -> None:
+    """Write into `poles` the dominant pole of each point of a row: those of a grid of that shape, row by row.
 
     Conjugate mu have conjugate poles, so one of the two is enough; of two real mu both are looked at.
     """
     if isinstance(pencil, PlanePencil):
-        largest_plane_root(pencil, alpha_hat, beta_hat, into=poles)
+        largest_plane_root(pencil, alpha_hat, beta_hat, shape, into=poles)
         return
-    if pencil.steps == 1 and pencil.implicit and poles.size >= FEWEST and _ordinary(alpha_hat, beta_hat):
-        largest_plane_root(plane_pencil_of(pencil.method), alpha_hat, beta_hat, into=poles)  # a quadratic
+    if pencil.steps == 1 and poles.size >= FEWEST and _ordinary(alpha_hat, beta_hat):
+        if pencil.implicit:
+            largest_plane_root(plane_pencil_of(pencil.method), alpha_hat, beta_hat, shape, into=poles)  # a quadratic
+        else:
+            largest_of_one_step(pencil, alpha_hat, beta_hat, into=poles)
         return
-    second_mu = np.empty_like(poles)
+    first_mu, second_mu = np.empty_like(poles), np.empty_like(poles)
     for i in range(0, poles.size, CHUNK):
         chunk = slice(i, i + CHUNK)
-        poles[chunk], second_mu[chunk] = feedback_roots(pencil.feedback, alpha_hat[chunk], beta_hat[chunk])
-    real = np.flatnonzero(poles.imag == 0)
-    if poles.size + real.size < FEWEST:  # one call for all of them is faster than one for each
-        found = dominant_root(pencil, np.concatenate([poles, second_mu[real]]))
-        poles[:], others = found[: poles.size], found[poles.size :]
+        first_mu[chunk], second_mu[chunk] = feedback_roots(pencil.feedback, alpha_hat[chunk], beta_hat[chunk])
+    if pencil.steps > 2 and poles.size >= FEWEST:
+        blocks = blocks_of_neighbours(*shape)
+        poles[blocks] = _larger_of_both_mu(pencil, first_mu[blocks], second_mu[blocks])
     else:
-        poles[:], others = dominant_root(pencil, poles), dominant_root(pencil, second_mu[real])
-    if real.size:
-        larger = np.abs(others) > np.abs(poles[real])
-        poles[real[larger]] = others[larger]
+        poles[:] = _larger_of_both_mu(pencil, first_mu, second_mu)
     poles.imag = np.abs(poles.imag)
     _without_rounding(poles)
+
+
+def _larger_of_both_mu(pencil: Pencil, first_mu: ComplexArray, second_mu: ComplexArray) -> ComplexArray:
+    """Return the dominant pole at each pair of mu: in a row, or in blocks of neighbours."""
+    dominant: Callable[[Pencil, ComplexArray], ComplexArray]
+    if first_mu.ndim == 2:
+        dominant, some = dominant_root_in_blocks, np.flatnonzero((first_mu.imag == 0).any(axis=1))
+    else:
+        dominant, some = dominant_root, np.flatnonzero(first_mu.imag == 0)
+    if first_mu.size + some.size < FEWEST:  # one call for all of them is faster than one for each
+        found = dominant(pencil, np.concatenate([first_mu, second_mu[some]]))
+        found, others = found[: first_mu.size], found[first_mu.size :]
+    else:
+        found, others = dominant(pencil, first_mu), dominant(pencil, second_mu[some])
+    found[some] = np.where(np.abs(others) > np.abs(found[some]), others, found[some])
+    return found
 
 
 def _ordinary(alpha_hat: FloatArray, beta_hat: FloatArray) -> bool:

@@ -1,9 +1,9 @@
-"""The root of pi(., mu) of largest modulus along a row of mu, followed from neighbour to neighbour where that is safe.
+"""The root of pi(., mu) of largest modulus for many mu, followed from neighbour to neighbour where that is safe.
 
 A map asks for one root of a million polynomials. To solve them all for all their roots takes four times as long as
 what is done here:
 
-    row of mu     . . . . . . . . c . . . . . . .     one block of STRIDE neighbours with its centre c
+    block of mu   c . . . . . . . . . . . . . . .     neighbours, their middle c first (neighbourhoods)
     at c          all roots are solved for; the largest leads, the others are rivals
     elsewhere     Newton's method takes the leading root from c to the others
 
@@ -25,32 +25,60 @@ from numpy.polynomial.polynomial import polyval, polyval2d
 from numpy.typing import NDArray
 
 from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
-from bezstab.stability.low_degrees import largest_quadratic_root
+from bezstab.stability.exact_sums import feedback_discriminant
+from bezstab.stability.low_degrees import largest_quadratic_root, polynomial_of_pair
+from bezstab.stability.neighbourhoods import FEWEST, blocks_of_neighbours
 from bezstab.stability.pencils import Pencil, has_infinite_root, raise_not_finite
-from bezstab.stability.root_finding import CHUNK, CONVERGED, STRIDE, followed_roots, roots_of_table
+from bezstab.stability.root_finding import CHUNK, CONVERGED, followed_roots, roots_of_table
 
 CANCELS = 1e-5  # of (b/2)^2: where a quadratic's discriminant is below it, its root would be good to 1e-13 or less
+POINTS = 8192  # followed at a time: their work arrays stay in a core's cache
 ORDINARY = 1e70  # of |mu|: its powers are far from the end of float64's range
-FEWEST = STRIDE**2  # mu for which following is worth its preparations
 
 
 def dominant_root(pencil: Pencil, mu: ComplexArray) -> ComplexArray:
     """Return the root of pi(., mu) of largest modulus for each of a row of mu; complex, dimensionless.
 
-    Faster where neighbours in the row are close, as on a map. Infinite where an implicit step has no solution.
-    NumericalError if a finite root leaves the range of float64.
+    Faster where neighbours in the row are close. Infinite where an implicit step has no solution. NumericalError if a
+    finite root leaves the range of float64.
     """
     if pencil.steps == 1 or mu.size < FEWEST:
         return _largest_of_all(pencil, mu)
-    found = np.full(mu.size, np.nan, complex)
-    if pencil.steps == 2 and pencil.implicit:
-        for start in range(0, mu.size, CHUNK):
-            _write_larger(pencil, mu[start : start + CHUNK], found[start : start + CHUNK])
-        rest = np.flatnonzero(np.isnan(found))
-        found[rest] = _largest_of_all(pencil, mu[rest])
-        return found
-    in_blocks = mu.size - mu.size % STRIDE
-    _follow(pencil, mu[:in_blocks].reshape(-1, STRIDE), found[:in_blocks].reshape(-1, STRIDE))
+    if pencil.steps == 2:
+        return _larger_of_two(pencil, mu)
+    places = blocks_of_neighbours(1, mu.size)
+    found = np.empty(mu.size, complex)
+    found[places] = dominant_root_in_blocks(pencil, mu[places])
+    return found
+
+
+def dominant_root_in_blocks(pencil: Pencil, blocks: ComplexArray) -> ComplexArray:
+    """Return the same of blocks of neighbours, their middle first; of their shape, (blocks, mu of a block)."""
+    found = np.full(blocks.shape, np.nan, complex)
+    _follow(pencil, blocks, found)
+    rest = np.isnan(found)
+    found[rest] = _largest_of_all(pencil, blocks[rest])
+    return found
+
+
+def largest_of_one_step(pencil: Pencil, alpha_hat: FloatArray, beta_hat: FloatArray, into: ComplexArray) -> None:
+    """Write the larger pole, Im >= 0, of an explicit one-step method, z = R(mu), at each of a row of points.
+
+    Of ordinary size: no product overflows.
+    """
+    stability_function = -pencil.table[0] / pencil.table[1, 0]
+    for start in range(0, alpha_hat.size, CHUNK):
+        chunk = slice(start, start + CHUNK)
+        p, q, discriminant = feedback_discriminant(pencil.feedback, alpha_hat[chunk], beta_hat[chunk])
+        middle, factor = polynomial_of_pair(stability_function.tolist(), p, q)
+        largest_quadratic_root(-middle, factor * factor * discriminant, into[chunk])
+
+
+def _larger_of_two(pencil: Pencil, mu: ComplexArray) -> ComplexArray:
+    """Return what dominant_root does, of two roots: by a formula, but where that loses digits."""
+    found = np.empty(mu.size, complex)
+    for start in range(0, mu.size, CHUNK):
+        _write_larger(pencil, mu[start : start + CHUNK], found[start : start + CHUNK])
     rest = np.flatnonzero(np.isnan(found))
     found[rest] = _largest_of_all(pencil, mu[rest])
     return found
@@ -90,8 +118,8 @@ def _largest_of_all(pencil: Pencil, mu: ComplexArray) -> ComplexArray:
 
 
 def _follow(pencil: Pencil, blocks: ComplexArray, found: ComplexArray) -> None:
-    """Write into `found` the leading roots of blocks of mu, shape (blocks, STRIDE), where they are safe to follow."""
-    centre = blocks[:, STRIDE // 2]
+    """Write into `found` the leading roots of blocks of mu, where they are safe to follow."""
+    centre = blocks[:, 0]
     z = roots_of_table(pencil.table, centre)
     same_mu = np.broadcast_to(centre, z.shape)
     with np.errstate(all="ignore"):  # what is not finite is not followed
@@ -101,12 +129,11 @@ def _follow(pencil: Pencil, blocks: ComplexArray, found: ComplexArray) -> None:
         lead_slope = np.take_along_axis(slope, lead, axis=0)[0]
         bound = _rivals_bound(pencil, blocks, z, slope, lead)
         safe = np.flatnonzero(bound < np.abs(lead_z))
-        blocks_at_a_time = CHUNK // STRIDE
+        blocks_at_a_time = max(1, POINTS // blocks.shape[1])
         for i in range(0, safe.size, blocks_at_a_time):
             chosen = safe[i : i + blocks_at_a_time]
             mu = blocks[chosen]
-            offset = mu - centre[chosen, np.newaxis]
-            starts = lead_z[chosen, np.newaxis] + lead_slope[chosen, np.newaxis] * offset
+            starts = lead_z[chosen, np.newaxis] + lead_slope[chosen, np.newaxis] * (mu - mu[:, :1])
             found[chosen] = followed_roots(pencil.table, mu, starts, bound[chosen, np.newaxis])
 
 
@@ -117,7 +144,7 @@ def _rivals_bound(
 
     `z` and `slope` have the roots at the centres and their dz/dmu, `lead` the leading root's number.
     """
-    centre = blocks[:, STRIDE // 2]
+    centre = blocks[:, 0]
     radius = np.abs(blocks - centre[:, np.newaxis]).max(axis=1)
     share = radius / np.abs(centre[:, np.newaxis] - pencil.branch_points).min(axis=1, initial=np.inf)
     moved = np.abs(slope) * np.where(share < 1, radius / (1 - share) ** 2, np.inf)

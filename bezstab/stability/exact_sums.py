@@ -64,6 +64,18 @@ def feedback_roots(
     return first, second
 
 
+def feedback_discriminant(
+    feedback: ExactMatrix, alpha_hat: FloatArray, beta_hat: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return p, q and p^2 / 4 - q of the feedback, the third exact until rounded; for points of ordinary size."""
+    p, p_low = exact_combination(feedback[0], alpha_hat, beta_hat)
+    q, q_low = exact_combination(feedback[1], alpha_hat, beta_hat)
+    half = 0.5 * p
+    square, square_low = two_product(half, half)
+    high, low = two_sum(square, -q)
+    return p, q, high + (low + (square_low + half * p_low - q_low))
+
+
 def exact_combination(factors: Sequence[Fraction], x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return a x + b y, (a, b) the factors, as an unevaluated sum of two float64."""
     a, b = factors

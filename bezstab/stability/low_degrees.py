@@ -1,4 +1,4 @@
-"""Roots of many real quadratics and cubics at once, by formula: the poles of most second-order schemes.
+"""Roots of many real quadratics and cubics at once, by formula: poles of one-step methods and second-order schemes.
 
 A quadratic loses digits where its roots nearly meet: there b^2/4 - a c cancels, and the caller hands in a better value.
 A cubic's roots are found one, then two:
@@ -8,6 +8,8 @@ A cubic's roots are found one, then two:
       -----+-x-+-----\\--_--/---- z      and one Newton step. Dividing by it, from the end where its power is largest,
            | /   o     '              leaves a quadratic (W. Kahan, "To solve a real cubic equation", 1986).
 """
+
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -39,6 +41,17 @@ def largest_quadratic_root(half: FloatArray, discriminant: FloatArray, into: Com
     real_square = np.maximum(discriminant, 0)  # one of the two squares is zero: without branches it takes half the time
     np.sqrt(real_square - discriminant, out=into.imag)
     np.negative(half + np.copysign(np.sqrt(real_square), half), out=into.real)
+
+
+def polynomial_of_pair(ascending: Sequence[float], p: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return (middle, factor) with R(mu) = middle +- factor sqrt(p^2/4 - q) at both roots mu of mu^2 + p mu + q.
+
+    R has these coefficients, one at least. Divided by the quadratic it leaves factor mu + rest, which R is at both.
+    """
+    above, factor = np.zeros_like(p), np.zeros_like(p)
+    for coefficient in ascending[:0:-1]:
+        above, factor = factor, coefficient - p * factor - q * above
+    return ascending[0] - q * above - 0.5 * p * factor, factor
 
 
 def cubic_parts(b: FloatArray, c: FloatArray, d: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -6,16 +6,19 @@ most of these schemes, which a formula gives, or three, or as many as it looks b
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bezstab.errors import NumericalError
 from bezstab.methods import Method, closed_loop_table, reduced_table
 from bezstab.stability.arrays import ComplexArray, FloatArray
 from bezstab.stability.exact_sums import double_polynomial, double_product, double_sum, split
 from bezstab.stability.low_degrees import cubic_parts, largest_quadratic_root, quadratic_roots
-from bezstab.stability.root_finding import CHUNK, largest_of_rows, roots_of_rows
+from bezstab.stability.neighbourhoods import FEWEST, blocks_of_neighbours
+from bezstab.stability.real_factors import largest_in_upper_half, largest_of_blocks
+from bezstab.stability.root_finding import CHUNK, roots_of_rows
 
 CANCELS = 1e-5  # of (b/2)^2: where the discriminant is below it, its root would be good to 1e-13 or less
 
@@ -79,12 +82,8 @@ def _horner(ascending: Sequence[float | FloatArray], x: FloatArray) -> float | F
 def discriminants(
     pencil: PlanePencil, coefficients: list[FloatArray], alpha_hat: FloatArray, beta_hat: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return (half, last, half^2 - last) of the monic z^2 + 2 half z + last; the last exact to rounding."""
-    last, twice_half, leading = coefficients
-    half, last = 0.5 * twice_half / leading, last / leading
-    square = half * half
-    discriminant = square - last
-    close = np.flatnonzero(np.abs(discriminant) < CANCELS * square)
+    """Return (half, last, half^2 - last) of the monic z^2 + 2 half z + last; the third exact to rounding."""
+    half, last, discriminant, close = _rounded_discriminants(coefficients)
     if close.size:
         a, b, c = (double_polynomial(table, alpha_hat[close], beta_hat[close]) for table in pencil.split[::-1])
         b = (0.5 * b[0], 0.5 * b[1])
@@ -92,6 +91,17 @@ def discriminants(
         better = (unscaled[0] + unscaled[1]) / a[0] / a[0]
         discriminant[close] = np.where(np.isfinite(better), better, discriminant[close])
     return half, last, discriminant
+
+
+def _rounded_discriminants(
+    coefficients: list[FloatArray],
+) -> tuple[FloatArray, FloatArray, FloatArray, NDArray[np.intp]]:
+    """Return (half, last, half^2 - last) of the same, and the places where the third loses digits."""
+    last, twice_half, leading = coefficients
+    half, last = 0.5 * twice_half / leading, last / leading
+    square = half * half
+    discriminant = square - last
+    return half, last, discriminant, np.flatnonzero(np.abs(discriminant) < CANCELS * square)
 
 
 def plane_roots(pencil: PlanePencil, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
@@ -120,14 +130,24 @@ def _roots_of_chunk(pencil: PlanePencil, alpha_hat: FloatArray, beta_hat: FloatA
         return roots_of_rows(np.stack(coefficients).astype(complex))
 
 
-def largest_plane_root(pencil: PlanePencil, alpha_hat: FloatArray, beta_hat: FloatArray, into: ComplexArray) -> None:
-    """Write into an array the pole of largest modulus at each of a row of points, Im >= 0.
+def largest_plane_root(
+    pencil: PlanePencil, alpha_hat: FloatArray, beta_hat: FloatArray, shape: tuple[int, int], into: ComplexArray
+) -> None:
+    """Write into an array the pole of largest modulus, Im >= 0, at each point of a grid of a shape, row by row.
 
     Infinite where an implicit step has no solution. NumericalError if a finite pole leaves the range of float64.
     """
-    for start in range(0, alpha_hat.size, CHUNK):
-        chunk = slice(start, start + CHUNK)
-        _write_largest(pencil, alpha_hat[chunk], beta_hat[chunk], into[chunk])
+    with np.errstate(all="ignore"):
+        if pencil.degree == 2:
+            _write_largest_of_quadratics(pencil, alpha_hat, beta_hat, into)
+        elif pencil.degree == 3:
+            _write_largest_of_cubics(pencil, alpha_hat, beta_hat, into)
+        elif alpha_hat.size < FEWEST:
+            z = roots_of_rows(np.stack(coefficients_at(pencil, alpha_hat, beta_hat)).astype(complex))
+            into[:] = largest_in_upper_half(z)
+        else:
+            blocks = blocks_of_neighbours(*shape)
+            into[blocks] = largest_of_blocks(partial(coefficients_at, pencil), alpha_hat[blocks], beta_hat[blocks])
     lost = np.flatnonzero(~np.isfinite(into))
     if lost.size:
         leading = coefficients_at(pencil, alpha_hat[lost], beta_hat[lost])[-1]
@@ -136,21 +156,36 @@ def largest_plane_root(pencil: PlanePencil, alpha_hat: FloatArray, beta_hat: Flo
         _check_finite(pencil, np.where(unsolvable, 0, into)[np.newaxis], alpha_hat, beta_hat)
 
 
-def _write_largest(pencil: PlanePencil, alpha_hat: FloatArray, beta_hat: FloatArray, into: ComplexArray) -> None:
-    with np.errstate(all="ignore"):
-        if pencil.degree > 3:
-            into[:] = largest_of_rows(np.stack(coefficients_at(pencil, alpha_hat, beta_hat)))
-            return
-        coefficients = coefficients_at(pencil, alpha_hat, beta_hat)
-        if pencil.degree == 2:
-            half, _, discriminant = discriminants(pencil, coefficients, alpha_hat, beta_hat)
-            largest_quadratic_root(half, discriminant, into)
-            return
-        d, c, b, leading = coefficients
+def _write_largest_of_quadratics(
+    pencil: PlanePencil, alpha_hat: FloatArray, beta_hat: FloatArray, into: ComplexArray
+) -> None:
+    """Write the larger pole of two; exactly where they nearly meet, of all chunks at once, as these points are few."""
+    close = []
+    for start in range(0, alpha_hat.size, CHUNK):
+        chunk = slice(start, start + CHUNK)
+        coefficients = coefficients_at(pencil, alpha_hat[chunk], beta_hat[chunk])
+        half, _, discriminant, places = _rounded_discriminants(coefficients)
+        largest_quadratic_root(half, discriminant, into[chunk])
+        close.append(start + places)
+    few = np.concatenate(close)
+    exactly = np.empty(few.size, complex)
+    coefficients = coefficients_at(pencil, alpha_hat[few], beta_hat[few])
+    half, _, discriminant = discriminants(pencil, coefficients, alpha_hat[few], beta_hat[few])
+    largest_quadratic_root(half, discriminant, exactly)
+    into[few] = exactly
+
+
+def _write_largest_of_cubics(
+    pencil: PlanePencil, alpha_hat: FloatArray, beta_hat: FloatArray, into: ComplexArray
+) -> None:
+    for start in range(0, alpha_hat.size, CHUNK):
+        chunk = slice(start, start + CHUNK)
+        d, c, b, leading = coefficients_at(pencil, alpha_hat[chunk], beta_hat[chunk])
         apart, half, last = cubic_parts(b / leading, c / leading, d / leading)
-        largest_quadratic_root(half, half * half - last, into)
-        alone = np.flatnonzero(~(np.abs(apart) <= np.abs(into)))  # nan too
-        into[alone] = apart[alone]
+        largest = into[chunk]
+        largest_quadratic_root(half, half * half - last, largest)
+        alone = np.flatnonzero(~(np.abs(apart) <= np.abs(largest)))  # nan too
+        largest[alone] = apart[alone]
 
 
 def _check_finite(pencil: PlanePencil, z: ComplexArray, alpha_hat: FloatArray, beta_hat: FloatArray) -> None:

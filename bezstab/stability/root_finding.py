@@ -23,8 +23,6 @@ NEAR = 0.2  # relative distance of x within which the roots of a neighbour are b
 NUDGE = 1e-3  # about a step of a map's grid, so it costs no iteration
 CONVERGED = 1e-9  # relative correction after which a quadratically convergent iterate is exact to rounding
 NEWTON_STEPS = 4  # from a start that is off by the square of a map's spacing two suffice
-LARGER = 1e-9  # relative: by so much a root must outdo the others to be the largest without doubt
-MORE_STEPS = 12  # near a double root, towards which neighbours move like a square root
 LOG_OF_ZERO = -1e300  # a finite stand-in for log 0, below every logarithm of a float64
 
 
@@ -285,76 +283,3 @@ def followed_roots(table: FloatArray, x: ComplexArray, starts: ComplexArray, bou
         if settled.all():
             break
     return np.where(settled & (np.abs(y) > bound), y, np.nan)
-
-
-# Of a row of real polynomials the largest root alone, from that of a neighbour by Newton's method. That no other root
-# is larger is not taken on trust: divided by z - r, or by (z - r)(z - conj r), what is left has all its roots within
-# |r|, which Schur's recursion tells in few operations. Where it does not, near kinks, the runner-up of the neighbour is
-# tried, and then all roots are solved for.
-
-
-def largest_of_rows(coefficients: FloatArray) -> ComplexArray:
-    """Return the root of largest modulus, Im >= 0, of a row of real polynomials of degree four or more.
-
-    Coefficients ascending, of shape (n + 1, points), alike for neighbours. Not finite where it is infinite.
-    """
-    points = coefficients.shape[1]
-    found = np.full(points, np.nan, complex)
-    solved = roots_of_rows(coefficients[:, STRIDE // 2 :: STRIDE].astype(complex))
-    size = np.abs(solved)
-    upper = np.where(
-        solved.imag < -CONVERGED * size, 0, size
-    )  # of a pair one is enough; rounding of a real one is none
-    order = np.argsort(-upper, axis=0)
-    with np.errstate(all="ignore"):
-        for rank, steps in ((0, NEWTON_STEPS), (0, MORE_STEPS), (1, MORE_STEPS)):
-            start = np.repeat(np.take_along_axis(solved, order[rank : rank + 1], axis=0)[0], STRIDE)
-            start = np.concatenate([start, np.full(max(0, points - start.size), np.nan)])[:points]
-            open_points = np.flatnonzero(np.isnan(found.real))
-            if not open_points.size:
-                return found
-            found[open_points] = _followed_largest(coefficients[:, open_points], start[open_points], steps)
-    rest = np.flatnonzero(np.isnan(found.real))
-    if rest.size:
-        z = roots_of_rows(coefficients[:, rest].astype(complex))
-        found[rest] = np.take_along_axis(z, np.argmax(np.abs(z), axis=0)[np.newaxis], axis=0)[0]
-        found.imag = np.abs(found.imag)
-    return found
-
-
-def _followed_largest(coefficients: FloatArray, starts: ComplexArray, steps: int) -> ComplexArray:
-    """Return the roots that Newton's method reaches from the starts; nan where not settled, or not proven largest."""
-    z = starts
-    for _ in range(steps):
-        step = newton_correction(list(coefficients), z)
-        z = z - step
-        settled = np.abs(step) <= CONVERGED * np.abs(z)
-        if settled.all():
-            break
-    z = np.where(np.abs(z.imag) < CONVERGED * np.abs(z), z.real, z)  # a double root, or a real one, may stray as far
-    largest = np.where(z.imag == 0, _rest_within(coefficients, z, pair=False), _rest_within(coefficients, z, pair=True))
-    return np.where(settled & largest, z.real + 1j * np.abs(z.imag), np.nan)
-
-
-def _rest_within(coefficients: FloatArray, z: ComplexArray, pair: bool) -> BoolArray:
-    """Return whether all roots but z, or but z and its conjugate, have a smaller modulus, by a margin."""
-    size = np.abs(z)
-    p = -2 * z.real if pair else -z.real
-    q = size**2 if pair else np.zeros_like(size)
-    above, before = np.zeros_like(size), np.zeros_like(size)
-    quotient = []
-    for c in coefficients[: 1 if pair else 0 : -1]:  # descending, but for the remainder
-        above, before = c - p * above - q * before, above
-        quotient.append(above)
-    scale = 1 / (size * (1 - LARGER))
-    rest = np.stack(quotient)  # descending
-    power = np.ones_like(size)
-    for k in range(len(rest)):
-        rest[k] *= power
-        power = power * scale
-    within = np.full(size.shape, True)
-    while len(rest) > 1:
-        k = rest[-1] / rest[0]
-        within &= np.abs(k) < 1
-        rest = (rest - k * rest[::-1])[:-1]
-    return within

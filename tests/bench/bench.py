@@ -49,6 +49,8 @@ from bezstab.methods import (
     bezier,
     closed_loop_polynomial,
     lookup,
+    recipe,
+    second_order_form,
     steps,
 )
 from bezstab.show.explorer import Explorer
@@ -86,6 +88,14 @@ COMPILED_CELLS = 44  # per axis of a map of verdicts: as many as one batch of nu
 MUJOCO = {"SYM": "Euler", "RK4": "RK4"}
 UPDATES = 60  # of the window, as the mouse moves
 ENGINE_STEPS = 20_000  # of a run of MuJoCo, of Exudyn and of ours beside them
+
+
+BEEMAN = {
+    "x1": "x0 + v0 + 2/3 a0 - 1/6 a[-1]",
+    "predicted": "v0 + 3/2 a0 - 1/2 a[-1]",
+    "a1": "acceleration(x1, predicted)",
+    "v1": "v0 + 1/3 a1 + 5/6 a0 - 1/6 a[-1]",
+}  # as a user writes it; the feedback sees a predicted velocity
 
 
 Measured = TypeVar("Measured")
@@ -233,17 +243,23 @@ def maps() -> Iterator[Line]:
 
 
 def maps_of_other_kinds() -> Iterator[Line]:
-    """Yield the comparison of the |z_p| map for one method of each kind that is neither multistep nor explicit."""
+    """Yield the comparison of the |z_p| map for one method of each kind that is no explicit multistep method."""
     kinds = {
-        "bdf2": "implicit multistep, two steps",
-        "bdf4": "implicit multistep, four steps",
-        "sdirk2": "diagonally implicit Runge-Kutta",
-        "radau3": "fully implicit Runge-Kutta",
-        "verlet-half": "second order, two roots",
-        "hht": "second order, three roots",
+        lookup("heun"): "explicit Runge-Kutta",
+        lookup("bdf2"): "implicit multistep, two steps",
+        lookup("bdf3"): "implicit multistep, three steps",
+        lookup("am4"): "implicit multistep, three steps",
+        lookup("bdf4"): "implicit multistep, four steps",
+        lookup("sdirk2"): "diagonally implicit Runge-Kutta",
+        lookup("radau3"): "fully implicit Runge-Kutta",
+        lookup("verlet-half"): "second order, two roots",
+        lookup("verlet-kdk"): "second order, two evaluations",
+        lookup("hht"): "second order, three roots",
+        Method("Beeman", recipe(BEEMAN), "Beeman, J. Comput. Phys. 20, 1976"): "a recipe, four roots",
+        Method("AB3 recipe", second_order_form(lookup("AB3").scheme), "AB3 in x, v, a"): "a recipe, six roots",
     }
-    for name, kind in kinds.items():
-        method, (a, b) = lookup(name), axes(lookup(name))
+    for method, kind in kinds.items():
+        name, (a, b) = method.name, axes(method)
         a, b = a + OFF_AXIS, b + OFF_AXIS
         ours, z_abs = fastest(partial(rows_of, method, a, b), REPEATS)
         theirs, by_companion = fastest(partial(by_eigenvalues, method, *np.meshgrid(a, b)), 1)

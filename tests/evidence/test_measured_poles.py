@@ -1,17 +1,18 @@
 """Measured poles against predicted ones: medians as promised, and no answer that is wrong and not flagged."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from bezstab.evidence import LINEAR, SPREAD, Measurement, MovingPole, measure_poles, random_points
 from bezstab.evidence.measured_poles import KICKS, _kicked_responses, _measured_verdict, _measurement
-from bezstab.mechanism import compiled_mechanism, load_scene
+from bezstab.mechanism import Mechanism, compiled_mechanism, load_scene
 from bezstab.methods import LinearMultistep, lookup, steps
 from bezstab.stability import best_point, dominant_pole, poles, spectral_radius
 from tests.mechanism.test_scenes import small
-from tests.methods.kinds import EXPLICIT, FEW, IMPLICIT, SAMPLE, SECOND_ORDER
+from tests.methods.kinds import EXPLICIT, FEW, IMPLICIT, SAMPLE, SECOND_ORDER, sampled
 from tests.reference import sampled_responses
 
 H = 1e-3  # s
@@ -25,6 +26,7 @@ Points are drawn one after the other: of more points, which `make test-slow` tak
 LARGEST_BIAS = 1e-3  # of |z|, by which both mechanisms at 10 rpm move a pole at most
 # Regions that reach feedback of alpha_hat = 7, where poles of nearly equal modulus are measured across.
 FAR_REACHING = ("dopri5", "tsit5", "cash-karp")
+AT_REST = ("B4", "AB8", "RK4", "dopri5", "SYM", "verlet-half", "verlet-old", "verlet-kdk", "forest-ruth", "hht", "bdf2")
 COMPOSITIONS = ("ruth3", "forest-ruth", "yoshida4", "rkn4")
 
 
@@ -48,7 +50,7 @@ def check(scene: str, name: str, count: int) -> None:
     wrong = errors(found)
     assert len(wrong) > count / 2
     stages = steps(lookup(name)) == 1 and not isinstance(lookup(name).scheme, LinearMultistep)
-    assert np.median(wrong) < (3e-4 if stages else 1e-5)
+    assert np.median(wrong) < (3e-5 if stages else 1e-5)
     hard = name in FAR_REACHING or (scene == "pendulum" and name in SLOW_FEEDBACK)
     assert max(wrong) < (1e-2 if hard else LARGEST_BIAS)
     assert not contradictions(found)
@@ -87,6 +89,34 @@ def check_promise(scene: str, name: str, count: int) -> None:
     assert np.median(wrong) < (1e-5 if without_stages else 5e-5 if name == "forest-ruth" else 3e-5)
     assert max(wrong) < LARGEST_BIAS
     assert not contradictions(found)
+
+
+def slider_crank(rpm: float) -> Mechanism:
+    """Return the slider-crank whose crank starts with so many revolutions a minute."""
+    return compiled_mechanism(replace(load_scene("slider_crank"), velocity={"crank.theta": rpm * np.pi / 30}))
+
+
+@pytest.mark.parametrize("name", sampled(AT_REST, quick=["SYM"]))
+def test_at_rest_nothing_is_left_between_the_measured_pole_and_the_predicted_one(name: str) -> None:
+    method = lookup(name)
+    found = measure_poles(slider_crank(rpm=0), method, H, *random_points(method, 30))
+    wrong = errors(found)
+    assert len(wrong) > 15
+    assert np.median(wrong) < 1e-6  # 1e-8 to 4e-8; gravity moves the crank a little meanwhile
+    assert not contradictions(found)
+
+
+@pytest.mark.parametrize("name", sampled(["SYM", "verlet-half"], quick=["verlet-half"]))
+def test_what_is_left_on_a_moving_mechanism_shrinks_with_its_speed_times_the_step(name: str) -> None:
+    """So it is the motion's doing, not the fit's: what turns much with it is off by 2e-5 at 10 rpm and 1 ms."""
+    method = lookup(name)
+    points = random_points(method, 12)
+    medians = [
+        np.median(errors(measure_poles(slider_crank(rpm), method, h, *points)))
+        for rpm, h in ((10, H), (5, H), (10, H / 2))
+    ]
+    assert medians[0] < 3e-5
+    assert medians[0] / np.array(medians[1:]) == pytest.approx(2, rel=0.25)
 
 
 @pytest.mark.parametrize("name", ["verlet-predicted", "bdf2"])

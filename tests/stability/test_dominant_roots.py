@@ -14,7 +14,7 @@ from bezstab.stability import (
     spectral_radius,
 )
 from bezstab.stability.dominant_roots import _follow, _twins
-from bezstab.stability.root_finding import STRIDE
+from bezstab.stability.neighbourhoods import LINE, blocks_of_neighbours
 from tests.methods.kinds import EXPLICIT, IMPLICIT, SOLVED, sampled
 
 
@@ -51,7 +51,7 @@ def test_a_conjugate_is_no_rival_where_mu_is_real_and_it_cannot_reach_the_axis()
 def test_along_a_smooth_row_every_root_is_followed_and_none_solved_for_again(name: str) -> None:
     pencil = pencil_of(lookup(name))
     for start, end in ((-0.35 + 0.02j, -0.1 + 0.25j), (-0.3 + 0j, -0.05 + 0j)):
-        blocks = np.linspace(start, end, 1600, dtype=np.complex128).reshape(-1, STRIDE)
+        blocks = np.linspace(start, end, 1600, dtype=np.complex128)[blocks_of_neighbours(1, 1600)]
         found = np.full(blocks.shape, np.nan, complex)
         _follow(pencil, blocks, found)
         assert np.isfinite(found).all()
@@ -68,7 +68,8 @@ def test_newtons_starts_are_off_by_the_square_of_the_spacing(name: str, monkeypa
     monkeypatch.setattr(dominant_roots, "followed_roots", starts_alone)
     pencil, errors = pencil_of(lookup(name)), []
     for reach in (2e-3, 1e-3):
-        blocks = np.linspace(-reach, reach, STRIDE, dtype=np.complex128)[np.newaxis] * (1 + 1j) + (-0.2 + 0.15j)
+        row = np.linspace(-reach, reach, LINE, dtype=np.complex128) * (1 + 1j) + (-0.2 + 0.15j)
+        blocks = row[blocks_of_neighbours(1, LINE)]
         found = np.empty(blocks.shape, complex)
         _follow(pencil, blocks, found)
         every = roots_in_z(pencil, blocks.ravel())

@@ -2,7 +2,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bezstab.stability.low_degrees import cubic_parts, largest_quadratic_root, quadratic_roots
+from bezstab.stability.low_degrees import cubic_parts, largest_quadratic_root, polynomial_of_pair, quadratic_roots
 
 ROOTS = st.floats(-3, 3).filter(lambda root: root == 0 or abs(root) > 1e-6)
 
@@ -31,3 +31,13 @@ def test_a_cubic_falls_into_a_root_and_a_quadratic(alone: float, half: float, la
     z, found_half, found_last = cubic_parts(np.array([b]), np.array([c]), np.array([d]))
     product = np.polymul([1, -z[0]], [1, 2 * found_half[0], found_last[0]])
     assert np.abs(product - [1, b, c, d]).max() < 1e-13  # backward stable: the cubic itself comes back
+
+
+@given(coefficients=st.lists(st.floats(-2, 2), min_size=1, max_size=7), middle=st.floats(-2, 2), apart=st.floats(-2, 2))
+def test_a_polynomial_at_both_roots_of_a_quadratic(coefficients: list[float], middle: float, apart: float) -> None:
+    p, q = np.array([-2 * middle]), np.array([middle**2 - apart])  # mu = middle +- sqrt(apart), real or not
+    value, factor = polynomial_of_pair(coefficients, p, q)
+    root = np.emath.sqrt(apart)
+    for sign in (1, -1):
+        expected = np.polyval(coefficients[::-1], middle + sign * root)
+        assert abs(value[0] + sign * factor[0] * root - expected) < 1e-10  # sums of terms up to 2 * 4^6

@@ -9,7 +9,6 @@ from bezstab.stability.root_finding import (
     STRIDE,
     followed_roots,
     horner,
-    largest_of_rows,
     newton_polygon_starts,
     roots_of_table,
 )
@@ -75,16 +74,3 @@ def test_roots_whose_powers_leave_float64_keep_their_digits() -> None:
     ascending = [-1.0, 1e120, -1e120, 1.0]  # of the product, where each coefficient is one term and trifles
     found = roots_of_table(np.array(ascending)[:, np.newaxis], np.array([0j]))[:, 0]
     assert np.sort(found.real) == pytest.approx(exact, rel=1e-13)
-
-
-@pytest.mark.parametrize("seed", range(4))
-def test_the_largest_roots_of_a_row_are_those_of_its_companions(seed: int) -> None:
-    generator = np.random.default_rng(seed)
-    ends = generator.normal(size=(2, 7, 1))  # polynomials of degree six between two: roots meet, part and overtake
-    coefficients = ends[0] + (ends[1] - ends[0]) * np.linspace(0, 1, 700)
-    coefficients[-1] = 1
-    expected = [np.abs(np.roots(each[::-1])).max() for each in coefficients.T]
-    found = largest_of_rows(coefficients)
-    assert (found.imag >= 0).all()
-    assert np.abs(np.abs(found) - expected).max() < 1e-7  # a double root is known to the root of rounding
-    assert np.median(np.abs(np.abs(found) - expected)) < 1e-14

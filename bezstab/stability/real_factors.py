@@ -1,0 +1,228 @@
+"""The largest root of many real polynomials of degree four or more, by a quadratic factor followed among neighbours.
+
+    block of points   c . . . . . . .     neighbours, their middle c first (neighbourhoods)
+    at c              z^2 + p z + q has the largest root and its conjugate, or it and the nearest other real root, which
+                      it may meet: p and q go on smoothly where the two become a pair
+    elsewhere         Bairstow's method, Newton's for p and q, takes the factor from c to the others, starting on the
+                      planes p and q over alpha_hat and beta_hat that touch c
+
+That no other root is larger is not taken on trust: what is left, divided by the factor, has all its roots within the
+larger of the factor's, which Schur's recursion tells in few operations. Where it does not, near kinks, the factor with
+the largest root of the others is tried; and then all roots are solved for. From one middle in GROUP, where all roots
+are solved for, the others get their factors the same way.
+
+A polynomial of odd degree is multiplied by z: then it has real roots in even number, if it has any.
+"""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
+from bezstab.stability.low_degrees import largest_quadratic_root
+from bezstab.stability.root_finding import CONVERGED, roots_of_rows
+
+GROUP = 16  # blocks whose middles are near each other
+POINTS = 8192  # at a time: the work arrays of so many stay in a core's cache
+STEPS = 3  # of Bairstow's method that most factors settle in: starts are off by the square of a map's spacing
+MORE_STEPS = 6  # for the others
+LARGER = 1e-9  # relative: by so much a root must outdo the others to be the largest without doubt
+
+Coefficients = Callable[[FloatArray, FloatArray], list[FloatArray]]
+"""Of real polynomials in z, ascending, from alpha_hat and beta_hat; each of their shape."""
+
+Rows = Sequence[FloatArray]
+"""The same of a row of points."""
+
+
+def largest_of_blocks(coefficients_at: Coefficients, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
+    """Return the root of largest modulus, Im >= 0, in blocks of neighbours, their middle first; (blocks, points).
+
+    Not finite where it is infinite.
+    """
+    found = np.empty(alpha_hat.shape, complex)
+    p, q = _factors_of_middles(_rows(coefficients_at, alpha_hat[:, 0], beta_hat[:, 0]))
+    planes = _touching_planes(coefficients_at, alpha_hat, beta_hat, p, q)
+    blocks_at_a_time = max(1, POINTS // alpha_hat.shape[1])
+    for start in range(0, len(found), blocks_at_a_time):
+        some = slice(start, start + blocks_at_a_time)
+        found[some] = _followed(coefficients_at, alpha_hat[some], beta_hat[some], planes[..., some, np.newaxis])
+    blocks, places = np.nonzero(np.isnan(found))
+    if blocks.size:
+        kinked, of_kinked = np.unique(blocks, return_inverse=True)
+        p, q = _second_factors(_roots(_rows(coefficients_at, alpha_hat[kinked, 0], beta_hat[kinked, 0])))
+        planes = _touching_planes(coefficients_at, alpha_hat[kinked], beta_hat[kinked], p, q)
+        alpha_hat, beta_hat = alpha_hat[blocks, places], beta_hat[blocks, places]
+        z = _followed(coefficients_at, alpha_hat, beta_hat, planes[..., of_kinked])
+        left = np.flatnonzero(np.isnan(z))
+        z[left] = largest_in_upper_half(_roots(_rows(coefficients_at, alpha_hat[left], beta_hat[left])))
+        found[blocks, places] = z
+    return found
+
+
+def largest_in_upper_half(z: ComplexArray) -> ComplexArray:
+    """Return of roots of real polynomials, shape (roots, points), the largest of each point, or its conjugate."""
+    largest: ComplexArray = np.take_along_axis(z, np.argmax(np.abs(z), axis=0)[np.newaxis], axis=0)[0]
+    largest.imag = np.abs(largest.imag)
+    return largest
+
+
+def _rows(coefficients_at: Coefficients, alpha_hat: FloatArray, beta_hat: FloatArray) -> Rows:
+    """Return the coefficients in rows; multiplied by z if their degree is odd."""
+    ascending = [coefficient.ravel() for coefficient in coefficients_at(alpha_hat, beta_hat)]
+    return ascending if len(ascending) % 2 else [np.zeros_like(ascending[0]), *ascending]
+
+
+def _roots(rows: Rows) -> ComplexArray:
+    """Return all roots, neighbours alike; shape (roots, points)."""
+    return roots_of_rows(np.stack(rows).astype(complex))
+
+
+def _factors_of_middles(rows: Rows) -> tuple[FloatArray, FloatArray]:
+    """Return p and q of the factors with the largest root, of blocks' middles."""
+    solved = _first_factors(_roots([row[::GROUP] for row in rows]))
+    starts = (np.repeat(each, GROUP)[: rows[0].size] for each in solved)
+    p, q, z = _followed_factors(rows, *starts)
+    left = np.flatnonzero(np.isnan(z))
+    p[left], q[left] = _first_factors(_roots([row[left] for row in rows]))
+    return p, q
+
+
+def _first_factors(z: ComplexArray) -> tuple[FloatArray, FloatArray]:
+    """Return p and q of the factors with the largest of all roots z, shape (roots, points); nan without such a one."""
+    return _factor_without(z, np.zeros(z.shape, bool))[:2]
+
+
+def _second_factors(z: ComplexArray) -> tuple[FloatArray, FloatArray]:
+    """Return the same with the largest of the roots that the first factors have not."""
+    *_, taken = _factor_without(z, np.zeros(z.shape, bool))
+    return _factor_without(z, taken)[:2]
+
+
+def _factor_without(z: ComplexArray, taken: BoolArray) -> tuple[FloatArray, FloatArray, BoolArray]:
+    """Return p and q of the factors with the largest root not taken, and which roots are taken now.
+
+    nan where it is real and has no other real one left beside it.
+    """
+    lead = np.argmax(np.where(taken, -1.0, np.abs(z)), axis=0)[np.newaxis]
+    largest = np.take_along_axis(z, lead, axis=0)
+    real = np.abs(z.imag) <= CONVERGED * np.abs(z)
+    lead_is_real = np.take_along_axis(real, lead, axis=0)
+    partner = np.where(lead_is_real, largest, largest.conj())
+    distance = np.where(taken | (lead_is_real & ~real), np.inf, np.abs(z - partner))
+    np.put_along_axis(distance, lead, np.inf, axis=0)
+    beside = np.argmin(distance, axis=0)[np.newaxis]
+    other = np.where(np.isinf(distance.min(axis=0)), np.nan, np.take_along_axis(z, beside, axis=0))
+    taken = taken.copy()
+    for place in (lead, beside):
+        np.put_along_axis(taken, place, True, axis=0)
+    return -(largest + other).real[0], (largest * other).real[0], taken
+
+
+def _touching_planes(
+    coefficients_at: Coefficients, alpha_hat: FloatArray, beta_hat: FloatArray, p: FloatArray, q: FloatArray
+) -> FloatArray:
+    """Return the planes over alpha_hat and beta_hat that touch p and q at blocks' middles: by what is beside these.
+
+    Constant, slopes in alpha_hat and in beta_hat: shape (2, 3, blocks). A plane of unknown slope is level.
+    """
+    middles = np.stack([alpha_hat[:, 0], beta_hat[:, 0]])
+    planes = np.zeros((2, 3, p.size))
+    for k, each in enumerate((alpha_hat, beta_hat)):
+        reach = each[:, -1] - each[:, 0]
+        beside = middles.copy()
+        beside[k] += reach
+        changed = _changed(_rows(coefficients_at, *beside), p, q, STEPS)
+        slopes = (np.stack(changed) - [p, q]) / reach
+        planes[:, 1 + k] = np.where(np.isfinite(slopes), slopes, 0)
+    planes[:, 0] = [p, q] - planes[:, 1] * middles[0] - planes[:, 2] * middles[1]
+    return planes
+
+
+def _followed(
+    coefficients_at: Coefficients, alpha_hat: FloatArray, beta_hat: FloatArray, planes: FloatArray
+) -> ComplexArray:
+    """Return the larger root of the factor that is reached from the planes; nan where it is not proven the largest.
+
+    The planes, shape (2, 3, ...), broadcast to the points.
+    """
+    p, q = ((constant + by_a * alpha_hat + by_b * beta_hat).ravel() for constant, by_a, by_b in planes)
+    *_, z = _followed_factors(_rows(coefficients_at, alpha_hat, beta_hat), p, q)
+    return z.reshape(alpha_hat.shape)
+
+
+def _followed_factors(rows: Rows, p: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray, ComplexArray]:
+    """Return the factors that Bairstow's method reaches, and of each the larger root z, Im >= 0.
+
+    z is nan where the factor is not settled, or where z is not proven to be the largest of all roots.
+    """
+    p, q, settled = _settled(rows, p, q, STEPS)
+    late = np.flatnonzero(~settled)
+    if late.size:
+        p[late], q[late], settled[late] = _settled([row[late] for row in rows], p[late], q[late], MORE_STEPS)
+    z = np.empty(p.size, complex)
+    half = 0.5 * p
+    discriminant = half * half - q
+    largest_quadratic_root(half, discriminant, z)
+    size = np.sqrt(np.where(discriminant < 0, q, z.real * z.real))
+    z[~(settled & _rest_within(rows, p, q, size))] = np.nan
+    return p, q, z
+
+
+def _settled(rows: Rows, p: FloatArray, q: FloatArray, steps: int) -> tuple[FloatArray, FloatArray, BoolArray]:
+    """Return p and q after some steps, and where the last was so small that they are exact to rounding."""
+    p, q = _changed(rows, p, q, steps - 1)
+    dp, dq = _bairstow_step(rows, p, q)
+    p, q = p + dp, q + dq
+    square = p * p + np.abs(q)  # of about the size of the roots
+    settled: BoolArray = (dp * dp <= CONVERGED**2 * square) & (np.abs(dq) <= CONVERGED * square)
+    return p, q, settled
+
+
+def _changed(rows: Rows, p: FloatArray, q: FloatArray, steps: int) -> tuple[FloatArray, FloatArray]:
+    """Return p and q after some steps of Bairstow's method."""
+    for _ in range(steps):
+        dp, dq = _bairstow_step(rows, p, q)
+        p, q = p + dp, q + dq
+    return p, q
+
+
+def _bairstow_step(rows: Rows, p: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return Newton's corrections of p and q for z^2 + p z + q to divide the polynomials; ascending coefficients.
+
+    Division leaves b_1 (z + p) + b_0, and that of the quotient d_1, d_2, d_3 the same way. Both b vanish where
+    d_2 dp + d_3 dq = b_1, d_1 dp + d_2 dq = b_0 (J. Stoer and R. Bulirsch, Introduction to Numerical Analysis, 5.8).
+    """
+    b = _divided(rows, p, q)
+    *_, d_3, d_2, d_1 = _divided(b[-2::-1], p, q)
+    b_1, b_0 = b[-2:]
+    determinant = d_2 * d_2 - d_1 * d_3
+    return (b_1 * d_2 - b_0 * d_3) / determinant, (b_0 * d_2 - b_1 * d_1) / determinant
+
+
+def _divided(ascending: Rows, p: FloatArray, q: FloatArray) -> list[FloatArray]:
+    """Return the quotient by z^2 + p z + q, descending, and the remainder b_1 (z + p) + b_0."""
+    before, last = ascending[-1], ascending[-2] - p * ascending[-1]
+    quotient = [before, last]
+    for coefficient in ascending[-3::-1]:
+        subtracted = p * last
+        subtracted += q * before
+        before, last = last, np.subtract(coefficient, subtracted, out=subtracted)
+        quotient.append(last)
+    return quotient
+
+
+def _rest_within(rows: Rows, p: FloatArray, q: FloatArray, size: FloatArray) -> BoolArray:
+    """Return whether all roots but the factor's have a smaller modulus, by a margin."""
+    rest = _divided(rows, p, q)[:-2]  # descending; of (size z), divided by size^degree
+    scale = 1 / (size * (1 - LARGER))
+    power = scale
+    for k in range(1, len(rest)):
+        rest[k] *= power
+        power = power * scale
+    within = np.full(size.shape, True)
+    while len(rest) > 1:
+        ratio = rest[-1] / rest[0]
+        within &= np.abs(ratio) < 1
+        rest = [one - ratio * other for one, other in zip(rest[:-1], rest[:0:-1], strict=True)]
+    return within

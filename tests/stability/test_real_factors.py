@@ -1,0 +1,69 @@
+"""The largest roots of real polynomials against eigenvalues of their companions."""
+
+import numpy as np
+import pytest
+
+from bezstab.stability import FloatArray
+from bezstab.stability.neighbourhoods import blocks_of_neighbours
+from bezstab.stability.real_factors import _bairstow_step, _factor_without, _rest_within, largest_of_blocks
+
+ROWS, COLUMNS = 30, 40
+
+
+@pytest.mark.parametrize("degree", [4, 5, 6, 7])
+@pytest.mark.parametrize("seed", range(3))
+def test_the_largest_roots_are_those_of_companions(degree: int, seed: int) -> None:
+    """Over a plane of polynomials between three: roots meet, part and overtake each other."""
+    corners = np.random.default_rng(seed).normal(size=(3, degree + 1))
+    corners[:, -1] = 1
+
+    def coefficients_at(x: FloatArray, y: FloatArray) -> list[FloatArray]:
+        return [a + (b - a) * x + (c - a) * y for a, b, c in corners.T]
+
+    x, y = (each.ravel() for each in np.meshgrid(np.linspace(0, 1, COLUMNS), np.linspace(0, 1, ROWS)))
+    blocks = blocks_of_neighbours(ROWS, COLUMNS)
+    found = np.empty(x.size, complex)
+    found[blocks] = largest_of_blocks(coefficients_at, x[blocks], y[blocks])
+    companions = [np.roots(each[::-1]) for each in np.transpose(coefficients_at(x, y))]
+    expected = np.array([np.abs(each).max() for each in companions])
+    assert (found.imag >= 0).all()
+    error = np.abs(np.abs(found) - expected)
+    assert error.max() < 1e-7  # a double root is known to the root of rounding
+    assert np.median(error) < 1e-14
+
+
+def test_a_step_of_bairstows_squares_the_error() -> None:
+    rows = [np.array([each]) for each in np.poly([0.9 + 0.2j, 0.9 - 0.2j, 0.5, -0.3, 0.1]).real[::-1]]
+    exact = np.array([-1.8]), np.array([0.85])
+    errors = []
+    for off in (1e-3, 1e-4):
+        dp, dq = _bairstow_step(rows, exact[0] + off, exact[1] - off)
+        errors.append(abs(dp[0] + off) + abs(dq[0] - off))
+    assert errors[0] / errors[1] == pytest.approx(100, rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("roots", "factor", "without"),
+    [
+        ([0.9 + 0.2j, 0.9 - 0.2j, 0.8, 0.1], (-1.8, 0.85), (-0.9, 0.08)),  # a pair; two real ones are left
+        ([0.9, 0.1, 0.6 + 0.3j, 0.6 - 0.3j], (-1.0, 0.09), (-1.2, 0.45)),  # the other real root, however small
+        ([-0.9, 0.8, -0.5, 0.1], (1.4, 0.45), (-0.9, 0.08)),  # the nearest, not the largest
+    ],
+)
+def test_a_factor_has_the_largest_root_and_what_it_may_meet(
+    roots: list[complex], factor: tuple[float, float], without: tuple[float, float]
+) -> None:
+    z = np.array(roots, complex)[:, np.newaxis]
+    p, q, taken = _factor_without(z, np.zeros(z.shape, bool))
+    assert (p[0], q[0]) == pytest.approx(factor, rel=1e-14)
+    p, q, taken = _factor_without(z, taken)
+    assert (p[0], q[0]) == pytest.approx(without, rel=1e-14)
+    assert taken.all()
+
+
+@pytest.mark.parametrize("largest_other", [0.899, 0.9, 0.901])
+def test_a_larger_root_beside_the_factor_is_noticed(largest_other: float) -> None:
+    others = np.poly([largest_other * np.exp(1j), largest_other * np.exp(-1j)]).real
+    rows = [np.array([each]) for each in np.polymul([1, 0, 0.81], others)[::-1]]
+    within = _rest_within(rows, np.zeros(1), np.array([0.81]), np.array([0.9]))
+    assert within[0] == (largest_other < 0.9)
