@@ -261,7 +261,7 @@ def probe(
     to subtract, unless c is such a difference already (`differenced`). With a point, given in one of the two ways,
     `likenesses` compares each of `methods` [all built-in ones], the nearest first; without one `points` are those at
     which `methods` have the pole. `every` steps of h (s) lie between two samples. `turning` is how fast the directions
-    of the constraints turn, in 1/s, at most, and needs h. What cannot be told is said in `found.reason`. InputError unless
+    of the constraints turn, in 1/s, and needs h. What cannot be told is said in `found.reason`. InputError unless
     point, shapes and h fit together. Method: linear prediction (Prony).
     """
     has_point = not (alpha_hat is None and beta_hat is None and alpha is None and beta is None)

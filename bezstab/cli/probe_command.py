@@ -276,17 +276,15 @@ def likeness_sentence(like: "Sequence[Likeness]", point: tuple[Fraction, Fractio
 
 def _nothing_fits(nearest: "Likeness", at: str) -> str:
     """Return in words that nothing fits, or that it cannot be told: where the motion may well be faster than said."""
-    off = f"{nearest.method.name} is {nearest.distance:.1g} off where {nearest.allowed:.1g} is allowed"
-    by_motion = nearest.allowed - nearest.error
-    if nearest.distance - nearest.error < FASTER * by_motion:
-        times = (nearest.distance - nearest.error) / by_motion
+    off = f"the nearest is {nearest.method.name}, {nearest.distance:.1g} off where {nearest.allowed:.1g} is allowed"
+    if nearest.distance - nearest.error < FASTER * (nearest.allowed - nearest.error):
         return (
-            f"what this is at {at} cannot be told: the nearest, {off}, and would fit if the mechanism turned "
-            f"{times:.1f} times as fast as is allowed for (--turning)."
+            f"what this is at {at} cannot be told: {off}, and it would fit if the mechanism turned up to {FASTER:.0f} "
+            "times as fast as is allowed for (--turning)."
         )
     return (
-        f"nothing fits at {at}: the nearest, {off}. Is α, β or h another, does the mechanism turn much faster "
-        "(--turning), or are there several steps from row to row (--every)?"
+        f"nothing fits at {at}: {off}. Is α, β or h another, does the mechanism turn much faster (--turning), or are "
+        "there several steps from row to row (--every)?"
     )
 
 
