@@ -97,7 +97,7 @@ def _turning(scene: str) -> float:
     rates = [turning_normals(mechanism, LASTS).largest_norm]
     for t, q, v in zip(along.t[::SPARSE].tolist(), along.q[::SPARSE], along.v[::SPARSE], strict=True):
         jacobian = np.asarray(at.jacobian(q, t), float) / root
-        ahead: Any = at.jacobian(q + 1j * TINY * v, t + 1j * TINY)  # type: ignore[arg-type]
+        ahead: Any = at.jacobian(q + 1j * TINY * v, t + 1j * TINY)
         own_units = np.linalg.inv(np.linalg.cholesky(jacobian @ jacobian.T))
         rates.append(float(np.linalg.norm(own_units @ np.asarray(ahead.imag / TINY, float) / root, ord=2)))
     return max(rates)
