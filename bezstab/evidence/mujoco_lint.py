@@ -80,10 +80,7 @@ DEADBEAT = 1e-9
 LEAST_HOLD = 0.1
 """Of d at the constraint: with less, a small error hardly feels it, and |z| says only that."""
 
-CONTACTS = ("contact", "contact pair")
-"""Kinds that share out a reference among several."""
-
-HARD = (*CONTACTS, "joint friction", "tendon friction")
+HARD = ("contact", "contact pair", "joint friction", "tendon friction")
 """Kinds whose softness is a property of the material: nobody is told to change it."""
 
 
@@ -264,7 +261,7 @@ def _constraint_points(
 ) -> list[Point]:
     """Return the points that a constraint takes with that solref, at the constraint and past solimp's width, exactly.
 
-    Contacts also with all of the reference, the most that several of them share out.
+    Where rows that nobody knows share out a reference, also with all of it, which is the most.
     """
     reference, held_from = _reference(model, constraint, solref)
     reached = Fraction(1) if held_from is None else min(Fraction(1), held_from)
@@ -272,7 +269,7 @@ def _constraint_points(
     found: list[Point] = []
     for impedance in _impedances(constraint):
         taken = shares(impedance, np.array([model.h]))[0].tolist()
-        if constraint.kind in CONTACTS:
+        if _is_shared_out(constraint):
             taken.append(1.0)
         found += [_taken(reference, reached, exact(impedance), exact(round(share, DIGITS)), largest) for share in taken]
     return found
@@ -290,7 +287,7 @@ def _constraint_points_at(model: ModelData, constraint: Constraint, shares: Shar
         beta_hats: list[FloatArray] = []
         for impedance in _impedances(constraint):
             taken = list(shares(impedance, model.h * factors).T)
-            if constraint.kind in CONTACTS:
+            if _is_shared_out(constraint):
                 taken.append(np.ones_like(factors))
             for share in taken:
                 alpha_hat, beta_hat = _taken(at_one, reached, np.array([impedance]), share, largest)
@@ -319,6 +316,11 @@ def _impedances(constraint: Constraint) -> tuple[float, ...]:
     at_rest, largest, width = constraint.solimp
     impedances = (at_rest, largest) if width > 0 else ((at_rest + largest) / 2,)
     return impedances if constraint.positional else impedances[:1]
+
+
+def _is_shared_out(constraint: Constraint) -> bool:
+    """Return whether an unknown number of rows share a reference: contacts do, and a flex of very many edges."""
+    return constraint.jacobian is None and constraint.kind != "joint limit"
 
 
 def _taken(
