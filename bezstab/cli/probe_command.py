@@ -37,6 +37,9 @@ SAME_STEP = 1e-3
 NAMED = 3
 """Excluded methods that a sentence names; of more it gives the number and the nearest."""
 
+FASTER = 10.0
+"""Times what is allowed for: so much faster a mechanism may turn than somebody guessed."""
+
 
 def _pole_text(row: Row) -> str:
     real, imaginary = row["z_real"], row["z_imag"]
@@ -114,7 +117,7 @@ def _turning(text: str) -> Fraction:
 @click.option(
     "--turning",
     type=ParsedType("number", _turning),
-    help="How fast the directions of the constraints turn, in 1/s: about half the angular speed, 0 at rest.",
+    help="How fast the directions of the constraints turn, in 1/s: about the angular speed, 0 at rest.",
 )
 @format_option
 def probe(
@@ -251,12 +254,7 @@ def likeness_sentence(like: "Sequence[Likeness]", point: tuple[Fraction, Fractio
     fitting = [one for one in like if one.fits]
     excluded = [one for one in like if not one.fits]
     if not fitting:
-        nearest = like[0]
-        return (
-            f"nothing fits at {at}: the nearest is {nearest.method.name}, {nearest.distance:.1g} off where "
-            f"{nearest.allowed:.1g} is allowed. Is α, β or h another, does the mechanism move faster (--turning), or "
-            "are there several steps from row to row (--every)?"
-        )
+        return _nothing_fits(like[0], at)
     first = fitting[0]
     equal = first.same_as.split(", ") if first.same_as else []
     parts = [f"this behaves like {first.method.name} at {at} to {max(first.distance, first.error):.1g}"]
@@ -274,6 +272,20 @@ def likeness_sentence(like: "Sequence[Likeness]", point: tuple[Fraction, Fractio
         else:
             parts.append(f"{len(names)} others are excluded, the nearest {names[0]}, {excluded[0].distance:.1g} off")
     return "; ".join(parts) + "."
+
+
+def _nothing_fits(nearest: "Likeness", at: str) -> str:
+    """Return in words that nothing fits, or that it cannot be told: where the motion may well be faster than said."""
+    off = f"the nearest is {nearest.method.name}, {nearest.distance:.1g} off where {nearest.allowed:.1g} is allowed"
+    if nearest.distance - nearest.error < FASTER * (nearest.allowed - nearest.error):
+        return (
+            f"what this is at {at} cannot be told: {off}, and it would fit if the mechanism turned up to {FASTER:.0f} "
+            "times as fast as is allowed for (--turning)."
+        )
+    return (
+        f"nothing fits at {at}: {off}. Is α, β or h another, does the mechanism turn much faster (--turning), or are "
+        "there several steps from row to row (--every)?"
+    )
 
 
 def _listed(names: Sequence[str]) -> str:

@@ -20,6 +20,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 from itertools import accumulate
+from typing import TypeVar
 
 import numpy as np
 
@@ -34,8 +35,14 @@ from bezstab.units import feedback_gains
 Point = tuple[Fraction, Fraction]
 """alpha_hat and beta_hat."""
 
-Shares = Callable[[float, float], tuple[float, float]]
-"""Of impedance and step (s): the least and the largest share of its reference that a constraint gets."""
+Number = TypeVar("Number", Fraction, FloatArray)
+"""An exact one, or as many as there are steps that are looked at."""
+
+Points = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
+"""Of factors on the step, shape (factors,): alpha_hat and beta_hat of each point, shape (factors, points)."""
+
+Shares = Callable[[float, FloatArray], FloatArray]
+"""Of impedance and steps (s): the least and the largest share of its reference that a constraint gets, (steps, 2)."""
 
 DEFAULT_SOLREF = (0.02, 1.0)
 """What MuJoCo takes where one number of solref is positive and the other not."""
@@ -172,12 +179,11 @@ def _h_factor(unstable: Callable[[FloatArray], BoolArray]) -> float | None:
     return found[0] if found else None
 
 
-def _end_of(points: Callable[[Fraction], Sequence[Point]], method: Method) -> float | None:
-    """Return the factor on the step up to which all points stay stable, from the points at a factor."""
+def _end_of(points: Points, method: Method) -> float | None:
+    """Return the factor on the step up to which all points stay stable, from the points at factors."""
 
     def unstable(factors: FloatArray) -> BoolArray:
-        at = np.array([[[float(x) for x in point] for point in points(exact(factor))] for factor in factors])
-        alpha_hat, beta_hat = at[..., 0], at[..., 1]
+        alpha_hat, beta_hat = points(factors)
         limit = 1.0 if alpha_hat.all() else 1 + UNDAMPED
         return np.asarray((_moduli(method, alpha_hat, beta_hat) >= limit).any(axis=-1))
 
@@ -216,10 +222,13 @@ def _damping_modes(model: ModelData) -> _DampingModes:
 
 def _springs_and_dampers(model: ModelData, feedbacks: Sequence[Feedback]) -> tuple[FloatArray, FloatArray]:
     """Return the stiffness and the damping matrix of feedbacks; shape (dofs, dofs) each, SI."""
-    directions = np.array([each.direction for each in feedbacks]).reshape(len(feedbacks), len(model.mass))
-    stiffness = np.array([each.stiffness for each in feedbacks])
-    damping = np.array([each.damping for each in feedbacks])
-    return (directions.T * stiffness) @ directions, (directions.T * damping) @ directions
+    stiffness, damping = np.zeros_like(model.mass), np.zeros_like(model.mass)
+    for each in feedbacks:
+        moved = np.flatnonzero(each.direction)  # one or a few of thousands
+        squared = np.outer(each.direction[moved], each.direction[moved])
+        stiffness[np.ix_(moved, moved)] += each.stiffness * squared
+        damping[np.ix_(moved, moved)] += each.damping * squared
+    return stiffness, damping
 
 
 def _implicit(model: ModelData, feedback: Feedback) -> bool:
@@ -232,11 +241,7 @@ def _implicit(model: ModelData, feedback: Feedback) -> bool:
 def _linted_constraint(model: ModelData, modes: _DampingModes, constraint: Constraint) -> Linted:
     method = _map(model)
     shares = _shares(modes, constraint)
-
-    def points(factor: Fraction) -> list[Point]:
-        return _constraint_points(model, constraint, shares, constraint.solref, factor)
-
-    point, verdict, z_abs = _worst(method, points(Fraction(1)))
+    point, verdict, z_abs = _worst(method, _constraint_points(model, constraint, shares, constraint.solref))
     return Linted(
         element=constraint.element,
         kind=constraint.kind,
@@ -246,57 +251,117 @@ def _linted_constraint(model: ModelData, modes: _DampingModes, constraint: Const
         map=method.name,
         verdict=verdict,
         z_abs=z_abs,
-        h_factor=_end_of(points, method),
+        h_factor=_end_of(_constraint_points_at(model, constraint, shares), method),
         advice=_constraint_advice(model, constraint, shares, verdict, z_abs),
     )
 
 
 def _constraint_points(
-    model: ModelData, constraint: Constraint, shares: Shares, solref: tuple[float, float], factor: Fraction
+    model: ModelData, constraint: Constraint, shares: Shares, solref: tuple[float, float]
 ) -> list[Point]:
-    """Return the points that a constraint takes with that solref, at the constraint and past solimp's width.
+    """Return the points that a constraint takes with that solref, at the constraint and past solimp's width, exactly.
 
-    `factor` is on the step. Contacts also with all of the reference, the most that several of them share out.
+    Where rows that nobody knows share out a reference, also with all of it, which is the most.
     """
-    h = exact(model.h) * factor
-    first, second = (exact(value) for value in (solref if _of_one_sign(solref) else DEFAULT_SOLREF))
-    if model.refsafe and first > 0:
-        first = max(first, 2 * h)
-    alpha_hat, beta_hat = ENGINES["mujoco"].read(h, first, second)
-    at_rest, largest, width = constraint.solimp
-    impedances = (at_rest, largest) if width > 0 else ((at_rest + largest) / 2,)
-    if not constraint.positional:  # friction has no position to be off: it stays at rest
-        beta_hat, impedances = Fraction(0), impedances[:1]
+    reference, held_from = _reference(model, constraint, solref)
+    reached = Fraction(1) if held_from is None else min(Fraction(1), held_from)
+    largest = exact(constraint.solimp[1])
     found: list[Point] = []
-    for impedance in impedances:
-        d = exact(impedance)
-        taken = [exact(round(share, DIGITS)) for share in shares(impedance, float(h))]
-        if constraint.kind in ("contact", "contact pair"):
-            taken.append(Fraction(1))
-        scale = exact(largest)
-        found += [(alpha_hat * share / scale, beta_hat * d * share / scale**2) for share in taken]
+    for impedance in _impedances(constraint):
+        taken = shares(impedance, np.array([model.h]))[0].tolist()
+        if _is_shared_out(constraint):
+            taken.append(1.0)
+        found += [_taken(reference, reached, exact(impedance), exact(round(share, DIGITS)), largest) for share in taken]
     return found
 
 
+def _constraint_points_at(model: ModelData, constraint: Constraint, shares: Shares) -> Points:
+    """Return a function of factors on the step: what `_constraint_points` returns there, in float64."""
+    reference, held_from = _reference(model, constraint, constraint.solref)
+    at_one = np.array([float(reference[0])]), np.array([float(reference[1])])
+    largest = np.array([constraint.solimp[1]])
+
+    def points(factors: FloatArray) -> tuple[FloatArray, FloatArray]:
+        reached = factors if held_from is None else np.minimum(factors, float(held_from))
+        alpha_hats: list[FloatArray] = []
+        beta_hats: list[FloatArray] = []
+        for impedance in _impedances(constraint):
+            taken = list(shares(impedance, model.h * factors).T)
+            if _is_shared_out(constraint):
+                taken.append(np.ones_like(factors))
+            for share in taken:
+                alpha_hat, beta_hat = _taken(at_one, reached, np.array([impedance]), share, largest)
+                alpha_hats.append(alpha_hat)
+                beta_hats.append(beta_hat)
+        return np.stack(alpha_hats, axis=-1), np.stack(beta_hats, axis=-1)
+
+    return points
+
+
+def _reference(model: ModelData, constraint: Constraint, solref: tuple[float, float]) -> tuple[Point, Fraction | None]:
+    """Return the point of a solref at the model's step if nothing changed it, and from which factor refsafe holds it.
+
+    As timeconst is 2h from there on, alpha_hat and beta_hat no longer grow with h.
+    """
+    first, second = (exact(value) for value in (solref if _of_one_sign(solref) else DEFAULT_SOLREF))
+    h = exact(model.h)
+    alpha_hat, beta_hat = ENGINES["mujoco"].read(h, first, second)
+    if not constraint.positional:  # friction has no position to be off
+        beta_hat = Fraction(0)
+    return (alpha_hat, beta_hat), first / (2 * h) if model.refsafe and first > 0 else None
+
+
+def _impedances(constraint: Constraint) -> tuple[float, ...]:
+    """Return d at the constraint and past solimp's width; friction, which has no position to be off, stays at rest."""
+    at_rest, largest, width = constraint.solimp
+    impedances = (at_rest, largest) if width > 0 else ((at_rest + largest) / 2,)
+    return impedances if constraint.positional else impedances[:1]
+
+
+def _is_shared_out(constraint: Constraint) -> bool:
+    """Return whether an unknown number of rows share a reference: contacts do, and a flex of very many edges."""
+    return constraint.jacobian is None and constraint.kind != "joint limit"
+
+
+def _taken(
+    reference: tuple[Number, Number], reached: Number, impedance: Number, share: Number, largest: Number
+) -> tuple[Number, Number]:
+    """Return the point that is left of a reference at `reached` times the step, by impedance, share and dmax."""
+    alpha_hat, beta_hat = reference
+    return alpha_hat * reached * share / largest, beta_hat * reached**2 * impedance * share / largest**2
+
+
 def _shares(modes: _DampingModes, constraint: Constraint) -> Shares:
-    """Return a function of impedance and step: the least and largest share of the reference that directions get.
+    """Return a function of impedance and steps: the least and largest share of the reference that directions get.
 
     They are the impedance, but for MuJoCo's estimate of masses and for implicit damping.
     """
     jacobian, diagonal = constraint.jacobian, constraint.diagonal
     if jacobian is None or diagonal is None:
-        return lambda impedance, h: (impedance, impedance)
-    moved = jacobian @ modes.basis
+        return lambda impedance, h: np.full((len(h), 2), impedance)
+    touched = np.flatnonzero(jacobian.any(axis=0))
+    moved = jacobian[:, touched] @ modes.basis[touched]
+    moving = moved.any(axis=0)
+    moved, rates = moved[:, moving], modes.rates[moving]
 
-    def shares(impedance: float, h: float) -> tuple[float, float]:
+    def shares(impedance: float, h: FloatArray) -> FloatArray:
         softening = np.maximum(LEAST_SOFTENING, diagonal * (1 - impedance) / impedance)
         regularized = moved @ moved.T + np.diag(softening)
-        damped = (moved / (1 + h * modes.rates)) @ moved.T
-        found = np.linalg.eigvals(np.linalg.solve(regularized, damped)).real
-        moving = found[found > MOVING]  # a direction that moves nothing has no error either
-        return (float(moving.min()), float(moving.max())) if moving.size else (impedance, impedance)
+        if len(moved) == 1 and moved[0] @ moved[0] > MOVING * regularized[0, 0]:
+            share = (1 / (1 + h[:, np.newaxis] * rates)) @ moved[0] ** 2 / regularized[0, 0]
+            return np.stack([share, share], axis=-1)
+        if not rates.any():
+            return np.tile(_extremes(regularized, moved @ moved.T, impedance), (len(h), 1))
+        return np.array([_extremes(regularized, (moved / (1 + step * rates)) @ moved.T, impedance) for step in h])
 
     return shares
+
+
+def _extremes(regularized: FloatArray, damped: FloatArray, impedance: float) -> tuple[float, float]:
+    """Return the least and the largest eigenvalue of A' (A + R)^-1 that belongs to a direction that moves."""
+    found = np.linalg.eigvals(np.linalg.solve(regularized, damped)).real
+    moving = found[found > MOVING]  # a direction that moves nothing has no error either
+    return (float(moving.min()), float(moving.max())) if moving.size else (impedance, impedance)
 
 
 def _constraint_advice(model: ModelData, constraint: Constraint, shares: Shares, verdict: Verdict, z_abs: float) -> str:
@@ -321,7 +386,7 @@ def _softness(model: ModelData, constraint: Constraint, shares: Shares, z_abs: f
     if constraint.solimp[0] < LEAST_HOLD and constraint.solimp[2] > 0:
         return f"solimp leaves small errors alone: d = {constraint.solimp[0]:g} at the constraint itself"
     firm = (2 * model.h, 1.0)
-    faster = _worst(_map(model), _constraint_points(model, constraint, shares, firm, Fraction(1)))[2]
+    faster = _worst(_map(model), _constraint_points(model, constraint, shares, firm))[2]
     times = float(np.log(max(DEADBEAT, faster)) / np.log(max(DEADBEAT, z_abs)))
     return f'needlessly soft: solref="{_numbers(firm)}" settles {times:.0f} times as fast' if times > SOFT else ""
 
@@ -342,8 +407,9 @@ def _along_one_direction(feedbacks: Sequence[Feedback]) -> list[list[Feedback]]:
     groups: dict[tuple[float, ...], list[Feedback]] = {}
     for feedback in feedbacks:
         if feedback.direction.any():
-            first = feedback.direction[np.flatnonzero(feedback.direction)[0]]
-            groups.setdefault(tuple((feedback.direction / first).round(DIGITS).tolist()), []).append(feedback)
+            moved = np.flatnonzero(feedback.direction)
+            shape = feedback.direction[moved] / feedback.direction[moved[0]]
+            groups.setdefault((*moved.tolist(), *shape.round(DIGITS).tolist()), []).append(feedback)
     return list(groups.values())
 
 
@@ -360,9 +426,9 @@ class _Drive:
 def _linted_drive(model: ModelData, modes: _DampingModes, group: Sequence[Feedback]) -> Linted:
     drive = _drive(model, modes, group)
     h = exact(model.h)
-    method, points = _drive_map(model, drive)
-    point, verdict, z_abs = _worst(method, points(Fraction(1)))
-    end = _end_of(points, method)
+    own = _drive_map(model, drive)
+    point, verdict, z_abs = _worst(own.method, [own.point])
+    end = _end_of(own.points, own.method)
     damping = drive.explicit_damping + drive.implicit_damping
     return Linted(
         element=", ".join(dict.fromkeys(feedback.element for feedback in group)),
@@ -370,7 +436,7 @@ def _linted_drive(model: ModelData, modes: _DampingModes, group: Sequence[Feedba
         setting=f"kp {float(drive.stiffness):.6g}, kv {float(damping):.6g}, inertia {float(drive.inertia):.6g}",
         alpha_hat=float(point[0]),
         beta_hat=float(point[1]),
-        map=method.name,
+        map=own.method.name,
         verdict=verdict,
         z_abs=z_abs,
         h_factor=end,
@@ -392,26 +458,42 @@ def _drive(model: ModelData, modes: _DampingModes, group: Sequence[Feedback]) ->
             implicit += arm_squared * feedback.damping
         else:
             damping += arm_squared * feedback.damping
-    inertia = 1 / float(np.sum((direction @ modes.basis) ** 2))  # 1 / (u M^-1 u')
+    inertia = 1 / float(np.sum((direction[moved] @ modes.basis[moved]) ** 2))  # 1 / (u M^-1 u')
     return _Drive(exact(stiffness), exact(damping), exact(implicit), exact(float(f"{inertia:.{DIGITS}g}")))
 
 
-def _drive_map(model: ModelData, drive: _Drive) -> tuple[Method, Callable[[Fraction], list[Point]]]:
-    """Return the method that the integrator is for a drive, and its one point at a factor on the step."""
-    steps = exact(model.h) / drive.inertia
+@dataclass(frozen=True)
+class _DriveMap:
+    """The method that the integrator is for a drive, and its point: at the model's step, exact.
 
-    def whole(factor: Fraction) -> list[Point]:
-        damping = drive.explicit_damping + drive.implicit_damping
-        return [(damping * factor * steps, drive.stiffness * exact(model.h) * factor**2 * steps)]
+    At a factor f on the step it is (alpha_hat f, beta_hat f^2) / (1 + divisor f).
+    """
 
-    def divided(factor: Fraction) -> list[Point]:
-        ((alpha_hat, beta_hat),) = whole(factor)
-        divisor = 1 + drive.implicit_damping * factor * steps
-        return [(alpha_hat / divisor, beta_hat / divisor)]
+    method: Method
+    alpha_hat: Fraction
+    beta_hat: Fraction
+    divisor: Fraction
 
+    @property
+    def point(self) -> Point:
+        """The point at the model's step."""
+        return self.alpha_hat / (1 + self.divisor), self.beta_hat / (1 + self.divisor)
+
+    def points(self, factors: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the one point at factors on the step, in float64; shape (factors, 1) each."""
+        f = factors[:, np.newaxis]
+        divided = f / (1 + float(self.divisor) * f)
+        return float(self.alpha_hat) * divided, float(self.beta_hat) * f * divided
+
+
+def _drive_map(model: ModelData, drive: _Drive) -> _DriveMap:
+    """Return the method that the integrator is for a drive, and its point."""
+    h = exact(model.h)
+    alpha_hat = (drive.explicit_damping + drive.implicit_damping) * h / drive.inertia
+    beta_hat = drive.stiffness * h**2 / drive.inertia
     if drive.implicit_damping and not drive.explicit_damping:
-        return lookup("imex-euler"), whole
-    return _map(model), divided
+        return _DriveMap(lookup("imex-euler"), alpha_hat, beta_hat, divisor=Fraction(0))
+    return _DriveMap(_map(model), alpha_hat, beta_hat, divisor=drive.implicit_damping * h / drive.inertia)
 
 
 def _drive_kind(group: Sequence[Feedback], drive: _Drive) -> str:
@@ -431,9 +513,8 @@ def _drive_advice(model: ModelData, drive: _Drive, verdict: Verdict, end: float 
         return ""
     used = _used_up(model, drive, h)
     all_implicit = _Drive(drive.stiffness, Fraction(0), damping, drive.inertia)
-    _, points = _drive_map(model, all_implicit)
     imex = lookup("imex-euler")
-    if drive.explicit_damping and _verdict(imex, points(Fraction(1))[0]) == "converges":
+    if drive.explicit_damping and _verdict(imex, _drive_map(model, all_implicit).point) == "converges":
         return f'{used}write integrator="implicitfast"'
     return f"{used}{_smaller_step(end, h)}"
 

@@ -34,7 +34,7 @@ LEAST_SIZE, LARGEST_SIZE = 1e-15, 1e15
 """Of numbers that are not zero: below MuJoCo's mjMINVAL nothing counts, and beyond its inverse nobody means it."""
 
 MOST_ROWS = 300
-"""Of one equality, such as a flex's: beyond, its masses are left out."""
+"""Of one equality, such as a flex's: beyond, its masses are left out, and it is judged as contacts are."""
 
 Integrator = Literal["Euler", "RK4", "implicit", "implicitfast"]
 INTEGRATORS: tuple[Integrator, ...] = ("Euler", "RK4", "implicit", "implicitfast")
@@ -175,7 +175,7 @@ def model_data(mujoco: types.ModuleType, model: Any) -> ModelData:
         mass=mass,
         constraints=constraints,
         feedbacks=feedbacks,
-        unjudged=tuple(each for each in actuators if isinstance(each, Unjudged)),
+        unjudged=(*(each for each in actuators if isinstance(each, Unjudged)), *_flexes(mujoco, model)),
     )
 
 
@@ -271,13 +271,14 @@ def _joint_limits(mujoco: types.ModuleType, model: Any) -> Iterator[Constraint]:
 
 
 def _tendon_limits(mujoco: types.ModuleType, model: Any, data: Any) -> Iterator[Constraint]:
+    directions = _tendon_directions(model, data)
     for tendon in np.flatnonzero(model.tendon_limited).tolist():
         yield Constraint(
             element=_named(mujoco, model, "tendon", tendon),
             kind="tendon limit",
             solref=_solref(model.tendon_solref_lim[tendon]),
             solimp=_solimp(model.tendon_solimp_lim[tendon]),
-            jacobian=_tendon_directions(model, data)[[tendon]],
+            jacobian=directions[[tendon]],
             diagonal=model.tendon_invweight0[[tendon]].copy(),
         )
 
@@ -293,13 +294,14 @@ def _friction_losses(mujoco: types.ModuleType, model: Any, data: Any) -> Iterato
             diagonal=model.dof_invweight0[[dof]].copy(),
             positional=False,
         )
+    directions = _tendon_directions(model, data)
     for tendon in np.flatnonzero(model.tendon_frictionloss > 0).tolist():
         yield Constraint(
             element=_named(mujoco, model, "tendon", tendon),
             kind="tendon friction",
             solref=_solref(model.tendon_solref_fri[tendon]),
             solimp=_solimp(model.tendon_solimp_fri[tendon]),
-            jacobian=_tendon_directions(model, data)[[tendon]],
+            jacobian=directions[[tendon]],
             diagonal=model.tendon_invweight0[[tendon]].copy(),
             positional=False,
         )
@@ -452,6 +454,38 @@ def _actuators(mujoco: types.ModuleType, model: Any, data: Any) -> Iterator[Feed
         if own_damping and not _disabled(mujoco, model, "DAMPER"):  # added to that of its joint, if it has one
             at_joint = mujoco.mjtTrn(model.actuator_trntype[actuator]) in of_joints
             yield Feedback(element, "drive", direction, 0.0, float(own_damping), euler_implicit=at_joint)
+
+
+def _flexes(mujoco: types.ModuleType, model: Any) -> Iterator[Unjudged]:
+    """Yield what acts on a flex besides its equalities: the springs of its elements, and its contacts."""
+    for flex in range(model.nflex):
+        element = _named(mujoco, model, "flex", flex)
+        if model.flex_edgestiffness[flex] or model.flex_edgedamping[flex] or _is_elastic(model, flex):
+            yield Unjudged(element, "flex spring", "its springs are of all its elements together")
+        touches = model.flex_contype[flex] or model.flex_conaffinity[flex] or model.flex_selfcollide[flex]
+        if touches and not (_disabled(mujoco, model, "CONSTRAINT") or _disabled(mujoco, model, "CONTACT")):
+            yield Unjudged(element, "flex contact", "it depends on what it touches")
+
+
+def _is_elastic(model: Any, flex: int) -> bool:
+    """Return whether a flex resists being strained or bent."""
+    if model.flex_rigid[flex]:
+        return False
+    entries = (
+        (model.flex_stiffness, getattr(model, "flex_stiffnessadr", None)),
+        (model.flex_bending, getattr(model, "flex_bendingadr", None)),
+    )
+    return any(_part(np.ravel(values), starts, flex).any() for values, starts in entries)
+
+
+def _part(values: FloatArray, starts: Any, flex: int) -> FloatArray:
+    """Return the entries of one flex; all of them in versions that do not say where a flex's own begin."""
+    if starts is None:
+        return values
+    if starts[flex] < 0:
+        return values[:0]
+    later = [start for start in starts[flex + 1 :].tolist() if start >= 0]
+    return values[starts[flex] : later[0] if later else None]
 
 
 def _tendon_directions(model: Any, data: Any) -> FloatArray:

@@ -9,13 +9,15 @@ cannot show is stated beside the answer:
              P(z; alpha_hat, beta_hat) = 0    ------+---> a point     points_like
 
 k is the number of steps between two rows. Errors of the fit are one part of what is allowed to a distance. The other is
-the motion of the mechanism, which shifts each pole by up to |chi| kappa h (`moving_mechanisms`) and which the log of
-one run does not tell from another method's pole.
+the motion of the mechanism: constraints whose directions turn by an angle a step shift each pole by up to |chi| times
+that (`stability.turning`), which the log of one run does not tell from another method's pole. What counts is how fast
+the directions turn at all, not the law's kappa alone, the rate at which they turn against each other in the long run: a
+log is short, and where kappa is zero, as that of a pendulum, the next order of the law shifts poles still.
 """
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
@@ -59,8 +61,8 @@ SOLVED = 1e-9
 SAME = 1e-6
 """Of a point's size, and of |z|: solutions nearer than that are one, which Newton's method reached from two places."""
 
-TURNED = 5e-4
-"""kappa h where nobody has said how fast the mechanism moves: some 10 to 30 revolutions a minute at 1 ms."""
+TURNED = 5e-3
+"""rad a step, where nobody has said how fast the mechanism turns: 50 revolutions a minute at 1 ms."""
 
 DIFFERENCES = 3
 """Times that samples are differenced at most: each takes off a factor omega h of what a motion forces."""
@@ -229,8 +231,11 @@ def _fitted(samples: FloatArray, rounding: float, of_two_runs: bool, cut: str) -
         return _claimed(as_given, len(samples), _joined(ON_THE_CIRCLE, cut))
     if _on_the_circle(as_given):
         return _refused(len(samples), ON_THE_CIRCLE, cut)
-    if _explains_the_start(as_given, samples) and _agree(as_given, fits[1]):
-        return _claimed(as_given, len(samples), _joined(SLOWLY, cut))
+    of_changes = fits[1]
+    if isinstance(of_changes, Fit) and _explains_the_start(as_given, samples) and _agree(as_given, of_changes):
+        # Only as far as differences, which are forced less, show the same pole, is it known to be none that is forced.
+        uncertainty = max(as_given.uncertainty, abs(as_given.pole - of_changes.pole) + of_changes.uncertainty)
+        return _claimed(replace(as_given, uncertainty=uncertainty), len(samples), _joined(SLOWLY, cut))
     return _refused(len(samples), FORCED, cut)
 
 
@@ -239,9 +244,9 @@ def _is_not_forced(fit: Fit, samples: FloatArray) -> bool:
     return abs(fit.pole - 1) > SLOW and _explains_the_start(fit, samples)
 
 
-def _agree(fit: Fit, other: Fit | Refusal) -> bool:
+def _agree(fit: Fit, other: Fit) -> bool:
     """Return whether two fits have found the same pole."""
-    return isinstance(other, Fit) and abs(fit.pole - other.pole) < max(SPREAD, fit.uncertainty + other.uncertainty)
+    return abs(fit.pole - other.pole) < max(SPREAD, fit.uncertainty + other.uncertainty)
 
 
 def _on_the_circle(fit: Fit) -> bool:
@@ -338,8 +343,8 @@ def likenesses(
 
     `between` of a method's own steps lie between two rows of the log; a method for which that is None has longer steps
     than the log and is left out, and so is one whose poles are infinite at the point: it has made no log. `turned` is
-    kappa h, the angle by which the directions of the constraints turn in a step of the user's; None takes TURNED. No
-    likenesses without a pole. Roots of paper Eq. 17; the motion by the first-order law.
+    the angle (rad) by which the directions of the constraints turn in a step of the user's, at most; None takes TURNED.
+    No likenesses without a pole. Roots of paper Eq. 17; the motion by the first-order law.
     """
     if probed.pole is None or probed.uncertainty is None:
         return []

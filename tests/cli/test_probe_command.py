@@ -105,6 +105,11 @@ def test_sentences_in_full() -> None:
         "this behaves like SYM at (1, 0.25) to 1e-06, by a lesser pole of it; 5 others are excluded, the nearest AB2, "
         "0.2 off."
     )
+    assert likeness_sentence([like("B4", 9e-3)], point) == (
+        "what this is at (1, 0.25) cannot be told: the nearest is B4, 0.009 off where 0.001 is allowed, and it would "
+        "fit if the mechanism turned up to 10 times as fast as is allowed for (--turning)."
+    )
+    assert likeness_sentence([like("B4", 2e-2)], point).startswith("nothing fits at (1, 0.25): the nearest is B4, 0.02")
 
 
 def test_without_a_point_the_point_is_found_in_both_units() -> None:

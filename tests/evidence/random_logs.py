@@ -5,12 +5,15 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 from itertools import islice
+from typing import Any
 
 import numpy as np
 
 from bezstab.evidence import kicked_constraint_errors
 from bezstab.evidence.measured_poles import SURROUNDINGS
 from bezstab.mechanism import Mechanism, compiled_mechanism, load_scene, shipped_scenes, turning_normals
+from bezstab.mechanism.motions import motion
+from bezstab.mechanism.start import geometry
 from bezstab.methods import REGISTRY, Method, lookup
 from bezstab.rationals import exact
 from bezstab.stability import FloatArray, region, spectral_radius, window
@@ -19,6 +22,8 @@ H = 1e-3  # s
 DIGITS = 9
 LARGEST = 1.0  # m: beyond it a simulator has long stopped
 KICK, SMALL_KICK = 1e-4, 1e-8  # m: the smaller one where it grows
+LASTS = 0.25  # s: of a log of 250 rows
+SPARSE, TINY = 8, 1e-30  # of the motion's points every eighth; of the complex step
 FORMS = ("up and down", "kicked and not", "one run")
 # Andrews's mechanism breaks down at this step; a chain of 40 bodies takes minutes where each step solves equations.
 LEFT_OUT = ("andrews", "n_four_bar")
@@ -26,14 +31,17 @@ LEFT_OUT = ("andrews", "n_four_bar")
 
 @dataclass(frozen=True)
 class RandomLog:
-    """A method, a point and a scene, and what their run has written; `minus` is None where one run is all there is."""
+    """A method, a point and a scene, and what their run has written; `minus` is None where one run is all there is.
+
+    `turning` is how fast the directions of the constraints turn in that scene, at most, in 1/s.
+    """
 
     method: Method
     scene: str
     alpha_hat: Fraction
     beta_hat: Fraction
     form: str
-    kappa: float
+    turning: float
     c: FloatArray
     minus: FloatArray | None
 
@@ -51,7 +59,7 @@ def random_logs(count: int, seed: int, rows: int) -> Iterator[RandomLog]:
         form = str(random.choice(FORMS))
         up, down, alone = _written(method, scene, alpha_hat, beta_hat, rows)
         minus = {"up and down": down, "kicked and not": alone, "one run": None}[form]
-        yield RandomLog(method, scene, exact(alpha_hat), exact(beta_hat), form, _kappa(scene), up, minus)
+        yield RandomLog(method, scene, exact(alpha_hat), exact(beta_hat), form, _turning(scene), up, minus)
 
 
 def _written(method: Method, scene: str, alpha_hat: float, beta_hat: float, rows: int) -> FloatArray:
@@ -77,5 +85,19 @@ def _mechanism(scene: str) -> Mechanism:
 
 
 @cache
-def _kappa(scene: str) -> float:
-    return turning_normals(_mechanism(scene), 0.6).kappa
+def _turning(scene: str) -> float:
+    """Return how fast the constraints turn while a log is written: against each other, or at all, the faster of both.
+
+    With A = C_q M^-1/2 and its rate B along the motion the latter is the norm of B, in units in which A A' = 1: of a
+    pendulum it is the angular speed, while K is zero.
+    """
+    mechanism = _mechanism(scene)
+    along, at = motion(mechanism, LASTS), geometry(mechanism)
+    root = np.sqrt(np.array(mechanism.equations.mass, float))
+    rates = [turning_normals(mechanism, LASTS).largest_norm]
+    for t, q, v in zip(along.t[::SPARSE].tolist(), along.q[::SPARSE], along.v[::SPARSE], strict=True):
+        jacobian = np.asarray(at.jacobian(q, t), float) / root
+        ahead: Any = at.jacobian(q + 1j * TINY * v, t + 1j * TINY)
+        own_units = np.linalg.inv(np.linalg.cholesky(jacobian @ jacobian.T))
+        rates.append(float(np.linalg.norm(own_units @ np.asarray(ahead.imag / TINY, float) / root, ord=2)))
+    return max(rates)

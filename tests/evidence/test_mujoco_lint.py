@@ -81,6 +81,18 @@ EQUALITIES = {
     "tendon": Case("tendon equality", TWO, TENDON.format("") + equality(ALIKE), UNSAFE),
     "refsafe": Case("joint equality", SLIDE.format(""), equality(LOW)),
 }
+FLEX = (
+    '<flexcomp name="f" type="grid" {} spacing=".1 .1 .1" radius=".001" mass="2">'
+    f'<edge equality="{{}}" solref=".01 .7" {FLAT}/><contact selfcollide="none" {WEIGHTLESS}/></flexcomp>'
+)
+FLEXES = {
+    "rope": Case("flex equality", FLEX.format('dim="1" count="4 1 1"', "true"), flags=UNSAFE),
+    "cloth": Case("flex equality", FLEX.format('dim="2" count="3 3 1"', "true"), flags=UNSAFE),
+    "solid": Case("flex equality", FLEX.format('dim="3" count="2 2 2"', "true"), flags=UNSAFE),
+    "strained": Case(
+        "flexstrain equality", FLEX.format('dim="3" dof="trilinear" count="3 3 3"', "strain"), flags=UNSAFE
+    ),
+}
 LIMIT = 'limited="true" range="0 1" solreflimit=".01 .7" solimplimit="0.9 0.9 0.001"'
 OTHERS = {
     "joint limit": Case("joint limit", SLIDE.format(LIMIT), flags=UNSAFE, gravity=-10, settle=4000),
@@ -107,9 +119,9 @@ DRIVES = {
     "explicit": Case("joint spring", SLIDE.format('damping="100" stiffness="4000"'), flags='eulerdamp="disable"'),
     "tendon spring": Case("tendon spring", TWO, TENDON.format('stiffness="3000" damping="100"')),
 }
-CASES = {**EQUALITIES, **OTHERS, **DRIVES}
+CASES = {**EQUALITIES, **FLEXES, **OTHERS, **DRIVES}
 QUICK = {("joint", "Euler"), ("weld", "implicit"), ("joint limit", "implicitfast"), ("position", "implicitfast")}
-QUICK |= {("joint friction", "Euler"), ("split", "Euler"), ("tendon", "RK4"), ("explicit", "Euler")}
+QUICK |= {("rope", "Euler"), ("joint friction", "Euler"), ("split", "Euler"), ("tendon", "RK4"), ("explicit", "Euler")}
 
 
 def lint(model: Any) -> list[Linted]:
@@ -129,6 +141,8 @@ def test_every_kind_of_row_is_what_mujoco_does(name: str, integrator: str) -> No
     version = tuple(map(int, mujoco.__version__.split(".")[:2]))
     if version < (3, 9) and name in ("connect", "weld") and integrator.startswith("implicit"):
         pytest.skip("this version moves free bodies by the midpoint rule, which is stable further out")
+    if name == "strained" and not hasattr(mujoco.mjtEq, "mjEQ_FLEXSTRAIN"):
+        pytest.skip("this version knows no strain of flexes")
     case = CASES[name]
     row = lint(case.model(integrator))[0]
     assert (row.kind, row.verdict, row.unsafe) == (case.kind, "converges", False)
@@ -281,6 +295,37 @@ def test_what_is_no_constant_gain_is_not_judged() -> None:
     rows = lint(case.model("Euler"))
     assert [row.verdict for row in rows] == [None, None]
     assert all(row.advice.startswith("not judged") and not row.unsafe for row in rows)
+
+
+def test_springs_and_contacts_of_a_flex_are_not_judged() -> None:
+    start = '<flexcomp name="f" type="grid" spacing=".1 .1 .1" radius=".001" mass="2" dim='
+    for inside in (
+        '"1" count="3 1 1"><edge stiffness="9"/>',
+        '"1" count="3 1 1"><edge damping="9"/>',
+        '"2" count="3 3 1"><elasticity young="9" thickness=".01" elastic2d="stretch"/>',
+        '"2" count="3 3 1"><elasticity young="9" thickness=".01" elastic2d="bend"/>',
+        '"3" count="2 2 2"><elasticity young="9"/>',
+    ):
+        world = f"{start}{inside}</flexcomp>"
+        rows = lint(Case("", world).model("Euler"))
+        assert [(row.element, row.kind, row.verdict) for row in rows] == [
+            ("flex 'f'", "flex spring", None),
+            ("flex 'f'", "flex contact", None),
+        ]
+        assert all(row.advice.startswith("not judged") for row in rows)
+        assert len(lint(Case("", world, flags='contact="disable"').model("Euler"))) == 1
+    assert [row.kind for row in lint(FLEXES["rope"].model("Euler"))] == ["flex equality"]
+
+
+@pytest.mark.slow
+def test_a_flex_of_very_many_edges_is_judged_as_if_they_shared_all_of_the_reference() -> None:
+    def cloth(count: int) -> Case:
+        return Case("", FLEX.format(f'dim="2" count="{count} {count} 1"', "true"), flags=UNSAFE)
+
+    known, unknown = (lint(cloth(count).model("Euler"))[0] for count in (10, 11))  # 261 and 320 edges
+    assert known.h_factor is not None
+    assert unknown.h_factor is not None
+    assert 0.8 * known.h_factor < unknown.h_factor < known.h_factor
 
 
 def random_arm(rng: np.random.Generator) -> Case:

@@ -84,7 +84,7 @@ def test_the_faster_the_mechanism_the_more_is_allowed() -> None:
         return one.allowed - one.error
 
     assert allowed(0.0) == 0
-    assert 0 < allowed(1e-4) < allowed(None) < allowed(1e-3)
+    assert 0 < allowed(1e-4) < allowed(None) < allowed(1e-2)
     assert allowed(2e-4) == pytest.approx(2 * allowed(1e-4), rel=1e-9)
 
 
@@ -320,25 +320,32 @@ def test_a_users_step_is_kicked_both_ways_and_by_parts_of_the_kick() -> None:
 # Random methods, points and scenes
 
 
-def outcome(log: RandomLog) -> str:
-    """Return what came of a log: the true method named, a refusal, nothing that fits, or a wrong answer."""
+def outcome(log: RandomLog, turned: float | None) -> str:
+    """Return what came of a log: the true method first or among those that fit, a refusal, or a wrong answer."""
     found = probed_pole(log.c, log.minus)
     if found.pole is None:
         assert found.reason
         return "refused"
-    like = likenesses(found, ALL, log.alpha_hat, log.beta_hat, turned=log.kappa * H)
+    like = likenesses(found, ALL, log.alpha_hat, log.beta_hat, turned=turned)
     true = next(one for one in like if one.method.name == log.method.name)
     if true.fits:
-        return "named"
+        return "first" if log.method.name in (like[0].method.name, *like[0].same_as.split(", ")) else "among"
     return "nothing fits" if not any(one.fits for one in like) else "wrong"
 
 
 @pytest.mark.slow
-def test_the_true_method_is_named_whatever_made_the_log() -> None:
-    counts = Counter(outcome(log) for log in random_logs(count=40, seed=7, rows=250))
-    assert counts["wrong"] == 0
-    assert counts["nothing fits"] <= 2  # of a mechanism that turns so fast that the first-order law does not hold
-    assert counts["named"] >= 28
+@pytest.mark.parametrize("seed", [1, 2, 7])
+def test_the_true_method_is_named_whatever_made_the_log(seed: int) -> None:
+    """Of 200 logs none is answered wrongly, or by nothing that fits: whether or not one knows how fast it turns.
+
+    Those that are refused have grown to a metre within fewer rows than a fit needs, have no recursion because the
+    mechanism turns by 0.03 rad a step, or poles that windows do not part.
+    """
+    logs = list(random_logs(count=200, seed=seed, rows=250))
+    for counts in (Counter(outcome(log, log.turning * H) for log in logs), Counter(outcome(log, None) for log in logs)):
+        assert set(counts) <= {"first", "among", "refused"}
+        assert counts["first"] >= 140
+        assert counts["refused"] <= 45
 
 
 @pytest.mark.slow
