@@ -202,7 +202,6 @@ def test_the_rate_over_the_motion_is_that_of_all_whole_revolutions(revolutions: 
         assert found.measured_rate == pytest.approx(expected, rel=1e-12)
 
 
-
 @pytest.mark.parametrize(("ratio", "told"), [(0.9962, True), (0.9985, False)])
 def test_two_poles_are_told_apart_if_in_400_samples_the_lesser_falls_to_1_over_e(ratio: float, told: bool) -> None:
     """With both mu at one place beyond the kink of B4 the poles +p and -p have moduli whose ratio grows from one."""

@@ -50,7 +50,6 @@ def test_backwards_in_time_the_integral_is_the_same(count: int) -> None:
     assert there[-1] - there[::-1] == pytest.approx(back, abs=1e-13)
 
 
-
 def test_a_drivers_work_is_the_energy_that_the_motion_has_in_closed_form() -> None:
     run = run_of("driven_slider_crank", h=2e-3, duration=6.0)  # a revolution
     rate = 2 * np.pi / 6
