@@ -52,7 +52,8 @@ class Watch:
         """Keep the tests asked for, in their order, and tests not known yet: a mutant may have changed their names."""
         if self.asked_for:
             order = {test: number for number, test in enumerate(self.asked_for)}
-            items[:] = [item for item in items if item.nodeid in order or item.nodeid not in self.seconds]
+            known = self.seconds or {item.nodeid for item in items}
+            items[:] = [item for item in items if item.nodeid in order or item.nodeid not in known]
             items.sort(key=lambda item: order.get(item.nodeid, -1))
 
     @pytest.hookimpl(hookwrapper=True)
