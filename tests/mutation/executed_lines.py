@@ -33,7 +33,7 @@ RECORDED = (
 """Folders and files of tests, each recorded in a process of its own."""
 LinesOfFile = Callable[[Path], Mapping[int, frozenset[str]]]
 
-FIRST = 40  # tests of the first ring that are asked before the rest of it is even collected
+FIRST = 20  # tests of the first ring that are asked before the files of the rest of it are even imported
 
 
 class Recorder:
@@ -114,10 +114,16 @@ def rings(mutant: Mutant, own: str, executed: ExecutedLines, seconds: dict[str, 
     third = set() if first else executed.tests_of(mutant.path, _lines_of_functions(mutant.path))
 
     def in_order(tests: set[str]) -> list[str]:
-        return sorted(tests, key=lambda test: (not test.startswith(f"{own}::"), seconds.get(test, 0.0), test))
+        return sorted(tests, key=lambda test: (test not in of_own_file, seconds.get(test, 0.0), test))
 
-    ordered = in_order(first)
-    return [ordered[:FIRST], ordered[FIRST:], in_order(second - first), in_order(third - second)]
+    others = in_order(first - of_own_file)
+    return [
+        in_order(first & of_own_file),
+        others[:FIRST],
+        others[FIRST:],
+        in_order(second - first),
+        in_order(third - second),
+    ]
 
 
 class _Place:

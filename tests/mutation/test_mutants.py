@@ -68,27 +68,28 @@ def asked(mutant: Mutant, executed: Mapping[str, set[str]]) -> list[list[str]]:
 
 def test_who_executes_the_line_is_asked_first_of_the_own_file_and_then_the_quickest() -> None:
     mutant = mutant_of_energies("2", "3")
-    first, rest, second, third = asked(
+    own, first, rest, second, third = asked(
         mutant,
         {
             "middle = (nodes - 1) // 2": {"far", "other::quick", f"{OWN}::slow", f"{OWN}::quick"},
             "weights = _interval_weights(nodes)": {"far", "another of the function"},
         },
     )
-    assert first == [f"{OWN}::quick", f"{OWN}::slow", "other::quick", "far"]
+    assert own == [f"{OWN}::quick", f"{OWN}::slow"]
+    assert first == ["other::quick", "far"]
     assert (rest, third) == ([], [])
     assert second == [f"{OWN}::of_something_else", "another of the function"]
 
 
 def test_of_a_constant_those_are_asked_that_execute_a_line_with_its_name() -> None:
     mutant = mutant_of_energies("10", "11")
-    first, *_ = asked(mutant, {"nodes = min(NODES, len(rates))": {"far"}, "bases = [": {"other::quick"}})
+    _, first, *_ = asked(mutant, {"nodes = min(NODES, len(rates))": {"far"}, "bases = [": {"other::quick"}})
     assert first == ["far"]
 
 
 def test_a_line_that_nobody_executes_is_asked_of_those_that_execute_the_module() -> None:
     mutant = mutant_of_energies("2", "3")
-    first, _, second, third = asked(mutant, {"bases = [": {"other::quick"}})
-    assert first == []
+    own, first, _, second, third = asked(mutant, {"bases = [": {"other::quick"}})
+    assert own == first == []
     assert sorted(second) == sorted(test for test in SECONDS if test.startswith(OWN))
     assert third == ["other::quick"]
