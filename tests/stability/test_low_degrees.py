@@ -34,7 +34,9 @@ def test_a_cubic_falls_into_a_root_and_a_quadratic(alone: float, half: float, la
     assert np.abs(product - [1, b, c, d]).max() < 1e-13  # backward stable: the cubic itself comes back
 
 
-@pytest.mark.parametrize(("alone", "half", "last"), [(1234567.8, 3.3, 101.7), (-1.7e-6, 3.3, 101.7), (271828.1, 1.1e-3, 1.3e-5)])
+@pytest.mark.parametrize(
+    ("alone", "half", "last"), [(1234567.8, 3.3, 101.7), (-1.7e-6, 3.3, 101.7), (271828.1, 1.1e-3, 1.3e-5)]
+)
 def test_a_root_far_from_the_others_leaves_them_their_digits(alone: float, half: float, last: float) -> None:
     """The quadratic is divided out from the end at which nothing cancels."""
     b, c, d = 2 * half - alone, last - 2 * half * alone, -last * alone

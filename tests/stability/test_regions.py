@@ -1,3 +1,4 @@
+from fractions import Fraction
 from math import atan, inf, pi, sin, sqrt
 
 import numpy as np
@@ -558,3 +559,11 @@ def test_an_implicit_stage_that_is_not_used_changes_nothing() -> None:
     shape, plain = region(unused), region(lookup("implicit-midpoint"))
     assert found_extent(shape) == found_extent(plain)
     assert [len(curve) for curve in shape.boundary] == [len(curve) for curve in plain.boundary]
+
+
+def test_a_shared_root_just_inside_the_circle_leaves_the_region_as_it_is() -> None:
+    """rho and sigma of explicit Euler, both times z - r with r = 1 - 1e-11: that pole decays, however slowly."""
+    root = 1 - Fraction(1, 10**11)
+    with_the_root = multistep("slow", f"1 {-1 - root} {root}", f"0 1 {-root}")
+    assert region(with_the_root).area == pytest.approx(region(lookup("RK1")).area, rel=1e-12)
+    assert region(with_the_root).fixed_poles == (pytest.approx(complex(root), rel=1e-14),)
