@@ -243,6 +243,12 @@ def test_the_line_to_write_is_safe() -> None:
         assert (after.verdict, after.unsafe, after.advice) == ("converges", False, "")
 
 
+def test_friction_without_stiffness_has_no_timeconst_to_be_raised() -> None:
+    case = Case("joint friction", SLIDE.format('frictionloss="1" solreffriction="0 -50"'))
+    (row,) = lint(case.model("Euler"))
+    assert (row.verdict, row.advice) == ("converges", "")
+
+
 def test_a_drive_is_told_which_gain_uses_up_its_limit_and_what_to_write() -> None:
     case = replace(DRIVES["position"], more=actuator('<position joint="x" kp="1000" kv="1400"/>'))
     row = lint(case.model("Euler"))[0]

@@ -31,7 +31,7 @@ MEMORY = 8 * 2**30  # bytes of address space: a mutant that asks for more is sto
 HYPOTHESIS_SEED = 0  # so that a verdict does not depend on the day
 
 
-@dataclass
+@dataclass(eq=False)  # pytest keeps its plugins in sets
 class Watch:
     """A pytest plugin: the tests asked for, each on a limited time, all on a limited time, the first failure noted.
 
