@@ -243,6 +243,13 @@ def test_the_line_to_write_is_safe() -> None:
         assert (after.verdict, after.unsafe, after.advice) == ("converges", False, "")
 
 
+@pytest.mark.parametrize(("hold", "told"), [(0.05, True), (0.2, False)])
+def test_a_constraint_that_hardly_holds_small_errors_is_told_so(hold: float, told: bool) -> None:
+    softly = f'<joint joint1="x" solref=".02 1" solimp="{hold} .9 .001"/>'
+    row = lint(replace(EQUALITIES["joint"], more=equality(softly)).model("Euler"))[0]
+    assert row.advice.startswith(f"solimp leaves small errors alone: d = {hold}") == told
+
+
 def test_friction_without_stiffness_has_no_timeconst_to_be_raised() -> None:
     case = Case("joint friction", SLIDE.format('frictionloss="1" solreffriction="0 -50"'))
     (row,) = lint(case.model("Euler"))
