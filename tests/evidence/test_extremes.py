@@ -14,6 +14,12 @@ from bezstab.methods import LinearMultistep, steps
 from bezstab.stability import Choice, describe_point
 
 SHORT = list(extreme_checks(full=False))
+STATED = {
+    "_boundary-B4": ("B4", "|z_p| = 1 to 1e-07"),
+    "_boundary-B12": ("B12", "|z_p| = 1 to 1e-06"),
+    "_speed-3000": ("3000 rpm, h = 0.0001 s", "no failure, |c| at most 3e-03 m"),
+}
+"""Of some checks the case and what must come out: a looser statement would hold as well."""
 
 
 def name(check: Callable[[], Check]) -> str:
@@ -37,6 +43,13 @@ def takes_long(check: Callable[[], Check]) -> bool:
 def test_what_was_stated_beforehand_holds(check: Callable[[], Check]) -> None:
     found = check()
     assert found.held, found
+    case, expected = STATED.get(name(check), (found.case, found.expected))
+    assert (found.case, found.expected) == (case, expected)
+
+
+def test_poles_are_looked_at_as_far_out_as_is_promised() -> None:
+    for sizes in (extremes.SHORT_SIZES, extremes.ALL_SIZES):
+        assert (min(sizes), max(sizes)) == (1e-300, 1e300)
 
 
 @pytest.mark.slow

@@ -1,11 +1,13 @@
 """Linear prediction against responses whose poles are known because they were put in."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bezstab.evidence import LINEAR, SPREAD, Fit, Refusal, fit_dominant_pole
+from bezstab.evidence import LINEAR, SPREAD, Fit, Refusal, fit_dominant_pole, linear_prediction
 from bezstab.evidence.linear_prediction import (
     ABOVE_FORCED,
     SAMPLES,
@@ -13,6 +15,7 @@ from bezstab.evidence.linear_prediction import (
     fit_window,
     response_windows,
 )
+from bezstab.stability import FloatArray
 from tests.reference.sampled_responses import for_every_kick, geometric, two_poles
 
 root = st.tuples(st.floats(0.4, 0.999), st.floats(0, np.pi))
@@ -91,3 +94,32 @@ def test_a_window_ends_with_the_last_sample_that_is_well_above_what_remains() ->
 def test_a_root_with_less_than_a_thousandth_of_the_amplitude_is_noise(amplitude: float, dominant: float) -> None:
     samples = geometric(60, 0.9) + amplitude * geometric(60, 0.99)
     assert _poles_with_amplitude(samples, np.array([0.9, 0.99]))[0] == pytest.approx(dominant)
+
+
+def test_the_pole_is_the_median_of_the_better_half_of_the_fits(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Noise far above rounding, so that no two fits agree to the last bit."""
+    fits: list[Any] = []
+
+    def noted(samples: FloatArray, order: int, start: int) -> Any:
+        fit = fit_window(samples, order, start)
+        if fit is not None:
+            fits.append(fit)
+        return fit
+
+    monkeypatch.setattr(linear_prediction, "fit_window", noted)
+    clean = two_poles(900, 0.995, 0.4, 1.0, 0.5)
+    noise = 1e-6 * np.random.default_rng(4).normal(0, 1, (clean.size, 5))
+    found = fit_dominant_pole(clean[:, np.newaxis] + noise, order=4)
+    assert isinstance(found, Fit)
+    better = sorted(fits, key=lambda fit: fit.residual)[: (len(fits) + 1) // 2]
+    moduli = np.array([abs(fit.pole) for fit in better])
+    assert len(set(moduli)) == len(moduli) >= 4
+    below, above = (moduli < abs(found.pole)).sum(), (moduli > abs(found.pole)).sum()
+    assert int(below) - int(above) in (0, 1)
+
+
+def test_the_last_sample_of_a_window_counts() -> None:
+    samples = geometric(10, 0.9)
+    assert fit_window(samples, order=1) is not None
+    samples[-1] *= 2
+    assert fit_window(samples, order=1) is None

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from bezstab.evidence import LINEAR, SPREAD, Measurement, MovingPole, measure_poles, random_points
-from bezstab.evidence.measured_poles import KICKS, _kicked_responses, _measured_verdict, _measurement
+from bezstab.evidence.measured_poles import KICKS, SETTLING, _kicked_responses, _measured_verdict, _measurement
 from bezstab.mechanism import Mechanism, compiled_mechanism, load_scene
 from bezstab.methods import LinearMultistep, lookup, steps
 from bezstab.stability import best_point, dominant_pole, poles, spectral_radius
@@ -212,6 +212,24 @@ def test_growth_counts_from_tenfold_on_well_before_the_linear_range_is_left(grow
 
 def test_no_window_reaches_beyond_the_range_that_decides_on_leaving_it() -> None:
     assert max(LINEAR) == LINEAR[0]
+
+
+@pytest.mark.parametrize(("revolutions", "more"), [(1, 0), (3, 0), (3, 99), (1, -1)])
+def test_the_rate_over_the_motion_is_that_of_all_whole_revolutions(revolutions: int, more: int) -> None:
+    """Errors shrink by 0.9 in one revolution and by 0.8 in each later one; a quarter of one is needed to see a size."""
+    revolution = 100
+    shrunk = np.cumprod(np.r_[1.0, np.full(revolution, 0.9), np.full(1000, 0.8)] ** (1 / revolution))
+    count = SETTLING + revolution // 4 + revolutions * revolution + more
+    responses = sampled_responses.for_every_kick(np.append(np.ones(SETTLING), shrunk)[:count])
+    at_rest = MovingPole(0.999, 0.0, 0.0, 0.999, 0.999, double=False, settled=True, safe_speed=np.inf)
+    found = _measurement(lookup("SYM"), 0.5, 0.1, at_rest, None, H, revolution, *responses)
+    if more < 0:
+        assert found.measured_rate is None
+    else:
+        assert found.measured_rate is not None
+        sizes = np.sqrt(np.convolve(shrunk**2, np.ones(revolution // 4), "valid"))
+        expected = (sizes[revolutions * revolution] / sizes[0]) ** (1 / (revolutions * revolution))
+        assert found.measured_rate == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize(("ratio", "told"), [(0.9962, True), (0.9985, False)])

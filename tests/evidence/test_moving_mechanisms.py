@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bezstab.evidence import floquet_rates, growth_rates, momentary_rates, moving_pole, tabulated_rates
-from bezstab.evidence.moving_mechanisms import _moving_pole, _safe_speed
+from bezstab.evidence.moving_mechanisms import LARGEST_CHI, _moving_pole, _safe_speed
 from bezstab.mechanism import compiled_mechanism, load_scene, simulate, turning_normals
 from bezstab.methods import lookup
 from bezstab.stability import poles, spectral_radius
@@ -44,6 +44,18 @@ def test_the_table_is_as_good_as_the_law() -> None:
     chi = random.uniform(0.1, 12, 200) * np.exp(1j * random.uniform(-np.pi, np.pi, 200))
     exact = growth_rates(turning(), chi)
     assert np.abs(tabulated_rates(turning(), chi) - exact).max() < 5e-3 * exact.max()
+
+
+def test_the_table_is_good_to_half_a_percent_and_grows_in_proportion_beyond() -> None:
+    """Of the motion as 51 samples tell it; up to |chi| = 20, further out steps between so few samples are too long."""
+    coarse = replace(turning(), rates=turning().rates[::8])
+    random = np.random.default_rng(3)
+    direction = np.exp(1j * random.uniform(-np.pi, np.pi, 60))
+    chi = random.uniform(0.1, 20, 60) * direction
+    exact = growth_rates(coarse, chi)
+    assert np.abs(tabulated_rates(coarse, chi) - exact).max() < 5e-3 * exact.max()
+    at_the_end = tabulated_rates(coarse, LARGEST_CHI * direction)
+    assert tabulated_rates(coarse, 3 * LARGEST_CHI * direction) == pytest.approx(3 * at_the_end, rel=1e-12)
 
 
 @pytest.mark.parametrize(

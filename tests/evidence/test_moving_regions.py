@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bezstab.evidence import floquet_rates, moving_growth, moving_region
+from bezstab.evidence import floquet_rates, moving_growth, moving_modulus, moving_region
 from bezstab.methods import lookup
 from bezstab.stability import region
 from tests.evidence.driven_four_bar import four_bar, turning
@@ -45,3 +45,10 @@ def test_its_grid_says_where_errors_decay_and_where_the_law_does_not_hold() -> N
     decaying = (found.growth < 0).mean()
     window_area = np.ptp(found.alpha_hat) * np.ptp(found.beta_hat)
     assert decaying * window_area == pytest.approx(found.area, rel=0.05)  # cells of a sixtieth
+
+
+def test_where_it_is_hopeless_a_number_stands_that_can_still_be_raised_to_a_power() -> None:
+    alpha_hat, beta_hat = np.array([0.5, 1e8]), np.array([0.2, 1e8])
+    near, far = moving_modulus(lookup("B4"), turning(), 0.1 / OMEGA)(alpha_hat, beta_hat)
+    assert near < 1
+    assert far == pytest.approx(np.exp(10))

@@ -257,6 +257,19 @@ def test_the_line_to_write_is_safe() -> None:
         assert (after.verdict, after.unsafe, after.advice) == ("converges", False, "")
 
 
+@pytest.mark.parametrize(("hold", "told"), [(0.05, True), (0.2, False)])
+def test_a_constraint_that_hardly_holds_small_errors_is_told_so(hold: float, told: bool) -> None:
+    softly = f'<joint joint1="x" solref=".02 1" solimp="{hold} .9 .001"/>'
+    row = lint(replace(EQUALITIES["joint"], more=equality(softly)).model("Euler"))[0]
+    assert row.advice.startswith(f"solimp leaves small errors alone: d = {hold}") == told
+
+
+def test_friction_without_stiffness_has_no_timeconst_to_be_raised() -> None:
+    case = Case("joint friction", SLIDE.format('frictionloss="1" solreffriction="0 -50"'))
+    (row,) = lint(case.model("Euler"))
+    assert (row.verdict, row.advice) == ("converges", "")
+
+
 def test_a_drive_is_told_which_gain_uses_up_its_limit_and_what_to_write() -> None:
     case = replace(DRIVES["position"], more=actuator('<position joint="x" kp="1000" kv="1400"/>'))
     row = lint(case.model("Euler"))[0]

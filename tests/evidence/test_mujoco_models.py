@@ -67,7 +67,8 @@ def test_mixtures_of_contacts_are_mujocos_own(robot: ModelData) -> None:
     assert contacts["geom 'floor' and geom 'd'"] == (-900, -40)  # direct: the smaller
     assert contacts["geom 'floor' and geom 'e'"] == (0.07, 1)  # by priority
     assert solrefs(robot, "contact pair") == {"geom 'b' and geom 'd'": (0.008, 1.5)}
-    for first, second in (("0.03 1", "0.01 1"), ("0.03 1", "-900 -40"), ("-500 -60", "-900 -40")):
+    standard = (("0.03 1", "0.01 1"), ("0.03 0", "0.01 1"), ("0 0", "0.01 1"))
+    for first, second in (*standard, ("0.03 1", "-900 -40"), ("-500 -60", "-900 -40")):
         for mixes in ((2, 1), (0, 1), (0, 0), (1, 0)):
             touching = mujoco.MjModel.from_xml_string(
                 f"""<mujoco><worldbody><geom type="plane" size="1 1 .1" solref="{first}" solmix="{mixes[0]}"/>

@@ -144,6 +144,15 @@ def test_the_point_is_the_one_that_was_set(name: str) -> None:
         assert complex(dominant_pole(method, one.alpha_hat, one.beta_hat)) == pytest.approx(upper[0], abs=1e-6)
 
 
+@pytest.mark.parametrize(("name", "point"), [("bdf2", (2.3, 3.1)), ("B2", (1.3, 0.8)), ("implicit-euler", (1.7, 4.3))])
+def test_so_is_a_point_far_out(name: str, point: tuple[float, float]) -> None:
+    method = lookup(name)
+    pole = complex(dominant_pole(method, *point))
+    assert pole.imag != 0
+    points = points_like(ProbedPole(pole, 1e-9, 50, 100, (pole,), ""), method)
+    assert any((one.alpha_hat, one.beta_hat) == pytest.approx(point, abs=1e-7) for one in points)
+
+
 def test_two_real_poles_give_a_point_and_one_leaves_a_curve() -> None:
     method = lookup("SYM")
     z = [complex(pole) for pole in poles(method, 0.9, 0.1)]
@@ -277,6 +286,7 @@ def test_too_little_is_refused(c: FloatArray, said: str) -> None:
     found = probed_pole(c)
     assert found.pole is None
     assert said in found.reason
+    assert ("holds no number" in found.reason) == bool(np.isnan(c).any())
 
 
 def test_a_missing_number_ends_the_log_and_is_said() -> None:

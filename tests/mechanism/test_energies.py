@@ -41,6 +41,15 @@ def test_the_integral_converges_with_the_order_of_its_polynomials(even: bool) ->
     assert shown_order(errors) > NODES - 0.5
 
 
+@pytest.mark.parametrize("count", [NODES + 1, 3 * NODES])
+def test_backwards_in_time_the_integral_is_the_same(count: int) -> None:
+    """Of any rates, however rough: the nodes of an interval lie around its middle, as seen from either end."""
+    rates, h = np.random.default_rng(2).normal(0, 1, count), 0.1
+    there, back = running_integral(rates, h), running_integral(rates[::-1], h)
+    # sums of 30 products of order one, of weights below 3
+    assert there[-1] - there[::-1] == pytest.approx(back, abs=1e-13)
+
+
 def test_a_drivers_work_is_the_energy_that_the_motion_has_in_closed_form() -> None:
     run = run_of("driven_slider_crank", h=2e-3, duration=6.0)  # a revolution
     rate = 2 * np.pi / 6

@@ -20,8 +20,9 @@ def test_every_shipped_scene_is_read(name: str) -> None:
 
 
 def test_the_chain_grows_with_its_count() -> None:
-    data = {"name": "chain", "four_bar_chain": {"count": 7, "length": 1.0, "mass": 1.0}}
-    assert len(parse_scene(data).coordinates) == 8 + 3 * 7
+    for count in (7, 100):
+        data = {"name": "chain", "four_bar_chain": {"count": count, "length": 1.0, "mass": 1.0}}
+        assert len(parse_scene(data).coordinates) == 1 + 4 * count
 
 
 @pytest.mark.parametrize(

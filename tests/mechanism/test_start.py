@@ -71,6 +71,14 @@ def test_a_joint_given_twice_is_refused_by_name_however_much_of_the_position_is_
         initial_state(compiled_mechanism(parse_scene({**pendulum(initial=initial), "joint": [STRING, STRING]})))
 
 
+def test_joints_that_differ_by_rounding_alone_are_redundant() -> None:
+    """The rows of C_q differ by 1e-11 of themselves: to solve with them would leave five digits."""
+    beside = {**STRING, "points": [[0, 1e-11], [0, 0]]}
+    initial = {"position": {"bob.x": 1.0, "bob.y": 0.0}}
+    with pytest.raises(InputError, match="2 constraints, rank 1"):
+        initial_state(compiled_mechanism(parse_scene({**pendulum(initial=initial), "joint": [STRING, beside]})))
+
+
 def parallel_rods(count: int, angle: float) -> dict[str, Any]:
     """Return a coupler on equal, parallel rods on pivots 1 m apart, all at one angle: with a third rod redundant."""
     rods = [f"rod{i}" for i in range(count)]

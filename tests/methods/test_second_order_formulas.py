@@ -3,7 +3,7 @@ from fractions import Fraction
 import pytest
 
 from bezstab.methods import recipe
-from bezstab.methods.second_order_formulas import is_long, second_order_text
+from bezstab.methods.second_order_formulas import LONGEST_PART, is_long, second_order_text
 
 LEAPFROG = {"a0": "acceleration(x0, v0)", "v1": "v0 + a0", "x1": "x0 + v1"}
 
@@ -51,3 +51,8 @@ def test_a_helper_of_another_step_has_its_step_and_underscores_survive_latex() -
 @pytest.mark.parametrize(("number", "long"), [("1/2", False), ("123456789/1000", False), (f"1/{10**13}", True)])
 def test_a_fraction_too_long_to_read_becomes_a_decimal(number: str, long: bool) -> None:
     assert is_long(Fraction(number)) == long
+
+
+def test_a_fraction_is_shown_as_one_up_to_the_longest() -> None:
+    assert not is_long(Fraction(1, LONGEST_PART))
+    assert is_long(Fraction(1, LONGEST_PART + 1))

@@ -1,9 +1,11 @@
 """Do the quick tests notice when the code is wrong? `make mutants` changes one thing at a time and looks.
 
-A mutant is caught if a quick test of its room fails on it or does not end: its module's test file is asked first, then
-the room's others, the quickest first, up to the first failure. What survives is listed in harmless.toml with the reason
-why nothing that is promised changes, or it calls for a test. A mutant is out of time if the tests asked within its
-budget found nothing and some were not asked: that counts as survived.
+Once, every quick test is run on the code as it is, and recorded which lines it executes. A mutant is caught if a test
+that can notice it fails on it or does not end: those that execute its line are asked, of the module's own test file
+first, then the quickest, up to the first failure (executed_lines.py says which others are asked). What survives is
+listed in harmless.toml with the reason why nothing that is promised changes, or it calls for a test. A mutant is out of
+time if the tests asked within its budget of processor time found nothing and some were not asked, or if a test waited
+for ever: that counts as survived.
 
     python -m tests.mutation.campaign --count 200 --seed 1 --workers 2 --results /tmp/mutants
 
@@ -27,13 +29,19 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, TypedDict
 
+from tests.mutation.executed_lines import RECORDED, ExecutedLines, read_lines, rings
 from tests.mutation.judging import Tree, Watch, asked_in_a_child
-from tests.mutation.mutants import ROOMS, Mutant, all_mutants, sampled
+from tests.mutation.mutants import Mutant, all_mutants, sampled
 
 HARMLESS = Path(__file__).parent / "harmless.toml"
 PROMISED = 0.95  # the share of mutants that must be caught
-TAKES_LONG = ("numpy", "sympy", "mpmath", "hypothesis", "click", "numpy.testing", "hypothesis.strategies")
-LAST_RESORT = 1800.0  # s by the clock for one mutant, whatever it waits for
+TAKES_LONG = (
+    *("numpy", "numpy.testing", "numpy.random", "sympy", "mpmath", "hypothesis", "hypothesis.strategies", "click"),
+    *("matplotlib.figure", "mujoco", "numba", "jsonschema"),
+)
+"""Imported once for all mutants, where it is installed."""
+
+LAST_RESORT = 3600.0  # s by the clock for one mutant: it waits for something, or gets no processor; tells nothing
 POLL = 0.05  # s between two looks at the running processes
 PROBES = [
     "tests/methods/test_schemes.py",
@@ -42,7 +50,6 @@ PROBES = [
     "tests/evidence/test_pareto.py",
 ]
 """Quick test files, one of each room, that pass before any mutant is judged."""
-BEING_REWRITTEN = ("boundary_locus.py", "regions.py", "choices.py")  # judged last
 
 Outcome = Literal["caught", "survived", "out of time"]
 
@@ -69,33 +76,39 @@ class Running:
     ends: ExitStack
 
 
-def test_files(mutant: Mutant, ring: str) -> tuple[str, list[str]]:
-    """Return the test file of the mutated module and all that is asked, by default the tests of its room."""
-    room = mutant.path.parts[1]
-    own = f"tests/{room}/test_{mutant.path.stem}.py"
-    return own, ["tests"] if ring == "all" else [f"tests/{room}"]
+def recorded(results: Path, tree: Tree) -> tuple[dict[str, float], ExecutedLines]:
+    """Return the processor time in s of each quick test, and the lines that each executes.
 
-
-def times_without_a_mutant(results: Path, tree: Tree) -> dict[str, float]:
-    """Return the processor time in s of each quick test of the four rooms; RuntimeError if one fails as it is.
-
-    A judge that calls everything caught would be worse than none: so the code as it is must pass first. What was
-    measured before is taken from the results' folder, but a few tests of each room are asked again.
+    RuntimeError if one fails on the code as it is: a judge that calls everything caught would be worse than none.
+    What was recorded before is taken from the results' folder, but a few tests of each room are asked again.
     """
-    file = results / "seconds.json"
-    measured: dict[str, float] = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
-    tests = PROBES if measured else [f"tests/{room}" for room in ROOMS]
+    seconds: dict[str, float] = {}
+    files = []
+    for folder in RECORDED:
+        name = folder.replace("/", "-")
+        file, lines = results / f"{name}.seconds.json", results / f"{name}.lines"
+        if not file.exists():
+            print(f"which lines {folder} executes", flush=True)
+            file.write_text(json.dumps(_unchanged(results, tree, [folder], lines)), encoding="utf-8")
+        seconds |= json.loads(file.read_text(encoding="utf-8"))
+        files.append(lines)
+    _unchanged(results, tree, PROBES)
+    return seconds, ExecutedLines(read_lines(files, tree.folder))
+
+
+def _unchanged(results: Path, tree: Tree, tests: list[str], record: Path | None = None) -> dict[str, float]:
+    """Run tests on the code as it is; return the processor time of each. RuntimeError if one fails."""
+    if not tests:
+        return {}
     answer = results / "unchanged.json"
     answer.unlink(missing_ok=True)
-    number = asked_in_a_child(tree, tests, Watch(measured, own="", budget=float("inf")), answer)
+    number = asked_in_a_child(tree, [tests], Watch(seconds={}, budget=float("inf")), answer, record)
     os.waitpid(number, 0)
     found = _read_answer(answer)
-    if found["failed"] or found["left"] or not found["took"]:
-        raise RuntimeError(f"without any mutant: failed {found['failed']}, {found['left']} tests not asked")
-    if not measured:
-        measured = found["took"]
-        file.write_text(json.dumps(measured), encoding="utf-8")
-    return measured
+    if found["failed"] or not found["took"]:
+        raise RuntimeError(f"without any mutant: failed {found['failed']}, {len(found['took'])} tests asked")
+    took: dict[str, float] = found["took"]
+    return took
 
 
 def _read_answer(answer: Path) -> dict[str, Any]:
@@ -106,37 +119,40 @@ def _read_answer(answer: Path) -> dict[str, Any]:
     return found
 
 
-def judged(mutants: list[Mutant], results: Path, workers: int, budget: float, ring: str) -> None:
+def judged(mutants: list[Mutant], results: Path, workers: int, budget: float) -> None:
     """Judge the mutants, so many at a time, and append each result to results.jsonl as it comes."""
     trees = [Tree.copied_to(results / f"tree{worker}") for worker in range(workers)]
-    seconds = times_without_a_mutant(results, trees[0])
+    seconds, executed = recorded(results, trees[0])
     waiting, running, idle = list(reversed(mutants)), dict[int, Running](), list(range(workers))
     with (results / "results.jsonl").open("a", encoding="utf-8") as lines, _ended_at_last(running):
         while waiting or running:
             while waiting and idle:
                 mutant, worker = waiting.pop(), idle.pop()
-                own, tests = test_files(mutant, ring)
+                own = f"tests/{mutant.path.parts[1]}/test_{mutant.path.stem}.py"
+                asked = rings(mutant, own, executed, seconds)
                 answer = results / f"worker{worker}" / "answer.json"
                 answer.parent.mkdir(exist_ok=True)
                 answer.unlink(missing_ok=True)
                 ends = ExitStack()
                 ends.enter_context(trees[worker].mutated(mutant.path, mutant.source))
-                number = asked_in_a_child(trees[worker], tests, Watch(seconds, own, budget), answer)
+                number = asked_in_a_child(trees[worker], asked, Watch(seconds, budget), answer)
                 running[number] = Running(mutant, worker, answer, time.monotonic(), ends)
             time.sleep(POLL)
             for number, run in list(running.items()):
                 took = time.monotonic() - run.started
-                ended, _ = os.waitpid(number, os.WNOHANG)
+                ended, status = os.waitpid(number, os.WNOHANG)
                 if not ended and took < LAST_RESORT:
                     continue
                 _end_with_all_it_started(number, reaped=bool(ended))
-                result = _result(run, took)
+                result = _result(run, took, died_of=os.WTERMSIG(status) if ended else signal.SIGKILL)
                 lines.write(json.dumps(result) + "\n")
                 lines.flush()
                 print(f"{result['outcome']:12}{took:6.0f} s  {result['key']}  [{result['by']}]", flush=True)
                 run.ends.close()
                 del running[number]
                 idle.append(run.worker)
+    # without a mutant they passed among all others: do they when asked by themselves?
+    _unchanged(results, trees[0], sorted({result["by"] for result in read_results(results).values()} & seconds.keys()))
 
 
 @contextmanager
@@ -157,14 +173,15 @@ def _end_with_all_it_started(number: int, *, reaped: bool) -> None:
         os.waitpid(number, 0)
 
 
-def _result(run: Running, took: float) -> Result:
-    mutant, outcome, by, left = run.mutant, "caught", "the process died or did not end", 0
+def _result(run: Running, took: float, died_of: int) -> Result:
+    """Return what came of a mutant; a process that was killed, by us or for want of memory, tells nothing."""
+    mutant, left = run.mutant, 0
+    outcome, by = ("out of time", "") if died_of == signal.SIGKILL else ("caught", f"the process died of {died_of}")
     if run.answer.exists():
         found = _read_answer(run.answer)
         left = found["left"]
         by = found["failed"] or ""
-        if not by:
-            outcome = "out of time" if left else "survived"
+        outcome = "caught" if by else "out of time" if left else "survived"
     return Result(
         key=mutant.key,
         kind=mutant.kind,
@@ -197,7 +214,6 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--budget", type=float, default=300.0, help="Processor time for one mutant, in s.")
-    parser.add_argument("--ring", choices=["room", "all"], default="room", help="The widest ring of tests to ask.")
     parser.add_argument("--results", type=Path, default=Path(tempfile.gettempdir()) / "bezstab-mutants")
     parser.add_argument("--again", action="store_true", help="Judge survivors anew, after a change of the tests.")
     parser.add_argument("--match", default="", help="Judge only mutants with this text in their key.")
@@ -207,14 +223,14 @@ def main() -> int:
     results.mkdir(parents=True, exist_ok=True)
     os.environ.update(OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", MPLBACKEND="Agg")
     for module in TAKES_LONG:
-        importlib.import_module(module)
+        with suppress(ImportError):
+            importlib.import_module(module)
 
     harmless = harmless_reasons()
     mutants = all_mutants()
     for key in sorted(set(harmless) - {mutant.key for mutant in mutants}):
         print(f"{HARMLESS.name}: no such mutant any more: {key}")
     chosen = sampled(mutants, options.count, options.seed)
-    chosen.sort(key=lambda mutant: mutant.path.name in BEING_REWRITTEN)
     known = read_results(results)
     telling = [mutant for mutant in chosen if mutant.key not in harmless]
     to_judge = [
@@ -223,7 +239,7 @@ def main() -> int:
         if options.match in mutant.key
         and (mutant.key not in known or (options.again and known[mutant.key]["outcome"] != "caught"))
     ]
-    judged(to_judge, results, options.workers, options.budget, options.ring)
+    judged(to_judge, results, options.workers, options.budget)
 
     known = read_results(results)
     outcomes = Counter(known[mutant.key]["outcome"] if mutant.key in known else "not judged" for mutant in telling)

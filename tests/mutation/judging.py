@@ -19,36 +19,42 @@ from types import FrameType
 
 import pytest
 
+from tests.mutation.executed_lines import Recorder
 from tests.mutation.mutants import ROOT
 
 COPIED_FOLDERS = ("bezstab", "tests", "configs", "figures")
 COPIED_FILES = ("pyproject.toml", "README.md", "Makefile")
 LEAST_PATIENCE = 20.0  # s of processor time for one test: most take less than one
 PATIENCE = 10.0  # times what a test takes without a mutant; what exceeds both does not end
+SLOWEST = 60.0  # s of processor time for one test without a mutant, recorded: none takes longer
 MEMORY = 8 * 2**30  # bytes of address space: a mutant that asks for more is stopped, not the machine
 HYPOTHESIS_SEED = 0  # so that a verdict does not depend on the day
 
 
-@dataclass
+@dataclass(eq=False)  # pytest keeps its plugins in sets
 class Watch:
-    """A pytest plugin: quickest tests first, each on a limited time, all on a limited time, the first failure noted.
+    """A pytest plugin: the tests asked for, each on a limited time, all on a limited time, the first failure noted.
 
-    `seconds`: processor time of each test without a mutant. `own`: the mutated module's test file, asked first.
-    `budget`: processor time in s for all tests. `took`: what each test has taken here.
+    `seconds`: processor time of each test without a mutant. `budget`: processor time in s for all tests. `asked_for`:
+    names of tests in their order; all that there are if that is empty. `recorder`: writes which lines each executes.
+    `took`: what each test has taken here.
     """
 
     seconds: dict[str, float]
-    own: str
     budget: float
+    asked_for: list[str] = field(default_factory=list)
+    recorder: Recorder | None = None
     failed: str | None = None
-    left: int = 0
     took: dict[str, float] = field(default_factory=dict)
 
-    @pytest.hookimpl(trylast=True)  # after what is not asked for has been taken out: the slow tests
+    @pytest.hookimpl(trylast=True)  # after the slow tests have been taken out
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
-        """Put the tests in order: those of the own file first, and of either group new ones, then the quickest."""
-        items.sort(key=lambda item: (not item.nodeid.startswith(self.own), self.seconds.get(item.nodeid, 0.0)))
-        self.left = len(items)
+        """Keep the tests asked for, in their order, and tests not known yet: a mutant may have changed their names."""
+        if self.asked_for:
+            order = {test: number for number, test in enumerate(self.asked_for)}
+            known = self.seconds or {item.nodeid for item in items}
+            items[:] = [item for item in items if item.nodeid in order or item.nodeid not in known]
+            items.sort(key=lambda item: order.get(item.nodeid, -1))
 
     @pytest.hookimpl(hookwrapper=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Iterator[None]:
@@ -57,16 +63,21 @@ class Watch:
         def too_long(_signal: int, _frame: FrameType | None) -> None:
             raise _DoesNotEnd(item.nodeid)
 
+        if self.recorder is not None:
+            self.recorder.enter(item.nodeid)
         patience = max(LEAST_PATIENCE, PATIENCE * self.seconds.get(item.nodeid, 0.0))
         signal.signal(signal.SIGPROF, too_long)
-        signal.setitimer(signal.ITIMER_PROF, patience)
+        signal.setitimer(signal.ITIMER_PROF, patience if self.seconds else 0.0)
         before = time.process_time()
         yield
         signal.setitimer(signal.ITIMER_PROF, 0)
         self.took[item.nodeid] = time.process_time() - before
-        self.left -= 1
-        if time.process_time() > self.budget:
+        if self.out_of_time():
             item.session.shouldstop = "out of time"
+
+    def out_of_time(self) -> bool:
+        """Return whether the budget is used up."""
+        return time.process_time() > self.budget
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """Note the first test that fails."""
@@ -112,8 +123,14 @@ class Tree:
             shutil.copy2(ROOT / path, self.folder / path)
 
 
-def asked_in_a_child(tree: Tree, tests: Sequence[str], watch: Watch, answer: Path) -> int:
-    """Fork a process that runs the tests in the tree and writes what came out to `answer`; return its number."""
+def asked_in_a_child(
+    tree: Tree, rings: Sequence[Sequence[str]], watch: Watch, answer: Path, record: Path | None = None
+) -> int:
+    """Fork a process that runs the tests in the tree, ring by ring, until one fails; return the process's number.
+
+    What came out is written to `answer`: the test that failed, how many were not asked, what each took. A ring of
+    folders or files stands for all quick tests in them. Where the lines executed are to be recorded: `record`.
+    """
     number = os.fork()
     if number:
         return number
@@ -121,9 +138,17 @@ def asked_in_a_child(tree: Tree, tests: Sequence[str], watch: Watch, answer: Pat
     try:
         os.setsid()  # so that it can be ended together with the processes that its tests start
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+        if watch.budget < float("inf"):  # what no Python code can end, since no Python code runs, ends by SIGXCPU
+            seconds = int(watch.budget + PATIENCE * SLOWEST)
+            resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 1))
         _enter(tree, answer)
-        _ask(tests, watch)
-        found = {"failed": watch.failed, "left": watch.left, "took": watch.took}
+        if record is not None:
+            watch.recorder = Recorder(tree.folder, record)
+        _ask_ring_by_ring(rings, watch)
+        if watch.recorder is not None:
+            watch.recorder.close()
+        left = sum(test not in watch.took for ring in rings for test in ring if "::" in test)
+        found = {"failed": watch.failed, "left": left, "took": watch.took}
         answer.write_text(json.dumps(found), encoding="utf-8")
         status = 0
     except BaseException as error:
@@ -131,6 +156,15 @@ def asked_in_a_child(tree: Tree, tests: Sequence[str], watch: Watch, answer: Pat
         raise
     finally:
         os._exit(status)
+
+
+def _ask_ring_by_ring(rings: Sequence[Sequence[str]], watch: Watch) -> None:
+    for ring in rings:
+        if watch.failed or watch.out_of_time():
+            return
+        if ring:
+            watch.asked_for = [test for test in ring if "::" in test]
+            _ask(list(dict.fromkeys(test.split("::")[0] for test in ring)), watch)
 
 
 def _enter(tree: Tree, answer: Path) -> None:
@@ -159,5 +193,7 @@ def _ask(tests: Sequence[str], watch: Watch) -> None:
     except _DoesNotEnd as test:
         watch.failed = f"{test} (does not end)"
     else:
-        if status != pytest.ExitCode.OK and watch.failed is None and status != pytest.ExitCode.INTERRUPTED:
+        # no tests: a mutant took their names
+        fine = (pytest.ExitCode.OK, pytest.ExitCode.INTERRUPTED, pytest.ExitCode.NO_TESTS_COLLECTED)
+        if status not in fine and watch.failed is None:
             raise RuntimeError(f"pytest ended with status {int(status)}")

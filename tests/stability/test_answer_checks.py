@@ -1,6 +1,7 @@
 """Deliberately wrong best points, choices and margins: each is a NumericalError."""
 
 from collections.abc import Iterator
+from contextlib import nullcontext
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any
@@ -23,7 +24,7 @@ from bezstab.stability import (
     stability_margins,
     verdict,
 )
-from bezstab.stability.answer_checks import check_best_point, check_margin
+from bezstab.stability.answer_checks import _compare, check_best_point, check_margin
 from bezstab.stability.path_crossings import Path
 
 
@@ -174,3 +175,15 @@ def test_a_crossing_that_was_missed_is_no_answer(name: str, monkeypatch: pytest.
     monkeypatch.setattr(margins, "crossing_factors", lambda path: [])
     with pytest.raises(NumericalError, match="before the margin"):
         stability_margins(lookup(name), 0.3, 0.06)
+
+
+@pytest.mark.parametrize(("better", "told"), [(1e-6, True), (4e-7, False)])
+def test_a_choice_may_be_worse_than_a_sample_by_a_millionth_of_itself(better: float, told: bool) -> None:
+    """Half a millionth of one, where the objective is one half: so flat is what a search ends in."""
+
+    def objective(alpha_hat: Any, beta_hat: Any, reached: float) -> Any:
+        return np.where(alpha_hat < 1, 0.5 - better, 0.5)
+
+    samples = np.array([0.5, 1.5]), np.array([0.1, 0.1])
+    with pytest.raises(NumericalError, match="the point chosen") if told else nullcontext():
+        _compare(lookup("B4"), objective, 1.5, 0.1, *samples)

@@ -8,7 +8,8 @@ from hypothesis import given, settings
 
 from bezstab.errors import NumericalError
 from bezstab.methods import LinearMultistep, Method, RungeKutta, lookup
-from bezstab.stability import BestPoint, Pencil, best_point, best_points, region, spectral_radius, window
+from bezstab.stability import BestPoint, Pencil, best_point, best_points, pencil_of, region, spectral_radius, window
+from bezstab.stability.best_points import _meeting_poles
 from tests.methods.kinds import EXPLICIT, sampled
 from tests.reference.rationals import rationals
 
@@ -161,3 +162,9 @@ def test_zeros_of_r_a_third_of_a_percent_apart_are_two_deadbeat_points() -> None
     assert found
     places = sorted([found.alpha_hat, *(alpha_hat for alpha_hat, _ in found.elsewhere)])
     assert places == pytest.approx(sorted(float(2 * zero) for zero in (first, second, third)), rel=1e-10)
+
+
+def test_a_small_pole_off_the_real_axis_is_shown_where_it_lies() -> None:
+    """R(mu) = 1 + mu + mu^2/2 of the midpoint rule is zero at -1 + i, with the slope i."""
+    (pole,) = _meeting_poles(pencil_of(lookup("RK2")), 1e-4, np.array([-1 + 1j + 1e-4]))
+    assert pole == pytest.approx(1e-4j + 0.5e-8, rel=1e-9)

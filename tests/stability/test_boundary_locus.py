@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.polynomial.polynomial import polyval2d
@@ -43,6 +45,16 @@ def test_nothing_on_an_arc_is_further_than_its_furthest(name: str) -> None:
         for direction in ([1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.3, -1.0]):
             along = arc.coordinate(theta, np.array(direction)).max()
             assert along - 1e-12 < arc.furthest(np.array(direction)) < along + 1e-5
+
+
+@pytest.mark.parametrize(("name", "direction"), [("B4", (0.0, 1.0)), ("AB3", (1.0, 0.0))])
+def test_an_arc_turns_where_it_does_however_its_samples_lie(name: str, direction: tuple[float, float]) -> None:
+    (arc,) = arcs(name, 1.0)
+    (turn,) = arc.turns(np.array(direction))
+    theta = np.array([arc.theta[0], turn - 0.006, turn + 0.005, turn + 0.1, arc.theta[-1]])  # nearly at a bracket's end
+    few = replace(arc, theta=theta, mu=arc.at(theta))
+    # where it turns it is flat: to the root of rounding
+    assert few.turns(np.array(direction)) == pytest.approx([turn], abs=1e-7)
 
 
 def test_the_interval_of_a_bezier_method_ends_at_zero_and_at_minus_one() -> None:

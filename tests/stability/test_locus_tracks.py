@@ -39,7 +39,8 @@ def test_a_far_interval_reaches_furthest(level: float) -> None:
 def test_every_branch_solves_pi_between_its_samples(name: str) -> None:
     pencil = pencil_of(lookup(name))
     for track in tracks(pencil, 0.9, finer=1):
-        theta = (track.theta[1:] + track.theta[:-1]) / 2
+        shares = np.array([[0.25], [0.5], [0.75]])  # of the way: nearest is the left sample, or the right
+        theta = (track.theta[:-1] + shares * np.diff(track.theta)).ravel()
         mu = track.at(theta)
         size = polyval2d(np.full(theta.shape, 0.9), np.abs(mu), np.abs(pencil.table))
         assert (np.abs(polyval2d(0.9 * np.exp(1j * theta), mu, pencil.table)) < 1e-12 * size).all()

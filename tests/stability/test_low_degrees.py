@@ -1,4 +1,5 @@
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -41,3 +42,14 @@ def test_a_polynomial_at_both_roots_of_a_quadratic(coefficients: list[float], mi
     for sign in (1, -1):
         expected = np.polyval(coefficients[::-1], middle + sign * root)
         assert abs(value[0] + sign * factor[0] * root - expected) < 1e-10  # sums of terms up to 2 * 4^6
+
+
+@pytest.mark.parametrize(
+    ("alone", "half", "last"), [(1234567.8, 3.3, 101.7), (-1.7e-6, 3.3, 101.7), (271828.1, 1.1e-3, 1.3e-5)]
+)
+def test_a_root_far_from_the_others_leaves_them_their_digits(alone: float, half: float, last: float) -> None:
+    """The quadratic is divided out from the end at which nothing cancels."""
+    b, c, d = 2 * half - alone, last - 2 * half * alone, -last * alone
+    z, found_half, found_last = cubic_parts(np.array([b]), np.array([c]), np.array([d]))
+    product = np.polymul([1, -z[0]], [1, 2 * found_half[0], found_last[0]])
+    assert product == pytest.approx([1, b, c, d], rel=1e-14)

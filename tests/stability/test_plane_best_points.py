@@ -75,6 +75,15 @@ def test_what_has_a_best_point_falls_towards_nothing() -> None:
     assert falls_towards(lookup("trapezoid")) is None
 
 
+def test_far_out_it_falls_towards_more_than_its_best_point_has() -> None:
+    method = lookup("generalized-alpha")
+    best = best_point(method)
+    assert best
+    assert falls_towards(method) is None
+    angle = np.linspace(0, np.pi / 2, 201)
+    assert spectral_radius(method, 1e6 * np.cos(angle), 1e6 * np.sin(angle)).min() > best.z_abs
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["predicted", "old", "kdk", "implicit", "half"])
 def test_no_point_of_a_fine_grid_is_better(name: str) -> None:

@@ -8,7 +8,7 @@ from bezstab.errors import NumericalError
 from bezstab.methods import plane_strips
 from bezstab.rationals import exact
 from bezstab.stability.plane_cells import Edges, PlaneShape, plane_shape
-from bezstab.stability.plane_checks import check_plane, contained, proven
+from bezstab.stability.plane_checks import _check_curve, check_plane, contained, proven
 from bezstab.stability.plane_pencils import PlanePencil, plane_pencil_of
 from tests.reference.second_order_methods import second_order
 
@@ -63,3 +63,13 @@ def test_points_lie_in_cells_as_schur_proves() -> None:
     inside, _ = contained(edges, shape, alpha_hat, beta_hat)
     expected = [proven(pencil.method, 0.5, a, b) for a, b in zip(alpha_hat, beta_hat, strict=True)]
     assert inside.tolist() == expected
+
+
+def test_an_edge_may_be_off_by_a_millionth_of_what_is_seen() -> None:
+    """The edges of the level 0.5 as those of a level beside it: they move half as far as the level."""
+    pencil, edges, shape = found("predicted", 0.5)
+    seen = shape.view[0][1] - shape.view[0][0]
+    assert seen < 0.1
+    _check_curve(pencil, 0.5 + 1e-6 * seen, edges, shape)
+    with pytest.raises(NumericalError, match="no edge"):
+        _check_curve(pencil, 0.5 + 1e-5 * seen, edges, shape)

@@ -1,3 +1,4 @@
+from fractions import Fraction
 from math import atan, inf, pi, sin, sqrt
 
 import numpy as np
@@ -8,6 +9,7 @@ from hypothesis import strategies as st
 from bezstab.methods import LinearMultistep, Method, RungeKutta, lookup
 from bezstab.rationals import rational
 from bezstab.stability import Extent, FloatArray, Region, region, spectral_radius, verdict, window
+from bezstab.stability.regions import _closed_curves
 from tests.methods.kinds import EXPLICIT, FEW, SOLVED, sampled
 from tests.reference.companion_poles import eigenvalues, polynomial_at, radius
 from tests.reference.enclosed_points import enclosed
@@ -558,3 +560,22 @@ def test_an_implicit_stage_that_is_not_used_changes_nothing() -> None:
     shape, plain = region(unused), region(lookup("implicit-midpoint"))
     assert found_extent(shape) == found_extent(plain)
     assert [len(curve) for curve in shape.boundary] == [len(curve) for curve in plain.boundary]
+
+
+def test_a_shared_root_just_inside_the_circle_leaves_the_region_as_it_is() -> None:
+    """rho and sigma of explicit Euler, both times z - r with r = 1 - 1e-11: that pole decays, however slowly."""
+    root = 1 - Fraction(1, 10**11)
+    with_the_root = multistep("slow", f"1 {-1 - root} {root}", f"0 1 {-root}")
+    assert region(with_the_root).area == pytest.approx(region(lookup("RK1")).area, rel=1e-12)
+    (fixed,) = region(with_the_root).fixed_poles
+    assert fixed == pytest.approx(complex(root), rel=1e-14)
+
+
+def test_edges_given_either_way_round_are_joined_into_one_closed_curve() -> None:
+    corners = np.array([[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [0.0, 1.0]])
+    sides = [np.linspace(corners[k], corners[(k + 1) % 4], 9) for k in range(4)]
+    for turned in range(16):
+        edges = [side[::-1] if turned >> k & 1 else side for k, side in enumerate(sides)]
+        (curve,) = _closed_curves(edges)
+        x, y = curve.T
+        assert abs(np.sum(x[:-1] * y[1:] - x[1:] * y[:-1])) == pytest.approx(6, rel=1e-14)  # twice the area

@@ -14,7 +14,7 @@ from bezstab.stability.boundary_locus import Arc, Bounds, bounds_of
 from bezstab.stability.line_slices import rim_radius
 from bezstab.stability.locus_tracks import Track, tracks
 from bezstab.stability.pencils import Pencil
-from bezstab.stability.self_checks import check_region, proven_inside
+from bezstab.stability.self_checks import _check_lengths, check_region, proven_inside
 from tests.reference.region_areas import region_area
 from tests.stability.made_methods import CLOSE_BRANCHES, FAR_INTERVAL
 
@@ -172,3 +172,13 @@ def test_an_unbounded_region_without_an_arc_is_no_answer(method: Method, monkeyp
 
 def test_where_a_pole_is_infinite_nothing_is_inside() -> None:
     assert not proven_inside(pencil_of(lookup("implicit-euler")), 1.0, Fraction(-2), Fraction(1))
+
+
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
+def test_lengths_may_be_off_by_a_share_of_the_longest(size: float) -> None:
+    q = np.linspace(0, 1, 9)
+    expected = size * (1 + q)
+    pencil, error = pencil_of(lookup("B4")), 1e-3
+    _check_lengths(pencil, 1.0, q, expected, expected + 0.9 * error * expected.max(), "curves", error)
+    with pytest.raises(NumericalError, match="the curves"):
+        _check_lengths(pencil, 1.0, q, expected, expected + 1.1 * error * expected.max(), "curves", error)
