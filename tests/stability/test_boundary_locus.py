@@ -168,3 +168,12 @@ def test_a_bounded_set_of_an_implicit_method_does_not_reach_its_rim() -> None:
     bounds = bounds_of(pencil, 1.0, 1, rim_radius(pencil, 1.0))
     assert bounds.bounded
     assert np.array(bounds.intervals) == pytest.approx(np.array([(-6, 0)]), abs=1e-12)
+
+
+def test_where_the_modulus_touches_the_level_an_interval_ends() -> None:
+    """Chebyshev's R(mu) = T_3(1 + mu/9) touches -1 at mu = -4.5 and 1 at -13.5, inside (-18, 0)."""
+    chebyshev = runge_kutta("chebyshev", "1/27;0 4/27", "0 0 1")
+    intervals = bounds_of(pencil_of(chebyshev), 1.0).intervals
+    assert (intervals[0][0], intervals[-1][1]) == pytest.approx((-18, 0), abs=1e-12)
+    for touched in (-4.5, -13.5):  # double roots: known to the root of rounding
+        assert not any(start + 1e-6 < touched < end - 1e-6 for start, end in intervals)

@@ -6,7 +6,7 @@ from numpy.polynomial.polynomial import polyroots, polysub, polyval2d
 
 from bezstab.methods import Method, lookup
 from bezstab.stability import pencil_of, region
-from bezstab.stability.locus_tracks import sampled_angles, tracks
+from bezstab.stability.locus_tracks import STEP_SHARE, sampled_angles, tracks
 from tests.reference.slice_integral import slice_area
 from tests.stability.made_methods import CLOSE_BRANCHES, FAR_INTERVAL
 
@@ -63,3 +63,12 @@ def test_a_finer_sampling_has_shorter_steps_throughout() -> None:
     coarse, fine = (sampled_angles(pencil_of(CLOSE_BRANCHES), 0.93, finer) for finer in (1, 2))
     assert len(fine) > 1.5 * len(coarse)
     assert np.diff(fine).max() < 0.6 * np.diff(coarse).max()
+
+
+def test_steps_are_a_share_of_the_distance_to_the_nearest_branch_point() -> None:
+    pencil = pencil_of(CLOSE_BRANCHES)
+    theta = sampled_angles(pencil, 0.93, finer=1)
+    z = 0.93 * np.exp(1j * theta)
+    distance = np.abs(z[:, np.newaxis] - pencil.branch_points_in_z).min(axis=1)
+    step = 0.93 * np.diff(theta)
+    assert (step <= STEP_SHARE * np.minimum(distance[1:], distance[:-1])).all()
