@@ -3,7 +3,7 @@ import pytest
 
 from bezstab.methods import Method, lookup, recipe
 from bezstab.stability import best_point, choose, falls_towards, region, spectral_radius
-from bezstab.stability.plane_best_points import critical_point
+from bezstab.stability.plane_best_points import _axis, critical_point
 from bezstab.stability.plane_pencils import plane_pencil_of
 from tests.reference.second_order_methods import as_second_order, companion_poles, newmark, second_order
 
@@ -113,3 +113,9 @@ def test_a_pole_that_nothing_moves_stays_and_hides_nothing() -> None:
     assert region(method, 0.6).area == pytest.approx(region(lookup("SYM"), 0.6).area)
     assert region(method, 0.4).extent is None
     assert choose(method, "fastest").alpha_hat == pytest.approx(1)
+
+
+def test_where_least_values_lie_a_grid_has_no_wide_gaps_however_far_it_goes() -> None:
+    axis = _axis(1e4, 121)
+    assert axis[-1] == pytest.approx(1e4)
+    assert np.diff(axis[axis <= 8]).max() < 0.11
