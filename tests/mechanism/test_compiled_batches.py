@@ -65,7 +65,8 @@ def assert_same(mechanism: Mechanism, method: Method, h: float = H) -> None:
 
 @pytest.mark.parametrize("name", QUICK)
 def test_each_kind_of_method_is_the_same_to_the_last_bit(name: str) -> None:
-    assert_same(compiled_mechanism(load_scene("pendulum")), lookup(name))
+    scene = "driven_slider_crank" if name == "SYM" else "pendulum"  # where the time matters, and where it does not
+    assert_same(compiled_mechanism(load_scene(scene)), lookup(name))
 
 
 @pytest.mark.slow
