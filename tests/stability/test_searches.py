@@ -124,3 +124,19 @@ def test_a_patient_search_walks_further_than_its_first_reach() -> None:
         patient=True,
     )
     assert found[0] == pytest.approx(7, abs=1e-6)
+
+
+def test_patience_costs_nothing_where_the_least_value_lies_well_inside_each_grid() -> None:
+    found = [
+        zoom_on_minimum(
+            lambda points: (points[..., 0] - 0.3) ** 2,
+            np.array([0.0]),
+            np.array([1.0]),
+            points=9,
+            shrink=0.5,
+            rounds=12,
+            patient=patient,
+        )[0]
+        for patient in (True, False)
+    ]
+    assert np.array_equal(*found)
