@@ -127,7 +127,7 @@ def test_a_patient_search_walks_further_than_its_first_reach() -> None:
 
 
 def test_patience_costs_nothing_where_the_least_value_lies_well_inside_each_grid() -> None:
-    found = [
+    patient, impatient = (
         zoom_on_minimum(
             lambda points: (points[..., 0] - 0.3) ** 2,
             np.array([0.0]),
@@ -135,8 +135,8 @@ def test_patience_costs_nothing_where_the_least_value_lies_well_inside_each_grid
             points=9,
             shrink=0.5,
             rounds=12,
-            patient=patient,
+            patient=each,
         )[0]
-        for patient in (True, False)
-    ]
-    assert np.array_equal(*found)
+        for each in (True, False)
+    )
+    assert np.array_equal(patient, impatient)
