@@ -1,6 +1,7 @@
 """A window on the plane: the region and |z_p| map, and beside them what the point under the mouse means."""
 
 from collections.abc import Callable, Sequence
+from shlex import quote
 
 import numpy as np
 from matplotlib.backend_bases import KeyEvent, MouseEvent
@@ -124,7 +125,8 @@ class Explorer:
             self._draw_map()
         elif event.key == "p":
             alpha_hat, beta_hat = self.point
-            self.print_line(f"--method {self.method.name} --alpha {alpha_hat!r} --beta {beta_hat!r}")
+            name = quote(self.method.name)  # newmark(1/4,1/2) means something else to a shell
+            self.print_line(f"--method {name} --alpha {alpha_hat!r} --beta {beta_hat!r}")
 
 
 def _cell_centres(interval: tuple[float, float]) -> FloatArray:
@@ -137,14 +139,16 @@ def _cell_centres(interval: tuple[float, float]) -> FloatArray:
 def kick_response(polynomial: FloatArray, steps: int) -> FloatArray:
     """Return c_0 = 1, c_1, ... of the linear recursion with this characteristic polynomial, shape (steps + 1,).
 
-    Coefficients in descending powers, the first of them 1; at rest before the kick.
+    Coefficients in descending powers, the first of them 1; at rest before the kick. Not finite from where it leaves the
+    range of float64.
     """
     degree = len(polynomial) - 1
     c = np.zeros(degree + steps + 1)  # with `degree` values of rest in front
     c[degree] = 1
-    for k in range(degree + 1, len(c)):
-        newest_first = c[k - 1 : k - degree - 1 : -1]
-        c[k] = -polynomial[1:] @ newest_first
+    with np.errstate(over="ignore", invalid="ignore"):
+        for k in range(degree + 1, len(c)):
+            newest_first = c[k - 1 : k - degree - 1 : -1]
+            c[k] = -polynomial[1:] @ newest_first
     return c[degree:]
 
 

@@ -53,6 +53,19 @@ def test_the_decay_is_the_linear_recursion() -> None:
     assert two == pytest.approx(5 * 0.5**k - 4 * 0.4**k)
 
 
+@pytest.mark.filterwarnings("error")
+def test_a_decay_that_grows_beyond_float64_ends_there_in_silence() -> None:
+    grown = kick_response(np.array([1.0, -1e5]), STEPS)
+    assert grown[:60] == pytest.approx(1e5 ** np.arange(60.0))
+    assert not np.isfinite(grown[-1])
+
+
+def test_what_is_printed_can_be_typed_into_a_shell() -> None:
+    _, canvas, printed = window("newmark(1/4,1/2)")
+    key(canvas, "p")
+    assert printed[0].startswith("--method 'newmark(1/4,1/2)' --alpha ")
+
+
 def test_a_click_proves() -> None:
     explorer, canvas, _ = window("SYM")
     mouse(explorer, canvas, "motion_notify_event", 1.0, 0.5)
