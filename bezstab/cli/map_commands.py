@@ -402,7 +402,7 @@ def _map_region(
             h,
             marks,
             {speed: each for (speed, _), each in moving.items()},
-            chosen=stability.choose(method, "robust") if best else None,
+            chosen=stability.choose(method, "robust", margins=False) if best else None,
             alpha_and_beta=alpha_beta,
         )
 

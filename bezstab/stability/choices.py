@@ -67,9 +67,9 @@ SEARCHED = 4.0  # alpha h and beta h: there e^-4, a fiftieth, is left after a st
 class Choice:
     """A point, its proven verdict and dominant pole, and the largest |z_p| when alpha and beta are off by the spread.
 
-    All dimensionless. `margins` is None unless the point is stable. `searched` is the largest alpha h and beta h (of
-    the method's step) that were looked at where the region goes on without end and a stronger feedback might be better
-    by the goal; None where all of the region was searched, or none of it.
+    All dimensionless. `margins` is None unless the point is stable and they were asked for. `searched` is the largest
+    alpha h and beta h (of the method's step) that were looked at where the region goes on without end and a stronger
+    feedback might be better by the goal; None where all of the region was searched, or none of it.
     """
 
     method: Method
@@ -92,7 +92,7 @@ class Choice:
 
         None if the point is unstable, or so near to it that rounding leaves no digits.
         """
-        if self.margins is None:
+        if self.verdict != "converges":
             return None
         if abs(self.pole) < DEADBEAT:
             return 2 * steps(self.method)
@@ -108,8 +108,9 @@ def choose(
     rate: float | None = None,
     equal: bool = False,
     modulus: Modulus | None = None,
+    margins: bool = True,
 ) -> Choice:
-    """Return the point that a goal asks for, dimensionless and proven stable.
+    """Return the point that a goal asks for, dimensionless and proven stable; without `margins` in less time.
 
     fastest: the smallest |z_p|. critical: the fastest dominant pole that is double, real and positive, on the way from
     small parameters on, before another pole overtakes it. robust: the fastest at worst over every smaller step at the
@@ -153,7 +154,7 @@ def choose(
         point, cut = (best.alpha_hat, best.beta_hat), False
     else:  # on a line, or where |z_p| falls on as the feedback grows, or for a mechanism that moves
         point = _checked_least(pencil, box, _throughout(modulus), equal, cut)
-    choice = describe_point(method, goal, exact(point[0]), exact(point[1]), spread)
+    choice = describe_point(method, goal, exact(point[0]), exact(point[1]), spread, margins)
     if choice.verdict != "converges":
         raise NumericalError(f"{method.name}: the point {point} found for {goal} is not stable")
     return replace(choice, searched=SEARCHED) if cut else choice
@@ -213,11 +214,19 @@ def choose_at_step(
     return replace(describe_point(method, goal, alpha_hat, beta_hat, spread), searched=choice.searched)
 
 
-def describe_point(method: Method, goal: str, alpha_hat: Fraction, beta_hat: Fraction, spread: float = 0.1) -> Choice:
+def describe_point(
+    method: Method,
+    goal: str,
+    alpha_hat: Fraction,
+    beta_hat: Fraction,
+    spread: float = 0.1,
+    margins: bool = True,
+) -> Choice:
     """Return what there is to say of an exact, dimensionless point; `goal` is only kept.
 
-    `spread` is the share by which alpha and beta may be off. NumericalError if a pole (a root of paper Eq. 17) leaves
-    the range of float64; InputError for a spread outside 0 to 1.
+    `spread` is the share by which alpha and beta may be off; `margins`: whether those are found and proven.
+    NumericalError if a pole (a root of paper Eq. 17) leaves the range of float64; InputError for a spread outside 0
+    to 1.
     """
     _check_spread(spread)
     pencil = any_pencil_of(method)
@@ -233,7 +242,7 @@ def describe_point(method: Method, goal: str, alpha_hat: Fraction, beta_hat: Fra
         verdict=proven,
         pole=complex(largest_pole(pencil, a, b)),
         worst=float(largest_modulus(pencil, near_a.ravel(), near_b.ravel()).max()),
-        margins=stability_margins(method, alpha_hat, beta_hat) if proven == "converges" else None,
+        margins=stability_margins(method, alpha_hat, beta_hat) if margins and proven == "converges" else None,
     )
 
 

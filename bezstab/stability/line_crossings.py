@@ -3,9 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.stability.arrays import FloatArray
+from bezstab.stability.arrays import EPS, FloatArray
 from bezstab.stability.boundary_locus import Arc
 
+ROUNDINGS = 2  # of the arc's furthest point: nearer than that a crossing is on its line
 FALSE_POSITIONS = 10  # from 1/400 of an arc: the sixth is exact to rounding but where the line nearly touches it
 
 IntArray = NDArray[np.int_]
@@ -28,16 +29,22 @@ def arc_crossings(arc: Arc, beta_hat: FloatArray, to_user: FloatArray) -> tuple[
     Between two neighbouring turns or samples beta_hat is monotonic, so each crossing is bracketed. Illinois: the value
     of an end that stays twice is halved, lest it stay for ever (M. Dowell & P. Jarratt, BIT 11, 1971).
     """
-    theta = np.sort(np.append(arc.theta, arc.turns(to_user[1])))
-    values = arc.coordinate(theta, to_user[1])
+    turns = arc.turns(to_user[1])
+    theta = np.append(arc.theta, turns)
+    order = np.argsort(theta)
+    theta = theta[order]
+    values = np.append(arc.plane() @ to_user[1], arc.coordinate(turns, to_user[1]))[order]
     rows, step = crossed_levels(beta_hat, values)
     low, high, target = theta[step], theta[step + 1], beta_hat[rows]
     below, above = values[step] - target, values[step + 1] - target
     beyond = np.full(len(rows), False)
     middle = low
+    rounding = ROUNDINGS * EPS * np.abs(values).max()
     for k in range(FALSE_POSITIONS):
         middle = low - below * (high - low) / (above - below)
         off = arc.coordinate(middle, to_user[1]) - target
+        if (np.abs(off) <= rounding).all():
+            break
         last = beyond
         beyond = np.sign(off) == np.sign(above)
         stays = np.where(last == beyond, 0.5 if k else 1.0, 1.0)
