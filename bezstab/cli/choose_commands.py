@@ -340,6 +340,7 @@ ENGINES_LISTED = [
     column("units", "units"),
     column("for this point", "setting"),
     Column("rests on", lambda row: "a run" if row["witness"] else "its source"),
+    column("source", "source"),
     column("left out", "excludes"),
 ]
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from bezstab.cli.options import format_option
-from bezstab.cli.output import progress, show_rows
+from bezstab.cli.output import for_reading, progress, show_rows, show_text
 from bezstab.show import Column, Format, Row, column, formatted
 
 
@@ -39,10 +39,11 @@ def lint(context: click.Context, model: Path, form: Format) -> None:
     MODEL is MuJoCo's XML; MuJoCo also opens what it includes, its meshes, textures and height fields, and nothing is
     simulated. A row for each equality, limit, friction loss, pair of contact parameters, spring, damper and drive: its
     point, the method that MuJoCo's integrator is there, and the line to write where it is unsafe, relies on refsafe or
-    is needlessly soft. Of the points that solimp makes of one setting the one with the largest |z| is shown. "stable
-    for h times" is up to which multiple of the time step it stays stable at the same physical parameters. The last row
-    is of all equalities, springs and drives together, which may be unsafe where each alone is not. Needs mujoco 3.7 or
-    later, since when connect and weld have the term of turning normals.
+    is needlessly soft; "not judged", and why, where no one point stands for an element. Of the points that solimp makes
+    of one setting the one with the largest |z| is shown. "stable for h times" is up to which multiple of the time step
+    it stays stable at the same physical parameters. The last row is of all equalities, springs and drives together,
+    which may be unsafe where each alone is not. Needs mujoco 3.7 or later, since when connect and weld have the term of
+    turning normals.
 
     Example: bezstab lint robot.xml
     """
@@ -52,5 +53,10 @@ def lint(context: click.Context, model: Path, form: Format) -> None:
     model_data = read_mujoco_model(model)
     linted = list(progress(linted_model(model_data), "lint", model_data.size))
     heading = f"{model.name}: timestep {model_data.h:g} s, integrator {model_data.integrator}"
-    show_rows([linted_row(each) for each in linted], LINTED, form, heading)
+    if linted or not for_reading(form):
+        show_rows([linted_row(each) for each in linted], LINTED, form, heading)
+    else:
+        show_text(
+            f"{heading}\n\nNothing to judge: no equality, limit, friction loss, contact, spring, damper or drive."
+        )
     context.exit(1 if any(each.unsafe for each in linted) else 0)

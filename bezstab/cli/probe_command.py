@@ -1,6 +1,7 @@
 """The command that tells from a log which integrator and which feedback made it: probe."""
 
 import sys
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -19,8 +20,7 @@ from bezstab.cli.options import (
     left_at_default,
     physical_option,
 )
-from bezstab.cli.output import for_reading, show_rows
-from bezstab.cli.terminal import output_encoding, spelled
+from bezstab.cli.output import for_reading, show_rows, show_text
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import REGISTRY, Method, lookup
 from bezstab.rationals import rational
@@ -36,6 +36,9 @@ SAME_STEP = 1e-3
 
 NAMED = 3
 """Excluded methods that a sentence names; of more it gives the number and the nearest."""
+
+EXCLUDED_SHOWN = 5
+"""Methods that do not fit and are shown where people read, the nearest; rows for programs have all."""
 
 FASTER = 10.0
 """Times what is allowed for: so much faster a mechanism may turn than somebody guessed."""
@@ -66,7 +69,6 @@ LIKENESSES: Sequence[Column] = (
     column("distance", "distance", ".1e"),
     column("allowed", "allowed", ".1e"),
     yes_no_column("fits", "fits"),
-    column("the same there", "same_as"),
 )
 
 
@@ -138,8 +140,9 @@ def probe(
     """Tell from a simulator's log which integrator made it.
 
     LOG is a CSV file, or - for standard input, with a row for each step from the kick on. Prints the pole with which
-    each column's error decays; with --alpha and --beta how far it is from every method's, the nearest first; without
-    them, the α and β that it means under --method. What cannot be told is said, with exit status 3.
+    each column's error decays; with --alpha and --beta how far it is from every method's, the nearest first (of those
+    that do not fit a few; JSON and CSV have all); without them, the α and β that it means under --method. What cannot
+    be told is said, with exit status 3.
 
     Example: bezstab probe log.csv --minus unkicked.csv --alpha 1 --beta 0.25
     """
@@ -238,14 +241,25 @@ def _show(answers: Answers, form: Format, in_seconds: bool) -> None:
         return
     show_rows(answers.fits, FITS, form)
     for rows, columns in (
-        (answers.likenesses, LIKENESSES),
+        (_nearest(answers.likenesses), LIKENESSES),
         (answers.points, [*POINTS, *(POINTS_IN_SECONDS if in_seconds else ())]),
     ):
         if rows:
             click.echo()
             show_rows(rows, columns, form)
     for sentence in answers.sentences:
-        click.echo(f"\n{spelled(sentence, output_encoding())}")
+        show_text(f"\n{sentence}")
+
+
+def _nearest(likenesses: Sequence[Row]) -> list[Row]:
+    """Return of each column's methods, the nearest first, those that fit and a few that do not."""
+    shown: list[Row] = []
+    excluded: Counter[object] = Counter()
+    for row in likenesses:
+        excluded[row["column"]] += not row["fits"]
+        if row["fits"] or excluded[row["column"]] <= EXCLUDED_SHOWN:
+            shown.append(row)
+    return shown
 
 
 def likeness_sentence(like: "Sequence[Likeness]", point: tuple[Fraction, Fraction]) -> str:

@@ -49,7 +49,11 @@ def test_what_is_unsafe_ends_with_status_one(tmp_path: Path) -> None:
 
 
 def test_a_model_with_nothing_to_judge_is_safe(tmp_path: Path) -> None:
-    assert rows("lint", written(tmp_path / "empty.xml", "<mujoco/>")) == []
+    model = written(tmp_path / "empty.xml", "<mujoco/>")
+    assert rows("lint", model) == []
+    result = run("lint", model)
+    assert result.exit_code == 0
+    assert "Nothing to judge" in result.stdout
 
 
 def test_what_cannot_be_read_ends_with_status_two(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

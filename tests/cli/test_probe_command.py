@@ -81,6 +81,15 @@ def test_a_sentence_says_what_it_behaves_like_and_what_is_excluded() -> None:
     assert said.startswith("c: nothing fits at (0.5, 0.25): the nearest is ")
 
 
+def test_of_what_does_not_fit_people_see_the_nearest_and_programs_all() -> None:
+    write("log.csv", c=response("SYM", 0.5, 0.25))
+    command = "probe log.csv --alpha 0.5 --beta 0.25"
+    table = run(*command.split()).stdout
+    assert len(re.findall(r"yes$", table, re.MULTILINE)) == 2  # verlet-half has the same poles
+    assert len(re.findall(r"NO$", table, re.MULTILINE)) == 5
+    assert len(rows(*command.split())) == 1 + len(REGISTRY)
+
+
 def test_every_format_has_all_rows() -> None:
     write("log.csv", c=response("SYM", 0.5, 0.25))
     command = "probe log.csv --alpha 0.5 --beta 0.25 --method SYM --method B4 --format"
