@@ -28,7 +28,8 @@ def moving_scene_option(help_text: str) -> Decorator:
 def turning_of(scene: str | None, speed: Fraction, h: Fraction | None) -> "TurningNormals | None":
     """Return how the normals of the scene's constraints turn; None without a scene.
 
-    UsageError for a scene without a step (h in s), or a speed without a scene; InputError as `load_scene` and `motion`.
+    UsageError for a scene without a step (h in s), or a speed without a scene; else errors as `load_scene` and
+    `regular_motion`.
     """
     if scene is None:
         if speed != 1:
@@ -36,9 +37,11 @@ def turning_of(scene: str | None, speed: Fraction, h: Fraction | None) -> "Turni
         return None
     if h is None:
         raise click.UsageError("--scene needs --h: how far the mechanism moves in a step depends on it")
-    from bezstab.mechanism import at_speed, compiled_mechanism, load_scene, turning_normals
+    from bezstab.mechanism import at_speed, compiled_mechanism, load_scene, regular_motion, turning_normals
 
-    return turning_normals(compiled_mechanism(at_speed(load_scene(scene), float(speed))), RUN)
+    mechanism = compiled_mechanism(at_speed(load_scene(scene), float(speed)))
+    regular_motion(mechanism, RUN)
+    return turning_normals(mechanism, RUN)
 
 
 def moving_rows(

@@ -45,7 +45,7 @@ from bezstab.mechanism import (
     acceleration_jacobians,
     constraint_jacobian,
     memory,
-    motion,
+    regular_motion,
     turn,
 )
 from bezstab.methods import Evaluation, Method, Quantity, SecondOrder, second_order_form
@@ -70,7 +70,8 @@ def floquet_rates(
     """Return |z| per step of the method over the motion at each of a row of points; shape (points,), dimensionless.
 
     h (s) is the user's step; over a revolution it is taken so that a whole number of steps fills it, at most half a
-    step in all from h. A motion that is no revolution lasts `duration` (s). InputError and NumericalError as `motion`.
+    step in all from h. A motion that is no revolution lasts `duration` (s). InputError and NumericalError as
+    `regular_motion`.
     """
     course = _course(mechanism, method, h, duration)
     gains = np.array(feedback_gains(alpha_hat, beta_hat, course.step / float(method.step_multiple)))
@@ -138,8 +139,8 @@ class _Course:
 
 
 def _course(mechanism: Mechanism, method: Method, h: float, duration: float) -> _Course:
-    """Return the course of a method with steps of about h (s) of the user's; errors as `motion`."""
-    along = motion(mechanism, duration)
+    """Return the course of a method with steps of about h (s) of the user's; errors as `regular_motion`."""
+    along = regular_motion(mechanism, duration)
     steps = max(1, round(along.duration / (h * float(method.step_multiple))))
     step = along.duration / steps
     scheme = second_order_form(method.scheme)

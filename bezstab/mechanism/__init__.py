@@ -44,7 +44,7 @@ from bezstab.mechanism.energies import EnergyBalance, energy_balance
 from bezstab.mechanism.equations import Equations, T, equations_of_motion
 from bezstab.mechanism.generated_code import compiled_source
 from bezstab.mechanism.linearized import acceleration_jacobians
-from bezstab.mechanism.motions import Motion, motion
+from bezstab.mechanism.motions import Motion, motion, regular_motion
 from bezstab.mechanism.observation import Observation, observe, singular_passages
 from bezstab.mechanism.runner import (
     Start,
@@ -127,6 +127,7 @@ __all__ = [
     "parse_scene",
     "perturbed_state",
     "read_scene",
+    "regular_motion",
     "resume",
     "resume_in_groups",
     "runs_compiled",

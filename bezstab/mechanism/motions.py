@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from bezstab.errors import InputError, NumericalError
 from bezstab.mechanism.compiled import Mechanism, acceleration_function
 from bezstab.mechanism.observation import observe, singular_passages
-from bezstab.mechanism.runner import Trajectory, simulate
+from bezstab.mechanism.runner import simulate
 from bezstab.mechanism.scenes import Driver
 from bezstab.methods import lookup
 
@@ -68,7 +68,7 @@ def motion(mechanism: Mechanism, duration: float) -> Motion:
     """Return the motion from the scene's start: one revolution if a driver turns steadily, else over `duration` (s).
 
     InputError for a driven scene that is not where it began after a revolution; NumericalError if the run that provides
-    the motion breaks down, or goes through a singular configuration, where constraints turn without bound.
+    the motion breaks down.
     """
     period = _period(mechanism)
     span = duration if period is None else period
@@ -76,12 +76,26 @@ def motion(mechanism: Mechanism, duration: float) -> Motion:
     run = simulate(mechanism, lookup("RK4"), step, span, FREE)
     if run.failure:
         raise NumericalError(f"the motion of {mechanism.scene.name} breaks down {run.failure}")
-    _check_regular(mechanism, run)
     if period is not None:
         _check_closed(mechanism, run.q[0], run.q[-1], period)
     q, v = np.ascontiguousarray(run.q.T), np.ascontiguousarray(run.v.T)
     a = np.stack(np.broadcast_arrays(*acceleration_function(mechanism, np)(run.t, *FREE, q, v)), axis=-1)
     return Motion(run.t, run.q, run.v, a, closed=period is not None)
+
+
+def regular_motion(mechanism: Mechanism, duration: float) -> Motion:
+    """Return the same motion; NumericalError, too, if it goes through a singular configuration.
+
+    There the directions of constraints turn without bound, and no rate along the motion means anything.
+    """
+    along = motion(mechanism, duration)
+    passages = singular_passages(observe(mechanism, along.t, along.q, along.v, *FREE).pivots)
+    if passages.size:
+        raise NumericalError(
+            f"the motion of {mechanism.scene.name} goes through a singular configuration at t = "
+            f"{along.t[passages[0]]:.4g} s: there the directions of its constraints turn without bound"
+        )
+    return along
 
 
 def _period(mechanism: Mechanism) -> float | None:
@@ -92,16 +106,6 @@ def _period(mechanism: Mechanism) -> float | None:
     if len(rates) != 1 or not steady or rates == {0.0}:
         return None
     return float(2 * np.pi / rates.pop())
-
-
-def _check_regular(mechanism: Mechanism, run: Trajectory) -> None:
-    """Raise NumericalError if a run without feedback goes through a singular configuration."""
-    passages = singular_passages(observe(mechanism, run.t, run.q, run.v, *FREE).pivots)
-    if passages.size:
-        raise NumericalError(
-            f"the motion of {mechanism.scene.name} goes through a singular configuration at t = "
-            f"{run.t[passages[0]]:.4g} s: there the directions of its constraints turn without bound"
-        )
 
 
 def _check_closed(mechanism: Mechanism, start: FloatArray, end: FloatArray, period: float) -> None:
