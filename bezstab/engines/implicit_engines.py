@@ -62,7 +62,7 @@ PHYSX_DRIVE = Engine(
     units=("1/s^2", "1/s"),
     read=_read_physx,
     write=_write_physx,
-    source="PhysX source, DyCpuGpuArticulation.h (computeImplicitDriveParamsAccelerationDrive)",
+    source="PhysX source, DyCpuGpuArticulation.h, computeImplicitDriveParams (AccelerationDrive)",
     excludes="the inertia, by which both are divided in force drives (see --pd); force limits; h is TGS's substep",
 )
 

@@ -267,7 +267,7 @@ RAPIER = Engine(
     read=_read_rapier,
     write=_write_rapier,
     marks=(("Rapier joints: 1e6 Hz, 1", _rapier_default),),
-    source="Rapier source, integration_parameters.rs; joint_velocity_constraint.rs; staged_island_solver/solve.rs",
+    source="Rapier source, integration_parameters.rs, solve.rs in staged_island_solver, joint_velocity_constraint.rs",
     excludes="h is the substep's, dt / num_solver_iterations; limits' largest corrective speed; warmstart_joints",
 )
 

@@ -3,7 +3,7 @@
 golden/outputs.json holds exit status, rows and written files of each command, without processor times, which no two
 runs share. Changed since, on purpose: the row on Eq. 23, of which the paper prints five entries, not six; the source of
 SIE, which says what it is not; engines, of which there are more, with what they do to their values applied by check and
-left out of the line that choose prints.
+left out of the line that choose prints, and two of their sources, whose words were wider than a narrow terminal.
 """
 
 import json
