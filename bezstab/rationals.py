@@ -1,8 +1,9 @@
 """Exact numbers: what a text or a float says, as a rational, within the range of float64; exact bisection."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from fractions import Fraction
+from math import lcm
 
 from bezstab.errors import InputError
 
@@ -42,6 +43,12 @@ def within_float64(value: Fraction, name: str) -> Fraction:
     if value != 0 and not SMALLEST < abs(value) < LARGEST:
         raise InputError(f"{name} is outside the range of float64 (1e-307 to 1e308)")
     return value
+
+
+def whole_multiples(numbers: Sequence[Fraction]) -> tuple[list[int], int]:
+    """Return the least multiples of rational numbers that are whole, and the factor: their products are fast."""
+    scale = lcm(*(number.denominator for number in numbers))
+    return [number.numerator * (scale // number.denominator) for number in numbers], scale
 
 
 def bisected_integers(holds: Callable[[int], bool], before: int, after: int) -> tuple[int, int]:

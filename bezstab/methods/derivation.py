@@ -6,7 +6,6 @@ mu^2 + alpha_hat mu + beta_hat = 0. Eliminating mu from the two by a resultant g
 
 from fractions import Fraction
 from functools import cache
-from math import lcm
 
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
@@ -23,6 +22,7 @@ from bezstab.methods.schemes import (
     RungeKutta,
 )
 from bezstab.methods.second_order import PlaneTable, SecondOrder
+from bezstab.rationals import whole_multiples
 
 Z, MU, ALPHA_HAT, BETA_HAT, S, H = sp.symbols("z mu alpha_hat beta_hat s h")
 
@@ -184,10 +184,12 @@ def closed_loop_at(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> l
     p = p_alpha * alpha_hat + p_beta * beta_hat
     q = q_alpha * alpha_hat + q_beta * beta_hat
     rows, scale_of_rows = _whole_rows(method)
-    powers, scale_of_powers = _whole([part for power in _reduced_powers(p, q, len(rows[0]) - 1) for part in power])
+    powers, scale_of_powers = whole_multiples(
+        [part for power in _reduced_powers(p, q, len(rows[0]) - 1) for part in power]
+    )
     A = [sum(c * u for c, u in zip(row, powers[::2], strict=True)) for row in rows]
     B = [sum(c * v for c, v in zip(row, powers[1::2], strict=True)) for row in rows]
-    (on_AA, on_AB, on_BB), scale_of_feedback = _whole([ONE, -p, q])
+    (on_AA, on_AB, on_BB), scale_of_feedback = whole_multiples([ONE, -p, q])
     scale = scale_of_feedback * (scale_of_rows * scale_of_powers) ** 2
     terms = zip(_product(A, A), _product(A, B), _product(B, B), strict=True)
     return [Fraction(on_AA * aa + on_AB * ab + on_BB * bb, scale) for aa, ab, bb in terms]
@@ -198,14 +200,8 @@ def _whole_rows(method: Method) -> tuple[list[list[int]], int]:
     """Return a multiple of the coefficient table that is whole, its rows by descending powers of z, and the factor."""
     descending = coefficient_table(method)[::-1]
     width = len(descending[0])
-    whole, scale = _whole([c for row in descending for c in row])
+    whole, scale = whole_multiples([c for row in descending for c in row])
     return [whole[start : start + width] for start in range(0, len(whole), width)], scale
-
-
-def _whole(numbers: list[Fraction]) -> tuple[list[int], int]:
-    """Return multiples of rational numbers that are whole, and the factor: products of whole ones are fast."""
-    scale = lcm(*(number.denominator for number in numbers))
-    return [number.numerator * (scale // number.denominator) for number in numbers], scale
 
 
 def _reduced_powers(p: Fraction, q: Fraction, highest: int) -> list[tuple[Fraction, Fraction]]:

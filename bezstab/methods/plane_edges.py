@@ -25,7 +25,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 from itertools import combinations, pairwise
-from math import gcd, lcm
+from math import gcd
 
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
@@ -33,7 +33,7 @@ from sympy.polys.matrices import DomainMatrix
 from bezstab.methods.schemes import ONE, ZERO, Method
 from bezstab.methods.schur import is_schur
 from bezstab.methods.shared_factors import reduced_table
-from bezstab.rationals import bisected_integers
+from bezstab.rationals import bisected_integers, whole_multiples
 
 A, B = sp.symbols("alpha_hat beta_hat")
 RING = sp.QQ[A, B]
@@ -264,8 +264,7 @@ def _leading(curve: sp.Poly) -> sp.Poly:
 def _whole(polynomial: sp.Poly) -> tuple[int, ...]:
     """Return the coefficients, descending, as whole numbers without a common factor, the first positive."""
     fractions = [Fraction(int(c.p), int(c.q)) for c in polynomial.set_domain(sp.QQ).all_coeffs()]
-    scale = lcm(*(c.denominator for c in fractions))
-    whole = [int(c * scale) for c in fractions]
+    whole, _ = whole_multiples(fractions)
     shared = gcd(*whole) * (1 if whole[0] > 0 else -1)
     return tuple(c // shared for c in whole)
 

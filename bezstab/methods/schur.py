@@ -6,8 +6,10 @@ Polynomials are sequences of Fraction in descending powers of z.
 from collections.abc import Sequence
 from fractions import Fraction
 from itertools import zip_longest
-from math import gcd, lcm
+from math import gcd
 from typing import Literal
+
+from bezstab.rationals import whole_multiples
 
 Verdict = Literal["converges", "marginal", "diverges"]
 Polynomial = Sequence[Fraction]
@@ -48,8 +50,7 @@ def is_schur(polynomial: Polynomial) -> bool:
 
     A proof either way: whole numbers, whose last bits are dropped as long as their sum of errors decides nothing.
     """
-    scale = lcm(*(a.denominator for a in polynomial))
-    whole = [a.numerator * (scale // a.denominator) for a in polynomial]
+    whole, _ = whole_multiples(polynomial)
     while len(whole) > 1 and whole[0] == 0:
         del whole[0]
     decided = _whole_is_schur(whole, WORKING_BITS)

@@ -31,7 +31,7 @@ from bezstab.stability.pencils import Pencil, pencil_of, roots_in_z
 from bezstab.stability.plane_pencils import PlanePencil, largest_plane_root, plane_pencil_of, plane_roots
 from bezstab.stability.root_finding import CHUNK
 
-BLOCK = 8 * CHUNK  # points whose roots are followed in one go: enough to outweigh the calls for one in STRIDE
+BLOCK = 8 * CHUNK  # points whose roots are followed in one go: enough to outweigh the calls for their middles
 
 PROVEN = 64  # verdicts that are remembered: a margin's end is asked for when it is found, and when it is checked
 ORDINARY = 1e12  # of alpha_hat and beta_hat: their products, of degree 12 at most, are within float64

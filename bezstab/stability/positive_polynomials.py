@@ -14,6 +14,8 @@ from math import comb, lcm
 import numpy as np
 from numpy.typing import NDArray
 
+from bezstab.rationals import whole_multiples
+
 ExactArray = NDArray[np.object_]
 """An array of whole numbers of any size."""
 
@@ -57,8 +59,7 @@ def whole_rows(polynomials: Sequence[Sequence[Fraction]]) -> ExactArray:
     length = max(len(polynomial) for polynomial in polynomials)
     rows = np.zeros((len(polynomials), length), dtype=object)
     for row, polynomial in zip(rows, polynomials, strict=True):
-        scale = lcm(*(coefficient.denominator for coefficient in polynomial))
-        row[: len(polynomial)] = [int(coefficient * scale) for coefficient in polynomial]
+        row[: len(polynomial)], _ = whole_multiples(polynomial)
     return rows
 
 
