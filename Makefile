@@ -55,7 +55,7 @@ lint: .venv/tested  ## style, format and types
 bench: .venv/benched  ## speed, as ratios measured in one run, into figures/bench.md
 	$(BIN)/python tests/bench/bench.py
 
-campaign: .venv/tested  ## areas of 10,000 random methods against an independent integral, in hours
+campaign: .venv/tested  ## areas of 10,000 random methods against an independent integral, in half an hour to two
 	$(BIN)/python tests/stability/campaign.py
 
 clean:  ## remove the virtual environments

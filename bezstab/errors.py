@@ -25,8 +25,8 @@ class NumericalError(ArithmeticError):
     """
 
 
-def unknown_name(kind: str, name: str, known: Iterable[str]) -> InputError:
-    """Return the error of a name that is neither known nor a TOML file's.
+def unknown_name(kind: str, name: str, known: Iterable[str], file: str = "; or a .toml file") -> InputError:
+    """Return the error of a name that is neither known nor, unless `file` is empty, a TOML file's.
 
     It suggests the nearest, in any case, if that is like it: a method's name is no misspelt scene.
     """
@@ -34,4 +34,4 @@ def unknown_name(kind: str, name: str, known: Iterable[str]) -> InputError:
     near = difflib.get_close_matches(name.casefold(), by_folded_name, n=1)
     suggestion = f": did you mean {by_folded_name[near[0]]}?" if near else ""
     listed = ", ".join(by_folded_name.values())
-    return InputError(f"unknown {kind} {name!r}{suggestion} (names: {listed}; or a .toml file)")
+    return InputError(f"unknown {kind} {name!r}{suggestion} (names: {listed}{file})")

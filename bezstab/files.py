@@ -21,9 +21,10 @@ def read_toml(kind: str, path: Path, parse: Callable[[dict[str, Any]], Parsed]) 
     InputError, in one line with the kind and the path in front, for whatever the system, TOML or `parse` refuses.
     """
     try:
-        with path.open("rb") as file:
-            return parse(tomllib.load(file))
-    except (OSError, ValueError, RecursionError) as error:  # InputError and what tomllib raises are ValueErrors
+        return parse(tomllib.loads(path.read_bytes().decode("utf-8-sig")))  # some editors begin with a mark of UTF-8
+    except RecursionError:
+        raise InputError(f"{kind} {path}: brackets nested too deeply") from None
+    except (OSError, ValueError) as error:  # InputError and what tomllib raises are ValueErrors
         reason = error.strerror if isinstance(error, OSError) else error
         raise InputError(" ".join(f"{kind} {path}: {reason}".split())) from None
 

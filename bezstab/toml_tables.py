@@ -61,9 +61,9 @@ class TomlTable:
         """Return a number that is 0 or of size 1e-100 to 1e100."""
         return float(self.entry(key, is_number, f"a number, {SIZE}", default))
 
-    def positive_number(self, key: str) -> float:
-        """Return a number from 1e-100 to 1e100, which must be there."""
-        return float(self.entry(key, _is_positive, "a positive number, 1e-100 to 1e100"))
+    def positive_number(self, key: str, default: float | None = None) -> float:
+        """Return a number from 1e-100 to 1e100."""
+        return float(self.entry(key, _is_positive, "a positive number, 1e-100 to 1e100", default))
 
     def point(self, key: str, default: Point | None = None) -> Point:
         """Return a pair of numbers."""

@@ -66,6 +66,11 @@ def test_a_toml_file_is_parsed_and_named_when_refused(tmp_path: Path) -> None:
     assert str(caught.value) == f"thing {path}: b is odd"
 
 
+def test_a_toml_file_may_begin_with_the_mark_that_some_editors_write(tmp_path: Path) -> None:
+    (path := tmp_path / "a.toml").write_bytes(b"\xef\xbb\xbfb = 3\r\n")
+    assert read_toml("thing", path, lambda data: data["b"]) == 3
+
+
 def test_a_fault_of_the_program_is_not_called_the_users(tmp_path: Path) -> None:
     (path := tmp_path / "a.toml").touch()
     with pytest.raises(KeyError):

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from fractions import Fraction
+from functools import partial
 from typing import TYPE_CHECKING
 
 import click
@@ -31,7 +32,9 @@ from bezstab.cli.typed_points import (
     TypedPoint,
     as_typed_option,
     drive_option,
+    engine_holds,
     engine_keys,
+    engine_points,
     engine_values_option,
     methods_asked,
     say_if_units_were_mistaken,
@@ -43,11 +46,11 @@ from bezstab.cli.varying_steps import (
     hold_option,
     say_varying,
     step_range,
+    varying_answers,
     varying_columns,
-    varying_results,
     with_varying,
 )
-from bezstab.engines import ENGINES, Drive
+from bezstab.engines import ENGINES, Drive, Engine
 from bezstab.errors import InputError
 from bezstab.methods import Method
 from bezstab.show import (
@@ -55,6 +58,7 @@ from bezstab.show import (
     Column,
     Format,
     Row,
+    Value,
     column,
     formatted,
     growth_words,
@@ -78,11 +82,18 @@ def range_column(heading: str, low_key: str, high_key: str) -> Column:
     return Column(heading, text)
 
 
+def _step_limit(row: Row) -> Value:
+    """Return the largest stable step (s): of an engine's values where those were given, else of alpha and beta."""
+    of_engine = "engine_h_limit" in row and row["goal"] != "robust"
+    return row["engine_h_limit" if of_engine else "h_limit"]
+
+
 def _largest_step(row: Row) -> str:
     """Return the largest stable step; a stable point without one is stable at any."""
-    if row["h_limit"] is None and row["h"] is not None and row["verdict"] == "converges":
+    limit = _step_limit(row)
+    if limit is None and row["h"] is not None and row["verdict"] == "converges":
         return "unlimited"
-    return formatted(row["h_limit"], ".4g")
+    return formatted(limit, ".4g")
 
 
 def _searched(row: Row) -> str:
@@ -120,8 +131,9 @@ def choice_sentence(row: Row) -> str:
     """Return whether a point is safe, how fast errors shrink, and by how much h, α and β may grow, at rest."""
     if not row["safe"]:
         return f"{safety_words(row)}."
-    limit = row["h_limit"]
-    h = f"to {seconds_words(limit)}" if isinstance(limit, float) else growth_words(row["h_factor"])
+    limit = _step_limit(row)
+    factor = row["h_factor"] if row["h"] is None else None
+    h = f"to {seconds_words(limit)}" if isinstance(limit, float) else growth_words(factor)
     alpha, beta = growth_words(row["alpha_factor_max"]), growth_words(row["beta_factor_max"])
     margins = f"h may grow {h}, α {alpha}, β {beta}"
     return f"{safety_words(row)}; {'at rest ' if 'z_abs_moving' in row else ''}{margins}."
@@ -210,19 +222,28 @@ def choose(
         )
         row = choice_row(choice, float(h))
         if engine:
-            row["setting"] = ENGINES[engine].setting(_exact_point(choice), h)
+            row["setting"] = _setting(ENGINES[engine], _exact_point(choice), h)
         if drive:
             row |= drive_row(choice, drive, float(h))
         rows += moving_rows([row], [method], [(choice.alpha_hat, choice.beta_hat)], turning, h)
         chosen.append(_exact_point(choice))
-    varying = varying_results(steps, methods, chosen)
+    varying = varying_answers(steps, methods, chosen, scene, speed)
     rows = with_varying(rows, varying)
     more = [*moving_columns(turning), *varying_columns(steps)]
     more += [*([PASTE] if engine else []), *(DRIVE_COLUMNS if drive else [])]
     show_rows(rows, [*choice_columns(rows), *more], form, sentence=choice_sentence)
-    say_varying(methods, varying, form)
-    if any(each.varying != "proven" for each in varying):
+    say_varying(varying, form)
+    if any(answer.varying.varying != "proven" for answer in varying):
         click.get_current_context().exit(1)
+
+
+def _setting(engine: Engine, point: tuple[Fraction, Fraction], h: Fraction) -> str:
+    """Return what to paste for a choice; InputError that says what to ask where the engine has no such point."""
+    try:
+        return engine.setting(point, h)
+    except InputError as error:
+        values = f"{engine.name}={engine.words()}"
+        raise InputError(f"{error}: ask `check --engine {values}` about values of yours") from None
 
 
 @click.command()
@@ -265,7 +286,8 @@ def check(
     when they alternate: with --h-min and --h-max safe is what is proven for every sequence of steps in that range.
 
     With --engine the method is the engine's own unless given, and what the engine does to its values (clamps, scaling)
-    is applied first; what the conversion leaves out is said.
+    is applied first; what the conversion leaves out is said. How far the step may grow is asked of the engine's values,
+    and whether it is α and β or α̂ and β̂ that stay as steps vary.
 
     --pd kp,kd,inertia asks about a joint's drive, applied in four ways: explicit (SYM), implicit in velocity
     (imex-euler, as MuJoCo's implicitfast), as stable PD (stable-pd), fully implicit (implicit-euler, as PhysX). All
@@ -284,6 +306,8 @@ def check(
         h = h or h_max
     typed = typed_point(alpha, beta, h, physical, engine, drive, as_typed)
     methods = methods_asked(methods, typed.engine, drive)
+    if engine and h_min is not None and h is not None and not hold:
+        hold = engine_holds(engine, as_typed, h_min, h_max or h)
     steps = step_range(methods, h, h_min, h_max, hold)
     if alpha is not None and beta is not None and not physical:
         say_if_units_were_mistaken(methods, alpha, beta, h)
@@ -295,23 +319,29 @@ def check(
             stability.describe_point(method, label, *point) for label, point in (("as given", typed.point), *typed.also)
         ]
         choices.append(stability.choose(method, "robust"))
-    rows: list[Row] = [
-        {**choice_row(choice, step), **engine_keys(typed, choice.goal == "as given")} for choice in choices
-    ]
+    rows: list[Row] = []
+    for choice in choices:
+        given = choice.goal != "robust"
+        rows.append({**choice_row(choice, step), **engine_keys(typed, choice.goal == "as given")})
+        if engine and step is not None:
+            points_at = partial(engine_points, engine, as_typed)
+            stable = given and choice.verdict == "converges"
+            limit = stability.largest_stable_step(choice.method, points_at, step) if stable else None
+            rows[-1] = {**rows[-1], "engine_h_limit": limit}
     if drive and step is not None:
         rows = [{**row, **drive_row(choice, drive, step)} for row, choice in zip(rows, choices, strict=True)]
     points = [(choice.alpha_hat, choice.beta_hat) for choice in choices]
     rows = moving_rows(rows, [choice.method for choice in choices], points, turning, h)
     exact_points = _exact_points(typed, choices)
-    varying = varying_results(steps, [choice.method for choice in choices], exact_points)
+    varying = varying_answers(steps, [choice.method for choice in choices], exact_points, scene, speed)
     rows = with_varying(rows, varying)
     columns = [*choice_columns(rows), *moving_columns(turning), *varying_columns(steps)]
     columns += DRIVE_COLUMNS if drive else []
     asked = [row for row in rows if row["goal"] != "robust"]
     if for_reading(form):
         show_rows(asked, columns, form, sentence=choice_sentence)
-        judged = [(choice, each) for choice, each in zip(choices, varying, strict=False) if choice.goal != "robust"]
-        say_varying([choice.method for choice, _ in judged], [each for _, each in judged], form)
+        judged = [answer for choice, answer in zip(choices, varying, strict=False) if choice.goal != "robust"]
+        say_varying(judged, form)
         show_text("\nWhat `choose` gives instead:\n")
         show_rows([row for row in rows if row["goal"] == "robust"], columns, form, sentence=choice_sentence)
     else:

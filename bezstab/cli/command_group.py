@@ -34,13 +34,16 @@ LOADED_LATE: Mapping[str, Mapping[str, str]] = {"Paper": {"paper": "bezstab.pape
 COMPLETE = "_BEZSTAB_COMPLETE"
 """Environment variable in which a shell says that it wants to complete a command."""
 
+READER_GONE = 128 + 13
+"""Exit status where nobody reads the answer any more: as a shell has it for SIGPIPE, and unlike 1, "fault is found"."""
+
 
 class BezstabGroup(click.Group):
     """A group that lists its commands under headings, finds extensions when asked for, and ends errors in one line.
 
     Exit status 2 for a user's mistake and for what the system refuses (a full disk, a closed standard output), 3 for
-    numerical trouble, 1 where nobody reads the answer any more (`| head`). A signal that ends a run is 128 + its
-    number, as a shell has it: 130 after Ctrl-C, 143 after TERM, 129 when the terminal is gone (bezstab.stopping).
+    numerical trouble. A signal that ends a run is 128 + its number, as a shell has it: 130 after Ctrl-C, 143 after
+    TERM, 129 when the terminal is gone (bezstab.stopping), 141 where nobody reads the answer any more (`| head`).
     """
 
     def list_commands(self, ctx: click.Context) -> list[str]:
@@ -74,7 +77,11 @@ class BezstabGroup(click.Group):
         import logging
 
         logging.getLogger("matplotlib").setLevel(logging.ERROR)
-        return super().invoke(ctx)
+        try:
+            return super().invoke(ctx)
+        except BrokenPipeError:  # the reader, such as `head`, has seen enough; click itself would exit with 1
+            _give_up_output()
+            sys.exit(READER_GONE)
 
     def main(self, *args: Any, **kwargs: Any) -> NoReturn:
         """Run the command line and exit."""
@@ -94,9 +101,6 @@ class BezstabGroup(click.Group):
         except click.Abort:
             _complain("interrupted")
             sys.exit(130)
-        except BrokenPipeError:  # the reader, such as `head`, has seen enough
-            _give_up_output()
-            sys.exit(1)
         except OSError as error:
             _give_up_output()
             _complain(f"{error.filename}: {error.strerror}" if error.filename else str(error))

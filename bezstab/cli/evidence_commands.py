@@ -43,7 +43,7 @@ from bezstab.cli.output import (
 from bezstab.cli.typed_points import say_if_units_were_mistaken
 from bezstab.errors import InputError, NumericalError
 from bezstab.files import output_directory
-from bezstab.methods import Method
+from bezstab.methods import Method, check_one_step
 from bezstab.show import Column, Format, Row, column, formatted, seconds_words, yes_no_column
 from bezstab.units import to_dimensionless
 
@@ -138,7 +138,8 @@ def simulate(
 
     Prints largest |c| and |ċ|, energy drift and evaluations, and writes the history and a figure of the first
     constraint and its derivative. Exit status 3 if the run broke down; what came before is kept. With --steps their
-    lengths vary, and work and drift of energy are integrated less exactly, by the trapezoidal rule.
+    lengths vary, for every one-step method, and work and drift of energy are integrated less exactly, by the
+    trapezoidal rule.
 
     Example: bezstab simulate --method AB4 --alpha 0.5 --beta 0.101 --time 2
     """
@@ -147,7 +148,7 @@ def simulate(
 
     if physical:
         alpha, beta = to_dimensionless(alpha, beta, h)
-    elif not no_stabilization and not left_at_default("h"):
+    elif not (no_stabilization or sequence or left_at_default("h")):
         say_if_units_were_mistaken([method], alpha, beta, h)
     if no_stabilization:
         alpha = beta = Fraction(0)
@@ -155,7 +156,7 @@ def simulate(
         raise click.UsageError("--hold goes with --steps: it is about steps that vary")
     _check_number_of_steps(time, min(sequence) if sequence else h, method)
     if sequence:
-        mechanism.check_steps_may_vary(method)
+        check_one_step(method)
     say_what_stays_in_python([method])
     if figure != "none" or table != "none":
         output_directory(output)

@@ -220,8 +220,8 @@ MOVING_REGIONS = [
     help="Points per axis of the map: fast 50, balanced 200, fine 1000.",
 )
 @click.option("--grid", type=click.IntRange(2, 4000), help="Points per axis, instead.")
-@click.option("--alpha-range", type=NUMBER, nargs=2, help="α̂ from and to: the window [all of the region].")
-@click.option("--beta-range", type=NUMBER, nargs=2, help="β̂ from and to: the window [all of the region].")
+@click.option("--alpha-range", type=NUMBER, nargs=2, help="α̂ from and to [the region, without islands below 0].")
+@click.option("--beta-range", type=NUMBER, nargs=2, help="β̂ from and to [the region, without islands below 0].")
 @click.option(
     "--level",
     "levels",
@@ -384,7 +384,7 @@ def _map_region(
     row = region_row(stable, best)
     if figure == table == "none":
         return row
-    alpha_hat, beta_hat = _grid(stability.window(stable), alpha_range, beta_range, points)
+    alpha_hat, beta_hat = _grid(stability.useful_window(stable), alpha_range, beta_range, points)
     blocks = stability.pole_map(method, alpha_hat, beta_hat)
     z = np.concatenate(list(progress(blocks, method.name, points, len)))
 

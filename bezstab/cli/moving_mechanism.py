@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING
 import click
 
 from bezstab.cli.options import SPEED, Decorator, scene_option
+from bezstab.cli.output import say
 from bezstab.show import Column, Row, column, formatted
 
 if TYPE_CHECKING:
     from bezstab.mechanism import TurningNormals
     from bezstab.methods import Method
-
-RUN = 1.0  # s, of a motion that no driver closes
 
 moving_speed_option = click.option(
     "--speed", type=SPEED, default="1", help="With --scene: times the scene's own, its drivers' and its start's."
@@ -28,8 +27,8 @@ def moving_scene_option(help_text: str) -> Decorator:
 def turning_of(scene: str | None, speed: Fraction, h: Fraction | None) -> "TurningNormals | None":
     """Return how the normals of the scene's constraints turn; None without a scene.
 
-    UsageError for a scene without a step (h in s), or a speed without a scene; else errors as `load_scene` and
-    `regular_motion`.
+    Where they turn too far in a step for the first-order law, that is said. UsageError for a scene without a step (h in
+    s), or a speed without a scene; else errors as `load_scene` and `regular_motion`.
     """
     if scene is None:
         if speed != 1:
@@ -37,11 +36,18 @@ def turning_of(scene: str | None, speed: Fraction, h: Fraction | None) -> "Turni
         return None
     if h is None:
         raise click.UsageError("--scene needs --h: how far the mechanism moves in a step depends on it")
+    from bezstab.evidence import LAW_HOLDS
     from bezstab.mechanism import at_speed, compiled_mechanism, load_scene, regular_motion, turning_normals
 
     mechanism = compiled_mechanism(at_speed(load_scene(scene), float(speed)))
-    regular_motion(mechanism, RUN)
-    return turning_normals(mechanism, RUN)
+    duration = mechanism.scene.duration
+    regular_motion(mechanism, duration)
+    turning = turning_normals(mechanism, duration)
+    turned = turning.kappa * float(h)
+    if turned > LAW_HOLDS:
+        name = mechanism.scene.name
+        say(f"bezstab: constraints of {name} turn by κh = {turned:.2g} a step: beyond {LAW_HOLDS:g} the law fails")
+    return turning
 
 
 def moving_rows(

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
 import click
 
 from bezstab.engines import ENGINES, Engine
-from bezstab.errors import InputError
+from bezstab.errors import InputError, unknown_name
 from bezstab.methods import REGISTRY, lookup
 from bezstab.rationals import rational
 
@@ -100,10 +100,12 @@ def _engine_values(text: str) -> EngineValues:
     """Return an engine and values of its parameters from text such as mujoco=0.02,1."""
     name, _, numbers = text.partition("=")
     if name not in ENGINES:
-        raise InputError(f"unknown engine {name!r} (known: {', '.join(ENGINES)})")
+        raise unknown_name("engine", name, ENGINES, file="")
     engine = ENGINES[name]
     if not numbers and not engine.parameters:  # it has none, or none that it needs
         return engine, ()
+    if not numbers:
+        raise InputError(f"{name!r} has no values: expected {name}={engine.words()}")
     try:
         return engine, tuple(rational(number) for number in numbers.split(","))
     except InputError as error:

@@ -32,6 +32,12 @@ Sentence = Callable[[Row], str]
 UNLIMITED = sys.maxsize
 """Characters of a line of text where no terminal limits it, as on a pipe: there nothing wraps."""
 
+INDENT = " " * 4
+"""Of a command line that is shown to be copied, and once more of its continued lines."""
+
+CONTINUED = " \\"
+"""Ends a line of a command that goes on in the next."""
+
 
 def show_rows(
     rows: Sequence[Row], columns: Sequence[Column], form: Format, heading: str = "", sentence: Sentence | None = None
@@ -88,6 +94,19 @@ def show_groups(
 def show_text(text: str) -> None:
     """Print a text on standard output, its lines no longer than the terminal's."""
     click.echo(wrapped(spelled(text, output_encoding()), text_width() or UNLIMITED))
+
+
+def show_command(command: str) -> None:
+    """Print a command line to be copied: in one line, or, where the terminal is narrower, continued as in sh."""
+    first, *options = visible(spelled(command, output_encoding())).split(" --")
+    width = text_width() or UNLIMITED
+    lines = [INDENT + first]
+    for option in options:
+        if len(lines[-1]) + len(f" --{option}{CONTINUED}") <= width:
+            lines[-1] += f" --{option}"
+        else:
+            lines.append(f"{2 * INDENT}--{option}")
+    click.echo(f"{CONTINUED}\n".join(lines))
 
 
 def _presentable(column: Column, encoding: str) -> Column:

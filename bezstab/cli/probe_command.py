@@ -1,5 +1,6 @@
 """The command that tells from a log which integrator and which feedback made it: probe."""
 
+import shlex
 import sys
 from collections import Counter
 from collections.abc import Callable, Sequence
@@ -21,6 +22,7 @@ from bezstab.cli.options import (
     physical_option,
 )
 from bezstab.cli.output import for_reading, show_rows, show_text
+from bezstab.cli.typed_points import say_if_units_were_mistaken
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import REGISTRY, Method, lookup
 from bezstab.rationals import rational
@@ -30,6 +32,9 @@ from bezstab.units import to_dimensionless
 if TYPE_CHECKING:
     from bezstab.evidence import Likeness, Log, ProbedPole
     from bezstab.stability import FloatArray
+
+USUAL = "SYM"
+"""Of simulators, the method by which it is judged whether alpha and beta were typed in another unit."""
 
 SAME_STEP = 1e-3
 """Of the time between rows: by as much that of two runs may differ, as times are rounded."""
@@ -64,8 +69,8 @@ FITS: Sequence[Column] = (
 LIKENESSES: Sequence[Column] = (
     column("column", "column"),
     column("method", "method"),
-    column("|z| there", "predicted_abs", ".7f"),
-    column("∠z (deg)", "predicted_angle_deg", ".4f"),
+    column("|z| there", "predicted_z_abs", ".7f"),
+    column("∠z (deg)", "predicted_z_angle_deg", ".4f"),
     column("distance", "distance", ".1e"),
     column("allowed", "allowed", ".1e"),
     yes_no_column("fits", "fits"),
@@ -141,15 +146,26 @@ def probe(
 
     LOG is a CSV file, or - for standard input, with a row for each step from the kick on. Prints the pole with which
     each column's error decays; with --alpha and --beta how far it is from every method's, the nearest first (of those
-    that do not fit a few; JSON and CSV have all); without them, the α and β that it means under --method. What cannot
-    be told is said, with exit status 3.
+    that do not fit a few; JSON and CSV have all); without them, the α and β that it means under --method. Where no
+    pole can be told, --alpha and --beta also tell which methods' own recursions the rows follow. What cannot be told is
+    said, with exit status 3.
 
     Example: bezstab probe log.csv --minus unkicked.csv --alpha 1 --beta 0.25
     """
-    from bezstab.evidence import error_columns, probed_pole, steps_between_rows, time_column
+    from bezstab.evidence import (
+        error_columns,
+        likenesses,
+        probed_pole,
+        recursion_likenesses,
+        steps_between_rows,
+        time_column,
+    )
     from bezstab.show import probed_pole_row
 
     point = _point(alpha, beta, h, physical)
+    if alpha is not None and beta is not None and not physical:
+        files = " ".join(shlex.quote(str(file)) for file in (log, *([] if minus is None else ["--minus", minus])))
+        say_if_units_were_mistaken(methods or [lookup(USUAL)], alpha, beta, h, files)
     data = _read(log)
     time = time_column(data, time_name)
     places = error_columns(data, columns, time)
@@ -171,12 +187,20 @@ def probe(
         subtracted = None if other is None else other[:, [places.index(place) for place in group]]
         found = probed_pole(data.values[:, group], subtracted)
         answers.fits.append(probed_pole_row(name, found))
-        if found.pole is None:
-            reasons.append(f"{name}: {found.reason}")
-        elif point:
-            _compare(answers, name, found, compared_methods, point, between, turned)
-        else:
+        if found.pole is not None and point is None:
             _invert(answers, name, found, compared_methods, between, step)
+            continue
+        like: list[Likeness] = []
+        if point and found.pole is not None:
+            like = likenesses(found, compared_methods, *point, between, turned)
+        elif point:
+            values = data.values[:, group]
+            like = recursion_likenesses(values, compared_methods, *point, subtracted, between=between, turned=turned)
+        if point and like:
+            possible = [method for method in compared_methods if between(method) is not None]
+            _compare(answers, name, like, possible, point)
+        else:
+            reasons.append(f"{name}: {found.reason}")
     _show(answers, form, in_seconds=step is not None)
     if len(reasons) == len(groups):
         raise NumericalError(f"no pole can be told: {'; '.join(reasons)}")
@@ -195,19 +219,22 @@ class Answers:
 def _compare(
     answers: Answers,
     column_name: str,
-    found: "ProbedPole",
+    like: "Sequence[Likeness]",
     methods: Sequence[Method],
     point: tuple[Fraction, Fraction],
-    between: Callable[[Method], int | None],
-    turned: float | None,
 ) -> None:
-    """Add how far a column's pole is from each method's at a point, and what follows."""
-    from bezstab.evidence import likenesses
+    """Add how far a column is from each method at a point, and what follows."""
     from bezstab.show import likeness_row
 
-    like = likenesses(found, methods, *point, between, turned)
     answers.likenesses.extend(likeness_row(column_name, one) for one in like)
     answers.sentences.append(f"{column_name}: {likeness_sentence(like, point)}")
+    judged = {one.method.name for one in like}
+    too_long = [method.name for method in methods if method.name not in judged]
+    if too_long and like[0].judged_by == "recursion":
+        these = _listed(too_long) if len(too_long) <= NAMED else f"{len(too_long)} methods, such as {too_long[0]},"
+        answers.sentences.append(
+            f"{column_name}: {these} may have made it too: it has too few rows for such a recursion."
+        )
 
 
 def _invert(
@@ -271,7 +298,8 @@ def likeness_sentence(like: "Sequence[Likeness]", point: tuple[Fraction, Fractio
         return _nothing_fits(like[0], at)
     first = fitting[0]
     equal = first.same_as.split(", ") if first.same_as else []
-    parts = [f"this behaves like {first.method.name} at {at} to {max(first.distance, first.error):.1g}"]
+    shown = "this behaves like" if first.judged_by == "pole" else "no pole shows, but this follows the recursion of"
+    parts = [f"{shown} {first.method.name} at {at} to {max(first.distance, first.error):.1g}"]
     if not first.dominant:
         parts[0] += ", by a lesser pole of it"
     if equal:

@@ -1,5 +1,6 @@
 """How a point is typed: alpha_hat and beta_hat, alpha and beta in 1/s, an engine's own values, or a drive's gains."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import Decimal
@@ -14,9 +15,12 @@ from bezstab.errors import InputError
 from bezstab.methods import Method, lookup
 from bezstab.rationals import rational
 from bezstab.show import Column, Format, Row, column, formatted
-from bezstab.units import to_dimensionless
+from bezstab.units import feedback_gains, to_dimensionless
 
 GAINS = ("kp", "kd", "inertia")
+
+SAME_GAINS = 1e-9
+"""Of gains in 1/s and 1/s^2: roots and powers that engines take are rounded to float64."""
 
 
 def _drive(text: str) -> Drive:
@@ -96,6 +100,35 @@ def typed_point(
     return TypedPoint((alpha, beta))
 
 
+def engine_points(engine: EngineValues, as_typed: bool, h: Fraction) -> list[Point]:
+    """Return all points that an engine takes for its values at a step of h (s); InputError as `Engine.applied`."""
+    words, values = engine
+    if as_typed:
+        return [words.point(values, h)]
+    applied = words.applied(values, h)
+    return [applied.point, *(point for _, point in applied.also)]
+
+
+def engine_holds(engine: EngineValues, as_typed: bool, shorter: Fraction, longer: Fraction) -> bool:
+    """Return whether an engine's values mean the same alpha_hat and beta_hat at both steps (s), or alpha and beta.
+
+    InputError where they mean neither, as those do that are clamped to the step.
+    """
+    at_both = [engine_points(engine, as_typed, step) for step in (shorter, longer)]
+    if at_both[0] == at_both[1]:
+        return True
+    of_shorter, of_longer = (
+        [float(gain) for point in points for gain in feedback_gains(*point, step)]
+        for points, step in zip(at_both, (shorter, longer), strict=True)
+    )
+    if all(math.isclose(*gains, rel_tol=SAME_GAINS) for gains in zip(of_shorter, of_longer, strict=True)):
+        return False
+    raise InputError(
+        f"--h-min: {engine[0].name} makes of these values neither the same α and β nor the same α̂ and β̂ at steps of "
+        f"{float(shorter):g} and {float(longer):g} s; with --hold, what it makes of them at --h is asked about"
+    )
+
+
 def methods_asked(methods: Sequence[Method], engine: Engine | None, drive: Drive | None) -> Sequence[Method]:
     """Return the methods that were given, else the engine's own, else for a drive all ways of applying it.
 
@@ -168,10 +201,13 @@ DRIVE_COLUMNS = [
 """What --pd adds to the columns of check, choose and poles."""
 
 
-def say_if_units_were_mistaken(methods: Sequence[Method], alpha: Fraction, beta: Fraction, h: Fraction | None) -> None:
+def say_if_units_were_mistaken(
+    methods: Sequence[Method], alpha: Fraction, beta: Fraction, h: Fraction | None, of_what: str = ""
+) -> None:
     """Say on standard error, if so, that alpha_hat and beta_hat as typed look like alpha and beta in 1/s.
 
     So it is where as typed none of the methods is stable, and all are at alpha and beta in 1/s for the step h (s).
+    `of_what` are the command's arguments, if it has any.
     """
     if h is None:
         return
@@ -184,13 +220,19 @@ def say_if_units_were_mistaken(methods: Sequence[Method], alpha: Fraction, beta:
     if any(verdict(method, alpha, beta) == "converges" for method in methods):
         return
     if all(verdict(method, *meant) == "converges" for method in methods):
-        command = f"bezstab {click.get_current_context().info_name}"
+        command = f"bezstab {click.get_current_context().info_name}{of_what and ' '}{of_what}"
         given = "" if left_at_default("methods") else "".join(f" --method {method.name}" for method in methods)
-        line = f"{command}{given} --alpha {_typed(alpha)} --beta {_typed(beta)} --h {_typed(h)} --physical"
+        numbers = f"--alpha {typed_number(alpha)} --beta {typed_number(beta)} --h {typed_number(h)}"
+        line = f"{command}{given} {numbers} --physical"
         say(f"note: --alpha and --beta were taken as α̂ and β̂, without unit; if they are in 1/s, add --physical: {line}")
 
 
-def _typed(number: Fraction) -> str:
-    """Return a number as somebody would type it: a decimal where that is short and exact, else a fraction."""
+def typed_number(number: Fraction) -> str:
+    """Return a number as somebody would type it: a decimal where that is short and exact, else a fraction.
+
+    Of a fraction that is longer than a float, as those are that were computed, the decimal that float64 reads as it.
+    """
     decimal = f"{float(number):.12g}"
-    return decimal if Fraction(Decimal(decimal)) == number else str(number)
+    if Fraction(Decimal(decimal)) == number:
+        return decimal
+    return min(str(number), repr(float(number)), key=len)

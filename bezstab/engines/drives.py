@@ -40,7 +40,7 @@ class Drive:
 
     def __post_init__(self) -> None:
         if self.inertia <= 0:
-            raise InputError(f"--pd: inertia {float(self.inertia):g}: expected above 0")
+            raise InputError(f"inertia {float(self.inertia):g}: expected above 0")
 
     def point(self, h: Fraction) -> Point:
         """Return (alpha_hat, beta_hat) at a step of h seconds; InputError outside float64's range."""

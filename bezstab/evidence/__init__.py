@@ -8,10 +8,13 @@ The only room in which stability and mechanism meet. A file imports only from th
     linear_prediction   the dominant pole in a sampled response, or why none can be told
     moving_mechanisms   what a mechanism's motion does to its poles, to first order
     moving_regions      the region of a mechanism that moves
+    linearized_steps    a method's steps along a motion, linearised
     floquet             the exact rates of a mechanism that moves
+    own_motions         the same along the motion that the method itself makes
     measured_poles      predicted against measured poles of a running mechanism
     logs                logs of somebody else's simulator, as columns of numbers
     probed_poles        the dominant pole in a log, and whose it is
+    probed_recursions   whose recursion a log follows that shows no pole
     verdict_maps        simulated verdicts over the plane against |z_p| < 1
     mujoco_models       a MuJoCo model's step, constraints, springs, drives and masses
     mujoco_lint         what they mean in alpha_hat and beta_hat, and whether they are safe
@@ -51,8 +54,10 @@ from bezstab.evidence.measured_poles import (
     random_points,
 )
 from bezstab.evidence.moving_mechanisms import (
+    LAW_HOLDS,
     MovingPole,
     MovingVerdict,
+    growth_after_a_kick,
     growth_rates,
     momentary_rates,
     moving_pole,
@@ -63,6 +68,7 @@ from bezstab.evidence.moving_regions import MovingRegion, moving_growth, moving_
 from bezstab.evidence.mujoco_lint import Linted, linted_model
 from bezstab.evidence.mujoco_models import ModelData, model_data, mujoco_module, read_mujoco_model
 from bezstab.evidence.mujoco_witness import TIMES, Witnessed, model_xml, mujoco_witnesses, witness_count
+from bezstab.evidence.own_motions import own_motion_rates
 from bezstab.evidence.pareto import pareto_front
 from bezstab.evidence.probed_poles import (
     Likeness,
@@ -75,6 +81,7 @@ from bezstab.evidence.probed_poles import (
     probed_pole,
     steps_between_rows,
 )
+from bezstab.evidence.probed_recursions import recursion_likenesses
 from bezstab.evidence.reference_motions import ReferenceMotion, reference_motion
 from bezstab.evidence.sweep_summaries import FINE, Summary, summary, sweep_sentences
 from bezstab.evidence.verdict_maps import MapRows, VerdictMap, map_rows, simulated_verdicts, verdict_map
@@ -84,6 +91,7 @@ __all__ = [
     "ATTEMPTS",
     "CLOSE",
     "FINE",
+    "LAW_HOLDS",
     "LINEAR",
     "METHODS",
     "SPREAD",
@@ -118,6 +126,7 @@ __all__ = [
     "extreme_checks",
     "fit_dominant_pole",
     "floquet_rates",
+    "growth_after_a_kick",
     "growth_rates",
     "kicked_constraint_errors",
     "kicked_responses",
@@ -137,6 +146,7 @@ __all__ = [
     "moving_region",
     "mujoco_module",
     "mujoco_witnesses",
+    "own_motion_rates",
     "pareto_front",
     "parse_log",
     "points_like",
@@ -144,6 +154,7 @@ __all__ = [
     "random_points",
     "read_log",
     "read_mujoco_model",
+    "recursion_likenesses",
     "reference_motion",
     "row_step",
     "simulated_verdicts",

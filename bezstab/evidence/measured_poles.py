@@ -19,12 +19,13 @@ from typing import Literal
 
 import numpy as np
 
-from bezstab.evidence.floquet import floquet_rates
-from bezstab.evidence.linear_prediction import SAMPLES, SETTLED, SPREAD, Refusal, fit_dominant_pole
-from bezstab.evidence.moving_mechanisms import MovingPole, MovingVerdict, moving_poles
+from bezstab.evidence.linear_prediction import SAMPLES, SETTLED, SPREAD, Fit, Refusal, fit_dominant_pole
+from bezstab.evidence.moving_mechanisms import MovingPole, MovingVerdict, growth_after_a_kick, moving_poles
+from bezstab.evidence.own_motions import own_motion_rates
 from bezstab.mechanism import (
     CHEAPER_TOGETHER,
     Mechanism,
+    TurningNormals,
     constraint_errors,
     initial_state,
     march,
@@ -37,7 +38,16 @@ from bezstab.mechanism import (
 )
 from bezstab.methods import Method, SecondOrder, Verdict, closed_loop_table, evaluations, steps
 from bezstab.rationals import exact
-from bezstab.stability import ComplexArray, FloatArray, dominant_pole, poles, region, verdict, window
+from bezstab.stability import (
+    ComplexArray,
+    FloatArray,
+    dominant_pole,
+    poles,
+    region,
+    turning_sensitivity,
+    useful_window,
+    verdict,
+)
 from bezstab.units import feedback_gains
 
 MeasuredVerdict = Literal["converges", "diverges", "too close to call"]
@@ -77,9 +87,11 @@ class Measurement:
     """Predicted and measured dominant pole at one point; `measured` is None, and `reason` says why, if it cannot be.
 
     `predicted` and its verdict are those of the mechanism at rest; `law_abs` and `law_verdict` what the first-order law
-    makes of them for the motion (`moving_mechanisms`), `floquet_abs` the exact rate over it, None unless asked for.
-    `measured` is what the first steps after the kick show. `measured_rate` is |z| per step over whole revolutions, of a
-    mechanism that a driver turns, where the response can be followed for so long.
+    makes of them for the motion (`moving_mechanisms`), `floquet_abs` the exact rate over the method's own motion, None
+    unless asked for.
+    `measured` is what the first steps after the kick show, `law_fitted_abs` what the law makes of `predicted` for those
+    very steps, None where nothing was measured or the law fails. `measured_rate` is |z| per step over whole
+    revolutions, of a mechanism that a driver turns, where the response can be followed for so long.
     """
 
     method: Method
@@ -91,6 +103,7 @@ class Measurement:
     law_verdict: MovingVerdict
     floquet_abs: float | None
     measured: complex | None
+    law_fitted_abs: float | None
     measured_rate: float | None
     measured_verdict: MeasuredVerdict
     reason: str
@@ -126,7 +139,7 @@ def random_points(method: Method, count: int) -> tuple[FloatArray, FloatArray]:
 
     Both have shape (count,) and no dimension. NumericalError as `region`.
     """
-    low, high = np.transpose(window(region(method)))
+    low, high = np.transpose(useful_window(region(method)))
     margin = SURROUNDINGS * (high - low)
     points = np.random.default_rng(SEED).uniform(low - margin, high + margin, (count, 2))
     alpha_hat, beta_hat = np.round(points, 6).T
@@ -151,17 +164,23 @@ def measure_poles(
     exact; the measurement is linear prediction (`fit_dominant_pole`).
     """
     difference, size = _kicked_responses(mechanism, method, h, alpha_hat, beta_hat, progress)
-    step = h * float(method.step_multiple)
-    duration = RUN * step
+    duration = RUN * h * float(method.step_multiple)
     turning = turning_normals(mechanism, duration)
-    revolution = round(turning.duration / step) if turning.closed else None
     moving = moving_poles(method, turning, h, alpha_hat, beta_hat)
     exact_rates: list[float | None] = [None] * alpha_hat.size
     if floquet:
-        exact_rates = floquet_rates(mechanism, method, h, alpha_hat, beta_hat, duration).tolist()
+        exact_rates = own_motion_rates(mechanism, method, h, alpha_hat, beta_hat, duration).tolist()
     return [
         _measurement(
-            method, float(a), float(b), moving[i], exact_rates[i], h, revolution, difference[:, :, i], size[:, :, i]
+            method,
+            float(a),
+            float(b),
+            moving[i],
+            exact_rates[i],
+            h,
+            turning,
+            difference[:, :, i],
+            size[:, :, i],
         )
         for i, (a, b) in enumerate(zip(alpha_hat, beta_hat, strict=True))
     ]
@@ -200,13 +219,14 @@ def _measurement(
     moving: MovingPole,
     floquet_abs: float | None,
     h: float,
-    revolution: int | None,
+    turning: TurningNormals,
     difference: FloatArray,
     size: FloatArray,
 ) -> Measurement:
-    """Return the measurement at one point from its responses of shape (steps, kicks); h in s, a revolution in steps."""
+    """Return the measurement at one point from its responses of shape (steps, kicks); h in s."""
     predicted = complex(dominant_pole(method, alpha_hat, beta_hat))
-    measured, reason = None, ""
+    measured, law_fitted_abs, reason = None, None, ""
+    revolution = round(turning.duration / (h * float(method.step_multiple))) if turning.closed else None
     all_poles = poles(method, alpha_hat, beta_hat)
     rival = _rival(all_poles, predicted)
     # Over a window of SAMPLES steps the lesser of two such moduli does not even fall to 1/e of the other.
@@ -220,6 +240,7 @@ def _measurement(
             reason = f"the kick hardly excites the dominant pole: what answers is one of modulus {abs(fit.pole):.6g}"
         else:
             measured = fit.pole
+            law_fitted_abs = _by_the_law(method, alpha_hat, beta_hat, predicted, h, turning, fit)
     return Measurement(
         method=method,
         alpha_hat=alpha_hat,
@@ -230,23 +251,44 @@ def _measurement(
         law_verdict=moving.verdict,
         floquet_abs=floquet_abs,
         measured=measured,
+        law_fitted_abs=law_fitted_abs,
         measured_rate=None if revolution is None else _rate_over_revolutions(revolution, difference, size),
         measured_verdict=_measured_verdict(measured, difference, size, max(CLOSE, moving.shift(method, h))),
         reason=reason,
     )
 
 
-def _rate_over_revolutions(revolution: int, difference: FloatArray, size: FloatArray) -> float | None:
-    """Return |z| per step over as many whole revolutions as a response stays linear and above rounding; None if none.
+def _by_the_law(
+    method: Method,
+    alpha_hat: float,
+    beta_hat: float,
+    predicted: complex,
+    h: float,
+    turning: TurningNormals,
+    fit: Fit,
+) -> float | None:
+    """Return the |z| that the first-order law gives the fitted samples, None where it gives no number; h in s."""
+    step = h * float(method.step_multiple)
+    chi = complex(turning_sensitivity(method, alpha_hat, beta_hat, predicted))
+    kick = _steps_before_the_kick(method) * step
+    first = kick + fit.start * step
+    with np.errstate(all="ignore"):  # an infinite chi is no number's, and so is what it makes grow
+        rate = growth_after_a_kick(turning, chi, kick, first, first + fit.samples * step)
+    return float(abs(predicted) * np.exp(step * rate)) if np.isfinite(rate) else None
 
-    What the motion does to it comes back after a revolution; a quarter of one shows its size whatever the phase.
+
+def _rate_over_revolutions(revolution: int, difference: FloatArray, size: FloatArray) -> float | None:
+    """Return |z| per step over as many whole revolutions as a response stays linear and above rounding.
+
+    What the motion does to it comes back after a revolution; a quarter of one shows its size whatever the phase. The
+    first revolution only turns what was kicked into what grows most; None where there are no two.
     """
     window = max(revolution // 4, 2)
-    longest, rate = 0, None
+    longest, rate = 1, None
     for response, largest in zip(difference.T, size.T, strict=True):
         usable = largest < LINEAR[0]
         end = len(usable) if usable.all() else int(np.argmin(usable))
-        if end < SETTLING + window + revolution:
+        if end < SETTLING + window + 2 * revolution:
             continue
         strengths = np.sqrt(np.convolve(response[SETTLING:end] ** 2, np.ones(window) / window, "valid"))
         clear = strengths > LEAST_RESPONSE
@@ -254,7 +296,8 @@ def _rate_over_revolutions(revolution: int, difference: FloatArray, size: FloatA
         revolutions = (last - 1) // revolution
         if revolutions > longest:
             longest = revolutions
-            rate = float((strengths[revolutions * revolution] / strengths[0]) ** (1 / (revolutions * revolution)))
+            growth = strengths[revolutions * revolution] / strengths[revolution]
+            rate = float(growth ** (1 / ((revolutions - 1) * revolution)))
     return rate
 
 
@@ -380,11 +423,15 @@ def _run_up_to_the_kick(
     start = tuple(np.full(alpha_hat.shape, value) for value in (*q, *v))
     history = [start]
     slopes = []
-    before_the_kick = max(steps(method), states_needed(method) - 1)
-    for state, slope, _ in islice(march(mechanism, method, h_step, gains, start, "rk4", np), before_the_kick):
+    run = march(mechanism, method, h_step, gains, start, "rk4", np)
+    for state, slope, _ in islice(run, _steps_before_the_kick(method)):
         history.append(state)
         slopes.append(slope)
     undisturbed = history[-1]
     state = tuple(value + amounts * change for value, change in zip(undisturbed, direction, strict=True))
     history[-1] = state
     return _RunUp(h_step, gains, history, slopes, undisturbed)
+
+
+def _steps_before_the_kick(method: Method) -> int:
+    return max(steps(method), states_needed(method) - 1)

@@ -23,6 +23,9 @@ from bezstab.stability import ComplexArray, FloatArray, poles, turning_sensitivi
 
 SLOWEST = 0.5  # of |z_p|: within the law a pole grows by e^(1/2) a step at most, and one so small never leads
 BEYOND_FIRST_ORDER = 0.5  # |chi| kappa h: from here on the terms left out are as large as those kept
+LAW_HOLDS = 0.1  # rad, kappa h: at twice that terms beside chi, too, have been seen to turn 0.94 into 1.05
+
+STEPS_AFTER_A_KICK = 50  # of Runge and Kutta's rule to each time asked for: K turns by a revolution at most meanwhile
 
 LARGEST_CHI = 32.0  # of the table: ten times what is seen on a boundary; further out the law does not hold at any speed
 RADII, ANGLES = 101, 61
@@ -38,10 +41,11 @@ class MovingPole:
 
     `z_abs`: at rest. `chi_abs`: |chi| of the pole that grows most over the motion. `z_abs_moving`: its rate over the
     motion. `z_abs_worst`: the largest momentary rate of any pole. `kappa`: in 1/s. `double`: another pole is so near
-    that the first-order law fails; then both rates are widened by the factor exp((kappa h)^(1/2)). `settled`: all of
-    the band, and the second-order terms that were left out, are on one side of one. `safe_speed`: so many times as fast
-    the mechanism may move, at this step, until its rate is one; infinite where no speed would, nan where it diverges at
-    rest.
+    that the first-order law fails; then the largest rate is |z| + (kappa h)^(1/2), about what such a pole moves by, and
+    the rate over the motion at most that. `settled`: all of
+    the band, and the second-order terms that were left out, are on one side of one; where kappa h is beyond LAW_HOLDS
+    nothing is settled to converge. `safe_speed`: so many times as fast the mechanism may move, at this step, until its
+    rate is one or the law ends; infinite where it does not turn, nan where it diverges at rest.
     """
 
     z_abs: float
@@ -156,6 +160,45 @@ def momentary_rates(turning: TurningNormals, chi: ArrayLike) -> FloatArray:
     return np.asarray((np.multiply.outer(np.asarray(chi, complex), eigenvalues)).real.max(axis=-1))
 
 
+def growth_after_a_kick(turning: TurningNormals, chi: complex, kick: float, first: float, last: float) -> float:
+    """Return at what rate (1/s) the first constraint's error grows from `first` to `last` (s), kicked alone at `kick`.
+
+    ln(|w_1(last)| / |w_1(first)|) / (last - first) of Y' = chi K(t) Y from Y(kick) = e_1, beside what the pole at rest
+    makes of it. Over less than a motion that is not what its growth over all of it is. Theory: the first-order law of
+    the moving mechanism. Not finite where chi is not, or where the error passes through zero.
+    """
+    error = np.zeros(turning.rates.shape[1], complex)
+    error[0] = 1
+
+    def slope(t: float, error: ComplexArray) -> ComplexArray:
+        return np.asarray(chi * _turned(turning, t, error))
+
+    sizes = []
+    for start, end in ((kick, first), (first, last)):
+        step = (end - start) / STEPS_AFTER_A_KICK
+        for t in start + step * np.arange(STEPS_AFTER_A_KICK):
+            first_slope = slope(t, error)
+            second_slope = slope(t + step / 2, error + step / 2 * first_slope)
+            third_slope = slope(t + step / 2, error + step / 2 * second_slope)
+            fourth_slope = slope(t + step, error + step * third_slope)
+            error = error + step / 6 * (first_slope + 2 * second_slope + 2 * third_slope + fourth_slope)
+        sizes.append(float(np.abs(error[0])))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return float(np.log(np.divide(sizes[1], sizes[0])) / (last - first))
+
+
+def _turned(turning: TurningNormals, t: float, error: ComplexArray) -> ComplexArray:
+    """Return K(t) times an error (t in s), between two samples linear: products cost less than sums of matrices."""
+    share = t / turning.duration
+    samples = len(turning.rates) - 1
+    place = samples * (share % 1 if turning.closed else min(max(share, 0.0), 1.0))
+    below = min(int(place), samples - 1)
+    part = place - below
+    parts = np.stack([error.real, error.imag], axis=-1)  # so that K need not become complex for each product
+    turned = (1 - part) * (turning.rates[below] @ parts) + part * (turning.rates[below + 1] @ parts)
+    return np.asarray(turned[:, 0] + 1j * turned[:, 1])
+
+
 def moving_pole(method: Method, turning: TurningNormals, h: float, alpha_hat: float, beta_hat: float) -> MovingPole:
     """Return what becomes of the poles at one point on a mechanism that moves, h in s; as `moving_poles`."""
     (found,) = moving_poles(method, turning, h, np.array([alpha_hat]), np.array([beta_hat]))
@@ -200,33 +243,56 @@ def _moving_pole(
     that does not count is minus infinity.
     """
     turned = kappa * step
-    apart = np.abs(z[0] - z[1:])
-    own = np.abs(z[1:] - z[0].conj()) == 0  # of a conjugate pair the other: not near, however flat the pair
-    near_another = bool((apart[~own] < np.sqrt(turned) * np.abs(z[0])).any())
-    double = near_another or not abs(chi[0]) * turned < BEYOND_FIRST_ORDER
+    modulus = float(np.abs(z[0]))
     moving = at_rest + growth
     leading = int(np.argmax(moving))
-    widened = np.sqrt(turned) if double else 0.0
+    law_ends = _end_of_the_law(z, max(abs(chi[0]), abs(chi[leading])))
+    double = not turned < law_ends
     rate = float(moving[leading])
-    highest = max(float(worst.max()), rate) + widened
+    highest = max(float(worst.max()), rate)
+    if double:
+        highest = float(np.log(modulus + np.sqrt(turned)))
+        rate = min(rate, highest) if np.isfinite(chi[0]) else highest
     left_out = (float(np.abs(chi[leading])) * turned) ** 2
-    settled = not double and (highest < -left_out or rate > left_out)
+    converges = highest < -left_out and turned <= LAW_HOLDS
+    settled = not double and (converges or rate > left_out)
     return MovingPole(
-        z_abs=float(np.abs(z[0])),
+        z_abs=modulus,
         kappa=kappa,
         chi_abs=float(np.abs(chi[leading])),
         z_abs_moving=float(np.exp(rate)),
         z_abs_worst=float(np.exp(highest)),
         double=double,
         settled=bool(settled),
-        safe_speed=_safe_speed(at_rest, growth),
+        safe_speed=_safe_speed(at_rest, growth, turned, law_ends),
     )
 
 
-def _safe_speed(at_rest: FloatArray, growth: FloatArray) -> float:
-    """Return by what growth, which is proportional to the speed, can be multiplied until it equals a pole's decay."""
+def _end_of_the_law(z: ComplexArray, chi_abs: float) -> float:
+    """Return the kappa h from which on the law fails at a point: there two poles mix, or second-order terms lead.
+
+    z has shape (poles,), the dominant pole first.
+    """
+    apart = np.abs(z[0] - z[1:])
+    own = np.abs(z[1:] - z[0].conj()) == 0  # of a conjugate pair the other: not near, however flat the pair
+    nearest = float(apart[~own].min(initial=np.inf))
+    modulus = float(np.abs(z[0]))
+    two_mix = (nearest / modulus) ** 2 if modulus > 0 else 0.0
+    return min(two_mix, BEYOND_FIRST_ORDER / chi_abs if chi_abs > 0 else np.inf)
+
+
+def _safe_speed(at_rest: FloatArray, growth: FloatArray, turned: float, law_ends: float) -> float:
+    """Return by what growth and `turned`, kappa h, both proportional to the speed, can be multiplied.
+
+    Until growth equals a pole's decay or, where that is beyond the end of the law, until the estimate for two poles
+    that mix, |z| + (kappa h)^(1/2), is one; but not beyond LAW_HOLDS.
+    """
     if at_rest.max() >= 0:
         return float("nan")
     speeds = np.full_like(growth, np.inf)
     np.divide(-at_rest, growth, out=speeds, where=growth > 0)  # elsewhere both may be infinite
-    return float(speeds.min())
+    crossing = float(speeds.min())
+    if turned == 0 or crossing * turned <= min(law_ends, LAW_HOLDS):
+        return crossing
+    estimate_ends = (1 - float(np.exp(at_rest.max()))) ** 2
+    return min(LAW_HOLDS, max(law_ends, estimate_ends)) / turned

@@ -29,7 +29,7 @@ from bezstab.stability import (
     poles,
     region,
     turning_sensitivity,
-    window,
+    useful_window,
 )
 
 LINES = 160  # of constant beta_hat, at Gauss and Legendre's nodes: the length of a line has kinks, so 1e-4 of the area
@@ -105,7 +105,7 @@ def moving_region(method: Method, turning: TurningNormals, h: float, points: int
     NumericalError if a pole leaves the range of float64.
     """
     at_rest = region(method)
-    (alpha_low, alpha_high), (beta_low, beta_high) = window(at_rest)
+    (alpha_low, alpha_high), (beta_low, beta_high) = useful_window(at_rest)
     nodes, weights = np.polynomial.legendre.leggauss(LINES)
     lines = beta_low + (beta_high - beta_low) * (nodes + 1) / 2
     lengths = _stable_lengths(method, turning, h, np.linspace(alpha_low, alpha_high, SAMPLES), lines)

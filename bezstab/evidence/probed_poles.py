@@ -19,6 +19,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import Literal
 
 import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval2d, polyval3d
@@ -119,7 +120,8 @@ class Likeness:
     `predicted` is the method's dominant pole, per row of the log; `distance` is that of the nearest of its poles, and
     `dominant` says whether that is the dominant one. It fits if the distance is at most `allowed`: the `error` of the
     fit and what the motion of the mechanism may do. `same_as` names methods with the same polynomial there but for
-    factors of z, which no log can tell from this one.
+    factors of z, which no log can tell from this one. `judged_by` is "pole", or "recursion" where the log shows no pole
+    (`probed_recursions`).
     """
 
     method: Method
@@ -129,6 +131,7 @@ class Likeness:
     allowed: float
     dominant: bool
     same_as: str
+    judged_by: Literal["pole", "recursion"] = "pole"
 
     def __repr__(self) -> str:
         fit = "fits" if self.fits else "does not fit"
@@ -136,7 +139,7 @@ class Likeness:
 
     @property
     def fits(self) -> bool:
-        """Whether the measured pole may be this method's."""
+        """Whether the log may be this method's."""
         return self.distance <= self.allowed
 
 
@@ -190,12 +193,7 @@ def probed_pole(c: ArrayLike, minus: ArrayLike | None = None, differenced: bool 
     that show no pole: `reason` says so. InputError for arrays of other shapes. Method: linear prediction
     (`fit_dominant_pole`).
     """
-    samples, rounding = _response(c, minus)
-    usable = np.logical_and.accumulate(np.isfinite(samples), axis=0)  # what is no number ends a response
-    samples = np.where(usable, samples, np.nan)
-    end = int(usable.any(axis=1).sum())
-    cut = f"row {end + 1} holds no number: only what comes before is used" if end < len(samples) else ""
-    samples = _from_the_kick_on(samples[:end], rounding)
+    samples, rounding, cut = usable_response(c, minus)
     if len(samples) < FEWEST:
         return _refused(len(samples), f"{len(samples)} samples: at least {FEWEST} are needed", cut)
     largest = float(np.nanmax(np.abs(samples)))
@@ -219,7 +217,7 @@ def _fitted(samples: FloatArray, rounding: float, of_two_runs: bool, cut: str) -
     fits: list[Fit | Refusal] = []
     changes, floor = samples, rounding / 2
     for times in range(DIFFERENCES + 1):
-        fit = fit_dominant_pole(changes, ORDER, limits=_limits(changes), floor=floor)
+        fit = fit_dominant_pole(changes, ORDER, limits=linear_limits(changes), floor=floor)
         fits.append(fit)
         if isinstance(fit, Fit) and not _on_the_circle(fit) and (of_two_runs or _is_not_forced(fit, changes)):
             return _claimed(fit, len(samples), _joined(DIFFERENCED if times else "", cut))
@@ -274,6 +272,19 @@ def _joined(*reasons: str) -> str:
     return "; ".join(reason for reason in reasons if reason)
 
 
+def usable_response(c: ArrayLike, minus: ArrayLike | None) -> tuple[FloatArray, float, str]:
+    """Return the responses from the kick on, shape (samples, responses), their rounding, and what was cut off, if so.
+
+    The rounding is zero if it is not to be seen. InputError for arrays of other shapes.
+    """
+    samples, rounding = _response(c, minus)
+    usable = np.logical_and.accumulate(np.isfinite(samples), axis=0)  # what is no number ends a response
+    samples = np.where(usable, samples, np.nan)
+    end = int(usable.any(axis=1).sum())
+    cut = f"row {end + 1} holds no number: only what comes before is used" if end < len(samples) else ""
+    return _from_the_kick_on(samples[:end], rounding), rounding, cut
+
+
 def _response(c: ArrayLike, minus: ArrayLike | None) -> tuple[FloatArray, float]:
     """Return the responses, shape (samples, responses), and what they are rounded to; 0 if that is not to be seen."""
     samples = _columns(c, "c")
@@ -321,7 +332,7 @@ def _quantum(column: FloatArray) -> float:
     return 0.0
 
 
-def _limits(samples: FloatArray) -> Sequence[float]:
+def linear_limits(samples: FloatArray) -> Sequence[float]:
     """Return the sizes up to which the samples are tried as linear: those of a response that grows may leave it."""
     sizes = np.nanmax(np.abs(samples), axis=1)
     largest = float(sizes.max())
@@ -348,22 +359,49 @@ def likenesses(
     """
     if probed.pole is None or probed.uncertainty is None:
         return []
+    found = []
+    for one in comparisons(methods, alpha_hat, beta_hat, between):
+        with suppress(NumericalError):
+            found.append(_likeness(probed, one, alpha_hat, beta_hat, turned))
+    return sorted(found, key=lambda one: one.distance)
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A method that may have made a log: `between` of its steps lie between two rows.
+
+    `polynomial` is P at the point, monic in descending powers and without roots at zero, and `same_as` names the others
+    with the same one.
+    """
+
+    method: Method
+    between: int
+    polynomial: tuple[Fraction, ...]
+    same_as: str
+
+
+def comparisons(
+    methods: Sequence[Method],
+    alpha_hat: Fraction,
+    beta_hat: Fraction,
+    between: Callable[[Method], int | None] | int,
+) -> list[Comparison]:
+    """Return what to compare a log with at a point; without methods whose steps are longer than its rows are apart."""
     compared: list[tuple[Method, int]] = []
     for method in methods:
         own_steps = between if isinstance(between, int) else between(method)
         if own_steps is not None:
             compared.append((method, own_steps))
-    polynomials = [(_polynomial_without_zeros(method, alpha_hat, beta_hat), k) for method, k in compared]
-    found = []
-    for (method, own_steps), polynomial in zip(compared, polynomials, strict=True):
+    polynomials = [(_polynomial_without_zeros(method, alpha_hat, beta_hat), steps) for method, steps in compared]
+    answers = []
+    for (method, own_steps), own in zip(compared, polynomials, strict=True):
         equal = [
             other.name
             for (other, _), others in zip(compared, polynomials, strict=True)
-            if others == polynomial and other is not method
+            if others == own and other is not method
         ]
-        with suppress(NumericalError):
-            found.append(_likeness(probed, method, alpha_hat, beta_hat, own_steps, turned, ", ".join(equal)))
-    return sorted(found, key=lambda one: one.distance)
+        answers.append(Comparison(method, own_steps, own[0], ", ".join(equal)))
+    return answers
 
 
 def steps_between_rows(method: Method, h: float | None, row: float | None, every: int = 1) -> int | None:
@@ -418,45 +456,51 @@ def _polynomial_without_zeros(method: Method, alpha_hat: Fraction, beta_hat: Fra
 
 
 def _likeness(
-    probed: ProbedPole,
-    method: Method,
-    alpha_hat: Fraction,
-    beta_hat: Fraction,
-    between: int,
-    turned: float | None,
-    same_as: str,
+    probed: ProbedPole, compared: Comparison, alpha_hat: Fraction, beta_hat: Fraction, turned: float | None
 ) -> Likeness:
     assert probed.pole is not None
     assert probed.uncertainty is not None
     a, b = float(alpha_hat), float(beta_hat)
-    z = poles(method, a, b)
-    with np.errstate(over="ignore", invalid="ignore"):  # a pole far outside the circle, over many steps
-        per_row = z**between
-    per_row = per_row.real + 1j * np.abs(per_row.imag)
+    z, per_row = poles_per_row(compared, a, b)
     leading = np.abs(z) > (1 - 1 / SAMPLES) * np.abs(z[0])
     # Another pole answers only if the kick has hardly excited the dominant one, and that has not grown out of rounding.
     distances = np.abs(per_row - probed.pole)
     if probed.rows * np.log(max(np.abs(per_row[0]), 1.0)) > np.log(UNSEEN_GROWTH):
         distances[~leading] = np.inf
     nearest = int(np.argmin(distances))
-    angle = (TURNED if turned is None else turned) * float(method.step_multiple)
-    chi = float(np.abs(turning_sensitivity(method, a, b, z[nearest])))
-    apart = np.abs(z - z[nearest])
-    apart[nearest] = np.inf
-    apart[np.abs(z - z[nearest].conj()) == 0] = np.inf
-    shift = (chi if np.isfinite(chi) else 0.0) * angle
-    if bool((apart < np.sqrt(angle) * np.abs(z[nearest])).any()) or not np.isfinite(chi):
-        shift = min(shift, np.sqrt(angle)) + np.sqrt(angle)  # at a double pole the change is like a root
-    moved = float(between * shift * np.abs(per_row[nearest]))
+    moved = compared.between * motion_shift(compared.method, a, b, z, nearest, turned) * float(np.abs(per_row[nearest]))
     return Likeness(
-        method=method,
+        method=compared.method,
         predicted=complex(per_row[0]),
         distance=float(distances[nearest]),
         error=probed.uncertainty,
         allowed=probed.uncertainty + moved,
         dominant=bool(leading[nearest]),
-        same_as=same_as,
+        same_as=compared.same_as,
     )
+
+
+def poles_per_row(compared: Comparison, alpha_hat: float, beta_hat: float) -> tuple[ComplexArray, ComplexArray]:
+    """Return a method's poles, dominant ones first, and what they are per row of the log, in the upper half plane."""
+    z = poles(compared.method, alpha_hat, beta_hat)
+    with np.errstate(over="ignore", invalid="ignore"):  # a pole far outside the circle, over many steps
+        per_row = z**compared.between
+    return z, per_row.real + 1j * np.abs(per_row.imag)
+
+
+def motion_shift(
+    method: Method, alpha_hat: float, beta_hat: float, z: ComplexArray, which: int, turned: float | None
+) -> float:
+    """Return by which share of itself, a step, the motion may shift one of a method's poles z; `turned` as above."""
+    angle = (TURNED if turned is None else turned) * float(method.step_multiple)
+    chi = float(np.abs(turning_sensitivity(method, alpha_hat, beta_hat, z[which])))
+    apart = np.abs(z - z[which])
+    apart[which] = np.inf
+    apart[np.abs(z - z[which].conj()) == 0] = np.inf
+    shift = (chi if np.isfinite(chi) else 0.0) * angle
+    if bool((apart < np.sqrt(angle) * np.abs(z[which])).any()) or not np.isfinite(chi):
+        shift = min(shift, np.sqrt(angle)) + np.sqrt(angle)  # at a double pole the change is like a root
+    return float(shift)
 
 
 def points_like(probed: ProbedPole, method: Method, between: int = 1) -> list[LikePoint]:

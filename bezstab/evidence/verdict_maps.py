@@ -15,7 +15,7 @@ from bezstab.evidence.measured_poles import (
 )
 from bezstab.mechanism import CHEAPER_TOGETHER, Scene, compiled_mechanism, runs_compiled
 from bezstab.methods import Method, evaluations
-from bezstab.stability import FloatArray, pole_map, region, window
+from bezstab.stability import FloatArray, pole_map, region, useful_window
 
 BoolArray = NDArray[np.bool_]
 
@@ -112,7 +112,7 @@ def map_rows(scene: Scene, method: Method, h: float, count: int) -> list[MapRows
     mechanism = compiled_mechanism(scene)
     compiled = runs_compiled(mechanism, method, 2 * count**2 * MAP_RUN * evaluations(method) // CHEAPER_TOGETHER)
     centres = (np.arange(count) + 0.5) / count
-    alpha_window, beta_window = window(region(method))
+    alpha_window, beta_window = useful_window(region(method))
     alpha_hat = _inside(alpha_window, centres)
     beta_hat = _inside(beta_window, centres)
     rows_at_once = max(1, BATCH // count)

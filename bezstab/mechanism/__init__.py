@@ -75,7 +75,7 @@ from bezstab.mechanism.second_order_memory import Memory, memory
 from bezstab.mechanism.second_order_turns import Action, Assigned, Evaluated, turn
 from bezstab.mechanism.simulation import Simulation, simulated
 from bezstab.mechanism.start import constraint_errors, constraint_jacobian, initial_state, perturbed_state
-from bezstab.mechanism.varying_runs import check_steps_may_vary, simulated_with_steps
+from bezstab.mechanism.varying_runs import simulated_with_steps
 
 __all__ = [
     "CHEAPER_TOGETHER",
@@ -108,7 +108,6 @@ __all__ = [
     "acceleration_function",
     "acceleration_jacobians",
     "at_speed",
-    "check_steps_may_vary",
     "compiled_asked_for",
     "compiled_mechanism",
     "compiled_source",

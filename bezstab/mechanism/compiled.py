@@ -1,5 +1,6 @@
 """A mechanism: a scene with its equations of motion, and the functions that are generated and compiled from them."""
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -20,6 +21,7 @@ from bezstab.mechanism.generated_code import (
     observation_source,
     residuals_source,
     second_order_stepper,
+    single_step_source,
 )
 from bezstab.mechanism.newton_iterations import (
     TOLERANCE,
@@ -114,6 +116,18 @@ def compiled_stepper(mechanism: Mechanism, method: Method, library: Any) -> Call
     """Return the function whose source `stepper_code` returns, in the arithmetic of math, numpy or mpmath."""
     run: Callable[..., Iterator[Step]] = compiled_source(stepper_code(mechanism, method), library)["run"]
     return run
+
+
+@cache
+def compiled_single_step(mechanism: Mechanism, method: Method) -> Callable[..., tuple[Step, tuple[float, ...]]]:
+    """Return single_step(start, h, two_alpha, beta_squared, remembered, solve), on floats: a step of its own length.
+
+    `remembered` is flat: state, then past, or what a second-order scheme carries (units in which h = 1). It returns a
+    step as `compiled_stepper` yields it, and what is remembered after it.
+    """
+    source = single_step_source(stepper_of(mechanism, method))
+    single_step: Callable[..., tuple[Step, tuple[float, ...]]] = compiled_source(source, math)["single_step"]
+    return single_step
 
 
 Solver = Callable[..., tuple[Sequence[Any], Any]]

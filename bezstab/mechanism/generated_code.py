@@ -8,6 +8,7 @@ functions. From its top to its end, each part under a comment of its own:
     functions of a state                   acceleration, multipliers, observation
     steppers: their pieces                 what a step consists of, as data
     a stepper as a generator               one run, step by step
+    a stepper as a single step             one step, and what the next begins with
     a stepper as a block                   one run, many steps at a time
     a stepper as a batch                   many runs, of which constraint errors are kept
     steppers of first-order schemes        the pieces of multistep and Runge-Kutta methods
@@ -301,9 +302,9 @@ def _indented(lines: Iterable[str], depth: int) -> list[str]:
 
 # Steppers: their pieces
 #
-# A stepper takes one step a turn of its loop. It is put together as data first, because three texts are made of it:
-# a generator, a block of steps, a batch of runs. Most pieces are lines that all three share; the others say what they
-# are for, since that is where the three differ.
+# A stepper takes one step a turn of its loop. It is put together as data first, because four texts are made of it:
+# a generator, a single step, a block of steps, a batch of runs. Most pieces are lines that all of them share; the
+# others say what they are for, since that is where the texts differ.
 
 
 @dataclass(frozen=True)
@@ -419,6 +420,34 @@ def _generator_lines(piece: Piece) -> list[str]:
             return [f"{older} = {newer}"]
         case Yielded(state, slope):
             return [COUNT, f"yield {_tuple_text(state)}, {_tuple_text(slope)}, worst_pivot"]
+
+
+# A stepper as a single step: a function that takes one and returns what the next begins with, so that it can be changed
+#
+#     def single_step(start, h, two_alpha, beta_squared, remembered, solve):
+#      k = 0
+#      (q0, v0,) = remembered
+#      ...                                                the lines of a turn
+#      taken = (q0, v0,), (f0, f1,), worst_pivot
+#      return taken, (q0, v0,)
+
+
+def single_step_source(stepper: Stepper) -> str:
+    """Return the source of single_step(start, h, two_alpha, beta_squared, remembered, solve).
+
+    `remembered` holds what the stepper remembers, in its order. Of a step at time `start` (s) it returns what the
+    generator yields, and what is remembered after it.
+    """
+    remembered = _tuple_text(stepper.remembered)
+    lines = [COUNT_FROM, f"{remembered} = remembered", *stepper.preparations]
+    for piece in stepper.turn:
+        if isinstance(piece, Yielded):
+            lines.append(f"taken = {_tuple_text(piece.state)}, {_tuple_text(piece.slope)}, worst_pivot")
+        else:
+            lines += _generator_lines(piece)
+    lines.append(f"return taken, {remembered}")
+    head = "def single_step(start, h, two_alpha, beta_squared, remembered, solve):"
+    return "\n".join([head, *_indented(lines, 1)])
 
 
 # A stepper as a block: a function that takes many steps and stores their states, in plain loops over plain arrays

@@ -126,7 +126,7 @@ def simulate(
         t=np.arange(len(rows), dtype=np.float64) * whole_step,
         q=rows[:, : mechanism.size],
         v=rows[:, mechanism.size :],
-        evaluations=_evaluation_count(method, start, steps_taken) + work.evaluations,
+        evaluations=evaluation_count(method, start, steps_taken) + work.evaluations,
         failure=failure,
         least_pivot=history.least_pivot,
         pivot_time=history.pivot_step * whole_step,
@@ -188,7 +188,7 @@ def march_in_blocks(
     remaining = count - starting
     if not remaining:
         return
-    moment, remembered, repeated = _first_turn(mechanism, method, h, gains, states, slopes, None, math, work)
+    moment, remembered, repeated = first_turn(mechanism, method, h, gains, states, slopes, None, math, work)
     for block in blocks_of_steps(mechanism, method, moment, h, gains, remembered, repeated + remaining):
         new = Block(block.states[repeated:], block.pivots[repeated:])
         repeated -= len(block.states) - len(new.states)
@@ -214,7 +214,7 @@ def resume(
     the last one those of what it was before (`undisturbed`, by default itself).
     """
     work = work or Work()
-    moment, remembered, repeated = _first_turn(mechanism, method, h, gains, history, slopes, undisturbed, library, work)
+    moment, remembered, repeated = first_turn(mechanism, method, h, gains, history, slopes, undisturbed, library, work)
     run = compiled_stepper(mechanism, method, library)
     if run_as_second_order(method):
         turns = run(moment, h, *gains, remembered, implicit_solver(mechanism, method, library, work))
@@ -238,7 +238,7 @@ def resume_in_groups(
     A group is a slice of the batch's last axis; its errors come in blocks of shape (steps, m, *batch, the last axis
     cut to the group), SI units. Explicit methods only. InputError without numba.
     """
-    moment, remembered, repeated = _first_turn(mechanism, method, h, gains, history, slopes, undisturbed, np, Work())
+    moment, remembered, repeated = first_turn(mechanism, method, h, gains, history, slopes, undisturbed, np, Work())
     index = len(history) - 1 - repeated
     shape = np.broadcast_shapes(*(np.shape(entry) for entry in (*history[-1], *gains)))
 
@@ -257,7 +257,7 @@ def resume_in_groups(
         yield some, new(blocks)
 
 
-def _first_turn(
+def first_turn(
     mechanism: Mechanism,
     method: Method,
     h: float,
@@ -379,7 +379,7 @@ def breakdown(state: State, pivot: float) -> str | None:
     return f"blow-up: the coordinates and velocities exceed {BLOWN_UP:g} in sum, or are not finite"
 
 
-def _evaluation_count(method: Method, start: Start, steps_taken: int) -> int:
+def evaluation_count(method: Method, start: Start, steps_taken: int) -> int:
     """Return the number of right-hand sides of the first so many steps, the starting ones included.
 
     But for those that a second-order scheme starts with, and those of Newton's method: `Work` has them.

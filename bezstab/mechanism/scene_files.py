@@ -13,6 +13,7 @@ from bezstab.errors import InputError, unknown_name
 from bezstab.files import read_toml
 from bezstab.mechanism.scenes import (
     COORDINATES,
+    DURATION,
     GROUND,
     Body,
     Distance,
@@ -61,6 +62,7 @@ def parse_scene(data: dict[str, Any]) -> Scene:
     top = TomlTable(data, "scene")
     name = top.text("name")
     gravity = top.point("gravity", default=NOWHERE)
+    duration = top.positive_number("duration", default=DURATION)
     chain = _four_bar_chain(top)
 
     bodies = (*(_body(table) for table in top.tables("body")), *chain.bodies)
@@ -81,7 +83,7 @@ def parse_scene(data: dict[str, Any]) -> Scene:
     velocity = initial.numbers("velocity", allowed=coordinates)
     guess = initial.numbers("guess", allowed=coordinates)
     top.refuse_unknown_keys()
-    return Scene(name, gravity, bodies, joints, forces, springs, position, velocity, {**chain.guess, **guess})
+    return Scene(name, gravity, bodies, joints, forces, springs, position, velocity, {**chain.guess, **guess}, duration)
 
 
 def _refuse_taken_names(body_names: Sequence[str]) -> None:

@@ -1,9 +1,12 @@
 """Runs whose steps vary: a sequence of step lengths, taken again and again.
 
-Only explicit one-step methods, Runge-Kutta and symplectic Euler, run so: their next state depends on the last alone.
+Only one-step methods run so: the next state follows from the last and, with some, an acceleration stored beside it.
+Inside a second-order scheme h = 1, where positions, h v and h^2 a are carried: a step r times as long as the one before
+begins with r times that h v and r^2 times that h^2 a. The acceleration itself is what it was, whatever the gains do.
 """
 
 import math
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from itertools import cycle
 
@@ -11,13 +14,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.errors import InputError
-from bezstab.mechanism.compiled import Mechanism, State, Step, compiled_stepper, run_as_second_order
+from bezstab.mechanism.compiled import (
+    Mechanism,
+    Solver,
+    State,
+    Step,
+    compiled_single_step,
+    implicit_solver,
+    run_as_second_order,
+)
+from bezstab.mechanism.compiled_steps import flat
 from bezstab.mechanism.energies import EnergyBalance
+from bezstab.mechanism.newton_iterations import Work
 from bezstab.mechanism.observation import observe
-from bezstab.mechanism.runner import Trajectory, breakdown, recorded_history
+from bezstab.mechanism.runner import Gains, Trajectory, breakdown, evaluation_count, first_turn, recorded_history
+from bezstab.mechanism.second_order_memory import POSITION, VELOCITY, memory
 from bezstab.mechanism.simulation import Simulation
 from bezstab.mechanism.start import perturbed_state
-from bezstab.methods import Method, check_one_step, evaluations
+from bezstab.methods import Method, check_one_step, implicit
 from bezstab.units import feedback_gains
 
 FloatArray = NDArray[np.float64]
@@ -41,10 +55,10 @@ def simulated_with_steps(
 
     alpha_hat and beta_hat belong to a step of h (s), and the alpha and beta that they are stay as they are; with `hold`
     alpha_hat and beta_hat stay, and alpha and beta follow the steps. The first constraint is off by `perturb` (m) at
-    the start. Work and drift of energy are integrated by the trapezoidal rule. InputError for a method that cannot
-    change its step, and as `simulated`.
+    the start. Work and drift of energy are integrated by the trapezoidal rule. InputError for a method of several
+    steps, and as `simulated`.
     """
-    check_steps_may_vary(method)
+    check_one_step(method)
     q, v = perturbed_state(mechanism, perturb)
     first: State = (*q.tolist(), *v.tolist())
     blown_up = breakdown(first, pivot=1.0)
@@ -54,7 +68,8 @@ def simulated_with_steps(
     own_steps = [length / float(method.step_multiple) if hold else h for length in lengths.tolist()]
     gains = [feedback_gains(alpha_hat, beta_hat, step) for step in own_steps]
     t = np.concatenate([[0.0], np.cumsum(lengths)])
-    history = recorded_history(first, _march(mechanism, method, t.tolist(), lengths.tolist(), gains, first))
+    work = Work()
+    history = recorded_history(first, _march(mechanism, method, t.tolist(), lengths.tolist(), gains, first, work))
     rows = np.array(history.states, dtype=np.float64)
     steps_taken = len(rows) - 1
     failure = None
@@ -68,10 +83,11 @@ def simulated_with_steps(
         t=times,
         q=rows[:, : mechanism.size],
         v=rows[:, mechanism.size :],
-        evaluations=steps_taken * evaluations(method),
+        evaluations=evaluation_count(method, "rk4", steps_taken) + work.evaluations,
         failure=failure,
         least_pivot=history.least_pivot,
         pivot_time=float(t[history.pivot_step]),
+        iterations=work.iterations if implicit(method) else None,
     )
     # at each time the gains of the step that begins there; at the last, those of the step that led to it
     at_times = np.minimum(np.arange(len(rows)), len(lengths) - 1)
@@ -85,13 +101,6 @@ def simulated_with_steps(
     return Simulation(
         trajectory=trajectory, observation=observation, balance=balance, h=h, alpha_hat=alpha_hat, beta_hat=beta_hat
     )
-
-
-def check_steps_may_vary(method: Method) -> None:
-    """Raise InputError unless a run of the method may change the length of its steps."""
-    check_one_step(method)
-    if run_as_second_order(method):
-        raise InputError(f"{method.name}: steps vary in runs of explicit Runge-Kutta methods and SYM only")
 
 
 def _lengths(sequence: Sequence[float], duration: float) -> FloatArray:
@@ -111,15 +120,35 @@ def _march(
     method: Method,
     times: Sequence[float],
     lengths: Sequence[float],
-    gains: Sequence[tuple[float, float]],
+    gains: Sequence[Gains],
     state: State,
+    work: Work,
 ) -> Iterator[Step]:
     """Yield step after step, each from a time by a length with its gains, as `runner.march` does."""
-    run = compiled_stepper(mechanism, method, math)
-    for time, length, (two_alpha, beta_squared) in zip(times, lengths, gains, strict=False):
-        step = next(run(time, length, two_alpha, beta_squared, state, []))
-        state = step[0]
+    single_step = compiled_single_step(mechanism, method)
+    # each length has a solver of its own: the Jacobian that it keeps is no good for others
+    solvers: defaultdict[float, Solver] = defaultdict(lambda: implicit_solver(mechanism, method, math, work))
+    powers = _powers_of_step(mechanism, method)
+    before = lengths[0]
+    _, start, _ = first_turn(mechanism, method, before, gains[0], [state], [], None, math, work)
+    remembered = tuple(flat(start))
+    for time, length, own_gains in zip(times, lengths, gains, strict=False):
+        ratio = length / before
+        remembered = tuple(ratio**power * number for power, number in zip(powers, remembered, strict=True))
+        solve = solvers[length] if implicit(method) else None
+        step, remembered = single_step(time, length, *own_gains, remembered, solve)
+        before = length
         yield step
+
+
+def _powers_of_step(mechanism: Mechanism, method: Method) -> list[int]:
+    """Return the power of h that is a factor of each number that a step begins with."""
+    scheme = run_as_second_order(method)
+    if scheme is None:
+        return [0] * (2 * mechanism.size)  # q and v as they are
+    # the helpers that a one-step method carries are accelerations, as guesses of those that it has to solve for
+    own_powers = {POSITION: 0, VELOCITY: 1}
+    return [own_powers.get(quantity.name, 2) for quantity in memory(scheme).carried for _ in range(mechanism.size)]
 
 
 def _integral(rates: FloatArray, times: FloatArray) -> FloatArray:

@@ -13,29 +13,31 @@ from bezstab.errors import InputError
 
 ALIASES = {
     # Euler's and the trapezoidal rule
-    **dict.fromkeys(("explicit-euler", "forward-euler"), "RK1"),
-    **dict.fromkeys(("backward-euler", "euler-backward", "euler-implicit"), "implicit-euler"),
+    **dict.fromkeys(("explicit-euler", "forward-euler", "ode1"), "RK1"),
+    **dict.fromkeys(("backward-euler", "euler-backward", "euler-implicit", "ode1be"), "implicit-euler"),
     **dict.fromkeys(("symplectic-euler", "semi-implicit-euler", "semiimplicit-euler", "euler-cromer"), "SYM"),
+    "semi-explicit-euler": "SYM",
     **dict.fromkeys(("trapezoidal", "trapezoidal-rule", "trapezium", "trapezium-rule", "crank-nicolson"), "trapezoid"),
+    **dict.fromkeys(("implicit-trapezoid", "implicit-trapezoidal", "ode23t"), "trapezoid"),
     **dict.fromkeys(("gauss1", "implicit-midpoint-rule", "midpoint-implicit"), "implicit-midpoint"),
-    "explicit-midpoint": "RK2",
+    **dict.fromkeys(("explicit-midpoint", "explicit-midpoint-rule", "midpoint-explicit"), "RK2"),
     "matsuno": "SIE",
     # pairs
-    **dict.fromkeys(("rk45", "ode45", "dopri", "dopri54", "dormand-prince"), "dopri5"),
-    **dict.fromkeys(("rk23", "ode23", "bs32", "bs23", "bogacki-shampine"), "bs3"),
+    **dict.fromkeys(("rk45", "ode45", "dopri", "dopri54", "dormand-prince", "ode5"), "dopri5"),
+    **dict.fromkeys(("rk23", "ode23", "bs32", "bs23", "bogacki-shampine", "ode3"), "bs3"),
     **dict.fromkeys(("tsit", "tsitouras", "tsit54", "tsitouras5"), "tsit5"),
     **dict.fromkeys(("cashkarp", "rkck"), "cash-karp"),
     **dict.fromkeys(("ssp3", "ssprk33", "ssp-rk3", "tvd-rk3", "shu-osher"), "ssprk3"),
-    **dict.fromkeys(("heun2", "improved-euler", "explicit-trapezoid"), "heun"),
+    **dict.fromkeys(("heun2", "improved-euler", "explicit-trapezoid", "ode2", "ssprk2", "ssprk22", "tvd-rk2"), "heun"),
     "ralston2": "ralston",
     "kutta3": "RK3",
-    **dict.fromkeys(("classical-runge-kutta", "runge-kutta4", "runge-kutta-4"), "RK4"),
+    **dict.fromkeys(("classical-runge-kutta", "runge-kutta4", "runge-kutta-4", "ode4"), "RK4"),
     # structural dynamics
     **dict.fromkeys(("hht-alpha", "hilber-hughes-taylor"), "hht"),
     **dict.fromkeys(
         ("generalised-alpha", "gen-alpha", "genalpha", "g-alpha", "galpha", "chung-hulbert"), "generalized-alpha"
     ),
-    **dict.fromkeys(("newmark-beta", "newmark"), "newmark(1/4,1/2)"),
+    **dict.fromkeys(("newmark-beta", "newmark", "implicit-newmark"), "newmark(1/4,1/2)"),
     **dict.fromkeys(("constant-acceleration", "constant-average-acceleration"), "average-acceleration"),
     **dict.fromkeys(("central-differences", "explicit-newmark"), "central-difference"),
     # symplectic compositions, Nystroem, control
@@ -61,8 +63,24 @@ VERLETS = (
 EULERS = "RK1 (explicit), SYM (symplectic, 'semi-implicit' in engines), implicit-euler, imex-euler (velocity implicit)"
 MOULTON = "am2 to am6 (implicit, solved), ABM2 to ABM4 (predicted, corrected once)"
 BDFS = "bdf1 to bdf6"
+FIFTH_ORDER = "dopri5, tsit5, cash-karp"
+TABLEAU = "a .toml file may have its A and b"
+EQUATIONS = "a .toml file may have its equations"
+
+ENGINES = (
+    *("crocoddyl", "pinocchio", "rbdl", "rigidbodydynamics.jl", "maplesim", "drake", "chrono-explicit"),
+    *("brax-spring", "bullet", "ode", "dart", "box2d", "rapier", "chipmunk", "chrono-linearized", "drake-sap"),
+    *("brax-contact", "jolt-spring", "physx-drive", "jolt", "pbd", "xpbd", "brax-positional"),
+    *("chrono", "brax", "physx"),
+)
+"""Engines other than MuJoCo: nobody means one method by them."""
 
 ADVICE = {
+    **dict.fromkeys(
+        ENGINES, "an engine, not a method: `bezstab engines` says what it steps with; --engine takes its words"
+    ),
+    "mujoco": "an engine, whose integrators are SYM (Euler), RK4 and, for drives, imex-euler (implicit, implicitfast)",
+    # Verlet's and Euler's
     **dict.fromkeys(
         ("verlet", "velocity-verlet", "vv", "leapfrog", "leap-frog", "kick-drift-kick", "kdk"), f"{VELOCITY} {VERLETS}"
     ),
@@ -71,14 +89,22 @@ ADVICE = {
         f"{VELOCITY} central-difference ((x1 - x[-1])/2h, implicit), SYM ((x0 - x[-1])/h)",
     ),
     **dict.fromkeys(("position-verlet", "drift-kick-drift", "dkd"), f"not built in; {VELOCITY} {VERLETS}"),
+    "beeman": f"not built in: its positions are Verlet's, its velocities are not; {EQUATIONS}",
     "euler": f"which of Euler's? {EULERS}",
-    "semi-implicit": "SYM (symplectic Euler, 'semi-implicit' in engines), SIE (the paper's 'Euler semi-implicit')",
     **dict.fromkeys(
-        ("euler-semi-implicit",), "SIE (so called by the paper), SYM (symplectic Euler, which engines call so)"
+        ("semi-implicit", "semi-explicit"),
+        "SYM (symplectic Euler, 'semi-implicit' in engines), SIE (the paper's 'Euler semi-implicit')",
     ),
+    "euler-semi-implicit": "SIE (so called by the paper), SYM (symplectic Euler, which engines call so)",
+    "implicit": f"which? {EULERS}",
     "symplectic": "SYM (symplectic Euler), ruth3, forest-ruth, yoshida4, verlet-half (see also `verlet`)",
+    **dict.fromkeys(
+        ("yoshida6", "yoshida8", "symplectic6", "pefrl", "mclachlan", "blanes-moan", "suzuki"),
+        f"not built in; symplectic are ruth3 (order 3), forest-ruth, yoshida4 (order 4); {EQUATIONS}",
+    ),
     "midpoint": "RK2 (explicit), implicit-midpoint",
     "modified-euler": "RK2 (the explicit midpoint rule), heun (the mean of both slopes)",
+    # multistep
     "adams": f"AB1 to AB8 (explicit), {MOULTON}",
     **dict.fromkeys(("adams-bashforth", "ab"), "AB1 to AB8, by number of steps"),
     **dict.fromkeys(("adams-moulton", "am"), MOULTON),
@@ -87,38 +113,81 @@ ADVICE = {
     **dict.fromkeys(("bezier", "bézier"), "B1 to B12, by number of steps"),
     **dict.fromkeys(("bdf", "gear", "backward-differentiation"), f"{BDFS}, by order"),
     **dict.fromkeys(("bdf7", "bdf8"), f"is unstable at any step; there are {BDFS}"),
-    **dict.fromkeys(("ode15s", "ida", "cvode", "dassl"), f"changes its order; at a fixed one it is one of {BDFS}"),
-    **dict.fromkeys(("runge-kutta", "rk"), "RK1 to RK4 (classical); of order 5: dopri5, tsit5, cash-karp"),
-    **dict.fromkeys(("rk5", "rk6"), "RK1 to RK4 (classical); of order 5: dopri5, tsit5, cash-karp"),
-    **dict.fromkeys(("rkf45", "fehlberg", "rkf"), "not built in; pairs of order 5(4): dopri5, tsit5, cash-karp"),
-    **dict.fromkeys(("dop853", "dopri853", "dopri8"), "not built in; pairs of order 5(4): dopri5, tsit5, cash-karp"),
+    **dict.fromkeys(("ida", "dassl", "daspk", "gstiff"), f"changes its order; at a fixed one it is one of {BDFS}"),
+    "ode15s": f"changes its order, and its formulas are near {BDFS}, which they are with its option BDF",
+    **dict.fromkeys(
+        ("lsoda", "lsode", "odeint", "vode", "zvode", "cvode"),
+        f"changes its order; at a fixed one it is one of am2 to am6 (Adams) or of {BDFS} (BDF)",
+    ),
+    **dict.fromkeys(("ode113", "ddeabm"), "changes its order; near it at a fixed one: ABM2 to ABM4 (PECE)"),
+    # explicit Runge-Kutta
+    **dict.fromkeys(("runge-kutta", "rk", "kutta", "rk5", "rk6"), f"RK1 to RK4 (classical); of order 5: {FIFTH_ORDER}"),
+    **dict.fromkeys(("rkf45", "fehlberg", "rkf"), f"not built in; pairs of order 5(4): {FIFTH_ORDER}; {TABLEAU}"),
+    **dict.fromkeys(
+        ("dop853", "dopri853", "dopri8", "ode78", "ode89", "ode8", "rk8", "rkf78", "vern7", "vern9", "verner"),
+        f"not built in; the highest order is 5: {FIFTH_ORDER}; {TABLEAU}",
+    ),
+    **dict.fromkeys(
+        ("rk38", "3/8", "3/8-rule", "kutta-3/8", "gill", "runge-kutta-gill", "ralston4"),
+        "RK4 has the same poles, as all explicit methods of 4 stages and order 4 have",
+    ),
+    **dict.fromkeys(
+        ("heun3", "ralston3"), "RK3 has the same poles, as all explicit methods of 3 stages and order 3 have"
+    ),
+    **dict.fromkeys(
+        ("bulirsch-stoer", "gbs", "gragg", "odex"),
+        f"changes its order; at a fixed one {TABLEAU}; near it: {FIFTH_ORDER}",
+    ),
+    **dict.fromkeys(("rkc", "rock2", "rock4", "runge-kutta-chebyshev"), f"not built in; {TABLEAU}"),
+    # implicit Runge-Kutta
     **dict.fromkeys(
         ("radau", "radau5", "radau-iia", "radauiia", "radau-iia-5", "radau-iia5"),
-        "built in is radau3 (Radau IIA, 2 stages, order 3)",
+        f"built in is radau3 (Radau IIA, 2 stages, order 3); of another {TABLEAU}",
     ),
     **dict.fromkeys(
         ("gauss", "gauss2", "gauss-legendre", "gauss6"),
-        "implicit-midpoint (1 stage, order 2), gauss4 (2 stages, order 4)",
-    ),
-    **dict.fromkeys(("sdirk", "dirk", "dirk2"), "sdirk2 (order 2), dirk3 (order 3), both of Alexander, L-stable"),
-    **dict.fromkeys(
-        ("tr-bdf2", "trbdf2"), "not built in; near it: sdirk2 (L-stable, one step), bdf2 (L-stable, two steps)"
+        f"implicit-midpoint (1 stage, order 2), gauss4 (2 stages, order 4); of another {TABLEAU}",
     ),
     **dict.fromkeys(
-        ("wbz", "wood-bossak-zienkiewicz", "bossak"), "not built in; near it: hht(...), generalized-alpha(...)"
+        ("lobatto", "lobatto-iiia", "lobattoiiia"), f"of 2 stages Lobatto IIIA is trapezoid; of another {TABLEAU}"
     ),
-    **dict.fromkeys(("houbolt", "wilson-theta", "bathe"), "not built in; near it: hht(...), generalized-alpha(...)"),
-    **dict.fromkeys(("implicit", "mujoco"), f"which? {EULERS}"),
+    **dict.fromkeys(("lobatto-iiib", "lobattoiiib", "lobatto-iiic", "lobattoiiic"), f"not built in; {TABLEAU}"),
+    **dict.fromkeys(
+        ("sdirk", "dirk", "dirk2", "esdirk", "sdirk4"),
+        f"sdirk2 (order 2), dirk3 (order 3), both of Alexander, L-stable; of another {TABLEAU}",
+    ),
+    **dict.fromkeys(
+        ("tr-bdf2", "trbdf2", "ode23tb", "bathe"),
+        f"not built in; near it: sdirk2 (L-stable, one step), bdf2 (L-stable, two steps); {TABLEAU}",
+    ),
+    **dict.fromkeys(
+        ("rosenbrock", "rosenbrock23", "ode23s"),
+        "linearly implicit, not built in; of order 2 with gamma = 1 - 1/sqrt 2 it has the poles of sdirk2",
+    ),
+    **dict.fromkeys(("seulex", "ode14x"), f"extrapolates linearly implicit Euler, not built in; {TABLEAU}"),
+    # structural dynamics
+    **dict.fromkeys(
+        ("wbz", "wbz-alpha", "wood-bossak-zienkiewicz", "bossak", "houbolt", "wilson", "wilson-theta"),
+        f"not built in; near it: hht(...), generalized-alpha(...); {EQUATIONS}",
+    ),
+    "theta-method": "trapezoid (theta = 1/2), implicit-euler (theta = 1)",
+    # no feedback at all
+    **dict.fromkeys(
+        ("rattle", "shake", "settle", "lincs", "projection", "coordinate-projection", "ggl", "gear-gupta-leimkuhler"),
+        "makes the constraints hold at every step instead of feeding their errors back: it has no alpha, beta",
+    ),
 }
 """What to say to names, in lower case, that mean several methods, or one that is not built in."""
 
+GREEK = str.maketrans({"α": "alpha", "β": "beta", "θ": "theta", "ρ": "rho"})
 LEAST_LETTERS = 5  # of a word that may be misspelt by other than the order of its letters
+CONTRARY = {"explicit": "implicit", "implicit": "explicit", "forward": "backward", "backward": "forward"}
 SIMILARITY = 0.8  # of such words: one letter wrong in five, two in eleven
 
 
 def folded(name: str) -> str:
-    """Return a name as it is compared: in lower case, with - for _."""
-    return name.lower().replace("_", "-")
+    """Return a name as it is compared: in lower case, with - for _ and spaces, with the names of Greek letters."""
+    return re.sub(r"[_\s]", "-", name.lower().translate(GREEK))
 
 
 def unknown_method(name: str, known: Iterable[str]) -> InputError:
@@ -144,7 +213,7 @@ def near_names(name: str, known: Sequence[str]) -> list[str]:
     Their word, the letters alone, must be the same but for their order, or nearly so where it is long: BDF2 is not B2.
     Among the methods of one word the nearest number is taken; of words that are equally near, each.
     """
-    names = [*known, *ALIASES, *ADVICE]
+    names = [other for other in (*known, *ALIASES, *ADVICE) if not _is_of_another_kind(name, other)]
     word = _word(name)
     by_word: dict[str, list[str]] = {}
     for other in names:
@@ -157,6 +226,18 @@ def near_names(name: str, known: Sequence[str]) -> list[str]:
     else:
         words = _closest(word, [other for other in by_word if len(other) >= LEAST_LETTERS])
     return [_nearest(name, by_word[each]) for each in words]
+
+
+def _is_of_another_kind(name: str, other: str) -> bool:
+    """Return whether the other is implicit where the name says explicit, or the like, or the same of something else."""
+    kinds = [word for word in re.split(r"[\W\d_]+", folded(name)) if word in CONTRARY]
+    word, other_word = _word(name), _word(other)
+    if any(CONTRARY[kind] in other_word for kind in kinds):
+        return True
+    shared = [kind for kind in kinds if kind in other_word]
+    for kind in shared:
+        word, other_word = word.replace(kind, ""), other_word.replace(kind, "")
+    return bool(shared) and SequenceMatcher(None, word, other_word).ratio() < SIMILARITY
 
 
 def _closest(word: str, others: Sequence[str]) -> list[str]:

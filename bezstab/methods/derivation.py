@@ -4,6 +4,7 @@ With y' = lambda y and mu = h lambda every method becomes a polynomial pi(z, mu)
 mu^2 + alpha_hat mu + beta_hat = 0. Eliminating mu from the two by a resultant gives P(z; alpha_hat, beta_hat).
 """
 
+from collections.abc import Sequence
 from fractions import Fraction
 from functools import cache
 
@@ -66,10 +67,8 @@ def characteristic_polynomial(method: Method) -> sp.Poly:
             pi = multistep_polynomial(corrector) + new_weight * RING_MU * multistep_polynomial(predictor)
         case RungeKutta(tableau, weights):
             # det(I - mu A + mu 1 b^T) / det(I - mu A) = R(mu) (Hairer & Wanner II, Proposition IV.3.2)
-            stages = range(len(weights))
-            rows = [[RING(int(i == j)) - RING_MU * _in_ring(tableau[i][j]) for j in stages] for i in stages]
-            with_weights = [[rows[i][j] + RING_MU * _in_ring(weights[j]) for j in stages] for i in stages]
-            above, below = _determinant(with_weights), _determinant(rows)
+            less_weights = [[a - b for a, b in zip(row, weights, strict=True)] for row in tableau]
+            above, below = _determinant_less_mu_times(less_weights), _determinant_less_mu_times(tableau)
             unused = above.gcd(below)  # a factor of stages that the step does not depend on
             unused = unused.quo_ground(unused.const())
             pi = RING_Z * below.quo(unused) - above.quo(unused)
@@ -80,11 +79,12 @@ def characteristic_polynomial(method: Method) -> sp.Poly:
     return sp.Poly.from_dict({(k, j): c for (k, j, _, _), c in pi.items()}, Z, MU, domain=sp.QQ)
 
 
-def _determinant(rows: list[list[PolyElement]]) -> PolyElement:
-    """Return the determinant of a matrix of polynomials, without dividing (Berkowitz)."""
-    size = len(rows)
-    *_, constant = DomainMatrix(rows, (size, size), RING.to_domain()).charpoly()
-    return constant * (-1) ** size
+def _determinant_less_mu_times(matrix: Sequence[Sequence[Fraction]]) -> PolyElement:
+    """Return det(I - mu M), the characteristic polynomial of M backwards."""
+    size = len(matrix)
+    rows = [[sp.QQ(c.numerator, c.denominator) for c in row] for row in matrix]
+    coefficients = DomainMatrix(rows, (size, size), sp.QQ).charpoly()
+    return RING.from_dict({(0, k, 0, 0): c for k, c in enumerate(coefficients) if c})
 
 
 @cache
@@ -104,11 +104,7 @@ def feedback_polynomial(method: Method) -> sp.Poly:
         feedback = multistep_polynomial(velocity).resultant(numerator).set_ring(RING)
     feedback = feedback.quo_ground(feedback.coeff(RING_MU**2))
     feedback = feedback.compose([(RING_ALPHA, m * RING_ALPHA), (RING_BETA, m**2 * RING_BETA)])
-    plane = sp.QQ[ALPHA_HAT, BETA_HAT]
-    by_power: dict[tuple[int], PolyElement] = {}
-    for (_, j, *in_plane), c in feedback.items():
-        by_power[(j,)] = by_power.get((j,), plane.zero) + plane.ring.term_new(tuple(in_plane), c)
-    return sp.Poly.from_dict(by_power, MU, domain=plane)
+    return _over_the_plane(feedback, variable=1, symbol=MU)
 
 
 @cache
@@ -120,13 +116,37 @@ def closed_loop_polynomial(method: Method) -> sp.Poly:
     method it is rho^2 + alpha_hat rho sigma + beta_hat sigma^2. For a second-order scheme it is the determinant of its
     equations. Monic in z for an explicit method; else its leading coefficient is one at alpha_hat = beta_hat = 0.
     """
-    ring = sp.QQ[ALPHA_HAT, BETA_HAT]
     if isinstance(method.scheme, SecondOrder):
-        return sp.Poly(_expression_of(closed_loop_table(method)), Z, domain=ring)
-    pi = characteristic_polynomial(method).as_expr()
-    resultant = sp.resultant(feedback_polynomial(method).as_expr(), pi, MU)
-    polynomial = sp.Poly(sp.expand(resultant), Z, domain=ring)
-    return polynomial.mul_ground(1 / polynomial.LC().subs({ALPHA_HAT: 0, BETA_HAT: 0}))
+        return sp.Poly(_expression_of(closed_loop_table(method)), Z, domain=sp.QQ[ALPHA_HAT, BETA_HAT])
+    return _over_the_plane(_closed_loop(method), variable=0, symbol=Z)
+
+
+@cache
+def _closed_loop(method: Method) -> PolyElement:
+    """Return P of a method with mu as `closed_loop_at` does, for all parameters at a time."""
+    (p_alpha, p_beta), (q_alpha, q_beta) = feedback_matrix(method)
+    p = _in_ring(p_alpha) * RING_ALPHA + _in_ring(p_beta) * RING_BETA
+    q = _in_ring(q_alpha) * RING_ALPHA + _in_ring(q_beta) * RING_BETA
+    table = coefficient_table(method)
+    A, B = RING.zero, RING.zero
+    u, v = RING.one, RING.zero  # mu^j = u + v mu
+    for column in zip(*table, strict=True):
+        in_z = _in_z(column[::-1])
+        A, B = A + in_z * u, B + in_z * v
+        u, v = -q * v, u - p * v
+    P = A**2 - p * A * B + q * B**2
+    highest = max(k for k, *_ in P)
+    return P.quo_ground(P[(highest, 0, 0, 0)])
+
+
+def _over_the_plane(polynomial: PolyElement, variable: int, symbol: sp.Symbol) -> sp.Poly:
+    """Return a polynomial in one of RING's first two variables over QQ[alpha_hat, beta_hat]."""
+    plane = sp.QQ[ALPHA_HAT, BETA_HAT]
+    by_power: dict[tuple[int], PolyElement] = {}
+    for powers, c in polynomial.items():
+        power = (powers[variable],)
+        by_power[power] = by_power.get(power, plane.zero) + plane.ring.term_new(powers[2:], c)
+    return sp.Poly.from_dict(by_power, symbol, domain=plane)
 
 
 def _expression_of(table: PlaneTable) -> sp.Expr:
@@ -150,16 +170,11 @@ def closed_loop_table(method: Method) -> PlaneTable:
             tuple(tuple(c * m ** (i + 2 * j) for j, c in enumerate(row)) for i, row in enumerate(in_plane))
             for in_plane in method.scheme.table
         )
-    polynomial = sp.Poly(closed_loop_polynomial(method).as_expr(), Z, ALPHA_HAT, BETA_HAT)
+    terms = {(k, i, j): _fraction(c) for (k, _, i, j), c in _closed_loop(method).items()}
+    most_z, most_alpha, most_beta = (max(powers[axis] for powers in terms) for axis in range(3))
     return tuple(
-        tuple(
-            tuple(
-                Fraction(polynomial.coeff_monomial(Z**k * ALPHA_HAT**i * BETA_HAT**j))
-                for j in range(polynomial.degree(BETA_HAT) + 1)
-            )
-            for i in range(polynomial.degree(ALPHA_HAT) + 1)
-        )
-        for k in range(polynomial.degree(Z) + 1)
+        tuple(tuple(terms.get((k, i, j), ZERO) for j in range(most_beta + 1)) for i in range(most_alpha + 1))
+        for k in range(most_z + 1)
     )
 
 

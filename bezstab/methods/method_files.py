@@ -17,6 +17,9 @@ EQUATIONS = f"a table of equations like x1 = {EXAMPLE!r}"
 SHOWN = 40  # characters of what was given in place of an equation
 LISTED = 200  # and of the keys that were given instead
 
+MOST_STAGES = 40  # of a tableau: its exact P takes 3 s
+MOST_STEPS = 100  # of a multistep method: its region takes 20 s
+
 MOST_STEPS_COMPARED = 12  # as in the largest built-in member; the weights of n steps take n^3 exact operations
 
 
@@ -48,13 +51,20 @@ def _parse_scheme(table: TomlTable) -> Scheme:
     if {"rho", "sigma"} <= found and not {"A", "b"} & found:
         rho, sigma = table.rationals("rho"), table.rationals("sigma")
         table.refuse_unknown_keys()
+        _refuse_more_than(MOST_STEPS, len(rho) - 1, "steps")
         return LinearMultistep(rho, sigma)
     if {"A", "b"} <= found and not {"rho", "sigma"} & found:
         tableau, weights = table.rational_rows("A"), table.rationals("b")
         table.refuse_unknown_keys()
+        _refuse_more_than(MOST_STAGES, len(weights), "stages")
         return RungeKutta(tableau, weights)
     listed = ", ".join(sorted(found)) or "none"
     raise InputError(f"expected the keys rho and sigma, or A and b, or the table update, but found {listed[:LISTED]}")
+
+
+def _refuse_more_than(most: int, number: int, of_what: str) -> None:
+    if number > most:
+        raise InputError(f"{number} {of_what}: expected at most {most}")
 
 
 def _sum_text(result: str, text: object) -> str:

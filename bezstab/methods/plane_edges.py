@@ -30,6 +30,7 @@ from math import gcd
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
+from bezstab.errors import NumericalError
 from bezstab.methods.schemes import ONE, ZERO, Method
 from bezstab.methods.schur import is_schur
 from bezstab.methods.shared_factors import reduced_table
@@ -38,7 +39,8 @@ from bezstab.rationals import bisected_integers, whole_multiples
 A, B = sp.symbols("alpha_hat beta_hat")
 RING = sp.QQ[A, B]
 
-LONG = 300  # bits of a coefficient: factors are looked for modulo primes of a multiple of that
+LONG = 700  # bits of a coefficient: factors are looked for modulo primes of a multiple of that
+HIGH = 8  # degree in alpha_hat: with coefficients so long, discriminants of such curves take minutes
 LEVEL_BITS = 70  # of a level, relative: float64 has 53
 
 CurveTable = tuple[tuple[Fraction, ...], ...]
@@ -77,12 +79,14 @@ def plane_strips(method: Method, level: Fraction) -> PlaneStrips | None:
     """Return the plane of a second-order scheme cut where |z_p| < level may begin or end; None if that is nowhere.
 
     Proven: Schur's recursion in rationals decides one point of each cell. Roots that no feedback moves are left out.
+    NumericalError where numbers have so many digits that it would take minutes.
     """
     coefficients = _coefficients(reduced_table(method), level)
     edges = _edges(coefficients)
     if any(not edge for edge in edges):
         return None  # a pair z_i z_j = r^2, or a root +-r, everywhere
     factors = _factors(edges)
+    _refuse_what_takes_minutes(factors, method, level)
     curves = [factor for factor in factors if factor.degree(A) > 0]
     levels, lost = _levels(factors, curves)
     between = _between(list(levels))
@@ -216,6 +220,15 @@ def _parts(polynomial: sp.Poly, long: bool) -> list[sp.Poly]:
             content = sp.gcd(content, c)
         parts += [each for each in (content, part.exquo(content)) if not each.is_ground]
     return parts
+
+
+def _refuse_what_takes_minutes(factors: list[sp.Poly], method: Method, level: Fraction) -> None:
+    for factor in factors:
+        if factor.degree(A) >= HIGH and _length(factor) > LONG:
+            raise NumericalError(
+                f"{method.name}: |z_p| < {float(level):.6g} has an edge of degree {factor.degree(A)} with coefficients "
+                f"of {_length(factor)} bits, which takes minutes; take a level, or coefficients, of fewer digits"
+            )
 
 
 def _length(polynomial: sp.Poly) -> int:

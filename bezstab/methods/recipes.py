@@ -32,6 +32,7 @@ from bezstab.rationals import rational
 NUMBER = r"(?P<number>\d+(?:\.\d*)?(?:/\d+)?)"
 NAME = r"(?P<name>[A-Za-z_]\w*)(?P<index>\[\s*-?\d{1,3}\s*\])?"
 SIGN = r"(?P<sign>[-+*/(),])"
+EXPONENT = re.compile(r"\s*\d+(?:\.\d*)?[eE][-+]?\d+", re.ASCII)
 TOKEN = re.compile(rf"\s*(?:{NUMBER}|{NAME}|{SIGN})", re.ASCII)
 NUMBERED = re.compile(rf"([{POSITION}{VELOCITY}{ACCELERATION}])(\d+)", re.ASCII)
 PLAIN = re.compile(r"\w+(?:\[-?\d+\])?", re.ASCII)  # what is shown as it is of a result
@@ -83,6 +84,9 @@ class _Reader:
         end = len(text.rstrip())
         position = 0
         while position < end:
+            exponent = EXPONENT.match(text, position)
+            if exponent:
+                self._refuse(repr(exponent.group().strip()[:SHOWN]), "a number like 1/2 or 0.5, without exponent")
             word = TOKEN.match(text, position)
             if word is None:
                 self._refuse(repr(text[position:].strip()[0]), "a sum of numbers times quantities")

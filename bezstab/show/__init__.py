@@ -66,7 +66,7 @@ from bezstab.show.rows import (
     witness_row,
 )
 from bezstab.show.schemas import ROW_KINDS, json_schema
-from bezstab.show.varying_rows import sequence_text, varying_row, varying_words
+from bezstab.show.varying_rows import repeated, sequence_text, varying_row, varying_words
 from bezstab.show.vocabulary import VOCABULARY
 from bezstab.show.words import growth_words, safety_words, seconds_words
 
@@ -164,6 +164,7 @@ __all__ = [
     "region_figure",
     "region_row",
     "render",
+    "repeated",
     "row",
     "run_row",
     "safety_words",

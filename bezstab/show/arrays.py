@@ -128,6 +128,10 @@ def write_arrays(arrays: Mapping[str, NDArray[np.generic]], form: Literal["csv",
 
 def _csv_cells(array: NDArray[np.generic]) -> list[str]:
     """Return an array's values as CSV has them: of numbers every digit, as Python writes them."""
+    if array.dtype == np.float64:  # each number once, however often a grid repeats it; by its bits, for 0.0 == -0.0
+        bits, places = np.unique(array.view(np.int64), return_inverse=True)
+        different = list(map(repr, bits.view(np.float64).tolist()))
+        return [different[place] for place in places.tolist()]
     return list(map(_csv_text if array.dtype.kind == "U" else repr, array.tolist()))
 
 

@@ -13,7 +13,7 @@ from bezstab.rationals import exact
 from bezstab.show import plot
 from bezstab.show.rows import alpha_and_beta
 from bezstab.show.style import styled
-from bezstab.stability import FloatArray, dominant_pole, poles, region, spectral_radius, verdict, window
+from bezstab.stability import FloatArray, dominant_pole, poles, region, spectral_radius, useful_window, verdict
 
 POINTS = 150  # per axis of the map: it appears at once
 STEPS = 100  # of the decay
@@ -58,7 +58,7 @@ class Explorer:
         """Draw the map of the current method anew."""
         axes, stable = self.map, region(self.method)
         axes.clear()
-        alpha_range, beta_range = window(stable)
+        alpha_range, beta_range = useful_window(stable)
         alpha_hat = _cell_centres(alpha_range)
         beta_hat = _cell_centres(beta_range)
         z_abs = spectral_radius(self.method, alpha_hat, beta_hat[:, np.newaxis])

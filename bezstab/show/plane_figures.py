@@ -67,7 +67,7 @@ def region_figure(
             plot.best_point(best, axes, h)
         if chosen and _inside(chosen.alpha_hat, alpha_hat) and _inside(chosen.beta_hat, beta_hat):
             plot.choice(chosen, axes, h)
-        plot.goes_on(region, axes)
+        plot.goes_on(region, axes, h)
         plot.marks(marks or {}, axes, h)
         left, bottom = plane_coordinates(alpha_hat[0], beta_hat[0], h)
         right, top = plane_coordinates(alpha_hat[-1], beta_hat[-1], h)

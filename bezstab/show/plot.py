@@ -66,12 +66,9 @@ __all__ = [
     "work_precision",
 ]
 
-GOES_ON: Mapping[tuple[bool, bool], tuple[Point, Point]] = {
-    (True, True): ((0.78, 0.9), (0.99, 0.99)),
-    (True, False): ((0.75, 0.3), (0.99, 0.3)),
-    (False, True): ((0.25, 0.85), (0.25, 0.99)),
-}
-"""From where to where an arrow points, in shares of the axes: to the right, upwards."""
+EDGE = 0.99
+"""Share of the axes at which an arrow that points beyond them ends."""
+SHARES = np.linspace(0.1, 0.9, 81)
 PARABOLA = 400  # points of a smooth curve: more than its pixels tell apart
 MARK_SHAPES = "Ds^vP"
 
@@ -187,16 +184,25 @@ def _one_point(point: Point, axes: Axes, h: float | None, **line: Any) -> Line2D
     return drawn
 
 
-def goes_on(region: Region, axes: Axes) -> Annotation | None:
+def goes_on(region: Region, axes: Axes, h: float | None = None) -> Annotation | None:
     """Draw an arrow and the word "unbounded" to where a region goes on beyond the axes; return it, None if it does not.
 
-    Up, to the right or both, as its limits say.
+    Into the upper right corner if the region goes on there, else to the right, else up, through the middle of what is
+    inside at that edge. With h (s) the axes are 2 alpha (1/s) and beta^2 (1/s^2).
     """
     if region.bounded or region.extent is None:
         return None
     rightwards, upwards = (bool(np.isinf(end)) for _, end in region.extent)
-    place = GOES_ON.get((rightwards, upwards))
-    if place is None:
+    corner = _middle_inside(region, axes, h, np.array([EDGE]), np.array([EDGE]))
+    at_the_right = _middle_inside(region, axes, h, np.array([EDGE]), SHARES)
+    at_the_top = _middle_inside(region, axes, h, SHARES, np.array([EDGE]))
+    if rightwards and upwards and corner:
+        place = (0.78, 0.9), corner
+    elif rightwards and at_the_right:
+        place = (0.75, at_the_right[1]), at_the_right
+    elif upwards and at_the_top:
+        place = (at_the_top[0], 0.85), at_the_top
+    else:
         return None
     outline = withStroke(linewidth=1.6, foreground="black")
     return axes.annotate(
@@ -211,6 +217,19 @@ def goes_on(region: Region, axes: Axes) -> Annotation | None:
         path_effects=[outline],
         arrowprops={"arrowstyle": "->", "color": "white", "path_effects": [outline]},
     )
+
+
+def _middle_inside(region: Region, axes: Axes, h: float | None, across: FloatArray, up: FloatArray) -> Point | None:
+    """Return the middle of those places that lie inside a region, in shares of the axes; None if none does."""
+    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+    x_of_one, y_of_one = plane_coordinates(1.0, 1.0, h)
+    across, up = np.broadcast_arrays(across, up)
+    alpha_hat, beta_hat = (left + (right - left) * across) / x_of_one, (low + (high - low) * up) / y_of_one
+    inside = np.flatnonzero(region.contains(alpha_hat, beta_hat))
+    if not inside.size:
+        return None
+    middle = inside[inside.size // 2]
+    return float(across[middle]), float(up[middle])
 
 
 def marks(points: Mapping[str, Point], axes: Axes | None = None, h: float | None = None) -> list[Line2D]:

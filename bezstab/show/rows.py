@@ -89,7 +89,7 @@ def moving_row(moving: MovingPole) -> Row:
     """Return what a mechanism's motion does to the poles at one point; kappa in 1/s, the rest dimensionless.
 
     `z_abs_moving` is the rate over the motion, `z_abs_worst` the largest for a moment; `safe_speed` the factor on the
-    speed at which the rate is one, None where no speed is, or none is safe.
+    speed at which the rate is one or the law ends, None where no speed is safe, or every one.
     """
     speed = moving.safe_speed if math.isfinite(moving.safe_speed) else None
     return row(
@@ -298,6 +298,7 @@ def measurement_row(scene: str, measurement: Measurement) -> Row:
         "law_verdict": measurement.law_verdict,
         "floquet_z_abs": measurement.floquet_abs,
         **{f"measured_{key}": value for key, value in measured.items()},
+        "law_fitted_z_abs": measurement.law_fitted_abs,
         "measured_rate": measurement.measured_rate,
         "measured_verdict": measurement.measured_verdict,
         **{f"difference_{key}": value for key, value in difference.items()},
@@ -314,6 +315,8 @@ def summary_row(measurements: Sequence[Row]) -> Row:
     From its rows by measurement_row, at least one.
     """
     errors = [abs(each["difference_z_abs"]) for each in measurements if isinstance(each["difference_z_abs"], float)]
+    fitted = [(each["measured_z_abs"], each["law_fitted_z_abs"]) for each in measurements]
+    by_the_law = [abs(a - b) for a, b in fitted if isinstance(a, float) and isinstance(b, float)]
 
     def median_over_the_motion(key: str) -> float | None:
         """Return the median difference of a prediction from the rate over whole revolutions."""
@@ -327,6 +330,7 @@ def summary_row(measurements: Sequence[Row]) -> Row:
         "measured": len(errors),
         "median_error": float(median(errors)) if errors else None,
         "largest_error": max(errors, default=None),
+        "law_fitted_error": float(median(by_the_law)) if by_the_law else None,
         "called": sum(each["verdicts_agree"] is not None for each in measurements),
         "wrong": sum(each["verdicts_agree"] is False for each in measurements),
         "revolutions_measured": sum(isinstance(each["measured_rate"], float) for each in measurements),
@@ -350,8 +354,8 @@ def likeness_row(column: str, likeness: Likeness) -> Row:
         likeness,
         without={"predicted", "error"},
         column=column,
-        predicted_abs=abs(likeness.predicted),
-        predicted_angle_deg=complex_parts("", likeness.predicted)["angle_deg"],
+        predicted_z_abs=abs(likeness.predicted),
+        predicted_z_angle_deg=complex_parts("", likeness.predicted)["angle_deg"],
         fits=likeness.fits,
     )
 
@@ -363,8 +367,12 @@ def like_point_row(column: str, point: LikePoint, h: float | None) -> Row:
 
 
 def linted_row(linted: Linted) -> Row:
-    """Return what an element of a MuJoCo model means, and whether it is safe: None where that was not judged."""
-    return row(linted, safe=None if linted.verdict is None else not linted.unsafe)
+    """Return what an element of a MuJoCo model means, and whether it is safe: None where that was not judged.
+
+    None, too, for advice where there is none.
+    """
+    safe = None if linted.verdict is None else not linted.unsafe
+    return row(linted, without={"advice"}, advice=linted.advice or None, safe=safe)
 
 
 def verdict_map_row(verdicts: VerdictMap) -> Row:

@@ -42,9 +42,9 @@ APPLIED = ("applied", "excludes")
 """What --engine adds."""
 DRIVE = _keys("drive kp kd inertia kp_max kd_max used_up")
 """What --pd adds."""
-VARYING = _keys("varying varying_h_min varying_h_max hold certificate_kind certificate sequence")
+VARYING = _keys("varying varying_h_min varying_h_max hold certificate_kind certificate sequence growth shown_by")
 """What --h-min adds."""
-LIKENESS = _keys("method predicted_abs predicted_angle_deg distance allowed dominant same_as fits")
+LIKENESS = _keys("method predicted_z_abs predicted_z_angle_deg distance allowed dominant same_as judged_by fits")
 LIKE_POINT = _keys("alpha_hat beta_hat alpha_hat_error beta_hat_error h alpha beta")
 
 ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
@@ -72,7 +72,7 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
         RowKind(
             "a point, or what to take instead",
             _keys(CHOICE),
-            (*APPLIED, *DRIVE, *MOVING, *VARYING),
+            (*APPLIED, "engine_h_limit", *DRIVE, *MOVING, *VARYING),
             sometimes=("excludes",),
         )
     ],
@@ -103,7 +103,8 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
             _keys("""scene method alpha_hat beta_hat
                 predicted_z_real predicted_z_imag predicted_z_abs predicted_z_angle_deg predicted_verdict
                 law_z_abs law_verdict floquet_z_abs
-                measured_z_real measured_z_imag measured_z_abs measured_z_angle_deg measured_rate measured_verdict
+                measured_z_real measured_z_imag measured_z_abs measured_z_angle_deg law_fitted_z_abs
+                measured_rate measured_verdict
                 difference_z_real difference_z_imag difference_z_abs difference_z_angle_deg
                 reason measurable verdicts_agree right"""),
         ),

@@ -13,7 +13,7 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from bezstab.methods import Method
-from bezstab.stability import FloatArray, Region, window
+from bezstab.stability import FloatArray, Region, useful_window, window
 from bezstab.units import feedback_gains
 
 Number = TypeVar("Number", float, NDArray[np.float64])
@@ -115,7 +115,7 @@ def keep_markers_whole(axes: Axes) -> None:
 def curves(axes: Axes, region: Region, h: float | None, label: str, **line: Any) -> Line2D:
     """Draw a region's boundary, all its curves as one line, and return it; of an empty one only the label shows.
 
-    Curves of an unbounded region run far out: there the axes make room for its window alone.
+    Curves of an unbounded region run far out, and islands may lie there: the axes make room for what is useful alone.
     """
     gap = np.full((1, 2), np.nan)  # lifts the pen from one closed curve to the next
     pieces: list[FloatArray] = []
@@ -123,12 +123,13 @@ def curves(axes: Axes, region: Region, h: float | None, label: str, **line: Any)
         pieces += [curve, gap]
     points = np.concatenate(pieces or [gap])
     x, y = plane_coordinates(points[:, 0], points[:, 1], h)
-    if region.bounded:
+    shown = useful_window(region)
+    if region.bounded and shown == window(region):
         (drawn,) = axes.plot(x, y, label=label, **line)
         return drawn
     drawn = Line2D(x, y, label=label, **line)
     axes.add_artist(drawn)
-    alpha_range, beta_range = (np.array(ends) for ends in window(region))
+    alpha_range, beta_range = (np.array(ends) for ends in shown)
     axes.update_datalim(np.stack(plane_coordinates(alpha_range, beta_range, h), axis=-1))
     axes.autoscale_view()
     return drawn

@@ -19,7 +19,8 @@ def varying_row(varying: VaryingSteps) -> Row:
     `certificate` is a list of rows of rational strings, which `certificate_kind` explains: a "quadratic" form X, or the
     corners of one half of a "polygon", for the state (c, h_max cdot[, h_max^2 cddot]) with h_max = `varying_h_max`;
     None where every single step is stable and steps commute ("commuting"), and where nothing is proven. `sequence` has
-    the steps (s) of a sequence that does not decay when it is repeated; None unless it was refuted.
+    the steps (s) of a sequence that does not decay when it is repeated, `growth` times as large errors after each
+    round; None unless it was refuted.
     """
     certificate, sequence = varying.certificate, varying.sequence
     return {
@@ -30,6 +31,7 @@ def varying_row(varying: VaryingSteps) -> Row:
         "certificate_kind": varying.kind,
         "certificate": None if certificate is None else [[str(number) for number in row] for row in certificate],
         "sequence": None if sequence is None else [float(step) for step in sequence],
+        "growth": varying.growth,
     }
 
 
@@ -45,15 +47,27 @@ def varying_words(name: str, varying: VaryingSteps) -> str:
             steps = sequence_text(varying.sequence)
             if len(varying.sequence) == 1:
                 return f"{name}, {held}: refuted for {of_range}: a step of {steps} alone does not decay."
-            return f"{name}, {held}: refuted for {of_range}: {steps}, over and over, do not decay."
+            return f"{name}, {held}: refuted for {of_range}: {steps}, over and over, {_growth(varying)}."
         case "not known":
             return f"{name}, {held}: not known whether every sequence of {of_range} decays."
 
 
 def sequence_text(sequence: Sequence[Fraction]) -> str:
     """Return steps in s as text, with how often each is taken: 3 of 0.01 s, then 0.02 s."""
-    runs = [(step, len(list(same))) for step, same in groupby(sequence)]
-    return ", then ".join(_seconds(step) if count == 1 else f"{count} of {_seconds(step)}" for step, count in runs)
+    return ", then ".join(
+        _seconds(step) if count == 1 else f"{count} of {_seconds(step)}" for step, count in repeated(sequence)
+    )
+
+
+def repeated(sequence: Sequence[Fraction]) -> list[tuple[Fraction, int]]:
+    """Return steps with how often each is taken in turn: (0.01, 3), (0.02, 1)."""
+    return [(step, len(list(same))) for step, same in groupby(sequence)]
+
+
+def _growth(varying: VaryingSteps) -> str:
+    """Return what a sequence does to errors: how many times as large they are after each round, where that is seen."""
+    growth = "" if varying.growth is None else f"{varying.growth:.3g}"
+    return f"grow {growth}-fold each time" if growth and float(growth) > 1 else "do not decay"
 
 
 def _seconds(step: Fraction) -> str:

@@ -74,7 +74,11 @@ VOCABULARY: Mapping[str, Key] = {
     "double_pole": Key("truth", "Whether another pole is so near that the first-order law fails and a bound is shown"),
     "settled": Key("truth", "Whether the terms left out cannot change the verdict on the moving mechanism"),
     "moving_verdict": Key("text", "What errors do on the moving mechanism", values=MOVING_VERDICTS),
-    "safe_speed": Key("number", "Times the given speed at which errors no longer shrink", null="where no speed is"),
+    "safe_speed": Key(
+        "number",
+        "Times the given speed up to which errors shrink, at most as far as the law holds, kappa h = 0.1",
+        null="where it diverges at rest, or where nothing turns",
+    ),
     "speed": Key("number", "Times its own speed at which the scene moves"),
     "area_moving": Key("number", "Area of the region of the moving mechanism in alpha_hat and beta_hat"),
     # a region
@@ -127,6 +131,12 @@ VOCABULARY: Mapping[str, Key] = {
     "h_limit": Key(
         "number", "Largest step that is stable at this alpha and beta", "s", f"{UNSTABLE}, any step is, or h is unknown"
     ),
+    "engine_h_limit": Key(
+        "number",
+        "Largest step up to which the engine's values are stable as it reads them at each step",
+        "s",
+        f"{UNSTABLE}, any step is, or the row is not the engine's",
+    ),
     "alpha_factor_min": Key("number", "Least factor by which alpha alone may be scaled", null=UNSTABLE),
     "alpha_factor_max": Key("number", "Largest factor by which alpha alone may be scaled", null=f"{UNSTABLE}, or any"),
     "beta_factor_min": Key("number", "Least factor by which beta alone may be scaled", null=UNSTABLE),
@@ -140,6 +150,12 @@ VOCABULARY: Mapping[str, Key] = {
     "certificate_kind": Key("text", "What the certificate is", null="without a proof"),
     "certificate": Key("text rows", "Rational numbers that prove it, as rows", null="where it takes none"),
     "sequence": Key("numbers", "Steps that do not let errors decay when they are repeated", "s", "unless refuted"),
+    "growth": Key(
+        "number",
+        "Times as large as before that errors are after each such repetition",
+        null="unless refuted, and where a step has no solution",
+    ),
+    "shown_by": Key("text", "The line with which simulate shows errors grow", null="where no run shows it"),
     # engines
     "engine": Key("text", "Name of an engine"),
     "level": Key("text", "Where the engine's feedback acts", values=("acceleration", "velocity", "position")),
@@ -171,11 +187,17 @@ VOCABULARY: Mapping[str, Key] = {
     "advice": Key("text", "What to write instead", null="where nothing is to be changed"),
     "uncertainty": Key("number", "How far the fitted pole may be off", null=NOT_MEASURED),
     "samples": Key("integer", "Samples that the fit has used"),
-    "distance": Key("number", "Distance of the fitted pole from that of the method", null=NOT_MEASURED),
+    "distance": Key(
+        "number",
+        "Distance of the fitted pole from that of the method, or by which share of themselves its poles must shift for "
+        "its recursion to explain the log",
+        null=NOT_MEASURED,
+    ),
+    "judged_by": Key(
+        "text", "What in the log a method is held against, its pole or its recursion", values=("pole", "recursion")
+    ),
     "fits": Key("truth", "Whether the method agrees with the log within its uncertainty"),
     "column": Key("text", "Name of the column of the log"),
-    "predicted_abs": Key("number", "Modulus of the pole that the method would show in a log"),
-    "predicted_angle_deg": Key("number", "Angle of the pole that the method would show in a log", "degrees"),
     "allowed": Key("number", "Largest distance that still fits"),
     "dominant": Key("truth", "Whether the method's nearest pole is its dominant one"),
     "same_as": Key("text", "Methods that no log can tell from this one"),
@@ -212,11 +234,20 @@ VOCABULARY: Mapping[str, Key] = {
     "law_z_abs": Key("number", "Modulus predicted by the first-order law of the motion"),
     "law_verdict": Key("text", "Verdict predicted by the first-order law of the motion", values=MOVING_VERDICTS),
     "floquet_z_abs": Key(
-        "number", "Exact modulus per step over the motion, of the linearised steps", null="without --floquet"
+        "number",
+        "Exact modulus per step of the linearised steps over the motion the method makes",
+        null="without --floquet",
     ),
     **_pole("measured_", "the pole measured in the simulation", NOT_MEASURED),
+    "law_fitted_z_abs": Key(
+        "number",
+        "Modulus that the first-order law of the motion predicts for the very steps that were measured",
+        null="where nothing could be measured, or at a double pole",
+    ),
     "measured_rate": Key(
-        "number", "Growth per step measured over whole revolutions", null="where it cannot be followed for so long"
+        "number",
+        "Growth per step measured over whole revolutions, the first left out",
+        null="where it cannot be followed for so long",
     ),
     "measured_verdict": Key("text", "Verdict of the simulation", values=OUTCOMES),
     "difference_z_real": Key("number", "Real part measured less that predicted", null=NOT_MEASURED),

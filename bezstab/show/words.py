@@ -4,6 +4,7 @@ from bezstab.show.columns import Row, Value
 
 MOST_DIGITS = 17  # of float64: with so many every number other than one is shown as another
 THOUSAND = 1000.0
+GONE = 1e-6  # of |z|: after three steps an error is below rounding; at a double root that is zero |z| comes out as 1e-8
 UNITS = ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"))
 """Of times, the largest first: each with its seconds."""
 
@@ -31,7 +32,7 @@ def change_words(z_abs: float, verdict: Value) -> str:
         return "neither shrinks nor grows"
     converges = verdict == "converges"
     verb = "shrinks" if converges else "grows"
-    if z_abs == 0:
+    if converges and z_abs < GONE:
         return "is gone within a few steps"
     if not (z_abs < 1 if converges else z_abs > 1):
         return f"{verb}, by less at a step than rounding shows"
@@ -56,4 +57,9 @@ def safety_words(row: Row, error: str = "the error") -> str:
         return f"{safe}. {at_rest[0].upper()}{at_rest[1:]}"
     if row["moving_verdict"] in ("converges", "diverges"):
         return f"{safe}. At rest {at_rest}, over the motion it {change_words(moving, row['moving_verdict'])}"
-    return f"{safe}. At rest {at_rest}; over the motion it is {row['moving_verdict']}"
+    unsettled = f"{safe}. At rest {at_rest}; over the motion it is {row['moving_verdict']}"
+    if row["double_pole"]:
+        return (
+            f"{unsettled}: nearly a double pole, which moves like (κh)^½, at worst {row['z_abs_worst']:.3g}-fold a step"
+        )
+    return unsettled

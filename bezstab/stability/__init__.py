@@ -61,9 +61,9 @@ from bezstab.stability.choices import (
 from bezstab.stability.closed_loop import dominant_pole, poles, spectral_radius, verdict
 from bezstab.stability.gain_margins import GainLimits, gain_limits
 from bezstab.stability.grid_maps import QUALITY, pole_map
-from bezstab.stability.margins import Margins, stability_margins
+from bezstab.stability.margins import Margins, largest_stable_step, stability_margins
 from bezstab.stability.pencils import Pencil, pencil_of, roots_in_z
-from bezstab.stability.regions import Extent, Region, pole_place, region, window
+from bezstab.stability.regions import Extent, Region, pole_place, region, useful_window, window
 from bezstab.stability.searches import bisected, first_where
 from bezstab.stability.step_families import FAMILIES, Limit, Member, bezier_limit, family_members
 from bezstab.stability.step_sequences import VaryingSteps, varying_steps
@@ -114,6 +114,7 @@ __all__ = [
     "family_members",
     "first_where",
     "gain_limits",
+    "largest_stable_step",
     "pencil_of",
     "pole_map",
     "pole_place",
@@ -125,6 +126,7 @@ __all__ = [
     "stable_for_all",
     "turning_sensitivity",
     "unconditional_damping_ratio",
+    "useful_window",
     "varying_steps",
     "verdict",
     "window",

@@ -467,7 +467,7 @@ def _other_end(pencil: Pencil, least: _Candidate) -> complex | None:
         """Return the locus at the level, and its distances from mu; -1 where f is larger."""
         locus = roots_in_mu(pencil, least.z_abs * np.exp(1j * theta))
         equal = np.isfinite(locus) & (locus.imag >= 0)
-        equal[equal] = _largest_modulus(pencil, locus[equal]) <= least.z_abs * (1 + ROUNDING)
+        equal[equal] = all_inside(pencil, locus[equal], least.z_abs * (1 + ROUNDING))
         return locus, np.where(equal, np.abs(locus - least.mu), -1)
 
     theta = np.linspace(-np.pi, np.pi, ARC_SAMPLES)

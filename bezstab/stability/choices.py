@@ -48,9 +48,9 @@ Within = Callable[[FloatArray, FloatArray, FloatArray], BoolArray]
 THOUSANDFOLD = 1e-3  # what "settled" means for the constraint error
 SAMPLES = 4000  # along a line: |z_p| has no features as narrow as that
 FIRST_GRID = 52  # points per axis of the first grid over the region's box: every valley is seen
-GRID = 13  # points per axis of a zoom
-ZOOM = 0.75  # from one grid to the next; faster ones lose valleys of ABM2 and BDF5
-ZOOMS = 90  # 0.75^89 = 8e-12 of the region at least, where the objective is flat to rounding
+GRID = 49  # points per axis of a zoom: few fine grids take less time than many coarse ones, and lose no valley
+ZOOM = 0.32  # from one grid to the next: eight spacings to either side of its best point
+ZOOMS = 23  # 0.32^22 = 1e-11 of the region at least, where the objective is flat to rounding
 FINER = 3  # times as many of all these, where the first search failed its check
 SPREAD_POINTS = 9  # per axis, of the points among which the worst is looked for
 SCOUTS = 16  # of a row one point in so many is looked at first, for a value that the others must be below

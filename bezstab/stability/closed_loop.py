@@ -32,6 +32,7 @@ from bezstab.stability.plane_pencils import PlanePencil, largest_plane_root, pla
 from bezstab.stability.root_finding import CHUNK
 
 BLOCK = 8 * CHUNK  # points whose roots are followed in one go: enough to outweigh the calls for their middles
+COMPILED_BLOCK = 2**20  # points that the cores share in one go: at the end of each they wait for each other
 
 PROVEN = 64  # verdicts that are remembered: a margin's end is asked for when it is found, and when it is checked
 ORDINARY = 1e12  # of alpha_hat and beta_hat: their products, of degree 12 at most, are within float64
@@ -128,8 +129,9 @@ def largest_pole(
         compiled = is_compiled(pencil, alpha_hat.size)
     write = _write_compiled if compiled else _write_largest_poles
     columns = max(1, alphas.shape[1])  # of no points, too
-    whole_rows = BLOCK // columns // SIDE * SIDE * columns
-    block = whole_rows or BLOCK
+    most = COMPILED_BLOCK if compiled else BLOCK
+    whole_rows = most // columns // SIDE * SIDE * columns
+    block = whole_rows or most
     for start in range(0, alpha_hat.size, block):
         stop = min(start + block, alpha_hat.size)
         shape = ((stop - start) // columns, columns) if whole_rows else (1, stop - start)

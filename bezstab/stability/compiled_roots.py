@@ -3,7 +3,7 @@
 Imported only where numba is there and pays. Each polynomial of a row differs little from the one before:
 
     row of points   . . . . . . . . . . .
-    root            o o o o o o x o o o o     o  the last two, extrapolated, start Newton's method; what it finds is
+    root            o o o o o o x o o o o     o  the last three, extrapolated, start Newton's method; what it finds is
                                 x                largest if the polynomial, divided by it, has all its roots within its
                                                  modulus, which Schur's recursion tells
                                               x  elsewhere (kinks, double roots): all roots, by Aberth's iteration
@@ -18,6 +18,7 @@ from bezstab.stability.arrays import EPS, ComplexArray, FloatArray
 
 CONVERGED = 1e-9  # relative correction after which a quadratically convergent iterate is exact to rounding
 LARGER = 1e-9  # relative: by so much the largest root must outdo the others to be it without doubt
+SMOOTH = 1e-2  # of the square of a root's change from point to point: that of the change of this change
 NEWTON_STEPS = 5  # from the extrapolated root two suffice; more than five hint at another root
 ITERATIONS = 60  # of Aberth: it needs about fifteen, from a circle; at a multiple root it would go on
 SMALL, LARGE = 1e-6, 1e6  # |z| between which powers up to z^16, and
@@ -40,7 +41,7 @@ def follow_pencil(
     coefficients = np.empty(steps + 1, np.complex128)
     work = np.empty(steps + 1, np.complex128)
     nowhere = complex(np.nan, 0.0)
-    first_now, first_before, second_now, second_before = nowhere, nowhere, nowhere, nowhere
+    first, second = (nowhere, nowhere, nowhere), (nowhere, nowhere, nowhere)  # the last three of either mu
     for i in range(alpha_hat.size):
         p, p_low = _combination(feedback[0], alpha_hat[i], beta_hat[i])
         q, q_low = _combination(feedback[1], alpha_hat[i], beta_hat[i])
@@ -50,12 +51,12 @@ def follow_pencil(
         first_mu, second_mu = _feedback_roots(p, p_low, q, q_low)
         _write_coefficients(table, first_mu, coefficients)
         is_real = first_mu.imag == 0
-        pole = _largest(coefficients, 2 * first_now - first_before, is_real, work)
-        first_before, first_now = first_now, pole
+        pole = _largest(coefficients, _extrapolated(first), is_real, work)
+        first = (pole, first[0], first[1])
         if is_real:
             _write_coefficients(table, second_mu, coefficients)
-            other = _largest(coefficients, 2 * second_now - second_before, True, work)
-            second_before, second_now = second_now, other
+            other = _largest(coefficients, _extrapolated(second), True, work)
+            second = (other, second[0], second[1])
             if _square(other) > _square(pole) or np.isnan(other.real):  # a pole that is nan stays so
                 pole = other
         poles[i] = _in_upper_half(pole)
@@ -70,13 +71,13 @@ def follow_rows(rows: FloatArray, found: ComplexArray) -> None:
     degree = len(rows) - 1
     coefficients = np.empty(degree + 1, np.complex128)
     work = np.empty(degree + 1, np.complex128)
-    now = complex(np.nan, 0.0)
-    before = now
+    nowhere = complex(np.nan, 0.0)
+    last = (nowhere, nowhere, nowhere)
     for i in range(found.size):
         for k in range(degree + 1):
             coefficients[k] = rows[k, i]
-        root = _largest(coefficients, 2 * now - before, True, work)
-        before, now = now, root
+        root = _largest(coefficients, _extrapolated(last), True, work)
+        last = (root, last[0], last[1])
         found[i] = _in_upper_half(root)
 
 
@@ -143,6 +144,17 @@ def _largest(coefficients: ComplexArray, start: complex, is_real: bool, work: Co
     if _rest_within(coefficients, root, is_real and root.imag != 0, work):
         return root
     return _largest_of_all(coefficients, work)
+
+
+@machine_code
+def _extrapolated(last: tuple[complex, complex, complex]) -> complex:
+    """Return the root to be expected from the last three, the latest first: by a parabola, next to a kink by a line."""
+    now, before, earlier = last
+    change = now - before
+    bend = change - (before - earlier)
+    if _square(bend) < SMOOTH * _square(change):  # not of nan
+        return now + change + bend
+    return now + change
 
 
 @machine_code

@@ -40,6 +40,7 @@ from bezstab.stability.searches import bisected, zoom_on_minimum
 
 AT_ZERO = 1e-9  # of the size of S_1: an interval that ends there ends at mu = 0
 ON_THE_RIM = 1 - 1e-9  # of its radius
+TOUCHING = 1e-6  # of an end of S_1: where a root touches the circle, float64 knows it to the root of its rounding
 NEAR_ZERO = 1e-6  # of an arc's largest |mu|: nearer to zero an arc lies along the imaginary axis, or is rounding
 NO_DAMPING = 1e-9  # a ratio below it is the rounding of an arc along the imaginary axis
 ZOOM_POINTS, ZOOMS = 33, 9  # each by 1/16: to 1e-11 of a sample's spacing, where the ratio is flat to rounding
@@ -104,19 +105,20 @@ def _stable_mu(method: Method) -> Bounds:
 
 
 def _exact_end(method: Method, end: float) -> Fraction:
-    """Return the exact mu with a root z = -1 that is next to an end of S_1's interval, if it is rational; else the end.
+    """Return the mu with a root z = 1 or z = -1 that is next to an end of S_1's interval, to CLOSE; else the end.
 
-    Of a multistep method there is one such mu at most.
+    Where a root only touches the circle the end is known to the root of rounding.
     """
-    at_minus_one = [Fraction(0), Fraction(0)]
-    for k, row in enumerate(coefficient_table(without_shared_factor(method))):
-        if any(row[2:]):
-            return Fraction(end)
-        at_minus_one = [total + (-1) ** k * term for total, term in zip(at_minus_one, row, strict=False)]
-    constant, slope = at_minus_one
-    if not slope or abs(-constant / slope - Fraction(end)) > AT_ZERO * abs(end):
-        return Fraction(end)
-    return -constant / slope
+    near = [Fraction(end)]
+    table = coefficient_table(without_shared_factor(method))
+    for z in (1, -1):
+        at_z = [sum((z**k * c for k, c in enumerate(column)), Fraction(0)) for column in zip(*table, strict=True)]
+        polynomial = sp.Poly([sp.Rational(c.numerator, c.denominator) for c in reversed(at_z)], STEP, domain="QQ")
+        if polynomial.degree() > 0:
+            around = sorted(end * (1 + side * TOUCHING) for side in (-1, 1))
+            found = polynomial.intervals(eps=CLOSE, inf=sp.Rational(around[0]), sup=sp.Rational(around[1]))
+            near += [Fraction(int(low.p), int(low.q)) for (low, _), _ in found]
+    return near[-1]
 
 
 def _largest_ratio(arc: Arc) -> float:

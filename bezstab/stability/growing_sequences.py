@@ -7,24 +7,28 @@ arithmetic, by the Schur test on the characteristic polynomial of the product.
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
+from itertools import groupby
 
 import numpy as np
 
 from bezstab.methods import StepMatrix, characteristic, matrix_product, recursion_verdict
+from bezstab.rationals import exact
 from bezstab.stability.arrays import FloatArray
 
-LENGTHS = 40  # tried for either kind of step
+LENGTHS = 40  # tried for either kind of step, evenly spaced
+SHORT_LENGTHS = 20  # besides, in equal ratios
 SMALLEST_SHARE = 200  # of the longest step: shorter ones are but a finer division of the same time
-COUNTS = (*range(1, 13), 14, 16, 18, 20, 24, 28, 32, 40, 48, 64)  # of steps of either length
-MOST_STEPS = 80  # in a word
+COUNTS = (*range(1, 13), 14, 16, 18, 20, 24, 28, 32, 40, 48, 64, 80, 96, 128, 160, 192, 256)  # of steps of one length
+MOST_STEPS = 260  # in a word: with little damping many short ones turn the state before two long ones stretch it
 CLEARLY = 1e-6  # by which |z| of the product exceeds one, far above rounding
 
 
 def lengths_tried(shortest: Fraction) -> list[Fraction]:
-    """Return lengths from the shortest to 1, evenly spaced."""
+    """Return lengths from the shortest to 1, evenly spaced and in equal ratios."""
     low = max(shortest, Fraction(1, SMALLEST_SHARE))
     spread = [low + (1 - low) * Fraction(k, LENGTHS - 1) for k in range(LENGTHS)]
-    return sorted({shortest, *spread})
+    short = [exact(float(low) ** (1 - k / SHORT_LENGTHS)) for k in range(1, SHORT_LENGTHS)]
+    return sorted({shortest, *spread, *short})
 
 
 def growing_words(matrix: StepMatrix, shortest: Fraction) -> Iterator[list[Fraction]]:
@@ -58,7 +62,33 @@ def _radii(products: FloatArray) -> FloatArray:
 
 def grows(matrix: StepMatrix, word: Sequence[Fraction]) -> bool:
     """Return whether the product of the steps, first taken first, has a spectral radius of one or more: exact."""
-    product = matrix.at(word[0])
-    for length in word[1:]:
-        product = matrix_product(matrix.at(length), product)
+    product: list[list[Fraction]] | None = None
+    for length, same in groupby(word):
+        repeated = _power(matrix.at(length), len(list(same)))
+        product = repeated if product is None else matrix_product(repeated, product)
+    assert product is not None
     return recursion_verdict(characteristic(product)) != "converges"
+
+
+def _power(matrix: list[list[Fraction]], exponent: int) -> list[list[Fraction]]:
+    """Return a power of a matrix by squaring: of exact numbers few products are fast, and many are not."""
+    if exponent == 1:
+        return matrix
+    half = _power(matrix, exponent // 2)
+    square = matrix_product(half, half)
+    return matrix_product(matrix, square) if exponent % 2 else square
+
+
+def growth_of(matrix: StepMatrix, word: Sequence[Fraction]) -> float:
+    """Return the spectral radius of the product of the steps, in float64; infinite where a step has no solution."""
+    try:
+        matrices = [np.array([[float(entry) for entry in row] for row in matrix.at(length)]) for length in word]
+    except (ZeroDivisionError, OverflowError):
+        return float("inf")
+    product = np.eye(matrix.size)
+    with np.errstate(all="ignore"):  # what leaves the range has grown
+        for each in matrices:
+            product = each @ product
+    if not np.isfinite(product).all():
+        return float("inf")
+    return float(np.abs(np.linalg.eigvals(product)).max())

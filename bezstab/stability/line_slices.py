@@ -253,7 +253,8 @@ def _multistep_crossings(pencil: Pencil, level: float, radius: FloatArray) -> Fl
 class _QuadraticLocus:
     """The moduli of both mu at |z| = level for PECE, sorted: two continuous functions of theta, no branch is followed.
 
-    theta: shape (samples,), ascending from 0 to pi, with every turn of either function; moduli: shape (2, samples).
+    theta: shape (samples,), ascending from 0 to pi, with every turn of either function and every angle at which both
+    are equal, and have a kink; moduli: shape (2, samples).
     (The resultant in the cosine, of degree 4 steps and a square near z = 1, keeps too few digits in float64.)
     """
 
@@ -306,21 +307,28 @@ class _QuadraticLocus:
 
 @cache
 def _quadratic_locus(pencil: Pencil, level: float) -> _QuadraticLocus:
-    """Return the locus of a PECE method, sampled more finely towards 0 and pi, with every turn of either modulus."""
+    """Return the locus of a PECE method, sampled more finely towards 0 and pi, with every turn and kink of its moduli.
+
+    Where the moduli are equal the gap between them turns, at zero.
+    """
     near = np.geomspace(1e-8, 2e-2, 160)  # towards z = 1 and -1, where mu may vanish
     even = np.linspace(2e-2, np.pi - 2e-2, QUADRATIC_SAMPLES)
     theta = np.concatenate([[0], near, even, np.pi - near[::-1], [np.pi]])
     unsampled = _QuadraticLocus(pencil.table, level, theta, np.zeros((2, 0)))
-    moduli = np.abs(unsampled.both(theta))
+
+    def turning(theta: FloatArray) -> FloatArray:
+        """Return both moduli and the gap between them; shape (3, *theta.shape)."""
+        smaller, larger = np.abs(unsampled.both(theta))
+        return np.stack([smaller, larger, larger - smaller])
+
     turns = []
-    for row in range(2):
-        values = moduli[row]
+    for which, values in enumerate(turning(theta)):
         turn = 1 + np.flatnonzero(np.diff(np.sign(np.diff(values))))
         sign = np.where(values[turn] >= np.maximum(values[turn - 1], values[turn + 1]), 1, -1)
         low, high = theta[turn - 1], theta[turn + 1]
         for _ in range(QUADRATIC_ZOOMS):
             fine = np.linspace(low, high, 17)
-            best = np.argmax(sign * np.abs(unsampled.both(fine.ravel()))[row].reshape(fine.shape), axis=0)
+            best = np.argmax(sign * turning(fine.ravel())[which].reshape(fine.shape), axis=0)
             columns = np.arange(len(turn))
             low, high = fine[np.maximum(best - 1, 0), columns], fine[np.minimum(best + 1, 16), columns]
         turns.append((low + high) / 2)

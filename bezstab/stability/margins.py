@@ -1,13 +1,22 @@
 """How far a stable point is from |z_p| = 1: by which factors h, alpha and beta can be scaled, each proven."""
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
+import numpy as np
+
+from bezstab.errors import InputError
 from bezstab.methods import Method
 from bezstab.stability.answer_checks import EITHER_SIDE, check_margin
+from bezstab.stability.arrays import BoolArray, FloatArray
 from bezstab.stability.closed_loop import converges
 from bezstab.stability.path_crossings import Path, crossing_factors
+from bezstab.stability.searches import first_where
+
+STEPS_TRIED = np.power(1.25, np.arange(93.0))
+"""Times h, up to 1e9: stretches of unstable steps are wider than a fourth."""
 
 
 @dataclass(frozen=True)
@@ -33,6 +42,29 @@ def stability_margins(method: Method, alpha_hat: Fraction | float, beta_hat: Fra
     exact_point = Fraction(alpha_hat), Fraction(beta_hat)
     by_h, by_alpha, by_beta = (Path(method, *exact_point, powers) for powers in ((1, 2), (1, 0), (0, 2)))
     return Margins(h=_ends(by_h)[1], alpha=_ends(by_alpha), beta=_ends(by_beta))
+
+
+def largest_stable_step(
+    method: Method, points_at: Callable[[Fraction], Sequence[tuple[Fraction, Fraction]]], h: float
+) -> float | None:
+    """Return the longest step (s) from h (s) up to which all of a setting's points are stable; None without an end.
+
+    `points_at` a step are the points that the setting means there, exact: of alpha and beta in 1/s they lie on the path
+    of `stability_margins`, of an error reduction per step they stay. Steps are tried up to 1e9 h, each verdict proven,
+    or up to where `points_at` raises InputError.
+    """
+
+    def unstable(step: float) -> bool:
+        try:
+            return not all(converges(method, *point) for point in points_at(Fraction(step)))
+        except InputError:  # out of range
+            return False
+
+    def any_unstable(steps: FloatArray) -> BoolArray:
+        return np.array([unstable(step) for step in steps.ravel().tolist()]).reshape(steps.shape)
+
+    ends = first_where(any_unstable, np.asarray(h * STEPS_TRIED, np.float64))
+    return None if ends is None else ends[0]
 
 
 def _ends(path: Path) -> tuple[float, float]:

@@ -69,6 +69,14 @@ class _Start:
 
 
 @dataclass(frozen=True)
+class _RealEvent:
+    """A real mu, in DIGITS digits, at which a root z = e^(i theta) is on the circle; theta in rad, float64."""
+
+    mu: mp.mpf
+    theta: float
+
+
+@dataclass(frozen=True)
 class _Digits:
     """A method's pi(z, mu) and the feedback's p and q along a path, all in DIGITS digits.
 
@@ -96,8 +104,8 @@ def crossing_factors(path: Path) -> list[float]:
         with mp.workdps(DIGITS):
             digits = _in_digits(path, pencil.method)
             found = [_refined(digits, start) for start in _on_the_locus(path, pencil)]
-            for mu in _real_mu_on_the_circle(pencil):
-                found += _factors_with_one_mu(digits, mu)
+            for event in _real_mu_on_the_circle(pencil):
+                found += _factors_with_one_mu(digits, event)
     return sorted({factor for factor in found if 0 < factor < np.inf})
 
 
@@ -124,18 +132,20 @@ def _in_mpmath(c: Fraction) -> mp.mpf:
 
 
 @cache
-def _real_mu_on_the_circle(pencil: Pencil) -> tuple[mp.mpf, ...]:
+def _real_mu_on_the_circle(pencil: Pencil) -> tuple[_RealEvent, ...]:
     """Return every real mu at which a root z has |z| = 1 (and perhaps others), in DIGITS digits, for every path."""
     table = _table_in_digits(pencil.method)
     with mp.workdps(DIGITS):
         return tuple(_refined_real_mu(table, pencil, mu) for mu in real_events(pencil, 1.0).tolist())
 
 
-def _factors_with_one_mu(digits: _Digits, mu: mp.mpf) -> list[float]:
+def _factors_with_one_mu(digits: _Digits, event: _RealEvent) -> list[float]:
     """Return the factors at which a real mu is one of the path's: mu^2 + p mu + q = 0, a quadratic in s.
 
-    Of a factor that is double but for the rounding of mu, the middle.
+    Where rounding alone makes that quadratic's roots a complex pair, so it makes the path's two mu one next to the real
+    mu of the event. Their roots z pass the circle one before and one after the middle, as far apart as they are.
     """
+    mu = event.mu
     coefficients = [mu * mu, mp.mpf(0), mp.mpf(0)]
     for power, (of_p, of_q) in zip(digits.powers, (digits.of_alpha, digits.of_beta), strict=True):
         coefficients[power] += of_p * mu + of_q
@@ -146,18 +156,22 @@ def _factors_with_one_mu(digits: _Digits, mu: mp.mpf) -> list[float]:
     discriminant = half * half - constant / square
     if discriminant < -(NEARLY_DOUBLE**2) * half * half:
         return []
-    root = mp.sqrt(max(discriminant, mp.mpf(0)))
+    if discriminant < 0:
+        middle, aside = float(-half), NEARLY_DOUBLE * abs(float(mu))
+        return [_refined(digits, _Start(event.theta, middle, complex(mu, way))) for way in (-aside, aside)]
+    root = mp.sqrt(discriminant)
     return [float(-half - root), float(-half + root)]
 
 
-def _refined_real_mu(table: list[list[mp.mpf]], pencil: Pencil, mu: float) -> mp.mpf:
+def _refined_real_mu(table: list[list[mp.mpf]], pencil: Pencil, mu: float) -> _RealEvent:
     """Return the real mu with a root on the circle next to one that float64 found, by Newton's method for both.
 
     What float64 found where that does not settle.
     """
     z = np.roots((pencil.table @ mu ** np.arange(pencil.table.shape[1]))[::-1])
     on_circle = z[np.argmin(np.abs(np.abs(z) - 1))] if z.size else 1.0
-    half_turns, better = _in_half_turns(abs(float(np.angle(on_circle)))), mp.mpf(mu)
+    theta = abs(float(np.angle(on_circle)))
+    half_turns, better = _in_half_turns(theta), mp.mpf(mu)
     for _ in range(NEWTON_STEPS):
         z = mp.expjpi(half_turns)
         value, by_z, by_mu = _value_and_slopes(table, z, mp.mpc(better))
@@ -167,8 +181,8 @@ def _refined_real_mu(table: list[list[mp.mpf]], pencil: Pencil, mu: float) -> mp
         half_turns += steps[0]
         better += steps[1]
         if abs(steps[1]) <= SETTLED * abs(better):
-            return better
-    return mp.mpf(mu)
+            return _RealEvent(better, theta)
+    return _RealEvent(mp.mpf(mu), theta)
 
 
 def _in_half_turns(theta: float) -> mp.mpf:

@@ -26,7 +26,7 @@ POINTS = 600  # all over the view: 0.1 ms
 PLASTIC = 1.32471795724474602596  # x^3 = x + 1: multiples of 1/x and 1/x^2 fill a square evenly (M. Roberts, 2018)
 UNDECIDED = 1e-9  # of |z_p|: nearer to the level float64 may be wrong where poles nearly meet
 BESIDE = 1e-9  # of what is seen: nearer to an edge a point may fall to either side
-PANELS, NODES = 8, 8  # of Gauss and Legendre: 64 lines
+PANELS, NODES = 8, 8  # of Gauss and Legendre: 64 lines to each island, 8 to each gap
 ON_A_LINE = 256  # points on which |z_p| is looked at, besides those between the drawn curves
 CURVE_ERROR = 2e-3  # of the longest line: chords between drawn points are off by 1e-4, near tangencies more
 TANGENT = 2  # lines that may disagree: those next to a tangency
@@ -109,12 +109,12 @@ def proven(method: Method, level: float, alpha_hat: float, beta_hat: float) -> b
 
 def _check_lines(pencil: PlanePencil, level: float, shape: PlaneShape, area: float) -> None:
     """Raise NumericalError unless lines of constant alpha_hat are stable as far as the curves say, and add up."""
-    (left, right), (low, high) = shape.extent
+    low, high = shape.extent[1]
     nodes, weights = leggauss(NODES)
-    half = (right - left) / (2 * PANELS)
-    middles = left + half * (1 + 2 * np.arange(PANELS))
-    lines = (middles[:, np.newaxis] + half * nodes).ravel()
-    weight = np.tile(half * weights, PANELS)
+    panels = _panels(shape.curves)
+    middles, half = (panels[1:] + panels[:-1]) / 2, np.diff(panels) / 2
+    lines = (middles[:, np.newaxis] + half[:, np.newaxis] * nodes).ravel()
+    weight = np.multiply.outer(half, weights).ravel()
     crossings = _curve_crossings(shape.curves, lines)
     margin = (high - low) / ON_A_LINE
     grid = np.linspace(low - margin, high + margin, ON_A_LINE)
@@ -146,6 +146,20 @@ def _check_lines(pencil: PlanePencil, level: float, shape: PlaneShape, area: flo
         raise NumericalError(
             f"{pencil.method.name}: the area {area:.6g} of |z_p| < {level:g} is about {terms.sum():.6g} by slices"
         )
+
+
+def _panels(curves: tuple[FloatArray, ...]) -> FloatArray:
+    """Return the ascending ends of panels of alpha_hat: PANELS to each island of curves, one to each gap.
+
+    An island may be a hundred times smaller than the way to the next. Curves that overlap in alpha_hat are one island.
+    """
+    islands: list[list[float]] = []
+    for first, last in sorted((float(curve[:, 0].min()), float(curve[:, 0].max())) for curve in curves):
+        if islands and first <= islands[-1][1]:
+            islands[-1][1] = max(last, islands[-1][1])
+        else:
+            islands.append([first, last])
+    return np.concatenate([np.linspace(first, last, PANELS + 1) for first, last in islands])
 
 
 def _curve_crossings(curves: tuple[FloatArray, ...], lines: FloatArray) -> list[FloatArray]:

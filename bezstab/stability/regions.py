@@ -326,10 +326,28 @@ def window(shown: Region) -> Extent:
     matters, that is corners and turns of its boundary at positive parameters or at least alpha h, beta h <= 2, and half
     as much again, over which it goes on.
     """
-    (alpha_min, alpha_max), (beta_min, beta_max) = shown.view or ((0.0, 1.0), (0.0, 1.0))
+    return _with_margin(shown.view or ((0.0, 1.0), (0.0, 1.0)), shown.bounded)
+
+
+def useful_window(shown: Region) -> Extent:
+    """Return the window without islands far from any use, where alpha_hat or beta_hat is negative all over.
+
+    Symplectic compositions have such islands, and pairs of order five: ten times as far out as what matters.
+    """
+    useful = [curve for curve in shown.boundary if (curve > 0).all(axis=1).any()]
+    if not shown.bounded or not useful or len(useful) == len(shown.boundary):
+        return window(shown)
+    points = np.concatenate(useful)
+    (alpha_min, beta_min), (alpha_max, beta_max) = points.min(axis=0), points.max(axis=0)
+    return _with_margin(((alpha_min, alpha_max), (beta_min, beta_max)), bounded=True)
+
+
+def _with_margin(view: Extent, bounded: bool) -> Extent:
+    """Return the ranges with the origin and a margin."""
+    (alpha_min, alpha_max), (beta_min, beta_max) = view
     low = np.minimum(0, [alpha_min, beta_min])
     high = np.maximum(0, [alpha_max, beta_max])
-    margin = (MARGIN if shown.bounded else GOES_ON) * (high - low)
+    margin = (MARGIN if bounded else GOES_ON) * (high - low)
     low = np.where(low < 0, low - margin, 0)
     high = high + margin
     return (float(low[0]), float(high[0])), (float(low[1]), float(high[1]))

@@ -280,7 +280,8 @@ def compiled_maps() -> Iterator[Line]:
         plain = rows_of(method, a, b)
         os.environ[COMPILED_CHOICE] = "yes"
         first, _ = fastest(partial(rows_of, method, a, b), 1)
-        ours, z_abs = fastest(partial(rows_of, method, a, b), REPEATS)
+        # both cores have to be free at once: that is disturbed more often than one
+        ours, z_abs = fastest(partial(rows_of, method, a, b), 3 * REPEATS)
         theirs, _ = fastest(partial(by_eigenvalues, method, *np.meshgrid(a, b)), 1)
         off = float(np.abs(z_abs - plain).max())
         assert off < CLOSE

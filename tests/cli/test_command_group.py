@@ -277,12 +277,15 @@ def test_every_option_explains_itself(name: str) -> None:
     assert all(option.help for option in command.params if isinstance(option, click.Option))
 
 
-def test_a_closed_pipe_is_no_error_to_read() -> None:
-    with subprocess.Popen(interruptible("engines"), stdout=subprocess.PIPE, stderr=subprocess.PIPE) as source:
+@pytest.mark.parametrize("command", ["engines", "check --method SYM --alpha 3 --beta 3"])
+def test_a_closed_pipe_is_no_error_to_read_and_no_verdict(command: str) -> None:
+    """1 would say that fault was found, as it is here by `check`; 141 is what a shell says of SIGPIPE."""
+    with subprocess.Popen(interruptible(*command.split()), stdout=subprocess.PIPE, stderr=subprocess.PIPE) as source:
         assert source.stdout
         assert source.stderr
         source.stdout.close()
         assert source.stderr.read() == b""
+    assert source.returncode == 141
 
 
 @pytest.mark.parametrize(

@@ -35,13 +35,20 @@ class Tolerance:
 
 TOLERANCES = (
     Tolerance("verify --witness", "remaining", 0.5, 0.0, "what MuJoCo leaves differs between its versions"),
-    Tolerance("verify", "measured_z_angle_deg|difference_z_angle_deg", 1e-6, 1e-4, "as below: 1e-6 rad in degrees"),
+    Tolerance("verify", "measured_z_angle_deg|difference_z_angle_deg", 1e-6, 1e-3, "as below: 1e-5 of |z|, in degrees"),
     Tolerance(
         "verify",
         "measured_z_.*|difference_z_.*",
         1e-6,
-        1e-6,
-        "simulated, then fitted: libm and BLAS differ between machines; a difference is as far off as what it is of",
+        1e-5,
+        "simulated, then fitted: libm and BLAS differ between machines, by less than fits are off what is predicted",
+    ),
+    Tolerance(
+        "simulate --method AB4 --alpha 0.5 --beta 0.101",
+        "c_max|cdot_max|energy_drift",
+        1e-3,
+        0.0,
+        "an unstable run: what a libm's last bit does at its start, 1e-15 m, has grown 1.0014^10000 = 1.6e6 times",
     ),
     Tolerance(
         "simulate|tradeoff",
@@ -90,11 +97,11 @@ ADDED = (
     *("bounded", "stable_for_all", "unconditional_damping_ratio", "critical_damping_limit"),
     *("implicit", "digits", "order_position_forces", "order_velocity_forces", "group"),
     *("driver_work", "force_work", "iterations", "singular_passages"),
-    *("law_z_abs", "law_verdict", "floquet_z_abs", "measured_rate", "right"),
-    *("safe", "error_constant"),
+    *("law_z_abs", "law_verdict", "floquet_z_abs", "law_fitted_z_abs", "measured_rate", "right"),
+    *("safe", "error_constant", "engine_h_limit"),
 )
 """Keys that rows have got since, in their place: more of what a region, a choice and a method is, work in a run,
-and what the motion does to a measured pole."""
+what the motion does to a measured pole, and up to which step an engine's values are stable."""
 
 
 def tolerance(command: str, key: str) -> Tolerance:

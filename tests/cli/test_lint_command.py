@@ -48,6 +48,12 @@ def test_what_is_unsafe_ends_with_status_one(tmp_path: Path) -> None:
     assert sorted(path.name for path in tmp_path.iterdir()) == ["model.xml"]
 
 
+def test_without_advice_there_is_none(tmp_path: Path) -> None:
+    model = MODEL.format(flag="").replace('solref="0.002 1"', 'solref="0.02 1"')
+    (row,) = rows("lint", written(tmp_path / "model.xml", model))
+    assert (row["safe"], row["advice"]) == (True, None)
+
+
 def test_a_model_with_nothing_to_judge_is_safe(tmp_path: Path) -> None:
     model = written(tmp_path / "empty.xml", "<mujoco/>")
     assert rows("lint", model) == []

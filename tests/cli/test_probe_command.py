@@ -64,7 +64,7 @@ def test_a_row_for_each_fit_and_for_each_method_in_order() -> None:
     assert fits[0]["z_abs"] == pytest.approx(abs(poles(lookup("B4"), 0.5, 0.1)[0]), abs=1e-6)
     for column, true in (("c_1", "B4"), ("c_2", None)):
         methods: list[dict[str, Any]] = [row for row in answer if row["column"] == column and row["method"] is not None]
-        assert {"predicted_abs", "distance", "fits", "same_as"} <= set(methods[0])
+        assert {"predicted_z_abs", "distance", "fits", "same_as"} <= set(methods[0])
         assert [row["distance"] for row in methods] == sorted(row["distance"] for row in methods)
         assert len(methods) == len(REGISTRY)
         assert [row["method"] for row in methods if row["fits"]] == ([true] if true else [])
@@ -119,6 +119,45 @@ def test_sentences_in_full() -> None:
         "fit if the mechanism turned up to 10 times as fast as is allowed for (--turning)."
     )
     assert likeness_sentence([like("B4", 2e-2)], point).startswith("nothing fits at (1, 0.25): the nearest is B4, 0.02")
+
+
+def test_where_no_pole_shows_the_recursion_is_named() -> None:
+    write("log.csv", c=response("SYM", 0.5, 0.25, 8))
+    write("zero.csv", c=np.zeros(8))
+    command = "probe log.csv --minus zero.csv --alpha 0.5 --beta 0.25 --method SYM --method RK4 --method AB4"
+    result = run(*command.split())
+    assert result.exit_code == 0
+    assert "8 samples: at least 12 are needed" in result.stdout
+    told, too_long = result.stdout.splitlines()[-3::2]
+    assert told == "c: no pole shows, but this follows the recursion of SYM at (0.5, 0.25) to 0.001; RK4 is excluded."
+    assert too_long == "c: AB4 may have made it too: it has too few rows for such a recursion."
+    fit, *methods = rows(*command.split())
+    assert fit["z_abs"] is None
+    assert [(row["method"], row["fits"], row["judged_by"]) for row in methods] == [
+        ("SYM", True, "recursion"),
+        ("RK4", False, "recursion"),
+    ]
+    alone = run(
+        *["probe", "log.csv", "--minus", "zero.csv", "--method", "SYM"]
+    )  # without a point there is no recursion
+    assert (alone.exit_code, alone.stdout.count("recursion")) == (3, 0)
+
+
+def test_a_point_in_another_unit_is_noticed() -> None:
+    write("my log.csv", c=response("SYM", 2 / 3, 1 / 4))
+    command = ["probe", "my log.csv", "--alpha", "40", "--beta", "60", "--h", "1/120"]
+    said = " ".join(run(*command).stderr.split())
+    assert "add --physical: bezstab probe 'my log.csv' --alpha 40 --beta 60 --h 1/120 --physical" in said
+    right = run(*command, "--physical")
+    assert (right.exit_code, right.stderr) == (0, "")
+    assert "this behaves like SYM at (0.666667, 0.25)" in right.stdout
+
+
+def test_what_follows_no_recursion_either_is_refused() -> None:
+    write("log.csv", c=np.random.default_rng(3).normal(size=8))
+    result = run(*["probe", "log.csv", "--alpha", "0.5", "--beta", "0.25"])
+    assert result.exit_code == 3
+    assert "8 samples: at least 12 are needed" in result.stderr
 
 
 def test_without_a_point_the_point_is_found_in_both_units() -> None:

@@ -1,15 +1,17 @@
 """Points as they are typed: an engine's words, a drive's gains, units that were probably meant."""
 
 import json
+import math
 import re
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import click
 import pytest
 
 from bezstab.cli import main
-from bezstab.cli.typed_points import _typed, say_if_units_were_mistaken
+from bezstab.cli.typed_points import say_if_units_were_mistaken, typed_number
 from bezstab.engines import DRIVE_METHODS, ENGINES
 from bezstab.methods import lookup
 from tests.cli.running import rows, run
@@ -46,6 +48,34 @@ def test_an_engines_clamps_are_applied_unless_told_not_to() -> None:
     given, _ = json.loads(as_typed.stdout)
     assert (given["alpha_hat"], given["applied"]) == (40, "as typed")
     assert "refsafe" not in as_typed.stderr
+
+
+def engine_limit(*arguments: str) -> tuple[Any, Any]:
+    """Return the largest step of an engine's values, and that of the alpha and beta which they are at 1/240 s."""
+    row = json.loads(run("check", "--engine", *arguments, "--h", "1/240", "--format", "json").stdout)[0]
+    return row["engine_h_limit"], row["h_limit"]
+
+
+@pytest.mark.parametrize("words", ["bullet=0.2", "box2d=60,2", "mujoco=0.02,1"])
+def test_what_is_meant_per_step_or_clamped_to_it_is_stable_at_any(words: str) -> None:
+    own, of_alpha_and_beta = engine_limit(words)
+    assert own is None
+    assert of_alpha_and_beta is not None
+
+
+def test_what_is_meant_in_seconds_has_a_largest_step() -> None:
+    # 2h / timeconst reaches 4 sqrt 2 - 4, where the critically damped path leaves SYM's triangle
+    as_typed, _ = engine_limit("mujoco=0.02,1", "--as-typed")
+    assert as_typed == pytest.approx(0.02 * (2 * math.sqrt(2) - 2), rel=1e-12)
+    # stiffness and damping stay as they are, as alpha and beta do: the two ways agree
+    own, of_alpha_and_beta = engine_limit("brax-spring=5000,20,1")
+    assert own == pytest.approx(of_alpha_and_beta, rel=1e-9)
+    assert engine_limit("pbd=1.5")[0] is None  # not stable at all
+
+
+def test_the_sentence_says_how_far_an_engines_step_may_grow() -> None:
+    said = run("check", "--engine", "bullet=0.2", "--h", "1/240").stdout.splitlines()[0]
+    assert said == "Safe. The error shrinks 0.8-fold a step; h may grow without limit, α to 1.9 times, β to 3.16 times."
 
 
 def test_what_an_engine_takes_for_large_errors_has_to_be_safe_too() -> None:
@@ -156,8 +186,9 @@ def test_what_is_given_in_one_over_seconds_is_taken_without_a_word() -> None:
 
 
 def test_a_number_is_shown_as_it_would_be_typed() -> None:
-    shown = [_typed(Fraction(text)) for text in ("20", "0.002", "1/240", "-1/2", "1e-9", "0.1234567890123")]
-    assert shown == ["20", "0.002", "1/240", "-0.5", "1e-09", "1234567890123/10000000000000"]
+    shown = [typed_number(Fraction(text)) for text in ("20", "0.002", "1/240", "-1/2", "1e-9", "0.1234567890123")]
+    assert shown == ["20", "0.002", "1/240", "-0.5", "1e-09", "0.1234567890123"]
+    assert typed_number(Fraction(0.1)) == "0.1"  # which float64 reads as that very number
 
 
 @pytest.mark.parametrize("name", main.list_commands(CONTEXT))
@@ -202,3 +233,20 @@ def test_a_drive_without_one_of_its_gains_is_shown_too(gains: str) -> None:
     result = run("poles", "--pd", gains, "--h", "0.01")
     assert result.exit_code == 0, result.stderr
     assert "SYM" in result.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("check", "--engine", "bulet=0.2", "--h", "0.01"), "unknown engine 'bulet': did you mean bullet?"),
+        (("check", "--engine", "SYM=0.2", "--h", "0.01"), "unknown engine 'SYM' (names: mujoco,"),
+        (("check", "--engine", "bullet", "--h", "0.01"), "'bullet' has no values: expected bullet=ERP"),
+        (("check", "--pd", "1,2,0", "--h", "0.01"), "'--pd': inertia 0: expected above 0"),
+        (("choose", "--engine", "bullet", "--h", "0.01"), "ask `check --engine bullet=ERP` about values of yours"),
+    ],
+)
+def test_a_mistake_is_told_with_what_is_accepted(arguments: tuple[str, ...], said: str) -> None:
+    result = run(*arguments)
+    assert result.exit_code == 2
+    assert said in " ".join(result.stderr.split())
+    assert result.stdout == ""

@@ -1,4 +1,5 @@
 import json
+import shlex
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,7 @@ from tests.cli.running import run
 from tests.reference.symbolic_steps import form_decreases, symplectic_euler
 
 EXAMPLE = ("--method", "SYM", "--alpha", "2", "--beta", "100", "--physical")
+OF_A_USER = Path(__file__).parents[2] / "configs" / "methods" / "ssprk3.toml"
 NOTHING = ("--figure", "none", "--table", "none")
 
 
@@ -36,6 +38,58 @@ def test_steps_that_are_stable_alone_are_refuted_together_and_simulate_shows_it(
     assert grown["c_max"] > 1e-2
 
 
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        (*EXAMPLE, "--h-min", "0.00917", "--h-max", "1/60"),
+        ("--method", "SYM", "--alpha", "0.4", "--beta", "1", "--h", "2", "--h-min", "0.2", "--hold"),
+        ("--method", "RK4", "--alpha", "6", "--beta", "2", "--h", "1e-4", "--h-min", "5e-5"),  # 1e-4 s alone grows
+        ("--method", "RK4@4", "--alpha", "0.2", "--beta", "0.936", "--h", "0.02", "--h-min", "0.001"),
+        (*EXAMPLE, "--h-min", "0.00917", "--h-max", "1/60", "--scene", "slider_crank", "--speed", "1/2"),
+        ("--method", "verlet-half", "--alpha", "0.05", "--beta", "3", "--h", "0.01", "--h-min", "0.002"),
+        ("--method", "verlet-old", "--alpha", "0.2", "--beta", "1", "--h", "0.01", "--h-min", "0.002", "--hold"),
+        ("--method", "newmark(1/4,1/2)", "--alpha", "0.1", "--beta", "1", "--h", "0.01", "--h-min", "0.002", "--hold"),
+        ("--method", "generalized-alpha", "--alpha", "0.02", "--beta", "40", "--h", "0.01", "--h-min", "0.0005"),
+    ],
+)
+def test_the_line_that_shows_errors_grow_does_as_typed(arguments: tuple[str, ...]) -> None:
+    given, _ = rows_of("check", *arguments, status=1)
+    assert given["varying"] == "refuted"
+    assert given["growth"] > 1
+    program, *line = shlex.split(given["shown_by"])
+    assert program == "bezstab"
+    result = run(*line, *NOTHING, "--format", "json")
+    assert (result.exit_code, result.stderr) == (0, "")
+    (grown,) = json.loads(result.stdout)
+    assert grown["c_max"] > 1e-4  # a hundred times what it began with: a start may lie athwart of what grows
+    assert f"    {given['shown_by']}\n" in run("check", *arguments).stdout
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("--method", "SYM", "--alpha", "1", "--beta", "2", "--h", "0.01", "--h-min", "0.001"),  # marginal at h
+        # a method that has no name to type
+        ("--method", str(OF_A_USER), "--alpha", "9", "--beta", "9", "--h", "0.01", "--h-min", "0.001"),
+    ],
+)
+def test_no_line_is_given_that_would_show_nothing(arguments: tuple[str, ...]) -> None:
+    given, _ = rows_of("check", *arguments, status=1)
+    assert given["varying"] == "refuted"
+    assert given["shown_by"] is None
+    assert "This shows" not in run("check", *arguments).stdout
+
+
+def test_on_a_narrow_terminal_the_line_goes_on_as_in_a_shell(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = ("check", *EXAMPLE, "--h-min", "0.00917", "--h-max", "1/60")
+    given, _ = rows_of(*asked, status=1)
+    monkeypatch.setenv("COLUMNS", "80")
+    command = next(part for part in run(*asked).stdout.split("\n\n") if part.startswith("    bezstab simulate"))
+    assert max(map(len, command.splitlines())) <= 80
+    assert len(command.splitlines()) > 1
+    assert shlex.split(command.replace("\\\n", "")) == shlex.split(given["shown_by"])
+
+
 def test_anyone_can_verify_the_certificate_that_is_printed() -> None:
     point = ("--alpha", "1", "--beta", "1/4", "--h", "0.001")
     given, _ = rows_of("check", "--method", "SYM", *point, "--h-min", "0.0001")
@@ -60,6 +114,26 @@ def test_held_parameters_are_another_question() -> None:
     held, _ = rows_of(*at, "--hold", status=1)
     assert (fixed["varying"], fixed["hold"]) == ("proven", False)
     assert (held["varying"], held["hold"]) == ("refuted", True)
+
+
+@pytest.mark.parametrize(
+    ("words", "held"),
+    [("bullet=0.2", True), ("box2d=60,2", True), ("brax-spring=500,20,1", False), ("physx-drive=1000,100", False)],
+)
+def test_an_engine_says_itself_what_it_holds(words: str, held: bool) -> None:
+    # an error reduction per step, or one that is clamped to the step, is held; a stiffness and a damping are not
+    given, _ = rows_of("check", "--engine", words, "--h", "1/60", "--h-min", "1/240")
+    assert (given["varying"], given["hold"]) == ("proven", held)
+
+
+def test_an_engine_that_holds_neither_is_refused_unless_told() -> None:
+    # a part of the error per second is another part of it at each step, and another stiffness
+    asked = ("check", "--engine", "chipmunk=0.0018", "--h", "1/60", "--h-min", "1/240")
+    refused = run(*asked)
+    assert refused.exit_code == 2
+    assert "neither the same α and β nor the same α̂ and β̂" in " ".join(refused.stderr.split())
+    given, _ = rows_of(*asked, "--hold")
+    assert given["hold"]
 
 
 def test_a_choice_is_proven_for_steps_that_vary() -> None:
@@ -97,7 +171,7 @@ def test_a_sequence_is_read_from_a_file(tmp_path: Path) -> None:
         (("simulate", "--hold"), "--hold goes with --steps"),
         (("simulate", "--method", "SYM", "--steps", "0.1,no"), "'no' is not a finite decimal or fraction"),
         (("simulate", "--method", "SYM", "--steps", "0.5*0.1"), "expected a number of steps from 1"),
-        (("simulate", "--method", "gauss4", "--steps", "0.1"), "explicit Runge-Kutta methods and SYM only"),
+        (("simulate", "--method", "bdf2", "--steps", "0.1"), "bdf2 uses values of several steps"),
     ],
 )
 def test_what_is_refused(arguments: tuple[str, ...], reason: str) -> None:

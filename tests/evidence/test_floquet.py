@@ -1,17 +1,16 @@
 """Exact rates of a moving mechanism: against the runner on complex numbers, and against the poles at rest."""
 
-from itertools import islice
-
 import numpy as np
 import pytest
 
-from bezstab.evidence import floquet_rates, kicked_constraint_errors, moving_poles
-from bezstab.evidence.floquet import _Course, _course, _leading_rates, _rates_of_all, _rates_over_revolutions
+from bezstab.evidence import floquet_rates
+from bezstab.evidence.floquet import _leading_rates, _rates_of_all, _rates_over_revolutions
+from bezstab.evidence.linearized_steps import Course, course_of_steps
 from bezstab.mechanism import compiled_mechanism, load_scene
 from bezstab.methods import Method, lookup, second_order_form
-from bezstab.stability import FloatArray, region, spectral_radius, window
+from bezstab.stability import FloatArray, spectral_radius
 from bezstab.units import feedback_gains
-from tests.evidence.driven_four_bar import four_bar, turning
+from tests.evidence.driven_four_bar import four_bar
 from tests.reference.perturbed_revolutions import runner_multipliers
 
 STABLE = {
@@ -74,17 +73,6 @@ def test_a_run_without_a_driver_has_the_rate_of_its_constraint_errors() -> None:
     assert np.abs(rates / at_rest - 1).max() < 3e-2
 
 
-def rates_of_runs(method: Method, count: int, points: FloatArray, revolutions: int) -> FloatArray:
-    """Return |z| per step from kicked runs over many revolutions, compared at the same phase; nan where not linear."""
-    kicked = kicked_constraint_errors(four_bar(), method, 1 / count, points[0], points[1], (1e-7,))
-    errors = np.array([c[:, 0, 0] - c[:, 1, 0] for c in islice(kicked, revolutions * count + 1)])
-    sizes = np.sqrt((errors**2).sum(axis=1))
-    first, last, window = revolutions // 2 * count, (revolutions - 1) * count, count // 2
-    growth = (sizes[last : last + window] ** 2).mean(axis=0) / (sizes[first : first + window] ** 2).mean(axis=0)
-    linear = sizes.max(axis=0) < 1e-3  # m; what is not a number is not less
-    return np.where(linear, growth ** (0.5 / (last - first)), np.nan)
-
-
 @pytest.mark.parametrize(("name", "columns"), [("B4", 12), ("AB4", 22), ("B8", 12), ("bdf2", 12)])
 def test_few_columns_show_the_same_rate_as_all(name: str, columns: int) -> None:
     """Two poles of each of the five constraints, or four where others die out slowly, and two columns to spare."""
@@ -107,41 +95,7 @@ def test_points_for_which_columns_do_not_suffice_are_taken_again() -> None:
     assert rates == pytest.approx(_rates_of_all(course, gains), rel=1e-12)
 
 
-def course_of(name: str, alpha_hat: list[float], beta_hat: list[float]) -> tuple[_Course, FloatArray]:
+def course_of(name: str, alpha_hat: list[float], beta_hat: list[float]) -> tuple[Course, FloatArray]:
     """Return the course of 200 steps over the four-bar's revolution, and the gains of points."""
-    course = _course(four_bar(), lookup(name), 1 / 200, 1.0)
+    course = course_of_steps(four_bar(), lookup(name), 1 / 200, 1.0)
     return course, np.array(feedback_gains(np.array(alpha_hat), np.array(beta_hat), course.step))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["B4", "AB4", "AB2", "SYM", "RK4"])
-@pytest.mark.parametrize(("count", "revolutions"), [(203, 20), (60, 40)])
-def test_runs_over_many_revolutions_show_the_exact_rate(name: str, count: int, revolutions: int) -> None:
-    """The driven four-bar at omega h = 0.031 and 0.105, where the exact rate is within 0.3 and 0.6 % of one.
-
-    Seen at 0.031: B4 off by 5e-3 from the map, 6e-5 from the law, 7e-6 from the exact rate. What remains is the share
-    of other multipliers nearly as large, and of the runs' own truncation errors in stages.
-    """
-    method = lookup(name)
-    low, high = np.transpose(window(region(method)))
-    points = np.random.default_rng(4).uniform(low, high, (6000, 2)).T
-    at_rest = spectral_radius(method, points[0], points[1])
-    points = points[:, np.abs(at_rest - 0.985) < 0.03][:, :600]
-    exact = floquet_rates(four_bar(), method, 1 / count, points[0], points[1], 1.0)
-    points = points[:, np.abs(exact - 1) < (0.003 if count > 100 else 0.006)][:, :60]
-    with np.errstate(all="ignore"):  # of runs that leave the linear range
-        shown = rates_of_runs(method, count, points, revolutions)
-    points, shown = points[:, np.isfinite(shown)], shown[np.isfinite(shown)]
-    assert shown.size >= 6
-    exact = floquet_rates(four_bar(), method, 1 / count, points[0], points[1], 1.0)
-    law = np.array([each.z_abs_moving for each in moving_poles(method, turning(), 1 / count, points[0], points[1])])
-    at_rest = spectral_radius(method, points[0], points[1])
-    apart = {label: np.median(np.abs(rates - shown)) for label, rates in (("law", law), ("exact", exact))}
-    map_apart = np.median(np.abs(at_rest - shown))
-    assert apart["exact"] <= (5e-5 if count > 100 else 3e-3)
-    assert apart["exact"] < 0.2 * map_apart or map_apart < 1e-4
-    assert apart["law"] < 0.5 * map_apart or map_apart < 1e-4
-    if count > 100:
-        # symplectic Euler's own velocities are off by h a / 2, and its Jacobians by the first order in omega h
-        told_apart = np.abs(shown - 1) > (3e-3 if name == "SYM" else 2e-4)
-        assert ((exact > 1) == (shown > 1))[told_apart].all()

@@ -6,9 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from bezstab.compiling import COMPILED_CHOICE
 from bezstab.evidence import LINEAR, SPREAD, Measurement, MovingPole, measure_poles, random_points
 from bezstab.evidence.measured_poles import KICKS, SETTLING, _kicked_responses, _measured_verdict, _measurement
-from bezstab.mechanism import Mechanism, compiled_mechanism, load_scene
+from bezstab.mechanism import Mechanism, TurningNormals, compiled_mechanism, load_scene
 from bezstab.methods import LinearMultistep, lookup, steps
 from bezstab.stability import best_point, dominant_pole, poles, spectral_radius
 from tests.mechanism.test_scenes import small
@@ -23,11 +24,12 @@ HANGING = ("B1", "AB8", "RK1", "dopri5")
 
 Points are drawn one after the other: of more points, which `make test-slow` takes, the first are those of fewer.
 """
+LEFT_BY_THE_LAW = 1e-6  # of |z|, in the median: second order in omega h, 1e-3; and the fit's own error, 1e-8
+LEFT_OF_FAR_REACHING_BDF = 5e-6  # likewise: where beta_hat is 20 to 300, second order is 1e-6 and 3e-6 of |z|
 LARGEST_BIAS = 1e-3  # of |z|, by which both mechanisms at 10 rpm move a pole at most
 # Regions that reach feedback of alpha_hat = 7, where poles of nearly equal modulus are measured across.
 FAR_REACHING = ("dopri5", "tsit5", "cash-karp")
 AT_REST = ("B4", "AB8", "RK4", "dopri5", "SYM", "verlet-half", "verlet-old", "verlet-kdk", "forest-ruth", "hht", "bdf2")
-COMPOSITIONS = ("ruth3", "forest-ruth", "yoshida4", "rkn4")
 
 
 def measurements(scene: str, name: str, count: int) -> list[Measurement]:
@@ -37,6 +39,13 @@ def measurements(scene: str, name: str, count: int) -> list[Measurement]:
 
 def errors(found: list[Measurement]) -> list[float]:
     return [abs(abs(one.measured) - abs(one.predicted)) for one in found if one.measured is not None]
+
+
+def errors_of_the_law(found: list[Measurement]) -> list[float]:
+    """Return the errors that are left where the law of the motion has taken out what the motion does."""
+    return [
+        abs(abs(one.measured) - one.law_fitted_abs) for one in found if one.measured and one.law_fitted_abs is not None
+    ]
 
 
 def contradictions(found: list[Measurement]) -> list[Measurement]:
@@ -51,6 +60,7 @@ def check(scene: str, name: str, count: int) -> None:
     assert len(wrong) > count / 2
     stages = steps(lookup(name)) == 1 and not isinstance(lookup(name).scheme, LinearMultistep)
     assert np.median(wrong) < (3e-5 if stages else 1e-5)
+    assert np.median(errors_of_the_law(found)) < LEFT_BY_THE_LAW
     hard = name in FAR_REACHING or (scene == "pendulum" and name in SLOW_FEEDBACK)
     assert max(wrong) < (1e-2 if hard else LARGEST_BIAS)
     assert not contradictions(found)
@@ -82,13 +92,20 @@ def check_promise(scene: str, name: str, count: int) -> None:
     """Hold what is promised of methods that solve equations or treat velocities differently, at 10 rpm and 1 ms."""
     found = measurements(scene, name, count)
     wrong = errors(found)
-    # compositions of kicks are stable in far islands of the plane, where poles of nearly equal modulus are many
-    assert len(wrong) > count / (10 if name in COMPOSITIONS else 2)
+    # Forest and Ruth's region is two bands in a window of which most is outside, where few steps stay within bounds
+    assert len(wrong) > count / (3 if name == "forest-ruth" else 2)
     without_stages = isinstance(lookup(name).scheme, LinearMultistep)
-    # Forest and Ruth's poles move most with the mechanism: they are off by 3.6e-5, at a tenth of the step by 5e-6
-    assert np.median(wrong) < (1e-5 if without_stages else 5e-5 if name == "forest-ruth" else 3e-5)
+    assert np.median(wrong) < (1e-5 if without_stages else 3e-5)
+    far = scene == "pendulum" and name in ("bdf5", "bdf6")
+    assert np.median(errors_of_the_law(found)) < (LEFT_OF_FAR_REACHING_BDF if far else LEFT_BY_THE_LAW)
     assert max(wrong) < LARGEST_BIAS
     assert not contradictions(found)
+
+
+def still(revolution: int | None) -> TurningNormals:
+    """Return constraints that do not turn, over a revolution of so many steps, or along a run."""
+    no_rates, metric = np.zeros((3, 1, 1)), np.ones((2, 1, 1))
+    return TurningNormals((revolution or 1000) * H, no_rates, metric, closed=revolution is not None)
 
 
 def slider_crank(rpm: float) -> Mechanism:
@@ -180,7 +197,8 @@ def test_a_breakdown_of_the_mechanism_is_no_divergence() -> None:
     assert _measured_verdict(1 + 0.5j * SPREAD, difference, size) == "too close to call"
 
 
-def test_progress_sees_every_step() -> None:
+def test_progress_sees_every_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(COMPILED_CHOICE, "no")  # what another test has compiled runs in one go
     seen: list[int] = []
 
     def progress(ks: Sequence[int]) -> Iterator[int]:
@@ -214,21 +232,22 @@ def test_no_window_reaches_beyond_the_range_that_decides_on_leaving_it() -> None
     assert max(LINEAR) == LINEAR[0]
 
 
-@pytest.mark.parametrize(("revolutions", "more"), [(1, 0), (3, 0), (3, 99), (1, -1)])
-def test_the_rate_over_the_motion_is_that_of_all_whole_revolutions(revolutions: int, more: int) -> None:
+@pytest.mark.parametrize(("revolutions", "more"), [(2, 0), (3, 0), (3, 99), (2, -1)])
+def test_the_rate_over_the_motion_is_that_of_all_whole_revolutions_but_the_first(revolutions: int, more: int) -> None:
     """Errors shrink by 0.9 in one revolution and by 0.8 in each later one; a quarter of one is needed to see a size."""
     revolution = 100
     shrunk = np.cumprod(np.r_[1.0, np.full(revolution, 0.9), np.full(1000, 0.8)] ** (1 / revolution))
     count = SETTLING + revolution // 4 + revolutions * revolution + more
     responses = sampled_responses.for_every_kick(np.append(np.ones(SETTLING), shrunk)[:count])
     at_rest = MovingPole(0.999, 0.0, 0.0, 0.999, 0.999, double=False, settled=True, safe_speed=np.inf)
-    found = _measurement(lookup("SYM"), 0.5, 0.1, at_rest, None, H, revolution, *responses)
+    found = _measurement(lookup("SYM"), 0.5, 0.1, at_rest, None, H, still(revolution), *responses)
     if more < 0:
         assert found.measured_rate is None
     else:
         assert found.measured_rate is not None
         sizes = np.sqrt(np.convolve(shrunk**2, np.ones(revolution // 4), "valid"))
-        expected = (sizes[revolutions * revolution] / sizes[0]) ** (1 / (revolutions * revolution))
+        growth = sizes[revolutions * revolution] / sizes[revolution]
+        expected = growth ** (1 / ((revolutions - 1) * revolution))
         assert found.measured_rate == pytest.approx(expected, rel=1e-12)
 
 
@@ -244,6 +263,6 @@ def test_two_poles_are_told_apart_if_in_400_samples_the_lesser_falls_to_1_over_e
     dominant = float(abs(dominant_pole(method, 2 * place, place**2)))
     responses = sampled_responses.for_every_kick(sampled_responses.geometric(1001, dominant))
     at_rest = MovingPole(dominant, 0.0, 0.0, dominant, dominant, double=False, settled=True, safe_speed=np.inf)
-    found = _measurement(method, 2 * place, place**2, at_rest, None, H, None, *responses)
+    found = _measurement(method, 2 * place, place**2, at_rest, None, H, still(None), *responses)
     assert (found.measured is not None) == told
     assert ("too near" in found.reason) != told

@@ -4,10 +4,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.typing import ArrayLike
 
-from bezstab.evidence import floquet_rates, growth_rates, momentary_rates, moving_pole, tabulated_rates
+from bezstab.evidence import (
+    floquet_rates,
+    growth_after_a_kick,
+    growth_rates,
+    momentary_rates,
+    moving_pole,
+    tabulated_rates,
+)
 from bezstab.evidence.moving_mechanisms import LARGEST_CHI, _moving_pole, _safe_speed
-from bezstab.mechanism import compiled_mechanism, load_scene, simulate, turning_normals
+from bezstab.mechanism import TurningNormals, compiled_mechanism, load_scene, simulate, turning_normals
 from bezstab.methods import lookup
 from bezstab.stability import poles, spectral_radius
 from bezstab.units import feedback_gains
@@ -30,6 +38,33 @@ def test_a_triangular_k_does_not_make_errors_grow() -> None:
     """On the driven slider-crank K is triangular in some basis: only its diagonal's mean, zero, would count."""
     turning = turning_normals(compiled_mechanism(load_scene("driven_slider_crank")), 1.0)
     assert np.abs(growth_rates(turning, np.array([2.4, 2.4j, -1 + 1j]))).max() < 1e-6 * OMEGA
+
+
+def turned_by(rates: ArrayLike, closed: bool = False) -> TurningNormals:
+    """Return constraints that turn at these rates, evenly spaced over 2 s; shape (samples + 1, m, m)."""
+    found = np.array(rates, float)
+    return TurningNormals(2.0, found, np.stack([np.eye(found.shape[1])] * 2), closed)
+
+
+def test_after_a_kick_an_error_grows_as_its_equation_says() -> None:
+    """Y' = chi K Y from e_1: exponentials where K is a number, cosines where it rotates two constraints."""
+    number, rotation = turned_by(np.full((5, 1, 1), 0.3)), turned_by([[[0, -1], [1, 0]]] * 5)
+    assert growth_after_a_kick(number, 2 + 1j, 0.1, 0.5, 1.5) == pytest.approx(0.6, rel=1e-8)
+    expected = np.log(np.cos(0.9) / np.cos(0.4)) / 0.5  # fourth order, steps of 0.01: 1e-10 a step
+    assert growth_after_a_kick(rotation, 1, 0.1, 0.5, 1.0) == pytest.approx(expected, rel=1e-8)
+    assert growth_after_a_kick(rotation, 0, 0.1, 0.5, 1.0) == 0
+
+
+@pytest.mark.parametrize(("closed", "mean"), [(False, 1.0), (True, 0.25)])
+def test_rates_are_those_of_the_next_revolution_where_the_motion_begins_anew(closed: bool, mean: float) -> None:
+    """K rises from 0 to 1 within 2 s: between 2 and 3 s it does so again, from 0 to 1/2, or stays where a run ends."""
+    rising = turned_by(np.linspace(0, 1, 5)[:, np.newaxis, np.newaxis], closed)
+    assert growth_after_a_kick(rising, 1, 0.5, 2 + 1e-9, 3) == pytest.approx(mean, rel=1e-6)
+
+
+def test_where_chi_is_infinite_there_is_no_rate() -> None:
+    with np.errstate(invalid="ignore"):
+        assert not np.isfinite(growth_after_a_kick(turned_by(np.full((5, 1, 1), 0.3)), complex("inf"), 0.1, 0.5, 1.5))
 
 
 def test_the_momentary_rate_bounds_a_scalar_one() -> None:
@@ -114,8 +149,52 @@ def test_symplectic_euler_keeps_a_mass_on_a_circle_up_to_a_known_speed(share: fl
 def test_a_pole_at_zero_limits_no_speed() -> None:
     """SYM at (1, 1/2) has the poles 1/2 and 0; what does not count has minus infinity for decay and for growth."""
     decay, growth = np.array([np.log(0.5), -np.inf]), np.array([0.1, -np.inf])
-    assert _safe_speed(decay, growth) == pytest.approx(-np.log(0.5) / 0.1)
-    assert _safe_speed(decay, np.array([-0.1, -np.inf])) == np.inf
+    assert _safe_speed(decay, growth, turned=0.01, law_ends=np.inf) == pytest.approx(-np.log(0.5) / 0.1)
+    assert _safe_speed(decay, np.array([-0.1, -np.inf]), turned=0.0, law_ends=np.inf) == np.inf
+
+
+def test_no_speed_is_safe_beyond_the_law() -> None:
+    decay, growth = np.array([np.log(0.5)]), np.array([0.001])
+    assert _safe_speed(decay, growth, turned=0.02, law_ends=np.inf) == pytest.approx(0.1 / 0.02)
+
+
+@pytest.mark.parametrize(("law_ends", "kappa_h"), [(0.01, 0.04), (0.05, 0.05), (0.5, 0.1)])
+def test_where_two_poles_mix_the_estimate_limits_the_speed(law_ends: float, kappa_h: float) -> None:
+    """At |z| = 0.8 the estimate |z| + (kappa h)^(1/2) is one at kappa h = 0.04; the law sees no limit."""
+    decay, growth = np.array([np.log(0.8)]), np.array([1e-9])
+    assert _safe_speed(decay, growth, turned=0.02, law_ends=law_ends) == pytest.approx(kappa_h / 0.02)
+
+
+@pytest.mark.parametrize(
+    ("name", "alpha_hat", "beta_hat"),
+    [
+        ("SYM", 1.0, 1.0),
+        ("SYM", 1.0, 0.99),
+        ("RK2", 2.0, 2.0),
+        ("AB4", 0.42928868, 0.04607219),
+        ("B4", 1.0127, 0.256389),
+    ],
+)
+@pytest.mark.parametrize("step", [0.001, 0.005, 0.02])
+def test_double_poles_move_by_about_the_root_of_kappa_h(
+    name: str, alpha_hat: float, beta_hat: float, step: float
+) -> None:
+    """Where the law itself has zero or no bound at all. Symplectic Euler's move by (2 kappa h)^(1/2) at most."""
+    moving = moving_pole(lookup(name), turning(), step, alpha_hat, beta_hat)
+    (exact,) = floquet_rates(four_bar(), lookup(name), step, np.array([alpha_hat]), np.array([beta_hat]), 1.0)
+    assert moving.double
+    assert moving.z_abs_moving <= moving.z_abs_worst == pytest.approx(moving.z_abs + np.sqrt(moving.kappa * step))
+    assert exact < moving.z_abs + np.sqrt(2 * moving.kappa * step)
+
+
+def test_nothing_converges_beyond_the_law() -> None:
+    """AB4 where chi is 1e-4, at kappa h = 0.19: the law sees a decay that the exact rate has not."""
+    step, alpha_hat, beta_hat = 0.06, 0.15, 0.006
+    (exact,) = floquet_rates(four_bar(), lookup("AB4"), step, np.array([alpha_hat]), np.array([beta_hat]), 1.0)
+    moving = moving_pole(lookup("AB4"), turning(), step, alpha_hat, beta_hat)
+    assert moving.z_abs_worst < 0.95
+    assert exact > 1.05
+    assert moving.verdict == "not settled for this mechanism"
 
 
 @pytest.mark.parametrize(

@@ -33,6 +33,7 @@ from bezstab.mechanism.generated_code import (
     block_source,
     compiled_source,
     generator_source,
+    single_step_source,
 )
 from bezstab.methods import Method, accuracy, lookup, recipe, steps
 from tests.mechanism.test_scenes import pendulum
@@ -207,6 +208,14 @@ def test_a_generator_is_the_pieces_in_their_order() -> None:
     ]
     run = compiled_source(generator_source(OSCILLATION), math)["run"](0.0, 0.5, 0.0, 0.0, (1.0, 0.0), ())
     assert [next(run)[0] for _ in range(3)] == [(1.0, -0.5), (0.75, -1.0), (0.25, -1.375)]
+
+
+def test_a_single_step_returns_what_the_next_begins_with() -> None:
+    moved_on = Stepper("carried, solve", OPENING, (*OSCILLATION.turn, Moved("v0", "f0")))
+    single_step = compiled_source(single_step_source(moved_on), math)["single_step"]
+    taken, remembered = single_step(0.0, 0.5, 0.0, 0.0, (1.0, 2.0), None)
+    assert taken == ((2.0, 1.5), (2.0,), 1.0)
+    assert remembered == (2.0, 2.0)  # what is yielded is from before the moves
 
 
 def test_a_block_is_the_stepper_with_its_states_stored() -> None:

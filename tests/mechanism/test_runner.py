@@ -417,17 +417,23 @@ def test_a01_the_pendulum_keeps_its_energy_and_its_place(
 
 
 @pytest.mark.parametrize(
-    ("count", "duration", "passages"), [(5, 1.5, 2), pytest.param(40, 20.0, 20, marks=pytest.mark.slow)]
+    ("count", "duration", "passages", "error"),
+    [(5, 1.5, 2, 1e-4), pytest.param(40, 20.0, 20, 1e-3, marks=pytest.mark.slow)],
 )
-def test_a02_the_four_bars_go_through_their_singular_positions(count: int, duration: float, passages: int) -> None:
-    """The benchmark has N = 40, runs for 20 s and allows errors of 1e-3 at most; its exact motion by quadrature."""
+def test_a02_the_four_bars_go_through_their_singular_positions(
+    count: int, duration: float, passages: int, error: float
+) -> None:
+    """The benchmark has N = 40, runs for 20 s and allows errors of 1e-3 at most; its exact motion by quadrature.
+
+    Rounding grows where the mechanism is singular: after 20 s the angle is off by 5e-5 to 1.5e-4, by machine.
+    """
     scene = load_scene("n_four_bar") if count == 40 else four_bars(count)
     mechanism = compiled_mechanism(scene)
     run = simulated(mechanism, lookup("RK4"), h=H, duration=duration, alpha_hat=0.02, beta_hat=1e-4)
     times = run.t[::100]  # close: the quadrature has a sharp peak where the rods turn over
     passed = motion(four_bar_chain_energies(count), np.pi / 2, -1.0, times.tolist(), digits=20)
     reference = [float(passed[time].angle) for time in times.tolist()]
-    assert run.q[::100, 0] == pytest.approx(reference, abs=1e-4)  # rad, on rods of 1 m
+    assert run.q[::100, 0] == pytest.approx(reference, abs=error)  # rad, on rods of 1 m
     assert np.ptp(run.q[:, : count + 1], axis=1).max() < 1e-4  # rad: no four-bar has branched
     assert np.abs(run.energy_drift).max() < 1e-3  # J, of hundreds
     assert len(run.singular_times) == passages

@@ -57,6 +57,7 @@ def test_the_chain_grows_with_its_count() -> None:
         ({"joint": {"type": "driver", "coordinate": "bob.x", "amplitude": 1.0}}, "never moves bob.x"),
         ({"joint": {**LINE, "direction": [0, 0]}}, "direction"),
         ({"gravity": [0.0]}, "gravity"),
+        ({"duration": 0}, "duration"),
         ({"initial__position": {"ghost.x": 1.0}}, "ghost.x"),
         ({"initial": 3}, "initial"),
         ({"force": [{"body": "ghost", "force": [0, 1]}]}, "ghost"),
@@ -77,6 +78,11 @@ def test_a_bad_scene_takes_one_line_that_names_the_key(changes: dict[str, Any], 
         parse_scene(pendulum(**changes))
     assert named in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def test_a_scene_that_says_nothing_is_looked_at_for_a_second() -> None:
+    assert parse_scene(pendulum()).duration == 1
+    assert parse_scene(pendulum(duration=0.25)).duration == 0.25
 
 
 def test_a_mere_damper_needs_no_free_length() -> None:

@@ -1,13 +1,16 @@
 """Everyday names, advice where one means several methods, and no suggestion of another kind."""
 
 import re
+from math import factorial
 
 import pytest
 
+from bezstab.engines import ENGINES
 from bezstab.errors import InputError
-from bezstab.methods import lookup
+from bezstab.methods import RungeKutta, accuracy, lookup
 from bezstab.methods.aliases import ADVICE, ALIASES, folded, near_names
 from bezstab.methods.registry import FOLDED_NAMES, PARAMETRIC, REGISTRY
+from bezstab.stability import dominant_pole
 
 
 def refusal(text: str) -> str:
@@ -45,6 +48,19 @@ def answer(text: str) -> str:
         ("tsitouras", "tsit5"),
         ("implicitfast", "imex-euler"),
         ("nyström", "rkn4"),
+        ("Generalized-α(4/5)", "generalized-alpha(4/5)"),
+        ("HHT-α", "hht"),
+        ("Newmark β", "newmark(1/4,1/2)"),
+        ("crank nicolson", "trapezoid"),
+        ("implicit-trapezoid", "trapezoid"),
+        ("semi-explicit euler", "SYM"),
+        ("explicit-midpoint-rule", "RK2"),
+        ("implicit-newmark", "newmark(1/4,1/2)"),
+        ("ode1", "RK1"),
+        ("ode2", "heun"),
+        ("ode3", "bs3"),
+        ("ode4", "RK4"),
+        ("ode5", "dopri5"),
     ],
 )
 def test_an_unambiguous_everyday_name_is_the_method(alias: str, name: str) -> None:
@@ -75,12 +91,61 @@ def test_verlet_asks_which_velocity_the_feedback_uses(name: str) -> None:
         ("tr-bdf2", ["not built in"]),
         ("rk5", ["dopri5", "tsit5", "cash-karp"]),
         ("rkf45", ["not built in"]),
+        ("DOP853", ["not built in", "order is 5", ".toml"]),
+        ("lobatto", ["IIIA is trapezoid", ".toml"]),
+        ("lsoda", ["am2 to am6", "bdf1 to bdf6"]),
+        ("CVODE", ["am2 to am6", "bdf1 to bdf6"]),
+        ("ode15s", ["bdf1 to bdf6"]),
+        ("ode113", ["ABM2 to ABM4"]),
+        ("ode23s", ["poles of sdirk2"]),
+        ("rk38", ["RK4 has the same poles"]),
+        ("yoshida6", ["forest-ruth", "yoshida4"]),
+        ("beeman", ["not built in", "Verlet", ".toml"]),
+        ("Wilson-θ", ["not built in", "generalized-alpha", ".toml"]),
+        ("bathe", ["not built in", "sdirk2", ".toml"]),
     ],
 )
 def test_a_name_of_several_methods_lists_them(name: str, offered: list[str]) -> None:
     message = refusal(name)
     assert message.startswith(f"method {name!r}: ")
     assert all(each in message for each in offered)
+
+
+@pytest.mark.parametrize("name", ["RATTLE", "shake", "settle", "lincs", "coordinate_projection", "GGL"])
+def test_methods_without_feedback_are_said_to_have_no_alpha_and_beta(name: str) -> None:
+    assert "it has no alpha, beta" in refusal(name)
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_an_engine_is_not_taken_for_a_method(engine: str) -> None:
+    assert "an engine" in refusal(engine)
+
+
+@pytest.mark.parametrize("mu", [-0.3 + 0.1j, -2 + 1j, -40 + 90j, 1j])
+def test_ode23s_has_the_pole_of_sdirk2(mu: complex) -> None:
+    """Its step applied to y' = mu y, y = 1 and h = 1: Shampine & Reichelt, SIAM J. Sci. Comput. 18, 1997, Eq. 3."""
+    d = 1 / (2 + 2**0.5)
+    first = mu / (1 - d * mu)
+    second = (mu * (1 + first / 2) - first) / (1 - d * mu) + first
+    # both are a few operations on float64 from the same number, of size 1
+    assert dominant_pole(lookup("sdirk2"), -2 * mu.real, abs(mu) ** 2) == pytest.approx(
+        complex((1 + second).real, abs(second.imag)), abs=1e-13
+    )
+
+
+@pytest.mark.parametrize(("alike", "stages"), [("RK4", 4), ("RK3", 3), ("ssprk3", 3), ("bs3", 3), ("heun", 2)])
+def test_explicit_methods_of_as_many_stages_as_their_order_have_the_poles_of_its_exponential(
+    alike: str, stages: int
+) -> None:
+    """Order p fixes the p coefficients of R that p stages have: 1/k!. So what advice says of RK3 and RK4 holds."""
+    method = lookup(alike)
+    assert isinstance(method.scheme, RungeKutta)
+    assert accuracy(method)[0] == stages == len(method.scheme.weights)
+    mu = -0.7 + 0.9j
+    expected = sum(mu**k / factorial(k) for k in range(stages + 1))
+    assert dominant_pole(method, -2 * mu.real, abs(mu) ** 2) == pytest.approx(
+        complex(expected.real, abs(expected.imag)), abs=1e-14
+    )
 
 
 @pytest.mark.parametrize("name", sorted(ADVICE))
@@ -134,6 +199,16 @@ def test_no_name_is_answered_with_one_whose_letters_are_near(typed: str) -> None
         assert "imex-euler" in refusal(typed)
     if typed == "AMB":  # the letters of ABM in another order
         assert "ABM" in refusal(typed)
+
+
+@pytest.mark.parametrize(
+    "typed",
+    ["explicit-rk4", "verlet-explicit", "explicit-bdf2", "implicit-heun", "implicit-rk4", "semi-implicit-verlet",
+     "explicit-trapezoidal-euler", "backward-heun", "forward-gauss", "implicit-ralston", "explicit-gauss4"],
+)  # fmt: skip
+def test_explicit_and_implicit_are_words_that_count(typed: str) -> None:
+    """Most letters of implicit-heun are those of implicit-euler, and of verlet-explicit those of its contrary."""
+    assert "did you mean" not in refusal(typed)
 
 
 @pytest.mark.parametrize(

@@ -165,6 +165,23 @@ def test_coefficient_table_lists_the_characteristic_polynomial(method: Method) -
     assert all(type(c) is Fraction for row in table for c in row)
 
 
+def test_a_method_of_sixteen_dense_stages_has_its_polynomials_at_once() -> None:
+    """R = 1 + sum mu^(k+1) b A^k 1 of an explicit method; ten seconds by determinants and resultants."""
+    stages = range(16)
+    A = [[Fraction(3 * i + j - 20, 7 + i + 2 * j) if j < i else Fraction(0) for j in stages] for i in stages]
+    method = Method("dense", RungeKutta(tuple(map(tuple, A)), (Fraction(1, 16),) * 16), "")
+    moments, vector = [Fraction(1)], [Fraction(1)] * 16
+    for _ in stages:
+        moments.append(sum(vector, Fraction(0)) / 16)
+        vector = [sum((a * x for a, x in zip(row, vector, strict=True)), Fraction(0)) for row in A]
+    growth, unit = coefficient_table(method)
+    assert growth == tuple(-moment for moment in moments)
+    assert unit == (Fraction(1), *[Fraction(0)] * 16)
+    at_point = closed_loop_polynomial(method).eval(1).subs({ALPHA_HAT: sp.Rational(5, 6), BETA_HAT: sp.Rational(1, 6)})
+    growths = [sum(c * mu**k for k, c in enumerate(moments)) for mu in (Fraction(-1, 2), Fraction(-1, 3))]
+    assert Fraction(at_point) == (1 - growths[0]) * (1 - growths[1])  # P(1), whose roots are z = R(mu)
+
+
 @pytest.mark.parametrize("method", SAMPLED)
 def test_closed_loop_is_the_minimal_recursion_of_the_stabilised_constraint(method: Method) -> None:
     """P annihilates every exact trajectory of c' = v, v' = -alpha_hat v - beta_hat c; nothing of lower degree does."""

@@ -2,7 +2,8 @@ from fractions import Fraction
 
 import pytest
 
-from bezstab.methods import closed_loop_at, is_schur, plane_strips
+from bezstab.errors import NumericalError
+from bezstab.methods import Method, closed_loop_at, is_schur, lookup, plane_strips, second_order_form
 from bezstab.methods.plane_edges import real_roots
 from tests.reference.second_order_methods import RECIPES, second_order
 
@@ -37,6 +38,12 @@ def test_a_strip_says_of_each_cell_what_schur_proves_at_other_points(name: str) 
         )
         stable_runs = sum(1 for i, place in enumerate(places) if i == 0 or place - places[i - 1] > F(1, 16))
         assert stable_runs <= sum(strip.stable)
+
+
+def test_numbers_so_long_that_it_would_take_minutes_are_refused() -> None:
+    recipe = Method("ABM3 as a recipe", second_order_form(lookup("ABM3").scheme), "")
+    with pytest.raises(NumericalError, match=r"of degree 8 with coefficients of \d+ bits, .* of fewer digits"):
+        plane_strips(recipe, F("0.612345678901234567"))
 
 
 def is_schur_or_none(polynomial: list[Fraction]) -> bool:

@@ -1,36 +1,135 @@
-"""Floquet multipliers from the runner itself: a revolution of steps on complex numbers, one direction at a time."""
+"""Floquet multipliers and periodic motions from the runner itself, by steps on complex numbers, and kicked runs."""
 
+from collections.abc import Iterator, Sequence
 from itertools import islice
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from bezstab.mechanism import Mechanism, motion, resume
 from bezstab.methods import Method, steps
 from bezstab.stability import FloatArray
 from bezstab.units import feedback_gains
 
+AnyArray = NDArray[Any]  # of real or complex numbers
+
 EPSILON = 1e-30
+CORRECTIONS = 12  # of Newton's method
+PERIODIC = 1e-10  # m, rad: what a revolution may leave
+LARGEST, SMALLEST = 1e-4, 1e-12  # m, rad: a difference of runs that is linear, and one that is no rounding
 
 
 def runner_multipliers(mechanism: Mechanism, method: Method, count: int, alpha_hat: float, beta_hat: float) -> float:
     """Return the largest multiplier's modulus per step, of `count` steps over a revolution, by complex steps.
 
-    For explicit methods whose errors do not grow, so that the run stays where the motion is.
+    For explicit methods, of which none carries accelerations of its own, and where errors do not grow, so that the run
+    stays where the motion is.
     """
+    _, linearized = _revolution(mechanism, method, count, alpha_hat, beta_hat, _on_the_motion(mechanism, method, count))
+    return float(np.abs(np.linalg.eigvals(linearized)).max() ** (1 / count))
+
+
+def runner_motion(
+    mechanism: Mechanism, method: Method, count: int, alpha_hat: float, beta_hat: float
+) -> tuple[FloatArray, float] | None:
+    """Return where a run of such a method comes back to itself after a revolution, and |z| per step there.
+
+    That is what the run carries: states, oldest first, then the slopes before the newest. None if Newton's method does
+    not find it.
+    """
+    start = _on_the_motion(mechanism, method, count)
     along = motion(mechanism, 1.0)
-    h = along.duration / count
-    gains = feedback_gains(alpha_hat, beta_hat, h / float(method.step_multiple))
+    still = np.zeros(mechanism.size)
+    whole_turn = np.zeros(start.size)
     past = steps(method)
-    t = np.asarray(h * np.arange(past), float)
+    whole_turn[: 2 * mechanism.size * past] = np.tile(np.concatenate([along.q[-1] - along.q[0], still]), past)
+    with np.errstate(all="ignore"):  # of runs that run into infinity
+        for _ in range(CORRECTIONS):
+            after, linearized = _revolution(mechanism, method, count, alpha_hat, beta_hat, start)
+            missing = after - whole_turn - start
+            if not np.isfinite(missing).all():
+                return None
+            if np.abs(missing).max() < PERIODIC:
+                return start, float(np.abs(np.linalg.eigvals(linearized)).max() ** (1 / count))
+            start = start + np.linalg.solve(np.eye(start.size) - linearized, missing)
+    return None
+
+
+def rates_after_kicks(
+    mechanism: Mechanism,
+    method: Method,
+    count: int,
+    alpha_hat: FloatArray,
+    beta_hat: FloatArray,
+    starts: FloatArray,
+    kicks: FloatArray,
+    revolutions: int,
+) -> FloatArray:
+    """Return |z| per step of the difference of two runs, kicked up and down from what `runner_motion` found.
+
+    One for each of a row of points; `starts` has shape (points, numbers carried), `kicks` are in m, rad and their like.
+    Over the later half of the whole revolutions in which a difference is linear and above rounding; nan where these
+    are fewer than three.
+    """
+    direction = np.random.default_rng(0).standard_normal(starts.shape[1])
+    amounts = np.multiply.outer(direction, np.stack([kicks, -kicks]))  # (carried, 2, points)
+    run = _run(mechanism, method, count, alpha_hat, beta_hat, starts.T[:, np.newaxis] + amounts)
+    squares = np.zeros((revolutions, kicks.size))
+    with np.errstate(all="ignore"):  # of runs that run into infinity
+        for k, (state, _) in enumerate(islice(run, revolutions * count)):
+            up, down = np.moveaxis(state[: mechanism.size], 1, 0)
+            squares[k // count] += ((up - down) ** 2).sum(axis=0) / count
+        sizes = np.sqrt(squares)
+        usable = (sizes < LARGEST) & (sizes > SMALLEST)  # what is not a number is not
+    last = np.where(usable.all(axis=0), revolutions, np.argmin(usable, axis=0)) - 1
+    first = last // 2
+    point = np.arange(kicks.size)
+    with np.errstate(all="ignore"):
+        rates = (sizes[last, point] / sizes[first, point]) ** (1 / ((last - first) * count))
+    return np.where(last >= 2, rates, np.nan)
+
+
+def _on_the_motion(mechanism: Mechanism, method: Method, count: int) -> FloatArray:
+    """Return what a run carries as it is on the motion of the mechanism."""
+    along = motion(mechanism, 1.0)
+    t = np.asarray(along.duration / count * np.arange(steps(method)), float)
     q, v, a = along.at(t)
-    size = 2 * mechanism.size
-    carried = np.concatenate([np.concatenate([q, v], axis=1).ravel(), np.concatenate([v, a], axis=1)[:-1].ravel()])
-    directions = carried[:, np.newaxis] + 1j * EPSILON * np.eye(carried.size)
-    states = [tuple(row) for row in directions[: past * size].reshape(past, size, carried.size)]
-    slopes = [tuple(row) for row in directions[past * size :].reshape(past - 1, size, carried.size)]
-    run = resume(mechanism, method, h, gains, states, slopes, np)
-    for state, slope, _ in islice(run, count):
+    return np.concatenate([np.concatenate([q, v], axis=1).ravel(), np.concatenate([v, a], axis=1)[:-1].ravel()])
+
+
+def _revolution(
+    mechanism: Mechanism, method: Method, count: int, alpha_hat: float, beta_hat: float, start: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return what is carried after a revolution, and its derivative by what was carried before."""
+    directions = start[:, np.newaxis] + 1j * EPSILON * np.eye(start.size)
+    states, slopes = _states_and_slopes(method, directions)
+    for state, slope in islice(_run(mechanism, method, count, alpha_hat, beta_hat, directions), count):
         states.append(state)
-        slopes.append(tuple(np.broadcast_to(entry, directions[0].shape) for entry in slope))
-    after: FloatArray = np.concatenate([*states[-past:], *slopes[len(slopes) - past + 1 :]]).imag / EPSILON
-    return float(np.abs(np.linalg.eigvals(after)).max() ** (1 / count))
+        slopes.append(slope)
+    past = steps(method)
+    after = np.concatenate([*states[-past:], *slopes[len(slopes) - past + 1 :]])
+    return after.real[:, 0], after.imag / EPSILON
+
+
+def _run(
+    mechanism: Mechanism, method: Method, count: int, alpha_hat: ArrayLike, beta_hat: ArrayLike, start: AnyArray
+) -> Iterator[tuple[AnyArray, AnyArray]]:
+    """Yield states and the slopes before them, (2 n, ...) each, of runs from what they carry, shape (carried, ...)."""
+    h = motion(mechanism, 1.0).duration / count
+    gains = feedback_gains(np.asarray(alpha_hat), np.asarray(beta_hat), h / float(method.step_multiple))
+    states, slopes = _states_and_slopes(method, start)
+    history, before = [tuple(state) for state in states], [tuple(slope) for slope in slopes]
+    for state, slope, _ in resume(mechanism, method, h, gains, history, before, np):
+        yield _stacked(state, start), _stacked(slope, start)
+
+
+def _stacked(numbers: Sequence[Any], like: AnyArray) -> AnyArray:
+    """Return numbers, some of which all runs may share, as one array."""
+    return np.stack([np.broadcast_to(number, like.shape[1:]) for number in numbers])
+
+
+def _states_and_slopes(method: Method, carried: AnyArray) -> tuple[list[AnyArray], list[AnyArray]]:
+    """Return the states and the slopes, (2 n, ...) each, in what runs carry."""
+    parts = np.split(carried, 2 * steps(method) - 1)
+    return parts[: steps(method)], parts[steps(method) :]

@@ -14,6 +14,7 @@ from tests.reference.companion_poles import closed_loop_tables, polynomial_at
 BoolArray = NDArray[np.bool_]
 EPS = float(np.finfo(float).eps)
 MOST_ROUGH = 5_000  # panels that still disagree: then by rounding, which no halving mends
+HALVINGS = 52  # of a bracket of an interval's end: to rounding
 
 
 def stable(method: Method, level: float, alpha_hat: FloatArray, beta_hat: FloatArray) -> BoolArray:
@@ -43,11 +44,14 @@ def schur_determinant(c: FloatArray) -> FloatArray:
     return np.asarray(np.linalg.det(matrix))
 
 
-def slice_lengths(method: Method, level: float, alpha_hat: FloatArray, beta_range: tuple[float, float]) -> FloatArray:
+def slice_lengths(
+    method: Method, level: float, alpha_hat: FloatArray, beta_range: tuple[float, float], bisected: bool = False
+) -> FloatArray:
     """Return the length of the stable set in beta_hat at each alpha_hat, a sum of intervals.
 
     Their ends are zeros in beta_hat of P(level), P(-level) and Schur's determinant, each interpolated without error by
-    its degree; a zero too many splits an interval in two and changes nothing.
+    its degree; a zero too many splits an interval in two and changes nothing. Zeros are good to rounding of the whole
+    range; `bisected` ends, where the verdict of Schur's recursion turns, to their own.
     """
     tables = closed_loop_tables(method)
     n, low, high = len(tables) - 1, *beta_range
@@ -65,7 +69,16 @@ def slice_lengths(method: Method, level: float, alpha_hat: FloatArray, beta_rang
     beta = (low + high + (high - low) * ends) / 2
     middle = (beta[:, 1:] + beta[:, :-1]) / 2
     alpha_there = np.broadcast_to(alpha_hat[:, None], middle.shape)
-    return np.asarray(np.where(stable(method, level, alpha_there, middle), np.diff(beta), 0.0).sum(axis=1))
+    is_stable = stable(method, level, alpha_there, middle)
+    if bisected:
+        row, interval = np.nonzero(is_stable[:, 1:] != is_stable[:, :-1])
+        before, after = middle[row, interval], middle[row, interval + 1]
+        for _ in range(HALVINGS):
+            between = (before + after) / 2
+            unchanged = stable(method, level, alpha_hat[row], between) == is_stable[row, interval]
+            before, after = np.where(unchanged, between, before), np.where(unchanged, after, between)
+        beta[row, interval + 1] = (before + after) / 2
+    return np.asarray(np.where(is_stable, np.diff(beta), 0.0).sum(axis=1))
 
 
 def chebyshev_zeros(series: FloatArray) -> FloatArray:
@@ -94,12 +107,12 @@ def chebyshev_zeros(series: FloatArray) -> FloatArray:
     return zeros
 
 
-def sliced_area(method: Method, level: float, panels: int = 8, widened: float = 1.0) -> float:
+def sliced_area(method: Method, level: float, panels: int = 8, widened: float = 1.0, bisected: bool = False) -> float:
     """Return the area as the integral of the slices' lengths: no mu, no locus, no resultant in theta.
 
-    It is looked for in the region's window, or one so many times as wide about the same centre. Clenshaw-Curtis panels
-    are halved until they agree: a corner, a vertical tangent or a jump ends at a width of 2^-40. Their nodes include
-    the ends, or a jump just inside one would go unseen.
+    `bisected` as in `slice_lengths`. It is looked for in the region's window, or one so many times as wide about the
+    same centre. Clenshaw-Curtis panels are halved until they agree: a corner, a vertical tangent or a jump ends at a
+    width of 2^-40. Their nodes include the ends, or a jump just inside one would go unseen.
     """
     box = tuple(
         ((low + high - widened * (high - low)) / 2, (low + high + widened * (high - low)) / 2)
@@ -113,7 +126,7 @@ def sliced_area(method: Method, level: float, panels: int = 8, widened: float = 
     def integrals(ends: FloatArray) -> FloatArray:
         half = np.diff(ends) / 2
         alpha_hat = ends[:, :1] + half + half * nodes
-        lengths = slice_lengths(method, level, alpha_hat.ravel(), box[1]).reshape(alpha_hat.shape)
+        lengths = slice_lengths(method, level, alpha_hat.ravel(), box[1], bisected).reshape(alpha_hat.shape)
         return np.asarray(half[:, 0] * (lengths @ weights))
 
     edges = (
@@ -121,12 +134,15 @@ def sliced_area(method: Method, level: float, panels: int = 8, widened: float = 
     )
     ends = np.stack([edges[:-1], edges[1:]], axis=1)
     whole, total = integrals(ends), 0.0
+    allowed = 1e-12 * np.diff(box[0])[0] * np.diff(box[1])[0]
+    if bisected:
+        allowed = min(allowed, 1e-10 * float(whole.sum()))
     for _ in range(40):
         middle = ends.mean(axis=1)
         halves = np.stack([ends[:, 0], middle, middle, ends[:, 1]], axis=1).reshape(-1, 2)
         parts = integrals(halves)
         both = parts[::2] + parts[1::2]
-        rough = np.abs(both - whole) > 1e-12 * np.diff(box[0])[0] * np.diff(box[1])[0]
+        rough = np.abs(both - whole) > allowed
         total += float(both[~rough].sum())
         ends, whole = halves[np.repeat(rough, 2)], parts[np.repeat(rough, 2)]
         if not rough.any() or rough.sum() > MOST_ROUGH:

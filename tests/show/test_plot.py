@@ -109,6 +109,20 @@ def test_an_unbounded_region_makes_room_for_its_window_and_points_to_where_it_go
     assert arrow.get_text() == "unbounded"
 
 
+@pytest.mark.parametrize("h", [None, 0.01])
+@pytest.mark.parametrize("name", ["trapezoid", "bdf6", "fox-goodwin", "verlet-kdk", "stable-pd", "imex-euler"])
+def test_the_arrow_ends_inside_the_region(name: str, h: float | None) -> None:
+    shape = region(lookup(name))
+    (_, alpha_max), (_, beta_max) = window(shape)
+    axes = Figure().add_subplot()
+    axes.set(xlim=(0, alpha_max if h is None else alpha_max / h), ylim=(0, beta_max if h is None else beta_max / h**2))
+    arrow = plot.goes_on(shape, axes, h)
+    assert arrow is not None
+    across, up = arrow.xy
+    assert max(across, up) == 0.99
+    assert shape.contains(across * alpha_max, up * beta_max)
+
+
 def test_a_bounded_or_empty_region_does_not_go_on() -> None:
     axes = Figure().add_subplot()
     for shape in (region(lookup("B4")), region(lookup("AB4"), 0.1)):

@@ -16,6 +16,13 @@ def test_a_refutation_lists_its_steps() -> None:
     )
 
 
+def test_how_much_a_sequence_grows_is_said_where_three_digits_show_it() -> None:
+    for growth, said in ((1.776, "grow 1.78-fold each time."), (1.0001, "do not decay."), (1.0, "do not decay.")):
+        refuted = VaryingSteps("refuted", SHORT, LONG, hold=False, sequence=(LONG, SHORT), growth=growth)
+        assert varying_words("SYM", refuted).endswith(f"0.02 s, then 0.01 s, over and over, {said}")
+        assert varying_row(refuted)["growth"] == growth
+
+
 def test_one_step_that_does_not_decay_is_enough() -> None:
     alone = VaryingSteps("refuted", SHORT, LONG, hold=True, sequence=(LONG,))
     assert varying_words("SYM", alone) == (

@@ -45,6 +45,8 @@ def test_the_proven_verdict_counts_more_than_a_rounded_modulus() -> None:
     )  # a repeated root on the circle
     assert change_words(math.nextafter(1, 2), "marginal") == "neither shrinks nor grows"
     assert change_words(0.0, "converges") == "is gone within a few steps"
+    assert change_words(5.1e-8, "converges") == "is gone within a few steps"  # a double root zero, rounded
+    assert change_words(1e-5, "converges") == "shrinks 1e-05-fold a step"
 
 
 def test_growth_has_a_factor_or_no_limit() -> None:
@@ -62,7 +64,11 @@ def test_the_motion_is_said_as_well() -> None:
     assert safety_words(row) == (
         "Not safe. At rest the error shrinks 0.98-fold a step, over the motion it grows 1.2-fold a step"
     )
-    unsettled: Row = {**row, "moving_verdict": "not settled for this mechanism"}
+    unsettled: Row = {**row, "moving_verdict": "not settled for this mechanism", "double_pole": False}
     assert safety_words(unsettled).endswith("; over the motion it is not settled for this mechanism")
+    double: Row = {**unsettled, "double_pole": True, "z_abs_worst": 1.0613}
+    assert safety_words(double) == (
+        f"{safety_words(unsettled)}: nearly a double pole, which moves like (κh)^½, at worst 1.06-fold a step"
+    )
     at_rest: Row = {"safe": True, "verdict": "converges", "z_abs": 0.98}
     assert safety_words(at_rest) == "Safe. The error shrinks 0.98-fold a step"

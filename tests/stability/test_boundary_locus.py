@@ -1,4 +1,5 @@
 from dataclasses import replace
+from math import pi
 
 import numpy as np
 import pytest
@@ -7,7 +8,7 @@ from numpy.polynomial.polynomial import polyval2d
 from bezstab.errors import NumericalError
 from bezstab.methods import LinearMultistep, lookup
 from bezstab.stability import FloatArray, Region, pencil_of, region, spectral_radius
-from bezstab.stability.boundary_locus import Arc, RimPiece, bounds_of
+from bezstab.stability.boundary_locus import Arc, RimPiece, _ends_on_the_axis, bounds_of
 from bezstab.stability.dominant_roots import dominant_root
 from bezstab.stability.line_slices import rim_radius
 from tests.methods.kinds import EXPLICIT, sampled
@@ -28,6 +29,43 @@ def test_an_arc_lies_in_the_upper_half_on_the_level(name: str, level: float) -> 
         assert (inner.imag > 0).all()
         # an ABM has roots that nearly meet on the circle
         assert np.abs(dominant_root(arc.pencil, inner)) == pytest.approx(level, abs=1e-6 if "ABM" in name else 1e-9)
+
+
+def test_halves_that_agree_to_rounding_are_not_halved_further(monkeypatch: pytest.MonkeyPatch) -> None:
+    """B4's density is smooth but at its ends: 16 nodes to each half, and as many halvings as digits at either end."""
+    (arc,) = arcs("B4", 1.0)
+    asked: list[int] = []
+    density = Arc._area_density
+
+    def counted(self: Arc, theta: FloatArray) -> FloatArray:
+        asked.append(theta.size)
+        return density(self, theta)
+
+    monkeypatch.setattr(Arc, "_area_density", counted)
+    arc.area()
+    assert sum(asked) < 2 * 16 * 2 * 15
+
+
+def axis_ends(theta: list[float], mu: list[complex]) -> FloatArray:
+    """Return where B4's interval of the real axis may end, with one arc given by its samples; z = 1 is at mu = 0."""
+    pencil = pencil_of(lookup("B4"))
+    return _ends_on_the_axis(pencil, 1.0, [Arc(pencil, 1.0, np.array(theta), np.array(mu))])
+
+
+def test_an_interval_may_end_where_an_arc_reaches_the_axis_with_a_pair_on_the_circle() -> None:
+    solved = axis_ends([0.0, pi], [0j, 0j])  # at either angle z is real: these are solved for, whatever the arc says
+    assert solved == pytest.approx([-27 / 34, 0], abs=1e-12)
+    away = -0.5 + 0.1j
+    assert axis_ends([2.0, 2.1, 2.2], [-0.5 + 0j, away, away]) == pytest.approx([-27 / 34, -0.5, 0], abs=1e-12)
+    assert axis_ends([2.0, 2.1, 2.2], [away, away, -0.5 + 0j]) == pytest.approx([-27 / 34, -0.5, 0], abs=1e-12)
+    assert axis_ends([0.0, 2.1, 2.2], [-0.5 + 0j, away, away]) == pytest.approx(solved, abs=0)
+    assert axis_ends([2.0, 2.1, pi], [away, away, -0.5 + 0j]) == pytest.approx(solved, abs=0)
+
+
+@pytest.mark.parametrize(("apart", "ends"), [(1e-6, 3), (1e-11, 2)])
+def test_ends_of_an_interval_are_one_only_if_they_coincide_to_rounding(apart: float, ends: int) -> None:
+    beside = -27 / 34 * (1 - apart) + 0j
+    assert len(axis_ends([2.0, 2.1], [beside, -0.5 + 0.1j])) == ends
 
 
 @pytest.mark.parametrize("name", ["B4", "AB4", "RK4"])

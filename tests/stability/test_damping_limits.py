@@ -8,7 +8,7 @@ from bezstab.stability import critical_damping_limit, unconditional_damping_rati
 from bezstab.stability.damping_limits import _limit_at
 from tests.methods.kinds import SECOND_ORDER
 from tests.reference.companion_poles import radius
-from tests.stability.made_methods import multistep
+from tests.stability.made_methods import multistep, runge_kutta
 
 F = Fraction
 Limits = dict[str, float | Fraction]
@@ -45,6 +45,14 @@ RATIOS = {"bdf3": 0.069193, "bdf4": 0.286497, "bdf5": 0.617863, "bdf6": 0.951917
 @pytest.mark.parametrize("name", LIMITS)
 def test_limits_at_critical_damping_are_the_known_numbers(name: str) -> None:
     assert critical_damping_limit(lookup(name)) == pytest.approx(float(LIMITS[name]), rel=1e-15)
+
+
+@pytest.mark.parametrize(("stages", "limit"), [("1/27; 0 4/27", F(9, 2)), ("1/8", 4)])
+def test_a_limit_at_which_a_root_only_touches_the_circle_is_exact(stages: str, limit: Fraction | int) -> None:
+    """R = T_3(1 + mu/9), which is -1 at mu = -9/2 and 1 at -27/2, and T_2(1 + mu/4), which is -1 at mu = -4."""
+    weights = "0 0 1" if ";" in stages else "0 1"
+    chebyshev = runge_kutta("chebyshev", stages, weights)
+    assert critical_damping_limit(chebyshev) == limit
 
 
 def converges(method: Method, damping_ratio: Fraction, beta_step: Fraction) -> bool:

@@ -8,8 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from bezstab.errors import InputError
 from bezstab.methods import lookup
-from bezstab.stability import Margins, region, spectral_radius, stability_margins, verdict, window
+from bezstab.stability import Margins, largest_stable_step, region, spectral_radius, stability_margins, verdict, window
 from tests.methods.kinds import sampled
 
 PART = Fraction(1, 10**9)
@@ -102,6 +103,16 @@ def test_at_critical_damping_both_mu_cross_together(name: str) -> None:
     assert found.h * float(t) == pytest.approx(end, rel=1e-12)
 
 
+@pytest.mark.parametrize("name", ["ABM3", "ABM4"])
+def test_next_to_critical_damping_the_first_of_both_mu_that_crosses_is_the_end(name: str) -> None:
+    """What `choose --equal` finds is rounded to float64, where the two mu of alpha = beta are no longer one.
+
+    Roots of these methods leave the circle there at a complex z, first of one mu and then of the other, 1e-8 apart.
+    """
+    for alpha_h in np.random.default_rng(1).uniform(0.5, 0.95, size=12).tolist():
+        assert_each_end_is_proven(name, Fraction(2 * alpha_h), Fraction(alpha_h**2))
+
+
 @pytest.mark.parametrize("name", ["B4", "AB4", "ABM3", "RK4", "hht", "verlet-kdk"])
 def test_between_the_ends_of_a_margin_every_sampled_pole_is_inside(name: str) -> None:
     (_, alpha_hat_max), (_, beta_hat_max) = window(region(lookup(name)))
@@ -111,3 +122,31 @@ def test_between_the_ends_of_a_margin_every_sampled_pole_is_inside(name: str) ->
         factors = np.geomspace(1, furthest, 500)[:-1]
         z_abs = spectral_radius(lookup(name), alpha_hat * factors**of_alpha_hat, beta_hat * factors**of_beta_hat)
         assert z_abs.max() < 1
+
+
+def test_the_largest_step_of_fixed_gains_is_the_margin() -> None:
+    a, b, h = Fraction("0.5"), Fraction("0.1"), Fraction("0.001")
+    for name in ("SYM", "RK4", "B4"):
+        method = lookup(name)
+        limit = largest_stable_step(method, lambda step: [(a * step / h, b * (step / h) ** 2)], 0.001)
+        assert limit == pytest.approx(stability_margins(method, a, b).h * 0.001, rel=1e-9)
+
+
+def test_a_setting_that_stays_where_it_is_has_no_largest_step() -> None:
+    assert largest_stable_step(lookup("SYM"), lambda step: [(Fraction(1), Fraction(1, 5))], 0.01) is None
+
+
+def test_all_points_of_a_setting_count() -> None:
+    def points(step: Fraction) -> list[tuple[Fraction, Fraction]]:
+        return [(Fraction(1), Fraction(1, 5)), (Fraction(1), step)]  # SYM: beta_hat < 2 at alpha_hat = 1
+
+    assert largest_stable_step(lookup("SYM"), points, 0.01) == pytest.approx(2, rel=1e-12)
+
+
+def test_steps_that_mean_nothing_end_the_search() -> None:
+    def points(step: Fraction) -> list[tuple[Fraction, Fraction]]:
+        if step > 1:
+            raise InputError("out of range")
+        return [(Fraction(1), Fraction(1, 5))]
+
+    assert largest_stable_step(lookup("SYM"), points, 0.01) is None

@@ -5,6 +5,7 @@ from bezstab.methods import Method, lookup, recipe
 from bezstab.stability import best_point, choose, falls_towards, region, spectral_radius
 from bezstab.stability.plane_best_points import _axis, critical_point
 from bezstab.stability.plane_pencils import plane_pencil_of
+from tests.reference.random_methods import other_random_method
 from tests.reference.second_order_methods import as_second_order, companion_poles, newmark, second_order
 
 DEADBEAT = {
@@ -92,6 +93,17 @@ def test_no_point_of_a_fine_grid_is_better(name: str) -> None:
     alpha_hat, beta_hat = np.meshgrid(np.linspace(1e-3, 5, 500), np.linspace(1e-3, 5, 500))
     z_abs = np.abs(companion_poles(second_order(name), alpha_hat, beta_hat)).max(axis=-1)
     assert z_abs.min() >= best.z_abs
+
+
+def test_three_poles_of_one_modulus_are_solved_for_as_far_as_their_moduli_are_known() -> None:
+    """Of this recipe more than 1e-13 is left of the equations, by rounding: a bound as tight would find nothing."""
+    method = other_random_method(277)
+    best = best_point(method)
+    assert best
+    assert len(best.meeting) == 2
+    around = np.linspace(-0.01, 0.01, 201)
+    nearby = spectral_radius(method, best.alpha_hat + around, best.beta_hat + around[:, np.newaxis])
+    assert best.z_abs == pytest.approx(nearby.min(), rel=1e-12)  # it is the middle of the grid
 
 
 @pytest.mark.parametrize(("name", "place"), [("half", (1, 1)), ("old", (2 * 3**-1.5, 2 - 3**-1.5 - 3**0.5))])

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from bezstab.methods import LinearMultistep, Method, RungeKutta, lookup
+from bezstab.methods import LinearMultistep, Method, RungeKutta, lookup, second_order_form
 from bezstab.rationals import rational
-from bezstab.stability import Extent, FloatArray, Region, region, spectral_radius, verdict, window
+from bezstab.stability import Extent, FloatArray, Region, region, spectral_radius, useful_window, verdict, window
 from bezstab.stability.regions import _closed_curves
 from tests.methods.kinds import EXPLICIT, FEW, SOLVED, sampled
 from tests.reference.companion_poles import eigenvalues, polynomial_at, radius
@@ -274,6 +274,28 @@ def test_the_window_shows_the_region_the_origin_and_a_margin(level: float) -> No
     for (low, high), (first, last) in zip(found_extent(shape), window(shape), strict=True):
         assert low >= first == 0
         assert last == pytest.approx(1.05 * high)
+
+
+@pytest.mark.parametrize("name", sampled(["ABM3", "ABM4"], quick=["ABM3"]))
+def test_pece_as_a_recipe_has_its_region_at_a_level_of_two_digits(name: str) -> None:
+    """By strips of the plane, and by the locus in mu: ABM4's curves at 0.61 have coefficients of 384 bits."""
+    recipe = Method("recipe", second_order_form(lookup(name).scheme), "")
+    # integrals by two rules, each good to 1e-12 of the area
+    assert region(recipe, 0.61).area == pytest.approx(region(lookup(name), 0.61).area, rel=1e-11)
+
+
+def test_the_useful_window_leaves_out_islands_of_negative_feedback() -> None:
+    """Ruth's region reaches 4.602 and 18.77 where both are positive, and has islands at alpha_hat = -24."""
+    shape = region(lookup("ruth3"))
+    (left, right), (low, high) = useful_window(shape)
+    assert found_extent(shape)[0][0] < -24
+    assert (left, low) == (0, 0)
+    assert (right, high) == pytest.approx((1.05 * 4.6020762, 1.05 * 18.7715831), rel=1e-6)
+
+
+@pytest.mark.parametrize("name", ["B4", "AB3", "verlet-old", "verlet-kdk", "bdf2"])
+def test_the_useful_window_is_the_window_of_what_has_no_such_islands(name: str) -> None:
+    assert useful_window(region(lookup(name))) == window(region(lookup(name)))
 
 
 USERS = [

@@ -75,12 +75,32 @@ def test_alternating_steps_that_are_each_stable() -> None:
 @pytest.mark.parametrize(
     ("ratio", "proven", "refuted"),
     # shares of the longest stable step, steps from next to nothing: never more than 5 % apart
-    [("1/10", "0.31", "0.36"), ("1/5", "0.60", "0.645"), ("3/10", "0.755", "0.80"), ("1/2", "0.965", "0.985")],
+    [
+        ("1/10", "0.31", "0.345"),
+        ("3/20", "0.47", "0.515"),
+        ("1/5", "0.60", "0.625"),
+        ("3/10", "0.755", "0.78"),
+        ("1/2", "0.965", "0.985"),
+    ],
 )
 def test_the_gap_is_at_most_five_percent_of_the_longest_stable_step(ratio: str, proven: str, refuted: str) -> None:
     assert Fraction(refuted) - Fraction(proven) <= Fraction("0.05")
     assert symplectic(ratio, proven, TINY)[0].varying == "proven"
     assert symplectic(ratio, refuted, TINY)[0].varying == "refuted"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("ratio", "shortest", "refuted", "proven"),
+    # held, it is weak feedback that grows: what is proven lies above what is refuted
+    [("1/5", "1/2", "0.449", "0.48"), ("2/5", "1/4", "0.33", "0.38"), ("7/10", "1/10", "0.30", "0.35")],
+)
+def test_nor_is_it_more_where_alpha_hat_and_beta_hat_are_held(
+    ratio: str, shortest: str, refuted: str, proven: str
+) -> None:
+    assert Fraction(proven) - Fraction(refuted) <= Fraction("0.05")
+    assert symplectic(ratio, refuted, Fraction(shortest), hold=True)[0].varying == "refuted"
+    assert symplectic(ratio, proven, Fraction(shortest), hold=True)[0].varying == "proven"
 
 
 @pytest.mark.parametrize("ratio", ["7/10", "1", "3/2", "2"])

@@ -1,0 +1,444 @@
+r"""A method's steps along a motion, linearised: what they make of small changes of what a step knows.
+
+How a small change of what a method carries (positions, velocities, accelerations of some steps) comes out of the step
+from t_k is a matrix, M_k, with the Jacobians of the acceleration at the evaluations of that step. The matrices are
+never formed: some changes are carried along, as columns, and the method's equations are taken line by line, as they are
+for the quantities themselves.
+
+Each step starts from the motion, so that nothing but the change grows. On the motion c = 0, and feedback does nothing:
+an evaluation at the state itself, and one at a place to which only such evaluations lead (a predicted state, the second
+stage of a Runge-Kutta method), has Jacobians that all points share, affine in the gains,
+
+    a = (J_0 + 2 alpha J_1 + beta^2 J_2) change        one product of matrices for all points and columns together;
+
+in later stages they are taken at the stage that the point's own gains lead to.
+"""
+
+from collections.abc import Callable, Container, Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bezstab.mechanism import (
+    Action,
+    Assigned,
+    Evaluated,
+    Mechanism,
+    Memory,
+    Motion,
+    acceleration_function,
+    acceleration_jacobians,
+    memory,
+    regular_motion,
+    turn,
+)
+from bezstab.methods import Method, Quantity, SecondOrder, second_order_form
+from bezstab.stability import FloatArray
+
+STATE = ("x", "v")  # what second-order schemes call position and velocity
+RESCALED = 16  # steps between two looks at how large the changes have grown, lest they overflow
+
+Sum = Mapping[Quantity, Fraction]
+IntArray = NDArray[np.int_]
+JacobiansOfStep = Callable[[int], Mapping[Quantity, FloatArray]]
+
+
+@dataclass(frozen=True)
+class _Row:
+    """A sum of changes in float64: of each name steps and coefficients."""
+
+    parts: tuple[tuple[str, IntArray, FloatArray], ...]
+
+
+@dataclass(frozen=True)
+class _Assignment:
+    result: Quantity
+    value: _Row
+
+
+@dataclass(frozen=True)
+class _Accelerations:
+    """Accelerations that are found together: of each where it takes place, as far as that is known before.
+
+    Acceleration i takes place at sum_j sought[0, i, j] (acceleration j) more, its velocity likewise at sought[1, i, j].
+    """
+
+    results: tuple[Quantity, ...]
+    positions: tuple[_Row, ...]
+    velocities: tuple[_Row, ...]
+    sought: FloatArray
+
+
+@dataclass(frozen=True)
+class Course:
+    """A method's steps along a motion: what all points share.
+
+    `steps` of `step` (s) fill the motion. What one of them does is told by `actions`, exact, and by `plan`, the same in
+    float64; `lengths` says how many steps of a name it needs to know. The evaluations `on_it` are on the motion itself.
+    Of these, and of all others whose place does not depend on the gains, `jacobians` holds those of h^2 qddot by X and
+    V = h qdot side by side, without gains above their slopes by 2 alpha and by beta^2: shape (steps, 3 n, 2 n).
+    """
+
+    mechanism: Mechanism
+    along: Motion
+    steps: int
+    step: float
+    memory: Memory
+    actions: tuple[Action, ...]
+    plan: tuple[_Assignment | _Accelerations, ...]
+    lengths: Mapping[str, int]
+    on_it: frozenset[Quantity]
+    jacobians: Mapping[Quantity, FloatArray]
+
+    @property
+    def rows(self) -> int:
+        """How many numbers a step starts with."""
+        return len(self.memory.carried) * self.mechanism.size
+
+
+def course_of_steps(mechanism: Mechanism, method: Method, h: float, duration: float) -> Course:
+    """Return the course of a method with steps of about h (s) of the user's; errors as `regular_motion`."""
+    along = regular_motion(mechanism, duration)
+    steps = max(1, round(along.duration / (h * float(method.step_multiple))))
+    step = along.duration / steps
+    scheme = second_order_form(method.scheme)
+    remembered = memory(scheme)
+    actions = tuple(turn(scheme))
+    course = Course(
+        mechanism=mechanism,
+        along=along,
+        steps=steps,
+        step=step,
+        memory=remembered,
+        actions=actions,
+        plan=tuple(_planned(action) for action in actions),
+        lengths=_lengths(scheme, remembered),
+        on_it=_evaluations_on_it(actions),
+        jacobians={},
+    )
+    jacobians = {result: _affine_jacobians(course, *place) for result, place in _places_without_gains(course).items()}
+    return replace(course, jacobians=jacobians)
+
+
+def _evaluations_on_it(actions: tuple[Action, ...]) -> frozenset[Quantity]:
+    """Return the evaluations that are solved for, and those at position and velocity of one step."""
+    found: set[Quantity] = set()
+    stands_for: dict[Quantity, Quantity] = {}  # such as the velocity of a first stage for that of the state
+    for action in actions:
+        if isinstance(action, Assigned):
+            if action.result.name not in STATE and list(action.value.values()) == [1]:
+                (quantity,) = action.value
+                stands_for[action.result] = stands_for.get(quantity, quantity)
+        elif not isinstance(action, Evaluated):
+            found |= {evaluation.result for evaluation in action.evaluations}
+        elif list(action.position.values()) == list(action.velocity.values()) == [1]:
+            place = [stands_for.get(quantity, quantity) for quantity in (*action.position, *action.velocity)]
+            if tuple(quantity.name for quantity in place) == STATE and place[0].step == place[1].step:
+                found.add(action.result)
+    return frozenset(found)
+
+
+def _planned(action: Action) -> _Assignment | _Accelerations:
+    """Return an action in float64."""
+    if isinstance(action, Assigned):
+        return _Assignment(action.result, _row(action.value))
+    if isinstance(action, Evaluated):
+        return _Accelerations((action.result,), (_row(action.position),), (_row(action.velocity),), np.zeros((2, 1, 1)))
+    results = tuple(each.result for each in action.evaluations)
+    sought = [
+        [[float(terms.get(result, 0)) for result in results] for terms in own]
+        for own in zip(*((each.sought_position, each.sought_velocity) for each in action.evaluations), strict=True)
+    ]
+    return _Accelerations(
+        results,
+        tuple(_row(each.known_position) for each in action.evaluations),
+        tuple(_row(each.known_velocity) for each in action.evaluations),
+        np.array(sought),
+    )
+
+
+def _row(terms: Sum) -> _Row:
+    """Return a sum in float64."""
+    names = dict.fromkeys(quantity.name for quantity in terms)
+    own = [[(quantity.step, float(c)) for quantity, c in terms.items() if quantity.name == name] for name in names]
+    return _Row(
+        tuple(
+            (name, np.array([step for step, _ in pairs]), np.array([coefficient for _, coefficient in pairs]))
+            for name, pairs in zip(names, own, strict=True)
+        )
+    )
+
+
+def _lengths(scheme: SecondOrder, remembered: Memory) -> dict[str, int]:
+    """Return how many steps of each name a step knows, from the earliest that it uses or carries to its result."""
+    steps_of: dict[str, list[int]] = {}
+    for equation in scheme.equations:
+        for quantity in (equation.result, *equation.used, *remembered.carried):
+            steps_of.setdefault(quantity.name, []).append(quantity.step)
+    return {name: max(steps) - min(steps) + 1 for name, steps in steps_of.items()}
+
+
+def _places_without_gains(course: Course) -> dict[Quantity, tuple[FloatArray, FloatArray, FloatArray]]:
+    """Return where evaluations that no gains move take place in each step: t (s, (steps,)), q and v (steps, n)."""
+    k = np.arange(course.steps)
+    values = on_the_motion(course, k)
+    places: dict[Quantity, tuple[FloatArray, FloatArray, FloatArray]] = {}
+    for action in course.actions:
+        if isinstance(action, Assigned):
+            if action.value.keys() <= values.keys():
+                values[action.result] = _total(action.value, values)
+            continue
+        for evaluation in [action] if isinstance(action, Evaluated) else action.evaluations:
+            t = np.asarray(course.step * (k + float(evaluation.moment)), float)
+            if evaluation.result in course.on_it:
+                q, v, a = course.along.at(t)
+                places[evaluation.result] = t, q, v
+                values[evaluation.result] = course.step**2 * a
+            elif isinstance(evaluation, Evaluated) and {*evaluation.position, *evaluation.velocity} <= values.keys():
+                q, v = _total(evaluation.position, values), _total(evaluation.velocity, values) / course.step
+                places[evaluation.result] = t, q, v
+    return places
+
+
+def _total(terms: Sum, values: Mapping[Quantity, FloatArray]) -> FloatArray:
+    """Return a sum of values."""
+    return np.asarray(sum(float(coefficient) * values[quantity] for quantity, coefficient in terms.items()))
+
+
+def _affine_jacobians(course: Course, t: FloatArray, q: FloatArray, v: FloatArray) -> FloatArray:
+    """Return the Jacobians at times t (s, shape (steps,)) and states (steps, n), as in `Course`."""
+    without, with_alpha, with_beta = (
+        _side_by_side(acceleration_jacobians(course.mechanism, t, *gains, q, v), course.step)
+        for gains in ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))
+    )
+    return np.concatenate([without, with_alpha - without, with_beta - without], axis=1)
+
+
+def _side_by_side(jacobians: tuple[FloatArray, FloatArray], step: float) -> FloatArray:
+    """Return the Jacobians of h^2 qddot by X and by V = h qdot, shape (..., n, 2 n), from those of qddot (SI)."""
+    by_q, by_v = jacobians
+    return np.concatenate([step**2 * by_q, step * by_v], axis=-1)
+
+
+def after_steps(changes: "Changes", steps: int) -> FloatArray:
+    """Return what is carried after so many steps; shape (points, rows, columns)."""
+    for _ in range(steps):
+        changes.take_step()
+    return changes.carried()
+
+
+class Changes:
+    """Changes of what a step knows, some columns at each of a batch of points, as the steps go by.
+
+    Each change has n rows of columns x points numbers, those of a column's points next to each other. The latest steps
+    of a name lie in one array, step k at place k modulo their number: nothing is moved when a step begins, and a sum
+    over steps is one product of a row with a matrix. `log_scale` is what the changes at each point were divided by.
+    """
+
+    def __init__(
+        self,
+        course: Course,
+        gains: FloatArray,
+        start: FloatArray,
+        first: int,
+        own_jacobians: JacobiansOfStep | None = None,
+    ) -> None:
+        """Begin with columns of what step `first` starts with, shape (points, rows, columns); gains (2, points).
+
+        `own_jacobians` of step k are those that points do not share, (points, n, 2 n) each; by default the ones in
+        stages, of steps that start from the exact motion.
+        """
+        points, _, columns = start.shape
+        self.course = course
+        if own_jacobians is None:
+            own_jacobians = partial(_stage_jacobians, course, gains) if has_stages(course) else _none
+        self.own_jacobians = own_jacobians
+        self.gains = gains
+        self.wide_gains = np.tile(gains, columns)
+        self.k = first
+        self.log_scale = np.zeros(points)
+        self.size, self.columns, self.points = course.mechanism.size, columns, points
+        width = columns * points
+        self.kept = {name: np.zeros((length, self.size, width)) for name, length in course.lengths.items()}
+        self.state = np.empty((2 * self.size, width))
+        self.parts = np.empty((3 * self.size, width))
+        for quantity, part in zip(
+            course.memory.carried, np.split(start, len(course.memory.carried), axis=1), strict=True
+        ):
+            self.of(quantity)[...] = self._rows(part)
+
+    def of(self, quantity: Quantity) -> FloatArray:
+        """Return the change of a quantity, by its step from the next one on, to be read or written."""
+        kept = self.kept[quantity.name]
+        return np.asarray(kept[(quantity.step + self.k) % len(kept)])
+
+    def carried(self) -> FloatArray:
+        """Return the changes of what the next step starts with; shape (points, rows, columns)."""
+        return self._by_point(np.concatenate([self.of(quantity) for quantity in self.course.memory.carried]))
+
+    def _by_point(self, rows: FloatArray) -> FloatArray:
+        """Return rows of numbers of columns x points by point: shape (points, rows, columns)."""
+        return np.ascontiguousarray(np.moveaxis(rows.reshape(len(rows), self.columns, self.points), 2, 0))
+
+    def _rows(self, by_point: FloatArray) -> FloatArray:
+        """Return the reverse: shape (rows, columns points)."""
+        return np.moveaxis(by_point, 0, 2).reshape(by_point.shape[1], -1)
+
+    def take_step(self) -> None:
+        """Go on by a step."""
+        own = self.own_jacobians(self.k)
+        for action in self.course.plan:
+            if isinstance(action, _Assignment):
+                self._write_sum(action.value, self.of(action.result))
+            else:
+                self._find(action, own)
+        self.k += 1
+        if self.k % RESCALED == 0:
+            self._rescale()
+
+    def _rescale(self) -> None:
+        """Divide the changes at each point by the largest of them."""
+        whole = [kept.reshape(-1, self.columns, self.points) for kept in self.kept.values()]
+        largest = np.max([np.abs(kept).max(axis=(0, 1)) for kept in whole], axis=0)
+        for kept in whole:
+            np.divide(kept, largest, out=kept)
+        self.log_scale += np.log(largest)
+
+    def _write_sum(self, row: _Row, target: FloatArray) -> None:
+        """Write a sum of changes over the step of a name that the sum does not use."""
+        if not row.parts:
+            target[...] = 0
+        for number, (name, steps, coefficients) in enumerate(row.parts):
+            kept = self.kept[name]
+            places = (steps + self.k) % len(kept)
+            if len(places) == 1:
+                part = kept[places[0]]
+                if coefficients[0] != 1:
+                    part = coefficients[0] * part
+            else:
+                weights = np.zeros(len(kept))
+                weights[places] = coefficients
+                part = (weights @ kept.reshape(len(kept), -1)).reshape(target.shape)
+            if number:
+                target += part
+            else:
+                target[...] = part
+
+    def _find(self, action: _Accelerations, own: Mapping[Quantity, FloatArray]) -> None:
+        """Take the changes of accelerations that are found together; own: the Jacobians that points do not share."""
+        for result, position, velocity in zip(action.results, action.positions, action.velocities, strict=True):
+            self._write_sum(position, self.state[: self.size])
+            self._write_sum(velocity, self.state[self.size :])
+            self._write_acceleration(result, own)
+        if action.sought.any():
+            self._solve(action)
+
+    def _write_acceleration(self, result: Quantity, own: Mapping[Quantity, FloatArray]) -> None:
+        """Write what the change of the state makes of an acceleration."""
+        target = self.of(result)
+        if result in own:
+            target[...] = self._rows(own[result] @ self._by_point(self.state))
+            return
+        np.matmul(self._shared(result), self.state, out=self.parts)
+        without, by_alpha, by_beta = self.parts.reshape(3, *target.shape)
+        two_alpha, beta_squared = self.wide_gains
+        by_alpha *= two_alpha
+        by_beta *= beta_squared
+        np.add(without, by_alpha, out=target)
+        target += by_beta
+
+    def _shared(self, result: Quantity) -> FloatArray:
+        """Return the Jacobians of an acceleration that all points share, as in `Course`; shape (3 n, 2 n)."""
+        return np.asarray(self.course.jacobians[result][self.k % self.course.steps])
+
+    def _solve(self, action: _Accelerations) -> None:
+        """Make of what is known of accelerations the accelerations, each of which has its share of all of them."""
+        size, points, count = self.size, self.points, len(action.results)
+        weights = np.stack([np.ones(points), *self.gains], axis=1)
+        left = np.zeros((points, count, size, count, size))
+        for i, result in enumerate(action.results):
+            jacobian = (weights @ self._shared(result).reshape(3, -1)).reshape(points, size, 2, size)
+            for j in range(count):
+                by_position, by_velocity = action.sought[:, i, j]
+                left[:, i, :, j, :] = -by_position * jacobian[:, :, 0] - by_velocity * jacobian[:, :, 1]
+            left[:, i, :, i, :] += np.eye(size)
+        known = self._by_point(np.concatenate([self.of(result) for result in action.results]))
+        solved = np.linalg.solve(left.reshape(points, count * size, count * size), known).astype(float)
+        found = np.split(self._rows(solved), count)
+        for result, change in zip(action.results, found, strict=True):
+            self.of(result)[...] = change
+
+
+def _none(_: int) -> dict[Quantity, FloatArray]:
+    """Return no Jacobians, whatever the step."""
+    return {}
+
+
+def has_stages(course: Course) -> bool:
+    """Return whether some evaluations take place where a point's own gains lead, in stages."""
+    return any(isinstance(action, Evaluated) and action.result not in course.jacobians for action in course.actions)
+
+
+def _stage_jacobians(course: Course, gains: FloatArray, k: int) -> dict[Quantity, FloatArray]:
+    """Return the Jacobians of the evaluations of step k that points do not share; shape (points, n, 2 n) each.
+
+    The step is taken from the exact motion, by every point with its own gains.
+    """
+    k %= course.steps
+    return take_step_itself(course, gains, k, on_the_motion(course, k), course.on_it, course.jacobians)
+
+
+def take_step_itself(
+    course: Course,
+    gains: FloatArray,
+    k: int,
+    values: dict[Quantity, FloatArray],
+    on_it: Container[Quantity] = frozenset(),
+    shared: Container[Quantity] = frozenset(),
+) -> dict[Quantity, FloatArray]:
+    """Take step k by the method's own actions: put what comes out into `values`, return the Jacobians on the way.
+
+    `values` holds what the step starts with, shape (points, n) each. Evaluations in `on_it`, and those that are solved
+    for, take place on the motion. Of those that are not `shared` there are Jacobians, by their results, shape (points,
+    n, 2 n).
+    """
+    mechanism, step = course.mechanism, course.step
+    two_alpha, beta_squared = gains
+    found: dict[Quantity, FloatArray] = {}
+    start = step * k
+
+    for action in course.actions:
+        if isinstance(action, Assigned):
+            values[action.result] = _total(action.value, values)
+        elif isinstance(action, Evaluated) and action.result not in on_it:
+            t = start + float(action.moment) * step
+            state = _total(action.position, values), _total(action.velocity, values) / step
+            q, v = (np.broadcast_to(part, (two_alpha.size, mechanism.size)) for part in state)
+            a = acceleration_function(mechanism, np)(t, two_alpha, beta_squared, q.T, v.T)
+            values[action.result] = step**2 * np.stack(np.broadcast_arrays(*a), axis=-1)
+            if action.result not in shared:
+                jacobians = acceleration_jacobians(mechanism, t, two_alpha, beta_squared, q, v)
+                found[action.result] = _side_by_side(jacobians, step)
+        else:
+            for evaluation in [action] if isinstance(action, Evaluated) else action.evaluations:
+                _, _, a_of_motion = course.along.at(np.array([start + float(evaluation.moment) * step]))
+                values[evaluation.result] = step**2 * a_of_motion
+    return found
+
+
+def on_the_motion(course: Course, k: int | IntArray) -> dict[Quantity, FloatArray]:
+    """Return what steps k start with as it is on the motion; shape (k.size, n) each, (1, n) for one step."""
+    values: dict[Quantity, FloatArray] = {}
+    remembered = course.memory
+    for quantity, shares, state_step in zip(remembered.carried, remembered.shares, remembered.state_steps, strict=True):
+        turns, place = np.divmod(np.atleast_1d(k) + state_step, course.steps)
+        if not course.along.closed:
+            turns, place = 0 * turns, place + course.steps * turns
+        q, v, a = course.along.at(np.asarray(course.step * place, float))
+        q = q + np.multiply.outer(turns, course.along.q[-1] - course.along.q[0])
+        by_q, by_v, by_a = (float(share) for share in shares)
+        values[quantity] = by_q * q + by_v * course.step * v + by_a * course.step**2 * a
+    return values

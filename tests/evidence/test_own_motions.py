@@ -1,0 +1,109 @@
+"""Rates along the motion that a method itself makes: against the runner's own, and against kicked runs."""
+
+import numpy as np
+import pytest
+
+from bezstab.evidence import floquet_rates, moving_poles, own_motion_rates
+from bezstab.mechanism import compiled_mechanism, load_scene
+from bezstab.methods import lookup
+from bezstab.stability import FloatArray, region, spectral_radius, window
+from tests.evidence.driven_four_bar import four_bar, turning
+from tests.reference.perturbed_revolutions import rates_after_kicks, runner_motion
+
+NEAR_ONE = {
+    "B4": (0.25, 0.27),
+    "AB4": (0.3, 0.115),
+    "AB2": (0.54165581, 0.68299639),
+    "RK4": (2.82590929, 6.83959742),
+    "SYM": (1.92915854, 0.0186539),
+}
+"""The last three, at omega h = 0.105, are points where truncation errors change the side of one on which |z| is."""
+
+
+@pytest.mark.parametrize("name", NEAR_ONE)
+def test_the_runner_finds_the_same_motion_and_the_same_rate(name: str) -> None:
+    """Both by Newton's method, to the square of 1e-8; the runner's by a revolution of its own steps, complex."""
+    alpha_hat, beta_hat = NEAR_ONE[name]
+    expected = runner_motion(four_bar(), lookup(name), 60, alpha_hat, beta_hat)
+    assert expected is not None
+    found = own_motion_rates(four_bar(), lookup(name), 1 / 60, np.array([alpha_hat]), np.array([beta_hat]), 1.0)
+    assert found[0] == pytest.approx(expected[1], abs=1e-9)
+
+
+@pytest.mark.parametrize("name", ["AB2", "RK4", "SYM"])
+def test_truncation_errors_decide_which_side_of_one_a_rate_is_on(name: str) -> None:
+    own, on_the_motion = both_rates(name, 1 / 60, *NEAR_ONE[name])
+    assert (own > 1) != (on_the_motion > 1)
+
+
+@pytest.mark.parametrize("name", ["ABM2", "RK2", "verlet-half"])
+def test_what_truncation_errors_make_of_a_rate_falls_faster_than_the_step(name: str) -> None:
+    coarse, fine = (np.subtract(*both_rates(name, h, 0.3, 0.1)) for h in (0.04, 0.01))
+    assert 0 < abs(fine) < abs(coarse) / 4
+
+
+def both_rates(name: str, h: float, alpha_hat: float, beta_hat: float) -> tuple[float, float]:
+    """Return |z| on the method's own motion, and on the four-bar's; h in s."""
+    point = np.array([alpha_hat]), np.array([beta_hat])
+    (own,) = own_motion_rates(four_bar(), lookup(name), h, *point, 1.0)
+    (on_the_motion,) = floquet_rates(four_bar(), lookup(name), h, *point, 1.0)
+    return float(own), float(on_the_motion)
+
+
+@pytest.mark.parametrize(
+    ("scene", "name", "alpha_hat", "beta_hat"),
+    [
+        ("driven_four_bar", "bdf2", 0.4, 0.12),  # implicit
+        ("driven_four_bar", "AB4", 1.5, 2.0),  # errors grow beyond all numbers in a revolution
+        ("four_bar", "B4", 0.3, 0.1),  # no driver
+        ("driven_four_bar", "SYM", 2.053533, -0.021667),  # Newton's method leads nowhere
+    ],
+)
+def test_without_such_a_motion_the_rate_is_that_on_the_motion(
+    scene: str, name: str, alpha_hat: float, beta_hat: float
+) -> None:
+    mechanism, method = compiled_mechanism(load_scene(scene)), lookup(name)
+    point = np.array([alpha_hat]), np.array([beta_hat])
+    on_the_motion = floquet_rates(mechanism, method, 0.005, *point, 0.2)
+    assert own_motion_rates(mechanism, method, 0.005, *point, 0.2) == on_the_motion
+
+
+def test_no_feedback_at_all_is_no_error() -> None:
+    """Errors then neither grow nor decay, and the revolution that comes back to itself is not just one."""
+    found = own_motion_rates(four_bar(), lookup("SYM"), 0.01, np.array([0.0, 0.1]), np.array([0.0, 0.1]), 1.0)
+    assert np.isfinite(found).all()
+
+
+def points_near_one(name: str, count: int) -> tuple[FloatArray, FloatArray]:
+    """Return alpha_hat and beta_hat of some points where |z| over the motion is near one."""
+    method = lookup(name)
+    low, high = np.transpose(window(region(method)))
+    points = np.random.default_rng(4).uniform(low, high, (6000, 2)).T
+    points = points[:, np.abs(spectral_radius(method, points[0], points[1]) - 0.985) < 0.03][:, :300]
+    rates = floquet_rates(four_bar(), method, 1 / count, points[0], points[1], 1.0)
+    alpha_hat, beta_hat = points[:, np.abs(rates - 1) < (0.003 if count > 100 else 0.006)][:, :12]
+    return alpha_hat, beta_hat
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["B4", "AB4", "AB2", "SYM", "RK4"])
+@pytest.mark.parametrize(("count", "revolutions"), [(203, 30), (60, 60)])
+def test_kicked_runs_show_the_rate_and_are_on_its_side_of_one(name: str, count: int, revolutions: int) -> None:
+    """The driven four-bar at omega h = 0.031 and 0.105, runs kicked from the method's own motion."""
+    method = lookup(name)
+    points = points_near_one(name, count)
+    motions = [runner_motion(four_bar(), method, count, *point) for point in zip(*points, strict=True)]
+    there = np.array([motion is not None for motion in motions])
+    alpha_hat, beta_hat = points[0][there], points[1][there]
+    starts = np.array([motion[0] for motion in motions if motion is not None])
+    own = own_motion_rates(four_bar(), method, 1 / count, alpha_hat, beta_hat, 1.0)
+    kicks = np.where(own > 1, 1e-10, 1e-6)
+    shown = rates_after_kicks(four_bar(), method, count, alpha_hat, beta_hat, starts, kicks, revolutions)
+    assert (np.isfinite(shown)).sum() >= 8
+    told = np.isfinite(shown)
+    assert ((own > 1) == (shown > 1))[told].all()
+    law = np.array([each.z_abs_moving for each in moving_poles(method, turning(), 1 / count, alpha_hat, beta_hat)])
+    at_rest = spectral_radius(method, alpha_hat, beta_hat)
+    own_apart, law_apart, map_apart = (np.median(np.abs(rates - shown)[told]) for rates in (own, law, at_rest))
+    assert own_apart < 2e-5  # what other multipliers, nearly as large, have left in the runs
+    assert law_apart < 0.5 * map_apart
