@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from bezstab.cli.moving_mechanism import (
+    modulus_as_it_moves,
     moving_columns,
     moving_rows,
     moving_scene_option,
@@ -204,11 +205,6 @@ def choose(
     rows: list[Row] = []
     chosen: list[tuple[Fraction, Fraction]] = []
     for method in progress(methods, goal):
-        modulus = None
-        if turning:
-            from bezstab.evidence import moving_modulus
-
-            modulus = moving_modulus(method, turning, float(h_max or h))
         robust_up_to = h_max if goal == "robust" else None
         choice = choose_at_step(
             method,
@@ -218,7 +214,7 @@ def choose(
             settle=settle,
             spread=float(spread),
             equal=keep is not None,
-            modulus=modulus,
+            modulus=modulus_as_it_moves(method, turning, h_max or h),
         )
         row = choice_row(choice, float(h))
         if engine:
@@ -318,7 +314,7 @@ def check(
         choices += [
             stability.describe_point(method, label, *point) for label, point in (("as given", typed.point), *typed.also)
         ]
-        choices.append(stability.choose(method, "robust"))
+        choices.append(stability.choose(method, "robust", modulus=modulus_as_it_moves(method, turning, h)))
     rows: list[Row] = []
     for choice in choices:
         given = choice.goal != "robust"

@@ -13,6 +13,7 @@ from bezstab.show import Column, Row, column, formatted
 if TYPE_CHECKING:
     from bezstab.mechanism import TurningNormals
     from bezstab.methods import Method
+    from bezstab.stability import Modulus
 
 moving_speed_option = click.option(
     "--speed", type=SPEED, default="1", help="With --scene: times the scene's own, its drivers' and its start's."
@@ -48,6 +49,15 @@ def turning_of(scene: str | None, speed: Fraction, h: Fraction | None) -> "Turni
         name = mechanism.scene.name
         say(f"bezstab: constraints of {name} turn by κh = {turned:.2g} a step: beyond {LAW_HOLDS:g} the law fails")
     return turning
+
+
+def modulus_as_it_moves(method: "Method", turning: "TurningNormals | None", h: Fraction | None) -> "Modulus | None":
+    """Return |z_p| over the motion at steps of h (s), for `choose` to take in place of that at rest; None without."""
+    if turning is None or h is None:
+        return None
+    from bezstab.evidence import moving_modulus
+
+    return moving_modulus(method, turning, float(h))
 
 
 def moving_rows(

@@ -67,6 +67,18 @@ def test_choose_allows_for_the_motion() -> None:
 
 
 @pytest.mark.slow
+def test_check_offers_instead_what_choose_chooses_for_the_same_motion() -> None:
+    """The point chosen at rest is not settled as this four-bar moves."""
+    moving = ("--method", "AB4", "--scene", "driven_four_bar", "--h", "0.02")
+    checked = run("check", *moving, "--alpha", "0.3", "--beta", "0.1", "--format", "json")
+    assert checked.exit_code == 1
+    _, instead = json.loads(checked.stdout)
+    (chosen,) = rows("choose", *moving)
+    assert (instead["alpha_hat"], instead["beta_hat"]) == (chosen["alpha_hat"], chosen["beta_hat"])
+    assert instead["safe"] is True
+
+
+@pytest.mark.slow
 def test_region_prints_the_area_that_is_left_at_each_speed() -> None:
     found = rows("region", *FOUR_BAR, "--speed", "1", "--speed", "3", *NO_FILES)
     at_rest, slow, fast = found[0]["area"], found[0]["area_moving"], found[1]["area_moving"]
