@@ -17,12 +17,11 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bezstab.evidence.mixing_poles import NearestPoles, nearest_poles
 from bezstab.mechanism import TurningNormals
 from bezstab.methods import Method
-from bezstab.stability import ComplexArray, FloatArray, poles, turning_sensitivity
+from bezstab.stability import ComplexArray, FloatArray
 
-SLOWEST = 0.5  # of |z_p|: within the law a pole grows by e^(1/2) a step at most, and one so small never leads
-BEYOND_FIRST_ORDER = 0.5  # |chi| kappa h: from here on the terms left out are as large as those kept
 LAW_HOLDS = 0.1  # rad, kappa h: at twice that terms beside chi, too, have been seen to turn 0.94 into 1.05
 
 STEPS_AFTER_A_KICK = 50  # of Runge and Kutta's rule to each time asked for: K turns by a revolution at most meanwhile
@@ -41,11 +40,11 @@ class MovingPole:
 
     `z_abs`: at rest. `chi_abs`: |chi| of the pole that grows most over the motion. `z_abs_moving`: its rate over the
     motion. `z_abs_worst`: the largest momentary rate of any pole. `kappa`: in 1/s. `double`: another pole is so near
-    that the first-order law fails; then the largest rate is |z| + (kappa h)^(1/2), about what such a pole moves by, and
-    the rate over the motion at most that. `settled`: all of
-    the band, and the second-order terms that were left out, are on one side of one; where kappa h is beyond LAW_HOLDS
-    nothing is settled to converge. `safe_speed`: so many times as fast the mechanism may move, at this step, until its
-    rate is one or the law ends; infinite where it does not turn, nan where it diverges at rest.
+    that the first-order law fails; then the largest rate is how far the two can come (mixing_poles), and the rate over
+    the motion at most that. `settled`: all of the band, and the second-order terms that were left out, are on one side
+    of one; where kappa h is beyond LAW_HOLDS nothing is settled to converge. `safe_speed`: so many times as fast the
+    mechanism may move, at this step, until its rate is one or the law ends; infinite where it does not turn, nan where
+    it diverges at rest.
     """
 
     z_abs: float
@@ -213,86 +212,95 @@ def moving_poles(
     Theory: the first-order law of the moving mechanism (docstring of this file). NumericalError if a pole leaves the
     range of float64.
     """
-    z = poles(method, alpha_hat, beta_hat)
-    step = h * float(method.step_multiple)
-    with np.errstate(divide="ignore"):
+    nearest = nearest_poles(method, alpha_hat, beta_hat)
+    z, step = nearest.z, h * float(method.step_multiple)
+    turned = turning.kappa * step
+    with np.errstate(all="ignore"):
         at_rest = np.log(np.abs(z))
-    counts = (np.abs(z) >= SLOWEST * np.abs(z[:, :1])) & (z.imag >= 0)  # of a conjugate pair both grow alike
-    chi = turning_sensitivity(method, alpha_hat[:, np.newaxis], beta_hat[:, np.newaxis], z)
-    turned = counts & np.isfinite(chi)
+        chi = nearest.shift / z
+    counts = nearest.may_lead & (z.imag >= 0)  # of a conjugate pair both grow alike
+    mixing = counts & nearest.mix(turned)
+    known = counts & np.isfinite(chi)
     growth = np.where(counts, 0.0, -np.inf)
-    growth[turned] = step * growth_rates(turning, chi[turned])
+    growth[known] = step * growth_rates(turning, chi[known])
     worst = np.full(z.shape, -np.inf)
-    worst[turned] = at_rest[turned] + step * momentary_rates(turning, chi[turned])
-    kappa = turning.kappa
-    return [_moving_pole(z[i], at_rest[i], chi[i], growth[i], worst[i], kappa, step) for i in range(len(z))]
+    alone = known & ~mixing
+    worst[alone] = at_rest[alone] + step * momentary_rates(turning, chi[alone])
+    speeds = _safe_speeds(nearest, at_rest, growth, turned)
+    reach, of_pairs = nearest.reach(turned), nearest.left_out(turned)
+    return [
+        _moving_pole(
+            z_abs=float(nearest.z_abs[i]),
+            middle=nearest.middle[i],
+            reach=np.where(mixing[i], reach[i], 0.0),
+            left_out=np.where(mixing[i], of_pairs[i], (np.abs(chi[i]) * turned) ** 2),
+            chi_abs=np.abs(chi[i]),
+            moving=at_rest[i] + growth[i],
+            worst=worst[i],
+            kappa=turning.kappa,
+            turned=turned,
+            safe_speed=float(speeds[i]),
+        )
+        for i in range(len(z))
+    ]
 
 
 def _moving_pole(
-    z: ComplexArray,
-    at_rest: FloatArray,
-    chi: ComplexArray,
-    growth: FloatArray,
+    *,
+    z_abs: float,
+    middle: FloatArray,
+    reach: FloatArray,
+    left_out: FloatArray,
+    chi_abs: FloatArray,
+    moving: FloatArray,
     worst: FloatArray,
     kappa: float,
-    step: float,
+    turned: float,
+    safe_speed: float,
 ) -> MovingPole:
-    """Return what becomes of the poles at one point: ln|z| at rest, its growth over the motion, its worst for a moment.
+    """Return what becomes of the poles at one point, whose arrays have shape (poles,).
 
-    All but kappa (1/s) of shape (poles,), the dominant pole first; `step` (s) is the method's own. The growth of a pole
-    that does not count is minus infinity.
+    `moving`: ln|z| over the motion by the law, minus infinity of a pole that does not count. `worst`: the same for a
+    moment, of those that do not mix. `reach`: how far each that mixes may come, from its pair's `middle`, else zero.
+    `left_out`: terms of second order in ln|z|. `turned`: kappa h of the method's own step; kappa in 1/s.
     """
-    turned = kappa * step
-    modulus = float(np.abs(z[0]))
-    moving = at_rest + growth
-    leading = int(np.argmax(moving))
-    law_ends = _end_of_the_law(z, max(abs(chi[0]), abs(chi[leading])))
-    double = not turned < law_ends
-    rate = float(moving[leading])
-    highest = max(float(worst.max()), rate)
+    mixing = reach > 0
+    with np.errstate(divide="ignore"):
+        furthest, at_rest = np.log(reach), float(np.log(z_abs))
+    leading = int(np.argmax(np.where(mixing, furthest, moving)))
+    double = bool(mixing[leading])
+    highest = max(at_rest, float(np.where(mixing, furthest, np.maximum(worst, moving)).max()))
+    rate = max(at_rest, float(np.where(mixing, np.minimum(moving, furthest), moving).max()))
+    lowest = rate
     if double:
-        highest = float(np.log(modulus + np.sqrt(turned)))
-        rate = min(rate, highest) if np.isfinite(chi[0]) else highest
-    left_out = (float(np.abs(chi[leading])) * turned) ** 2
-    converges = highest < -left_out and turned <= LAW_HOLDS
-    settled = not double and (converges or rate > left_out)
+        nearest_zero = max(float(2 * middle[leading] - reach[leading]), 0.0)
+        lowest = float(np.log(nearest_zero)) if nearest_zero else -np.inf
+    unsure = float(left_out[leading])
+    converges = highest < -unsure and turned <= LAW_HOLDS
     return MovingPole(
-        z_abs=modulus,
+        z_abs=z_abs,
         kappa=kappa,
-        chi_abs=float(np.abs(chi[leading])),
+        chi_abs=float(chi_abs[leading]),
         z_abs_moving=float(np.exp(rate)),
         z_abs_worst=float(np.exp(highest)),
         double=double,
-        settled=bool(settled),
-        safe_speed=_safe_speed(at_rest, growth, turned, law_ends),
+        settled=bool(converges or lowest > unsure),
+        safe_speed=safe_speed,
     )
 
 
-def _end_of_the_law(z: ComplexArray, chi_abs: float) -> float:
-    """Return the kappa h from which on the law fails at a point: there two poles mix, or second-order terms lead.
+def _safe_speeds(nearest: NearestPoles, at_rest: FloatArray, growth: FloatArray, turned: float) -> FloatArray:
+    """Return by what growth and `turned`, kappa h, both proportional to the speed, can be multiplied; shape (points,).
 
-    z has shape (poles,), the dominant pole first.
+    Until growth equals a pole's decay or, where that is beyond what the law is good for, until the reach of it and its
+    neighbour is one; but not beyond LAW_HOLDS.
     """
-    apart = np.abs(z[0] - z[1:])
-    own = np.abs(z[1:] - z[0].conj()) == 0  # of a conjugate pair the other: not near, however flat the pair
-    nearest = float(apart[~own].min(initial=np.inf))
-    modulus = float(np.abs(z[0]))
-    two_mix = (nearest / modulus) ** 2 if modulus > 0 else 0.0
-    return min(two_mix, BEYOND_FIRST_ORDER / chi_abs if chi_abs > 0 else np.inf)
-
-
-def _safe_speed(at_rest: FloatArray, growth: FloatArray, turned: float, law_ends: float) -> float:
-    """Return by what growth and `turned`, kappa h, both proportional to the speed, can be multiplied.
-
-    Until growth equals a pole's decay or, where that is beyond the end of the law, until the estimate for two poles
-    that mix, |z| + (kappa h)^(1/2), is one; but not beyond LAW_HOLDS.
-    """
-    if at_rest.max() >= 0:
-        return float("nan")
-    speeds = np.full_like(growth, np.inf)
-    np.divide(-at_rest, growth, out=speeds, where=growth > 0)  # elsewhere both may be infinite
-    crossing = float(speeds.min())
-    if turned == 0 or crossing * turned <= min(law_ends, LAW_HOLDS):
-        return crossing
-    estimate_ends = (1 - float(np.exp(at_rest.max()))) ** 2
-    return min(LAW_HOLDS, max(law_ends, estimate_ends)) / turned
+    if turned == 0:
+        return np.where(at_rest.max(axis=1) < 0, np.inf, np.nan)
+    with np.errstate(all="ignore"):
+        by_the_law = np.where(growth > 0, -at_rest / growth, np.inf) * turned
+    ends = nearest.mixing_from()
+    estimated = np.fmax(ends, nearest.reaching_one_at())
+    limits = np.where(np.isneginf(growth), np.inf, np.where(by_the_law <= ends, by_the_law, estimated))
+    speeds = np.minimum(limits.min(axis=1), LAW_HOLDS) / turned
+    return np.where(at_rest.max(axis=1) < 0, speeds, np.nan)

@@ -67,7 +67,7 @@ from bezstab.stability.regions import Extent, Region, pole_place, region, useful
 from bezstab.stability.searches import bisected, first_where
 from bezstab.stability.step_families import FAMILIES, Limit, Member, bezier_limit, family_members
 from bezstab.stability.step_sequences import VaryingSteps, varying_steps
-from bezstab.stability.turning import turning_sensitivity
+from bezstab.stability.turning import own_feedback_root, turning_sensitivity, turning_shift
 
 if TYPE_CHECKING:
     from bezstab.stability.damping_limits import critical_damping_limit, unconditional_damping_ratio
@@ -115,6 +115,7 @@ __all__ = [
     "first_where",
     "gain_limits",
     "largest_stable_step",
+    "own_feedback_root",
     "pencil_of",
     "pole_map",
     "pole_place",
@@ -125,6 +126,7 @@ __all__ = [
     "stability_margins",
     "stable_for_all",
     "turning_sensitivity",
+    "turning_shift",
     "unconditional_damping_ratio",
     "useful_window",
     "varying_steps",

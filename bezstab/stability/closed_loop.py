@@ -64,7 +64,8 @@ def poles(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexA
     where an implicit step has no solution.
     """
     alpha_hat, beta_hat = np.broadcast_arrays(np.asarray(alpha_hat, float), np.asarray(beta_hat, float))
-    z = _all_poles(any_pencil_of(method), alpha_hat.ravel(), beta_hat.ravel()).T.reshape(*alpha_hat.shape, -1)
+    rows = _all_poles(any_pencil_of(method), alpha_hat.ravel(), beta_hat.ravel())
+    z = rows.T.reshape(*alpha_hat.shape, len(rows))
     order = np.lexsort((-z.imag, -np.abs(z)), axis=-1)
     return _without_rounding(np.take_along_axis(z, order, axis=-1))
 
@@ -86,8 +87,9 @@ def _all_poles(pencil: AnyPencil, alpha_hat: FloatArray, beta_hat: FloatArray) -
     if isinstance(pencil, PlanePencil):
         return plane_roots(pencil, alpha_hat, beta_hat)
     mu = np.stack(feedback_roots(pencil.feedback, alpha_hat, beta_hat))
-    z = roots_in_z(pencil, mu.ravel()).reshape(-1, *mu.shape)
-    return z.swapaxes(0, 1).reshape(-1, alpha_hat.size)
+    z = roots_in_z(pencil, mu.ravel())
+    of_each_mu = z.reshape(len(z), *mu.shape).swapaxes(0, 1)
+    return of_each_mu.reshape(2 * len(z), alpha_hat.size)
 
 
 def dominant_pole(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexArray:

@@ -36,6 +36,12 @@ def turning_sensitivity(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLik
     Infinite at a double pole of one mu, where the change is like the root of h K. Theory: the first-order law of the
     moving mechanism.
     """
+    with np.errstate(all="ignore"):
+        return np.asarray(turning_shift(method, alpha_hat, beta_hat, z) / np.asarray(z, complex))
+
+
+def turning_shift(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike, z: ArrayLike) -> ComplexArray:
+    """Return z chi, by which poles z move for each unit of h eig K; as `turning_sensitivity`, and finite at z = 0."""
     alpha_hat, beta_hat, z = np.broadcast_arrays(
         np.asarray(alpha_hat, float), np.asarray(beta_hat, float), np.asarray(z, complex)
     )
@@ -45,21 +51,35 @@ def turning_sensitivity(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLik
         return _by_feedback_roots(method, alpha_hat, beta_hat, z)
 
 
-def _by_feedback_roots(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, z: ComplexArray) -> ComplexArray:
-    """Return 1 + pi_mu / (z pi_z) at whichever root mu of the feedback each z belongs to."""
+def own_feedback_root(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike, z: ArrayLike) -> ComplexArray:
+    """Return the root mu of the feedback that each pole z belongs to; shape as `turning_sensitivity`, dimensionless.
+
+    Of methods that step position and velocity differently poles belong to no mu: zero.
+    """
+    alpha_hat, beta_hat, z = np.broadcast_arrays(
+        np.asarray(alpha_hat, float), np.asarray(beta_hat, float), np.asarray(z, complex)
+    )
+    if isinstance(method.scheme, SecondOrder | Partitioned):
+        return np.zeros(z.shape, complex)
     pencil = pencil_of(method)
     mu = np.stack(feedback_roots(pencil.feedback, alpha_hat.ravel(), beta_hat.ravel())).reshape(2, *z.shape)
     left_over = np.abs(polyval2d(np.broadcast_to(z, mu.shape), mu, pencil.table))
-    own = np.take_along_axis(mu, np.argmin(left_over, axis=0)[np.newaxis], axis=0)[0]
+    return np.asarray(np.take_along_axis(mu, np.argmin(left_over, axis=0)[np.newaxis], axis=0)[0])
+
+
+def _by_feedback_roots(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, z: ComplexArray) -> ComplexArray:
+    """Return z + pi_mu / pi_z at whichever root mu of the feedback each z belongs to."""
+    pencil = pencil_of(method)
+    own = own_feedback_root(method, alpha_hat, beta_hat, z)
     slope_z = polyval2d(z, own, pencil.table_by_z)
     slope_mu = polyval2d(z, own, pencil.table_by_mu)
-    return np.asarray(1 + slope_mu / (z * slope_z))
+    return np.asarray(z + slope_mu / slope_z)
 
 
 def _by_closed_loop(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, z: ComplexArray) -> ComplexArray:
-    """Return 1 - (2 P_alpha + alpha_hat P_beta) / (z P_z); a step of m h turns by m times as much as one of h."""
+    """Return z - (2 P_alpha + alpha_hat P_beta) / P_z; a step of m h turns by m times as much as one of h."""
     by_z, by_alpha, by_beta = (_value(table, z, alpha_hat, beta_hat) for table in _closed_loop_slopes(method))
-    return np.asarray(1 - (2 * by_alpha + alpha_hat * by_beta) / (float(method.step_multiple) * z * by_z))
+    return np.asarray(z - (2 * by_alpha + alpha_hat * by_beta) / (float(method.step_multiple) * by_z))
 
 
 @cache

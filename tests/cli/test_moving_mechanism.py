@@ -48,7 +48,7 @@ def test_a_mechanism_that_turns_too_far_in_a_step_is_said_to() -> None:
 
 @pytest.mark.slow
 def test_check_prints_up_to_which_speed_errors_shrink() -> None:
-    point = ("check", "--alpha", "0.3", "--beta", "0.62", "--method", "B4", *FOUR_BAR, "--format", "json")
+    point = ("check", "--alpha", "0.3", "--beta", "0.64", "--method", "B4", *FOUR_BAR, "--format", "json")
     (given, _) = json.loads(run(*point).stdout)
     printed = [run(*point, "--speed", f"{share * given['safe_speed']:.4f}").stdout for share in (0.99, 1.01)]
     slower, faster = (json.loads(text)[0]["z_abs_moving"] for text in printed)
