@@ -257,6 +257,7 @@ def maps_of_other_kinds() -> Iterator[Line]:
         lookup("hht"): "second order, three roots",
         Method("Beeman", recipe(BEEMAN), "Beeman, J. Comput. Phys. 20, 1976"): "a recipe, four roots",
         Method("AB3 recipe", second_order_form(lookup("AB3").scheme), "AB3 in x, v, a"): "a recipe, six roots",
+        Method("B4 recipe", second_order_form(lookup("B4").scheme), "B4 in x, v, a"): "a recipe, eight roots",
     }
     for method, kind in kinds.items():
         name, (a, b) = method.name, axes(method)
