@@ -18,6 +18,7 @@ From exact numbers upwards; a file imports only from those above it:
     aliases             what else they are called, and advice
     registry            every built-in method by name
     derivation          by sympy: s->z mapping, characteristic polynomial, closed loop
+    first_order_forms   second-order schemes that spell out a multistep method or a PECE
     shared_factors      poles that no feedback moves
     plane_edges         where a second-order scheme's plane turns from stable to unstable, exactly
     orders              order of accuracy and error constant
@@ -78,6 +79,7 @@ if TYPE_CHECKING:
         feedback_polynomial,
         mapping_equations,
     )
+    from bezstab.methods.first_order_forms import first_order_form
     from bezstab.methods.formulas import characteristic_text, mapping_text, recursion_text
     from bezstab.methods.orders import ForceAccuracy, accuracy, accuracy_by_force
     from bezstab.methods.plane_edges import CurveTable, PlaneStrips, Strip, crossing_factors_in_plane, plane_strips
@@ -101,6 +103,7 @@ DERIVED = {
         "feedback_polynomial",
         "mapping_equations",
     ),
+    "first_order_forms": ("first_order_form",),
     "formulas": ("characteristic_text", "mapping_text", "recursion_text"),
     "orders": ("ForceAccuracy", "accuracy", "accuracy_by_force"),
     "plane_edges": ("CurveTable", "PlaneStrips", "Strip", "crossing_factors_in_plane", "plane_strips"),
@@ -158,6 +161,7 @@ __all__ = [
     "evaluations",
     "feedback_matrix",
     "feedback_polynomial",
+    "first_order_form",
     "fixed_poles",
     "implicit",
     "is_schur",

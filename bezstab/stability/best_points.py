@@ -26,7 +26,7 @@ import numpy as np
 from numpy.polynomial.polynomial import polyroots, polyval2d
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method, SecondOrder, fixed_poles, implicit, without_shared_factor
+from bezstab.methods import Method, SecondOrder, first_order_form, fixed_poles, implicit, without_shared_factor
 from bezstab.stability.answer_checks import check_best_point, check_deadbeat, check_plane_best_point
 from bezstab.stability.arrays import ComplexArray, FloatArray
 from bezstab.stability.dominant_roots import dominant_root
@@ -145,6 +145,10 @@ def falls_towards(method: Method) -> float | None:
 
 
 def _best_or_limit(method: Method) -> BestPoint | float | None:
+    form = first_order_form(method)
+    if form is not method:
+        found = _best_or_limit(form)
+        return replace(found, method=method) if isinstance(found, BestPoint) else found
     stuck = fixed_poles(method)
     if stuck:
         return _beside_a_fixed_pole(method, stuck[0])

@@ -2,7 +2,8 @@
 
 The poles are the roots of pi(z, mu) at the two roots mu of the feedback. Compared with eigenvalues of P's companion
 that halves the degree, needs one solve where the mu are conjugate, and keeps all digits on beta_hat = alpha_hat^2/4,
-where the roots of P pair up. A second-order scheme has no mu: there the poles are the roots of P (plane_pencils).
+where the roots of P pair up. A second-order scheme has no mu, unless it spells out a first-order method: there the
+poles are the roots of P (plane_pencils).
 """
 
 from collections.abc import Callable
@@ -18,6 +19,7 @@ from bezstab.methods import (
     SecondOrder,
     Verdict,
     closed_loop_at,
+    first_order_form,
     is_schur,
     recursion_verdict,
     without_shared_factor,
@@ -71,15 +73,20 @@ def poles(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexA
 
 
 def any_pencil_of(method: Method) -> AnyPencil:
-    """Return the pencil of a method of either kind; NumericalError if its coefficients leave the range of float64."""
-    return plane_pencil_of(method) if isinstance(method.scheme, SecondOrder) else pencil_of(method)
+    """Return the pencil of a method of either kind; NumericalError if its coefficients leave the range of float64.
+
+    Of a second-order scheme that spells out a first-order method it is that method's.
+    """
+    form = first_order_form(method)
+    return plane_pencil_of(form) if isinstance(form.scheme, SecondOrder) else pencil_of(form)
 
 
 def free_pencil_of(method: Method) -> AnyPencil:
     """Return the pencil of a method of either kind without the poles that no parameters move."""
-    if isinstance(method.scheme, SecondOrder):
-        return plane_pencil_of(method, free=True)
-    return pencil_of(without_shared_factor(method))
+    form = first_order_form(method)
+    if isinstance(form.scheme, SecondOrder):
+        return plane_pencil_of(form, free=True)
+    return pencil_of(without_shared_factor(form))
 
 
 def _all_poles(pencil: AnyPencil, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:

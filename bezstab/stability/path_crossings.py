@@ -29,6 +29,7 @@ from bezstab.methods import (
     coefficient_table,
     crossing_factors_in_plane,
     feedback_matrix,
+    first_order_form,
     without_shared_factor,
 )
 from bezstab.stability.arrays import FloatArray
@@ -96,7 +97,7 @@ def crossing_factors(path: Path) -> list[float]:
     """
     if path.alpha_hat == 0 and path.powers[1] == 0:
         return []  # all of the path is one point
-    method = path.method
+    method = first_order_form(path.method)
     if isinstance(method.scheme, SecondOrder):
         found = crossing_factors_in_plane(method, path.alpha_hat, path.beta_hat, path.powers)
     else:

@@ -7,9 +7,13 @@
                       planes p and q over alpha_hat and beta_hat that touch c
 
 That no other root is larger is not taken on trust: what is left, divided by the factor, has all its roots within the
-larger of the factor's, which Schur's recursion tells in few operations. Where it does not, near kinks, the factor with
-the largest root of the others is tried; and then all roots are solved for. From one middle in GROUP, where all roots
-are solved for, the others get their factors the same way.
+larger of the factor's, which Schur's recursion tells in few operations. From one middle in GROUP, where all roots are
+solved for, the others get their factors the same way.
+
+Where the largest root is not found so, three more ways are tried, each for what the one before it leaves. A real root
+at c is followed alone, by Newton's method: far out a polynomial is so much steeper than at the other root of the factor
+that Bairstow's method, which moves both at once, is led astray. Near kinks the factor with the largest root of the
+others is followed. And then all roots are solved for.
 
 A polynomial of odd degree is multiplied by z: then it has real roots in even number, if it has any.
 """
@@ -25,7 +29,7 @@ from bezstab.stability.root_finding import CONVERGED, roots_of_rows
 GROUP = 16  # blocks whose middles are near each other
 POINTS = 8192  # at a time: the work arrays of so many stay in a core's cache
 STEPS = 3  # of Bairstow's method that most factors settle in: starts are off by the square of a map's spacing
-MORE_STEPS = 6  # for the others
+MORE_STEPS = 6  # for the others, and of Newton's method from a block's middle
 LARGER = 1e-9  # relative: by so much a root must outdo the others to be the largest without doubt
 
 Coefficients = Callable[[FloatArray, FloatArray], list[FloatArray]]
@@ -50,10 +54,13 @@ def largest_of_blocks(coefficients_at: Coefficients, alpha_hat: FloatArray, beta
     blocks, places = np.nonzero(np.isnan(found))
     if blocks.size:
         kinked, of_kinked = np.unique(blocks, return_inverse=True)
-        p, q = _second_factors(_roots(_rows(coefficients_at, alpha_hat[kinked, 0], beta_hat[kinked, 0])))
+        roots = _roots(_rows(coefficients_at, alpha_hat[kinked, 0], beta_hat[kinked, 0]))
+        p, q = _second_factors(roots)
         planes = _touching_planes(coefficients_at, alpha_hat[kinked], beta_hat[kinked], p, q)
         alpha_hat, beta_hat = alpha_hat[blocks, places], beta_hat[blocks, places]
-        z = _followed(coefficients_at, alpha_hat, beta_hat, planes[..., of_kinked])
+        z = _followed_alone(_rows(coefficients_at, alpha_hat, beta_hat), _real_leads(roots)[of_kinked])
+        left = np.flatnonzero(np.isnan(z))
+        z[left] = _followed(coefficients_at, alpha_hat[left], beta_hat[left], planes[..., of_kinked[left]])
         left = np.flatnonzero(np.isnan(z))
         z[left] = largest_in_upper_half(_roots(_rows(coefficients_at, alpha_hat[left], beta_hat[left])))
         found[blocks, places] = z
@@ -151,6 +158,34 @@ def _followed(
     return z.reshape(alpha_hat.shape)
 
 
+def _real_leads(z: ComplexArray) -> FloatArray:
+    """Return the largest of all roots z, shape (roots, points), of each point; nan where it is not real."""
+    largest = largest_in_upper_half(z)
+    return np.where(largest.imag <= CONVERGED * np.abs(largest), largest.real, np.nan)
+
+
+def _followed_alone(rows: Rows, z: FloatArray) -> ComplexArray:
+    """Return the real roots that Newton's method reaches; nan where not settled, or not proven the largest of all."""
+    descending = rows[::-1]
+    with np.errstate(all="ignore"):  # of what goes astray
+        for _ in range(MORE_STEPS):
+            *quotient, value = _divided_by_root(descending, z)
+            *_, slope = _divided_by_root(quotient, z)
+            step = value / slope
+            z = z - step
+        *quotient, _ = _divided_by_root(descending, z)
+        proven = (np.abs(step) <= CONVERGED * np.abs(z)) & _all_within(quotient, np.abs(z))
+    return np.where(proven, z, np.nan).astype(complex)
+
+
+def _divided_by_root(descending: Rows, root: FloatArray) -> list[FloatArray]:
+    """Return the quotient by z - root, descending, and the remainder, the polynomials' value at the root."""
+    quotient = [descending[0]]
+    for coefficient in descending[1:]:
+        quotient.append(coefficient + root * quotient[-1])
+    return quotient
+
+
 def _followed_factors(rows: Rows, p: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray, ComplexArray]:
     """Return the factors that Bairstow's method reaches, and of each the larger root z, Im >= 0.
 
@@ -214,7 +249,12 @@ def _divided(ascending: Rows, p: FloatArray, q: FloatArray) -> list[FloatArray]:
 
 def _rest_within(rows: Rows, p: FloatArray, q: FloatArray, size: FloatArray) -> BoolArray:
     """Return whether all roots but the factor's have a smaller modulus, by a margin."""
-    rest = _divided(rows, p, q)[:-2]  # descending; of (size z), divided by size^degree
+    return _all_within(_divided(rows, p, q)[:-2], size)
+
+
+def _all_within(descending: Rows, size: FloatArray) -> BoolArray:
+    """Return whether all roots of polynomials have a smaller modulus than a size, by a margin."""
+    rest = list(descending)  # of (size z), divided by size^degree
     scale = 1 / (size * (1 - LARGER))
     power = scale
     for k in range(1, len(rest)):

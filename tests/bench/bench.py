@@ -63,6 +63,7 @@ sys.path.insert(0, str(HERE.parent.parent))  # run as a script, the tests are no
 
 from tests.bench.stable_mask import stable_mask  # noqa: E402
 from tests.reference.perturbed_revolutions import runner_multipliers  # noqa: E402
+from tests.reference.second_order_methods import RECIPES, second_order  # noqa: E402
 
 BASELINE, REPORT = HERE / "bench.json", HERE.parent.parent / "figures" / "bench.md"
 FALLEN = 2 / 3  # of the ratio in BASELINE
@@ -88,14 +89,6 @@ COMPILED_CELLS = 44  # per axis of a map of verdicts: as many as one batch of nu
 MUJOCO = {"SYM": "Euler", "RK4": "RK4"}
 UPDATES = 60  # of the window, as the mouse moves
 ENGINE_STEPS = 20_000  # of a run of MuJoCo, of Exudyn and of ours beside them
-
-
-BEEMAN = {
-    "x1": "x0 + v0 + 2/3 a0 - 1/6 a[-1]",
-    "predicted": "v0 + 3/2 a0 - 1/2 a[-1]",
-    "a1": "acceleration(x1, predicted)",
-    "v1": "v0 + 1/3 a1 + 5/6 a0 - 1/6 a[-1]",
-}  # as a user writes it; the feedback sees a predicted velocity
 
 
 Measured = TypeVar("Measured")
@@ -255,8 +248,9 @@ def maps_of_other_kinds() -> Iterator[Line]:
         lookup("verlet-half"): "second order, two roots",
         lookup("verlet-kdk"): "second order, two evaluations",
         lookup("hht"): "second order, three roots",
-        Method("Beeman", recipe(BEEMAN), "Beeman, J. Comput. Phys. 20, 1976"): "a recipe, four roots",
-        Method("AB3 recipe", second_order_form(lookup("AB3").scheme), "AB3 in x, v, a"): "a recipe, six roots",
+        Method("Beeman", recipe(RECIPES["beeman"]), "Beeman, J. Comput. Phys. 20, 1976"): "a recipe, four roots",
+        second_order("AB3 and B3"): "a recipe, six roots",
+        Method("B4 recipe", second_order_form(lookup("B4").scheme), "B4 in x, v, a"): "a recipe that spells out B4",
     }
     for method, kind in kinds.items():
         name, (a, b) = method.name, axes(method)

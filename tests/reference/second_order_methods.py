@@ -24,6 +24,17 @@ RECIPES = {
     },
     "imex": {"a1": "acceleration(x0, v1)", "v1": "v0 + a1", "x1": "x0 + v1"},
     "implicit euler": {"a1": "acceleration(x1, v1)", "v1": "v0 + a1", "x1": "x0 + v1"},
+    "beeman": {
+        "x1": "x0 + v0 + 2/3 a0 - 1/6 a[-1]",
+        "predicted": "v0 + 3/2 a0 - 1/2 a[-1]",
+        "a1": "acceleration(x1, predicted)",
+        "v1": "v0 + 1/3 a1 + 5/6 a0 - 1/6 a[-1]",
+    },
+    "AB3 and B3": {
+        "a0": "acceleration(x0, v0)",
+        "x1": "x0 + 23/12 v0 - 16/12 v[-1] + 5/12 v[-2]",
+        "v1": "v0 + 19/12 a0 - 2/3 a[-1] + 1/12 a[-2]",
+    },
 }
 
 

@@ -8,10 +8,21 @@ from hypothesis import given, settings
 
 from bezstab.errors import NumericalError
 from bezstab.methods import LinearMultistep, Method, RungeKutta, lookup
-from bezstab.stability import BestPoint, Pencil, best_point, best_points, pencil_of, region, spectral_radius, window
+from bezstab.stability import (
+    BestPoint,
+    Pencil,
+    best_point,
+    best_points,
+    falls_towards,
+    pencil_of,
+    region,
+    spectral_radius,
+    window,
+)
 from bezstab.stability.best_points import _meeting_poles
 from tests.methods.kinds import EXPLICIT, sampled
 from tests.reference.rationals import rationals
+from tests.reference.second_order_methods import as_second_order
 
 F = Fraction
 KINKS = [f"B{n}" for n in range(3, 13)] + [f"AB{n}" for n in range(3, 9)]
@@ -49,6 +60,17 @@ def test_the_kink_where_two_opposite_real_roots_meet(name: str) -> None:
 def test_the_values_beside_the_papers() -> None:
     exact = {"B2": 0.57735, "B3": 0.60698, "B4": 0.62588}
     assert {name: round(best(name).z_abs, 5) for name in exact} == exact
+
+
+@pytest.mark.parametrize("name", ["B2", "ABM3", "AB3@2"])
+def test_a_recipe_that_spells_out_a_method_has_its_best_point(name: str) -> None:
+    recipe = as_second_order(name)
+    assert best_point(recipe) == replace(best(name), method=recipe)
+
+
+def test_so_it_has_its_limit() -> None:
+    assert best_point(as_second_order("bdf3")) is None
+    assert falls_towards(as_second_order("bdf3")) == 0
 
 
 @pytest.mark.parametrize("name", ["B2", "AB2"])

@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -18,6 +19,7 @@ from bezstab.stability import (
 )
 from tests.methods.kinds import sampled
 from tests.reference.robust_decay import worst_decay
+from tests.reference.second_order_methods import as_second_order
 from tests.stability.made_methods import multistep
 
 METHODS = ["B2", "B4", "AB4", "ABM3", "RK1", "RK4", "SIE", "SYM"]
@@ -232,3 +234,9 @@ def test_the_half_step_recipe_is_chosen_as_symplectic_euler(goal: Goal) -> None:
     by_plane, by_mu = choose(lookup("verlet-half"), goal), choose(lookup("SYM"), goal)
     assert (by_plane.alpha_hat, by_plane.beta_hat) == pytest.approx((by_mu.alpha_hat, by_mu.beta_hat), rel=1e-6)
     assert by_plane.searched is None
+
+
+@pytest.mark.parametrize("goal", ["fastest", "robust", "critical"])
+def test_a_recipe_that_spells_out_a_method_is_given_its_choice(goal: Goal) -> None:
+    recipe = as_second_order("AB3")
+    assert choose(recipe, goal) == replace(choose(lookup("AB3"), goal), method=recipe)

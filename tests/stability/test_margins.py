@@ -12,6 +12,7 @@ from bezstab.errors import InputError
 from bezstab.methods import lookup
 from bezstab.stability import Margins, largest_stable_step, region, spectral_radius, stability_margins, verdict, window
 from tests.methods.kinds import sampled
+from tests.reference.second_order_methods import as_second_order
 
 PART = Fraction(1, 10**9)
 
@@ -150,3 +151,9 @@ def test_steps_that_mean_nothing_end_the_search() -> None:
         return [(Fraction(1), Fraction(1, 5))]
 
     assert largest_stable_step(lookup("SYM"), points, 0.01) is None
+
+
+@pytest.mark.parametrize("name", ["B4", "ABM3@2"])
+def test_a_recipe_that_spells_out_a_method_has_its_margins(name: str) -> None:
+    method, point = lookup(name), (Fraction(1, 10), Fraction(1, 100))
+    assert stability_margins(as_second_order(name), *point) == stability_margins(method, *point)

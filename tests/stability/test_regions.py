@@ -9,13 +9,14 @@ from hypothesis import strategies as st
 from bezstab.methods import LinearMultistep, Method, RungeKutta, lookup, second_order_form
 from bezstab.rationals import rational
 from bezstab.stability import Extent, FloatArray, Region, region, spectral_radius, useful_window, verdict, window
-from bezstab.stability.regions import _closed_curves
+from bezstab.stability.regions import _closed_curves, _plane_region
 from tests.methods.kinds import EXPLICIT, FEW, SOLVED, sampled
 from tests.reference.companion_poles import eigenvalues, polynomial_at, radius
 from tests.reference.enclosed_points import enclosed
 from tests.reference.fifty_digit_poles import modulus_from_p
 from tests.reference.least_moduli import least_modulus
 from tests.reference.region_areas import region_area
+from tests.reference.second_order_methods import as_second_order
 from tests.reference.sliced_areas import sliced_area, stable
 from tests.stability.made_methods import multistep, runge_kutta
 
@@ -279,9 +280,29 @@ def test_the_window_shows_the_region_the_origin_and_a_margin(level: float) -> No
 @pytest.mark.parametrize("name", sampled(["ABM3", "ABM4"], quick=["ABM3"]))
 def test_pece_as_a_recipe_has_its_region_at_a_level_of_two_digits(name: str) -> None:
     """By strips of the plane, and by the locus in mu: ABM4's curves at 0.61 have coefficients of 384 bits."""
-    recipe = Method("recipe", second_order_form(lookup(name).scheme), "")
+    by_strips = _plane_region(as_second_order(name), 0.61, ())
     # integrals by two rules, each good to 1e-12 of the area
-    assert region(recipe, 0.61).area == pytest.approx(region(lookup(name), 0.61).area, rel=1e-11)
+    assert by_strips.area == pytest.approx(region(lookup(name), 0.61).area, rel=1e-11)
+
+
+@pytest.mark.parametrize("name", ["B4@5", "ABM4", "bdf3"])
+@pytest.mark.parametrize("level", [1.0, 0.61])
+def test_a_recipe_that_spells_out_a_method_has_the_region_of_its_locus(name: str, level: float) -> None:
+    recipe = as_second_order(name)
+    of_recipe, of_method = region(recipe, level), region(lookup(name), level)
+    assert of_recipe.method is recipe
+    assert (of_recipe.area, of_recipe.extent, of_recipe.view) == (of_method.area, of_method.extent, of_method.view)
+    for curve, same in zip(of_recipe.boundary, of_method.boundary, strict=True):
+        assert np.array_equal(curve, same)
+
+
+def test_a_recipe_keeps_the_poles_that_no_feedback_moves() -> None:
+    # (z - 1/2) times AB2's rho and sigma
+    method = multistep("AB2 and a half", "1 -3/2 1/2 0", "0 3/2 -5/4 1/4")
+    recipe = Method("recipe", second_order_form(method.scheme), "")
+    assert region(recipe).fixed_poles == region(method).fixed_poles == (0.5,)
+    assert region(recipe).area == region(lookup("AB2")).area
+    assert region(recipe, 0.49).area == 0
 
 
 def test_the_useful_window_leaves_out_islands_of_negative_feedback() -> None:
