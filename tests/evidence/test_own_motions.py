@@ -104,6 +104,6 @@ def test_kicked_runs_show_the_rate_and_are_on_its_side_of_one(name: str, count: 
     assert ((own > 1) == (shown > 1))[told].all()
     law = np.array([each.z_abs_moving for each in moving_poles(method, turning(), 1 / count, alpha_hat, beta_hat)])
     at_rest = spectral_radius(method, alpha_hat, beta_hat)
-    own_apart, law_apart, map_apart = (np.median(np.abs(rates - shown)[told]) for rates in (own, law, at_rest))
-    assert own_apart < 2e-5  # what other multipliers, nearly as large, have left in the runs
-    assert law_apart < 0.5 * map_apart
+    own_apart, law_apart, map_apart = (np.abs(rates - shown)[told] for rates in (own, law, at_rest))
+    assert np.median(own_apart) < 2e-5  # what other multipliers, nearly as large, have left in the runs
+    assert law_apart.mean() < 0.5 * map_apart.mean()  # not medians: at half of AB4's points the motion hardly matters
