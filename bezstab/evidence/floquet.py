@@ -148,9 +148,9 @@ def _rates_after_a_kick(
     stands_out = np.zeros((points, course.steps), bool)
     for k in range(course.steps):
         changes.take_step()
-        moved = changes.of(newest).reshape(len(mass), -1, points)
-        error = np.sqrt((np.tensordot(sizes[k + 1], moved, axes=1) ** 2).sum(axis=(0, 1)))
-        displaced = np.sqrt(np.tensordot(mass, moved**2, axes=1).sum(axis=0))
+        moved = changes.of(newest)
+        error = np.sqrt(((sizes[k + 1] @ moved) ** 2).sum(axis=(1, 2)))
+        displaced = np.sqrt((mass @ moved**2).sum(axis=1))
         with np.errstate(divide="ignore"):
             log_errors[:, k] = np.log(error) + changes.log_scale
         stands_out[:, k] = error > STANDS_OUT * displaced

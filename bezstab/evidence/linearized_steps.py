@@ -9,15 +9,14 @@ Each step starts from the motion, so that nothing but the change grows. On the m
 an evaluation at the state itself, and one at a place to which only such evaluations lead (a predicted state, the second
 stage of a Runge-Kutta method), has Jacobians that all points share, affine in the gains,
 
-    a = (J_0 + 2 alpha J_1 + beta^2 J_2) change        one product of matrices for all points and columns together;
+    a = (J_0 + 2 alpha J_1 + beta^2 J_2) change;
 
 in later stages they are taken at the stage that the point's own gains lead to.
 """
 
-from collections.abc import Callable, Container, Mapping
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,7 +29,7 @@ from bezstab.mechanism import (
     Memory,
     Motion,
     acceleration_function,
-    acceleration_jacobians,
+    linearized_acceleration,
     memory,
     regular_motion,
     turn,
@@ -79,7 +78,7 @@ class Course:
     `steps` of `step` (s) fill the motion. What one of them does is told by `actions`, exact, and by `plan`, the same in
     float64; `lengths` says how many steps of a name it needs to know. The evaluations `on_it` are on the motion itself.
     Of these, and of all others whose place does not depend on the gains, `jacobians` holds those of h^2 qddot by X and
-    V = h qdot side by side, without gains above their slopes by 2 alpha and by beta^2: shape (steps, 3 n, 2 n).
+    V = h qdot side by side, without gains before their slopes by 2 alpha and by beta^2: shape (steps, 3, n, 2 n).
     """
 
     mechanism: Mechanism
@@ -211,16 +210,16 @@ def _total(terms: Sum, values: Mapping[Quantity, FloatArray]) -> FloatArray:
 def _affine_jacobians(course: Course, t: FloatArray, q: FloatArray, v: FloatArray) -> FloatArray:
     """Return the Jacobians at times t (s, shape (steps,)) and states (steps, n), as in `Course`."""
     without, with_alpha, with_beta = (
-        _side_by_side(acceleration_jacobians(course.mechanism, t, *gains, q, v), course.step)
+        _scaled(linearized_acceleration(course.mechanism, t, *gains, q, v)[1], course.step)
         for gains in ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))
     )
-    return np.concatenate([without, with_alpha - without, with_beta - without], axis=1)
+    return np.stack([without, with_alpha - without, with_beta - without], axis=1)
 
 
-def _side_by_side(jacobians: tuple[FloatArray, FloatArray], step: float) -> FloatArray:
-    """Return the Jacobians of h^2 qddot by X and by V = h qdot, shape (..., n, 2 n), from those of qddot (SI)."""
-    by_q, by_v = jacobians
-    return np.concatenate([step**2 * by_q, step * by_v], axis=-1)
+def _scaled(jacobians: FloatArray, step: float) -> FloatArray:
+    """Return the Jacobians of h^2 qddot by X and by V = h qdot, shape (..., n, 2n), from those of qddot (SI)."""
+    size = jacobians.shape[-2]
+    return np.asarray(jacobians * np.repeat([step**2, step], size))
 
 
 def after_steps(changes: "Changes", steps: int) -> FloatArray:
@@ -233,9 +232,9 @@ def after_steps(changes: "Changes", steps: int) -> FloatArray:
 class Changes:
     """Changes of what a step knows, some columns at each of a batch of points, as the steps go by.
 
-    Each change has n rows of columns x points numbers, those of a column's points next to each other. The latest steps
-    of a name lie in one array, step k at place k modulo their number: nothing is moved when a step begins, and a sum
-    over steps is one product of a row with a matrix. `log_scale` is what the changes at each point were divided by.
+    The latest steps of a name lie in one array, step k at place k modulo their number: nothing is moved when a step
+    begins, and a sum over steps is one product of a row with a matrix. `log_scale` is what the changes at each point
+    were divided by.
     """
 
     def __init__(
@@ -253,39 +252,29 @@ class Changes:
         """
         points, _, columns = start.shape
         self.course = course
-        if own_jacobians is None:
-            own_jacobians = partial(_stage_jacobians, course, gains) if has_stages(course) else _none
-        self.own_jacobians = own_jacobians
-        self.gains = gains
-        self.wide_gains = np.tile(gains, columns)
+        self.own_jacobians = own_jacobians or stage_jacobians(course, gains)
+        self.weights = np.stack([np.ones(points), *gains], axis=1)
         self.k = first
         self.log_scale = np.zeros(points)
-        self.size, self.columns, self.points = course.mechanism.size, columns, points
-        width = columns * points
-        self.kept = {name: np.zeros((length, self.size, width)) for name, length in course.lengths.items()}
-        self.state = np.empty((2 * self.size, width))
-        self.parts = np.empty((3 * self.size, width))
+        self.size = course.mechanism.size
+        self.kept = {name: np.zeros((length, points, self.size, columns)) for name, length in course.lengths.items()}
+        self.state = np.empty((points, 2 * self.size, columns))
         for quantity, part in zip(
             course.memory.carried, np.split(start, len(course.memory.carried), axis=1), strict=True
         ):
-            self.of(quantity)[...] = self._rows(part)
+            self.of(quantity)[...] = part
 
     def of(self, quantity: Quantity) -> FloatArray:
-        """Return the change of a quantity, by its step from the next one on, to be read or written."""
+        """Return the change of a quantity, by its step from the next one on, to be read or written.
+
+        Shape (points, n, columns).
+        """
         kept = self.kept[quantity.name]
         return np.asarray(kept[(quantity.step + self.k) % len(kept)])
 
     def carried(self) -> FloatArray:
         """Return the changes of what the next step starts with; shape (points, rows, columns)."""
-        return self._by_point(np.concatenate([self.of(quantity) for quantity in self.course.memory.carried]))
-
-    def _by_point(self, rows: FloatArray) -> FloatArray:
-        """Return rows of numbers of columns x points by point: shape (points, rows, columns)."""
-        return np.ascontiguousarray(np.moveaxis(rows.reshape(len(rows), self.columns, self.points), 2, 0))
-
-    def _rows(self, by_point: FloatArray) -> FloatArray:
-        """Return the reverse: shape (rows, columns points)."""
-        return np.moveaxis(by_point, 0, 2).reshape(by_point.shape[1], -1)
+        return np.concatenate([self.of(quantity) for quantity in self.course.memory.carried], axis=1)
 
     def take_step(self) -> None:
         """Go on by a step."""
@@ -301,10 +290,9 @@ class Changes:
 
     def _rescale(self) -> None:
         """Divide the changes at each point by the largest of them."""
-        whole = [kept.reshape(-1, self.columns, self.points) for kept in self.kept.values()]
-        largest = np.max([np.abs(kept).max(axis=(0, 1)) for kept in whole], axis=0)
-        for kept in whole:
-            np.divide(kept, largest, out=kept)
+        largest = np.max([np.abs(kept).max(axis=(0, 2, 3)) for kept in self.kept.values()], axis=0)
+        for kept in self.kept.values():
+            np.divide(kept, largest[:, np.newaxis, np.newaxis], out=kept)
         self.log_scale += np.log(largest)
 
     def _write_sum(self, row: _Row, target: FloatArray) -> None:
@@ -329,52 +317,51 @@ class Changes:
 
     def _find(self, action: _Accelerations, own: Mapping[Quantity, FloatArray]) -> None:
         """Take the changes of accelerations that are found together; own: the Jacobians that points do not share."""
-        for result, position, velocity in zip(action.results, action.positions, action.velocities, strict=True):
-            self._write_sum(position, self.state[: self.size])
-            self._write_sum(velocity, self.state[self.size :])
-            self._write_acceleration(result, own)
+        jacobians = [self._shared(result) if result not in own else own[result] for result in action.results]
+        for result, position, velocity, jacobian in zip(
+            action.results, action.positions, action.velocities, jacobians, strict=True
+        ):
+            self._write_sum(position, self.state[:, : self.size])
+            self._write_sum(velocity, self.state[:, self.size :])
+            np.matmul(jacobian, self.state, out=self.of(result))
         if action.sought.any():
-            self._solve(action)
-
-    def _write_acceleration(self, result: Quantity, own: Mapping[Quantity, FloatArray]) -> None:
-        """Write what the change of the state makes of an acceleration."""
-        target = self.of(result)
-        if result in own:
-            target[...] = self._rows(own[result] @ self._by_point(self.state))
-            return
-        np.matmul(self._shared(result), self.state, out=self.parts)
-        without, by_alpha, by_beta = self.parts.reshape(3, *target.shape)
-        two_alpha, beta_squared = self.wide_gains
-        by_alpha *= two_alpha
-        by_beta *= beta_squared
-        np.add(without, by_alpha, out=target)
-        target += by_beta
+            self._solve(action, jacobians)
 
     def _shared(self, result: Quantity) -> FloatArray:
-        """Return the Jacobians of an acceleration that all points share, as in `Course`; shape (3 n, 2 n)."""
-        return np.asarray(self.course.jacobians[result][self.k % self.course.steps])
+        """Return the Jacobian of an acceleration as points with these gains have it; shape (points, n, 2 n)."""
+        affine = self.course.jacobians[result][self.k % self.course.steps]
+        return np.asarray(self.weights @ affine.reshape(3, -1)).reshape(-1, self.size, 2 * self.size)
 
-    def _solve(self, action: _Accelerations) -> None:
+    def _solve(self, action: _Accelerations, jacobians: Sequence[FloatArray]) -> None:
         """Make of what is known of accelerations the accelerations, each of which has its share of all of them."""
-        size, points, count = self.size, self.points, len(action.results)
-        weights = np.stack([np.ones(points), *self.gains], axis=1)
-        left = np.zeros((points, count, size, count, size))
-        for i, result in enumerate(action.results):
-            jacobian = (weights @ self._shared(result).reshape(3, -1)).reshape(points, size, 2, size)
+        size, count = self.size, len(jacobians)
+        left = np.zeros((len(self.weights), count, size, count, size))
+        for i, jacobian in enumerate(jacobians):
             for j in range(count):
                 by_position, by_velocity = action.sought[:, i, j]
-                left[:, i, :, j, :] = -by_position * jacobian[:, :, 0] - by_velocity * jacobian[:, :, 1]
+                left[:, i, :, j, :] = -by_position * jacobian[:, :, :size] - by_velocity * jacobian[:, :, size:]
             left[:, i, :, i, :] += np.eye(size)
-        known = self._by_point(np.concatenate([self.of(result) for result in action.results]))
-        solved = np.linalg.solve(left.reshape(points, count * size, count * size), known).astype(float)
-        found = np.split(self._rows(solved), count)
-        for result, change in zip(action.results, found, strict=True):
+        known = np.concatenate([self.of(result) for result in action.results], axis=1)
+        solved = np.linalg.solve(left.reshape(-1, count * size, count * size), known).astype(float)
+        for result, change in zip(action.results, np.split(solved, count, axis=1), strict=True):
             self.of(result)[...] = change
 
 
-def _none(_: int) -> dict[Quantity, FloatArray]:
-    """Return no Jacobians, whatever the step."""
-    return {}
+def stage_jacobians(course: Course, gains: FloatArray) -> JacobiansOfStep:
+    """Return the Jacobians of the evaluations that points do not share, by the number of the step.
+
+    Steps are taken from the exact motion, by every point with its own gains.
+    """
+    if not has_stages(course):
+        return lambda k: {}
+    k = np.arange(course.steps)
+    values = {quantity: value[:, np.newaxis] for quantity, value in on_the_motion(course, k).items()}
+    return of_steps(take_step_itself(course, gains, k[:, np.newaxis], values, course.on_it, course.jacobians))
+
+
+def of_steps(jacobians: Mapping[Quantity, FloatArray]) -> JacobiansOfStep:
+    """Return Jacobians by the number of the step, from those of the steps of a revolution, (steps, points, n, 2 n)."""
+    return lambda k: {result: each[k % len(each)] for result, each in jacobians.items()}
 
 
 def has_stages(course: Course) -> bool:
@@ -382,19 +369,10 @@ def has_stages(course: Course) -> bool:
     return any(isinstance(action, Evaluated) and action.result not in course.jacobians for action in course.actions)
 
 
-def _stage_jacobians(course: Course, gains: FloatArray, k: int) -> dict[Quantity, FloatArray]:
-    """Return the Jacobians of the evaluations of step k that points do not share; shape (points, n, 2 n) each.
-
-    The step is taken from the exact motion, by every point with its own gains.
-    """
-    k %= course.steps
-    return take_step_itself(course, gains, k, on_the_motion(course, k), course.on_it, course.jacobians)
-
-
 def take_step_itself(
     course: Course,
     gains: FloatArray,
-    k: int,
+    k: int | IntArray,
     values: dict[Quantity, FloatArray],
     on_it: Container[Quantity] = frozenset(),
     shared: Container[Quantity] = frozenset(),
@@ -403,29 +381,35 @@ def take_step_itself(
 
     `values` holds what the step starts with, shape (points, n) each. Evaluations in `on_it`, and those that are solved
     for, take place on the motion. Of those that are not `shared` there are Jacobians, by their results, shape (points,
-    n, 2 n).
+    n, 2 n). With numbers k of shape (steps, 1) so many steps are taken side by side, each from values of its own: all
+    that is said to have points has (steps, points).
     """
     mechanism, step = course.mechanism, course.step
     two_alpha, beta_squared = gains
     found: dict[Quantity, FloatArray] = {}
-    start = step * k
+    shape = *np.broadcast_shapes(np.shape(k), two_alpha.shape), mechanism.size
 
     for action in course.actions:
         if isinstance(action, Assigned):
             values[action.result] = _total(action.value, values)
         elif isinstance(action, Evaluated) and action.result not in on_it:
-            t = start + float(action.moment) * step
+            t = np.asarray(step * (k + float(action.moment)))
             state = _total(action.position, values), _total(action.velocity, values) / step
-            q, v = (np.broadcast_to(part, (two_alpha.size, mechanism.size)) for part in state)
-            a = acceleration_function(mechanism, np)(t, two_alpha, beta_squared, q.T, v.T)
-            values[action.result] = step**2 * np.stack(np.broadcast_arrays(*a), axis=-1)
-            if action.result not in shared:
-                jacobians = acceleration_jacobians(mechanism, t, two_alpha, beta_squared, q, v)
-                found[action.result] = _side_by_side(jacobians, step)
+            q, v = (np.broadcast_to(part, shape) for part in state)
+            if action.result in shared:
+                on_last = acceleration_function(mechanism, np)(
+                    t, two_alpha, beta_squared, np.moveaxis(q, -1, 0), np.moveaxis(v, -1, 0)
+                )
+                a = np.stack(np.broadcast_arrays(*on_last), axis=-1)
+            else:
+                a, jacobians = linearized_acceleration(mechanism, t, two_alpha, beta_squared, q, v)
+                found[action.result] = _scaled(jacobians, step)
+            values[action.result] = step**2 * a
         else:
             for evaluation in [action] if isinstance(action, Evaluated) else action.evaluations:
-                _, _, a_of_motion = course.along.at(np.array([start + float(evaluation.moment) * step]))
-                values[evaluation.result] = step**2 * a_of_motion
+                t = np.asarray(step * (k + float(evaluation.moment)))
+                _, _, a = course.along.at(t.ravel())
+                values[evaluation.result] = step**2 * a.reshape(*t.shape, mechanism.size)
     return found
 
 

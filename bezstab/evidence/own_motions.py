@@ -67,7 +67,10 @@ def _rates_on_own_motions(course: Course, gains: FloatArray) -> tuple[FloatArray
         with np.errstate(invalid="ignore"):  # what is not a number is not less
             usable = (np.abs(revolution).max(axis=(1, 2)) < AMPLIFIED) & np.isfinite(missing).all(axis=1)
         left, revolution, missing = left[usable], revolution[usable], missing[usable]
-        correction = np.linalg.solve(np.eye(course.rows) - revolution, missing[:, :, np.newaxis])[:, :, 0]
+        closing = np.eye(course.rows) - revolution
+        once = np.linalg.det(closing) != 0  # else what comes back to itself is not just one motion
+        left, revolution, missing, closing = left[once], revolution[once], missing[once], closing[once]
+        correction = np.linalg.solve(closing, missing[:, :, np.newaxis])[:, :, 0]
         start[left] += correction
         rates[left] = np.abs(np.linalg.eigvals(revolution)).max(axis=1) ** (1 / course.steps)
         beside = np.abs(start[left] - motion).max(axis=1) < BESIDE

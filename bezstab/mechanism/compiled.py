@@ -22,6 +22,7 @@ from bezstab.mechanism.generated_code import (
     residuals_source,
     second_order_stepper,
     single_step_source,
+    slopes_source,
 )
 from bezstab.mechanism.newton_iterations import (
     TOLERANCE,
@@ -183,6 +184,17 @@ def acceleration_function(mechanism: Mechanism, library: Any) -> StateFunction:
     source = acceleration_source(mechanism.acceleration_code)
     acceleration: StateFunction = compiled_source(source, library)["acceleration"]
     return acceleration
+
+
+@cache
+def slopes_function(mechanism: Mechanism) -> Callable[..., tuple[tuple[Any, ...], tuple[Any, ...]]]:
+    """Return the function of (t, two_alpha, beta_squared, q, v), arrays of one shape, that gives qddot and its slopes.
+
+    n accelerations, then as many derivatives by q and v with a first axis of 2n entries; SI units.
+    """
+    source = slopes_source(mechanism.acceleration_code, mechanism.equations)
+    slopes: Callable[..., tuple[tuple[Any, ...], tuple[Any, ...]]] = compiled_source(source, np)["slopes"]
+    return slopes
 
 
 @cache

@@ -6,6 +6,7 @@ functions. From its top to its end, each part under a comment of its own:
     compiled_source                        text becomes functions
     accelerations and multipliers          the assignments that solve paper Eq. 9
     functions of a state                   acceleration, multipliers, observation
+    slopes of the acceleration             its derivatives by position and velocity
     steppers: their pieces                 what a step consists of, as data
     a stepper as a generator               one run, step by step
     a stepper as a single step             one step, and what the next begins with
@@ -15,7 +16,8 @@ functions. From its top to its end, each part under a comment of its own:
     steppers of second-order schemes       those of all others; residuals
 
 All of it is plain arithmetic on numbered variables, one assignment a line, with `sin`, `cos`, `sqrt` and `least` as the
-only functions. What they are is decided when the text is compiled, so one source serves three kinds of numbers:
+only functions, and `row` where there are slopes. What they are is decided when the text is compiled, so one source
+serves three kinds of numbers:
 
 - floats with `math`: a single run, without the overhead of arrays of four or five entries;
 - numpy arrays: a batch of runs, each variable one array over the batch, each line one operation on all of it;
@@ -28,7 +30,7 @@ but numbers and these names; least of all the names that a user gave to bodies.
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -65,7 +67,7 @@ AT_THE_END = Fraction(1)
 def compiled_source(source: str, library: Any) -> dict[str, Any]:
     """Return what generated source defines, its elementary functions those of `library`: math, numpy or mpmath."""
     least = min if library is math else _least_of_arrays
-    namespace = {"sin": library.sin, "cos": library.cos, "sqrt": library.sqrt, "least": least}
+    namespace = {"sin": library.sin, "cos": library.cos, "sqrt": library.sqrt, "least": least, "row": _row_of_arrays}
     exec(source, namespace)
     return namespace
 
@@ -73,6 +75,14 @@ def compiled_source(source: str, library: Any) -> dict[str, Any]:
 def _least_of_arrays(*values: Any) -> Any:
     """Return the least value entry by entry, of arrays and numbers of any broadcastable shapes."""
     return np.minimum.reduce(np.broadcast_arrays(*values))
+
+
+def _row_of_arrays(like: Any, *entries: Any) -> Any:
+    """Return an array of entries, some of them numbers, along a first axis; each has the shape of an array like it."""
+    row = np.empty((len(entries), *np.shape(like)))
+    for place, entry in enumerate(entries):
+        row[place] = entry
+    return row
 
 
 # Accelerations and multipliers
@@ -116,9 +126,8 @@ def acceleration_code(equations: Equations) -> AccelerationCode:
     coordinates = len(equations.q)
     constraints = len(equations.constraints)
     entries = _nonzero_entries(equations)
-    # for each constraint, the coordinates on which it depends: the columns of C_q where its row is not zero
-    columns_of_row = [[k for k in range(coordinates) if f"C{i}_{k}" in entries] for i in range(constraints)]
-    inverse_masses = [repr(1 / float(mass)) for mass in equations.mass]
+    columns_of_row = _columns_of_row(equations)
+    inverse_masses = _inverse_masses(equations)
     factors = _nonzero_factors(columns_of_row)
     lines = [
         *_entry_lines(entries),
@@ -129,6 +138,17 @@ def acceleration_code(equations: Equations) -> AccelerationCode:
     ]
     pivots = "1.0", *(f"D{j} / S{j}" for j in range(constraints))
     return AccelerationCode(coordinates, constraints, tuple(lines), pivots)
+
+
+def _columns_of_row(equations: Equations) -> list[list[int]]:
+    """Return for each constraint the coordinates on which it depends: the columns of C_q where its row is not zero."""
+    jacobian = equations.jacobian
+    return [[k for k in range(jacobian.cols) if jacobian[i, k] != 0] for i in range(jacobian.rows)]
+
+
+def _inverse_masses(equations: Equations) -> list[str]:
+    """Return the texts of the numbers 1 / M_k."""
+    return [repr(1 / float(mass)) for mass in equations.mass]
 
 
 def _nonzero_entries(equations: Equations) -> dict[str, sp.Expr]:
@@ -298,6 +318,66 @@ def _least_text(values: Sequence[str]) -> str:
 def _indented(lines: Iterable[str], depth: int) -> list[str]:
     """Return lines of source so many blocks deep."""
     return [" " * depth + line for line in lines]
+
+
+# Slopes of the acceleration
+#
+# Of M qddot + C_q^T lambda = g and C_q qddot = f, f = gamma - 2 alpha cdot - beta^2 c, the derivatives by any one of
+# the 2n numbers q, v are, with lambda and qddot held on the right,
+#
+#     M qddot' + C_q^T lambda' = (g - C_q^T lambda)'
+#           C_q qddot'         = (f - C_q qddot)'
+#
+# These are Eq. 9 once more: S is factored already, and what is unrolled above solves them. All 2n derivatives are taken
+# together, as entries of a first axis that g, r, l and a then have.
+
+
+def slopes_source(acceleration: AccelerationCode, equations: Equations) -> str:
+    """Return the source of slopes(t, two_alpha, beta_squared, q, v): all a, then their derivatives by q and v.
+
+    For arrays of one shape only. A derivative has a first axis of 2n entries.
+    """
+    coordinates, constraints = range(acceleration.coordinates), range(acceleration.constraints)
+    held = sp.Matrix(sp.symbols(variable_names("a", acceleration.coordinates)))
+    multipliers = sp.Matrix(sp.symbols(variable_names("l", acceleration.constraints)))
+    two_alpha, beta_squared = sp.symbols("two_alpha beta_squared")
+    rates = equations.jacobian * sp.Matrix(equations.v) + equations.constraints_t
+    f = equations.gamma - two_alpha * rates - beta_squared * equations.constraints
+    by_force = _slopes("G", equations.forces - equations.jacobian.T * multipliers, equations)
+    by_constraint = _slopes("F", f - equations.jacobian * held, equations)
+
+    count = 2 * acceleration.coordinates
+    forces = [k for k in coordinates if any(name.startswith(f"G{k}_") for name in by_force)]
+    columns_of_row, inverse_masses = _columns_of_row(equations), _inverse_masses(equations)
+    lines = [
+        f"accelerations = {_tuple_text(f'a{k}' for k in coordinates)}",
+        *_entry_lines({**by_force, **by_constraint}),
+        *(f"g{k} = {_row_text(f'G{k}', by_force, count)}" for k in forces),
+    ]
+    for i in constraints:
+        by_forces = [f"C{i}_{k} * {inverse_masses[k]} * g{k}" for k in columns_of_row[i] if k in forces]
+        lines.append(f"r{i} = {' + '.join(by_forces) or '0.0'} - {_row_text(f'F{i}', by_constraint, count)}")
+    lines += _substitution_lines(acceleration.constraints, _nonzero_factors(columns_of_row))
+    lines += _acceleration_lines(columns_of_row, inverse_masses, {f"g{k}" for k in forces})
+    results = ["accelerations", _tuple_text(variable_names("a", acceleration.coordinates))]
+    return _function_source("slopes", replace(acceleration, lines=(*acceleration.lines, *lines)), results)
+
+
+def _slopes(prefix: str, column: sp.Matrix, equations: Equations) -> dict[str, sp.Expr]:
+    """Return the derivatives by q and v that are not zero; that of row i by number d is called <prefix><i>_<d>."""
+    number_of = {symbol: number for number, symbol in enumerate((*equations.q, *equations.v))}
+    found = {
+        f"{prefix}{i}_{number_of[symbol]}": expression.diff(symbol)
+        for i, expression in enumerate(column)
+        for symbol in sorted(expression.free_symbols & number_of.keys(), key=number_of.__getitem__)
+    }
+    return {name: slope for name, slope in found.items() if slope != 0}
+
+
+def _row_text(prefix: str, slopes: Iterable[str], count: int) -> str:
+    """Return the text of a row of such derivatives, whose names begin alike."""
+    entries = (f"{prefix}_{d}" if f"{prefix}_{d}" in slopes else "0.0" for d in range(count))
+    return f"row(q0, {', '.join(entries)})"
 
 
 # Steppers: their pieces
