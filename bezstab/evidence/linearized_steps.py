@@ -17,6 +17,8 @@ in later stages they are taken at the stage that the point's own gains lead to.
 from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,18 +40,38 @@ from bezstab.methods import Method, Quantity, SecondOrder, second_order_form
 from bezstab.stability import FloatArray
 
 STATE = ("x", "v")  # what second-order schemes call position and velocity
-RESCALED = 16  # steps between two looks at how large the changes have grown, lest they overflow
+LOOKED_AT = 16  # steps between two looks at how large the changes have grown, lest they overflow
+TOO_LARGE = 1e50  # between two looks a pole of 1e16 leaves room; their inverse is too small
 
 Sum = Mapping[Quantity, Fraction]
 IntArray = NDArray[np.int_]
+NOTHING: Mapping[Quantity, FloatArray] = MappingProxyType({})
 JacobiansOfStep = Callable[[int], Mapping[Quantity, FloatArray]]
 
 
 @dataclass(frozen=True)
-class _Row:
-    """A sum of changes in float64: of each name steps and coefficients."""
+class _Part:
+    """A sum over the latest steps of one name, which lie in an array, step k at place k modulo their number.
 
-    parts: tuple[tuple[str, IntArray, FloatArray], ...]
+    `weights` are those of the places, by the place of the step's beginning; `only` is the one step of which the sum is
+    that step itself.
+    """
+
+    name: str
+    weights: FloatArray
+    only: int | None
+
+    def value(self, kept: FloatArray, k: int) -> FloatArray:
+        """Return the sum as step k has it; shape (points, n, columns)."""
+        if self.only is not None:
+            value: FloatArray = kept[(k + self.only) % len(kept)]
+            return value
+        total: FloatArray = np.dot(self.weights[k % len(kept)], kept.reshape(len(kept), -1))
+        return total.reshape(kept.shape[1:])
+
+
+_Row = tuple[_Part, ...]
+"""A sum of changes in float64, name by name."""
 
 
 @dataclass(frozen=True)
@@ -62,13 +84,14 @@ class _Assignment:
 class _Accelerations:
     """Accelerations that are found together: of each where it takes place, as far as that is known before.
 
-    Acceleration i takes place at sum_j sought[0, i, j] (acceleration j) more, its velocity likewise at sought[1, i, j].
+    Acceleration i takes place at sum_j sought[0, i, j] (acceleration j) more, its velocity likewise at sought[1, i, j];
+    None for one that is evaluated where it is known before.
     """
 
     results: tuple[Quantity, ...]
     positions: tuple[_Row, ...]
     velocities: tuple[_Row, ...]
-    sought: FloatArray
+    sought: FloatArray | None = None
 
 
 @dataclass(frozen=True)
@@ -106,6 +129,7 @@ def course_of_steps(mechanism: Mechanism, method: Method, h: float, duration: fl
     scheme = second_order_form(method.scheme)
     remembered = memory(scheme)
     actions = tuple(turn(scheme))
+    lengths = _lengths(scheme, remembered)
     course = Course(
         mechanism=mechanism,
         along=along,
@@ -113,8 +137,8 @@ def course_of_steps(mechanism: Mechanism, method: Method, h: float, duration: fl
         step=step,
         memory=remembered,
         actions=actions,
-        plan=tuple(_planned(action) for action in actions),
-        lengths=_lengths(scheme, remembered),
+        plan=tuple(_planned(action, lengths) for action in actions),
+        lengths=lengths,
         on_it=_evaluations_on_it(actions),
         jacobians={},
     )
@@ -140,12 +164,13 @@ def _evaluations_on_it(actions: tuple[Action, ...]) -> frozenset[Quantity]:
     return frozenset(found)
 
 
-def _planned(action: Action) -> _Assignment | _Accelerations:
+def _planned(action: Action, lengths: Mapping[str, int]) -> _Assignment | _Accelerations:
     """Return an action in float64."""
+    row = partial(_row, lengths=lengths)
     if isinstance(action, Assigned):
-        return _Assignment(action.result, _row(action.value))
+        return _Assignment(action.result, row(action.value))
     if isinstance(action, Evaluated):
-        return _Accelerations((action.result,), (_row(action.position),), (_row(action.velocity),), np.zeros((2, 1, 1)))
+        return _Accelerations((action.result,), (row(action.position),), (row(action.velocity),))
     results = tuple(each.result for each in action.evaluations)
     sought = [
         [[float(terms.get(result, 0)) for result in results] for terms in own]
@@ -153,22 +178,23 @@ def _planned(action: Action) -> _Assignment | _Accelerations:
     ]
     return _Accelerations(
         results,
-        tuple(_row(each.known_position) for each in action.evaluations),
-        tuple(_row(each.known_velocity) for each in action.evaluations),
+        tuple(row(each.known_position) for each in action.evaluations),
+        tuple(row(each.known_velocity) for each in action.evaluations),
         np.array(sought),
     )
 
 
-def _row(terms: Sum) -> _Row:
+def _row(terms: Sum, lengths: Mapping[str, int]) -> _Row:
     """Return a sum in float64."""
-    names = dict.fromkeys(quantity.name for quantity in terms)
-    own = [[(quantity.step, float(c)) for quantity, c in terms.items() if quantity.name == name] for name in names]
-    return _Row(
-        tuple(
-            (name, np.array([step for step, _ in pairs]), np.array([coefficient for _, coefficient in pairs]))
-            for name, pairs in zip(names, own, strict=True)
-        )
-    )
+    parts: list[_Part] = []
+    for name in dict.fromkeys(quantity.name for quantity in terms):
+        own = {quantity.step: float(c) for quantity, c in terms.items() if quantity.name == name}
+        weights = np.zeros((lengths[name], lengths[name]))
+        for beginning, row in enumerate(weights):
+            for step, coefficient in own.items():
+                row[(beginning + step) % lengths[name]] = coefficient
+        parts.append(_Part(name, weights, next(iter(own)) if list(own.values()) == [1] else None))
+    return tuple(parts)
 
 
 def _lengths(scheme: SecondOrder, remembered: Memory) -> dict[str, int]:
@@ -217,9 +243,9 @@ def _affine_jacobians(course: Course, t: FloatArray, q: FloatArray, v: FloatArra
 
 
 def _scaled(jacobians: FloatArray, step: float) -> FloatArray:
-    """Return the Jacobians of h^2 qddot by X and by V = h qdot, shape (..., n, 2n), from those of qddot (SI)."""
-    size = jacobians.shape[-2]
-    return np.asarray(jacobians * np.repeat([step**2, step], size))
+    """Return the Jacobians of h^2 qddot by X and by V = h qdot, shape (..., n, 2n): in place of those of qddot (SI)."""
+    jacobians *= np.repeat([step**2, step], jacobians.shape[-2])
+    return jacobians
 
 
 def after_steps(changes: "Changes", steps: int) -> FloatArray:
@@ -232,9 +258,9 @@ def after_steps(changes: "Changes", steps: int) -> FloatArray:
 class Changes:
     """Changes of what a step knows, some columns at each of a batch of points, as the steps go by.
 
-    The latest steps of a name lie in one array, step k at place k modulo their number: nothing is moved when a step
-    begins, and a sum over steps is one product of a row with a matrix. `log_scale` is what the changes at each point
-    were divided by.
+    The latest steps of a name lie in one array, each where the oldest was: nothing is moved when a step begins, and a
+    sum over steps is one product of a row with a matrix. `log_scale` is what the changes at each point were divided by,
+    but for a column to which steps add something.
     """
 
     def __init__(
@@ -244,15 +270,19 @@ class Changes:
         start: FloatArray,
         first: int,
         own_jacobians: JacobiansOfStep | None = None,
+        added: Mapping[Quantity, FloatArray] = NOTHING,
     ) -> None:
         """Begin with columns of what step `first` starts with, shape (points, rows, columns); gains (2, points).
 
         `own_jacobians` of step k are those that points do not share, (points, n, 2 n) each; by default the ones in
-        stages, of steps that start from the exact motion.
+        stages, of steps that start from the exact motion. `added` is what each step adds to the last column, shape
+        (steps, points, n), by the quantities that the next step starts with.
         """
         points, _, columns = start.shape
         self.course = course
         self.own_jacobians = own_jacobians or stage_jacobians(course, gains)
+        self.added = added
+        self.scaled = slice(0, start.shape[2] - (1 if added else 0))
         self.weights = np.stack([np.ones(points), *gains], axis=1)
         self.k = first
         self.log_scale = np.zeros(points)
@@ -270,10 +300,11 @@ class Changes:
         Shape (points, n, columns).
         """
         kept = self.kept[quantity.name]
-        return np.asarray(kept[(quantity.step + self.k) % len(kept)])
+        change: FloatArray = kept[(self.k + quantity.step) % len(kept)]
+        return change
 
     def carried(self) -> FloatArray:
-        """Return the changes of what the next step starts with; shape (points, rows, columns)."""
+        """Return the changes of what the next step starts with, divided by their scale; (points, rows, columns)."""
         return np.concatenate([self.of(quantity) for quantity in self.course.memory.carried], axis=1)
 
     def take_step(self) -> None:
@@ -284,36 +315,32 @@ class Changes:
                 self._write_sum(action.value, self.of(action.result))
             else:
                 self._find(action, own)
+        place = self.k % self.course.steps
         self.k += 1
-        if self.k % RESCALED == 0:
+        for quantity, amounts in self.added.items():
+            self.of(quantity)[:, :, -1] += amounts[place]
+        if self.k % LOOKED_AT == 0:
             self._rescale()
 
     def _rescale(self) -> None:
-        """Divide the changes at each point by the largest of them."""
-        largest = np.max([np.abs(kept).max(axis=(0, 2, 3)) for kept in self.kept.values()], axis=0)
-        for kept in self.kept.values():
-            np.divide(kept, largest[:, np.newaxis, np.newaxis], out=kept)
-        self.log_scale += np.log(largest)
+        """Divide the changes at each point by the largest that the last evaluation has seen, if it is far from one."""
+        largest = np.abs(self.state[:, :, self.scaled]).max(axis=(1, 2), initial=0)
+        far = (largest > TOO_LARGE) | (largest < 1 / TOO_LARGE) & (largest > 0)
+        if far.any():
+            largest[~far] = 1
+            for kept in self.kept.values():
+                kept[:, :, :, self.scaled] /= largest[:, np.newaxis, np.newaxis]
+            self.log_scale = self.log_scale + np.log(largest)
 
     def _write_sum(self, row: _Row, target: FloatArray) -> None:
         """Write a sum of changes over the step of a name that the sum does not use."""
-        if not row.parts:
-            target[...] = 0
-        for number, (name, steps, coefficients) in enumerate(row.parts):
-            kept = self.kept[name]
-            places = (steps + self.k) % len(kept)
-            if len(places) == 1:
-                part = kept[places[0]]
-                if coefficients[0] != 1:
-                    part = coefficients[0] * part
-            else:
-                weights = np.zeros(len(kept))
-                weights[places] = coefficients
-                part = (weights @ kept.reshape(len(kept), -1)).reshape(target.shape)
-            if number:
-                target += part
-            else:
-                target[...] = part
+        values = [part.value(self.kept[part.name], self.k) for part in row] or [np.zeros(1)]
+        if len(values) == 1:
+            target[...] = values[0]
+        else:
+            np.add(values[0], values[1], out=target)
+        for value in values[2:]:
+            target += value
 
     def _find(self, action: _Accelerations, own: Mapping[Quantity, FloatArray]) -> None:
         """Take the changes of accelerations that are found together; own: the Jacobians that points do not share."""
@@ -324,26 +351,26 @@ class Changes:
             self._write_sum(position, self.state[:, : self.size])
             self._write_sum(velocity, self.state[:, self.size :])
             np.matmul(jacobian, self.state, out=self.of(result))
-        if action.sought.any():
-            self._solve(action, jacobians)
+        if action.sought is not None:
+            self._solve(action.results, action.sought, jacobians)
 
     def _shared(self, result: Quantity) -> FloatArray:
         """Return the Jacobian of an acceleration as points with these gains have it; shape (points, n, 2 n)."""
         affine = self.course.jacobians[result][self.k % self.course.steps]
         return np.asarray(self.weights @ affine.reshape(3, -1)).reshape(-1, self.size, 2 * self.size)
 
-    def _solve(self, action: _Accelerations, jacobians: Sequence[FloatArray]) -> None:
+    def _solve(self, results: Sequence[Quantity], sought: FloatArray, jacobians: Sequence[FloatArray]) -> None:
         """Make of what is known of accelerations the accelerations, each of which has its share of all of them."""
         size, count = self.size, len(jacobians)
         left = np.zeros((len(self.weights), count, size, count, size))
         for i, jacobian in enumerate(jacobians):
             for j in range(count):
-                by_position, by_velocity = action.sought[:, i, j]
+                by_position, by_velocity = sought[:, i, j]
                 left[:, i, :, j, :] = -by_position * jacobian[:, :, :size] - by_velocity * jacobian[:, :, size:]
             left[:, i, :, i, :] += np.eye(size)
-        known = np.concatenate([self.of(result) for result in action.results], axis=1)
+        known = np.concatenate([self.of(result) for result in results], axis=1)
         solved = np.linalg.solve(left.reshape(-1, count * size, count * size), known).astype(float)
-        for result, change in zip(action.results, np.split(solved, count, axis=1), strict=True):
+        for result, change in zip(results, np.split(solved, count, axis=1), strict=True):
             self.of(result)[...] = change
 
 
@@ -366,7 +393,12 @@ def of_steps(jacobians: Mapping[Quantity, FloatArray]) -> JacobiansOfStep:
 
 def has_stages(course: Course) -> bool:
     """Return whether some evaluations take place where a point's own gains lead, in stages."""
-    return any(isinstance(action, Evaluated) and action.result not in course.jacobians for action in course.actions)
+    return own_evaluations(course) > 0
+
+
+def own_evaluations(course: Course) -> int:
+    """Return how many evaluations do so."""
+    return sum(isinstance(action, Evaluated) and action.result not in course.jacobians for action in course.actions)
 
 
 def take_step_itself(

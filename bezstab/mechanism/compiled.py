@@ -103,13 +103,8 @@ def stepper_of(mechanism: Mechanism, method: Method) -> Stepper:
 def run_as_second_order(method: Method) -> SecondOrder | None:
     """Return the second-order scheme by which a method runs, or None for an explicit one that has steps of its own."""
     if implicit(method) or isinstance(method.scheme, SecondOrder):
-        return _form(method)
+        return second_order_form(method.scheme)
     return None
-
-
-@cache
-def _form(method: Method) -> SecondOrder:
-    return second_order_form(method.scheme)
 
 
 @cache
@@ -190,7 +185,7 @@ def acceleration_function(mechanism: Mechanism, library: Any) -> StateFunction:
 def slopes_function(mechanism: Mechanism) -> Callable[..., tuple[tuple[Any, ...], tuple[Any, ...]]]:
     """Return the function of (t, two_alpha, beta_squared, q, v), arrays of one shape, that gives qddot and its slopes.
 
-    n accelerations, then as many derivatives by q and v with a first axis of 2n entries; SI units.
+    n accelerations, then 2n derivatives, each with a first axis of n entries; SI units.
     """
     source = slopes_source(mechanism.acceleration_code, mechanism.equations)
     slopes: Callable[..., tuple[tuple[Any, ...], tuple[Any, ...]]] = compiled_source(source, np)["slopes"]

@@ -325,41 +325,47 @@ def _indented(lines: Iterable[str], depth: int) -> list[str]:
 # Of M qddot + C_q^T lambda = g and C_q qddot = f, f = gamma - 2 alpha cdot - beta^2 c, the derivatives by any one of
 # the 2n numbers q, v are, with lambda and qddot held on the right,
 #
-#     M qddot' + C_q^T lambda' = (g - C_q^T lambda)'
-#           C_q qddot'         = (f - C_q qddot)'
+#     M qddot' + C_q^T lambda' = (g - C_q^T lambda)' = G'
+#           C_q qddot'         = (f - C_q qddot)'    = F'
 #
-# These are Eq. 9 once more: S is factored already, and what is unrolled above solves them. All 2n derivatives are taken
-# together, as entries of a first axis that g, r, l and a then have.
+# which is Eq. 9 once more, solved by
+#
+#     qddot' = M^-1 G' + X^T (F' - C_q M^-1 G'),      S X = C_q M^-1
+#
+# S is factored already, and what is unrolled above solves for X: its n columns are entries of a first axis that r and l
+# then have. Most entries of G' and F' are structural zeros again.
 
 
 def slopes_source(acceleration: AccelerationCode, equations: Equations) -> str:
-    """Return the source of slopes(t, two_alpha, beta_squared, q, v): all a, then their derivatives by q and v.
+    """Return the source of slopes(t, two_alpha, beta_squared, q, v): all a, then their derivatives by each of q and v.
 
-    For arrays of one shape only. A derivative has a first axis of 2n entries.
+    For arrays of one shape only. Each of the 2n derivatives has a first axis of n entries.
     """
-    coordinates, constraints = range(acceleration.coordinates), range(acceleration.constraints)
+    coordinates, directions = range(acceleration.coordinates), range(2 * acceleration.coordinates)
+    constraints = range(acceleration.constraints)
     held = sp.Matrix(sp.symbols(variable_names("a", acceleration.coordinates)))
     multipliers = sp.Matrix(sp.symbols(variable_names("l", acceleration.constraints)))
     two_alpha, beta_squared = sp.symbols("two_alpha beta_squared")
     rates = equations.jacobian * sp.Matrix(equations.v) + equations.constraints_t
     f = equations.gamma - two_alpha * rates - beta_squared * equations.constraints
-    by_force = _slopes("G", equations.forces - equations.jacobian.T * multipliers, equations)
-    by_constraint = _slopes("F", f - equations.jacobian * held, equations)
+    slopes = _slopes("G", equations.forces - equations.jacobian.T * multipliers, equations)
+    slopes |= _slopes("F", f - equations.jacobian * held, equations)
 
-    count = 2 * acceleration.coordinates
-    forces = [k for k in coordinates if any(name.startswith(f"G{k}_") for name in by_force)]
     columns_of_row, inverse_masses = _columns_of_row(equations), _inverse_masses(equations)
-    lines = [
-        f"accelerations = {_tuple_text(f'a{k}' for k in coordinates)}",
-        *_entry_lines({**by_force, **by_constraint}),
-        *(f"g{k} = {_row_text(f'G{k}', by_force, count)}" for k in forces),
-    ]
-    for i in constraints:
-        by_forces = [f"C{i}_{k} * {inverse_masses[k]} * g{k}" for k in columns_of_row[i] if k in forces]
-        lines.append(f"r{i} = {' + '.join(by_forces) or '0.0'} - {_row_text(f'F{i}', by_constraint, count)}")
+    lines = [f"accelerations = {_tuple_text(f'a{k}' for k in coordinates)}", *_entry_lines(slopes)]
+    for i, columns in enumerate(columns_of_row):
+        column_of_x = (f"C{i}_{k} * {inverse_masses[k]}" if k in columns else "0.0" for k in coordinates)
+        lines.append(f"r{i} = row(q0, {', '.join(column_of_x)})")
     lines += _substitution_lines(acceleration.constraints, _nonzero_factors(columns_of_row))
-    lines += _acceleration_lines(columns_of_row, inverse_masses, {f"g{k}" for k in forces})
-    results = ["accelerations", _tuple_text(variable_names("a", acceleration.coordinates))]
+    for d in directions:
+        by_forces = [f"G{k}_{d} * {inverse_masses[k]}" if f"G{k}_{d}" in slopes else "0.0" for k in coordinates]
+        parts = [f"row(q0, {', '.join(by_forces)})"] if any(f"G{k}_{d}" in slopes for k in coordinates) else []
+        for i in constraints:
+            terms = [f"F{i}_{d}"] if f"F{i}_{d}" in slopes else []
+            terms += [f"(-C{i}_{k} * {by_forces[k]})" for k in columns_of_row[i] if f"G{k}_{d}" in slopes]
+            parts += [f"l{i} * ({' + '.join(terms)})"] if terms else []
+        lines.append(f"slope{d} = {' + '.join(parts) or f'0.0 * l{constraints[0]}'}")
+    results = ["accelerations", _tuple_text(variable_names("slope", len(directions)))]
     return _function_source("slopes", replace(acceleration, lines=(*acceleration.lines, *lines)), results)
 
 
@@ -372,12 +378,6 @@ def _slopes(prefix: str, column: sp.Matrix, equations: Equations) -> dict[str, s
         for symbol in sorted(expression.free_symbols & number_of.keys(), key=number_of.__getitem__)
     }
     return {name: slope for name, slope in found.items() if slope != 0}
-
-
-def _row_text(prefix: str, slopes: Iterable[str], count: int) -> str:
-    """Return the text of a row of such derivatives, whose names begin alike."""
-    entries = (f"{prefix}_{d}" if f"{prefix}_{d}" in slopes else "0.0" for d in range(count))
-    return f"row(q0, {', '.join(entries)})"
 
 
 # Steppers: their pieces

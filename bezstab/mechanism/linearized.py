@@ -7,7 +7,7 @@ from bezstab.mechanism.compiled import Mechanism, slopes_function
 
 FloatArray = NDArray[np.float64]
 
-AT_A_TIME = 1024  # states: what is computed of them, some hundred numbers each, stays in a core's cache
+AT_A_TIME = 2048  # states: what is computed of them, some hundred numbers each, stays in a core's cache
 
 
 def linearized_acceleration(
@@ -29,7 +29,7 @@ def linearized_acceleration(
         found, changes = slopes(*(each[some] for each in scalars), q[some].T, v[some].T)
         for k in range(size):
             accelerations[some, k] = found[k]
-            jacobians[some, k] = changes[k].T
+        jacobians[some] = np.stack(changes).transpose(2, 1, 0)
     return accelerations.reshape(*shape, size), jacobians.reshape(*shape, size, 2 * size)
 
 
