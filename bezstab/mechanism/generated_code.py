@@ -29,7 +29,7 @@ but numbers and these names; least of all the names that a user gave to bodies.
 """
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Container, Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
@@ -322,18 +322,19 @@ def _indented(lines: Iterable[str], depth: int) -> list[str]:
 
 # Slopes of the acceleration
 #
-# Of M qddot + C_q^T lambda = g and C_q qddot = f, f = gamma - 2 alpha cdot - beta^2 c, the derivatives by any one of
-# the 2n numbers q, v are, with lambda and qddot held on the right,
+# The derivatives of M qddot + C_q^T lambda = g and C_q qddot = gamma - 2 alpha cdot - beta^2 c by any one of the 2n
+# numbers q, v are
 #
-#     M qddot' + C_q^T lambda' = (g - C_q^T lambda)' = G'
-#           C_q qddot'         = (f - C_q qddot)'    = F'
+#     M qddot' + C_q^T lambda' = G,      G = g' - C_q'^T lambda
+#           C_q qddot'         = F,      F = gamma' - 2 alpha (C_q v + c_t)' - beta^2 c' - C_q' qddot
 #
 # which is Eq. 9 once more, solved by
 #
-#     qddot' = M^-1 G' + X^T (F' - C_q M^-1 G'),      S X = C_q M^-1
+#     qddot' = M^-1 G + X^T (F - C_q M^-1 G),      S X = C_q M^-1
 #
 # S is factored already, and what is unrolled above solves for X: its n columns are entries of a first axis that r and l
-# then have. Most entries of G' and F' are structural zeros again.
+# then have. Of the entries of C_q, gamma, c_t and g most derivatives are structural zeros again; that of C0_1 by number
+# 3 is called C0_1_3, and so are G0_3 and F0_3.
 
 
 def slopes_source(acceleration: AccelerationCode, equations: Equations) -> str:
@@ -342,42 +343,71 @@ def slopes_source(acceleration: AccelerationCode, equations: Equations) -> str:
     For arrays of one shape only. Each of the 2n derivatives has a first axis of n entries.
     """
     coordinates, directions = range(acceleration.coordinates), range(2 * acceleration.coordinates)
-    constraints = range(acceleration.constraints)
-    held = sp.Matrix(sp.symbols(variable_names("a", acceleration.coordinates)))
-    multipliers = sp.Matrix(sp.symbols(variable_names("l", acceleration.constraints)))
-    two_alpha, beta_squared = sp.symbols("two_alpha beta_squared")
-    rates = equations.jacobian * sp.Matrix(equations.v) + equations.constraints_t
-    f = equations.gamma - two_alpha * rates - beta_squared * equations.constraints
-    slopes = _slopes("G", equations.forces - equations.jacobian.T * multipliers, equations)
-    slopes |= _slopes("F", f - equations.jacobian * held, equations)
-
     columns_of_row, inverse_masses = _columns_of_row(equations), _inverse_masses(equations)
-    lines = [f"accelerations = {_tuple_text(f'a{k}' for k in coordinates)}", *_entry_lines(slopes)]
+    entries = _nonzero_slopes(equations)
+    sides = _right_sides_of_slopes(columns_of_row, entries, acceleration.coordinates)
+    lines = [
+        f"accelerations = {_tuple_text(variable_names('a', acceleration.coordinates))}",
+        *_entry_lines(entries),
+        *(f"{name} = {text}" for name, text in sides.items()),
+    ]
     for i, columns in enumerate(columns_of_row):
         column_of_x = (f"C{i}_{k} * {inverse_masses[k]}" if k in columns else "0.0" for k in coordinates)
         lines.append(f"r{i} = row(q0, {', '.join(column_of_x)})")
     lines += _substitution_lines(acceleration.constraints, _nonzero_factors(columns_of_row))
     for d in directions:
-        by_forces = [f"G{k}_{d} * {inverse_masses[k]}" if f"G{k}_{d}" in slopes else "0.0" for k in coordinates]
-        parts = [f"row(q0, {', '.join(by_forces)})"] if any(f"G{k}_{d}" in slopes for k in coordinates) else []
-        for i in constraints:
-            terms = [f"F{i}_{d}"] if f"F{i}_{d}" in slopes else []
-            terms += [f"(-C{i}_{k} * {by_forces[k]})" for k in columns_of_row[i] if f"G{k}_{d}" in slopes]
-            parts += [f"l{i} * ({' + '.join(terms)})"] if terms else []
-        lines.append(f"slope{d} = {' + '.join(parts) or f'0.0 * l{constraints[0]}'}")
+        by_forces = [f"G{k}_{d} * {inverse_masses[k]}" if f"G{k}_{d}" in sides else "0.0" for k in coordinates]
+        without_reactions = f"row(q0, {', '.join(by_forces)})"
+        parts = [without_reactions] if set(by_forces) != {"0.0"} else []
+        for i, columns in enumerate(columns_of_row):
+            taken = [f"C{i}_{k} * {by_forces[k]}" for k in columns if f"G{k}_{d}" in sides]
+            if taken or f"F{i}_{d}" in sides:
+                parts.append(f"l{i} * ({_difference_text(f'F{i}_{d}', sides, taken)})")
+        lines.append(f"slope{d} = {' + '.join(parts) or without_reactions}")
     results = ["accelerations", _tuple_text(variable_names("slope", len(directions)))]
     return _function_source("slopes", replace(acceleration, lines=(*acceleration.lines, *lines)), results)
 
 
-def _slopes(prefix: str, column: sp.Matrix, equations: Equations) -> dict[str, sp.Expr]:
-    """Return the derivatives by q and v that are not zero; that of row i by number d is called <prefix><i>_<d>."""
+def _nonzero_slopes(equations: Equations) -> dict[str, sp.Expr]:
+    """Return the derivatives of the entries of C_q, gamma, c_t and g that are not identically zero, by their names."""
     number_of = {symbol: number for number, symbol in enumerate((*equations.q, *equations.v))}
     found = {
-        f"{prefix}{i}_{number_of[symbol]}": expression.diff(symbol)
-        for i, expression in enumerate(column)
-        for symbol in sorted(expression.free_symbols & number_of.keys(), key=number_of.__getitem__)
+        f"{name}_{number_of[symbol]}": entry.diff(symbol)
+        for name, entry in _nonzero_entries(equations).items()
+        if name.startswith(("C", "gamma", "ct", "g"))
+        for symbol in sorted(entry.free_symbols & number_of.keys(), key=number_of.__getitem__)
     }
     return {name: slope for name, slope in found.items() if slope != 0}
+
+
+def _right_sides_of_slopes(
+    columns_of_row: Sequence[Sequence[int]], slopes: Container[str], coordinates: int
+) -> dict[str, str]:
+    """Return the texts of the entries of G and F that are not zero, by their names."""
+    texts: dict[str, str] = {}
+    for d in range(2 * coordinates):
+        by_multipliers: dict[int, list[str]] = {k: [] for k in range(coordinates)}
+        for i, columns in enumerate(columns_of_row):
+            turning = [k for k in columns if f"C{i}_{k}_{d}" in slopes]
+            rates = [f"C{i}_{k}_{d} * v{k}" for k in turning]
+            rates += [f"ct{i}_{d}"] if f"ct{i}_{d}" in slopes else []
+            rates += [f"C{i}_{d - coordinates}"] if d - coordinates in columns else []
+            taken = [f"two_alpha * ({' + '.join(rates)})"] if rates else []
+            taken += [f"beta_squared * C{i}_{d}"] if d in columns else []
+            taken += [f"C{i}_{k}_{d} * a{k}" for k in turning]
+            if taken or f"gamma{i}_{d}" in slopes:
+                texts[f"F{i}_{d}"] = _difference_text(f"gamma{i}_{d}", slopes, taken)
+            for k in turning:
+                by_multipliers[k].append(f"C{i}_{k}_{d} * l{i}")
+        for k, taken in by_multipliers.items():
+            if taken or f"g{k}_{d}" in slopes:
+                texts[f"G{k}_{d}"] = _difference_text(f"g{k}_{d}", slopes, taken)
+    return texts
+
+
+def _difference_text(name: str, there: Container[str], taken: Iterable[str]) -> str:
+    """Return the text of a variable, or zero where it is not there, less some terms."""
+    return (name if name in there else "0.0") + "".join(f" - {term}" for term in taken)
 
 
 # Steppers: their pieces
