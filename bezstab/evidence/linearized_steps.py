@@ -40,8 +40,8 @@ from bezstab.methods import Method, Quantity, SecondOrder, second_order_form
 from bezstab.stability import FloatArray
 
 STATE = ("x", "v")  # what second-order schemes call position and velocity
-LOOKED_AT = 16  # steps between two looks at how large the changes have grown, lest they overflow
-TOO_LARGE = 1e50  # between two looks a pole of 1e16 leaves room; their inverse is too small
+LOOKED_AT = 4  # steps between two looks at how large the changes have grown, lest they overflow
+TOO_LARGE = 1e50  # between two looks a pole of 1e60 leaves room; the inverse is too small
 
 Sum = Mapping[Quantity, Fraction]
 IntArray = NDArray[np.int_]

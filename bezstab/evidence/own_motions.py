@@ -171,10 +171,10 @@ def _extended(course: Course, newest: Quantity, value: FloatArray) -> FloatArray
 
     Shape (steps before + steps + 1, points, n).
     """
-    earlier = _steps_before(course, newest)
+    turns, place = np.divmod(np.arange(-_steps_before(course, newest), course.steps + 1), course.steps)
     by_position, _, _ = course.memory.shares[course.memory.carried.index(newest)]
     whole_turn = float(by_position) * (course.along.q[-1] - course.along.q[0])
-    return np.concatenate([value[len(value) - earlier :] - whole_turn, value, value[:1] + whole_turn])
+    return np.asarray(value[place] + np.multiply.outer(turns, whole_turn)[:, np.newaxis])
 
 
 def _steps_before(course: Course, newest: Quantity) -> int:

@@ -104,6 +104,13 @@ def test_too_few_columns_are_found_out() -> None:
     assert not _rates_on_own_motions(course, gains, 9)[2].any()
 
 
+@pytest.mark.parametrize(("name", "count"), [("B8", 1), ("AB4", 3), ("SYM", 7), ("RK4", 30), ("ABM4", 30)])
+def test_no_point_and_no_step_is_too_extreme_for_a_number(name: str, count: int) -> None:
+    """No feedback, hardly any, and so much that a step multiplies errors by 1e38; fewer steps than are carried."""
+    gains = np.array([0.0, 1e-8, 0.3, 1e3, 1e10])
+    assert np.isfinite(own_motion_rates(four_bar(), lookup(name), 1 / count, gains, gains, 1.0)).all()
+
+
 def points_near_one(name: str, count: int) -> tuple[FloatArray, FloatArray]:
     """Return alpha_hat and beta_hat of some points where |z| over the motion is near one."""
     method = lookup(name)
