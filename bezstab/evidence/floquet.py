@@ -17,14 +17,26 @@ What Q B has beside B S tells whether it was so. Points where it was not are tak
 end with all of them, B = 1. How many to begin with is what the poles at rest say.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
-from bezstab.evidence.linearized_steps import Changes, Course, IntArray, after_steps, course_of_steps, has_stages
+from bezstab.evidence.linearized_steps import (
+    NOTHING,
+    Changes,
+    Course,
+    IntArray,
+    JacobiansOfStep,
+    after_steps,
+    course_of_steps,
+    has_stages,
+    own_evaluations,
+    stage_jacobians,
+)
 from bezstab.mechanism import Mechanism, constraint_jacobian
 from bezstab.methods import Method, Quantity
-from bezstab.stability import BoolArray, FloatArray, poles
+from bezstab.stability import BoolArray, ComplexArray, FloatArray, poles
 from bezstab.units import feedback_gains
 
 SPARE = 2  # columns beside those that the poles at rest ask for
@@ -33,6 +45,7 @@ LEFT_OVER = 1e-13  # of Q B, beside B S: the rounding of some hundred steps; of 
 FIRST_SHARE = 1 / 3  # of the steps in which errors stand out: there the lesser poles still count
 STANDS_OUT = 1e-7  # of the change of the coordinates: the free motion of a method has a constraint error of this size
 BATCH = 128  # points at a time: fewer spend their time in Python, more do not fit a core's cache
+NUMBERS = 2**23  # of a batch, in the Jacobians that points do not share: 64 MB
 
 
 def floquet_rates(
@@ -44,17 +57,49 @@ def floquet_rates(
     step in all from h. A motion that is no revolution lasts `duration` (s). InputError and NumericalError as
     `regular_motion`.
     """
-    course = course_of_steps(mechanism, method, h, duration)
-    gains = np.array(feedback_gains(alpha_hat, beta_hat, course.step / float(method.step_multiple)))
+    return rates_on_the_motion(course_of_steps(mechanism, method, h, duration), method, alpha_hat, beta_hat)
+
+
+def rates_on_the_motion(course: Course, method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
+    """Return the same of the method's own course."""
+    gains = gains_on(course, method, alpha_hat, beta_hat)
     if course.along.closed:
-        return _rates_over_revolutions(course, gains, _columns_needed(mechanism, method, alpha_hat, beta_hat))
+        return _rates_over_revolutions(course, gains, columns_needed(course, method, alpha_hat, beta_hat))
     return _rates_of_errors(course, gains)
 
 
-def batches(points: IntArray) -> Iterator[IntArray]:
-    """Yield the numbers of points, so many at a time."""
-    for first in range(0, points.size, BATCH):
-        yield points[first : first + BATCH]
+def gains_on(course: Course, method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
+    """Return 2 alpha (1/s) and beta^2 (1/s^2) of points, by the user's step; shape (2, points)."""
+    return np.array(feedback_gains(alpha_hat, beta_hat, course.step / float(method.step_multiple)))
+
+
+def batches(points: IntArray, course: Course, evaluations: int) -> Iterator[IntArray]:
+    """Yield the numbers of points, so many at a time; of so many evaluations each point has Jacobians of its own."""
+    numbers = evaluations * course.steps * 2 * course.mechanism.size**2
+    size = max(1, min(BATCH, NUMBERS // max(1, numbers)))
+    for first in range(0, points.size, size):
+        yield points[first : first + size]
+
+
+def with_enough_columns(
+    course: Course, columns: IntArray, evaluations: int, take: Callable[[IntArray, int], BoolArray]
+) -> None:
+    """Have batches of points taken, with so many columns as they are likely to need, until they suffice.
+
+    Of so many evaluations each point has Jacobians of its own. take(points, count) returns of which points the columns
+    were enough.
+    """
+    left = np.argsort(columns, kind="stable")  # points of a batch are to need about as many
+    while left.size:
+        settled = np.zeros(columns.size, bool)
+        for batch in batches(left, course, evaluations):
+            count = int(columns[batch].max())
+            # all columns need no steps before: cheaper where few are spared, or where stages cost more than columns
+            if has_stages(course) or count * (course.steps + BEFORE) >= course.rows * course.steps:
+                count = course.rows
+            settled[batch] = take(batch, count)
+        left = left[~settled[left]]
+        columns = 2 * columns
 
 
 def _rates_over_revolutions(course: Course, gains: FloatArray, columns: IntArray) -> FloatArray:
@@ -63,55 +108,106 @@ def _rates_over_revolutions(course: Course, gains: FloatArray, columns: IntArray
     columns: how many each point is likely to need.
     """
     rates = np.empty(columns.size)
-    left = np.argsort(columns, kind="stable")  # points of a batch are to need about as many
-    while left.size:
-        settled = np.zeros(columns.size, bool)
-        for batch in batches(left):
-            count = int(columns[batch].max())
-            # all columns need no steps before: cheaper where few are spared, or where stages cost more than columns
-            if has_stages(course) or count * (course.steps + BEFORE) >= course.rows * course.steps:
-                rates[batch], settled[batch] = _rates_of_all(course, gains[:, batch]), True
-            else:
-                rates[batch], settled[batch] = _leading_rates(course, gains[:, batch], count)
-        left = left[~settled[left]]
-        columns = 2 * columns
+
+    def take(batch: IntArray, count: int) -> BoolArray:
+        rates[batch], settled = _leading_rates(course, gains[:, batch], count)
+        return settled
+
+    with_enough_columns(course, columns, own_evaluations(course), take)
     return rates
 
 
-def _columns_needed(mechanism: Mechanism, method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> IntArray:
+def columns_needed(course: Course, method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> IntArray:
     """Return how many columns are left at each point before the revolution, as the mechanism at rest would have them.
 
     Each constraint has the method's poles, each free motion a double pole at one. NumericalError as `poles`.
     """
     moduli = np.abs(poles(method, alpha_hat, beta_hat))
     alive = (moduli >= LEFT_OVER ** (1 / BEFORE) * moduli[:, :1]).sum(axis=1)
+    mechanism = course.mechanism
     free = mechanism.size - mechanism.constraints
     return np.asarray(alive * mechanism.constraints + 2 * free + SPARE)
 
 
+@dataclass(frozen=True)
+class Revolution:
+    """What a revolution makes of a basis B of what is left as it begins: Q B = exp(log_scale) product.
+
+    `basis` and `product` have shape (points, rows, columns). Of a change that began with nothing, to which each step
+    adds something, `start` is what there is as the revolution begins, `end` as it ends, shape (points, rows, 1).
+    """
+
+    steps: int
+    basis: FloatArray
+    product: FloatArray
+    log_scale: FloatArray
+    start: FloatArray
+    end: FloatArray
+
+    def at(self, points: BoolArray) -> "Revolution":
+        """Return the same of some of the points."""
+        parts = (self.basis, self.product, self.log_scale, self.start, self.end)
+        return Revolution(self.steps, *(part[points] for part in parts))
+
+    def restricted(self) -> FloatArray:
+        """Return S = B^T Q B, divided by exp(log_scale); shape (points, columns, columns)."""
+        return np.asarray(np.swapaxes(self.basis, 1, 2) @ self.product)
+
+    def rates(self) -> tuple[FloatArray, BoolArray]:
+        """Return |z| per step, and whether the revolution maps B onto itself."""
+        small = self.restricted()
+        multiplier = np.abs(np.linalg.eigvals(small)).max(axis=1)
+        left_over = self.product - self.basis @ small
+        allowed = LEFT_OVER * np.abs(self.product).max(axis=(1, 2))
+        settled = np.abs(left_over).max(axis=(1, 2)) <= allowed
+        if not settled.all():  # of the leading direction it is enough
+            unsure = ~settled
+            leading = _leading_directions(small[unsure])
+            settled[unsure] = np.abs(left_over[unsure] @ leading).max(axis=(1, 2)) <= allowed[unsure]
+        return np.exp((self.log_scale + np.log(multiplier)) / self.steps), settled
+
+
+def _leading_directions(matrices: FloatArray) -> ComplexArray:
+    """Return the eigenvectors of the largest eigenvalues of matrices, (points, m, m), as columns, (points, m, 1)."""
+    eigenvalues, eigenvectors = np.linalg.eig(matrices)
+    largest = np.abs(eigenvalues).argmax(axis=1)[:, np.newaxis, np.newaxis]
+    return np.asarray(np.take_along_axis(eigenvectors, largest, axis=2))
+
+
+def revolution(
+    course: Course,
+    gains: FloatArray,
+    columns: int,
+    own_jacobians: JacobiansOfStep | None = None,
+    added: Mapping[Quantity, FloatArray] = NOTHING,
+) -> Revolution:
+    """Return what a revolution makes of so many columns at points with these gains; arguments as of `Changes`.
+
+    All columns are a basis, fewer are made one by the steps before.
+    """
+    points = gains.shape[1]
+    own_jacobians = own_jacobians or stage_jacobians(course, gains)
+    forced = np.zeros((points, course.rows, 1 if added else 0))
+    if columns == course.rows:
+        basis = np.tile(np.eye(course.rows), (points, 1, 1))
+    else:
+        any_columns = np.tile(np.random.default_rng(0).standard_normal((course.rows, columns)), (points, 1, 1))
+        before = Changes(course, gains, np.concatenate([any_columns, forced], axis=2), -BEFORE, own_jacobians, added)
+        left, forced = np.split(after_steps(before, BEFORE), [columns], axis=2)
+        basis = np.linalg.qr(left)[0]
+    changes = Changes(course, gains, np.concatenate([basis, forced], axis=2), 0, own_jacobians, added)
+    product, end = np.split(after_steps(changes, course.steps), [columns], axis=2)
+    return Revolution(course.steps, basis, product, changes.log_scale, start=forced, end=end)
+
+
 def _rates_of_all(course: Course, gains: FloatArray) -> FloatArray:
     """Return |z| per step as all columns show it: Q itself."""
-    changes = Changes(course, gains, np.tile(np.eye(course.rows), (gains.shape[1], 1, 1)), 0)
-    product = after_steps(changes, course.steps)
-    multiplier = np.abs(np.linalg.eigvals(product)).max(axis=1)
-    return np.asarray(np.exp((changes.log_scale + np.log(multiplier)) / course.steps))
+    return _leading_rates(course, gains, course.rows)[0]
 
 
 def _leading_rates(course: Course, gains: FloatArray, columns: int) -> tuple[FloatArray, BoolArray]:
     """Return |z| per step as so many columns show it, and whether a revolution maps them onto themselves."""
-    start = np.random.default_rng(0).standard_normal((course.rows, columns))
-    before = Changes(course, gains, np.tile(start, (gains.shape[1], 1, 1)), -BEFORE)
-    basis = np.linalg.qr(after_steps(before, BEFORE))[0]
-    changes = Changes(course, gains, basis, 0)
-    product = after_steps(changes, course.steps)  # Q B
-    small = np.swapaxes(basis, 1, 2) @ product  # S
-    multipliers, directions = np.linalg.eig(small)
-    largest = np.abs(multipliers).argmax(axis=1)[:, np.newaxis]
-    multiplier = np.abs(np.take_along_axis(multipliers, largest, axis=1)[:, 0])
-    direction = np.take_along_axis(directions, largest[:, :, np.newaxis], axis=2)
-    left_over = np.abs((product - basis @ small) @ direction).max(axis=(1, 2))
-    settled = left_over <= LEFT_OVER * np.abs(product).max(axis=(1, 2))
-    return np.exp((changes.log_scale + np.log(multiplier)) / course.steps), settled
+    return revolution(course, gains, columns).rates()
 
 
 def _rates_of_errors(course: Course, gains: FloatArray) -> FloatArray:
@@ -133,7 +229,7 @@ def _rates_of_errors(course: Course, gains: FloatArray) -> FloatArray:
     start = np.zeros((course.rows, mechanism.constraints))
     place = carried.index(newest) * mechanism.size
     start[place : place + mechanism.size] = (sizes[0] / mass).T  # unit errors
-    in_batches = batches(np.arange(gains.shape[1]))
+    in_batches = batches(np.arange(gains.shape[1]), course, own_evaluations(course))
     return np.concatenate([_rates_after_a_kick(course, gains[:, batch], start, newest, sizes) for batch in in_batches])
 
 
@@ -148,9 +244,9 @@ def _rates_after_a_kick(
     stands_out = np.zeros((points, course.steps), bool)
     for k in range(course.steps):
         changes.take_step()
-        moved = changes.of(newest).reshape(len(mass), -1, points)
-        error = np.sqrt((np.tensordot(sizes[k + 1], moved, axes=1) ** 2).sum(axis=(0, 1)))
-        displaced = np.sqrt(np.tensordot(mass, moved**2, axes=1).sum(axis=0))
+        moved = changes.of(newest)
+        error = np.sqrt(((sizes[k + 1] @ moved) ** 2).sum(axis=(1, 2)))
+        displaced = np.sqrt((mass @ moved**2).sum(axis=1))
         with np.errstate(divide="ignore"):
             log_errors[:, k] = np.log(error) + changes.log_scale
         stands_out[:, k] = error > STANDS_OUT * displaced

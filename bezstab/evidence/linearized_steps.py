@@ -9,15 +9,16 @@ Each step starts from the motion, so that nothing but the change grows. On the m
 an evaluation at the state itself, and one at a place to which only such evaluations lead (a predicted state, the second
 stage of a Runge-Kutta method), has Jacobians that all points share, affine in the gains,
 
-    a = (J_0 + 2 alpha J_1 + beta^2 J_2) change        one product of matrices for all points and columns together;
+    a = (J_0 + 2 alpha J_1 + beta^2 J_2) change;
 
 in later stages they are taken at the stage that the point's own gains lead to.
 """
 
-from collections.abc import Callable, Container, Mapping
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,7 +31,7 @@ from bezstab.mechanism import (
     Memory,
     Motion,
     acceleration_function,
-    acceleration_jacobians,
+    linearized_acceleration,
     memory,
     regular_motion,
     turn,
@@ -39,18 +40,38 @@ from bezstab.methods import Method, Quantity, SecondOrder, second_order_form
 from bezstab.stability import FloatArray
 
 STATE = ("x", "v")  # what second-order schemes call position and velocity
-RESCALED = 16  # steps between two looks at how large the changes have grown, lest they overflow
+LOOKED_AT = 4  # steps between two looks at how large the changes have grown, lest they overflow
+TOO_LARGE = 1e50  # between two looks a pole of 1e60 leaves room; the inverse is too small
 
 Sum = Mapping[Quantity, Fraction]
 IntArray = NDArray[np.int_]
+NOTHING: Mapping[Quantity, FloatArray] = MappingProxyType({})
 JacobiansOfStep = Callable[[int], Mapping[Quantity, FloatArray]]
 
 
 @dataclass(frozen=True)
-class _Row:
-    """A sum of changes in float64: of each name steps and coefficients."""
+class _Part:
+    """A sum over the latest steps of one name, which lie in an array, step k at place k modulo their number.
 
-    parts: tuple[tuple[str, IntArray, FloatArray], ...]
+    `weights` are those of the places, by the place of the step's beginning; `only` is the one step of which the sum is
+    that step itself.
+    """
+
+    name: str
+    weights: FloatArray
+    only: int | None
+
+    def value(self, kept: FloatArray, k: int) -> FloatArray:
+        """Return the sum as step k has it; shape (points, n, columns)."""
+        if self.only is not None:
+            value: FloatArray = kept[(k + self.only) % len(kept)]
+            return value
+        total: FloatArray = np.dot(self.weights[k % len(kept)], kept.reshape(len(kept), -1))
+        return total.reshape(kept.shape[1:])
+
+
+_Row = tuple[_Part, ...]
+"""A sum of changes in float64, name by name."""
 
 
 @dataclass(frozen=True)
@@ -63,13 +84,14 @@ class _Assignment:
 class _Accelerations:
     """Accelerations that are found together: of each where it takes place, as far as that is known before.
 
-    Acceleration i takes place at sum_j sought[0, i, j] (acceleration j) more, its velocity likewise at sought[1, i, j].
+    Acceleration i takes place at sum_j sought[0, i, j] (acceleration j) more, its velocity likewise at sought[1, i, j];
+    None for one that is evaluated where it is known before.
     """
 
     results: tuple[Quantity, ...]
     positions: tuple[_Row, ...]
     velocities: tuple[_Row, ...]
-    sought: FloatArray
+    sought: FloatArray | None = None
 
 
 @dataclass(frozen=True)
@@ -79,7 +101,7 @@ class Course:
     `steps` of `step` (s) fill the motion. What one of them does is told by `actions`, exact, and by `plan`, the same in
     float64; `lengths` says how many steps of a name it needs to know. The evaluations `on_it` are on the motion itself.
     Of these, and of all others whose place does not depend on the gains, `jacobians` holds those of h^2 qddot by X and
-    V = h qdot side by side, without gains above their slopes by 2 alpha and by beta^2: shape (steps, 3 n, 2 n).
+    V = h qdot side by side, without gains before their slopes by 2 alpha and by beta^2: shape (steps, 3, n, 2 n).
     """
 
     mechanism: Mechanism
@@ -107,6 +129,7 @@ def course_of_steps(mechanism: Mechanism, method: Method, h: float, duration: fl
     scheme = second_order_form(method.scheme)
     remembered = memory(scheme)
     actions = tuple(turn(scheme))
+    lengths = _lengths(scheme, remembered)
     course = Course(
         mechanism=mechanism,
         along=along,
@@ -114,8 +137,8 @@ def course_of_steps(mechanism: Mechanism, method: Method, h: float, duration: fl
         step=step,
         memory=remembered,
         actions=actions,
-        plan=tuple(_planned(action) for action in actions),
-        lengths=_lengths(scheme, remembered),
+        plan=tuple(_planned(action, lengths) for action in actions),
+        lengths=lengths,
         on_it=_evaluations_on_it(actions),
         jacobians={},
     )
@@ -141,12 +164,13 @@ def _evaluations_on_it(actions: tuple[Action, ...]) -> frozenset[Quantity]:
     return frozenset(found)
 
 
-def _planned(action: Action) -> _Assignment | _Accelerations:
+def _planned(action: Action, lengths: Mapping[str, int]) -> _Assignment | _Accelerations:
     """Return an action in float64."""
+    row = partial(_row, lengths=lengths)
     if isinstance(action, Assigned):
-        return _Assignment(action.result, _row(action.value))
+        return _Assignment(action.result, row(action.value))
     if isinstance(action, Evaluated):
-        return _Accelerations((action.result,), (_row(action.position),), (_row(action.velocity),), np.zeros((2, 1, 1)))
+        return _Accelerations((action.result,), (row(action.position),), (row(action.velocity),))
     results = tuple(each.result for each in action.evaluations)
     sought = [
         [[float(terms.get(result, 0)) for result in results] for terms in own]
@@ -154,22 +178,23 @@ def _planned(action: Action) -> _Assignment | _Accelerations:
     ]
     return _Accelerations(
         results,
-        tuple(_row(each.known_position) for each in action.evaluations),
-        tuple(_row(each.known_velocity) for each in action.evaluations),
+        tuple(row(each.known_position) for each in action.evaluations),
+        tuple(row(each.known_velocity) for each in action.evaluations),
         np.array(sought),
     )
 
 
-def _row(terms: Sum) -> _Row:
+def _row(terms: Sum, lengths: Mapping[str, int]) -> _Row:
     """Return a sum in float64."""
-    names = dict.fromkeys(quantity.name for quantity in terms)
-    own = [[(quantity.step, float(c)) for quantity, c in terms.items() if quantity.name == name] for name in names]
-    return _Row(
-        tuple(
-            (name, np.array([step for step, _ in pairs]), np.array([coefficient for _, coefficient in pairs]))
-            for name, pairs in zip(names, own, strict=True)
-        )
-    )
+    parts: list[_Part] = []
+    for name in dict.fromkeys(quantity.name for quantity in terms):
+        own = {quantity.step: float(c) for quantity, c in terms.items() if quantity.name == name}
+        weights = np.zeros((lengths[name], lengths[name]))
+        for beginning, row in enumerate(weights):
+            for step, coefficient in own.items():
+                row[(beginning + step) % lengths[name]] = coefficient
+        parts.append(_Part(name, weights, next(iter(own)) if list(own.values()) == [1] else None))
+    return tuple(parts)
 
 
 def _lengths(scheme: SecondOrder, remembered: Memory) -> dict[str, int]:
@@ -210,17 +235,19 @@ def _total(terms: Sum, values: Mapping[Quantity, FloatArray]) -> FloatArray:
 
 def _affine_jacobians(course: Course, t: FloatArray, q: FloatArray, v: FloatArray) -> FloatArray:
     """Return the Jacobians at times t (s, shape (steps,)) and states (steps, n), as in `Course`."""
+    step = course.step
+    # gains of 1/h and 1/h^2 make about as much of a difference as there is without: it keeps its digits
     without, with_alpha, with_beta = (
-        _side_by_side(acceleration_jacobians(course.mechanism, t, *gains, q, v), course.step)
-        for gains in ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))
+        _scaled(linearized_acceleration(course.mechanism, t, *gains, q, v)[1], step)
+        for gains in ((0.0, 0.0), (1 / step, 0.0), (0.0, 1 / step**2))
     )
-    return np.concatenate([without, with_alpha - without, with_beta - without], axis=1)
+    return np.stack([without, (with_alpha - without) * step, (with_beta - without) * step**2], axis=1)
 
 
-def _side_by_side(jacobians: tuple[FloatArray, FloatArray], step: float) -> FloatArray:
-    """Return the Jacobians of h^2 qddot by X and by V = h qdot, shape (..., n, 2 n), from those of qddot (SI)."""
-    by_q, by_v = jacobians
-    return np.concatenate([step**2 * by_q, step * by_v], axis=-1)
+def _scaled(jacobians: FloatArray, step: float) -> FloatArray:
+    """Return the Jacobians of h^2 qddot by X and by V = h qdot, shape (..., n, 2n): in place of those of qddot (SI)."""
+    jacobians *= np.repeat([step**2, step], jacobians.shape[-2])
+    return jacobians
 
 
 def after_steps(changes: "Changes", steps: int) -> FloatArray:
@@ -233,9 +260,9 @@ def after_steps(changes: "Changes", steps: int) -> FloatArray:
 class Changes:
     """Changes of what a step knows, some columns at each of a batch of points, as the steps go by.
 
-    Each change has n rows of columns x points numbers, those of a column's points next to each other. The latest steps
-    of a name lie in one array, step k at place k modulo their number: nothing is moved when a step begins, and a sum
-    over steps is one product of a row with a matrix. `log_scale` is what the changes at each point were divided by.
+    The latest steps of a name lie in one array, each where the oldest was: nothing is moved when a step begins, and a
+    sum over steps is one product of a row with a matrix. `log_scale` is what the changes at each point were divided by,
+    but for a column to which steps add something.
     """
 
     def __init__(
@@ -245,47 +272,42 @@ class Changes:
         start: FloatArray,
         first: int,
         own_jacobians: JacobiansOfStep | None = None,
+        added: Mapping[Quantity, FloatArray] = NOTHING,
     ) -> None:
         """Begin with columns of what step `first` starts with, shape (points, rows, columns); gains (2, points).
 
         `own_jacobians` of step k are those that points do not share, (points, n, 2 n) each; by default the ones in
-        stages, of steps that start from the exact motion.
+        stages, of steps that start from the exact motion. `added` is what each step adds to the last column, shape
+        (steps, points, n), by the quantities that the next step starts with.
         """
         points, _, columns = start.shape
         self.course = course
-        if own_jacobians is None:
-            own_jacobians = partial(_stage_jacobians, course, gains) if has_stages(course) else _none
-        self.own_jacobians = own_jacobians
-        self.gains = gains
-        self.wide_gains = np.tile(gains, columns)
+        self.own_jacobians = own_jacobians or stage_jacobians(course, gains)
+        self.added = added
+        self.scaled = slice(0, start.shape[2] - (1 if added else 0))
+        self.weights = np.stack([np.ones(points), *gains], axis=1)
         self.k = first
         self.log_scale = np.zeros(points)
-        self.size, self.columns, self.points = course.mechanism.size, columns, points
-        width = columns * points
-        self.kept = {name: np.zeros((length, self.size, width)) for name, length in course.lengths.items()}
-        self.state = np.empty((2 * self.size, width))
-        self.parts = np.empty((3 * self.size, width))
+        self.size = course.mechanism.size
+        self.kept = {name: np.zeros((length, points, self.size, columns)) for name, length in course.lengths.items()}
+        self.state = np.empty((points, 2 * self.size, columns))
         for quantity, part in zip(
             course.memory.carried, np.split(start, len(course.memory.carried), axis=1), strict=True
         ):
-            self.of(quantity)[...] = self._rows(part)
+            self.of(quantity)[...] = part
 
     def of(self, quantity: Quantity) -> FloatArray:
-        """Return the change of a quantity, by its step from the next one on, to be read or written."""
+        """Return the change of a quantity, by its step from the next one on, to be read or written.
+
+        Shape (points, n, columns).
+        """
         kept = self.kept[quantity.name]
-        return np.asarray(kept[(quantity.step + self.k) % len(kept)])
+        change: FloatArray = kept[(self.k + quantity.step) % len(kept)]
+        return change
 
     def carried(self) -> FloatArray:
-        """Return the changes of what the next step starts with; shape (points, rows, columns)."""
-        return self._by_point(np.concatenate([self.of(quantity) for quantity in self.course.memory.carried]))
-
-    def _by_point(self, rows: FloatArray) -> FloatArray:
-        """Return rows of numbers of columns x points by point: shape (points, rows, columns)."""
-        return np.ascontiguousarray(np.moveaxis(rows.reshape(len(rows), self.columns, self.points), 2, 0))
-
-    def _rows(self, by_point: FloatArray) -> FloatArray:
-        """Return the reverse: shape (rows, columns points)."""
-        return np.moveaxis(by_point, 0, 2).reshape(by_point.shape[1], -1)
+        """Return the changes of what the next step starts with, divided by their scale; (points, rows, columns)."""
+        return np.concatenate([self.of(quantity) for quantity in self.course.memory.carried], axis=1)
 
     def take_step(self) -> None:
         """Go on by a step."""
@@ -295,106 +317,96 @@ class Changes:
                 self._write_sum(action.value, self.of(action.result))
             else:
                 self._find(action, own)
+        place = self.k % self.course.steps
         self.k += 1
-        if self.k % RESCALED == 0:
+        for quantity, amounts in self.added.items():
+            self.of(quantity)[:, :, -1] += amounts[place]
+        if self.k % LOOKED_AT == 0:
             self._rescale()
 
     def _rescale(self) -> None:
-        """Divide the changes at each point by the largest of them."""
-        whole = [kept.reshape(-1, self.columns, self.points) for kept in self.kept.values()]
-        largest = np.max([np.abs(kept).max(axis=(0, 1)) for kept in whole], axis=0)
-        for kept in whole:
-            np.divide(kept, largest, out=kept)
-        self.log_scale += np.log(largest)
+        """Divide the changes at each point by the largest that the last evaluation has seen, if it is far from one."""
+        largest = np.abs(self.state[:, :, self.scaled]).max(axis=(1, 2), initial=0)
+        far = (largest > TOO_LARGE) | (largest < 1 / TOO_LARGE) & (largest > 0)
+        if far.any():
+            largest[~far] = 1
+            for kept in self.kept.values():
+                kept[:, :, :, self.scaled] /= largest[:, np.newaxis, np.newaxis]
+            self.log_scale = self.log_scale + np.log(largest)
 
     def _write_sum(self, row: _Row, target: FloatArray) -> None:
         """Write a sum of changes over the step of a name that the sum does not use."""
-        if not row.parts:
-            target[...] = 0
-        for number, (name, steps, coefficients) in enumerate(row.parts):
-            kept = self.kept[name]
-            places = (steps + self.k) % len(kept)
-            if len(places) == 1:
-                part = kept[places[0]]
-                if coefficients[0] != 1:
-                    part = coefficients[0] * part
-            else:
-                weights = np.zeros(len(kept))
-                weights[places] = coefficients
-                part = (weights @ kept.reshape(len(kept), -1)).reshape(target.shape)
-            if number:
-                target += part
-            else:
-                target[...] = part
+        values = [part.value(self.kept[part.name], self.k) for part in row] or [np.zeros(1)]
+        if len(values) == 1:
+            target[...] = values[0]
+        else:
+            np.add(values[0], values[1], out=target)
+        for value in values[2:]:
+            target += value
 
     def _find(self, action: _Accelerations, own: Mapping[Quantity, FloatArray]) -> None:
         """Take the changes of accelerations that are found together; own: the Jacobians that points do not share."""
-        for result, position, velocity in zip(action.results, action.positions, action.velocities, strict=True):
-            self._write_sum(position, self.state[: self.size])
-            self._write_sum(velocity, self.state[self.size :])
-            self._write_acceleration(result, own)
-        if action.sought.any():
-            self._solve(action)
-
-    def _write_acceleration(self, result: Quantity, own: Mapping[Quantity, FloatArray]) -> None:
-        """Write what the change of the state makes of an acceleration."""
-        target = self.of(result)
-        if result in own:
-            target[...] = self._rows(own[result] @ self._by_point(self.state))
-            return
-        np.matmul(self._shared(result), self.state, out=self.parts)
-        without, by_alpha, by_beta = self.parts.reshape(3, *target.shape)
-        two_alpha, beta_squared = self.wide_gains
-        by_alpha *= two_alpha
-        by_beta *= beta_squared
-        np.add(without, by_alpha, out=target)
-        target += by_beta
+        jacobians = [self._shared(result) if result not in own else own[result] for result in action.results]
+        for result, position, velocity, jacobian in zip(
+            action.results, action.positions, action.velocities, jacobians, strict=True
+        ):
+            self._write_sum(position, self.state[:, : self.size])
+            self._write_sum(velocity, self.state[:, self.size :])
+            np.matmul(jacobian, self.state, out=self.of(result))
+        if action.sought is not None:
+            self._solve(action.results, action.sought, jacobians)
 
     def _shared(self, result: Quantity) -> FloatArray:
-        """Return the Jacobians of an acceleration that all points share, as in `Course`; shape (3 n, 2 n)."""
-        return np.asarray(self.course.jacobians[result][self.k % self.course.steps])
+        """Return the Jacobian of an acceleration as points with these gains have it; shape (points, n, 2 n)."""
+        affine = self.course.jacobians[result][self.k % self.course.steps]
+        return np.asarray(self.weights @ affine.reshape(3, -1)).reshape(-1, self.size, 2 * self.size)
 
-    def _solve(self, action: _Accelerations) -> None:
+    def _solve(self, results: Sequence[Quantity], sought: FloatArray, jacobians: Sequence[FloatArray]) -> None:
         """Make of what is known of accelerations the accelerations, each of which has its share of all of them."""
-        size, points, count = self.size, self.points, len(action.results)
-        weights = np.stack([np.ones(points), *self.gains], axis=1)
-        left = np.zeros((points, count, size, count, size))
-        for i, result in enumerate(action.results):
-            jacobian = (weights @ self._shared(result).reshape(3, -1)).reshape(points, size, 2, size)
+        size, count = self.size, len(jacobians)
+        left = np.zeros((len(self.weights), count, size, count, size))
+        for i, jacobian in enumerate(jacobians):
             for j in range(count):
-                by_position, by_velocity = action.sought[:, i, j]
-                left[:, i, :, j, :] = -by_position * jacobian[:, :, 0] - by_velocity * jacobian[:, :, 1]
+                by_position, by_velocity = sought[:, i, j]
+                left[:, i, :, j, :] = -by_position * jacobian[:, :, :size] - by_velocity * jacobian[:, :, size:]
             left[:, i, :, i, :] += np.eye(size)
-        known = self._by_point(np.concatenate([self.of(result) for result in action.results]))
-        solved = np.linalg.solve(left.reshape(points, count * size, count * size), known).astype(float)
-        found = np.split(self._rows(solved), count)
-        for result, change in zip(action.results, found, strict=True):
+        known = np.concatenate([self.of(result) for result in results], axis=1)
+        solved = np.linalg.solve(left.reshape(-1, count * size, count * size), known).astype(float)
+        for result, change in zip(results, np.split(solved, count, axis=1), strict=True):
             self.of(result)[...] = change
 
 
-def _none(_: int) -> dict[Quantity, FloatArray]:
-    """Return no Jacobians, whatever the step."""
-    return {}
+def stage_jacobians(course: Course, gains: FloatArray) -> JacobiansOfStep:
+    """Return the Jacobians of the evaluations that points do not share, by the number of the step.
+
+    Steps are taken from the exact motion, by every point with its own gains.
+    """
+    if not has_stages(course):
+        return lambda k: {}
+    k = np.arange(course.steps)
+    values = {quantity: value[:, np.newaxis] for quantity, value in on_the_motion(course, k).items()}
+    return of_steps(take_step_itself(course, gains, k[:, np.newaxis], values, course.on_it, course.jacobians))
+
+
+def of_steps(jacobians: Mapping[Quantity, FloatArray]) -> JacobiansOfStep:
+    """Return Jacobians by the number of the step, from those of the steps of a revolution, (steps, points, n, 2 n)."""
+    return lambda k: {result: each[k % len(each)] for result, each in jacobians.items()}
 
 
 def has_stages(course: Course) -> bool:
     """Return whether some evaluations take place where a point's own gains lead, in stages."""
-    return any(isinstance(action, Evaluated) and action.result not in course.jacobians for action in course.actions)
+    return own_evaluations(course) > 0
 
 
-def _stage_jacobians(course: Course, gains: FloatArray, k: int) -> dict[Quantity, FloatArray]:
-    """Return the Jacobians of the evaluations of step k that points do not share; shape (points, n, 2 n) each.
-
-    The step is taken from the exact motion, by every point with its own gains.
-    """
-    k %= course.steps
-    return take_step_itself(course, gains, k, on_the_motion(course, k), course.on_it, course.jacobians)
+def own_evaluations(course: Course) -> int:
+    """Return how many evaluations do so."""
+    return sum(isinstance(action, Evaluated) and action.result not in course.jacobians for action in course.actions)
 
 
 def take_step_itself(
     course: Course,
     gains: FloatArray,
-    k: int,
+    k: int | IntArray,
     values: dict[Quantity, FloatArray],
     on_it: Container[Quantity] = frozenset(),
     shared: Container[Quantity] = frozenset(),
@@ -403,29 +415,35 @@ def take_step_itself(
 
     `values` holds what the step starts with, shape (points, n) each. Evaluations in `on_it`, and those that are solved
     for, take place on the motion. Of those that are not `shared` there are Jacobians, by their results, shape (points,
-    n, 2 n).
+    n, 2 n). With numbers k of shape (steps, 1) so many steps are taken side by side, each from values of its own: all
+    that is said to have points has (steps, points).
     """
     mechanism, step = course.mechanism, course.step
     two_alpha, beta_squared = gains
     found: dict[Quantity, FloatArray] = {}
-    start = step * k
+    shape = *np.broadcast_shapes(np.shape(k), two_alpha.shape), mechanism.size
 
     for action in course.actions:
         if isinstance(action, Assigned):
             values[action.result] = _total(action.value, values)
         elif isinstance(action, Evaluated) and action.result not in on_it:
-            t = start + float(action.moment) * step
+            t = np.asarray(step * (k + float(action.moment)))
             state = _total(action.position, values), _total(action.velocity, values) / step
-            q, v = (np.broadcast_to(part, (two_alpha.size, mechanism.size)) for part in state)
-            a = acceleration_function(mechanism, np)(t, two_alpha, beta_squared, q.T, v.T)
-            values[action.result] = step**2 * np.stack(np.broadcast_arrays(*a), axis=-1)
-            if action.result not in shared:
-                jacobians = acceleration_jacobians(mechanism, t, two_alpha, beta_squared, q, v)
-                found[action.result] = _side_by_side(jacobians, step)
+            q, v = (np.broadcast_to(part, shape) for part in state)
+            if action.result in shared:
+                on_last = acceleration_function(mechanism, np)(
+                    t, two_alpha, beta_squared, np.moveaxis(q, -1, 0), np.moveaxis(v, -1, 0)
+                )
+                a = np.stack(np.broadcast_arrays(*on_last), axis=-1)
+            else:
+                a, jacobians = linearized_acceleration(mechanism, t, two_alpha, beta_squared, q, v)
+                found[action.result] = _scaled(jacobians, step)
+            values[action.result] = step**2 * a
         else:
             for evaluation in [action] if isinstance(action, Evaluated) else action.evaluations:
-                _, _, a_of_motion = course.along.at(np.array([start + float(evaluation.moment) * step]))
-                values[evaluation.result] = step**2 * a_of_motion
+                t = np.asarray(step * (k + float(evaluation.moment)))
+                _, _, a = course.along.at(t.ravel())
+                values[evaluation.result] = step**2 * a.reshape(*t.shape, mechanism.size)
     return found
 
 

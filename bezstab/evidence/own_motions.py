@@ -1,39 +1,62 @@
 r"""The exact rate along the motion that the method itself makes, truncation errors included.
 
 A run does not follow the motion of the mechanism: each step leaves an error, and the feedback keeps it small but does
-not remove it. Over a driven revolution what a step starts with, y, comes back to itself at
+not remove it. Over a driven revolution there is a motion of the method's own, another one at each point, that comes
+back to itself. Of its N steps, F_k the method's with feedback and all, each leads to what the next one starts with:
 
-    y* = F(y*) - a whole turn,      F: a revolution of N steps of the method, feedback and all,
+    y_{k+1} = F_k(y_k),      y_N = y_0 + a whole turn.
 
-a motion of the method's own, another one at each point. Newton's method finds it from the motion of the mechanism, with
-the linearisation Q of F that the rate needs anyway; the multipliers of Q at y* are those of runs. |z| on the motion of
-the mechanism differs by what truncation errors make of it, up to 1e-3 at omega h = 0.1, and that can decide on which
-side of one it is.
+Newton's method finds it from the motion of the mechanism, all steps side by side. What they miss, r_k = F_k(y_k) -
+y_{k+1}, is put right by changes d_k with
 
-Where runs diverge by many powers of ten in a revolution no run comes near such a motion, and Newton's method does not
-find it; there the rate on the motion of the mechanism is given, and has to settle nothing.
+    d_{k+1} = M_k d_k + r_k,      d_N = d_0,      M_k the linearised step,
+
+and the way to d_0 is that to the multipliers (`floquet`): what the r_k make of nothing, e_k, goes with the basis B of
+what is left of anything else, Q B = B S, so that d_0 = e_0 + B x with
+
+    d_N = e_N + B S x = d_0      hence      (1 - S) x = B^T (e_N - e_0).
+
+The multipliers of S there are those of runs. |z| on the motion of the mechanism differs by what truncation errors make
+of it, up to 1e-3 at omega h = 0.1, and that can decide on which side of one it is.
+
+A run that sets out on the motion of the mechanism is off its own by d_0. Where it diverges so fast that after a
+revolution it is off by a metre, no run comes near its own motion, whether there is one or not; there the rate on the
+motion of the mechanism is given, and has to settle nothing.
 """
+
+from collections.abc import Container, Mapping
 
 import numpy as np
 
-from bezstab.evidence.floquet import batches, floquet_rates
+from bezstab.evidence.floquet import (
+    Revolution,
+    columns_needed,
+    gains_on,
+    rates_on_the_motion,
+    revolution,
+    with_enough_columns,
+)
 from bezstab.evidence.linearized_steps import (
     Changes,
     Course,
-    after_steps,
+    IntArray,
+    JacobiansOfStep,
     course_of_steps,
+    of_steps,
     on_the_motion,
     take_step_itself,
 )
 from bezstab.mechanism import Assigned, Evaluated, Mechanism
 from bezstab.methods import Method, Quantity
 from bezstab.stability import BoolArray, FloatArray
-from bezstab.units import feedback_gains
 
 CORRECTIONS = 8  # of Newton's method, which squares the error: more are needed only where there is nothing to find
-AMPLIFIED = 1e8  # in a revolution: truncation errors of 1e-5 then fill all space, and solving has no digits left
-CLOSED = 1e-8  # m, rad: the last correction; the next would be its square
+AMPLIFIED = 1e8  # in a revolution: more leaves solving no digits
+CLOSED = 1e-9  # m, rad: the last correction; the next would be its square
 BESIDE = 1.0  # m, rad, from the motion of the mechanism: weak feedback drifts by 0.3, other closures lie further off
+
+OwnMotion = dict[Quantity, FloatArray]
+"""What the steps of a revolution start with at each of a batch of points, (steps, points, n) each: the newest only."""
 
 
 def own_motion_rates(
@@ -44,62 +67,143 @@ def own_motion_rates(
     Those of `floquet_rates`, whose arguments and errors these are, for a motion that is no revolution, for an implicit
     method, and at points where the method has no such motion near that of the mechanism.
     """
-    rates = floquet_rates(mechanism, method, h, alpha_hat, beta_hat, duration)
     course = course_of_steps(mechanism, method, h, duration)
+    rates, found = np.ones(alpha_hat.size), np.zeros(alpha_hat.size, bool)
     if course.along.closed and all(isinstance(action, (Assigned, Evaluated)) for action in course.actions):
-        gains = np.array(feedback_gains(alpha_hat, beta_hat, course.step / float(method.step_multiple)))
-        for batch in batches(np.arange(rates.size)):
-            own, found = _rates_on_own_motions(course, gains[:, batch])
-            rates[batch[found]] = own[found]
+        gains = gains_on(course, method, alpha_hat, beta_hat)
+
+        def take(batch: IntArray, columns: int) -> BoolArray:
+            rates[batch], found[batch], settled = _rates_on_own_motions(course, gains[:, batch], columns)
+            return settled
+
+        evaluations = sum(isinstance(action, Evaluated) for action in course.actions)
+        with_enough_columns(course, columns_needed(course, method, alpha_hat, beta_hat), evaluations, take)
+    lost = ~found
+    if lost.any():
+        rates[lost] = rates_on_the_motion(course, method, alpha_hat[lost], beta_hat[lost])
     return rates
 
 
-def _rates_on_own_motions(course: Course, gains: FloatArray) -> tuple[FloatArray, BoolArray]:
-    """Return |z| per step of points with these gains, shape (2, points), and where there is a motion to have it on."""
-    count = gains.shape[1]
-    motion = np.concatenate(list(on_the_motion(course, 0).values()), axis=1)  # shape (1, rows)
-    start = np.repeat(motion, count, axis=0)
-    rates, found = np.ones(count), np.zeros(count, bool)
-    left = np.arange(count)
-    for _ in range(CORRECTIONS):
-        after, revolution = _revolution(course, gains[:, left], start[left])
-        missing = after - _whole_turn(course) - start[left]
-        with np.errstate(invalid="ignore"):  # what is not a number is not less
-            usable = (np.abs(revolution).max(axis=(1, 2)) < AMPLIFIED) & np.isfinite(missing).all(axis=1)
-        left, revolution, missing = left[usable], revolution[usable], missing[usable]
-        correction = np.linalg.solve(np.eye(course.rows) - revolution, missing[:, :, np.newaxis])[:, :, 0]
-        start[left] += correction
-        rates[left] = np.abs(np.linalg.eigvals(revolution)).max(axis=1) ** (1 / course.steps)
-        beside = np.abs(start[left] - motion).max(axis=1) < BESIDE
-        closed = np.abs(correction).max(axis=1) < CLOSED
-        found[left[beside & closed]] = True
-        left = left[beside & ~closed]
-        if not left.size:
-            break
-    return rates, found
+def _rates_on_own_motions(course: Course, gains: FloatArray, columns: int) -> tuple[FloatArray, BoolArray, BoolArray]:
+    """Return |z| per step of points with these gains, shape (2, points); where there is a motion to have it on.
 
-
-def _whole_turn(course: Course) -> FloatArray:
-    """Return by how much a revolution changes what a step starts with: angles by whole turns; shape (rows,)."""
-    turned = course.along.q[-1] - course.along.q[0]
-    return np.concatenate([float(by_position) * turned for by_position, _, _ in course.memory.shares])
-
-
-def _revolution(course: Course, gains: FloatArray, start: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return what points with these gains make of a start, (points, rows), in a revolution, and its linearisation Q.
-
-    Numbers that are not finite where they run into infinity.
+    And whether so many columns were enough to tell.
     """
-    carried = course.memory.carried
-    values = dict(zip(carried, np.split(start, len(carried), axis=1), strict=True))
+    points = gains.shape[1]
+    rates, found, settled = np.ones(points), np.zeros(points, bool), np.ones(points, bool)
+    left = np.arange(points)
+    own_motion = _motion_of_the_mechanism(course, points)
+    motion_start = _start(course, own_motion)
+    on_it: Container[Quantity] = course.on_it
+    shared: Container[Quantity] = course.jacobians
+    for _ in range(CORRECTIONS):
+        with np.errstate(all="ignore"):  # of what runs into infinity; what is not a number is not less
+            jacobians, missing = _steps_side_by_side(course, gains[:, left], own_motion, on_it, shared)
+            around = revolution(course, gains[:, left], columns, of_steps(jacobians), missing)
+            correction = _correction(around)
+            off = np.abs(_start(course, own_motion) + correction - motion_start[left]).max(axis=1)
+            beside = off < BESIDE
+            closed = beside & (np.abs(correction).max(axis=1) < CLOSED)
+        rates[left[closed]], settled[left[closed]] = around.at(closed).rates()
+        found[left[closed]] = True
+        on = beside & ~closed
+        left = left[on]
+        if not left.size:
+            return rates, found, settled
+        own_motion, jacobians, missing = (
+            {name: each[:, on] for name, each in some.items()} for some in (own_motion, jacobians, missing)
+        )
+        own_motion = _corrected(course, gains[:, left], own_motion, correction[on], of_steps(jacobians), missing)
+        on_it = shared = frozenset()  # from here on the motions are the points' own
+    settled[left] = columns == course.rows
+    return rates, found, settled
 
-    def own_jacobians(k: int) -> dict[Quantity, FloatArray]:
-        found = take_step_itself(course, gains, k, values)
-        values.update({quantity: values[Quantity(quantity.name, quantity.step + 1)] for quantity in carried})
-        return found
 
-    with np.errstate(all="ignore"):
-        identity = np.tile(np.eye(course.rows), (len(start), 1, 1))
-        changes = Changes(course, gains, identity, 0, own_jacobians)
-        revolution = after_steps(changes, course.steps) * np.exp(changes.log_scale)[:, np.newaxis, np.newaxis]
-    return np.concatenate([values[quantity] for quantity in carried], axis=1), revolution
+def _correction(around: Revolution) -> FloatArray:
+    """Return d_0, shape (points, rows); no numbers where runs do not stay beside it, or more than one motion closes."""
+    scale = np.exp(around.log_scale)
+    amplified = np.abs(around.product).max(axis=(1, 2)) * scale
+    closing = np.eye(around.basis.shape[2]) - around.restricted() * scale[:, np.newaxis, np.newaxis]
+    usable = (amplified < AMPLIFIED) & np.isfinite(around.end).all(axis=(1, 2)) & (np.linalg.det(closing) != 0)
+    correction = np.full(around.start.shape[:2], np.nan)
+    start, end, basis = around.start[usable], around.end[usable], around.basis[usable]
+    x = np.linalg.solve(closing[usable], np.swapaxes(basis, 1, 2) @ (end - start))
+    correction[usable] = (start + basis @ x)[:, :, 0]
+    correction[amplified * np.abs(correction).max(axis=1) >= BESIDE] = np.nan
+    return correction
+
+
+def _motion_of_the_mechanism(course: Course, points: int) -> OwnMotion:
+    """Return the motion of the mechanism, to be corrected at each of so many points."""
+    newest = {quantity.name: quantity for quantity in sorted(course.memory.carried, key=lambda each: each.step)}
+    along = on_the_motion(course, np.arange(course.steps))
+    shape = course.steps, points, course.mechanism.size
+    return {each: np.broadcast_to(along[each][:, np.newaxis], shape) for each in newest.values()}
+
+
+def _start(course: Course, own_motion: OwnMotion) -> FloatArray:
+    """Return what the first step starts with; shape (points, rows)."""
+    first = _carried(course, {newest: _extended(course, newest, value) for newest, value in own_motion.items()}, 1)
+    return np.concatenate([value[0] for value in first.values()], axis=1)
+
+
+def _steps_side_by_side(
+    course: Course, gains: FloatArray, own_motion: OwnMotion, on_it: Container[Quantity], shared: Container[Quantity]
+) -> tuple[dict[Quantity, FloatArray], dict[Quantity, FloatArray]]:
+    """Return the Jacobians of all steps, (steps, points, n, 2 n), and what the steps miss.
+
+    That is of the newest quantities what a step makes of them less what the next one starts with. Evaluations `on_it`
+    take place on the motion of the mechanism; those that are `shared` have no Jacobians of a point's own.
+    """
+    k = np.arange(course.steps)
+    extended = {newest: _extended(course, newest, value) for newest, value in own_motion.items()}
+    values = _carried(course, extended, course.steps)
+    jacobians = take_step_itself(course, gains, k[:, np.newaxis], values, on_it, shared)
+    missing = {
+        newest: values[Quantity(newest.name, newest.step + 1)] - value[-course.steps :]
+        for newest, value in extended.items()
+    }
+    return jacobians, missing
+
+
+def _extended(course: Course, newest: Quantity, value: FloatArray) -> FloatArray:
+    """Return a newest quantity at the start of as many steps before the revolution as are carried, to its end.
+
+    Shape (steps before + steps + 1, points, n).
+    """
+    turns, place = np.divmod(np.arange(-_steps_before(course, newest), course.steps + 1), course.steps)
+    by_position, _, _ = course.memory.shares[course.memory.carried.index(newest)]
+    whole_turn = float(by_position) * (course.along.q[-1] - course.along.q[0])
+    return np.asarray(value[place] + np.multiply.outer(turns, whole_turn)[:, np.newaxis])
+
+
+def _steps_before(course: Course, newest: Quantity) -> int:
+    return max(newest.step - each.step for each in course.memory.carried if each.name == newest.name)
+
+
+def _carried(course: Course, extended: OwnMotion, steps: int) -> dict[Quantity, FloatArray]:
+    """Return all that the first so many steps start with; shape (steps, points, n) each."""
+    carried: dict[Quantity, FloatArray] = {}
+    for quantity in course.memory.carried:
+        (newest,) = (each for each in extended if each.name == quantity.name)
+        first = _steps_before(course, newest) + quantity.step - newest.step
+        carried[quantity] = extended[newest][first : first + steps]
+    return carried
+
+
+def _corrected(
+    course: Course,
+    gains: FloatArray,
+    own_motion: OwnMotion,
+    correction: FloatArray,
+    jacobians: JacobiansOfStep,
+    missing: Mapping[Quantity, FloatArray],
+) -> OwnMotion:
+    """Return motions with the changes d_k that a correction d_0, shape (points, rows), goes on to."""
+    corrected = {quantity: value.copy() for quantity, value in own_motion.items()}
+    changes = Changes(course, gains, correction[:, :, np.newaxis], 0, jacobians, missing)
+    for k in range(course.steps):
+        changes.take_step()
+        for quantity, value in corrected.items():
+            value[(k + 1) % course.steps] += changes.of(quantity)[:, :, 0]
+    return corrected

@@ -43,7 +43,7 @@ from bezstab.mechanism.constraint_normals import TurningNormals, turning_normals
 from bezstab.mechanism.energies import EnergyBalance, energy_balance
 from bezstab.mechanism.equations import Equations, T, equations_of_motion
 from bezstab.mechanism.generated_code import compiled_source
-from bezstab.mechanism.linearized import acceleration_jacobians
+from bezstab.mechanism.linearized import acceleration_jacobians, linearized_acceleration
 from bezstab.mechanism.motions import Motion, motion, regular_motion
 from bezstab.mechanism.observation import Observation, observe, singular_passages
 from bezstab.mechanism.runner import (
@@ -116,6 +116,7 @@ __all__ = [
     "energy_balance",
     "equations_of_motion",
     "initial_state",
+    "linearized_acceleration",
     "load_scene",
     "march",
     "march_in_blocks",

@@ -22,6 +22,7 @@ from bezstab.mechanism.generated_code import (
     residuals_source,
     second_order_stepper,
     single_step_source,
+    slopes_source,
 )
 from bezstab.mechanism.newton_iterations import (
     TOLERANCE,
@@ -102,13 +103,8 @@ def stepper_of(mechanism: Mechanism, method: Method) -> Stepper:
 def run_as_second_order(method: Method) -> SecondOrder | None:
     """Return the second-order scheme by which a method runs, or None for an explicit one that has steps of its own."""
     if implicit(method) or isinstance(method.scheme, SecondOrder):
-        return _form(method)
+        return second_order_form(method.scheme)
     return None
-
-
-@cache
-def _form(method: Method) -> SecondOrder:
-    return second_order_form(method.scheme)
 
 
 @cache
@@ -183,6 +179,17 @@ def acceleration_function(mechanism: Mechanism, library: Any) -> StateFunction:
     source = acceleration_source(mechanism.acceleration_code)
     acceleration: StateFunction = compiled_source(source, library)["acceleration"]
     return acceleration
+
+
+@cache
+def slopes_function(mechanism: Mechanism) -> Callable[..., tuple[tuple[Any, ...], tuple[Any, ...]]]:
+    """Return the function of (t, two_alpha, beta_squared, q, v), arrays of one shape, that gives qddot and its slopes.
+
+    n accelerations, then 2n derivatives, each with a first axis of n entries; SI units.
+    """
+    source = slopes_source(mechanism.acceleration_code, mechanism.equations)
+    slopes: Callable[..., tuple[tuple[Any, ...], tuple[Any, ...]]] = compiled_source(source, np)["slopes"]
+    return slopes
 
 
 @cache

@@ -20,12 +20,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.mechanism.compiled import Mechanism
-from bezstab.mechanism.linearized import IMAGINARY_STEP
 from bezstab.mechanism.motions import motion
 from bezstab.mechanism.start import geometry
 
 FloatArray = NDArray[np.float64]
 
+IMAGINARY_STEP = 1e-30  # nothing is subtracted: the derivative is exact to rounding
 SAMPLES = 400  # over the motion, an even number: K turns a few times a revolution, so its integrals are good to 1e-8
 
 

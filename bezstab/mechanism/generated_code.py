@@ -6,6 +6,7 @@ functions. From its top to its end, each part under a comment of its own:
     compiled_source                        text becomes functions
     accelerations and multipliers          the assignments that solve paper Eq. 9
     functions of a state                   acceleration, multipliers, observation
+    slopes of the acceleration             its derivatives by position and velocity
     steppers: their pieces                 what a step consists of, as data
     a stepper as a generator               one run, step by step
     a stepper as a single step             one step, and what the next begins with
@@ -15,7 +16,8 @@ functions. From its top to its end, each part under a comment of its own:
     steppers of second-order schemes       those of all others; residuals
 
 All of it is plain arithmetic on numbered variables, one assignment a line, with `sin`, `cos`, `sqrt` and `least` as the
-only functions. What they are is decided when the text is compiled, so one source serves three kinds of numbers:
+only functions, and `row` where there are slopes. What they are is decided when the text is compiled, so one source
+serves three kinds of numbers:
 
 - floats with `math`: a single run, without the overhead of arrays of four or five entries;
 - numpy arrays: a batch of runs, each variable one array over the batch, each line one operation on all of it;
@@ -27,8 +29,8 @@ but numbers and these names; least of all the names that a user gave to bodies.
 """
 
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Container, Iterable, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -65,7 +67,7 @@ AT_THE_END = Fraction(1)
 def compiled_source(source: str, library: Any) -> dict[str, Any]:
     """Return what generated source defines, its elementary functions those of `library`: math, numpy or mpmath."""
     least = min if library is math else _least_of_arrays
-    namespace = {"sin": library.sin, "cos": library.cos, "sqrt": library.sqrt, "least": least}
+    namespace = {"sin": library.sin, "cos": library.cos, "sqrt": library.sqrt, "least": least, "row": _row_of_arrays}
     exec(source, namespace)
     return namespace
 
@@ -73,6 +75,14 @@ def compiled_source(source: str, library: Any) -> dict[str, Any]:
 def _least_of_arrays(*values: Any) -> Any:
     """Return the least value entry by entry, of arrays and numbers of any broadcastable shapes."""
     return np.minimum.reduce(np.broadcast_arrays(*values))
+
+
+def _row_of_arrays(like: Any, *entries: Any) -> Any:
+    """Return an array of entries, some of them numbers, along a first axis; each has the shape of an array like it."""
+    row = np.empty((len(entries), *np.shape(like)))
+    for place, entry in enumerate(entries):
+        row[place] = entry
+    return row
 
 
 # Accelerations and multipliers
@@ -116,9 +126,8 @@ def acceleration_code(equations: Equations) -> AccelerationCode:
     coordinates = len(equations.q)
     constraints = len(equations.constraints)
     entries = _nonzero_entries(equations)
-    # for each constraint, the coordinates on which it depends: the columns of C_q where its row is not zero
-    columns_of_row = [[k for k in range(coordinates) if f"C{i}_{k}" in entries] for i in range(constraints)]
-    inverse_masses = [repr(1 / float(mass)) for mass in equations.mass]
+    columns_of_row = _columns_of_row(equations)
+    inverse_masses = _inverse_masses(equations)
     factors = _nonzero_factors(columns_of_row)
     lines = [
         *_entry_lines(entries),
@@ -129,6 +138,17 @@ def acceleration_code(equations: Equations) -> AccelerationCode:
     ]
     pivots = "1.0", *(f"D{j} / S{j}" for j in range(constraints))
     return AccelerationCode(coordinates, constraints, tuple(lines), pivots)
+
+
+def _columns_of_row(equations: Equations) -> list[list[int]]:
+    """Return for each constraint the coordinates on which it depends: the columns of C_q where its row is not zero."""
+    jacobian = equations.jacobian
+    return [[k for k in range(jacobian.cols) if jacobian[i, k] != 0] for i in range(jacobian.rows)]
+
+
+def _inverse_masses(equations: Equations) -> list[str]:
+    """Return the texts of the numbers 1 / M_k."""
+    return [repr(1 / float(mass)) for mass in equations.mass]
 
 
 def _nonzero_entries(equations: Equations) -> dict[str, sp.Expr]:
@@ -298,6 +318,96 @@ def _least_text(values: Sequence[str]) -> str:
 def _indented(lines: Iterable[str], depth: int) -> list[str]:
     """Return lines of source so many blocks deep."""
     return [" " * depth + line for line in lines]
+
+
+# Slopes of the acceleration
+#
+# The derivatives of M qddot + C_q^T lambda = g and C_q qddot = gamma - 2 alpha cdot - beta^2 c by any one of the 2n
+# numbers q, v are
+#
+#     M qddot' + C_q^T lambda' = G,      G = g' - C_q'^T lambda
+#           C_q qddot'         = F,      F = gamma' - 2 alpha (C_q v + c_t)' - beta^2 c' - C_q' qddot
+#
+# which is Eq. 9 once more, solved by
+#
+#     qddot' = M^-1 G + X^T (F - C_q M^-1 G),      S X = C_q M^-1
+#
+# S is factored already, and what is unrolled above solves for X: its n columns are entries of a first axis that r and l
+# then have. Of the entries of C_q, gamma, c_t and g most derivatives are structural zeros again; that of C0_1 by number
+# 3 is called C0_1_3, and so are G0_3 and F0_3.
+
+
+def slopes_source(acceleration: AccelerationCode, equations: Equations) -> str:
+    """Return the source of slopes(t, two_alpha, beta_squared, q, v): all a, then their derivatives by each of q and v.
+
+    For arrays of one shape only. Each of the 2n derivatives has a first axis of n entries.
+    """
+    coordinates, directions = range(acceleration.coordinates), range(2 * acceleration.coordinates)
+    columns_of_row, inverse_masses = _columns_of_row(equations), _inverse_masses(equations)
+    entries = _nonzero_slopes(equations)
+    sides = _right_sides_of_slopes(columns_of_row, entries, acceleration.coordinates)
+    lines = [
+        f"accelerations = {_tuple_text(variable_names('a', acceleration.coordinates))}",
+        *_entry_lines(entries),
+        *(f"{name} = {text}" for name, text in sides.items()),
+    ]
+    for i, columns in enumerate(columns_of_row):
+        column_of_x = (f"C{i}_{k} * {inverse_masses[k]}" if k in columns else "0.0" for k in coordinates)
+        lines.append(f"r{i} = row(q0, {', '.join(column_of_x)})")
+    lines += _substitution_lines(acceleration.constraints, _nonzero_factors(columns_of_row))
+    for d in directions:
+        by_forces = [f"G{k}_{d} * {inverse_masses[k]}" if f"G{k}_{d}" in sides else "0.0" for k in coordinates]
+        without_reactions = f"row(q0, {', '.join(by_forces)})"
+        parts = [without_reactions] if set(by_forces) != {"0.0"} else []
+        for i, columns in enumerate(columns_of_row):
+            taken = [f"C{i}_{k} * {by_forces[k]}" for k in columns if f"G{k}_{d}" in sides]
+            if taken or f"F{i}_{d}" in sides:
+                parts.append(f"l{i} * ({_difference_text(f'F{i}_{d}', sides, taken)})")
+        lines.append(f"slope{d} = {' + '.join(parts) or without_reactions}")
+    results = ["accelerations", _tuple_text(variable_names("slope", len(directions)))]
+    return _function_source("slopes", replace(acceleration, lines=(*acceleration.lines, *lines)), results)
+
+
+def _nonzero_slopes(equations: Equations) -> dict[str, sp.Expr]:
+    """Return the derivatives of the entries of C_q, gamma, c_t and g that are not identically zero, by their names."""
+    number_of = {symbol: number for number, symbol in enumerate((*equations.q, *equations.v))}
+    found = {
+        f"{name}_{number_of[symbol]}": entry.diff(symbol)
+        for name, entry in _nonzero_entries(equations).items()
+        if name.startswith(("C", "gamma", "ct", "g"))
+        for symbol in sorted(entry.free_symbols & number_of.keys(), key=number_of.__getitem__)
+    }
+    return {name: slope for name, slope in found.items() if slope != 0}
+
+
+def _right_sides_of_slopes(
+    columns_of_row: Sequence[Sequence[int]], slopes: Container[str], coordinates: int
+) -> dict[str, str]:
+    """Return the texts of the entries of G and F that are not zero, by their names."""
+    texts: dict[str, str] = {}
+    for d in range(2 * coordinates):
+        by_multipliers: dict[int, list[str]] = {k: [] for k in range(coordinates)}
+        for i, columns in enumerate(columns_of_row):
+            turning = [k for k in columns if f"C{i}_{k}_{d}" in slopes]
+            rates = [f"C{i}_{k}_{d} * v{k}" for k in turning]
+            rates += [f"ct{i}_{d}"] if f"ct{i}_{d}" in slopes else []
+            rates += [f"C{i}_{d - coordinates}"] if d - coordinates in columns else []
+            taken = [f"two_alpha * ({' + '.join(rates)})"] if rates else []
+            taken += [f"beta_squared * C{i}_{d}"] if d in columns else []
+            taken += [f"C{i}_{k}_{d} * a{k}" for k in turning]
+            if taken or f"gamma{i}_{d}" in slopes:
+                texts[f"F{i}_{d}"] = _difference_text(f"gamma{i}_{d}", slopes, taken)
+            for k in turning:
+                by_multipliers[k].append(f"C{i}_{k}_{d} * l{i}")
+        for k, taken in by_multipliers.items():
+            if taken or f"g{k}_{d}" in slopes:
+                texts[f"G{k}_{d}"] = _difference_text(f"g{k}_{d}", slopes, taken)
+    return texts
+
+
+def _difference_text(name: str, there: Container[str], taken: Iterable[str]) -> str:
+    """Return the text of a variable, or zero where it is not there, less some terms."""
+    return (name if name in there else "0.0") + "".join(f" - {term}" for term in taken)
 
 
 # Steppers: their pieces

@@ -1,35 +1,41 @@
 """How the acceleration changes with position and velocity: its Jacobians, exact, for many states and gains at once."""
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bezstab.mechanism.compiled import Mechanism, acceleration_function
+from bezstab.mechanism.compiled import Mechanism, slopes_function
 
 FloatArray = NDArray[np.float64]
 
-IMAGINARY_STEP = 1e-30  # nothing is subtracted: the derivative is exact to rounding
+AT_A_TIME = 2048  # states: what is computed of them, some hundred numbers each, stays in a core's cache
+
+
+def linearized_acceleration(
+    mechanism: Mechanism, t: ArrayLike, two_alpha: ArrayLike, beta_squared: ArrayLike, q: FloatArray, v: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return qddot, shape (..., n), and its derivatives by q and by qdot side by side, (..., n, 2n); SI units.
+
+    q and v have shape (..., n); t (s) and the gains 2 alpha (1/s) and beta^2 (1/s^2; paper Eqs 6 and 9) broadcast
+    against (...).
+    """
+    size, slopes = mechanism.size, slopes_function(mechanism)
+    shape = np.broadcast_shapes(q.shape[:-1], *map(np.shape, (t, two_alpha, beta_squared)))
+    scalars = [np.broadcast_to(each, shape).ravel() for each in (t, two_alpha, beta_squared)]
+    q, v = (np.broadcast_to(each, (*shape, size)).reshape(-1, size) for each in (q, v))
+    accelerations = np.empty(q.shape)
+    jacobians = np.empty((*q.shape, 2 * size))
+    for first in range(0, len(q), AT_A_TIME):
+        some = slice(first, first + AT_A_TIME)
+        found, changes = slopes(*(each[some] for each in scalars), q[some].T, v[some].T)
+        for k in range(size):
+            accelerations[some, k] = found[k]
+        jacobians[some] = np.stack(changes).transpose(2, 1, 0)
+    return accelerations.reshape(*shape, size), jacobians.reshape(*shape, size, 2 * size)
 
 
 def acceleration_jacobians(
     mechanism: Mechanism, t: ArrayLike, two_alpha: ArrayLike, beta_squared: ArrayLike, q: FloatArray, v: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the derivatives of qddot by q and by qdot; shape (..., n, n) each, rows accelerations; SI units.
-
-    q and v have shape (..., n); t (s) and the gains 2 alpha (1/s) and beta^2 (1/s^2; paper Eqs 6 and 9) broadcast
-    against (...). By complex steps: Im qddot(q + i eps e_k) / eps.
-    """
-    size = mechanism.size
-    # one more axis in front: the 2n directions, first of q, then of qdot
-    directions = 1j * IMAGINARY_STEP * np.eye(2 * size)
-    leading = (2 * size, *([1] * (q.ndim - 1)), size)
-    shifted_q = q + directions[:, :size].reshape(leading)
-    shifted_v = v + directions[:, size:].reshape(leading)
-    accelerations: Any = acceleration_function(mechanism, np)(
-        np.asarray(t), np.asarray(two_alpha), np.asarray(beta_squared), np.moveaxis(shifted_q, -1, 0),
-        np.moveaxis(shifted_v, -1, 0),
-    )  # fmt: skip
-    by_direction = np.stack(np.broadcast_arrays(*accelerations), axis=-1).imag / IMAGINARY_STEP  # (2n, ..., n)
-    jacobians = np.moveaxis(by_direction, 0, -1)
-    return jacobians[..., :size], jacobians[..., size:]
+    """Return the derivatives of qddot by q and by qdot; shape (..., n, n) each. Arguments as above."""
+    _, jacobians = linearized_acceleration(mechanism, t, two_alpha, beta_squared, q, v)
+    return jacobians[..., : mechanism.size], jacobians[..., mechanism.size :]

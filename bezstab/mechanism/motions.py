@@ -83,6 +83,7 @@ def motion(mechanism: Mechanism, duration: float) -> Motion:
     return Motion(run.t, run.q, run.v, a, closed=period is not None)
 
 
+@cache
 def regular_motion(mechanism: Mechanism, duration: float) -> Motion:
     """Return the same motion; NumericalError, too, if it goes through a singular configuration.
 

@@ -6,6 +6,7 @@ a.
 
 from collections.abc import Iterable
 from fractions import Fraction
+from functools import cache
 
 from bezstab.methods.plane_polynomials import ONE
 from bezstab.methods.schemes import LinearMultistep, Partitioned, PredictorCorrector, RungeKutta, Scheme
@@ -24,6 +25,7 @@ from bezstab.methods.second_order import (
 PREDICTED = {POSITION: "predicted_x", VELOCITY: "predicted_v", ACCELERATION: "predicted_a"}
 
 
+@cache
 def second_order_form(scheme: Scheme) -> SecondOrder:
     """Return the scheme as a second-order one, with h = 1; the same P(z; alpha_hat, beta_hat) up to powers of z.
 

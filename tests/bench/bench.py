@@ -28,7 +28,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from bezstab.compiling import COMPILED_CHOICE, cores
-from bezstab.evidence import MapRows, floquet_rates, map_rows, model_xml, simulated_verdicts
+from bezstab.evidence import MapRows, map_rows, model_xml, own_motion_rates, simulated_verdicts
 from bezstab.mechanism import (
     Mechanism,
     T,
@@ -62,7 +62,7 @@ HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent.parent))  # run as a script, the tests are no package yet
 
 from tests.bench.stable_mask import stable_mask  # noqa: E402
-from tests.reference.perturbed_revolutions import runner_multipliers  # noqa: E402
+from tests.reference.perturbed_revolutions import runner_motion  # noqa: E402
 from tests.reference.second_order_methods import RECIPES, second_order  # noqa: E402
 
 BASELINE, REPORT = HERE / "bench.json", HERE.parent.parent / "figures" / "bench.md"
@@ -288,18 +288,25 @@ def compiled_maps() -> Iterator[Line]:
 
 
 def moving_mechanisms() -> Iterator[Line]:
-    """Yield how much faster exact rates of a moving mechanism come in batch than by the runner on complex numbers."""
+    """Yield how much faster the rates on a method's own motions come in batch than by the runner on complex numbers.
+
+    Of points where errors decay: there is such a motion to be found at each.
+    """
     random = np.random.default_rng(1)
     mechanism = compiled_mechanism(load_scene("driven_slider_crank"))
     h = motion(mechanism, 1.0).duration / STEPS_A_TURN
     for name in ("B4", "AB4", "AB2", "B8", "AB8"):
         method = lookup(name)
-        alpha_hat, beta_hat = random.uniform([0.05, 0.02], [0.3, 0.15], (FLOQUET_POINTS, 2)).T
-        ours, _ = fastest(partial(floquet_rates, mechanism, method, h, alpha_hat, beta_hat, 1.0), 3)
-        theirs, _ = fastest(partial(runner_multipliers, mechanism, method, STEPS_A_TURN, 0.02, 0.0004), 1)
+        low, high = np.transpose(window(region(method)))
+        points = random.uniform(low, high, (100 * FLOQUET_POINTS, 2)).T
+        alpha_hat, beta_hat = points[:, spectral_radius(method, *points) < 1][:, :FLOQUET_POINTS]
+        ours, _ = fastest(partial(own_motion_rates, mechanism, method, h, alpha_hat, beta_hat, 1.0), 3)
+        one = float(alpha_hat[0]), float(beta_hat[0])
+        theirs, found = fastest(partial(runner_motion, mechanism, method, STEPS_A_TURN, *one), 1)
+        assert found
         each = ours / FLOQUET_POINTS
         note = f"{1e3 * each:.2f} ms a point, {FLOQUET_POINTS} together, {STEPS_A_TURN} steps a revolution"
-        yield Line("moving", f"{name}: the runner on complex numbers", theirs / each, 10.0, note)
+        yield Line("moving", f"{name}: own motions by the runner, complex", theirs / each, 10.0, note)
 
 
 def self_checks() -> Iterator[Line]:

@@ -4,9 +4,12 @@ import numpy as np
 import pytest
 
 from bezstab.evidence import floquet_rates, moving_poles, own_motion_rates
+from bezstab.evidence.linearized_steps import course_of_steps
+from bezstab.evidence.own_motions import _rates_on_own_motions
 from bezstab.mechanism import compiled_mechanism, load_scene
 from bezstab.methods import lookup
 from bezstab.stability import FloatArray, region, spectral_radius, window
+from bezstab.units import feedback_gains
 from tests.evidence.driven_four_bar import four_bar, turning
 from tests.reference.perturbed_revolutions import rates_after_kicks, runner_motion
 
@@ -56,7 +59,7 @@ def both_rates(name: str, h: float, alpha_hat: float, beta_hat: float) -> tuple[
         ("driven_four_bar", "bdf2", 0.4, 0.12),  # implicit
         ("driven_four_bar", "AB4", 1.5, 2.0),  # errors grow beyond all numbers in a revolution
         ("four_bar", "B4", 0.3, 0.1),  # no driver
-        ("driven_four_bar", "SYM", 2.053533, -0.021667),  # Newton's method leads nowhere
+        ("driven_four_bar", "SYM", 2.053533, -0.021667),  # a run is hundreds of metres off after a revolution
     ],
 )
 def test_without_such_a_motion_the_rate_is_that_on_the_motion(
@@ -72,6 +75,40 @@ def test_no_feedback_at_all_is_no_error() -> None:
     """Errors then neither grow nor decay, and the revolution that comes back to itself is not just one."""
     found = own_motion_rates(four_bar(), lookup("SYM"), 0.01, np.array([0.0, 0.1]), np.array([0.0, 0.1]), 1.0)
     assert np.isfinite(found).all()
+
+
+def test_a_batch_gives_what_single_points_give() -> None:
+    """Of points of which some need more corrections, and the last has no such motion; to the square of 1e-9."""
+    alpha_hat, beta_hat = np.array([0.3, 0.05, 0.2, 1.5]), np.array([0.115, 0.01, 0.08, 2.0])
+    together = own_motion_rates(four_bar(), lookup("AB4"), 1 / 60, alpha_hat, beta_hat, 1.0)
+    alone = [
+        own_motion_rates(four_bar(), lookup("AB4"), 1 / 60, alpha_hat[[i]], beta_hat[[i]], 1.0)[0] for i in range(4)
+    ]
+    assert together == pytest.approx(alone, rel=1e-11)
+
+
+@pytest.mark.parametrize(("name", "columns"), [("B4", 12), ("AB4", 22), ("B8", 12)])
+def test_few_columns_find_the_same_motion_as_all(name: str, columns: int) -> None:
+    course = course_of_steps(four_bar(), lookup(name), 1 / 200, 1.0)
+    gains = np.array(feedback_gains(np.array([0.1, 0.2, 0.25]), np.array([0.02, 0.05, 0.1]), course.step))
+    few, found, settled = _rates_on_own_motions(course, gains, columns)
+    assert found.all()
+    assert settled.all()
+    assert few == pytest.approx(_rates_on_own_motions(course, gains, course.rows)[0], rel=1e-11)
+
+
+def test_too_few_columns_are_found_out() -> None:
+    """Nine do not hold the pairs of poles of five constraints."""
+    course = course_of_steps(four_bar(), lookup("B4"), 1 / 200, 1.0)
+    gains = np.array(feedback_gains(np.array([0.1, 0.2]), np.array([0.1, 0.2]), course.step))
+    assert not _rates_on_own_motions(course, gains, 9)[2].any()
+
+
+@pytest.mark.parametrize(("name", "count"), [("B8", 1), ("AB4", 3), ("SYM", 7), ("RK4", 30), ("ABM4", 30)])
+def test_no_point_and_no_step_is_too_extreme_for_a_number(name: str, count: int) -> None:
+    """No feedback, hardly any, and so much that a step multiplies errors by 1e38; fewer steps than are carried."""
+    gains = np.array([0.0, 1e-8, 0.3, 1e3, 1e10])
+    assert np.isfinite(own_motion_rates(four_bar(), lookup(name), 1 / count, gains, gains, 1.0)).all()
 
 
 def points_near_one(name: str, count: int) -> tuple[FloatArray, FloatArray]:
