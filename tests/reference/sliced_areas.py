@@ -23,6 +23,7 @@ SMOOTH = 1e-9  # of the area: what the halves of a panel may differ by, where en
 HALVINGS = 52  # of a bracket of an interval's end: to rounding
 CLOSE = 1e-8  # of a slice's length: so near its ends are proven, a hundredth of what the campaign asks of an area
 ROOM = 1.1  # times the extent of a region: around it panels lie closer and zeros are looked for once more
+NEAR_ZERO = (1, 1e-2, 1e-4)  # of where the region was found in beta_hat: zeros are good to rounding of their range
 FARTHER = (1, 16, 256, 4096)  # times that far from where float64 has an end a proof is tried before the middle is
 
 
@@ -81,9 +82,12 @@ def proven_slice_lengths(
 ) -> FloatArray:
     """Return the same to CLOSE of each length: the ends are where proven verdicts turn, zeros are where to look.
 
-    They are looked for in the whole range, and once more where the region was found, which may be far smaller.
+    They are looked for in the whole range, once more where the region was found, which may be far smaller, and nearer
+    to the origin, where a large region may be thin.
     """
-    zeros = np.hstack([event_zeros(method, level, alpha_hat, each) for each in (beta_range, where_found)])
+    low, high = where_found
+    ranges = [beta_range, *((low * part, high * part) for part in NEAR_ZERO)]
+    zeros = np.hstack([event_zeros(method, level, alpha_hat, each) for each in ranges])
     beta = sorted_with_ends(zeros, beta_range)
     middle = (beta[:, 1:] + beta[:, :-1]) / 2
     is_stable = proven_stable(method, level, np.broadcast_to(alpha_hat[:, None], middle.shape), middle)
