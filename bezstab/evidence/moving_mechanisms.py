@@ -10,6 +10,7 @@ normals of the constraints turn (`mechanism.constraint_normals`), chi how the me
 Over a closed motion the integral of tr K is zero, so det Y = 1 and Lambda >= 0: the motion never helps.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from typing import Literal
@@ -75,13 +76,44 @@ def growth_rates(turning: TurningNormals, chi: ArrayLike) -> FloatArray:
     the displacement they stand for. Runge and Kutta's rule for linear equations, K at every second sample in the
     middle of a step. From |chi| = LARGEST_CHI on it is taken to grow in proportion.
     """
+    return _in_parts(turning, chi, _growth)
+
+
+def sure_growth_rates(turning: TurningNormals, chi: ArrayLike) -> FloatArray:
+    """Return the same, over a run the lesser of two: with errors measured by the displacement, and as they are.
+
+    What an error stands for changes over a run: measured by it even an error that stays as it is may seem to grow.
+    """
+    return _in_parts(turning, chi, _sure_growth)
+
+
+def _in_parts(
+    turning: TurningNormals, chi: ArrayLike, growth: Callable[[TurningNormals, ComplexArray], FloatArray]
+) -> FloatArray:
+    """Return ln of what `growth` makes of Y, a second, for any number of chi."""
     chi = np.asarray(chi, complex)
     parts = np.array_split(chi.ravel(), chi.size // AT_A_TIME + 1)
-    return np.concatenate([_growth_rates_of_row(turning, part) for part in parts]).reshape(chi.shape)
+    found = [_growth_rates_of_row(turning, part, growth) for part in parts]
+    return np.concatenate(found).reshape(chi.shape)
 
 
-def _growth_rates_of_row(turning: TurningNormals, chi: ComplexArray) -> FloatArray:
-    """Return growth_rates of a row of chi, shape (chi.size,)."""
+def _growth(turning: TurningNormals, grown: ComplexArray) -> FloatArray:
+    """Return by what a motion multiplies errors, from Y, of shape (..., m, m)."""
+    if turning.closed:
+        return np.asarray(np.abs(np.linalg.eigvals(grown)).max(axis=-1))
+    before, after = (np.linalg.cholesky(metric) for metric in turning.metric)
+    return np.asarray(np.linalg.norm(np.linalg.solve(after, grown @ before), ord=2, axis=(-2, -1)))
+
+
+def _sure_growth(turning: TurningNormals, grown: ComplexArray) -> FloatArray:
+    growth = _growth(turning, grown)
+    return growth if turning.closed else np.minimum(growth, np.linalg.norm(grown, ord=2, axis=(-2, -1)))
+
+
+def _growth_rates_of_row(
+    turning: TurningNormals, chi: ComplexArray, growth: Callable[[TurningNormals, ComplexArray], FloatArray]
+) -> FloatArray:
+    """Return growth rates (1/s) of a row of chi, shape (chi.size,)."""
     beyond = np.maximum(1, np.abs(chi) / LARGEST_CHI)
     factor = chi / beyond
     size = turning.rates.shape[1]
@@ -96,13 +128,8 @@ def _growth_rates_of_row(turning: TurningNormals, chi: ComplexArray) -> FloatArr
             largest = np.abs(grown).max(axis=(0, 1))
             grown /= largest
             log_scale += np.log(largest)
-    grown = grown.transpose(2, 0, 1)
-    if turning.closed:
-        growth = np.abs(np.linalg.eigvals(grown)).max(axis=-1)
-    else:
-        before, after = (np.linalg.cholesky(metric) for metric in turning.metric)
-        growth = np.linalg.norm(np.linalg.solve(after, grown @ before), ord=2, axis=(-2, -1))
-    return np.asarray(beyond * (np.log(growth) + log_scale) / turning.duration)
+    multiplied = growth(turning, grown.transpose(2, 0, 1))
+    return np.asarray(beyond * (np.log(multiplied) + log_scale) / turning.duration)
 
 
 def _step_polynomials(turning: TurningNormals) -> FloatArray:
@@ -224,7 +251,9 @@ def moving_poles(
     growth = np.where(counts, 0.0, -np.inf)
     growth[known] = step * growth_rates(turning, chi[known])
     worst = np.full(z.shape, -np.inf)
+    sure = np.full(z.shape, -np.inf)
     alone = known & ~mixing
+    sure[alone] = growth[alone] if turning.closed else step * sure_growth_rates(turning, chi[alone])
     worst[alone] = at_rest[alone] + step * momentary_rates(turning, chi[alone])
     speeds = _safe_speeds(nearest, at_rest, growth, turned)
     reach, of_pairs = nearest.reach(turned), nearest.left_out(turned)
@@ -236,6 +265,7 @@ def moving_poles(
             left_out=np.where(mixing[i], of_pairs[i], (np.abs(chi[i]) * turned) ** 2),
             chi_abs=np.abs(chi[i]),
             moving=at_rest[i] + growth[i],
+            lowest=float((at_rest[i] + sure[i]).max()),
             worst=worst[i],
             kappa=turning.kappa,
             turned=turned,
@@ -253,6 +283,7 @@ def _moving_pole(
     left_out: FloatArray,
     chi_abs: FloatArray,
     moving: FloatArray,
+    lowest: float,
     worst: FloatArray,
     kappa: float,
     turned: float,
@@ -260,9 +291,10 @@ def _moving_pole(
 ) -> MovingPole:
     """Return what becomes of the poles at one point, whose arrays have shape (poles,).
 
-    `moving`: ln|z| over the motion by the law, minus infinity of a pole that does not count. `worst`: the same for a
-    moment, of those that do not mix. `reach`: how far each that mixes may come, from its pair's `middle`, else zero.
-    `left_out`: terms of second order in ln|z|. `turned`: kappa h of the method's own step; kappa in 1/s.
+    `moving`: ln|z| over the motion by the law, minus infinity of a pole that does not count. Of those that do not mix
+    `lowest` is the largest that is sure, and `worst` the same for a moment. `reach`: how far each that mixes may come,
+    from its pair's `middle`, else zero. `left_out`: terms of second order in ln|z|. `turned`: kappa h of the method's
+    own step; kappa in 1/s.
     """
     mixing = reach > 0
     with np.errstate(divide="ignore"):
@@ -271,7 +303,6 @@ def _moving_pole(
     double = bool(mixing[leading])
     highest = max(at_rest, float(np.where(mixing, furthest, np.maximum(worst, moving)).max()))
     rate = max(at_rest, float(np.where(mixing, np.minimum(moving, furthest), moving).max()))
-    lowest = rate
     if double:
         nearest_zero = max(float(2 * middle[leading] - reach[leading]), 0.0)
         lowest = float(np.log(nearest_zero)) if nearest_zero else -np.inf
