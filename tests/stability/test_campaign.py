@@ -38,6 +38,7 @@ def test_so_does_the_first_recipe() -> None:
 SLIVER = 4786  # of area 1.2e-7: float64 puts its edge 1e-6 of its width aside, for poles nearly meet at z = 1
 
 
+@pytest.mark.slow
 def test_a_sliver_where_poles_nearly_meet_agrees(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(campaign, "OTHER_PANELS", 40)  # a twenty-fifth of the time: they are where the region was found
     case = other_compared(other_random_method(SLIVER), 1.0)
@@ -45,7 +46,7 @@ def test_a_sliver_where_poles_nearly_meet_agrees(monkeypatch: pytest.MonkeyPatch
     assert case.admitted < DIFFERENT * case.integral / 10  # so that a wrong area is told
 
 
-@pytest.mark.parametrize("number", [SLIVER, 1])
+@pytest.mark.parametrize("number", [pytest.param(SLIVER, marks=pytest.mark.slow), 1])
 @pytest.mark.parametrize("wrong_by", [-3e-6, 3e-6])
 def test_a_wrong_area_is_told(number: int, wrong_by: float, monkeypatch: pytest.MonkeyPatch) -> None:
     def wrong(method: Method, level: float) -> Region:
