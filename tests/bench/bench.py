@@ -104,6 +104,11 @@ class Line:
     promise: float | None
     note: str
 
+    @property
+    def name(self) -> str:
+        """What it is called in bench.json: two sections may compare with the same."""
+        return f"{self.section}: {self.what}"
+
 
 @dataclass(frozen=True)
 class Growth:
@@ -668,7 +673,7 @@ def report(lines: Sequence[Line], grown: Sequence[Growth], before: dict[str, flo
     rows += ["| | against | ratio | promised | last accepted | |", "| - | - | - | - | - | - |"]
     for line in lines:
         promise = "" if line.promise is None else f"{line.promise:.3g}"
-        last = f"{before[line.what]:.3g}" if line.what in before else ""
+        last = f"{before[line.name]:.3g}" if line.name in before else ""
         rows.append(f"| {line.section} | {line.what} | {line.ratio:.3g} | {promise} | {last} | {line.note} |")
     rows += ["", "Cost grows as a power of", "", "| cost | exponent | fitted over |", "| - | - | - |"]
     rows += [f"| {each.what} | {each.exponent:.2f} | {each.sizes} |" for each in grown]
@@ -701,10 +706,10 @@ def main() -> int:
     REPORT.write_text(report(lines, grown, before), encoding="utf-8")
     if "--accept" in sys.argv:
         BASELINE.write_text(
-            json.dumps({line.what: round(line.ratio, 3) for line in lines}, indent=1) + "\n", encoding="utf-8"
+            json.dumps({line.name: round(line.ratio, 3) for line in lines}, indent=1) + "\n", encoding="utf-8"
         )
     broken = [line.what for line in lines if line.promise is not None and line.ratio < line.promise]
-    fallen = [line.what for line in lines if line.ratio < FALLEN * before.get(line.what, 0.0)]
+    fallen = [line.name for line in lines if line.ratio < FALLEN * before.get(line.name, 0.0)]
     for what in broken:
         print(f"below the promise: {what}")
     for what in fallen:
