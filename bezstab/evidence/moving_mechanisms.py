@@ -10,7 +10,6 @@ normals of the constraints turn (`mechanism.constraint_normals`), chi how the me
 Over a closed motion the integral of tr K is zero, so det Y = 1 and Lambda >= 0: the motion never helps.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from typing import Literal
@@ -76,44 +75,23 @@ def growth_rates(turning: TurningNormals, chi: ArrayLike) -> FloatArray:
     the displacement they stand for. Runge and Kutta's rule for linear equations, K at every second sample in the
     middle of a step. From |chi| = LARGEST_CHI on it is taken to grow in proportion.
     """
-    return _in_parts(turning, chi, _growth)
+    rates, _ = growth_rates_and_sure_ones(turning, chi)
+    return rates
 
 
-def sure_growth_rates(turning: TurningNormals, chi: ArrayLike) -> FloatArray:
-    """Return the same, over a run the lesser of two: with errors measured by the displacement, and as they are.
+def growth_rates_and_sure_ones(turning: TurningNormals, chi: ArrayLike) -> tuple[FloatArray, FloatArray]:
+    """Return the same, and what of it is sure: over a run the lesser of it and of the growth of errors as they are.
 
     What an error stands for changes over a run: measured by it even an error that stays as it is may seem to grow.
     """
-    return _in_parts(turning, chi, _sure_growth)
-
-
-def _in_parts(
-    turning: TurningNormals, chi: ArrayLike, growth: Callable[[TurningNormals, ComplexArray], FloatArray]
-) -> FloatArray:
-    """Return ln of what `growth` makes of Y, a second, for any number of chi."""
     chi = np.asarray(chi, complex)
     parts = np.array_split(chi.ravel(), chi.size // AT_A_TIME + 1)
-    found = [_growth_rates_of_row(turning, part, growth) for part in parts]
-    return np.concatenate(found).reshape(chi.shape)
+    rates, sure = np.concatenate([_growth_rates_of_row(turning, part) for part in parts], axis=1)
+    return rates.reshape(chi.shape), sure.reshape(chi.shape)
 
 
-def _growth(turning: TurningNormals, grown: ComplexArray) -> FloatArray:
-    """Return by what a motion multiplies errors, from Y, of shape (..., m, m)."""
-    if turning.closed:
-        return np.asarray(np.abs(np.linalg.eigvals(grown)).max(axis=-1))
-    before, after = (np.linalg.cholesky(metric) for metric in turning.metric)
-    return np.asarray(np.linalg.norm(np.linalg.solve(after, grown @ before), ord=2, axis=(-2, -1)))
-
-
-def _sure_growth(turning: TurningNormals, grown: ComplexArray) -> FloatArray:
-    growth = _growth(turning, grown)
-    return growth if turning.closed else np.minimum(growth, np.linalg.norm(grown, ord=2, axis=(-2, -1)))
-
-
-def _growth_rates_of_row(
-    turning: TurningNormals, chi: ComplexArray, growth: Callable[[TurningNormals, ComplexArray], FloatArray]
-) -> FloatArray:
-    """Return growth rates (1/s) of a row of chi, shape (chi.size,)."""
+def _growth_rates_of_row(turning: TurningNormals, chi: ComplexArray) -> FloatArray:
+    """Return both growth rates (1/s) of a row of chi, shape (2, chi.size)."""
     beyond = np.maximum(1, np.abs(chi) / LARGEST_CHI)
     factor = chi / beyond
     size = turning.rates.shape[1]
@@ -128,8 +106,14 @@ def _growth_rates_of_row(
             largest = np.abs(grown).max(axis=(0, 1))
             grown /= largest
             log_scale += np.log(largest)
-    multiplied = growth(turning, grown.transpose(2, 0, 1))
-    return np.asarray(beyond * (np.log(multiplied) + log_scale) / turning.duration)
+    grown = grown.transpose(2, 0, 1)
+    if turning.closed:
+        multiplied = sure = np.abs(np.linalg.eigvals(grown)).max(axis=-1)
+    else:
+        before, after = (np.linalg.cholesky(metric) for metric in turning.metric)
+        multiplied = np.linalg.norm(np.linalg.solve(after, grown @ before), ord=2, axis=(-2, -1))
+        sure = np.minimum(multiplied, np.linalg.norm(grown, ord=2, axis=(-2, -1)))
+    return np.asarray(beyond * (np.log([multiplied, sure]) + log_scale) / turning.duration)
 
 
 def _step_polynomials(turning: TurningNormals) -> FloatArray:
@@ -248,12 +232,12 @@ def moving_poles(
     counts = nearest.may_lead & (z.imag >= 0)  # of a conjugate pair both grow alike
     mixing = counts & nearest.mix(turned)
     known = counts & np.isfinite(chi)
-    growth = np.where(counts, 0.0, -np.inf)
-    growth[known] = step * growth_rates(turning, chi[known])
+    growth, sure = np.where(counts, 0.0, -np.inf), np.full(z.shape, -np.inf)
+    rates = growth_rates_and_sure_ones(turning, chi[known])
+    growth[known], sure[known] = step * rates[0], step * rates[1]
+    sure[mixing] = -np.inf
     worst = np.full(z.shape, -np.inf)
-    sure = np.full(z.shape, -np.inf)
     alone = known & ~mixing
-    sure[alone] = growth[alone] if turning.closed else step * sure_growth_rates(turning, chi[alone])
     worst[alone] = at_rest[alone] + step * momentary_rates(turning, chi[alone])
     speeds = _safe_speeds(nearest, at_rest, growth, turned)
     reach, of_pairs = nearest.reach(turned), nearest.left_out(turned)
