@@ -194,14 +194,17 @@ REGIONS = [
 
 def region_sentence(row: Row) -> str:
     """Return how large the region of a method is, and where in it errors shrink fastest."""
+    what = "is stable" if row["z_abs_below"] == 1 else f"has |z_p| < {row['z_abs_below']:g}"
     if row["alpha_hat_max"] is None and row["bounded"]:
-        return f"{row['method']} is stable nowhere."
+        return f"{row['method']} {what} nowhere."
     size = "in a region without end" if row["area"] is None else f"in a region of area {row['area']:.3g}"
     if row["best_z_abs"] is None:
-        return f"{row['method']} is stable {size}."
+        return f"{row['method']} {what} {size}."
     best = f"({row['best_alpha_hat']:.4g}, {row['best_beta_hat']:.4g})"
-    return f"{row['method']} is stable {size}; the least |z_p| is {row['best_z_abs']:.3g}, at α̂, β̂ = {best}."
+    return f"{row['method']} {what} {size}; the least |z_p| is {row['best_z_abs']:.3g}, at α̂, β̂ = {best}."
 
+
+LEVELS = [column("|z_p| below", "z_abs_below", "g")]
 
 MOVING_REGIONS = [
     column("speed", "speed", "g"),
@@ -227,7 +230,8 @@ MOVING_REGIONS = [
     "levels",
     type=POSITIVE,
     multiple=True,
-    help="Draw |z_p| < LEVEL, below 1. Repeatable. Default: a quarter of the way from the least |z_p| to 1.",
+    help="Draw |z_p| < LEVEL, below 1, and print its area too. Repeatable. Default: one is drawn, "
+    "a quarter of the way from the least |z_p| to 1.",
 )
 @click.option("--compare", is_flag=True, help="One figure with the boundaries of all methods (default level 1).")
 @click.option("--h", type=SECONDS, help="Step size in s: axes become 2α (1/s) and β² (1/s²).")
@@ -313,7 +317,11 @@ def region(
                 {**row, "speed": speed, "kappa": kappa, "area_moving": of_speed.area}
                 for (speed, kappa), of_speed in moving.items()
             ] or [row]
-    show_rows(rows, REGIONS + (MOVING_REGIONS if scene else []), form, sentence=region_sentence)
+            no_motion: Row = {"speed": None, "kappa": None, "area_moving": None} if scene else {}
+            rows += [{**of_level, **no_motion} for of_level in _level_rows(method, chosen_levels)]
+    name, *shape = REGIONS
+    columns = [name, *(LEVELS if levels else []), *shape, *(MOVING_REGIONS if scene else [])]
+    show_rows(rows, columns, form, sentence=region_sentence)
 
 
 def _check_window(option: str, window: Window | None) -> None:
@@ -409,6 +417,15 @@ def _map_region(
     write_table(path, map_arrays(alpha_hat, beta_hat, z, h), table)
     write_figure(path, draw, figure)
     return row
+
+
+def _level_rows(method: Method, levels: Sequence[float]) -> list[Row]:
+    """Return a row for each region |z_p| < level that is not that of all stable points."""
+    from bezstab import stability
+    from bezstab.show import region_row
+
+    best = stability.best_point(method)
+    return [region_row(stability.region(method, level), best) for level in levels if level < 1]
 
 
 def _moving_regions(

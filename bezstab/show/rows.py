@@ -148,9 +148,10 @@ def whole_row(method: Method, region: Region, best: BestPoint | None, latex: boo
 
 
 def region_row(region: Region, best: BestPoint | None) -> Row:
-    """Return area, axis limits, best point and which steps are stable; all dimensionless.
+    """Return area, axis limits, best point of the method and which steps are stable; all dimensionless.
 
-    Area and limits are None where the region is empty, or has none. stable_for_all is about every alpha_hat,
+    Area and limits are of |z_p| < level, None where that region is empty, or has none; it has no best point if |z_p| is
+    nowhere that small. The last three are about stability, at any level: stable_for_all about every alpha_hat,
     beta_hat > 0; unconditional_damping_ratio is the alpha / beta above which every step is stable (None if there is
     none); critical_damping_limit the largest beta h on alpha = beta up to which all are (None if there is none).
     NumericalError where a pole leaves the range of float64.
@@ -158,15 +159,18 @@ def region_row(region: Region, best: BestPoint | None) -> Row:
     from bezstab.show.best_point_text import best_point_words
     from bezstab.stability import critical_damping_limit, stable_for_all, unconditional_damping_ratio
 
+    inside = best if best and best.z_abs < region.level else None
+    reason = None if inside else _nowhere(region, best)
     return {
         "method": region.method.name,
+        "z_abs_below": region.level,
         "area": region.area,
         **_limits(region),
-        "best_z_abs": best.z_abs if best else None,
-        "best_alpha_hat": best.alpha_hat if best else None,
-        "best_beta_hat": best.beta_hat if best else None,
-        "best_where": best_point_words(best) if best else _nowhere(region),
-        "best_reason": None if best else _nowhere(region),
+        "best_z_abs": inside.z_abs if inside else None,
+        "best_alpha_hat": inside.alpha_hat if inside else None,
+        "best_beta_hat": inside.beta_hat if inside else None,
+        "best_where": best_point_words(inside) if inside else reason,
+        "best_reason": reason,
         "bounded": region.bounded,
         "stable_for_all": stable_for_all(region.method),
         "unconditional_damping_ratio": unconditional_damping_ratio(region.method),
@@ -205,10 +209,12 @@ def stable_steps_words(row: Row) -> str:
     return f"all, as from α/β = {ratio:.6g}" if ratio else "all (no unstable α, β found)"
 
 
-def _nowhere(region: Region) -> str | None:
-    """Return why there is no best point: |z_p| falls on as the feedback grows, or a pole that no parameters move."""
+def _nowhere(region: Region, best: BestPoint | None) -> str | None:
+    """Return why there is no best point in a region: |z_p| is not that small, falls on, or a pole cannot be moved."""
     from bezstab.stability import falls_towards, pole_place
 
+    if best:
+        return f"none: |z_p| is {best.z_abs:.6g} at least"
     limit = falls_towards(region.method)
     if limit is not None:
         return f"none: |z_p| falls towards {limit:.6g} as α̂ and β̂ grow"

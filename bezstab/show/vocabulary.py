@@ -38,6 +38,7 @@ OUTCOMES = ("converges", "diverges", "neither", "too close to call")
 UNKNOWN_STEP = "where no step is given"
 UNSTABLE = "where the point is not stable"
 NOT_MEASURED = "where nothing could be measured; `reason` says why"
+LEVEL_ROW = "in the row of a level below 1, which is of the mechanism at rest"
 NO_BEST = "where there is no best point; `best_reason` says why"
 UNBOUNDED = "where the region has no end there, or is empty"
 
@@ -67,7 +68,7 @@ VOCABULARY: Mapping[str, Key] = {
     "verdict": Key("text", "What errors do, proven on the numbers as typed", values=VERDICTS),
     "safe": Key("truth", "Whether every error is proven to shrink; with --scene, on the moving mechanism as well"),
     # a mechanism that moves
-    "kappa": Key("number", "How fast the directions of the constraints turn, at most", "1/s"),
+    "kappa": Key("number", "How fast the directions of the constraints turn, at most", "1/s", LEVEL_ROW),
     "chi_abs": Key("number", "How strongly that turning moves the pole, relative to its modulus and a step's turn"),
     "z_abs_moving": Key("number", "Growth of errors per step over the motion, to first order in kappa h"),
     "z_abs_worst": Key("number", "The largest growth for a moment of the motion, to first order in kappa h"),
@@ -79,9 +80,12 @@ VOCABULARY: Mapping[str, Key] = {
         "Times the given speed up to which errors shrink, at most as far as the law holds, kappa h = 0.1",
         null="where it diverges at rest, or where nothing turns",
     ),
-    "speed": Key("number", "Times its own speed at which the scene moves"),
-    "area_moving": Key("number", "Area of the region of the moving mechanism in alpha_hat and beta_hat"),
+    "speed": Key("number", "Times its own speed at which the scene moves", null=LEVEL_ROW),
+    "area_moving": Key(
+        "number", "Area of the region of the moving mechanism in alpha_hat and beta_hat", null=LEVEL_ROW
+    ),
     # a region
+    "z_abs_below": Key("number", "What |z_p| is below in the region; 1 where the method is stable"),
     "area": Key("number", "Area of the region in alpha_hat and beta_hat", null="where it is infinite or empty"),
     "alpha_hat_min": Key("number", "Smallest alpha_hat of the region", null=UNBOUNDED),
     "alpha_hat_max": Key("number", "Largest alpha_hat of the region", null=UNBOUNDED),

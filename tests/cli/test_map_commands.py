@@ -5,8 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bezstab.methods import GROUPS
+from bezstab.methods import GROUPS, lookup
 from tests.cli.running import arrays, rows, run
+from tests.reference.slice_integral import slice_area
 
 
 def test_poles_prints_the_default_methods_and_keys() -> None:
@@ -141,6 +142,24 @@ def test_region_options(tmp_path: Path) -> None:
     assert table["beta_hat"][::11] == pytest.approx(np.linspace(0.1, 0.2, 11))
     assert table["two_alpha"] == pytest.approx(table["alpha_hat"] * 1e3)
     assert "0.8" in (tmp_path / "out" / "region_B3.svg").read_text(encoding="utf-8")
+
+
+def test_region_prints_the_area_of_each_level_asked_for(tmp_path: Path) -> None:
+    files = ("--figure", "none", "--table", "none")
+    whole, faster, none = rows("region", "--method", "B4", "--level", "0.9", "--level", "0.5", *files)
+    assert [row["z_abs_below"] for row in (whole, faster, none)] == [1, 0.9, 0.5]
+    assert faster["area"] == pytest.approx(slice_area(lookup("B4"), 0.9).area, rel=1e-9)
+    assert (none["area"], none["best_z_abs"], none["best_reason"]) == (0, None, "none: |z_p| is 0.625884 at least")
+    (compared,) = rows("region", "--method", "B4", "--compare", "--level", "0.9", *files)
+    assert (compared["z_abs_below"], compared["area"]) == (0.9, faster["area"])
+    assert run("region", "--compare", "--level", "0.9", *files).stdout.startswith("B4 has |z_p| < 0.9 in a region")
+
+
+def test_levels_are_of_the_mechanism_at_rest(tmp_path: Path) -> None:
+    scene = ("--scene", "driven_four_bar", "--h", "0.005", "--figure", "none", "--table", "none")
+    moving, at_rest = rows("region", "--method", "B4", "--level", "0.9", *scene)
+    assert moving["area_moving"]
+    assert (at_rest["z_abs_below"], at_rest["speed"], at_rest["area_moving"]) == (0.9, None, None)
 
 
 def test_quality_is_points_per_axis(tmp_path: Path) -> None:
