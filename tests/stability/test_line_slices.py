@@ -7,11 +7,12 @@ from math import pi
 import numpy as np
 import pytest
 
-from bezstab.methods import lookup
+from bezstab.methods import Method, RungeKutta, lookup
 from bezstab.stability import pencil_of
 from bezstab.stability.line_slices import (
     RIM,
     all_inside,
+    island_radii,
     mu_bound,
     paired_crossings,
     real_events,
@@ -55,6 +56,18 @@ def test_where_both_mu_of_pece_swap_sizes_crossings_have_a_root_on_the_circle(
     moduli = moduli_in_z(pencil, mu[found])
     # 14 false positions leave 1e-9 of an angle's sample, 1e-3 rad, where the modulus turns nearby
     assert np.abs(moduli - level).min(axis=0).max() < 1e-6
+
+
+def test_radii_about_an_island_are_multiples_of_its_size_beside_its_zero() -> None:
+    none = Fraction(0)
+    method = Method("islands", RungeKutta(((none, none), (Fraction(2, 7), none)), (none, none + 1)), "constructed")
+    zeros = np.roots([2 / 7, 1, 1])  # of R = 1 + mu + 2 mu^2 / 7
+    level = 0.01
+    size = level / np.abs(4 / 7 * zeros + 1)
+    radii = island_radii(pencil_of(method), level)
+    for zero, reach in zip(np.abs(zeros), size, strict=True):
+        for times in (-1, 0, 1, 4):
+            assert np.abs(radii - (zero + times * reach)).min() < 1e-12
 
 
 def test_slices_add_up_to_areas_in_closed_form() -> None:

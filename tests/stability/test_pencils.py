@@ -5,7 +5,7 @@ import pytest
 from numpy.polynomial.polynomial import polyval2d
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method, RungeKutta, lookup, steps
+from bezstab.methods import LinearMultistep, Method, RungeKutta, lookup, steps
 from bezstab.stability import pencil_of, poles, roots_in_z
 from bezstab.stability.pencils import has_infinite_root, moduli_in_z, roots_in_mu
 from tests.methods.kinds import EXPLICIT
@@ -81,6 +81,18 @@ def test_a_root_is_infinite_at_the_zeros_of_the_leading_coefficient(name: str, e
     assert found == pytest.approx(np.array(expected), abs=1e-12)
     assert has_infinite_root(pencil, found).all()
     assert not has_infinite_root(pencil, found + 1e-6).any()
+
+
+def fractions(text: str) -> tuple[Fraction, ...]:
+    return tuple(map(Fraction, text.split()))
+
+
+def test_a_leading_coefficient_vanishes_to_its_own_rounding_alone() -> None:
+    # z^2 (1 - 7 mu / 10) - (1 - 13 mu / 10): nothing in z, from which a size could be taken by mistake
+    method = Method("gap", LinearMultistep(fractions("1 0 -1"), fractions("7/10 0 13/10")), "constructed")
+    place = 10 / 7 * (1 + np.finfo(float).eps * np.array([-2, -1, 0, 1, 2]))
+    assert has_infinite_root(pencil_of(method), place.astype(complex)).all()
+    assert not has_infinite_root(pencil_of(method), np.array([10 / 7 + 1e-9], complex)).any()
 
 
 def test_moduli_are_infinite_where_a_root_is() -> None:

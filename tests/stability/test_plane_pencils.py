@@ -72,6 +72,12 @@ def test_where_an_implicit_step_has_no_solution_a_pole_is_infinite() -> None:
         dominant_pole(method, -2.0, 1.0)
 
 
+def test_the_place_is_named_where_a_pole_leaves_the_range() -> None:
+    alpha_hat, beta_hat = np.array([0.5, 1e308, 0.25]), np.array([0.1, 1.5e308, 0.3])
+    with pytest.raises(NumericalError, match=r"alpha_hat = 1e\+308, beta_hat = 1.5e\+308 a pole leaves the range"):
+        poles(second_order("old"), alpha_hat, beta_hat)
+
+
 def test_a_pencil_knows_its_degree_and_name() -> None:
     assert plane_pencil_of(newmark("1/4", "1/4")).degree == 2
     assert repr(plane_pencil_of(second_order("old"))) == "PlanePencil(old)"
