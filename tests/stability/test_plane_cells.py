@@ -1,10 +1,12 @@
+from fractions import Fraction
+
 import numpy as np
 import pytest
 
 from bezstab.methods import lookup, plane_strips
 from bezstab.rationals import exact
 from bezstab.stability import Region, region
-from bezstab.stability.plane_cells import Edges, plane_shape, tanh_sinh
+from bezstab.stability.plane_cells import Edges, _split, plane_shape, tanh_sinh
 from bezstab.stability.regions import _plane_region
 from tests.reference.enclosed_points import enclosed
 from tests.reference.second_order_methods import as_second_order, companion_poles, newmark, second_order
@@ -102,3 +104,10 @@ def test_an_empty_region_has_no_shape() -> None:
 def test_the_quadrature_does_not_mind_powers_at_the_ends(power: float) -> None:
     x, weights = tanh_sinh(0.0, 2.0)
     assert weights @ x**power == pytest.approx(2 ** (power + 1) / (power + 1), rel=1e-12)
+
+
+@pytest.mark.parametrize("size", [Fraction(10) ** 400, Fraction(1, 10**400)])
+def test_coefficients_of_hundreds_of_digits_are_split_relative_to_the_largest(size: Fraction) -> None:
+    (((high, low), one),) = _split(((size / 3, -size),))
+    assert one == (-1, 0)
+    assert abs(Fraction(high) + Fraction(low) - Fraction(1, 3)) < Fraction(1, 2**106)
