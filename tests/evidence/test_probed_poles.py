@@ -19,7 +19,7 @@ from bezstab.evidence import (
     recursion_likenesses,
     steps_between_rows,
 )
-from bezstab.evidence.probed_poles import FEWEST, _quantum
+from bezstab.evidence.probed_poles import FEWEST, _quantum, usable_response
 from bezstab.methods import REGISTRY, Method, lookup
 from bezstab.rationals import exact
 from bezstab.stability import FloatArray, dominant_pole, poles, region, window
@@ -396,3 +396,13 @@ def test_exact_numbers_are_compared_exactly() -> None:
     c = responses_of(lookup("SYM"), 0.3, 0.2)
     like = likenesses(told(c, 0 * c), [lookup("SYM"), lookup("verlet-half")], exact(0.3), exact(0.2))
     assert {one.same_as for one in like} == {"SYM", "verlet-half"}
+
+
+def test_what_is_no_number_ends_its_own_response_and_a_row_of_none_ends_all() -> None:
+    c = np.cumprod(np.full((12, 2), [0.9, 0.8]), axis=0)
+    c[5, 0] = c[8] = np.nan
+    responses, _, cut = usable_response(c, None)
+    assert responses.shape == (8, 2)
+    assert np.isnan(responses[5:, 0]).all()  # though there are numbers after the gap
+    assert np.array_equal(responses[:, 1], c[:8, 1])
+    assert cut.startswith("row 9 holds no number")
