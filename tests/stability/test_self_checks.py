@@ -9,7 +9,7 @@ import pytest
 
 from bezstab.errors import NumericalError
 from bezstab.methods import Method, lookup
-from bezstab.stability import boundary_locus, pencil_of, region, regions
+from bezstab.stability import boundary_locus, pencil_of, region, regions, verdict
 from bezstab.stability.boundary_locus import Arc, Bounds, bounds_of
 from bezstab.stability.line_slices import rim_radius
 from bezstab.stability.locus_tracks import Track, tracks
@@ -168,6 +168,18 @@ def test_an_unbounded_region_without_an_arc_is_no_answer(method: Method, monkeyp
     with pytest.raises(NumericalError):
         region(method)
     region.cache_clear()
+
+
+@pytest.mark.parametrize("name", ["B4", "B4@2", "RK4@5"])
+def test_inside_is_the_verdict_whatever_the_steps_multiple(name: str) -> None:
+    pencil = pencil_of(lookup(name))
+    (a, b), (c, d) = pencil.feedback
+    verdicts = set()
+    for alpha_hat, beta_hat in [(Fraction(k, 10), Fraction(k * k, 300)) for k in range(1, 21)]:
+        inside = proven_inside(pencil, 1.0, a * alpha_hat + b * beta_hat, c * alpha_hat + d * beta_hat)
+        assert inside == (verdict(pencil.method, alpha_hat, beta_hat) == "converges")
+        verdicts.add(inside)
+    assert verdicts == {True, False}
 
 
 def test_where_a_pole_is_infinite_nothing_is_inside() -> None:
