@@ -51,6 +51,7 @@ def test_every_chunk_is_done_once_and_stored(tmp_path: Path) -> None:
 def test_a_resumed_job_does_only_what_is_missing(tmp_path: Path) -> None:
     with chunk_store(tmp_path / "job", "squares", resume=False) as store:
         store.save(1, {"square": np.array(-1)})
+        store.save(3, {"square": np.array(-9)})  # one more than there are jobs
     with worker_pool(1) as workers, chunk_store(tmp_path / "job", "squares", resume=True) as store:
         arrived = dict(completed_chunks(square, [Job(number) for number in range(3)], workers, store))
     assert squares(arrived) == [0, -1, 4]  # the second was not done again

@@ -26,6 +26,7 @@ from bezstab.stability import (
 )
 from bezstab.stability.answer_checks import _compare, check_best_point, check_margin
 from bezstab.stability.path_crossings import Path
+from tests.stability.made_methods import runge_kutta
 
 
 @pytest.fixture(autouse=True)
@@ -181,6 +182,14 @@ def test_a_crossing_that_was_missed_is_no_answer(name: str, monkeypatch: pytest.
     monkeypatch.setattr(margins, "crossing_factors", lambda path: [])
     with pytest.raises(NumericalError, match="before the margin"):
         stability_margins(lookup(name), 0.3, 0.06)
+
+
+def test_a_gap_is_no_margin_however_mildly_errors_grow_in_it() -> None:
+    """R = 1 + mu + 3/25 mu^2 is below -1 from mu = -10/3 to -5, by a twelfth at most; at -25/3 it is one again."""
+    path = Path(runge_kutta("gap", "3/25", "0 1"), Fraction(1), Fraction(1, 4), (1, 2))  # both mu are -s/2
+    check_margin(path, (0.0, 20 / 3))
+    with pytest.raises(NumericalError, match="unstable before the margin"):
+        check_margin(path, (0.0, 50 / 3))
 
 
 @pytest.mark.parametrize(("better", "told"), [(1e-6, True), (4e-7, False)])
