@@ -92,6 +92,13 @@ def test_the_critical_choice_of_rk4_is_the_minimum_of_its_stability_function() -
     assert chosen.alpha_hat == pytest.approx(-2 * real, rel=1e-3)  # flat there
 
 
+def test_the_critical_choice_of_bdf2_is_where_four_poles_meet() -> None:
+    """(3/2 - mu) z^2 - 2 z + 1/2 has the double root 1/2 at mu = -1/2: with both mu there, a fourfold pole."""
+    chosen = choose(lookup("bdf2"), "critical")
+    assert (chosen.alpha_hat, chosen.beta_hat) == pytest.approx((1, 1 / 4), rel=1e-6)
+    assert abs(chosen.pole) == pytest.approx(1 / 2, abs=1e-3)  # of a fourfold pole a quarter of the digits is left
+
+
 @pytest.mark.parametrize("name", ["B4", "AB4", "RK4", "SIE"])
 @pytest.mark.parametrize("rate", [0.999, 0.95, 0.85])
 def test_the_gentle_choice_solves_for_mu(name: str, rate: float) -> None:

@@ -5,6 +5,7 @@ from bezstab.methods import Method, lookup, recipe
 from bezstab.stability import best_point, choose, falls_towards, region, spectral_radius
 from bezstab.stability.plane_best_points import _axis, critical_point
 from bezstab.stability.plane_pencils import plane_pencil_of
+from tests.reference.companion_poles import radius
 from tests.reference.random_methods import other_random_method
 from tests.reference.second_order_methods import as_second_order, companion_poles, newmark, second_order
 
@@ -93,6 +94,18 @@ def test_no_point_of_a_fine_grid_is_better(name: str) -> None:
     alpha_hat, beta_hat = np.meshgrid(np.linspace(1e-3, 5, 500), np.linspace(1e-3, 5, 500))
     z_abs = np.abs(companion_poles(second_order(name), alpha_hat, beta_hat)).max(axis=-1)
     assert z_abs.min() >= best.z_abs
+
+
+def test_the_least_value_along_a_curve_of_double_poles_is_found() -> None:
+    """Of Yoshida's composition: both poles are real and equal, and P's gradients in the plane are parallel there."""
+    best = best_point(lookup("yoshida4"))
+    assert best
+    around = np.concatenate([-np.geomspace(1e-9, 1e-2, 40), [0], np.geomspace(1e-9, 1e-2, 40)])
+    alpha_hat, beta_hat = np.meshgrid(best.alpha_hat + around, best.beta_hat + around)
+    nearby = radius(lookup("yoshida4"), alpha_hat, beta_hat)
+    assert nearby.min() >= best.z_abs * (1 - 1e-7)  # a double pole is known to the root of rounding
+    assert best.z_abs == pytest.approx(nearby[40, 40], rel=1e-6)
+    assert len(best.meeting) == 1
 
 
 def test_three_poles_of_one_modulus_are_solved_for_as_far_as_their_moduli_are_known() -> None:
