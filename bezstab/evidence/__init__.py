@@ -23,6 +23,7 @@ The only room in which stability and mechanism meet. A file imports only from th
     reference_motions   a motion known to some thirteen digits
     pareto              which runs no other beats
     accuracy_costs      what a method and a step cost in simulation, and what they buy
+    recorded_times      processor times that an earlier sweep measured
     sweep_summaries     that in sentences
     root_digits         how many digits of a pole are right, against a hundred
     extremes            what holds where numbers are extreme
@@ -31,13 +32,13 @@ The only room in which stability and mechanism meet. A file imports only from th
 from bezstab.evidence.accuracy_costs import (
     METHODS,
     STEPS,
+    Cost,
     Run,
     Sweep,
     SweptRuns,
     measured_runs,
     sweep_compiled,
     swept_runs,
-    whole_sweep,
     with_fronts,
 )
 from bezstab.evidence.chunk_stores import Arrays, chunk_store
@@ -83,6 +84,7 @@ from bezstab.evidence.probed_poles import (
     steps_between_rows,
 )
 from bezstab.evidence.probed_recursions import recursion_likenesses
+from bezstab.evidence.recorded_times import read_times, with_recorded_times
 from bezstab.evidence.reference_motions import ReferenceMotion, reference_motion
 from bezstab.evidence.sweep_summaries import FINE, Summary, summary, sweep_sentences
 from bezstab.evidence.verdict_maps import MapRows, VerdictMap, map_rows, simulated_verdicts, verdict_map
@@ -100,6 +102,7 @@ __all__ = [
     "TIMES",
     "Arrays",
     "Check",
+    "Cost",
     "Fit",
     "LikePoint",
     "Likeness",
@@ -155,6 +158,7 @@ __all__ = [
     "random_points",
     "read_log",
     "read_mujoco_model",
+    "read_times",
     "recursion_likenesses",
     "reference_motion",
     "row_step",
@@ -167,8 +171,8 @@ __all__ = [
     "tabulated_rates",
     "time_column",
     "verdict_map",
-    "whole_sweep",
     "with_fronts",
+    "with_recorded_times",
     "witness_count",
     "worker_pool",
 ]
