@@ -49,8 +49,8 @@ from bezstab.evidence.linearized_steps import (
     on_the_motion,
     take_step_itself,
 )
-from bezstab.mechanism import Assigned, Evaluated, Mechanism
-from bezstab.methods import Method, Quantity
+from bezstab.mechanism import Evaluated, Mechanism, revolution_period
+from bezstab.methods import Method, Quantity, implicit
 from bezstab.stability import BoolArray, FloatArray, poles
 
 PASSES = 12  # over the revolution: Newton's method squares the error, the columns double; more only find nothing
@@ -72,7 +72,7 @@ def own_motion_rates(
     """
     course = course_of_steps(mechanism, method, h, duration)
     rates, found = np.ones(alpha_hat.size), np.zeros(alpha_hat.size, bool)
-    if course.along.closed and all(isinstance(action, (Assigned, Evaluated)) for action in course.actions):
+    if has_own_motion(mechanism, method):
         gains = gains_on(course, method, alpha_hat, beta_hat)
         motion = _motion_of_the_mechanism(course)
         columns = _columns_of_passes(course, gains, motion, np.abs(poles(method, alpha_hat, beta_hat)))
@@ -84,6 +84,11 @@ def own_motion_rates(
     if lost.any():
         rates[lost] = rates_on_the_motion(course, method, alpha_hat[lost], beta_hat[lost])
     return rates
+
+
+def has_own_motion(mechanism: Mechanism, method: Method) -> bool:
+    """Return whether a motion of the method's own is looked for: over a revolution, by a method that solves nothing."""
+    return revolution_period(mechanism) is not None and not implicit(method)
 
 
 def _columns_of_passes(course: Course, gains: FloatArray, motion: OwnMotion, moduli: FloatArray) -> IntArray:
