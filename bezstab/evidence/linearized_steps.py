@@ -233,10 +233,9 @@ def _affine_jacobians(course: Course, t: FloatArray, q: FloatArray, v: FloatArra
     """Return the Jacobians at times t (s, shape (steps,)) and states (steps, n), as in `Course`."""
     step = course.step
     # gains of 1/h and 1/h^2 make about as much of a difference as there is without: it keeps its digits
-    without, with_alpha, with_beta = (
-        _scaled(linearized_acceleration(course.mechanism, t, *gains, q, v)[1], step)
-        for gains in ((0.0, 0.0), (1 / step, 0.0), (0.0, 1 / step**2))
-    )
+    two_alpha, beta_squared = np.array([[0, 1 / step, 0], [0, 0, 1 / step**2]])[:, :, np.newaxis]
+    _, jacobians = linearized_acceleration(course.mechanism, t, two_alpha, beta_squared, q, v)
+    without, with_alpha, with_beta = _scaled(jacobians, step)
     return np.stack([without, (with_alpha - without) * step, (with_beta - without) * step**2], axis=1)
 
 
@@ -321,7 +320,8 @@ class Changes:
         place = self.k % self.course.steps
         self.k += 1
         for quantity, amounts in self.added.items():
-            self.of(quantity)[:, :, -1] += amounts[place]
+            last_column = self.of(quantity)[:, :, -1]
+            np.add(last_column, amounts[place], out=last_column)
         if self.k % LOOKED_AT == 0:
             self._rescale()
 
@@ -350,8 +350,8 @@ class Changes:
         for i, part in enumerate(row):
             if part.only is None:
                 rows = self.rows[part.name]
-                target = self.spare[1] if i else out
-                value = np.dot(part.weights[self.k % len(rows)], rows, out=target.reshape(-1)).reshape(out.shape)
+                value = self.spare[1] if i else out
+                np.dot(part.weights[self.k % len(rows)], rows, out=value.reshape(-1))
             else:
                 value = self._latest(part.name, part.only)
             if i:
