@@ -19,7 +19,7 @@ figures: .venv/installed  ## draw what the README shows, into figures/
 	$(BIN)/bezstab family bezier -o figures
 	$(BIN)/bezstab paper -o figures
 	$(BIN)/bezstab tradeoff --table none -o figures
-	$(BIN)/bezstab tradeoff $(ANDREWS) --repeats 1 --against time --times figures/andrews_times.json -o figures
+	$(BIN)/bezstab tradeoff $(ANDREWS) --repeats 1 --against time --recorded figures/andrews_times.json -o figures
 
 times: .venv/installed  ## measure anew the processor times that figures show: no two runs share them
 	$(BIN)/bezstab tradeoff $(ANDREWS) --repeats 9 --workers 1 --figure none --format json > figures/andrews_times.json

@@ -268,8 +268,7 @@ def cost_sentence(row: Row) -> str:
     help="What figures and fronts hold errors against: evaluations of f, or processor time on this machine.",
 )
 @click.option(
-    "--times",
-    "recorded",
+    "--recorded",
     type=click.Path(path_type=Path),
     help="Processor times from what an earlier run printed with --format json, not measured anew: a figure against "
     "time then comes out the same again.",
@@ -319,7 +318,7 @@ def tradeoff(
     if physical and point is None:
         raise click.UsageError("--physical needs --alpha and --beta")
     if recorded and against != "time":
-        raise click.UsageError("--times goes with --against time")
+        raise click.UsageError("--recorded goes with --against time")
     if point and steps and not physical:
         say_if_units_were_mistaken(methods, *point, max(steps))
     step_sizes = tuple(sorted({float(step) for step in steps or evidence.STEPS}))

@@ -139,7 +139,7 @@ def test_tradeoff_draws_recorded_times_the_same_again(tmp_path: Path) -> None:
     for row in measured:
         row["seconds"] = row["h"]
     (tmp_path / "times.json").write_text(json.dumps(measured), encoding="utf-8")
-    against_recorded = (*SWEEP.split(), "--against", "time", "--times", "times.json")
+    against_recorded = (*SWEEP.split(), "--against", "time", "--recorded", "times.json")
     figures = []
     for _ in range(2):
         assert [row["seconds"] for row in rows(*against_recorded)] == [0.02, 0.01]
