@@ -4,7 +4,10 @@ BIN := .venv/bin
 # a hundred tests start processes, which would each compile the package anew
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: region figures test quick test-slow test-oldest witnesses mutants campaign extremes lint bench clean
+ANDREWS := --scene andrews --time 0.01 --h 16e-6 --h 32e-6 --h 64e-6 --h 128e-6 --alpha 500 --beta 500 --physical \
+    --method ABM4 --method AB4 --method RK4 --method dopri5 --method B4 --method trapezoid --table none
+
+.PHONY: region figures times test quick test-slow test-oldest witnesses mutants campaign extremes lint bench clean
 
 region: .venv/installed  ## draw where B4 is stable, into this directory
 	$(BIN)/bezstab region --method B4
@@ -16,9 +19,10 @@ figures: .venv/installed  ## draw what the README shows, into figures/
 	$(BIN)/bezstab family bezier -o figures
 	$(BIN)/bezstab paper -o figures
 	$(BIN)/bezstab tradeoff --table none -o figures
-	$(BIN)/bezstab tradeoff --scene andrews --time 0.01 --h 16e-6 --h 32e-6 --h 64e-6 --h 128e-6 --repeats 1 \
-	    --alpha 500 --beta 500 --physical --method ABM4 --method AB4 --method RK4 --method dopri5 --method B4 \
-	    --method trapezoid --table none -o figures
+	$(BIN)/bezstab tradeoff $(ANDREWS) --repeats 1 --against time --recorded figures/andrews_times.json -o figures
+
+times: .venv/installed  ## measure anew the processor times that figures show: no two runs share them
+	$(BIN)/bezstab tradeoff $(ANDREWS) --repeats 9 --workers 1 --figure none --format json > figures/andrews_times.json
 
 test: .venv/tested  ## what CI runs: style and types, and at the same time the quick tests
 	$(MAKE) --no-print-directory --jobs 2 lint quick

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from fractions import Fraction
 from functools import partial
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -50,6 +51,7 @@ from bezstab.units import to_dimensionless
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from bezstab.evidence import Cost
     from bezstab.mechanism import Start
 
 MOST_STEPS = 10**8  # a run keeps its whole history: 10 GB and an hour for the slider-crank
@@ -259,6 +261,18 @@ def cost_sentence(row: Row) -> str:
 @physical_option
 @click.option("--tolerance", type=POSITIVE, default="1e-6", help="In m and rad.")
 @click.option("--repeats", type=click.IntRange(1, 100), default=3, help="Of each timing.")
+@click.option(
+    "--against",
+    type=click.Choice(["evaluations", "time"]),
+    default="evaluations",
+    help="What figures and fronts hold errors against: evaluations of f, or processor time on this machine.",
+)
+@click.option(
+    "--recorded",
+    type=click.Path(path_type=Path),
+    help="Processor times from what an earlier run printed with --format json, not measured anew: a figure against "
+    "time then comes out the same again.",
+)
 @compiled_option
 @work_options
 @file_options
@@ -274,6 +288,8 @@ def tradeoff(
     physical: bool,
     tolerance: Fraction,
     repeats: int,
+    against: "Cost",
+    recorded: Path | None,
     output: Path,
     workers: int | None,
     scheduler: str | None,
@@ -286,7 +302,8 @@ def tradeoff(
 
     Each run is held against a reference of known accuracy. Prints errors, evaluations, processor time (median and
     range) and the order observed, and in words the cheapest run within --tolerance and where the Bézier methods win and
-    lose. Writes the table, without times, and two figures. A run that fails is marked as diverged.
+    lose. Writes the table, without times, and two figures, of errors --against evaluations or time. A run that fails
+    is marked as diverged.
 
     The default choice holds α̂ and β̂ while h shrinks: then methods with stages lose order. So does the start of a
     multistep method, which is RK4, and in a run as short as 1 s its error is the largest.
@@ -300,10 +317,13 @@ def tradeoff(
     point = both_or_none(alpha, beta)
     if physical and point is None:
         raise click.UsageError("--physical needs --alpha and --beta")
+    if recorded and against != "time":
+        raise click.UsageError("--recorded goes with --against time")
     if point and steps and not physical:
         say_if_units_were_mistaken(methods, *point, max(steps))
     step_sizes = tuple(sorted({float(step) for step in steps or evidence.STEPS}))
     _check_swept_time(float(time), step_sizes, methods)
+    times = recorded and evidence.read_times(recorded, [method.name for method in methods], step_sizes)
     say_what_stays_in_python(methods)
     loaded_scene = at_speed(load_scene(scene), float(speed))
     reference = evidence.reference_motion(loaded_scene, step_sizes[0], float(time))
@@ -316,7 +336,11 @@ def tradeoff(
     path = output / f"tradeoff_{file_name(Path(scene).stem)}"
     job = f"{methods} {(loaded_scene, step_sizes, float(time), given, physical, repeats)}"
     with results_of_chunks(evidence.measured_runs, sweeps, path, job, workers, scheduler, resume) as results:
-        swept = evidence.whole_sweep(sweeps, results)
+        per_method = (evidence.swept_runs(*each) for each in zip(sweeps, results, strict=True))
+        runs = list(chain.from_iterable(per_method))
+        if times:
+            runs = evidence.with_recorded_times(runs, times)
+        swept = evidence.with_fronts(runs, reference.error, against, recorded=bool(times))
         rows = [run_row(run, front) for run, front in zip(swept.runs, swept.front_labels, strict=True)]
 
         def draw(constraint: bool, floor: float) -> "Figure":
@@ -332,6 +356,8 @@ def tradeoff(
     show_rows(rows, RUNS, form, sentence=cost_sentence)
     if for_reading(form):
         show_text(f"\nThe reference is known to {reference.error:.0e} (m, rad).")
+        if recorded:
+            show_text(f"Processor times are not of this run: they are those in {recorded}.")
         for sentence in evidence.sweep_sentences(swept.runs, float(tolerance), physical):
             show_text(sentence)
 

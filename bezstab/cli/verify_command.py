@@ -29,6 +29,7 @@ from bezstab.cli.output import (
     results_of_chunks,
     say_what_stays_in_python,
     show_rows,
+    show_text,
     write_figure,
     write_table,
 )
@@ -230,7 +231,7 @@ def _show_measurements(
     """Print the poles measured at one point, else at random ones, and where there are several how well they agree."""
     import numpy as np
 
-    from bezstab.evidence import measure_poles, random_points
+    from bezstab.evidence import has_own_motion, measure_poles, random_points
     from bezstab.show import measurement_row, summary_row
 
     rows: list[Row] = []
@@ -246,6 +247,12 @@ def _show_measurements(
         rows += own_rows
         summaries.append(summary_row(own_rows))
     show_rows(rows, MEASUREMENTS + (EXACT if floquet else []), form, sentence=measurement_sentence)
+    if floquet and for_reading(form):
+        for method in methods:
+            whose = "the mechanism's motion"
+            if has_own_motion(mechanism, method):
+                whose = f"the method's own motion, where there is none along {whose}"
+            show_text(f"Exact rates of {method.name}: along {whose}.")
     if for_reading(form) and len(rows) > len(methods):  # of one point each there is nothing to sum up
         click.echo()
         show_rows(summaries, SUMMARIES + (MOTION_SUMMARIES if floquet else []), form, sentence=summary_sentence)

@@ -23,6 +23,7 @@ The only room in which stability and mechanism meet. A file imports only from th
     reference_motions   a motion known to some thirteen digits
     pareto              which runs no other beats
     accuracy_costs      what a method and a step cost in simulation, and what they buy
+    recorded_times      processor times that an earlier sweep measured
     sweep_summaries     that in sentences
     root_digits         how many digits of a pole are right, against a hundred
     extremes            what holds where numbers are extreme
@@ -31,13 +32,13 @@ The only room in which stability and mechanism meet. A file imports only from th
 from bezstab.evidence.accuracy_costs import (
     METHODS,
     STEPS,
+    Cost,
     Run,
     Sweep,
     SweptRuns,
     measured_runs,
     sweep_compiled,
     swept_runs,
-    whole_sweep,
     with_fronts,
 )
 from bezstab.evidence.chunk_stores import Arrays, chunk_store
@@ -69,7 +70,7 @@ from bezstab.evidence.moving_regions import MovingRegion, moving_growth, moving_
 from bezstab.evidence.mujoco_lint import Linted, linted_model
 from bezstab.evidence.mujoco_models import ModelData, model_data, mujoco_module, read_mujoco_model
 from bezstab.evidence.mujoco_witness import TIMES, Witnessed, model_xml, mujoco_witnesses, witness_count
-from bezstab.evidence.own_motions import own_motion_rates
+from bezstab.evidence.own_motions import has_own_motion, own_motion_rates
 from bezstab.evidence.pareto import pareto_front
 from bezstab.evidence.probed_poles import (
     Likeness,
@@ -83,6 +84,7 @@ from bezstab.evidence.probed_poles import (
     steps_between_rows,
 )
 from bezstab.evidence.probed_recursions import recursion_likenesses
+from bezstab.evidence.recorded_times import read_times, with_recorded_times
 from bezstab.evidence.reference_motions import ReferenceMotion, reference_motion
 from bezstab.evidence.sweep_summaries import FINE, Summary, summary, sweep_sentences
 from bezstab.evidence.verdict_maps import MapRows, VerdictMap, map_rows, simulated_verdicts, verdict_map
@@ -100,6 +102,7 @@ __all__ = [
     "TIMES",
     "Arrays",
     "Check",
+    "Cost",
     "Fit",
     "LikePoint",
     "Likeness",
@@ -129,6 +132,7 @@ __all__ = [
     "floquet_rates",
     "growth_after_a_kick",
     "growth_rates",
+    "has_own_motion",
     "kicked_constraint_errors",
     "kicked_responses",
     "likenesses",
@@ -155,6 +159,7 @@ __all__ = [
     "random_points",
     "read_log",
     "read_mujoco_model",
+    "read_times",
     "recursion_likenesses",
     "reference_motion",
     "row_step",
@@ -167,8 +172,8 @@ __all__ = [
     "tabulated_rates",
     "time_column",
     "verdict_map",
-    "whole_sweep",
     "with_fronts",
+    "with_recorded_times",
     "witness_count",
     "worker_pool",
 ]

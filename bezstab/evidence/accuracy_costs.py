@@ -3,6 +3,7 @@
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +33,10 @@ STEPS = ("0.0001", "0.0002", "0.0004", "0.0008", "0.0016", "0.0032", "0.005", "0
 
 ABOVE_REFERENCE = 30.0
 """Times the reference's own error: below, an observed order is noise."""
+
+
+Cost = Literal["evaluations", "time"]
+"""What errors are held against."""
 
 
 @dataclass(frozen=True)
@@ -78,19 +83,26 @@ class Run:
     failure: str | None
     order: float | None
 
+    def cost(self, against: Cost) -> float:
+        """Return its evaluations, or its processor time (s)."""
+        return self.evaluations if against == "evaluations" else self.seconds
+
 
 @dataclass(frozen=True)
 class SweptRuns:
     """All runs of a sweep over methods and steps, each method's with the largest step first, and what the best are.
 
-    The fronts are indices of runs, ascending in evaluations, that no other run beats: by the trajectory's error, and by
-    the largest |c|. A run that failed is on neither. `reference_error` (SI) is how well the true motion is known.
+    The fronts are indices of runs, ascending in cost, that no other run beats: by the trajectory's error, and by the
+    largest |c|. A run that failed is on neither. `reference_error` (SI) is how well the true motion is known. Costs are
+    `against` what they are counted in, processor times perhaps those `recorded` in an earlier sweep.
     """
 
     runs: tuple[Run, ...] = field(repr=False)
     trajectory_front: tuple[int, ...]
     constraint_front: tuple[int, ...]
     reference_error: float
+    against: Cost = "evaluations"
+    recorded: bool = False
 
     @property
     def front_labels(self) -> list[str]:
@@ -212,22 +224,20 @@ def _observed_order(larger: Run, h: float, error: float | None, reference_error:
     return float(np.log(larger.trajectory_error / error) / np.log(larger.h / h))
 
 
-def whole_sweep(sweeps: Sequence[Sweep], measured: Sequence[Mapping[str, NDArray[np.generic]]]) -> SweptRuns:
-    """Return all runs of several methods, from what `measured_runs` gave for each, with the fronts they make up.
+def with_fronts(
+    runs: Sequence[Run], reference_error: float, against: Cost = "evaluations", recorded: bool = False
+) -> SweptRuns:
+    """Return the runs of several methods, whose sweeps share a reference, with the Pareto fronts they make up.
 
-    The sweeps share one reference.
+    The reference's error in SI; the others as in `SweptRuns`.
     """
-    runs = [run for sweep, arrays in zip(sweeps, measured, strict=True) for run in swept_runs(sweep, arrays)]
-    return with_fronts(runs, sweeps[0].reference.error)
-
-
-def with_fronts(runs: Sequence[Run], reference_error: float) -> SweptRuns:
-    """Return the runs with the Pareto fronts over their evaluations; the reference's error in SI."""
-    trajectory = [(run.evaluations, run.trajectory_error) for run in runs]
-    constraint = [(run.evaluations, None if run.failure else run.c_max) for run in runs]
+    trajectory = [(run.cost(against), run.trajectory_error) for run in runs]
+    constraint = [(run.cost(against), None if run.failure else run.c_max) for run in runs]
     return SweptRuns(
         runs=tuple(runs),
         trajectory_front=tuple(pareto_front(trajectory)),
         constraint_front=tuple(pareto_front(constraint)),
         reference_error=reference_error,
+        against=against,
+        recorded=recorded,
     )

@@ -17,7 +17,7 @@ What Q B has beside B S tells whether it was so. Points where it was not are tak
 end with all of them, B = 1. How many to begin with is what the poles at rest say.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -41,10 +41,12 @@ from bezstab.units import feedback_gains
 
 SPARE = 2  # columns beside those that the poles at rest ask for
 BEFORE = 64  # steps before the revolution: in so many a pole of 0.6 of the dominant modulus dies out to rounding
-LEFT_OVER = 1e-13  # of Q B, beside B S: the rounding of some hundred steps; of a rate it is 1/N of that
+DIED_OUT = 1e-13  # of what the dominant poles leave: the rounding of some hundred steps
+LEFT_OVER = 10 * DIED_OUT  # of Q B, beside B S: poles at rest do not say it to the last digit; of a rate it is 1/N
 FIRST_SHARE = 1 / 3  # of the steps in which errors stand out: there the lesser poles still count
 STANDS_OUT = 1e-7  # of the change of the coordinates: the free motion of a method has a constraint error of this size
-BATCH = 128  # points at a time: fewer spend their time in Python, more do not fit a core's cache
+KEPT = 2**17  # numbers of the latest steps of a batch of points: 1 MB stay in a core's cache
+FEWEST, MOST = 32, 128  # points at a time: fewer spend their time in Python, more do not fit a cache otherwise
 NUMBERS = 2**23  # of a batch, in the Jacobians that points do not share: 64 MB
 
 
@@ -64,7 +66,8 @@ def rates_on_the_motion(course: Course, method: Method, alpha_hat: FloatArray, b
     """Return the same of the method's own course."""
     gains = gains_on(course, method, alpha_hat, beta_hat)
     if course.along.closed:
-        return _rates_over_revolutions(course, gains, columns_needed(course, method, alpha_hat, beta_hat))
+        moduli = np.abs(poles(method, alpha_hat, beta_hat))
+        return _rates_over_revolutions(course, gains, columns_needed(course, moduli, slowest(moduli)))
     return _rates_of_errors(course, gains)
 
 
@@ -73,33 +76,24 @@ def gains_on(course: Course, method: Method, alpha_hat: FloatArray, beta_hat: Fl
     return np.array(feedback_gains(alpha_hat, beta_hat, course.step / float(method.step_multiple)))
 
 
-def batches(points: IntArray, course: Course, evaluations: int) -> Iterator[IntArray]:
-    """Yield the numbers of points, so many at a time; of so many evaluations each point has Jacobians of its own."""
-    numbers = evaluations * course.steps * 2 * course.mechanism.size**2
-    size = max(1, min(BATCH, NUMBERS // max(1, numbers)))
-    for first in range(0, points.size, size):
-        yield points[first : first + size]
+def batches(course: Course, columns: IntArray, evaluations: int) -> Iterator[tuple[IntArray, int]]:
+    """Yield the numbers of points, so many at a time, and how many columns they are to have.
 
-
-def with_enough_columns(
-    course: Course, columns: IntArray, evaluations: int, take: Callable[[IntArray, int], BoolArray]
-) -> None:
-    """Have batches of points taken, with so many columns as they are likely to need, until they suffice.
-
-    Of so many evaluations each point has Jacobians of its own. take(points, count) returns of which points the columns
-    were enough.
+    columns: how many each point needs; those that need most come first. Of so many evaluations each point has Jacobians
+    of its own.
     """
-    left = np.argsort(columns, kind="stable")  # points of a batch are to need about as many
-    while left.size:
-        settled = np.zeros(columns.size, bool)
-        for batch in batches(left, course, evaluations):
-            count = int(columns[batch].max())
-            # all columns need no steps before: cheaper where few are spared, or where stages cost more than columns
-            if has_stages(course) or count * (course.steps + BEFORE) >= course.rows * course.steps:
-                count = course.rows
-            settled[batch] = take(batch, count)
-        left = left[~settled[left]]
-        columns = 2 * columns
+    order = np.argsort(-columns, kind="stable")
+    jacobians = evaluations * course.steps * 2 * course.mechanism.size**2
+    kept = sum(course.lengths.values()) * course.mechanism.size
+    first = 0
+    while first < order.size:
+        count = int(columns[order[first]])
+        # all columns need no steps before: cheaper where few are spared, or where stages cost more than columns
+        if has_stages(course) or count * (course.steps + BEFORE) >= course.rows * course.steps:
+            count = course.rows
+        size = max(1, min(max(FEWEST, KEPT // (kept * count)), MOST, NUMBERS // max(1, jacobians)))
+        yield order[first : first + size], count
+        first += size
 
 
 def _rates_over_revolutions(course: Course, gains: FloatArray, columns: IntArray) -> FloatArray:
@@ -108,25 +102,32 @@ def _rates_over_revolutions(course: Course, gains: FloatArray, columns: IntArray
     columns: how many each point is likely to need.
     """
     rates = np.empty(columns.size)
-
-    def take(batch: IntArray, count: int) -> BoolArray:
-        rates[batch], settled = _leading_rates(course, gains[:, batch], count)
-        return settled
-
-    with_enough_columns(course, columns, own_evaluations(course), take)
+    left = np.arange(columns.size)
+    while left.size:
+        settled = np.zeros(columns.size, bool)
+        for batch, count in batches(course, columns[left], own_evaluations(course)):
+            points = left[batch]
+            rates[points], settled[points] = _leading_rates(course, gains[:, points], count)
+        left = left[~settled[left]]
+        columns = 2 * columns
     return rates
 
 
-def columns_needed(course: Course, method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> IntArray:
-    """Return how many columns are left at each point before the revolution, as the mechanism at rest would have them.
+def columns_needed(course: Course, moduli: FloatArray, least: FloatArray) -> IntArray:
+    """Return how many columns hold what has not died out before the revolution, as the mechanism at rest would have it.
 
-    Each constraint has the method's poles, each free motion a double pole at one. NumericalError as `poles`.
+    moduli: of all poles at points, shape (points, poles); those of `least`, shape (points,), and more have not. Each
+    constraint has the method's poles, each free motion a double pole at one.
     """
-    moduli = np.abs(poles(method, alpha_hat, beta_hat))
-    alive = (moduli >= LEFT_OVER ** (1 / BEFORE) * moduli[:, :1]).sum(axis=1)
+    alive = (moduli >= least[:, np.newaxis]).sum(axis=1)
     mechanism = course.mechanism
     free = mechanism.size - mechanism.constraints
     return np.asarray(alive * mechanism.constraints + 2 * free + SPARE)
+
+
+def slowest(moduli: FloatArray) -> FloatArray:
+    """Return above which modulus poles count beside the dominant ones; arguments as of `columns_needed`."""
+    return np.asarray(DIED_OUT ** (1 / BEFORE) * moduli[:, 0])
 
 
 @dataclass(frozen=True)
@@ -229,8 +230,10 @@ def _rates_of_errors(course: Course, gains: FloatArray) -> FloatArray:
     start = np.zeros((course.rows, mechanism.constraints))
     place = carried.index(newest) * mechanism.size
     start[place : place + mechanism.size] = (sizes[0] / mass).T  # unit errors
-    in_batches = batches(np.arange(gains.shape[1]), course, own_evaluations(course))
-    return np.concatenate([_rates_after_a_kick(course, gains[:, batch], start, newest, sizes) for batch in in_batches])
+    rates = np.empty(gains.shape[1])
+    for batch, _ in batches(course, np.full(rates.size, mechanism.constraints), own_evaluations(course)):
+        rates[batch] = _rates_after_a_kick(course, gains[:, batch], start, newest, sizes)
+    return rates
 
 
 def _rates_after_a_kick(

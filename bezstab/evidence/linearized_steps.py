@@ -58,20 +58,12 @@ class _Part:
     """
 
     name: str
-    weights: FloatArray
+    weights: tuple[FloatArray, ...]
     only: int | None
-
-    def value(self, kept: FloatArray, k: int) -> FloatArray:
-        """Return the sum as step k has it; shape (points, n, columns)."""
-        if self.only is not None:
-            value: FloatArray = kept[(k + self.only) % len(kept)]
-            return value
-        total: FloatArray = np.dot(self.weights[k % len(kept)], kept.reshape(len(kept), -1))
-        return total.reshape(kept.shape[1:])
 
 
 _Row = tuple[_Part, ...]
-"""A sum of changes in float64, name by name."""
+"""A sum of changes in float64, name by name, those of several steps first."""
 
 
 @dataclass(frozen=True)
@@ -193,8 +185,8 @@ def _row(terms: Sum, lengths: Mapping[str, int]) -> _Row:
         for beginning, row in enumerate(weights):
             for step, coefficient in own.items():
                 row[(beginning + step) % lengths[name]] = coefficient
-        parts.append(_Part(name, weights, next(iter(own)) if list(own.values()) == [1] else None))
-    return tuple(parts)
+        parts.append(_Part(name, tuple(weights), next(iter(own)) if list(own.values()) == [1] else None))
+    return tuple(sorted(parts, key=lambda part: part.only is not None))
 
 
 def _lengths(scheme: SecondOrder, remembered: Memory) -> dict[str, int]:
@@ -230,17 +222,20 @@ def _places_without_gains(course: Course) -> dict[Quantity, tuple[FloatArray, Fl
 
 def _total(terms: Sum, values: Mapping[Quantity, FloatArray]) -> FloatArray:
     """Return a sum of values."""
-    return np.asarray(sum(float(coefficient) * values[quantity] for quantity, coefficient in terms.items()))
+    shape = np.broadcast_shapes(*(values[quantity].shape for quantity in terms))
+    total, share = np.zeros(shape), np.empty(shape)
+    for quantity, coefficient in terms.items():
+        total += np.multiply(values[quantity], float(coefficient), out=share)
+    return total
 
 
 def _affine_jacobians(course: Course, t: FloatArray, q: FloatArray, v: FloatArray) -> FloatArray:
     """Return the Jacobians at times t (s, shape (steps,)) and states (steps, n), as in `Course`."""
     step = course.step
     # gains of 1/h and 1/h^2 make about as much of a difference as there is without: it keeps its digits
-    without, with_alpha, with_beta = (
-        _scaled(linearized_acceleration(course.mechanism, t, *gains, q, v)[1], step)
-        for gains in ((0.0, 0.0), (1 / step, 0.0), (0.0, 1 / step**2))
-    )
+    two_alpha, beta_squared = np.array([[0, 1 / step, 0], [0, 0, 1 / step**2]])[:, :, np.newaxis]
+    _, jacobians = linearized_acceleration(course.mechanism, t, two_alpha, beta_squared, q, v)
+    without, with_alpha, with_beta = _scaled(jacobians, step)
     return np.stack([without, (with_alpha - without) * step, (with_beta - without) * step**2], axis=1)
 
 
@@ -290,7 +285,11 @@ class Changes:
         self.log_scale = np.zeros(points)
         self.size = course.mechanism.size
         self.kept = {name: np.zeros((length, points, self.size, columns)) for name, length in course.lengths.items()}
+        # what a step looks at again and again: each step of a name, and all of them as the rows of a matrix
+        self.latest = {name: list(kept) for name, kept in self.kept.items()}
+        self.rows = {name: kept.reshape(len(kept), -1) for name, kept in self.kept.items()}
         self.state = np.empty((points, 2 * self.size, columns))
+        self.spare = np.empty((2, points, self.size, columns))
         for quantity, part in zip(
             course.memory.carried, np.split(start, len(course.memory.carried), axis=1), strict=True
         ):
@@ -301,9 +300,7 @@ class Changes:
 
         Shape (points, n, columns).
         """
-        kept = self.kept[quantity.name]
-        change: FloatArray = kept[(self.k + quantity.step) % len(kept)]
-        return change
+        return self._latest(quantity.name, quantity.step)
 
     def carried(self) -> FloatArray:
         """Return the changes of what the next step starts with, divided by their scale; (points, rows, columns)."""
@@ -314,19 +311,25 @@ class Changes:
         own = self.own_jacobians(self.k)
         for action in self.course.plan:
             if isinstance(action, _Assignment):
-                self._write_sum(action.value, self.of(action.result))
+                result = self.of(action.result)
+                value = self._sum(action.value, result)
+                if value is not result:
+                    result[...] = value
             else:
                 self._find(action, own)
         place = self.k % self.course.steps
         self.k += 1
         for quantity, amounts in self.added.items():
-            self.of(quantity)[:, :, -1] += amounts[place]
+            last_column = self.of(quantity)[:, :, -1]
+            np.add(last_column, amounts[place], out=last_column)
         if self.k % LOOKED_AT == 0:
             self._rescale()
 
     def _rescale(self) -> None:
         """Divide the changes at each point by the largest that the last evaluation has seen, if it is far from one."""
-        largest = np.abs(self.state[:, :, self.scaled]).max(axis=(1, 2), initial=0)
+        sizes = np.abs(self.state)
+        sizes[:, :, self.scaled.stop :] = 0
+        largest = sizes.reshape(len(sizes), -1).max(axis=1)
         far = (largest > TOO_LARGE) | (largest < 1 / TOO_LARGE) & (largest > 0)
         if far.any():
             largest[~far] = 1
@@ -334,15 +337,28 @@ class Changes:
                 kept[:, :, :, self.scaled] /= largest[:, np.newaxis, np.newaxis]
             self.log_scale = self.log_scale + np.log(largest)
 
-    def _write_sum(self, row: _Row, target: FloatArray) -> None:
-        """Write a sum of changes over the step of a name that the sum does not use."""
-        values = [part.value(self.kept[part.name], self.k) for part in row] or [np.zeros(1)]
-        if len(values) == 1:
-            target[...] = values[0]
-        else:
-            np.add(values[0], values[1], out=target)
-        for value in values[2:]:
-            target += value
+    def _latest(self, name: str, step: int) -> FloatArray:
+        latest = self.latest[name]
+        return latest[(self.k + step) % len(latest)]
+
+    def _sum(self, row: _Row, out: FloatArray) -> FloatArray:
+        """Return a sum of changes: a step itself that is all of it, else `out`, a step that the sum does not use."""
+        if len(row) == 1 and row[0].only is not None:
+            return self._latest(row[0].name, row[0].only)
+        if not row:
+            out[...] = 0
+        for i, part in enumerate(row):
+            if part.only is None:
+                rows = self.rows[part.name]
+                value = self.spare[1] if i else out
+                np.dot(part.weights[self.k % len(rows)], rows, out=value.reshape(-1))
+            else:
+                value = self._latest(part.name, part.only)
+            if i:
+                np.add(out, value, out=out)
+            elif value is not out:
+                out[...] = value
+        return out
 
     def _find(self, action: _Accelerations, own: Mapping[Quantity, FloatArray]) -> None:
         """Take the changes of accelerations that are found together; own: the Jacobians that points do not share."""
@@ -350,8 +366,8 @@ class Changes:
         for result, position, velocity, jacobian in zip(
             action.results, action.positions, action.velocities, jacobians, strict=True
         ):
-            self._write_sum(position, self.state[:, : self.size])
-            self._write_sum(velocity, self.state[:, self.size :])
+            self.state[:, : self.size] = self._sum(position, self.spare[0])
+            self.state[:, self.size :] = self._sum(velocity, self.spare[0])
             np.matmul(jacobian, self.state, out=self.of(result))
         if action.sought is not None:
             self._solve(action.results, action.sought, jacobians)
@@ -449,14 +465,20 @@ def take_step_itself(
 
 def on_the_motion(course: Course, k: int | IntArray) -> dict[Quantity, FloatArray]:
     """Return what steps k start with as it is on the motion; shape (k.size, n) each, (1, n) for one step."""
-    values: dict[Quantity, FloatArray] = {}
     remembered = course.memory
+    states = {state_step: _states(course, np.atleast_1d(k) + state_step) for state_step in set(remembered.state_steps)}
+    values: dict[Quantity, FloatArray] = {}
     for quantity, shares, state_step in zip(remembered.carried, remembered.shares, remembered.state_steps, strict=True):
-        turns, place = np.divmod(np.atleast_1d(k) + state_step, course.steps)
-        if not course.along.closed:
-            turns, place = 0 * turns, place + course.steps * turns
-        q, v, a = course.along.at(np.asarray(course.step * place, float))
-        q = q + np.multiply.outer(turns, course.along.q[-1] - course.along.q[0])
+        q, v, a = states[state_step]
         by_q, by_v, by_a = (float(share) for share in shares)
         values[quantity] = by_q * q + by_v * course.step * v + by_a * course.step**2 * a
     return values
+
+
+def _states(course: Course, k: IntArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return q, v and qddot of the motion as steps k begin, also before it and after it; shape (k.size, n) each."""
+    turns, place = np.divmod(k, course.steps)
+    if not course.along.closed:
+        turns, place = 0 * turns, place + course.steps * turns
+    q, v, a = course.along.at(np.asarray(course.step * place, float))
+    return q + np.multiply.outer(turns, course.along.q[-1] - course.along.q[0]), v, a

@@ -29,12 +29,15 @@ from collections.abc import Container, Mapping
 import numpy as np
 
 from bezstab.evidence.floquet import (
+    BEFORE,
+    NUMBERS,
     Revolution,
+    batches,
     columns_needed,
     gains_on,
     rates_on_the_motion,
     revolution,
-    with_enough_columns,
+    slowest,
 )
 from bezstab.evidence.linearized_steps import (
     Changes,
@@ -46,13 +49,13 @@ from bezstab.evidence.linearized_steps import (
     on_the_motion,
     take_step_itself,
 )
-from bezstab.mechanism import Assigned, Evaluated, Mechanism
-from bezstab.methods import Method, Quantity
-from bezstab.stability import BoolArray, FloatArray
+from bezstab.mechanism import Evaluated, Mechanism, revolution_period
+from bezstab.methods import Method, Quantity, implicit
+from bezstab.stability import BoolArray, FloatArray, poles
 
-CORRECTIONS = 8  # of Newton's method, which squares the error: more are needed only where there is nothing to find
+PASSES = 12  # over the revolution: Newton's method squares the error, the columns double; more only find nothing
 AMPLIFIED = 1e8  # in a revolution: more leaves solving no digits
-CLOSED = 1e-9  # m, rad: the last correction; the next would be its square
+CLOSED = 1e-8  # m, rad: the last correction, the next would be its square; a rate is off by about 1/100 of it
 BESIDE = 1.0  # m, rad, from the motion of the mechanism: weak feedback drifts by 0.3, other closures lie further off
 
 OwnMotion = dict[Quantity, FloatArray]
@@ -69,54 +72,87 @@ def own_motion_rates(
     """
     course = course_of_steps(mechanism, method, h, duration)
     rates, found = np.ones(alpha_hat.size), np.zeros(alpha_hat.size, bool)
-    if course.along.closed and all(isinstance(action, (Assigned, Evaluated)) for action in course.actions):
+    if has_own_motion(mechanism, method):
         gains = gains_on(course, method, alpha_hat, beta_hat)
-
-        def take(batch: IntArray, columns: int) -> BoolArray:
-            rates[batch], found[batch], settled = _rates_on_own_motions(course, gains[:, batch], columns)
-            return settled
-
-        evaluations = sum(isinstance(action, Evaluated) for action in course.actions)
-        with_enough_columns(course, columns_needed(course, method, alpha_hat, beta_hat), evaluations, take)
+        motion = _motion_of_the_mechanism(course)
+        columns = _columns_of_passes(course, gains, motion, np.abs(poles(method, alpha_hat, beta_hat)))
+        together = max(1, NUMBERS // (2 * mechanism.size * course.steps))
+        for first in range(0, alpha_hat.size, together):
+            some = slice(first, first + together)
+            rates[some], found[some] = _rates_on_own_motions(course, gains[:, some], motion, columns[:, some])
     lost = ~found
     if lost.any():
         rates[lost] = rates_on_the_motion(course, method, alpha_hat[lost], beta_hat[lost])
     return rates
 
 
-def _rates_on_own_motions(course: Course, gains: FloatArray, columns: int) -> tuple[FloatArray, BoolArray, BoolArray]:
-    """Return |z| per step of points with these gains, shape (2, points); where there is a motion to have it on.
+def has_own_motion(mechanism: Mechanism, method: Method) -> bool:
+    """Return whether a motion of the method's own is looked for: over a revolution, by a method that solves nothing."""
+    return revolution_period(mechanism) is not None and not implicit(method)
 
-    And whether so many columns were enough to tell.
+
+def _columns_of_passes(course: Course, gains: FloatArray, motion: OwnMotion, moduli: FloatArray) -> IntArray:
+    """Return how many columns each point is likely to need in the first pass and in the second; shape (2, points).
+
+    moduli: of its poles, shape (points, poles); motion: the mechanism's. Where the first pass has to correct what a
+    revolution of that motion misses, it leaves out poles that make less of it than would be corrected again.
+    """
+    _, missing = _steps_side_by_side(course, gains[:, :1], motion, course.on_it, course.jacobians)
+    missed = course.steps * max(float(np.abs(each).max()) for each in missing.values())
+    of_rates = columns_needed(course, moduli, slowest(moduli))
+    if missed < CLOSED:
+        return np.stack([of_rates, of_rates])
+    least = (CLOSED / missed) ** (1 / BEFORE)
+    return np.stack([columns_needed(course, moduli, np.full(len(moduli), least)), of_rates])
+
+
+def _rates_on_own_motions(
+    course: Course, gains: FloatArray, motion: OwnMotion, columns: IntArray
+) -> tuple[FloatArray, BoolArray]:
+    """Return |z| per step of points with these gains, shape (2, points), and where there is a motion to have it on.
+
+    motion: the mechanism's, as that of one point; columns: how many each is likely to need, as `_columns_of_passes`;
+    what they do not settle gets twice as many from pass to pass.
     """
     points = gains.shape[1]
-    rates, found, settled = np.ones(points), np.zeros(points, bool), np.ones(points, bool)
-    left = np.arange(points)
-    own_motion = _motion_of_the_mechanism(course, points)
-    motion_start = _start(course, own_motion)
+    rates, found = np.ones(points), np.zeros(points, bool)
+    motion_start = _start(course, motion)
+    own_motion = {name: np.repeat(value, points, axis=1) for name, value in motion.items()}
+    evaluations = sum(isinstance(action, Evaluated) for action in course.actions)
+    wanted, then = columns
     on_it: Container[Quantity] = course.on_it
     shared: Container[Quantity] = course.jacobians
-    for _ in range(CORRECTIONS):
-        with np.errstate(all="ignore"):  # of what runs into infinity; what is not a number is not less
-            jacobians, missing = _steps_side_by_side(course, gains[:, left], own_motion, on_it, shared)
-            around = revolution(course, gains[:, left], columns, of_steps(jacobians), missing)
-            correction = _correction(around)
-            off = np.abs(_start(course, own_motion) + correction - motion_start[left]).max(axis=1)
-            beside = off < BESIDE
-            closed = beside & (np.abs(correction).max(axis=1) < CLOSED)
-        rates[left[closed]], settled[left[closed]] = around.at(closed).rates()
-        found[left[closed]] = True
-        on = beside & ~closed
-        left = left[on]
+    left = np.arange(points)
+    for _ in range(PASSES):
+        going_on = np.zeros(points, bool)
+        for batch, count in batches(course, wanted[left], evaluations):
+            some = left[batch]
+            of_batch = {name: value[:, some] for name, value in own_motion.items()}
+            with np.errstate(all="ignore"):  # of what runs into infinity; what is not a number is not less
+                jacobians, missing = _steps_side_by_side(course, gains[:, some], of_batch, on_it, shared)
+                around = revolution(course, gains[:, some], count, of_steps(jacobians), missing)
+                correction = _correction(around)
+                off = np.abs(_start(course, of_batch) + correction - motion_start).max(axis=1)
+                on = off < BESIDE
+                closed = on & (np.abs(correction).max(axis=1) < CLOSED)
+            on_closed, settled = around.at(closed).rates()
+            done = some[closed][settled]
+            rates[done], found[done] = on_closed[settled], True
+            on[closed] = ~settled
+            going_on[some] = on
+            if on.any():
+                jacobians, missing = (
+                    {name: each[:, on] for name, each in parts.items()} for parts in (jacobians, missing)
+                )
+                changes = _changes(course, gains[:, some[on]], correction[on], of_steps(jacobians), missing)
+                for name, change in changes.items():
+                    own_motion[name][:, some[on]] = of_batch[name][:, on] + change
+        left = left[going_on[left]]
         if not left.size:
-            return rates, found, settled
-        own_motion, jacobians, missing = (
-            {name: each[:, on] for name, each in some.items()} for some in (own_motion, jacobians, missing)
-        )
-        own_motion = _corrected(course, gains[:, left], own_motion, correction[on], of_steps(jacobians), missing)
+            break
+        wanted, then = then, 2 * then
         on_it = shared = frozenset()  # from here on the motions are the points' own
-    settled[left] = columns == course.rows
-    return rates, found, settled
+    return rates, found
 
 
 def _correction(around: Revolution) -> FloatArray:
@@ -133,17 +169,16 @@ def _correction(around: Revolution) -> FloatArray:
     return correction
 
 
-def _motion_of_the_mechanism(course: Course, points: int) -> OwnMotion:
-    """Return the motion of the mechanism, to be corrected at each of so many points."""
+def _motion_of_the_mechanism(course: Course) -> OwnMotion:
+    """Return the motion of the mechanism, to be corrected, as that of one point."""
     newest = {quantity.name: quantity for quantity in sorted(course.memory.carried, key=lambda each: each.step)}
     along = on_the_motion(course, np.arange(course.steps))
-    shape = course.steps, points, course.mechanism.size
-    return {each: np.broadcast_to(along[each][:, np.newaxis], shape) for each in newest.values()}
+    return {each: along[each][:, np.newaxis] for each in newest.values()}
 
 
 def _start(course: Course, own_motion: OwnMotion) -> FloatArray:
     """Return what the first step starts with; shape (points, rows)."""
-    first = _carried(course, {newest: _extended(course, newest, value) for newest, value in own_motion.items()}, 1)
+    first = _carried(course, {newest: _extended(course, newest, value, 0) for newest, value in own_motion.items()}, 1)
     return np.concatenate([value[0] for value in first.values()], axis=1)
 
 
@@ -156,7 +191,7 @@ def _steps_side_by_side(
     take place on the motion of the mechanism; those that are `shared` have no Jacobians of a point's own.
     """
     k = np.arange(course.steps)
-    extended = {newest: _extended(course, newest, value) for newest, value in own_motion.items()}
+    extended = {newest: _extended(course, newest, value, course.steps) for newest, value in own_motion.items()}
     values = _carried(course, extended, course.steps)
     jacobians = take_step_itself(course, gains, k[:, np.newaxis], values, on_it, shared)
     missing = {
@@ -166,15 +201,18 @@ def _steps_side_by_side(
     return jacobians, missing
 
 
-def _extended(course: Course, newest: Quantity, value: FloatArray) -> FloatArray:
-    """Return a newest quantity at the start of as many steps before the revolution as are carried, to its end.
+def _extended(course: Course, newest: Quantity, value: FloatArray, last: int) -> FloatArray:
+    """Return a newest quantity at the start of as many steps before the revolution as are carried, to the last.
 
-    Shape (steps before + steps + 1, points, n).
+    Shape (steps before + last + 1, points, n).
     """
-    turns, place = np.divmod(np.arange(-_steps_before(course, newest), course.steps + 1), course.steps)
+    turns, place = np.divmod(np.arange(-_steps_before(course, newest), last + 1), course.steps)
+    extended = value[place]
     by_position, _, _ = course.memory.shares[course.memory.carried.index(newest)]
-    whole_turn = float(by_position) * (course.along.q[-1] - course.along.q[0])
-    return np.asarray(value[place] + np.multiply.outer(turns, whole_turn)[:, np.newaxis])
+    if by_position:
+        whole_turn = float(by_position) * (course.along.q[-1] - course.along.q[0])
+        extended += np.multiply.outer(turns, whole_turn)[:, np.newaxis]
+    return extended
 
 
 def _steps_before(course: Course, newest: Quantity) -> int:
@@ -191,19 +229,18 @@ def _carried(course: Course, extended: OwnMotion, steps: int) -> dict[Quantity, 
     return carried
 
 
-def _corrected(
+def _changes(
     course: Course,
     gains: FloatArray,
-    own_motion: OwnMotion,
     correction: FloatArray,
     jacobians: JacobiansOfStep,
     missing: Mapping[Quantity, FloatArray],
 ) -> OwnMotion:
-    """Return motions with the changes d_k that a correction d_0, shape (points, rows), goes on to."""
-    corrected = {quantity: value.copy() for quantity, value in own_motion.items()}
+    """Return the changes d_k of the newest quantities that a correction d_0, shape (points, rows), goes on to."""
+    steps = {quantity: np.empty((course.steps, *gains.shape[1:], course.mechanism.size)) for quantity in missing}
     changes = Changes(course, gains, correction[:, :, np.newaxis], 0, jacobians, missing)
-    for k in range(course.steps):
+    for k in range(1, course.steps + 1):
         changes.take_step()
-        for quantity, value in corrected.items():
-            value[(k + 1) % course.steps] += changes.of(quantity)[:, :, 0]
-    return corrected
+        for quantity, change in steps.items():
+            change[k % course.steps] = changes.of(quantity)[:, :, 0]
+    return steps

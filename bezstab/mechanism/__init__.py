@@ -44,7 +44,7 @@ from bezstab.mechanism.energies import EnergyBalance, energy_balance
 from bezstab.mechanism.equations import Equations, T, equations_of_motion
 from bezstab.mechanism.generated_code import compiled_source
 from bezstab.mechanism.linearized import acceleration_jacobians, linearized_acceleration
-from bezstab.mechanism.motions import Motion, motion, regular_motion
+from bezstab.mechanism.motions import Motion, motion, regular_motion, revolution_period
 from bezstab.mechanism.observation import Observation, observe, singular_passages
 from bezstab.mechanism.runner import (
     Start,
@@ -130,6 +130,7 @@ __all__ = [
     "regular_motion",
     "resume",
     "resume_in_groups",
+    "revolution_period",
     "runs_compiled",
     "shipped_scenes",
     "simulate",

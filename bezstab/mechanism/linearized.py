@@ -7,7 +7,9 @@ from bezstab.mechanism.compiled import Mechanism, slopes_function
 
 FloatArray = NDArray[np.float64]
 
-AT_A_TIME = 2048  # states: what is computed of them, some hundred numbers each, stays in a core's cache
+# states: what is computed of them, some hundred numbers each, stays in a core's cache; no power of two, for then
+# the numbers of a state, each in an array of its own, would lie in the same lines of the cache
+AT_A_TIME = 2000
 
 
 def linearized_acceleration(
@@ -26,10 +28,11 @@ def linearized_acceleration(
     jacobians = np.empty((*q.shape, 2 * size))
     for first in range(0, len(q), AT_A_TIME):
         some = slice(first, first + AT_A_TIME)
-        found, changes = slopes(*(each[some] for each in scalars), q[some].T, v[some].T)
+        on_last = (np.ascontiguousarray(each[some].T) for each in (q, v))
+        found, changes = slopes(*(each[some] for each in scalars), *on_last)
         for k in range(size):
             accelerations[some, k] = found[k]
-        jacobians[some] = np.stack(changes).transpose(2, 1, 0)
+        jacobians[some] = np.moveaxis(np.stack(changes, axis=1), -1, 0)
     return accelerations.reshape(*shape, size), jacobians.reshape(*shape, size, 2 * size)
 
 

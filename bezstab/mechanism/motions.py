@@ -70,7 +70,7 @@ def motion(mechanism: Mechanism, duration: float) -> Motion:
     InputError for a driven scene that is not where it began after a revolution; NumericalError if the run that provides
     the motion breaks down.
     """
-    period = _period(mechanism)
+    period = revolution_period(mechanism)
     span = duration if period is None else period
     step = span / STEPS
     run = simulate(mechanism, lookup("RK4"), step, span, FREE)
@@ -99,7 +99,7 @@ def regular_motion(mechanism: Mechanism, duration: float) -> Motion:
     return along
 
 
-def _period(mechanism: Mechanism) -> float | None:
+def revolution_period(mechanism: Mechanism) -> float | None:
     """Return how long one revolution of the drivers takes (s); None unless all turn at one constant rate."""
     drivers = [joint for joint in mechanism.scene.joints if isinstance(joint, Driver)]
     rates = {abs(driver.rate) for driver in drivers}

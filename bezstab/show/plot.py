@@ -39,7 +39,7 @@ from bezstab.stability import BestPoint, Choice, FloatArray, Member, Region
 from bezstab.stability import spectral_radius as spectral_radius_at
 
 if TYPE_CHECKING:  # so that a picture of the plane does not load what runs mechanisms
-    from bezstab.evidence import MovingRegion, Run, VerdictMap
+    from bezstab.evidence import Cost, MovingRegion, Run, VerdictMap
     from bezstab.mechanism import Scene, Simulation
 
 Range = tuple[SupportsFloat, SupportsFloat]
@@ -376,25 +376,36 @@ def _joints(scene: Scene, q: FloatArray) -> dict[str, list[Point]]:
 
 
 def work_precision(
-    runs: Sequence[Run], constraint: bool = False, floor: float = 0.0, axes: Axes | None = None, **line: Any
+    runs: Sequence[Run],
+    constraint: bool = False,
+    floor: float = 0.0,
+    axes: Axes | None = None,
+    against: Cost = "evaluations",
+    **line: Any,
 ) -> Line2D:
-    """Draw the errors of one method's runs (at least one) against their evaluations and return the line.
+    """Draw the errors of one method's runs (at least one) against their evaluations, or time, and return the line.
 
     The trajectory's error (SI), or with `constraint` the largest |c|; left out are runs that failed and errors up to
     `floor`, that of the reference. Both axes are logarithmic.
     """
-    axes = _work_precision_axes(constraint) if axes is None else axes
+    axes = _work_precision_axes(constraint, against) if axes is None else axes
     method = runs[0].method
     style = {**method_line(method), "markersize": 3, "linewidth": 0.8, "label": method.name, **line}
-    x, y = _work_and_error(runs, constraint, floor)
+    x, y = _work_and_error(runs, constraint, floor, against)
     (drawn,) = axes.plot(x, y, **style)
     return drawn
 
 
-def pareto_front(runs: Iterable[Run], constraint: bool = False, floor: float = 0.0, axes: Axes | None = None) -> Line2D:
+def pareto_front(
+    runs: Iterable[Run],
+    constraint: bool = False,
+    floor: float = 0.0,
+    axes: Axes | None = None,
+    against: Cost = "evaluations",
+) -> Line2D:
     """Draw discs behind the runs of a Pareto front of work and error, as pareto_front finds them; return their line."""
-    axes = _work_precision_axes(constraint) if axes is None else axes
-    x, y = _work_and_error(sorted(runs, key=lambda run: run.evaluations), constraint, floor)
+    axes = _work_precision_axes(constraint, against) if axes is None else axes
+    x, y = _work_and_error(sorted(runs, key=lambda run: run.cost(against)), constraint, floor, against)
     (drawn,) = axes.plot(x, y, "o", color="0.8", markersize=10, zorder=1.5, label="front")
     return drawn
 
@@ -411,19 +422,28 @@ def error_label(constraint: bool) -> str:
     return "largest $|c|$ (SI)" if constraint else "trajectory error (m, rad)"
 
 
-def _work_and_error(runs: Iterable[Run], constraint: bool, floor: float) -> tuple[list[float], list[float]]:
-    evaluations: list[float] = []
+def cost_label(against: Cost, recorded: bool = False) -> str:
+    """Return what the cost of a run is, for an axis; recorded: in an earlier sweep."""
+    if against == "evaluations":
+        return "evaluations of f"
+    return "processor time of a recorded run (s)" if recorded else "processor time (s)"
+
+
+def _work_and_error(
+    runs: Iterable[Run], constraint: bool, floor: float, against: Cost
+) -> tuple[list[float], list[float]]:
+    costs: list[float] = []
     errors: list[float] = []
     for run in runs:
         error = run_error(run, constraint)
         if error is not None and error > floor:
-            evaluations.append(run.evaluations)
+            costs.append(run.cost(against))
             errors.append(error)
-    return evaluations, errors
+    return costs, errors
 
 
-def _work_precision_axes(constraint: bool) -> Axes:
-    axes = _new_axes("", "evaluations of f", error_label(constraint))
+def _work_precision_axes(constraint: bool, against: Cost) -> Axes:
+    axes = _new_axes("", cost_label(against), error_label(constraint))
     axes.set(xscale="log", yscale="log")
     return axes
 

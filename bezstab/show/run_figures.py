@@ -54,7 +54,7 @@ def history_figure(simulation: Simulation) -> Figure:
 
 
 def work_precision_figure(swept: SweptRuns, scene: str, constraint: bool, floor: float = 0.0) -> Figure:
-    """Return the error of each run against its evaluations, discs behind the Pareto front, failed runs on top.
+    """Return the error of each run against its cost, discs behind the Pareto front, failed runs on top.
 
     The trajectory's error (SI), not drawn below `floor`, that of the reference; or with `constraint` the largest |c|.
     """
@@ -69,14 +69,14 @@ def work_precision_figure(swept: SweptRuns, scene: str, constraint: bool, floor:
             of_this = number % len(MARKERS)
             hollow = {"markersize": LARGEST_MARKER - MARKER_STEP * of_this, "markerfacecolor": "none"}
             marker = {"marker": MARKERS[of_this], "markeredgewidth": 0.7, **hollow}
-            plot.work_precision(own, constraint, floor, axes, **marker)
-            failed = [run.evaluations for run in own if run.failure]
+            plot.work_precision(own, constraint, floor, axes, swept.against, **marker)
+            failed = [run.cost(swept.against) for run in own if run.failure]
             axes.plot(failed, [top] * len(failed), "x", color=method_line(method)["color"], markersize=4)
         front = swept.constraint_front if constraint else swept.trajectory_front
-        plot.pareto_front([runs[number] for number in front], constraint, floor, axes)
+        plot.pareto_front([runs[number] for number in front], constraint, floor, axes, swept.against)
         if any(run.failure for run in runs):
             axes.plot([], [], "x", color="0.4", label="diverged")
-        axes.set(xscale="log", yscale="log", xlabel="evaluations of f", title=scene)
+        axes.set(xscale="log", yscale="log", title=scene, xlabel=plot.cost_label(swept.against, swept.recorded))
         axes.set_ylabel(plot.error_label(constraint))
         figure.legend(loc="outside lower center", ncols=4)
         return figure

@@ -54,6 +54,19 @@ def test_verify_tells_what_the_motion_does_to_a_prediction() -> None:
     assert row["right"] == "law, exact"
 
 
+@pytest.mark.parametrize(
+    ("scene", "method", "said"),
+    [
+        ("driven_four_bar", "B4", "Exact rates of B4: along the method's own motion"),
+        ("driven_four_bar", "bdf2", "Exact rates of bdf2: along the mechanism's motion."),  # implicit
+        ("four_bar", "B4", "Exact rates of B4: along the mechanism's motion."),  # no revolution
+    ],
+)
+def test_exact_rates_are_said_to_be_along_which_motion(scene: str, method: str, said: str) -> None:
+    point = ("--alpha", "0.5", "--beta", "0.1", "--h", "0.01")
+    assert said in run("verify", "--scene", scene, "--method", method, *point, "--floquet").stdout.replace("\n", " ")
+
+
 def test_without_floquet_nothing_exact_is_computed() -> None:
     (row,) = rows("verify", "--scene", "driven_four_bar", "--alpha", "0.5", "--beta", "0.2", "--h", "0.01")
     assert row["floquet_z_abs"] is None

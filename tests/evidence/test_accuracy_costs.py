@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bezstab.evidence import METHODS, STEPS, measured_runs, sweep_compiled, swept_runs, whole_sweep
+from bezstab.evidence import METHODS, STEPS, Cost, measured_runs, sweep_compiled, swept_runs, with_fronts
 from bezstab.mechanism import load_scene
 from bezstab.methods import accuracy, lookup
 from tests.evidence.small_sweeps import DURATION, SOFT, small_sweep, swept
@@ -70,15 +70,14 @@ def test_with_alpha_and_beta_fixed_the_point_moves_with_the_step_exactly() -> No
     assert (fine.alpha_hat, fine.beta_hat) == (0.1, 0.0025)
 
 
-def test_a_sweep_knows_its_fronts() -> None:
+@pytest.mark.parametrize("against", ["evaluations", "time"])
+def test_a_sweep_knows_its_fronts(against: Cost) -> None:
     sweeps = [small_sweep(name, (0.004, 0.0125), SOFT) for name in ("B2", "AB4")]
     measured = [measured_runs(sweep) for sweep in sweeps]
-    whole = whole_sweep(sweeps, measured)
-    one_by_one = [run for sweep, arrays in zip(sweeps, measured, strict=True) for run in swept_runs(sweep, arrays)]
-    assert list(whole.runs) == one_by_one
-    assert whole.reference_error == sweeps[0].reference.error
-    trajectory = [(run.evaluations, run.trajectory_error) for run in whole.runs]
-    constraint = [(run.evaluations, None if run.failure else run.c_max) for run in whole.runs]
+    runs = [run for sweep, arrays in zip(sweeps, measured, strict=True) for run in swept_runs(sweep, arrays)]
+    whole = with_fronts(runs, sweeps[0].reference.error, against)
+    trajectory = [(run.cost(against), run.trajectory_error) for run in whole.runs]
+    constraint = [(run.cost(against), None if run.failure else run.c_max) for run in whole.runs]
     for front, points in ((whole.trajectory_front, trajectory), (whole.constraint_front, constraint)):
         assert {points[index] for index in front} == undominated(points)
     failed = [index for index, run in enumerate(whole.runs) if run.failure]

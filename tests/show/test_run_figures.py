@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
 
-from bezstab.evidence import Run, Sweep, measured_runs, pareto_front, reference_motion, swept_runs, with_fronts
+from bezstab.evidence import Cost, Run, Sweep, measured_runs, pareto_front, reference_motion, swept_runs, with_fronts
 from bezstab.mechanism import compiled_mechanism, initial_state, load_scene, simulated
 from bezstab.methods import lookup
 from bezstab.show.run_figures import history_figure, scene_figure, work_precision_figure
@@ -25,20 +25,34 @@ def test_the_scene_figure_joins_the_bodies_where_their_joints_are() -> None:
     assert {text.get_text() for text in axes.texts} == {"crank", "rod", "slider"}
 
 
-@pytest.mark.parametrize("constraint", [False, True])
-def test_the_work_precision_figure_has_every_run_and_rings_the_front(constraint: bool) -> None:
+@pytest.mark.parametrize(
+    ("constraint", "against", "recorded", "label"),
+    [
+        (False, "evaluations", False, "evaluations of f"),
+        (True, "evaluations", False, "evaluations of f"),
+        (False, "time", False, "processor time (s)"),
+        (True, "time", True, "processor time of a recorded run (s)"),
+    ],
+)
+def test_the_work_precision_figure_has_every_run_and_rings_the_front(
+    constraint: bool, against: Cost, recorded: bool, label: str
+) -> None:
     scene, steps, point = load_scene("slider_crank_light"), (0.004, 0.008, 0.0125), (50.0, 50.0)
     true = reference_motion(scene, min(steps), 1.0)
     sweeps = [Sweep(lookup(name), scene, steps, 1.0, point, True, 1, true) for name in ("B2", "AB4")]
     swept = [run for sweep in sweeps for run in swept_runs(sweep, measured_runs(sweep))]
     failed = [run for run in swept if run.failure]
     assert failed  # AB4 at the largest step
-    figure = work_precision_figure(with_fronts(swept, 0.0), scene.name, constraint)
+    figure = work_precision_figure(with_fronts(swept, 0.0, against, recorded), scene.name, constraint)
     (axes,) = figure.axes
+    assert axes.get_xlabel() == label
     lines = {str(line.get_label()): np.array(line.get_xydata()) for line in axes.lines}
 
+    def cost(run: Run) -> float:
+        return run.evaluations if against == "evaluations" else run.seconds
+
     def expected(these: Sequence[Run]) -> list[tuple[float, float | None]]:
-        return [(run.evaluations, run.c_max if constraint else run.trajectory_error) for run in these]
+        return [(cost(run), run.c_max if constraint else run.trajectory_error) for run in these]
 
     for name in ("B2", "AB4"):
         own = [run for run in swept if run.method.name == name and not run.failure]
@@ -46,9 +60,7 @@ def test_the_work_precision_figure_has_every_run_and_rings_the_front(constraint:
     ended = [run for run in swept if not run.failure]
     assert lines["front"].tolist() == [list(expected(ended)[k]) for k in pareto_front(expected(ended))]
     crosses = [line for line in axes.lines if line.get_marker() == "x" and len(np.array(line.get_xydata()))]
-    assert sorted(x for line in crosses for x, _ in np.array(line.get_xydata())) == sorted(
-        r.evaluations for r in failed
-    )
+    assert sorted(x for line in crosses for x, _ in np.array(line.get_xydata())) == sorted(cost(run) for run in failed)
     assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
     assert "diverged" in lines
     shapes = {
