@@ -109,7 +109,10 @@ def test_the_step_is_that_of_the_times_but_for_their_rounding(decimals: int) -> 
     assert row_step(timed(np.round(t, decimals)), 0) == pytest.approx(1 / 240, rel=10.0**-decimals)
 
 
-@pytest.mark.parametrize(("name", "seconds"), [("t", 1.0), ("Time [ms]", 1e-3), ("time (us)", 1e-6), ("t/s", 1.0)])
+@pytest.mark.parametrize(
+    ("name", "seconds"),
+    [("t", 1.0), ("Time [ms]", 1e-3), ("time (us)", 1e-6), ("t/s", 1.0), ("t [\u00b5s]", 1e-6), ("t [\u03bcs]", 1e-6)],
+)
 def test_the_name_of_the_times_may_say_their_unit(name: str, seconds: float) -> None:
     log = Log("log", (name, "c"), np.stack([np.arange(5) * 2.0, np.zeros(5)], axis=1))
     assert row_step(log, 0) == pytest.approx(2 * seconds)
