@@ -99,6 +99,7 @@ class Region:
 def region(method: Method, level: float = 1.0) -> Region:
     """Return the region |z_p| < level, 0 < level <= 1; area and extent are good to about 1e-12.
 
+    Where it grows without limit as the level goes to one, next to one they are good to about 1e-15 / (1 - level).
     Dimensionless; from the boundary locus of paper Eq. 17, held against slices that share nothing with it
     (self_checks). InputError for another level; NumericalError if they disagree, or its edges leave a gap, on a finer
     sampling of the locus as well: not found is an edge on which several roots have |z| = level, or one so short, where
