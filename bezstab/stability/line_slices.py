@@ -23,7 +23,7 @@ from numpy.polynomial.polynomial import polyder, polyval
 
 from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
 from bezstab.stability.exact_sums import feedback_roots
-from bezstab.stability.pencils import Pencil, roots_in_mu
+from bezstab.stability.pencils import Pencil, deadbeat_mu, roots_in_mu
 from bezstab.stability.root_finding import horner
 from bezstab.stability.searches import false_position
 
@@ -168,8 +168,7 @@ def island_radii(pencil: Pencil, level: float) -> FloatArray:
     |c| and multiples of that size beside it.
     """
     table = pencil.table
-    zero = roots_in_mu(pencil, np.zeros(1, complex))[:, 0]
-    zero = zero[np.isfinite(zero)]
+    zero = deadbeat_mu(pencil)
     with np.errstate(all="ignore"):
         size = np.abs(level * polyval(zero, table[1]) / polyval(zero, polyder(table[0])))
     size = np.minimum(size, np.abs(zero))

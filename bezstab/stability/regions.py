@@ -36,7 +36,7 @@ from bezstab.stability.arrays import BoolArray, FloatArray
 from bezstab.stability.boundary_locus import Arc, Bounds, bounds_of, feedback_coefficients
 from bezstab.stability.closed_loop import spectral_radius
 from bezstab.stability.line_slices import RIM, rim_radius
-from bezstab.stability.pencils import Pencil, pencil_of, roots_in_mu
+from bezstab.stability.pencils import Pencil, deadbeat_mu, pencil_of
 from bezstab.stability.plane_cells import Edges, plane_shape
 from bezstab.stability.plane_checks import check_plane
 from bezstab.stability.plane_pencils import plane_pencil_of
@@ -229,7 +229,7 @@ def _view(pencil: Pencil, bounds: Bounds) -> Extent:
     ends = np.array([end for interval in bounds.intervals for end in interval if abs(end) < off_rim])
     shapely = [feedback_coefficients(np.full(len(ends), end), ends) for end in ends]
     if pencil.steps == 1:
-        deadbeat = roots_in_mu(pencil, np.zeros(1, complex))[:, 0]
+        deadbeat = deadbeat_mu(pencil)
         deadbeat = deadbeat[np.abs(deadbeat) < off_rim]
         shapely.append(feedback_coefficients(deadbeat, deadbeat.conj()))
     for arc in bounds.arcs:

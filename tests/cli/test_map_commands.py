@@ -143,6 +143,17 @@ def test_region_options(tmp_path: Path) -> None:
     assert "0.8" in (tmp_path / "out" / "region_B3.svg").read_text(encoding="utf-8")
 
 
+@pytest.mark.parametrize("name", ["radau3", "hht"])
+def test_the_map_of_an_unbounded_region_holds_its_best_point(name: str, tmp_path: Path) -> None:
+    """Radau's is the corner of the map's window; that of HHT lies beyond everything else that there is to see."""
+    options = ("--figure", "none", "--table", "npz", "--quality", "fast", "-o", str(tmp_path))
+    (row,) = rows("region", "--method", name, *options)
+    (path,) = tmp_path.iterdir()
+    shown = arrays(path)
+    for key in ("alpha_hat", "beta_hat"):
+        assert shown[key].min() < float(str(row[f"best_{key}"])) < shown[key].max()
+
+
 def test_quality_is_points_per_axis(tmp_path: Path) -> None:
     run("region", "--quality", "fast", "--figure", "none", "--table", "npz")
     assert len(arrays(tmp_path / "region_B4.npz")["z_abs"]) == 50**2
