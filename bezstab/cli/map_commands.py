@@ -392,7 +392,9 @@ def _map_region(
     row = region_row(stable, best)
     if figure == table == "none":
         return row
-    alpha_hat, beta_hat = _grid(stability.useful_window(stable), alpha_range, beta_range, points)
+    useful = stability.useful_window(stable)
+    shown = useful if stable.bounded else _holding(best, useful)
+    alpha_hat, beta_hat = _grid(shown, alpha_range, beta_range, points)
     blocks = stability.pole_map(method, alpha_hat, beta_hat)
     z = np.concatenate(list(progress(blocks, method.name, points, len)))
 
@@ -441,6 +443,18 @@ def _moving_regions(
         for speed, turning in turnings.items()
         if turning is not None
     }
+
+
+BEYOND_BEST = 1.25
+"""Times the best point's parameters: so far is shown of an unbounded region whose corners all lie nearer."""
+
+
+def _holding(best: "BestPoint | None", shown: "Extent") -> "Extent":
+    """Return ranges that hold the best point as well."""
+    if best is None:
+        return shown
+    (left, right), (low, high) = shown
+    return (left, max(right, BEYOND_BEST * best.alpha_hat)), (low, max(high, BEYOND_BEST * best.beta_hat))
 
 
 def _grid(

@@ -43,7 +43,8 @@ def region_figure(
 ) -> Figure:
     """Return the |z_p| map with exact boundary, faster regions, best point and critical damping (paper Fig. 1).
 
-    With the point of a choice, where given and inside the map. Of an unbounded region it says that it goes on.
+    With the best point and that of a choice, where given and inside the map. Of an unbounded region it says that it
+    goes on.
 
     z_abs has shape (beta_hat.size, alpha_hat.size). With h (s) the axes are 2 alpha (1/s) and beta^2 (1/s^2), else
     alpha_hat and beta_hat; `marks` are points (alpha_hat, beta_hat) by their labels. Of a mechanism that moves its own
@@ -63,15 +64,15 @@ def region_figure(
             label = "as it moves" if speed == 1 else f"{speed:g} times as fast"
             plot.moving_region(of_speed, axes, h, label=label, dashes=DASHES[(number + 1) % 4], hatched=number == 0)
         plot.critical_damping((alpha_hat[0], alpha_hat[-1]), axes, h)
-        if best:
+        if best and _inside(best.alpha_hat, alpha_hat) and _inside(best.beta_hat, beta_hat):
             plot.best_point(best, axes, h)
         if chosen and _inside(chosen.alpha_hat, alpha_hat) and _inside(chosen.beta_hat, beta_hat):
             plot.choice(chosen, axes, h)
-        plot.goes_on(region, axes, h)
         plot.marks(marks or {}, axes, h)
         left, bottom = plane_coordinates(alpha_hat[0], beta_hat[0], h)
         right, top = plane_coordinates(alpha_hat[-1], beta_hat[-1], h)
         axes.set(xlim=(left, right), ylim=(bottom, top), facecolor="0.93")
+        plot.goes_on(region, axes, h)
         keep_markers_whole(axes)
         if alpha_and_beta:
             mark_in_alpha_and_beta(axes)

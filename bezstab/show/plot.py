@@ -68,6 +68,8 @@ __all__ = [
 
 EDGE = 0.99
 """Share of the axes at which an arrow that points beyond them ends."""
+WORD = (0.16, 0.06)
+"""Half of the room that the word "unbounded" takes beside a marker, in shares of the axes."""
 SHARES = np.linspace(0.1, 0.9, 81)
 PARABOLA = 400  # points of a smooth curve: more than its pixels tell apart
 MARK_SHAPES = "Ds^vP"
@@ -208,7 +210,7 @@ def goes_on(region: Region, axes: Axes, h: float | None = None) -> Annotation | 
     return axes.annotate(
         "unbounded",
         xy=place[1],
-        xytext=place[0],
+        xytext=_off_points(axes, place[0]),
         xycoords="axes fraction",
         ha="center",
         va="center",
@@ -217,6 +219,17 @@ def goes_on(region: Region, axes: Axes, h: float | None = None) -> Annotation | 
         path_effects=[outline],
         arrowprops={"arrowstyle": "->", "color": "white", "path_effects": [outline]},
     )
+
+
+def _off_points(axes: Axes, place: Point) -> Point:
+    """Return the place of a word, in shares of the axes, moved down until it hides no point that is drawn alone."""
+    low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
+    lines = [np.asarray(line.get_xydata()) for line in axes.lines]
+    points = [((line[0] - low) / (high - low)).tolist() for line in lines if len(line) == 1]
+    across, up = place
+    while any(abs(x - across) < WORD[0] and abs(y - up) < WORD[1] for x, y in points):
+        up -= WORD[1]
+    return across, up
 
 
 def _middle_inside(region: Region, axes: Axes, h: float | None, across: FloatArray, up: FloatArray) -> Point | None:

@@ -151,14 +151,20 @@ def region_row(region: Region, best: BestPoint | None) -> Row:
     """Return area, axis limits, best point of the method and which steps are stable; all dimensionless.
 
     Area and limits are of |z_p| < level, None where that region is empty, or has none; it has no best point if |z_p| is
-    nowhere that small. The last three are about stability, at any level: stable_for_all about every alpha_hat,
+    nowhere that small. The last four are about stability, at any level: stable_for_all about every alpha_hat,
     beta_hat > 0; unconditional_damping_ratio is the alpha / beta above which every step is stable (None if there is
-    none); critical_damping_limit the largest beta h on alpha = beta up to which all are (None if there is none).
-    NumericalError where a pole leaves the range of float64.
+    none); critical_damping_limit the largest beta h on alpha = beta up to which all are (None if there is none), also
+    as a rational number, if it is known to be one. NumericalError where a pole leaves the range of float64.
     """
     from bezstab.show.best_point_text import best_point_words
-    from bezstab.stability import critical_damping_limit, stable_for_all, unconditional_damping_ratio
+    from bezstab.stability import (
+        critical_damping_limit,
+        exact_critical_damping_limit,
+        stable_for_all,
+        unconditional_damping_ratio,
+    )
 
+    exact_limit = exact_critical_damping_limit(region.method)
     inside = best if best and best.z_abs < region.level else None
     reason = None if inside else _nowhere(region, best)
     return {
@@ -175,6 +181,7 @@ def region_row(region: Region, best: BestPoint | None) -> Row:
         "stable_for_all": stable_for_all(region.method),
         "unconditional_damping_ratio": unconditional_damping_ratio(region.method),
         "critical_damping_limit": critical_damping_limit(region.method),
+        "critical_damping_limit_exact": None if exact_limit is None else str(exact_limit),
     }
 
 
@@ -201,7 +208,8 @@ def stable_steps_words(row: Row) -> str:
     """Return from a row of region_row up to which beta h all are stable at alpha = beta, and what all of them need."""
     ratio, limit = row["unconditional_damping_ratio"], row["critical_damping_limit"]
     if isinstance(limit, float):
-        return f"{limit:.6g}"
+        exact = row["critical_damping_limit_exact"]
+        return f"{limit:.6g} = {exact}" if exact and "/" in str(exact) else f"{limit:.6g}"
     if row["stable_for_all"] == "proven":
         return "all (proven for any α, β)"
     if ratio is None:

@@ -32,7 +32,8 @@ MOVING = _keys("kappa chi_abs z_abs_moving z_abs_worst double_pole settled movin
 """What --scene adds."""
 
 REGION = """z_abs_below area alpha_hat_min alpha_hat_max beta_hat_min beta_hat_max best_z_abs best_alpha_hat
-    best_beta_hat best_where best_reason bounded stable_for_all unconditional_damping_ratio critical_damping_limit"""
+    best_beta_hat best_where best_reason bounded stable_for_all unconditional_damping_ratio critical_damping_limit
+    critical_damping_limit_exact"""
 METHOD = """method steps evaluations order order_position_forces order_velocity_forces error_constant
     error_constant_exact source implicit digits"""
 CHOICE = f"""method goal alpha_hat beta_hat verdict safe {POLE} worst searched h alpha beta settle_steps settle_seconds

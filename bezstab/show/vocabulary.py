@@ -104,6 +104,9 @@ VOCABULARY: Mapping[str, Key] = {
         "number", "Damping ratio alpha / beta above which every step is stable", null="if none is"
     ),
     "critical_damping_limit": Key("number", "Largest beta h on alpha = beta up to which all are stable", null="if all"),
+    "critical_damping_limit_exact": Key(
+        "text", "The same as a rational number", null="if all are stable, or where it is not known to be rational"
+    ),
     # a method by itself
     "steps": Key("integer", "Number of steps of the method", null="for the limit of a family"),
     "evaluations": Key(

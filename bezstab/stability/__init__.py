@@ -70,11 +70,15 @@ from bezstab.stability.step_sequences import VaryingSteps, varying_steps
 from bezstab.stability.turning import own_feedback_root, turning_sensitivity, turning_shift
 
 if TYPE_CHECKING:
-    from bezstab.stability.damping_limits import critical_damping_limit, unconditional_damping_ratio
+    from bezstab.stability.damping_limits import (
+        critical_damping_limit,
+        exact_critical_damping_limit,
+        unconditional_damping_ratio,
+    )
     from bezstab.stability.quadrant_proofs import StableForAll, stable_for_all
 
 PROVEN = {
-    "damping_limits": ("critical_damping_limit", "unconditional_damping_ratio"),
+    "damping_limits": ("critical_damping_limit", "exact_critical_damping_limit", "unconditional_damping_ratio"),
     "quadrant_proofs": ("StableForAll", "stable_for_all"),
 }
 """What is loaded when first used, by module."""
@@ -110,6 +114,7 @@ __all__ = [
     "critical_damping_limit",
     "describe_point",
     "dominant_pole",
+    "exact_critical_damping_limit",
     "falls_towards",
     "family_members",
     "first_where",

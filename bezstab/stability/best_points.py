@@ -31,7 +31,7 @@ from bezstab.stability.answer_checks import check_best_point, check_deadbeat, ch
 from bezstab.stability.arrays import ComplexArray, FloatArray
 from bezstab.stability.dominant_roots import dominant_root
 from bezstab.stability.line_slices import all_inside
-from bezstab.stability.pencils import Pencil, pencil_of, roots_in_mu, roots_in_z
+from bezstab.stability.pencils import Pencil, deadbeat_mu, pencil_of, roots_in_mu, roots_in_z
 from bezstab.stability.plane_best_points import PlaneLeast, plane_least
 from bezstab.stability.plane_pencils import plane_pencil_of
 from bezstab.stability.regions import Extent, region
@@ -256,13 +256,8 @@ def _beside_a_fixed_pole(method: Method, fixed: complex) -> BestPoint | float | 
 
 def _zeros(pencil: Pencil) -> list[complex]:
     """Return the different mu of the upper half at which the one root is zero, the most damped first."""
-    numerator = np.trim_zeros(pencil.table[0], "b")
-    if len(numerator) < pencil.table.shape[1]:  # of an implicit method, of a degree less than the denominator
-        roots = polyroots(numerator).astype(complex)
-    else:
-        roots = roots_in_mu(pencil, np.zeros(1, complex))[:, 0]
     zeros: list[complex] = []
-    for root in np.sort_complex(roots):
+    for root in np.sort_complex(deadbeat_mu(pencil)):
         mu = _upper(root)
         if abs(mu) < REACH and all(abs(mu - other) > DOUBLE * abs(mu) for other in zeros):
             zeros.append(mu)

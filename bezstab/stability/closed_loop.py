@@ -34,6 +34,7 @@ from bezstab.stability.plane_pencils import PlanePencil, largest_plane_root, pla
 from bezstab.stability.root_finding import CHUNK
 
 BLOCK = 8 * CHUNK  # points whose roots are followed in one go: enough to outweigh the calls for their middles
+PLANE_BLOCK = 2 * BLOCK  # the same of a second-order scheme: following its real factors takes half of the memory
 COMPILED_BLOCK = 2**20  # points that the cores share in one go: at the end of each they wait for each other
 
 PROVEN = 64  # verdicts that are remembered: a margin's end is asked for when it is found, and when it is checked
@@ -138,7 +139,8 @@ def largest_pole(
         compiled = is_compiled(pencil, alpha_hat.size)
     write = _write_compiled if compiled else _write_largest_poles
     columns = max(1, alphas.shape[1])  # of no points, too
-    most = COMPILED_BLOCK if compiled else BLOCK
+    in_plane = isinstance(pencil, PlanePencil)
+    most = COMPILED_BLOCK if compiled else PLANE_BLOCK if in_plane else BLOCK
     whole_rows = most // columns // SIDE * SIDE * columns
     block = whole_rows or most
     for start in range(0, alpha_hat.size, block):

@@ -41,6 +41,7 @@ from bezstab.stability.searches import bisected, zoom_on_minimum
 AT_ZERO = 1e-9  # of the size of S_1: an interval that ends there ends at mu = 0
 ON_THE_RIM = 1 - 1e-9  # of its radius
 TOUCHING = 1e-6  # of an end of S_1: where a root touches the circle, float64 knows it to the root of its rounding
+ROUNDING = 1e-14  # relative, of a limit that is a rounded rational number
 NEAR_ZERO = 1e-6  # of an arc's largest |mu|: nearer to zero an arc lies along the imaginary axis, or is rounding
 NO_DAMPING = 1e-9  # a ratio below it is the rounding of an arc along the imaginary axis
 ZOOM_POINTS, ZOOMS = 33, 9  # each by 1/16: to 1e-11 of a sample's spacing, where the ratio is flat to rounding
@@ -71,6 +72,23 @@ def critical_damping_limit(method: Method) -> float | None:
                 return None
             return float(-_exact_end(method, start) / method.step_multiple)
     return 0.0
+
+
+@cache
+def exact_critical_damping_limit(method: Method) -> Fraction | None:
+    """Return critical_damping_limit as the rational number that it is; None if there is no limit, or none is known.
+
+    A root z = 1 or z = -1 is at a rational mu wherever pi(z, mu) has a linear factor: of multistep methods always. Of
+    second-order schemes it is not looked for. NumericalError as `critical_damping_limit`.
+    """
+    limit = critical_damping_limit(method)
+    if limit == 0:
+        return Fraction(0)
+    if limit is None or isinstance(method.scheme, SecondOrder | Partitioned):
+        return None
+    roots = [root for polynomial in _at_real_roots(method) for root in polynomial.ground_roots()]
+    limits = [-Fraction(int(root.p), int(root.q)) / method.step_multiple for root in roots]
+    return next((exact for exact in limits if math.isclose(exact, limit, rel_tol=ROUNDING)), None)
 
 
 @cache
@@ -110,15 +128,23 @@ def _exact_end(method: Method, end: float) -> Fraction:
     Where a root only touches the circle the end is known to the root of rounding.
     """
     near = [Fraction(end)]
+    for polynomial in _at_real_roots(method):
+        around = sorted(end * (1 + side * TOUCHING) for side in (-1, 1))
+        found = polynomial.intervals(eps=CLOSE, inf=sp.Rational(around[0]), sup=sp.Rational(around[1]))
+        near += [Fraction(int(low.p), int(low.q)) for (low, _), _ in found]
+    return near[-1]
+
+
+def _at_real_roots(method: Method) -> list[sp.Poly]:
+    """Return pi(1, mu) and pi(-1, mu) as polynomials in mu, but for one that has no mu."""
     table = coefficient_table(without_shared_factor(method))
+    polynomials = []
     for z in (1, -1):
         at_z = [sum((z**k * c for k, c in enumerate(column)), Fraction(0)) for column in zip(*table, strict=True)]
-        polynomial = sp.Poly([sp.Rational(c.numerator, c.denominator) for c in reversed(at_z)], STEP, domain="QQ")
-        if polynomial.degree() > 0:
-            around = sorted(end * (1 + side * TOUCHING) for side in (-1, 1))
-            found = polynomial.intervals(eps=CLOSE, inf=sp.Rational(around[0]), sup=sp.Rational(around[1]))
-            near += [Fraction(int(low.p), int(low.q)) for (low, _), _ in found]
-    return near[-1]
+        polynomials.append(
+            sp.Poly([sp.Rational(c.numerator, c.denominator) for c in reversed(at_z)], STEP, domain="QQ")
+        )
+    return [polynomial for polynomial in polynomials if polynomial.degree() > 0]
 
 
 def _largest_ratio(arc: Arc) -> float:

@@ -23,7 +23,7 @@ from numpy.polynomial.polynomial import polyder, polyval
 
 from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
 from bezstab.stability.exact_sums import feedback_roots
-from bezstab.stability.pencils import Pencil, roots_in_mu
+from bezstab.stability.pencils import Pencil, deadbeat_mu, roots_in_mu
 from bezstab.stability.root_finding import horner
 from bezstab.stability.searches import false_position
 
@@ -168,8 +168,7 @@ def island_radii(pencil: Pencil, level: float) -> FloatArray:
     |c| and multiples of that size beside it.
     """
     table = pencil.table
-    zero = roots_in_mu(pencil, np.zeros(1, complex))[:, 0]
-    zero = zero[np.isfinite(zero)]
+    zero = deadbeat_mu(pencil)
     with np.errstate(all="ignore"):
         size = np.abs(level * polyval(zero, table[1]) / polyval(zero, polyder(table[0])))
     size = np.minimum(size, np.abs(zero))
@@ -214,15 +213,25 @@ def paired_crossings(pencil: Pencil, level: float, radius: FloatArray) -> FloatA
 
 
 def _one_step_crossings(pencil: Pencil, level: float, radius: FloatArray) -> FloatArray:
-    """Return paired_crossings for z = N(mu) / Q(mu): on |mu| = radius |N|^2 = level^2 |Q|^2, polynomials in cos phi."""
+    """Return paired_crossings for z = N(mu) / Q(mu): on |mu| = radius |N|^2 = level^2 |Q|^2, polynomials in cos phi.
+
+    Of an implicit method at a level next to one N and level Q nearly cancel far out, and cosines keep few digits.
+    """
     around = radius[:, np.newaxis]
-    denominator = np.trim_zeros(level * pencil.table[1], "b")
+    numerator, denominator = pencil.table[0], np.trim_zeros(level * pencil.table[1], "b")
+    numerator_slope, denominator_slope = polyder(numerator), polyder(denominator)
 
     def growth(cosine: FloatArray) -> FloatArray:
         mu = around * (cosine + 1j * np.sqrt(1 - cosine**2))
-        return np.asarray(np.abs(polyval(mu, pencil.table[0])) ** 2 - np.abs(polyval(mu, denominator)) ** 2)
+        return np.asarray(np.abs(polyval(mu, numerator)) ** 2 - np.abs(polyval(mu, denominator)) ** 2)
 
-    return around * _cosine_zeros(growth, pencil.table.shape[1] - 1, len(radius))
+    def step_at(phi: FloatArray) -> FloatArray:
+        mu = around * np.exp(1j * phi)
+        n, d = polyval(mu, numerator), polyval(mu, denominator)
+        rate = (1j * mu * (polyval(mu, numerator_slope) / n - polyval(mu, denominator_slope) / d)).real
+        return np.asarray(np.log(np.abs(n / d)) / rate)
+
+    return around * np.cos(_refined(_cosine_zeros(growth, pencil.table.shape[1] - 1, len(radius)), step_at))
 
 
 def _multistep_crossings(pencil: Pencil, level: float, radius: FloatArray) -> FloatArray:
@@ -236,17 +245,27 @@ def _multistep_crossings(pencil: Pencil, level: float, radius: FloatArray) -> Fl
         squared = np.abs(_coefficients_on_the_circle(pencil, level, cosine)) ** 2
         return np.asarray(squared[0] - around**2 * squared[1])
 
-    theta = np.arccos(_cosine_zeros(balance, pencil.steps, len(radius)))
+    def step_at(theta: FloatArray) -> FloatArray:
+        z = level * np.exp(1j * theta)
+        rho, minus_sigma = polyval(z, pencil.table)
+        rho_slope, minus_sigma_slope = polyval(z, pencil.table_by_z)
+        rate = (1j * z * (rho_slope / rho - minus_sigma_slope / minus_sigma)).real  # d log|mu| / d theta
+        return np.asarray(np.log(np.abs(rho / minus_sigma) / around) / rate)
+
+    theta = _refined(_cosine_zeros(balance, pencil.steps, len(radius)), step_at)
     with np.errstate(all="ignore"):
-        for _ in range(REFINEMENTS):
-            z = level * np.exp(1j * theta)
-            rho, minus_sigma = polyval(z, pencil.table)
-            rho_slope, minus_sigma_slope = polyval(z, pencil.table_by_z)
-            rate = (1j * z * (rho_slope / rho - minus_sigma_slope / minus_sigma)).real  # d log|mu| / d theta
-            step = np.log(np.abs(rho / minus_sigma) / around) / rate
-            theta = theta - np.where(np.abs(step) < TO_ANOTHER * theta, step, 0)
         rho, minus_sigma = polyval(level * np.exp(1j * theta), pencil.table)
         return np.asarray(np.clip((-rho / minus_sigma).real, -around, around))
+
+
+def _refined(cosine: FloatArray, step_at: Callable[[FloatArray], FloatArray]) -> FloatArray:
+    """Return the angles of cosines after some of Newton's steps, but for those that would lead to another zero."""
+    angle = np.arccos(cosine)
+    with np.errstate(all="ignore"):
+        for _ in range(REFINEMENTS):
+            step = step_at(angle)
+            angle = angle - np.where(np.abs(step) < TO_ANOTHER * angle, step, 0)
+    return angle
 
 
 @dataclass(frozen=True)

@@ -169,3 +169,11 @@ def roots_in_mu(pencil: Pencil, z: ComplexArray) -> ComplexArray:
     Not finite where one of them is at infinity.
     """
     return roots_of_table(pencil.table.T, z)
+
+
+def deadbeat_mu(pencil: Pencil) -> ComplexArray:
+    """Return all finite mu at which the root z of a one-step method is zero, the zeros of R; shape (zeros,)."""
+    numerator = np.trim_zeros(pencil.table[0], "b")
+    if len(numerator) == 1:
+        return np.empty(0, complex)
+    return np.asarray(roots_of_table(numerator[:, np.newaxis], np.zeros(1, complex))[:, 0])

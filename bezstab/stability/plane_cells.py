@@ -13,6 +13,7 @@ The area is the integral of the cells' width over beta_hat. At a level a width m
 tanh-sinh quadrature does not mind (H. Takahasi & M. Mori, Publ. RIMS 9, 1974).
 """
 
+import math
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
@@ -35,6 +36,7 @@ AGREEING = 1e-9  # of an integral: half the nodes so near to all say that all ar
 NEGLIGIBLE = 1e-14  # of the area: a part that is off by less need not be halved
 MOST_HALVINGS = 12  # of a strip in which a singularity lies close
 DRAWN = 160  # points of an edge along its strip
+FAR_APART = 100.0  # ends of a strip, one so many times the other: what an edge does near the lower one needs its share
 TURN_ROUNDS = 12  # of zooming on an edge's furthest point: its place to 1e-8 leaves its value at rounding
 NEAR_LEVEL = 1e-10  # of a strip: so near to a level crossings that are lost are far from the others
 BESIDE_LEVEL = 1e-13  # of a strip: nearer to a level, a crossing that is lost there may show at the wrong infinity
@@ -257,7 +259,13 @@ def _drawn_levels(low: float, high: float) -> FloatArray:
     angle = np.linspace(0, np.pi, DRAWN)
     levels = (low + high) / 2 - (high - low) / 2 * np.cos(angle)
     levels[0], levels[-1] = low, high
+    if _far_apart(low, high):
+        return np.union1d(levels, np.geomspace(low, high, DRAWN)[1:-1])
     return levels
+
+
+def _far_apart(low: float, high: float) -> bool:
+    return 0 < FAR_APART * low < high
 
 
 def _turns(edges: Edges, cells: tuple[Cell, ...]) -> FloatArray:
@@ -342,7 +350,7 @@ def _area(edges: Edges, cells: tuple[Cell, ...], name: str) -> float:
             return total
         if halvings == 0:
             raise NumericalError(f"{name}: the area between beta_hat = {low:.6g} and {high:.6g} cannot be integrated")
-        middle = (low + high) / 2
+        middle = math.sqrt(low * high) if _far_apart(low, high) else (low + high) / 2
         return sum(integral(cell, *half, halvings - 1) for half in ((low, middle), (middle, high)))
 
     whole = sum(float(terms(cell, cell.low, cell.high).sum()) for cell in cells)

@@ -4,18 +4,17 @@
     at c              z^2 + p z + q has the largest root and its conjugate, or it and the nearest other real root, which
                       it may meet: p and q go on smoothly where the two become a pair
     elsewhere         Bairstow's method, Newton's for p and q, takes the factor from c to the others, starting on the
-                      planes p and q over alpha_hat and beta_hat that touch c
+                      planes p and q over alpha_hat and beta_hat that touch c; a last step with the slopes of the one
+                      before it finds them settled, and leaves what is left beside the factor
 
 That no other root is larger is not taken on trust: what is left, divided by the factor, has all its roots within the
 larger of the factor's, which Schur's recursion tells in few operations. From one middle in GROUP, where all roots are
 solved for, the others get their factors the same way.
 
-Where the largest root is not found so, three more ways are tried, each for what the one before it leaves. A real root
-at c is followed alone, by Newton's method: far out a polynomial is so much steeper than at the other root of the factor
-that Bairstow's method, which moves both at once, is led astray. Near kinks the factor with the largest root of the
-others is followed. And then all roots are solved for.
-
-A polynomial of odd degree is multiplied by z: then it has real roots in even number, if it has any.
+Where the largest root is not found so, three more ways are tried, each for what the one before it leaves. The largest
+real root at c is followed alone, by Newton's method: it may have no other real one beside it, and far out a polynomial
+is so much steeper than at the other root of the factor that Bairstow's method, which moves both at once, is led astray.
+Near kinks the factor with the largest root of the others is followed. And then all roots are solved for.
 """
 
 from collections.abc import Callable, Sequence
@@ -27,10 +26,12 @@ from bezstab.stability.low_degrees import largest_quadratic_root
 from bezstab.stability.root_finding import CONVERGED, roots_of_rows
 
 GROUP = 16  # blocks whose middles are near each other
-POINTS = 8192  # at a time: the work arrays of so many stay in a core's cache
-STEPS = 3  # of Bairstow's method that most factors settle in: starts are off by the square of a map's spacing
+POINTS = 16384  # at a time: the work arrays of so many stay in a core's cache
+STEPS = 2  # of Bairstow's method that most factors settle in: starts are off by the square of a map's spacing
 MORE_STEPS = 6  # for the others, and of Newton's method from a block's middle
+STEPS_BESIDE = 3  # to where a block's planes lead: their starts are off by as much as a map's spacing
 LARGER = 1e-9  # relative: by so much a root must outdo the others to be the largest without doubt
+STILL = 1e-11  # relative: a last change of p and q so small leaves but rounding, and what is left is far within LARGER
 
 Coefficients = Callable[[FloatArray, FloatArray], list[FloatArray]]
 """Of real polynomials in z, ascending, from alpha_hat and beta_hat; each of their shape."""
@@ -75,9 +76,8 @@ def largest_in_upper_half(z: ComplexArray) -> ComplexArray:
 
 
 def _rows(coefficients_at: Coefficients, alpha_hat: FloatArray, beta_hat: FloatArray) -> Rows:
-    """Return the coefficients in rows; multiplied by z if their degree is odd."""
-    ascending = [coefficient.ravel() for coefficient in coefficients_at(alpha_hat, beta_hat)]
-    return ascending if len(ascending) % 2 else [np.zeros_like(ascending[0]), *ascending]
+    """Return the coefficients in rows."""
+    return [coefficient.ravel() for coefficient in coefficients_at(alpha_hat, beta_hat)]
 
 
 def _roots(rows: Rows) -> ComplexArray:
@@ -139,7 +139,7 @@ def _touching_planes(
         reach = each[:, -1] - each[:, 0]
         beside = middles.copy()
         beside[k] += reach
-        changed = _changed(_rows(coefficients_at, *beside), p, q, STEPS)
+        changed = _changed(_rows(coefficients_at, *beside), p, q, STEPS_BESIDE)
         slopes = (np.stack(changed) - [p, q]) / reach
         planes[:, 1 + k] = np.where(np.isfinite(slopes), slopes, 0)
     planes[:, 0] = [p, q] - planes[:, 1] * middles[0] - planes[:, 2] * middles[1]
@@ -159,9 +159,10 @@ def _followed(
 
 
 def _real_leads(z: ComplexArray) -> FloatArray:
-    """Return the largest of all roots z, shape (roots, points), of each point; nan where it is not real."""
-    largest = largest_in_upper_half(z)
-    return np.where(largest.imag <= CONVERGED * np.abs(largest), largest.real, np.nan)
+    """Return the largest of the real ones of all roots z, shape (roots, points), of each point; nan if none is real."""
+    real = np.where(np.abs(z.imag) <= CONVERGED * np.abs(z), z.real, 0)
+    largest = np.take_along_axis(real, np.argmax(np.abs(real), axis=0)[np.newaxis], axis=0)[0]
+    return np.where(largest != 0, largest, np.nan)
 
 
 def _followed_alone(rows: Rows, z: FloatArray) -> ComplexArray:
@@ -191,27 +192,41 @@ def _followed_factors(rows: Rows, p: FloatArray, q: FloatArray) -> tuple[FloatAr
 
     z is nan where the factor is not settled, or where z is not proven to be the largest of all roots.
     """
-    p, q, settled = _settled(rows, p, q, STEPS)
+    p, q, rest, settled = _settled(rows, p, q, STEPS)
+    z = _larger_if_largest(p, q, rest, settled)
     late = np.flatnonzero(~settled)
     if late.size:
-        p[late], q[late], settled[late] = _settled([row[late] for row in rows], p[late], q[late], MORE_STEPS)
-    z = np.empty(p.size, complex)
-    half = 0.5 * p
-    discriminant = half * half - q
-    largest_quadratic_root(half, discriminant, z)
-    size = np.sqrt(np.where(discriminant < 0, q, z.real * z.real))
-    z[~(settled & _rest_within(rows, p, q, size))] = np.nan
+        p[late], q[late], rest, settled = _settled([row[late] for row in rows], p[late], q[late], MORE_STEPS)
+        z[late] = _larger_if_largest(p[late], q[late], rest, settled)
     return p, q, z
 
 
-def _settled(rows: Rows, p: FloatArray, q: FloatArray, steps: int) -> tuple[FloatArray, FloatArray, BoolArray]:
-    """Return p and q after some steps, and where the last was so small that they are exact to rounding."""
+def _larger_if_largest(p: FloatArray, q: FloatArray, rest: Rows, settled: BoolArray) -> ComplexArray:
+    """Return the larger root z of settled factors, Im >= 0; nan where the rest, descending, has a larger one."""
+    z = np.empty(p.size, complex)
+    half = 0.5 * p
+    largest_quadratic_root(half, half * half - q, z)
+    size = np.sqrt(np.maximum(q, z.real * z.real))  # q of a pair, and z^2 of two real ones, is the larger
+    z[~(settled & _all_within(rest, size))] = np.nan
+    return z
+
+
+def _settled(rows: Rows, p: FloatArray, q: FloatArray, steps: int) -> tuple[FloatArray, FloatArray, Rows, BoolArray]:
+    """Return p and q after some steps and one more with the slopes of the last, the rest, and where all are settled.
+
+    The rest is the quotient before that one more, descending.
+    """
     p, q = _changed(rows, p, q, steps - 1)
-    dp, dq = _bairstow_step(rows, p, q)
+    b = _divided(rows, p, q)
+    slopes = _slopes(b, p, q)
+    dp, dq = _corrections(b, slopes)
+    p, q = p + dp, q + dq
+    *rest, b_1, b_0 = _divided(rows, p, q)
+    dp, dq = _corrections([b_1, b_0], slopes)
     p, q = p + dp, q + dq
     square = p * p + np.abs(q)  # of about the size of the roots
-    settled: BoolArray = (dp * dp <= CONVERGED**2 * square) & (np.abs(dq) <= CONVERGED * square)
-    return p, q, settled
+    settled: BoolArray = (dp * dp <= STILL**2 * square) & (np.abs(dq) <= STILL * square)
+    return p, q, rest, settled
 
 
 def _changed(rows: Rows, p: FloatArray, q: FloatArray, steps: int) -> tuple[FloatArray, FloatArray]:
@@ -223,16 +238,27 @@ def _changed(rows: Rows, p: FloatArray, q: FloatArray, steps: int) -> tuple[Floa
 
 
 def _bairstow_step(rows: Rows, p: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return Newton's corrections of p and q for z^2 + p z + q to divide the polynomials; ascending coefficients.
+    """Return Newton's corrections of p and q for z^2 + p z + q to divide the polynomials; ascending coefficients."""
+    b = _divided(rows, p, q)
+    return _corrections(b, _slopes(b, p, q))
+
+
+def _slopes(divided: Rows, p: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return d_1, d_2 and d_3 by their determinant, which make corrections of a remainder.
 
     Division leaves b_1 (z + p) + b_0, and that of the quotient d_1, d_2, d_3 the same way. Both b vanish where
     d_2 dp + d_3 dq = b_1, d_1 dp + d_2 dq = b_0 (J. Stoer and R. Bulirsch, Introduction to Numerical Analysis, 5.8).
     """
-    b = _divided(rows, p, q)
-    *_, d_3, d_2, d_1 = _divided(b[-2::-1], p, q)
-    b_1, b_0 = b[-2:]
-    determinant = d_2 * d_2 - d_1 * d_3
-    return (b_1 * d_2 - b_0 * d_3) / determinant, (b_0 * d_2 - b_1 * d_1) / determinant
+    *_, d_3, d_2, d_1 = _divided(divided[-2::-1], p, q)
+    scale = 1 / (d_2 * d_2 - d_1 * d_3)
+    return d_1 * scale, d_2 * scale, d_3 * scale
+
+
+def _corrections(divided: Rows, slopes: tuple[FloatArray, FloatArray, FloatArray]) -> tuple[FloatArray, FloatArray]:
+    """Return the corrections of p and q that a remainder and slopes ask for."""
+    *_, b_1, b_0 = divided
+    by_1, by_2, by_3 = slopes
+    return b_1 * by_2 - b_0 * by_3, b_0 * by_2 - b_1 * by_1
 
 
 def _divided(ascending: Rows, p: FloatArray, q: FloatArray) -> list[FloatArray]:
@@ -247,11 +273,6 @@ def _divided(ascending: Rows, p: FloatArray, q: FloatArray) -> list[FloatArray]:
     return quotient
 
 
-def _rest_within(rows: Rows, p: FloatArray, q: FloatArray, size: FloatArray) -> BoolArray:
-    """Return whether all roots but the factor's have a smaller modulus, by a margin."""
-    return _all_within(_divided(rows, p, q)[:-2], size)
-
-
 def _all_within(descending: Rows, size: FloatArray) -> BoolArray:
     """Return whether all roots of polynomials have a smaller modulus than a size, by a margin."""
     rest = list(descending)  # of (size z), divided by size^degree
@@ -261,8 +282,12 @@ def _all_within(descending: Rows, size: FloatArray) -> BoolArray:
         rest[k] *= power
         power = power * scale
     within = np.full(size.shape, True)
-    while len(rest) > 1:
+    while len(rest) > 3:
         ratio = rest[-1] / rest[0]
         within &= np.abs(ratio) < 1
         rest = [one - ratio * other for one, other in zip(rest[:-1], rest[:0:-1], strict=True)]
+    first, *between, last = rest  # of degree one or two: without a division
+    within &= np.abs(last) < np.abs(first)
+    for middle in between:
+        within &= np.abs(middle) < np.abs(first + last)
     return within

@@ -36,7 +36,7 @@ from bezstab.stability.arrays import BoolArray, FloatArray
 from bezstab.stability.boundary_locus import Arc, Bounds, bounds_of, feedback_coefficients
 from bezstab.stability.closed_loop import spectral_radius
 from bezstab.stability.line_slices import RIM, rim_radius
-from bezstab.stability.pencils import Pencil, pencil_of, roots_in_mu
+from bezstab.stability.pencils import Pencil, deadbeat_mu, pencil_of
 from bezstab.stability.plane_cells import Edges, plane_shape
 from bezstab.stability.plane_checks import check_plane
 from bezstab.stability.plane_pencils import plane_pencil_of
@@ -99,6 +99,7 @@ class Region:
 def region(method: Method, level: float = 1.0) -> Region:
     """Return the region |z_p| < level, 0 < level <= 1; area and extent are good to about 1e-12.
 
+    Where it grows without limit as the level goes to one, next to one they are good to about 1e-15 / (1 - level).
     Dimensionless; from the boundary locus of paper Eq. 17, held against slices that share nothing with it
     (self_checks). InputError for another level; NumericalError if they disagree, or its edges leave a gap, on a finer
     sampling of the locus as well: not found is an edge on which several roots have |z| = level, or one so short, where
@@ -228,7 +229,7 @@ def _view(pencil: Pencil, bounds: Bounds) -> Extent:
     ends = np.array([end for interval in bounds.intervals for end in interval if abs(end) < off_rim])
     shapely = [feedback_coefficients(np.full(len(ends), end), ends) for end in ends]
     if pencil.steps == 1:
-        deadbeat = roots_in_mu(pencil, np.zeros(1, complex))[:, 0]
+        deadbeat = deadbeat_mu(pencil)
         deadbeat = deadbeat[np.abs(deadbeat) < off_rim]
         shapely.append(feedback_coefficients(deadbeat, deadbeat.conj()))
     for arc in bounds.arcs:

@@ -33,7 +33,7 @@ from bezstab.stability.line_slices import (
     slices,
     turning_radii,
 )
-from bezstab.stability.pencils import Pencil, roots_in_mu
+from bezstab.stability.pencils import Pencil, deadbeat_mu
 
 PANELS = 8  # with as many nodes, 64 lines over what the region covers: each costs 5 to 20 us, a region 20 to 500 ms
 NODES = 8  # of Gauss and Legendre on a panel
@@ -128,8 +128,7 @@ def _check_islands(pencil: Pencil, level: float, bounds: Bounds) -> None:
     """Raise NumericalError unless each simple real zero of R lies in a real interval: there every pole is zero."""
     if pencil.steps > 1:
         return
-    zeros = roots_in_mu(pencil, np.zeros(1, complex))[:, 0]
-    zeros = zeros[np.isfinite(zeros)]
+    zeros = deadbeat_mu(pencil)
     for zero in zeros[np.abs(zeros.imag) <= REAL_ZERO * np.abs(zeros)].real.tolist():
         slope = abs(float(polyval(zero, polyder(pencil.table[0]))))
         if slope * WELL_WIDE * abs(zero) > level * abs(float(polyval(zero, pencil.table[1]))):

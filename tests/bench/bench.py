@@ -254,6 +254,7 @@ def maps_of_other_kinds() -> Iterator[Line]:
         lookup("verlet-kdk"): "second order, two evaluations",
         lookup("hht"): "second order, three roots",
         Method("Beeman", recipe(RECIPES["beeman"]), "Beeman, J. Comput. Phys. 20, 1976"): "a recipe, four roots",
+        second_order("B2 and B3"): "a recipe, five roots",
         second_order("AB3 and B3"): "a recipe, six roots",
         Method("B4 recipe", second_order_form(lookup("B4").scheme), "B4 in x, v, a"): "a recipe that spells out B4",
     }

@@ -162,6 +162,17 @@ def test_levels_are_of_the_mechanism_at_rest(tmp_path: Path) -> None:
     assert (at_rest["z_abs_below"], at_rest["speed"], at_rest["area_moving"]) == (0.9, None, None)
 
 
+@pytest.mark.parametrize("name", ["radau3", "hht"])
+def test_the_map_of_an_unbounded_region_holds_its_best_point(name: str, tmp_path: Path) -> None:
+    """Radau's is the corner of the map's window; that of HHT lies beyond everything else that there is to see."""
+    options = ("--figure", "none", "--table", "npz", "--quality", "fast", "-o", str(tmp_path))
+    (row,) = rows("region", "--method", name, *options)
+    (path,) = tmp_path.iterdir()
+    shown = arrays(path)
+    for key in ("alpha_hat", "beta_hat"):
+        assert shown[key].min() < float(str(row[f"best_{key}"])) < shown[key].max()
+
+
 def test_quality_is_points_per_axis(tmp_path: Path) -> None:
     run("region", "--quality", "fast", "--figure", "none", "--table", "npz")
     assert len(arrays(tmp_path / "region_B4.npz")["z_abs"]) == 50**2
@@ -204,5 +215,5 @@ def test_region_and_methods_say_what_has_no_limit() -> None:
     assert "unbounded" in run(*command).stdout
     assert "all (proven for any α, β)" in run(*command).stdout
     text = run("methods", "am3").stdout
-    assert "critical damping limit       6" in text
-    assert "unconditional damping ratio  none" in text
+    assert "critical damping limit        6" in text
+    assert "unconditional damping ratio   none" in text

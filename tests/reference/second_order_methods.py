@@ -30,6 +30,11 @@ RECIPES = {
         "a1": "acceleration(x1, predicted)",
         "v1": "v0 + 1/3 a1 + 5/6 a0 - 1/6 a[-1]",
     },
+    "B2 and B3": {
+        "a0": "acceleration(x0, v0)",
+        "x1": "x0 + 3/2 v0 - 1/2 v[-1]",
+        "v1": "v0 + 19/12 a0 - 2/3 a[-1] + 1/12 a[-2]",
+    },
     "AB3 and B3": {
         "a0": "acceleration(x0, v0)",
         "x1": "x0 + 23/12 v0 - 16/12 v[-1] + 5/12 v[-2]",

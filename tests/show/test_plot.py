@@ -123,6 +123,21 @@ def test_the_arrow_ends_inside_the_region(name: str, h: float | None) -> None:
     assert shape.contains(across * alpha_max, up * beta_max)
 
 
+@pytest.mark.parametrize("beta_hat", [5.4, 5.1, 4.7])
+def test_the_word_hides_no_point(beta_hat: float) -> None:
+    """The trapezoidal rule's robust choice lies where the word would, so the word goes below it."""
+    axes = Figure().add_subplot()
+    axes.set(xlim=(0, 6), ylim=(0, 6))
+    axes.plot([4.66], [5.41], "o")
+    axes.plot([4.66], [beta_hat], "*")
+    arrow = plot.goes_on(region(lookup("trapezoid")), axes)
+    assert arrow is not None
+    across, up = arrow.xyann
+    assert across == 0.78
+    assert min(abs(up - 5.41 / 6), abs(up - beta_hat / 6)) >= 0.06
+    assert arrow.xy == (0.99, 0.99)
+
+
 def test_a_bounded_or_empty_region_does_not_go_on() -> None:
     axes = Figure().add_subplot()
     for shape in (region(lookup("B4")), region(lookup("AB4"), 0.1)):

@@ -4,7 +4,11 @@ import numpy as np
 import pytest
 
 from bezstab.methods import Method, closed_loop_at, lookup, recursion_verdict
-from bezstab.stability import critical_damping_limit, unconditional_damping_ratio
+from bezstab.stability import (
+    critical_damping_limit,
+    exact_critical_damping_limit,
+    unconditional_damping_ratio,
+)
 from bezstab.stability.damping_limits import _limit_at
 from tests.methods.kinds import SECOND_ORDER
 from tests.reference.companion_poles import radius
@@ -45,6 +49,27 @@ RATIOS = {"bdf3": 0.069193, "bdf4": 0.286497, "bdf5": 0.617863, "bdf6": 0.951917
 @pytest.mark.parametrize("name", LIMITS)
 def test_limits_at_critical_damping_are_the_known_numbers(name: str) -> None:
     assert critical_damping_limit(lookup(name)) == pytest.approx(float(LIMITS[name]), rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    "name", ["am3", "am4", "am5", "am6", "B4", "B8", "AB3", "AB8", "RK2", "SIE", "B4@2", "AB4@1/3"]
+)
+def test_a_rational_limit_is_given_exactly(name: str) -> None:
+    limit = exact_critical_damping_limit(lookup(name))
+    assert limit
+    assert float(limit) == critical_damping_limit(lookup(name))
+    at_limit = closed_loop_at(lookup(name), 2 * limit, limit**2)
+    assert 0 in (sum(at_limit), sum((-1) ** k * c for k, c in enumerate(at_limit)))  # a root 1 or -1
+
+
+def test_the_limits_of_adams_moulton_methods_are_exact_numbers() -> None:
+    found = {name: exact_critical_damping_limit(lookup(name)) for name in IMPLICIT_LIMITS}
+    assert found == IMPLICIT_LIMITS
+
+
+@pytest.mark.parametrize("name", ["RK3", "RK4", "SYM", "bdf2", "average-acceleration"])
+def test_a_limit_that_is_irrational_or_none_has_no_rational_number(name: str) -> None:
+    assert exact_critical_damping_limit(lookup(name)) is None
 
 
 @pytest.mark.parametrize(("stages", "limit"), [("1/27; 0 4/27", F(9, 2)), ("1/8", 4)])

@@ -7,7 +7,7 @@ from numpy.polynomial.polynomial import polyval2d
 from bezstab.errors import NumericalError
 from bezstab.methods import LinearMultistep, Method, RungeKutta, lookup, steps
 from bezstab.stability import pencil_of, poles, roots_in_z
-from bezstab.stability.pencils import has_infinite_root, moduli_in_z, roots_in_mu
+from bezstab.stability.pencils import deadbeat_mu, has_infinite_root, moduli_in_z, roots_in_mu
 from tests.methods.kinds import EXPLICIT
 
 NAMES = [*EXPLICIT, "RK4@5", "SYM@1/3"]
@@ -107,3 +107,11 @@ def test_branch_points_of_a_rational_function_are_its_values_where_it_is_flat_an
     values = (1 + flat / 3) / (1 - 2 * flat / 3 + flat**2 / 6)
     found = np.sort(pencil_of(lookup("radau3")).branch_points_in_z.real)
     assert found == pytest.approx(np.sort([*values, 0]), abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("name", "zero"), [("radau3", -3), ("sdirk2", -1 - 2**0.5), ("implicit-midpoint", -2), ("RK1", -1)]
+)
+def test_of_a_numerator_of_lower_degree_too_the_zeros_are_found(name: str, zero: float) -> None:
+    (found,) = deadbeat_mu(pencil_of(lookup(name)))
+    assert found == pytest.approx(zero, rel=1e-14)

@@ -17,7 +17,7 @@ from tests.reference.fifty_digit_poles import modulus_from_p
 from tests.reference.least_moduli import least_modulus
 from tests.reference.region_areas import region_area
 from tests.reference.second_order_methods import as_second_order
-from tests.reference.sliced_areas import sliced_area, stable
+from tests.reference.sliced_areas import proven_sliced_integral, sliced_area, stable
 from tests.stability.made_methods import multistep, runge_kutta
 
 EPS = float(np.finfo(float).eps)
@@ -465,6 +465,39 @@ def test_a_theta_method_has_the_area_of_two_disc_halves(theta: str, level: float
         return
     rho = level / ((1 - t) ** 2 - (level * t) ** 2)
     assert region(method, level).area == pytest.approx(4 * rho**3, rel=1e-12)
+
+
+NEXT_TO_ONE = [0.999, 0.99995, 0.999999]
+
+
+@pytest.mark.parametrize(
+    ("name", "level"),
+    [
+        *(("trapezoid", level) for level in NEXT_TO_ONE),
+        ("average-acceleration", 0.99995),
+        pytest.param("average-acceleration", 0.999999, marks=pytest.mark.slow),
+    ],
+)
+def test_next_to_one_a_half_plane_is_a_disc_to_rounding_of_one_minus_the_level(name: str, level: float) -> None:
+    # the disc above with theta = 1/2, which is as large as 2 / (1 - level)
+    r = Fraction(str(level))
+    exact = float(4 * (4 * r / (1 - r**2)) ** 3)
+    assert region(lookup(name), level).area == pytest.approx(exact, rel=1e-15 / (1 - level))
+
+
+@pytest.mark.parametrize(
+    ("name", "level"),
+    [
+        pytest.param(name, level, marks=[] if level == 0.99995 else pytest.mark.slow)
+        for name in ("gauss4", "average-acceleration", "verlet-kdk")
+        for level in NEXT_TO_ONE
+    ],
+)
+def test_next_to_one_the_area_is_that_of_slices_whose_ends_are_proven(name: str, level: float) -> None:
+    """verlet-kdk's has a spike of length 8 / (1 - level) next to alpha_hat = 4."""
+    integral = proven_sliced_integral(lookup(name), level, panels=10, widened=1.01)
+    assert integral.error < 1e-8 * integral.value
+    assert region(lookup(name), level).area == pytest.approx(integral.value, rel=2e-8)
 
 
 @pytest.mark.parametrize(
