@@ -8,7 +8,7 @@ import pytest
 from bezstab.errors import InputError
 from bezstab.evidence import Likeness, probed_pole, recursion_likenesses
 from bezstab.evidence.linear_prediction import SPREAD
-from bezstab.evidence.probed_recursions import EQUATIONS
+from bezstab.evidence.probed_recursions import AT_THE_KICK, EQUATIONS
 from bezstab.methods import REGISTRY, lookup
 from bezstab.stability import FloatArray, poles
 from tests.reference.sampled_responses import of_poles
@@ -114,7 +114,7 @@ def test_of_several_responses_the_one_that_shows_most_counts() -> None:
 
 
 def test_a_method_whose_recursion_is_too_long_is_not_excluded() -> None:
-    c = response("SYM", 0.5, 0.1, rows=2 + EQUATIONS)
+    c = response("SYM", 0.5, 0.1, rows=2 + EQUATIONS + AT_THE_KICK)
     like = recursion_likenesses(c, ALL, HALF, TENTH, minus=0 * c)
     names = {one.method.name for one in by_recursion(like)}
     assert {"SYM", "RK4"} <= names
