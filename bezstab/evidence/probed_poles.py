@@ -145,7 +145,9 @@ class Likeness:
     reason: str = ""
 
     def __repr__(self) -> str:
-        fit = self.reason or ("fits" if self.fits else "does not fit")
+        if self.reason:
+            return f"Likeness({self.method.name} {self.reason})"
+        fit = "fits" if self.fits else "does not fit"
         return f"Likeness({self.method.name} {fit}: {self.distance:.3g} of {self.allowed:.3g} allowed)"
 
     @property

@@ -155,6 +155,19 @@ def test_a_point_in_another_unit_is_noticed() -> None:
     assert "this behaves like SYM at (0.666667, 0.25)" in right.stdout
 
 
+def test_a_method_from_a_file_is_judged_by_its_recursion_too() -> None:
+    file = str(PAGE.parent.parent / "methods" / "houbolt.toml")
+    write("log.csv", c=response(file, 0.5, 0.2, 11))
+    write("zero.csv", c=np.zeros(11))
+    _, own, other = rows(
+        *shlex.split(f"probe log.csv --minus zero.csv --alpha 1/2 --beta 0.2 --method RK4 --method {file}")
+    )
+    assert (own["method"], own["fits"], own["judged_by"]) == ("Houbolt", True, "recursion")
+    assert isinstance(own["distance"], float)
+    assert own["distance"] < 1e-6
+    assert (other["method"], other["judged_by"]) == ("RK4", "recursion")
+
+
 def test_rows_that_can_test_no_recursion_still_exclude_methods() -> None:
     """A log of a blow-up, grown to a metre within five rows, of which the last is not linear any more."""
     c = 1e-8 * of_poles(poles(lookup("RK4"), 8.0, 2.0), 5, seed=1)

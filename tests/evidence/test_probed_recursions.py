@@ -80,6 +80,20 @@ def test_poles_that_a_motion_shifts_are_no_obstacle() -> None:
     assert nearest(like) & {"SYM"}
 
 
+def test_the_row_of_the_kick_need_not_follow() -> None:
+    """As where a simulator remembers an acceleration of before it, which later rows have forgotten."""
+    c = np.append(2e-4, response("trapezoid", 2.0, 1.5, rows=2 + EQUATIONS))
+    like = recursion_likenesses(c, ALL, Fraction(2), Fraction(3, 2), minus=0 * c)
+    assert nearest(like) & {"trapezoid"}
+    assert like[0].distance < 1e-6
+
+
+def test_few_rows_of_one_run_are_not_tested_but_of_two() -> None:
+    c = response("SYM", 5.0, 2.0, rows=7)
+    assert by_recursion(recursion_likenesses(c, ALL, Fraction(5), Fraction(2))) == []
+    assert by_recursion(recursion_likenesses(c, ALL, Fraction(5), Fraction(2), minus=0 * c)) != []
+
+
 @pytest.mark.parametrize(("name", "every"), [("SYM", 1), ("verlet-half", 1), ("SYM", 2)])
 def test_a_pole_at_zero_is_seen_in_the_first_row_and_held_against_nothing(name: str, every: int) -> None:
     """At alpha_hat = 1 symplectic Euler has poles 1 - beta_hat and 0: the first row alone says where it began."""
