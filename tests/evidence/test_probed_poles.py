@@ -362,7 +362,7 @@ def test_the_true_method_is_named_whatever_made_the_log(seed: int) -> None:
 
     Some four fifths show a pole, and of the others most follow their method's recursion. What is left has grown to a
     metre within two to nine rows, or it is one run that shows next to nothing but what the motion forces: there the
-    true method is not excluded, while half of those logs exclude others. The same is asked of the starts of some.
+    true method is not excluded, while most of those logs exclude others. The same is asked of the starts of some.
     """
     counts: Counter[str] = Counter()
     of_starts: Counter[str] = Counter()
@@ -374,7 +374,7 @@ def test_the_true_method_is_named_whatever_made_the_log(seed: int) -> None:
             of_starts[outcome(start, probed_pole(start.c, start.minus), start.turning * H)] += 1
     assert set(counts) <= {"first", "among", "not excluded", "nothing is excluded"}
     assert set(of_starts) <= {"first", "among", "not excluded", "nothing is excluded"}
-    assert counts["first"] >= 370
+    assert counts["first"] >= 340
     assert counts["nothing is excluded"] <= 16
 
 
