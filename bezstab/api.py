@@ -263,8 +263,8 @@ def probe(
     `likenesses` compares each of `methods` [all built-in ones], the nearest first; without one `points` are those at
     which `methods` have the pole. `every` steps of h (s) lie between two samples. `turning` is how fast the directions
     of the constraints turn, in 1/s, and needs h. Where no pole can be told `found.reason` says why, and with a point
-    methods are judged by their recursions, those left out that are too long for the samples. InputError unless point,
-    shapes and h fit together. Method: linear prediction (Prony).
+    methods are judged by their recursions; one that the samples cannot test fits unless they exclude it. InputError
+    unless point, shapes and h fit together. Method: linear prediction (Prony).
     """
     has_point = not (alpha_hat is None and beta_hat is None and alpha is None and beta is None)
     point = _plane_point(alpha_hat, beta_hat, alpha, beta, h) if has_point else None

@@ -45,7 +45,7 @@ NAMED = 3
 EXCLUDED_SHOWN = 5
 """Methods that do not fit and are shown where people read, the nearest; rows for programs have all."""
 
-FASTER = 10.0
+FASTER = 3.0
 """Times what is allowed for: so much faster a mechanism may turn than somebody guessed."""
 
 
@@ -147,8 +147,8 @@ def probe(
     LOG is a CSV file, or - for standard input, with a row for each step from the kick on. Prints the pole with which
     each column's error decays; with --alpha and --beta how far it is from every method's, the nearest first (of those
     that do not fit a few; JSON and CSV have all); without them, the α and β that it means under --method. Where no
-    pole can be told, --alpha and --beta also tell which methods' own recursions the rows follow. What cannot be told is
-    said, with exit status 3.
+    pole can be told, --alpha and --beta also tell which methods' own recursions the rows follow, and of too few rows
+    for that, which methods they exclude. What cannot be told is said, with exit status 3.
 
     Example: bezstab probe log.csv --minus unkicked.csv --alpha 1 --beta 0.25
     """
@@ -197,9 +197,8 @@ def probe(
             values = data.values[:, group]
             like = recursion_likenesses(values, compared_methods, *point, subtracted, between=between, turned=turned)
         if point and like:
-            possible = [method for method in compared_methods if between(method) is not None]
-            _compare(answers, name, like, possible, point)
-        else:
+            _compare(answers, name, like, point)
+        if not any(_is_tested(one) for one in like):
             reasons.append(f"{name}: {found.reason}")
     _show(answers, form, in_seconds=step is not None)
     if len(reasons) == len(groups):
@@ -220,21 +219,27 @@ def _compare(
     answers: Answers,
     column_name: str,
     like: "Sequence[Likeness]",
-    methods: Sequence[Method],
     point: tuple[Fraction, Fraction],
 ) -> None:
     """Add how far a column is from each method at a point, and what follows."""
     from bezstab.show import likeness_row
 
     answers.likenesses.extend(likeness_row(column_name, one) for one in like)
+    if not any(_is_tested(one) for one in like):
+        answers.sentences.append(f"{column_name}: {exclusion_sentence(like, point)}")
+        return
     answers.sentences.append(f"{column_name}: {likeness_sentence(like, point)}")
-    judged = {one.method.name for one in like}
-    too_long = [method.name for method in methods if method.name not in judged]
-    if too_long and like[0].judged_by == "recursion":
-        these = _listed(too_long) if len(too_long) <= NAMED else f"{len(too_long)} methods, such as {too_long[0]},"
+    possible = [one.method.name for one in like if one.fits and not _is_tested(one)]
+    if possible:
+        these = _listed(possible) if len(possible) <= NAMED else f"{len(possible)} methods, such as {possible[0]},"
         answers.sentences.append(
-            f"{column_name}: {these} may have made it too: it has too few rows for such a recursion."
+            f"{column_name}: {these} may have made it too: it has too few rows to test such a recursion."
         )
+
+
+def _is_tested(one: "Likeness") -> bool:
+    """Return whether a log has been held against a method, not only asked whether it excludes it."""
+    return one.judged_by != "exclusion"
 
 
 def _invert(
@@ -279,10 +284,12 @@ def _show(answers: Answers, form: Format, in_seconds: bool) -> None:
 
 
 def _nearest(likenesses: Sequence[Row]) -> list[Row]:
-    """Return of each column's methods, the nearest first, those that fit and a few that do not."""
+    """Return of each column's methods, the nearest first, those that fit and a few that do not; only tested ones."""
     shown: list[Row] = []
     excluded: Counter[object] = Counter()
     for row in likenesses:
+        if row["judged_by"] == "exclusion":
+            continue
         excluded[row["column"]] += not row["fits"]
         if row["fits"] or excluded[row["column"]] <= EXCLUDED_SHOWN:
             shown.append(row)
@@ -292,7 +299,7 @@ def _nearest(likenesses: Sequence[Row]) -> list[Row]:
 def likeness_sentence(like: "Sequence[Likeness]", point: tuple[Fraction, Fraction]) -> str:
     """Return in words which methods a measured pole fits at a point, the nearest first, and which are excluded."""
     at = f"({float(point[0]):.6g}, {float(point[1]):.6g})"
-    fitting = [one for one in like if one.fits]
+    fitting = [one for one in like if one.fits and _is_tested(one)]
     excluded = [one for one in like if not one.fits]
     if not fitting:
         return _nothing_fits(like[0], at)
@@ -314,6 +321,20 @@ def likeness_sentence(like: "Sequence[Likeness]", point: tuple[Fraction, Fractio
         else:
             parts.append(f"{len(names)} others are excluded, the nearest {names[0]}, {excluded[0].distance:.1g} off")
     return "; ".join(parts) + "."
+
+
+def exclusion_sentence(like: "Sequence[Likeness]", point: tuple[Fraction, Fraction]) -> str:
+    """Return in words which methods are excluded by a log that can test none, and which may have made it."""
+    at = f"({float(point[0]):.6g}, {float(point[1]):.6g})"
+    possible = [one.method.name for one in like if one.fits]
+    excluded = [one.method.name for one in like if not one.fits]
+    told = f"these rows cannot test any method's recursion at {at}"
+    if not excluded:
+        return f"{told}, and exclude none of {len(like)} methods."
+    if len(excluded) <= len(possible):
+        return f"{told}, but exclude {_listed(excluded)}; any of {len(possible)} others may have made it."
+    others = f"{_listed(possible)} may have made it" if possible else "none is left"
+    return f"{told}, but exclude {len(excluded)} of {len(like)} methods; {others}."
 
 
 def _nothing_fits(nearest: "Likeness", at: str) -> str:

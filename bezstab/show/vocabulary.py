@@ -196,14 +196,19 @@ VOCABULARY: Mapping[str, Key] = {
     "samples": Key("integer", "Samples that the fit has used"),
     "distance": Key(
         "number",
-        "Distance of the fitted pole from that of the method, or by which share of themselves its poles must shift for "
-        "its recursion to explain the log",
+        "Distance of the fitted pole from that of the method; or by which share of themselves its poles must shift for "
+        "its recursion to explain the log; or, by exclusion, which share of a term its recursion leaves over at least",
         null=NOT_MEASURED,
     ),
     "judged_by": Key(
-        "text", "What in the log a method is held against, its pole or its recursion", values=("pole", "recursion")
+        "text",
+        "How a method is judged: by its pole, by its recursion, or, where the log can test neither, by whether it can "
+        "exclude the method; `reason` says so",
+        values=("pole", "recursion", "exclusion"),
     ),
-    "fits": Key("truth", "Whether the method agrees with the log within its uncertainty"),
+    "fits": Key(
+        "truth", "Whether the log may be the method's: agrees with it within its uncertainty, or cannot exclude it"
+    ),
     "column": Key("text", "Name of the column of the log"),
     "allowed": Key("number", "Largest distance that still fits"),
     "dominant": Key("truth", "Whether the method's nearest pole is its dominant one"),
