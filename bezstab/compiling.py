@@ -2,7 +2,7 @@
 
 import importlib.util
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any, TypeVar
 
 from bezstab.errors import InputError
@@ -54,6 +54,13 @@ def machine_code(function: Function) -> Function:
     """
     compiled: Function = compiler().njit(nogil=True, error_model="numpy")(function)
     return compiled
+
+
+def shared_with_machine_code(functions: Iterable[Callable[..., object]]) -> None:
+    """Let machine code call these functions as machine code; Python goes on calling them as they are."""
+    extending = importlib.import_module("numba.extending")
+    for function in functions:
+        extending.register_jitable(function)
 
 
 def cores() -> int:

@@ -26,6 +26,7 @@ from bezstab.mechanism import (
 from bezstab.mechanism.generated_code import (
     Moved,
     Pivot,
+    Sought,
     Stepper,
     Unpacked,
     Yielded,
@@ -237,6 +238,42 @@ def test_a_block_ends_at_a_state_that_python_has_to_judge() -> None:
     assert block(0.0, 0.0, 0.0, 0.0, 0, 9, memory, states, pivots, reached) == 3
     assert memory == [1000.0]
     assert reached == [3]
+
+
+def test_a_group_is_solved_by_what_a_stepper_is_given_for_its_number() -> None:
+    """Of v = -h q at the end of the step, which a generator takes from its argument and a block by a name."""
+    halving = Stepper(
+        arguments="state, solve",
+        opening=OPENING,
+        turn=(
+            Pivot("worst_pivot", ("1.0",)),
+            Sought(3, known=("q0",), guesses=("v0",), found=("v0",)),
+            Pivot("worst_pivot", ("worst_pivot", "worst")),
+            "q0 = q0 + h * v0",
+            Yielded(("q0", "v0"), ("v0",)),
+        ),
+    )
+
+    def solve(situation: tuple[float, ...], known: list[float], sought: list[float]) -> float:
+        start, k, h, two_alpha, beta_squared = situation
+        assert (start, h, two_alpha, beta_squared) == (0.0, 0.5, 1.0, 2.0)
+        sought[0] = -h * known[0]
+        return 0.5 - k / 8
+
+    run = compiled_source(generator_source(halving), math)["run"](0.0, 0.5, 1.0, 2.0, (1.0, 0.0), {3: solve})
+    assert [next(run)[::2] for _ in range(2)] == [((0.75, -0.5), 0.5), ((0.5625, -0.375), 0.375)]
+
+    def solve_in_block(
+        situation: tuple[float, ...], known: list[float], sought: list[float], inverse: list[float], counts: list[int]
+    ) -> float:
+        inverse[0], counts[0] = known[0], counts[0] + 1
+        return solve(situation, known, sought)
+
+    block = compiled_source(block_source(halving, 0.0, 1e9), math, {"solve_3": solve_in_block})["block"]
+    states, pivots, inverses, counts = [0.0] * 4, [0.0] * 2, ([0.0],), [0, 0]
+    assert block(0.0, 0.5, 1.0, 2.0, 0, 2, [1.0, 0.0], states, pivots, [0], inverses, counts) == 2
+    assert (states, pivots) == ([0.75, -0.5, 0.5625, -0.375], [0.5, 0.375])
+    assert (inverses, counts) == (([0.75],), [2, 0])
 
 
 @given(st.lists(st.sampled_from([1.0, 0.5, -2.0, 0.0, -0.0, math.inf, -math.inf, math.nan]), min_size=1, max_size=5))
