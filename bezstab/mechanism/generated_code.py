@@ -611,6 +611,22 @@ def single_step_source(stepper: Stepper) -> str:
 #                                                         if value < worst: worst = value
 #       k = k + 1                                         k = k + 1
 #       yield (q0, v0,), (...), worst_pivot               states[place + 0] = q0 ...
+#
+# Where steps vary each begins anew, at step 0 of a run of its own, with what it remembers in units of its own length:
+#
+#     def varying_block(times, lengths, ratios, ..., step, last, memory, states, ...):
+#      V_0_0 = memory[0]
+#      ...
+#      while step < last:
+#       start = times[step]
+#       h = lengths[step]
+#       ...
+#       ratio = ratios[step]                              to the length of the step before
+#       V_0_0 = ratio * V_0_0                             h v; what is h^2 a takes it twice
+#       k = 0
+#       ...                                               the same lines
+#       step = step + 1
+#       ...
 
 
 def block_source(stepper: Stepper, pivot_limit: float, size_limit: float) -> str:
@@ -624,27 +640,71 @@ def block_source(stepper: Stepper, pivot_limit: float, size_limit: float) -> str
     That of an implicit stepper has two arguments more, `inverses`, one for each of its groups, and `counts`, which it
     hands on, both changed at once: it calls solve_<number>(situation, known, sought, inverse, counts).
     """
-    groups = stepper.groups
+    before = [f"inverse_{number} = inverses[{place}]" for place, number in enumerate(stepper.groups)]
+    return _looped_source(
+        head="block(start, h, two_alpha, beta_squared, k",
+        before=[*before, *stepper.preparations],
+        counter="k",
+        stepper=stepper,
+        at_a_turn=[],
+        limits=(pivot_limit, size_limit),
+    )
+
+
+def varying_block_source(stepper: Stepper, powers: Sequence[int], pivot_limit: float, size_limit: float) -> str:
+    """Return the source of varying_block(times, lengths, ratios, gains, kinds, step, last, ...), the rest as `block`.
+
+    Of each step the first have its time and length, the ratio of its length to that of the step before, and its gains,
+    one after the other. `powers` are those of the length that are factors of what the stepper remembers: 0, 1 or 2. An
+    implicit stepper has inverses for each kind of step, which `kinds` number.
+    """
+    own = ["start = times[step]", "h = lengths[step]", "two_alpha = gains[2 * step]"]
+    own += ["beta_squared = gains[2 * step + 1]", "ratio = ratios[step]", "ratio_squared = ratio * ratio"]
+    own += [f"inverse_{number} = inverses[{place}][kinds[step]]" for place, number in enumerate(stepper.groups)]
+    factors = {1: "ratio", 2: "ratio_squared"}
+    scaled = [
+        f"{name} = {factors[power]} * {name}" for name, power in zip(stepper.remembered, powers, strict=True) if power
+    ]
+    return _looped_source(
+        head="varying_block(times, lengths, ratios, gains, kinds, step",
+        before=[],
+        counter="step",
+        stepper=stepper,
+        at_a_turn=[*own, *scaled, COUNT_FROM, *stepper.preparations],
+        limits=(pivot_limit, size_limit),
+    )
+
+
+def _looped_source(
+    head: str,
+    before: Sequence[str],
+    counter: str,
+    stepper: Stepper,
+    at_a_turn: Sequence[str],
+    limits: tuple[float, float],
+) -> str:
+    """Return the source of a function that takes many steps; some lines come before the first, some begin each turn."""
     lines = [f"{name} = memory[{place}]" for place, name in enumerate(stepper.remembered)]
-    lines += [f"inverse_{number} = inverses[{place}]" for place, number in enumerate(groups)]
-    lines += [*stepper.preparations, "row = 0", "place = 0", "while k < last:"]
+    lines += [*before, "row = 0", "place = 0", f"while {counter} < last:", *_indented(at_a_turn, 1)]
     for piece in stepper.turn:
-        lines += _indented(_block_lines(piece, pivot_limit, size_limit), 1)
+        lines += _indented(_block_lines(piece, counter, limits), 1)
     lines.append(" if not calm: break")
     lines += [f"memory[{place}] = {name}" for place, name in enumerate(stepper.remembered)]
-    lines.append("return k")
-    for_solving = ", inverses, counts" if groups else ""
-    head = f"def block(start, h, two_alpha, beta_squared, k, last, memory, states, pivots, reached{for_solving}):"
-    return "\n".join([head, *_indented(lines, 1)])
+    lines.append(f"return {counter}")
+    for_solving = ", inverses, counts" if stepper.groups else ""
+    return "\n".join([
+        f"def {head}, last, memory, states, pivots, reached{for_solving}):",
+        *_indented(lines, 1),
+    ])  # fmt: skip
 
 
-def _block_lines(piece: Piece, pivot_limit: float, size_limit: float) -> list[str]:
+def _block_lines(piece: Piece, counter: str, limits: tuple[float, float]) -> list[str]:
     """Return the lines of the block that stand for a piece."""
     match piece:
         case Pivot():
             return _compared_lines(piece)
         case Yielded():
-            return [COUNT, *_storing_lines(piece, pivot_limit, size_limit)]
+            return [f"{counter} = {counter} + 1", *_storing_lines(piece, limits), f"reached[0] = {counter}"]
         case str() | Moved():
             return _generator_lines(piece)
         case Sought(number):
@@ -660,9 +720,10 @@ def _compared_lines(pivot: Pivot) -> list[str]:
     return lines
 
 
-def _storing_lines(step: Yielded, pivot_limit: float, size_limit: float) -> list[str]:
+def _storing_lines(step: Yielded, limits: tuple[float, float]) -> list[str]:
     """Return what stores a step, and says whether it is calm: far from a breakdown."""
     size = len(step.state)
+    pivot_limit, size_limit = limits
     return [
         *(f"states[place + {i}] = {entry}" for i, entry in enumerate(step.state)),
         "pivots[row] = worst_pivot",
@@ -671,7 +732,6 @@ def _storing_lines(step: Yielded, pivot_limit: float, size_limit: float) -> list
         f"calm = worst_pivot > {pivot_limit!r} and total < {size_limit!r}",
         "row = row + 1",
         f"place = place + {size}",
-        "reached[0] = k",
     ]
 
 
