@@ -12,6 +12,9 @@ COMPILED_CHOICE = "BEZSTAB_COMPILED"
 
 NEEDS_NUMBA = "compiled runs need an optional package: pip install 'bezstab[fast]'"
 
+INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+"""Options for functions that machine code alone calls: what Python needs to call one takes as long to compile again."""
+
 Function = TypeVar("Function", bound=Callable[..., object])
 
 
@@ -60,7 +63,7 @@ def shared_with_machine_code(functions: Iterable[Callable[..., object]]) -> None
     """Let machine code call these functions as machine code; Python goes on calling them as they are."""
     extending = importlib.import_module("numba.extending")
     for function in functions:
-        extending.register_jitable(function)
+        extending.register_jitable(**INNER)(function)
 
 
 def cores() -> int:

@@ -23,7 +23,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.compiling import check_numba, compiled_choice, compiler, numba_is_installed, shared_with_machine_code
+from bezstab.compiling import (
+    INNER,
+    check_numba,
+    compiled_choice,
+    compiler,
+    numba_is_installed,
+    shared_with_machine_code,
+)
 from bezstab.mechanism.compiled import (
     BLOWN_UP,
     SINGULAR,
@@ -58,6 +65,9 @@ WORTH_COMPILING = 10**6
 
 Both grow with the mechanism and with the evaluations of a step alike."""
 
+ITERATIONS_OF_A_SOLUTION = 4
+"""Evaluations that Newton's method usually takes for each of an implicit method's, or more."""
+
 CHEAPER_TOGETHER = 20
 """Times: what an evaluation costs in a batch of numpy, against one of a run alone in Python."""
 
@@ -68,10 +78,6 @@ CONSTANT = "float64, float64, float64, float64"
 VARYING = "float64[::1], float64[::1], float64[::1], float64[::1], int64[::1]"
 BLOCK_ARGUMENTS = "int64, int64, float64[::1], float64[::1], float64[::1], int64[::1]"
 """What a block is given of its steps, constant or varying ones, and after that; an implicit method has two more."""
-
-ITERATIONS_OF_A_SOLUTION = 4
-"""Evaluations that Newton's method takes for each of an implicit method's, at least."""
-
 
 Powers = tuple[int, ...] | None
 """Of steps that vary: the power of the length in each number that a step remembers. None if they are constant."""
@@ -162,9 +168,9 @@ def _machine_block(mechanism: Mechanism, method: Method, powers: Powers = None) 
         return math.sqrt(x)
 
     library = SimpleNamespace(
-        sin=numba.njit(checked_sin),
-        cos=numba.njit(checked_cos),
-        sqrt=numba.njit(checked_sqrt),
+        sin=numba.njit(**INNER)(checked_sin),
+        cos=numba.njit(**INNER)(checked_cos),
+        sqrt=numba.njit(**INNER)(checked_sqrt),
     )
     solvers = _machine_solvers(numba, mechanism, method, library)
     block = _block(mechanism, method, powers, library, solvers)
@@ -181,10 +187,10 @@ def _machine_solvers(numba: Any, mechanism: Mechanism, method: Method, library: 
     """Return the functions by which the block of an implicit method has its equations solved, by their names."""
     shared_with_machine_code(LOOPS)
     residuals = machine_residuals(mechanism, method, library)
-    tolerance = TOLERANCE * float(rounding_of(math))
+    tolerance = TOLERANCE * rounding_of(math)
 
     def solver(residual: Residual) -> Any:
-        real, complex_ = numba.njit(residual.real), numba.njit(residual.complex)
+        real, complex_ = numba.njit(**INNER)(residual.real), numba.njit(**INNER)(residual.complex)
         evaluations = residual.evaluations
 
         def solve(situation: Any, known: Any, sought: Any, inverse: Any, counts: Any) -> Any:
@@ -195,7 +201,7 @@ def _machine_solvers(numba: Any, mechanism: Mechanism, method: Method, library: 
                 raise ArithmeticError
             return pivot
 
-        return numba.njit(solve)
+        return numba.njit(**INNER)(solve)
 
     return {f"solve_{number}": solver(residual) for number, residual in residuals.items()}
 
@@ -203,7 +209,7 @@ def _machine_solvers(numba: Any, mechanism: Mechanism, method: Method, library: 
 @cache
 def _python_block(mechanism: Mechanism, method: Method, powers: Powers = None) -> Callable[..., int]:
     """Return the same function as Python takes it."""
-    tolerance = TOLERANCE * float(rounding_of(math))
+    tolerance = TOLERANCE * rounding_of(math)
 
     def solver(residual: Residual) -> Any:
         def solve(situation: Any, known: Any, sought: Any, inverse: Any, counts: Any) -> Any:

@@ -458,6 +458,10 @@ class Yielded:
     slope: tuple[str, ...]
 
 
+SITUATION = "(start, k, h, two_alpha, beta_squared)"
+"""Of a step: what the residuals of its equations depend on beside what is known and sought."""
+
+
 @dataclass(frozen=True)
 class Sought:
     """Variables that get what solves a group of equations, by its number; texts of what is known, and of guesses."""
@@ -478,9 +482,6 @@ class Sought:
 
 
 Piece = str | Pivot | Moved | Yielded | Sought
-
-SITUATION = "(start, k, h, two_alpha, beta_squared)"
-"""Of a step: what the residuals of its equations depend on beside what is known and sought."""
 
 COUNT_FROM = "k = 0"
 COUNT = "k = k + 1"

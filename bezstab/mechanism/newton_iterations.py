@@ -80,7 +80,7 @@ def complex_library(library: Any) -> Any:
 
 def rounding_of(library: Any) -> Any:
     """Return the spacing of numbers at one."""
-    return np.finfo(np.float64).eps if library in (math, np) else +library.eps
+    return float(np.finfo(np.float64).eps) if library in (math, np) else +library.eps
 
 
 def no_inverse(size: int) -> list[float]:
