@@ -129,14 +129,15 @@ def iterated(
 ) -> tuple[bool, Any, Any]:
     """Do what `newton_solution` says; return whether it converged, the least pivot, and the last correction's size."""
     size = len(sought)
-    guess, at_guess = list(sought), list(sought)
+    guess = list(sought)
     values, corrections = [0.0] * size, [0.0] * size
+    at_guess = values  # copied once they are known
     size_of_known = total_size(known)
     pivot: Any = 1.0
     last: Any = math.inf
     moved: Any = math.inf
     settled = False
-    inherited = True
+    inherited = True  # the inverse: from an earlier step, if there was one
     for iteration in range(MOST_ITERATIONS):
         pivot = residual(situation, known, sought, values)
         if iteration == 0:
