@@ -2,7 +2,7 @@
 
 import importlib.util
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any, TypeVar
 
 from bezstab.errors import InputError
@@ -11,6 +11,9 @@ COMPILED_CHOICE = "BEZSTAB_COMPILED"
 """The environment variable that says whether runs and maps are compiled: auto (also if it is not set), yes or no."""
 
 NEEDS_NUMBA = "compiled runs need an optional package: pip install 'bezstab[fast]'"
+
+INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+"""Options for functions that machine code alone calls: what Python needs to call one takes as long to compile again."""
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
@@ -54,6 +57,13 @@ def machine_code(function: Function) -> Function:
     """
     compiled: Function = compiler().njit(nogil=True, error_model="numpy")(function)
     return compiled
+
+
+def shared_with_machine_code(functions: Iterable[Callable[..., object]]) -> None:
+    """Let machine code call these functions as machine code; Python goes on calling them as they are."""
+    extending = importlib.import_module("numba.extending")
+    for function in functions:
+        extending.register_jitable(**INNER)(function)
 
 
 def cores() -> int:

@@ -35,7 +35,6 @@ from bezstab.cli.output import (
     progress,
     results_of_chunks,
     say,
-    say_what_stays_in_python,
     show_rows,
     show_text,
     write_figure,
@@ -159,7 +158,6 @@ def simulate(
     _check_number_of_steps(time, min(sequence) if sequence else h, method)
     if sequence:
         check_one_step(method)
-    say_what_stays_in_python([method])
     if figure != "none" or table != "none":
         output_directory(output)
     moving = mechanism.compiled_mechanism(mechanism.at_speed(mechanism.load_scene(scene), float(speed)))
@@ -324,7 +322,6 @@ def tradeoff(
     step_sizes = tuple(sorted({float(step) for step in steps or evidence.STEPS}))
     _check_swept_time(float(time), step_sizes, methods)
     times = recorded and evidence.read_times(recorded, [method.name for method in methods], step_sizes)
-    say_what_stays_in_python(methods)
     loaded_scene = at_speed(load_scene(scene), float(speed))
     reference = evidence.reference_motion(loaded_scene, step_sizes[0], float(time))
     given = None if point is None else (float(point[0]), float(point[1]))

@@ -137,14 +137,14 @@ def say(message: str) -> None:
 
 
 def say_what_stays_in_python(methods: Iterable[Method]) -> None:
-    """Say which of the methods run in Python although compiled runs are asked for."""
+    """Say which of the methods' batches run in Python although compiled runs are asked for."""
     from bezstab.mechanism import compiled_asked_for
 
     if not compiled_asked_for():
         return
     for method in methods:
         if implicit(method):
-            say(f"bezstab: --compiled yes: {method.name} solves equations in each step, and does so in Python")
+            say(f"bezstab: --compiled yes: {method.name} solves equations in each step: its batches run in Python")
 
 
 def for_reading(form: Format) -> bool:

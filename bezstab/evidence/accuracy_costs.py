@@ -13,7 +13,6 @@ from bezstab.evidence.reference_motions import ReferenceMotion
 from bezstab.mechanism import (
     Scene,
     Trajectory,
-    compiled_asked_for,
     compiled_mechanism,
     energy_balance,
     observe,
@@ -44,7 +43,7 @@ class Sweep:
     """The runs of one method: its steps and the duration (s), repeats of each timing, the motion to compare with.
 
     `point` holds alpha_hat and beta_hat, or with `physical` alpha and beta in 1/s; by default `choose` finds it.
-    `compiled` says whether machine code takes the steps of explicit methods, which changes nothing but their time.
+    `compiled` says whether machine code takes the steps, which changes nothing but their time.
     """
 
     method: Method = field(repr=False)
@@ -123,8 +122,8 @@ def sweep_compiled(
 ) -> bool:
     """Return whether the runs of a sweep are compiled: all or none, so that their times can be compared.
 
-    `runs_compiled` says so for each method's runs together, step sizes and duration in s. If that is asked for all
-    are, but for methods that solve equations; by default none are where one is not. InputError as `runs_compiled`.
+    `runs_compiled` says so for each method's runs together, step sizes and duration in s. By default
+    none are where one is not. InputError as `runs_compiled`.
     """
     mechanism = compiled_mechanism(scene)
     user_steps = repeats * sum(duration / h for h in step_sizes)
@@ -132,7 +131,7 @@ def sweep_compiled(
         runs_compiled(mechanism, method, round(user_steps / float(method.step_multiple)) * evaluations(method))
         for method in methods
     ]
-    return any(wanted) if compiled_asked_for() else all(wanted)
+    return all(wanted)
 
 
 def measured_runs(sweep: Sweep) -> dict[str, NDArray[np.generic]]:

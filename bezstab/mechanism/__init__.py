@@ -36,6 +36,7 @@ from bezstab.mechanism.compiled import (
 )
 from bezstab.mechanism.compiled_steps import (
     CHEAPER_TOGETHER,
+    batches_compiled,
     compiled_asked_for,
     runs_compiled,
 )
@@ -108,6 +109,7 @@ __all__ = [
     "acceleration_function",
     "acceleration_jacobians",
     "at_speed",
+    "batches_compiled",
     "compiled_asked_for",
     "compiled_mechanism",
     "compiled_source",

@@ -1,7 +1,7 @@
 """A mechanism: a scene with its equations of motion, and the functions that are generated and compiled from them."""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -31,6 +31,7 @@ from bezstab.mechanism.newton_iterations import (
     complex_library,
     newton_solution,
     newton_solutions,
+    no_inverse,
     rounding_of,
 )
 from bezstab.mechanism.scenes import Scene
@@ -126,8 +127,8 @@ def compiled_single_step(mechanism: Mechanism, method: Method) -> Callable[..., 
     return single_step
 
 
-Solver = Callable[..., tuple[Sequence[Any], Any]]
-"""solve(number of the group, start, k, h, two_alpha, beta_squared, known, guess): the unknowns, and the least pivot."""
+Solver = Mapping[int, Callable[[Sequence[Any], Sequence[Any], list[Any]], Any]]
+"""For each group by its number solve(situation, known, sought): it turns guesses into solutions; the least pivot."""
 
 
 def implicit_solver(mechanism: Mechanism, method: Method, library: Any, work: Work) -> Solver:
@@ -135,22 +136,32 @@ def implicit_solver(mechanism: Mechanism, method: Method, library: Any, work: Wo
 
     With numpy nothing is counted: the points of a batch iterate together.
     """
-    residuals = compiled_residuals(mechanism, method, library)
+    solver_of_group = _batch_solver if library is np else _single_solver
     tolerance = TOLERANCE * rounding_of(library)
+    residuals = compiled_residuals(mechanism, method, library)
+    return {number: solver_of_group(residual, tolerance, work) for number, residual in residuals.items()}
 
-    inverses: dict[int, Any] = {}  # of the Jacobians, by group: kept from step to step
 
-    def solve(number: int, *situation_known_guess: Any) -> tuple[Sequence[Any], Any]:
-        *situation, known, guess = situation_known_guess
-        residual, inverse = residuals[number], inverses.get(number)
-        found: Sequence[Any]
-        if library is np:
-            found, pivot, inverses[number] = newton_solutions(residual, situation, known, guess, inverse, tolerance)
-        else:
-            found, pivot, inverses[number] = newton_solution(
-                residual, situation, known, guess, inverse, tolerance, work
-            )
-        return found, pivot
+def _single_solver(residual: Residual, tolerance: Any, work: Work) -> Callable[..., Any]:
+    """Return what solves a group for one run, and keeps the inverse of its Jacobian from step to step."""
+    inverse: list[Any] = []
+
+    def solve(situation: Sequence[Any], known: Sequence[Any], sought: list[Any]) -> Any:
+        if not inverse:
+            inverse.extend(no_inverse(len(sought)))
+        return newton_solution(residual, situation, known, sought, inverse, tolerance, work.counts)
+
+    return solve
+
+
+def _batch_solver(residual: Residual, tolerance: float, _: Work) -> Callable[..., Any]:
+    """Return the same for a batch."""
+    inverse = None
+
+    def solve(situation: Sequence[Any], known: Sequence[Any], sought: list[Any]) -> Any:
+        nonlocal inverse
+        sought[:], pivot, inverse = newton_solutions(residual, situation, known, sought, inverse, tolerance)
+        return pivot
 
     return solve
 
@@ -158,14 +169,25 @@ def implicit_solver(mechanism: Mechanism, method: Method, library: Any, work: Wo
 @cache
 def compiled_residuals(mechanism: Mechanism, method: Method, library: Any) -> dict[int, Residual]:
     """Return the residual of each implicit group by its number, compiled for real and for complex numbers."""
+    return _residuals(mechanism, method, library, complex_library(library), compared=False)
+
+
+def machine_residuals(mechanism: Mechanism, method: Method, library: Any) -> dict[int, Residual]:
+    """Return the same, of a method that has none as well, as Python functions that can be made machine code."""
+    return _residuals(mechanism, method, library, complex_library(math), compared=True)
+
+
+def _residuals(
+    mechanism: Mechanism, method: Method, real_library: Any, complex_: Any, compared: bool
+) -> dict[int, Residual]:
     scheme = run_as_second_order(method)
-    assert scheme
-    real, complex_ = (
-        compiled_source(residuals_source(mechanism.acceleration_code, scheme, with_pivots), its_library)
-        for with_pivots, its_library in ((True, library), (False, complex_library(library)))
-    )
+    if scheme is None:
+        return {}
+    code = mechanism.acceleration_code
+    of_real = compiled_source(residuals_source(code, scheme, with_pivots=True, compared=compared), real_library)
+    of_complex = compiled_source(residuals_source(code, scheme, with_pivots=False), complex_)
     return {
-        number: Residual(real[f"residual_{number}"], complex_[f"residual_{number}"], evaluations)
+        number: Residual(of_real[f"residual_{number}"], of_complex[f"residual_{number}"], evaluations)
         for number, evaluations in implicit_groups(scheme).items()
     }
 

@@ -8,22 +8,48 @@ with a sum; sin, cos and sqrt are those of the C library that `math` has too, an
 each bit of a run is the same. A block ends early where a state looks like a breakdown; where something is refused, the
 step is taken again in Python. Thus it is Python that decides, and says, why a run ends.
 
-Implicit methods stay in Python: their Newton iterations work on Python's complex numbers and lists.
+The Newton iterations of an implicit method are one text for Python and for machine code, in plain loops over lists
+(`newton_iterations`); numba's complex numbers are rounded as Python's, by the same formulas. What each step keeps, the
+inverse Jacobians, lies in arrays. A step whose equations are not solved is taken again in Python, too.
 """
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.compiling import check_numba, compiled_choice, compiler, numba_is_installed
-from bezstab.mechanism.compiled import BLOWN_UP, SINGULAR, Mechanism, stepper_of
-from bezstab.mechanism.generated_code import block_source, compiled_source
+from bezstab.compiling import (
+    INNER,
+    check_numba,
+    compiled_choice,
+    compiler,
+    numba_is_installed,
+    shared_with_machine_code,
+)
+from bezstab.mechanism.compiled import (
+    BLOWN_UP,
+    SINGULAR,
+    Mechanism,
+    compiled_residuals,
+    machine_residuals,
+    stepper_of,
+)
+from bezstab.mechanism.generated_code import block_source, compiled_source, varying_block_source
+from bezstab.mechanism.newton_iterations import (
+    LOOPS,
+    TOLERANCE,
+    Residual,
+    Work,
+    iterated,
+    newton_solution,
+    no_inverse,
+    rounding_of,
+)
 from bezstab.methods import Method, implicit
 
 FloatArray = NDArray[np.float64]
@@ -39,19 +65,25 @@ WORTH_COMPILING = 10**6
 
 Both grow with the mechanism and with the evaluations of a step alike."""
 
+ITERATIONS_OF_A_SOLUTION = 4
+"""Evaluations that Newton's method usually takes for each of an implicit method's, or more."""
+
 CHEAPER_TOGETHER = 20
 """Times: what an evaluation costs in a batch of numpy, against one of a run alone in Python."""
 
 MOST_LINES = 3000
 """Of a turn of a stepper that is compiled without being asked for: what numba takes grows faster than the text."""
 
-SIGNATURE = (
-    "int64(float64, float64, float64, float64, int64, int64, float64[::1], float64[::1], float64[::1], int64[::1])"
-)
+CONSTANT = "float64, float64, float64, float64"
+VARYING = "float64[::1], float64[::1], float64[::1], float64[::1], int64[::1]"
+BLOCK_ARGUMENTS = "int64, int64, float64[::1], float64[::1], float64[::1], int64[::1]"
+"""What a block is given of its steps, constant or varying ones, and after that; an implicit method has two more."""
 
+Powers = tuple[int, ...] | None
+"""Of steps that vary: the power of the length in each number that a step remembers. None if they are constant."""
 
-_compiled: set[tuple[Mechanism, Method]] = set()
-"""What this process has compiled."""
+_compiled: set[tuple[Mechanism, Method, bool]] = set()
+"""What this process has compiled, and whether for steps that vary."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +94,25 @@ class Block:
     pivots: FloatArray
 
 
+@dataclass(frozen=True, eq=False)
+class VaryingSteps:
+    """Steps of different lengths, one after the other: times (s) at which they begin, lengths (s), shape (steps,).
+
+    `gains` has 2 alpha (1/s) and beta^2 (1/s^2) of each, shape (steps, 2).
+    """
+
+    times: FloatArray
+    lengths: FloatArray
+    gains: FloatArray
+
+    @property
+    def ratios(self) -> FloatArray:
+        """The ratio of each length to the one before, the first to itself."""
+        before = np.concatenate([self.lengths[:1], self.lengths[:-1]])
+        ratios: FloatArray = self.lengths / before
+        return ratios
+
+
 def compiled_asked_for() -> bool:
     """Return whether runs are to be compiled even where that does not pay.
 
@@ -70,26 +121,33 @@ def compiled_asked_for() -> bool:
     return compiled_choice() == "yes"
 
 
-def runs_compiled(mechanism: Mechanism, method: Method, evaluations: int) -> bool:
+def runs_compiled(mechanism: Mechanism, method: Method, evaluations: int, varying: bool = False) -> bool:
     """Return whether a run of so many evaluations is to be compiled. InputError if it must be and numba is missing.
 
-    By default where numba is there and it pays: the run is long, or has been compiled before. Methods that solve
-    equations run in Python, whatever is asked for. InputError, too, as `compiled_asked_for`.
+    By default where numba is there and it pays: the run is long, or has been compiled before. `evaluations` do not
+    include what iterations take; `varying` says whether steps do. InputError, too, as `compiled_asked_for`.
     """
     choice = compiled_choice()
-    if choice == "no" or implicit(method):
+    if choice == "no":
         return False
     if choice == "yes":
         check_numba()
         return True
     if not numba_is_installed():
         return False
-    pays = evaluations >= WORTH_COMPILING and len(stepper_of(mechanism, method).turn) <= MOST_LINES
-    return pays or (mechanism, method) in _compiled
+    if implicit(method):
+        evaluations *= ITERATIONS_OF_A_SOLUTION
+    pays = evaluations >= WORTH_COMPILING and stepper_of(mechanism, method).length <= MOST_LINES
+    return pays or (mechanism, method, varying) in _compiled
+
+
+def batches_compiled(mechanism: Mechanism, method: Method, evaluations: int) -> bool:
+    """Return the same of runs side by side, which are compiled of explicit methods only."""
+    return not implicit(method) and runs_compiled(mechanism, method, evaluations)
 
 
 @cache
-def _machine_block(mechanism: Mechanism, method: Method) -> Callable[..., int]:
+def _machine_block(mechanism: Mechanism, method: Method, powers: Powers = None) -> Callable[..., int]:
     """Return the block function as machine code."""
     numba = compiler()
 
@@ -110,25 +168,70 @@ def _machine_block(mechanism: Mechanism, method: Method) -> Callable[..., int]:
         return math.sqrt(x)
 
     library = SimpleNamespace(
-        sin=numba.njit(checked_sin),
-        cos=numba.njit(checked_cos),
-        sqrt=numba.njit(checked_sqrt),
+        sin=numba.njit(**INNER)(checked_sin),
+        cos=numba.njit(**INNER)(checked_cos),
+        sqrt=numba.njit(**INNER)(checked_sqrt),
     )
-    block = compiled_source(_source(mechanism, method), library)["block"]
-    machine_block: Callable[..., int] = numba.njit(SIGNATURE, no_cfunc_wrapper=True)(block)
-    _compiled.add((mechanism, method))
+    solvers = _machine_solvers(numba, mechanism, method, library)
+    block = _block(mechanism, method, powers, library, solvers)
+    arguments = f"{CONSTANT if powers is None else VARYING}, {BLOCK_ARGUMENTS}"
+    if solvers:
+        inverse = "float64[::1]" if powers is None else "float64[:, ::1]"
+        arguments += f", UniTuple({inverse}, {len(solvers)}), int64[::1]"
+    machine_block: Callable[..., int] = numba.njit(f"int64({arguments})", no_cfunc_wrapper=True)(block)
+    _compiled.add((mechanism, method, powers is not None))
     return machine_block
 
 
+def _machine_solvers(numba: Any, mechanism: Mechanism, method: Method, library: Any) -> dict[str, Any]:
+    """Return the functions by which the block of an implicit method has its equations solved, by their names."""
+    shared_with_machine_code(LOOPS)
+    residuals = machine_residuals(mechanism, method, library)
+    tolerance = TOLERANCE * rounding_of(math)
+
+    def solver(residual: Residual) -> Any:
+        real, complex_ = numba.njit(**INNER)(residual.real), numba.njit(**INNER)(residual.complex)
+        evaluations = residual.evaluations
+
+        def solve(situation: Any, known: Any, sought: Any, inverse: Any, counts: Any) -> Any:
+            converged, pivot, _ = iterated(
+                real, complex_, evaluations, situation, known, sought, inverse, tolerance, counts
+            )
+            if not converged:
+                raise ArithmeticError
+            return pivot
+
+        return numba.njit(**INNER)(solve)
+
+    return {f"solve_{number}": solver(residual) for number, residual in residuals.items()}
+
+
 @cache
-def _python_block(mechanism: Mechanism, method: Method) -> Callable[..., int]:
+def _python_block(mechanism: Mechanism, method: Method, powers: Powers = None) -> Callable[..., int]:
     """Return the same function as Python takes it."""
-    block: Callable[..., int] = compiled_source(_source(mechanism, method), math)["block"]
+    tolerance = TOLERANCE * rounding_of(math)
+
+    def solver(residual: Residual) -> Any:
+        def solve(situation: Any, known: Any, sought: Any, inverse: Any, counts: Any) -> Any:
+            return newton_solution(residual, situation, known, sought, inverse, tolerance, counts)
+
+        return solve
+
+    residuals = compiled_residuals(mechanism, method, math)
+    solvers = {f"solve_{number}": solver(residual) for number, residual in residuals.items()}
+    return _block(mechanism, method, powers, math, solvers)
+
+
+def _block(
+    mechanism: Mechanism, method: Method, powers: Powers, library: Any, solvers: Mapping[str, Any]
+) -> Callable[..., int]:
+    stepper = stepper_of(mechanism, method)
+    if powers is None:
+        source, name = block_source(stepper, SINGULAR, NEARLY_BLOWN_UP), "block"
+    else:
+        source, name = varying_block_source(stepper, powers, SINGULAR, NEARLY_BLOWN_UP), "varying_block"
+    block: Callable[..., int] = compiled_source(source, library, solvers)[name]
     return block
-
-
-def _source(mechanism: Mechanism, method: Method) -> str:
-    return block_source(stepper_of(mechanism, method), SINGULAR, NEARLY_BLOWN_UP)
 
 
 def blocks_of_steps(
@@ -139,33 +242,85 @@ def blocks_of_steps(
     gains: tuple[float, float],
     remembered: Sequence[Any],
     count: int,
+    work: Work,
 ) -> Iterator[Block]:
-    """Yield `count` steps of an explicit method in blocks, as machine code takes them; a block ends where it may break.
+    """Yield `count` steps of a method in blocks, as machine code takes them; a block ends where it may break.
 
     `start` (s), h (s, the whole step), the gains 2 alpha (1/s) and beta^2 (1/s^2) are those of the generated stepper;
-    `remembered` is what it is called with beyond them: state and past, or what a second-order scheme carries. Where
-    Python would refuse an operation it does: ArithmeticError or ValueError, after the steps before.
+    `remembered` is what it is called with beyond them: state and past, or what a second-order scheme carries. What
+    implicit steps take is added to `work`. Where Python would refuse an operation, or not solve a step's equations, it
+    does: ArithmeticError or ValueError, after the steps before.
     """
-    machine_block = _machine_block(mechanism, method)
+    by_machine = partial(_machine_block(mechanism, method), start, h, *gains)
+
+    def by_python(*arguments: Any) -> int:
+        return _python_block(mechanism, method)(start, h, *gains, *arguments)
+
+    inverses = tuple(np.array(no_inverse(unknowns)) for unknowns in stepper_of(mechanism, method).groups.values())
+    return _blocks(by_machine, by_python, 2 * mechanism.size, remembered, inverses, count, work)
+
+
+def blocks_of_varying_steps(
+    mechanism: Mechanism,
+    method: Method,
+    steps: VaryingSteps,
+    powers: tuple[int, ...],
+    remembered: Sequence[Any],
+    work: Work,
+) -> Iterator[Block]:
+    """Yield the same of a one-step method's steps, which may vary; of what it remembers each has a power of the length.
+
+    The inverse Jacobians of its equations are kept from step to step of the same length.
+    """
+    lengths, kinds = np.unique(steps.lengths, return_inverse=True)
+    given = (steps.times, steps.lengths, steps.ratios, steps.gains.ravel(), kinds.astype(np.int64))
+    by_machine = partial(_machine_block(mechanism, method, powers), *given)
+
+    def by_python(*arguments: Any) -> int:
+        return _python_block(mechanism, method, powers)(*(array.tolist() for array in given), *arguments)
+
+    inverses = tuple(
+        np.array([no_inverse(unknowns)] * len(lengths)) for unknowns in stepper_of(mechanism, method).groups.values()
+    )
+    return _blocks(by_machine, by_python, 2 * mechanism.size, remembered, inverses, len(steps.times), work)
+
+
+def _blocks(
+    by_machine: Callable[..., int],
+    by_python: Callable[..., int],
+    size: int,
+    remembered: Sequence[Any],
+    inverses: tuple[FloatArray, ...],
+    count: int,
+    work: Work,
+) -> Iterator[Block]:
+    """Yield steps in blocks, states of that size; what is refused is taken again by Python, which says why."""
     memory = np.array(list(flat(remembered)), dtype=np.float64)
-    size = 2 * mechanism.size
     reached = np.zeros(1, dtype=np.int64)
     k = 0
     while k < count:
         last = min(k + BLOCK, count)
         states, pivots = np.empty((last - k) * size), np.empty(last - k)
+        kept = tuple(inverse.copy() for inverse in inverses)
+        counts = np.zeros(2, dtype=np.int64)
+        solving = (inverses, counts) if inverses else ()
         refused = False
         try:
-            machine_block(start, h, *gains, k, last, memory, states, pivots, reached)
+            by_machine(k, last, memory, states, pivots, reached, *solving)
         except (ArithmeticError, ValueError):  # memory is as it was before the block
             refused = True
-            machine_block(start, h, *gains, k, int(reached[0]), memory, states, pivots, reached)
+            for inverse, before in zip(inverses, kept, strict=True):
+                inverse[:] = before
+            counts[:] = 0
+            by_machine(k, int(reached[0]), memory, states, pivots, reached, *solving)
+        work.add(counts.tolist())
         taken = int(reached[0]) - k
         k += taken
         if taken:
             yield Block(states[: taken * size].reshape(taken, size), pivots[:taken])
         if refused:
-            _python_block(mechanism, method)(start, h, *gains, k, k + 1, memory.tolist(), [0.0] * size, [0.0], [k])
+            in_lists = ([inverse.tolist() for inverse in inverses], work.counts) if inverses else ()
+            by_python(k, k + 1, memory.tolist(), [0.0] * size, [0.0], [k], *in_lists)
             raise AssertionError("a step that machine code refuses was taken by Python")
 
 

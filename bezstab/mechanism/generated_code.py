@@ -29,7 +29,7 @@ but numbers and these names; least of all the names that a user gave to bodies.
 """
 
 import math
-from collections.abc import Container, Iterable, Sequence
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
@@ -64,10 +64,14 @@ AT_THE_START = Fraction(0)  # of a step
 AT_THE_END = Fraction(1)
 
 
-def compiled_source(source: str, library: Any) -> dict[str, Any]:
-    """Return what generated source defines, its elementary functions those of `library`: math, numpy or mpmath."""
+def compiled_source(source: str, library: Any, others: Mapping[str, Any] | None = None) -> dict[str, Any]:
+    """Return what generated source defines, its elementary functions those of `library`: math, numpy or mpmath.
+
+    `others` are functions that it calls, by their names.
+    """
     least = min if library is math else _least_of_arrays
     namespace = {"sin": library.sin, "cos": library.cos, "sqrt": library.sqrt, "least": least, "row": _row_of_arrays}
+    namespace |= others or {}
     exec(source, namespace)
     return namespace
 
@@ -454,7 +458,30 @@ class Yielded:
     slope: tuple[str, ...]
 
 
-Piece = str | Pivot | Moved | Yielded
+SITUATION = "(start, k, h, two_alpha, beta_squared)"
+"""Of a step: what the residuals of its equations depend on beside what is known and sought."""
+
+
+@dataclass(frozen=True)
+class Sought:
+    """Variables that get what solves a group of equations, by its number; texts of what is known, and of guesses."""
+
+    number: int
+    known: tuple[str, ...]
+    guesses: tuple[str, ...]
+    found: tuple[str, ...]
+
+    def lines(self, solve: str, others: str = "") -> list[str]:
+        """Return the lines that call a function, which turns guesses into solutions and returns the least pivot."""
+        return [
+            f"known = [{', '.join(self.known)}]",
+            f"sought = [{', '.join(self.guesses)}]",
+            f"worst = {solve}({SITUATION}, known, sought{others})",
+            *(f"{name} = sought[{place}]" for place, name in enumerate(self.found)),
+        ]
+
+
+Piece = str | Pivot | Moved | Yielded | Sought
 
 COUNT_FROM = "k = 0"
 COUNT = "k = k + 1"
@@ -479,6 +506,16 @@ class Stepper:
     def remembered(self) -> list[str]:
         """The variables with which a step begins, in the order in which they are unpacked."""
         return [name for piece in self.opening if isinstance(piece, Unpacked) for name in piece.names]
+
+    @property
+    def groups(self) -> dict[int, int]:
+        """The numbers of the groups of equations that a turn solves, in their order, and how many unknowns each has."""
+        return {piece.number: len(piece.found) for piece in self.turn if isinstance(piece, Sought)}
+
+    @property
+    def length(self) -> int:
+        """About how many lines there are to compile: residuals twice, for they are also needed of complex numbers."""
+        return len(self.turn) + 2 * sum(function.count("\n") for function in self.functions)
 
     @property
     def preparations(self) -> list[str]:
@@ -528,6 +565,8 @@ def _generator_lines(piece: Piece) -> list[str]:
             return [piece.line]
         case Moved(older, newer):
             return [f"{older} = {newer}"]
+        case Sought(number):
+            return piece.lines(f"solve[{number}]")
         case Yielded(state, slope):
             return [COUNT, f"yield {_tuple_text(state)}, {_tuple_text(slope)}, worst_pivot"]
 
@@ -573,36 +612,104 @@ def single_step_source(stepper: Stepper) -> str:
 #                                                         if value < worst: worst = value
 #       k = k + 1                                         k = k + 1
 #       yield (q0, v0,), (...), worst_pivot               states[place + 0] = q0 ...
+#
+# Where steps vary each begins anew, at step 0 of a run of its own, with what it remembers in units of its own length:
+#
+#     def varying_block(times, lengths, ratios, ..., step, last, memory, states, ...):
+#      V_0_0 = memory[0]
+#      ...
+#      while step < last:
+#       start = times[step]
+#       h = lengths[step]
+#       ...
+#       ratio = ratios[step]                              to the length of the step before
+#       V_0_0 = ratio * V_0_0                             h v; what is h^2 a takes it twice
+#       k = 0
+#       ...                                               the same lines
+#       step = step + 1
+#       ...
 
 
 def block_source(stepper: Stepper, pivot_limit: float, size_limit: float) -> str:
     """Return the source of block(start, h, two_alpha, beta_squared, k, last, memory, states, pivots, reached).
 
-    It takes the steps k to last - 1 of an explicit stepper and returns the number of the next. `memory` holds what the
+    It takes the steps k to last - 1 of a stepper and returns the number of the next. `memory` holds what the
     stepper remembers, in its order, and is brought up to date at the end; `states` gets the new states one
     after the other, `pivots` the least pivots, reached[0] after each step the number of the next. After a step whose
     pivot is not above `pivot_limit`, or whose state is not below `size_limit` in the sum of its sizes, it returns.
+
+    That of an implicit stepper has two arguments more, `inverses`, one for each of its groups, and `counts`, which it
+    hands on, both changed at once: it calls solve_<number>(situation, known, sought, inverse, counts).
     """
+    before = [f"inverse_{number} = inverses[{place}]" for place, number in enumerate(stepper.groups)]
+    return _looped_source(
+        head="block(start, h, two_alpha, beta_squared, k",
+        before=[*before, *stepper.preparations],
+        counter="k",
+        stepper=stepper,
+        at_a_turn=[],
+        limits=(pivot_limit, size_limit),
+    )
+
+
+def varying_block_source(stepper: Stepper, powers: Sequence[int], pivot_limit: float, size_limit: float) -> str:
+    """Return the source of varying_block(times, lengths, ratios, gains, kinds, step, last, ...), the rest as `block`.
+
+    Of each step the first have its time and length, the ratio of its length to that of the step before, and its gains,
+    one after the other. `powers` are those of the length that are factors of what the stepper remembers: 0, 1 or 2. An
+    implicit stepper has inverses for each kind of step, which `kinds` number.
+    """
+    own = ["start = times[step]", "h = lengths[step]", "two_alpha = gains[2 * step]"]
+    own += ["beta_squared = gains[2 * step + 1]", "ratio = ratios[step]", "ratio_squared = ratio * ratio"]
+    own += [f"inverse_{number} = inverses[{place}][kinds[step]]" for place, number in enumerate(stepper.groups)]
+    factors = {1: "ratio", 2: "ratio_squared"}
+    scaled = [
+        f"{name} = {factors[power]} * {name}" for name, power in zip(stepper.remembered, powers, strict=True) if power
+    ]
+    return _looped_source(
+        head="varying_block(times, lengths, ratios, gains, kinds, step",
+        before=[],
+        counter="step",
+        stepper=stepper,
+        at_a_turn=[*own, *scaled, COUNT_FROM, *stepper.preparations],
+        limits=(pivot_limit, size_limit),
+    )
+
+
+def _looped_source(
+    head: str,
+    before: Sequence[str],
+    counter: str,
+    stepper: Stepper,
+    at_a_turn: Sequence[str],
+    limits: tuple[float, float],
+) -> str:
+    """Return the source of a function that takes many steps; some lines come before the first, some begin each turn."""
     lines = [f"{name} = memory[{place}]" for place, name in enumerate(stepper.remembered)]
-    lines += [*stepper.preparations, "row = 0", "place = 0", "while k < last:"]
+    lines += [*before, "row = 0", "place = 0", f"while {counter} < last:", *_indented(at_a_turn, 1)]
     for piece in stepper.turn:
-        lines += _indented(_block_lines(piece, pivot_limit, size_limit), 1)
+        lines += _indented(_block_lines(piece, counter, limits), 1)
     lines.append(" if not calm: break")
     lines += [f"memory[{place}] = {name}" for place, name in enumerate(stepper.remembered)]
-    lines.append("return k")
-    head = "def block(start, h, two_alpha, beta_squared, k, last, memory, states, pivots, reached):"
-    return "\n".join([head, *_indented(lines, 1)])
+    lines.append(f"return {counter}")
+    for_solving = ", inverses, counts" if stepper.groups else ""
+    return "\n".join([
+        f"def {head}, last, memory, states, pivots, reached{for_solving}):",
+        *_indented(lines, 1),
+    ])  # fmt: skip
 
 
-def _block_lines(piece: Piece, pivot_limit: float, size_limit: float) -> list[str]:
+def _block_lines(piece: Piece, counter: str, limits: tuple[float, float]) -> list[str]:
     """Return the lines of the block that stand for a piece."""
     match piece:
         case Pivot():
             return _compared_lines(piece)
         case Yielded():
-            return [COUNT, *_storing_lines(piece, pivot_limit, size_limit)]
+            return [f"{counter} = {counter} + 1", *_storing_lines(piece, limits), f"reached[0] = {counter}"]
         case str() | Moved():
             return _generator_lines(piece)
+        case Sought(number):
+            return piece.lines(f"solve_{number}", f", inverse_{number}, counts")
 
 
 def _compared_lines(pivot: Pivot) -> list[str]:
@@ -614,9 +721,10 @@ def _compared_lines(pivot: Pivot) -> list[str]:
     return lines
 
 
-def _storing_lines(step: Yielded, pivot_limit: float, size_limit: float) -> list[str]:
+def _storing_lines(step: Yielded, limits: tuple[float, float]) -> list[str]:
     """Return what stores a step, and says whether it is calm: far from a breakdown."""
     size = len(step.state)
+    pivot_limit, size_limit = limits
     return [
         *(f"states[place + {i}] = {entry}" for i, entry in enumerate(step.state)),
         "pivots[row] = worst_pivot",
@@ -625,7 +733,6 @@ def _storing_lines(step: Yielded, pivot_limit: float, size_limit: float) -> list
         f"calm = worst_pivot > {pivot_limit!r} and total < {size_limit!r}",
         "row = row + 1",
         f"place = place + {size}",
-        "reached[0] = k",
     ]
 
 
@@ -909,23 +1016,25 @@ def _moves(size: int, method: Method) -> list[Moved]:
 #       V_0_0 = V_1_0
 #       A_0_0 = A_1_0
 #
-# A group that is solved has K for what is known of its positions and velocities, two for each evaluation, and calls
+# A group that is solved collects what is known of its positions and velocities, two for each evaluation, and calls
 #
-#       K0 = X_0_0 + V_0_0 + 0.25 * A_0_0
-#       K1 = V_0_0 + 0.5 * A_0_0
-#       (A_1_0,), worst = solve(0, start, k, h, two_alpha, beta_squared, (K0, K1,), (A_0_0,))
+#       known = [X_0_0 + V_0_0 + 0.25 * A_0_0, V_0_0 + 0.5 * A_0_0]
+#       sought = [A_0_0]
+#       worst = solve[0]((start, k, h, two_alpha, beta_squared), known, sought)
+#       A_1_0 = sought[0]
 #
-# where solve seeks the zero of residual_0 from the last acceleration on, U for the unknown,
+# where solve[0] seeks the zero of residual_0 from the last acceleration on, U for the unknown,
 #
-#     def residual_0(start, k, h, two_alpha, beta_squared, known, unknown):
-#      (K0, K1,) = known
-#      (U0,) = unknown
+#     def residual_0(situation, known, unknown, values):
+#      (start, k, h, two_alpha, beta_squared) = situation
+#      K0 = known[0]
+#      K1 = known[1]
+#      U0 = unknown[0]
 #      h_squared = h * h
 #      q0 = K0 + 0.25 * U0
 #      v0 = (K1 + 0.5 * U0) / h
 #      ...                                                  the acceleration code
-#      R0 = U0 - h_squared * a0
-#      return (R0,)
+#      values[0] = U0 - h_squared * a0
 
 
 def second_order_stepper(acceleration: AccelerationCode, scheme: SecondOrder) -> Stepper:
@@ -934,8 +1043,8 @@ def second_order_stepper(acceleration: AccelerationCode, scheme: SecondOrder) ->
     Each turn yields q and v at its end, then v and a at its start (where the scheme has no a there: zeros), and the
     least relative pivot of S met on the way. `start` (s) is the time of step 0 of the first turn, h (s) the whole step,
     and `carried` has what `memory` says, n entries each, in units in which h = 1. An implicit scheme calls
-    solve(number of the group, start, k, h, two_alpha, beta_squared, known, guess), which returns what makes all of
-    residual_<number> zero, and the least pivot there; these functions follow (residuals_source, with pivots).
+    solve[number of the group](situation, known, sought), which turns guesses into what makes all of residual_<number>
+    zero, and returns the least pivot there; these functions follow (residuals_source, with pivots).
     """
     names = _Names(scheme, acceleration.coordinates)
     carried = memory(scheme).carried
@@ -963,13 +1072,17 @@ def second_order_stepper(acceleration: AccelerationCode, scheme: SecondOrder) ->
     )
 
 
-def residuals_source(acceleration: AccelerationCode, scheme: SecondOrder, with_pivots: bool) -> str:
-    """Return the source of residual_<number>(start, k, h, two_alpha, beta_squared, known, unknown) for implicit groups.
+def residuals_source(
+    acceleration: AccelerationCode, scheme: SecondOrder, with_pivots: bool, compared: bool = False
+) -> str:
+    """Return the source of residual_<number>(situation, known, unknown, values) for implicit groups.
 
-    Each returns A - h^2 acceleration for all that the group evaluates; with pivots also the least relative pivot of S.
-    Without them the functions also work on complex numbers, which have no least.
+    Each writes A - h^2 acceleration for all that the group evaluates into `values`; with pivots it returns the least
+    relative pivot of S. Without them the functions also work on complex numbers, which have no least. `compared` says
+    whether pivots are compared one by one, as in a block, instead of by `least`.
     """
-    return "\n".join(_residual_function(acceleration, solved, with_pivots) for solved in solved_groups(scheme))
+    pivot_lines = (_compared_lines if compared else _generator_lines) if with_pivots else None
+    return "\n".join(_residual_function(acceleration, solved, pivot_lines) for solved in solved_groups(scheme))
 
 
 class _Names:
@@ -1041,30 +1154,31 @@ def _solving_lines(names: _Names, solved: Solved) -> list[Piece]:
     parts: list[str] = []
     for evaluation in solved.evaluations:
         parts += [*names.sums(evaluation.known_position), *names.sums(evaluation.known_velocity)]
-    known = variable_names("K", len(parts))
     unknowns = [evaluation.result for evaluation in solved.evaluations]
     guesses = [Quantity(unknown.name, unknown.step - 1) for unknown in unknowns]
-    found = _tuple_text(name for unknown in unknowns for name in names.of(unknown))
-    guess = _tuple_text(name for quantity in guesses for name in names.of(quantity))
-    situation = "start, k, h, two_alpha, beta_squared"
-    return [
-        *(f"{name} = {part}" for name, part in zip(known, parts, strict=True)),
-        f"{found}, worst = solve({solved.number}, {situation}, {_tuple_text(known)}, {guess})",
-        REMEMBER_PIVOT,
-    ]
+    sought = Sought(
+        number=solved.number,
+        known=tuple(parts),
+        guesses=tuple(name for guess in guesses for name in names.of(guess)),
+        found=tuple(name for unknown in unknowns for name in names.of(unknown)),
+    )
+    return [sought, REMEMBER_PIVOT]
 
 
-def _residual_function(acceleration: AccelerationCode, solved: Solved, with_pivots: bool) -> str:
-    """Return the source of the residual of one group."""
+def _residual_function(
+    acceleration: AccelerationCode, solved: Solved, pivot_lines: Callable[[Pivot], list[str]] | None
+) -> str:
+    """Return the source of the residual of one group, its pivots by these lines if there are any."""
     coordinates = acceleration.coordinates
     count = coordinates * len(solved.evaluations)
     lines = [
-        f"{_tuple_text(variable_names('K', 2 * count))} = known",
-        f"{_tuple_text(variable_names('U', count))} = unknown",
+        f"{SITUATION} = situation",
+        *(f"K{i} = known[{i}]" for i in range(2 * count)),
+        *(f"U{i} = unknown[{i}]" for i in range(count)),
         "h_squared = h * h",
     ]
-    if with_pivots:
-        lines.append(FORGET_PIVOTS.line)
+    if pivot_lines:
+        lines += pivot_lines(FORGET_PIVOTS)
     for own, evaluation in enumerate(solved.evaluations):
         first = own * coordinates  # of its unknowns; of what is known, there are two for each
         lines += _state_lines(
@@ -1072,13 +1186,13 @@ def _residual_function(acceleration: AccelerationCode, solved: Solved, with_pivo
             velocities=_known_and_sought(solved, evaluation.sought_velocity, 2 * first + coordinates, coordinates),
         )
         lines += _acceleration_lines_at(acceleration, evaluation.moment)
-        if with_pivots:
-            lines += [_worst(acceleration).line, REMEMBER_PIVOT.line]
-        lines += [f"R{first + i} = U{first + i} - h_squared * a{i}" for i in range(coordinates)]
-    residuals = _tuple_text(variable_names("R", count))
-    results = f"{residuals}, worst_pivot" if with_pivots else residuals
-    head = f"def residual_{solved.number}(start, k, h, two_alpha, beta_squared, known, unknown):"
-    return "\n".join([head, *_indented([*lines, f"return {results}"], 1)])
+        if pivot_lines:
+            lines += [*pivot_lines(_worst(acceleration)), *pivot_lines(REMEMBER_PIVOT)]
+        lines += [f"values[{first + i}] = U{first + i} - h_squared * a{i}" for i in range(coordinates)]
+    if pivot_lines:
+        lines.append("return worst_pivot")
+    head = f"def residual_{solved.number}(situation, known, unknown, values):"
+    return "\n".join([head, *_indented(lines, 1)])
 
 
 def _known_and_sought(solved: Solved, sought: Sum, first_known: int, coordinates: int) -> list[str]:

@@ -17,17 +17,31 @@ def solution(rows: Sequence[Sequence[Any]], right_sides: Sequence[Sequence[Any]]
     """
     unknowns = len(rows[0]) if rows else 0
     table = [[*row, *sides] for row, sides in zip(rows, right_sides, strict=True)]
+    eliminate(table, unknowns)
+    return [row[unknowns:] for row in table[:unknowns]]
+
+
+def eliminate(table: list[list[Any]], unknowns: int) -> None:
+    """Turn the first columns of a table, as many as there are unknowns, into those of the unit matrix, row by row.
+
+    The text serves machine code, too, which has no more of Python than this.
+    """
     for column in range(unknowns):
-        largest = max(range(column, len(table)), key=lambda row: abs(table[row][column]))
+        largest = column
+        for number in range(column + 1, len(table)):
+            if abs(table[number][column]) > abs(table[largest][column]):
+                largest = number
         table[column], table[largest] = table[largest], table[column]
         pivot_row = table[column]
         pivot = pivot_row[column]
-        pivot_row[column:] = [entry / pivot for entry in pivot_row[column:]]
-        for number, row in enumerate(table):
+        for place in range(column, len(pivot_row)):
+            pivot_row[place] = pivot_row[place] / pivot
+        for number in range(len(table)):
+            row = table[number]
             factor = row[column]
-            if number != column and factor:
-                row[column:] = [a - factor * b for a, b in zip(row[column:], pivot_row[column:], strict=True)]
-    return [row[unknowns:] for row in table[:unknowns]]
+            if number != column and factor != 0:
+                for place in range(column, len(row)):
+                    row[place] = row[place] - factor * pivot_row[place]
 
 
 def inverses(matrices: FloatArray) -> FloatArray:

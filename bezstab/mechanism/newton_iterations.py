@@ -10,26 +10,30 @@ thirtieth of the one before; one that is more is not made, but computed anew wit
 earlier step's Jacobian that did not serve, all it did is undone: the step starts again with its own. The iteration ends
 with one correction more after one within some hundred roundings of what it corrects: what is left then is far below
 rounding, and so does not add up over thousands of steps, to all of which it might have the same sign.
+
+For a single run `iterated` does all this in plain loops over lists, one rounding after the other in a stated order. Its
+text serves floats, mpmath's numbers and machine code alike (`compiled_steps`), so that each has the same bits.
 """
 
 import cmath
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, MutableSequence, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.mechanism.linear_equations import inverses, solution
+from bezstab.mechanism.linear_equations import eliminate, inverses
 
 FloatArray = NDArray[np.float64]
-Matrix = list[list[Any]]
 
 IMAGINARY_STEP = 1e-50
 MOST_ITERATIONS = 25  # three are usual in float64; from far away Newton's method may first wander
 TOLERANCE = 500.0  # roundings (1e-13 in float64) of X, V and A together: what h^2 acceleration cannot be relied upon
 FALL = 1 / 30  # of a correction to the next, with a Jacobian good enough to keep: each gains a digit and a half
+
+ITERATIONS, EVALUATIONS = 0, 1  # places in what is counted
 
 
 class NotConvergedError(ArithmeticError):
@@ -40,19 +44,32 @@ class NotConvergedError(ArithmeticError):
 class Work:
     """What implicit steps have taken: iterations, and evaluations of the acceleration, complex ones counted alike."""
 
-    iterations: int = 0
-    evaluations: int = 0
+    counts: list[int] = field(default_factory=lambda: [0, 0])
+
+    @property
+    def iterations(self) -> int:
+        """The number of iterations."""
+        return self.counts[ITERATIONS]
+
+    @property
+    def evaluations(self) -> int:
+        """The number of evaluations."""
+        return self.counts[EVALUATIONS]
+
+    def add(self, counts: Sequence[int]) -> None:
+        """Add what has been counted elsewhere."""
+        self.counts[:] = [one + other for one, other in zip(self.counts, counts, strict=True)]
 
 
 @dataclass(frozen=True)
 class Residual:
-    """The residual of a group of equations as functions of (*situation, known, unknown), and how often they evaluate.
+    """The residual of a group of equations as functions of (situation, known, unknown, values), and its evaluations.
 
-    `real` returns residuals and least pivot, `complex` the residuals alone, of complex unknowns.
+    Both write the residuals into `values`. `real` returns the least pivot; `complex`, of complex unknowns, nothing.
     """
 
-    real: Callable[..., tuple[Sequence[Any], Any]]
-    complex: Callable[..., Sequence[Any]]
+    real: Callable[..., Any]
+    complex: Callable[..., object]
     evaluations: int
 
 
@@ -63,74 +80,133 @@ def complex_library(library: Any) -> Any:
 
 def rounding_of(library: Any) -> Any:
     """Return the spacing of numbers at one."""
-    return np.finfo(np.float64).eps if library in (math, np) else +library.eps
+    return float(np.finfo(np.float64).eps) if library in (math, np) else +library.eps
+
+
+def no_inverse(size: int) -> list[float]:
+    """Return what stands for an inverse Jacobian of so many unknowns before there is one: it serves for nothing."""
+    return [math.nan] * size**2
 
 
 def newton_solution(
     residual: Residual,
     situation: Sequence[Any],
     known: Sequence[Any],
-    guess: Sequence[Any],
-    inverse: Matrix | None,
+    sought: MutableSequence[Any],
+    inverse: MutableSequence[Any],
     tolerance: Any,
-    work: Work,
-) -> tuple[tuple[Any, ...], Any, Matrix]:
-    """Return the unknowns that make the residual zero, the least pivot met last, and the inverse Jacobian used last.
+    counts: MutableSequence[int],
+) -> Any:
+    """Turn a guess, `sought`, into the unknowns that make the residual zero; return the least pivot met last.
 
-    Of numbers, not arrays. `inverse` is that of the step before, None at first; `tolerance` is relative to the sum of
-    all that is known and unknown. NotConvergedError after MOST_ITERATIONS, or where the iteration leaves the numbers;
+    Of numbers, not arrays. `inverse` holds the inverse Jacobian of the step before, row after row, `no_inverse` at
+    first, and gets the one used last; `tolerance` is relative to the sum of all that is known and unknown; to `counts`
+    is added what that takes. NotConvergedError after MOST_ITERATIONS, or where the iteration leaves the numbers;
     ArithmeticError where the Jacobian is singular.
     """
-    unknown = list(guess)
-    size_of_known = sum(map(abs, known))
-    last: Any = math.inf
-    moved: Any = math.inf
-    settled = False
-    inherited = inverse is not None
-    at_guess: Sequence[Any] = ()
-    for _ in range(MOST_ITERATIONS):
-        values, pivot = residual.real(*situation, known, unknown)
-        at_guess = at_guess or values
-        work.iterations += 1
-        work.evaluations += residual.evaluations
-        if inverse:
-            corrections = _product(inverse, values)
-            moved = sum(map(abs, corrections))
-        if not inverse or not (settled or moved <= FALL * last):
-            if inherited:
-                unknown, values, inherited = list(guess), at_guess, False
-            inverse = _inverse_jacobian(residual, situation, known, unknown, work)
-            corrections = _product(inverse, values)
-            moved = sum(map(abs, corrections))
-        if not moved < math.inf:
-            raise NotConvergedError("Newton's method did not converge: its iterates are not finite")
-        unknown = [entry - correction for entry, correction in zip(unknown, corrections, strict=True)]
-        if settled:
-            return tuple(unknown), pivot, inverse
-        settled = moved <= tolerance * (size_of_known + sum(map(abs, unknown)))
-        last = moved
+    converged, pivot, moved = iterated(
+        residual.real, residual.complex, residual.evaluations, situation, known, sought, inverse, tolerance, counts
+    )
+    if converged:
+        return pivot
+    if not moved < math.inf:
+        raise NotConvergedError("Newton's method did not converge: its iterates are not finite")
     raise NotConvergedError(
         f"Newton's method did not converge in {MOST_ITERATIONS} iterations (last correction {float(moved):.2g})"
     )
 
 
-def _product(matrix: Sequence[Sequence[Any]], column: Sequence[Any]) -> list[Any]:
-    return [sum(entry * value for entry, value in zip(row, column, strict=True)) for row in matrix]
+def iterated(
+    residual: Any,
+    complex_residual: Any,
+    evaluations: int,
+    situation: Any,
+    known: Any,
+    sought: Any,
+    inverse: Any,
+    tolerance: Any,
+    counts: Any,
+) -> tuple[bool, Any, Any]:
+    """Do what `newton_solution` says; return whether it converged, the least pivot, and the last correction's size."""
+    size = len(sought)
+    guess = list(sought)
+    values, corrections = [0.0] * size, [0.0] * size
+    at_guess = values  # copied once they are known
+    size_of_known = total_size(known)
+    pivot: Any = 1.0
+    last: Any = math.inf
+    moved: Any = math.inf
+    settled = False
+    inherited = True  # the inverse: from an earlier step, if there was one
+    for iteration in range(MOST_ITERATIONS):
+        pivot = residual(situation, known, sought, values)
+        if iteration == 0:
+            at_guess = list(values)
+        counts[ITERATIONS] += 1
+        counts[EVALUATIONS] += evaluations
+        multiply(inverse, values, corrections)
+        moved = total_size(corrections)
+        if not (settled or moved <= FALL * last):
+            if inherited:
+                inherited = False
+                for i in range(size):
+                    sought[i] = guess[i]
+                    values[i] = at_guess[i]
+            invert_jacobian(complex_residual, situation, known, sought, inverse)
+            counts[EVALUATIONS] += size * evaluations
+            multiply(inverse, values, corrections)
+            moved = total_size(corrections)
+        if not moved < math.inf:
+            return False, pivot, moved
+        for i in range(size):
+            sought[i] = sought[i] - corrections[i]
+        if settled:
+            return True, pivot, moved
+        settled = moved <= tolerance * (size_of_known + total_size(sought))
+        last = moved
+    return False, pivot, moved
 
 
-def _inverse_jacobian(
-    residual: Residual, situation: Sequence[Any], known: Sequence[Any], unknown: Sequence[Any], work: Work
-) -> list[list[Any]]:
-    """Return the inverse of the Jacobian by complex steps, one unknown after the other."""
+def total_size(numbers: Any) -> Any:
+    """Return the sum of the sizes, from the first to the last: Python's own sum of floats depends on its version."""
+    total = 0.0
+    for number in numbers:
+        total = total + abs(number)
+    return total
+
+
+def multiply(matrix: Any, column: Any, product: Any) -> None:
+    """Write the product of a matrix, row after row, and a column."""
+    size = len(column)
+    for i in range(size):
+        total = 0.0
+        for j in range(size):
+            total = total + matrix[i * size + j] * column[j]
+        product[i] = total
+
+
+def invert_jacobian(complex_residual: Any, situation: Any, known: Any, unknown: Any, inverse: Any) -> None:
+    """Write the inverse of the Jacobian, row after row, by complex steps, one unknown after the other."""
     size = len(unknown)
-    columns = []
-    for number in range(size):
-        shifted = list(unknown)
-        shifted[number] = shifted[number] + IMAGINARY_STEP * 1j
-        columns.append([value.imag / IMAGINARY_STEP for value in residual.complex(*situation, known, shifted)])
-    work.evaluations += size * residual.evaluations
-    unit = [[float(i == j) for j in range(size)] for i in range(size)]
-    return solution(list(zip(*columns, strict=True)), unit)
+    table = [[0.0] * (2 * size) for _ in range(size)]
+    shifted = [number + 0j for number in unknown]
+    values = [0j] * size
+    for column in range(size):
+        straight = shifted[column]
+        shifted[column] = straight + IMAGINARY_STEP * 1j
+        complex_residual(situation, known, shifted, values)
+        shifted[column] = straight
+        for row in range(size):
+            table[row][column] = values[row].imag / IMAGINARY_STEP
+        table[column][size + column] = 1.0
+    eliminate(table, size)
+    for row in range(size):
+        for column in range(size):
+            inverse[row * size + column] = table[row][size + column]
+
+
+LOOPS = (eliminate, total_size, multiply, invert_jacobian, iterated)
+"""What machine code shares, each after those it calls."""
 
 
 def newton_solutions(
@@ -162,8 +238,8 @@ def newton_solutions(
     at_guess: FloatArray | None = None
     inherited = np.ones(count, bool)
     for _ in range(MOST_ITERATIONS):
-        found, pivots[points] = residual.real(*situations[:, points], knowns[:, points], unknown[:, points])
-        values = np.array(found)
+        values = np.empty((size, len(points)))
+        pivots[points] = residual.real(situations[:, points], knowns[:, points], unknown[:, points], values)
         at_guess = values if at_guess is None else at_guess
         corrections = (inverse[:, :, points] * values).sum(axis=1)
         bad = ~(settled | (np.abs(corrections).sum(axis=0) <= FALL * last))  # one that is not a number included
@@ -194,5 +270,6 @@ def _inverse_jacobians(residual: Residual, situation: FloatArray, known: FloatAr
     """Return the inverse Jacobian of each point, shape (m, m, points), by complex steps along an axis of their own."""
     directions = np.eye(len(unknown))[:, :, np.newaxis]
     shifted = unknown[:, np.newaxis] + IMAGINARY_STEP * 1j * directions
-    rows = residual.complex(*situation, known, shifted)
-    return inverses(np.stack(rows).imag / IMAGINARY_STEP)
+    values = np.empty(shifted.shape, np.complex128)
+    residual.complex(situation, known, shifted, values)
+    return inverses(values.imag / IMAGINARY_STEP)

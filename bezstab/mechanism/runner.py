@@ -24,7 +24,7 @@ from bezstab.mechanism.compiled import (
 )
 from bezstab.mechanism.compiled_batches import constraint_errors_in_groups
 from bezstab.mechanism.compiled_steps import Block, blocks_of_steps, runs_compiled
-from bezstab.mechanism.newton_iterations import NotConvergedError, Work
+from bezstab.mechanism.newton_iterations import EVALUATIONS, NotConvergedError, Work
 from bezstab.mechanism.second_order_memory import implicit_evaluations, memory
 from bezstab.mechanism.start import initial_state
 from bezstab.methods import Method, SecondOrder, adams_bashforth, bezier, evaluations, implicit, lookup, steps
@@ -107,7 +107,7 @@ def simulate(
     work = Work()
     if compiled is None:
         compiled = runs_compiled(mechanism, method, step_count * evaluations(method))
-    if compiled and not implicit(method):
+    if compiled:
         blocks = march_in_blocks(mechanism, method, whole_step, gains, first, start, step_count, work)
         history = recorded_in_blocks(first, blocks)
     else:
@@ -172,7 +172,7 @@ def march_in_blocks(
     count: int,
     work: Work | None = None,
 ) -> Iterator[Block]:
-    """Yield the first `count` steps of an explicit method, on floats, as `march` takes them, compiled, in blocks.
+    """Yield the first `count` steps of a method, on floats, as `march` takes them, compiled, in blocks.
 
     A block ends at the latest where a run may break down: only its last state can be one to which no run gets. What
     goes wrong else raises an ArithmeticError or ValueError, as there; InputError without numba.
@@ -189,7 +189,7 @@ def march_in_blocks(
     if not remaining:
         return
     moment, remembered, repeated = first_turn(mechanism, method, h, gains, states, slopes, None, math, work)
-    for block in blocks_of_steps(mechanism, method, moment, h, gains, remembered, repeated + remaining):
+    for block in blocks_of_steps(mechanism, method, moment, h, gains, remembered, repeated + remaining, work):
         new = Block(block.states[repeated:], block.pivots[repeated:])
         repeated -= len(block.states) - len(new.states)
         if len(new.states):
@@ -305,7 +305,7 @@ def carried_quantities(
     @cache
     def accelerations(place: int) -> State:
         """Return qddot at a place of the history."""
-        work.evaluations += 1
+        work.counts[EVALUATIONS] += 1
         return acceleration(place * h, *gains, calm[place][:size], calm[place][size:])
 
     carried = []
@@ -360,6 +360,8 @@ def recorded_in_blocks(first: State, blocks: Iterator[Block]) -> History:
             steps_taken += len(states)
             if cause:
                 break
+    except NotConvergedError as error:
+        cause = str(error)
     except (OverflowError, ValueError, ZeroDivisionError) as error:
         cause = _refusal(error)
     return History(np.concatenate(parts), cause, least_pivot, pivot_step)

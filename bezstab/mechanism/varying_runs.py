@@ -7,7 +7,7 @@ begins with r times that h v and r^2 times that h^2 a. The acceleration itself i
 
 import math
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import cycle
 
 import numpy as np
@@ -23,15 +23,22 @@ from bezstab.mechanism.compiled import (
     implicit_solver,
     run_as_second_order,
 )
-from bezstab.mechanism.compiled_steps import flat
+from bezstab.mechanism.compiled_steps import Block, VaryingSteps, blocks_of_varying_steps, flat, runs_compiled
 from bezstab.mechanism.energies import EnergyBalance
 from bezstab.mechanism.newton_iterations import Work
 from bezstab.mechanism.observation import observe
-from bezstab.mechanism.runner import Gains, Trajectory, breakdown, evaluation_count, first_turn, recorded_history
+from bezstab.mechanism.runner import (
+    Trajectory,
+    breakdown,
+    evaluation_count,
+    first_turn,
+    recorded_history,
+    recorded_in_blocks,
+)
 from bezstab.mechanism.second_order_memory import POSITION, VELOCITY, memory
 from bezstab.mechanism.simulation import Simulation
 from bezstab.mechanism.start import perturbed_state
-from bezstab.methods import Method, check_one_step, implicit
+from bezstab.methods import Method, check_one_step, evaluations, implicit
 from bezstab.units import feedback_gains
 
 FloatArray = NDArray[np.float64]
@@ -64,12 +71,13 @@ def simulated_with_steps(
     blown_up = breakdown(first, pivot=1.0)
     if blown_up:
         raise InputError(f"the start: {blown_up}")
-    lengths = _lengths([step * float(method.step_multiple) for step in sequence], duration)
-    own_steps = [length / float(method.step_multiple) if hold else h for length in lengths.tolist()]
-    gains = [feedback_gains(alpha_hat, beta_hat, step) for step in own_steps]
-    t = np.concatenate([[0.0], np.cumsum(lengths)])
+    steps = _steps(method, sequence, duration, lambda step: feedback_gains(alpha_hat, beta_hat, step if hold else h))
+    t = np.concatenate([[0.0], np.cumsum(steps.lengths)])
     work = Work()
-    history = recorded_history(first, _march(mechanism, method, t.tolist(), lengths.tolist(), gains, first, work))
+    if runs_compiled(mechanism, method, len(steps.times) * evaluations(method), varying=True):
+        history = recorded_in_blocks(first, _march_in_blocks(mechanism, method, steps, first, work))
+    else:
+        history = recorded_history(first, _march(mechanism, method, steps, first, work))
     rows = np.array(history.states, dtype=np.float64)
     steps_taken = len(rows) - 1
     failure = None
@@ -90,8 +98,8 @@ def simulated_with_steps(
         iterations=work.iterations if implicit(method) else None,
     )
     # at each time the gains of the step that begins there; at the last, those of the step that led to it
-    at_times = np.minimum(np.arange(len(rows)), len(lengths) - 1)
-    two_alpha, beta_squared = np.array(gains)[at_times].T
+    at_times = np.minimum(np.arange(len(rows)), len(steps.times) - 1)
+    two_alpha, beta_squared = steps.gains[at_times].T
     observation = observe(mechanism, times, trajectory.q, trajectory.v, two_alpha, beta_squared)
     balance = EnergyBalance(
         energy=observation.energy,
@@ -103,42 +111,64 @@ def simulated_with_steps(
     )
 
 
-def _lengths(sequence: Sequence[float], duration: float) -> FloatArray:
-    """Return the steps (s) of a run: those of the sequence, over and over, until the duration (s) is reached."""
+def _steps(
+    method: Method, sequence: Sequence[float], duration: float, gains: Callable[[float], tuple[float, float]]
+) -> VaryingSteps:
+    """Return the steps of a run: those of the sequence, over and over, until the duration (s) is reached.
+
+    `gains` has what belongs to a step of the user's, of which the method's own is its multiple.
+    """
     taken = []
     left = duration
-    for step in cycle(sequence):
-        if left <= LAST_STEP * min(sequence):
+    multiple = float(method.step_multiple)
+    own_sequence = [step * multiple for step in sequence]
+    for step in cycle(own_sequence):
+        if left <= LAST_STEP * min(own_sequence):
             break
         taken.append(step)
         left -= step
-    return np.array(taken)
+    lengths = np.array(taken)
+    gains_of = {length: gains(length / multiple) for length in set(taken)}
+    return VaryingSteps(
+        times=np.concatenate([[0.0], np.cumsum(lengths)])[:-1],
+        lengths=lengths,
+        gains=np.array([gains_of[length] for length in taken]),
+    )
 
 
-def _march(
-    mechanism: Mechanism,
-    method: Method,
-    times: Sequence[float],
-    lengths: Sequence[float],
-    gains: Sequence[Gains],
-    state: State,
-    work: Work,
-) -> Iterator[Step]:
+def _march(mechanism: Mechanism, method: Method, steps: VaryingSteps, state: State, work: Work) -> Iterator[Step]:
     """Yield step after step, each from a time by a length with its gains, as `runner.march` does."""
     single_step = compiled_single_step(mechanism, method)
     # each length has a solver of its own: the Jacobian that it keeps is no good for others
     solvers: defaultdict[float, Solver] = defaultdict(lambda: implicit_solver(mechanism, method, math, work))
     powers = _powers_of_step(mechanism, method)
-    before = lengths[0]
-    _, start, _ = first_turn(mechanism, method, before, gains[0], [state], [], None, math, work)
-    remembered = tuple(flat(start))
-    for time, length, own_gains in zip(times, lengths, gains, strict=False):
-        ratio = length / before
-        remembered = tuple(ratio**power * number for power, number in zip(powers, remembered, strict=True))
+    remembered = _remembered(mechanism, method, steps, state, work)
+    in_lists = (array.tolist() for array in (steps.times, steps.lengths, steps.ratios, steps.gains))
+    for time, length, ratio, gains in zip(*in_lists, strict=True):
+        factors = (1.0, ratio, ratio * ratio)
+        remembered = tuple(factors[power] * number for power, number in zip(powers, remembered, strict=True))
         solve = solvers[length] if implicit(method) else None
-        step, remembered = single_step(time, length, *own_gains, remembered, solve)
-        before = length
+        step, remembered = single_step(time, length, *gains, remembered, solve)
         yield step
+
+
+def _march_in_blocks(
+    mechanism: Mechanism, method: Method, steps: VaryingSteps, state: State, work: Work
+) -> Iterator[Block]:
+    """Yield the same steps compiled, in blocks."""
+    remembered = _remembered(mechanism, method, steps, state, work)
+    powers = tuple(_powers_of_step(mechanism, method))
+    yield from blocks_of_varying_steps(mechanism, method, steps, powers, remembered, work)
+
+
+def _remembered(
+    mechanism: Mechanism, method: Method, steps: VaryingSteps, state: State, work: Work
+) -> tuple[float, ...]:
+    """Return what the first step begins with."""
+    two_alpha, beta_squared = steps.gains[0].tolist()
+    gains = (two_alpha, beta_squared)
+    _, start, _ = first_turn(mechanism, method, float(steps.lengths[0]), gains, [state], [], None, math, work)
+    return tuple(flat(start))
 
 
 def _powers_of_step(mechanism: Mechanism, method: Method) -> list[int]:

@@ -10,10 +10,19 @@ import pytest
 
 from bezstab.compiling import COMPILED_CHOICE
 from bezstab.errors import InputError
-from bezstab.mechanism import Mechanism, Trajectory, compiled_mechanism, load_scene, shipped_scenes, simulate
+from bezstab.mechanism import (
+    Mechanism,
+    Trajectory,
+    compiled_mechanism,
+    load_scene,
+    parse_scene,
+    shipped_scenes,
+    simulate,
+)
 from bezstab.mechanism import compiled_steps as module
-from bezstab.mechanism.compiled_steps import blocks_of_steps, runs_compiled
+from bezstab.mechanism.compiled_steps import batches_compiled, blocks_of_steps, runs_compiled
 from bezstab.mechanism.generated_code import Stepper, Unpacked, Yielded, compiled_source, generator_source
+from bezstab.mechanism.newton_iterations import Work
 from bezstab.methods import Method, lookup
 from bezstab.units import feedback_gains
 
@@ -21,12 +30,16 @@ H = 1e-3  # s
 QUICK = ("AB3", "ABM2", "RK2", "SYM", "verlet-half")
 """Of each kind of method one that compiles fast: multistep, PECE, Runge-Kutta, partitioned, second order."""
 KINDS = ("B4", "ABM4", "RK4", "SYM", "yoshida4")
+IMPLICIT = ("hht", "bdf3", "am3", "verlet-implicit", "gauss4", "sdirk2", "stable-pd", "trapezoid", "implicit-euler")
+"""Of each kind of method that solves equations: of one group or two, of one evaluation or two."""
 SCENES = [name for name in shipped_scenes() if name != "n_four_bar"]
 """Besides the chain of 40 four-bars, whose 160 constraints take numba a minute and more: with one method it must do."""
 PAIRS = [("slider_crank", name) for name in KINDS]
 PAIRS += [(scene, QUICK[number % len(QUICK)]) for number, scene in enumerate(SCENES)]
 PAIRS += [("n_four_bar", "SYM")]
 """Every scene with some kind, and every kind with some scene."""
+IMPLICIT_PAIRS = list(zip(SCENES, IMPLICIT, strict=True))
+"""Likewise; the chain of 40 four-bars with a chain of two in its place, for numba takes too long."""
 
 
 def step_for(scene: str) -> float:
@@ -63,6 +76,36 @@ def test_every_scene_is_the_same_to_the_last_bit(scene: str, name: str) -> None:
     h = step_for(scene)
     run = both(compiled_mechanism(load_scene(scene)), lookup(name), 3000, feedback_gains(0.3, 0.04, h), h)
     assert len(run.t) > 100
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("scene", "name"), IMPLICIT_PAIRS)
+def test_newtons_method_is_the_same_to_the_last_bit_in_every_scene(scene: str, name: str) -> None:
+    h = step_for(scene)
+    run = both(compiled_mechanism(load_scene(scene)), lookup(name), 1000, feedback_gains(0.3, 0.04, h), h)
+    assert len(run.t) == 1001
+    assert (run.iterations or 0) > 2000
+
+
+@pytest.mark.slow
+def test_newtons_method_is_the_same_to_the_last_bit_in_a_chain() -> None:
+    upright = {"position": {"rod0.theta": math.pi / 2}, "velocity": {"rod0.theta": -1.0}}
+    links = {"count": 2, "length": 1.0, "mass": 1.0}
+    chain = parse_scene({"name": "chain", "four_bar_chain": links, "initial": upright})
+    run = both(compiled_mechanism(chain), lookup("trapezoid"), 300, feedback_gains(0.3, 0.04, H))
+    assert len(run.t) == 301
+
+
+def test_newtons_method_is_the_same_whether_it_converges_or_ends_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By its iterations, too, and across blocks, which keep the Jacobian from step to step."""
+    mechanism, method = compiled_mechanism(load_scene("pendulum")), lookup("bdf2")
+    assert both(mechanism, method, 500, feedback_gains(0.3, 0.04, H)).failure is None
+    assert "blow-up" in str(both(mechanism, method, 100, feedback_gains(-1.0, 0.1, 0.3), 0.3).failure)
+    monkeypatch.setattr(module, "BLOCK", 7)
+    assert both(mechanism, method, 50, feedback_gains(0.3, 0.04, H)).failure is None
+    ended = both(mechanism, method, 400, (0.0, 0.0), 0.1)
+    assert len(ended.t) > 10
+    assert "Newton's method did not converge in 25 iterations" in str(ended.failure)
 
 
 def test_a_block_may_end_after_any_number_of_steps(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -113,7 +156,7 @@ def test_what_python_refuses_is_refused_after_the_steps_before(refused: str, mon
     mechanism, method = cast(Mechanism, OneCoordinate()), lookup("SYM")
     for cached in (module._machine_block, module._python_block):
         cached.cache_clear()
-    blocks = blocks_of_steps(mechanism, method, 0.0, 0.1, (0.0, 0.0), ((4.0, 0.0), ()), 9)
+    blocks = blocks_of_steps(mechanism, method, 0.0, 0.1, (0.0, 0.0), ((4.0, 0.0), ()), 9, Work())
     with pytest.raises(type(wanted.value)) as seen:
         states.extend(state for block in blocks for state in block.states.tolist())
     assert str(seen.value) == str(wanted.value)
@@ -131,7 +174,9 @@ def test_runs_are_compiled_where_that_pays_or_is_asked_for(monkeypatch: pytest.M
     ):
         monkeypatch.setenv(COMPILED_CHOICE, choice)
         assert runs_compiled(mechanism, method, evaluations) is expected
-        assert not runs_compiled(mechanism, lookup("bdf2"), evaluations)
+        assert runs_compiled(mechanism, lookup("bdf2"), evaluations) is expected
+        assert batches_compiled(mechanism, method, evaluations) is expected
+        assert not batches_compiled(mechanism, lookup("bdf2"), evaluations)
     monkeypatch.setenv(COMPILED_CHOICE, "maybe")
     with pytest.raises(InputError, match="BEZSTAB_COMPILED=maybe: expected auto, yes or no"):
         runs_compiled(mechanism, method, 10)

@@ -26,6 +26,7 @@ from bezstab.mechanism import (
 from bezstab.mechanism.generated_code import (
     Moved,
     Pivot,
+    Sought,
     Stepper,
     Unpacked,
     Yielded,
@@ -34,6 +35,7 @@ from bezstab.mechanism.generated_code import (
     compiled_source,
     generator_source,
     single_step_source,
+    varying_block_source,
 )
 from bezstab.methods import Method, accuracy, lookup, recipe, steps
 from tests.mechanism.test_scenes import pendulum
@@ -237,6 +239,64 @@ def test_a_block_ends_at_a_state_that_python_has_to_judge() -> None:
     assert block(0.0, 0.0, 0.0, 0.0, 0, 9, memory, states, pivots, reached) == 3
     assert memory == [1000.0]
     assert reached == [3]
+
+
+def test_a_group_is_solved_by_what_a_stepper_is_given_for_its_number() -> None:
+    """Of v = -h q at the end of the step, which a generator takes from its argument and a block by a name."""
+    halving = Stepper(
+        arguments="state, solve",
+        opening=OPENING,
+        turn=(
+            Pivot("worst_pivot", ("1.0",)),
+            Sought(3, known=("q0",), guesses=("v0",), found=("v0",)),
+            Pivot("worst_pivot", ("worst_pivot", "worst")),
+            "q0 = q0 + h * v0",
+            Yielded(("q0", "v0"), ("v0",)),
+        ),
+    )
+
+    def solve(situation: tuple[float, ...], known: list[float], sought: list[float]) -> float:
+        start, k, h, two_alpha, beta_squared = situation
+        assert (start, h, two_alpha, beta_squared) == (0.0, 0.5, 1.0, 2.0)
+        sought[0] = -h * known[0]
+        return 0.5 - k / 8
+
+    run = compiled_source(generator_source(halving), math)["run"](0.0, 0.5, 1.0, 2.0, (1.0, 0.0), {3: solve})
+    assert [next(run)[::2] for _ in range(2)] == [((0.75, -0.5), 0.5), ((0.5625, -0.375), 0.375)]
+
+    def solve_in_block(
+        situation: tuple[float, ...], known: list[float], sought: list[float], inverse: list[float], counts: list[int]
+    ) -> float:
+        inverse[0], counts[0] = known[0], counts[0] + 1
+        return solve(situation, known, sought)
+
+    block = compiled_source(block_source(halving, 0.0, 1e9), math, {"solve_3": solve_in_block})["block"]
+    states, pivots, inverses, counts = [0.0] * 4, [0.0] * 2, ([0.0],), [0, 0]
+    assert block(0.0, 0.5, 1.0, 2.0, 0, 2, [1.0, 0.0], states, pivots, [0], inverses, counts) == 2
+    assert (states, pivots) == ([0.75, -0.5, 0.5625, -0.375], [0.5, 0.375])
+    assert (inverses, counts) == (([0.75],), [2, 0])
+
+
+def test_a_block_of_varying_steps_is_a_stepper_begun_anew_at_each() -> None:
+    drift = Stepper(
+        arguments="carried, solve",
+        opening=("k = 0", Unpacked(("X_0_0", "V_0_0", "A_0_0"), ""), "h_squared = h * h"),
+        turn=(
+            Pivot("worst_pivot", ("1.0",)),
+            "t = start + (k + 0.5) * h",
+            "X_1_0 = X_0_0 + V_0_0 + A_0_0 + two_alpha + beta_squared",
+            Yielded(("X_1_0", "t"), ("V_0_0 / h", "A_0_0 / h_squared")),
+            Moved("X_0_0", "X_1_0"),
+        ),
+    )
+    block = compiled_source(varying_block_source(drift, (0, 1, 2), 0.0, 1e9), math)["varying_block"]
+    memory, states, pivots, reached = [1.0, 1.0, 1.0], [0.0] * 6, [0.0] * 3, [0]
+    times, lengths, ratios = [0.0, 1.0, 3.0], [1.0, 2.0, 0.5], [1.0, 2.0, 0.25]
+    gains = [0.0, 0.0, 100.0, 1000.0, 0.0, 0.0]
+    taken = block(times, lengths, ratios, gains, [0, 2, 1], 0, 3, memory, states, pivots, reached)
+    assert (taken, reached) == (3, [3])
+    assert states == [3.0, 0.5, 3.0 + 2.0 + 4.0 + 1100.0, 2.0, 1109.0 + 0.5 + 0.25, 3.25]
+    assert memory == [1109.75, 0.5, 0.25]
 
 
 @given(st.lists(st.sampled_from([1.0, 0.5, -2.0, 0.0, -0.0, math.inf, -math.inf, math.nan]), min_size=1, max_size=5))

@@ -14,72 +14,87 @@ from bezstab.mechanism.newton_iterations import (
     Residual,
     Work,
     complex_library,
+    multiply,
     newton_solution,
     newton_solutions,
+    no_inverse,
     rounding_of,
+    total_size,
 )
 
 TOLERANCE = 1e-13
 
 
-def circle_and_line(_: Any, known: Sequence[Any], unknown: Sequence[Any]) -> tuple[Any, ...]:
-    """Return what x^2 + y^2 = known^2 and x = y leave over, its solution known / sqrt(2) twice."""
+def circle_and_line(_: Any, known: Sequence[Any], unknown: Sequence[Any], values: Any) -> float:
+    """Write what x^2 + y^2 = known^2 and x = y leave over, its solution known / sqrt(2) twice."""
     x, y = unknown
-    return x * x + y * y - known[0] * known[0], x - y
+    values[0], values[1] = x * x + y * y - known[0] * known[0], x - y
+    return 1.0
 
 
-RESIDUAL = Residual(lambda *entries: (circle_and_line(*entries), 1.0), circle_and_line, evaluations=1)
+RESIDUAL = Residual(circle_and_line, circle_and_line, evaluations=1)
+
+
+def solved(
+    residual: Residual,
+    known: Sequence[Any],
+    guess: Sequence[Any],
+    inverse: list[Any] | None = None,
+    tolerance: Any = TOLERANCE,
+    work: Work | None = None,
+) -> list[Any]:
+    """Return the unknowns."""
+    sought = list(guess)
+    kept = no_inverse(len(sought)) if inverse is None else inverse
+    pivot = newton_solution(residual, (0.0,), known, sought, kept, tolerance, (work or Work()).counts)
+    assert pivot == 1.0
+    return sought
 
 
 def test_the_root_is_found_and_counted() -> None:
     work = Work()
-    found, pivot, _ = newton_solution(RESIDUAL, (0.0,), (2.0,), (1.0, 1.5), None, TOLERANCE, work)
+    found = solved(RESIDUAL, (2.0,), (1.0, 1.5), work=work)
     assert found == pytest.approx([math.sqrt(2), math.sqrt(2)], rel=1e-14)
-    assert pivot == 1.0
     assert 4 <= work.iterations <= 11
     jacobians = (work.evaluations - work.iterations) / 2  # two unknowns, an evaluation each
     assert jacobians in range(1, work.iterations + 1)
 
 
 def test_a_linear_equation_takes_one_correction_one_to_see_it_and_one_more() -> None:
-    def line(_: Any, known: Sequence[Any], unknown: Sequence[Any]) -> tuple[Any, ...]:
-        return (3.0 * unknown[0] - known[0],)
+    def line(_: Any, known: Sequence[Any], unknown: Sequence[Any], values: Any) -> float:
+        values[0] = 3.0 * unknown[0] - known[0]
+        return 1.0
 
     work = Work()
-    found, _, _ = newton_solution(
-        Residual(lambda *entries: (line(*entries), 0.5), line, 1), (0.0,), (6.0,), (1e3,), None, TOLERANCE, work
-    )
-    assert found == (2.0,)
+    assert solved(Residual(line, line, 1), (6.0,), (1e3,), work=work) == [2.0]
     assert (work.iterations, work.evaluations) == (3, 4)
 
 
 def test_more_digits_take_more_iterations_to_their_own_rounding() -> None:
     with mp.workdps(30):
-        found, _, _ = newton_solution(
-            RESIDUAL, (0,), (mp.mpf(2),), (mp.mpf(1), mp.mpf(1.5)), None, 500 * rounding_of(mp), Work()
-        )
+        found = solved(RESIDUAL, (mp.mpf(2),), (mp.mpf(1), mp.mpf(1.5)), tolerance=500 * rounding_of(mp))
         assert abs(found[0] - mp.sqrt(2)) < mp.mpf(10) ** -28
 
 
 def test_what_has_no_root_does_not_converge() -> None:
-    def no_root(_: Any, __: Any, unknown: Sequence[Any]) -> tuple[Any, ...]:
-        return (unknown[0] * unknown[0] + 1.0,)
+    def no_root(_: Any, __: Any, unknown: Sequence[Any], values: Any) -> float:
+        values[0] = unknown[0] * unknown[0] + 1.0
+        return 1.0
 
-    residual = Residual(lambda *entries: (no_root(*entries), 1.0), no_root, 1)
     with pytest.raises(NotConvergedError, match=rf"did not converge in {MOST_ITERATIONS} iterations \(last correction"):
-        newton_solution(residual, (0.0,), (), (0.3,), None, TOLERANCE, Work())
+        solved(Residual(no_root, no_root, 1), (), (0.3,))
 
 
 def test_what_leaves_the_numbers_does_not_converge() -> None:
     with pytest.raises(NotConvergedError, match="not finite"):
-        newton_solution(RESIDUAL, (0.0,), (math.nan,), (1.0, 1.5), None, TOLERANCE, Work())
+        solved(RESIDUAL, (math.nan,), (1.0, 1.5))
 
 
 def test_a_batch_converges_point_by_point_and_fails_point_by_point() -> None:
     radius = np.array([[2.0, 4.0, np.nan], [30.0, np.inf, 0.1]])
     with np.errstate(all="ignore"):
         (x, y), pivot, _ = newton_solutions(
-            Residual(lambda *entries: (circle_and_line(*entries), np.ones(entries[2][0].shape)), circle_and_line, 1),
+            RESIDUAL,
             (0.0,),
             (radius,),
             (np.array([1.0, 1.0, 1.0]), 1.5),
@@ -104,11 +119,19 @@ def test_each_library_has_its_complex_one_and_its_rounding() -> None:
 
 
 def test_a_jacobian_is_kept_as_long_as_it_serves() -> None:
-    first, later, far = Work(), Work(), Work()
-    found, _, inverse = newton_solution(RESIDUAL, (0.0,), (2.0,), (1.4, 1.4), None, TOLERANCE, first)
-    found, _, inverse = newton_solution(RESIDUAL, (0.0,), (2.01,), found, inverse, TOLERANCE, later)
+    first, later, far, inverse = Work(), Work(), Work(), no_inverse(2)
+    found = solved(RESIDUAL, (2.0,), (1.4, 1.4), inverse, work=first)
+    found = solved(RESIDUAL, (2.01,), found, inverse, work=later)
     assert found == pytest.approx([2.01 / math.sqrt(2)] * 2, rel=1e-14)
     assert later.evaluations == later.iterations  # nothing but residuals
-    found, _, _ = newton_solution(RESIDUAL, (0.0,), (20.0,), found, inverse, TOLERANCE, far)
+    found = solved(RESIDUAL, (20.0,), found, inverse, work=far)
     assert found == pytest.approx([20 / math.sqrt(2)] * 2, rel=1e-14)
     assert far.evaluations > far.iterations
+
+
+def test_sums_are_taken_in_their_order_on_every_version_of_python() -> None:
+    """From 3.12 on `sum` keeps what floats lose, which machine code does not."""
+    assert total_size([1.0, -1e-16, 1e-16]) == 1.0
+    rows = [0.0, 0.0]
+    multiply([1.0, 1e-16, 2.0, 3.0], [1.0, 1.0], rows)
+    assert rows == [1.0, 5.0]

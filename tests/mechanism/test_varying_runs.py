@@ -1,21 +1,25 @@
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 import pytest
 
+from bezstab.compiling import COMPILED_CHOICE
 from bezstab.errors import InputError
 from bezstab.mechanism import (
     Mechanism,
     Simulation,
     at_speed,
     compiled_mechanism,
+    compiled_steps,
     load_scene,
     simulated,
     simulated_with_steps,
 )
 from bezstab.methods import lookup, step_matrix
 from bezstab.stability import FloatArray
+from tests.mechanism.test_compiled_steps import assert_same
 
 MECHANISM = compiled_mechanism(load_scene("slider_crank"))
 DRIVEN = compiled_mechanism(load_scene("driven_slider_crank"))
@@ -168,3 +172,40 @@ def test_a_run_that_breaks_down_says_when() -> None:
 def test_methods_of_several_steps_are_refused(name: str) -> None:
     with pytest.raises(InputError, match="its coefficients assume"):
         run_with([H], 0.4, name)
+
+
+PENDULUM = compiled_mechanism(load_scene("pendulum"))
+
+
+def compiled_and_not(name: str, monkeypatch: pytest.MonkeyPatch, **point: Any) -> Simulation:
+    """Return a run of the pendulum, the same by Python and compiled, to the last bit and in all that is said of it."""
+    runs = []
+    for choice in ("no", "yes"):
+        monkeypatch.setenv(COMPILED_CHOICE, choice)
+        runs.append(simulated_with_steps(PENDULUM, lookup(name), perturb=1e-6, **point))
+    assert_same(*(run.trajectory for run in runs))
+    return runs[1]
+
+
+def same_to_the_last_bit(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Check runs that last, their gains held and not, and runs that end."""
+    sequence, h = [1e-3, 2.5e-3, 1e-3, 2e-3], 1e-3
+    for hold in (False, True):
+        point = {"alpha_hat": 0.3, "beta_hat": 0.04, "hold": hold}
+        run = compiled_and_not(name, monkeypatch, sequence=sequence, h=h, duration=1.0, **point)
+        assert run.failure is None
+        assert len(run.t) > 300
+    coarse = {"sequence": [0.1, 0.2], "h": 0.1, "duration": 200.0}
+    run = compiled_and_not(name, monkeypatch, alpha_hat=-1.0, beta_hat=0.1, **coarse)
+    assert run.failure
+
+
+def test_compiled_runs_are_the_same_to_the_last_bit(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(compiled_steps, "BLOCK", 100)
+    same_to_the_last_bit("verlet-half", monkeypatch)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["SYM", "RK4@2", "trapezoid", "sdirk2"])
+def test_compiled_runs_of_every_kind_are_the_same_to_the_last_bit(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    same_to_the_last_bit(name, monkeypatch)

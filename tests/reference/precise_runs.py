@@ -15,7 +15,7 @@ import mpmath as mp
 from bezstab.mechanism import Mechanism, compiled_source, stepper_code
 from bezstab.mechanism.compiled import run_as_second_order
 from bezstab.mechanism.generated_code import residuals_source
-from bezstab.mechanism.newton_iterations import TOLERANCE, Residual, Work, newton_solution
+from bezstab.mechanism.newton_iterations import TOLERANCE, Residual, Work, newton_solution, no_inverse
 from bezstab.mechanism.runner import carried_quantities
 from bezstab.mechanism.second_order_turns import implicit_groups
 from bezstab.methods import Method, RungeKutta, lookup
@@ -60,11 +60,16 @@ def _precise_second_order_run(
         for number, evaluations in implicit_groups(scheme).items()
     }
 
-    def solve(number: int, *entries: Any) -> tuple[Sequence[Any], Any]:
-        *situation, known, guess = entries
-        found, pivot, _ = newton_solution(residuals[number], situation, known, guess, None, TOLERANCE * mp.eps, Work())
-        return found, pivot
+    def solver(residual: Residual) -> Callable[..., Any]:
+        """Return what solves a group anew in each step."""
 
+        def solve(situation: Sequence[Any], known: Sequence[Any], sought: list[Any]) -> Any:
+            inverse: list[Any] = no_inverse(len(sought))
+            return newton_solution(residual, situation, known, sought, inverse, TOLERANCE * mp.eps, [0, 0])
+
+        return solve
+
+    solve = {number: solver(residual) for number, residual in residuals.items()}
     carried = carried_quantities(mechanism, scheme, h, gains, states, None, mp, Work())
     return _precise_stepper(mechanism, method)((len(states) - 1) * h, h, *gains, carried, solve)
 
