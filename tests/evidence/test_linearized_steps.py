@@ -66,3 +66,18 @@ def test_after_a_revolution_the_motion_is_where_it_was_but_for_a_turn() -> None:
             assert moved[0, 0] == pytest.approx(2 * np.pi, abs=1e-10)
             moved = moved[:, 1:]
         assert np.abs(moved).max() < 1e-10
+
+
+@pytest.mark.parametrize("name", ["trapezoid", "bdf2", "implicit-midpoint"])
+def test_a_step_of_an_implicit_method_ends_on_the_motion_but_for_its_local_error(name: str) -> None:
+    """Of order three for methods of order two, and h v, which the step carries, is a displacement: of order four."""
+
+    def missed(steps: int) -> float:
+        course = course_of_steps(four_bar(), lookup(name), 1 / steps, 1.0)
+        gains = np.array(feedback_gains(np.array([0.3]), np.array([0.1]), course.step))
+        values = on_the_motion(course, 3)
+        take_step_itself(course, gains, 3, values)
+        velocity = Quantity("v", 0)
+        return float(np.abs(values[Quantity("v", 1)] - on_the_motion(course, 4)[velocity]).max())
+
+    assert np.log2(missed(200) / missed(400)) == pytest.approx(4, abs=0.2)

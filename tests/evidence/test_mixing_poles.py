@@ -57,6 +57,7 @@ def test_poles_far_apart_come_as_far_as_the_first_order_law_says() -> None:
     nearest = nearest_poles(lookup("SYM"), np.array([1.0]), np.array([0.5]))
     first_order = 0.5 + 1e-6 * np.abs(nearest.shift).max()
     assert not nearest.mix(1e-6).any()
+    assert nearest.mixing_from() * np.abs(nearest.shift) == pytest.approx(1 / 4)  # half of the gap between them
     assert nearest.reach(1e-6)[0, 0] == pytest.approx(first_order, abs=1e-10)
 
 
