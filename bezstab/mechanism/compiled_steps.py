@@ -74,6 +74,9 @@ CHEAPER_TOGETHER = 20
 MOST_LINES = 3000
 """Of a turn of a stepper that is compiled without being asked for: what numba takes grows faster than the text."""
 
+MOST_LINES_ASKED_FOR = 8000
+"""Of one that is asked for: numba takes a minute and a half for 5,000 lines, and has not ended with 10,700 after seven."""
+
 CONSTANT = "float64, float64, float64, float64"
 VARYING = "float64[::1], float64[::1], float64[::1], float64[::1], int64[::1]"
 BLOCK_ARGUMENTS = "int64, int64, float64[::1], float64[::1], float64[::1], int64[::1]"
@@ -122,16 +125,18 @@ def compiled_asked_for() -> bool:
 
 
 def runs_compiled(mechanism: Mechanism, method: Method, evaluations: int, varying: bool = False) -> bool:
-    """Return whether a run of so many evaluations is to be compiled. InputError if it must be and numba is missing.
+    """Return whether a run of so many evaluations is to be compiled. InputError if it must be and cannot be.
 
-    By default where numba is there and it pays: the run is long, or has been compiled before. `evaluations` do not
-    include what iterations take; `varying` says whether steps do. InputError, too, as `compiled_asked_for`.
+    That is without numba, or where a step is too long a text. By default where numba is there and it pays: the run is
+    long, or has been compiled before. `evaluations` do not include what iterations take; `varying` says whether steps
+    do. InputError, too, as `compiled_asked_for`.
     """
     choice = compiled_choice()
     if choice == "no":
         return False
     if choice == "yes":
         check_numba()
+        _check_length(mechanism, method)
         return True
     if not numba_is_installed():
         return False
@@ -139,6 +144,16 @@ def runs_compiled(mechanism: Mechanism, method: Method, evaluations: int, varyin
         evaluations *= ITERATIONS_OF_A_SOLUTION
     pays = evaluations >= WORTH_COMPILING and stepper_of(mechanism, method).length <= MOST_LINES
     return pays or (mechanism, method, varying) in _compiled
+
+
+def _check_length(mechanism: Mechanism, method: Method) -> None:
+    """Raise InputError if a step of the method is too long to be compiled in minutes."""
+    length = stepper_of(mechanism, method).length
+    if length > MOST_LINES_ASKED_FOR:
+        raise InputError(
+            f"--compiled yes: a step of {method.name} on {mechanism.scene.name} is {length} lines of code, of which "
+            f"at most {MOST_LINES_ASKED_FOR} are compiled in minutes: expected auto or no"
+        )
 
 
 def batches_compiled(mechanism: Mechanism, method: Method, evaluations: int) -> bool:

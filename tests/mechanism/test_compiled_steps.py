@@ -182,6 +182,15 @@ def test_runs_are_compiled_where_that_pays_or_is_asked_for(monkeypatch: pytest.M
         runs_compiled(mechanism, method, 10)
 
 
+def test_a_step_too_long_to_be_compiled_is_refused_where_it_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    mechanism, method = compiled_mechanism(load_scene("four_bar")), lookup("bdf2")
+    monkeypatch.setenv(COMPILED_CHOICE, "yes")
+    assert runs_compiled(mechanism, method, 10)
+    monkeypatch.setattr(module, "MOST_LINES_ASKED_FOR", 50)
+    with pytest.raises(InputError, match=r"--compiled yes: a step of bdf2 on four_bar is \d+ lines of code"):
+        runs_compiled(mechanism, method, 10)
+
+
 def test_without_numba_runs_are_pythons_unless_it_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     mechanism, method = compiled_mechanism(load_scene("four_bar")), lookup("AB2")
