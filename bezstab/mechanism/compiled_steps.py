@@ -31,6 +31,7 @@ from bezstab.compiling import (
     numba_is_installed,
     shared_with_machine_code,
 )
+from bezstab.errors import InputError
 from bezstab.mechanism.compiled import (
     BLOWN_UP,
     SINGULAR,
@@ -75,7 +76,7 @@ MOST_LINES = 3000
 """Of a turn of a stepper that is compiled without being asked for: what numba takes grows faster than the text."""
 
 MOST_LINES_ASKED_FOR = 8000
-"""Of one that is asked for: numba takes a minute and a half for 5,000 lines, and has not ended with 10,700 after seven."""
+"""Of one that is asked for: numba takes over a minute for 5,000 lines, and had not ended with 10,700 after seven."""
 
 CONSTANT = "float64, float64, float64, float64"
 VARYING = "float64[::1], float64[::1], float64[::1], float64[::1], int64[::1]"
