@@ -187,7 +187,7 @@ def test_a_step_too_long_to_be_compiled_is_refused_where_it_is_asked_for(monkeyp
     monkeypatch.setenv(COMPILED_CHOICE, "yes")
     assert runs_compiled(mechanism, method, 10)
     monkeypatch.setattr(module, "MOST_LINES_ASKED_FOR", 50)
-    with pytest.raises(InputError, match=r"--compiled yes: a step of bdf2 on four_bar is \d+ lines of code"):
+    with pytest.raises(InputError, match=r"--compiled yes: a step of bdf2 on .+ is \d+ lines of code"):
         runs_compiled(mechanism, method, 10)
 
 
