@@ -103,6 +103,11 @@ def _other_integral(method: Method, level: float, area: float) -> Integral:
     return Integral(proven.value, proven.error + abs(proven.value - other.value))
 
 
+def all_cases_of(number: int) -> list[Case]:
+    """Return the cases of both random methods of a number."""
+    return cases_of(number) + other_cases_of(number)
+
+
 def cases_of(number: int) -> list[Case]:
     """Return the cases of one random explicit method."""
     return _cases(compared, random_method(number))
@@ -125,12 +130,12 @@ def all_cases(methods: int, seconds: float, first_method: int) -> Iterator[Case]
     """Yield the cases of so many numbers from the first on, from two processes, until the time is over."""
     start = time.monotonic()
     with ProcessPoolExecutor(2) as pool:
-        last_method = first_method + methods
-        for first in range(first_method, last_method, 20):
-            numbers = range(first, min(first + 20, last_method))
-            for cases in [*pool.map(cases_of, numbers), *pool.map(other_cases_of, numbers)]:
-                yield from cases
+        for done, cases in enumerate(pool.map(all_cases_of, range(first_method, first_method + methods)), start=1):
+            yield from cases
+            if done % 500 == 0:
+                print(f"{done} of {methods}", file=sys.stderr, flush=True)
             if time.monotonic() - start > seconds:
+                pool.shutdown(wait=False, cancel_futures=True)
                 return
 
 
