@@ -45,7 +45,7 @@ def feedback_roots(
         q = np.ldexp(q, shift - 2 * exponent)
         q_low = np.ldexp(q_low, shift - 2 * exponent)
 
-        square, square_low = two_product(half, half)
+        square, square_low = two_square(half)
         high, low = two_sum(square, -q)
         discriminant = high + (low + (square_low + 2 * half * half_low - q_low))
         root = np.sqrt(np.abs(discriminant))
@@ -71,17 +71,20 @@ def feedback_discriminant(
     p, p_low = exact_combination(feedback[0], alpha_hat, beta_hat)
     q, q_low = exact_combination(feedback[1], alpha_hat, beta_hat)
     half = 0.5 * p
-    square, square_low = two_product(half, half)
+    square, square_low = two_square(half)
     high, low = two_sum(square, -q)
-    return p, q, high + (low + (square_low + half * p_low - q_low))
+    if np.ndim(p_low) or np.ndim(q_low):
+        square_low = square_low + half * p_low - q_low
+    return p, q, high + (low + square_low)
 
 
-def exact_combination(factors: Sequence[Fraction], x: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return a x + b y, (a, b) the factors, as an unevaluated sum of two float64."""
+def exact_combination(
+    factors: Sequence[Fraction], x: FloatArray, y: FloatArray
+) -> tuple[FloatArray, FloatArray | float]:
+    """Return a x + b y, (a, b) the factors, as an unevaluated sum of two float64, of which the second may be just 0."""
     a, b = factors
     if {a, b} == {0, 1}:  # one of the two itself, as for most methods
-        chosen = x if a else y
-        return chosen, np.zeros_like(chosen)
+        return x if a else y, 0.0
     ax, ax_low = two_product(float(a), x)
     by, by_low = two_product(float(b), y)
     total, total_low = two_sum(ax, by)
@@ -136,6 +139,14 @@ def two_product(x: FloatArray | float, y: FloatArray) -> tuple[FloatArray, Float
     x_high, x_low = _halves(x)
     y_high, y_low = _halves(y)
     return product, x_low * y_low - (((product - x_high * y_high) - x_low * y_high) - x_high * y_low)
+
+
+def two_square(x: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return two_product(x, x), which is split once."""
+    square = x * x
+    high, low = _halves(x)
+    across = high * low
+    return square, low * low - (((square - high * high) - across) - across)
 
 
 def _halves(x: FloatArray | float) -> tuple[FloatArray | float, FloatArray | float]:

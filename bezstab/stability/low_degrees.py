@@ -48,10 +48,11 @@ def polynomial_of_pair(ascending: Sequence[float], p: FloatArray, q: FloatArray)
 
     R has these coefficients, one at least. Divided by the quadratic it leaves factor mu + rest, which R is at both.
     """
-    above, factor = np.zeros_like(p), np.zeros_like(p)
-    for coefficient in ascending[:0:-1]:
+    above: FloatArray | float = 0.0
+    factor: FloatArray | float = ascending[-1] if len(ascending) > 1 else 0.0
+    for coefficient in ascending[-2:0:-1]:
         above, factor = factor, coefficient - p * factor - q * above
-    return ascending[0] - q * above - 0.5 * p * factor, factor
+    return ascending[0] - q * above - 0.5 * p * factor, np.broadcast_to(factor, p.shape)
 
 
 def cubic_parts(b: FloatArray, c: FloatArray, d: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bezstab.stability.exact_sums import exact_combination, feedback_roots, two_product, two_sum
+from bezstab.stability.exact_sums import exact_combination, feedback_roots, two_product, two_square, two_sum
 
 IDENTITY = ((Fraction(1), Fraction(0)), (Fraction(0), Fraction(1)))
 NUMBERS = st.floats(-1e100, 1e100).filter(lambda x: x == 0 or abs(x) > 1e-100)
@@ -26,12 +26,24 @@ def test_a_product_and_its_rounding_are_exact(x: float, y: float) -> None:
     assert Fraction(high[0]) + Fraction(low[0]) == Fraction(x) * Fraction(y)
 
 
+@given(NUMBERS)
+def test_a_square_and_its_rounding_are_exact(x: float) -> None:
+    high, low = two_square(np.array([x]))
+    assert Fraction(high[0]) + Fraction(low[0]) == Fraction(x) ** 2
+
+
+def test_one_of_two_numbers_has_no_rounding() -> None:
+    x, y = np.array([0.1]), np.array([0.3])
+    assert exact_combination((Fraction(1), Fraction(0)), x, y) == (x, 0)
+    assert exact_combination((Fraction(0), Fraction(1)), x, y) == (y, 0)
+
+
 @given(NUMBERS, NUMBERS)
 def test_a_combination_with_thirds_keeps_twice_the_digits(x: float, y: float) -> None:
     factors = (Fraction(1, 3), Fraction(-2, 7))
     high, low = exact_combination(factors, np.array([x]), np.array([y]))
     exact = factors[0] * Fraction(x) + factors[1] * Fraction(y)
-    assert abs(Fraction(high[0]) + Fraction(low[0]) - exact) <= Fraction(2) ** -100 * (
+    assert abs(Fraction(high[0]) + Fraction(np.ravel(low)[0]) - exact) <= Fraction(2) ** -100 * (
         abs(Fraction(x)) + abs(Fraction(y))
     )
 
