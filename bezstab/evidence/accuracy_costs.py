@@ -122,8 +122,8 @@ def sweep_compiled(
 ) -> bool:
     """Return whether the runs of a sweep are compiled: all or none, so that their times can be compared.
 
-    `runs_compiled` says so for each method's runs together, step sizes and duration in s. By default
-    none are where one is not. InputError as `runs_compiled`.
+    `runs_compiled` says so for each method's runs together, step sizes and duration in s. By default none are
+    where one is not. InputError as `runs_compiled`.
     """
     mechanism = compiled_mechanism(scene)
     user_steps = repeats * sum(duration / h for h in step_sizes)

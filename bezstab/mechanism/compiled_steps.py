@@ -100,14 +100,18 @@ class Block:
 
 @dataclass(frozen=True, eq=False)
 class VaryingSteps:
-    """Steps of different lengths, one after the other: times (s) at which they begin, lengths (s), shape (steps,).
+    """Steps of different lengths (s), one after the other, shape (steps,).
 
     `gains` has 2 alpha (1/s) and beta^2 (1/s^2) of each, shape (steps, 2).
     """
 
-    times: FloatArray
     lengths: FloatArray
     gains: FloatArray
+
+    @property
+    def times(self) -> FloatArray:
+        """The times (s) at which they begin, and that at which the last one ends; shape (steps + 1,)."""
+        return np.concatenate([[0.0], np.cumsum(self.lengths)])
 
     @property
     def ratios(self) -> FloatArray:
@@ -289,7 +293,7 @@ def blocks_of_varying_steps(
     The inverse Jacobians of its equations are kept from step to step of the same length.
     """
     lengths, kinds = np.unique(steps.lengths, return_inverse=True)
-    given = (steps.times, steps.lengths, steps.ratios, steps.gains.ravel(), kinds.astype(np.int64))
+    given = (steps.times[:-1], steps.lengths, steps.ratios, steps.gains.ravel(), kinds.astype(np.int64))
     by_machine = partial(_machine_block(mechanism, method, powers), *given)
 
     def by_python(*arguments: Any) -> int:
@@ -298,7 +302,7 @@ def blocks_of_varying_steps(
     inverses = tuple(
         np.array([no_inverse(unknowns)] * len(lengths)) for unknowns in stepper_of(mechanism, method).groups.values()
     )
-    return _blocks(by_machine, by_python, 2 * mechanism.size, remembered, inverses, len(steps.times), work)
+    return _blocks(by_machine, by_python, 2 * mechanism.size, remembered, inverses, len(steps.lengths), work)
 
 
 def _blocks(

@@ -72,9 +72,9 @@ def simulated_with_steps(
     if blown_up:
         raise InputError(f"the start: {blown_up}")
     steps = _steps(method, sequence, duration, lambda step: feedback_gains(alpha_hat, beta_hat, step if hold else h))
-    t = np.concatenate([[0.0], np.cumsum(steps.lengths)])
+    t = steps.times
     work = Work()
-    if runs_compiled(mechanism, method, len(steps.times) * evaluations(method), varying=True):
+    if runs_compiled(mechanism, method, len(steps.lengths) * evaluations(method), varying=True):
         history = recorded_in_blocks(first, _march_in_blocks(mechanism, method, steps, first, work))
     else:
         history = recorded_history(first, _march(mechanism, method, steps, first, work))
@@ -98,7 +98,7 @@ def simulated_with_steps(
         iterations=work.iterations if implicit(method) else None,
     )
     # at each time the gains of the step that begins there; at the last, those of the step that led to it
-    at_times = np.minimum(np.arange(len(rows)), len(steps.times) - 1)
+    at_times = np.minimum(np.arange(len(rows)), len(steps.lengths) - 1)
     two_alpha, beta_squared = steps.gains[at_times].T
     observation = observe(mechanism, times, trajectory.q, trajectory.v, two_alpha, beta_squared)
     balance = EnergyBalance(
@@ -127,13 +127,8 @@ def _steps(
             break
         taken.append(step)
         left -= step
-    lengths = np.array(taken)
     gains_of = {length: gains(length / multiple) for length in set(taken)}
-    return VaryingSteps(
-        times=np.concatenate([[0.0], np.cumsum(lengths)])[:-1],
-        lengths=lengths,
-        gains=np.array([gains_of[length] for length in taken]),
-    )
+    return VaryingSteps(lengths=np.array(taken), gains=np.array([gains_of[length] for length in taken]))
 
 
 def _march(mechanism: Mechanism, method: Method, steps: VaryingSteps, state: State, work: Work) -> Iterator[Step]:
@@ -143,7 +138,7 @@ def _march(mechanism: Mechanism, method: Method, steps: VaryingSteps, state: Sta
     solvers: defaultdict[float, Solver] = defaultdict(lambda: implicit_solver(mechanism, method, math, work))
     powers = _powers_of_step(mechanism, method)
     remembered = _remembered(mechanism, method, steps, state, work)
-    in_lists = (array.tolist() for array in (steps.times, steps.lengths, steps.ratios, steps.gains))
+    in_lists = (array.tolist() for array in (steps.times[:-1], steps.lengths, steps.ratios, steps.gains))
     for time, length, ratio, gains in zip(*in_lists, strict=True):
         factors = (1.0, ratio, ratio * ratio)
         remembered = tuple(factors[power] * number for power, number in zip(powers, remembered, strict=True))

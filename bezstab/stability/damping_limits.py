@@ -135,7 +135,8 @@ def _exact_end(method: Method, end: float) -> Fraction:
     return near[-1]
 
 
-def _at_real_roots(method: Method) -> list[sp.Poly]:
+@cache
+def _at_real_roots(method: Method) -> tuple[sp.Poly, ...]:
     """Return pi(1, mu) and pi(-1, mu) as polynomials in mu, but for one that has no mu."""
     table = coefficient_table(without_shared_factor(method))
     polynomials = []
@@ -144,7 +145,7 @@ def _at_real_roots(method: Method) -> list[sp.Poly]:
         polynomials.append(
             sp.Poly([sp.Rational(c.numerator, c.denominator) for c in reversed(at_z)], STEP, domain="QQ")
         )
-    return [polynomial for polynomial in polynomials if polynomial.degree() > 0]
+    return tuple(polynomial for polynomial in polynomials if polynomial.degree() > 0)
 
 
 def _largest_ratio(arc: Arc) -> float:

@@ -123,8 +123,8 @@ def _check_lines(pencil: PlanePencil, level: float, shape: PlaneShape, area: flo
 
     If they do not, lines closer together towards the ends are asked: a spike there may have much of the area.
     """
+    nodes, weights = leggauss(NODES)
     for shares in (EVEN, GRADED):
-        nodes, weights = leggauss(NODES)
         panels = _panels(shape.curves, shares)
         middles, half = (panels[1:] + panels[:-1]) / 2, np.diff(panels) / 2
         lines = (middles[:, np.newaxis] + half[:, np.newaxis] * nodes).ravel()
