@@ -14,7 +14,6 @@ import click
 from bezstab.cli.options import FigureForm, TableForm
 from bezstab.cli.terminal import output_encoding, spelled, text_width, visible
 from bezstab.files import write_whole
-from bezstab.methods import Method, implicit
 from bezstab.show import Column, Format, Row, block, finite, fits, render, wrapped
 from bezstab.stopping import if_stopped
 
@@ -134,17 +133,6 @@ def say(message: str) -> None:
     """Print a message on standard error, in one line; where that cannot be written, nobody wants to read it."""
     with suppress(OSError):
         click.echo(visible(message), err=True)
-
-
-def say_what_stays_in_python(methods: Iterable[Method]) -> None:
-    """Say which of the methods' batches run in Python although compiled runs are asked for."""
-    from bezstab.mechanism import compiled_asked_for
-
-    if not compiled_asked_for():
-        return
-    for method in methods:
-        if implicit(method):
-            say(f"bezstab: --compiled yes: {method.name} solves equations in each step: its batches run in Python")
 
 
 def for_reading(form: Format) -> bool:

@@ -27,7 +27,6 @@ from bezstab.cli.output import (
     for_reading,
     progress,
     results_of_chunks,
-    say_what_stays_in_python,
     show_rows,
     show_text,
     write_figure,
@@ -192,7 +191,6 @@ def verify(
     point = both_or_none(alpha, beta)
     if sum(choice is not None for choice in (point, points, cells, witness)) > 1:
         raise click.UsageError("choose one of --alpha with --beta, --points, --map and --witness")
-    say_what_stays_in_python(methods)
     mechanism = compiled_mechanism(at_speed(load_scene(scene), float(speed)))
     if witness:
         show_rows(_witness_rows(mechanism, float(h)), WITNESSED, form, sentence=witness_sentence)

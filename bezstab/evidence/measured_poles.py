@@ -26,13 +26,13 @@ from bezstab.mechanism import (
     CHEAPER_TOGETHER,
     Mechanism,
     TurningNormals,
-    batches_compiled,
     constraint_errors,
     initial_state,
     march,
     perturbed_state,
     resume,
     resume_in_groups,
+    runs_compiled,
     states_needed,
     turning_normals,
 )
@@ -194,7 +194,7 @@ def _kicked_responses(
     difference = np.zeros(shape)
     size = np.full(shape, np.inf)
     kicked: Iterator[FloatArray] = iter(())
-    compiled = batches_compiled(mechanism, method, size.size * 2 * evaluations(method) // CHEAPER_TOGETHER)
+    compiled = runs_compiled(mechanism, method, size.size * 2 * evaluations(method) // CHEAPER_TOGETHER)
     with np.errstate(all="ignore"):  # what diverges runs into infinity, and is cut off there
         if compiled:
             groups = kicked_constraint_errors_in_groups(mechanism, method, h, alpha_hat, beta_hat, KICKS, RUN)
@@ -380,7 +380,7 @@ def kicked_constraint_errors_in_groups(
     kicks: Sequence[float],
     count: int,
 ) -> Iterator[tuple[slice, Iterator[FloatArray]]]:
-    """Yield the same of the kick and the `count` steps after it by groups of points, of explicit methods, compiled.
+    """Yield the same of the kick and the `count` steps after it by groups of points, compiled.
 
     With each slice of the points come blocks of c of shape (steps, constraints, 2, kicks, points in the slice).
     InputError without numba.

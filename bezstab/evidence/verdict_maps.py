@@ -13,7 +13,7 @@ from bezstab.evidence.measured_poles import (
     kicked_constraint_errors,
     kicked_constraint_errors_in_groups,
 )
-from bezstab.mechanism import CHEAPER_TOGETHER, Scene, batches_compiled, compiled_mechanism
+from bezstab.mechanism import CHEAPER_TOGETHER, Scene, compiled_mechanism, runs_compiled
 from bezstab.methods import Method, evaluations
 from bezstab.stability import FloatArray, pole_map, region, useful_window
 
@@ -110,7 +110,7 @@ def map_rows(scene: Scene, method: Method, h: float, count: int) -> list[MapRows
     NumericalError as `region`.
     """
     mechanism = compiled_mechanism(scene)
-    compiled = batches_compiled(mechanism, method, 2 * count**2 * MAP_RUN * evaluations(method) // CHEAPER_TOGETHER)
+    compiled = runs_compiled(mechanism, method, 2 * count**2 * MAP_RUN * evaluations(method) // CHEAPER_TOGETHER)
     centres = (np.arange(count) + 0.5) / count
     alpha_window, beta_window = useful_window(region(method))
     alpha_hat = _inside(alpha_window, centres)

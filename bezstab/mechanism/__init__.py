@@ -12,6 +12,7 @@ From data upwards; a file imports only from those above it:
     second_order_turns  a step of a second-order scheme, and of all that are implicit, as a list of actions
     generated_code      the one place that writes and compiles Python source: accelerations, steppers
     newton_iterations   Newton's method for the accelerations of an implicit step
+    newton_side_by_side the same of many runs at a time, as machine code takes it
     compiled            a scene with its compiled functions, made once
     compiled_steps      steps as machine code, by numba, the same to the last bit
     compiled_batches    the same of many runs at a time, of which only constraint errors matter
@@ -36,7 +37,6 @@ from bezstab.mechanism.compiled import (
 )
 from bezstab.mechanism.compiled_steps import (
     CHEAPER_TOGETHER,
-    batches_compiled,
     compiled_asked_for,
     runs_compiled,
 )
@@ -109,7 +109,6 @@ __all__ = [
     "acceleration_function",
     "acceleration_jacobians",
     "at_speed",
-    "batches_compiled",
     "compiled_asked_for",
     "compiled_mechanism",
     "compiled_source",

@@ -19,16 +19,17 @@ from bezstab.mechanism.generated_code import (
     generator_source,
     multipliers_source,
     observation_source,
+    residual_slopes_source,
     residuals_source,
     second_order_stepper,
     single_step_source,
+    slope_lines,
     slopes_source,
 )
 from bezstab.mechanism.newton_iterations import (
     TOLERANCE,
     Residual,
     Work,
-    complex_library,
     newton_solution,
     newton_solutions,
     no_inverse,
@@ -168,26 +169,20 @@ def _batch_solver(residual: Residual, tolerance: float, _: Work) -> Callable[...
 
 @cache
 def compiled_residuals(mechanism: Mechanism, method: Method, library: Any) -> dict[int, Residual]:
-    """Return the residual of each implicit group by its number, compiled for real and for complex numbers."""
-    return _residuals(mechanism, method, library, complex_library(library), compared=False)
+    """Return the residual of each implicit group by its number, and its slope."""
+    return residuals_of(mechanism, method, library, compared=False)
 
 
-def machine_residuals(mechanism: Mechanism, method: Method, library: Any) -> dict[int, Residual]:
-    """Return the same, of a method that has none as well, as Python functions that can be made machine code."""
-    return _residuals(mechanism, method, library, complex_library(math), compared=True)
-
-
-def _residuals(
-    mechanism: Mechanism, method: Method, real_library: Any, complex_: Any, compared: bool
-) -> dict[int, Residual]:
+def residuals_of(mechanism: Mechanism, method: Method, library: Any, compared: bool) -> dict[int, Residual]:
+    """Return the same, which a method may have none of; `compared` for functions that can be made machine code."""
     scheme = run_as_second_order(method)
     if scheme is None:
         return {}
     code = mechanism.acceleration_code
-    of_real = compiled_source(residuals_source(code, scheme, with_pivots=True, compared=compared), real_library)
-    of_complex = compiled_source(residuals_source(code, scheme, with_pivots=False), complex_)
+    residuals = compiled_source(residuals_source(code, scheme, compared), library)
+    slopes = compiled_source(residual_slopes_source(code, slope_lines(mechanism.equations), scheme), library)
     return {
-        number: Residual(of_real[f"residual_{number}"], of_complex[f"residual_{number}"], evaluations)
+        number: Residual(residuals[f"residual_{number}"], slopes[f"residual_slope_{number}"], evaluations)
         for number, evaluations in implicit_groups(scheme).items()
     }
 

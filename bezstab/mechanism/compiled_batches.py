@@ -3,8 +3,9 @@
 Beside `compiled_steps`, which stores every state of one run, this keeps the constraint errors alone, of LANES runs that
 differ in their gains and states: the stepper as a batch (see `generated_code`).
 
-As in the batches of numpy nothing is refused: what divides by zero is infinite. No sum is regrouped, so each bit is
-that of numpy's batch, as far as its sine and cosine are the C library's.
+As in the batches of numpy nothing is refused: what divides by zero is infinite, and equations that are not solved have
+no number for a solution (`newton_side_by_side`). No sum is regrouped, so each bit is that of numpy's batch, as far as
+its sine and cosine are the C library's.
 """
 
 import math
@@ -15,10 +16,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.compiling import compiler
-from bezstab.mechanism.compiled import Mechanism, stepper_of
+from bezstab.compiling import INNER, compiler, shared_with_machine_code
+from bezstab.mechanism.compiled import Mechanism, compiled_residuals, run_as_second_order, stepper_of
 from bezstab.mechanism.compiled_steps import flat
-from bezstab.mechanism.generated_code import BatchCode, batch_code, compiled_source, constraint_texts
+from bezstab.mechanism.generated_code import (
+    BatchCode,
+    batch_code,
+    compiled_source,
+    constraint_texts,
+    residuals_side_by_side_source,
+)
+from bezstab.mechanism.newton_iterations import LOOPS, TOLERANCE, rounding_of
+from bezstab.mechanism.newton_side_by_side import LOOPS_SIDE_BY_SIDE, solve_side_by_side
 from bezstab.methods import Method
 
 FloatArray = NDArray[np.float64]
@@ -29,7 +38,7 @@ LANES = 64
 BLOCK = 256
 """Steps at a time: so are their errors in the second."""
 
-SIGNATURE = "int64(float64, float64, float64[::1], int64, int64, int64, float64[::1], float64[::1])"
+ARGUMENTS = "float64, float64, float64[:, ::1], int64, int64, int64, float64[::1], float64[::1]"
 
 
 @cache
@@ -37,9 +46,35 @@ def _machine_batch(mechanism: Mechanism, method: Method) -> tuple[Any, int]:
     """Return the batch function as machine code, and the entries of its memory. InputError without numba."""
     numba = compiler()
     code = _code(mechanism, method)
-    batch = compiled_source(code.source, math)["batch"]
+    solvers = _machine_solvers(numba, mechanism, method)
+    batch = compiled_source(code.source, math, solvers | {"empty": np.empty})["batch"]
+    inverses = f", UniTuple(float64[:, ::1], {len(solvers)})" if solvers else ""
     options = {"error_model": "numpy", "no_cfunc_wrapper": True}
-    return numba.njit(SIGNATURE, **options)(batch), code.entries
+    return numba.njit(f"int64({ARGUMENTS}{inverses})", **options)(batch), code.entries
+
+
+def _machine_solvers(numba: Any, mechanism: Mechanism, method: Method) -> dict[str, Any]:
+    """Return the functions by which the batch of an implicit method has its equations solved, by their names."""
+    scheme = run_as_second_order(method)
+    if scheme is None:
+        return {}
+    shared_with_machine_code((*LOOPS, *LOOPS_SIDE_BY_SIDE))
+    residuals = compiled_source(residuals_side_by_side_source(mechanism.acceleration_code, scheme, LANES), math)
+    tolerance = TOLERANCE * rounding_of(math)
+    options = INNER | {"error_model": "numpy"}
+
+    def solver(residual_of_all: Any, slope_of_one: Any) -> Any:
+        residual, slope = numba.njit(**options)(residual_of_all), numba.njit(**options)(slope_of_one)
+
+        def solve(start: Any, k: Any, h: Any, gains: Any, known: Any, sought: Any, inverse: Any) -> None:
+            solve_side_by_side(residual, slope, (start, k, h), gains, known, sought, inverse, tolerance)
+
+        return numba.njit(**options)(solve)
+
+    return {
+        f"solve_{number}": solver(residuals[f"residual_{number}"], residual.slope)
+        for number, residual in compiled_residuals(mechanism, method, math).items()
+    }
 
 
 def _code(mechanism: Mechanism, method: Method) -> BatchCode:
@@ -69,6 +104,7 @@ def constraint_errors_in_groups(
     both_gains = np.array([np.broadcast_to(gain, shape) for gain in gains])
     beside = math.prod(shape[:-1])
     group = LANES // beside
+    unknowns_of_groups = stepper_of(mechanism, method).groups.values()
 
     def side_by_side(arrays: FloatArray, some: slice) -> FloatArray:
         """Return the group's entries, one row each, the last run again and again where there are too few."""
@@ -78,12 +114,14 @@ def constraint_errors_in_groups(
     def blocks(some: slice) -> Iterator[FloatArray]:
         memory = np.zeros((places, LANES))
         memory[: len(entries)] = side_by_side(entries, some)
-        flat_memory, flat_gains = memory.ravel(), side_by_side(both_gains, some).ravel()
+        flat_memory, gains_of_group = memory.ravel(), side_by_side(both_gains, some)
         width = len(range(*some.indices(shape[-1])))
+        inverses = tuple(np.full((unknowns**2, LANES), np.nan) for unknowns in unknowns_of_groups)
+        solving = (inverses,) if inverses else ()
         for first in range(0, count, BLOCK):
             last = min(first + BLOCK, count)
             errors = np.empty((last - first, mechanism.constraints, LANES))
-            machine_batch(start, h, flat_gains, index + 1, first, last, flat_memory, errors.reshape(-1))
+            machine_batch(start, h, gains_of_group, index + 1, first, last, flat_memory, errors.reshape(-1), *solving)
             yield errors[:, :, : beside * width].reshape(last - first, mechanism.constraints, *shape[:-1], width)
 
     for first in range(0, shape[-1], group):

@@ -9,8 +9,8 @@ each bit of a run is the same. A block ends early where a state looks like a bre
 step is taken again in Python. Thus it is Python that decides, and says, why a run ends.
 
 The Newton iterations of an implicit method are one text for Python and for machine code, in plain loops over lists
-(`newton_iterations`); numba's complex numbers are rounded as Python's, by the same formulas. What each step keeps, the
-inverse Jacobians, lies in arrays. A step whose equations are not solved is taken again in Python, too.
+(`newton_iterations`). What each step keeps, the inverse Jacobians, lies in arrays. A step whose equations are not
+solved is taken again in Python, too.
 """
 
 import math
@@ -37,7 +37,7 @@ from bezstab.mechanism.compiled import (
     SINGULAR,
     Mechanism,
     compiled_residuals,
-    machine_residuals,
+    residuals_of,
     stepper_of,
 )
 from bezstab.mechanism.generated_code import block_source, compiled_source, varying_block_source
@@ -161,11 +161,6 @@ def _check_length(mechanism: Mechanism, method: Method) -> None:
         )
 
 
-def batches_compiled(mechanism: Mechanism, method: Method, evaluations: int) -> bool:
-    """Return the same of runs side by side, which are compiled of explicit methods only."""
-    return not implicit(method) and runs_compiled(mechanism, method, evaluations)
-
-
 @cache
 def _machine_block(mechanism: Mechanism, method: Method, powers: Powers = None) -> Callable[..., int]:
     """Return the block function as machine code."""
@@ -206,16 +201,16 @@ def _machine_block(mechanism: Mechanism, method: Method, powers: Powers = None) 
 def _machine_solvers(numba: Any, mechanism: Mechanism, method: Method, library: Any) -> dict[str, Any]:
     """Return the functions by which the block of an implicit method has its equations solved, by their names."""
     shared_with_machine_code(LOOPS)
-    residuals = machine_residuals(mechanism, method, library)
+    residuals = residuals_of(mechanism, method, library, compared=True)
     tolerance = TOLERANCE * rounding_of(math)
 
     def solver(residual: Residual) -> Any:
-        real, complex_ = numba.njit(**INNER)(residual.real), numba.njit(**INNER)(residual.complex)
+        machine_residual, slope = numba.njit(**INNER)(residual.residual), numba.njit(**INNER)(residual.slope)
         evaluations = residual.evaluations
 
         def solve(situation: Any, known: Any, sought: Any, inverse: Any, counts: Any) -> Any:
             converged, pivot, _ = iterated(
-                real, complex_, evaluations, situation, known, sought, inverse, tolerance, counts
+                machine_residual, slope, evaluations, situation, known, sought, inverse, tolerance, counts
             )
             if not converged:
                 raise ArithmeticError

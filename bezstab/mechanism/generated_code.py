@@ -6,14 +6,14 @@ functions. From its top to its end, each part under a comment of its own:
     compiled_source                        text becomes functions
     accelerations and multipliers          the assignments that solve paper Eq. 9
     functions of a state                   acceleration, multipliers, observation
-    slopes of the acceleration             its derivatives by position and velocity
+    slopes of the acceleration             its derivatives by position and velocity, or along one direction
     steppers: their pieces                 what a step consists of, as data
     a stepper as a generator               one run, step by step
     a stepper as a single step             one step, and what the next begins with
     a stepper as a block                   one run, many steps at a time
     a stepper as a batch                   many runs, of which constraint errors are kept
     steppers of first-order schemes        the pieces of multistep and Runge-Kutta methods
-    steppers of second-order schemes       those of all others; residuals
+    steppers of second-order schemes       those of all others; residuals and their slopes
 
 All of it is plain arithmetic on numbered variables, one assignment a line, with `sin`, `cos`, `sqrt` and `least` as the
 only functions, and `row` where there are slopes. What they are is decided when the text is compiled, so one source
@@ -414,6 +414,51 @@ def _difference_text(name: str, there: Container[str], taken: Iterable[str]) -> 
     return (name if name in there else "0.0") + "".join(f" - {term}" for term in taken)
 
 
+# Along one direction (dq, dv) of positions and velocities they are
+#
+#     M dqddot + C_q^T dlambda = G,      G = dg - dC_q^T lambda
+#           C_q dqddot         = F,      F = dgamma - 2 alpha d(cdot) - beta^2 C_q dq - dC_q qddot
+#
+# hence S dlambda = C_q M^-1 G - F, dqddot = M^-1 (G - C_q^T dlambda): what takes r to l above takes this right side to
+# dlambda. Newton's method takes its Jacobians so, one unknown after the other.
+
+
+def slope_lines(equations: Equations) -> list[str]:
+    """Return the assignments to da, the change of a along dq and dv, after those of the acceleration code."""
+    columns_of_row, inverse_masses = _columns_of_row(equations), _inverse_masses(equations)
+    coordinates, constraints = range(len(equations.q)), range(len(equations.constraints))
+    entries = _nonzero_differentials(equations)
+    lines = _entry_lines(entries)
+    for k in coordinates:
+        taken = [f"dC{i}_{k} * l{i}" for i in constraints if f"dC{i}_{k}" in entries]
+        lines.append(f"G{k} = {_difference_text(f'dg{k}', entries, taken)}")
+    for i, columns in enumerate(columns_of_row):
+        turning = [k for k in columns if f"dC{i}_{k}" in entries]
+        dcdot = [*(f"C{i}_{k} * dv{k}" for k in columns), *(f"dC{i}_{k} * v{k}" for k in turning)]
+        dcdot += [f"dct{i}"] if f"dct{i}" in entries else []
+        dc = [f"C{i}_{k} * dq{k}" for k in columns]
+        taken = [f"two_alpha * ({' + '.join(dcdot)})", f"beta_squared * ({' + '.join(dc)})"]
+        taken += [f"dC{i}_{k} * a{k}" for k in turning]
+        lines.append(f"F{i} = {_difference_text(f'dgamma{i}', entries, taken)}")
+        by_forces = [f"C{i}_{k} * {inverse_masses[k]} * G{k}" for k in columns]
+        lines.append(f"r{i} = {' + '.join(by_forces)} - F{i}")
+    lines += _substitution_lines(len(constraints), _nonzero_factors(columns_of_row))
+    for k in coordinates:
+        reactions = "".join(f" - C{i}_{k} * l{i}" for i, columns in enumerate(columns_of_row) if k in columns)
+        lines.append(f"da{k} = (G{k}{reactions}) * {inverse_masses[k]}")
+    return lines
+
+
+def _nonzero_differentials(equations: Equations) -> dict[str, sp.Expr]:
+    """Return how the entries of C_q, gamma, c_t and g change along dq and dv, where they do, by their names."""
+    changes = {symbol: sp.Symbol(f"d{symbol}") for symbol in (*equations.q, *equations.v)}
+    return {
+        f"d{name}": sum(entry.diff(symbol) * changes[symbol] for symbol in sorted(moving, key=str))
+        for name, entry in _nonzero_entries(equations).items()
+        if name.startswith(("C", "gamma", "ct", "g")) and (moving := entry.free_symbols & changes.keys())
+    }
+
+
 # Steppers: their pieces
 #
 # A stepper takes one step a turn of its loop. It is put together as data first, because four texts are made of it:
@@ -514,8 +559,8 @@ class Stepper:
 
     @property
     def length(self) -> int:
-        """About how many lines there are to compile: residuals twice, for they are also needed of complex numbers."""
-        return len(self.turn) + 2 * sum(function.count("\n") for function in self.functions)
+        """About how many lines there are to compile."""
+        return len(self.turn) + sum(function.count("\n") for function in self.functions)
 
     @property
     def preparations(self) -> list[str]:
@@ -743,7 +788,8 @@ def _storing_lines(step: Yielded, limits: tuple[float, float]) -> list[str]:
 #      row = 0
 #      while k < last:
 #       for lane in range(64):
-#        two_alpha = gains[lane]
+#        two_alpha = gains[0, lane]
+#        beta_squared = gains[1, lane]
 #        q0 = memory[lane]                              what a step needs of before, each entry of all runs side by side
 #        ...                                            the stepper's lines, but those of pivots
 #        memory[lane] = q0                              the new state; what else is new goes to places of its own,
@@ -753,6 +799,28 @@ def _storing_lines(step: Yielded, limits: tuple[float, float]) -> list[str]:
 #       for i in range(64):
 #        memory[192 + i] = memory[320 + i]              what was new is now one step back
 #       ...
+#
+# Equations are solved for all runs side by side. So the loop over the runs is cut in two there, and what a step has
+# computed before is computed once more after, which costs less than to keep it:
+#
+#       for lane in range(64):
+#        X_0_0 = memory[lane]
+#        ...
+#        known_0[0, lane] = X_0_0 + V_0_0 + 0.25 * A_0_0
+#        sought_0[0, lane] = A_0_0                      a guess
+#       solve_0(start, k, h, gains, known_0, sought_0, inverses[0])
+#       for lane in range(64):
+#        X_0_0 = memory[lane]
+#        ...
+#        A_1_0 = sought_0[0, lane]
+#        ...
+#
+# where solve_0 seeks the zeros of residual_0, in a loop over the runs of its own:
+#
+#     def residual_0(start, k, h, gains, known, unknown, values):
+#      for lane in range(64):
+#       ...
+#       K0 = known[0, lane]
 
 
 @dataclass(frozen=True)
@@ -764,12 +832,15 @@ class BatchCode:
 
 
 def batch_code(stepper: Stepper, constraints: Sequence[str], lanes: int) -> BatchCode:
-    """Return the source of batch(start, h, gains, index, k, last, memory, errors) of an explicit stepper.
+    """Return the source of batch(start, h, gains, index, k, last, memory, errors).
 
     It takes the steps k to last - 1 of so many runs as there are lanes and returns the number of the next. `gains`
     holds 2 alpha of all runs, then beta^2; `memory` each entry of what the stepper remembers, of all runs, then room
     for what is new; `errors` gets c after each step, entry by entry, at the time (index + k) h. The constraints are c
     as expressions in q0, q1, ... and t.
+
+    That of an implicit stepper has one argument more, `inverses`, one for each of its groups, and calls functions
+    solve_<number>(start, k, h, gains, known, sought, inverse).
     """
     remembered = stepper.remembered
     moves = [piece for piece in stepper.turn if isinstance(piece, Moved)]
@@ -780,27 +851,56 @@ def batch_code(stepper: Stepper, constraints: Sequence[str], lanes: int) -> Batc
     kept = [name for name in places if name not in moved_to]  # q and v; what a move takes back a step is new
     (step,) = (piece for piece in stepper.turn if isinstance(piece, Yielded))
     new_positions = step.state[: len(step.state) // 2]
+    solving, computed = _solving_loops(stepper, places, lanes)
     body = [
-        "two_alpha = gains[lane]",
-        f"beta_squared = gains[{lanes} + lane]",
-        *(f"{name} = memory[{lanes * places[name]} + lane]" for name in remembered),
-        *(piece for piece in stepper.turn if isinstance(piece, str)),
+        *computed,
         *(f"memory[{lanes * places[name]} + lane] = {name}" for name in kept),
         *(f"q{i} = {position}" for i, position in enumerate(new_positions) if position != f"q{i}"),
         "t = (index + k) * h",
         *(f"errors[row + {lanes * i} + lane] = {constraint}" for i, constraint in enumerate(constraints)),
     ]
+    groups = stepper.groups
+    room = [f"known_{number} = empty(({2 * unknowns}, {lanes}))" for number, unknowns in groups.items()]
+    room += [f"sought_{number} = empty(({unknowns}, {lanes}))" for number, unknowns in groups.items()]
     source = [
-        "def batch(start, h, gains, index, k, last, memory, errors):",
-        *_indented([*stepper.preparations, "row = 0", "while k < last:"], 1),
-        f"  for lane in range({lanes}):",
-        *_indented(body, 3),
+        f"def batch(start, h, gains, index, k, last, memory, errors{', inverses' if groups else ''}):",
+        *_indented([*stepper.preparations, *room, "row = 0", "while k < last:"], 1),
+        *_indented(solving, 2),
+        *_indented(_lane_loop(body, lanes), 2),
         *_indented(_moving_lines([(places[move.older], places[move.newer]) for move in moves], lanes), 2),
         f"  row = row + {lanes * len(constraints)}",
         f"  {COUNT}",
         " return k",
     ]
     return BatchCode("\n".join(source), len(places))
+
+
+def _solving_loops(stepper: Stepper, places: Mapping[str, int], lanes: int) -> tuple[list[str], list[str]]:
+    """Return the lines that have a step's groups solved for all runs, and then those that compute a run's step."""
+    computed = [*GAINS_OF_A_LANE, *(f"{name} = memory[{lanes * places[name]} + lane]" for name in stepper.remembered)]
+    loops = []
+    for piece in stepper.turn:
+        match piece:
+            case str():
+                computed.append(piece)
+            case Sought(number, known, guesses, found):
+                given = [f"known_{number}[{place}, lane] = {text}" for place, text in enumerate(known)]
+                given += [f"sought_{number}[{place}, lane] = {guess}" for place, guess in enumerate(guesses)]
+                loops += _lane_loop([*computed, *given], lanes)
+                group = list(stepper.groups).index(number)
+                loops.append(f"solve_{number}(start, k, h, gains, known_{number}, sought_{number}, inverses[{group}])")
+                computed += [f"{name} = sought_{number}[{place}, lane]" for place, name in enumerate(found)]
+            case Pivot() | Moved() | Yielded():
+                pass  # no pivot is looked at, nothing is yielded, and all runs are moved on together
+    return loops, computed
+
+
+GAINS_OF_A_LANE = ("two_alpha = gains[0, lane]", "beta_squared = gains[1, lane]")
+
+
+def _lane_loop(body: Iterable[str], lanes: int) -> list[str]:
+    """Return a loop over all runs."""
+    return [f"for lane in range({lanes}):", *_indented(body, 1)]
 
 
 def _moving_lines(moves: Sequence[tuple[int, int]], lanes: int) -> list[str]:
@@ -1035,6 +1135,17 @@ def _moves(size: int, method: Method) -> list[Moved]:
 #      v0 = (K1 + 0.5 * U0) / h
 #      ...                                                  the acceleration code
 #      values[0] = U0 - h_squared * a0
+#
+# by Newton's method, which takes its Jacobian from residual_slope_0: how this changes along a direction of the unknowns
+#
+#     def residual_slope_0(situation, known, unknown, direction, values):
+#      ...
+#      dU0 = direction[0]
+#      ...                                                  q0, v0 and the acceleration code as before
+#      dq0 = 0.25 * dU0
+#      dv0 = (0.5 * dU0) / h
+#      ...                                                  da0 from these
+#      values[0] = dU0 - h_squared * da0
 
 
 def second_order_stepper(acceleration: AccelerationCode, scheme: SecondOrder) -> Stepper:
@@ -1044,7 +1155,7 @@ def second_order_stepper(acceleration: AccelerationCode, scheme: SecondOrder) ->
     least relative pivot of S met on the way. `start` (s) is the time of step 0 of the first turn, h (s) the whole step,
     and `carried` has what `memory` says, n entries each, in units in which h = 1. An implicit scheme calls
     solve[number of the group](situation, known, sought), which turns guesses into what makes all of residual_<number>
-    zero, and returns the least pivot there; these functions follow (residuals_source, with pivots).
+    zero, and returns the least pivot there; these functions follow.
     """
     names = _Names(scheme, acceleration.coordinates)
     carried = memory(scheme).carried
@@ -1068,21 +1179,46 @@ def second_order_stepper(acceleration: AccelerationCode, scheme: SecondOrder) ->
         arguments="carried, solve",
         opening=(Unpacked(remembered, unpacking), COUNT_FROM, "h_squared = h * h"),
         turn=tuple(lines),
-        functions=(residuals_source(acceleration, scheme, with_pivots=True),),
+        functions=(residuals_source(acceleration, scheme),),
     )
 
 
-def residuals_source(
-    acceleration: AccelerationCode, scheme: SecondOrder, with_pivots: bool, compared: bool = False
-) -> str:
+def residuals_source(acceleration: AccelerationCode, scheme: SecondOrder, compared: bool = False) -> str:
     """Return the source of residual_<number>(situation, known, unknown, values) for implicit groups.
 
-    Each writes A - h^2 acceleration for all that the group evaluates into `values`; with pivots it returns the least
-    relative pivot of S. Without them the functions also work on complex numbers, which have no least. `compared` says
-    whether pivots are compared one by one, as in a block, instead of by `least`.
+    Each writes A - h^2 acceleration for all that the group evaluates into `values`, and returns the least relative
+    pivot of S. `compared` says whether pivots are compared one by one, as in a block, instead of by `least`.
     """
-    pivot_lines = (_compared_lines if compared else _generator_lines) if with_pivots else None
+    pivot_lines = _compared_lines if compared else _generator_lines
     return "\n".join(_residual_function(acceleration, solved, pivot_lines) for solved in solved_groups(scheme))
+
+
+def residuals_side_by_side_source(acceleration: AccelerationCode, scheme: SecondOrder, lanes: int) -> str:
+    """Return the source of residual_<number>(start, k, h, gains, known, unknown, values), the same of many runs.
+
+    Arrays have a row for each entry and a column for each run. Nothing is returned.
+    """
+    functions = []
+    for solved in solved_groups(scheme):
+        body = [*GAINS_OF_A_LANE, *_lines_of_arguments(solved, acceleration.coordinates, of_run=", lane")]
+        for own in range(len(solved.evaluations)):
+            body += _lines_of_evaluation(acceleration, solved, own)
+            residuals = _residual_texts(acceleration.coordinates, own)
+            body += [f"values[{place}, lane] = {residual}" for place, residual in residuals.items()]
+        functions += [
+            f"def residual_{solved.number}(start, k, h, gains, known, unknown, values):",
+            *_indented(["h_squared = h * h", *_lane_loop(body, lanes)], 1),
+        ]
+    return "\n".join(functions)
+
+
+def residual_slopes_source(acceleration: AccelerationCode, slopes: Sequence[str], scheme: SecondOrder) -> str:
+    """Return the source of residual_slope_<number>(situation, known, unknown, direction, values) for implicit groups.
+
+    Each writes the derivatives of the residual of that number, along a direction of its unknowns, into `values`; those
+    of the acceleration are `slope_lines`.
+    """
+    return "\n".join(_residual_slope_function(acceleration, slopes, solved) for solved in solved_groups(scheme))
 
 
 class _Names:
@@ -1166,42 +1302,77 @@ def _solving_lines(names: _Names, solved: Solved) -> list[Piece]:
 
 
 def _residual_function(
-    acceleration: AccelerationCode, solved: Solved, pivot_lines: Callable[[Pivot], list[str]] | None
+    acceleration: AccelerationCode, solved: Solved, pivot_lines: Callable[[Pivot], list[str]]
 ) -> str:
-    """Return the source of the residual of one group, its pivots by these lines if there are any."""
-    coordinates = acceleration.coordinates
-    count = coordinates * len(solved.evaluations)
-    lines = [
-        f"{SITUATION} = situation",
-        *(f"K{i} = known[{i}]" for i in range(2 * count)),
-        *(f"U{i} = unknown[{i}]" for i in range(count)),
-        "h_squared = h * h",
-    ]
-    if pivot_lines:
-        lines += pivot_lines(FORGET_PIVOTS)
-    for own, evaluation in enumerate(solved.evaluations):
-        first = own * coordinates  # of its unknowns; of what is known, there are two for each
-        lines += _state_lines(
-            positions=_known_and_sought(solved, evaluation.sought_position, 2 * first, coordinates),
-            velocities=_known_and_sought(solved, evaluation.sought_velocity, 2 * first + coordinates, coordinates),
-        )
-        lines += _acceleration_lines_at(acceleration, evaluation.moment)
-        if pivot_lines:
-            lines += [*pivot_lines(_worst(acceleration)), *pivot_lines(REMEMBER_PIVOT)]
-        lines += [f"values[{first + i}] = U{first + i} - h_squared * a{i}" for i in range(coordinates)]
-    if pivot_lines:
-        lines.append("return worst_pivot")
+    """Return the source of the residual of one group, its pivots by these lines."""
+    lines = [*OF_SITUATION, *_lines_of_arguments(solved, acceleration.coordinates), *pivot_lines(FORGET_PIVOTS)]
+    for own in range(len(solved.evaluations)):
+        lines += _lines_of_evaluation(acceleration, solved, own)
+        lines += [*pivot_lines(_worst(acceleration)), *pivot_lines(REMEMBER_PIVOT)]
+        residuals = _residual_texts(acceleration.coordinates, own)
+        lines += [f"values[{place}] = {residual}" for place, residual in residuals.items()]
+    lines.append("return worst_pivot")
     head = f"def residual_{solved.number}(situation, known, unknown, values):"
     return "\n".join([head, *_indented(lines, 1)])
 
 
+def _residual_slope_function(acceleration: AccelerationCode, slopes: Sequence[str], solved: Solved) -> str:
+    """Return the source of the derivative of the residual of one group."""
+    coordinates = acceleration.coordinates
+    count = coordinates * len(solved.evaluations)
+    lines = [*OF_SITUATION, *_lines_of_arguments(solved, coordinates)]
+    lines += [f"dU{i} = direction[{i}]" for i in range(count)]
+    for own, evaluation in enumerate(solved.evaluations):
+        by_position = _sought_texts(solved, evaluation.sought_position, coordinates, unknown="dU")
+        by_velocity = _sought_texts(solved, evaluation.sought_velocity, coordinates, unknown="dU")
+        lines += _lines_of_evaluation(acceleration, solved, own)
+        lines += [f"dq{i} = {' + '.join(by_position[i]) or '0.0'}" for i in range(coordinates)]
+        lines += [f"dv{i} = ({' + '.join(by_velocity[i]) or '0.0'}) / h" for i in range(coordinates)]
+        lines += slopes
+        places = {own * coordinates + i: i for i in range(coordinates)}
+        lines += [f"values[{place}] = dU{place} - h_squared * da{i}" for place, i in places.items()]
+    head = f"def residual_slope_{solved.number}(situation, known, unknown, direction, values):"
+    return "\n".join([head, *_indented(lines, 1)])
+
+
+OF_SITUATION = (f"{SITUATION} = situation", "h_squared = h * h")
+
+
+def _lines_of_arguments(solved: Solved, coordinates: int, of_run: str = "") -> list[str]:
+    """Return the lines that take what a residual is given: of what is known, K, twice as much as unknowns, U."""
+    count = coordinates * len(solved.evaluations)
+    known = [f"K{i} = known[{i}{of_run}]" for i in range(2 * count)]
+    return [*known, *(f"U{i} = unknown[{i}{of_run}]" for i in range(count))]
+
+
+def _lines_of_evaluation(acceleration: AccelerationCode, solved: Solved, own: int) -> list[str]:
+    """Return the lines of one of a group's evaluations, by its place in the group."""
+    coordinates, evaluation = acceleration.coordinates, solved.evaluations[own]
+    first = 2 * own * coordinates
+    return [
+        *_state_lines(
+            positions=_known_and_sought(solved, evaluation.sought_position, first, coordinates),
+            velocities=_known_and_sought(solved, evaluation.sought_velocity, first + coordinates, coordinates),
+        ),
+        *_acceleration_lines_at(acceleration, evaluation.moment),
+    ]
+
+
+def _residual_texts(coordinates: int, own: int) -> dict[int, str]:
+    """Return the texts of the residuals of one of a group's evaluations, by their places among those of the group."""
+    return {own * coordinates + i: f"U{own * coordinates + i} - h_squared * a{i}" for i in range(coordinates)}
+
+
 def _known_and_sought(solved: Solved, sought: Sum, first_known: int, coordinates: int) -> list[str]:
     """Return texts, one for each coordinate, of a known part K and multiples of the unknowns U."""
-    results = [evaluation.result for evaluation in solved.evaluations]
+    sums = _sought_texts(solved, sought, coordinates, unknown="U")
+    return [" + ".join([f"K{first_known + i}", *terms]) for i, terms in enumerate(sums)]
+
+
+def _sought_texts(solved: Solved, sought: Sum, coordinates: int, unknown: str) -> list[list[str]]:
+    """Return the texts, for each coordinate, of the terms of a sum of unknowns, which are called so."""
+    places = {evaluation.result: place for place, evaluation in enumerate(solved.evaluations)}
     return [
-        " + ".join([
-            f"K{first_known + i}",
-            *(_term_text(c, f"U{results.index(unknown) * coordinates + i}") for unknown, c in sought.items() if c),
-        ])
+        [_term_text(c, f"{unknown}{places[quantity] * coordinates + i}") for quantity, c in sought.items() if c]
         for i in range(coordinates)
-    ]  # fmt: skip
+    ]

@@ -1,9 +1,7 @@
 """Newton's method for the accelerations of an implicit step, on floats, on mpmath's numbers, or on a batch.
 
-The residual r(A) = A - h^2 acceleration(X(A), V(A)) is the generated code's, and so is its Jacobian: with a tiny
-imaginary step eps in one unknown, Im r(A + i eps e_l) / eps is the derivative of r to all digits (complex step: nothing
-is subtracted, and eps^2 = 1e-100 is lost in any rounding). That costs one complex evaluation for each unknown, about
-twice the price of a real one; to derive the chain of assignments in text would cost three times as many operations.
+The residual r(A) = A - h^2 acceleration(X(A), V(A)) is the generated code's, and so is its derivative along a
+direction. Those along each of the unknowns are the columns of its Jacobian; each costs about twice an evaluation.
 
 Jacobians are kept, from one iteration to the next and from step to step, as long as each correction is at most a
 thirtieth of the one before; one that is more is not made, but computed anew with the Jacobian there. Where it was an
@@ -12,10 +10,10 @@ with one correction more after one within some hundred roundings of what it corr
 rounding, and so does not add up over thousands of steps, to all of which it might have the same sign.
 
 For a single run `iterated` does all this in plain loops over lists, one rounding after the other in a stated order. Its
-text serves floats, mpmath's numbers and machine code alike (`compiled_steps`), so that each has the same bits.
+text serves floats, mpmath's numbers and machine code alike (`compiled_steps`), so that each has the same bits. A batch
+of numpy has them, too, point by point: it takes the same sums in the same order.
 """
 
-import cmath
 import math
 from collections.abc import Callable, MutableSequence, Sequence
 from dataclasses import dataclass, field
@@ -28,7 +26,6 @@ from bezstab.mechanism.linear_equations import eliminate, inverses
 
 FloatArray = NDArray[np.float64]
 
-IMAGINARY_STEP = 1e-50
 MOST_ITERATIONS = 25  # three are usual in float64; from far away Newton's method may first wander
 TOLERANCE = 500.0  # roundings (1e-13 in float64) of X, V and A together: what h^2 acceleration cannot be relied upon
 FALL = 1 / 30  # of a correction to the next, with a Jacobian good enough to keep: each gains a digit and a half
@@ -42,7 +39,7 @@ class NotConvergedError(ArithmeticError):
 
 @dataclass
 class Work:
-    """What implicit steps have taken: iterations, and evaluations of the acceleration, complex ones counted alike."""
+    """What implicit steps have taken: iterations, and evaluations of the acceleration, a slope counted as one."""
 
     counts: list[int] = field(default_factory=lambda: [0, 0])
 
@@ -63,19 +60,15 @@ class Work:
 
 @dataclass(frozen=True)
 class Residual:
-    """The residual of a group of equations as functions of (situation, known, unknown, values), and its evaluations.
+    """The residual of a group of equations, its slope, and how often it evaluates the acceleration.
 
-    Both write the residuals into `values`. `real` returns the least pivot; `complex`, of complex unknowns, nothing.
+    residual(situation, known, unknown, values) writes the residuals into `values` and returns the least pivot.
+    slope(situation, known, unknown, direction, values) writes how they change along a direction of the unknowns.
     """
 
-    real: Callable[..., Any]
-    complex: Callable[..., object]
+    residual: Callable[..., Any]
+    slope: Callable[..., object]
     evaluations: int
-
-
-def complex_library(library: Any) -> Any:
-    """Return the library whose functions take complex numbers."""
-    return cmath if library is math else library
 
 
 def rounding_of(library: Any) -> Any:
@@ -105,7 +98,7 @@ def newton_solution(
     ArithmeticError where the Jacobian is singular.
     """
     converged, pivot, moved = iterated(
-        residual.real, residual.complex, residual.evaluations, situation, known, sought, inverse, tolerance, counts
+        residual.residual, residual.slope, residual.evaluations, situation, known, sought, inverse, tolerance, counts
     )
     if converged:
         return pivot
@@ -118,7 +111,7 @@ def newton_solution(
 
 def iterated(
     residual: Any,
-    complex_residual: Any,
+    slope: Any,
     evaluations: int,
     situation: Any,
     known: Any,
@@ -152,7 +145,7 @@ def iterated(
                 for i in range(size):
                     sought[i] = guess[i]
                     values[i] = at_guess[i]
-            invert_jacobian(complex_residual, situation, known, sought, inverse)
+            invert_jacobian(slope, situation, known, sought, inverse)
             counts[EVALUATIONS] += size * evaluations
             multiply(inverse, values, corrections)
             moved = total_size(corrections)
@@ -168,7 +161,10 @@ def iterated(
 
 
 def total_size(numbers: Any) -> Any:
-    """Return the sum of the sizes, from the first to the last: Python's own sum of floats depends on its version."""
+    """Return the sum of the sizes, from the first to the last: Python's own sum of floats depends on its version.
+
+    Of the rows of an array, the sums of each column.
+    """
     total = 0.0
     for number in numbers:
         total = total + abs(number)
@@ -176,7 +172,7 @@ def total_size(numbers: Any) -> Any:
 
 
 def multiply(matrix: Any, column: Any, product: Any) -> None:
-    """Write the product of a matrix, row after row, and a column."""
+    """Write the product of a matrix, row after row, and a column; their entries may be arrays."""
     size = len(column)
     for i in range(size):
         total = 0.0
@@ -185,19 +181,17 @@ def multiply(matrix: Any, column: Any, product: Any) -> None:
         product[i] = total
 
 
-def invert_jacobian(complex_residual: Any, situation: Any, known: Any, unknown: Any, inverse: Any) -> None:
-    """Write the inverse of the Jacobian, row after row, by complex steps, one unknown after the other."""
+def invert_jacobian(slope: Any, situation: Any, known: Any, unknown: Any, inverse: Any) -> None:
+    """Write the inverse of the Jacobian, row after row, from the slopes along one unknown after the other."""
     size = len(unknown)
     table = [[0.0] * (2 * size) for _ in range(size)]
-    shifted = [number + 0j for number in unknown]
-    values = [0j] * size
+    direction, values = [0.0] * size, [0.0] * size
     for column in range(size):
-        straight = shifted[column]
-        shifted[column] = straight + IMAGINARY_STEP * 1j
-        complex_residual(situation, known, shifted, values)
-        shifted[column] = straight
+        direction[column] = 1.0
+        slope(situation, known, unknown, direction, values)
+        direction[column] = 0.0
         for row in range(size):
-            table[row][column] = values[row].imag / IMAGINARY_STEP
+            table[row][column] = values[row]
         table[column][size + column] = 1.0
     eliminate(table, size)
     for row in range(size):
@@ -219,17 +213,17 @@ def newton_solutions(
 ) -> tuple[tuple[FloatArray, ...], Any, FloatArray]:
     """Return the same for a batch: arrays of any broadcastable shapes. What does not converge is not a number there.
 
-    `situation` may hold arrays too; inverse Jacobians have shape (m, m, points). A point that has converged or failed
-    is left out of what follows, and only Jacobians that do not serve are renewed: a few points that run away cost the
-    others nothing.
+    `situation` may hold arrays too; inverse Jacobians have shape (m m, points), row after row. A point that has
+    converged or failed is left out of what follows, and only Jacobians that do not serve are renewed: a few points that
+    run away cost the others nothing.
     """
     entries = np.broadcast_arrays(*situation, *known, *guess)
     batch = entries[0].shape
     flat = np.array(entries, np.float64).reshape(len(entries), -1)
     situations, knowns, unknown = np.split(flat, [len(situation), len(situation) + len(known)])
     count, size = flat.shape[1], len(unknown)
-    if inverse is None or inverse.shape[2] != count:
-        inverse = np.full((size, size, count), np.nan)
+    if inverse is None or inverse.shape[1] != count:
+        inverse = np.full((size * size, count), np.nan)
     pivots = np.full(count, np.nan)
     points = np.arange(count)  # that still iterate
     last = np.full(count, np.inf)
@@ -238,24 +232,26 @@ def newton_solutions(
     at_guess: FloatArray | None = None
     inherited = np.ones(count, bool)
     for _ in range(MOST_ITERATIONS):
-        values = np.empty((size, len(points)))
-        pivots[points] = residual.real(situations[:, points], knowns[:, points], unknown[:, points], values)
+        values, corrections = np.empty((2, size, len(points)))
+        pivots[points] = residual.residual(situations[:, points], knowns[:, points], unknown[:, points], values)
         at_guess = values if at_guess is None else at_guess
-        corrections = (inverse[:, :, points] * values).sum(axis=1)
-        bad = ~(settled | (np.abs(corrections).sum(axis=0) <= FALL * last))  # one that is not a number included
+        multiply(inverse[:, points], values, corrections)
+        bad = ~(settled | (total_size(corrections) <= FALL * last))  # one that is not a number included
         if bad.any():
             again = bad & inherited[points]
             unknown[:, points[again]] = guesses[:, points[again]]
             values[:, again] = at_guess[:, points[again]]
             renewed = points[bad]
             inherited[renewed] = False
-            inverse[:, :, renewed] = _inverse_jacobians(
+            inverse[:, renewed] = _inverse_jacobians(
                 residual, situations[:, renewed], knowns[:, renewed], unknown[:, renewed]
             )
-            corrections[:, bad] = (inverse[:, :, renewed] * values[:, bad]).sum(axis=1)
+            renewed_corrections = np.empty((size, len(renewed)))
+            multiply(inverse[:, renewed], values[:, bad], renewed_corrections)
+            corrections[:, bad] = renewed_corrections
         unknown[:, points] -= corrections
-        moved = np.abs(corrections).sum(axis=0)
-        sizes = np.abs(knowns[:, points]).sum(axis=0) + np.abs(unknown[:, points]).sum(axis=0)
+        moved = total_size(corrections)
+        sizes = total_size(knowns[:, points]) + total_size(unknown[:, points])
         failed = ~np.isfinite(moved)
         unknown[:, points[failed]] = np.nan
         waiting = ~failed & ~settled
@@ -267,9 +263,9 @@ def newton_solutions(
 
 
 def _inverse_jacobians(residual: Residual, situation: FloatArray, known: FloatArray, unknown: FloatArray) -> FloatArray:
-    """Return the inverse Jacobian of each point, shape (m, m, points), by complex steps along an axis of their own."""
-    directions = np.eye(len(unknown))[:, :, np.newaxis]
-    shifted = unknown[:, np.newaxis] + IMAGINARY_STEP * 1j * directions
-    values = np.empty(shifted.shape, np.complex128)
-    residual.complex(situation, known, shifted, values)
-    return inverses(values.imag / IMAGINARY_STEP)
+    """Return the inverse Jacobian of each point, shape (m m, points), row after row; all directions at a time."""
+    size, count = unknown.shape
+    directions = np.eye(size)[:, :, np.newaxis]  # of each unknown, in all directions, at all points alike
+    slopes = np.empty((size, size, count))
+    residual.slope(situation, known, unknown, directions, slopes)
+    return inverses(slopes).reshape(size * size, count)

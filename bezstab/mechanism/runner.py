@@ -236,7 +236,7 @@ def resume_in_groups(
     """Yield c after each of the `count` steps after `history`, as `resume` takes them with numpy, compiled, by groups.
 
     A group is a slice of the batch's last axis; its errors come in blocks of shape (steps, m, *batch, the last axis
-    cut to the group), SI units. Explicit methods only. InputError without numba.
+    cut to the group), SI units. InputError without numba.
     """
     moment, remembered, repeated = first_turn(mechanism, method, h, gains, history, slopes, undisturbed, np, Work())
     index = len(history) - 1 - repeated

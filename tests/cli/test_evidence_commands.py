@@ -153,6 +153,7 @@ def test_tradeoff_draws_recorded_times_the_same_again(tmp_path: Path) -> None:
     [
         "simulate --scene pendulum --method SYM --time 0.1",
         "verify --scene pendulum --method SYM --points 2",
+        "verify --scene pendulum --method implicit-euler --points 2",
         pytest.param(
             "tradeoff --scene pendulum --method SYM --h 0.01 --h 0.02 --time 0.1 --alpha 0.3 --beta 0.04",
             marks=pytest.mark.slow,  # starts worker processes
@@ -176,13 +177,6 @@ def test_without_numba_compiled_runs_are_refused_in_a_line(command: str, monkeyp
     refused = run(*command.split(), "--compiled", "yes")
     assert refused.exit_code == 2
     assert refused.stderr == "bezstab: compiled runs need an optional package: pip install 'bezstab[fast]'\n"
-
-
-def test_what_stays_in_python_is_said() -> None:
-    asked = run("verify", "--scene", "pendulum", "--points", "1", "--method", "implicit-euler", "--compiled", "yes")
-    said = "bezstab: --compiled yes: implicit-euler solves equations in each step: its batches run in Python\n"
-    assert asked.stderr == said
-    assert asked.exit_code == 0
 
 
 def test_the_environment_may_ask_for_compiled_runs_too(monkeypatch: pytest.MonkeyPatch) -> None:

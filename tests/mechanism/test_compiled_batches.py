@@ -17,12 +17,12 @@ from bezstab.mechanism import (
 )
 from bezstab.methods import Method, lookup
 from bezstab.units import feedback_gains
-from tests.mechanism.test_compiled_steps import PAIRS, step_for
+from tests.mechanism.test_compiled_steps import IMPLICIT_PAIRS, PAIRS, step_for
 
 FloatArray = NDArray[np.float64]
 H = 1e-3  # s
 STEPS = 300  # more than a block
-QUICK = ("AB3", "SYM", "verlet-half")
+QUICK = ("AB3", "SYM", "verlet-half", "implicit-euler")
 POINTS = 70
 """No multiple of LANES // 2: the last group is short."""
 
@@ -70,6 +70,6 @@ def test_each_kind_of_method_is_the_same_to_the_last_bit(name: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("scene", "name"), PAIRS)
+@pytest.mark.parametrize(("scene", "name"), PAIRS + IMPLICIT_PAIRS)
 def test_every_scene_is_the_same_to_the_last_bit(scene: str, name: str) -> None:
     assert_same(compiled_mechanism(load_scene(scene)), lookup(name), step_for(scene))

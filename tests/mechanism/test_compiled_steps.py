@@ -20,7 +20,7 @@ from bezstab.mechanism import (
     simulate,
 )
 from bezstab.mechanism import compiled_steps as module
-from bezstab.mechanism.compiled_steps import batches_compiled, blocks_of_steps, runs_compiled
+from bezstab.mechanism.compiled_steps import blocks_of_steps, runs_compiled
 from bezstab.mechanism.generated_code import Stepper, Unpacked, Yielded, compiled_source, generator_source
 from bezstab.mechanism.newton_iterations import Work
 from bezstab.methods import Method, lookup
@@ -175,8 +175,6 @@ def test_runs_are_compiled_where_that_pays_or_is_asked_for(monkeypatch: pytest.M
         monkeypatch.setenv(COMPILED_CHOICE, choice)
         assert runs_compiled(mechanism, method, evaluations) is expected
         assert runs_compiled(mechanism, lookup("bdf2"), evaluations) is expected
-        assert batches_compiled(mechanism, method, evaluations) is expected
-        assert not batches_compiled(mechanism, lookup("bdf2"), evaluations)
     monkeypatch.setenv(COMPILED_CHOICE, "maybe")
     with pytest.raises(InputError, match="BEZSTAB_COMPILED=maybe: expected auto, yes or no"):
         runs_compiled(mechanism, method, 10)

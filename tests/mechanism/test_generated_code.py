@@ -178,7 +178,12 @@ def test_steps_of_a_recipe_are_plain_assignments_without_its_names() -> None:
     )
     source = stepper_code(compiled_mechanism(load_scene("slider_crank")), Method("hostile", scheme, "constructed"))
     assert hostile not in source
-    assert set(CALL.findall(source)) - {"run", "residual_2", "in"} <= {"sin", "cos", "least", "solve"}
+    assert set(CALL.findall(source)) - {"run", "residual_2", "in"} <= {
+        "sin",
+        "cos",
+        "least",
+        "solve",
+    }
 
 
 OPENING = ("k = 0", Unpacked(("q0", "v0"), "(q0, v0,) = state"))
@@ -335,7 +340,7 @@ def test_a_batch_is_the_stepper_for_each_run() -> None:
     assert code.entries == 8  # q0, v0, what is unpacked of the past, and the new slopes
     starts = [0.25 * lane for lane in range(LANES)]
     memory = starts + [1.0] * LANES + [0.0] * (6 * LANES)
-    gains = [0.0] * LANES + [float(lane % 3) for lane in range(LANES)]
+    gains = np.array([[0.0] * LANES, [float(lane % 3) for lane in range(LANES)]])
     errors = [0.0] * (3 * LANES)
     batch = compiled_source(code.source, math)["batch"]
     assert batch(0.0, 0.5, gains, 1, 0, 3, memory, errors) == 3

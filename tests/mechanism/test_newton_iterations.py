@@ -13,7 +13,6 @@ from bezstab.mechanism.newton_iterations import (
     NotConvergedError,
     Residual,
     Work,
-    complex_library,
     multiply,
     newton_solution,
     newton_solutions,
@@ -32,7 +31,13 @@ def circle_and_line(_: Any, known: Sequence[Any], unknown: Sequence[Any], values
     return 1.0
 
 
-RESIDUAL = Residual(circle_and_line, circle_and_line, evaluations=1)
+def slope_of_circle_and_line(_: Any, __: Any, unknown: Sequence[Any], direction: Sequence[Any], values: Any) -> None:
+    """Write how that changes along a direction."""
+    (x, y), (by_x, by_y) = unknown, direction
+    values[0], values[1] = 2 * x * by_x + 2 * y * by_y, by_x - by_y
+
+
+RESIDUAL = Residual(circle_and_line, slope_of_circle_and_line, evaluations=1)
 
 
 def solved(
@@ -65,8 +70,11 @@ def test_a_linear_equation_takes_one_correction_one_to_see_it_and_one_more() -> 
         values[0] = 3.0 * unknown[0] - known[0]
         return 1.0
 
+    def slope(_: Any, __: Any, ___: Any, direction: Sequence[Any], values: Any) -> None:
+        values[0] = 3.0 * direction[0]
+
     work = Work()
-    assert solved(Residual(line, line, 1), (6.0,), (1e3,), work=work) == [2.0]
+    assert solved(Residual(line, slope, 1), (6.0,), (1e3,), work=work) == [2.0]
     assert (work.iterations, work.evaluations) == (3, 4)
 
 
@@ -81,8 +89,11 @@ def test_what_has_no_root_does_not_converge() -> None:
         values[0] = unknown[0] * unknown[0] + 1.0
         return 1.0
 
+    def slope(_: Any, __: Any, unknown: Sequence[Any], direction: Sequence[Any], values: Any) -> None:
+        values[0] = 2 * unknown[0] * direction[0]
+
     with pytest.raises(NotConvergedError, match=rf"did not converge in {MOST_ITERATIONS} iterations \(last correction"):
-        solved(Residual(no_root, no_root, 1), (), (0.3,))
+        solved(Residual(no_root, slope, 1), (), (0.3,))
 
 
 def test_what_leaves_the_numbers_does_not_converge() -> None:
@@ -110,9 +121,7 @@ def test_a_batch_converges_point_by_point_and_fails_point_by_point() -> None:
     assert pivot.shape == radius.shape
 
 
-def test_each_library_has_its_complex_one_and_its_rounding() -> None:
-    assert complex_library(math).sqrt(-1) == 1j
-    assert complex_library(np) is np
+def test_each_library_has_its_rounding() -> None:
     assert rounding_of(math) == rounding_of(np) == 2.0**-52
     with mp.workdps(50):
         assert rounding_of(mp) < 1e-49
@@ -135,3 +144,18 @@ def test_sums_are_taken_in_their_order_on_every_version_of_python() -> None:
     rows = [0.0, 0.0]
     multiply([1.0, 1e-16, 2.0, 3.0], [1.0, 1.0], rows)
     assert rows == [1.0, 5.0]
+
+
+def test_a_batch_has_the_bits_of_its_points_alone() -> None:
+    """With the Jacobian of before, and without."""
+    radius = np.geomspace(0.1, 30.0, 12)
+    together: Any = (np.full(12, 1.0), np.full(12, 1.5))
+    inverse: Any = None
+    alone: Any = [[1.0, 1.5] for _ in radius]
+    inverses = [no_inverse(2) for _ in radius]
+    for factor in (1.0, 1.001, 5.0):
+        for point, r in enumerate((factor * radius).tolist()):
+            alone[point] = solved(RESIDUAL, (r,), alone[point], inverses[point])
+        together, _, inverse = newton_solutions(RESIDUAL, (0.0,), (factor * radius,), together, inverse, TOLERANCE)
+        np.testing.assert_array_equal(together, np.array(alone).T)
+        np.testing.assert_array_equal(inverse, np.array(inverses).T)

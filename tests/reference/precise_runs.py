@@ -14,7 +14,7 @@ import mpmath as mp
 
 from bezstab.mechanism import Mechanism, compiled_source, stepper_code
 from bezstab.mechanism.compiled import run_as_second_order
-from bezstab.mechanism.generated_code import residuals_source
+from bezstab.mechanism.generated_code import residual_slopes_source, residuals_source, slope_lines
 from bezstab.mechanism.newton_iterations import TOLERANCE, Residual, Work, newton_solution, no_inverse
 from bezstab.mechanism.runner import carried_quantities
 from bezstab.mechanism.second_order_turns import implicit_groups
@@ -53,10 +53,11 @@ def _precise_second_order_run(
     """Return the steps of an implicit or second-order method, solved to the digits in force."""
     scheme = run_as_second_order(method)
     assert scheme
-    plain = _precisely(residuals_source(mechanism.acceleration_code, scheme, with_pivots=True), method)
-    complex_ = _precisely(residuals_source(mechanism.acceleration_code, scheme, with_pivots=False), method)
+    plain = _precisely(residuals_source(mechanism.acceleration_code, scheme), method)
+    slopes_of_acceleration = slope_lines(mechanism.equations)
+    slopes = _precisely(residual_slopes_source(mechanism.acceleration_code, slopes_of_acceleration, scheme), method)
     residuals = {
-        number: Residual(plain[f"residual_{number}"], complex_[f"residual_{number}"], evaluations)
+        number: Residual(plain[f"residual_{number}"], slopes[f"residual_slope_{number}"], evaluations)
         for number, evaluations in implicit_groups(scheme).items()
     }
 
