@@ -11,12 +11,14 @@ import numpy as np
 from bezstab.mechanism.equations import Equations, equations_of_motion
 from bezstab.mechanism.generated_code import (
     AccelerationCode,
+    MachineCode,
     Stepper,
     acceleration_code,
     acceleration_source,
     compiled_source,
     first_order_stepper,
     generator_source,
+    machine_code,
     multipliers_source,
     observation_source,
     residual_slopes_source,
@@ -96,10 +98,23 @@ def stepper_code(mechanism: Mechanism, method: Method) -> str:
 
 def stepper_of(mechanism: Mechanism, method: Method) -> Stepper:
     """Return the pieces of which the source of a method's steps is put together."""
+    return _stepper(mechanism.acceleration_code, method)
+
+
+def machine_stepper_of(mechanism: Mechanism, method: Method) -> Stepper:
+    """Return the same as machine code takes it: where its accelerations are long, it calls their parts."""
+    return _stepper(machine_code_of(mechanism).acceleration, method)
+
+
+def _stepper(code: AccelerationCode, method: Method) -> Stepper:
     scheme = run_as_second_order(method)
-    if scheme is None:
-        return first_order_stepper(mechanism.acceleration_code, method)
-    return second_order_stepper(mechanism.acceleration_code, scheme)
+    return first_order_stepper(code, method) if scheme is None else second_order_stepper(code, scheme)
+
+
+@cache
+def machine_code_of(mechanism: Mechanism) -> MachineCode:
+    """Return the mechanism's accelerations and their slopes as machine code takes them."""
+    return machine_code(mechanism.acceleration_code, slope_lines(mechanism.equations))
 
 
 def run_as_second_order(method: Method) -> SecondOrder | None:
@@ -170,17 +185,31 @@ def _batch_solver(residual: Residual, tolerance: float, _: Work) -> Callable[...
 @cache
 def compiled_residuals(mechanism: Mechanism, method: Method, library: Any) -> dict[int, Residual]:
     """Return the residual of each implicit group by its number, and its slope."""
-    return residuals_of(mechanism, method, library, compared=False)
-
-
-def residuals_of(mechanism: Mechanism, method: Method, library: Any, compared: bool) -> dict[int, Residual]:
-    """Return the same, which a method may have none of; `compared` for functions that can be made machine code."""
     scheme = run_as_second_order(method)
     if scheme is None:
         return {}
     code = mechanism.acceleration_code
-    residuals = compiled_source(residuals_source(code, scheme, compared), library)
+    residuals = compiled_source(residuals_source(code, scheme), library)
     slopes = compiled_source(residual_slopes_source(code, slope_lines(mechanism.equations), scheme), library)
+    return _residuals_by_number(scheme, residuals, slopes)
+
+
+def machine_residuals(
+    mechanism: Mechanism, method: Method, library: Any, others: Mapping[str, Any]
+) -> dict[int, Residual]:
+    """Return the same as functions that can be made machine code; `others` are what those call: parts."""
+    scheme = run_as_second_order(method)
+    if scheme is None:
+        return {}
+    code = machine_code_of(mechanism)
+    residuals = compiled_source(residuals_source(code.acceleration, scheme, compared=True), library, others)
+    slopes = compiled_source(residual_slopes_source(code.acceleration, code.slopes, scheme), library, others)
+    return _residuals_by_number(scheme, residuals, slopes)
+
+
+def _residuals_by_number(
+    scheme: SecondOrder, residuals: Mapping[str, Any], slopes: Mapping[str, Any]
+) -> dict[int, Residual]:
     return {
         number: Residual(residuals[f"residual_{number}"], slopes[f"residual_slope_{number}"], evaluations)
         for number, evaluations in implicit_groups(scheme).items()

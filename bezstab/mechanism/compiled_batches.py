@@ -9,7 +9,7 @@ its sine and cosine are the C library's.
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from typing import Any
 
@@ -17,8 +17,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.compiling import INNER, compiler, shared_with_machine_code
-from bezstab.mechanism.compiled import Mechanism, compiled_residuals, run_as_second_order, stepper_of
-from bezstab.mechanism.compiled_steps import flat
+from bezstab.mechanism.compiled import (
+    Mechanism,
+    machine_code_of,
+    machine_residuals,
+    machine_stepper_of,
+    run_as_second_order,
+    stepper_of,
+)
+from bezstab.mechanism.compiled_steps import flat, machine_parts
 from bezstab.mechanism.generated_code import (
     BatchCode,
     batch_code,
@@ -38,6 +45,9 @@ LANES = 64
 BLOCK = 256
 """Steps at a time: so are their errors in the second."""
 
+AS_NUMPY = INNER | {"error_model": "numpy"}
+"""Options for functions that divide by zero as numpy does."""
+
 ARGUMENTS = "float64, float64, float64[:, ::1], int64, int64, int64, float64[::1], float64[::1]"
 
 
@@ -46,39 +56,40 @@ def _machine_batch(mechanism: Mechanism, method: Method) -> tuple[Any, int]:
     """Return the batch function as machine code, and the entries of its memory. InputError without numba."""
     numba = compiler()
     code = _code(mechanism, method)
-    solvers = _machine_solvers(numba, mechanism, method)
-    batch = compiled_source(code.source, math, solvers | {"empty": np.empty})["batch"]
+    parts = machine_parts(mechanism, math, AS_NUMPY)
+    solvers = _machine_solvers(numba, mechanism, method, parts)
+    batch = compiled_source(code.source, math, parts | solvers)["batch"]
     inverses = f", UniTuple(float64[:, ::1], {len(solvers)})" if solvers else ""
     options = {"error_model": "numpy", "no_cfunc_wrapper": True}
     return numba.njit(f"int64({ARGUMENTS}{inverses})", **options)(batch), code.entries
 
 
-def _machine_solvers(numba: Any, mechanism: Mechanism, method: Method) -> dict[str, Any]:
+def _machine_solvers(numba: Any, mechanism: Mechanism, method: Method, parts: Mapping[str, Any]) -> dict[str, Any]:
     """Return the functions by which the batch of an implicit method has its equations solved, by their names."""
     scheme = run_as_second_order(method)
     if scheme is None:
         return {}
     shared_with_machine_code((*LOOPS, *LOOPS_SIDE_BY_SIDE))
-    residuals = compiled_source(residuals_side_by_side_source(mechanism.acceleration_code, scheme, LANES), math)
+    code = machine_code_of(mechanism).acceleration
+    residuals = compiled_source(residuals_side_by_side_source(code, scheme, LANES), math, parts)
     tolerance = TOLERANCE * rounding_of(math)
-    options = INNER | {"error_model": "numpy"}
 
     def solver(residual_of_all: Any, slope_of_one: Any) -> Any:
-        residual, slope = numba.njit(**options)(residual_of_all), numba.njit(**options)(slope_of_one)
+        residual, slope = numba.njit(**AS_NUMPY)(residual_of_all), numba.njit(**AS_NUMPY)(slope_of_one)
 
         def solve(start: Any, k: Any, h: Any, gains: Any, known: Any, sought: Any, inverse: Any) -> None:
             solve_side_by_side(residual, slope, (start, k, h), gains, known, sought, inverse, tolerance)
 
-        return numba.njit(**options)(solve)
+        return numba.njit(**AS_NUMPY)(solve)
 
     return {
         f"solve_{number}": solver(residuals[f"residual_{number}"], residual.slope)
-        for number, residual in compiled_residuals(mechanism, method, math).items()
+        for number, residual in machine_residuals(mechanism, method, math, parts).items()
     }
 
 
 def _code(mechanism: Mechanism, method: Method) -> BatchCode:
-    return batch_code(stepper_of(mechanism, method), constraint_texts(mechanism.equations), LANES)
+    return batch_code(machine_stepper_of(mechanism, method), constraint_texts(mechanism.equations), LANES)
 
 
 def constraint_errors_in_groups(

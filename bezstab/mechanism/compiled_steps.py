@@ -37,10 +37,12 @@ from bezstab.mechanism.compiled import (
     SINGULAR,
     Mechanism,
     compiled_residuals,
-    residuals_of,
+    machine_code_of,
+    machine_residuals,
+    machine_stepper_of,
     stepper_of,
 )
-from bezstab.mechanism.generated_code import block_source, compiled_source, varying_block_source
+from bezstab.mechanism.generated_code import Stepper, block_source, compiled_source, lesser, varying_block_source
 from bezstab.mechanism.newton_iterations import (
     LOOPS,
     TOLERANCE,
@@ -76,7 +78,7 @@ MOST_LINES = 3000
 """Of a turn of a stepper that is compiled without being asked for: what numba takes grows faster than the text."""
 
 MOST_LINES_ASKED_FOR = 8000
-"""Of one that is asked for: numba takes over a minute for 5,000 lines, and had not ended with 10,700 after seven."""
+"""Of one that is asked for: numba takes a minute for 2,000 lines, and between two and three for 6,000."""
 
 CONSTANT = "float64, float64, float64, float64"
 VARYING = "float64[::1], float64[::1], float64[::1], float64[::1], int64[::1]"
@@ -147,13 +149,13 @@ def runs_compiled(mechanism: Mechanism, method: Method, evaluations: int, varyin
         return False
     if implicit(method):
         evaluations *= ITERATIONS_OF_A_SOLUTION
-    pays = evaluations >= WORTH_COMPILING and stepper_of(mechanism, method).length <= MOST_LINES
+    pays = evaluations >= WORTH_COMPILING and machine_stepper_of(mechanism, method).length <= MOST_LINES
     return pays or (mechanism, method, varying) in _compiled
 
 
 def _check_length(mechanism: Mechanism, method: Method) -> None:
     """Raise InputError if a step of the method is too long to be compiled in minutes."""
-    length = stepper_of(mechanism, method).length
+    length = machine_stepper_of(mechanism, method).length
     if length > MOST_LINES_ASKED_FOR:
         raise InputError(
             f"--compiled yes: a step of {method.name} on {mechanism.scene.name} is {length} lines of code, of which "
@@ -187,8 +189,9 @@ def _machine_block(mechanism: Mechanism, method: Method, powers: Powers = None) 
         cos=numba.njit(**INNER)(checked_cos),
         sqrt=numba.njit(**INNER)(checked_sqrt),
     )
-    solvers = _machine_solvers(numba, mechanism, method, library)
-    block = _block(mechanism, method, powers, library, solvers)
+    parts = machine_parts(mechanism, library, INNER)
+    solvers = _machine_solvers(numba, mechanism, method, library, parts)
+    block = _block(machine_stepper_of(mechanism, method), powers, library, parts | solvers)
     arguments = f"{CONSTANT if powers is None else VARYING}, {BLOCK_ARGUMENTS}"
     if solvers:
         inverse = "float64[::1]" if powers is None else "float64[:, ::1]"
@@ -198,10 +201,22 @@ def _machine_block(mechanism: Mechanism, method: Method, powers: Powers = None) 
     return machine_block
 
 
-def _machine_solvers(numba: Any, mechanism: Mechanism, method: Method, library: Any) -> dict[str, Any]:
+def machine_parts(mechanism: Mechanism, library: Any, options: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the functions that compiled steps call, and their accelerations where they are long, by their names."""
+    numba = compiler()
+    parts: dict[str, Any] = {"empty": np.empty, "lesser": numba.njit(**options)(lesser)}
+    for number, source in enumerate(machine_code_of(mechanism).parts):
+        name = f"part_{number}"
+        parts[name] = numba.njit(**options)(compiled_source(source, library)[name])
+    return parts
+
+
+def _machine_solvers(
+    numba: Any, mechanism: Mechanism, method: Method, library: Any, parts: Mapping[str, Any]
+) -> dict[str, Any]:
     """Return the functions by which the block of an implicit method has its equations solved, by their names."""
     shared_with_machine_code(LOOPS)
-    residuals = residuals_of(mechanism, method, library, compared=True)
+    residuals = machine_residuals(mechanism, method, library, parts)
     tolerance = TOLERANCE * rounding_of(math)
 
     def solver(residual: Residual) -> Any:
@@ -234,18 +249,15 @@ def _python_block(mechanism: Mechanism, method: Method, powers: Powers = None) -
 
     residuals = compiled_residuals(mechanism, method, math)
     solvers = {f"solve_{number}": solver(residual) for number, residual in residuals.items()}
-    return _block(mechanism, method, powers, math, solvers)
+    return _block(stepper_of(mechanism, method), powers, math, solvers)
 
 
-def _block(
-    mechanism: Mechanism, method: Method, powers: Powers, library: Any, solvers: Mapping[str, Any]
-) -> Callable[..., int]:
-    stepper = stepper_of(mechanism, method)
+def _block(stepper: Stepper, powers: Powers, library: Any, others: Mapping[str, Any]) -> Callable[..., int]:
     if powers is None:
         source, name = block_source(stepper, SINGULAR, NEARLY_BLOWN_UP), "block"
     else:
         source, name = varying_block_source(stepper, powers, SINGULAR, NEARLY_BLOWN_UP), "varying_block"
-    block: Callable[..., int] = compiled_source(source, library, solvers)[name]
+    block: Callable[..., int] = compiled_source(source, library, others)[name]
     return block
 
 

@@ -7,6 +7,7 @@ functions. From its top to its end, each part under a comment of its own:
     accelerations and multipliers          the assignments that solve paper Eq. 9
     functions of a state                   acceleration, multipliers, observation
     slopes of the acceleration             its derivatives by position and velocity, or along one direction
+    accelerations in parts                 the same for machine code, where they are long
     steppers: their pieces                 what a step consists of, as data
     a stepper as a generator               one run, step by step
     a stepper as a single step             one step, and what the next begins with
@@ -29,7 +30,8 @@ but numbers and these names; least of all the names that a user gave to bodies.
 """
 
 import math
-from collections.abc import Callable, Container, Iterable, Mapping, Sequence
+import re
+from collections.abc import Callable, Collection, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
@@ -71,9 +73,14 @@ def compiled_source(source: str, library: Any, others: Mapping[str, Any] | None 
     """
     least = min if library is math else _least_of_arrays
     namespace = {"sin": library.sin, "cos": library.cos, "sqrt": library.sqrt, "least": least, "row": _row_of_arrays}
-    namespace |= others or {}
+    namespace |= {"lesser": lesser} | dict(others or {})
     exec(source, namespace)
     return namespace
+
+
+def lesser(first: float, second: float) -> float:
+    """Return what Python's min returns, the first unless the second is less; as text that machine code takes."""
+    return second if second < first else first
 
 
 def _least_of_arrays(*values: Any) -> Any:
@@ -459,6 +466,112 @@ def _nonzero_differentials(equations: Equations) -> dict[str, sp.Expr]:
     }
 
 
+# Accelerations in parts
+#
+# What turning text into machine code costs grows faster than the text. So the thousands of assignments of a long
+# mechanism become functions of PART lines each, which leave their results to one another in an array, the room:
+#
+#     room = empty(2770)
+#     room[0] = q0                            what they are given
+#     ...
+#     part_0(room)                            def part_0(room):
+#     part_1(room)                             q0 = room[0]
+#     ...                                      x0 = sin(q0)
+#     a0 = room[1510]                          ...
+#     D0 = room[640]                           room[17] = x0
+#
+# Those of the slopes follow in the same room. No operation changes, and no bit of any result.
+
+PART = 150
+"""Lines of a part; with twice as many compiling takes a third longer, with eight times as many two and a half times."""
+
+LONG = 1000
+"""Lines from which on an acceleration is cut: where machine code gains nothing any more from seeing it as one."""
+
+NAME = re.compile(r"\b[A-Za-z_]\w*")
+
+
+@dataclass(frozen=True)
+class MachineCode:
+    """The acceleration code and the lines of `slope_lines` as machine code takes them, and the sources of their parts.
+
+    Each part is a function part_0(room), part_1(room), ...; `room` is allocated by empty(size).
+    """
+
+    acceleration: AccelerationCode
+    slopes: tuple[str, ...]
+    parts: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class _Part:
+    """Lines of a part, the variables whose values it needs from before, and those that it assigns."""
+
+    lines: tuple[str, ...]
+    needed: tuple[str, ...]
+    assigned: tuple[str, ...]
+
+
+def machine_code(acceleration: AccelerationCode, slopes: Sequence[str]) -> MachineCode:
+    """Return the code in parts, or as it is where it is not long."""
+    if len(acceleration.lines) <= LONG:
+        return MachineCode(acceleration, tuple(slopes))
+    of_acceleration, of_slopes = _parts(acceleration.lines), _parts(slopes)
+    parts = [*of_acceleration, *of_slopes]
+    results = [*variable_names("a", acceleration.coordinates), *NAME.findall(" ".join(acceleration.pivots))]
+    changes = variable_names("da", acceleration.coordinates)
+    kept = {*results, *changes, *(name for part in parts for name in part.needed)}
+    places = {name: place for place, name in enumerate(sorted(kept))}
+
+    def stored(name: str) -> str:
+        return f"room[{places[name]}] = {name}"
+
+    def loaded(name: str) -> str:
+        return f"{name} = room[{places[name]}]"
+
+    def given(some: Sequence[_Part], before: Collection[str]) -> list[str]:
+        """Return what stores the variables that some parts need and none has assigned by then."""
+        known, names = set(before), []
+        for part in some:
+            names += [name for name in part.needed if name not in known]
+            known |= {*part.needed, *part.assigned}
+        return [stored(name) for name in names]
+
+    def calls(first: int, some: Sequence[_Part]) -> list[str]:
+        return [f"part_{first + number}(room)" for number in range(len(some))]
+
+    known_by_then = {name for part in of_acceleration for name in (*part.needed, *part.assigned)}
+    lines = [f"room = empty({len(places)})", *given(of_acceleration, ()), *calls(0, of_acceleration)]
+    lines += [loaded(name) for name in results]
+    slope_calls = [*given(of_slopes, known_by_then), *calls(len(of_acceleration), of_slopes)]
+    slope_calls += [loaded(name) for name in changes]
+    functions = []
+    for number, part in enumerate(parts):
+        inside = [loaded(name) for name in part.needed]
+        inside += [*part.lines, *(stored(name) for name in part.assigned if name in kept)]
+        functions.append("\n".join([f"def part_{number}(room):", *_indented(inside, 1)]))
+    return MachineCode(replace(acceleration, lines=tuple(lines)), tuple(slope_calls), tuple(functions))
+
+
+def _parts(lines: Sequence[str]) -> list[_Part]:
+    """Return some lines cut into parts."""
+    parts = []
+    for first in range(0, len(lines), PART):
+        some = tuple(lines[first : first + PART])
+        needed: dict[str, None] = {}  # in the order in which they are met
+        assigned: dict[str, None] = {}
+        for line in some:
+            result, *used = NAME.findall(line)
+            needed |= {name: None for name in used if name not in assigned and name not in FUNCTIONS}
+            assigned[result] = None
+        parts.append(_Part(some, tuple(needed), tuple(assigned)))
+    return parts
+
+
+FUNCTIONS = ("sin", "cos", "sqrt")
+"""That the acceleration calls."""
+
+
 # Steppers: their pieces
 #
 # A stepper takes one step a turn of its loop. It is put together as data first, because four texts are made of it:
@@ -653,8 +766,7 @@ def single_step_source(stepper: Stepper) -> str:
 #      while True:                                       while k < last:
 #       ...                                               ...                             the same lines
 #       worst = least(1.0, D0 / S0)                       worst = 1.0
-#                                                         value = D0 / S0
-#                                                         if value < worst: worst = value
+#                                                         worst = lesser(worst, D0 / S0)
 #       k = k + 1                                         k = k + 1
 #       yield (q0, v0,), (...), worst_pivot               states[place + 0] = q0 ...
 #
@@ -758,11 +870,11 @@ def _block_lines(piece: Piece, counter: str, limits: tuple[float, float]) -> lis
 
 
 def _compared_lines(pivot: Pivot) -> list[str]:
-    """Return what stands for `least`: Python's min, which keeps the first unless a later one is less."""
+    """Return what stands for `least`, two by two: hundreds of branches in one function are hard on a compiler."""
     first, *others = pivot.values
     lines = [] if first == pivot.result else [f"{pivot.result} = {first}"]
     for other in others:
-        lines += [f"value = {other}", f"if value < {pivot.result}: {pivot.result} = value"]
+        lines.append(f"{pivot.result} = lesser({pivot.result}, {other})")
     return lines
 
 

@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cache
 from itertools import islice
 from typing import Any
@@ -24,6 +24,9 @@ from bezstab.mechanism import (
     stepper_code,
 )
 from bezstab.mechanism.generated_code import (
+    PART,
+    AccelerationCode,
+    MachineCode,
     Moved,
     Pivot,
     Sought,
@@ -34,7 +37,9 @@ from bezstab.mechanism.generated_code import (
     block_source,
     compiled_source,
     generator_source,
+    machine_code,
     single_step_source,
+    slope_lines,
     varying_block_source,
 )
 from bezstab.methods import Method, accuracy, lookup, recipe, steps
@@ -361,3 +366,33 @@ def test_pivots_and_what_no_run_needs_are_left_out_of_a_batch() -> None:
     source = batch_code(BATCH_OF, ["q0"], LANES).source
     assert "worst" not in source
     assert "yield" not in source
+
+
+def test_a_long_acceleration_in_parts_is_the_same_to_the_last_bit() -> None:
+    """And so are its slopes; here as Python, the room a list."""
+    upright = {"position": {"rod0.theta": math.pi / 2}, "velocity": {"rod0.theta": -1.0}}
+    links = {"count": 12, "length": 1.0, "mass": 1.0}
+    mechanism = compiled_mechanism(parse_scene({"name": "chain", "four_bar_chain": links, "initial": upright}))
+    whole, slopes = mechanism.acceleration_code, slope_lines(mechanism.equations)
+    cut = machine_code(whole, slopes)
+    assert len(cut.parts) == math.ceil(len(whole.lines) / PART) + math.ceil(len(slopes) / PART)
+    others: dict[str, Any] = {"empty": lambda size: [math.nan] * size}
+    for number, part in enumerate(cut.parts):
+        others[f"part_{number}"] = compiled_source(part, math)[f"part_{number}"]
+    size = mechanism.size
+    state = [[0.1 * math.sin(7.0 * i + j) for i in range(size)] for j in range(4)]  # q, v, dq, dv
+
+    def evaluated(acceleration: AccelerationCode, of_slopes: Sequence[str]) -> tuple[float, ...]:
+        results = [f"{name}{i}" for name in ("a", "da") for i in range(size)]
+        lines = [f"{name}{i} = {name}[{i}]" for name in ("q", "v", "dq", "dv") for i in range(size)]
+        lines += [*acceleration.lines, *of_slopes, f"return ({', '.join([*results, *acceleration.pivots])})"]
+        source = "\n ".join(["def evaluated(t, two_alpha, beta_squared, q, v, dq, dv):", *lines])
+        found: tuple[float, ...] = compiled_source(source, math, others)["evaluated"](0.0, 3.0, 4.0, *state)
+        return found
+
+    assert evaluated(cut.acceleration, cut.slopes) == evaluated(whole, slopes)
+
+
+def test_a_short_acceleration_is_left_as_it_is() -> None:
+    code = compiled_mechanism(load_scene("slider_crank")).acceleration_code
+    assert machine_code(code, ["da0 = 0.0"]) == MachineCode(code, ("da0 = 0.0",))
