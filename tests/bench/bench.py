@@ -539,7 +539,7 @@ def compiled_runs() -> Iterator[Line]:
         begin = time.process_time()
         compiled_alone(moving, method, state, True, 10)
         compiling = time.process_time() - begin
-        promise = None if implicit(method) else 1.0  # Newton's method is compiled, too, and its complex numbers
+        promise = None if implicit(method) else 1.0  # of the former Newton's method is compiled, too
         note = f"{compiling:.2f} s of processor time"
         yield Line("compiled", f"{name}: 3 s, compiling", 3 / compiling, promise, note)
         slow, other = fastest(partial(compiled_alone, moving, method, state, False, count), 1)
@@ -557,7 +557,7 @@ def compiled_runs() -> Iterator[Line]:
             note = f"{COMPILED_STEPS / ours:.1e} steps/s against {COMPILED_STEPS / theirs:.1e}, in C"
             yield Line("compiled", f"{name}: MuJoCo's {MUJOCO[name]}", theirs / ours, 20.0, note)
     with ProcessPoolExecutor(2) as pool:
-        for name in ("B4", "RK4"):
+        for name in ("B4", "RK4", "hht", "bdf4"):
             rows = map_rows(moving.scene, lookup(name), STEP, COMPILED_CELLS)
             halves = [replace(rows[0], beta_hat=half) for half in np.array_split(rows[0].beta_hat, 2)]
             times, verdicts = [], []
