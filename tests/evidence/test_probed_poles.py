@@ -20,7 +20,7 @@ from bezstab.evidence import (
     recursion_likenesses,
     steps_between_rows,
 )
-from bezstab.evidence.probed_poles import FEWEST, _quantum, usable_response
+from bezstab.evidence.probed_poles import FEWEST, LINEAR_SHARES, _quantum, linear_limits, usable_response
 from bezstab.methods import REGISTRY, Method, lookup
 from bezstab.rationals import exact
 from bezstab.stability import FloatArray, dominant_pole, poles, region, window
@@ -229,6 +229,15 @@ def test_growth_out_of_a_small_kick_is_told_although_it_saturates(modulus: float
     c = 1e-8 * two_poles(round(25 / np.log(modulus)), modulus, 0.5, 1.0, 0.5)
     c = np.tanh(c[np.abs(c) < 3])
     assert told(c, 0 * c).pole == pytest.approx(modulus * np.exp(0.5j), abs=1e-3)
+
+
+def test_what_has_grown_and_died_away_is_not_taken_to_saturate() -> None:
+    """The largest sample is then no sign of a limit: all rows are tried as linear, or none is left out of them."""
+    rows = np.arange(60)[:, np.newaxis]
+    died_away = 1.0 + 1e3 * np.exp(-((rows - 20.0) ** 2) / 40)
+    assert tuple(linear_limits(died_away)) == (np.inf,)
+    saturated = np.tanh(1e-3 * 1.5**rows)
+    assert tuple(linear_limits(saturated)) == tuple(share * saturated.max() for share in LINEAR_SHARES)
 
 
 def test_noise_is_refused() -> None:

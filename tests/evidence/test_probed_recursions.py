@@ -118,6 +118,14 @@ def test_what_a_motion_forces_on_one_run_is_differenced_off() -> None:
     assert "SYM" in nearest(like)
 
 
+def test_zeros_after_the_last_decimal_do_not_hide_the_rows_before() -> None:
+    c = np.round(1e-2 * of_poles(poles(lookup("RK2"), 0.7, 0.3), 40, seed=3), 7)
+    assert not c[-5:].any()
+    like = recursion_likenesses(c, ALL, Fraction(7, 10), Fraction(3, 10), minus=0 * c)
+    assert "RK2" in nearest(like)
+    assert like[0].judged_by == "recursion"
+
+
 def test_of_several_responses_the_one_that_shows_most_counts() -> None:
     c = response("RK2", 0.7, 0.3, rows=11)
     both = np.stack([np.random.default_rng(1).normal(size=11), c], axis=1)
