@@ -3,6 +3,7 @@
 from textwrap import wrap
 
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from bezstab.evidence import SweptRuns
 from bezstab.mechanism import Scene, Simulation
@@ -12,6 +13,7 @@ from bezstab.stability import FloatArray
 
 LARGEST_MARKER, MARKER_STEP = 7.0, 0.5  # points: hollow markers of falling size, so that coinciding curves all show
 TITLE_WIDTH = 48  # characters of a figure's title at column width
+TIMES = 5  # intervals between the times that are written below a history: times of milliseconds have six digits
 
 
 def scene_figure(scene: Scene, q: FloatArray) -> Figure:
@@ -48,6 +50,7 @@ def history_figure(simulation: Simulation) -> Figure:
         upper.set(ylabel="$c_1$ (SI)")
         middle.set(ylabel=r"$\dot c_1$ (SI)")
         lower.set(xlabel="t (s)", ylabel="largest $|c|$ (SI)")
+        lower.xaxis.set_major_locator(MaxNLocator(TIMES))
         for axes in (upper, middle):
             axes.ticklabel_format(axis="y", scilimits=(-2, 3))
         return figure

@@ -1,9 +1,11 @@
 from collections.abc import Sequence
 from io import BytesIO
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
+from matplotlib.backend_bases import RendererBase
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
 
@@ -11,6 +13,7 @@ from bezstab.evidence import Cost, Run, Sweep, measured_runs, pareto_front, refe
 from bezstab.mechanism import compiled_mechanism, initial_state, load_scene, simulated
 from bezstab.methods import lookup
 from bezstab.show.run_figures import history_figure, scene_figure, work_precision_figure
+from bezstab.show.style import save
 
 
 def test_the_scene_figure_joins_the_bodies_where_their_joints_are() -> None:
@@ -98,3 +101,23 @@ def test_why_a_run_ended_is_written_whole_within_the_figure() -> None:
     assert box.x0 >= 0
     assert box.x1 <= figure.bbox.x1
     assert box.y1 <= figure.bbox.y1
+
+
+@pytest.mark.parametrize(("h", "duration"), [(1e-3, 0.018), (1e-5, 1.3e-4), (1e-3, 2.0), (0.01, 170.0)])
+def test_times_below_a_history_are_apart(h: float, duration: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As they are drawn: where they stand is decided by the size at which a file is written."""
+    drawn: dict[Text, tuple[float, float]] = {}
+    draw = Text.draw
+
+    def seen(text: Text, renderer: RendererBase) -> None:
+        box = text.get_window_extent(renderer)
+        drawn[text] = (box.x0, box.x1)
+        draw(text, renderer)
+
+    pendulum = compiled_mechanism(load_scene("pendulum"))
+    figure = history_figure(simulated(pendulum, lookup("SYM"), h=h, duration=duration, alpha_hat=0.5, beta_hat=0.1))
+    monkeypatch.setattr(Text, "draw", seen)
+    save(figure, "png", BytesIO())
+    labels = [drawn[label] for label in figure.axes[-1].get_xticklabels() if label in drawn]
+    assert len(labels) >= 3
+    assert all(left_end < right_start for (_, left_end), (right_start, _) in pairwise(sorted(labels)))
