@@ -45,7 +45,7 @@ class Trajectory:
     """A run: t (s, shape (steps + 1,)), q and v (shape (steps + 1, n), SI), and why it ended early, if it did.
 
     `evaluations` counts right-hand sides, and `iterations` those of Newton's method, None for an explicit method; each
-    iteration evaluates once, and a Jacobian once for each unknown, in complex numbers.
+    iteration evaluates once, and a Jacobian once for each unknown, a slope.
     `failure` says when and why in one line; the history ends before it.
     `least_pivot` is the least relative pivot of S = C_q M^-1 C_q^T that was met, in the step from `pivot_time` (s):
     where it is small a singular configuration is near, and multipliers have lost about that factor of their digits.

@@ -38,7 +38,6 @@ from bezstab.stability.pencils import Pencil, deadbeat_mu
 PANELS = 8  # with as many nodes, 64 lines over what the region covers: each costs 5 to 20 us, a region 20 to 500 ms
 NODES = 8  # of Gauss and Legendre on a panel
 THIN = 1e-6  # relative range of sqrt|q| of a curve, below which lines cross it within rounding
-MOST_CURVES = 12  # whose ranges get panels of their own
 BEYOND = 24  # lines further out, where there must be nothing
 RESOLVED = 1e-12  # of |p|: a shorter interval is rounding of its two ends
 LINE_ERROR = 1e-7  # of the longest line: an edge's crossing and a slice's end agree to 1e-10 but next to a tangency
@@ -91,7 +90,7 @@ def _lines_through(curves: list[FloatArray], shapely: float) -> tuple[FloatArray
     over what has a shape, up to `shapely` (of |mu|), where curves go on beyond it.
     """
     ends = [np.linspace(-shapely, shapely, 2 * PANELS + 1)] if curves and shapely < np.inf else []
-    for curve in sorted(curves, key=len, reverse=True)[:MOST_CURVES]:
+    for curve in curves:
         signed = np.sign(curve[:, 1]) * np.sqrt(np.abs(curve[:, 1]))
         if np.ptp(signed) > THIN * np.abs(signed).max():
             ends.append(np.linspace(signed.min(), signed.max(), PANELS + 1))

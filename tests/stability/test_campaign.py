@@ -6,9 +6,9 @@ import pytest
 
 from bezstab.methods import Method
 from bezstab.stability import Region, region
-from tests.reference.random_methods import other_random_method
+from tests.reference.random_methods import other_random_method, random_method
 from tests.stability import campaign
-from tests.stability.campaign import DIFFERENT, cases_of, other_cases_of, other_compared
+from tests.stability.campaign import DIFFERENT, cases_of, compared, other_cases_of, other_compared
 
 SAMPLE = range(0, 6000, 101)  # 60 methods: 101 goes round the fifteen kinds
 OTHER_SAMPLE = range(0, 5000, 181)  # 28 methods: 181 goes round the six kinds
@@ -29,6 +29,12 @@ def test_no_random_implicit_or_second_order_method_has_a_silent_wrong_area(numbe
 def test_the_first_of_each_kind_agree() -> None:
     for number in (1, 6, 11):
         assert [case.verdict for case in cases_of(number)] == ["agrees"] * 4
+
+
+def test_a_region_of_fifteen_parts_passes_its_own_check() -> None:
+    """Five real intervals have as many: each is sliced for itself, or their sum is not the area."""
+    case = compared(random_method(1448), 0.5)
+    assert case.verdict == "agrees"
 
 
 def test_so_does_the_first_recipe() -> None:
