@@ -62,7 +62,8 @@ class Pencil:
         """
         z = polyroots(np.trim_zeros(_floats(self.method, branch_polynomial(self.method)), "b")).astype(complex)
         mu = roots_in_mu(self, z)
-        slope = np.abs(polyval2d(np.broadcast_to(z, mu.shape), mu, self.table_by_z))
+        with np.errstate(invalid="ignore"):  # an infinite mu has no slope, which some versions of numpy warn of
+            slope = np.abs(polyval2d(np.broadcast_to(z, mu.shape), mu, self.table_by_z))
         flattest = np.argmin(slope, axis=0)  # of all mu with a root at this z, the one whose root is double
         met: ComplexArray = np.take_along_axis(mu, flattest[np.newaxis], axis=0)[0]
         return np.append(met[np.isfinite(met)], self.infinite_at)

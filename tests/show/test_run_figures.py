@@ -85,7 +85,7 @@ def test_the_history_figure_says_what_was_run_and_shows_decay_as_a_line() -> Non
     assert np.array(middle.lines[0].get_ydata()).tolist() == run.cdot[:, 0].tolist()
     assert np.array(lower.lines[0].get_ydata()).tolist() == np.abs(run.c).max(axis=1).tolist()
     assert lower.get_yscale() == "log"
-    title = figure.get_suptitle()
+    title = figure.texts[0].get_text()
     for part in ("SYM", "0.002 s", r"\hat\alpha$ = 0.5", r"\hat\beta$ = 0.1"):
         assert part in title
 
@@ -95,9 +95,11 @@ def test_why_a_run_ended_is_written_whole_within_the_figure() -> None:
     run = simulated(crank, lookup("AB4"), h=0.001, duration=1, alpha_hat=1.5, beta_hat=0.8)
     assert run.failure is not None
     figure = history_figure(run)
-    assert run.failure in figure.get_suptitle().replace("\n", " ")
+    assert run.failure in figure.texts[0].get_text().replace("\n", " ")
     figure.savefig(BytesIO())  # which lays it out
-    (box,) = (text.get_window_extent() for text in figure.findobj(Text) if text.get_text() == figure.get_suptitle())
+    (box,) = (
+        text.get_window_extent() for text in figure.findobj(Text) if text.get_text() == figure.texts[0].get_text()
+    )
     assert box.x0 >= 0
     assert box.x1 <= figure.bbox.x1
     assert box.y1 <= figure.bbox.y1
