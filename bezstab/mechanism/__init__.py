@@ -37,7 +37,6 @@ from bezstab.mechanism.compiled import (
 )
 from bezstab.mechanism.compiled_steps import (
     CHEAPER_TOGETHER,
-    compiled_asked_for,
     runs_compiled,
 )
 from bezstab.mechanism.constraint_normals import TurningNormals, turning_normals
@@ -109,7 +108,6 @@ __all__ = [
     "acceleration_function",
     "acceleration_jacobians",
     "at_speed",
-    "compiled_asked_for",
     "compiled_mechanism",
     "compiled_source",
     "constraint_errors",

@@ -123,20 +123,12 @@ class VaryingSteps:
         return ratios
 
 
-def compiled_asked_for() -> bool:
-    """Return whether runs are to be compiled even where that does not pay.
-
-    InputError where BEZSTAB_COMPILED says neither auto nor yes nor no.
-    """
-    return compiled_choice() == "yes"
-
-
 def runs_compiled(mechanism: Mechanism, method: Method, evaluations: int, varying: bool = False) -> bool:
     """Return whether a run of so many evaluations is to be compiled. InputError if it must be and cannot be.
 
     That is without numba, or where a step is too long a text. By default where numba is there and it pays: the run is
     long, or has been compiled before. `evaluations` do not include what iterations take; `varying` says whether steps
-    do. InputError, too, as `compiled_asked_for`.
+    do. InputError, too, where BEZSTAB_COMPILED says neither auto nor yes nor no.
     """
     choice = compiled_choice()
     if choice == "no":
