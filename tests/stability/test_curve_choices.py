@@ -32,8 +32,8 @@ def test_of_equal_points_the_mildest_is_taken() -> None:
 
 
 def test_a_valley_narrower_than_the_samples_is_found() -> None:
-    alpha_hat, beta_hat = least_along(one_step, lambda a, b, _: np.abs(b - math.sqrt(0.5)))
-    assert beta_hat == pytest.approx(math.sqrt(0.5), abs=1e-9)
+    point = least_along(one_step, lambda a, b, _: np.abs(b - math.sqrt(0.5)))
+    assert point == pytest.approx((1, math.sqrt(0.5)), abs=1e-9)
 
 
 def test_a_hole_between_the_samples_is_noticed() -> None:
