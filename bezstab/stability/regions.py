@@ -32,6 +32,7 @@ from numpy.typing import ArrayLike
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method, SecondOrder, first_order_form, fixed_poles, plane_strips, without_shared_factor
 from bezstab.rationals import exact
+from bezstab.read_only import ReadOnlyArrays
 from bezstab.stability.arrays import BoolArray, FloatArray
 from bezstab.stability.boundary_locus import Arc, Bounds, bounds_of, feedback_coefficients
 from bezstab.stability.closed_loop import spectral_radius
@@ -59,7 +60,7 @@ Extent = tuple[tuple[float, float], tuple[float, float]]
 
 
 @dataclass(frozen=True, repr=False)
-class Region:
+class Region(ReadOnlyArrays):
     """The set |z_p| < level for one method, in alpha_hat and beta_hat, all dimensionless.
 
     `boundary` holds curves as arrays of shape (points, 2), closed but where they run to infinity; `extent` is
