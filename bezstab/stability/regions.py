@@ -38,7 +38,7 @@ from bezstab.stability.boundary_locus import Arc, Bounds, bounds_of, feedback_co
 from bezstab.stability.closed_loop import spectral_radius
 from bezstab.stability.line_slices import RIM, rim_radius
 from bezstab.stability.pencils import Pencil, deadbeat_mu, pencil_of
-from bezstab.stability.plane_cells import Edges, plane_shape
+from bezstab.stability.plane_cells import Approached, Edges, plane_shape
 from bezstab.stability.plane_checks import check_plane
 from bezstab.stability.plane_pencils import plane_pencil_of
 from bezstab.stability.self_checks import check_region
@@ -58,6 +58,8 @@ GAP = 1e-6  # of a curve's size: where two arcs meet in a double mu, each ends w
 Extent = tuple[tuple[float, float], tuple[float, float]]
 """((alpha_hat_min, alpha_hat_max), (beta_hat_min, beta_hat_max)), dimensionless."""
 
+ATTAINED: Approached = ((False, False), (False, False))
+
 
 @dataclass(frozen=True, repr=False)
 class Region(ReadOnlyArrays):
@@ -65,7 +67,8 @@ class Region(ReadOnlyArrays):
 
     `boundary` holds curves as arrays of shape (points, 2), closed but where they run to infinity; `extent` is
     ((alpha_hat_min, alpha_hat_max), (beta_hat_min, beta_hat_max)), infinite where there is no limit, None if the set
-    is empty. `fixed_poles` are those that neither alpha_hat nor beta_hat moves, where rho and sigma share a factor.
+    is empty. `approached` has in the same places whether the region only comes near that end, towards infinity: no edge
+    attains it. `fixed_poles` are those that neither alpha_hat nor beta_hat moves, where rho and sigma share a factor.
     `bounded`: whether all limits are finite; if not, `area` is None. `view` has finite ranges that hold what there is
     to see: the extent of a bounded region, of an unbounded one what has a shape where alpha_hat, beta_hat >= 0.
     """
@@ -78,6 +81,7 @@ class Region(ReadOnlyArrays):
     fixed_poles: tuple[complex, ...] = ()
     bounded: bool = True
     view: Extent | None = None
+    approached: Approached = ATTAINED
 
     def __repr__(self) -> str:
         kind = "curve" if self.area is None else "closed curve"
@@ -137,7 +141,17 @@ def _plane_region(method: Method, level: float, stuck: tuple[complex, ...]) -> R
     if shape is None:
         return Region(method, level, 0.0, (), None, stuck)
     bounded = shape.area is not None
-    return Region(method, level, shape.area, shape.curves, shape.extent, stuck, bounded=bounded, view=shape.view)
+    return Region(
+        method,
+        level,
+        shape.area,
+        shape.curves,
+        shape.extent,
+        stuck,
+        bounded=bounded,
+        view=shape.view,
+        approached=shape.approached,
+    )
 
 
 def _checked_region(method: Method, level: float, finer: int) -> Region:
