@@ -13,6 +13,7 @@ STARTS = 6  # of the lowest samples, about each of which finer grids follow
 ROUNDS, POINTS, SHRINK = 24, 9, 0.6
 LOWER = 1e-6  # relative: a value so much lower is no rounding
 AS_GOOD_AS_DEADBEAT = 1e-3  # of |z_p|: below it float64's multiple poles tell nothing
+FARTHER = np.array([(1, 100), (10, 100), (10, 1)])  # times a point: |z_p| leaves zero on the way there, or falls on
 FALLEN = 0.1  # of |z_p|: by 1e9 it has come so near to what it is said to fall towards
 
 
@@ -28,6 +29,12 @@ def contradictions(method: Method, best: BestPoint | None, limit: float | None) 
             f"|z_p| is {z_abs:.9g} at ({a:.9g}, {b:.9g})"
             for z_abs, (a, b) in zip(values[lower], points[lower], strict=True)
         ]
+    if best and best.z_abs < AS_GOOD_AS_DEADBEAT:
+        point = np.array([best.alpha_hat, best.beta_hat])
+        moved = point * FARTHER
+        farther = _z_abs(method, moved[(moved != point).any(axis=1)])  # not along an axis on which the point lies
+        if farther.min(initial=1.0) < AS_GOOD_AS_DEADBEAT:
+            found.append(f"|z_p| is {farther.min():.3g} farther out: it is zero in the limit alone")
     if best is None and limit is not None and values.min() > limit + FALLEN:
         found.append(f"|z_p| nowhere falls below {values.min():.6g}")
     return found

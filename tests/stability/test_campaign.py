@@ -98,6 +98,17 @@ def test_a_best_point_that_is_none_is_told(times: float) -> None:
     assert bool(wrong) == (times > 1)
 
 
+def test_a_best_point_far_out_along_a_limit_is_told() -> None:
+    """|z_p| of implicit Euler falls towards 0 as both parameters grow."""
+    euler, best = lookup("implicit-euler"), best_point(lookup("trapezoid"))
+    assert best
+    assert best.z_abs == 0
+    assert best_point_contradictions(best.method, best, None) == []
+    far_out = replace(best, method=euler, alpha_hat=2e6, beta_hat=1e12)
+    assert best_point_contradictions(euler, far_out, None)
+    assert best_point_contradictions(euler, None, 0.0) == []
+
+
 @pytest.mark.parametrize(("name", "limit", "right"), [("bdf2", 0.0, True), ("bdf2", 0.5, False), ("B2", 0.0, False)])
 def test_a_limit_that_is_none_is_told(name: str, limit: float, right: bool) -> None:
     """B2 has a best point, and nothing to fall towards."""
