@@ -18,7 +18,7 @@ other; only appointed files see a library.
       |
     engines                what others call the feedback
       |
-    errors, rationals, files, toml_tables, units, stopping, lazy, compiling
+    errors, rationals, files, toml_tables, units, stopping, lazy, compiling, read_only
 """
 
 import ast
@@ -41,7 +41,7 @@ from bezstab.cli import main
 PACKAGE = Path(__file__).parent.parent / "bezstab"
 TESTS = PACKAGE.parent / "tests"
 ROOMS = ("engines", "methods", "stability", "mechanism", "evidence", "show", "cli", "paper")
-FOUNDATIONS = ("lazy", "stopping", "errors", "rationals", "files", "toml_tables", "units", "compiling")
+FOUNDATIONS = ("lazy", "stopping", "errors", "rationals", "files", "toml_tables", "units", "compiling", "read_only")
 """Beside the rooms, each importing only from those before it."""
 
 BELOW = {

@@ -20,6 +20,7 @@ import numpy as np
 from bezstab.evidence.moving_mechanisms import tabulated_rates
 from bezstab.mechanism import TurningNormals
 from bezstab.methods import Method
+from bezstab.read_only import ReadOnlyArrays
 from bezstab.stability import (
     BoolArray,
     FloatArray,
@@ -40,7 +41,7 @@ HOPELESS = 10.0  # of ln|z| a step: nothing is chosen there, and `choose` can st
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class MovingRegion:
+class MovingRegion(ReadOnlyArrays):
     """The region at rest and that of the moving mechanism, dimensionless; `h` (s) is the step.
 
     `area_at_rest`, `area`: of both, over the quadrant that the window shows. `alpha_hat` and `beta_hat` are the axes of

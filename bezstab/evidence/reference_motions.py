@@ -7,6 +7,7 @@ import numpy as np
 from bezstab.errors import NumericalError
 from bezstab.mechanism import Scene, compiled_mechanism, simulate
 from bezstab.methods import lookup
+from bezstab.read_only import ReadOnlyArrays
 from bezstab.stability import FloatArray
 
 HALVINGS = 4
@@ -17,7 +18,7 @@ ROUNDED = 4.0
 
 
 @dataclass(frozen=True)
-class ReferenceMotion:
+class ReferenceMotion(ReadOnlyArrays):
     """A trajectory without feedback from a consistent start: t (s), q and v (shape (times, n), SI), error of q (SI)."""
 
     t: FloatArray = field(repr=False)

@@ -15,6 +15,7 @@ from bezstab.evidence.measured_poles import (
 )
 from bezstab.mechanism import CHEAPER_TOGETHER, Scene, compiled_mechanism, runs_compiled
 from bezstab.methods import Method, evaluations
+from bezstab.read_only import ReadOnlyArrays
 from bezstab.stability import FloatArray, pole_map, region, useful_window
 
 BoolArray = NDArray[np.bool_]
@@ -36,7 +37,7 @@ PARTS = 8
 
 
 @dataclass(frozen=True)
-class VerdictMap:
+class VerdictMap(ReadOnlyArrays):
     """Predicted |z_p| and what `run` simulated steps of h (s) did; masks of shape (beta_hat.size, alpha_hat.size).
 
     `broken` is where the mechanism itself left the linear range, whatever the kick: no verdict.

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.mechanism.observation import Observation
+from bezstab.read_only import ReadOnlyArrays
 
 FloatArray = NDArray[np.float64]
 
@@ -20,7 +21,7 @@ NODES = 10  # of the polynomials that are integrated: order 10, above that of ne
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class EnergyBalance:
+class EnergyBalance(ReadOnlyArrays):
     """Along a run, each of shape (times,) and in J: kinetic and potential energy, work of drivers and of forces.
 
     The forces are the applied ones of the scene, constant forces, torques and dampers; gravity and springs have a

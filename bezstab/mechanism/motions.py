@@ -12,6 +12,7 @@ from bezstab.mechanism.observation import observe, singular_passages
 from bezstab.mechanism.runner import simulate
 from bezstab.mechanism.scenes import Driver
 from bezstab.methods import lookup
+from bezstab.read_only import ReadOnlyArrays
 
 FloatArray = NDArray[np.float64]
 
@@ -21,7 +22,7 @@ CLOSED = 1e-6  # of a coordinate, at least of 1: a motion further from its start
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Motion:
+class Motion(ReadOnlyArrays):
     """q, v and qddot (shape (times, n) each, SI units) at equal steps t (s) from 0 to `duration`.
 
     `closed`: after `duration` the mechanism is where it was, angles up to whole turns: a revolution.

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from bezstab.mechanism.compiled import Mechanism, observation_function
 from bezstab.mechanism.equations import T
+from bezstab.read_only import ReadOnlyArrays
 
 FloatArray = NDArray[np.float64]
 
@@ -17,7 +18,7 @@ AT_ZERO = 0.05  # of a neighbour: the least pivot of a passage a fifth of a step
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Observation:
+class Observation(ReadOnlyArrays):
     """Along a history: c and cdot (shape (times, m)), lambda (same), energy (J, shape (times,)); SI units.
 
     The energy is kinetic and, of gravity and springs, potential. `driver_power` (W, shape (times,)) is what the drivers

@@ -28,6 +28,7 @@ from bezstab.mechanism.newton_iterations import EVALUATIONS, NotConvergedError, 
 from bezstab.mechanism.second_order_memory import implicit_evaluations, memory
 from bezstab.mechanism.start import initial_state
 from bezstab.methods import Method, SecondOrder, adams_bashforth, bezier, evaluations, implicit, lookup, steps
+from bezstab.read_only import ReadOnlyArrays
 
 Start = Literal["rk4", "ramp", "euler"]
 """Where a multistep method's first values come from: RK4, its family's members of fewer steps, or explicit Euler.
@@ -41,7 +42,7 @@ FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Trajectory:
+class Trajectory(ReadOnlyArrays):
     """A run: t (s, shape (steps + 1,)), q and v (shape (steps + 1, n), SI), and why it ended early, if it did.
 
     `evaluations` counts right-hand sides, and `iterations` those of Newton's method, None for an explicit method; each

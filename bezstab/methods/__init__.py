@@ -82,7 +82,16 @@ if TYPE_CHECKING:
     from bezstab.methods.first_order_forms import first_order_form
     from bezstab.methods.formulas import characteristic_text, mapping_text, recursion_text
     from bezstab.methods.orders import ForceAccuracy, accuracy, accuracy_by_force
-    from bezstab.methods.plane_edges import CurveTable, PlaneStrips, Strip, crossing_factors_in_plane, plane_strips
+    from bezstab.methods.plane_edges import (
+        Crossing,
+        CurveTable,
+        Limit,
+        PlaneStrips,
+        Strip,
+        crossing_factors_in_plane,
+        plane_strips,
+        points_between_edges,
+    )
     from bezstab.methods.shared_factors import fixed_poles, reduced_table, without_shared_factor
 
 DERIVED = {
@@ -106,7 +115,16 @@ DERIVED = {
     "first_order_forms": ("first_order_form",),
     "formulas": ("characteristic_text", "mapping_text", "recursion_text"),
     "orders": ("ForceAccuracy", "accuracy", "accuracy_by_force"),
-    "plane_edges": ("CurveTable", "PlaneStrips", "Strip", "crossing_factors_in_plane", "plane_strips"),
+    "plane_edges": (
+        "Crossing",
+        "CurveTable",
+        "Limit",
+        "PlaneStrips",
+        "Strip",
+        "crossing_factors_in_plane",
+        "plane_strips",
+        "points_between_edges",
+    ),
     "shared_factors": ("fixed_poles", "reduced_table", "without_shared_factor"),
 }
 """What is loaded when first used, by module."""
@@ -121,11 +139,13 @@ __all__ = [
     "REGISTRY",
     "Assignment",
     "Combination",
+    "Crossing",
     "CurveTable",
     "Evaluation",
     "Family",
     "ForceAccuracy",
     "H",
+    "Limit",
     "LinearMultistep",
     "Method",
     "MethodGroup",
@@ -170,6 +190,7 @@ __all__ = [
     "mapping_text",
     "matrix_product",
     "plane_strips",
+    "points_between_edges",
     "polynomial_determinant",
     "polynomial_product",
     "read_method",

@@ -12,6 +12,7 @@ coefficients c_k of P(r z), polynomials in alpha_hat and beta_hat, that is where
 Their irreducible factors cross a line of constant beta_hat at places that neither meet nor vanish as long as beta_hat
 passes no zero of a leading coefficient, a discriminant or a resultant: those are the levels. Between two levels the
 crossings keep their number and order, so one line there tells all (cylindrical decomposition, G. E. Collins, 1975).
+Where a crossing comes to at a strip's end, a number or an infinite alpha_hat, a line close enough to that end tells.
 
       beta_hat |   \    /                level: two crossings meet (a resultant vanishes)
         - - - -| - -\- / - - -
@@ -20,12 +21,12 @@ crossings keep their number and order, so one line there tells all (cylindrical 
                |    /  \ \____ /
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 from itertools import combinations, pairwise
-from math import gcd
+from math import gcd, inf
 
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
@@ -46,19 +47,27 @@ LEVEL_BITS = 70  # of a level, relative: float64 has 53
 CurveTable = tuple[tuple[Fraction, ...], ...]
 """A polynomial in alpha_hat and beta_hat: table[i][j] belongs to alpha_hat^i beta_hat^j."""
 
+Crossing = tuple[int, int]
+"""(A curve's number, the crossing's number among those of the curve, from left to right)."""
+
+Limit = float | None
+"""What alpha_hat comes to as beta_hat goes to a strip's end: +-inf, or a number; None: a number on a finite level."""
+
 
 @dataclass(frozen=True)
 class Strip:
     """The plane between two levels of beta_hat (None: unbounded): on each line the crossings are in one order.
 
-    crossings: from left to right, each as (curve's number, its number among the crossings of that curve). stable:
-    whether |z_p| < r left of the first, between each two, and right of the last: one more than crossings.
+    crossings: from left to right. stable: whether |z_p| < r left of the first, between each two, and right of the last:
+    one more than crossings. limits: what each crossing's alpha_hat comes to at the lower and at the upper end; empty
+    where nothing is stable.
     """
 
     low: Fraction | None
     high: Fraction | None
-    crossings: tuple[tuple[int, int], ...]
+    crossings: tuple[Crossing, ...]
     stable: tuple[bool, ...]
+    limits: Mapping[Crossing, tuple[Limit, Limit]]
 
 
 @dataclass(frozen=True)
@@ -91,12 +100,18 @@ def plane_strips(method: Method, level: Fraction) -> PlaneStrips | None:
     levels, lost = _levels(factors, curves)
     between = _between(list(levels))
     ends = [None, *levels, None]
+    tables = tuple(_table(curve) for curve in curves)
     strips = []
     for (low, high), beta_hat in zip(pairwise(ends), between, strict=True):
         crossings, places = _crossings(curves, beta_hat)
         stable = tuple(is_schur(_at(coefficients, alpha_hat, beta_hat)) for alpha_hat in _between(places))
-        strips.append(Strip(low, high, crossings, stable))
-    return PlaneStrips(tuple(_table(curve) for curve in curves), tuple(strips), tuple(lost))
+        limits = {}
+        if any(stable):
+            at_low = _limits(tables, lost, crossings, beta_hat, low, sign=-1)
+            at_high = _limits(tables, lost, crossings, beta_hat, high, sign=1)
+            limits = {crossing: (at_low[crossing], at_high[crossing]) for crossing in crossings}
+        strips.append(Strip(low, high, crossings, stable, limits))
+    return PlaneStrips(tables, tuple(strips), tuple(lost))
 
 
 def crossing_factors_in_plane(
@@ -123,6 +138,16 @@ def crossing_factors_in_plane(
         levels = [strip.high / beta_hat for strip in strips.strips if strip.high is not None]
         found += [float(level) ** (1 / powers[1]) for level in levels if level > 0]
     return [float(factor) for factor in found if factor > 0]
+
+
+def points_between_edges(strips: PlaneStrips, alpha_hat: Fraction) -> list[Fraction]:
+    """Return a beta_hat in each piece into which the edges and levels of a plane cut a line of constant alpha_hat."""
+    cuts = {strip.high for strip in strips.strips if strip.high is not None}
+    for curve in strips.curves:
+        on_line = [_value((column,), ZERO, alpha_hat) for column in zip(*curve, strict=True)]
+        if any(on_line):
+            cuts.update(_real_roots_of(_without_zeros(on_line)))
+    return _between(sorted(cuts))
 
 
 def _coefficients(table: Iterable[CurveTable], level: Fraction) -> list[sp.Poly]:
@@ -359,7 +384,7 @@ def _shortest_between(low: Fraction, high: Fraction) -> Fraction:
     return Fraction(round((low + high) / 2 * (1 << bits)), 1 << bits)
 
 
-def _crossings(curves: list[sp.Poly], beta_hat: Fraction) -> tuple[tuple[tuple[int, int], ...], list[Fraction]]:
+def _crossings(curves: list[sp.Poly], beta_hat: Fraction) -> tuple[tuple[Crossing, ...], list[Fraction]]:
     """Return the crossings with a line between levels, from left to right, and numbers that are in their order."""
     lines = []
     for curve in curves:
@@ -385,3 +410,94 @@ def _line_roots(line: sp.Poly) -> list[Fraction]:
         _refined(whole, Fraction(int(low.p), int(low.q)), Fraction(int(high.p), int(high.q)))
         for (low, high), _ in sp.Poly(whole, A).intervals()
     ]
+
+
+# Where crossings come to at a strip's end. There t = 0, where t > 0 is the distance in beta_hat to a level, or
+# 1 / |beta_hat| towards an infinite end. A crossing comes to a root of the curve's polynomial in alpha_hat at t = 0, or
+# to infinity if that has fewer roots. Lines of constant alpha_hat, "fences", are laid between those roots and beyond
+# all. As long as the curve passes none of them, that is up to its least t on any, crossings stay between their fences:
+# counting them at one such t tells where each comes to.
+#
+#      t |   .'  |   \      |                  fences at -M, between the roots, and at M
+#      --|-.'----|----\-----|----  this line
+#        |'      |     \    |
+#      0 '-------|------o---|---   alpha_hat
+#      to -inf  -M    root  M
+
+
+def _limits(
+    tables: tuple[CurveTable, ...],
+    lost: list[dict[Fraction, int]],
+    crossings: tuple[Crossing, ...],
+    inside: Fraction,
+    level: Fraction | None,
+    sign: int,
+) -> dict[Crossing, Limit]:
+    """Return where a strip's crossings come to at its lower (sign -1) or upper end, a level (None: infinite beta_hat).
+
+    `inside` is a beta_hat within the strip.
+    """
+    limits: dict[Crossing, Limit] = {}
+    for number in {number for number, _ in crossings}:
+        count = sum(curve == number for curve, _ in crossings)
+        if level is None:
+            in_t = _towards_infinity(tables[number], sign)
+            most = 1 / max(ONE, sign * inside)
+            at_end = _without_zeros([row[0] for row in in_t])
+            roots = _real_roots_of(at_end)
+        elif level in lost[number]:
+            in_t = [_shifted(row, level, -sign) for row in tables[number]]
+            most = abs(inside - level)
+            at_end = [row[0] for row in in_t[: len(in_t) - lost[number][level]]]
+            roots = []
+        else:
+            limits |= dict.fromkeys(((number, k) for k in range(count)), None)
+            continue
+        beyond = 1 + max((abs(c / at_end[-1]) for c in at_end[:-1]), default=ZERO)  # Cauchy's bound of the roots
+        fences = [-beyond, *(_shortest_between(*pair) for pair in pairwise(roots)), beyond]
+        places: list[Limit] = [-inf, *map(float, roots), inf] if roots else [-inf, None, inf]
+        line = _line_at(in_t, min([most, *(_free_of_crossings(in_t, fence) for fence in fences)]))
+        left_of = [int(line.count_roots(None, sp.Rational(f.numerator, f.denominator))) for f in fences]
+        for k in range(count):
+            limits[number, k] = places[sum(left <= k for left in left_of)]
+    return limits
+
+
+def _towards_infinity(table: CurveTable, sign: int) -> list[list[Fraction]]:
+    """Return a curve at beta_hat = sign / t, times the power of t that makes it a polynomial; row i for alpha_hat^i."""
+    return [[c * sign**j for j, c in enumerate(row)][::-1] for row in table]
+
+
+def _shifted(row: Iterable[Fraction], level: Fraction, sign: int) -> list[Fraction]:
+    """Return a polynomial in beta_hat at level + sign t, in ascending powers of t."""
+    shifted: list[Fraction] = []
+    for c in reversed(tuple(row)):  # Horner's scheme: multiply by the sum, add the next
+        by_level = [level * each for each in shifted] + [ZERO]
+        by_t = [ZERO] + [sign * each for each in shifted]
+        shifted = [a + b for a, b in zip(by_level, by_t, strict=True)]
+        shifted[0] += c
+    return shifted
+
+
+def _without_zeros(ascending: list[Fraction]) -> list[Fraction]:
+    degree = max(power for power, c in enumerate(ascending) if c)
+    return ascending[: degree + 1]
+
+
+def _real_roots_of(ascending: list[Fraction]) -> list[Fraction]:
+    """Return the different real roots of a polynomial, ascending."""
+    polynomial = sp.Poly([sp.Rational(c.numerator, c.denominator) for c in reversed(ascending)], A, domain=sp.QQ)
+    return _line_roots(polynomial.sqf_part())
+
+
+def _free_of_crossings(in_t: list[list[Fraction]], alpha_hat: Fraction) -> Fraction:
+    """Return a t > 0 up to which a curve does not pass this alpha_hat, by Cauchy's bound of the inverse roots."""
+    first, *others = [_value((column,), ZERO, alpha_hat) for column in zip(*in_t, strict=True)]
+    bound = abs(first) / (abs(first) + max(map(abs, others), default=ZERO))
+    return Fraction(2) ** (_exponent(bound) - 1)  # a short number
+
+
+def _line_at(in_t: list[list[Fraction]], t: Fraction) -> sp.Poly:
+    """Return the polynomial in alpha_hat of a curve at one t."""
+    values = [_value((tuple(row),), ZERO, t) for row in in_t]
+    return sp.Poly([sp.Rational(v.numerator, v.denominator) for v in reversed(values)], A, domain=sp.QQ)

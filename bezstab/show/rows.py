@@ -150,7 +150,8 @@ def whole_row(method: Method, region: Region, best: BestPoint | None, latex: boo
 def region_row(region: Region, best: BestPoint | None) -> Row:
     """Return area, axis limits, best point of the method and which steps are stable; all dimensionless.
 
-    Area and limits are of |z_p| < level, None where that region is empty, or has none; it has no best point if |z_p| is
+    Area and limits are of |z_p| < level, None where that region is empty, or has none; `approached` names those that
+    no edge attains, only comes near far out; it has no best point if |z_p| is
     nowhere that small. The last four are about stability, at any level: stable_for_all about every alpha_hat,
     beta_hat > 0; unconditional_damping_ratio is the alpha / beta above which every step is stable (None if there is
     none); critical_damping_limit the largest beta h on alpha = beta up to which all are (None if there is none), also
@@ -172,6 +173,7 @@ def region_row(region: Region, best: BestPoint | None) -> Row:
         "z_abs_below": region.level,
         "area": region.area,
         **_limits(region),
+        "approached": _approached(region),
         "best_z_abs": inside.z_abs if inside else None,
         "best_alpha_hat": inside.alpha_hat if inside else None,
         "best_beta_hat": inside.beta_hat if inside else None,
@@ -192,11 +194,21 @@ def _limits(region: Region) -> dict[str, float | None]:
     return {key: float(end) if math.isfinite(end) else None for key, end in zip(LIMITS, ends, strict=True)}
 
 
+def _approached(region: Region) -> str | None:
+    """Return the names of those limits that no edge attains, None if there is no such limit."""
+    only_near = [near for ends in region.approached for near in ends]
+    return ", ".join(key for key, near in zip(LIMITS, only_near, strict=True) if near) or None
+
+
 def with_unbounded(row: Row) -> Row:
-    """Return a row of region_row for reading: words for what there is none of, an area or a limit of any kind."""
+    """Return a row of region_row for reading: words for what there is none of, an area or a limit of any kind.
+
+    A limit that the region only comes near, far out, is called "approached".
+    """
     words: dict[str, Value] = {"bounded": "yes" if row["bounded"] else "no"}
     if not row["bounded"]:
         words |= {key: "unbounded" for key in ("area", *LIMITS) if row[key] is None}
+        words |= {key: f"{row[key]:.8g} (approached)" for key in str(row["approached"] or "").split(", ") if key}
     if row["critical_damping_limit"] is None:
         words["critical_damping_limit"] = "unlimited"
     if row["unconditional_damping_ratio"] is None:

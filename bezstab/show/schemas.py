@@ -31,9 +31,9 @@ POLE = "z_real z_imag z_abs z_angle_deg"
 MOVING = _keys("kappa chi_abs z_abs_moving z_abs_worst double_pole settled moving_verdict safe_speed")
 """What --scene adds."""
 
-REGION = """z_abs_below area alpha_hat_min alpha_hat_max beta_hat_min beta_hat_max best_z_abs best_alpha_hat
-    best_beta_hat best_where best_reason bounded stable_for_all unconditional_damping_ratio critical_damping_limit
-    critical_damping_limit_exact"""
+REGION = """z_abs_below area alpha_hat_min alpha_hat_max beta_hat_min beta_hat_max approached best_z_abs
+    best_alpha_hat best_beta_hat best_where best_reason bounded stable_for_all unconditional_damping_ratio
+    critical_damping_limit critical_damping_limit_exact"""
 METHOD = """method steps evaluations order order_position_forces order_velocity_forces error_constant
     error_constant_exact source implicit digits"""
 CHOICE = f"""method goal alpha_hat beta_hat verdict safe {POLE} worst searched h alpha beta settle_steps settle_seconds

@@ -91,6 +91,11 @@ VOCABULARY: Mapping[str, Key] = {
     "alpha_hat_max": Key("number", "Largest alpha_hat of the region", null=UNBOUNDED),
     "beta_hat_min": Key("number", "Smallest beta_hat of the region", null=UNBOUNDED),
     "beta_hat_max": Key("number", "Largest beta_hat of the region", null=UNBOUNDED),
+    "approached": Key(
+        "text",
+        "Those of the four limits that no edge attains: the region comes near them far out",
+        null="where edges attain all that there are",
+    ),
     "best_z_abs": Key("number", "Smallest modulus of the dominant pole over the region", null=NO_BEST),
     "best_alpha_hat": Key("number", "Where that modulus is smallest, in alpha_hat", null=NO_BEST),
     "best_beta_hat": Key("number", "Where that modulus is smallest, in beta_hat", null=NO_BEST),

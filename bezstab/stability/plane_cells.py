@@ -21,7 +21,7 @@ from itertools import pairwise
 import numpy as np
 
 from bezstab.errors import NumericalError
-from bezstab.methods import CurveTable, PlaneStrips, Strip
+from bezstab.methods import Crossing, CurveTable, Limit, PlaneStrips, Strip
 from bezstab.stability.arrays import ComplexArray, FloatArray
 from bezstab.stability.exact_sums import double_polynomial, split
 from bezstab.stability.searches import zoom_on_minimum
@@ -38,39 +38,50 @@ MOST_HALVINGS = 12  # of a strip in which a singularity lies close
 DRAWN = 160  # points of an edge along its strip
 FAR_APART = 100.0  # ends of a strip, one so many times the other: what an edge does near the lower one needs its share
 TURN_ROUNDS = 12  # of zooming on an edge's furthest point: its place to 1e-8 leaves its value at rounding
-NEAR_LEVEL = 1e-10  # of a strip: so near to a level crossings that are lost are far from the others
 BESIDE_LEVEL = 1e-13  # of a strip: nearer to a level, a crossing that is lost there may show at the wrong infinity
 JOINED = 1e-6  # of what is seen: two roots that meet are known to the root of rounding
 ROUNDING = 1e-13  # of a range: an end this close to an axis lies on it
 LEAST_VIEW = 4.0  # alpha_hat and beta_hat: of a region without corners but the origin, that much is shown
+FAR_OUT = 1e8  # of a level, or LEAST_VIEW: from so near to a strip's end up to so far from it turns are looked for
+FLAT = 1e-12  # of alpha_hat: an edge that comes near a limit turns by no more, but for rounding
 OUT_OF_VIEW = 3.0  # times what is to be seen: curves that go on are drawn so far
 
 Extent = tuple[tuple[float, float], tuple[float, float]]
-Crossing = tuple[int, int]
+Approached = tuple[tuple[bool, bool], tuple[bool, bool]]
 
 
 @dataclass(frozen=True)
 class Cell:
     """A stable cell: its strip, and the crossings that bound it on the left and on the right (None: unbounded).
 
-    `low` and `high` are the ends of the strip; `goes_left`, `goes_right`: whether alpha_hat has no limit in it.
+    `low` and `high` are the ends of the strip; `left_limits` and `right_limits` what the crossings' alpha_hat comes to
+    at each of them: infinite, a number where the end is infinite, None where it is a number on a level.
     """
 
     low: float
     high: float
     left: Crossing | None
     right: Crossing | None
-    goes_left: bool
-    goes_right: bool
+    left_limits: tuple[Limit, Limit]
+    right_limits: tuple[Limit, Limit]
+
+    @property
+    def limits(self) -> tuple[Limit, ...]:
+        """What alpha_hat comes to at the ends of the strip, along either crossing."""
+        return *self.left_limits, *self.right_limits
 
 
 @dataclass(frozen=True)
 class PlaneShape:
-    """What a region is: stable cells, area (None: unbounded), extent, a finite view of it, and its boundary curves."""
+    """What a region is: stable cells, area (None: unbounded), extent, a finite view of it, and its boundary curves.
+
+    `approached`: of each finite end of the extent, whether edges only come near it, towards infinity.
+    """
 
     cells: tuple[Cell, ...]
     area: float | None
     extent: Extent
+    approached: Approached
     view: Extent
     curves: tuple[FloatArray, ...]
 
@@ -79,6 +90,7 @@ class Edges:
     """The edges of all strips as functions of beta_hat, in float64; a strip is known by its lower end."""
 
     def __init__(self, strips: PlaneStrips) -> None:
+        self.strips = strips
         self._split = [_split(curve) for curve in strips.curves]
         self.tables = [np.array(curve)[:, :, 0] for curve in self._split]
         self._slopes = [np.polynomial.polynomial.polyder(table, axis=0) for table in self.tables]
@@ -104,6 +116,10 @@ class Edges:
         levels = np.clip(beta_hat, *self._spans[low, number])
         coefficients = np.stack([np.polynomial.polynomial.polyval(levels, row) for row in self.tables[number]])
         return np.asarray(_real_roots(coefficients, self._counts[low, number])[k])
+
+    def is_vertical(self, crossing: Crossing) -> bool:
+        """Return whether a crossing has one alpha_hat on all lines."""
+        return len(self.tables[crossing[0]][0]) == 1
 
     def exact_places(self, crossing: Crossing, low: float, beta_hat: FloatArray) -> FloatArray:
         """Return what `places` does, to rounding: one more step of Newton's method with the curve's exact value."""
@@ -182,76 +198,28 @@ def plane_shape(strips: PlaneStrips, edges: Edges, name: str) -> PlaneShape | No
 
     `name` is what such an error is about.
     """
-    cells = tuple(cell for strip in strips.strips for cell in _stable_cells(strips, strip, edges))
+    cells = tuple(cell for strip in strips.strips for cell in _stable_cells(strip))
     if not cells:
         return None
     corners = _turns(edges, cells)
-    extent = _extent(cells, corners)
+    extent, approached = _extent(cells, corners)
     view = _view(extent, corners)
     bounded = bool(np.isfinite(extent).all())
     area = _area(edges, cells, name) if bounded else None
-    return PlaneShape(cells, area, extent, view, tuple(_curves(edges, cells, view, bounded, name)))
+    return PlaneShape(cells, area, extent, approached, view, tuple(_curves(edges, cells, view, bounded, name)))
 
 
-def _stable_cells(strips: PlaneStrips, strip: Strip, edges: Edges) -> list[Cell]:
+def _stable_cells(strip: Strip) -> list[Cell]:
     low, high = _end(strip.low, -1), _end(strip.high, 1)
     walls = [None, *strip.crossings, None]
     cells = []
     for k, stable in enumerate(strip.stable):
-        if not stable:
-            continue
-        left, right = walls[k], walls[k + 1]
-        limits = [_lost_to(strips, strip, edges, crossing) for crossing in (left, right)]
-        cells.append(
-            Cell(
-                low,
-                high,
-                left,
-                right,
-                goes_left=left is None or -1 in limits[0] or -1 in limits[1],
-                goes_right=right is None or 1 in limits[1] or 1 in limits[0],
-            )
-        )
+        if stable:
+            left, right = walls[k], walls[k + 1]
+            left_limits = (-math.inf, -math.inf) if left is None else strip.limits[left]
+            right_limits = (math.inf, math.inf) if right is None else strip.limits[right]
+            cells.append(Cell(low, high, left, right, left_limits, right_limits))
     return cells
-
-
-def _lost_to(strips: PlaneStrips, strip: Strip, edges: Edges, crossing: Crossing | None) -> set[int]:
-    """Return the signs of infinity that a crossing runs to at the strip's ends; without end, it may run to either."""
-    if crossing is None:
-        return set()
-    number, _ = crossing
-    table = edges.tables[number]
-    signs = set()
-    for level, inwards in ((strip.low, 1), (strip.high, -1)):
-        if level is None:
-            continue
-        lost = strips.lost[number].get(level, 0)
-        if not lost:
-            continue
-        width = _width(strip)
-        beta_hat = float(level) + inwards * NEAR_LEVEL * width
-        exact = [np.polynomial.polynomial.polyval(beta_hat, row) for row in table]
-        sizes = np.sort(np.abs(np.polynomial.polynomial.polyroots(exact)))
-        place = float(edges.places(crossing, _end(strip.low, -1), np.array([beta_hat]))[0])
-        if abs(place) >= sizes[-lost] * (1 - JOINED):
-            signs.add(1 if place > 0 else -1)
-    return signs
-
-
-def _width(strip: Strip) -> float:
-    if strip.low is None or strip.high is None:
-        return 1.0
-    return float(strip.high - strip.low)
-
-
-def _span(cell: Cell) -> tuple[float, float]:
-    """Return the ends of a cell's strip, an infinite one moved to where its edges have taken their course."""
-    low, high = cell.low, cell.high
-    if not np.isfinite(low):
-        low = (high if np.isfinite(high) else 0.0) - OUT_OF_VIEW * LEAST_VIEW
-    if not np.isfinite(high):
-        high = (cell.low if np.isfinite(cell.low) else 0.0) + OUT_OF_VIEW * LEAST_VIEW
-    return low, high
 
 
 def _drawn_levels(low: float, high: float) -> FloatArray:
@@ -268,22 +236,31 @@ def _far_apart(low: float, high: float) -> bool:
     return 0 < FAR_APART * low < high
 
 
+def _levels_to_infinity(cell: Cell) -> FloatArray:
+    """Return beta_hat along a strip with an infinite end or two, up to FAR_OUT, where edges have taken their course."""
+    finite = [end for end in (cell.low, cell.high) if math.isfinite(end)]
+    start = finite[0] if finite else 0.0
+    away = max(LEAST_VIEW, abs(start)) * np.concatenate([[0], np.geomspace(1 / FAR_OUT, FAR_OUT, DRAWN)])
+    signs = [sign for sign, end in ((1, cell.high), (-1, cell.low)) if math.isinf(end)]
+    return np.unique([start + sign * away for sign in signs])
+
+
 def _turns(edges: Edges, cells: tuple[Cell, ...]) -> FloatArray:
     """Return the corners of all cells and each edge's furthest points within its strip; shape (points, 2), finite."""
     points = []
     for cell in cells:
-        low, high = _span(cell)
-        levels = _drawn_levels(low, high)
-        inside = np.isfinite([cell.low, cell.high])
-        for crossing in (cell.left, cell.right):
+        finite_ends = np.isfinite([cell.low, cell.high])
+        levels = _drawn_levels(cell.low, cell.high) if finite_ends.all() else _levels_to_infinity(cell)
+        for crossing, limits in ((cell.left, cell.left_limits), (cell.right, cell.right_limits)):
             if crossing is None:
                 continue
             place = edges.places(crossing, cell.low, levels)
-            points.append(
-                [(place[end], levels[end]) for end, is_level in zip((0, -1), inside, strict=True) if is_level]
-            )
+            points.append([(place[end], levels[end]) for end in (0, -1) if limits[end] is None])
+            if edges.is_vertical(crossing):
+                points.append([(place[0], levels[0])])
+            rounding = 0 if finite_ends.all() else FLAT * np.abs(place[1:-1])
             for sign in (1, -1):
-                within = sign * place[1:-1]
+                within = sign * place[1:-1] - rounding
                 turning = 1 + np.flatnonzero((within > sign * place[:-2]) & (within > sign * place[2:]))
                 for k in turning:
                     points.append([_furthest(edges, crossing, cell.low, levels[k - 1], levels[k + 1], sign)])
@@ -308,13 +285,31 @@ def _furthest(
     return float(place[0]), float(found[0])
 
 
-def _extent(cells: tuple[Cell, ...], corners: FloatArray) -> Extent:
-    """Return the ranges of alpha_hat and beta_hat, infinite where there is no limit."""
-    left = -np.inf if any(cell.goes_left for cell in cells) else float(corners[:, 0].min())
-    right = np.inf if any(cell.goes_right for cell in cells) else float(corners[:, 0].max())
-    if np.isfinite([left, right]).all():
-        left, right = (0.0 if abs(end) < ROUNDING * (right - left) else end for end in (left, right))
-    return (left, right), (min(cell.low for cell in cells), max(cell.high for cell in cells))
+def _extent(cells: tuple[Cell, ...], corners: FloatArray) -> tuple[Extent, Approached]:
+    """Return the ranges of alpha_hat and beta_hat, infinite where there is no limit, and which ends no edge attains."""
+    towards = [limit for cell in cells for limit in cell.limits if limit is not None]
+    first, last = float(corners[:, 0].min(initial=math.inf)), float(corners[:, 0].max(initial=-math.inf))
+    left, right = min([first, *towards]), max([last, *towards])
+    rounding = ROUNDING * float(np.abs(corners[:, 0]).max(initial=0.0))
+    beyond_corners = (
+        math.isfinite(left) and left < first - rounding,
+        math.isfinite(right) and right > last + rounding,
+    )
+    left, right = (0.0 if abs(end) <= rounding else end for end in (left, right))
+    low, high = min(cell.low for cell in cells), max(cell.high for cell in cells)
+    return ((left, right), (low, high)), (beyond_corners, (_only_far_out(cells, low), _only_far_out(cells, high)))
+
+
+def _only_far_out(cells: tuple[Cell, ...], level: float) -> bool:
+    """Return whether each cell that comes to a finite level does so at an infinite alpha_hat."""
+    at_the_level = []
+    for cell in cells:
+        for end, at in ((0, cell.low), (1, cell.high)):
+            if at == level:
+                at_the_level.append((cell.left_limits[end], cell.right_limits[end]))
+    return math.isfinite(level) and all(
+        left is not None and math.isinf(left) and left == right for left, right in at_the_level
+    )
 
 
 def _view(extent: Extent, corners: FloatArray) -> Extent:

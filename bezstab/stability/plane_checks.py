@@ -3,11 +3,14 @@ r"""The region of a second-order scheme held against routes that share nothing w
 points    all over what is seen: inside by the poles is inside by the cells, and the contrary is decided in rationals
 lines     of constant alpha_hat, where the strips run along beta_hat: where |z_p| passes the level, found by
           bisection, are the crossings of the drawn curves, and the lengths between add up to the area
+extent    the line of constant alpha_hat just beyond each end is proven to be unstable all along; and where the region
+          has no end, or comes near one far out only, a line far out, or just before that end, to be stable somewhere
 curve     with one evaluation a step P is linear in alpha_hat and beta_hat, and Re P = Im P = 0 at z = r e^(i theta)
           gives the point at which that pair is a root (Yu. I. Neimark's D-decomposition): where no other root is
           larger, it lies on an edge
 """
 
+import math
 from collections.abc import Callable
 from fractions import Fraction
 from functools import partial
@@ -16,7 +19,7 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method, closed_loop_at, is_schur
+from bezstab.methods import Method, closed_loop_at, is_schur, points_between_edges
 from bezstab.rationals import exact
 from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
 from bezstab.stability.line_crossings import crossed_levels
@@ -36,6 +39,8 @@ ON_A_LINE = 256  # points on which |z_p| is looked at, besides those between the
 CURVE_ERROR = 2e-3  # of the longest line: chords between drawn points are off by 1e-4, near tangencies more
 TANGENT = 2  # lines that may disagree: those next to a tangency
 AREA_ERROR = 5e-3  # of the area: what 64 nodes leave across square roots and corners
+AT_THE_END = 1e-6  # of what is seen: so far beyond an end, and before it, lines are proven
+FAR_OUT = 1e6  # times what is seen: a region that has no end is stable there
 ANGLES = 360  # on the upper half of the circle
 ON_EDGE = 1e-6  # of what is seen: a point of the curve is known to 1e-12, times the edge's inclination
 PARALLEL = 1e-6  # of the two equations' size: nearly dependent, they give no point
@@ -48,6 +53,7 @@ def check_plane(pencil: PlanePencil, level: float, edges: Edges | None, shape: P
     if shape is None or edges is None:
         return
     _check_curve(pencil, level, edges, shape)
+    _check_extent(pencil.method, level, edges, shape)
     if shape.area is not None:
         _check_lines(pencil, level, shape, shape.area)
 
@@ -103,7 +109,7 @@ def _inside(pencil: PlanePencil, level: float, alpha_hat: FloatArray, beta_hat: 
     return inside
 
 
-def proven(method: Method, level: float, alpha_hat: float, beta_hat: float) -> bool:
+def proven(method: Method, level: float, alpha_hat: float, beta_hat: float | Fraction) -> bool:
     """Return whether |z_p| < level at one point: Schur's recursion in rationals, a proof."""
     polynomial = closed_loop_at(method, Fraction(alpha_hat), Fraction(beta_hat))
     scale, degree = exact(level), len(polynomial) - 1
@@ -238,6 +244,26 @@ def _check_curve(pencil: PlanePencil, level: float, edges: Edges, shape: PlaneSh
         i = int(np.flatnonzero(off)[0])
         place = f"({alpha_hat[active][i]:.6g}, {beta_hat[active][i]:.6g})"
         raise NumericalError(f"{pencil.method.name}: no edge of |z_p| < {level:g} was found at {place}")
+
+
+def _check_extent(method: Method, level: float, edges: Edges, shape: PlaneShape) -> None:
+    """Raise NumericalError unless proven verdicts on lines of constant alpha_hat agree with the range of alpha_hat."""
+    left, right = shape.view[0]
+
+    def must_be_stable(alpha_hat: float, somewhere: bool) -> None:
+        on_line = points_between_edges(edges.strips, Fraction(alpha_hat))
+        if any(proven(method, level, alpha_hat, beta_hat) for beta_hat in on_line) != somewhere:
+            raise NumericalError(
+                f"{method.name}: the range of alpha_hat of |z_p| < {level:g} contradicts the poles at {alpha_hat:.6g}"
+            )
+
+    for end, outwards, only_near in zip(shape.extent[0], (-1, 1), shape.approached[0], strict=True):
+        if math.isinf(end):
+            must_be_stable(outwards * FAR_OUT * (right - left), somewhere=True)
+            continue
+        must_be_stable(end + outwards * AT_THE_END * (right - left), somewhere=False)
+        if only_near:
+            must_be_stable(end - outwards * AT_THE_END * (right - left), somewhere=True)
 
 
 def _at_circle(pencil: PlanePencil, powers: tuple[int, int], level: float, theta: FloatArray) -> ComplexArray:

@@ -32,12 +32,13 @@ from numpy.typing import ArrayLike
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method, SecondOrder, first_order_form, fixed_poles, plane_strips, without_shared_factor
 from bezstab.rationals import exact
+from bezstab.read_only import ReadOnlyArrays
 from bezstab.stability.arrays import BoolArray, FloatArray
 from bezstab.stability.boundary_locus import Arc, Bounds, bounds_of, feedback_coefficients
 from bezstab.stability.closed_loop import spectral_radius
 from bezstab.stability.line_slices import RIM, rim_radius
 from bezstab.stability.pencils import Pencil, deadbeat_mu, pencil_of
-from bezstab.stability.plane_cells import Edges, plane_shape
+from bezstab.stability.plane_cells import Approached, Edges, plane_shape
 from bezstab.stability.plane_checks import check_plane
 from bezstab.stability.plane_pencils import plane_pencil_of
 from bezstab.stability.self_checks import check_region
@@ -57,14 +58,17 @@ GAP = 1e-6  # of a curve's size: where two arcs meet in a double mu, each ends w
 Extent = tuple[tuple[float, float], tuple[float, float]]
 """((alpha_hat_min, alpha_hat_max), (beta_hat_min, beta_hat_max)), dimensionless."""
 
+ATTAINED: Approached = ((False, False), (False, False))
+
 
 @dataclass(frozen=True, repr=False)
-class Region:
+class Region(ReadOnlyArrays):
     """The set |z_p| < level for one method, in alpha_hat and beta_hat, all dimensionless.
 
     `boundary` holds curves as arrays of shape (points, 2), closed but where they run to infinity; `extent` is
     ((alpha_hat_min, alpha_hat_max), (beta_hat_min, beta_hat_max)), infinite where there is no limit, None if the set
-    is empty. `fixed_poles` are those that neither alpha_hat nor beta_hat moves, where rho and sigma share a factor.
+    is empty. `approached` has in the same places whether the region only comes near that end, towards infinity: no edge
+    attains it. `fixed_poles` are those that neither alpha_hat nor beta_hat moves, where rho and sigma share a factor.
     `bounded`: whether all limits are finite; if not, `area` is None. `view` has finite ranges that hold what there is
     to see: the extent of a bounded region, of an unbounded one what has a shape where alpha_hat, beta_hat >= 0.
     """
@@ -77,6 +81,7 @@ class Region:
     fixed_poles: tuple[complex, ...] = ()
     bounded: bool = True
     view: Extent | None = None
+    approached: Approached = ATTAINED
 
     def __repr__(self) -> str:
         kind = "curve" if self.area is None else "closed curve"
@@ -136,7 +141,17 @@ def _plane_region(method: Method, level: float, stuck: tuple[complex, ...]) -> R
     if shape is None:
         return Region(method, level, 0.0, (), None, stuck)
     bounded = shape.area is not None
-    return Region(method, level, shape.area, shape.curves, shape.extent, stuck, bounded=bounded, view=shape.view)
+    return Region(
+        method,
+        level,
+        shape.area,
+        shape.curves,
+        shape.extent,
+        stuck,
+        bounded=bounded,
+        view=shape.view,
+        approached=shape.approached,
+    )
 
 
 def _checked_region(method: Method, level: float, finer: int) -> Region:

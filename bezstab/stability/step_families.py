@@ -8,6 +8,7 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 
 from bezstab.methods import Method, accuracy, adams_bashforth, bezier
+from bezstab.read_only import ReadOnlyArrays
 from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
 from bezstab.stability.best_points import best_point
 from bezstab.stability.regions import Region, region
@@ -38,7 +39,7 @@ class Member:
 
 
 @dataclass(frozen=True)
-class Limit:
+class Limit(ReadOnlyArrays):
     """What the Bezier methods tend to as n grows, dimensionless; `boundary` has shape (points, 2)."""
 
     area: float

@@ -99,7 +99,7 @@ ADDED = (
     *("implicit", "digits", "order_position_forces", "order_velocity_forces", "group"),
     *("driver_work", "force_work", "iterations", "singular_passages"),
     *("law_z_abs", "law_verdict", "floquet_z_abs", "law_fitted_z_abs", "measured_rate", "right"),
-    *("safe", "error_constant", "engine_h_limit", "z_abs_below", "critical_damping_limit_exact"),
+    *("safe", "error_constant", "engine_h_limit", "z_abs_below", "critical_damping_limit_exact", "approached"),
     *("role", "setting", "sweeps"),
 )
 """Keys that rows have got since, in their place: more of what a region, a choice and a method is, work in a run,

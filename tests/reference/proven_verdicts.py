@@ -44,7 +44,7 @@ def _in_float64(
     inside, open_ = np.ones(c.shape[1:], bool), np.zeros(c.shape[1:], bool)
     while len(c) > 1:
         margin, doubt = np.abs(c[0]) - np.abs(c[-1]), error[0] + error[-1]
-        open_ |= inside & (np.abs(margin) <= doubt)
+        open_ |= inside & ~(np.abs(margin) > doubt)  # where the bound itself overflows, too
         inside &= margin > doubt
         lead = np.where(inside, c[0], 1.0)
         k = np.where(inside, c[-1] / lead, 0.0)

@@ -100,17 +100,21 @@ def proven_slice_lengths(
     return np.asarray(np.where(is_stable, np.diff(beta), 0.0).sum(axis=1))
 
 
-def event_zeros(method: Method, level: float, alpha_hat: FloatArray, beta_range: tuple[float, float]) -> FloatArray:
+def event_zeros(
+    method: Method, level: float, fixed: FloatArray, free_range: tuple[float, float], transposed: bool = False
+) -> FloatArray:
     """Return where in beta_hat a root may cross the circle, a row for each alpha_hat; the range's end fills the rows.
 
-    These are the zeros of P(level), P(-level) and Schur's determinant, each interpolated without error by its degree.
+    `fixed` are the alpha_hat, `free_range` is that of beta_hat; transposed, the contrary. These are the zeros of
+    P(level), P(-level) and Schur's determinant, each interpolated without error by its degree.
     """
     tables = closed_loop_tables(method)
-    n, low, high = len(tables) - 1, *beta_range
+    n, low, high = len(tables) - 1, *free_range
     size = (tables.shape[2] - 1) * (n - 1) + 1
     nodes = chebyshev.chebpts1(size)
-    alpha_nodes, beta_nodes = np.broadcast_arrays(alpha_hat[:, None], (low + high + (high - low) * nodes) / 2)
-    c = polynomial_at(method, alpha_nodes, beta_nodes, level)
+    fixed_nodes, free_nodes = np.broadcast_arrays(fixed[:, None], (low + high + (high - low) * nodes) / 2)
+    points = (free_nodes, fixed_nodes) if transposed else (fixed_nodes, free_nodes)
+    c = polynomial_at(method, *points, level)
     signs = (-1.0) ** np.arange(n + 1)
     events = np.stack([schur_determinant(c), c.sum(axis=0), np.tensordot(signs, c, 1)])
     transform = np.linalg.inv(chebyshev.chebvander(nodes, size - 1)).T

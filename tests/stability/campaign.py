@@ -1,9 +1,12 @@
-"""Areas of many random methods against an independent integral: `make campaign`, or a sample by the slow tests.
+"""Regions and best points of many random methods against independent ones: `make campaign`, or a sample by slow tests.
+
+Areas are held against integrals; extents, of regions without end too, against proven verdicts on lines near and far
+out (tests/reference/extents); the least |z_p| against samples of the quadrant up to 1e9 (tests/reference/lower_points).
 
 Half of them are explicit multistep, Runge-Kutta and PECE methods, against slices of constant q (slice_integral); half
 are implicit multistep methods and second-order recipes, against slices of constant alpha_hat (sliced_areas), in a box
-three times as wide as what was found. Prints every difference above 1e-6 of the area and every refusal; the exit status
-is 1 if a difference was silent.
+three times as wide as what was found. Prints every difference above 1e-6 of the area, every other contradiction and
+every refusal; the exit status is 1 if one was silent.
 """
 
 import sys
@@ -11,7 +14,8 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -20,9 +24,11 @@ sys.path.insert(0, str(Path(__file__).parent.parent.parent))  # run as a script,
 
 from bezstab.errors import NumericalError
 from bezstab.methods import Method
-from bezstab.stability import region
+from bezstab.stability import best_point, falls_towards, region
 from bezstab.stability.boundary_locus import bounds_of
 from tests.reference.companion_poles import closed_loop_tables
+from tests.reference.extents import contradictions as extent_contradictions
+from tests.reference.lower_points import contradictions as best_point_contradictions
 from tests.reference.random_methods import other_random_method, random_method
 from tests.reference.slice_integral import slice_area
 from tests.reference.sliced_areas import Integral, proven_sliced_integral, sliced_integral, stable
@@ -40,7 +46,10 @@ ALPHA_RANGE, BETA_RANGE, POINTS = (-2.0, 8.0), (-4.0, 16.0), 20_000  # where an 
 
 @dataclass(frozen=True)
 class Case:
-    """One region: its area (None if refused, with the reason), the integral's, and the error the integral admits."""
+    """One region: its area (None if refused, with the reason), the integral's, and the error the integral admits.
+
+    `contradictions` say what else is wrong, of its extent and, with level 1, of the method's best point.
+    """
 
     name: str
     level: float
@@ -48,10 +57,13 @@ class Case:
     reason: str
     integral: float
     admitted: float
+    contradictions: tuple[str, ...] = ()
 
     @property
     def verdict(self) -> str:
         """'agrees', 'refused', 'unbounded', 'silent', or 'undecided' where the integral itself is not that exact."""
+        if self.contradictions:
+            return "silent"
         if self.area is None:
             return "refused" if self.reason else "unbounded"
         allowed = DIFFERENT * max(abs(self.area), abs(self.integral))
@@ -70,7 +82,8 @@ def compared(method: Method, level: float) -> Case:
     integral = slice_area(method, level)
     if area is not None and abs(area - integral.area) > DIFFERENT * max(abs(area), abs(integral.area)):
         integral = slice_area(method, level, panels_at_first=FINER_PANELS)  # a part may have lain between its lines
-    return Case(method.name, level, area, reason, integral.area, integral.error)
+    case = Case(method.name, level, area, reason, integral.area, integral.error)
+    return case if reason else replace(case, contradictions=_contradictions(method, level))
 
 
 def other_compared(method: Method, level: float) -> Case:
@@ -79,10 +92,22 @@ def other_compared(method: Method, level: float) -> Case:
         area = region(method, level).area
     except NumericalError as error:
         return Case(method.name, level, None, str(error), integral=0.0, admitted=0.0)
+    contradictions = _contradictions(method, level)
     if area is None:
-        return Case(method.name, level, None, "", integral=0.0, admitted=0.0)
+        return Case(method.name, level, None, "", integral=0.0, admitted=0.0, contradictions=contradictions)
     integral = _other_integral(method, level, area)
-    return Case(method.name, level, area, "", integral.value, integral.error)
+    return Case(method.name, level, area, "", integral.value, integral.error, contradictions)
+
+
+def _contradictions(method: Method, level: float) -> tuple[str, ...]:
+    """Return what is wrong with the extent at a level and, with level 1, with the best point; a refusal is not."""
+    extent = region(method, level).extent
+    found = extent_contradictions(method, level, extent) if extent else []
+    if level == 1:
+        with suppress(NumericalError):
+            best, limit = best_point(method), falls_towards(method)
+            found += best_point_contradictions(method, best, limit)
+    return tuple(found)
 
 
 def _other_integral(method: Method, level: float, area: float) -> Integral:
@@ -121,7 +146,7 @@ def other_cases_of(number: int) -> list[Case]:
 def _cases(of_level: Callable[[Method, float], Case], method: Method) -> list[Case]:
     """Return the cases of a method, and forget what was remembered of it."""
     cases = [of_level(method, level) for level in LEVELS]
-    for remembering in (region, bounds_of, closed_loop_tables):
+    for remembering in (region, bounds_of, closed_loop_tables, best_point, falls_towards):
         remembering.cache_clear()
     return cases
 

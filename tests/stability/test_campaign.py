@@ -1,11 +1,15 @@
 """A sample of the campaign: `make campaign` runs all of it."""
 
 from dataclasses import replace
+from math import inf
 
 import pytest
 
-from bezstab.methods import Method
-from bezstab.stability import Region, region
+from bezstab.methods import Method, lookup
+from bezstab.stability import Region, best_point, region
+from tests.reference.extents import Extent
+from tests.reference.lower_points import contradictions as best_point_contradictions
+from tests.reference.one_evaluation_schemes import one_evaluation_schemes
 from tests.reference.random_methods import other_random_method, random_method
 from tests.stability import campaign
 from tests.stability.campaign import DIFFERENT, cases_of, compared, other_cases_of, other_compared
@@ -61,5 +65,51 @@ def test_a_wrong_area_is_told(number: int, wrong_by: float, monkeypatch: pytest.
         return replace(right, area=right.area * (1 + wrong_by))
 
     monkeypatch.setattr(campaign, "region", wrong)
+    monkeypatch.setattr(campaign, "_contradictions", lambda method, level: ())  # nothing but the area is asked about
     monkeypatch.setattr(campaign, "OTHER_PANELS", 40)
     assert other_compared(other_random_method(number), 1.0).verdict == "silent"
+
+
+ENDLESS = next(
+    method for method in one_evaluation_schemes() if method.name == "by new velocity; at predicted, mean velocity"
+)
+EXTENTS: dict[str, tuple[Extent, str]] = {
+    "the true one": (((-4 / 3, inf), (0.0, 4 / 3)), "unbounded"),
+    "a number for infinity": (((-4 / 3, 7.0), (0.0, 4 / 3)), "silent"),
+    "infinity for a number": (((-inf, inf), (0.0, 4 / 3)), "silent"),
+    "too wide": (((-1.34, inf), (0.0, 4 / 3)), "silent"),
+    "too narrow": (((-4 / 3, inf), (0.0, 1.33)), "silent"),
+}
+
+
+@pytest.mark.parametrize("name", EXTENTS)
+def test_a_wrong_extent_of_a_region_without_end_is_told(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    extent, verdict = EXTENTS[name]
+    true = region(ENDLESS)
+    monkeypatch.setattr(campaign, "region", lambda method, level: replace(true, extent=extent))
+    assert other_compared(ENDLESS, 1.0).verdict == verdict
+
+
+@pytest.mark.parametrize("times", [1.0, 1.01])
+def test_a_best_point_that_is_none_is_told(times: float) -> None:
+    best = best_point(lookup("B2"))
+    assert best
+    wrong = best_point_contradictions(lookup("B2"), replace(best, z_abs=best.z_abs * times), None)
+    assert bool(wrong) == (times > 1)
+
+
+def test_a_best_point_far_out_along_a_limit_is_told() -> None:
+    """|z_p| of implicit Euler falls towards 0 as both parameters grow."""
+    euler, best = lookup("implicit-euler"), best_point(lookup("trapezoid"))
+    assert best
+    assert best.z_abs == 0
+    assert best_point_contradictions(best.method, best, None) == []
+    far_out = replace(best, method=euler, alpha_hat=2e6, beta_hat=1e12)
+    assert best_point_contradictions(euler, far_out, None)
+    assert best_point_contradictions(euler, None, 0.0) == []
+
+
+@pytest.mark.parametrize(("name", "limit", "right"), [("bdf2", 0.0, True), ("bdf2", 0.5, False), ("B2", 0.0, False)])
+def test_a_limit_that_is_none_is_told(name: str, limit: float, right: bool) -> None:
+    """B2 has a best point, and nothing to fall towards."""
+    assert (best_point_contradictions(lookup(name), None, limit) == []) == right

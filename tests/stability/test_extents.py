@@ -1,0 +1,106 @@
+"""Extents of regions, those without end above all, against exact polygons and proven verdicts far out."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from bezstab.errors import NumericalError
+from bezstab.methods import Method, PlaneStrips, Strip, lookup, plane_strips, recipe
+from bezstab.rationals import exact
+from bezstab.show import region_row, with_unbounded
+from bezstab.stability import region, verdict
+from bezstab.stability.plane_cells import Edges, plane_shape
+from bezstab.stability.plane_checks import check_plane
+from bezstab.stability.plane_pencils import plane_pencil_of
+from tests.methods.kinds import sampled
+from tests.reference.extents import contradictions
+from tests.reference.one_evaluation_schemes import one_evaluation_schemes, polygon_extent
+
+SCHEMES = {method.name: method for method in one_evaluation_schemes()}
+QUICK = [
+    "by new velocity; at end, old velocity",  # an implicit spring, an explicit damper
+    "by mean velocity; at middle, mean velocity",
+    "by new velocity; at predicted, mean velocity",
+]
+
+
+@pytest.mark.parametrize("level", ["1", "1/2"])
+@pytest.mark.parametrize("name", sampled(list(SCHEMES), quick=QUICK))
+def test_a_scheme_with_one_evaluation_has_the_extent_of_its_polygons(name: str, level: str) -> None:
+    found, expected = region(SCHEMES[name], float(Fraction(level))), polygon_extent(SCHEMES[name], Fraction(level))
+    assert (found.extent is None) == (expected is None)
+    if found.extent and expected:
+        assert np.array(found.extent) == pytest.approx(np.array(expected, float), rel=1e-12, abs=1e-14)
+        assert not np.array(found.approached).any()  # polygons have their corners
+
+
+def test_half_of_the_family_has_no_end() -> None:
+    """So that the test above is about regions without end."""
+    assert len(SCHEMES) == 135
+    endless = [name for name in QUICK if not region(SCHEMES[name]).bounded]
+    assert len(endless) == 3
+
+
+def test_an_implicit_spring_with_an_explicit_damper_has_no_largest_alpha_hat() -> None:
+    """alpha_hat < 2 + beta_hat / 2, which is 2 at beta_hat = 0 and 12 at 20; -alpha_hat < beta_hat."""
+    method = SCHEMES[QUICK[0]]
+    assert region(method).extent == ((-np.inf, np.inf), (-np.inf, np.inf))
+    assert verdict(method, Fraction(8), Fraction(20)) == "converges"
+    assert verdict(method, Fraction(13), Fraction(20)) == "diverges"
+
+
+@pytest.mark.parametrize("name", sampled(["hht", "generalized-alpha", "verlet-kdk", "stable-pd"], quick=["stable-pd"]))
+@pytest.mark.parametrize("level", [1.0, 0.9])
+def test_proven_verdicts_near_and_far_out_agree(name: str, level: float) -> None:
+    found = region(lookup(name), level)
+    assert found.extent
+    assert contradictions(found.method, level, found.extent) == []
+
+
+@pytest.mark.parametrize("wrong", [(-np.inf, 2.0), (0.0, np.inf)])
+def test_a_wrong_range_of_alpha_hat_does_not_pass_the_check(wrong: tuple[float, float]) -> None:
+    method = SCHEMES[QUICK[0]]
+    strips = plane_strips(method, exact(1.0))
+    assert strips
+    edges = Edges(strips)
+    shape = plane_shape(strips, edges, method.name)
+    assert shape
+    check_plane(plane_pencil_of(method), 1.0, edges, shape)
+    with pytest.raises(NumericalError, match="the range of alpha_hat"):
+        check_plane(plane_pencil_of(method), 1.0, edges, replace(shape, extent=(wrong, shape.extent[1])))
+
+
+def test_a_limit_that_edges_come_near_is_told_from_an_end_that_they_attain() -> None:
+    """Between alpha_hat = 0 and alpha_hat = 2 - 1 / beta_hat, for beta_hat > 1."""
+    # alpha_hat, and (alpha_hat - 2) beta_hat + 1
+    left, right = ((Fraction(0),), (Fraction(1),)), ((Fraction(1), Fraction(-2)), (Fraction(0), Fraction(1)))
+    strip = Strip(
+        low=Fraction(1),
+        high=None,
+        crossings=((0, 0), (1, 0)),
+        stable=(False, True, False),
+        limits={(0, 0): (None, 0.0), (1, 0): (None, 2.0)},
+    )
+    strips = PlaneStrips((left, right), (strip,), lost=({}, {}))
+    shape = plane_shape(strips, Edges(strips), "made")
+    assert shape
+    assert shape.extent == ((0.0, 2.0), (1.0, np.inf))
+    assert shape.approached == ((False, True), (False, False))
+
+
+def test_beta_hat_may_come_near_its_limit_as_alpha_hat_grows() -> None:
+    equations = {
+        "x1": "x0 + v0 + 1/2 first",
+        "v1": "v0 + second",
+        "first": "acceleration(x0, 1/2 v0 + 1/2 v1)",
+        "second": "acceleration(x0, v0)",
+    }
+    found = region(Method("two evaluations", recipe(equations), ""))
+    assert found.extent == ((0.0, np.inf), (0.0, 4.0))
+    assert found.approached == ((False, False), (False, True))
+    assert contradictions(found.method, 1.0, found.extent) == []
+    row = region_row(found, None)
+    assert row["approached"] == "beta_hat_max"
+    assert with_unbounded(row)["beta_hat_max"] == "4 (approached)"

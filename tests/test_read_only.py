@@ -1,0 +1,76 @@
+"""Nothing that a caller does with an answer changes a later one: results are read-only, plain arrays the caller's."""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+import numpy as np
+import pytest
+
+import bezstab
+from bezstab.evidence import VerdictMap, map_rows, reference_motion, simulated_verdicts, verdict_map
+from bezstab.stability import bezier_limit
+
+ERROR = 1e-4 * 0.7 ** np.arange(60) * np.cos(0.9 * np.arange(60))
+
+
+def small_map() -> VerdictMap:
+    """Return a map of two by two runs."""
+    rows = map_rows(bezstab.scene("slider_crank"), bezstab.method("B1"), h=0.001, count=2)
+    return verdict_map(rows, [simulated_verdicts(each) for each in rows])
+
+
+RESULTS: dict[str, Callable[[], Any]] = {
+    "region": lambda: bezstab.region("B4"),
+    "region without end": lambda: bezstab.region("trapezoid"),
+    "region of a second-order scheme": lambda: bezstab.region("verlet-half"),
+    "best_point": lambda: bezstab.best_point("B4"),
+    "choose": lambda: bezstab.choose("B4"),
+    "check": lambda: bezstab.check("B4", alpha_hat=1, beta_hat=1),
+    "simulate": lambda: bezstab.simulate("slider_crank", "B4", alpha_hat=0.5, beta_hat=0.1, h=0.001, duration=0.01),
+    "verify": lambda: bezstab.verify("slider_crank", "B4", alpha_hat=0.5, beta_hat=0.1, h=0.001),
+    "probe": lambda: bezstab.probe(ERROR, differenced=True, methods=["B4"], alpha_hat=0.5, beta_hat=0.1),
+    "a map": small_map,
+    "a family's limit": bezier_limit,
+    "a reference motion": lambda: reference_motion(bezstab.scene("slider_crank"), h=0.001, duration=0.01),
+}
+WITHOUT_ARRAYS = {"best_point", "choose", "check", "verify", "probe"}
+
+
+def arrays_in(value: object) -> Iterator[np.ndarray[Any, Any]]:
+    """Yield every array that a result holds."""
+    if isinstance(value, np.ndarray):
+        yield value
+    elif is_dataclass(value):
+        for field in fields(value):
+            yield from arrays_in(getattr(value, field.name))
+    elif isinstance(value, Mapping):
+        yield from arrays_in(tuple(value.values()))
+    elif isinstance(value, (tuple, list)):
+        for each in value:
+            yield from arrays_in(each)
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_every_array_of_a_result_is_read_only(name: str) -> None:
+    found = list(arrays_in(RESULTS[name]()))
+    assert bool(found) == (name not in WITHOUT_ARRAYS)
+    assert not any(array.flags.writeable for array in found)
+
+
+def test_a_boundary_that_was_written_into_would_change_every_later_answer() -> None:
+    with pytest.raises(ValueError, match="read-only"):
+        bezstab.region("B4").boundary[0][:] = 0
+    copy = bezstab.region("B4").boundary[0].copy()
+    copy[:] = 0
+    assert bezstab.region("B4").boundary[0].any()
+
+
+@pytest.mark.parametrize("function", [bezstab.poles, bezstab.dominant_pole, bezstab.spectral_radius])
+@pytest.mark.parametrize("method", ["B4", "verlet-half", "hht"])
+def test_plain_arrays_are_made_anew_for_each_caller(method: str, function: Callable[..., Any]) -> None:
+    points = {"alpha_hat": np.array([0.3, 0.5]), "beta_hat": np.array([0.1, 0.1])}
+    first = function(method, **points)
+    expected = first.copy()
+    first[:] = 0
+    assert np.array_equal(function(method, **points), expected)
