@@ -146,7 +146,10 @@ def test_a_run_that_cannot_be_is_refused_by_name_and_value(wrong: dict[str, Any]
         (lambda: bezstab.verdict("B4", alpha_hat="0.5", beta_hat=True), "beta_hat = True: expected one real number"),
         (lambda: bezstab.verdict("B4", alpha_hat=10**400, beta_hat=1), "alpha_hat is outside the range of float64"),
         (lambda: bezstab.region(cast(Any, ["B4", "AB4"])), "method ['B4', 'AB4']: expected one name"),
-        (lambda: bezstab.simulate(cast(Any, 3), "B4", h=0.1, duration=1), "expected"),
+        (
+            lambda: bezstab.simulate("pendulum", "B4", h=0.1, duration=1, alpha_hat=cast(Any, [0.5]), beta_hat=0.1),
+            "alpha_hat = [0.5]: expected one real number",
+        ),
         (lambda: bezstab.scene(cast(Any, ["pendulum"])), "scene ['pendulum']: expected one name"),
         (
             lambda: bezstab.from_dimensionless(cast(Any, [1, 2]), cast(Any, [1, 2]), 0.1),
