@@ -27,7 +27,7 @@ from bezstab.cli.options import (
     physical_option,
     step_option,
 )
-from bezstab.cli.output import for_reading, progress, show_rows, show_text
+from bezstab.cli.output import for_reading, progress, say, show_rows, show_text
 from bezstab.cli.typed_points import (
     DRIVE_COLUMNS,
     TypedPoint,
@@ -52,7 +52,7 @@ from bezstab.cli.varying_steps import (
     with_varying,
 )
 from bezstab.engines import ENGINES, Drive, Engine
-from bezstab.errors import InputError
+from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method
 from bezstab.show import (
     MISSING,
@@ -68,7 +68,7 @@ from bezstab.show import (
 )
 
 if TYPE_CHECKING:
-    from bezstab.stability import Choice, Goal
+    from bezstab.stability import Choice, Goal, Modulus
 
 
 def range_column(heading: str, low_key: str, high_key: str) -> Column:
@@ -92,7 +92,8 @@ def _step_limit(row: Row) -> Value:
 def _largest_step(row: Row) -> str:
     """Return the largest stable step; a stable point without one is stable at any."""
     limit = _step_limit(row)
-    if limit is None and row["h"] is not None and row["verdict"] == "converges":
+    known = row["verdict"] == "converges" and row["margins_reason"] is None
+    if limit is None and row["h"] is not None and known:
         return "unlimited"
     return formatted(limit, ".4g")
 
@@ -132,6 +133,8 @@ def choice_sentence(row: Row) -> str:
     """Return whether a point is safe, how fast errors shrink, and by how much h, α and β may grow, at rest."""
     if not row["safe"]:
         return f"{safety_words(row)}."
+    if row["margins_reason"]:
+        return f"{safety_words(row)}; how far h, α and β may grow is not known: {row['margins_reason']}."
     limit = _step_limit(row)
     factor = row["h_factor"] if row["h"] is None else None
     h = f"to {seconds_words(limit)}" if isinstance(limit, float) else growth_words(factor)
@@ -314,7 +317,7 @@ def check(
         choices += [
             stability.describe_point(method, label, *point) for label, point in (("as given", typed.point), *typed.also)
         ]
-        choices.append(stability.choose(method, "robust", modulus=modulus_as_it_moves(method, turning, h)))
+        choices += _instead(method, modulus_as_it_moves(method, turning, h))
     rows: list[Row] = []
     for choice in choices:
         given = choice.goal != "robust"
@@ -338,12 +341,25 @@ def check(
         show_rows(asked, columns, form, sentence=choice_sentence)
         judged = [answer for choice, answer in zip(choices, varying, strict=False) if choice.goal != "robust"]
         say_varying(judged, form)
-        show_text("\nWhat `choose` gives instead:\n")
-        show_rows([row for row in rows if row["goal"] == "robust"], columns, form, sentence=choice_sentence)
+        instead = [row for row in rows if row["goal"] == "robust"]
+        if instead:
+            show_text("\nWhat `choose` gives instead:\n")
+            show_rows(instead, columns, form, sentence=choice_sentence)
     else:
         show_rows(rows, columns, form)
     say_what_was_made(typed, form)
     context.exit(0 if all(row["safe"] for row in asked) else 1)
+
+
+def _instead(method: Method, modulus: "Modulus | None") -> "list[Choice]":
+    """Return what `choose` gives; nothing where it fails, which is said: what was asked is answered nevertheless."""
+    from bezstab.stability import choose
+
+    try:
+        return [choose(method, "robust", modulus=modulus)]
+    except (InputError, NumericalError) as error:
+        say(f"bezstab: nothing to choose instead: {error}")
+        return []
 
 
 def _exact_point(choice: "Choice") -> tuple[Fraction, Fraction]:

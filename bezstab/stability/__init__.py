@@ -49,7 +49,7 @@ from typing import TYPE_CHECKING
 from bezstab.lazy import lazy_names
 from bezstab.stability.answer_checks import Modulus
 from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, FloatArray
-from bezstab.stability.best_points import BestPoint, best_point, falls_towards
+from bezstab.stability.best_points import BestPoint, best_point, best_point_or_reason, falls_towards
 from bezstab.stability.choices import (
     THOUSANDFOLD,
     Choice,
@@ -59,6 +59,7 @@ from bezstab.stability.choices import (
     describe_point,
 )
 from bezstab.stability.closed_loop import dominant_pole, poles, spectral_radius, verdict
+from bezstab.stability.far_limits import FarLimit
 from bezstab.stability.gain_margins import GainLimits, gain_limits
 from bezstab.stability.grid_maps import QUALITY, pole_map
 from bezstab.stability.margins import Margins, largest_stable_step, stability_margins
@@ -95,6 +96,7 @@ __all__ = [
     "Choice",
     "ComplexArray",
     "Extent",
+    "FarLimit",
     "FloatArray",
     "GainLimits",
     "Goal",
@@ -107,6 +109,7 @@ __all__ = [
     "StableForAll",
     "VaryingSteps",
     "best_point",
+    "best_point_or_reason",
     "bezier_limit",
     "bisected",
     "choose",
