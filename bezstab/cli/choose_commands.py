@@ -96,7 +96,8 @@ def _step_limit(row: Row) -> Value:
 def _largest_step(row: Row) -> str:
     """Return the largest stable step; a stable point without one is stable at any."""
     limit = _step_limit(row)
-    if limit is None and row["h"] is not None and row["verdict"] == "converges":
+    known = row["verdict"] == "converges" and row["margins_reason"] is None
+    if limit is None and row["h"] is not None and known:
         return "unlimited"
     return formatted(limit, ".4g")
 
@@ -136,6 +137,8 @@ def choice_sentence(row: Row) -> str:
     """Return whether a point is safe, how fast errors shrink, and by how much h, α and β may grow, at rest."""
     if not row["safe"]:
         return f"{safety_words(row)}."
+    if row["margins_reason"]:
+        return f"{safety_words(row)}; how far h, α and β may grow is not known: {row['margins_reason']}."
     limit = _step_limit(row)
     factor = row["h_factor"] if row["h"] is None else None
     h = f"to {seconds_words(limit)}" if isinstance(limit, float) else growth_words(factor)

@@ -3,6 +3,7 @@
 import importlib
 import os
 import sys
+import traceback
 from collections.abc import Mapping, Sequence
 from typing import Any, NoReturn
 
@@ -38,12 +39,17 @@ READER_GONE = 128 + 13
 """Exit status where nobody reads the answer any more: as a shell has it for SIGPIPE, and unlike 1, "fault is found"."""
 
 
+DEFECT = 70
+"""Exit status of a defect of this program: EX_SOFTWARE of BSD's sysexits.h, and unlike 1, "fault is found"."""
+
+
 class BezstabGroup(click.Group):
     """A group that lists its commands under headings, finds extensions when asked for, and ends errors in one line.
 
     Exit status 2 for a user's mistake and for what the system refuses (a full disk, a closed standard output), 3 for
-    numerical trouble. A signal that ends a run is 128 + its number, as a shell has it: 130 after Ctrl-C, 143 after
-    TERM, 129 when the terminal is gone (bezstab.stopping), 141 where nobody reads the answer any more (`| head`).
+    numerical trouble, 70 for a defect of this program. A signal that ends a run is 128 + its number, as a shell has it:
+    130 after Ctrl-C, 143 after TERM, 129 when the terminal is gone (bezstab.stopping), 141 where nobody reads the
+    answer any more (`| head`).
     """
 
     def list_commands(self, ctx: click.Context) -> list[str]:
@@ -105,6 +111,10 @@ class BezstabGroup(click.Group):
             _give_up_output()
             _complain(f"{error.filename}: {error.strerror}" if error.filename else str(error))
             sys.exit(2)
+        except Exception:  # a defect of this program: Python would exit with 1, "unsafe", though nothing was judged
+            traceback.print_exc()
+            _complain("this is a defect of bezstab: no verdict")
+            sys.exit(DEFECT)
         sys.exit(status if isinstance(status, int) else 0)  # a command that calls ctx.exit(status) returns it here
 
     def _names_by_section(self) -> dict[str, list[str]]:

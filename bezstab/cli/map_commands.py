@@ -48,6 +48,7 @@ from bezstab.errors import InputError
 from bezstab.files import output_directory
 from bezstab.methods import GROUPS, Method, lookup
 from bezstab.show import (
+    NOT_KNOWN,
     PROPERTIES,
     Column,
     Format,
@@ -67,6 +68,9 @@ if TYPE_CHECKING:
     from bezstab.evidence import MovingRegion
     from bezstab.mechanism import TurningNormals
     from bezstab.stability import BestPoint, Extent, FloatArray
+
+NUMERICAL_TROUBLE = 3
+"""Exit status where a part of an answer could not be found: the rest is printed, with the reason."""
 
 Window = tuple[Fraction, Fraction]
 
@@ -322,6 +326,8 @@ def region(
     name, *shape = REGIONS
     columns = [name, *(LEVELS if levels else []), *shape, *(MOVING_REGIONS if scene else [])]
     show_rows(rows, columns, form, sentence=region_sentence)
+    if any(str(row["best_reason"]).startswith(NOT_KNOWN) for row in rows):
+        click.get_current_context().exit(NUMERICAL_TROUBLE)
 
 
 def _check_window(option: str, window: Window | None) -> None:
@@ -351,7 +357,7 @@ def _compare_regions(
     from bezstab.show import boundary_arrays, region_row
 
     regions = [stability.region(method, level) for method in methods]
-    rows = [region_row(each, stability.best_point(each.method)) for each in regions]
+    rows = [region_row(each, *stability.best_point_or_reason(each.method)) for each in regions]
     path = output / "_".join(["compare", *(file_name(method.name) for method in methods)])
 
     def draw() -> "Figure":
@@ -388,8 +394,8 @@ def _map_region(
     from bezstab.show import map_arrays, region_row
 
     stable = stability.region(method)
-    best = stability.best_point(method)
-    row = region_row(stable, best)
+    best, trouble = stability.best_point_or_reason(method)
+    row = region_row(stable, best, trouble)
     if figure == table == "none":
         return row
     useful = stability.useful_window(stable)
@@ -426,8 +432,8 @@ def _level_rows(method: Method, levels: Sequence[float]) -> list[Row]:
     from bezstab import stability
     from bezstab.show import region_row
 
-    best = stability.best_point(method)
-    return [region_row(stability.region(method, level), best) for level in levels if level < 1]
+    best, trouble = stability.best_point_or_reason(method)
+    return [region_row(stability.region(method, level), best, trouble) for level in levels if level < 1]
 
 
 def _moving_regions(
@@ -558,9 +564,9 @@ def methods(methods: Sequence[Method], latex: bool, form: Format) -> None:
         else:
             show_rows([row for _, rows in listed for row in rows], METHODS, form)
         return
-    from bezstab.stability import best_point, region
+    from bezstab.stability import best_point_or_reason, region
 
-    rows = [whole_row(method, region(method), best_point(method), latex) for method in methods]
+    rows = [whole_row(method, region(method), *best_point_or_reason(method), latex=latex) for method in methods]
     if form in ("json", "csv"):
         show_rows(rows, METHODS, form)
         return

@@ -39,6 +39,7 @@ from bezstab.show.columns import (
     yes_no_column,
 )
 from bezstab.show.rows import (
+    NOT_KNOWN,
     choice_row,
     complex_parts,
     drive_row,
@@ -121,6 +122,7 @@ __getattr__ = lazy_names(__name__, LOADED_LATE, modules=("plot",))
 __all__ = [
     "DASHES",
     "MISSING",
+    "NOT_KNOWN",
     "PROPERTIES",
     "ROW_KINDS",
     "VOCABULARY",

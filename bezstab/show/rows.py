@@ -19,6 +19,9 @@ from bezstab.units import feedback_gains
 LIMITS = ("alpha_hat_min", "alpha_hat_max", "beta_hat_min", "beta_hat_max")
 """The ends of a region's ranges, as rows name them."""
 
+NOT_KNOWN = "not known"
+"""How the reason begins where the search for a best point failed."""
+
 if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
     from _typeshed import DataclassInstance
 
@@ -139,15 +142,17 @@ def formula_row(method: Method, latex: bool = False) -> Row:
     }
 
 
-def whole_row(method: Method, region: Region, best: BestPoint | None, latex: bool) -> Row:
+def whole_row(
+    method: Method, region: Region, best: BestPoint | None, trouble: str | None = None, *, latex: bool
+) -> Row:
     """Return all that is known of one method: method_row, formula_row (as text or LaTeX) and region_row.
 
     NumericalError as `region_row`.
     """
-    return {**method_row(method), **formula_row(method, latex), **region_row(region, best)}
+    return {**method_row(method), **formula_row(method, latex), **region_row(region, best, trouble)}
 
 
-def region_row(region: Region, best: BestPoint | None) -> Row:
+def region_row(region: Region, best: BestPoint | None, trouble: str | None = None) -> Row:
     """Return area, axis limits, best point of the method and which steps are stable; all dimensionless.
 
     Area and limits are of |z_p| < level, None where that region is empty, or has none; `approached` names those that
@@ -155,7 +160,8 @@ def region_row(region: Region, best: BestPoint | None) -> Row:
     nowhere that small. The last four are about stability, at any level: stable_for_all about every alpha_hat,
     beta_hat > 0; unconditional_damping_ratio is the alpha / beta above which every step is stable (None if there is
     none); critical_damping_limit the largest beta h on alpha = beta up to which all are (None if there is none), also
-    as a rational number, if it is known to be one. NumericalError where a pole leaves the range of float64.
+    as a rational number, if it is known to be one. `trouble` says why the best point is not known, where it is not.
+    NumericalError where a pole leaves the range of float64.
     """
     from bezstab.show.best_point_text import best_point_words
     from bezstab.stability import (
@@ -167,7 +173,7 @@ def region_row(region: Region, best: BestPoint | None) -> Row:
 
     exact_limit = exact_critical_damping_limit(region.method)
     inside = best if best and best.z_abs < region.level else None
-    reason = None if inside else _nowhere(region, best)
+    reason = None if inside else f"{NOT_KNOWN}: {trouble}" if trouble else _nowhere(region, best)
     return {
         "method": region.method.name,
         "z_abs_below": region.level,
@@ -231,13 +237,14 @@ def stable_steps_words(row: Row) -> str:
 
 def _nowhere(region: Region, best: BestPoint | None) -> str | None:
     """Return why there is no best point in a region: |z_p| is not that small, falls on, or a pole cannot be moved."""
+    from bezstab.show.best_point_text import falling_words
     from bezstab.stability import falls_towards, pole_place
 
     if best:
         return f"none: |z_p| is {best.z_abs:.6g} at least"
     limit = falls_towards(region.method)
     if limit is not None:
-        return f"none: |z_p| falls towards {limit:.6g} as α̂ and β̂ grow"
+        return f"none: {falling_words(limit)}"
     if not region.fixed_poles:
         return None
     return f"stable nowhere: a pole stays at {pole_place(region.fixed_poles[0])} whatever α̂ and β̂"

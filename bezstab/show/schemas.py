@@ -37,7 +37,7 @@ REGION = """z_abs_below area alpha_hat_min alpha_hat_max beta_hat_min beta_hat_m
 METHOD = """method steps evaluations order order_position_forces order_velocity_forces error_constant
     error_constant_exact source implicit digits"""
 CHOICE = f"""method goal alpha_hat beta_hat verdict safe {POLE} worst searched h alpha beta settle_steps settle_seconds
-    h_factor h_limit alpha_factor_min alpha_factor_max beta_factor_min beta_factor_max"""
+    margins_reason h_factor h_limit alpha_factor_min alpha_factor_max beta_factor_min beta_factor_max"""
 
 APPLIED = ("applied", "excludes", "sweeps")
 """What --engine adds."""

@@ -135,6 +135,9 @@ VOCABULARY: Mapping[str, Key] = {
     "role": Key("text", "Whether the point was given, or is what to take instead", values=("given", "instead")),
     "goal": Key("text", "What the point was chosen for, or that it is as given"),
     "worst": Key("number", "Largest modulus of the dominant pole with alpha and beta off by the spread"),
+    "margins_reason": Key(
+        "text", "Why h_factor and the factors on alpha and beta are not known", null="where they are, or it is unstable"
+    ),
     "searched": Key(
         "number", "Largest alpha h and beta h that were searched", null="where all of the region was, or none of it"
     ),

@@ -50,7 +50,7 @@ from typing import TYPE_CHECKING
 from bezstab.lazy import lazy_names
 from bezstab.stability.answer_checks import Modulus
 from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, FloatArray, real_array
-from bezstab.stability.best_points import BestPoint, best_point, falls_towards
+from bezstab.stability.best_points import BestPoint, best_point, best_point_or_reason, falls_towards
 from bezstab.stability.choices import (
     THOUSANDFOLD,
     Choice,
@@ -60,6 +60,7 @@ from bezstab.stability.choices import (
     describe_point,
 )
 from bezstab.stability.closed_loop import dominant_pole, poles, spectral_radius, verdict
+from bezstab.stability.far_limits import FarLimit
 from bezstab.stability.gain_margins import GainLimits, gain_limits
 from bezstab.stability.grid_maps import QUALITY, pole_map
 from bezstab.stability.margins import Margins, largest_stable_step, stability_margins, stable_up_to
@@ -96,6 +97,7 @@ __all__ = [
     "Choice",
     "ComplexArray",
     "Extent",
+    "FarLimit",
     "FloatArray",
     "GainLimits",
     "Goal",
@@ -108,6 +110,7 @@ __all__ = [
     "StableForAll",
     "VaryingSteps",
     "best_point",
+    "best_point_or_reason",
     "bezier_limit",
     "bisected",
     "choose",

@@ -1,6 +1,7 @@
 """Best points, choices and margins held against sampled points and proven verdicts before they are given."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -69,12 +70,18 @@ def check_deadbeat(pencil: Pencil, alpha_hat: float, beta_hat: float) -> None:
 
 
 def check_best_point(pencil: Pencil, z_abs: float, alpha_hat: float, beta_hat: float, extent: Extent) -> None:
-    """Raise NumericalError unless |z_p| at the point is as said, and smaller at no sampled point and on no slice."""
+    """Raise NumericalError unless |z_p| at the point is as said, and smaller at no sampled point and on no slice.
+
+    Of an implicit method where alpha_hat, beta_hat >= 0.
+    """
     name = pencil.method.name
     here = float(largest_modulus(pencil, alpha_hat, beta_hat))
     if abs(here - z_abs) > KINK:
         raise NumericalError(f"{name}: |z_p| is {here:.9g} at the best point, not {z_abs:.9g}")
     alpha_hats, beta_hats = sampled_points(extent, alpha_hat, beta_hat)
+    if pencil.implicit:
+        positive = (alpha_hats >= 0) & (beta_hats >= 0)
+        alpha_hats, beta_hats = alpha_hats[positive], beta_hats[positive]
     better = z_abs * (1 - BETTER)
     suspicious = np.flatnonzero(all_within(pencil, alpha_hats, beta_hats, np.full(alpha_hats.shape, better)))
     for alpha, beta in zip(alpha_hats[suspicious], beta_hats[suspicious], strict=True):
@@ -87,7 +94,8 @@ def check_best_point(pencil: Pencil, z_abs: float, alpha_hat: float, beta_hat: f
     bound, events = mu_bound(pencil, below), real_events(pencil, below)
     t = np.concatenate([np.linspace(0, bound, SLICES + 2)[1:-1], np.abs(events), turning_radii(pencil, below)])
     t = t[np.isfinite(t) & (t > 0) & (t < bound)]
-    lengths = slices(pencil, below, t**2, events, bound).lengths()
+    found = slices(pencil, below, t**2, events, bound)
+    lengths = (replace(found, ends=np.maximum(found.ends, 0)) if pencil.implicit else found).lengths()
     if lengths.max() > NO_LENGTH * bound:
         raise NumericalError(f"{name}: |z_p| < {below:.9g} on a slice: the best point has {z_abs:.9g}")
 

@@ -13,6 +13,10 @@ zero.
 
 Every kind is a square system of equations for mu and the roots that meet; a sampled minimum starts Newton's method on
 each kind, and the least solution that is a maximum over all roots is the answer, to rounding.
+
+Of an implicit method mu is kept to Re mu <= 0, which is alpha_hat >= 0: f may be least on that edge, where a kink of
+two roots, or a single one without slope along the edge, is enough. And far out, where all roots tend to those of the
+highest power of mu, it may be lower than anywhere: then no point has the least value.
 """
 
 import math
@@ -23,13 +27,15 @@ from functools import cache
 from itertools import product
 
 import numpy as np
-from numpy.polynomial.polynomial import polyroots, polyval2d
+from numpy.polynomial.polynomial import polyder, polymul, polyroots, polysub, polyval2d
 
 from bezstab.errors import NumericalError
 from bezstab.methods import Method, SecondOrder, first_order_form, fixed_poles, implicit, without_shared_factor
 from bezstab.stability.answer_checks import check_best_point, check_deadbeat, check_plane_best_point
 from bezstab.stability.arrays import ComplexArray, FloatArray
+from bezstab.stability.closed_loop import free_pencil_of, largest_modulus
 from bezstab.stability.dominant_roots import dominant_root
+from bezstab.stability.far_limits import FarLimit
 from bezstab.stability.line_slices import all_inside
 from bezstab.stability.pencils import Pencil, deadbeat_mu, pencil_of, roots_in_mu, roots_in_z
 from bezstab.stability.plane_best_points import PlaneLeast, plane_least
@@ -46,6 +52,9 @@ AS_SMALL = 1e-10  # relative: a value by so much above the least so far is looke
 SAME_MINIMUM = 1e-5  # of |mu|: minima that were narrowed to less than that and lie closer are one
 FINER = 4  # times as many samples of the plane along either axis, where the first sampling failed the check
 ZOOM_POINTS, ZOOM = 13, 0.45
+NEAR_REAL = 1e-2  # relative: a real zero that float64 makes complex is no further off the axis
+ON_EDGE = 1e-2  # of |mu|: from here on the least value may lie on the edge Re mu = 0
+FURTHEST = 200  # doublings of a parameter, on the way to a limit
 ARC_SAMPLES = 513  # of theta, where a curve of equal |z_p| is looked for, a tenth of them at least
 ARC_SHARE = 1 / 10  # of the samples lie on such a curve, if there is one; a kink shows at isolated theta only
 ARC_ZOOM_POINTS, ARC_ZOOMS = 65, 7  # each by 1/32: the curve's end, to rounding
@@ -119,7 +128,6 @@ SEARCHES = (
 second's time: Newton's method makes up for what it leaves."""
 
 
-@cache
 def best_point(method: Method) -> BestPoint | None:
     """Return the smallest |z_p| and its place, to about 1e-12; None if no parameters have |z_p| < 1, or the least.
 
@@ -132,19 +140,25 @@ def best_point(method: Method) -> BestPoint | None:
     return found if isinstance(found, BestPoint) else None
 
 
-@cache
-def falls_towards(method: Method) -> float | None:
-    """Return the value below which |z_p| stays nowhere, though it falls towards it as the parameters grow.
+def falls_towards(method: Method) -> FarLimit | None:
+    """Return the value that |z_p| falls towards as parameters grow, along which way, where no point has one as low.
 
     Zero for implicit Euler and BDF. None if some point has the least |z_p|, or none is stable. Errors as best_point.
     """
-    if best_point(method):
-        return None
     found = _best_or_limit(method)
-    return found if isinstance(found, float) else None
+    return found if isinstance(found, FarLimit) else None
 
 
-def _best_or_limit(method: Method) -> BestPoint | float | None:
+def best_point_or_reason(method: Method) -> tuple[BestPoint | None, str | None]:
+    """Return `best_point`, and why it is not known where its search ended in NumericalError, else None."""
+    try:
+        return best_point(method), None
+    except NumericalError as error:
+        return None, str(error)
+
+
+@cache
+def _best_or_limit(method: Method) -> BestPoint | FarLimit | None:
     form = first_order_form(method)
     if form is not method:
         found = _best_or_limit(form)
@@ -155,21 +169,60 @@ def _best_or_limit(method: Method) -> BestPoint | float | None:
     if isinstance(method.scheme, SecondOrder):
         return _in_the_plane(method)
     pencil = pencil_of(method)
-    return _deadbeat(pencil) if pencil.steps == 1 else _kink(pencil)
+    return _one_step(pencil) if pencil.steps == 1 else _kink(pencil)
 
 
-def _deadbeat(pencil: Pencil) -> BestPoint | float:
-    """Return the zeros of R, or, without one where Re mu < 0, its modulus at infinity: z = R(mu)."""
-    explicit = not implicit(pencil.method)
-    zeros = [mu for mu in _zeros(pencil) if mu.real < 0 or explicit]
-    if not zeros:
-        return _limit(pencil)
-    deadbeat = _described(pencil, 0.0, zeros, arc=False)
-    check_deadbeat(pencil, deadbeat.alpha_hat, deadbeat.beta_hat)
-    return deadbeat
+def _one_step(pencil: Pencil) -> BestPoint | FarLimit:
+    """Return the zeros of R, as z = R(mu); without one where Re mu <= 0, where |R| is least on the edge, or its limit.
+
+    log|R| has no minimum inside but at the zeros, so without them it is least on the edge Re mu = 0, or far out.
+    """
+    zeros = _zeros(pencil)
+    if implicit(pencil.method):
+        zeros = [complex(min(mu.real, 0.0), mu.imag) for mu in zeros if mu.real <= ROUNDING * abs(mu)]
+    if zeros:
+        deadbeat = _described(pencil, 0.0, zeros, arc=False)
+        check_deadbeat(pencil, deadbeat.alpha_hat, deadbeat.beta_hat)
+        return deadbeat
+    limit = _limit(pencil)
+    least = _least_on_edge(pencil)
+    if least is None or limit.z_abs <= least.z_abs * (1 + ROUNDING):
+        return limit
+    return _described(pencil, least.z_abs, [least.mu], arc=False)
 
 
-def _kink(pencil: Pencil) -> BestPoint | float | None:
+def _least_on_edge(pencil: Pencil) -> _Candidate | None:
+    """Return where |R(iy)| is least over y > 0; None if it has no minimum there.
+
+    |R(iy)|^2 is a ratio of polynomials in y^2, N and D, and flat where N' D = N D'.
+    """
+    numerator, denominator = (_squared_on_edge(row) for row in pencil.table)
+    slope = polysub(polymul(polyder(numerator), denominator), polymul(numerator, polyder(denominator)))
+    flat = np.roots(np.trim_zeros(slope, "b")[::-1])
+    near_real = (flat.real > 0) & (np.abs(flat.imag) <= NEAR_REAL * np.abs(flat))  # one too many does no harm
+    if not near_real.any():
+        return None
+    start = np.sqrt(flat[near_real].real)[:, np.newaxis]
+
+    def modulus(points: FloatArray) -> FloatArray:
+        return _largest_modulus(pencil, np.asarray(1j * points[..., 0], complex))
+
+    places, values = zoom_on_minimum(
+        modulus, start, NEAR_REAL * start, points=ARC_ZOOM_POINTS, shrink=2 / (ARC_ZOOM_POINTS - 1), rounds=ARC_ZOOMS
+    )
+    least = np.argmin(values)
+    return _Candidate(float(values[least]), complex(0, float(places[least, 0])))
+
+
+def _squared_on_edge(coefficients: FloatArray) -> FloatArray:
+    """Return |p(iy)|^2 as a polynomial in y^2, ascending, from p's coefficients."""
+    signs = (-1.0) ** np.arange(len(coefficients))
+    in_mu = polymul(coefficients, coefficients * signs)  # p(mu) p(-mu), in which mu^2 is -y^2
+    even = in_mu[::2]
+    return np.asarray(even * (-1.0) ** np.arange(len(even)), float)
+
+
+def _kink(pencil: Pencil) -> BestPoint | FarLimit | None:
     """Return the best point of a method of several steps, or the value its |z_p| falls towards."""
     for search in SEARCHES[:-1]:
         with suppress(NumericalError):
@@ -177,17 +230,16 @@ def _kink(pencil: Pencil) -> BestPoint | float | None:
     return _checked_kink(pencil, SEARCHES[-1])
 
 
-def _checked_kink(pencil: Pencil, search: _Search) -> BestPoint | float | None:
+def _checked_kink(pencil: Pencil, search: _Search) -> BestPoint | FarLimit | None:
     """Return the same from one search; NumericalError if it fails its check."""
-    stable = region(pencil.method)
-    extent = stable.view
+    extent = region(pencil.method).view
     if extent is None:
         return None
-    limit = math.inf if stable.bounded else _limit(pencil)
-    if limit == 0:
+    limit = _limit(pencil)
+    if limit.z_abs == 0:
         return limit
     least = _smallest(pencil, search)
-    if limit < least.z_abs:
+    if limit.z_abs < least.z_abs * (1 - ROUNDING):
         return limit
     end = _other_end(pencil, least)
     found = _described(pencil, least.z_abs, [least.mu] if end is None else [least.mu, end], arc=end is not None)
@@ -195,15 +247,17 @@ def _checked_kink(pencil: Pencil, search: _Search) -> BestPoint | float | None:
     return found
 
 
-def _limit(pencil: Pencil) -> float:
-    """Return the largest modulus of the roots that pi(., mu) tends to as mu grows; infinite where one does."""
+def _limit(pencil: Pencil) -> FarLimit:
+    """Return the largest modulus of the roots that pi(., mu) tends to as mu grows; infinite where one does.
+
+    Both mu grow as beta_hat does, at any alpha_hat.
+    """
     polynomial = np.trim_zeros(pencil.table[:, -1], "b")
-    if len(polynomial) < len(pencil.table):
-        return math.inf
-    return float(np.abs(polyroots(polynomial)).max())
+    z_abs = math.inf if len(polynomial) < len(pencil.table) else float(np.abs(polyroots(polynomial)).max())
+    return FarLimit(z_abs, direction=(0, 1))
 
 
-def _in_the_plane(method: Method) -> BestPoint | float | None:
+def _in_the_plane(method: Method) -> BestPoint | FarLimit | None:
     """Return the best point of a second-order scheme, or the value its |z_p| falls towards."""
     stable = region(method)
     if stable.view is None:
@@ -212,7 +266,7 @@ def _in_the_plane(method: Method) -> BestPoint | float | None:
         least = _checked_plane_least(method, stable.view, unbounded=not stable.bounded, finer=1)
     except NumericalError:
         least = _checked_plane_least(method, stable.view, unbounded=not stable.bounded, finer=FINER)
-    if isinstance(least, float):
+    if isinstance(least, FarLimit):
         return least
     return BestPoint(
         method=method,
@@ -227,7 +281,7 @@ def _in_the_plane(method: Method) -> BestPoint | float | None:
     )
 
 
-def _checked_plane_least(method: Method, view: Extent, unbounded: bool, finer: int) -> PlaneLeast | float:
+def _checked_plane_least(method: Method, view: Extent, unbounded: bool, finer: int) -> PlaneLeast | FarLimit:
     """Return the least |z_p| from one sampling of the plane; NumericalError if it fails its check."""
     pencil = plane_pencil_of(method, free=True)
     least = plane_least(pencil, view, unbounded, finer)
@@ -236,22 +290,32 @@ def _checked_plane_least(method: Method, view: Extent, unbounded: bool, finer: i
     return least
 
 
-def _beside_a_fixed_pole(method: Method, fixed: complex) -> BestPoint | float | None:
+def _beside_a_fixed_pole(method: Method, fixed: complex) -> BestPoint | FarLimit | None:
     """Return the best point of the method without the factor that rho and sigma share, where that decides.
 
-    None if the fixed pole is on the unit circle.
+    None if the fixed pole is on the unit circle, or nothing is stable.
     """
-    if not region(method).boundary:
+    if region(method).extent is None:
         return None
     second_order = isinstance(method.scheme, SecondOrder)
     others = _in_the_plane(method) if second_order else _best_or_limit(without_shared_factor(method))
     if others is None:
         return None
-    if isinstance(others, float):
-        return max(others, abs(fixed))
+    if isinstance(others, FarLimit):
+        return _far_enough(method, fixed, others)
     if others.z_abs >= abs(fixed):
         return replace(others, method=method, fixed=fixed)
     return replace(others, method=method, fixed=fixed, z_abs=abs(fixed), meeting=(fixed,), elsewhere=(), arc=False)
+
+
+def _far_enough(method: Method, fixed: complex, others: FarLimit) -> BestPoint | FarLimit:
+    """Return a point where the other poles, which fall as parameters grow, are below a fixed one; else their limit."""
+    if others.z_abs >= abs(fixed):
+        return others
+    pencil = free_pencil_of(method)
+    t = next(t for t in 2.0 ** np.arange(FURTHEST) if largest_modulus(pencil, *others.point(t)) < abs(fixed))
+    alpha_hat, beta_hat = others.point(float(t))
+    return BestPoint(method, abs(fixed), alpha_hat, beta_hat, (fixed,), False, (), arc=False, fixed=fixed)
 
 
 def _zeros(pencil: Pencil) -> list[complex]:
@@ -320,7 +384,8 @@ def _local_minima(pencil: Pencil, search: _Search) -> list[_Candidate]:
     seen = np.concatenate(stable.boundary) if stable.bounded else np.array(list(product(*stable.view)))
     corners = np.abs(seen @ pencil.to_feedback.T)
     reach = float(np.max(corners[:, 0] + np.sqrt(corners[:, 1])))  # of both roots of the feedback
-    x, y = np.linspace(-reach, reach / 4, search.columns + 1), np.linspace(0, reach, search.rows + 1)
+    rightmost = 0.0 if pencil.implicit else reach / 4
+    x, y = np.linspace(-reach, rightmost, search.columns + 1), np.linspace(0, reach, search.rows + 1)
     grid = x + 1j * y[:, np.newaxis]
     sampled = np.full(grid.shape, np.inf)
     stable_mu = all_inside(pencil, grid, 1.0)
@@ -332,7 +397,9 @@ def _local_minima(pencil: Pencil, search: _Search) -> list[_Candidate]:
     lowest = np.argsort(sampled[rows, columns])[: search.starts]
 
     def to_upper_half(points: FloatArray) -> FloatArray:
-        return np.stack([points[..., 0], np.abs(points[..., 1])], axis=-1)
+        """Return points on or above the real axis, and of an implicit method left of the imaginary one."""
+        x = np.minimum(points[..., 0], 0) if pencil.implicit else points[..., 0]
+        return np.stack([x, np.abs(points[..., 1])], axis=-1)
 
     reached = sampled[rows[lowest], columns[lowest]]  # by each search, whose grids hold the place where it was
 
@@ -395,6 +462,15 @@ def _kinks(pencil: Pencil, mu: complex) -> list[_Kink]:
         slope = polyval2d(x[1:], x[:1], pencil.table_by_z)
         return np.concatenate([on_the_locus(x), slope.real, slope.imag])
 
+    def without_slope_on_edge(x: ComplexArray) -> FloatArray:
+        z = x[1:]
+        same_mu = np.broadcast_to(x[0], z.shape)
+        by_mu, by_z = polyval2d(z, same_mu, pencil.table_by_mu), polyval2d(z, same_mu, pencil.table_by_z)
+        return np.concatenate([on_the_locus(x), (-by_mu / (z * by_z)).imag, x[:1].real])
+
+    def two_on_edge(x: ComplexArray) -> FloatArray:
+        return np.concatenate([on_the_locus(x), equal_moduli(x), x[:1].real])
+
     roots = roots_in_z(pencil, np.array([mu]))[:, 0]
     z = roots[np.argsort(-np.abs(roots))]
     kinks = [_Kink(two_on_the_axis, [z[0], other]) for other in z[1:3]]
@@ -402,6 +478,9 @@ def _kinks(pencil: Pencil, mu: complex) -> list[_Kink]:
     kinks.append(_Kink(double_root, [z[:2].mean()], multiplicity=2))
     if len(z) > 2:
         kinks.append(_Kink(three, [z[0], z[1], z[2]]))
+    if pencil.implicit and abs(mu.real) < ON_EDGE * abs(mu):
+        kinks.append(_Kink(without_slope_on_edge, [z[0]]))
+        kinks += [_Kink(two_on_edge, [z[0], other]) for other in z[1:3]]
     return kinks
 
 
@@ -422,8 +501,12 @@ def _solutions(pencil: Pencil, start: complex) -> Iterator[_Candidate]:
             closest = np.argmin(np.abs(others - z))
             matched &= bool(np.abs(others[closest] - z) <= DOUBLE * z_abs)
             others = np.delete(others, closest)
+        mu = _upper(x[0])
+        if pencil.implicit and mu.real > 0:
+            matched &= mu.real <= ROUNDING * abs(mu)
+            mu = complex(0, mu.imag)
         if matched and np.all(np.abs(others) <= z_abs * (1 + ROUNDING)):
-            yield _Candidate(z_abs, _upper(x[0]))
+            yield _Candidate(z_abs, mu)
 
 
 def _upper(mu: complex) -> complex:

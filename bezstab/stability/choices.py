@@ -70,7 +70,8 @@ class Choice:
 
     All dimensionless. `margins` is None unless the point is stable and they were asked for. `searched` is the largest
     alpha h and beta h (of the method's step) that were looked at where the region goes on without end and a stronger
-    feedback might be better by the goal; None where all of the region was searched, or none of it.
+    feedback might be better by the goal; None where all of the region was searched, or none of it. `margins_reason`
+    says why they are not known, though asked for at a stable point; else None.
     """
 
     method: Method
@@ -82,6 +83,7 @@ class Choice:
     worst: float
     margins: Margins | None
     searched: float | None = None
+    margins_reason: str | None = None
 
     def __repr__(self) -> str:
         place = f"alpha_hat = {self.alpha_hat:.6g}, beta_hat = {self.beta_hat:.6g}"
@@ -244,9 +246,9 @@ def describe_point(
 ) -> Choice:
     """Return what there is to say of an exact, dimensionless point; `goal` is only kept.
 
-    `spread` is the share by which alpha and beta may be off; `margins`: whether those are found and proven.
-    NumericalError if a pole (a root of paper Eq. 17) leaves the range of float64; InputError for a spread outside 0
-    to 1.
+    `spread` is the share by which alpha and beta may be off; `margins`: whether those are found and proven. Where that
+    fails the verdict stands nevertheless, and `margins_reason` says why. NumericalError if a pole (a root of paper Eq.
+    17) leaves the range of float64; InputError for a spread outside 0 to 1.
     """
     _check_spread(spread)
     pencil = any_pencil_of(method)
@@ -254,6 +256,12 @@ def describe_point(
     proven = verdict(method, alpha_hat, beta_hat)
     offsets = 1 + spread * np.linspace(-1, 1, SPREAD_POINTS)
     near_a, near_b = np.meshgrid(a * offsets, b * offsets**2)
+    found, trouble = None, None
+    if margins and proven == "converges":
+        try:
+            found = stability_margins(method, alpha_hat, beta_hat)
+        except NumericalError as error:
+            trouble = str(error)
     return Choice(
         method=method,
         goal=goal,
@@ -262,7 +270,8 @@ def describe_point(
         verdict=proven,
         pole=complex(largest_pole(pencil, a, b)),
         worst=float(largest_modulus(pencil, near_a.ravel(), near_b.ravel()).max()),
-        margins=stability_margins(method, alpha_hat, beta_hat) if margins and proven == "converges" else None,
+        margins=found,
+        margins_reason=trouble,
     )
 
 

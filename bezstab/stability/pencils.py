@@ -60,7 +60,9 @@ class Pencil:
         Beyond the nearest of them a root's power series diverges. Found on first use: the resultant takes longer than
         a pole. NumericalError if it leaves the range of float64.
         """
-        z = polyroots(np.trim_zeros(_floats(self.method, branch_polynomial(self.method)), "b")).astype(complex)
+        exact = branch_polynomial(self.method)
+        largest = max(map(abs, exact))  # perhaps beyond float64, or below it: a scale says nothing about roots
+        z = polyroots(np.trim_zeros(_floats(self.method, [c / largest for c in exact]), "b")).astype(complex)
         mu = roots_in_mu(self, z)
         with np.errstate(invalid="ignore"):  # an infinite mu has no slope, which some versions of numpy warn of
             slope = np.abs(polyval2d(np.broadcast_to(z, mu.shape), mu, self.table_by_z))

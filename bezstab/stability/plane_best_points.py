@@ -2,7 +2,8 @@ r"""The smallest |z_p| of a second-order scheme over alpha_hat, beta_hat >= 0, a
 
 Its poles depend on both parameters as they like, so besides the kinks of mu-methods (see best_points) there are more
 kinds of least value: poles that are all zero, a triple one, a double one that is least along the curve on which it is
-double, and a single pair where its modulus has no slope. Every kind is a square system of real equations for alpha_hat,
+double, and a single pair where its modulus has no slope. And it may lie on the edge alpha_hat = 0, where a slope along
+the edge decides. Every kind is a square system of real equations for alpha_hat,
 beta_hat and the poles that meet; sampled minima start Newton's method on each, and the least solution is the answer.
 
       beta_hat |     all zero    two equations               |z_1| = |z_2| = |z_3|    or two of them with
@@ -18,11 +19,12 @@ from dataclasses import dataclass
 from itertools import combinations, pairwise
 
 import numpy as np
-from numpy.polynomial.polynomial import polyder, polyval, polyval2d, polyval3d
+from numpy.polynomial.polynomial import polyder, polyval2d, polyval3d
 
 from bezstab.errors import NumericalError
 from bezstab.stability.arrays import EPS, ComplexArray, FloatArray
 from bezstab.stability.closed_loop import largest_modulus
+from bezstab.stability.far_limits import FarLimit, least_far_limit
 from bezstab.stability.plane_cells import Extent
 from bezstab.stability.plane_pencils import PlanePencil, plane_roots
 from bezstab.stability.searches import zoom_on_minimum
@@ -36,9 +38,8 @@ FAR = (1e4, 1e2)  # likewise, where a region goes on: a damping of infinity by l
 STARTS = 8  # local minima that are followed up
 HOPEFUL = 1.05  # times the least solution: the zoom on a minimum above it has not stopped so far short
 ZOOM_POINTS, ZOOM, ZOOMS = 13, 0.6, 24  # 0.6^23 = 8e-6 of the grid's spacing: a start, from which Newton takes over
-ALL_ZERO = 1e-10  # of P's largest coefficient: the others, where all poles are to be zero
-RATIO, RATIOS = 1e6, 2001  # of alpha_hat to beta_hat, either way
-NOTHING = 2e-3  # |z_p| of a triple pole at zero, where the ratio is off by a rounding of 1e-9
+ALL_ZERO = 1e-10  # of the sum of its terms' sizes: a coefficient that vanishes, and is not only small beside others
+ON_EDGE = 1e-2  # alpha_hat from here down: the least value may lie where it is zero
 NO_LONGER = 1e-6  # relative: what is lower by less is as low
 ALIKE = 1e-4  # relative: a triple pole is known to 1e-5, and passes for a kink of other kinds beside it
 PATH = 400  # places of a double pole between one and zero
@@ -83,6 +84,15 @@ class _Tables:
         """Return P's coefficients at a point, ascending."""
         return np.asarray(polyval2d(alpha_hat, beta_hat, np.moveaxis(self.p, 0, -1)), float)
 
+    def vanish(self, alpha_hat: float, beta_hat: float) -> bool:
+        """Return whether all of P's coefficients but the leading one are zero, to rounding.
+
+        That they are small beside the leading one does not say it: so they may be wherever a parameter is large.
+        """
+        others = np.moveaxis(self.p[:-1], 0, -1)
+        sizes = polyval2d(max(alpha_hat, 1.0), max(beta_hat, 1.0), np.abs(others))
+        return bool((np.abs(polyval2d(alpha_hat, beta_hat, others)) <= ALL_ZERO * sizes).all())
+
     def at(self, table: FloatArray, z: complex, alpha_hat: float, beta_hat: float) -> complex:
         """Return the value of one of the tables."""
         return complex(polyval3d(z, alpha_hat, beta_hat, table))
@@ -94,11 +104,11 @@ def _derivative(table: FloatArray, axis: int) -> FloatArray:
     return np.asarray(polyder(table, axis=axis), float)
 
 
-def plane_least(pencil: PlanePencil, view: Extent, unbounded: bool, finer: int = 1) -> PlaneLeast | float:
-    """Return where |z_p| is least over alpha_hat, beta_hat >= 0, or the value it falls towards without end.
+def plane_least(pencil: PlanePencil, view: Extent, unbounded: bool, finer: int = 1) -> PlaneLeast | FarLimit:
+    """Return where |z_p| is least over alpha_hat, beta_hat >= 0, or the value that it falls towards without end.
 
-    `view` holds every corner of the region; `finer`: so many times the samples and starts. NumericalError if no
-    solution is as small as a sampled value.
+    The latter where that value is below |z_p| at every point. `view` holds every corner of the region; `finer`: so many
+    times the samples and starts. NumericalError if no solution is as small as a sampled value.
     """
     high = np.array([max(view[0][1], 0.0), np.sqrt(max(view[1][1], 0.0))])
     if unbounded:
@@ -111,10 +121,9 @@ def plane_least(pencil: PlanePencil, view: Extent, unbounded: bool, finer: int =
         if best is None or value < HOPEFUL * best.z_abs:
             solved += _solutions(pencil, place)
     best = _best(solved)
-    if unbounded:
-        limit = _least_at_infinity(pencil)
-        if limit < min(lowest, best.z_abs if best else np.inf) * (1 - NO_LONGER):
-            return limit
+    limit = least_far_limit(pencil)
+    if limit.z_abs < min(lowest, best.z_abs if best else np.inf) * (1 - NO_LONGER):
+        return limit
     if best is None or best.z_abs > lowest * (1 + ROUNDING) + EPS**0.5 * (lowest < EPS**0.25):
         raise NumericalError(
             f"{pencil.method.name}: |z_p| = {lowest:.6g} was sampled, but no kink as low could be solved for"
@@ -134,39 +143,6 @@ def _best(solved: list[PlaneLeast]) -> PlaneLeast | None:
 
     zero = [each for each in alike if not each.z_abs]
     return min(zero or alike, key=how_well)
-
-
-def _least_at_infinity(pencil: PlanePencil) -> float:
-    """Return the least |z_p| in the limit of large parameters, over all ratios of the two.
-
-    There P's terms of the highest degree in alpha_hat and beta_hat alone decide. Infinite where one of their roots is.
-    """
-    degree = max(i + j for terms in pencil.terms for i, j, _ in terms)
-    leading = [
-        [sum(c for i, j, c in terms if (i, j) == (p, degree - p)) for p in range(degree + 1)] for terms in pencil.terms
-    ]
-
-    def modulus(log_ratios: FloatArray) -> FloatArray:
-        ratios = np.exp(log_ratios)
-        coefficients = np.array([polyval(ratios, each) for each in leading])
-        infinite = coefficients[-1] == 0
-        monic = coefficients[:-1] / np.where(infinite, 1, coefficients[-1])
-        companion = np.zeros((ratios.size, pencil.degree, pencil.degree))
-        companion[:, range(1, pencil.degree), range(pencil.degree - 1)] = 1
-        companion[:, :, -1] = -monic.T
-        return np.where(infinite, np.inf, np.abs(np.linalg.eigvals(companion)).max(axis=-1))
-
-    samples = np.linspace(-np.log(RATIO), np.log(RATIO), RATIOS)
-    lowest = float(samples[np.argmin(modulus(samples))])
-    _, value = zoom_on_minimum(
-        lambda points: modulus(points[:, 0]),
-        np.array([lowest]),
-        np.array([samples[1] - samples[0]]),
-        points=ZOOM_POINTS,
-        shrink=ZOOM,
-        rounds=2 * ZOOMS,
-    )
-    return 0.0 if value < NOTHING else float(value)
 
 
 def _axis(end: float, count: int) -> FloatArray:
@@ -209,8 +185,8 @@ def _local_minima(pencil: PlanePencil, high: FloatArray, finer: int) -> Iterator
         yield float(value), np.array([place[0], place[1] ** 2])
 
 
-def _kinds(tables: _Tables, z: ComplexArray) -> Iterator[_Kind]:
-    """Yield the kinds of least value near a point with these poles, the largest first."""
+def _kinds(tables: _Tables, z: ComplexArray, on_edge: bool) -> Iterator[_Kind]:
+    """Yield the kinds of least value near a point with these poles, the largest first; on_edge: with alpha_hat = 0."""
 
     def parts(values: list[complex]) -> list[float]:
         return [part for value in values for part in (value.real, value.imag)]
@@ -226,7 +202,8 @@ def _kinds(tables: _Tables, z: ComplexArray) -> Iterator[_Kind]:
         if not by_z or not z:
             return np.full(2, np.nan)
         slopes = [-tables.at(table, z, a, b) / (z * by_z) for table in (tables.by_alpha, tables.by_beta)]
-        return np.array([slope.real for slope in slopes])
+        # by the logarithms of large parameters: by themselves every slope fades where they grow
+        return np.array([slope.real for slope in slopes]) * (max(a, 1.0), max(b, 1.0))
 
     def all_zero(a: float, b: float, z: ComplexArray) -> list[float]:
         *others, leading = tables.coefficients(a, b)
@@ -264,6 +241,15 @@ def _kinds(tables: _Tables, z: ComplexArray) -> Iterator[_Kind]:
     def several(a: float, b: float, z: ComplexArray) -> list[float]:
         return [*on_p(a, b, z), *equal(z)]
 
+    def edge_without_slope(a: float, b: float, z: ComplexArray) -> list[float]:
+        return [*on_p(a, b, z), a, float(log_gradient(a, b, complex(z[0]))[1])]
+
+    def edge_two(a: float, b: float, z: ComplexArray) -> list[float]:
+        return [*several(a, b, z), a]
+
+    def edge_double(a: float, b: float, z: ComplexArray) -> list[float]:
+        return [*double(a, b, z), a]
+
     upper = [complex(each.real, abs(each.imag)) for each in z]
     different: list[complex] = []
     for each in upper:
@@ -285,6 +271,11 @@ def _kinds(tables: _Tables, z: ComplexArray) -> Iterator[_Kind]:
         yield _Kind(two_opposed, [different[0], other])
     if len(different) > 2:
         yield _Kind(several, different[:3])
+    if on_edge:
+        yield _Kind(edge_without_slope, different[:1])
+        yield _Kind(edge_double, [middle], multiplicity=2)
+        for other in different[1:4]:
+            yield _Kind(edge_two, [different[0], other])
 
 
 def _solutions(pencil: PlanePencil, start: FloatArray) -> Iterator[PlaneLeast]:
@@ -294,7 +285,7 @@ def _solutions(pencil: PlanePencil, start: FloatArray) -> Iterator[PlaneLeast]:
     z = z[np.argsort(-np.abs(z), kind="stable")]
     if abs(z[0]) < EPS**0.25:  # so near to all zero that nothing else is to be told
         z = z + EPS**0.25
-    for kind in _kinds(tables, z):
+    for kind in _kinds(tables, z, on_edge=bool(start[0] < ON_EDGE)):
         found = _newton(kind, start)
         if found is None:
             continue
@@ -303,8 +294,7 @@ def _solutions(pencil: PlanePencil, start: FloatArray) -> Iterator[PlaneLeast]:
         if not (alpha_hat >= 0 and beta_hat >= 0):
             continue
         if not kind.starts:
-            coefficients = np.abs(tables.coefficients(alpha_hat, beta_hat))
-            if coefficients[:-1].max() <= ALL_ZERO * coefficients[-1]:
+            if tables.vanish(alpha_hat, beta_hat):
                 yield PlaneLeast(0.0, alpha_hat, beta_hat, (0j,), pencil.degree, residual + kind.loose)
             continue
         z_abs = float(np.abs(meeting).max())

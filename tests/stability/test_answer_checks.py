@@ -31,9 +31,9 @@ from tests.stability.made_methods import runge_kutta
 
 @pytest.fixture(autouse=True)
 def nothing_remembered() -> Iterator[None]:
-    best_point.cache_clear()
+    best_points._best_or_limit.cache_clear()
     yield
-    best_point.cache_clear()
+    best_points._best_or_limit.cache_clear()
 
 
 @pytest.mark.parametrize("name", ["B2", "B4", "AB4", "ABM2", "ABM3"])
@@ -110,7 +110,7 @@ def test_what_fails_at_first_is_searched_more_finely(monkeypatch: pytest.MonkeyP
 
     monkeypatch.setattr(best_points, "_smallest", another)
     monkeypatch.setattr(choices, "_least", beside)
-    best_point.cache_clear()
+    best_points._best_or_limit.cache_clear()
     found = best_point(method)
     assert found
     assert found.z_abs == pytest.approx(right_best.z_abs, rel=1e-12)

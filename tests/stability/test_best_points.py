@@ -10,6 +10,7 @@ from bezstab.errors import NumericalError
 from bezstab.methods import LinearMultistep, Method, RungeKutta, lookup
 from bezstab.stability import (
     BestPoint,
+    FarLimit,
     Pencil,
     best_point,
     best_points,
@@ -21,6 +22,8 @@ from bezstab.stability import (
 )
 from bezstab.stability.best_points import _meeting_poles
 from tests.methods.kinds import EXPLICIT, sampled
+from tests.reference.least_by_descent import least_within, modulus_of, random_implicit_runge_kutta
+from tests.reference.random_methods import other_random_method
 from tests.reference.rationals import rationals
 from tests.reference.second_order_methods import as_second_order
 
@@ -70,7 +73,7 @@ def test_a_recipe_that_spells_out_a_method_has_its_best_point(name: str) -> None
 
 def test_so_it_has_its_limit() -> None:
     assert best_point(as_second_order("bdf3")) is None
-    assert falls_towards(as_second_order("bdf3")) == 0
+    assert falls_towards(as_second_order("bdf3")) == FarLimit(0, direction=(0, 1))
 
 
 @pytest.mark.parametrize("name", ["B2", "AB2"])
@@ -184,6 +187,58 @@ def test_zeros_of_r_a_third_of_a_percent_apart_are_two_deadbeat_points() -> None
     assert found
     places = sorted([found.alpha_hat, *(alpha_hat for alpha_hat, _ in found.elsewhere)])
     assert places == pytest.approx(sorted(float(2 * zero) for zero in (first, second, third)), rel=1e-10)
+
+
+NO_ZERO = {
+    "bounded": RungeKutta(
+        ((F(1, 2), F(0), F(0)), (F(1, 3), F(1, 2), F(0)), (F(1), F(1, 3), F(1, 2))), (F(-2, 5), F(-11, 12), F(139, 60))
+    ),
+    "unbounded": RungeKutta(((F(0), F(-2)), (F(1), F(121, 101))), (F(203, 424), F(221, 424))),
+}
+
+
+@pytest.mark.parametrize(("name", "z_abs"), [("bounded", 0.0540368), ("unbounded", 0.1251474)])
+def test_without_a_zero_of_r_where_mu_is_damped_the_least_value_is_on_the_edge(name: str, z_abs: float) -> None:
+    """log|R| is harmonic there: it has no minimum inside. Both have |R| < 1 on a piece of the imaginary axis."""
+    method = Method(name, NO_ZERO[name], "")
+    found = best_point(method)
+    assert found
+    assert falls_towards(method) is None
+    assert found.alpha_hat == 0
+    modulus = modulus_of(method)
+    assert float(modulus(np.zeros(1), np.array([found.beta_hat]))[0]) == pytest.approx(found.z_abs, rel=1e-9)
+    on_edge = modulus(np.zeros(20001), np.linspace(1e-3, 20, 20001))
+    assert found.z_abs == pytest.approx(on_edge.min(), abs=1e-6)
+    assert found.z_abs == pytest.approx(z_abs, abs=1e-7)
+
+
+def held_against_descent(method: Method) -> None:
+    """The least value is attained where it is said to be, or approached and not attained; nothing found is lower."""
+    modulus = modulus_of(method)
+    near, far = (least_within(modulus, furthest)[0] for furthest in (1e4, 1e12))
+    found, limit = best_point(method), falls_towards(method)
+    if found:
+        assert found.z_abs <= min(near, far) * (1 + 1e-6) + 1e-9
+        # a double pole at the rounded point is known to the root of rounding, a quadruple one to its fourth root
+        assert float(modulus(np.array([found.alpha_hat]), np.array([found.beta_hat]))[0]) - found.z_abs < 1e-3
+    elif limit:
+        assert limit.z_abs * (1 - 1e-5) - 1e-9 <= far < near
+        on_the_way = [float(modulus(*(np.array([x]) for x in limit.point(t)))[0]) for t in (1e4, 1e8)]
+        assert on_the_way[1] == pytest.approx(limit.z_abs, abs=1e-3)
+        assert abs(on_the_way[1] - limit.z_abs) < abs(on_the_way[0] - limit.z_abs)
+    else:
+        assert min(near, far) > 1 - 1e-6
+
+
+@pytest.mark.parametrize("number", [*range(2), *(pytest.param(k, marks=pytest.mark.slow) for k in range(2, 24))])
+def test_the_least_value_of_random_implicit_runge_kutta_methods(number: int) -> None:
+    held_against_descent(random_implicit_runge_kutta(number))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", range(1, 48, 2))
+def test_the_least_value_of_random_recipes(number: int) -> None:
+    held_against_descent(other_random_method(number))
 
 
 def test_a_small_pole_off_the_real_axis_is_shown_where_it_lies() -> None:

@@ -2,12 +2,16 @@ import numpy as np
 import pytest
 
 from bezstab.methods import Method, lookup, recipe
-from bezstab.stability import best_point, choose, falls_towards, region, spectral_radius
+from bezstab.stability import FarLimit, Goal, best_point, choose, falls_towards, region, spectral_radius
 from bezstab.stability.plane_best_points import _axis, critical_point
 from bezstab.stability.plane_pencils import plane_pencil_of
 from tests.reference.companion_poles import radius
 from tests.reference.random_methods import other_random_method
 from tests.reference.second_order_methods import as_second_order, companion_poles, newmark, second_order
+
+IMPLICIT_SPRING = Method(
+    "implicit spring", recipe({"x1": "x0 + v1", "v1": "v0 + acc", "acc": "acceleration(x1, v0)"}), ""
+)
 
 DEADBEAT = {
     "half": (1, 1),  # z^2 = 0 where 1 - alpha = 0 and alpha + beta = 2
@@ -59,17 +63,39 @@ def test_a_method_of_mu_written_as_second_order_has_the_same_best_point(name: st
 @pytest.mark.parametrize(
     ("method", "limit"),
     [
-        (second_order("implicit euler"), 0),
-        (second_order("imex"), 0),
-        (lookup("implicit-euler"), 0),
-        (lookup("bdf2"), 0),
-        (lookup("bdf4"), 0),
+        (second_order("implicit euler"), FarLimit(0, (0, 1))),
+        (IMPLICIT_SPRING, FarLimit(0, (0, 1))),
+        (lookup("implicit-euler"), FarLimit(0, (0, 1))),
+        (lookup("bdf2"), FarLimit(0, (0, 1))),
+        (lookup("bdf4"), FarLimit(0, (0, 1))),
     ],
     ids=str,
 )
-def test_some_have_no_best_point_because_the_modulus_falls_on(method: Method, limit: float) -> None:
+def test_some_have_no_best_point_because_the_modulus_falls_on(method: Method, limit: FarLimit) -> None:
     assert best_point(method) is None
     assert falls_towards(method) == limit
+
+
+def test_it_may_fall_along_one_ratio_of_both_parameters_alone() -> None:
+    """Damping implicit, spring explicit: (1 + a) z^2 - (2 + a - b) z + 1, which tends to z^2 - (1 - b / a) z."""
+    method = second_order("imex")
+    assert best_point(method) is None
+    limit = falls_towards(method)
+    assert limit
+    assert (limit.z_abs, limit.direction) == (0, (1, 1))
+    assert limit.ratio == pytest.approx(1)
+
+
+@pytest.mark.parametrize("goal", ["fastest", "robust"])
+def test_what_is_recommended_then_is_as_strong_as_was_searched(goal: Goal) -> None:
+    """Of (1 + b) z^2 - (2 - a) z + 1 - a, which is fastest where both z are (2 - a) / 2 / (1 + b)."""
+    choice = choose(IMPLICIT_SPRING, goal)
+    assert choice.searched == 4
+    assert choice.beta_hat <= 16
+    if goal == "fastest":
+        alpha_hat = 8 * 17**0.5 - 32  # (2 - a)^2 = 4 (1 + b) (1 - a) with b = 16
+        assert (choice.alpha_hat, choice.beta_hat) == pytest.approx((alpha_hat, 16))
+        assert abs(choice.pole) == pytest.approx((2 - alpha_hat) / 34)
 
 
 def test_what_has_a_best_point_falls_towards_nothing() -> None:

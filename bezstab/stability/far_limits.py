@@ -1,0 +1,150 @@
+r"""What |z_p| of a second-order scheme tends to where alpha_hat or beta_hat grow without end, and the least of that.
+
+Along alpha_hat = x t^p, beta_hat = y t^q those terms alpha_hat^i beta_hat^j of P decide as t grows whose p i + q j is
+the largest: a corner or a side of the polygon of all exponents (i, j), Newton's.
+
+        j ^      side: direction (0, 1), beta_hat alone grows
+          |  o-------o
+          |  |        \  side: direction (1, 1), both grow in a fixed ratio
+          |  o         o
+          |   \        |  side: direction (1, 0), alpha_hat alone grows
+          |    o-------o
+          +------------------> i
+
+A corner belongs to all directions between those of its two sides: there one monomial decides, and the poles tend to the
+roots of one polynomial. On a side they depend on alpha_hat^q / beta_hat^p besides, which stays as it is. Every curve to
+infinity is like one of these, so the least over all of them is the infimum of what |z_p| tends to far out. (Where on a
+side all of P's coefficients vanish at once, lower terms would decide: that is left out.)
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.polynomial.polynomial import polyval
+
+from bezstab.stability.arrays import FloatArray
+from bezstab.stability.plane_pencils import PlanePencil
+from bezstab.stability.searches import zoom_on_minimum
+
+Direction = tuple[int, int]
+"""(p, q) of alpha_hat = x t^p, beta_hat = y t^q, without a common factor."""
+
+PREFERRED: tuple[Direction, ...] = ((0, 1), (1, 0), (1, 1), (1, 2))  # of the directions of a corner, the first it has
+RATIO, RATIOS = 1e6, 2001  # of alpha_hat^q to beta_hat^p, either way: beyond, the corners decide
+ZOOM_POINTS, ZOOM, ZOOMS = 13, 0.6, 48  # 0.6^47 = 4e-11 of the samples' spacing
+NO_LOWER = 1e-6  # relative: what is lower by less is rounding, of poles that are double
+VANISHES = 1e-9  # of the sum of its terms' sizes: a coefficient below it is zero, at a ratio that is known so well
+
+
+@dataclass(frozen=True)
+class FarLimit:
+    """A value that |z_p| tends to as the parameters grow without end, and along which way.
+
+    The way is alpha_hat = x t^p, beta_hat = y t^q as t grows, `direction` = (p, q). `ratio` is that of alpha_hat^q to
+    beta_hat^p, None if any will do.
+    """
+
+    z_abs: float
+    direction: Direction
+    ratio: float | None = None
+
+    def point(self, t: float) -> tuple[float, float]:
+        """Return (alpha_hat, beta_hat) on the way at t > 0."""
+        p, q = self.direction
+        ratio = 1.0 if self.ratio is None else self.ratio
+        if q == 0:
+            return t**p, 1 / ratio
+        return ratio ** (1 / q) * t**p, t**q
+
+
+def least_far_limit(pencil: PlanePencil) -> FarLimit:
+    """Return the least of all values that |z_p| tends to as alpha_hat >= 0 or beta_hat >= 0 grow; perhaps infinite."""
+    exponents = sorted({(i, j) for terms in pencil.terms for i, j, _ in terms})
+    sides = _directions_of_sides(exponents)
+    # the directions of a corner lie between those of two neighbouring sides, or before neither parameter grows
+    fan = pairwise([(0, -1), *sides, (-1, 0)])
+    on_corner = min((_on_corner(pencil, exponents, *between) for between in fan), key=lambda limit: limit.z_abs)
+    on_side = min((_on_side(pencil, side) for side in sides), key=lambda limit: limit.z_abs, default=on_corner)
+    return on_side if on_side.z_abs < on_corner.z_abs * (1 - NO_LOWER) else on_corner
+
+
+def _angle(direction: Direction) -> float:
+    return math.atan2(direction[1], direction[0])
+
+
+def _directions_of_sides(exponents: Sequence[Direction]) -> list[Direction]:
+    """Return the outward normals of the polygon's sides along which a parameter grows, turning from alpha to beta."""
+    normals: set[Direction] = set()
+    for i, j in exponents:
+        for k, m in exponents:
+            divisor = math.gcd(i - k, j - m)
+            normal = ((j - m) // divisor, (k - i) // divisor) if divisor else (0, 0)
+            if max(normal) > 0 and _highest(exponents, normal) == normal[0] * i + normal[1] * j:
+                normals.add(normal)
+    return sorted(normals, key=_angle)
+
+
+def _highest(exponents: Sequence[Direction], direction: Direction) -> int:
+    return max(direction[0] * i + direction[1] * j for i, j in exponents)
+
+
+def _on_corner(pencil: PlanePencil, exponents: Sequence[Direction], first: Direction, last: Direction) -> FarLimit:
+    """Return the limit in all directions strictly between two."""
+    inside = [each for each in PREFERRED if _angle(first) < _angle(each) < _angle(last)]
+    direction = inside[0] if inside else _primitive(first[0] + last[0], first[1] + last[1])
+    highest = _highest(exponents, direction)
+    coefficients = [
+        sum(c for i, j, c in terms if direction[0] * i + direction[1] * j == highest) for terms in pencil.terms
+    ]
+    return FarLimit(float(_largest_moduli(np.array(coefficients)[:, np.newaxis])[0]), direction)
+
+
+def _primitive(p: int, q: int) -> Direction:
+    divisor = math.gcd(p, q)
+    return p // divisor, q // divisor
+
+
+def _on_side(pencil: PlanePencil, direction: Direction) -> FarLimit:
+    """Return the least limit along a side's direction, over all ratios alpha_hat^q / beta_hat^p."""
+    p, q = direction
+    highest = max(p * i + q * j for terms in pencil.terms for i, j, _ in terms)
+    on_side = [[(i, j, c) for i, j, c in terms if p * i + q * j == highest] for terms in pencil.terms]
+    # all (i, j) on the side are one of them plus a multiple of (q, -p), and that multiple is the power of the ratio
+    power = [[i // q if q else -j // p for i, j, _ in terms] for terms in on_side]
+    lowest = min(each for powers in power for each in powers)
+    degree = max(each for powers in power for each in powers) - lowest
+    table = np.zeros((len(on_side), degree + 1))
+    for k, (terms, powers) in enumerate(zip(on_side, power, strict=True)):
+        for (_, _, c), each in zip(terms, powers, strict=True):
+            table[k, each - lowest] = c
+
+    def modulus(log_ratios: FloatArray) -> FloatArray:
+        return _largest_moduli(np.asarray(polyval(np.exp(log_ratios), table.T)))
+
+    samples = np.linspace(-np.log(RATIO), np.log(RATIO), RATIOS)
+    place, value = zoom_on_minimum(
+        lambda points: modulus(points[:, 0]),
+        np.array([samples[np.argmin(modulus(samples))]]),
+        np.array([samples[1] - samples[0]]),
+        points=ZOOM_POINTS,
+        shrink=ZOOM,
+        rounds=ZOOMS,
+    )
+    ratio = float(np.exp(place[0]))
+    sizes = polyval(ratio, np.abs(table[:-1]).T)
+    deadbeat = (np.abs(polyval(ratio, table[:-1].T)) <= VANISHES * sizes).all()
+    return FarLimit(0.0 if deadbeat else float(value), direction, ratio)
+
+
+def _largest_moduli(coefficients: FloatArray) -> FloatArray:
+    """Return the largest |z| of polynomials, ascending along the first axis; infinite where the leading one is zero."""
+    degree = len(coefficients) - 1
+    infinite = coefficients[-1] == 0
+    monic = coefficients[:-1] / np.where(infinite, 1, coefficients[-1])
+    companion = np.zeros((coefficients.shape[1], degree, degree))
+    companion[:, range(1, degree), range(degree - 1)] = 1
+    companion[:, :, -1] = -monic.T
+    return np.asarray(np.where(infinite, np.inf, np.abs(np.linalg.eigvals(companion)).max(axis=-1)))

@@ -1,0 +1,57 @@
+"""What is known is printed when a part of an answer fails, and what failed is named."""
+
+from fractions import Fraction
+from typing import Any
+
+import pytest
+
+from bezstab import stability
+from bezstab.errors import NumericalError
+from bezstab.stability import best_points, choices
+from tests.cli.running import rows, run
+
+POINT = ("--method", "B4", "--alpha", "1/2", "--beta", "1/10")
+
+
+def failing(*_: Any, **__: Any) -> Any:
+    raise NumericalError("B4: two branches could not be told apart")
+
+
+@pytest.mark.parametrize(("alpha", "safe"), [("1/2", True), ("5", False)])
+def test_without_an_alternative_check_still_answers(alpha: str, safe: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(stability.choices, "region", failing)
+    result = run("check", "--method", "B4", "--alpha", alpha, "--beta", "1/10")
+    assert result.exit_code == (0 if safe else 1)
+    assert result.stdout.startswith("Safe." if safe else "Not safe.")
+    assert "nothing to choose instead: B4: two branches could not be told apart" in result.stderr
+
+
+def test_without_margins_check_still_answers_and_claims_no_limit(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(choices, "stability_margins", failing)
+    result = run("check", *POINT, "--h", "0.001")
+    assert result.exit_code == 0
+    assert result.stdout.startswith("Safe. The error shrinks")
+    assert "not known: B4: two branches could not be told apart" in " ".join(result.stdout.split())
+    assert "unlimited" not in result.stdout
+    assert "without limit" not in result.stdout
+    given = rows("check", *POINT)[0]
+    assert (given["safe"], given["h_factor"]) == (True, None)
+    assert given["margins_reason"] == "B4: two branches could not be told apart"
+
+
+def test_without_a_best_point_region_still_prints_the_area(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(best_points, "best_point", failing)
+    result = run("region", "--method", "B4", "--figure", "none", "--table", "none")
+    assert result.exit_code == 3
+    assert "0.8096847184" in result.stdout
+    assert "not known: B4: two branches could not be told apart" in " ".join(result.stdout.split())
+
+
+def test_a_defect_does_not_end_as_unsafe(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*_: Any) -> Any:
+        return Fraction(1, 0)
+
+    monkeypatch.setattr(stability, "describe_point", broken)
+    result = run("check", *POINT)
+    assert result.exit_code == 70
+    assert "defect" in result.stderr
