@@ -35,6 +35,7 @@ From a method's polynomial in float64 (its pencil) upwards; a file imports only 
     growing_sequences    sequences of steps whose product grows
     step_sequences    whether feedback decays for every sequence of steps within a range
     damping_limits    up to which steps, by damping ratio
+    far_limits        what |z_p| of a second-order scheme tends to far out
     plane_best_points the smallest |z_p| of a second-order scheme
     best_points       the smallest |z_p|
     curve_choices     the best point of a curve

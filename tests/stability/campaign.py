@@ -24,7 +24,7 @@ sys.path.insert(0, str(Path(__file__).parent.parent.parent))  # run as a script,
 
 from bezstab.errors import NumericalError
 from bezstab.methods import Method
-from bezstab.stability import best_point, falls_towards, region
+from bezstab.stability import best_point, best_points, falls_towards, region
 from bezstab.stability.boundary_locus import bounds_of
 from tests.reference.companion_poles import closed_loop_tables
 from tests.reference.extents import contradictions as extent_contradictions
@@ -106,7 +106,7 @@ def _contradictions(method: Method, level: float) -> tuple[str, ...]:
     if level == 1:
         with suppress(NumericalError):
             best, limit = best_point(method), falls_towards(method)
-            found += best_point_contradictions(method, best, limit)
+            found += best_point_contradictions(method, best, limit.z_abs if limit else None)
     return tuple(found)
 
 
@@ -146,7 +146,7 @@ def other_cases_of(number: int) -> list[Case]:
 def _cases(of_level: Callable[[Method, float], Case], method: Method) -> list[Case]:
     """Return the cases of a method, and forget what was remembered of it."""
     cases = [of_level(method, level) for level in LEVELS]
-    for remembering in (region, bounds_of, closed_loop_tables, best_point, falls_towards):
+    for remembering in (region, bounds_of, closed_loop_tables, best_points._best_or_limit):
         remembering.cache_clear()
     return cases
 
