@@ -12,6 +12,7 @@ A file imports only from those above it; what draws is not loaded before it is u
     varying_rows        what steps that vary do, as keys of a row and in a sentence
     arrays              histories and maps as arrays for files
     style               what all figures share
+    histories           a history as a line, or as its envelope
     plot                one result on one Axes
     plane_figures       figures of the alpha_hat-beta_hat plane
     run_figures         figures of simulations

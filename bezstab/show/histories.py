@@ -9,14 +9,15 @@ from matplotlib.lines import Line2D
 
 from bezstab.stability import FloatArray
 
-FAST = 4.0  # points of print: of an oscillation with a shorter period a line leaves a blot
-AROUND = 3  # columns over which turning points are counted, so that line and envelope do not alternate
+FAST = 2.4  # points of print, twice a line's width: of an oscillation with a shorter period a line leaves a blot
+SHORTEST = 4  # columns of a band: an oscillation that dies out sooner is a spike, and as such well seen
 
 
 def history_line(axes: Axes, t: FloatArray, values: FloatArray, **line: Any) -> Line2D:
     """Draw values against t, both of shape (times,), and return the line; it is nan where a band stands for it.
 
-    The band is between the least and the largest value in each column of FAST points of print:
+    The band is between the least and the largest value in each column of FAST points of print, where an oscillation
+    as fast as that lasts:
 
             /\\        .-----.        values
         ---'  \\    .-'       :       : columns in which the values go up and down at least once:
@@ -31,13 +32,17 @@ def history_line(axes: Axes, t: FloatArray, values: FloatArray, **line: Any) -> 
     rising = np.diff(values) > 0
     turning_points = np.flatnonzero(rising[1:] != rising[:-1]) + 1
     turns = np.bincount(column[turning_points], minlength=columns)
-    fast = np.convolve(turns, np.ones(AROUND), mode="same") >= 2 * AROUND  # an oscillation turns twice
+    fast = turns >= 2  # an oscillation turns twice
+    fast[1:-1] |= fast[:-2] & fast[2:]  # what only just is fast is one band, not many
     least, largest = np.full(columns, np.nan), np.full(columns, np.nan)
     np.fmin.at(least, column, values)
     np.fmax.at(largest, column, values)
     colour = drawn.get_color()
     changes = np.flatnonzero(np.diff(fast, prepend=False, append=False))
     for first, end in zip(changes[::2], changes[1::2], strict=True):
+        if end - first < SHORTEST:
+            fast[first:end] = False
+            continue
         inside = np.r_[first, first:end, end - 1]  # the outer columns reach to their outer edges
         middles = (edges[first:end] + edges[first + 1 : end + 1]) / 2
         x = np.r_[edges[first], middles, edges[end]]

@@ -1,12 +1,15 @@
 """Figures of simulations: a scene, the history of a run, and what accuracy costs."""
 
+from textwrap import fill
+
+import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from bezstab.evidence import SweptRuns
 from bezstab.mechanism import Scene, Simulation
 from bezstab.show import plot
-from bezstab.show.style import column_figure, legend_below, line_at, mark_powers, styled, title_lines
+from bezstab.show.style import TITLE_WIDTH, column_figure, legend_below, line_at, mark_powers, styled, title_lines
 from bezstab.stability import FloatArray
 
 LARGEST_MARKER, MARKER_STEP, MARKER_SIZES = 7.0, 0.5, 10
@@ -22,7 +25,10 @@ def scene_figure(scene: Scene, q: FloatArray) -> Figure:
         axes = figure.add_subplot()
         plot.mechanism(scene, q, axes)
         axes.set(xlabel="x (m)", ylabel="y (m)", title=title_lines(scene.name))
-        axes.margins(0.15, 0.3)  # room for names
+        low, high = np.array(axes.dataLim.min), np.array(axes.dataLim.max)
+        room_for_names = 0.12 * (high - low).max()
+        axes.update_datalim([low - room_for_names, high + room_for_names])
+        axes.autoscale_view()
         axes.set_aspect("equal", adjustable="datalim")
         return figure
 
@@ -39,7 +45,7 @@ def history_figure(simulation: Simulation) -> Figure:
         rf"$\hat\alpha$ = {simulation.alpha_hat:g}, $\hat\beta$ = {simulation.beta_hat:g}",
     ]
     if simulation.failure:
-        title.append(title_lines(simulation.failure))
+        title.append(fill(simulation.failure, TITLE_WIDTH))
     with styled():
         figure = column_figure(1.3)
         upper, middle, lower = figure.subplots(3, 1, sharex=True)
