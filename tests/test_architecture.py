@@ -66,7 +66,8 @@ APPOINTED = {
         *("mechanism/equations.py", "mechanism/generated_code.py", "mechanism/start.py", "mechanism/observation.py"),
     },
     "matplotlib": {
-        *("show/style.py", "show/plot.py", "show/plane_figures.py", "show/run_figures.py", "show/explorer.py"),
+        *("show/style.py", "show/histories.py", "show/plot.py", "show/plane_figures.py", "show/run_figures.py"),
+        "show/explorer.py",
         *(f"paper/{name}.py" for name in ("regions", "slider_crank", "drift", "influence", "comparison")),
     },
     "click": {f"cli/{name}.py" for name in ("options", "output", "command_group")}

@@ -12,6 +12,7 @@ A file imports only from those above it; what draws is not loaded before it is u
     varying_rows        what steps that vary do, as keys of a row and in a sentence
     arrays              histories and maps as arrays for files
     style               what all figures share
+    histories           a history as a line, or as its envelope
     plot                one result on one Axes
     plane_figures       figures of the alpha_hat-beta_hat plane
     run_figures         figures of simulations
@@ -82,9 +83,10 @@ if TYPE_CHECKING:
         write_arrays,
     )
     from bezstab.show.explorer import open_explorer
+    from bezstab.show.histories import history_line
     from bezstab.show.plane_figures import comparison_figure, family_figure, region_figure, verdict_figure
     from bezstab.show.run_figures import history_figure, scene_figure, work_precision_figure
-    from bezstab.show.style import DASHES, column_figure, method_line, save, styled
+    from bezstab.show.style import DASHES, column_figure, legend_below, line_at, save, styled
 
 LOADED_LATE = {
     "arrays": (
@@ -96,6 +98,7 @@ LOADED_LATE = {
         "write_arrays",
     ),
     "explorer": ("open_explorer",),
+    "histories": ("history_line",),
     "plane_figures": (
         "comparison_figure",
         "family_figure",
@@ -110,7 +113,8 @@ LOADED_LATE = {
     "style": (
         "DASHES",
         "column_figure",
-        "method_line",
+        "legend_below",
+        "line_at",
         "save",
         "styled",
     ),
@@ -148,14 +152,16 @@ __all__ = [
     "growth_words",
     "history_arrays",
     "history_figure",
+    "history_line",
     "json_schema",
+    "legend_below",
     "like_point_row",
     "likeness_row",
     "limit_row",
+    "line_at",
     "linted_row",
     "map_arrays",
     "measurement_row",
-    "method_line",
     "method_row",
     "moving_row",
     "open_explorer",

@@ -1,0 +1,54 @@
+"""A history as a line, or, where it oscillates faster than print can show, as its envelope."""
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import to_rgba
+from matplotlib.lines import Line2D
+
+from bezstab.stability import FloatArray
+
+FAST = 2.4  # points of print, twice a line's width: of an oscillation with a shorter period a line leaves a blot
+SHORTEST = 4  # columns of a band: an oscillation that dies out sooner is a spike, and as such well seen
+
+
+def history_line(axes: Axes, t: FloatArray, values: FloatArray, **line: Any) -> Line2D:
+    """Draw values against t, both of shape (times,), and return the line; it is nan where a band stands for it.
+
+    The band is between the least and the largest value in each column of FAST points of print, where an oscillation
+    as fast as that lasts:
+
+            /\\        .-----.        values
+        ---'  \\    .-'       :       : columns in which the values go up and down at least once:
+               \\--'          :       : there a line would hide its own turning points
+                   '-.       :
+                      '------'
+    """
+    (drawn,) = axes.plot(t, values, **line)
+    columns = max(1, round(axes.bbox.width / axes.figure.dpi * 72 / FAST))
+    edges = np.linspace(t[0], t[-1], columns + 1)
+    column = np.clip(np.searchsorted(edges, t, side="right") - 1, 0, columns - 1)
+    rising = np.diff(values) > 0
+    turning_points = np.flatnonzero(rising[1:] != rising[:-1]) + 1
+    turns = np.bincount(column[turning_points], minlength=columns)
+    fast = turns >= 2  # an oscillation turns twice
+    fast[1:-1] |= fast[:-2] & fast[2:]  # what only just is fast is one band, not many
+    least, largest = np.full(columns, np.nan), np.full(columns, np.nan)
+    np.fmin.at(least, column, values)
+    np.fmax.at(largest, column, values)
+    colour = drawn.get_color()
+    changes = np.flatnonzero(np.diff(fast, prepend=False, append=False))
+    for first, end in zip(changes[::2], changes[1::2], strict=True):
+        if end - first < SHORTEST:
+            fast[first:end] = False
+            continue
+        inside = np.r_[first, first:end, end - 1]  # the outer columns reach to their outer edges
+        middles = (edges[first:end] + edges[first + 1 : end + 1]) / 2
+        x = np.r_[edges[first], middles, edges[end]]
+        face = to_rgba(colour, 0.35)
+        axes.fill_between(x, least[inside], largest[inside], facecolor=face, edgecolor=colour, linewidth=0.6)
+    hidden = fast[column]
+    hidden[1:-1] &= hidden[:-2] & hidden[2:]  # line and band touch
+    drawn.set_ydata(np.where(hidden, np.nan, values))
+    return drawn

@@ -1,0 +1,74 @@
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+
+from bezstab.show.histories import history_line
+from bezstab.show.style import column_figure
+from bezstab.stability import FloatArray
+
+
+def panel() -> Axes:
+    return column_figure().add_subplot()
+
+
+def bands(axes: Axes) -> list[PolyCollection]:
+    return [each for each in axes.collections if isinstance(each, PolyCollection)]
+
+
+def corners(band: PolyCollection) -> FloatArray:
+    """Return where a band's outline has its corners, of shape (corners, 2)."""
+    return np.asarray(band.get_paths()[0].vertices, dtype=float)
+
+
+def test_a_slow_history_is_its_line() -> None:
+    t = np.linspace(0, 1, 5001)
+    values = np.sin(2 * np.pi * 33 * t)
+    line = history_line(axes := panel(), t, values)
+    assert np.array(line.get_ydata()).tolist() == values.tolist()
+    assert not bands(axes)
+
+
+@pytest.mark.parametrize("cycles", [150, 400, 2500])
+def test_a_fast_oscillation_is_its_envelope(cycles: int) -> None:
+    """exp(-t) cos: between -exp(-t) and exp(-t), to what a column of the band and its decay in it come to."""
+    t = np.linspace(0, 1, 10_001)
+    line = history_line(axes := panel(), t, np.exp(-t) * np.cos(2 * np.pi * cycles * t))
+    (band,) = bands(axes)
+    x, y = corners(band).T
+    assert np.isnan(np.array(line.get_ydata(), dtype=float)[100:-100]).all()
+    assert np.abs(np.abs(y) / np.exp(-x) - 1).max() < 0.06
+    assert (y > 0).any()
+    assert (y < 0).any()
+
+
+def test_only_the_fast_part_is_a_band() -> None:
+    t = np.linspace(0, 1, 10_001)
+    values = np.where(t < 0.5, np.sin(2 * np.pi * 800 * t), 2 * t - 1)
+    line = history_line(axes := panel(), t, values)
+    (band,) = bands(axes)
+    x = corners(band)[:, 0]
+    column = 2.4 / (axes.bbox.width / axes.figure.dpi * 72)
+    assert x.min() == pytest.approx(0, abs=1.5 * column)
+    assert x.max() == pytest.approx(0.5, abs=1.5 * column)
+    drawn = np.array(line.get_ydata(), dtype=float)
+    late = t > 0.5 + 1.5 * column
+    assert drawn[late].tolist() == values[late].tolist()
+    assert np.isnan(drawn[t < 0.5 - 1.5 * column]).mean() > 0.9
+
+
+def test_gaps_stay_gaps_and_two_values_are_enough() -> None:
+    t = np.linspace(0, 1, 4001)
+    values = np.abs(np.sin(2 * np.pi * 500 * t))
+    values[::7] = np.nan
+    history_line(axes := panel(), t, values)
+    assert all(np.isfinite(corners(band)).all() for band in bands(axes))
+    assert np.array(history_line(panel(), t[:2], t[:2]).get_ydata()).tolist() == t[:2].tolist()
+
+
+def test_a_spike_at_the_start_is_a_line() -> None:
+    t = np.linspace(0, 10, 10_001)
+    values = np.exp(-50 * t) * np.cos(500 * t) + 0.1 * t
+    line = history_line(axes := panel(), t, values)
+    assert not bands(axes)
+    assert np.array(line.get_ydata()).tolist() == values.tolist()
