@@ -148,7 +148,8 @@ def probe(
     each column's error decays; with --alpha and --beta how far it is from every method's, the nearest first (of those
     that do not fit a few; JSON and CSV have all); without them, the α and β that it means under --method. Where no
     pole can be told, --alpha and --beta also tell which methods' own recursions the rows follow, and of too few rows
-    for that, which methods they exclude. What cannot be told is said, with exit status 3.
+    for that, which methods they exclude. Where noise covers the rows, the pole that stands out of it is told, or that
+    none does. What cannot be told is said, with exit status 3, which also means that nothing fits any column.
 
     Example: bezstab probe log.csv --minus unkicked.csv --alpha 1 --beta 0.25
     """
@@ -180,7 +181,8 @@ def probe(
     compared_methods = methods or ([lookup(name) for name in REGISTRY] if point else [])
     _check_rows(compared_methods, between, step, row, every)
     answers = Answers([], [], [], [])
-    reasons: list[str] = []
+    untold: list[str] = []
+    unfit: list[str] = []
     groups = [places] if jointly else [[place] for place in places]
     for group in groups:
         name = ", ".join(data.columns[place] for place in group)
@@ -189,6 +191,8 @@ def probe(
         answers.fits.append(probed_pole_row(name, found))
         if found.pole is not None and point is None:
             _invert(answers, name, found, compared_methods, between, step)
+            if compared_methods and not any(row["column"] == name for row in answers.points):
+                unfit.append(name)
             continue
         like: list[Likeness] = []
         if point and found.pole is not None:
@@ -199,10 +203,14 @@ def probe(
         if point and like:
             _compare(answers, name, like, point)
         if not any(_is_tested(one) for one in like):
-            reasons.append(f"{name}: {found.reason}")
+            untold.append(f"{name}: {found.reason}")
+        elif not any(one.fits for one in like):
+            unfit.append(name)
     _show(answers, form, in_seconds=step is not None)
-    if len(reasons) == len(groups):
-        raise NumericalError(f"no pole can be told: {'; '.join(reasons)}")
+    if len(untold) + len(unfit) == len(groups):
+        failures = [f"no pole can be told: {'; '.join(untold)}"] if untold else []
+        failures += [f"nothing fits {', '.join(unfit)}"] if unfit else []
+        raise NumericalError("; ".join(failures))
 
 
 @dataclass(frozen=True)

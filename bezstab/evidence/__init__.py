@@ -6,6 +6,7 @@ The only room in which stability and mechanism meet. A file imports only from th
     chunk_stores        where finished chunks are kept, under a lock
     chunks              long work in chunks, spread over workers, kept as they arrive
     linear_prediction   the dominant pole in a sampled response, or why none can be told
+    noisy_prediction    the same beside white noise, and that there is nothing but noise
     mixing_poles        two poles near each other, and how far a motion takes them
     moving_mechanisms   what a mechanism's motion does to its poles, to first order
     moving_regions      the region of a mechanism that moves

@@ -30,6 +30,7 @@ from bezstab.errors import InputError, NumericalError
 from bezstab.evidence.linear_prediction import SAMPLES, SETTLED, SPREAD, Fit, Refusal, fit_dominant_pole
 from bezstab.evidence.logs import UNEVEN, decimal_place
 from bezstab.evidence.measured_poles import CLOSE
+from bezstab.evidence.noisy_prediction import LARGEST_ERROR, VISIBLE, NoisyFit, fit_in_noise
 from bezstab.methods import Method, closed_loop_at, closed_loop_table
 from bezstab.stability import ComplexArray, FloatArray, poles, region, turning_sensitivity, window
 
@@ -89,6 +90,9 @@ UNSEEN_GROWTH = 1e9
 SLOW = 0.05
 """From 1: poles so near to it change from row to row as little as what a motion forces."""
 
+IN_NOISE = "in noise of {}, which shows two poles very close together as one"
+ALL_NOISE = f"noise of {{}}: nothing that decays or grows stands out of it for {VISIBLE} rows"
+HIDDEN_IN_NOISE = "noise of {} hides the pole: it may be {:.4g}, but off by {:.1g}"
 DIFFERENCED = "what changes slowly or not at all was taken off by differences"
 ON_THE_CIRCLE = (
     "|z| is one as far as can be told: forced by the motion, or marginal; two runs, kicked and not, tell them apart"
@@ -204,7 +208,7 @@ def probed_pole(c: ArrayLike, minus: ArrayLike | None = None, differenced: bool 
     unit is the user's. `minus`, of the same shape, is another run to be subtracted: what both have in common, such as
     the forcing by truncation errors, goes. `differenced` says that this has been done. No errors are raised for samples
     that show no pole: `reason` says so. InputError for arrays of other shapes. Method: linear prediction
-    (`fit_dominant_pole`).
+    (`fit_dominant_pole`); where noise covers the samples, nonlinear least squares (`fit_in_noise`).
     """
     samples, rounding, cut = usable_response(c, minus)
     if len(samples) < FEWEST:
@@ -235,24 +239,50 @@ def _fitted(samples: FloatArray, rounding: float, of_two_runs: bool, cut: str) -
         if isinstance(fit, Fit) and not _on_the_circle(fit) and (of_two_runs or _is_not_forced(fit, changes)):
             return _claimed(fit, len(samples), _joined(DIFFERENCED if times else "", cut))
         changes, floor = np.diff(changes, axis=0), 2 * floor  # each of two roundings adds to that of a difference
-    as_given = fits[0]
-    if isinstance(as_given, Refusal):
-        return _refused(len(samples), as_given.reason, cut)
-    if of_two_runs:  # or it had been claimed
+    as_given, of_changes = fits[0], fits[1]
+    if isinstance(as_given, Fit) and of_two_runs:  # or it had been claimed
         return _claimed(as_given, len(samples), _joined(ON_THE_CIRCLE, cut))
-    if _on_the_circle(as_given):
-        return _refused(len(samples), ON_THE_CIRCLE, cut)
-    of_changes = fits[1]
-    if isinstance(of_changes, Fit) and _explains_the_start(as_given, samples) and _agree(as_given, of_changes):
+    if isinstance(as_given, Fit) and isinstance(of_changes, Fit) and _is_slow_pole(as_given, of_changes, samples):
         # Only as far as differences, which are forced less, show the same pole, is it known to be none that is forced.
         uncertainty = max(as_given.uncertainty, abs(as_given.pole - of_changes.pole) + of_changes.uncertainty)
         return _claimed(replace(as_given, uncertainty=uncertainty), len(samples), _joined(SLOWLY, cut))
-    return _refused(len(samples), FORCED, cut)
+    leaves_the_linear_range = len(linear_limits(samples)) > 1  # then what is left over is no noise, but looks like it
+    covered = None if leaves_the_linear_range else fit_in_noise(samples, ORDER)
+    if covered is not None:
+        return _told_in_noise(covered, len(samples), of_two_runs, cut)
+    if isinstance(as_given, Refusal):
+        return _refused(len(samples), as_given.reason, cut)
+    return _refused(len(samples), ON_THE_CIRCLE if _on_the_circle(as_given) else FORCED, cut)
+
+
+def _told_in_noise(fit: NoisyFit, rows: int, of_two_runs: bool, cut: str) -> ProbedPole:
+    """Return the pole that stands out of noise, or that none does.
+
+    In one run a pole near 1 is what the motion forces, and one on the circle may be.
+    """
+    noise = ", ".join(f"{level:.2g}" for level in fit.noise)
+    poles = [pole for pole in fit.poles if of_two_runs or abs(pole.z - 1) > SLOW]
+    if not poles:
+        return _refused(rows, (FORCED if fit.poles else ALL_NOISE).format(noise), cut)
+    dominant = poles[0]
+    if dominant.uncertainty > LARGEST_ERROR:
+        return _refused(rows, HIDDEN_IN_NOISE.format(noise, dominant.z, dominant.uncertainty), cut)
+    on_the_circle = abs(abs(dominant.z) - 1) < max(CLOSE, dominant.uncertainty)
+    if on_the_circle and not of_two_runs:
+        return _refused(rows, ON_THE_CIRCLE, cut)
+    reason = _joined(IN_NOISE.format(noise), ON_THE_CIRCLE if on_the_circle else "", cut)
+    told = tuple(pole.z for pole in poles)
+    return ProbedPole(dominant.z, dominant.uncertainty, fit.samples, rows, told, reason)
 
 
 def _is_not_forced(fit: Fit, samples: FloatArray) -> bool:
     """Return whether one run's pole is none that a motion could force, and nothing larger has decayed before it."""
     return abs(fit.pole - 1) > SLOW and _explains_the_start(fit, samples)
+
+
+def _is_slow_pole(fit: Fit, of_changes: Fit, samples: FloatArray) -> bool:
+    """Return whether one run's pole near 1 may be one: it decays or grows, and differences of the samples have it."""
+    return not _on_the_circle(fit) and _explains_the_start(fit, samples) and _agree(fit, of_changes)
 
 
 def _agree(fit: Fit, other: Fit) -> bool:

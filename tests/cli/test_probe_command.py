@@ -283,6 +283,32 @@ def test_noise_and_quantisation_are_status_three_with_their_reason() -> None:
     assert [row["z_abs"] is None for row in json.loads(result.stdout)] == [True, False]
 
 
+def test_where_nothing_fits_that_is_no_success() -> None:
+    """One column that fits is; a pole that the method named has nowhere is none either."""
+    write("log.csv", c=response("B4", 0.5, 0.1))
+    wrong = run("probe", "log.csv", "--alpha", "0.3", "--beta", "0.1", "--h", "0.001", "--turning", "0")
+    assert wrong.exit_code == 3
+    assert "nothing fits at (0.3, 0.1)" in wrong.stdout
+    assert wrong.stderr == "bezstab: nothing fits c\n"
+    assert run("probe", "log.csv", "--alpha", "0.5", "--beta", "0.1").exit_code == 0
+    write("log.csv", c=0.99 * (-0.99) ** np.arange(200.0), right=response("B4", 0.5, 0.1))
+    assert run("probe", "log.csv", "--alpha", "0.5", "--beta", "0.1", "--column", "c").exit_code == 3
+    assert run("probe", "log.csv", "--alpha", "0.5", "--beta", "0.1").exit_code == 0
+
+
+def test_noise_is_told_and_the_pole_in_it_names_the_method() -> None:
+    random = np.random.default_rng(0)
+    noise = 1e-9 * random.normal(size=(2, 120))
+    write("noise.csv", c=noise[0])
+    write("log.csv", c=1e-4 * response("B4", 0.5, 0.1)[:120] + noise[1])
+    at_rest = ("--alpha", "0.5", "--beta", "0.1", "--h", "0.001", "--turning", "0")
+    told = json.loads(run("probe", "log.csv", "--minus", "noise.csv", *at_rest, "--format", "json").stdout)
+    assert [row["method"] for row in told if row["fits"]] == ["B4"]
+    alone = run("probe", "noise.csv", *at_rest)
+    assert alone.exit_code == 3
+    assert "noise of 9" in alone.stderr or "noise of 1" in alone.stderr
+
+
 def test_columns_are_fitted_jointly_if_asked_for() -> None:
     write("log.csv", c_1=response("B4", 0.5, 0.1), c_2=-0.1 * response("B4", 0.5, 0.1))
     (row,) = rows("probe", "log.csv", "--jointly")

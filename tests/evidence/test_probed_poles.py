@@ -240,12 +240,15 @@ def test_what_has_grown_and_died_away_is_not_taken_to_saturate() -> None:
     assert tuple(linear_limits(saturated)) == tuple(share * saturated.max() for share in LINEAR_SHARES)
 
 
-def test_noise_is_refused() -> None:
+def test_a_pole_is_told_out_of_noise_and_noise_is_told_as_noise() -> None:
     random = np.random.default_rng(3)
     c = two_poles(300, 0.95, 0.5, 1.0, 0.5) + 0.01 * random.normal(size=300)
-    for found in (probed_pole(c), probed_pole(c, 0 * c), probed_pole(random.normal(size=300))):
-        assert found.pole is None
-        assert found.reason
+    for found in (told(c), told(c, 0 * c)):
+        assert abs(complex(found.pole or 0) - 0.95 * np.exp(0.5j)) < (found.uncertainty or 0) < 0.01
+        assert "in noise of 0.0" in found.reason
+    found = probed_pole(random.normal(size=300))
+    assert found.pole is None
+    assert found.reason.startswith("noise of ")
 
 
 def test_coarse_rounding_is_refused_and_said() -> None:

@@ -1,0 +1,338 @@
+"""The poles in a response that noise covers, by least squares, or that there is nothing but noise.
+
+Linear prediction (`linear_prediction`) fits each sample to those before it and so takes the noise of one for signal of
+the next; it believes a recursion only where next to nothing is left over. Here what is fitted is the response itself,
+
+    d_k = a_1 z_1^k + a_2 z_2^k + ... + a_p z_p^k + e_k,        e_k white noise of one size, which nobody knows.
+
+Poles that fit nearly come from the singular vectors of the Hankel matrix of the samples, which p poles alone would
+give rank p; Gauss and Newton's method takes them to where the squares of what is left over are least, the amplitudes
+eliminated. With white noise that is the likeliest answer, and its linearisation says how far off the poles may be.
+
+How many poles there are is asked of the noise: one more must explain more than noise would let it. Where what is left
+over is not white, or larger at one end than at the other, the response is no such sum, and nothing is claimed of that
+stretch; a shorter one may be. But noise does not end with the stretch: a few poles fit whatever is short and smooth, so
+what they leave over must be as large as the noise of the rows that follow.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
+
+from bezstab.evidence.linear_prediction import SAMPLES, TIMES_FARTHEST, FloatArray
+from bezstab.stability import ComplexArray
+
+STANDARD_ERRORS = 3.0
+"""That are stated: 99.7 % of normal errors are less, and by Cornish and Fisher's expansion as many of fewer samples."""
+
+FREEDOM = 24
+"""Samples more than unknowns, at least: of fewer nobody can tell whether what is left over is white."""
+
+WORTH = 1.0
+"""Times ln(samples) for each unknown, by which one more pole must lessen samples times ln(squares left over): as much
+as by Bayes' information criterion. With twice that, weak poles are left out and shift the others unseen."""
+
+VISIBLE = 8
+"""Samples in which a pole must stand out of the noise to be counted: of fewer, a pair is not told from a real one."""
+
+BEYOND = 3
+"""Poles more than are worth it: a pair can be where one is not, and what they would change is told as an error."""
+
+SURE = 3.3
+"""Standard deviations from what white noise shows on average: one in a thousand is beyond."""
+
+LAGS = 10
+"""Distances, in samples, at which what is left over is asked whether it is related."""
+
+ITERATIONS = 30
+"""Of Gauss and Newton's method at most; near the solution each gains a few digits."""
+
+SETTLED = 1e-3
+"""Of a standard error: a smaller change of every unknown ends the iteration."""
+
+SHORTEST_STEP = 1e-3
+"""Of Gauss and Newton's change: where not even that leaves less over, the iteration ends."""
+
+LEAST_MODULUS = 1e-3
+"""Of z: a lesser pole is gone after one sample, and its logarithm means nothing."""
+
+LARGEST_ERROR = 0.05
+"""In the plane: beyond, errors of poles are no longer normal, and nobody is helped."""
+
+SHORTER = 2
+"""Times shorter is the next stretch that is tried."""
+
+STARTS = (0, 4)
+"""Samples that are left out at the beginning: of long methods the first few belong to poles that are soon gone."""
+
+
+@dataclass(frozen=True)
+class NoisyPole:
+    """A pole in the closed upper half plane, per sample, and how far off it may be in the plane (STANDARD_ERRORS)."""
+
+    z: complex
+    uncertainty: float
+
+
+@dataclass(frozen=True)
+class NoisyFit:
+    """What a stretch of a response shows beside white noise: `poles` by modulus, none where all is noise.
+
+    `noise` is the standard deviation of the noise of each response, in its unit, `start` the first sample of the
+    stretch and `samples` its length.
+    """
+
+    poles: tuple[NoisyPole, ...]
+    noise: tuple[float, ...]
+    start: int
+    samples: int
+
+
+def fit_in_noise(responses: FloatArray, order: int) -> NoisyFit | None:
+    """Return the poles that responses of one linear system show beside white noise; None if what is left is no noise.
+
+    `responses` has shape (samples, responses), equally spaced in time; the unit is the user's. `order`: largest number
+    of poles. A number that is not finite ends all. Of the stretches from the start on the first that can be explained
+    counts, beginning with the longest. Nonlinear least squares by variable projection (Golub and Pereyra, SIAM J.
+    Numer. Anal. 10, 1973), from the matrix pencil's poles (Hua and Sarkar, IEEE Trans. ASSP 38, 1990).
+    """
+    usable = responses[: int(np.logical_and.accumulate(np.isfinite(responses).all(axis=1)).sum())]
+    for start, end in _stretches(len(usable)):
+        fit = _fit_stretch(usable[start:end], order)
+        if fit is not None and _goes_on(fit[1], usable[end:]):
+            return NoisyFit(*fit, start, end - start)
+    return None
+
+
+def _stretches(rows: int) -> Iterator[tuple[int, int]]:
+    """Yield the first row of the stretches that are tried and that after the last, the longest first."""
+    end = min(rows, SAMPLES)
+    while end > FREEDOM:
+        yield from ((start, end) for start in STARTS)
+        end //= SHORTER
+
+
+def _goes_on(noise: Sequence[float], rest: FloatArray) -> bool:
+    """Return whether the rows after a stretch have noise of that size too: differences take off what is smooth.
+
+    A difference of fourth order of white noise has 70 times its variance.
+    """
+    if len(rest) < FREEDOM:
+        return True
+    variances = np.mean(np.diff(rest, n=4, axis=0) ** 2, axis=0) / 70
+    with np.errstate(divide="ignore"):
+        apart = np.abs(np.log(variances) - 2 * np.log(noise))
+    # White noise has logarithms of mean squares with the variance 2 / n, and that of its fourth differences some 4.5
+    # times as much, as they are related.
+    return bool((apart < SURE * np.sqrt(9 / len(rest))).all())
+
+
+def _fit_stretch(samples: FloatArray, order: int) -> tuple[tuple[NoisyPole, ...], tuple[float, ...]] | None:
+    """Return the poles and the noise of one stretch, shape (samples, responses); None if what is left is no noise."""
+    if samples.shape[1] > 1:  # each has noise of its own size: what many poles leave over of it
+        levels = np.array([_sums(column[:, np.newaxis], order)[-1].deviation for column in samples.T])
+        if not levels.all():
+            return None
+        samples = samples / levels
+    else:
+        levels = np.ones(1)
+    sums = _sums(samples, order)
+    worth = [each.left_over_worth for each in sums[: order + 1]]
+    best = int(np.argmin(worth))
+    chosen = sums[best]
+    if not chosen.deviation or not _is_white(chosen):
+        return None
+    richer = sums[best + 1 : best + BEYOND]
+    noise = tuple((chosen.deviation * levels).tolist())
+    return _visible_poles(chosen, richer), noise
+
+
+def _sums(samples: FloatArray, order: int) -> "list[_Sum]":
+    """Return sums of no, one, two and more poles that are fitted to a stretch, until BEYOND more are worth nothing."""
+    vectors = _signal_vectors(samples)
+    sums = [_Sum.of(samples, np.zeros(0, complex))]
+    for count in range(1, order + BEYOND):
+        fitted = _Sum.fitted(samples, _shifting_poles(vectors[:, :count]))
+        if fitted.freedom < FREEDOM:
+            break
+        sums.append(fitted)
+        if min(each.left_over_worth for each in sums[-BEYOND:]) > min(each.left_over_worth for each in sums):
+            break
+    return sums
+
+
+def _visible_poles(chosen: "_Sum", richer: "Sequence[_Sum]") -> tuple[NoisyPole, ...]:
+    """Return the poles that explain more than noise, by modulus, of the closed upper half plane.
+
+    A pole that is too weak to be counted may still shift the others: by how much, sums of more poles say.
+    """
+    found = []
+    for z, error, visible in zip(chosen.z, chosen.errors(), chosen.visible(), strict=True):
+        if visible < VISIBLE:
+            continue
+        shifts = [float(np.abs(other.z - z).min()) for other in richer]
+        factor = STANDARD_ERRORS * (1 + (STANDARD_ERRORS**2 + 1) / (4 * chosen.freedom))
+        found.append(NoisyPole(complex(z), factor * float(error) + TIMES_FARTHEST * max(shifts, default=0.0)))
+    return tuple(sorted(found, key=lambda pole: -abs(pole.z)))
+
+
+@dataclass(frozen=True)
+class _Sum:
+    """A sum of powers of the poles z, those of the closed upper half plane, and what it leaves over of a stretch.
+
+    `slopes` (samples * responses, unknowns) are those of what is left over by ln|z| of each pole and by the angle of
+    those that are not real, the amplitudes eliminated; `explained` (poles, samples, responses) what each explains.
+    """
+
+    z: ComplexArray
+    left_over: FloatArray
+    slopes: FloatArray
+    explained: FloatArray
+
+    @classmethod
+    def fitted(cls, samples: FloatArray, z: ComplexArray) -> "_Sum":
+        """Return the sum that leaves least over, of as many poles as nearly fit."""
+        current = cls.of(samples, z)
+        for _ in range(ITERATIONS):
+            change = -np.linalg.lstsq(current.slopes, current.left_over.ravel(), rcond=None)[0]
+            share = 1.0
+            while share >= SHORTEST_STEP:
+                following = cls.of(samples, _moved(current.z, np.asarray(share * change, np.float64)))
+                if following.squares < current.squares:
+                    break
+                share /= 4
+            else:
+                break
+            gained = current.squares - following.squares
+            current = following
+            if gained < SETTLED**2 * current.squares / max(current.freedom, 1):
+                break
+        return current
+
+    @classmethod
+    def of(cls, samples: FloatArray, z: ComplexArray) -> "_Sum":
+        """Return the sum of powers of given poles that leaves least over."""
+        columns, owners = _powers(z, len(samples))
+        if not len(z):
+            return cls(z, samples, np.zeros((samples.size, 0)), np.zeros((0, *samples.shape)))
+        amplitudes = np.linalg.lstsq(columns, samples, rcond=None)[0]
+        left_over = samples - columns @ amplitudes
+        explained = np.stack([columns[:, owners == pole] @ amplitudes[owners == pole] for pole in range(len(z))])
+        orthonormal = np.linalg.qr(columns)[0]
+        k = np.arange(len(samples))[:, np.newaxis]
+        slopes = []
+        for pole in range(len(z)):
+            own = owners == pole
+            by_log = -k * explained[pole]
+            slopes.append(by_log)
+            if z[pole].imag:  # Re z^k turns into -Im z^k, and Im z^k into Re z^k
+                real, imaginary = columns[:, own].T
+                turned = np.stack([-imaginary, real], axis=1)
+                slopes.append(-k * (turned @ amplitudes[own]))
+        projected = [(slope - orthonormal @ (orthonormal.T @ slope)).ravel() for slope in slopes]
+        return cls(z, left_over, np.stack(projected, axis=1), explained)
+
+    @property
+    def squares(self) -> float:
+        """The sum of squares that is left over."""
+        return float(np.sum(self.left_over**2))
+
+    @property
+    def unknowns(self) -> int:
+        """Of poles and of their amplitudes in each response."""
+        of_poles = len(self.z) + int(np.count_nonzero(self.z.imag))
+        responses = self.left_over.shape[1]
+        return of_poles + of_poles * int(responses)
+
+    @property
+    def freedom(self) -> int:
+        """Samples more than unknowns."""
+        return int(np.size(self.left_over)) - self.unknowns
+
+    @property
+    def deviation(self) -> float:
+        """The standard deviation of the noise."""
+        return float(np.sqrt(self.squares / max(self.freedom, 1)))
+
+    @property
+    def left_over_worth(self) -> float:
+        """What is the less, the more likely a sum is: squares that are left over, and unknowns that they cost."""
+        samples = self.left_over.size
+        with np.errstate(divide="ignore"):
+            return float(samples * np.log(self.squares) + WORTH * self.unknowns * np.log(samples))
+
+    def errors(self) -> FloatArray:
+        """Return the standard error of each pole in the plane; infinite where two are the same."""
+        scatter = np.linalg.pinv(self.slopes)
+        of_unknowns = self.deviation**2 * np.sum(scatter**2, axis=1)
+        owners = np.repeat(np.arange(len(self.z)), np.where(self.z.imag != 0, 2, 1))
+        return np.asarray(np.abs(self.z) * np.sqrt(np.bincount(owners, of_unknowns, minlength=len(self.z))))
+
+    def visible(self) -> NDArray[np.intp]:
+        """Return in how many samples each pole explains more than the noise."""
+        return np.asarray((np.abs(self.explained) > self.deviation).any(axis=2).sum(axis=1))
+
+
+def _signal_vectors(samples: FloatArray) -> FloatArray:
+    """Return the singular vectors of the Hankel matrices of samples, those of the largest values first."""
+    rows = len(samples) // 2
+    hankel = np.concatenate([sliding_window_view(column, len(samples) - rows + 1).T for column in samples.T], axis=1)
+    return np.asarray(np.linalg.svd(hankel.T, full_matrices=False)[2].T)
+
+
+def _shifting_poles(vectors: FloatArray) -> ComplexArray:
+    """Return poles of the closed upper half plane that nearly fit: they multiply sums of powers shifted by a row."""
+    z = np.linalg.eigvals(np.linalg.lstsq(vectors[:-1], vectors[1:], rcond=None)[0])
+    z = np.where(np.abs(z) < LEAST_MODULUS, LEAST_MODULUS, z)
+    return np.asarray(z[z.imag >= 0], complex)
+
+
+def _moved(z: ComplexArray, change: FloatArray) -> ComplexArray:
+    """Return poles whose ln|z|, and of those that are not real the angle, are changed, in the upper half plane."""
+    logarithms = np.zeros(len(z), complex)
+    owners = np.repeat(np.arange(len(z)), np.where(z.imag != 0, 2, 1))
+    first = np.append(True, owners[1:] != owners[:-1])
+    logarithms[owners[first]] += np.clip(change[first], -1, 1)
+    logarithms[owners[~first]] += 1j * np.clip(change[~first], -1, 1)
+    moved = z * np.exp(logarithms)
+    kept = np.where(z.imag != 0, moved.real + 1j * np.maximum(np.abs(moved.imag), 1e-12 * np.abs(moved)), moved.real)
+    return np.asarray(np.where(np.abs(kept) < LEAST_MODULUS, LEAST_MODULUS * kept / np.abs(kept), kept))
+
+
+def _powers(z: ComplexArray, count: int) -> tuple[FloatArray, FloatArray]:
+    """Return real columns of powers of each pole, Re z^k and Im z^k of those that are not real, and whose they are."""
+    k = np.arange(count)
+    columns, owners = [], []
+    for number, pole in enumerate(z.tolist()):
+        scale = (count - 1) * max(np.log(abs(pole)), 0.0)  # so that what grows ends at one
+        powers = np.exp(k * np.log(pole) - scale)
+        columns.append(powers.real)
+        owners.append(number)
+        if pole.imag:
+            columns.append(powers.imag)
+            owners.append(number)
+    return np.array(columns).T.reshape(count, len(columns)), np.array(owners, int)
+
+
+def _is_white(fitted: _Sum) -> bool:
+    """Return whether what is left over has samples that are not related, and is of one size (Ljung and Box)."""
+    return all(_unrelated(column) and _even(column) for column in fitted.left_over.T)
+
+
+def _unrelated(noise: FloatArray) -> bool:
+    count = len(noise)
+    lags = min(LAGS, count // 4)
+    total = float(noise @ noise)
+    related = sum((float(noise[lag:] @ noise[:-lag]) / total) ** 2 / (count - lag) for lag in range(1, lags + 1))
+    return bool(count * (count + 2) * related < lags + SURE * np.sqrt(2 * lags) + SURE**2 / 2)
+
+
+def _even(noise: FloatArray) -> bool:
+    """Return whether both halves are of one size: the logarithm of a mean square of n has the variance 2 / n."""
+    half = len(noise) // 2
+    first, second = np.mean(noise[:half] ** 2), np.mean(noise[half:] ** 2)
+    with np.errstate(divide="ignore"):
+        return bool(abs(np.log(first) - np.log(second)) < SURE * np.sqrt(4 / half))

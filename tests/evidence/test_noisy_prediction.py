@@ -1,0 +1,131 @@
+"""Poles that stand out of noise: the stated errors cover the truth, and what is noise, or none, is not taken for poles."""
+
+import numpy as np
+import pytest
+
+from bezstab.evidence import probed_pole
+from bezstab.evidence.noisy_prediction import LARGEST_ERROR, fit_in_noise
+from bezstab.methods import REGISTRY, lookup
+from bezstab.stability import FloatArray, poles, region, window
+from tests.reference.sampled_responses import geometric, of_poles, two_poles
+
+ORDER = 8
+KICK = 1e-4
+ROWS = 120
+
+
+def white(random: np.random.Generator, size: float, rows: int = ROWS) -> FloatArray:
+    return np.asarray(size * random.normal(size=rows))
+
+
+def column(samples: FloatArray) -> FloatArray:
+    return samples[:, np.newaxis]
+
+
+@pytest.mark.parametrize("noise", [1e-9, 1e-8, 1e-7])
+@pytest.mark.parametrize("runs", [1, 2])
+@pytest.mark.parametrize("angle", [0.0, 0.5])
+def test_a_pole_of_seven_tenths_is_found_whatever_covers_it(noise: float, runs: int, angle: float) -> None:
+    """By one run or two, beside what the motion forces slowly; known the better, the less noise there is."""
+    random = np.random.default_rng(1)
+    kicked = KICK * two_poles(ROWS, 0.7, angle, 0.3, 0.0)
+    forced = 1e-3 + 1e-6 * np.cos(0.01 * np.arange(ROWS))
+    c = kicked + forced + white(random, noise)
+    found = probed_pole(c) if runs == 1 else probed_pole(c, forced + white(random, noise))
+    assert found.pole is not None, found.reason
+    assert found.uncertainty is not None
+    assert abs(found.pole - 0.7 * np.exp(1j * angle)) < found.uncertainty < 500 * noise / KICK
+
+
+def logs_in_noise(count: int, seed: int) -> tuple[int, list[float]]:
+    """Return how many of random logs show a pole that is told, and how far off those are, in stated errors.
+
+    Poles of random methods at random points of their regions, kicked at random, two runs: the nearest pole counts.
+    """
+    random = np.random.default_rng(seed)
+    off: list[float] = []
+    tried = 0
+    while tried < count:
+        method = lookup(str(random.choice(list(REGISTRY))))
+        z = poles(method, *random.uniform(*np.transpose(window(region(method)))).tolist())
+        if not 0.2 < abs(z[0]) < 0.995:  # gone at once, or still there at the end
+            continue
+        tried += 1
+        clean = KICK * of_poles(z[np.abs(z) > 1e-3], int(random.integers(60, 400)), seed=tried)
+        noise = KICK * 10 ** random.uniform(-6, -0.5)
+        found = probed_pole(clean + white(random, noise, len(clean)), white(random, noise, len(clean)))
+        if found.pole is not None and found.uncertainty is not None:
+            off.append(float(np.abs(z - found.pole).min()) / found.uncertainty)
+    return tried, off
+
+
+@pytest.mark.parametrize("count", [60, pytest.param(600, marks=pytest.mark.slow)])
+def test_the_stated_error_covers_the_pole_of_random_logs_in_noise(count: int) -> None:
+    """In 97 of 100 at least. The others have two poles closer together than the noise resolves: they look like one."""
+    tried, off = logs_in_noise(count, seed=12)
+    assert len(off) > 0.5 * tried
+    assert np.mean(np.array(off) <= 1) >= 0.97
+    assert np.median(off) > 0.1  # nor is so much allowed that it covers anything
+
+
+def test_where_there_is_nothing_but_noise_that_is_said() -> None:
+    random = np.random.default_rng(2)
+    for _ in range(25):
+        size = float(10 ** random.uniform(-12, 0))
+        c = white(random, size, int(random.integers(60, 400)))
+        fit = fit_in_noise(column(c), ORDER)
+        assert fit is not None
+        assert fit.poles == ()
+        assert fit.noise[0] == pytest.approx(size, rel=0.35)  # four times 1 / sqrt(2 * 60)
+        for found in (probed_pole(c), probed_pole(c, 0 * c), probed_pole(c + 0.3)):
+            assert found.pole is None
+            assert "noise of" in found.reason or "taken" in found.reason
+
+
+def test_what_is_no_white_noise_is_not_taken_for_it() -> None:
+    """Neither what is related from sample to sample, nor what grows, nor what a motion forces without any noise."""
+    random = np.random.default_rng(3)
+    steps = white(random, 1.0, 300)
+    related = np.zeros(300)
+    for k in range(1, 300):
+        related[k] = 0.7 * related[k - 1] + steps[k]
+    k = np.arange(300)
+    for c in (related, steps * (1 + k) ** 2, np.sin(0.02 * k + 0.3 * np.sin(0.05 * k)), np.log(1 + k)):
+        fit = fit_in_noise(column(c), ORDER)
+        assert fit is None or fit.poles == ()
+
+
+def test_noise_does_not_end_with_the_stretch() -> None:
+    """A few poles fit whatever is short and smooth, to what looks like noise; the rows that follow have none."""
+    random = np.random.default_rng(4)
+    k = np.arange(300)
+    smooth = np.where(k < 40, white(random, 1e-6, 300), 0.0) + 1e-4 * geometric(300, 0.6) + np.exp(-k / 500)
+    assert fit_in_noise(column(smooth), ORDER) is None
+
+
+def test_responses_with_noise_of_different_sizes_are_weighed_by_it() -> None:
+    random = np.random.default_rng(5)
+    shape = two_poles(200, 0.8, 0.6, 0.3, 0.0)
+    both = np.stack([shape + white(random, 1e-4, 200), 1e3 * shape + white(random, 50.0, 200)], axis=1)
+    fit = fit_in_noise(both, ORDER)
+    assert fit is not None
+    assert fit.noise == pytest.approx((1e-4, 50.0), rel=0.2)
+    (alone,) = [one.poles[0] for one in [fit_in_noise(both[:, :1], ORDER)] if one]
+    assert fit.poles[0].uncertainty < 1.5 * alone.uncertainty
+    assert abs(fit.poles[0].z - 0.8 * np.exp(0.6j)) < fit.poles[0].uncertainty
+    both[150:, 1] = np.nan
+    assert (fit_in_noise(both, ORDER) or fit).samples <= 150
+
+
+def test_a_pole_that_noise_hides_is_said_to_be_hidden() -> None:
+    """Between what is told and nothing to be seen there are poles that are there, but may be anywhere near."""
+    random = np.random.default_rng(6)
+    reasons = []
+    for _ in range(40):
+        found = probed_pole(of_poles(np.array([0.8, 0.7, -0.3]), 100, seed=1) + white(random, 0.1, 100), np.zeros(100))
+        if found.pole is None:
+            reasons.append(found.reason)
+        else:
+            assert found.uncertainty is not None
+            assert found.uncertainty <= LARGEST_ERROR
+    assert any("hides the pole" in reason for reason in reasons)
