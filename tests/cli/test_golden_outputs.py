@@ -77,6 +77,7 @@ RENAMED = {
         "run": "run_steps",
         "steps": "run_steps",
         "agreement": "agreeing_share",
+        "broken": "undecided",
     },
     "choose": {"h_max": "h_limit", "engine": "setting"},
     "check": {"h_max": "h_limit"},
@@ -98,10 +99,12 @@ ADDED = (
     *("implicit", "digits", "order_position_forces", "order_velocity_forces", "group"),
     *("driver_work", "force_work", "iterations", "singular_passages"),
     *("law_z_abs", "law_verdict", "floquet_z_abs", "law_fitted_z_abs", "measured_rate", "right"),
+    *("judged", "agreeing", "too_close"),
     *("safe", "error_constant", "engine_h_limit", "z_abs_below", "critical_damping_limit_exact"),
 )
 """Keys that rows have got since, in their place: more of what a region, a choice and a method is, work in a run,
-what the motion does to a measured pole, and up to which step an engine's values are stable."""
+what the motion does to a measured pole, how many verdicts a map has, and up to which step an engine's values are
+stable."""
 
 
 def tolerance(command: str, key: str) -> Tolerance:
