@@ -40,6 +40,7 @@ from bezstab.cli.typed_points import (
     engine_keys,
     engine_values_option,
     methods_asked,
+    say_if_units_were_mistaken,
     say_what_was_made,
     typed_point,
 )
@@ -150,6 +151,8 @@ def poles(
         raise click.UsageError("--physical and --h go together: α and β in 1/s need the step in s")
     typed = typed_point(alpha, beta, h, physical, engine, drive, as_typed)
     methods = methods_asked(methods, typed.engine, drive)
+    if alpha is not None and beta is not None and not physical:
+        say_if_units_were_mistaken(methods, alpha, beta, h)
     turning = turning_of(scene, speed, h)
     alpha_hat, beta_hat = map(float, typed.point)
     poles_of = stability.poles if all_poles else stability.dominant_pole

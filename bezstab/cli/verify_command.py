@@ -17,6 +17,7 @@ from bezstab.cli.options import (
     file_options,
     format_option,
     methods_option,
+    physical_option,
     scene_option,
     speed_option,
     step_option,
@@ -32,8 +33,10 @@ from bezstab.cli.output import (
     write_figure,
     write_table,
 )
+from bezstab.cli.typed_points import say_if_units_were_mistaken
 from bezstab.methods import Method
-from bezstab.show import Format, Row, column, formatted, yes_no_column
+from bezstab.show import Column, Format, Row, column, formatted, yes_no_column
+from bezstab.units import to_dimensionless
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -64,20 +67,25 @@ MEASUREMENTS = [
 
 def measurement_sentence(row: Row) -> str:
     """Return the predicted and the measured modulus, and whether the verdicts agree."""
-    if not row["measurable"]:
-        return f"Not measurable: {row['reason']}."
-    predicted, measured = formatted(row["predicted_z_abs"], ".6f"), formatted(row["measured_z_abs"], ".6f")
     ends = {True: "the verdicts agree", False: "the verdicts DISAGREE", None: "too close to call"}
     agree = row["verdicts_agree"]
     assert agree is None or isinstance(agree, bool)
+    if not row["measurable"]:
+        verdict = "" if agree is None else f" The run {row['measured_verdict']}: {ends[agree]}."
+        return f"Not measurable: {row['reason']}.{verdict}"
+    predicted, measured = formatted(row["predicted_z_abs"], ".6f"), formatted(row["measured_z_abs"], ".6f")
     return f"Predicted |z| {predicted}, measured {measured}: {ends[agree]}."
 
 
-EXACT = [
-    column("measured over the motion", "measured_rate", ".6f"),
-    column("exact |z|", "floquet_z_abs", ".6f"),
-    column("whose verdict was right", "right"),
-]
+def rate_columns(periodic: bool) -> list[Column]:
+    """Return the columns of --floquet: of a motion that does not begin anew no rate is exact."""
+    return [
+        column("measured over the motion", "measured_rate", ".6f"),
+        column("exact |z|" if periodic else "|z| over the run", "floquet_z_abs", ".6f"),
+        column("whose verdict was right", "right"),
+    ]
+
+
 SUMMARIES = [
     column("method", "method"),
     column("points", "points", "d"),
@@ -92,7 +100,7 @@ MOTION_SUMMARIES = [
     column("followed over the motion", "revolutions_measured", "d"),
     column("median error at rest", "map_error", ".1e"),
     column("median error of the law", "law_error", ".1e"),
-    column("median error of the exact rate", "floquet_error", ".1e"),
+    column("median error of the exact rate", "floquet_error", ".1e"),  # of a motion that begins anew, else of none
 ]
 
 
@@ -106,18 +114,22 @@ VERDICT_MAPS = [
     column("method", "method"),
     column("runs", "runs", "d"),
     column("steps of each", "run_steps", "d"),
-    column("broke down", "broken", "d"),
+    column("gave a verdict", "judged", "d"),
+    column("as predicted", "agreeing", "d"),
     column("agreement", "agreeing_share", ".2%"),
     column("too close to call: | |z_p| - 1 | below", "band", "g"),
+    column("too close, or moved by so much", "too_close", "d"),
     column("largest | |z_p| - 1 | that disagrees", "farthest", ".2e"),
-    column("disagreeing beyond", "disagreeing", "d"),
+    column("disagreeing, not too close", "disagreeing", "d"),
 ]
 
 
 def verdict_map_sentence(row: Row) -> str:
-    """Return what share of simulated verdicts is as predicted."""
-    share = formatted(row["agreeing_share"], ".2%")
-    return f"{row['method']}: {share} of the verdicts are as predicted; {row['disagreeing']} beyond the band are not."
+    """Return how many runs gave a verdict, how many of these are as predicted, and how many others must not differ."""
+    if not row["judged"]:
+        return f"{row['method']}: none of {row['runs']} runs gave a verdict."
+    given = f"{row['judged']} of {row['runs']} runs gave a verdict, {row['agreeing']} as predicted"
+    return f"{row['method']}: {given}; {row['disagreeing']} that are not too close to call differ."
 
 
 WITNESSED = [
@@ -145,11 +157,14 @@ def witness_sentence(row: Row) -> str:
 @scene_option("slider_crank")
 @speed_option
 @methods_option("B4")
-@click.option("--alpha", type=NUMBER, help="α̂ of one point; with --beta, instead of --points.")
-@click.option("--beta", type=NUMBER, help="β̂ of one point.")
+@click.option("--alpha", type=NUMBER, help="α̂ of one point, instead of --points; α in 1/s with --physical.")
+@click.option("--beta", type=NUMBER, help="β̂ of one point; β in 1/s with --physical.")
+@physical_option
 @click.option("--points", type=click.IntRange(1, 1000), help="So many, over region and surroundings [20].")
 @click.option("--map", "cells", type=click.IntRange(2, 10000), help="Simulated verdicts of N×N points.")
-@click.option("--floquet", is_flag=True, help="Also the exact rates of the moving mechanism, by its linearised steps.")
+@click.option(
+    "--floquet", is_flag=True, help="Also exact rates, of a motion that begins anew, by its linearised steps."
+)
 @click.option("--witness", type=click.Choice(["mujoco"]), help="Its own integrators.")
 @step_option
 @compiled_option
@@ -162,6 +177,7 @@ def verify(
     methods: Sequence[Method],
     alpha: Fraction | None,
     beta: Fraction | None,
+    physical: bool,
     points: int | None,
     cells: int | None,
     floquet: bool,
@@ -191,6 +207,13 @@ def verify(
     point = both_or_none(alpha, beta)
     if sum(choice is not None for choice in (point, points, cells, witness)) > 1:
         raise click.UsageError("choose one of --alpha with --beta, --points, --map and --witness")
+    if physical and point is None:
+        raise click.UsageError("--physical needs --alpha and --beta")
+    if point:
+        if physical:
+            point = to_dimensionless(*point, h)
+        else:
+            say_if_units_were_mistaken(methods, *point, h)
     mechanism = compiled_mechanism(at_speed(load_scene(scene), float(speed)))
     if witness:
         show_rows(_witness_rows(mechanism, float(h)), WITNESSED, form, sentence=witness_sentence)
@@ -234,6 +257,7 @@ def _show_measurements(
 
     rows: list[Row] = []
     summaries: list[Row] = []
+    periodic = False
     for method in methods:
         if point:
             alpha_hat, beta_hat = np.array([float(point[0])]), np.array([float(point[1])])
@@ -241,12 +265,19 @@ def _show_measurements(
             alpha_hat, beta_hat = random_points(method, points)
         bar = partial(progress, label=method.name)
         measurements = measure_poles(mechanism, method, h, alpha_hat, beta_hat, bar, floquet)
+        periodic = all(measurement.periodic for measurement in measurements)
         own_rows = [measurement_row(mechanism.scene.name, measurement) for measurement in measurements]
         rows += own_rows
         summaries.append(summary_row(own_rows))
-    show_rows(rows, MEASUREMENTS + (EXACT if floquet else []), form, sentence=measurement_sentence)
+    show_rows(rows, MEASUREMENTS + (rate_columns(periodic) if floquet else []), form, sentence=measurement_sentence)
     if floquet and for_reading(form):
         for method in methods:
+            if not periodic:
+                show_text(
+                    f"No rate of {method.name} is exact: the motion does not begin anew{_why_not(mechanism)}. What is "
+                    "shown is how errors grow over the run."
+                )
+                continue
             whose = "the mechanism's motion"
             if has_own_motion(mechanism, method):
                 whose = f"the method's own motion, where there is none along {whose}"
@@ -254,6 +285,15 @@ def _show_measurements(
     if for_reading(form) and len(rows) > len(methods):  # of one point each there is nothing to sum up
         click.echo()
         show_rows(summaries, SUMMARIES + (MOTION_SUMMARIES if floquet else []), form, sentence=summary_sentence)
+
+
+def _why_not(mechanism: "Mechanism") -> str:
+    """Return why a motion does not begin anew, as far as its drivers say."""
+    from bezstab.mechanism import Driver, revolution_period
+
+    if not any(isinstance(joint, Driver) for joint in mechanism.scene.joints):
+        return ", as nothing drives it"
+    return ", as its drivers have no common period" if revolution_period(mechanism) is None else ""
 
 
 def _map_verdicts(

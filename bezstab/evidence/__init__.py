@@ -17,6 +17,7 @@ The only room in which stability and mechanism meet. A file imports only from th
     logs                logs of somebody else's simulator, as columns of numbers
     probed_poles        the dominant pole in a log, and whose it is
     probed_recursions   whose recursion a log follows that shows no pole
+    kick_fates          whether the constraint error that a kick has made grows or dies
     verdict_maps        simulated verdicts over the plane against |z_p| < 1
     mujoco_models       a MuJoCo model's step, constraints, springs, drives and masses
     mujoco_lint         what they mean in alpha_hat and beta_hat, and whether they are safe

@@ -253,10 +253,25 @@ def _rates_after_a_kick(
         with np.errstate(divide="ignore"):
             log_errors[:, k] = np.log(error) + changes.log_scale
         stands_out[:, k] = error > STANDS_OUT * displaced
-    lost = ~stands_out
-    last = np.where(lost.any(axis=1), np.argmax(lost, axis=1), course.steps) - 1
-    last = np.maximum(last, 1)
-    first = (FIRST_SHARE * last).astype(int)
+    first, last = _ends_of_what_stands_out(stands_out, course.lengths[newest.name])
     point = np.arange(points)
     growth = log_errors[point, last] - log_errors[point, first]
     return np.asarray(np.exp(growth / (last - first)))
+
+
+def _ends_of_what_stands_out(stands_out: BoolArray, known: int) -> tuple[IntArray, IntArray]:
+    """Return the steps between which growth is told, at both of which an error stands out; shape (points,) each.
+
+    stands_out: shape (points, steps). An error is lost where it does not in as many steps on end as the method knows:
+    the kick of one of them leaves others out, as every second one of the leapfrog method.
+    """
+    points, steps = stands_out.shape
+    latest = np.maximum.accumulate(np.where(stands_out, np.arange(steps), -1), axis=1)  # that stood out, at each step
+    lost = np.arange(steps) - latest >= known
+    end = np.where(lost.any(axis=1), np.argmax(lost, axis=1), steps) - 1
+    point = np.arange(points)
+    last = np.maximum(latest[point, np.maximum(end, 0)], 1)
+    first = np.asarray((FIRST_SHARE * last).astype(int))
+    stands_from_first = stands_out & (np.arange(steps) >= first[:, np.newaxis])
+    first = np.minimum(np.argmax(stands_from_first, axis=1), last - 1)
+    return first, last

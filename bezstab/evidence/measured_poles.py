@@ -65,6 +65,15 @@ LINEAR = (1e-3, 1e-4, 1e-5)
 GROWN = 10.0
 """Times the kick, well before c leaves the linear range; else the mechanism itself broke down."""
 
+AT_ONCE = 10
+"""Steps: growth of tenfold a step, which the linear range may be too small to show, takes fewer to APART."""
+
+APART = 1.0
+"""|c|, SI units, of a mechanism of about a metre that is in pieces."""
+
+CALM = 1e-3 * LINEAR[0]
+"""Largest |c|, SI units, of a mechanism to which nothing happens in the steps in which feedback has thrown it apart."""
+
 CLOSE = 1e-4
 """Of |z|: nearer to the circle than a hundred of the fit's errors no verdict is given; on a mechanism that moves not
 nearer than |chi| kappa h, by which its poles move."""
@@ -88,7 +97,7 @@ class Measurement:
 
     `predicted` and its verdict are those of the mechanism at rest; `law_abs` and `law_verdict` what the first-order law
     makes of them for the motion (`moving_mechanisms`), `floquet_abs` the exact rate over the method's own motion, None
-    unless asked for.
+    unless asked for. Where the motion is not `periodic` that is no exact rate, but a growth over the run.
     `measured` is what the first steps after the kick show, `law_fitted_abs` what the law makes of `predicted` for those
     very steps, None where nothing was measured or the law fails. `measured_rate` is |z| per step over whole
     revolutions, of a mechanism that a driver turns, where the response can be followed for so long.
@@ -102,6 +111,7 @@ class Measurement:
     law_abs: float
     law_verdict: MovingVerdict
     floquet_abs: float | None
+    periodic: bool
     measured: complex | None
     law_fitted_abs: float | None
     measured_rate: float | None
@@ -129,7 +139,7 @@ class Measurement:
         verdicts = {
             "at rest": self.predicted_verdict == "diverges",
             "law": None if self.law_verdict == "not settled for this mechanism" else self.law_abs > 1,
-            "exact": None if self.floquet_abs is None else self.floquet_abs > 1,
+            "exact" if self.periodic else "over the run": None if self.floquet_abs is None else self.floquet_abs > 1,
         }
         return ", ".join(name for name, verdict in verdicts.items() if verdict == diverges) or "none"
 
@@ -164,6 +174,9 @@ def measure_poles(
     exact; the measurement is linear prediction (`fit_dominant_pole`).
     """
     difference, size = _kicked_responses(mechanism, method, h, alpha_hat, beta_hat, progress)
+    thrown_apart = np.asarray(~(size[: AT_ONCE + 1, -1] < APART).all(axis=0))
+    if thrown_apart.any() and not nothing_happens_without_feedback(mechanism, method, h):
+        thrown_apart[:] = False  # the mechanism itself breaks down
     duration = RUN * h * float(method.step_multiple)
     turning = turning_normals(mechanism, duration)
     moving = moving_poles(method, turning, h, alpha_hat, beta_hat)
@@ -181,6 +194,7 @@ def measure_poles(
             turning,
             difference[:, :, i],
             size[:, :, i],
+            bool(thrown_apart[i]),
         )
         for i, (a, b) in enumerate(zip(alpha_hat, beta_hat, strict=True))
     ]
@@ -197,9 +211,9 @@ def _kicked_responses(
     compiled = runs_compiled(mechanism, method, size.size * 2 * evaluations(method) // CHEAPER_TOGETHER)
     with np.errstate(all="ignore"):  # what diverges runs into infinity, and is cut off there
         if compiled:
-            groups = kicked_constraint_errors_in_groups(mechanism, method, h, alpha_hat, beta_hat, KICKS, RUN)
+            groups = kicked_motions_in_groups(mechanism, method, h, alpha_hat, beta_hat, KICKS, RUN)
             for some, blocks in groups:
-                responses = np.concatenate(list(blocks))
+                responses = np.concatenate([c for c, _ in blocks])
                 difference[:, :, some] = (responses[:, 0, 0] - responses[:, 0, 1]) / 2
                 size[:, :, some] = np.abs(responses).max(axis=(1, 2))
         else:
@@ -222,15 +236,21 @@ def _measurement(
     turning: TurningNormals,
     difference: FloatArray,
     size: FloatArray,
+    thrown_apart: bool = False,
 ) -> Measurement:
-    """Return the measurement at one point from its responses of shape (steps, kicks); h in s."""
+    """Return the measurement at one point from its responses of shape (steps, kicks); h in s.
+
+    `thrown_apart`: feedback has thrown the mechanism apart within a few steps.
+    """
     predicted = complex(dominant_pole(method, alpha_hat, beta_hat))
     measured, law_fitted_abs, reason = None, None, ""
     revolution = round(turning.duration / (h * float(method.step_multiple))) if turning.closed else None
     all_poles = poles(method, alpha_hat, beta_hat)
     rival = _rival(all_poles, predicted)
+    if thrown_apart:
+        reason = f"the feedback throws the mechanism apart within {AT_ONCE} steps"
     # Over a window of SAMPLES steps the lesser of two such moduli does not even fall to 1/e of the other.
-    if rival > (1 - 1 / SAMPLES) * abs(predicted):
+    elif rival > (1 - 1 / SAMPLES) * abs(predicted):
         reason = f"another pole, of modulus {rival:.6g}, is too near to tell them apart"
     else:
         fit = fit_dominant_pole(difference, order=_number_of_poles(method), sizes=size, limits=LINEAR)
@@ -250,10 +270,13 @@ def _measurement(
         law_abs=moving.z_abs_moving,
         law_verdict=moving.verdict,
         floquet_abs=floquet_abs,
+        periodic=turning.closed,
         measured=measured,
         law_fitted_abs=law_fitted_abs,
         measured_rate=None if revolution is None else _rate_over_revolutions(revolution, difference, size),
-        measured_verdict=_measured_verdict(measured, difference, size, max(CLOSE, moving.shift(method, h))),
+        measured_verdict="diverges"
+        if thrown_apart
+        else _measured_verdict(measured, difference, size, max(CLOSE, moving.shift(method, h))),
         reason=reason,
     )
 
@@ -360,18 +383,31 @@ def kicked_constraint_errors(
     linear, and its poles are the same from any first values. h in s, alpha_hat and beta_hat of shape (points,).
     InputError for a scene that cannot start.
     """
+    return (c for c, _ in kicked_motions(mechanism, method, h, alpha_hat, beta_hat, kicks))
+
+
+def kicked_motions(
+    mechanism: Mechanism,
+    method: Method,
+    h: float,
+    alpha_hat: FloatArray,
+    beta_hat: FloatArray,
+    kicks: Sequence[float],
+) -> Iterator[tuple[FloatArray, FloatArray]]:
+    """Yield c and q of the same runs, SI units; shape (constraints or coordinates, 2, kicks, points)."""
     run_up = _run_up_to_the_kick(mechanism, method, h, alpha_hat, beta_hat, kicks)
     h_step, history = run_up.h_step, run_up.history
     run = resume(mechanism, method, h_step, run_up.gains, history, run_up.slopes, np, undisturbed=run_up.undisturbed)
     state = history[-1]
     k = len(history) - 1
     while True:
-        yield constraint_errors(mechanism, k * h_step, state[: mechanism.size])
+        q = state[: mechanism.size]
+        yield constraint_errors(mechanism, k * h_step, q), np.stack(q)
         state, _, _ = next(run)
         k += 1
 
 
-def kicked_constraint_errors_in_groups(
+def kicked_motions_in_groups(
     mechanism: Mechanism,
     method: Method,
     h: float,
@@ -379,20 +415,31 @@ def kicked_constraint_errors_in_groups(
     beta_hat: FloatArray,
     kicks: Sequence[float],
     count: int,
-) -> Iterator[tuple[slice, Iterator[FloatArray]]]:
+) -> Iterator[tuple[slice, Iterator[tuple[FloatArray, FloatArray]]]]:
     """Yield the same of the kick and the `count` steps after it by groups of points, compiled.
 
-    With each slice of the points come blocks of c of shape (steps, constraints, 2, kicks, points in the slice).
-    InputError without numba.
+    With each slice of the points come blocks of c and q, of shape (steps, constraints or coordinates, 2, kicks, points
+    in the slice). InputError without numba.
     """
     run_up = _run_up_to_the_kick(mechanism, method, h, alpha_hat, beta_hat, kicks)
     h_step, history = run_up.h_step, run_up.history
-    at_the_kick = constraint_errors(mechanism, (len(history) - 1) * h_step, history[-1][: mechanism.size])
+    q = history[-1][: mechanism.size]
+    at_the_kick = constraint_errors(mechanism, (len(history) - 1) * h_step, q), np.stack(q)
     groups = resume_in_groups(
         mechanism, method, h_step, run_up.gains, history, run_up.slopes, run_up.undisturbed, count
     )
     for some, blocks in groups:
-        yield some, chain([at_the_kick[np.newaxis, ..., some]], blocks)
+        c_then, q_then = (each[np.newaxis, ..., some] for each in at_the_kick)
+        yield some, chain([(c_then, q_then)], blocks)
+
+
+def nothing_happens_without_feedback(mechanism: Mechanism, method: Method, h: float) -> bool:
+    """Return whether without feedback c stays well within the linear range for the first few steps; h in s."""
+    none = np.zeros(1)
+    with np.errstate(all="ignore"):
+        drifting = kicked_constraint_errors(mechanism, method, h, none, none, [0.0])
+        largest = max(float(np.abs(c).max()) for c in islice(drifting, AT_ONCE + 1))
+    return largest < CALM  # not so where it is not a number
 
 
 @dataclass(frozen=True)

@@ -72,7 +72,7 @@ def own_motion_rates(
     """
     course = course_of_steps(mechanism, method, h, duration)
     rates, found = np.ones(alpha_hat.size), np.zeros(alpha_hat.size, bool)
-    if has_own_motion(mechanism, method):
+    if course.along.closed and has_own_motion(mechanism, method):
         gains = gains_on(course, method, alpha_hat, beta_hat)
         motion = _motion_of_the_mechanism(course)
         columns = _columns_of_passes(course, gains, motion, np.abs(poles(method, alpha_hat, beta_hat)))

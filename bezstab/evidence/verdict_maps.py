@@ -1,22 +1,18 @@
 """Maps of simulated verdicts: a run at every cell of the plane, diverging or not, against |z_p| from the polynomial."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.evidence.linear_prediction import SETTLED
-from bezstab.evidence.measured_poles import (
-    GROWN,
-    LINEAR,
-    kicked_constraint_errors,
-    kicked_constraint_errors_in_groups,
-)
-from bezstab.mechanism import CHEAPER_TOGETHER, Scene, compiled_mechanism, runs_compiled
+from bezstab.errors import InputError, NumericalError
+from bezstab.evidence.kick_fates import fates, follow
+from bezstab.evidence.measured_poles import kicked_motions, kicked_motions_in_groups, nothing_happens_without_feedback
+from bezstab.mechanism import CHEAPER_TOGETHER, Scene, compiled_mechanism, runs_compiled, turning_normals
 from bezstab.methods import Method, evaluations
 from bezstab.read_only import ReadOnlyArrays
-from bezstab.stability import FloatArray, pole_map, region, useful_window
+from bezstab.stability import FloatArray, pole_map, poles, region, turning_shift, useful_window
 
 BoolArray = NDArray[np.bool_]
 
@@ -26,21 +22,21 @@ MAP_RUN = 2000
 BATCH = 2000
 """Cells at a time: more make no step cheaper."""
 
-MAP_KICK = 1e-6
-"""SI units: a thousandth of the linear range, so that a decaying run stays in it and a growing one needs time."""
+MAP_KICK = 1e-8
+"""SI units: a hundred thousandth of the linear range, so that even growth of thirtyfold a step is seen within it, and a
+thousandth of the kick is well above the rounding of a metre."""
 
 TOO_CLOSE = 10.0
 """Over the number of steps: with | |z_p| - 1 | below this growth or decay may not show in a run."""
-
-PARTS = 8
-"""Of a run, compared by the largest difference in each."""
 
 
 @dataclass(frozen=True)
 class VerdictMap(ReadOnlyArrays):
     """Predicted |z_p| and what `run` simulated steps of h (s) did; masks of shape (beta_hat.size, alpha_hat.size).
 
-    `broken` is where the mechanism itself left the linear range, whatever the kick: no verdict.
+    `undecided` is where a run gave no verdict, as where the mechanism itself left the linear range. `moved` says
+    how much more than |z_p| the motion can make of any pole's modulus, to first order, |z| + |z chi| kappa h; same
+    shape.
     """
 
     scene: Scene = field(repr=False)
@@ -51,25 +47,31 @@ class VerdictMap(ReadOnlyArrays):
     beta_hat: FloatArray = field(repr=False)
     z_abs: FloatArray = field(repr=False)
     diverges: BoolArray = field(repr=False)
-    broken: BoolArray = field(repr=False)
+    undecided: BoolArray = field(repr=False)
+    moved: FloatArray = field(repr=False)
 
     @property
     def disagrees(self) -> BoolArray:
         """Where simulated and predicted verdict differ; shape (beta_hat.size, alpha_hat.size)."""
-        differs: BoolArray = (self.diverges != (self.z_abs >= 1)) & ~self.broken
+        differs: BoolArray = (self.diverges != (self.z_abs >= 1)) & ~self.undecided
         return differs
 
     @property
     def judged(self) -> int:
-        """The number of runs with a verdict: all but those that broke down."""
-        return self.broken.size - int(self.broken.sum())
+        """The number of runs with a verdict."""
+        return self.undecided.size - int(self.undecided.sum())
+
+    @property
+    def agreeing(self) -> int:
+        """The number of runs whose verdict is the predicted one."""
+        return self.judged - int(self.disagrees.sum())
 
     @property
     def agreement(self) -> float | None:
         """The share of the judged runs whose verdict is the predicted one; None if none was judged."""
         if not self.judged:
             return None
-        return 1 - int(self.disagrees.sum()) / self.judged
+        return self.agreeing / self.judged
 
     @property
     def band(self) -> float:
@@ -84,8 +86,13 @@ class VerdictMap(ReadOnlyArrays):
 
     @property
     def disagreements_beyond_band(self) -> int:
-        """The number of runs that disagree although |z_p| is farther from one than the band."""
-        return int((self._distances_of_disagreement() > self.band).sum())
+        """The number of runs that disagree although |z_p| is farther from one than the band, and than it is moved."""
+        return int((self.disagrees & ~self.too_close).sum())
+
+    @property
+    def too_close(self) -> BoolArray:
+        """Where |z_p| is nearer to one than the band, or than the motion moves it; shape (beta_hat, alpha_hat)."""
+        return np.asarray(~(np.abs(self.z_abs - 1) > np.maximum(self.band, self.moved)))
 
     def _distances_of_disagreement(self) -> FloatArray:
         distance: FloatArray = np.abs(self.z_abs - 1)[self.disagrees]
@@ -130,70 +137,41 @@ def _inside(interval: tuple[float, float], shares: FloatArray) -> FloatArray:
 
 
 def simulated_verdicts(rows: MapRows) -> dict[str, BoolArray]:
-    """Return where runs diverge, and where they broke down; shape (beta_hat.size, alpha_hat.size).
+    """Return where runs diverge, and where they give no verdict; shape (beta_hat.size, alpha_hat.size).
 
-    A run diverges if the difference after the kick grows until c leaves the linear range, or is larger in the last
-    eighth of the run than in the eighth before its middle without having decayed to what is forced. InputError for a
-    scene that cannot start, and where rows are to be compiled without numba.
+    A run diverges if the constraint error that the kick made grows, and converges if that error dies, whichever comes
+    first (`kick_fates`). InputError for a scene that cannot start, and where rows are to be compiled without numba.
     """
     alpha_grid, beta_grid = np.meshgrid(rows.alpha_hat, rows.beta_hat)
     alpha_hat, beta_hat = alpha_grid.ravel(), beta_grid.ravel()
-    steps_of_a_part = MAP_RUN // PARTS
-    largest = np.zeros((PARTS + 1, alpha_hat.size))  # the one step more than eight eighths is a part of its own
-    linear = np.full(alpha_hat.size, True)
     mechanism, method, h = compiled_mechanism(rows.scene), rows.method, rows.h
-    kicked: Iterator[FloatArray] = iter(())
+    masses = np.array(mechanism.equations.mass, float)
+    calm = nothing_happens_without_feedback(mechanism, method, h)
+    diverges, undecided = np.zeros((2, alpha_hat.size), bool)
     with np.errstate(all="ignore"):  # what diverges runs into infinity, and is cut off there
+        groups: Iterable[tuple[slice, Iterator[tuple[FloatArray, FloatArray]]]]
         if rows.compiled:
-            groups = kicked_constraint_errors_in_groups(mechanism, method, h, alpha_hat, beta_hat, [MAP_KICK], MAP_RUN)
-            for some, blocks in groups:
-                linear[some] = _largest_in_parts(blocks, largest[:, some])
+            groups = kicked_motions_in_groups(mechanism, method, h, alpha_hat, beta_hat, [MAP_KICK], MAP_RUN)
         else:
-            kicked = kicked_constraint_errors(mechanism, method, h, alpha_hat, beta_hat, [MAP_KICK])
-        for k, c in zip(range(MAP_RUN + 1), kicked, strict=False):
-            linear &= np.abs(c).max(axis=(0, 1, 2)) < LINEAR[0]  # not so where it is not a number
-            up, down = c[0, :, 0]
-            part = largest[k // steps_of_a_part]
-            np.maximum(part, np.abs(up - down) / 2, out=part, where=linear)
-    peak = largest.max(axis=0)
-    before_middle, last = largest[PARTS // 2 - 1], largest[PARTS - 1]
-    grows_within = (last > before_middle) & (last > SETTLED * peak)
-    grows_out = peak > GROWN * MAP_KICK
-    diverges = np.where(linear, grows_within, grows_out)
+            steps = kicked_motions(mechanism, method, h, alpha_hat, beta_hat, [MAP_KICK])
+            groups = [(slice(None), ((c[np.newaxis], q[np.newaxis]) for c, q in steps))]
+        for some, blocks in groups:
+            followed = follow(blocks, masses, MAP_KICK, MAP_RUN)
+            diverges[some], undecided[some] = fates(followed, thrown_apart_is_growth=calm)
     shape = (rows.beta_hat.size, rows.alpha_hat.size)
-    return {"diverges": diverges.reshape(shape), "broken": (~linear & ~diverges).reshape(shape)}
-
-
-def _largest_in_parts(blocks: Iterator[FloatArray], largest: FloatArray) -> BoolArray:
-    """Return which runs of a group stay linear; `largest` gets the largest difference in each part while they do.
-
-    A block of c has shape (steps, constraints, 2, 1, points). Where no run is linear any more, the rest is left out.
-    """
-    linear = np.full(largest.shape[1], True)
-    steps_of_a_part = MAP_RUN // PARTS
-    k = 0
-    for c in blocks:
-        still = np.logical_and.accumulate(np.abs(c).max(axis=(1, 2, 3)) < LINEAR[0], axis=0) & linear
-        differences = np.where(still, np.abs(c[:, 0, 0, 0] - c[:, 0, 1, 0]) / 2, 0.0)
-        part_of_step = np.arange(k, k + len(c)) // steps_of_a_part
-        for part in np.unique(part_of_step):
-            in_part = differences[part_of_step == part].max(axis=0)
-            largest[part] = np.maximum(largest[part], in_part)
-        linear = still[-1]
-        k += len(c)
-        if not linear.any():
-            break
-    return linear
+    return {"diverges": diverges.reshape(shape), "undecided": undecided.reshape(shape)}
 
 
 def verdict_map(chunks: Sequence[MapRows], found: Sequence[Mapping[str, NDArray[np.generic]]]) -> VerdictMap:
     """Return the map that these rows make up, from what `simulated_verdicts` found in each, with what is predicted.
 
-    Dimensionless, arrays of shape (rows of all chunks, columns); predicted is |z_p| at rest, of paper Eq. 17.
-    NumericalError where a predicted pole leaves the range of float64.
+    Dimensionless, arrays of shape (rows of all chunks, columns); predicted is |z_p| at rest, of paper Eq. 17, and by
+    how much the first-order law of the moving mechanism moves it. NumericalError where a predicted pole leaves the
+    range of float64.
     """
     first = chunks[0]
     beta_hat = np.concatenate([rows.beta_hat for rows in chunks])
+    z_abs = np.concatenate([np.abs(block) for block in pole_map(first.method, first.alpha_hat, beta_hat)])
     return VerdictMap(
         scene=first.scene,
         method=first.method,
@@ -201,7 +179,26 @@ def verdict_map(chunks: Sequence[MapRows], found: Sequence[Mapping[str, NDArray[
         run=MAP_RUN,
         alpha_hat=first.alpha_hat,
         beta_hat=beta_hat,
-        z_abs=np.concatenate([np.abs(block) for block in pole_map(first.method, first.alpha_hat, beta_hat)]),
+        z_abs=z_abs,
         diverges=np.concatenate([verdicts["diverges"] for verdicts in found]),
-        broken=np.concatenate([verdicts["broken"] for verdicts in found]),
+        undecided=np.concatenate([verdicts["undecided"] for verdicts in found]),
+        moved=np.concatenate([_furthest(rows) for rows in chunks]) - z_abs,
     )
+
+
+def _furthest(rows: MapRows) -> FloatArray:
+    """Return the largest modulus that the motion can make of any pole, |z| + |z chi| kappa h; shape of the rows."""
+    alpha_hat, beta_hat = rows.alpha_hat, rows.beta_hat[:, np.newaxis]
+    z = poles(rows.method, alpha_hat, beta_hat)
+    shift = turning_shift(rows.method, alpha_hat[:, np.newaxis], beta_hat[..., np.newaxis], z)
+    with np.errstate(invalid="ignore"):  # zero times infinite: nothing is known
+        return np.asarray((np.abs(z) + np.abs(shift) * _turning_of_a_step(rows)).max(axis=-1))
+
+
+def _turning_of_a_step(rows: MapRows) -> float:
+    """Return kappa h of the method's own step over a run; infinite where the scene's motion cannot be followed."""
+    step = rows.h * float(rows.method.step_multiple)
+    try:
+        return turning_normals(compiled_mechanism(rows.scene), MAP_RUN * step).kappa * step
+    except (InputError, NumericalError):
+        return np.inf

@@ -1,7 +1,7 @@
 """Many runs as machine code: a stepper's lines in a loop over runs, several of which a processor takes at once.
 
-Beside `compiled_steps`, which stores every state of one run, this keeps the constraint errors alone, of LANES runs that
-differ in their gains and states: the stepper as a batch (see `generated_code`).
+Beside `compiled_steps`, which stores every state of one run, this keeps constraint errors and coordinates alone, of
+LANES runs that differ in their gains and states: the stepper as a batch (see `generated_code`).
 
 As in the batches of numpy nothing is refused: what divides by zero is infinite, and equations that are not solved have
 no number for a solution (`newton_side_by_side`). No sum is regrouped, so each bit is that of numpy's batch, as far as
@@ -38,6 +38,9 @@ from bezstab.mechanism.newton_side_by_side import LOOPS_SIDE_BY_SIDE, solve_side
 from bezstab.methods import Method
 
 FloatArray = NDArray[np.float64]
+
+ErrorsAndPositions = tuple[FloatArray, FloatArray]
+"""c and q of the same steps and runs, SI units."""
 
 LANES = 64
 """Runs side by side: what they remember stays in the fastest memory."""
@@ -89,10 +92,12 @@ def _machine_solvers(numba: Any, mechanism: Mechanism, method: Method, parts: Ma
 
 
 def _code(mechanism: Mechanism, method: Method) -> BatchCode:
-    return batch_code(machine_stepper_of(mechanism, method), constraint_texts(mechanism.equations), LANES)
+    coordinates = [f"q{i}" for i in range(mechanism.size)]
+    observed = [*constraint_texts(mechanism.equations), *coordinates]
+    return batch_code(machine_stepper_of(mechanism, method), observed, LANES)
 
 
-def constraint_errors_in_groups(
+def errors_and_positions_in_groups(
     mechanism: Mechanism,
     method: Method,
     start: float,
@@ -102,11 +107,11 @@ def constraint_errors_in_groups(
     shape: tuple[int, ...],
     index: int,
     count: int,
-) -> Iterator[tuple[slice, Iterator[FloatArray]]]:
-    """Yield groups along the last axis of a batch of that shape, each with c after each of `count` steps, in blocks.
+) -> Iterator[tuple[slice, Iterator[ErrorsAndPositions]]]:
+    """Yield groups along the last axis of a batch of that shape, with c and q after each of `count` steps, in blocks.
 
-    A block has shape (steps, m, *shape but for the last axis, group), SI units; the first step leads to the time
-    (index + 1) h. `start` (s), h (s, the whole step), the gains
+    Of a block c has shape (steps, m, *shape but for the last axis, group) and q (steps, n, ...), SI units; the first
+    step leads to the time (index + 1) h. `start` (s), h (s, the whole step), the gains
     2 alpha (1/s) and beta^2 (1/s^2) and what is remembered are those of the generated stepper, arrays that can be
     broadcast to the shape. InputError without numba.
     """
@@ -122,7 +127,7 @@ def constraint_errors_in_groups(
         rows = arrays[..., some].reshape(len(arrays), -1)
         return np.pad(rows, ((0, 0), (0, LANES - rows.shape[1])), mode="edge")
 
-    def blocks(some: slice) -> Iterator[FloatArray]:
+    def blocks(some: slice) -> Iterator[ErrorsAndPositions]:
         memory = np.zeros((places, LANES))
         memory[: len(entries)] = side_by_side(entries, some)
         flat_memory, gains_of_group = memory.ravel(), side_by_side(both_gains, some)
@@ -131,9 +136,10 @@ def constraint_errors_in_groups(
         solving = (inverses,) if inverses else ()
         for first in range(0, count, BLOCK):
             last = min(first + BLOCK, count)
-            errors = np.empty((last - first, mechanism.constraints, LANES))
-            machine_batch(start, h, gains_of_group, index + 1, first, last, flat_memory, errors.reshape(-1), *solving)
-            yield errors[:, :, : beside * width].reshape(last - first, mechanism.constraints, *shape[:-1], width)
+            observed = np.empty((last - first, mechanism.constraints + mechanism.size, LANES))
+            machine_batch(start, h, gains_of_group, index + 1, first, last, flat_memory, observed.reshape(-1), *solving)
+            of_group = observed[:, :, : beside * width].reshape(*observed.shape[:2], *shape[:-1], width)
+            yield of_group[:, : mechanism.constraints], of_group[:, mechanism.constraints :]
 
     for first in range(0, shape[-1], group):
         some = slice(first, first + group)

@@ -20,13 +20,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.mechanism.compiled import Mechanism
-from bezstab.mechanism.motions import motion
+from bezstab.mechanism.motions import STEPS, motion
 from bezstab.mechanism.start import geometry
 
 FloatArray = NDArray[np.float64]
 
 IMAGINARY_STEP = 1e-30  # nothing is subtracted: the derivative is exact to rounding
-SAMPLES = 400  # over the motion, an even number: K turns a few times a revolution, so its integrals are good to 1e-8
+SAMPLES = 400  # over a run, or a turn of the fastest driver, an even number: K turns a few times in one, so its
+# integrals are good to 1e-8
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -64,12 +65,12 @@ class TurningNormals:
 
 @cache
 def turning_normals(mechanism: Mechanism, duration: float) -> TurningNormals:
-    """Return how the constraints turn: over one revolution if a driver turns at a constant rate, else over `duration`.
+    """Return how the constraints turn: over one revolution where the drivers begin anew, else over `duration`.
 
     duration in s. InputError and NumericalError as for the `motion` they turn along.
     """
     along = motion(mechanism, duration)
-    every = (len(along.t) - 1) // SAMPLES
+    every = STEPS // SAMPLES
     rates, metrics = [], []
     for t, q, v in zip(along.t[::every], along.q[::every], along.v[::every], strict=True):
         rate, metric = _rate(mechanism, float(t), q, v)

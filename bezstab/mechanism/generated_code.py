@@ -943,13 +943,13 @@ class BatchCode:
     entries: int
 
 
-def batch_code(stepper: Stepper, constraints: Sequence[str], lanes: int) -> BatchCode:
-    """Return the source of batch(start, h, gains, index, k, last, memory, errors).
+def batch_code(stepper: Stepper, observed: Sequence[str], lanes: int) -> BatchCode:
+    """Return the source of batch(start, h, gains, index, k, last, memory, seen).
 
     It takes the steps k to last - 1 of so many runs as there are lanes and returns the number of the next. `gains`
     holds 2 alpha of all runs, then beta^2; `memory` each entry of what the stepper remembers, of all runs, then room
-    for what is new; `errors` gets c after each step, entry by entry, at the time (index + k) h. The constraints are c
-    as expressions in q0, q1, ... and t.
+    for what is new; `seen` gets what is observed after each step, entry by entry, at the time (index + k) h: c and q,
+    or whatever expressions in q0, q1, ... and t.
 
     That of an implicit stepper has one argument more, `inverses`, one for each of its groups, and calls functions
     solve_<number>(start, k, h, gains, known, sought, inverse).
@@ -969,18 +969,18 @@ def batch_code(stepper: Stepper, constraints: Sequence[str], lanes: int) -> Batc
         *(f"memory[{lanes * places[name]} + lane] = {name}" for name in kept),
         *(f"q{i} = {position}" for i, position in enumerate(new_positions) if position != f"q{i}"),
         "t = (index + k) * h",
-        *(f"errors[row + {lanes * i} + lane] = {constraint}" for i, constraint in enumerate(constraints)),
+        *(f"seen[row + {lanes * i} + lane] = {expression}" for i, expression in enumerate(observed)),
     ]
     groups = stepper.groups
     room = [f"known_{number} = empty(({2 * unknowns}, {lanes}))" for number, unknowns in groups.items()]
     room += [f"sought_{number} = empty(({unknowns}, {lanes}))" for number, unknowns in groups.items()]
     source = [
-        f"def batch(start, h, gains, index, k, last, memory, errors{', inverses' if groups else ''}):",
+        f"def batch(start, h, gains, index, k, last, memory, seen{', inverses' if groups else ''}):",
         *_indented([*stepper.preparations, *room, "row = 0", "while k < last:"], 1),
         *_indented(solving, 2),
         *_indented(_lane_loop(body, lanes), 2),
         *_indented(_moving_lines([(places[move.older], places[move.newer]) for move in moves], lanes), 2),
-        f"  row = row + {lanes * len(constraints)}",
+        f"  row = row + {lanes * len(observed)}",
         f"  {COUNT}",
         " return k",
     ]

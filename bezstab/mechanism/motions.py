@@ -1,7 +1,9 @@
 """The motion of a mechanism itself, without a method's errors, as a function of time; and when it begins anew."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import cache
+from math import lcm
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +18,11 @@ from bezstab.read_only import ReadOnlyArrays
 
 FloatArray = NDArray[np.float64]
 
-STEPS = 4000  # of RK4 over a revolution: its error there is about 1e-12 of a turn
+STEPS = 4000  # of RK4 over a run, or a turn of the fastest driver: its error there is about 1e-12 of a turn
+MOST_TURNS = 60  # of the fastest driver until all begin anew: a second and a minute do
+SAME_RATIO = (
+    1e-12  # of frequencies, which are given as decimals: no others are so near a ratio of such small whole numbers
+)
 FREE = (0.0, 0.0)  # gains: the exact motion has c = 0, and feedback at a fixed alpha_hat would cost RK4 two orders
 CLOSED = 1e-6  # of a coordinate, at least of 1: a motion further from its start after a revolution does not close
 
@@ -66,22 +72,36 @@ class Motion(ReadOnlyArrays):
 
 @cache
 def motion(mechanism: Mechanism, duration: float) -> Motion:
-    """Return the motion from the scene's start: one revolution if a driver turns steadily, else over `duration` (s).
+    """Return the motion from the scene's start: a revolution, where its drivers begin anew, else over `duration` (s).
 
-    InputError for a driven scene that is not where it began after a revolution; NumericalError if the run that provides
-    the motion breaks down.
+    InputError for a scene that is driven steadily and not where it began after a revolution; NumericalError if the run
+    that provides the motion breaks down. Of a scene whose drivers oscillate, and that is not where it began after
+    their common period, as one with freedoms of its own, there is a run.
     """
     period = revolution_period(mechanism)
-    span = duration if period is None else period
-    step = span / STEPS
-    run = simulate(mechanism, lookup("RK4"), step, span, FREE)
+    if period is None:
+        return _motion_over(mechanism, duration, STEPS)
+    along = _motion_over(mechanism, period, STEPS * _turns_of_the_fastest(mechanism))
+    off = _what_is_off(mechanism, along.q[0], along.q[-1])
+    if off is None:
+        return replace(along, closed=True)
+    if _oscillates(mechanism):
+        return _motion_over(mechanism, duration, STEPS)
+    name, apart = off
+    raise InputError(
+        f"{mechanism.scene.name}: {name} is off by {apart:.3g} after one revolution ({period:.6g} s): "
+        "expected a driven motion that begins anew"
+    )
+
+
+def _motion_over(mechanism: Mechanism, span: float, steps: int) -> Motion:
+    """Return the motion from the scene's start over a span (s) in so many steps, as a run."""
+    run = simulate(mechanism, lookup("RK4"), span / steps, span, FREE)
     if run.failure:
         raise NumericalError(f"the motion of {mechanism.scene.name} breaks down {run.failure}")
-    if period is not None:
-        _check_closed(mechanism, run.q[0], run.q[-1], period)
     q, v = np.ascontiguousarray(run.q.T), np.ascontiguousarray(run.v.T)
     a = np.stack(np.broadcast_arrays(*acceleration_function(mechanism, np)(run.t, *FREE, q, v)), axis=-1)
-    return Motion(run.t, run.q, run.v, a, closed=period is not None)
+    return Motion(run.t, run.q, run.v, a, closed=False)
 
 
 @cache
@@ -101,23 +121,51 @@ def regular_motion(mechanism: Mechanism, duration: float) -> Motion:
 
 
 def revolution_period(mechanism: Mechanism) -> float | None:
-    """Return how long one revolution of the drivers takes (s); None unless all turn at one constant rate."""
-    drivers = [joint for joint in mechanism.scene.joints if isinstance(joint, Driver)]
-    rates = {abs(driver.rate) for driver in drivers}
-    steady = all(driver.acceleration == 0 and driver.amplitude == 0 for driver in drivers)
-    if len(rates) != 1 or not steady or rates == {0.0}:
-        return None
-    return float(2 * np.pi / rates.pop())
+    """Return how long it takes until all drivers begin anew (s), those that turn and those that oscillate.
+
+    None without drivers that move, where one speeds up, and where they have no common period that is at most MOST_TURNS
+    turns of the fastest: their frequencies are not in the ratio of whole numbers.
+    """
+    turns = _turns_of_the_fastest(mechanism)
+    return float(2 * np.pi * turns / max(_frequencies(mechanism))) if turns else None
 
 
-def _check_closed(mechanism: Mechanism, start: FloatArray, end: FloatArray, period: float) -> None:
-    """Raise InputError unless every coordinate is back after a revolution, an angle up to whole turns."""
+def _drivers(mechanism: Mechanism) -> list[Driver]:
+    return [joint for joint in mechanism.scene.joints if isinstance(joint, Driver)]
+
+
+def _oscillates(mechanism: Mechanism) -> bool:
+    return any(driver.amplitude and driver.frequency for driver in _drivers(mechanism))
+
+
+def _frequencies(mechanism: Mechanism) -> set[float]:
+    """Return at how many rad/s drivers turn and oscillate."""
+    turning = {abs(driver.rate) for driver in _drivers(mechanism)}
+    oscillating = {abs(driver.frequency) for driver in _drivers(mechanism) if driver.amplitude}
+    return (turning | oscillating) - {0.0}
+
+
+def _turns_of_the_fastest(mechanism: Mechanism) -> int:
+    """Return after how many turns of the fastest driver all begin anew; 0 where that is not known."""
+    frequencies = _frequencies(mechanism)
+    if not frequencies or any(driver.acceleration for driver in _drivers(mechanism)):
+        return 0
+    fastest = max(frequencies)
+    turns = 1
+    for frequency in frequencies:
+        ratio = Fraction(frequency / fastest).limit_denominator(MOST_TURNS)
+        if not ratio or abs(float(ratio) * fastest - frequency) > SAME_RATIO * frequency:
+            return 0
+        turns = lcm(turns, ratio.denominator)
+    return turns if turns <= MOST_TURNS else 0
+
+
+def _what_is_off(mechanism: Mechanism, start: FloatArray, end: FloatArray) -> tuple[str, float] | None:
+    """Return a coordinate that is not back after a revolution, an angle up to whole turns, and how far it is off."""
     for name, before, after in zip(mechanism.scene.coordinates, start, end, strict=True):
         apart = abs(after - before)
         if name.endswith(".theta"):
             apart = abs((apart + np.pi) % (2 * np.pi) - np.pi)
         if apart > CLOSED * max(1.0, abs(before)):
-            raise InputError(
-                f"{mechanism.scene.name}: {name} is off by {apart:.3g} after one revolution ({period:.6g} s): "
-                "expected a driven motion that begins anew"
-            )
+            return name, apart
+    return None

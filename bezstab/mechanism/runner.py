@@ -22,7 +22,7 @@ from bezstab.mechanism.compiled import (
     implicit_solver,
     run_as_second_order,
 )
-from bezstab.mechanism.compiled_batches import constraint_errors_in_groups
+from bezstab.mechanism.compiled_batches import ErrorsAndPositions, errors_and_positions_in_groups
 from bezstab.mechanism.compiled_steps import Block, blocks_of_steps, runs_compiled
 from bezstab.mechanism.newton_iterations import EVALUATIONS, NotConvergedError, Work
 from bezstab.mechanism.second_order_memory import implicit_evaluations, memory
@@ -233,25 +233,25 @@ def resume_in_groups(
     slopes: Sequence[State],
     undisturbed: State,
     count: int,
-) -> Iterator[tuple[slice, Iterator[FloatArray]]]:
-    """Yield c after each of the `count` steps after `history`, as `resume` takes them with numpy, compiled, by groups.
+) -> Iterator[tuple[slice, Iterator[ErrorsAndPositions]]]:
+    """Yield c and q after each of `count` steps after `history`, as `resume` has them with numpy, compiled, by groups.
 
-    A group is a slice of the batch's last axis; its errors come in blocks of shape (steps, m, *batch, the last axis
-    cut to the group), SI units. InputError without numba.
+    A group is a slice of the batch's last axis; its c comes in blocks of shape (steps, m, *batch, the last axis cut to
+    the group), its q in such of (steps, n, ...), SI units. InputError without numba.
     """
     moment, remembered, repeated = first_turn(mechanism, method, h, gains, history, slopes, undisturbed, np, Work())
     index = len(history) - 1 - repeated
     shape = np.broadcast_shapes(*(np.shape(entry) for entry in (*history[-1], *gains)))
 
-    def new(blocks: Iterator[FloatArray]) -> Iterator[FloatArray]:
+    def new(blocks: Iterator[ErrorsAndPositions]) -> Iterator[ErrorsAndPositions]:
         left_out = repeated
-        for block in blocks:
-            kept = block[left_out:]
-            left_out -= len(block) - len(kept)
-            if len(kept):
+        for c, q in blocks:
+            kept = c[left_out:], q[left_out:]
+            left_out -= len(c) - len(kept[0])
+            if len(kept[0]):
                 yield kept
 
-    groups = constraint_errors_in_groups(
+    groups = errors_and_positions_in_groups(
         mechanism, method, moment, h, gains, remembered, shape, index, repeated + count
     )
     for some, blocks in groups:

@@ -94,7 +94,9 @@ class SecondOrder:
     InputError unless every quantity is defined once, and not used later than it is there; x1 and v1 are among them; the
     equations determine them; and the scheme is consistent (a free motion x0 + v0 t is followed exactly and an
     acceleration acts in full) and zero-stable (without feedback z = 1 is a double root, all others lie inside the unit
-    circle or are simple on it).
+    circle or are simple on it; or what velocities do by themselves stays bounded, and so does what positions do without
+    them: a weakly stable multistep method has the root z = -1 once in each, and what the one makes of the other grows
+    like n h = t, as x0 + v0 t does).
     """
 
     equations: tuple[Equation, ...]
@@ -141,12 +143,36 @@ class SecondOrder:
             raise InputError("inconsistent: a free motion x0 + v0 t is not followed exactly")
         if any(any(defect(self.table, degree)) for degree in range(3)):
             raise InputError("inconsistent: an acceleration does not act in full, or feedback not as feedback")
-        if sum(reduced) == 0 or recursion_verdict(reduced) == "diverges":
+        if sum(reduced) == 0 or (recursion_verdict(reduced) == "diverges" and not self._parts_stay_bounded()):
             raise InputError("zero-unstable: without feedback a root lies outside the unit circle, or repeats on it")
         position, velocity = self.responses
         mu_times_x = [*defect(position, 0), ZERO]
         if any(defect(velocity, 0)) or defect(velocity, 1) != mu_times_x:
             raise InputError("inconsistent: v1 is not the velocity of x1")
+
+    def _parts_stay_bounded(self) -> bool:
+        """Return whether without feedback velocities do not depend on positions, and neither part grows by itself."""
+        value_of = {
+            equation.result.name: equation.value if isinstance(equation, Assignment) else ()  # no feedback: a = 0
+            for equation in self.equations
+        }
+        velocities: set[str] = set()
+        found = {VELOCITY}
+        while found:
+            velocities |= found
+            found = {quantity.name for name in found for _, quantity in value_of[name]} - velocities
+        if POSITION in velocities:
+            return False
+        for part in (velocities, value_of.keys() - velocities):
+            alone: list[Equation] = []
+            for equation in self.equations:
+                name = equation.result.name
+                if name in part:
+                    alone.append(Assignment(equation.result, tuple(x for x in value_of[name] if x[1].name in part)))
+            free = [in_plane[0][0] for in_plane in reversed(_determinant_table(tuple(alone)))]
+            if recursion_verdict(free) == "diverges":
+                return False
+        return True
 
     @property
     def evaluations(self) -> int:

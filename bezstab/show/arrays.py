@@ -71,14 +71,14 @@ def _gains(alpha_hat: FloatArray, beta_hat: FloatArray, h: float | None) -> dict
 
 
 def verdict_arrays(verdicts: VerdictMap) -> Arrays:
-    """Return a map of verdicts as arrays of shape (runs,), alpha_hat running fastest; 1 for diverges, 1 for broken."""
+    """Return a map of verdicts as arrays of shape (runs,), alpha_hat running fastest; 1 for diverges, for undecided."""
     alpha_grid, beta_grid = np.meshgrid(verdicts.alpha_hat, verdicts.beta_hat)
     grids = {
         "alpha_hat": alpha_grid,
         "beta_hat": beta_grid,
         "z_abs": verdicts.z_abs,
         "diverges": verdicts.diverges.astype(int),
-        "broken": verdicts.broken.astype(int),
+        "undecided": verdicts.undecided.astype(int),
     }
     return {key: grid.ravel() for key, grid in grids.items()}
 

@@ -132,8 +132,8 @@ def comparison_figure(
 def verdict_figure(verdicts: VerdictMap, region: Region) -> Figure:
     """Return the simulated verdicts as cells under the exact boundary; cells that disagree are crossed."""
     with styled():
-        share = verdicts.agreement
-        agreeing = "no run could be judged" if share is None else f"{share:.2%} of {verdicts.broken.size} runs agree"
+        given = f"{verdicts.judged} of {verdicts.undecided.size} runs gave a verdict"
+        agreeing = f"{given}, {verdicts.agreeing} of them agree" if verdicts.judged else "no run gave a verdict"
         run = title_lines(verdicts.scene.name, verdicts.method.name, f"h = {verdicts.h:g} s")
         title = f"{run}\n{verdicts.run} steps: {agreeing}"
         figure, axes = plane_axes(title, None)

@@ -315,20 +315,20 @@ def marks(points: Mapping[str, Point], axes: Axes | None = None, h: float | None
 def verdicts(verdict_map: VerdictMap, axes: Axes | None = None) -> AxesImage:
     """Draw simulated verdicts as cells over alpha_hat and beta_hat and return the image.
 
-    Values of shape (beta_hat.size, alpha_hat.size): 0 converges, 1 diverges, blank where the run broke down. What the
+    Values of shape (beta_hat.size, alpha_hat.size): 0 converges, 1 diverges, blank where the run gave none. What the
     colours mean is labelled.
     """
     from bezstab.evidence import VerdictMap
 
     check_kind(verdict_map, VerdictMap, "bezstab.evidence.verdict_map")
     axes = _plane(axes, f"{verdict_map.scene.name}, {verdict_map.method.name}", None)
-    values = np.ma.masked_array(verdict_map.diverges, verdict_map.broken)
+    values = np.ma.masked_array(verdict_map.diverges, verdict_map.undecided)
     colours = ListedColormap([CONVERGES, DIVERGES])
     image = cells(axes, verdict_map.alpha_hat, verdict_map.beta_hat, values, cmap=colours, vmin=0, vmax=1)
     axes.set_facecolor("white")
     meanings = {"run converges": CONVERGES, "run diverges": DIVERGES}
-    if verdict_map.broken.any():
-        meanings["run breaks down"] = "white"
+    if verdict_map.undecided.any():
+        meanings["no verdict"] = "white"
     for meaning, colour in meanings.items():
         axes.plot([], [], "s", color=colour, markeredgecolor="0.5", label=meaning)
     return image

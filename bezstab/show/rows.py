@@ -413,12 +413,15 @@ def verdict_map_row(verdicts: VerdictMap) -> Row:
     """Return how far simulated verdicts agree with |z_p| < 1, and how near to one those lie that do not."""
     return row(
         verdicts,
-        without={"alpha_hat", "beta_hat", "z_abs", "diverges", "run"},
+        without={"alpha_hat", "beta_hat", "z_abs", "diverges", "run", "moved"},
         run_steps=verdicts.run,
-        runs=verdicts.broken.size,
-        broken=int(verdicts.broken.sum()),
+        runs=verdicts.undecided.size,
+        undecided=verdicts.undecided.size - verdicts.judged,
+        judged=verdicts.judged,
+        agreeing=verdicts.agreeing,
         agreeing_share=verdicts.agreement,
         band=verdicts.band,
+        too_close=int(verdicts.too_close.sum()),
         farthest=verdicts.farthest_disagreement,
         disagreeing=verdicts.disagreements_beyond_band,
     )

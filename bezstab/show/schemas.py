@@ -112,7 +112,10 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
         ),
         RowKind(
             "a map of simulated verdicts",
-            _keys("scene method h run_steps runs broken agreeing_share band farthest disagreeing"),
+            _keys(
+                "scene method h run_steps runs undecided judged agreeing agreeing_share band too_close farthest "
+                "disagreeing"
+            ),
         ),
         RowKind(
             "a run of an engine that is not ours",

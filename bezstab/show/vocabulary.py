@@ -264,7 +264,8 @@ VOCABULARY: Mapping[str, Key] = {
     "law_verdict": Key("text", "Verdict predicted by the first-order law of the motion", values=MOVING_VERDICTS),
     "floquet_z_abs": Key(
         "number",
-        "Exact modulus per step of the linearised steps over the motion the method makes",
+        "Modulus per step of the linearised steps over the motion the method makes: exact where that begins anew, else "
+        "a growth over the run",
         null="without --floquet",
     ),
     **_pole("measured_", "the pole measured in the simulation", NOT_MEASURED),
@@ -286,18 +287,21 @@ VOCABULARY: Mapping[str, Key] = {
     "reason": Key("text", "Why nothing could be measured, or what disturbs it; empty where nothing does"),
     "measurable": Key("truth", "Whether the pole could be measured"),
     "verdicts_agree": Key("truth", "Whether predicted and measured verdict agree", null="where either is not settled"),
-    "right": Key("text", "Which predictions have the measured verdict: at rest, law, exact"),
+    "right": Key("text", "Which predictions have the measured verdict: at rest, law, exact (or over the run)"),
     # maps of simulated verdicts
     "runs": Key("integer", "Number of runs"),
-    "broken": Key("integer", "Runs in which the mechanism itself broke down: no verdict"),
+    "undecided": Key("integer", "Runs that gave no verdict"),
+    "judged": Key("integer", "Runs that gave a verdict"),
+    "agreeing": Key("integer", "Runs whose verdict is the predicted one"),
     "agreeing_share": Key(
-        "number", "Share of the runs whose verdict is the predicted one", null="if no run has a verdict"
+        "number", "Share of the runs with a verdict whose verdict is the predicted one", null="if no run has a verdict"
     ),
     "band": Key("number", "Distance of the modulus from one below which a verdict is too close to call"),
+    "too_close": Key("integer", "Runs so close to one, or closer than the motion moves the predicted pole"),
     "farthest": Key(
         "number", "Largest distance of the modulus from one of a run that disagrees", null="if none disagrees"
     ),
-    "disagreeing": Key("integer", "Runs beyond the band that disagree"),
+    "disagreeing": Key("integer", "Runs not too close to call that disagree"),
     # witnesses
     "integrator": Key("text", "What the other engine calls its integrator"),
     "times_boundary": Key("number", "Distance of the point from the origin, in those of the boundary on its ray"),

@@ -78,6 +78,7 @@ RENAMED = {
         "run": "run_steps",
         "steps": "run_steps",
         "agreement": "agreeing_share",
+        "broken": "undecided",
     },
     "choose": {"h_max": "h_limit", "engine": "setting"},
     "check": {"h_max": "h_limit"},
@@ -99,6 +100,7 @@ ADDED = (
     *("implicit", "digits", "order_position_forces", "order_velocity_forces", "group"),
     *("driver_work", "force_work", "iterations", "singular_passages"),
     *("law_z_abs", "law_verdict", "floquet_z_abs", "law_fitted_z_abs", "measured_rate", "right"),
+    *("judged", "agreeing", "too_close"),
     *("safe", "error_constant", "engine_h_limit", "z_abs_below", "critical_damping_limit_exact", "approached"),
     *("role", "setting", "sweeps"),
 )

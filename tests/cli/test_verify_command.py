@@ -33,11 +33,23 @@ def test_verify_prints_predicted_and_measured_pole(tmp_path: Path) -> None:
 
 def test_verify_map_writes_verdicts_and_figure(tmp_path: Path) -> None:
     (row,) = rows("verify", "--map", "5", "--scene", "pendulum", "--method", "SYM", "--table", "npz")
-    assert (row["runs"], row["agreeing_share"], row["disagreeing"]) == (25, 1, 0)
+    assert (row["runs"], row["judged"], row["agreeing"], row["disagreeing"]) == (25, 25, 25, 0)
+    assert row["agreeing_share"] == 1
     assert row["band"] == 0.005
     assert sorted(path.suffix for path in tmp_path.iterdir()) == [".npz", ".png"]
     columns = arrays(tmp_path / "verify_pendulum_SYM.npz")
     assert (columns["diverges"] == (columns["z_abs"] >= 1)).all()
+
+
+def test_what_is_thrown_apart_at_once_diverges_and_seconds_are_understood() -> None:
+    at = ("verify", "--scene", "pendulum", "--method", "RK4")
+    (gone,) = rows(*at, "--alpha", "14217", "--beta", "16544")  # |z| = 1.7e15: nothing stays finite
+    assert (gone["measurable"], gone["measured_verdict"], gone["verdicts_agree"]) == (False, "diverges", True)
+    # alpha = 400 1/s and beta = 500 1/s: alpha_hat = 2 alpha h, beta_hat = (beta h)^2
+    (in_seconds,) = rows(*at, "--alpha", "400", "--beta", "500", "--h", "0.001", "--physical")
+    assert (in_seconds["alpha_hat"], in_seconds["beta_hat"]) == (0.8, 0.25)
+    mistaken = run(*at, "--alpha", "400", "--beta", "500", "--h", "0.001")
+    assert "add --physical: bezstab verify --method RK4 --alpha 400 --beta 500 --h 0.001 --physical" in mistaken.stderr
 
 
 def test_verify_tells_what_the_motion_does_to_a_prediction() -> None:
@@ -59,7 +71,7 @@ def test_verify_tells_what_the_motion_does_to_a_prediction() -> None:
     [
         ("driven_four_bar", "B4", "Exact rates of B4: along the method's own motion"),
         ("driven_four_bar", "bdf2", "Exact rates of bdf2: along the mechanism's motion."),  # implicit
-        ("four_bar", "B4", "Exact rates of B4: along the mechanism's motion."),  # no revolution
+        ("four_bar", "B4", "No rate of B4 is exact: the motion does not begin anew, as nothing drives it."),
     ],
 )
 def test_exact_rates_are_said_to_be_along_which_motion(scene: str, method: str, said: str) -> None:

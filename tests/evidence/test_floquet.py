@@ -10,7 +10,7 @@ from bezstab.mechanism import compiled_mechanism, load_scene
 from bezstab.methods import Method, lookup, second_order_form
 from bezstab.stability import FloatArray, spectral_radius
 from bezstab.units import feedback_gains
-from tests.evidence.driven_four_bar import four_bar
+from tests.evidence.driven_four_bar import four_bar, swinging_four_bar
 from tests.reference.perturbed_revolutions import runner_multipliers
 
 STABLE = {
@@ -34,6 +34,15 @@ def test_the_runner_itself_shows_the_same_rate(name: str) -> None:
     at_rest = float(spectral_radius(lookup(name), alpha_hat, beta_hat))
     assert found[0] == pytest.approx(expected, abs=1e-4)
     assert abs(found[0] - expected) < abs(at_rest - expected)
+
+
+@pytest.mark.parametrize("name", ["AB4", "RK4"])
+def test_where_drivers_swing_the_rate_is_that_of_their_common_period(name: str) -> None:
+    """A turn and two swings in a second: the runner's own steps over it, and nothing else, give the multiplier."""
+    mechanism = swinging_four_bar(2 * np.pi, 4 * np.pi)
+    alpha_hat, beta_hat = STABLE[name]
+    found = floquet_rates(mechanism, lookup(name), 1 / 200, np.array([alpha_hat]), np.array([beta_hat]), 0.3)
+    assert found[0] == pytest.approx(runner_multipliers(mechanism, lookup(name), 200, alpha_hat, beta_hat), abs=1e-4)
 
 
 @pytest.mark.parametrize("name", ["B4", "RK4", "SYM", "ABM3", "trapezoid", "verlet-half", "newmark(1/4,1/2)"])

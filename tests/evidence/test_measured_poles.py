@@ -2,15 +2,16 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from fractions import Fraction
 
 import numpy as np
 import pytest
 
 from bezstab.compiling import COMPILED_CHOICE
-from bezstab.evidence import LINEAR, SPREAD, Measurement, MovingPole, measure_poles, random_points
+from bezstab.evidence import LINEAR, SPREAD, Measurement, MovingPole, floquet_rates, measure_poles, random_points
 from bezstab.evidence.measured_poles import KICKS, SETTLING, _kicked_responses, _measured_verdict, _measurement
 from bezstab.mechanism import Mechanism, TurningNormals, compiled_mechanism, load_scene
-from bezstab.methods import LinearMultistep, lookup, steps
+from bezstab.methods import LinearMultistep, Method, lookup, steps
 from bezstab.stability import best_point, dominant_pole, poles, spectral_radius
 from tests.mechanism.test_scenes import small
 from tests.methods.kinds import EXPLICIT, FEW, IMPLICIT, SAMPLE, SECOND_ORDER, sampled
@@ -139,6 +140,30 @@ def test_what_is_left_on_a_moving_mechanism_shrinks_with_its_speed_times_the_ste
 @pytest.mark.parametrize("name", ["verlet-predicted", "bdf2"])
 def test_methods_that_solve_equations_have_the_predicted_pole(name: str) -> None:
     check_promise("pendulum", name, 8)
+
+
+@pytest.mark.parametrize("sigma", ["0 2 0", "1/3 4/3 1/3"])  # leapfrog, Milne and Simpson
+def test_weakly_stable_methods_run_and_have_the_predicted_pole(sigma: str) -> None:
+    """No feedback is stable with them, but they are zero-stable."""
+    scheme = LinearMultistep((Fraction(1), Fraction(0), Fraction(-1)), tuple(map(Fraction, sigma.split())))
+    method, points = Method("weakly stable", scheme, ""), (np.array([0.3, 0.5]), np.array([0.2, 0.1]))
+    mechanism = compiled_mechanism(load_scene("pendulum"))
+    found = measure_poles(mechanism, method, H, *points)
+    assert np.max(errors(found)) < 1e-5
+    assert [one.measured_verdict for one in found] == ["diverges", "diverges"]
+    exact = floquet_rates(mechanism, method, H, *points, 0.1)
+    assert exact == pytest.approx([abs(one.predicted) for one in found], rel=1e-2)
+
+
+def test_feedback_that_throws_the_mechanism_apart_diverges_unless_it_breaks_down_by_itself() -> None:
+    """|z| of B4 is 2e4 and 66, of RK4 1.7e15 and 1e5: a few steps are left, and no pole can be fitted."""
+    far = np.array([14217.0, 41.0]), np.array([16544.0, 2.9])
+    for name in ("B4", "RK4"):
+        found = measure_poles(compiled_mechanism(load_scene("slider_crank")), lookup(name), H, *far)
+        assert [(one.measured, one.measured_verdict) for one in found] == [(None, "diverges")] * 2
+    # steps of a tenth of a revolution: without feedback, too, the mechanism is soon millimetres apart
+    found = measure_poles(compiled_mechanism(load_scene("slider_crank_300rpm")), lookup("B4"), 0.02, *far)
+    assert [one.measured_verdict for one in found] == ["too close to call"] * 2
 
 
 @pytest.mark.slow

@@ -1,4 +1,4 @@
-"""Poles that stand out of noise: the stated errors cover the truth, and what is noise, or none, is not taken for poles."""
+"""Poles that stand out of noise: stated errors cover the truth, and what is noise, or none, is not taken for poles."""
 
 import numpy as np
 import pytest
@@ -87,8 +87,8 @@ def test_what_is_no_white_noise_is_not_taken_for_it() -> None:
     random = np.random.default_rng(3)
     steps = white(random, 1.0, 300)
     related = np.zeros(300)
-    for k in range(1, 300):
-        related[k] = 0.7 * related[k - 1] + steps[k]
+    for row in range(1, 300):
+        related[row] = 0.7 * related[row - 1] + steps[row]
     k = np.arange(300)
     for c in (related, steps * (1 + k) ** 2, np.sin(0.02 * k + 0.3 * np.sin(0.05 * k)), np.log(1 + k)):
         fit = fit_in_noise(column(c), ORDER)

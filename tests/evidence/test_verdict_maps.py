@@ -22,7 +22,7 @@ def whole_map(scene: str, name: str, h: float, count: int) -> VerdictMap:
 @pytest.mark.parametrize("name", ["verlet-old", pytest.param("am4", marks=pytest.mark.slow)])
 def test_so_do_those_of_methods_that_solve_equations(name: str) -> None:
     verdicts = whole_map("pendulum", name, H, 8)
-    assert not verdicts.broken.any()
+    assert not verdicts.undecided.any()
     assert verdicts.disagreements_beyond_band == 0
     assert 0 < verdicts.diverges.sum() < verdicts.diverges.size
 
@@ -30,7 +30,7 @@ def test_so_do_those_of_methods_that_solve_equations(name: str) -> None:
 @pytest.mark.parametrize("name", ["B4", "AB4", "SYM"])
 def test_simulated_verdicts_agree_outside_the_band(name: str) -> None:
     verdicts = whole_map("slider_crank", name, H, 16)
-    assert not verdicts.broken.any()
+    assert not verdicts.undecided.any()
     distance = np.abs(verdicts.z_abs - 1)[verdicts.disagrees]
     assert distance.max(initial=0) < verdicts.band
     assert verdicts.disagreements_beyond_band == 0
@@ -42,7 +42,7 @@ def test_simulated_verdicts_agree_outside_the_band(name: str) -> None:
 def test_runs_that_break_down_whatever_the_kick_give_no_verdict() -> None:
     # a hundredth of a second is too coarse for the four-bar: the truncation error alone leaves the linear range
     verdicts = whole_map("four_bar", "SYM", 1e-2, 6)
-    assert verdicts.broken.all()
+    assert verdicts.undecided.all()
     assert not verdicts.disagrees.any()
     assert verdicts.judged == 0
     assert verdicts.agreement is None
@@ -58,15 +58,17 @@ def test_agreement_is_what_a_count_cell_by_cell_gives() -> None:
         alpha_hat=np.linspace(0, 2, 9),
         beta_hat=np.linspace(0, 4, 7),
         z_abs=random.uniform(0.98, 1.02, shape),
+        moved=np.zeros(shape),
         diverges=random.random(shape) < 0.5,
-        broken=random.random(shape) < 0.2,
+        undecided=random.random(shape) < 0.2,
     )
     counted = count_cell_by_cell(made_up)
-    assert 0 < counted.agreeing < counted.judged < made_up.broken.size
+    assert 0 < counted.agreeing < counted.judged < made_up.undecided.size
     assert made_up.judged == counted.judged
     assert made_up.agreement == pytest.approx(counted.agreeing / counted.judged)
     assert made_up.farthest_disagreement == max(counted.distances_of_the_others)
     beyond = [distance for distance in counted.distances_of_the_others if distance > made_up.band]
+    assert made_up.agreeing == counted.agreeing
     assert made_up.disagreements_beyond_band == len(beyond) > 0
 
 
@@ -98,7 +100,7 @@ def maps_both_ways(scene: str, name: str, count: int) -> None:
     """Check that a map by compiled runs is that of numpy's."""
     for rows in map_rows(load_scene(scene), lookup(name), 1e-3, count):
         by_numpy, compiled = (simulated_verdicts(replace(rows, compiled=choice)) for choice in (False, True))
-        for key in ("diverges", "broken"):
+        for key in ("diverges", "undecided"):
             np.testing.assert_array_equal(compiled[key], by_numpy[key])
 
 

@@ -28,7 +28,7 @@ POINTS = 70
 
 
 def both(mechanism: Mechanism, method: Method, h: float) -> tuple[FloatArray, FloatArray]:
-    """Return c of runs kicked up and down, some of which diverge, by numpy and compiled: (steps, m, 2, points)."""
+    """Return c and q of runs kicked up and down, by numpy and compiled; some diverge. (steps, m + n, 2, points)."""
     step = h * float(method.step_multiple)
     alpha_hat, beta_hat = np.linspace(0.1, 2.5, POINTS), np.linspace(0.02, 2.0, POINTS)
     gains = feedback_gains(alpha_hat, beta_hat, h)
@@ -45,13 +45,14 @@ def both(mechanism: Mechanism, method: Method, h: float) -> tuple[FloatArray, Fl
         history[-1] = tuple(x + kick for x in undisturbed)
         run = resume(mechanism, method, step, gains, history, slopes, np, undisturbed=undisturbed)
         times = np.arange(len(history), len(history) + STEPS) * step
+        states = [next(run)[0][: mechanism.size] for _ in times]
         by_numpy = np.array([
-            constraint_errors(mechanism, t, next(run)[0][: mechanism.size]) for t in times.tolist()
+            [*constraint_errors(mechanism, t, q), *q] for t, q in zip(times.tolist(), states, strict=True)
         ])  # fmt: skip
         compiled = np.full_like(by_numpy, np.inf)
         groups = resume_in_groups(mechanism, method, step, gains, history, slopes, undisturbed, STEPS)
         for some, blocks in groups:
-            compiled[..., some] = np.concatenate(list(blocks))
+            compiled[..., some] = np.concatenate([np.concatenate(c_and_q, axis=1) for c_and_q in blocks])
     return by_numpy, compiled
 
 

@@ -1,4 +1,4 @@
-"""The motion as a function of time: between its steps, and closed where a driver turns steadily."""
+"""The motion as a function of time: between its steps, and closed where drivers begin anew."""
 
 from dataclasses import replace
 
@@ -14,7 +14,10 @@ from bezstab.mechanism import (
     motion,
     parse_scene,
     regular_motion,
+    revolution_period,
+    turning_normals,
 )
+from tests.evidence.driven_four_bar import swinging_four_bar
 
 MECHANISM = compiled_mechanism(load_scene("driven_four_bar"))
 
@@ -22,6 +25,33 @@ MECHANISM = compiled_mechanism(load_scene("driven_four_bar"))
 def test_a_steady_driver_makes_a_revolution_whatever_the_duration() -> None:
     assert motion(MECHANISM, 0.3).closed
     assert motion(MECHANISM, 0.3).duration == pytest.approx(1.0, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("rate", "frequency", "period"),
+    [
+        (0.0, 4.0, np.pi / 2),
+        (2 * np.pi, 3 * np.pi, 2.0),  # two turns, three swings
+        (2 * np.pi, 2 * np.pi, 1.0),
+    ],
+)
+def test_drivers_that_turn_and_oscillate_begin_anew_after_their_common_period(
+    rate: float, frequency: float, period: float
+) -> None:
+    mechanism = swinging_four_bar(rate, frequency)
+    along = motion(mechanism, 0.3)
+    assert along.closed
+    assert along.duration == pytest.approx(period, rel=1e-12)
+    turns = round(rate * period / (2 * np.pi))
+    assert along.q[-1][0] - along.q[0][0] == pytest.approx(2 * np.pi * turns, abs=1e-6)
+    assert turning_normals(mechanism, 0.3).duration == pytest.approx(period, rel=1e-12)
+
+
+@pytest.mark.parametrize("ratio", [np.sqrt(2), 1.0001, 1 / 997])
+def test_without_a_common_period_the_motion_is_a_run(ratio: float) -> None:
+    mechanism = swinging_four_bar(2 * np.pi, 2 * np.pi * ratio)
+    assert revolution_period(mechanism) is None
+    assert not motion(mechanism, 0.05).closed
 
 
 def test_without_a_driver_the_motion_is_a_run() -> None:

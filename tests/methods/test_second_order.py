@@ -11,10 +11,12 @@ from bezstab.errors import InputError
 from bezstab.methods import (
     Assignment,
     Evaluation,
+    LinearMultistep,
     Method,
     Quantity,
     SecondOrder,
     closed_loop_at,
+    closed_loop_table,
     lookup,
     recipe,
     second_order_form,
@@ -187,6 +189,14 @@ def test_a_root_on_the_circle_that_stays_is_allowed_once() -> None:
     assert recipe(VERLET | {"w": "0 x0 - w[0]"}).table
     with pytest.raises(InputError, match="zero-unstable"):
         recipe(VERLET | {"w": "0 x0 - w[0] + u[0]", "u": "0 x0 - u[0]"})
+
+
+@pytest.mark.parametrize("sigma", ["0 2 0", "1/3 4/3 1/3"])  # leapfrog, Milne and Simpson
+def test_weakly_stable_multistep_methods_have_second_order_forms(sigma: str) -> None:
+    """Their rho = z^2 - 1 has the root -1 once: once for positions, once for velocities, and zero-stable."""
+    scheme = LinearMultistep((Fraction(1), Fraction(0), Fraction(-1)), tuple(map(Fraction, sigma.split())))
+    form = second_order_form(scheme)
+    assert form.table == closed_loop_table(Method("weakly stable", scheme, ""))
 
 
 def test_x1_and_v1_must_be_given() -> None:

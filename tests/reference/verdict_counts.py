@@ -20,7 +20,7 @@ def count_cell_by_cell(verdicts: VerdictMap) -> Count:
     rows, columns = verdicts.z_abs.shape
     for row in range(rows):
         for column in range(columns):
-            if verdicts.broken[row, column]:
+            if verdicts.undecided[row, column]:
                 continue
             judged += 1
             z_abs = float(verdicts.z_abs[row, column])

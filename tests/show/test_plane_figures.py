@@ -73,19 +73,19 @@ def test_the_verdict_figure_shows_cells_boundary_and_disagreement() -> None:
     cells = verdict_map(rows, [simulated_verdicts(each) for each in rows])
     wrong = cells.diverges.copy()
     wrong[2, 3] ^= True
-    broken = np.zeros_like(wrong)
-    broken[0, 5] = True
-    figure = verdict_figure(replace(cells, diverges=wrong, broken=broken), region(method))
+    undecided = np.zeros_like(wrong)
+    undecided[0, 5] = True
+    figure = verdict_figure(replace(cells, diverges=wrong, undecided=undecided), region(method))
     (axes,) = figure.axes
     shown = axes.images[0].get_array()
     assert shown is not None
-    assert (np.ma.getmaskarray(shown) == broken).all()
-    assert (np.asarray(shown)[~broken] == wrong[~broken]).all()
+    assert (np.ma.getmaskarray(shown) == undecided).all()
+    assert (np.asarray(shown)[~undecided] == wrong[~undecided]).all()
     lines = {str(line.get_label()): np.array(line.get_xydata()) for line in axes.lines}
     assert lines["disagree"].tolist() == [[cells.alpha_hat[3], cells.beta_hat[2]]]
     (curve,) = region(method).boundary
     assert lines["$|z_p| = 1$"][:-1] == pytest.approx(curve)
-    assert "97.14%" in axes.get_title()  # 34 of 35
+    assert "35 of 36 runs gave a verdict, 34 of them agree" in axes.get_title()
 
 
 def test_the_family_figure_has_a_point_per_method_and_the_limit() -> None:

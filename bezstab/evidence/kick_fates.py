@@ -1,0 +1,132 @@
+r"""What becomes of the constraint error that a kick has made: it grows, or it dies.
+
+Two runs of one mechanism are kicked, one up and one down. Half the difference of their c is the kick's error for as
+long as that lives, and no longer:
+
+    log |dc|  *
+              | *
+              |   *                           . . . . '       what is left: the two motions drift apart
+              |     *             . . . . '
+              |       *   . . '
+              |        '* died: a thousandth of its largest
+              +---------------------------------------- steps
+
+The kick moves the motion itself a little, too. If nothing drives the mechanism, the two motions drift apart for good;
+truncation errors force c in each, along each motion, and so differently. What is left of dc, and grows, is that.
+
+So the error has died, and the run converges, where all of a window is below a thousandth of what the error was at most,
+whatever comes later; unless that is growth of a constraint error again, and then the run has no verdict. Where it has
+not died by the end of the run, the last eighth is compared with the eighth before the middle, and where c leaves the
+range in which the mechanism answers linearly, the error with the kick: tenfold is growth. (A stable error, too, may
+rise tenfold before it falls, where two poles are nearly one: that it dies decides.)
+
+Growth counts only if the error still accounts for a tenth, at least, of what the two runs differ by. The kick is all of
+it at first; of two motions that keep to their constraints but for what is forced (below LINEAR on a mechanism of about
+a metre) c differs by about a thousandth of what q does. Else there is no verdict, as where the mechanism itself breaks
+down.
+
+One thing is faster than any window: feedback that throws the parts of the mechanism metres apart at once. That is
+growth, too, if without feedback nothing happens to the mechanism in these steps. (Leaving the linear range at once is
+not enough: where steps are coarse, feedback may turn truncation errors into millimetres though errors decay.)
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bezstab.evidence.linear_prediction import SETTLED
+from bezstab.evidence.measured_poles import APART, AT_ONCE, GROWN, LINEAR
+from bezstab.stability import FloatArray
+
+BoolArray = NDArray[np.bool_]
+
+WINDOW = 10
+"""Steps: an oscillation so slow that it is below SETTLED in all of them passes no zero within thousands of steps."""
+
+PARTS = 8
+"""Of a run: where nothing has come of the error by its end, the last is compared with the one before the middle."""
+
+OF_ALL = 0.1
+"""What an error that grows accounts for, at least, of all that two runs differ by; two motions differ by a hundredth of
+that in their c."""
+
+
+@dataclass(frozen=True)
+class Followed:
+    """Half the difference of two runs after a kick, in windows; `error` and `moved` of shape (windows, points).
+
+    `error`: the largest |dc| of a window, of any constraint, in units of the kick. `moved`: the largest size of dq, in
+    the metric of the masses, in units of what the kick itself displaced. Both are zero from where c has left the linear
+    range, which holds for so many steps, shape (points,). `thrown_apart`: c is beyond APART AT_ONCE, shape (points,).
+    """
+
+    error: FloatArray = field(repr=False)
+    moved: FloatArray = field(repr=False)
+    linear_steps: NDArray[np.int_] = field(repr=False)
+    thrown_apart: BoolArray = field(repr=False)
+
+
+def follow(blocks: Iterator[tuple[FloatArray, FloatArray]], masses: FloatArray, kick: float, run: int) -> Followed:
+    """Return what is seen after the first step of the blocks, that of the kick (SI units), in `run` steps.
+
+    A block of c has shape (steps, constraints, 2, 1, points), of q (steps, coordinates, ...); masses (coordinates,).
+    Where no run is linear any more, the rest is left out.
+    """
+    c, q = next(blocks)
+    points = c.shape[-1]
+    error, moved = np.zeros((2, run // WINDOW, points))
+    linear_steps = np.zeros(points, int)
+    sizes = np.abs(c).max(axis=(1, 2, 3))
+    linear, together = sizes[0] < LINEAR[0], sizes[0] < APART  # not so where it is not a number
+    displaced = _size(q, masses)[0]
+    k = 0
+    for c, q in blocks:
+        if k == run or (k >= AT_ONCE and not linear.any()):
+            break
+        sizes = np.abs(c).max(axis=(1, 2, 3))
+        together &= (sizes[: max(AT_ONCE - k, 0)] < APART).all(axis=0)
+        still = np.logical_and.accumulate(sizes < LINEAR[0], axis=0) & linear
+        differences = np.abs(c[:, :, 0, 0] - c[:, :, 1, 0]).max(axis=1) / (2 * kick)
+        window_of_step = np.arange(k, k + len(c)) // WINDOW
+        for of_all, of_block in ((error, differences), (moved, _size(q, masses) / displaced)):
+            seen = np.where(still, of_block, 0.0)
+            for window in np.unique(window_of_step):
+                np.maximum(of_all[window], seen[window_of_step == window].max(axis=0), out=of_all[window])
+        linear = still[-1]
+        linear_steps += still.sum(axis=0)
+        k += len(c)
+    return Followed(error, moved, linear_steps, ~together)
+
+
+def _size(q: FloatArray, masses: FloatArray) -> FloatArray:
+    """Return half the difference of q of both runs, in the metric of the masses; shape (steps, points)."""
+    return np.asarray(np.sqrt(np.einsum("i,kip->kp", masses, (q[:, :, 0, 0] - q[:, :, 1, 0]) ** 2)) / 2)
+
+
+def fates(followed: Followed, thrown_apart_is_growth: bool) -> tuple[BoolArray, BoolArray]:
+    """Return where a kick's error grows, and where there is no verdict; shape (points,) each.
+
+    `thrown_apart_is_growth`: as `nothing_happens_without_feedback`. Theory: the docstring of this file.
+    """
+    error, windows = followed.error, len(followed.error)
+    with np.errstate(all="ignore"):  # of windows that are no longer linear
+        share = np.where(followed.moved > 0, error / followed.moved, 0.0)
+    window = np.arange(windows)[:, np.newaxis]
+    linear_windows = followed.linear_steps // WINDOW
+    largest_so_far = np.maximum.accumulate(np.maximum(error, 1.0), axis=0)  # the kick itself is one
+    dead = (window < linear_windows) & (error < SETTLED * largest_so_far)
+    grown = (error > GROWN) & (share > OF_ALL)
+    died = dead.any(axis=0)
+    died_in = np.where(died, dead.argmax(axis=0), windows)
+    came_back = (grown & (window > died_in)).any(axis=0)
+    to_the_end = linear_windows == windows
+    part = windows // PARTS
+    last, before_middle = error[-part:].max(axis=0), error[windows // 2 - part : windows // 2].max(axis=0)
+    more = (last > before_middle) & (share[-part:].max(axis=0) > OF_ALL)
+    # less is decay, whatever accounts for it: the motions' drift only adds to it
+    converges = np.where(died, ~came_back, to_the_end & (last <= before_middle))
+    diverges = ~died & np.where(to_the_end, more, grown.any(axis=0))
+    diverges |= followed.thrown_apart & thrown_apart_is_growth
+    return diverges, ~(diverges | converges)
