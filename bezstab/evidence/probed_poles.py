@@ -91,6 +91,10 @@ SLOW = 0.05
 """From 1: poles so near to it change from row to row as little as what a motion forces."""
 
 IN_NOISE = "in noise of {}, which shows two poles very close together as one"
+FORCED_IN_NOISE = (
+    "noise of {}, beside what hardly changes: forced by the motion, or a slow pole; two runs, kicked and not, tell them "
+    "apart"
+)
 ALL_NOISE = f"noise of {{}}: nothing that decays or grows stands out of it for {VISIBLE} rows"
 HIDDEN_IN_NOISE = "noise of {} hides the pole: it may be {:.4g}, but off by {:.1g}"
 DIFFERENCED = "what changes slowly or not at all was taken off by differences"
@@ -263,7 +267,7 @@ def _told_in_noise(fit: NoisyFit, rows: int, of_two_runs: bool, cut: str) -> Pro
     noise = ", ".join(f"{level:.2g}" for level in fit.noise)
     poles = [pole for pole in fit.poles if of_two_runs or abs(pole.z - 1) > SLOW]
     if not poles:
-        return _refused(rows, (FORCED if fit.poles else ALL_NOISE).format(noise), cut)
+        return _refused(rows, (FORCED_IN_NOISE if fit.poles else ALL_NOISE).format(noise), cut)
     dominant = poles[0]
     if dominant.uncertainty > LARGEST_ERROR:
         return _refused(rows, HIDDEN_IN_NOISE.format(noise, dominant.z, dominant.uncertainty), cut)

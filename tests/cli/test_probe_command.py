@@ -291,7 +291,7 @@ def test_where_nothing_fits_that_is_no_success() -> None:
     assert "nothing fits at (0.3, 0.1)" in wrong.stdout
     assert wrong.stderr == "bezstab: nothing fits c\n"
     assert run("probe", "log.csv", "--alpha", "0.5", "--beta", "0.1").exit_code == 0
-    write("log.csv", c=0.99 * (-0.99) ** np.arange(200.0), right=response("B4", 0.5, 0.1))
+    write("log.csv", c=(-0.99) ** np.arange(300.0), right=response("B4", 0.5, 0.1))
     assert run("probe", "log.csv", "--alpha", "0.5", "--beta", "0.1", "--column", "c").exit_code == 3
     assert run("probe", "log.csv", "--alpha", "0.5", "--beta", "0.1").exit_code == 0
 
@@ -300,10 +300,12 @@ def test_noise_is_told_and_the_pole_in_it_names_the_method() -> None:
     random = np.random.default_rng(0)
     noise = 1e-9 * random.normal(size=(2, 120))
     write("noise.csv", c=noise[0])
-    write("log.csv", c=1e-4 * response("B4", 0.5, 0.1)[:120] + noise[1])
+    write("log.csv", c=0.1 * response("B4", 0.5, 0.1, 120) + noise[1])
     at_rest = ("--alpha", "0.5", "--beta", "0.1", "--h", "0.001", "--turning", "0")
     told = json.loads(run("probe", "log.csv", "--minus", "noise.csv", *at_rest, "--format", "json").stdout)
-    assert [row["method"] for row in told if row["fits"]] == ["B4"]
+    fitting = [row["method"] for row in told if row["fits"]]
+    assert fitting[0] == "B4"
+    assert set(fitting) <= {"B3", "B4", "B5", "B6", "B7"}  # whose poles are within 1e-3 of B4's there
     alone = run("probe", "noise.csv", *at_rest)
     assert alone.exit_code == 3
     assert "noise of 9" in alone.stderr or "noise of 1" in alone.stderr
