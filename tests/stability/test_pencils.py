@@ -117,10 +117,12 @@ def test_of_a_numerator_of_lower_degree_too_the_zeros_are_found(name: str, zero:
     assert found == pytest.approx(zero, rel=1e-14)
 
 
-@pytest.mark.parametrize("steps", [20, 40])
-def test_the_scale_of_a_resultant_is_no_matter(steps: int) -> None:
-    """So many implicit Euler steps composed have a resultant below float64's range, but roots as any other."""
+def test_the_scale_of_a_resultant_is_no_matter() -> None:
+    """Twenty implicit Euler steps composed have a resultant below float64's range, but a pole of R as any other."""
+    steps = 20
     h = Fraction(1, steps)
     rows = tuple((h,) * (k + 1) + (Fraction(0),) * (steps - k - 1) for k in range(steps))
     pencil = pencil_of(Method("composed", RungeKutta(rows, (h,) * steps), ""))
-    assert pencil.branch_points == pytest.approx(steps, rel=0.5)  # all at the one pole of R, to the root of rounding
+    furthest = np.finfo(float).eps ** (1 / steps)  # apart are twenty roots that are one
+    assert pencil.branch_points == pytest.approx(steps, rel=2 * furthest)
+    assert len(pencil.branch_points) >= steps
