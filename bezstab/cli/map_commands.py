@@ -566,7 +566,7 @@ def methods(methods: Sequence[Method], latex: bool, form: Format) -> None:
 
     if not methods:
         listed = [
-            (group, [{**method_row(lookup(name)), "group": group.heading} for name in group.methods])
+            (group, [{**method_row(lookup(name)), "method": name, "group": group.heading} for name in group.methods])
             for group in GROUPS
         ]
         if form == "text":

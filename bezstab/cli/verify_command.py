@@ -114,7 +114,7 @@ VERDICT_MAPS = [
     column("method", "method"),
     column("runs", "runs", "d"),
     column("steps of each", "run_steps", "d"),
-    column("gave a verdict", "judged", "d"),
+    column("gave a verdict", "judged_runs", "d"),
     column("as predicted", "agreeing", "d"),
     column("agreement", "agreeing_share", ".2%"),
     column("too close to call: | |z_p| - 1 | below", "band", "g"),
@@ -126,9 +126,9 @@ VERDICT_MAPS = [
 
 def verdict_map_sentence(row: Row) -> str:
     """Return how many runs gave a verdict, how many of these are as predicted, and how many others must not differ."""
-    if not row["judged"]:
+    if not row["judged_runs"]:
         return f"{row['method']}: none of {row['runs']} runs gave a verdict."
-    given = f"{row['judged']} of {row['runs']} runs gave a verdict, {row['agreeing']} as predicted"
+    given = f"{row['judged_runs']} of {row['runs']} runs gave a verdict, {row['agreeing']} as predicted"
     return f"{row['method']}: {given}; {row['disagreeing']} that are not too close to call differ."
 
 

@@ -21,7 +21,7 @@ Coefficients = tuple[Fraction, ...]
 
 ONE, ZERO = Fraction(1), Fraction(0)
 
-LARGEST_COEFFICIENT = Fraction(10**100)  # and the inverse of the least other than 0
+LARGEST_COEFFICIENT = Fraction(10**100)
 
 LEAST_STEP_MULTIPLE = Fraction("1e-6")
 LARGEST_STEP_MULTIPLE = Fraction("1e6")  # six orders either way: beyond any use, and powers of it stay within float64
@@ -30,9 +30,9 @@ LARGEST_STEP_MULTIPLE = Fraction("1e6")  # six orders either way: beyond any use
 def _refuse_what_is_out_of_size(what: str, *coefficients: Fraction) -> None:
     """Raise InputError for a coefficient whose square float64 cannot hold: no method that is used has one."""
     for c in coefficients:
-        if c != 0 and not 1 / LARGEST_COEFFICIENT <= abs(c) <= LARGEST_COEFFICIENT:
+        if abs(c) > LARGEST_COEFFICIENT:
             found = Decimal(c.numerator) / c.denominator  # which may be too large for a float
-            raise InputError(f"{what}: found {found:.3g}, expected 0 or numbers of size 1e-100 to 1e100")
+            raise InputError(f"{what}: found {found:.3g}, expected numbers up to 1e100 in size")
 
 
 @dataclass(frozen=True)

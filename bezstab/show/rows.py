@@ -417,7 +417,7 @@ def verdict_map_row(verdicts: VerdictMap) -> Row:
         run_steps=verdicts.run,
         runs=verdicts.undecided.size,
         undecided=verdicts.undecided.size - verdicts.judged,
-        judged=verdicts.judged,
+        judged_runs=verdicts.judged,
         agreeing=verdicts.agreeing,
         agreeing_share=verdicts.agreement,
         band=verdicts.band,

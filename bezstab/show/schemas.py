@@ -113,7 +113,7 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
         RowKind(
             "a map of simulated verdicts",
             _keys(
-                "scene method h run_steps runs undecided judged agreeing agreeing_share band too_close farthest "
+                "scene method h run_steps runs undecided judged_runs agreeing agreeing_share band too_close farthest "
                 "disagreeing"
             ),
         ),

@@ -291,7 +291,7 @@ VOCABULARY: Mapping[str, Key] = {
     # maps of simulated verdicts
     "runs": Key("integer", "Number of runs"),
     "undecided": Key("integer", "Runs that gave no verdict"),
-    "judged": Key("integer", "Runs that gave a verdict"),
+    "judged_runs": Key("integer", "Runs that gave a verdict"),
     "agreeing": Key("integer", "Runs whose verdict is the predicted one"),
     "agreeing_share": Key(
         "number", "Share of the runs with a verdict whose verdict is the predicted one", null="if no run has a verdict"

@@ -100,7 +100,7 @@ ADDED = (
     *("implicit", "digits", "order_position_forces", "order_velocity_forces", "group"),
     *("driver_work", "force_work", "iterations", "singular_passages"),
     *("law_z_abs", "law_verdict", "floquet_z_abs", "law_fitted_z_abs", "measured_rate", "right"),
-    *("judged", "agreeing", "too_close"),
+    *("judged_runs", "judged", "agreeing", "too_close", "margins_reason"),
     *("safe", "error_constant", "engine_h_limit", "z_abs_below", "critical_damping_limit_exact", "approached"),
     *("role", "setting", "sweeps"),
 )
