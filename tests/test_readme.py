@@ -101,7 +101,8 @@ def test_a_command_in_the_text_runs(command: str) -> None:
     if "own.toml" in command:
         shutil.copy(own_file(command), "own.toml")
     result = CliRunner(env=ON_A_PIPE).invoke(main, shlex.split(command))
-    assert result.exit_code in ((0, 1) if command.startswith(UNSAFE) else (0,)), result.stderr
+    may_end = (0, 1) if command.startswith(UNSAFE) else (0, 3) if command.startswith("probe") else (0,)
+    assert result.exit_code in may_end, result.stderr  # 3: of another method's log nothing fits
 
 
 def own_file(command: str) -> Path:

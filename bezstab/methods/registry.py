@@ -142,7 +142,7 @@ GROUPS = (
             "hht": partial(HHT.having, Fraction(-1, 20)),
             "generalized-alpha": partial(GENERALIZED_ALPHA.having, Fraction(4, 5)),
         },
-        note="(with parameters: newmark(beta,gamma), hht(alpha), generalized-alpha(rho_inf), also as hht(alpha=-0.1))",
+        note="(newmark(beta,gamma), hht(alpha=-0.1), generalized-alpha(rho_inf=0.8))",
     ),
     MethodGroup(
         "Implicit in the velocity, of physics engines and control",

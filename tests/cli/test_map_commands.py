@@ -84,7 +84,7 @@ def test_the_list_of_methods_has_a_row_for_each_with_its_group_in_json() -> None
         (group.heading, name) for group in GROUPS for name in group.methods
     ]
     assert {row["method"] for row in listed if row["digits"]} == {
-        *("tsit5", "forest-ruth", "yoshida4", "sdirk2", "dirk3", "gauss4")
+        *("tsit5", "forest-ruth", "yoshida4", "sdirk2", "dirk3", "gauss4", "radau5")
     }
     assert all(row["source"] for row in listed)
 

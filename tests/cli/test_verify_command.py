@@ -33,7 +33,7 @@ def test_verify_prints_predicted_and_measured_pole(tmp_path: Path) -> None:
 
 def test_verify_map_writes_verdicts_and_figure(tmp_path: Path) -> None:
     (row,) = rows("verify", "--map", "5", "--scene", "pendulum", "--method", "SYM", "--table", "npz")
-    assert (row["runs"], row["judged"], row["agreeing"], row["disagreeing"]) == (25, 25, 25, 0)
+    assert (row["runs"], row["judged_runs"], row["agreeing"], row["disagreeing"]) == (25, 25, 25, 0)
     assert row["agreeing_share"] == 1
     assert row["band"] == 0.005
     assert sorted(path.suffix for path in tmp_path.iterdir()) == [".npz", ".png"]

@@ -377,8 +377,7 @@ def test_equations_with_roots_are_reckoned_exactly(tmp_path: Path) -> None:
     "content",
     [
         'rho = ["1", "-1", "0", "0"]\nsigma = ["0", "1e200", "-1e200", "1"]',
-        'rho = ["1", "-1", "0", "0"]\nsigma = ["0", "1", "1e-200", "-1e-200"]',
-        'A = [["0", "0"], ["1e-200", "0"]]\nb = ["1/2", "1/2"]',
+        'A = [["0", "0"], ["1e200", "0"]]\nb = ["1/2", "1/2"]',
     ],
 )
 def test_sizes_whose_squares_float64_cannot_hold_are_refused(content: str, tmp_path: Path) -> None:
