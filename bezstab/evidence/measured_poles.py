@@ -247,10 +247,8 @@ def _measurement(
     revolution = round(turning.duration / (h * float(method.step_multiple))) if turning.closed else None
     all_poles = poles(method, alpha_hat, beta_hat)
     rival = _rival(all_poles, predicted)
-    if thrown_apart:
-        reason = f"the feedback throws the mechanism apart within {AT_ONCE} steps"
     # Over a window of SAMPLES steps the lesser of two such moduli does not even fall to 1/e of the other.
-    elif rival > (1 - 1 / SAMPLES) * abs(predicted):
+    if rival > (1 - 1 / SAMPLES) * abs(predicted):
         reason = f"another pole, of modulus {rival:.6g}, is too near to tell them apart"
     else:
         fit = fit_dominant_pole(difference, order=_number_of_poles(method), sizes=size, limits=LINEAR)
@@ -261,6 +259,9 @@ def _measurement(
         else:
             measured = fit.pole
             law_fitted_abs = _by_the_law(method, alpha_hat, beta_hat, predicted, h, turning, fit)
+    measured_verdict = _measured_verdict(measured, difference, size, max(CLOSE, moving.shift(method, h)))
+    if thrown_apart and measured_verdict == "too close to call":  # so fast that no growth shows in the linear range
+        measured_verdict, reason = "diverges", f"the feedback throws the mechanism apart within {AT_ONCE} steps"
     return Measurement(
         method=method,
         alpha_hat=alpha_hat,
@@ -274,9 +275,7 @@ def _measurement(
         measured=measured,
         law_fitted_abs=law_fitted_abs,
         measured_rate=None if revolution is None else _rate_over_revolutions(revolution, difference, size),
-        measured_verdict="diverges"
-        if thrown_apart
-        else _measured_verdict(measured, difference, size, max(CLOSE, moving.shift(method, h))),
+        measured_verdict=measured_verdict,
         reason=reason,
     )
 
