@@ -8,6 +8,8 @@ From exact numbers upwards; a file imports only from those above it:
     recipes             such equations as text
     schemes             the kinds of methods as frozen data that checks itself
     second_order_forms  every scheme written as a second-order one
+    exact_motions       motions that every scheme follows exactly, and so when it evaluates
+    forced_errors       the error that a method makes anew in each step, as a function of the feedback
     algebraic_numbers   irrational coefficients as rationals good to 40 digits
     families            Bezier, Adams-Bashforth and their predictor-corrector pairs, by number of steps
     one_step_methods    Runge-Kutta methods and symplectic Euler
@@ -32,7 +34,17 @@ What needs sympy is loaded when first used: naming a method, or proving a verdic
 from typing import TYPE_CHECKING
 
 from bezstab.lazy import lazy_names
+from bezstab.methods.exact_motions import (
+    ACCELERATED,
+    AT_REST,
+    STEADY,
+    Motions,
+    evaluation_times,
+    exact_motions,
+    value_at_start,
+)
 from bezstab.methods.families import adams_bashforth, adams_bashforth_moulton, bezier
+from bezstab.methods.forced_errors import ExponentialSum, ForcedErrors, LeadingError, Part, forced_errors, leading_error
 from bezstab.methods.method_files import read_method
 from bezstab.methods.recipes import recipe
 from bezstab.methods.registry import GROUPS, REGISTRY, MethodGroup, lookup
@@ -114,21 +126,31 @@ DERIVED = {
 __getattr__ = lazy_names(__name__, DERIVED)
 
 __all__ = [
+    "ACCELERATED",
     "ALPHA_HAT",
+    "AT_REST",
     "BETA_HAT",
     "GROUPS",
+    "H",
     "MU",
     "REGISTRY",
+    "S",
+    "STEADY",
+    "Z",
     "Assignment",
     "Combination",
     "CurveTable",
     "Evaluation",
+    "ExponentialSum",
     "Family",
     "ForceAccuracy",
-    "H",
+    "ForcedErrors",
+    "LeadingError",
     "LinearMultistep",
     "Method",
     "MethodGroup",
+    "Motions",
+    "Part",
     "Partitioned",
     "PlaneStrips",
     "PlaneTable",
@@ -136,13 +158,11 @@ __all__ = [
     "PredictorCorrector",
     "Quantity",
     "RungeKutta",
-    "S",
     "SecondOrder",
     "StepMatrix",
     "StepPolynomial",
     "Strip",
     "Verdict",
-    "Z",
     "accuracy",
     "accuracy_by_force",
     "adams_bashforth",
@@ -158,13 +178,17 @@ __all__ = [
     "closed_loop_table",
     "coefficient_table",
     "crossing_factors_in_plane",
+    "evaluation_times",
     "evaluations",
+    "exact_motions",
     "feedback_matrix",
     "feedback_polynomial",
     "first_order_form",
     "fixed_poles",
+    "forced_errors",
     "implicit",
     "is_schur",
+    "leading_error",
     "lookup",
     "mapping_equations",
     "mapping_text",
@@ -180,5 +204,6 @@ __all__ = [
     "second_order_form",
     "step_matrix",
     "steps",
+    "value_at_start",
     "without_shared_factor",
 ]
