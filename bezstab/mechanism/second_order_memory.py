@@ -114,4 +114,8 @@ def _shares(motions: Motions, quantity: Quantity, steps_later: int) -> Shares:
         at_rest, steady, accelerated = (Fraction(int(quantity.name == name)) for name in STATE)
         return at_rest, steady, accelerated
     here = ((Fraction(1), Quantity(quantity.name, steps_later)),)
-    return value_at_start(motions, here, AT_REST), value_at_start(motions, here, STEADY), value_at_start(motions, here, ACCELERATED)
+    return (
+        value_at_start(motions, here, AT_REST),
+        value_at_start(motions, here, STEADY),
+        value_at_start(motions, here, ACCELERATED),
+    )

@@ -75,9 +75,7 @@ class ForcedErrors:
 
     def series_coefficient(self, of_powers: dict[tuple[Fraction, int], Fraction], power: int) -> Fraction:
         """Return the coefficient of theta^power in a sum of c theta^m e^(k theta)."""
-        parts = [
-            c * Fraction(k) ** (power - m) / factorial(power - m) for (k, m), c in of_powers.items() if m <= power
-        ]
+        parts = [c * Fraction(k) ** (power - m) / factorial(power - m) for (k, m), c in of_powers.items() if m <= power]
         total = sum(parts, ZERO)
         return ZERO if abs(total) <= self.rounding * sum(map(abs, parts), ZERO) else total
 

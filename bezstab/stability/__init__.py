@@ -35,6 +35,8 @@ From a method's polynomial in float64 (its pencil) upwards; a file imports only 
     growing_sequences    sequences of steps whose product grows
     step_sequences    whether feedback decays for every sequence of steps within a range
     damping_limits    up to which steps, by damping ratio
+    forced_errors     the error that a method forces with a feedback, over the plane
+    accurate_points   where that is least
     plane_best_points the smallest |z_p| of a second-order scheme
     best_points       the smallest |z_p|
     choices           which parameters to take
@@ -59,6 +61,14 @@ from bezstab.stability.choices import (
     describe_point,
 )
 from bezstab.stability.closed_loop import dominant_pole, poles, spectral_radius, verdict
+from bezstab.stability.forced_errors import (
+    LARGEST_OMEGA_H,
+    OMEGA_H,
+    ForcedError,
+    check_omega_h,
+    forced_error,
+    forced_response,
+)
 from bezstab.stability.gain_margins import GainLimits, gain_limits
 from bezstab.stability.grid_maps import QUALITY, pole_map
 from bezstab.stability.margins import Margins, largest_stable_step, stability_margins
@@ -88,6 +98,8 @@ __getattr__ = lazy_names(__name__, PROVEN)
 __all__ = [
     "EPS",
     "FAMILIES",
+    "LARGEST_OMEGA_H",
+    "OMEGA_H",
     "QUALITY",
     "THOUSANDFOLD",
     "BestPoint",
@@ -96,6 +108,7 @@ __all__ = [
     "ComplexArray",
     "Extent",
     "FloatArray",
+    "ForcedError",
     "GainLimits",
     "Goal",
     "Limit",
@@ -109,6 +122,7 @@ __all__ = [
     "best_point",
     "bezier_limit",
     "bisected",
+    "check_omega_h",
     "choose",
     "choose_at_step",
     "critical_damping_limit",
@@ -118,6 +132,8 @@ __all__ = [
     "falls_towards",
     "family_members",
     "first_where",
+    "forced_error",
+    "forced_response",
     "gain_limits",
     "largest_stable_step",
     "own_feedback_root",

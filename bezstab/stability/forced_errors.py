@@ -24,7 +24,7 @@ from numpy.polynomial.polynomial import polyval2d
 from numpy.typing import ArrayLike
 
 from bezstab.errors import InputError
-from bezstab.methods import ExponentialSum, Method, forced_errors
+from bezstab.methods import ExponentialSum, ForcedErrors, Method, forced_errors, leading_error
 from bezstab.stability.arrays import ComplexArray, FloatArray
 
 OMEGA_H = Fraction(1, 100)
@@ -168,3 +168,45 @@ def _denominator_size(of_powers: Sequence[FloatArray], theta: FloatArray) -> Flo
     for coefficient in reversed(of_powers):
         total = total * from_one + coefficient
     return np.asarray(np.abs(total))
+
+
+LARGEST_OMEGA_H = 0.6
+"""rad a step: beyond, no step follows a motion, and it is left out of a response."""
+
+RESPONSE_TERMS = 60
+"""Of the numerator's series: (24 * 0.6)^60 / 60! = 1e-12 where a method's steps span the most, B12."""
+
+
+def forced_response(method: Method, alpha_hat: float, beta_hat: float, omega_h: FloatArray) -> ComplexArray:
+    """Return the steady error of q over the motion's derivative of the method's leading power k, at frequencies.
+
+    Complex, shape of omega_h (rad a step, of either sign): N(theta) / (theta^k D(e^theta)), so that a motion with
+    h^k phi^(k) = e^(i omega t) has so large an error. Zero beyond LARGEST_OMEGA_H, which no step follows.
+    """
+    errors = forced_errors(method)
+    power = leading_error(method).power
+    multiple = float(method.step_multiple)
+    a, b = multiple * alpha_hat, multiple**2 * beta_hat
+    theta = 1j * multiple * np.where(np.abs(omega_h) < LARGEST_OMEGA_H, omega_h, 0.0)
+    numerator = np.zeros(theta.shape, dtype=complex)
+    for coefficient in reversed(_series(errors, power)):
+        numerator = numerator * theta + polyval2d(a, b, coefficient)
+    denominator = sum(
+        float(c) * a**i * b**j * np.exp(float(k) * theta)
+        for (i, j), of_powers in errors.denominator.items()
+        for (k, _), c in of_powers.items()
+    )
+    found = numerator / denominator * multiple**power
+    return np.asarray(np.where(np.abs(omega_h) < LARGEST_OMEGA_H, found, 0.0))
+
+
+@lru_cache(maxsize=64)
+def _series(errors: ForcedErrors, power: int) -> list[FloatArray]:
+    """Return the numerator of x over theta^power: tables by powers of alpha_hat and beta_hat, for 1, theta, ..."""
+    tables = []
+    for further in range(RESPONSE_TERMS):
+        table = np.zeros(_shape(errors.position))
+        for powers, c in errors.coefficient(errors.position, power + further).items():
+            table[powers] = float(c)
+        tables.append(table)
+    return tables
