@@ -38,7 +38,7 @@ LONG = (
 """Beginnings of commands that take more than a few seconds; `make test-slow` runs these."""
 ON_A_PIPE = {"COLUMNS": None}
 """Environment in which nothing says how wide a line may be."""
-UNSAFE = ("check", "lint")
+UNSAFE = ("check", "choose", "lint")
 """Commands whose exit status is 1 where what they judge is unsafe."""
 PLACEHOLDER = re.compile(r"\b(COMMAND|LOG|MODEL|NAME|PATH|FILE)\b")
 """Words that stand for something else: what holds one is no command to type."""

@@ -1,9 +1,11 @@
 """Commands that answer which parameters to take: choose, check, engines, explore."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from decimal import ROUND_FLOOR, Context
 from fractions import Fraction
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import click
 
@@ -27,7 +29,7 @@ from bezstab.cli.options import (
     physical_option,
     step_option,
 )
-from bezstab.cli.output import for_reading, progress, show_rows, show_text
+from bezstab.cli.output import for_reading, progress, say, show_rows, show_text
 from bezstab.cli.typed_points import (
     DRIVE_COLUMNS,
     TypedPoint,
@@ -39,6 +41,7 @@ from bezstab.cli.typed_points import (
     engine_values_option,
     methods_asked,
     say_if_units_were_mistaken,
+    say_what_is_left_out,
     say_what_was_made,
     typed_point,
 )
@@ -51,9 +54,10 @@ from bezstab.cli.varying_steps import (
     varying_columns,
     with_varying,
 )
-from bezstab.engines import ENGINES, Drive, Engine
-from bezstab.errors import InputError
+from bezstab.engines import ENGINES, RUN_UNDERNEATH, Drive, Engine
+from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method
+from bezstab.rationals import rational
 from bezstab.show import (
     MISSING,
     Column,
@@ -68,6 +72,7 @@ from bezstab.show import (
 )
 
 if TYPE_CHECKING:
+    from bezstab.mechanism import TurningNormals
     from bezstab.stability import Choice, Goal
 
 
@@ -85,8 +90,7 @@ def range_column(heading: str, low_key: str, high_key: str) -> Column:
 
 def _step_limit(row: Row) -> Value:
     """Return the largest stable step (s): of an engine's values where those were given, else of alpha and beta."""
-    of_engine = "engine_h_limit" in row and row["goal"] != "robust"
-    return row["engine_h_limit" if of_engine else "h_limit"]
+    return row["engine_h_limit" if "engine_h_limit" in row else "h_limit"]
 
 
 def _largest_step(row: Row) -> str:
@@ -141,7 +145,7 @@ def choice_sentence(row: Row) -> str:
 
 
 @click.command()
-@methods_option("B4")
+@methods_option()
 @click.option("--h", type=SECONDS, required=True, help="Step size in s.")
 @click.option(
     "--goal",
@@ -156,7 +160,7 @@ def choice_sentence(row: Row) -> str:
 @click.option("--spread", type=NUMBER, default="0.1", help="By what share α and β may be off.")
 @click.option("--settle", type=SECONDS, help="gentle: the time in s in which c falls a thousandfold.")
 @click.option("--keep", type=click.Choice(["alpha=beta"]), help="Only points with α = β.")
-@click.option("--engine", metavar="NAME", type=ENGINE, help="Also print what to paste into that engine.")
+@click.option("--engine", metavar="NAME", type=ENGINE, help="Choose what that engine can express; print what to paste.")
 @drive_option
 @moving_scene_option("Choose for this mechanism as it moves.")
 @moving_speed_option
@@ -171,7 +175,7 @@ def choose(
     spread: Fraction,
     settle: Fraction | None,
     keep: str | None,
-    engine: str | None,
+    engine: Engine | None,
     drive: Drive | None,
     scene: str | None,
     speed: Fraction,
@@ -182,9 +186,11 @@ def choose(
     The answer is proven stable, and the margins that remain are printed. The fastest point is a kink: towards more
     damping |z_p| rises like a square root. Hence robust is the default. "within the spread" is the largest |z_p| with α
     and β off by --spread. Where no feedback is too strong, those up to αh, βh = 4 are searched, and "searched" says so.
-    With --engine the method is the engine's own unless given. With --pd each way of applying a joint drive is shown,
-    with the kp and kd to set instead. With --h-min steps may vary from one to the next, and "varying steps" says
-    whether every sequence of them up to --h-max decays; exit status 1 if that is not proven.
+    With --engine the method is the engine's own unless given, and only what the engine can express is searched: of
+    several that are best, as where it fixes α̂, the mildest is taken. With --pd each way of applying a joint drive is
+    shown, with the kp and kd to set instead. With --h-min steps may vary from one to the next, and "varying steps" says
+    whether every sequence of them up to --h-max decays. Exit status 1 if the answer is not proven safe, over the motion
+    of a --scene and for steps that vary as well.
 
     Example: bezstab choose --method B4 --h 0.001
     """
@@ -199,7 +205,11 @@ def choose(
         raise click.UsageError("--settle and --goal gentle go together")
     if engine and drive:
         raise click.UsageError("--engine and --pd print two kinds of words: give one")
-    methods = methods_asked(methods, ENGINES[engine] if engine else None, drive)
+    if engine and engine.level != "acceleration" and (h_max or h_min):
+        raise click.UsageError(
+            f"--h-max and --h-min: what {engine.name} makes of its values at other steps is told by `check --engine`"
+        )
+    methods = methods_asked(methods, engine, drive)
     steps = step_range(methods, h, h_min, h_max, hold)
     turning = turning_of(scene, speed, h)
     rows: list[Row] = []
@@ -215,10 +225,11 @@ def choose(
             spread=float(spread),
             equal=keep is not None,
             modulus=modulus_as_it_moves(method, turning, h_max or h),
+            along=engine.curve if engine and keep is None and goal != "critical" else None,
         )
-        row = choice_row(choice, float(h))
+        row = choice_row(choice, h)
         if engine:
-            row["setting"] = _setting(ENGINES[engine], _exact_point(choice), h)
+            row |= _engine_cells(engine, choice, h)
         if drive:
             row |= drive_row(choice, drive, float(h))
         rows += moving_rows([row], [method], [(choice.alpha_hat, choice.beta_hat)], turning, h)
@@ -229,24 +240,42 @@ def choose(
     more += [*([PASTE] if engine else []), *(DRIVE_COLUMNS if drive else [])]
     show_rows(rows, [*choice_columns(rows), *more], form, sentence=choice_sentence)
     say_varying(varying, form)
-    if any(answer.varying.varying != "proven" for answer in varying):
+    if engine and for_reading(form):
+        say_what_is_left_out(engine)
+    if not all(row["safe"] for row in rows):
         click.get_current_context().exit(1)
 
 
-def _setting(engine: Engine, point: tuple[Fraction, Fraction], h: Fraction) -> str:
-    """Return what to paste for a choice; InputError that says what to ask where the engine has no such point."""
+def _engine_cells(engine: Engine, choice: "Choice", h: Fraction) -> Row:
+    """Return what to paste for a choice, up to which step (s) those values are stable, and whether the engine sweeps.
+
+    InputError that says what to ask where the engine has no such point.
+    """
+    point = _exact_point(choice)
     try:
-        return engine.setting(point, h)
+        setting = engine.setting(point, h)
     except InputError as error:
         values = f"{engine.name}={engine.words()}"
         raise InputError(f"{error}: ask `check --engine {values}` about values of yours") from None
+    set_values = tuple(rational(value) for value in engine.values(point, h))
+    of_values = _limit_of_values((engine, set_values), False, choice, h)
+    return {**of_values, "setting": setting, "sweeps": engine.sweeps}
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A point that check tells of: given, exactly as it was typed, or what `choose` gives instead."""
+
+    role: Literal["given", "instead"]
+    choice: "Choice"
+    point: tuple[Fraction, Fraction]
 
 
 @click.command()
-@methods_option("B4")
+@methods_option()
 @click.option("--alpha", type=NUMBER, help="α̂; α in 1/s with --physical.")
 @click.option("--beta", type=NUMBER, help="β̂; β in 1/s with --physical.")
-@click.option("--h", type=SECONDS, help="Step size in s; needed with --physical, --engine and --pd.")
+@click.option("--h", type=SECONDS, help="Step size in s; needed with --engine and --pd.")
 @physical_option
 @engine_values_option
 @as_typed_option
@@ -280,10 +309,13 @@ def check(
     Safe is what is proven stable for every method. Prints the verdict, the margins and the largest stable step, and
     what `choose` would give instead. All that is about constant steps, and steps that are each stable alone may grow
     when they alternate: with --h-min and --h-max safe is what is proven for every sequence of steps in that range.
+    With α and β in 1/s (--physical) and no --h, the step up to which every one is safe is the answer.
 
     With --engine the method is the engine's own unless given, and what the engine does to its values (clamps, scaling)
     is applied first; what the conversion leaves out is said. How far the step may grow is asked of the engine's values,
-    and whether it is α and β or α̂ and β̂ that stay as steps vary.
+    and whether it is α and β or α̂ and β̂ that stay as steps vary. What is given instead is what the engine can express,
+    with the line to paste. An engine that solves its constraints one after another, in sweeps, is told about one
+    constraint alone: chains of them may diverge all the same.
 
     --pd kp,kd,inertia asks about a joint's drive, applied in four ways: explicit (SYM), implicit in velocity
     (imex-euler, as MuJoCo's implicitfast), as stable PD (stable-pd), fully implicit (implicit-euler, as PhysX). All
@@ -293,13 +325,16 @@ def check(
 
     Example: bezstab check --method RK2 --h 0.002 --alpha 50 --beta 50 --physical
     """
-    from bezstab import stability
     from bezstab.show import choice_row, drive_row
 
     if h_max is not None and h_min is None:
         raise click.UsageError("--h-max goes with --h-min: the range of steps that vary")
     if h_min is not None:
         h = h or h_max
+    if physical and not (h or scene or engine or drive or as_typed or hold):
+        turning_of(scene, speed, h)  # no speed without a scene
+        safe = _check_without_step(methods_asked(methods, None, None), both_or_none(alpha, beta), form)
+        context.exit(0 if safe else 1)
     typed = typed_point(alpha, beta, h, physical, engine, drive, as_typed)
     methods = methods_asked(methods, typed.engine, drive)
     if engine and h_min is not None and h is not None and not hold:
@@ -307,54 +342,133 @@ def check(
     steps = step_range(methods, h, h_min, h_max, hold)
     if alpha is not None and beta is not None and not physical:
         say_if_units_were_mistaken(methods, alpha, beta, h)
-    step = None if h is None else float(h)
     turning = turning_of(scene, speed, h)
-    choices: list[Choice] = []
-    for method in methods:
-        choices += [
-            stability.describe_point(method, label, *point) for label, point in (("as given", typed.point), *typed.also)
-        ]
-        choices.append(stability.choose(method, "robust", modulus=modulus_as_it_moves(method, turning, h)))
+    asked, nothing_instead = _asked(methods, typed, turning, h)
     rows: list[Row] = []
-    for choice in choices:
-        given = choice.goal != "robust"
-        rows.append({**choice_row(choice, step), **engine_keys(typed, choice.goal == "as given")})
-        if engine and step is not None:
-            points_at = partial(engine_points, engine, as_typed)
-            stable = given and choice.verdict == "converges"
-            limit = stability.largest_stable_step(choice.method, points_at, step) if stable else None
-            rows[-1] = {**rows[-1], "engine_h_limit": limit}
-    if drive and step is not None:
-        rows = [{**row, **drive_row(choice, drive, step)} for row, choice in zip(rows, choices, strict=True)]
-    points = [(choice.alpha_hat, choice.beta_hat) for choice in choices]
-    rows = moving_rows(rows, [choice.method for choice in choices], points, turning, h)
-    exact_points = _exact_points(typed, choices)
-    varying = varying_answers(steps, [choice.method for choice in choices], exact_points, scene, speed)
+    for each in asked:
+        given = each.role == "given"
+        row = {"role": each.role, **choice_row(each.choice, h, each.point if given else None)}
+        row |= engine_keys(typed, given and each.choice.goal == "as given")
+        if engine and h is not None:
+            row |= (
+                _limit_of_values(engine, as_typed, each.choice, h)
+                if given
+                else _engine_cells(engine[0], each.choice, h)
+            )
+        if drive and h is not None:
+            row |= drive_row(each.choice, drive, float(h), given=given)
+        rows.append(row)
+    methods_of_rows = [each.choice.method for each in asked]
+    rows = moving_rows(
+        rows, methods_of_rows, [(each.choice.alpha_hat, each.choice.beta_hat) for each in asked], turning, h
+    )
+    varying = varying_answers(steps, methods_of_rows, [each.point for each in asked], scene, speed)
     rows = with_varying(rows, varying)
     columns = [*choice_columns(rows), *moving_columns(turning), *varying_columns(steps)]
     columns += DRIVE_COLUMNS if drive else []
-    asked = [row for row in rows if row["goal"] != "robust"]
+    given_rows = [row for row in rows if row["role"] == "given"]
     if for_reading(form):
-        show_rows(asked, columns, form, sentence=choice_sentence)
-        judged = [answer for choice, answer in zip(choices, varying, strict=False) if choice.goal != "robust"]
-        say_varying(judged, form)
-        show_text("\nWhat `choose` gives instead:\n")
-        show_rows([row for row in rows if row["goal"] == "robust"], columns, form, sentence=choice_sentence)
+        show_rows(given_rows, columns, form, sentence=choice_sentence)
+        say_varying([answer for row, answer in zip(rows, varying, strict=False) if row["role"] == "given"], form)
+        if instead := [row for row in rows if row["role"] == "instead"]:
+            show_text("\nWhat `choose` gives instead:\n")
+            columns += [PASTE] if engine else []
+            show_rows(instead, columns, form, sentence=choice_sentence)
     else:
         show_rows(rows, columns, form)
+    for reason in nothing_instead:
+        say(f"bezstab: nothing instead: {reason}")
     say_what_was_made(typed, form)
-    context.exit(0 if all(row["safe"] for row in asked) else 1)
+    context.exit(0 if all(row["safe"] for row in given_rows) else 1)
+
+
+def _asked(
+    methods: Sequence[Method], typed: TypedPoint, turning: "TurningNormals | None", h: Fraction | None
+) -> tuple[list[Asked], list[str]]:
+    """Return for each method the points that were given and what `choose` gives instead; and why it gives nothing."""
+    from bezstab.stability import choose, describe_point
+
+    asked: list[Asked] = []
+    nothing_instead: list[str] = []
+    engine = typed.engine
+    for method in methods:
+        for label, point in (("as given", typed.point), *typed.also):
+            asked.append(Asked("given", describe_point(method, label, *point), point))
+        modulus = modulus_as_it_moves(method, turning, h)
+        try:
+            choice = choose(method, "robust", modulus=modulus, along=engine.curve if engine else None)
+            if engine and h is not None:
+                engine.setting(_exact_point(choice), h)  # which the engine must be able to express
+        except (InputError, NumericalError) as error:  # the verdict stands without it
+            nothing_instead.append(str(error))
+        else:
+            asked.append(Asked("instead", choice, _exact_point(choice)))
+    return asked, nothing_instead
+
+
+def _limit_of_values(engine: EngineValues, as_typed: bool, choice: "Choice", h: Fraction) -> Row:
+    """Return up to which step (s) an engine's values are stable, None where they are not, or at any step."""
+    from bezstab.stability import largest_stable_step
+
+    limit = None
+    if choice.verdict == "converges":
+        limit = largest_stable_step(choice.method, partial(engine_points, engine, as_typed), float(h))
+    return {"setting": None, "engine_h_limit": limit}
+
+
+def _largest_safe_step(row: Row) -> str:
+    """Return the largest safe step (s) to four digits, rounded down so that it is safe; unlimited, or none."""
+    limit = row["h_limit"]
+    if not row["safe"]:
+        return "none"
+    if not isinstance(limit, float) or limit == float("inf"):
+        return "unlimited"
+    return f"{float(Context(prec=4, rounding=ROUND_FLOOR).create_decimal_from_float(limit)):.4g}"
+
+
+LIMITS_OF_STEPS = [
+    column("method", "method"),
+    column("α (1/s)", "alpha", ".6g"),
+    column("β (1/s)", "beta", ".6g"),
+    Column("stable for constant h (s) to", _largest_safe_step),
+]
+
+
+def _check_without_step(methods: Sequence[Method], point: tuple[Fraction, Fraction] | None, form: Format) -> bool:
+    """Print up to which step alpha and beta (1/s) are safe with each method; return whether each has such a step."""
+    from bezstab.stability import stable_up_to
+
+    if point is None:
+        raise click.UsageError("--alpha and --beta are needed, or --engine, or --pd")
+    alpha, beta = point
+    rows: list[Row] = []
+    for method in methods:
+        limit = stable_up_to(method, alpha, beta)
+        rows.append(
+            {
+                "role": "given",
+                "method": method.name,
+                "alpha": float(alpha),
+                "beta": float(beta),
+                "safe": limit > 0,
+                "h_limit": limit if limit > 0 else None,
+            }
+        )
+    show_rows(rows, LIMITS_OF_STEPS, form, sentence=step_sentence)
+    return all(row["safe"] for row in rows)
+
+
+def step_sentence(row: Row) -> str:
+    """Return up to which step alpha and beta are safe."""
+    limit = _largest_safe_step(row)
+    if limit == "none":
+        return "Not safe at small steps."
+    return "Safe at any h." if limit == "unlimited" else f"Safe up to h = {limit} s."
 
 
 def _exact_point(choice: "Choice") -> tuple[Fraction, Fraction]:
     """Return a choice's alpha_hat and beta_hat, exactly as in float64."""
     return Fraction(choice.alpha_hat), Fraction(choice.beta_hat)
-
-
-def _exact_points(typed: TypedPoint, choices: "Sequence[Choice]") -> list[tuple[Fraction, Fraction]]:
-    """Return the points of choices as they were typed, exactly; what `choose` found as it is in float64."""
-    as_typed = {"as given": typed.point, **dict(typed.also)}
-    return [as_typed.get(choice.goal) or _exact_point(choice) for choice in choices]
 
 
 ENGINES_LISTED = [
@@ -368,6 +482,7 @@ ENGINES_LISTED = [
     Column("rests on", lambda row: "a run" if row["witness"] else "its source"),
     column("source", "source"),
     column("left out", "excludes"),
+    Column("sweeps", lambda row: "yes" if row["sweeps"] else "no"),
 ]
 
 
@@ -397,6 +512,10 @@ def engines(h: Fraction, alpha: Fraction | None, beta: Fraction | None, form: Fo
     point = both_or_none(alpha, beta)
     rows = [engine_row(engine, point, h) for engine in ENGINES.values()]
     show_rows(rows, ENGINES_LISTED, form, sentence=engine_sentence)
+    if for_reading(form):
+        show_text("\nAnd others, by what they run underneath:\n")
+        for name, underneath in RUN_UNDERNEATH.items():
+            show_text(f"{name}: {underneath}")
 
 
 @click.command()

@@ -43,7 +43,7 @@ from bezstab.cli.typed_points import (
     say_what_was_made,
     typed_point,
 )
-from bezstab.engines import ENGINES, Drive
+from bezstab.engines import Drive, Engine
 from bezstab.errors import InputError
 from bezstab.files import output_directory
 from bezstab.methods import GROUPS, Method, lookup
@@ -157,7 +157,7 @@ def poles(
             for row in pole_rows(method, alpha_hat, beta_hat, z, stability.verdict(method, *typed.point))
         ]
         if drive and h is not None:
-            gains = drive_row(stability.describe_point(method, "as given", *typed.point), drive, float(h))
+            gains = drive_row(stability.describe_point(method, "as given", *typed.point), drive, float(h), given=True)
             of_method = [{**row, **gains} for row in of_method]
         points = [(alpha_hat, beta_hat)] * len(of_method)
         rows += moving_rows(of_method, [method] * len(of_method), points, turning, h)
@@ -255,7 +255,7 @@ def region(
     compare: bool,
     h: Fraction | None,
     alpha_beta: bool,
-    engine: str | None,
+    engine: Engine | None,
     scene: str | None,
     speeds: Sequence[Fraction],
     form: Format,
@@ -278,7 +278,7 @@ def region(
         raise click.UsageError("--engine marks one map and needs --h: the step in s")
     if alpha_beta and h is None:
         raise click.UsageError("--alpha-beta marks the axes in α and β and needs --h: the step in s")
-    methods = methods_asked(methods, ENGINES[engine] if engine else None, None)
+    methods = methods_asked(methods, engine, None)
     if scene and compare:
         raise click.UsageError("--scene draws one map for each method: not with --compare")
     turnings = {float(speed): turning_of(scene, speed, h) for speed in speeds or [Fraction(1)]}
@@ -478,10 +478,10 @@ def _default_levels(best: "BestPoint | None") -> list[float]:
     return [round(best.z_abs + (1 - best.z_abs) / 4, 2)]
 
 
-def _engine_marks(engine: str, h: Fraction) -> dict[str, tuple[float, float]]:
+def _engine_marks(engine: Engine, h: Fraction) -> dict[str, tuple[float, float]]:
     """Return the engine's defaults and rules of thumb at a step of h (s), as points (alpha_hat, beta_hat) by label."""
     marks: dict[str, tuple[float, float]] = {}
-    for label, point in ENGINES[engine].marks:
+    for label, point in engine.marks:
         alpha_hat, beta_hat = point(h)
         marks[label] = (float(alpha_hat), float(beta_hat))
     return marks

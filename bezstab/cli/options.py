@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
 
 import click
 
-from bezstab.engines import ENGINES, Engine
-from bezstab.errors import InputError, unknown_name
+from bezstab.engines import ENGINES, Engine, engine_named
+from bezstab.errors import InputError
 from bezstab.methods import REGISTRY, lookup
 from bezstab.rationals import rational
 
@@ -99,9 +99,7 @@ def _speed(text: str) -> Fraction:
 def _engine_values(text: str) -> EngineValues:
     """Return an engine and values of its parameters from text such as mujoco=0.02,1."""
     name, _, numbers = text.partition("=")
-    if name not in ENGINES:
-        raise unknown_name("engine", name, ENGINES, file="")
-    engine = ENGINES[name]
+    engine = engine_named(name)
     if not numbers and not engine.parameters:  # it has none, or none that it needs
         return engine, ()
     if not numbers:
@@ -136,12 +134,12 @@ SECONDS = ParsedType("seconds", _seconds)
 SPEED = ParsedType("number", _speed)
 SEQUENCE = ParsedType("steps", _sequence)
 METHOD = ParsedType("method", lookup, (*REGISTRY, *WITH_PARAMETERS))
-ENGINE = click.Choice(list(ENGINES))
+ENGINE = ParsedType("NAME", engine_named, ENGINES)
 ENGINE_VALUES = ParsedType("name=values", _engine_values, [f"{name}=" for name in ENGINES])
 
 
 def methods_option(*default: str) -> Decorator:
-    """Return the option --method, any number of times, as the parameter `methods`."""
+    """Return the option --method, any number of times, as the parameter `methods`; without a default none are."""
     return click.option(
         "--method",
         "methods",

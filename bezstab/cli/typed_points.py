@@ -129,16 +129,25 @@ def engine_holds(engine: EngineValues, as_typed: bool, shorter: Fraction, longer
     )
 
 
+WHICH_METHOD = (
+    "which integrator? --method SYM (semi-implicit Euler, as most engines have), RK4, rk45 (solve_ivp's), AB4, "
+    "B4 or another of `bezstab methods`; or an --engine; or --pd"
+)
+
+
 def methods_asked(methods: Sequence[Method], engine: Engine | None, drive: Drive | None) -> Sequence[Method]:
     """Return the methods that were given, else the engine's own, else for a drive all ways of applying it.
 
-    UsageError where an engine has none of its own, or is asked about another than its own though it has no other.
+    UsageError where there are none, so that an engine has none of its own, and where an engine is asked about another
+    than its own though it has no other.
     """
     if left_at_default("methods"):
         if engine and engine.method is None:
             raise click.UsageError(f"{engine.name} has no integrator of its own: name yours with --method")
         if engine and engine.method:
             return [lookup(engine.method)]
+        if not (drive or methods):
+            raise click.UsageError(WHICH_METHOD)
         return [lookup(name) for name in DRIVE_METHODS] if drive else methods
     if engine and engine.level != "acceleration" and [method.name for method in methods] != [engine.method]:
         raise click.UsageError(
@@ -154,17 +163,24 @@ def say_what_was_made(typed: TypedPoint, form: Format) -> None:
         return
     for note in typed.applied.notes if typed.applied else ():
         say(f"{typed.engine.name}: {note} (--as-typed leaves that out)")
-    say(f"{typed.engine.name}: left out: {typed.engine.excludes}")
+    say_what_is_left_out(typed.engine)
+
+
+def say_what_is_left_out(engine: Engine) -> None:
+    """Say on standard error what the conversion of an engine's values leaves out."""
+    swept = "; it solves each constraint by itself, in sweeps: chains of them may diverge all the same"
+    say(f"{engine.name}: left out: {engine.excludes}{swept if engine.sweeps else ''}")
 
 
 def engine_keys(typed: TypedPoint, given: bool) -> Row:
     """Return what a row says of the engine: what was applied and what is left out; None in rows that were not given."""
     if not typed.engine:
         return {}
+    sweeps = typed.engine.sweeps
     if not given:
-        return {"applied": None, "excludes": None}
+        return {"applied": None, "excludes": None, "sweeps": sweeps}
     notes = typed.applied.notes if typed.applied else ("as typed",)
-    return {"applied": "; ".join(notes), "excludes": typed.engine.excludes}
+    return {"applied": "; ".join(notes), "excludes": typed.engine.excludes, "sweeps": sweeps}
 
 
 def _limit_text(gain: str) -> Column:

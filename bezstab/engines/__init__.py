@@ -14,8 +14,20 @@ From data upwards; a file imports only from those above it:
     engine_list          all engines by name, and which of them a run has witnessed
 """
 
-from bezstab.engines.conversions import Applied, Engine, Point
+from bezstab.engines.conversions import Applied, Curve, Engine, Point
 from bezstab.engines.drives import DRIVE_METHODS, Drive
-from bezstab.engines.engine_list import ENGINES, WITNESSES, witness_of
+from bezstab.engines.engine_list import ENGINES, RUN_UNDERNEATH, WITNESSES, engine_named, witness_of
 
-__all__ = ["DRIVE_METHODS", "ENGINES", "WITNESSES", "Applied", "Drive", "Engine", "Point", "witness_of"]
+__all__ = [
+    "DRIVE_METHODS",
+    "ENGINES",
+    "RUN_UNDERNEATH",
+    "WITNESSES",
+    "Applied",
+    "Curve",
+    "Drive",
+    "Engine",
+    "Point",
+    "engine_named",
+    "witness_of",
+]

@@ -2,7 +2,7 @@
 
 from fractions import Fraction
 
-from bezstab.engines.conversions import Applied, Engine, Point, in_words, refuse_unless_positive
+from bezstab.engines.conversions import Applied, Curve, Engine, Point, in_words, refuse_unless_positive
 from bezstab.errors import InputError
 from bezstab.units import feedback_gains, from_dimensionless, from_feedback_gains, to_dimensionless
 
@@ -21,8 +21,7 @@ def _gains_in_words(point: Point, h: Fraction) -> tuple[str, str]:
 # Crocoddyl, Pinocchio, RigidBodyDynamics.jl: two gains
 
 
-def _write_crocoddyl(point: Point, h: Fraction) -> str:
-    stiffness, damping = _gains_in_words(point, h)
+def _paste_crocoddyl(stiffness: str, damping: str) -> str:
     return f"gains = [{stiffness}, {damping}]"
 
 
@@ -33,15 +32,11 @@ CROCODDYL = Engine(
     parameters=("gains[0]", "gains[1]"),
     units=("1/s^2", "1/s"),
     read=_read_gains,
-    write=_write_crocoddyl,
+    write=_gains_in_words,
+    paste=_paste_crocoddyl,
     source="Crocoddyl source, contact-3d.hxx; integrator/euler.hxx (its Euler moves with the new velocity)",
     excludes="friction cones and impulses",
 )
-
-
-def _write_pinocchio(point: Point, h: Fraction) -> str:
-    stiffness, damping = _gains_in_words(point, h)
-    return f"Kp = {stiffness}, Kd = {damping}"
 
 
 def _pinocchio_default(h: Fraction) -> Point:
@@ -55,15 +50,14 @@ PINOCCHIO = Engine(
     parameters=("Kp", "Kd"),
     units=("1/s^2", "1/s"),
     read=_read_gains,
-    write=_write_pinocchio,
+    write=_gains_in_words,
     marks=(("Pinocchio: Kp = Kd = 0", _pinocchio_default),),
     source="Pinocchio source, contact-info.hpp (corrector, 0 and 0 unless set); constrained-dynamics.hxx",
     excludes="errors of orientation, which are logarithms of rotations; the proximal solver's mu",
 )
 
 
-def _write_rigid_body_dynamics(point: Point, h: Fraction) -> str:
-    stiffness, damping = _gains_in_words(point, h)
+def _paste_rigid_body_dynamics(stiffness: str, damping: str) -> str:
     return f"PDGains({stiffness}, {damping})"
 
 
@@ -78,7 +72,8 @@ RIGID_BODY_DYNAMICS = Engine(
     parameters=("k", "d"),
     units=("1/s^2", "1/s"),
     read=_read_gains,
-    write=_write_rigid_body_dynamics,
+    write=_gains_in_words,
+    paste=_paste_rigid_body_dynamics,
     marks=(("RigidBodyDynamics.jl: PDGains(100, 20)", _rigid_body_dynamics_default),),
     source="RigidBodyDynamics.jl source, mechanism_algorithms.jl, pdcontrol.jl, simulate.jl (Munthe-Kaas with RK4)",
     excludes="errors of orientation; integrators other than its simulate",
@@ -93,12 +88,25 @@ def _read_rbdl(h: Fraction, time_constant: Fraction) -> Point:
     return to_dimensionless(1 / time_constant, 1 / time_constant, h)
 
 
-def _write_rbdl(point: Point, h: Fraction) -> str:
+def _time_constant(name: str, point: Point, h: Fraction) -> float:
+    """Return T = 1 / alpha = 1 / beta in s; InputError, naming the engine, where alpha and beta are not equal."""
     alpha_hat, beta_hat = map(float, point)
     nearest = alpha_hat**2 / 4
     if not alpha_hat > 0 or abs(beta_hat - nearest) > 1e-9 * nearest:  # rounding of a point that was computed
-        raise InputError(f"rbdl has one time constant, so β̂ = α̂²/4 ({nearest:g}), not {beta_hat:g}")
-    return f"T_stab = {in_words(2 * float(h) / alpha_hat)}"
+        raise InputError(f"{name} has one time constant, so β̂ = α̂²/4 ({nearest:g}), not {beta_hat:g}")
+    return 2 * float(h) / alpha_hat
+
+
+def _critical_damping(strongest: float) -> Curve:
+    """Return the points with alpha = beta, up to alpha h = `strongest`."""
+    return lambda share: (2 * strongest * share, (strongest * share) ** 2)
+
+
+FASTEST_ASKED_FOR = 4.0  # of alpha h: there e^-4, a fiftieth of an error, is left after a step
+
+
+def _write_rbdl(point: Point, h: Fraction) -> tuple[str, ...]:
+    return (in_words(_time_constant("rbdl", point, h)),)
 
 
 def _rbdl_default(h: Fraction) -> Point:
@@ -114,6 +122,7 @@ RBDL = Engine(
     read=_read_rbdl,
     write=_write_rbdl,
     marks=(("RBDL: T_stab = 0.1", _rbdl_default),),
+    curve=_critical_damping(FASTEST_ASKED_FOR),
     source="RBDL source, Constraint.h (setBaumgarteTimeConstant, default 0.1 s, off unless enabled)",
     excludes="contact constraints, which have it on velocities alone",
 )
@@ -126,9 +135,9 @@ def _read_alpha_beta(h: Fraction, alpha: Fraction, beta: Fraction) -> Point:
     return to_dimensionless(alpha, beta, h)
 
 
-def _write_alpha_beta(point: Point, h: Fraction) -> str:
+def _write_alpha_beta(point: Point, h: Fraction) -> tuple[str, ...]:
     alpha, beta = from_dimensionless(float(point[0]), float(point[1]), float(h))
-    return f"alpha = {in_words(alpha)}, beta = {in_words(beta)}"
+    return in_words(alpha), in_words(beta)
 
 
 def _engine_with_alpha_and_beta(name: str, source: str) -> Engine:
@@ -158,7 +167,7 @@ def _read_nothing(h: Fraction) -> Point:
     return Fraction(0), Fraction(0)
 
 
-def _write_nothing(point: Point, h: Fraction) -> str:
+def _write_nothing(point: Point, h: Fraction) -> tuple[str, ...]:
     raise InputError("chrono-explicit has no stabilisation: there is nothing to set")
 
 
@@ -226,10 +235,14 @@ def _apply_mujoco(
     )
 
 
-def _write_solref(point: Point, h: Fraction) -> str:
+def _write_solref(point: Point, h: Fraction) -> tuple[str, ...]:
     damping, stiffness = feedback_gains(*point, h)
-    impedance = float(DEFAULT_SOLIMP[1])  # of d0 as well: r = 1 whatever the error
-    return f'solref="{in_words(-float(stiffness))} {in_words(-float(damping))}" solimp="{impedance:g} {impedance:g}"'
+    impedance = in_words(float(DEFAULT_SOLIMP[1]))  # of d0 as well: r = 1 whatever the error
+    return in_words(-float(stiffness)), in_words(-float(damping)), impedance, impedance
+
+
+def _paste_mujoco(stiffness: str, damping: str, d0: str, dmax: str) -> str:
+    return f'solref="{stiffness} {damping}" solimp="{d0} {dmax}"'
 
 
 def _least_time_constant(h: Fraction) -> Point:
@@ -249,9 +262,50 @@ MUJOCO = Engine(
     units=("s or -1/s^2", "- or -1/s", "-", "-"),
     read=_read_solref,
     write=_write_solref,
+    paste=_paste_mujoco,
     apply=_apply_mujoco,
     marks=(("MuJoCo: timeconst = 2h", _least_time_constant), ("MuJoCo: solref = 0.02 1", _default_solref)),
     source="MuJoCo documentation, Modeling, Constraint parameters: Reference; engine_core_constraint.c",
     excludes="the soft bias of 1 - d; the shape of solimp between no error and its width; implicit joint damping; "
     "contacts; integrator RK4, for which give --method RK4",
+)
+
+
+# Genesis solves MuJoCo's constraints with one time constant for all of them, critically damped: zeta = 1
+
+
+def _read_genesis(h: Fraction, time_constant: Fraction) -> Point:
+    refuse_unless_positive("genesis", constraint_timeconst=time_constant)
+    return to_dimensionless(1 / time_constant, 1 / time_constant, h)
+
+
+def _apply_genesis(h: Fraction, time_constant: Fraction) -> Applied:
+    least = LEAST_TIME_CONSTANT * h
+    if time_constant >= least:
+        return Applied(_read_genesis(h, time_constant))
+    note = f"constraint_timeconst {float(time_constant):g} s is raised to {LEAST_TIME_CONSTANT}h = {float(least):g} s"
+    return Applied(_read_genesis(h, least), (note,))
+
+
+def _write_genesis(point: Point, h: Fraction) -> tuple[str, ...]:
+    time_constant = _time_constant("genesis", point, h)
+    least = LEAST_TIME_CONSTANT * float(h)
+    if time_constant < least * (1 - 1e-9):  # rounding of a point that was computed
+        raise InputError(f"genesis reaches α̂ <= {2 / LEAST_TIME_CONSTANT:g} only, not {float(point[0]):g}")
+    return (in_words(max(time_constant, least * (1 + 1e-8))),)  # so that its nine digits are not below the clamp
+
+
+GENESIS = Engine(
+    name="genesis",
+    level="acceleration",
+    method="SYM",
+    parameters=("constraint_timeconst",),
+    units=("s",),
+    read=_read_genesis,
+    write=_write_genesis,
+    apply=_apply_genesis,
+    curve=_critical_damping(1 / LEAST_TIME_CONSTANT),
+    source="Genesis source, options/solvers.py (RigidOptions), rigid_solver.py (_sol_min_timeconst); else as mujoco",
+    excludes="h is the substep's; sol_params of single joints and shapes; what mujoco leaves out, and that its solimp "
+    "makes the feedback milder where the error is small",
 )

@@ -3,13 +3,16 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Literal
+from typing import Any, Literal
 
 from bezstab.errors import InputError
 from bezstab.rationals import within_float64
 
 Point = tuple[Fraction, Fraction]
 """alpha_hat and beta_hat."""
+
+Curve = Callable[[Any], tuple[Any, Any]]
+"""alpha_hat and beta_hat of a share from 0 (no feedback, or hardly any) to 1 (the strongest); numbers or arrays."""
 
 
 @dataclass(frozen=True)
@@ -32,10 +35,13 @@ class Engine:
     acceleration: true Baumgarte feedback, so that the integrator decides. velocity, position: an engine that feeds the
     error back into velocities or positions; for one constraint its step is that of `method` at that point, no other.
     `method` is the name of the engine's own integrator, None for a library that has none: the user's decides.
-    `read(h, *values)` and `write(point, h)` raise InputError where the other has nothing. `parameters` are the values
-    needed, `optional` those that may follow, `units` the units of both. `apply(h, *values)` is what the engine does to
-    values before it uses them (clamps, scaling), None if nothing. `marks` are the settings everybody meets: a label,
-    and the point as a function of h. `excludes` is what the conversion leaves out.
+    `read(h, *values)`, and `write(point, h)` with the values as text, raise InputError where the other has nothing.
+    `parameters` are the values needed, `optional` those that may follow, `units` the units of both; `paste(*values)` is
+    the line to paste where it is not name = value. `apply(h, *values)` is what the engine does to values before it uses
+    them (clamps, scaling), None if nothing. `marks` are the settings everybody meets: a label, and the point as a
+    function of h. `excludes` is what the conversion leaves out. `curve` are the points to choose among, None for all of
+    the plane. `sweeps` is whether the engine solves each constraint by itself, one after another, rather than all
+    together: then what holds for one constraint alone says little about a chain of them.
     """
 
     name: str
@@ -44,12 +50,15 @@ class Engine:
     parameters: tuple[str, ...]
     units: tuple[str, ...]
     read: Callable[..., Point]
-    write: Callable[[Point, Fraction], str]
+    write: Callable[[Point, Fraction], tuple[str, ...]]
     source: str
     excludes: str
     optional: tuple[str, ...] = ()
     apply: Callable[..., Applied] | None = None
     marks: tuple[tuple[str, Callable[[Fraction], Point]], ...] = ()
+    paste: Callable[..., str] | None = None
+    curve: Curve | None = None
+    sweeps: bool = False
 
     def point(self, values: tuple[Fraction, ...], h: Fraction) -> Point:
         """Return (alpha_hat, beta_hat) for values as typed, in their order and the engine's units; h in s.
@@ -74,8 +83,8 @@ class Engine:
             tuple((label, self._within_range(point)) for label, point in made.also),
         )
 
-    def setting(self, point: Point, h: Fraction) -> str:
-        """Return what to write in the engine's own words for a point, h in s; InputError where there is nothing."""
+    def values(self, point: Point, h: Fraction) -> tuple[str, ...]:
+        """Return the values that mean a point, as they are typed, h in s; InputError where there are none."""
         alpha_hat, beta_hat = point
         if alpha_hat < 0 or beta_hat < 0:
             raise InputError(
@@ -85,6 +94,14 @@ class Engine:
             return self.write(point, h)
         except (OverflowError, ZeroDivisionError):
             raise InputError(f"{self.name}: its parameters would leave the range of float64") from None
+
+    def setting(self, point: Point, h: Fraction) -> str:
+        """Return the line to paste for a point, h in s; InputError where there is nothing to set."""
+        values = self.values(point, h)
+        if self.paste:
+            return self.paste(*values)
+        names = (*self.parameters, *self.optional)
+        return ", ".join(f"{name} = {value}" for name, value in zip(names, values, strict=False))
 
     def words(self) -> str:
         """Return the parameters as they are typed, the optional ones in brackets: solref[0],solref[1][,solimp[0]]."""

@@ -7,12 +7,14 @@ from bezstab.engines.acceleration_engines import (
     CHRONO_EXPLICIT,
     CROCODDYL,
     DRAKE,
+    GENESIS,
     MAPLESIM,
     MUJOCO,
     PINOCCHIO,
     RBDL,
     RIGID_BODY_DYNAMICS,
 )
+from bezstab.engines.conversions import Engine
 from bezstab.engines.implicit_engines import BRAX_SPRING, JOLT_SPRING, PHYSX_DRIVE, XPBD
 from bezstab.engines.position_engines import BRAX_POSITIONAL, JOLT, PBD
 from bezstab.engines.velocity_engines import (
@@ -23,14 +25,18 @@ from bezstab.engines.velocity_engines import (
     CHRONO_LINEARIZED,
     DART,
     DRAKE_SAP,
+    GODOT,
+    KAMINO,
     ODE,
     RAPIER,
 )
+from bezstab.errors import InputError, unknown_name
 
 ENGINES = {
     engine.name: engine
     for engine in (
         MUJOCO,
+        GENESIS,
         CROCODDYL,
         PINOCCHIO,
         RBDL,
@@ -48,6 +54,8 @@ ENGINES = {
         CHRONO_LINEARIZED,
         DRAKE_SAP,
         BRAX_CONTACT,
+        GODOT,
+        KAMINO,
         JOLT_SPRING,
         PHYSX_DRIVE,
         JOLT,
@@ -58,12 +66,31 @@ ENGINES = {
 }
 """Every engine by name."""
 
+RUN_UNDERNEATH = {
+    "avian": "its joints are XPBD: ask about xpbd, or about pbd=1 where the compliance is 0; h is the substep's",
+    "newton": "it has several solvers: ask about kamino, mujoco (MuJoCo Warp) or xpbd",
+    "pybullet": "it is Bullet: ask about bullet",
+    "pymunk": "it is Chipmunk: ask about chipmunk",
+    "unity": "it runs PhysX in 3D and Box2D in 2D: ask about physx-drive (a drive of its joints and articulations) or "
+    "about box2d (that of version 3); of PhysX's joints without a drive nothing is known here",
+}
+"""What others that are asked for run underneath, by their names."""
+
 WITNESSES = {
     "mujoco": "tests/evidence/test_mujoco_witness.py::test_mujoco_settles_and_diverges_where_the_map_says",
     "bullet": "tests/witnesses/test_pybullet.py::test_bullets_pole_is_that_of_its_erp",
     "chipmunk": "tests/witnesses/test_pymunk.py::test_chipmunks_pole_is_that_of_its_error_bias",
 }
 """The test that runs an engine itself and holds its row against that, by the engine's name; add a line for each."""
+
+
+def engine_named(name: str) -> Engine:
+    """Return the engine of that name; InputError for another, with what it runs underneath or the nearest name."""
+    if name in ENGINES:
+        return ENGINES[name]
+    if name.lower() in RUN_UNDERNEATH:
+        raise InputError(f"{name}: {RUN_UNDERNEATH[name.lower()]}")
+    raise unknown_name("engine", name, ENGINES, file="")
 
 
 def witness_of(name: str) -> str | None:

@@ -22,13 +22,13 @@ def _read_jolt_spring(h: Fraction, frequency: Fraction, damping: Fraction) -> Po
     return 2 * damping * turn, turn**2
 
 
-def _write_jolt_spring(point: Point, h: Fraction) -> str:
+def _write_jolt_spring(point: Point, h: Fraction) -> tuple[str, ...]:
     alpha_hat, beta_hat = map(float, point)
     if not beta_hat > 0:
         raise InputError("jolt-spring with a frequency of 0 is hard: see jolt")
     turn = math.sqrt(beta_hat)
     frequency, damping = turn / (2 * math.pi * float(h)), alpha_hat / (2 * turn)
-    return f"mFrequency = {in_words(frequency)}, mDamping = {in_words(damping)}"
+    return in_words(frequency), in_words(damping)
 
 
 JOLT_SPRING = Engine(
@@ -39,6 +39,7 @@ JOLT_SPRING = Engine(
     units=("Hz", "-"),
     read=_read_jolt_spring,
     write=_write_jolt_spring,
+    sweeps=True,
     source="Jolt source, SpringPart.h (Catto, Soft constraints, GDC 2011, without relaxation)",
     excludes="its modes by stiffness; the error of iterations; for a hard constraint see jolt",
 )
@@ -49,9 +50,9 @@ def _read_physx(h: Fraction, stiffness: Fraction, damping: Fraction) -> Point:
     return from_feedback_gains(damping, stiffness, h)
 
 
-def _write_physx(point: Point, h: Fraction) -> str:
+def _write_gains(point: Point, h: Fraction) -> tuple[str, ...]:
     damping, stiffness = feedback_gains(*point, h)
-    return f"stiffness = {in_words(float(stiffness))}, damping = {in_words(float(damping))}"
+    return in_words(float(stiffness)), in_words(float(damping))
 
 
 PHYSX_DRIVE = Engine(
@@ -61,7 +62,8 @@ PHYSX_DRIVE = Engine(
     parameters=("stiffness", "damping"),
     units=("1/s^2", "1/s"),
     read=_read_physx,
-    write=_write_physx,
+    write=_write_gains,
+    sweeps=True,
     source="PhysX source, DyCpuGpuArticulation.h, computeImplicitDriveParams (AccelerationDrive)",
     excludes="the inertia, by which both are divided in force drives (see --pd); force limits; h is TGS's substep",
 )
@@ -79,12 +81,12 @@ def _read_xpbd(
     return from_feedback_gains(damping * inverse_mass, inverse_mass / compliance, h)
 
 
-def _write_xpbd(point: Point, h: Fraction) -> str:
+def _write_xpbd(point: Point, h: Fraction) -> tuple[str, ...]:
     alpha_hat, beta_hat = point
     if beta_hat == 0:
         raise InputError("xpbd with β̂ = 0 has no spring: its compliance would be infinite")
     two_alpha, beta_squared = feedback_gains(alpha_hat, beta_hat, h)
-    return f"compliance = {in_words(float(1 / beta_squared))}, damping = {in_words(float(two_alpha))}, w = 1"
+    return in_words(float(1 / beta_squared)), in_words(float(two_alpha)), "1"
 
 
 XPBD = Engine(
@@ -96,6 +98,7 @@ XPBD = Engine(
     units=("m/N", "N s/m", "1/kg"),
     read=_read_xpbd,
     write=_write_xpbd,
+    sweeps=True,
     source="Macklin, Mueller & Chentanez, XPBD, Motion in Games 2016, Eqs 18 and 26; derived",
     excludes="one iteration; h is the substep's; no compliance at all is the rigid limit: see pbd with stiffness 1",
 )
@@ -109,12 +112,8 @@ def _read_brax_spring(h: Fraction, stiffness: Fraction, damping: Fraction, mass:
     return from_feedback_gains(damping / mass, stiffness / mass, h)
 
 
-def _write_brax_spring(point: Point, h: Fraction) -> str:
-    damping, stiffness = feedback_gains(*point, h)
-    return (
-        f"constraint_stiffness = {in_words(float(stiffness))}, "
-        f"constraint_vel_damping = {in_words(float(damping))} for a mass of 1 kg"
-    )
+def _write_brax_spring(point: Point, h: Fraction) -> tuple[str, ...]:
+    return *_write_gains(point, h), "1"
 
 
 BRAX_SPRING = Engine(

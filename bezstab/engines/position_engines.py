@@ -7,6 +7,7 @@ Two kinds, for one constraint of unit mass, c* = c0 + h c0' and a share s that a
 """
 
 from fractions import Fraction
+from typing import Any
 
 from bezstab.engines.conversions import Engine, Point, in_words
 from bezstab.errors import InputError
@@ -29,13 +30,18 @@ def _refuse_unless_equal(name: str, point: Point) -> Fraction:
     return point[0]
 
 
+def _equal(share: Any) -> tuple[Any, Any]:
+    """Return the points of a velocity that is the whole move's, for what one step takes back: not more than all."""
+    return share, share
+
+
 def _read_pbd(h: Fraction, share: Fraction, iterations: Fraction = ONE) -> Point:
     share_of_all = _share_of_all("pbd", share, iterations)
     return share_of_all, share_of_all
 
 
-def _write_pbd(point: Point, h: Fraction) -> str:
-    return f"stiffness = {in_words(float(_refuse_unless_equal('pbd', point)))}"
+def _write_pbd(point: Point, h: Fraction) -> tuple[str, ...]:
+    return (in_words(float(_refuse_unless_equal("pbd", point))),)
 
 
 def _pbd_default(h: Fraction) -> Point:
@@ -52,6 +58,8 @@ PBD = Engine(
     read=_read_pbd,
     write=_write_pbd,
     marks=(("PBD: stiffness 1", _pbd_default),),
+    curve=_equal,
+    sweeps=True,
     source="Mueller et al., Position based dynamics, J. Vis. Commun. Image R. 18, 2007; derived",
     excludes="other constraints in between; above 1 it is over-relaxation; velocity damping",
 )
@@ -61,8 +69,8 @@ def _read_brax_positional(h: Fraction, share: Fraction) -> Point:
     return share, share
 
 
-def _write_brax_positional(point: Point, h: Fraction) -> str:
-    return f"joint_scale_pos = {in_words(float(_refuse_unless_equal('brax-positional', point)))}"
+def _write_brax_positional(point: Point, h: Fraction) -> tuple[str, ...]:
+    return (in_words(float(_refuse_unless_equal("brax-positional", point))),)
 
 
 def _brax_default(h: Fraction) -> Point:
@@ -78,6 +86,8 @@ BRAX_POSITIONAL = Engine(
     read=_read_brax_positional,
     write=_write_brax_positional,
     marks=(("Brax positional: 0.5", _brax_default),),
+    curve=_equal,
+    sweeps=True,
     source="Brax source, positional/pipeline.py, joints.py, integrator.py (project_xd); io/mjcf.py (default)",
     excludes="joint_scale_ang (0.2 unless set), the same for angles; constraint_vel_damping; joints that share bodies",
 )
@@ -87,11 +97,15 @@ def _read_jolt(h: Fraction, baumgarte: Fraction, position_steps: Fraction = Frac
     return ONE, _share_of_all("jolt", baumgarte, position_steps)
 
 
-def _write_jolt(point: Point, h: Fraction) -> str:
+def _write_jolt(point: Point, h: Fraction) -> tuple[str, ...]:
     alpha_hat, beta_hat = map(float, point)
     if alpha_hat != 1 or beta_hat > 1:
         raise InputError(f"jolt is α̂ = 1 and β̂ <= 1, not ({alpha_hat:g}, {beta_hat:g})")
-    return f"mBaumgarte = {1 - (1 - beta_hat) ** 0.5:.17g}, mNumPositionSteps = 2"  # all digits: it may be small
+    return f"{1 - (1 - beta_hat) ** 0.5:.17g}", "2"  # all digits: it may be small
+
+
+def _jolt_joints(share: Any) -> tuple[Any, Any]:
+    return 1.0, share
 
 
 def _jolt_default(h: Fraction) -> Point:
@@ -108,6 +122,8 @@ JOLT = Engine(
     read=_read_jolt,
     write=_write_jolt,
     marks=(("Jolt: 0.2, 2 position steps", _jolt_default),),
+    curve=_jolt_joints,
+    sweeps=True,
     source="Jolt source, PhysicsSettings.h, AxisConstraintPart.h (SolvePositionConstraint)",
     excludes="constraints with springs, which are jolt-spring; contacts' slop; constraints that share bodies",
 )

@@ -11,11 +11,19 @@ c' = 0, whatever it was, has alpha_hat = 1 and the roots 0 and 1 - beta_hat.
 
 import math
 from fractions import Fraction
+from typing import Any
 
 from bezstab.engines.conversions import Applied, Engine, Point, in_words, refuse_below_zero, refuse_unless_positive
 from bezstab.errors import InputError
 
 ONE = Fraction(1)
+STIFFEST = 0.999
+"""The alpha_hat that soft constraints are chosen with: rigid but for a thousandth; beyond, their words are huge."""
+
+
+def _hard(share: Any) -> tuple[Any, Any]:
+    """Return the points of a constraint that ends every step with c' = 0 and takes back that share of the error."""
+    return 1.0, share
 
 
 def _refuse_unless_one(name: str, alpha_hat: Fraction) -> None:
@@ -28,13 +36,15 @@ def _refuse_unless_one(name: str, alpha_hat: Fraction) -> None:
 # alpha_hat = h / (h + CFM m) and beta_hat = alpha_hat ERP for an effective mass m = 1 / (J M^-1 J').
 
 
-def _engine_with_erp(name: str, default: str, source: str, excludes: str) -> Engine:
+def _engine_with_erp(
+    name: str, default: str, source: str, excludes: str, *, word: str = "ERP", sweeps: bool = False
+) -> Engine:
     def read(h: Fraction, erp: Fraction) -> Point:
         return ONE, erp
 
-    def write(point: Point, h: Fraction) -> str:
-        _refuse_unless_one(f"{name} with CFM = 0", point[0])
-        return f"ERP = {in_words(float(point[1]))}"
+    def write(point: Point, h: Fraction) -> tuple[str, ...]:
+        _refuse_unless_one(name, point[0])
+        return (in_words(float(point[1])),)
 
     def default_point(h: Fraction) -> Point:
         return read(h, Fraction(default))
@@ -43,24 +53,43 @@ def _engine_with_erp(name: str, default: str, source: str, excludes: str) -> Eng
         name=name,
         level="velocity",
         method="SYM",
-        parameters=("ERP",),
+        parameters=(word,),
         units=("-",),
         read=read,
         write=write,
-        marks=((f"{name}: ERP = {default}", default_point),),
+        marks=((f"{name}: {word} = {default}", default_point),),
         source=source,
         excludes=excludes,
+        curve=_hard,
+        sweeps=sweeps,
     )
 
 
 IMPULSES = "contacts, clamps, warm starts and the error of iterative solvers are left out"
-BULLET = _engine_with_erp("bullet", "0.2", "Bullet source, btContactSolverInfo.h", f"CFM = 0; {IMPULSES}")
+BULLET = _engine_with_erp("bullet", "0.2", "Bullet source, btContactSolverInfo.h", f"CFM = 0; {IMPULSES}", sweeps=True)
 DART = _engine_with_erp("dart", "0.01", "DART issue 317", f"CFM = 0; {IMPULSES}")
 BRAX_CONTACT = _engine_with_erp(
     "brax-contact",
     "0.1",
     "Brax source, spring/collisions.py (baumgarte_erp), io/mjcf.py (default)",
     "contacts of its spring pipeline only, as long as they touch; its joints are brax-spring",
+    sweeps=True,
+)
+GODOT = _engine_with_erp(
+    "godot",
+    "0.3",
+    "Godot source, godot_pin_joint_3d.cpp, godot_joints_2d.cpp (in 2D 0.2 unless set)",
+    "Jolt, which is jolt, and which new projects use in 3D; PinJoint3D's damping other than 1; other joints in 3D; "
+    f"softness in 2D; {IMPULSES}",
+    word="bias",
+    sweeps=True,
+)
+KAMINO = _engine_with_erp(
+    "kamino",
+    "0.01",
+    "Newton source, solvers/kamino: config.py, dynamics/dual.py, integrators/euler.py and moreau.py",
+    "joint limits (beta) and contacts (gamma); armature and implicit drives; what its solver leaves over",
+    word="alpha",
 )
 
 
@@ -71,14 +100,14 @@ def _read_ode(h: Fraction, erp: Fraction, cfm: Fraction = Fraction(0), mass: Fra
     return alpha_hat, alpha_hat * erp
 
 
-def _write_ode(point: Point, h: Fraction) -> str:
+def _write_ode(point: Point, h: Fraction) -> tuple[str, ...]:
     alpha_hat, beta_hat = point
     if alpha_hat == 1:
-        return f"ERP = {in_words(float(beta_hat))}"
+        return (in_words(float(beta_hat)),)
     if not 0 < alpha_hat < 1:
         raise InputError(f"ode reaches 0 < α̂ <= 1 only, not {float(alpha_hat):g}")
     erp, cfm = float(beta_hat / alpha_hat), float(h * (1 / alpha_hat - 1))
-    return f"ERP = {in_words(erp)}, CFM = {in_words(cfm)} for an effective mass of 1 kg"
+    return in_words(erp), in_words(cfm), "1"
 
 
 def _ode_default(h: Fraction) -> Point:
@@ -96,6 +125,8 @@ ODE = Engine(
     write=_write_ode,
     marks=(("ode: ERP = 0.2", _ode_default),),
     source="ODE wiki, Manual: Concepts",
+    curve=_hard,  # which needs no effective mass
+    sweeps=True,
     excludes=f"CFM = 0 unless given, with the effective mass 1 / (J M^-1 J'); {IMPULSES}",
 )
 
@@ -107,10 +138,18 @@ def _read_chrono(h: Fraction) -> Point:
     return ONE, ONE
 
 
-def _write_chrono(point: Point, h: Fraction) -> str:
+def _write_chrono(point: Point, h: Fraction) -> tuple[str, ...]:
     if point != (ONE, ONE):
         raise InputError(f"chrono-linearized is (1, 1), not ({float(point[0]):g}, {float(point[1]):g})")
+    return ()
+
+
+def _paste_chrono() -> str:
     return "EULER_IMPLICIT_LINEARIZED"
+
+
+def _only_chronos(share: Any) -> tuple[Any, Any]:
+    return 1.0, 1.0
 
 
 CHRONO_LINEARIZED = Engine(
@@ -121,6 +160,9 @@ CHRONO_LINEARIZED = Engine(
     units=(),
     read=_read_chrono,
     write=_write_chrono,
+    paste=_paste_chrono,
+    curve=_only_chronos,
+    sweeps=True,  # its default solver, PSOR
     source="Chrono source, ChTimestepperImplicit.cpp (EulerImplicitLinearized: Qc = C / dt)",
     excludes="the recovery speed (0.6 m/s unless set), above which an error is taken back at that speed; contacts",
 )
@@ -135,7 +177,7 @@ def _read_chipmunk(h: Fraction, error_bias: Fraction) -> Point:
     return ONE, 1 - Fraction(float(error_bias) ** float(h))
 
 
-def _write_chipmunk(point: Point, h: Fraction) -> str:
+def _write_chipmunk(point: Point, h: Fraction) -> tuple[str, ...]:
     _refuse_unless_one("chipmunk", point[0])
     left = 1 - float(point[1])
     if left < 0:
@@ -143,7 +185,7 @@ def _write_chipmunk(point: Point, h: Fraction) -> str:
     error_bias = left ** (1 / float(h))
     if left > 0 and error_bias == 0:
         raise InputError(f"chipmunk: the errorBias that leaves {left:g} after this step is below float64's range")
-    return f"errorBias = {error_bias:.17g}"  # all digits: for a small beta_hat it is next to one
+    return (f"{error_bias:.17g}",)  # all digits: for a small beta_hat it is next to one
 
 
 def _chipmunk_default(h: Fraction) -> Point:
@@ -159,6 +201,8 @@ CHIPMUNK = Engine(
     read=_read_chipmunk,
     write=_write_chipmunk,
     marks=(("Chipmunk: errorBias = 0.9^60", _chipmunk_default),),
+    curve=_hard,
+    sweeps=True,
     source="Chipmunk source, cpConstraint.c, cpPivotJoint.c, cpSpaceStep.c (pymunk: error_bias)",
     excludes="maxBias and maxForce (infinite unless set); warm starts and the error of iterations; damped springs",
 )
@@ -177,6 +221,8 @@ def _turn(hertz: Fraction, h: Fraction) -> Fraction:
 
 
 MOST_TURNS = Fraction("0.25")  # per substep: Box2D's joints are no faster
+MOST_TURN = 2 * math.pi * float(MOST_TURNS)
+LARGEST_SHARE = MOST_TURN**2 / (1 + MOST_TURN**2)  # of an error: at that, without damping
 USUAL_DAMPING_RATIO = 2.0  # of Box2D's joints
 
 
@@ -194,20 +240,22 @@ def _apply_box2d(h: Fraction, hertz: Fraction, damping_ratio: Fraction) -> Appli
     return Applied(_read_box2d(h, fastest, damping_ratio), (note,))
 
 
-def _write_box2d(point: Point, h: Fraction) -> str:
+def _write_box2d(point: Point, h: Fraction) -> tuple[str, ...]:
     _refuse_unless_one("box2d", point[0])
     share = float(point[1])
-    most = float(_turn(MOST_TURNS / h, h))
-    reached = most**2 / (1 + most**2)  # without damping
-    if not 0 < share <= reached:
-        raise InputError(f"box2d reaches 0 < β̂ <= {reached:.4g} only, not {share:g}")
+    if not 0 < share <= LARGEST_SHARE:
+        raise InputError(f"box2d reaches 0 < β̂ <= {LARGEST_SHARE:.4g} only, not {share:g}")
     zeta = USUAL_DAMPING_RATIO
     # the turn at which t^2 / (1 + 2 zeta t + t^2) is the share
     turn = (zeta * share + math.sqrt((zeta * share) ** 2 + share * (1 - share))) / (1 - share)
-    if turn > most:  # as fast as may be, and damped less
-        turn = most * (1 - 1e-10)  # so that its twelve digits are not above the clamp
+    if turn > MOST_TURN:  # as fast as may be, and damped less
+        turn = MOST_TURN * (1 - 1e-10)  # so that its twelve digits are not above the clamp
         zeta = max(0.0, (turn**2 * (1 - share) - share) / (2 * turn * share))
-    return f"hertz = {turn / (2 * math.pi * float(h)):.12g}, dampingRatio = {in_words(zeta)}"
+    return f"{turn / (2 * math.pi * float(h)):.12g}", in_words(zeta)
+
+
+def _box2d_joints(share: Any) -> tuple[Any, Any]:
+    return 1.0, LARGEST_SHARE * share
 
 
 def _box2d_default(h: Fraction) -> Point:
@@ -224,6 +272,8 @@ BOX2D = Engine(
     write=_write_box2d,
     apply=_apply_box2d,
     marks=(("Box2D joints: 60 Hz, 2", _box2d_default),),
+    curve=_box2d_joints,
+    sweeps=True,
     source="Box2D v3 source, solver.h: b2MakeSoft; joint.c; revolute_joint.c (solved, then relaxed without bias)",
     excludes="h is the substep's; contacts, joint springs, warm starts and the error of Gauss-Seidel sweeps",
 )
@@ -237,7 +287,7 @@ def _read_rapier(h: Fraction, natural_frequency: Fraction, damping_ratio: Fracti
     return scale + share - scale * share, scale * share
 
 
-def _write_rapier(point: Point, h: Fraction) -> str:
+def _write_rapier(point: Point, h: Fraction) -> tuple[str, ...]:
     alpha_hat, beta_hat = map(float, point)
     half = (alpha_hat + beta_hat) / 2  # of scale + share, while scale * share is beta_hat
     difference = half**2 - beta_hat
@@ -251,7 +301,12 @@ def _write_rapier(point: Point, h: Fraction) -> str:
     if not zeta > 0:
         raise InputError(f"rapier reaches no ({alpha_hat:g}, {beta_hat:g}) with a damping ratio above 0")
     natural_frequency = turn / (2 * math.pi * float(h))
-    return f"natural_frequency = {natural_frequency:.17g}, damping_ratio = {zeta:.17g}"  # all: 1 - scale may be small
+    return f"{natural_frequency:.17g}", f"{zeta:.17g}"  # all digits: 1 - scale may be small
+
+
+def _rapier_joints(share: Any) -> tuple[Any, Any]:
+    double_pole = (1 - math.sqrt(1 - STIFFEST)) ** 2  # the largest beta_hat, where the damping ratio is 0
+    return STIFFEST, STIFFEST * double_pole * share
 
 
 def _rapier_default(h: Fraction) -> Point:
@@ -267,6 +322,8 @@ RAPIER = Engine(
     read=_read_rapier,
     write=_write_rapier,
     marks=(("Rapier joints: 1e6 Hz, 1", _rapier_default),),
+    curve=_rapier_joints,
+    sweeps=True,
     source="Rapier source, integration_parameters.rs, solve.rs in staged_island_solver, joint_velocity_constraint.rs",
     excludes="h is the substep's, dt / num_solver_iterations; limits' largest corrective speed; warmstart_joints",
 )
@@ -313,17 +370,25 @@ def _apply_sap(
     return Applied(_sap_point(h, NEAR_RIGID, h), (note,))
 
 
-def _write_sap(point: Point, h: Fraction) -> str:
+def _write_sap(point: Point, h: Fraction) -> tuple[str, ...]:
     alpha_hat, beta_hat = map(float, point)
     step = float(h)
     if point == _sap_point(h, NEAR_RIGID, h):
-        return "k = inf"
+        return ()
     if not (0 < beta_hat <= alpha_hat < 1 and alpha_hat / (1 - alpha_hat) <= NEAR_RIGID):
         most = float(NEAR_RIGID / (1 + NEAR_RIGID))
         raise InputError(f"drake-sap reaches 0 < β̂ <= α̂ <= {most:.6g} only, not ({alpha_hat:g}, {beta_hat:g})")
     relaxation_time = step * (alpha_hat / beta_hat - 1)
     stiffness = alpha_hat / (1 - alpha_hat) / (step * (step + relaxation_time))
-    return f"k = {stiffness:.17g}, tau = {relaxation_time:.17g}, w = 1"  # all: tau may be next to 0
+    return f"{stiffness:.17g}", f"{relaxation_time:.17g}", "1"  # all digits: tau may be next to 0
+
+
+def _paste_sap(k: str = "inf", tau: str | None = None, w: str | None = None) -> str:
+    return f"k = {k}" if tau is None else f"k = {k}, tau = {tau}, w = {w}"
+
+
+def _sap_constraints(share: Any) -> tuple[Any, Any]:
+    return STIFFEST, STIFFEST * share
 
 
 DRAKE_SAP = Engine(
@@ -335,6 +400,8 @@ DRAKE_SAP = Engine(
     units=("N/m", "s", "1/kg"),
     read=_read_sap,
     write=_write_sap,
+    paste=_paste_sap,
+    curve=_sap_constraints,
     apply=_apply_sap,
     marks=(("Drake SAP: near rigid", _read_sap),),
     source="Drake source, sap_holonomic_constraint.h and .cc; sap_ball_constraint.cc",

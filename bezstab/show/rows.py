@@ -427,11 +427,20 @@ def run_row(run: Run, front: str) -> Row:
     )
 
 
-def choice_row(choice: Choice, h: float | None) -> dict[str, Value]:
-    """Return a point, with h (s) in 1/s too, how fast it settles and by what it may be off; None for no limit."""
+def choice_row(
+    choice: Choice, h: Fraction | float | None, typed: tuple[Fraction, Fraction] | None = None
+) -> dict[str, Value]:
+    """Return a point, with h (s) in 1/s too, how fast it settles and by what it may be off; None for no limit.
+
+    `typed` is the point (alpha_hat, beta_hat) before it was rounded: what was typed in 1/s is shown so again.
+    """
     alpha = beta = settle_seconds = h_limit = None
     if h is not None:
-        alpha, beta = alpha_and_beta(choice.alpha_hat, choice.beta_hat, h)
+        if typed:
+            alpha, beta = exact_alpha_and_beta(*typed, Fraction(h))
+        h = float(h)
+        if not typed:
+            alpha, beta = alpha_and_beta(choice.alpha_hat, choice.beta_hat, h)
         if choice.settle_steps is not None:
             settle_seconds = choice.settle_steps * h * float(choice.method.step_multiple)
         if choice.margins:
@@ -465,6 +474,23 @@ def alpha_and_beta(alpha_hat: float, beta_hat: float, h: float) -> tuple[float, 
     return two_alpha / 2, math.sqrt(beta_squared) if beta_squared >= 0 else None
 
 
+def exact_alpha_and_beta(alpha_hat: Fraction, beta_hat: Fraction, h: Fraction) -> tuple[float, float | None]:
+    """Return alpha and beta (1/s), rounded once, of exact numbers; beta None as in `alpha_and_beta`."""
+    two_alpha, beta_squared = feedback_gains(alpha_hat, beta_hat, h)
+    if beta_squared < 0:
+        return _as_float(two_alpha / 2), None
+    root = Fraction(math.isqrt(beta_squared.numerator), math.isqrt(beta_squared.denominator))
+    return _as_float(two_alpha / 2), _as_float(root) if root**2 == beta_squared else math.sqrt(_as_float(beta_squared))
+
+
+def _as_float(number: Fraction) -> float:
+    """Return the nearest float64, infinity where it is too large."""
+    try:
+        return float(number)
+    except OverflowError:
+        return math.copysign(math.inf, number)
+
+
 def engine_row(engine: Engine, point: tuple[Fraction, Fraction] | None, h: Fraction) -> Row:
     """Return an engine's words, and its setting for (alpha_hat, beta_hat) at a step h (s), or why it has none."""
     setting = None
@@ -475,7 +501,7 @@ def engine_row(engine: Engine, point: tuple[Fraction, Fraction] | None, h: Fract
             setting = str(error)
     words = row(
         engine,
-        without={"name", "read", "write", "apply", "marks"},
+        without={"name", "read", "write", "paste", "apply", "marks", "curve"},
         parameters=", ".join(engine.parameters),
         optional=", ".join(engine.optional),
         units=", ".join(engine.units),
@@ -485,16 +511,16 @@ def engine_row(engine: Engine, point: tuple[Fraction, Fraction] | None, h: Fract
     return {"engine": engine.name, **words}
 
 
-def drive_row(choice: Choice, drive: Drive, h: float) -> dict[str, Value]:
+def drive_row(choice: Choice, drive: Drive, h: float, given: bool = False) -> dict[str, Value]:
     """Return the gains that a point is on a drive's inertia at a step of h (s), their limits, and which is used up.
 
-    A limit is infinite where there is none, None where lowering that gain alone does not help. The largest kp goes with
-    this kd, the largest kd with this kp.
+    Of a point that is given by the drive's own gains, those as they are. A limit is infinite where there is none, None
+    where lowering that gain alone does not help. The largest kp goes with this kd, the largest kd with this kp.
     """
     from bezstab.stability import gain_limits
 
     limits = gain_limits(choice)
-    kp, kd = drive.gains(choice.alpha_hat, choice.beta_hat, h)
+    kp, kd = (float(drive.kp), float(drive.kd)) if given else drive.gains(choice.alpha_hat, choice.beta_hat, h)
     kp_of_one, kd_of_one = drive.gains(1.0, 1.0, h)
     return {
         "drive": DRIVE_METHODS.get(choice.method.name),

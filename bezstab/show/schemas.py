@@ -39,7 +39,7 @@ METHOD = """method steps evaluations order order_position_forces order_velocity_
 CHOICE = f"""method goal alpha_hat beta_hat verdict safe {POLE} worst searched h alpha beta settle_steps settle_seconds
     h_factor h_limit alpha_factor_min alpha_factor_max beta_factor_min beta_factor_max"""
 
-APPLIED = ("applied", "excludes")
+APPLIED = ("applied", "excludes", "sweeps")
 """What --engine adds."""
 DRIVE = _keys("drive kp kd inertia kp_max kd_max used_up")
 """What --pd adds."""
@@ -68,14 +68,15 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
             _keys("steps method area alpha_hat_max beta_hat_max best_z_abs order error_constant"),
         )
     ],
-    "choose": [RowKind("a choice", _keys(CHOICE), ("setting", *DRIVE, *MOVING, *VARYING))],
+    "choose": [RowKind("a choice", _keys(CHOICE), ("setting", "sweeps", "engine_h_limit", *DRIVE, *MOVING, *VARYING))],
     "check": [
         RowKind(
             "a point, or what to take instead",
-            _keys(CHOICE),
-            (*APPLIED, "engine_h_limit", *DRIVE, *MOVING, *VARYING),
+            _keys(f"role {CHOICE}"),
+            (*APPLIED, "setting", "engine_h_limit", *DRIVE, *MOVING, *VARYING),
             sometimes=("excludes",),
-        )
+        ),
+        RowKind("the largest step of alpha and beta, without a step", _keys("role method alpha beta safe h_limit")),
     ],
     "lint": [
         RowKind(
@@ -87,7 +88,7 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
     "engines": [
         RowKind(
             "an engine",
-            _keys("engine level method source excludes parameters optional units witness setting"),
+            _keys("engine level method source excludes sweeps parameters optional units witness setting"),
             sometimes=("method",),
         )
     ],

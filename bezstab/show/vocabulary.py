@@ -127,6 +127,7 @@ VOCABULARY: Mapping[str, Key] = {
     "mapping": Key("text", "The method's mapping from s to z"),
     "characteristic_polynomial": Key("text", "Polynomial in z whose roots are the poles"),
     # choices and checks
+    "role": Key("text", "Whether the point was given, or is what to take instead", values=("given", "instead")),
     "goal": Key("text", "What the point was chosen for, or that it is as given"),
     "worst": Key("number", "Largest modulus of the dominant pole with alpha and beta off by the spread"),
     "searched": Key(
@@ -142,7 +143,7 @@ VOCABULARY: Mapping[str, Key] = {
         "number",
         "Largest step up to which the engine's values are stable as it reads them at each step",
         "s",
-        f"{UNSTABLE}, any step is, or the row is not the engine's",
+        f"{UNSTABLE}, or any step is",
     ),
     "alpha_factor_min": Key("number", "Least factor by which alpha alone may be scaled", null=UNSTABLE),
     "alpha_factor_max": Key("number", "Largest factor by which alpha alone may be scaled", null=f"{UNSTABLE}, or any"),
@@ -167,7 +168,14 @@ VOCABULARY: Mapping[str, Key] = {
     "engine": Key("text", "Name of an engine"),
     "level": Key("text", "Where the engine's feedback acts", values=("acceleration", "velocity", "position")),
     "parameters": Key("text", "What the engine calls the feedback's parameters"),
-    "setting": Key("text", "What to write in the engine's words", null="where no point is given"),
+    "setting": Key(
+        "text", "What to write in the engine's words", null="where no point is given, or the engine's values are"
+    ),
+    "sweeps": Key(
+        "truth",
+        "Whether the engine solves each constraint by itself, in sweeps, so that what is said of one alone says little "
+        "about a chain of them",
+    ),
     "excludes": Key("text", "What the conversion leaves out"),
     "optional": Key("text", "Which of the parameters may be left away"),
     "units": Key("text", "Units of the parameters, in their order"),

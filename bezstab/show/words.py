@@ -43,10 +43,12 @@ def change_words(z_abs: float, verdict: Value) -> str:
 def safety_words(row: Row, error: str = "the error") -> str:
     """Return whether a point is safe and how fast errors shrink, from a row with `safe`, `verdict` and `z_abs`.
 
-    With --scene also what they do over the motion, with --h-min that they do so with constant steps. Without the last
-    full stop.
+    With --scene also what they do over the motion, with --h-min that they do so with constant steps; of an engine that
+    sweeps over its constraints, that one of them alone is meant. Without the last full stop.
     """
     safe = "Safe" if row["safe"] else "Not safe"
+    if row["safe"] and row.get("sweeps"):
+        safe = "One constraint alone: safe"
     z_abs, moving = row["z_abs"], row.get("z_abs_moving")
     assert isinstance(z_abs, float)
     constant = f" with steps that vary: {row['varying']}. With constant steps" if "varying" in row else ""

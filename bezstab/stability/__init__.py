@@ -39,6 +39,7 @@ From a method's polynomial in float64 (its pencil) upwards; a file imports only 
     accurate_points   where that is least
     plane_best_points the smallest |z_p| of a second-order scheme
     best_points       the smallest |z_p|
+    curve_choices     the best point of a curve
     choices           which parameters to take
     gain_margins      which of two gains is used up
     step_families     methods by their number of steps, and their limit
@@ -71,7 +72,7 @@ from bezstab.stability.forced_errors import (
 )
 from bezstab.stability.gain_margins import GainLimits, gain_limits
 from bezstab.stability.grid_maps import QUALITY, pole_map
-from bezstab.stability.margins import Margins, largest_stable_step, stability_margins
+from bezstab.stability.margins import Margins, largest_stable_step, stability_margins, stable_up_to
 from bezstab.stability.pencils import Pencil, pencil_of, roots_in_z
 from bezstab.stability.regions import Extent, Region, pole_place, region, useful_window, window
 from bezstab.stability.searches import bisected, first_where
@@ -146,6 +147,7 @@ __all__ = [
     "spectral_radius",
     "stability_margins",
     "stable_for_all",
+    "stable_up_to",
     "turning_sensitivity",
     "turning_shift",
     "unconditional_damping_ratio",

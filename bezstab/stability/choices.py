@@ -30,6 +30,7 @@ from bezstab.stability.closed_loop import (
     largest_pole,
     verdict,
 )
+from bezstab.stability.curve_choices import Curve, least_along, mildest_along
 from bezstab.stability.dominant_roots import dominant_root
 from bezstab.stability.line_crossings import IntArray
 from bezstab.stability.line_slices import all_within
@@ -109,13 +110,15 @@ def choose(
     equal: bool = False,
     modulus: Modulus | None = None,
     margins: bool = True,
+    along: Curve | None = None,
 ) -> Choice:
     """Return the point that a goal asks for, dimensionless and proven stable; without `margins` in less time.
 
     fastest: the smallest |z_p|. critical: the fastest dominant pole that is double, real and positive, on the way from
     small parameters on, before another pole overtakes it. robust: the fastest at worst over every smaller step at the
     same alpha, beta, and alpha and beta off by the spread (a share), where fast means decay per second. gentle: the
-    smallest alpha = beta with |z_p| <= rate. `equal` keeps alpha = beta.
+    smallest alpha = beta with |z_p| <= rate. `equal` keeps alpha = beta. `along` is a curve of points that alone are
+    looked at; of several that are best, the mildest is taken, and gentle is the mildest with |z_p| <= rate.
     `modulus` takes the place of |z_p| at rest, for a mechanism that moves; critical asks for poles at rest.
     InputError if nothing stable meets the goal, for another goal and for a spread outside 0 to 1; NumericalError if a
     second route contradicts the answer (answer_checks). The poles are those of paper Eq. 17; the goals are this
@@ -135,7 +138,9 @@ def choose(
     at_rest = modulus is None
     if modulus is None:
         modulus = partial(largest_modulus, pencil)
-    if goal == "gentle":
+    if along:
+        point, cut = _along_curve(method, along, goal, modulus, spread, 0.0 if rate is None else rate), False
+    elif goal == "gentle":
         of_all = partial(largest_modulus, any_pencil_of(method)) if at_rest else modulus
         rate = 0.0 if rate is None else rate
         point, cut = _gentle(method, of_all, box, rate), False
@@ -158,6 +163,20 @@ def choose(
     if choice.verdict != "converges":
         raise NumericalError(f"{method.name}: the point {point} found for {goal} is not stable")
     return replace(choice, searched=SEARCHED) if cut else choice
+
+
+def _along_curve(
+    method: Method, curve: Curve, goal: Goal, modulus: Modulus, spread: float, rate: float
+) -> tuple[float, float]:
+    """Return the point of a curve that a goal asks for; InputError where none meets it."""
+    if goal == "critical":
+        raise InputError("the goal critical asks for a double pole, and a curve of points has none to choose")
+    if goal == "gentle":
+        found = mildest_along(curve, modulus, rate)
+        if found is None:
+            raise InputError(f"--settle: no setting of the engine has |z_p| <= {rate:.6g} with {method.name}")
+        return found
+    return least_along(curve, _slowest(method, modulus, None, spread) if goal == "robust" else _throughout(modulus))
 
 
 def _check_spread(spread: float) -> None:
@@ -187,14 +206,15 @@ def choose_at_step(
     spread: float = 0.1,
     equal: bool = False,
     modulus: Modulus | None = None,
+    along: Curve | None = None,
 ) -> Choice:
     """Return the choice for steps of h (s), as `choose` makes it for the largest step h_max (s) that may occur.
 
     At a smaller step the same alpha and beta are a smaller alpha_hat = 2 alpha h and beta_hat = beta^2 h^2 (paper Eq.
     16). `settle` (s) is the time in which the error of `gentle` falls a thousandfold; `modulus`, of the largest step,
-    is as for `choose`. Errors as for `choose`; InputError, too, for a step outside 1e-100 to 1e100 s, for an h_max
-    below h or without the goal robust, and for a settle that is not positive or without the goal gentle, or that
-    without it.
+    and `along` are as for `choose`. Errors as for `choose`; InputError, too, for a step outside 1e-100 to 1e100 s, for
+    an h_max below h or without the goal robust, and for a settle that is not positive or without the goal gentle, or
+    that without it.
     """
     check_step(h)
     if h_max is not None and (goal != "robust" or h_max < h):
@@ -206,7 +226,7 @@ def choose_at_step(
     rate = None
     if settle is not None:
         rate = THOUSANDFOLD ** float(h * method.step_multiple / settle)
-    choice = choose(method, goal, spread, rate, equal, modulus)
+    choice = choose(method, goal, spread, rate, equal, modulus, along=along)
     if h_max is None or h_max == h:
         return choice
     share = h / h_max

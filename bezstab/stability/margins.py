@@ -14,6 +14,7 @@ from bezstab.stability.arrays import BoolArray, FloatArray
 from bezstab.stability.closed_loop import converges
 from bezstab.stability.path_crossings import Path, crossing_factors
 from bezstab.stability.searches import first_where
+from bezstab.units import to_dimensionless
 
 STEPS_TRIED = np.power(1.25, np.arange(93.0))
 """Times h, up to 1e9: stretches of unstable steps are wider than a fourth."""
@@ -65,6 +66,26 @@ def largest_stable_step(
 
     ends = first_where(any_unstable, np.asarray(h * STEPS_TRIED, np.float64))
     return None if ends is None else ends[0]
+
+
+def stable_up_to(method: Method, alpha: Fraction, beta: Fraction) -> float:
+    """Return the step (s) up to which every one is stable with alpha and beta (1/s); infinite without an end.
+
+    Zero where small steps are not stable, as without damping. The end is where the path of all steps first crosses the
+    boundary and the proven verdict turns, as for `stability_margins`, whose errors it has. InputError for alpha and
+    beta outside float64's range.
+    """
+    if not beta:
+        return 0.0  # nothing takes an error back: z = 1 at every step
+    unit = 1 / max(2 * abs(alpha), abs(beta))  # s: times it the numbers are of order one
+    path = Path(method, *to_dimensionless(alpha, beta, unit), (1, 2))
+    factors = crossing_factors(path)
+    small = Fraction(min(factors, default=1.0)) / 2  # below it the verdict is one
+    if not converges(method, *path.at(small)):
+        return 0.0
+    end = _first_end(path, factors, 1)
+    check_margin(Path(method, *path.at(small), (1, 2)), (0.0, end / float(small)))
+    return end * float(unit)
 
 
 def _ends(path: Path) -> tuple[float, float]:

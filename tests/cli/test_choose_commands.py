@@ -1,21 +1,26 @@
 import json
 import re
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
 
+import bezstab
+from bezstab.engines import ENGINES
+from bezstab.methods import lookup
+from bezstab.stability import verdict
 from tests.cli.running import rows, run
 
 
 def test_choose_prints_what_to_set() -> None:
-    (row,) = rows("choose", "--h", "0.001", "--goal", "fastest")
+    (row,) = rows("choose", "--method", "B4", "--h", "0.001", "--goal", "fastest")
     keys = "method h goal alpha_hat beta_hat alpha beta z_abs z_angle_deg settle_steps settle_seconds h_limit"
     assert set(keys.split()) <= set(row)
     assert row["z_abs"] == pytest.approx(0.625883502027, abs=1e-7)  # a double mu: half the digits
     assert row["alpha"] == pytest.approx(1000 * 1.0126978003 / 2)
     assert row["beta"] == pytest.approx(1000 * 0.2563892087**0.5)
     assert row["h_limit"] == pytest.approx(0.0015683, rel=1e-4)
-    (gentle,) = rows("choose", "--h", "0.001", "--goal", "gentle", "--settle", "0.5")
+    (gentle,) = rows("choose", "--method", "B4", "--h", "0.001", "--goal", "gentle", "--settle", "0.5")
     assert gentle["settle_steps"] == 500
     assert gentle["alpha"] == pytest.approx(gentle["beta"])
     (finer,) = rows("choose", "--h", "0.001", "--h-max", "0.002", "--method", "SYM")
@@ -57,3 +62,105 @@ def test_check_judges_the_textbook_rule(name: str, verdict: str) -> None:
     assert given["verdict"] == verdict
     assert (given["h_factor"] is None) == (verdict != "converges")
     assert (instead["goal"], instead["verdict"]) == ("robust", "converges")
+
+
+@pytest.mark.parametrize(
+    "name", [name for name, engine in ENGINES.items() if engine.method and name != "chrono-explicit"]
+)
+def test_what_choose_prints_for_an_engine_that_engine_reads_as_the_point(name: str) -> None:
+    h = Fraction(1, 240)
+    (row,) = rows("choose", "--engine", name, "--h", "1/240", "--goal", "fastest")
+    point = row["alpha_hat"], row["beta_hat"]
+    engine = ENGINES[name]
+    values = engine.values((Fraction(str(point[0])), Fraction(str(point[1]))), h)
+    assert all(value in str(row["setting"]) for value in values)
+    read = engine.applied(tuple(map(Fraction, values)), h)
+    assert not read.notes
+    assert tuple(map(float, read.point)) == pytest.approx(point, rel=1e-7, abs=1e-9)
+    assert row["safe"] is True
+    assert row["sweeps"] is engine.sweeps
+
+
+def test_check_offers_what_the_engine_can_express_with_the_line_to_paste() -> None:
+    """Box2D is alpha_hat = 1; of all its points that decay as fast at worst, the mildest."""
+    given, instead = rows("check", "--engine", "box2d=60,2", "--h", "1/240")
+    assert (given["role"], given["setting"]) == ("given", None)
+    assert (instead["role"], instead["alpha_hat"]) == ("instead", 1)
+    assert re.fullmatch(r"hertz = [\d.]+, dampingRatio = [\d.]+", str(instead["setting"]))
+    # the slowest of all smaller steps, with alpha down by a tenth, decays like e^(-0.45) however large beta is
+    assert instead["worst"] == pytest.approx(2.718281828459045 ** (-0.45), rel=1e-6)
+
+
+def test_an_engine_that_sweeps_is_safe_for_one_constraint_alone() -> None:
+    swept = ("chipmunk=0.5", "box2d=60,2", "bullet=0.2", "ode=0.2", "rapier=1000,1", "jolt=0.2", "physx-drive=100,20")
+    for words in swept:
+        assert ENGINES[words.partition("=")[0]].sweeps
+    for words in ("bullet=0.2", "physx-drive=100,20"):
+        result = run("check", "--engine", words, "--h", "1/240")
+        assert result.stdout.startswith("One constraint alone: safe. The error shrinks")
+        assert "chains of them may diverge all the same" in result.stderr
+    assert run("check", "--engine", "kamino=0.01", "--h", "1/240").stdout.startswith("Safe. The error shrinks")
+    assert run("check", "--engine", "bullet=2.1", "--h", "1/240").stdout.startswith("Not safe. The error grows")
+
+
+@pytest.mark.parametrize("name", ["unity", "Unity", "avian", "newton"])
+def test_an_engine_that_runs_another_is_answered_with_that(name: str) -> None:
+    for options in (("choose", "--engine", name), ("check", "--engine", f"{name}=1")):
+        result = run(*options, "--h", "1/60")
+        assert result.exit_code == 2
+        assert "ask about" in result.stderr
+    assert f"{name.lower()}: " in run("engines").stdout
+
+
+def test_a_method_without_region_is_not_safe(tmp_path: Path) -> None:
+    """The explicit leapfrog, y1 = y[-1] + 2 h f0: its root -1 grows with every damping."""
+    leapfrog = tmp_path / "leapfrog.toml"
+    leapfrog.write_text('rho = ["1", "0", "-1"]\nsigma = ["0", "2", "0"]\n', encoding="utf-8")
+    asked = ("check", "--method", str(leapfrog), "--alpha", "0.1", "--beta", "0.01")
+    result = run(*asked)
+    assert result.exit_code == 1
+    assert result.stdout.startswith("Not safe. The error grows")
+    assert "nothing instead: leapfrog is stable for no parameters at all" in result.stderr
+    as_json = run(*asked, "--format", "json")
+    (given,) = json.loads(as_json.stdout)
+    assert (as_json.exit_code, given["role"], given["safe"]) == (1, "given", False)
+    assert bezstab.check(str(leapfrog), alpha_hat=0.1, beta_hat=0.01).verdict == "diverges"
+
+
+def test_which_integrator_is_asked_in_one_line() -> None:
+    for command in ("check --alpha 1 --beta 1", "choose --h 0.01"):
+        result = run(*command.split())
+        assert (result.exit_code, result.stdout, len(result.stderr.splitlines())) == (2, "", 1)
+        assert all(name in result.stderr for name in ("--method", "SYM", "RK4", "rk45", "--engine", "--pd"))
+    assert rows("poles", "--alpha", "0.5", "--beta", "0.1")  # which keeps its default
+
+
+def test_what_was_typed_is_shown_as_typed() -> None:
+    given, _ = rows("check", "--method", "SYM", "--h", "1/240", "--alpha", "60", "--beta", "60.1", "--physical")
+    assert (given["alpha"], given["beta"]) == (60, 60.1)
+    given, _ = rows("check", "--engine", "maplesim=60,60.1", "--method", "SYM", "--h", "0.003")
+    assert (given["alpha"], given["beta"]) == (60, 60.1)
+    given = rows("check", "--pd", "1000,80.1,0.3", "--method", "stable-pd", "--h", "1/239")[0]
+    assert (given["kp"], given["kd"]) == (1000, 80.1)
+
+
+@pytest.mark.parametrize("name", ["SYM", "rk45", "AB4"])
+def test_without_a_step_the_largest_safe_one_is_the_answer(name: str) -> None:
+    asked = ("check", "--method", name, "--alpha", "60", "--beta", "55", "--physical")
+    (row,) = rows(*asked)
+    limit = Fraction(str(row["h_limit"]))
+    for factor, expected in (("0.001", "converges"), ("0.5", "converges"), ("0.999999", "converges"), ("1.000001", "")):
+        h = limit * Fraction(factor)
+        assert verdict(lookup(name), 120 * h, 55**2 * h**2) == (expected or "diverges")
+    said = run(*asked).stdout.splitlines()[0]
+    shown = Fraction(re.fullmatch(r"Safe up to h = ([\d.]+) s\.", said)[1])  # type: ignore[index]
+    assert limit * Fraction("0.999") < shown <= limit  # rounded down: what is copied is safe
+
+
+def test_without_a_step_some_are_safe_at_any_and_some_at_none() -> None:
+    assert run("check", "--method", "implicit-euler", "--alpha", "1", "--beta", "1", "--physical").stdout.startswith(
+        "Safe at any h."
+    )
+    undamped = run("check", "--method", "SYM", "--alpha", "0", "--beta", "1", "--physical")
+    assert undamped.stdout.startswith("Not safe at small steps.")
+    assert undamped.exit_code == 1

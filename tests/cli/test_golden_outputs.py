@@ -99,9 +99,11 @@ ADDED = (
     *("driver_work", "force_work", "iterations", "singular_passages"),
     *("law_z_abs", "law_verdict", "floquet_z_abs", "law_fitted_z_abs", "measured_rate", "right"),
     *("safe", "error_constant", "engine_h_limit", "z_abs_below", "critical_damping_limit_exact"),
+    *("role", "setting", "sweeps"),
 )
 """Keys that rows have got since, in their place: more of what a region, a choice and a method is, work in a run,
-what the motion does to a measured pole, and up to which step an engine's values are stable."""
+what the motion does to a measured pole, up to which step an engine's values are stable, whether the engine sweeps, and
+which rows of check were given."""
 
 
 def tolerance(command: str, key: str) -> Tolerance:

@@ -67,6 +67,16 @@ def test_choose_allows_for_the_motion() -> None:
 
 
 @pytest.mark.slow
+def test_choose_that_is_not_safe_over_the_motion_ends_with_status_1() -> None:
+    """At three times its speed nothing settles this four-bar at 20 ms: "Not safe" is no success."""
+    for speed, status in (("0.01", 0), ("3", 1)):
+        asked = ("choose", "--method", "SYM", "--goal", "fastest", "--h", "0.02", "--scene", "driven_four_bar")
+        result = run(*asked, "--speed", speed)
+        assert result.stdout.startswith("Not safe" if status else "Safe")
+        assert result.exit_code == status
+
+
+@pytest.mark.slow
 def test_check_offers_instead_what_choose_chooses_for_the_same_motion() -> None:
     """The point chosen at rest is not settled as this four-bar moves."""
     moving = ("--method", "AB4", "--scene", "driven_four_bar", "--h", "0.02")
@@ -94,7 +104,9 @@ def test_region_prints_the_area_that_is_left_at_each_speed() -> None:
         (("--scene", "nowhere", "--h", "0.01"), "nowhere"),
     ],
 )
-@pytest.mark.parametrize("command", ["poles --alpha 0.5 --beta 0.1", "check --alpha 0.5 --beta 0.1", "region"])
+@pytest.mark.parametrize(
+    "command", ["poles --alpha 0.5 --beta 0.1", "check --method SYM --alpha 0.5 --beta 0.1", "region"]
+)
 def test_a_mistake_is_one_line(command: str, options: tuple[str, ...], said: str) -> None:
     result = run(*command.split(), *options)
     assert result.exit_code == 2

@@ -75,7 +75,10 @@ def test_what_is_meant_in_seconds_has_a_largest_step() -> None:
 
 def test_the_sentence_says_how_far_an_engines_step_may_grow() -> None:
     said = run("check", "--engine", "bullet=0.2", "--h", "1/240").stdout.splitlines()[0]
-    assert said == "Safe. The error shrinks 0.8-fold a step; h may grow without limit, α to 1.9 times, β to 3.16 times."
+    assert said == (
+        "One constraint alone: safe. The error shrinks 0.8-fold a step; "
+        "h may grow without limit, α to 1.9 times, β to 3.16 times."
+    )
 
 
 def test_what_an_engine_takes_for_large_errors_has_to_be_safe_too() -> None:
@@ -143,8 +146,8 @@ def test_the_help_answers_whether_it_is_kp_or_kd() -> None:
     ("typed", "meant"),
     [
         pytest.param(
-            "check --alpha 20 --beta 20 --h 1/240",
-            "bezstab check --alpha 20 --beta 20 --h 1/240 --physical",
+            "check --method B4 --alpha 20 --beta 20 --h 1/240",
+            "bezstab check --method B4 --alpha 20 --beta 20 --h 1/240 --physical",
             marks=pytest.mark.slow,  # B4's robust choice
         ),
         (
@@ -242,7 +245,10 @@ def test_a_drive_without_one_of_its_gains_is_shown_too(gains: str) -> None:
         (("check", "--engine", "SYM=0.2", "--h", "0.01"), "unknown engine 'SYM' (names: mujoco,"),
         (("check", "--engine", "bullet", "--h", "0.01"), "'bullet' has no values: expected bullet=ERP"),
         (("check", "--pd", "1,2,0", "--h", "0.01"), "'--pd': inertia 0: expected above 0"),
-        (("choose", "--engine", "bullet", "--h", "0.01"), "ask `check --engine bullet=ERP` about values of yours"),
+        (
+            ("choose", "--engine", "bullet", "--h", "0.01", "--goal", "critical"),
+            "ask `check --engine bullet=ERP` about values of yours",
+        ),
     ],
 )
 def test_a_mistake_is_told_with_what_is_accepted(arguments: tuple[str, ...], said: str) -> None:

@@ -223,6 +223,33 @@ def xpbd(h: float, compliance: float, damping: float = 0.0, inverse_mass: float 
     return step
 
 
+def genesis(h: float, time_constant: float) -> Step:
+    """Return Genesis' step past solimp's width: MuJoCo's, critically damped, with one impedance for every error."""
+    return mujoco(h, max(time_constant, 2 * h), 1.0, 0.95, 0.95)
+
+
+def godot(h: float, bias: float) -> Step:
+    """Return the step of Godot's PinJoint3D with a damping of 1: every sweep adds depth tau / h - velocity."""
+
+    def step(c: float, v: float) -> tuple[float, float]:
+        for _ in range(16):
+            v += -c * bias / h - v
+        return c + h * v, v
+
+    return step
+
+
+def kamino(h: float, alpha: float) -> Step:
+    """Return Kamino's step by Moreau: half a step, J v1 = -(alpha / h) r with the error there, the other half."""
+
+    def step(c: float, v: float) -> tuple[float, float]:
+        middle = c + h / 2 * v
+        v = -alpha / h * middle
+        return middle + h / 2 * v, v
+
+    return step
+
+
 STEPS: dict[str, Callable[..., Step]] = {
     "mujoco": mujoco,
     "crocoddyl": two_gains,
@@ -248,5 +275,8 @@ STEPS: dict[str, Callable[..., Step]] = {
     "pbd": pbd,
     "xpbd": xpbd,
     "brax-positional": pbd,
+    "genesis": genesis,
+    "godot": godot,
+    "kamino": kamino,
 }
 """By the engine's name. Where the integrator is the user's, symplectic Euler, as the simplest that moves last."""

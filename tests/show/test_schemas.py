@@ -8,7 +8,7 @@ from bezstab.show.schemas import DIALECT
 def test_a_schema_describes_every_key_and_allows_no_other() -> None:
     schema = json_schema("check")
     assert schema["$schema"] == DIALECT
-    row = schema["items"]
+    row = schema["items"]["anyOf"][0]
     assert row["additionalProperties"] is False
     assert row["properties"]["h_limit"]["type"] == ["number", "null"]
     assert ", in s;" in row["properties"]["h_limit"]["description"]

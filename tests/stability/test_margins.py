@@ -10,7 +10,16 @@ from hypothesis import strategies as st
 
 from bezstab.errors import InputError
 from bezstab.methods import lookup
-from bezstab.stability import Margins, largest_stable_step, region, spectral_radius, stability_margins, verdict, window
+from bezstab.stability import (
+    Margins,
+    largest_stable_step,
+    region,
+    spectral_radius,
+    stability_margins,
+    stable_up_to,
+    verdict,
+    window,
+)
 from tests.methods.kinds import sampled
 from tests.reference.second_order_methods import as_second_order
 
@@ -157,3 +166,17 @@ def test_steps_that_mean_nothing_end_the_search() -> None:
 def test_a_recipe_that_spells_out_a_method_has_its_margins(name: str) -> None:
     method, point = lookup(name), (Fraction(1, 10), Fraction(1, 100))
     assert stability_margins(as_second_order(name), *point) == stability_margins(method, *point)
+
+
+def test_the_largest_step_of_alpha_and_beta_is_where_the_path_leaves_the_region() -> None:
+    """With SYM and alpha = beta, 2 alpha_hat + beta_hat = 4 at alpha h = 2 sqrt 2 - 2."""
+    for alpha in (1, 60, Fraction(1, 10**9), 10**9):
+        limit = stable_up_to(lookup("SYM"), Fraction(alpha), Fraction(alpha))
+        assert limit * float(alpha) == pytest.approx(2 * math.sqrt(2) - 2, rel=1e-12)
+
+
+def test_small_steps_are_stable_only_with_damping_and_stiffness() -> None:
+    assert stable_up_to(lookup("SYM"), Fraction(0), Fraction(1)) == 0
+    assert stable_up_to(lookup("SYM"), Fraction(1), Fraction(0)) == 0
+    assert stable_up_to(lookup("SYM"), Fraction(-1), Fraction(1)) == 0
+    assert stable_up_to(lookup("implicit-euler"), Fraction(1), Fraction(1)) == math.inf
