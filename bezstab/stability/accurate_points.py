@@ -46,8 +46,7 @@ def accurate_point(
     """Return alpha_hat and beta_hat where the forced error is least, at worst over the spread.
 
     Looked at is feedback within the extent that `decays` as fast as is asked for with alpha and beta off by the spread;
-    `equal` keeps alpha = beta. The error is the total of `forced_error` at any frequency. InputError if nothing decays
-    so fast; NumericalError if another grid has a better point. The test equation is that of methods/forced_errors.py;
+    `equal` keeps alpha = beta. The error is that of `worst_error`. InputError if nothing decays so fast; NumericalError if another grid has a better point. The test equation is that of methods/forced_errors.py;
     the goal is this package's.
     """
     largest = np.array([extent[0][1] / 2, np.sqrt(extent[1][1])])  # alpha h and beta h
@@ -101,7 +100,10 @@ def worst_error(
     omega_h: Fraction,
     spread: float,
 ) -> FloatArray:
-    """Return the largest total error with alpha and beta off by the spread; infinite where it decays too slowly."""
+    """Return the largest error with alpha and beta off by the spread; infinite where it decays too slowly.
+
+    The total of q, at any frequency, and that of the velocity, as shares: constraints see the one, trajectories both.
+    """
     worst = np.zeros(alpha_hat.shape)
     for by_alpha, by_beta in ((0, 0), (-1, -1), (-1, 1), (1, -1), (1, 1)):  # the centre first: it leaves out the most
         left = np.flatnonzero(np.isfinite(worst))
@@ -109,6 +111,6 @@ def worst_error(
         worst[left] = np.where(decays(alpha, beta), worst[left], np.inf)
         left = np.flatnonzero(np.isfinite(worst))
         alpha, beta = (1 + by_alpha * spread) * alpha_hat[left], (1 + by_beta * spread) ** 2 * beta_hat[left]
-        total = forced_error(method, alpha, beta, omega_h, any_frequency=True).total
-        worst[left] = np.maximum(worst[left], total)
+        error = forced_error(method, alpha, beta, omega_h, any_frequency=True)
+        worst[left] = np.maximum(worst[left], error.total + error.velocity)
     return worst

@@ -55,9 +55,8 @@ class ErrorTables:
 class ForcedError:
     """Errors as shares of the motion's amplitude, shape of alpha_hat and beta_hat broadcast.
 
-    position: of q, and so of the constraint; velocity: of its velocity, as a share of the velocity's amplitude. total:
-    what is left of both in a run: that of q at the frequency from 0 to omega that answers what is forced the most,
-    and that of the velocity, which a trajectory follows.
+    position: of q, and so of the constraint; velocity: of its velocity, as a share of the velocity's amplitude, which a
+    trajectory follows. total: of q, at the frequency from 0 to omega that answers what is forced the most.
     """
 
     position: FloatArray
@@ -91,7 +90,7 @@ def forced_error(
         least = np.minimum(least, _denominator_size(of_powers, np.asarray(frequency)))
     of_position = np.abs(polyval2d(a, b, tables.position))
     velocity = np.abs(polyval2d(a, b, tables.velocity)) / at_own / theta
-    return ForcedError(position=of_position / at_own, velocity=velocity, total=of_position / least + velocity)
+    return ForcedError(position=of_position / at_own, velocity=velocity, total=of_position / least)
 
 
 def check_omega_h(omega_h: Fraction) -> None:
