@@ -21,8 +21,9 @@ figures: .venv/installed  ## draw what the README shows, into figures/
 	$(BIN)/bezstab tradeoff --table none -o figures
 	$(BIN)/bezstab tradeoff $(ANDREWS) --repeats 1 --against time --recorded figures/andrews_times.json -o figures
 
-times: .venv/installed  ## measure anew the processor times that figures show: no two runs share them
+times: .venv/installed  ## measure anew the processor times that figures and tables show: no two runs share them
 	$(BIN)/bezstab tradeoff $(ANDREWS) --repeats 9 --workers 1 --figure none --format json > figures/andrews_times.json
+	$(BIN)/python -m tests.paper.record_times
 
 test: .venv/tested  ## what CI runs: style and types, and at the same time the quick tests
 	$(MAKE) --no-print-directory --jobs 2 lint quick

@@ -8,12 +8,12 @@ above it:
     experiments         one run of the paper's slider-crank
     reports             tables, figures and findings of one subject
     lost                what cannot be tested
-    methods             Tables 1 and 2, Eqs 12 to 17
+    methods             Tables 1 and 2, Eqs 7 and 12 to 17
     comparison          Table 5, Fig. 9
-    regions             Figs 1 to 3, sections 5.1 and 6
-    slider_crank        Table 3, Fig. 4, Eqs 18 to 23
+    regions             Figs 1 to 3, introduction, sections 5.1 and 6
+    slider_crank        Table 3, Fig. 4, Eqs 3 to 9 and 18 to 23
     drift               Figs 5 and 6
-    influence           Table 4, Figs 7 and 8
+    influence           Table 4, Figs 7 and 8, section 4
     cost                Table 6
     ledger              all subjects in order, and every claim with what came of it
     command             the command `bezstab paper`

@@ -69,8 +69,15 @@ class Experiment:
 
     def largest(self, begin: float, end: float) -> float:
         """Return the largest |c_1| (m) between two times (s)."""
+        return self._largest_of(self.c, begin, end)
+
+    def largest_rate(self, begin: float, end: float) -> float:
+        """Return the largest |d c_1 / dt| (m/s) between two times (s)."""
+        return self._largest_of(self.cdot, begin, end)
+
+    def _largest_of(self, history: FloatArray, begin: float, end: float) -> float:
         between = (self.t >= begin) & (self.t <= end)
-        return float(np.abs(self.c[between]).max())
+        return float(np.abs(history[between]).max())
 
 
 def experiment(

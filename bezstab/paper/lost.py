@@ -1,6 +1,7 @@
-"""What cannot be tested, because the scan lost it or the paper never said it."""
+"""What cannot be tested: the scan lost it, the paper never said it, or bezstab does not have what it is about."""
 
 from bezstab.paper.findings import Finding, finding
+from bezstab.paper.printed import NOT_HERE
 
 
 def findings() -> list[Finding]:
@@ -10,7 +11,7 @@ def findings() -> list[Finding]:
             where="Table 6",
             claim="seconds of processor time",
             paper="8.34 to 8.63 s",
-            here="machine and program are not known",
+            here="its machine and program are not here; Table 6 has ours beside them",
             holds=[],
         ),
         finding(
@@ -33,5 +34,11 @@ def findings() -> list[Finding]:
             paper="not stated",
             here="45 degrees here",
             holds=[],
+        ),
+        *(
+            finding(
+                where="Introduction", claim=name, paper=f"“{sentence}”", here="not in bezstab: nothing to run", holds=[]
+            )
+            for name, sentence in NOT_HERE
         ),
     ]

@@ -8,14 +8,17 @@ from bezstab.methods import (
     accuracy,
     characteristic_text,
     closed_loop_at,
+    evaluations,
     lookup,
     mapping_text,
     recursion_text,
+    steps,
 )
 from bezstab.paper.findings import Finding, finding
 from bezstab.paper.reports import Progress, Report, captioned_table
 from bezstab.show import column
 from bezstab.stability import verdict
+from bezstab.units import to_dimensionless
 
 TABULATED = ("B2", "B3", "B4")
 MAPPINGS = [column("method", "method"), column("step", "recursion"), column("s→z mapping", "mapping")]
@@ -56,10 +59,13 @@ def findings() -> list[Finding]:
         weights_of_b2(),
         mapping_of_b2(),
         polynomial_of_b2(),
+        step_enters_with_parameters(),
+        feedback_is_stable_in_time(),
         no_feedback_is_unstable(),
         positive_parameters_are_not_enough(),
         second_order_is_one_method(),
         orders_of_accuracy(),
+        kinds_of_methods(),
     ]
 
 
@@ -99,7 +105,7 @@ def polynomial_of_b2() -> Finding:
         printed = printed_polynomial_of_b2(alpha_hat, beta_hat)
         agree.append([c / ours[0] for c in ours] == [c / printed[0] for c in printed])
     return finding(
-        where="Eqs 15, 17",
+        where="Eq. 17",
         claim="characteristic polynomial of B2",
         paper="4 z⁴ + (-8 + 6 α̂) z³ + …",
         here=f"the same at {sum(agree)} of {len(agree)} rational points",
@@ -118,6 +124,50 @@ def printed_polynomial_of_b2(alpha_hat: Fraction, beta_hat: Fraction) -> list[Fr
     ]
 
 
+def step_enters_with_parameters() -> Finding:
+    """Return whether Eq. 15 is Eq. 17 with Eq. 16 put in, for steps that differ by a thousand."""
+    points = list(product(SAMPLES, SAMPLES, [Fraction(1), Fraction("1/1000")]))
+    agree = []
+    for alpha, beta, h in points:
+        by_step = printed_polynomial_of_b2_by_step(alpha, beta, h)
+        agree.append(by_step == printed_polynomial_of_b2(*to_dimensionless(alpha, beta, h)))
+    return finding(
+        where="Eqs 15, 16",
+        claim="the step enters with the parameters alone",
+        paper="“In order to avoid the dependence on step size, two dimensionless parameters must be established”: "
+        "α̂ = 2αh, β̂ = β²h²",
+        here=f"Eq. 15 is Eq. 17 at {sum(agree)} of {len(agree)} rational points",
+        holds=[all(agree)],
+    )
+
+
+def printed_polynomial_of_b2_by_step(alpha: Fraction, beta: Fraction, h: Fraction) -> list[Fraction]:
+    """Return the coefficients of Eq. 15 for alpha and beta (1/s) and a step of h (s), highest power of z first."""
+    return [
+        Fraction(4),
+        -8 + 12 * alpha * h,
+        4 - 16 * alpha * h + 9 * beta**2 * h**2,
+        4 * alpha * h - 6 * beta**2 * h**2,
+        beta**2 * h**2,
+    ]
+
+
+def feedback_is_stable_in_time() -> Finding:
+    """Return whether Eq. 7 has both roots in the left half plane at positive rational points.
+
+    They are there if and only if their sum, -2 alpha, is negative and their product, beta^2, positive: exact numbers.
+    """
+    positive = [value for value in SAMPLES if value > 0]
+    holds = [-2 * alpha < 0 < beta**2 for alpha, beta in product(positive, positive)]
+    return finding(
+        where="Eq. 7",
+        claim="before it is discretised, the feedback is stable",
+        paper="“with α and β greater than zero, Eq. (7) is stable and, consequently, c and ċ will converge to zero”",
+        here=f"sum of the roots -2α < 0, product β² > 0 at {sum(holds)} of {len(holds)} points",
+        holds=[all(holds)],
+    )
+
+
 def no_feedback_is_unstable() -> Finding:
     """Return what every method of the paper does with c̈ = 0."""
     names = ("B2", "B3", "B4", "AB2", "AB3", "AB4")
@@ -125,7 +175,8 @@ def no_feedback_is_unstable() -> Finding:
     return finding(
         where="Section 3",
         claim="c̈ = 0 is unstable",
-        paper="does not converge",
+        paper="“the equation c̈ = 0 represents an unstable system, therefore c and ċ will not converge to zero if any "
+        "perturbation occurs”",
         here=f"at α̂ = β̂ = 0: {', '.join(sorted(verdicts))}",
         holds=[verdicts == {"diverges"}],
     )
@@ -137,7 +188,7 @@ def positive_parameters_are_not_enough() -> Finding:
     return finding(
         where="Section 4",
         claim="positive α and β do not guarantee convergence",
-        paper="integrator decides",
+        paper="“positive values for α and β parameters does not guarantee the convergence of c and ċ”",
         here="at (2, 2): " + ", ".join(f"{name} {found}" for name, found in verdicts.items()),
         holds=["diverges" in verdicts.values()],
     )
@@ -149,7 +200,8 @@ def second_order_is_one_method() -> Finding:
     return finding(
         where="Section 5.1",
         claim="second order of both families is the same method",
-        paper="same",
+        paper="“formulations for the second order of both methods are the same and, therefore, they exhibit similar "
+        "stability regions”",
         here="same weights" if same else "differ",
         holds=[same],
     )
@@ -162,9 +214,23 @@ def orders_of_accuracy() -> Finding:
     return finding(
         where="Table 1",
         claim="“n-th order Bézier” is of order n",
-        paper="2, 3, 4",
+        paper="“the second to the fourth order of the Bézier method”",
         here=f"{bezier_orders}; AB3 and AB4: {orders['AB3']} and {orders['AB4']}",
         holds=[[orders[name] for name in TABULATED] == [2, 3, 4], orders["B2"] == 2],
+    )
+
+
+def kinds_of_methods() -> Finding:
+    """Return how many past points and how many evaluations a step of each method takes."""
+    needs = {name: (steps(lookup(name)), evaluations(lookup(name))) for name in ("B4", "AB4", "RK4")}
+    shown = ", ".join(f"{name} {past} and {evaluated}" for name, (past, evaluated) in needs.items())
+    return finding(
+        where="Section 5.2.3",
+        claim="multistep, and single-step of several stages",
+        paper="“the Bézier and Adams–Bashforth methods are multi-step numerical integration algorithms, while the "
+        "Runge–Kutta method is a single-step multistage numerical integration procedure”",
+        here=f"points and evaluations of a step: {shown}",
+        holds=[needs == {"B4": (4, 1), "AB4": (4, 1), "RK4": (1, 4)}],
     )
 
 

@@ -87,3 +87,49 @@ TABLE_5 = (
     ),
 )
 """The three cases, in the paper's order."""
+
+TABLE_6 = {
+    "B4": (8.34, 8.42, 8.39),
+    "AB4": (8.41, 8.38, 8.42),
+    "RK4@5": (8.63, 8.55, 8.60),
+    "SIE": (8.52, 8.56, 8.53),
+}
+"""Processor times (s) of the three cases of Table 5, by method."""
+
+NOT_HERE = (
+    ("other formulations of the equations of motion", "Hamilton …, Gibbs …, Dirac …, Kane … and Udwadia-Kalaba"),
+    (
+        "Chang and Nikravesh: parameters that adapt",
+        "an adaptive method to determine the proper Baumgarte parameters and demonstrated the effectiveness",
+    ),
+    ("Yoon et al.: pseudo-integration", "used pseudo-integration of the constraint dynamics"),
+    ("Ostermeyer: rules from control", "some rules to choose the values of the corresponding parameters"),
+    (
+        "Kim et al., Ascher et al., Guizhi and Rong: other choices",
+        "developed different techniques to select Baumgarte parameters",
+    ),
+    ("Park et al.: penalty", "similar to the Baumgarte method considering a penalty formulation"),
+    (
+        "Bayo and Avello: augmented Lagrangian",
+        "ensures better accuracy and robustness in the presence of singular configurations",
+    ),
+    ("Weijia et al.: automatic stabilisation", "an automatic constraint violation stabilization method"),
+    ("Blajer: projection after each step", "the exact elimination of the constraint violations"),
+    (
+        "Hong et al.: implicit enforcement",
+        "stable for large time steps and does not require problem-dependent stabilization parameters",
+    ),
+    (
+        "Braun and Goldfarb: virtual force and impulse",
+        "embedding a small virtual force and a small virtual impulse in the equation of motion",
+    ),
+    (
+        "Nada and Bayoumi: fuzzy control",
+        "a constraint stabilization method for multibody systems based on fuzzy logic control",
+    ),
+    (
+        "Bézier curves with differential quadrature",
+        "a combination of the Bézier method and the differential quadrature technique",
+    ),
+)
+"""What the introduction names and bezstab does not have: its name, and what the paper says of it."""

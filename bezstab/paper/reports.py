@@ -21,7 +21,8 @@ Progress = Callable[[Iterator[Experiment], str, int], Iterable[Experiment]]
 class Report:
     """Tables as Markdown and what draws the figures, by the name of their part; and what came of the claims.
 
-    `aside` is for the eye only: it holds measured times, which no two runs share and no file keeps.
+    `aside` comes before the findings and is for the eye only: a sentence that sums up a table, or times measured now,
+    which no two runs share and no file keeps.
     """
 
     tables: Mapping[str, str] = field(default_factory=dict)

@@ -21,6 +21,9 @@ def found() -> list[Finding]:
         ("RK4 costs 5 times", "confirmed with a correction", "4 and 1"),
         ("at equal cost", "confirmed", "0.8097"),
         ("RK4 at 4h", "confirmed", "0.5402"),
+        ("wider region at the same cost", "confirmed with a correction", "4.000"),
+        ("Adams–Moulton", "not confirmed", "B3 0.887, AM3 120.45; B4 0.810, AM4 20.10"),
+        ("depends on the integrator", "confirmed", "AB4 diverges (1.456)"),
     ],
 )
 def test_the_questions_to_settle(found: list[Finding], words: str, agreement: Agreement, number: str) -> None:
@@ -34,6 +37,11 @@ def test_a_counterexample_is_one() -> None:
     assert point is not None
     assert spectral_radius(lookup("B4"), *point) < 1 < spectral_radius(lookup("AB4"), *point)
     assert regions.counterexample(stable=lookup("AB1"), unstable=lookup("RK1")) is None  # the same method
+
+
+def test_where_all_methods_agree_the_integrator_does_not_decide(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(regions, "WHERE_METHODS_DIFFER", (0.1, 0.1))
+    assert regions.integrator_decides().agreement == "not confirmed"
 
 
 def test_a_false_least_modulus_is_not_confirmed(monkeypatch: pytest.MonkeyPatch) -> None:
