@@ -19,6 +19,7 @@ from bezstab.cli.options import (
     TableForm,
     both_or_none,
     compiled_option,
+    figure_options,
     file_options,
     format_option,
     left_at_default,
@@ -114,7 +115,7 @@ def run_sentence(row: Row) -> str:
     "for an implicit method Gauss's of order four, shorter BDF methods, or implicit Euler.",
 )
 @compiled_option
-@file_options
+@figure_options
 @format_option
 def simulate(
     scene: str,
@@ -137,10 +138,10 @@ def simulate(
 ) -> None:
     """Run a mechanism and see what its constraint error does.
 
-    Prints largest |c| and |ċ|, energy drift and evaluations, and writes the history and a figure of the first
-    constraint and its derivative. Exit status 3 if the run broke down; what came before is kept. With --steps their
-    lengths vary, for every one-step method, and work and drift of energy are integrated less exactly, by the
-    trapezoidal rule.
+    Prints largest |c| and |ċ|, energy drift and evaluations, and draws the first constraint and its derivative; with
+    --table csv it also writes the whole history. Exit status 3 if the run broke down; what came before is kept. With
+    --steps their lengths vary, for every one-step method, and work and drift of energy are integrated less exactly, by
+    the trapezoidal rule.
 
     Example: bezstab simulate --method AB4 --alpha 0.5 --beta 0.101 --time 2
     """

@@ -26,7 +26,7 @@ from bezstab.cli.options import (
     FigureForm,
     TableForm,
     figure_option,
-    file_options,
+    figure_options,
     format_option,
     methods_option,
     output_option,
@@ -215,7 +215,7 @@ MOVING_REGIONS = [
 
 @click.command()
 @methods_option("B4")
-@file_options
+@figure_options
 @click.option(
     "--quality",
     type=click.Choice(["balanced", "fast", "fine"]),
@@ -260,11 +260,11 @@ def region(
     speeds: Sequence[Fraction],
     form: Format,
 ) -> None:
-    """Draw where each method is stable, and tabulate |z_p| there.
+    """Draw where each method is stable, and |z_p| there.
 
-    Writes region_METHOD.png and region_METHOD.csv and prints the axis limits of the exact region, its area, the
-    smallest |z_p| and where. The table holds α̂, β̂, |z_p| and ∠z_p; with --compare, the boundary curves. With --scene
-    also the region of that mechanism as it moves, into region_METHOD_SCENE.
+    Writes region_METHOD.png and prints the axis limits of the exact region, its area, the smallest |z_p| and where.
+    With --table csv also region_METHOD.csv, which holds α̂, β̂, |z_p| and ∠z_p; with --compare, the boundary curves.
+    With --scene also the region of that mechanism as it moves, into region_METHOD_SCENE.
 
     Example: bezstab region --method B4
     """
@@ -293,6 +293,7 @@ def region(
         rows = _compare_regions(methods, level, alpha_range, beta_range, step, alpha_beta, output, figure, table)
     else:
         marks = _engine_marks(engine, h) if engine and h else {}
+        scene_name = _scene_name(scene) if scene else ""
         rows = []
         for method in methods:
             points = grid or QUALITY[quality]
@@ -312,6 +313,7 @@ def region(
                 figure,
                 table,
                 moving,
+                scene_name,
             )
             rows += [
                 {**row, "speed": speed, "kappa": kappa, "area_moving": of_speed.area}
@@ -377,10 +379,11 @@ def _map_region(
     figure: FigureForm,
     table: TableForm,
     moving: "Mapping[tuple[float, float], MovingRegion]",
+    scene_name: str,
 ) -> Row:
     """Write the |z_p| map of one method as table and figure at `path`; return its row.
 
-    `moving` has the regions as a scene moves by speed and kappa (1/s): drawn as well.
+    `moving` has the regions as a scene of that name moves by speed and kappa (1/s): drawn as well.
     """
     import numpy as np
 
@@ -414,11 +417,19 @@ def _map_region(
             {speed: each for (speed, _), each in moving.items()},
             chosen=stability.choose(method, "robust", margins=False) if best else None,
             alpha_and_beta=alpha_beta,
+            scene=scene_name,
         )
 
     write_table(path, map_arrays(alpha_hat, beta_hat, z, h), table)
     write_figure(path, draw, figure)
     return row
+
+
+def _scene_name(scene: str) -> str:
+    """Return what a scene is called, given where it is."""
+    from bezstab.mechanism import load_scene
+
+    return load_scene(scene).name
 
 
 def _level_rows(method: Method, levels: Sequence[float]) -> list[Row]:

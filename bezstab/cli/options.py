@@ -168,9 +168,14 @@ output_option = click.option(
 figure_option = click.option(
     "--figure", type=click.Choice(["png", "svg", "pdf", "none"]), default="png", help="Format of the figure."
 )
-table_option = click.option(
-    "--table", type=click.Choice(["csv", "npz", "none"]), default="csv", help="Format of the table."
-)
+
+
+def table_option(default: TableForm) -> Decorator:
+    """Return the option --table."""
+    choice = click.Choice(["csv", "npz", "none"])
+    return click.option("--table", type=choice, default=default, help="Format of the table.")
+
+
 format_option = click.option(
     "--format",
     "form",
@@ -228,7 +233,10 @@ def together(*options: Decorator) -> Decorator:
     return with_options
 
 
-file_options = together(output_option, figure_option, table_option)
+file_options = together(output_option, figure_option, table_option("csv"))
+figure_options = together(output_option, figure_option, table_option("none"))
+"""Of a command whose table is long and seldom wanted: it is written when asked for."""
+
 work_options = together(workers_option, scheduler_option, resume_option)
 
 

@@ -14,7 +14,7 @@ from bezstab.paper.experiments import DURATION, STEP, Experiment, experiment
 from bezstab.paper.findings import Finding, finding
 from bezstab.paper.printed import COMPARED, TABLE_5, PrintedCase, PrintedPole
 from bezstab.paper.reports import Progress, Report, captioned_table, pole_cells
-from bezstab.show import Row, column, column_figure, method_line, pole_column, styled
+from bezstab.show import Row, column, column_figure, history_line, legend_below, line_at, pole_column, styled
 from bezstab.stability import dominant_pole, verdict
 
 ROUNDED = 1e-13  # m: below, c_1 is rounding amplified by beta^2 h^2 / |1 - z|, and differs between machines
@@ -382,6 +382,7 @@ def panels_figure(runs: Sequence[Experiment]) -> Figure:
     """Return c_1 against time for the cases of Table 5, one-step and multistep methods apart (paper Fig. 9)."""
     with styled():
         figure = column_figure(1.5)
+        names = list(dict.fromkeys(run.method.name for run in runs))
         for row, case_runs in enumerate(by_case(runs)):
             for place in (0, 1):
                 number = 2 * row + place
@@ -389,19 +390,20 @@ def panels_figure(runs: Sequence[Experiment]) -> Figure:
                 # the paper's panels a to f: on the right the multistep methods, in the last row on the left
                 multistep = (place == 1) != (row == 2)
                 shown = [run for run in case_runs.values() if (steps(run.method) > 1) == multistep]
-                _draw_histories(axes, "abcdef"[number], shown)
+                _draw_histories(axes, "abcdef"[number], shown, names)
         for axes in figure.axes[-2:]:
             axes.set_xlabel("t (s)")
         figure.supylabel("$c_1$ (m)", fontsize=8)
         lines = [line for axes in figure.axes[:2] for line in axes.lines]
-        figure.legend(handles=lines, loc="outside lower center", ncols=4)
+        legend_below(figure, handles=lines)
         return figure
 
 
-def _draw_histories(axes: Axes, letter: str, runs: Sequence[Experiment]) -> None:
-    """Draw c_1 against time of several runs at one point."""
+def _draw_histories(axes: Axes, letter: str, runs: Sequence[Experiment], names: Sequence[str]) -> None:
+    """Draw c_1 against time of several runs at one point; `names` are all the methods of the figure."""
     for run in runs:
-        axes.plot(run.t, run.c, label=run.method.name, **method_line(run.method) | {"linewidth": 0.6})
+        line = line_at(names.index(run.method.name))
+        history_line(axes, run.t, run.c, label=run.method.name, **line, linewidth=0.6)
     point = rf"$\hat\alpha = {runs[0].alpha_hat:g}$, $\hat\beta = {runs[0].beta_hat:g}$"
     axes.set_title(f"{letter}: {point}", fontsize=7)
     axes.ticklabel_format(axis="y", scilimits=(-2, 3))

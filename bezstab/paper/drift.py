@@ -13,7 +13,7 @@ from bezstab.paper.experiments import START_NAMES, Experiment, experiment
 from bezstab.paper.findings import Finding, finding
 from bezstab.paper.printed import TABLE_3
 from bezstab.paper.reports import Progress, Report
-from bezstab.show import DASHES, column_figure, method_line, styled
+from bezstab.show import DASHES, column_figure, legend_below, line_at, styled
 from bezstab.stability import FloatArray
 
 METHODS = ("B4", "AB4")
@@ -272,7 +272,7 @@ def drift_figure(runs: Sequence[Experiment]) -> Figure:
                     _draw_growth(axes, run, steps.index(run.h))
             axes.set(title=f"start: {START_NAMES[start]}", ylabel="largest $|c_1|$ so far (m)")
         axes.set_xlabel("t (s)")
-        figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=2)
+        legend_below(figure, handles=[line for line in axes.lines if line.get_marker() == "None"])
         return figure
 
 
@@ -280,7 +280,7 @@ def _draw_growth(axes: Axes, run: Experiment, number: int) -> None:
     """Draw the largest |c_1| so far on logarithmic axes, dashed by the number of the step, a cross where it failed."""
     largest_so_far = np.maximum.accumulate(np.abs(run.c))
     shown = np.unique(np.geomspace(1, len(largest_so_far) - 1, DRAWN).astype(int))
-    line = {**method_line(run.method), "linestyle": DASHES[number]}
+    line = {**line_at(METHODS.index(run.method.name)), "linestyle": DASHES[number]}
     axes.loglog(run.t[shown], largest_so_far[shown], label=f"{run.method.name}, {1e3 * run.h:g} ms", **line)
     if run.failure:
         axes.plot(run.t[-1], largest_so_far[-1], "x", color=line["color"], markersize=4)

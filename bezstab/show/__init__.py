@@ -81,9 +81,10 @@ if TYPE_CHECKING:
         write_arrays,
     )
     from bezstab.show.explorer import open_explorer
+    from bezstab.show.histories import history_line
     from bezstab.show.plane_figures import comparison_figure, family_figure, region_figure, verdict_figure
     from bezstab.show.run_figures import history_figure, scene_figure, work_precision_figure
-    from bezstab.show.style import DASHES, column_figure, method_line, save, styled
+    from bezstab.show.style import DASHES, column_figure, legend_below, line_at, save, styled
 
 LOADED_LATE = {
     "arrays": (
@@ -95,6 +96,7 @@ LOADED_LATE = {
         "write_arrays",
     ),
     "explorer": ("open_explorer",),
+    "histories": ("history_line",),
     "plane_figures": (
         "comparison_figure",
         "family_figure",
@@ -109,7 +111,8 @@ LOADED_LATE = {
     "style": (
         "DASHES",
         "column_figure",
-        "method_line",
+        "legend_below",
+        "line_at",
         "save",
         "styled",
     ),
@@ -146,14 +149,16 @@ __all__ = [
     "growth_words",
     "history_arrays",
     "history_figure",
+    "history_line",
     "json_schema",
+    "legend_below",
     "like_point_row",
     "likeness_row",
     "limit_row",
+    "line_at",
     "linted_row",
     "map_arrays",
     "measurement_row",
-    "method_line",
     "method_row",
     "moving_row",
     "open_explorer",

@@ -7,22 +7,30 @@ from typing import TYPE_CHECKING
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from bezstab.show import plot
 from bezstab.show.plot import Point, Range
 from bezstab.show.style import (
     ACCENT,
     DASHES,
-    NO_FAMILY,
     column_figure,
     keep_markers_whole,
+    legend_below,
+    line_at,
     mark_in_alpha_and_beta,
-    method_line,
     plane_axes,
     plane_coordinates,
     styled,
+    title_lines,
 )
 from bezstab.stability import BestPoint, Choice, FloatArray, Limit, Member, Region
+
+FAMILY_NAMES = {"bezier": "Bézier", "adams-bashforth": "Adams–Bashforth"}
+THINNEST, STEP_OF_WIDTH, WIDEST = 0.9, 0.15, 1.8
+"""Points: lines grow thinner from the first to the last, so that of those that coincide all show."""
+
+EDGE_LINES = 0.015  # of the axes' sides: so far apart are the arrows of regions that go on beyond the same edge
 
 if TYPE_CHECKING:  # so that a picture of the plane does not load what runs mechanisms
     from bezstab.evidence import MovingRegion, VerdictMap
@@ -40,6 +48,7 @@ def region_figure(
     moving: Mapping[float, MovingRegion] | None = None,
     chosen: Choice | None = None,
     alpha_and_beta: bool = False,
+    scene: str = "",
 ) -> Figure:
     """Return the |z_p| map with exact boundary, faster regions, best point and critical damping (paper Fig. 1).
 
@@ -47,21 +56,23 @@ def region_figure(
     goes on.
 
     z_abs has shape (beta_hat.size, alpha_hat.size). With h (s) the axes are 2 alpha (1/s) and beta^2 (1/s^2), else
-    alpha_hat and beta_hat; `marks` are points (alpha_hat, beta_hat) by their labels. Of a mechanism that moves its own
-    boundaries are drawn as well, by speed, and where the law behind the first of them does not hold. With
-    `alpha_and_beta` the axes 2 alpha and beta^2 are marked in alpha and beta.
+    alpha_hat and beta_hat; `marks` are points (alpha_hat, beta_hat) by their labels. Of a `scene`, by name, that moves
+    its own boundaries are drawn as well, by times its own speed, and where the law behind the first of them does not
+    hold. With `alpha_and_beta` the axes 2 alpha and beta^2 are marked in alpha and beta.
     """
     with styled():
-        figure, axes = plane_axes(region.method.name, h)
+        title = title_lines(region.method.name, f"at rest and on the {scene}") if moving else region.method.name
+        figure, axes = plane_axes(title, h)
         image = plot.modulus_map(alpha_hat, beta_hat, z_abs, region.level, axes, h)
         figure.colorbar(image, label="$|z_p|$")
-        boundary = {"color": "black", "linestyle": "-", "label": rf"$|z_p| = {region.level:g}$"}
+        at_rest = " at rest" if moving else ""
+        boundary = {"color": "black", "linestyle": "-", "label": rf"$|z_p| = {region.level:g}${at_rest}"}
         plot.region(region, axes, h, **boundary)
         for number, inner in enumerate(faster, start=1):
-            curve = {"color": "white", "linestyle": DASHES[number % 4], "label": rf"$|z_p| = {inner.level:g}$"}
+            curve = {"color": "white", "linestyle": DASHES[number % 4], "label": rf"$|z_p| = {inner.level:g}${at_rest}"}
             plot.region(inner, axes, h, **curve)
         for number, (speed, of_speed) in enumerate((moving or {}).items()):
-            label = "as it moves" if speed == 1 else f"{speed:g} times as fast"
+            label = "its own speed" if speed == 1 else f"{speed:g} times its own speed"
             plot.moving_region(of_speed, axes, h, label=label, dashes=DASHES[(number + 1) % 4], hatched=number == 0)
         plot.critical_damping((alpha_hat[0], alpha_hat[-1]), axes, h)
         if best and _inside(best.alpha_hat, alpha_hat) and _inside(best.beta_hat, beta_hat):
@@ -76,7 +87,7 @@ def region_figure(
         keep_markers_whole(axes)
         if alpha_and_beta:
             mark_in_alpha_and_beta(axes)
-        figure.legend(loc="outside lower center", ncols=2, facecolor="0.75")
+        legend_below(figure, facecolor="0.75")
         return figure
 
 
@@ -94,16 +105,14 @@ def comparison_figure(
     """Return the boundaries of several methods in one plane (paper Fig. 2; with h in s, at equal h, Fig. 3).
 
     The ranges are in alpha_hat and beta_hat whatever the axes; without them all of every bounded region shows, and of
-    an unbounded one, which its label says it is, its window. `alpha_and_beta` is as for region_figure.
+    an unbounded one its window: its label says that it is unbounded, and arrows along the edges of the axes point to
+    where it goes on. `alpha_and_beta` is as for region_figure.
     """
     with styled():
         figure, axes = plane_axes(rf"$|z_p| = {regions[0].level:g}$", h)
-        without_colour = [region.method for region in regions if method_line(region.method)["color"] == NO_FAMILY]
-        for region in regions:
-            dashes = {}
-            if region.method in without_colour:  # all of these are grey: told apart by their dashes
-                dashes["linestyle"] = DASHES[without_colour.index(region.method) % len(DASHES)]
-            plot.region(region, axes, h, **dashes)
+        for place, region in enumerate(regions):
+            width = min(WIDEST, THINNEST + STEP_OF_WIDTH * (len(regions) - 1 - place))  # the last lies on top
+            plot.region(region, axes, h, linewidth=width, **line_at(place))
         if alpha_range:
             left, _ = plane_coordinates(float(alpha_range[0]), 0.0, h)
             right, _ = plane_coordinates(float(alpha_range[1]), 0.0, h)
@@ -112,10 +121,11 @@ def comparison_figure(
             _, bottom = plane_coordinates(0.0, float(beta_range[0]), h)
             _, top = plane_coordinates(0.0, float(beta_range[1]), h)
             axes.set_ylim(bottom, top)
+        for place, region in enumerate(regions):
+            plot.open_edges(region, axes, h, inset=EDGE_LINES * (place + 1), **line_at(place))
         if alpha_and_beta:
             mark_in_alpha_and_beta(axes)
-        longer_labels = any(not region.bounded for region in regions)
-        figure.legend(loc="outside lower center", ncols=2 if longer_labels else 4)
+        legend_below(figure)
         return figure
 
 
@@ -124,48 +134,56 @@ def verdict_figure(verdicts: VerdictMap, region: Region) -> Figure:
     with styled():
         share = verdicts.agreement
         agreeing = "no run could be judged" if share is None else f"{share:.2%} of {verdicts.broken.size} runs agree"
-        title = f"{verdicts.scene.name}, {verdicts.method.name}, h = {verdicts.h:g} s\n{verdicts.run} steps: {agreeing}"
+        run = title_lines(verdicts.scene.name, verdicts.method.name, f"h = {verdicts.h:g} s")
+        title = f"{run}\n{verdicts.run} steps: {agreeing}"
         figure, axes = plane_axes(title, None)
         plot.verdicts(verdicts, axes)
         plot.region(region, axes, color="black", linestyle="-", label=r"$|z_p| = 1$")
         plot.disagreements(verdicts, axes)
-        figure.legend(loc="outside lower center", ncols=2)
+        legend_below(figure)
         return figure
 
 
 def family_figure(families: Mapping[str, Sequence[Member]], shown: str, limit: Limit | None) -> Figure:
-    """Return area, least |z_p| and error constant of families against n, and the regions of the one that is `shown`.
+    """Return area and least |z_p| of families against n, and of the one that is `shown` its accuracy and its regions.
 
-    `limit` is what the Bezier methods tend to: a line in each of the three, and with its region where those are shown.
+    Error constants can be compared between methods of one order alone: where the order differs from member to member
+    the orders are drawn instead. `limit` is what the Bezier methods tend to: a line, and its region.
     """
     with styled():
         figure = column_figure(1.3)
-        (area, fastest), (constant, regions) = figure.subplots(2, 2)
-        for name, members in families.items():
-            order = members[0].order if members[0].order == members[-1].order else "n"
-            label = f"{name} (order {order})"
-            plot.family(members, "area", area, label=label)
-            plot.family(members, "least |z_p|", fastest, label=label)
-            plot.family(members, "error constant", constant, label=label)
-        _draw_regions(regions, families[shown])
+        (area, fastest), (accuracy, regions) = figure.subplots(2, 2)
+        for place, (name, members) in enumerate(families.items()):
+            label = FAMILY_NAMES.get(name, name)
+            plot.family(members, "area", area, label=label, **line_at(place))
+            plot.family(members, "least |z_p|", fastest, label=label, **line_at(place))
+        place = list(families).index(shown)
+        members = families[shown]
+        orders = {member.order for member in members}
+        quantity: plot.Quantity = "error constant" if len(orders) == 1 else "order of accuracy"
+        plot.family(members, quantity, accuracy, **line_at(place))
+        _draw_regions(regions, members, line_at(place)["color"])
         if limit is not None:
-            values = ((area, limit.area), (fastest, limit.z_abs), (constant, float(limit.error_constant)))
+            line = {"color": ACCENT, "linestyle": DASHES[2]}
+            values = ((area, limit.area), (fastest, limit.z_abs), (accuracy, float(limit.error_constant)))
             for axes, value in values:
-                axes.axhline(value, color=ACCENT, linestyle=DASHES[1], label="Bézier limit")
-            regions.plot(limit.boundary[:, 0], limit.boundary[:, 1], color=ACCENT, linestyle=DASHES[1])
-        area.set(ylabel="area of the region", yscale="log", xlabel="n")
-        fastest.set(ylabel="least $|z_p|$", xlabel="n")
-        constant.set(ylabel="error constant", xlabel="n")
-        regions.set(xlabel=r"$\hat\alpha$", ylabel=r"$\hat\beta$")
+                axes.axhline(value, label="Bézier, limit", **line)
+            regions.plot(limit.boundary[:, 0], limit.boundary[:, 1], **line)
+        area.set(ylabel="area of the region", yscale="log", xlabel="steps $n$")
+        fastest.set(ylabel="least $|z_p|$", xlabel="steps $n$")
+        all_of_order = f", all of order {members[0].order}" if len(orders) == 1 else ""
+        accuracy.set(ylabel=f"{quantity}{all_of_order}", xlabel="steps $n$")
+        regions.set(xlabel=r"$\hat\alpha$ (dimensionless)", ylabel=r"$\hat\beta$ (dimensionless)")
         regions.set_ylim(top=1.4 * regions.get_ylim()[1])  # room above the curves
-        regions.legend(fontsize=6, loc="upper center", ncols=2)
-        figure.legend(*area.get_legend_handles_labels(), loc="outside lower center", ncols=2)
+        regions.legend(fontsize=6, loc="upper center", ncols=2, handlelength=1.5, columnspacing=1)
+        for axes in (area, fastest, accuracy):
+            axes.xaxis.set_major_locator(MaxNLocator(5, integer=True))
+        legend_below(figure, handles=area.lines)
         return figure
 
 
-def _draw_regions(axes: Axes, members: Sequence[Member]) -> None:
+def _draw_regions(axes: Axes, members: Sequence[Member], colour: str) -> None:
     """Draw the regions of some members of one family, told apart by their dashes."""
-    colour = method_line(members[-1].method)["color"]
     stride = max(1, len(members) // 3)
     for number, member in enumerate(members[::stride]):
-        plot.region(member.region, axes, color=colour, linestyle=DASHES[number % 4])
+        plot.region(member.region, axes, color=colour, linestyle=DASHES[number % len(DASHES)])

@@ -22,6 +22,7 @@ from matplotlib.patheffects import withStroke
 from matplotlib.text import Annotation
 
 from bezstab.methods import Method
+from bezstab.show.histories import history_line
 from bezstab.show.style import (
     ACCENT,
     CONVERGES,
@@ -30,20 +31,22 @@ from bezstab.show.style import (
     cells,
     column_figure,
     curves,
-    method_line,
+    line_at,
+    method_marker,
+    next_line,
     plane_axes,
     plane_coordinates,
     styled,
 )
-from bezstab.stability import BestPoint, Choice, FloatArray, Member, Region
+from bezstab.stability import BestPoint, BoolArray, Choice, FloatArray, Member, Region
 from bezstab.stability import spectral_radius as spectral_radius_at
 
 if TYPE_CHECKING:  # so that a picture of the plane does not load what runs mechanisms
     from bezstab.evidence import Cost, MovingRegion, Run, VerdictMap
-    from bezstab.mechanism import Scene, Simulation
+    from bezstab.mechanism import Body, Scene, Simulation
 
 Range = tuple[SupportsFloat, SupportsFloat]
-Quantity = Literal["area", "least |z_p|", "error constant"]
+Quantity = Literal["area", "least |z_p|", "error constant", "order of accuracy"]
 Point = tuple[float, float]
 
 __all__ = [
@@ -59,6 +62,7 @@ __all__ = [
     "mechanism",
     "modulus_map",
     "moving_region",
+    "open_edges",
     "pareto_front",
     "region",
     "spectral_radius",
@@ -71,19 +75,23 @@ EDGE = 0.99
 WORD = (0.16, 0.06)
 """Half of the room that the word "unbounded" takes beside a marker, in shares of the axes."""
 SHARES = np.linspace(0.1, 0.9, 81)
+ALONG_AN_EDGE, ARROWS = 121, 5
+"""Points along an edge of the axes, and how many of them are arrows."""
 PARABOLA = 400  # points of a smooth curve: more than its pixels tell apart
+NAME_OFF = 4.0  # points between a body and its name
 MARK_SHAPES = "Ds^vP"
 
 
 def region(region: Region, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
     """Draw the boundary of a region |z_p| < level and return its line: all its curves, nan between them.
 
-    By default in the method's own colour and dashes, labelled with its name, and as unbounded where it is. Of an empty
-    region only the label shows.
+    By default in colour and dashes that no other line in the axes has, labelled with the method's name, and as
+    unbounded where it is. Of an empty region only the label shows.
     """
     label = region.method.name if region.bounded else f"{region.method.name} (unbounded)"
-    style = {"label": label, **method_line(region.method), **line}
-    return curves(_plane(axes, rf"$|z_p| = {region.level:g}$", h), region, h, **style)
+    axes = _plane(axes, rf"$|z_p| = {region.level:g}$", h)
+    style = {"label": label, **next_line(axes), **line}
+    return curves(axes, region, h, **style)
 
 
 def moving_region(
@@ -156,7 +164,7 @@ def critical_damping(alpha_range: Range, axes: Axes | None = None, h: float | No
     style = {
         "color": "white",
         "linestyle": DASHES[2],
-        "label": r"$\hat\beta = \hat\alpha^2/4$",
+        "label": "critical damping: " + (r"$\hat\beta = \hat\alpha^2/4$" if h is None else r"$\alpha = \beta$"),
         "path_effects": [outline],
         **line,
     }
@@ -166,14 +174,14 @@ def critical_damping(alpha_range: Range, axes: Axes | None = None, h: float | No
 
 def best_point(best: BestPoint, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
     """Draw a star at the point of least |z_p|, labelled with it, and return the line of one point."""
-    label = f"least $|z_p|$: {best.z_abs:.4f}"
+    label = "deadbeat: $|z_p| = 0$" if best.z_abs == 0 else f"least $|z_p|$: {best.z_abs:.4f}"
     style = {"marker": "*", "markersize": 8, "label": label, **line}
     return _one_point((best.alpha_hat, best.beta_hat), _plane(axes, best.method.name, h), h, **style)
 
 
 def choice(choice: Choice, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
     """Draw a circle at the point that was chosen, labelled with its goal and |z_p|; return the line of one point."""
-    label = f"choose {choice.goal}: {abs(choice.pole):.4f}"
+    label = f"choose {choice.goal}: {f'{abs(choice.pole):.4f}' if choice.pole else 'deadbeat'}"
     style = {"marker": "o", "markersize": 5, "label": label, **line}
     return _one_point((choice.alpha_hat, choice.beta_hat), _plane(axes, choice.method.name, h), h, **style)
 
@@ -234,15 +242,47 @@ def _off_points(axes: Axes, place: Point) -> Point:
 
 def _middle_inside(region: Region, axes: Axes, h: float | None, across: FloatArray, up: FloatArray) -> Point | None:
     """Return the middle of those places that lie inside a region, in shares of the axes; None if none does."""
-    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
-    x_of_one, y_of_one = plane_coordinates(1.0, 1.0, h)
     across, up = np.broadcast_arrays(across, up)
-    alpha_hat, beta_hat = (left + (right - left) * across) / x_of_one, (low + (high - low) * up) / y_of_one
-    inside = np.flatnonzero(region.contains(alpha_hat, beta_hat))
+    inside = np.flatnonzero(_inside(region, axes, h, across, up))
     if not inside.size:
         return None
     middle = inside[inside.size // 2]
     return float(across[middle]), float(up[middle])
+
+
+def _inside(region: Region, axes: Axes, h: float | None, across: FloatArray, up: FloatArray) -> BoolArray:
+    """Return which places, in shares of the axes, lie inside a region."""
+    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+    x_of_one, y_of_one = plane_coordinates(1.0, 1.0, h)
+    alpha_hat, beta_hat = (left + (right - left) * across) / x_of_one, (low + (high - low) * up) / y_of_one
+    return region.contains(alpha_hat, beta_hat)
+
+
+def open_edges(region: Region, axes: Axes, h: float | None = None, inset: float = 0.015, **line: Any) -> list[Line2D]:
+    """Draw arrows along those edges of the axes, whose limits are final, beyond which a region goes on without end.
+
+    Each edge gives a line with arrows on it, `inset` (a share of the axes' sides) inside the axes, where the region
+    is. Returned are these lines; none for a bounded region.
+    """
+    if region.bounded or region.extent is None:
+        return []
+    along = np.linspace(inset, 1 - inset, ALONG_AN_EDGE)
+    (leftwards, rightwards), (downwards, upwards) = np.isinf(region.extent)
+    edges = [
+        # goes on there, its arrow, across and up: where the edge is
+        (leftwards, "<", np.zeros_like(along), along),
+        (rightwards, ">", np.ones_like(along), along),
+        (downwards, "v", along, np.zeros_like(along)),
+        (upwards, "^", along, np.ones_like(along)),
+    ]
+    drawn: list[Line2D] = []
+    for goes_on, arrow, across, up in edges:
+        inside = _inside(region, axes, h, across, up)
+        if goes_on and inside.any():
+            shown = [np.where(inside, np.clip(share, inset, 1 - inset), np.nan) for share in (across, up)]
+            arrows = {"marker": arrow, "markersize": 3, "markevery": ALONG_AN_EDGE // ARROWS, "linewidth": 0.6}
+            drawn += axes.plot(*shown, transform=axes.transAxes, label="_nolegend_", **{**arrows, **line})
+    return drawn
 
 
 def marks(points: Mapping[str, Point], axes: Axes | None = None, h: float | None = None) -> list[Line2D]:
@@ -291,12 +331,12 @@ def disagreements(verdict_map: VerdictMap, axes: Axes | None = None) -> Line2D |
 def family(members: Sequence[Member], quantity: Quantity = "area", axes: Axes | None = None, **line: Any) -> Line2D:
     """Draw one quantity of a family's members (at least one) against their number of steps n and return the line.
 
-    Area of the region (dimensionless; a gap where it is unbounded), least |z_p| (a gap where the region is empty) or
-    the error constant.
+    Area of the region (dimensionless; a gap where it is unbounded), least |z_p| (a gap where the region is empty),
+    order of accuracy or error constant, which says something between members of one order alone.
     """
     values = [_quantity(member, quantity) for member in members]
-    style = {**method_line(members[-1].method), "linestyle": "-", "marker": ".", **line}
     axes = _new_axes("", "n", quantity) if axes is None else axes
+    style = {**next_line(axes), "marker": ".", **line}
     (drawn,) = axes.plot([member.n for member in members], values, **style)
     return drawn
 
@@ -306,6 +346,8 @@ def _quantity(member: Member, quantity: Quantity) -> float:
         return np.nan if member.region.area is None else member.region.area
     if quantity == "error constant":
         return float(member.error_constant)
+    if quantity == "order of accuracy":
+        return float(member.order)
     return np.nan if member.z_abs is None else member.z_abs
 
 
@@ -318,69 +360,108 @@ def history(
 ) -> Line2D:
     """Draw the error of one constraint of a run, or its time derivative, against t (s) and return the line; SI units.
 
-    Constraints count from 1. In the method's own colour.
+    Constraints count from 1. Where the error oscillates faster than print can show, a band between its least and its
+    largest values stands for the line.
     """
     trajectory = simulation.trajectory
     errors = simulation.cdot if derivative else simulation.c
     name = rf"$\dot c_{constraint}$ (SI)" if derivative else rf"$c_{constraint}$ (SI)"
     if axes is None:
         axes = _new_axes(f"{trajectory.mechanism.scene.name}, {trajectory.method.name}", "t (s)", name)
-    style = {"color": method_line(trajectory.method)["color"], **line}
-    (drawn,) = axes.plot(simulation.t, errors[:, constraint - 1], **style)
-    return drawn
+    return history_line(axes, simulation.t, errors[:, constraint - 1], **{**next_line(axes), **line})
 
 
 def largest_error(simulation: Simulation, axes: Axes | None = None, **line: Any) -> Line2D:
     """Draw the largest |c| over all constraints of a run against t (s) on a logarithmic axis and return the line; SI.
 
-    A gap where all constraints hold to the last bit.
+    A gap where all constraints hold to the last bit; a band as for `history`.
     """
     trajectory = simulation.trajectory
     if axes is None:
         axes = _new_axes(f"{trajectory.mechanism.scene.name}, {trajectory.method.name}", "t (s)", "largest $|c|$ (SI)")
     largest = np.abs(simulation.c).max(axis=1)
     axes.set_yscale("log")
-    style = {"color": method_line(trajectory.method)["color"], **line}
-    (drawn,) = axes.plot(simulation.t, np.where(largest > 0, largest, np.nan), **style)
-    return drawn
+    above_rounding = np.where(largest > 0, largest, np.nan)
+    return history_line(axes, simulation.t, above_rounding, **{**next_line(axes), **line})
 
 
 def mechanism(scene: Scene, q: FloatArray, axes: Axes | None = None) -> list[Line2D]:
     """Draw a scene's bodies in a state q (shape (n,), SI) as lines through the points of their joints; return them.
 
-    A body that has one joint and is free to move is a square on it.
+    A body's pivot on the ground is one of its points, on a triangle. A body with one joint that is free to move along
+    is a square on it.
     """
     if axes is None:
         axes = _new_axes(scene.name, "x (m)", "y (m)")
         axes.set_aspect("equal")
-    lines: list[Line2D] = []
-    for number, (name, points) in enumerate(_joints(scene, q).items()):
-        x, y = np.transpose(points)
-        bars = axes.plot(x, y, color=f"{0.15 * number:g}", linewidth=3, solid_capstyle="round", label=name)
-        axes.plot(x, y, "o", color="white", markeredgecolor="black", markersize=4)
-        if len(points) == 1 and name in {body.name for body in scene.bodies}:
+    for body in scene.bodies:
+        if _turns_on_a_pivot(body):
+            x, y = body.locked.get("x", 0.0), body.locked.get("y", 0.0)
+            axes.plot(x, y, marker=6, color="0.6", markersize=9, zorder=1.5)  # a triangle whose tip is the pivot
+    sliding = {body.name for body in scene.bodies if {"x", "y"} & set(body.free)}
+    joints = _joints(scene, q)
+    lengths = {name: abs(_vector(points)) for name, points in joints.items()}
+    lines: dict[str, Line2D] = {}
+    for name in sorted(joints, key=lengths.__getitem__, reverse=True):  # so that a longer body hides no shorter one
+        x, y = np.transpose(joints[name])
+        colour = line_at(list(joints).index(name))["color"]
+        (lines[name],) = axes.plot(x, y, color=colour, linestyle="-", linewidth=3, solid_capstyle="round", label=name)
+        if len(joints[name]) == 1 and name in sliding:
             axes.plot(x, y, "s", color="0.8", markeredgecolor="black", markersize=12, zorder=1.5)
-        box = {"facecolor": "white", "edgecolor": "none", "pad": 0.5}
-        middle = (float(x.mean()), float(y.mean()))
-        axes.annotate(name, middle, xytext=(0, 14), textcoords="offset points", ha="center", bbox=box)
-        lines += bars
-    return lines
+        axes.plot(x, y, "o", color="white", markeredgecolor="black", markersize=4)
+        _name_beside(axes, name, joints)
+    return [lines[name] for name in joints]
+
+
+def _vector(points: Sequence[Point]) -> complex:
+    """Return how a body's last joint lies from its first, as x + iy in m."""
+    return complex(*points[-1]) - complex(*points[0])
+
+
+def _name_beside(axes: Axes, name: str, joints: Mapping[str, Sequence[Point]]) -> None:
+    """Write a body's name beside the middle of the line between its outermost joints, where other bodies are further.
+
+          name
+    o------+------o      `off`: across the line, upwards or downwards
+    """
+    middles = {each: complex(*points[0]) + _vector(points) / 2 for each, points in joints.items()}
+    vector = _vector(joints[name])
+    others = [middle for each, middle in middles.items() if each != name]
+    upwards = 1j if not vector else vector / abs(vector) * (1j if vector.real >= 0 else -1j)
+
+    def room(off: complex) -> float:
+        beside = middles[name] + abs(vector) / 4 * off
+        return min((abs(other - beside) for other in others), default=0.0)
+
+    off = max((upwards, -upwards), key=room) if vector else upwards
+    place = off * (NAME_OFF if vector else 2 * NAME_OFF)
+    axes.annotate(
+        name,
+        (middles[name].real, middles[name].imag),
+        xytext=(place.real, place.imag),
+        textcoords="offset points",
+        ha="center" if abs(off.real) < 0.3 else "left" if off.real > 0 else "right",
+        va="center" if abs(off.imag) < 0.3 else "bottom" if off.imag > 0 else "top",
+        path_effects=[withStroke(linewidth=1.6, foreground="white")],  # a line of another body may run below
+    )
+
+
+def _turns_on_a_pivot(body: Body) -> bool:
+    """Return whether a body's frame stays in its place and turns there."""
+    return "theta" in body.free and not {"x", "y"} & set(body.free)
 
 
 def _joints(scene: Scene, q: FloatArray) -> dict[str, list[Point]]:
-    """Return where the joints of each body are in a state q, in m, ascending; of the ground too, if it has any.
-
-    A body whose frame lies at the origin turns about it: that is one of its points.
-    """
+    """Return where each body's joints and its pivot are in a state q, in m, ascending; the ground's joints too."""
     from bezstab.mechanism import COORDINATES
 
     free = dict(zip(scene.coordinates, q.tolist(), strict=True))
     frames: dict[str, list[float]] = {}
-    for body in scene.bodies:
-        frames[body.name] = [free.get(f"{body.name}.{axis}", body.locked.get(axis, 0.0)) for axis in COORDINATES]
     joints: dict[str, set[Point]] = {}
-    for name, (x, y, _) in frames.items():
-        joints[name] = {(0.0, 0.0)} if x == y == 0 else set()
+    for body in scene.bodies:
+        x, y, theta = (free.get(f"{body.name}.{axis}", body.locked.get(axis, 0.0)) for axis in COORDINATES)
+        frames[body.name] = [x, y, theta]
+        joints[body.name] = {(x, y)} if _turns_on_a_pivot(body) else set()
     for name, local in scene.attachments:
         x, y, theta = frames.get(name, (0.0, 0.0, 0.0))
         place = complex(x, y) + complex(*local) * np.exp(1j * theta)
@@ -403,7 +484,8 @@ def work_precision(
     """
     axes = _work_precision_axes(constraint, against) if axes is None else axes
     method = runs[0].method
-    style = {**method_line(method), "markersize": 3, "linewidth": 0.8, "label": method.name, **line}
+    marker = {"marker": method_marker(method), "markersize": 3}
+    style = {**next_line(axes), **marker, "linewidth": 0.8, "label": method.name, **line}
     x, y = _work_and_error(runs, constraint, floor, against)
     (drawn,) = axes.plot(x, y, **style)
     return drawn

@@ -1,18 +1,17 @@
 """Figures of simulations: a scene, the history of a run, and what accuracy costs."""
 
-from textwrap import wrap
-
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from bezstab.evidence import SweptRuns
 from bezstab.mechanism import Scene, Simulation
 from bezstab.show import plot
-from bezstab.show.style import MARKERS, column_figure, method_line, styled
+from bezstab.show.style import column_figure, legend_below, line_at, mark_powers, styled, title_lines
 from bezstab.stability import FloatArray
 
-LARGEST_MARKER, MARKER_STEP = 7.0, 0.5  # points: hollow markers of falling size, so that coinciding curves all show
-TITLE_WIDTH = 48  # characters of a figure's title at column width
+LARGEST_MARKER, MARKER_STEP, MARKER_SIZES = 7.0, 0.5, 10
+"""Points: hollow markers of falling size, so that coinciding curves all show."""
+
 TIMES = 5  # intervals between the times that are written below a history: times of milliseconds have six digits
 
 
@@ -22,8 +21,9 @@ def scene_figure(scene: Scene, q: FloatArray) -> Figure:
         figure = column_figure(0.6)
         axes = figure.add_subplot()
         plot.mechanism(scene, q, axes)
-        axes.set(xlabel="x (m)", ylabel="y (m)", aspect="equal", title=scene.name)
-        axes.margins(0.15, 0.35)
+        axes.set(xlabel="x (m)", ylabel="y (m)", title=title_lines(scene.name))
+        axes.margins(0.15, 0.3)  # room for names
+        axes.set_aspect("equal", adjustable="datalim")
         return figure
 
 
@@ -33,13 +33,13 @@ def history_figure(simulation: Simulation) -> Figure:
     |c| is the largest over all constraints, on a logarithmic axis, where decay and growth are straight lines. Above
     stand scene, method, point and step and, in as many lines as it takes, why a run ended early.
     """
-    method = simulation.trajectory.method
+    trajectory = simulation.trajectory
     title = [
-        f"{simulation.trajectory.mechanism.scene.name}, {method.name}, $h$ = {simulation.h:g} s",
+        title_lines(trajectory.mechanism.scene.name, trajectory.method.name, f"h = {simulation.h:g} s"),
         rf"$\hat\alpha$ = {simulation.alpha_hat:g}, $\hat\beta$ = {simulation.beta_hat:g}",
     ]
     if simulation.failure:
-        title += wrap(simulation.failure, TITLE_WIDTH)
+        title.append(title_lines(simulation.failure))
     with styled():
         figure = column_figure(1.3)
         upper, middle, lower = figure.subplots(3, 1, sharex=True)
@@ -67,19 +67,22 @@ def work_precision_figure(swept: SweptRuns, scene: str, constraint: bool, floor:
         axes = figure.add_subplot()
         known_errors = [error for run in runs if (error := plot.run_error(run, constraint)) is not None]
         top = 10 * max(known_errors, default=1.0)
-        for number, method in enumerate(dict.fromkeys(run.method for run in runs)):
+        for place, method in enumerate(dict.fromkeys(run.method for run in runs)):
             own = [run for run in runs if run.method == method]
-            of_this = number % len(MARKERS)
-            hollow = {"markersize": LARGEST_MARKER - MARKER_STEP * of_this, "markerfacecolor": "none"}
-            marker = {"marker": MARKERS[of_this], "markeredgewidth": 0.7, **hollow}
-            plot.work_precision(own, constraint, floor, axes, swept.against, **marker)
+            size = LARGEST_MARKER - MARKER_STEP * (place % MARKER_SIZES)
+            hollow = {"markersize": size, "markerfacecolor": "none", "markeredgewidth": 0.7}
+            plot.work_precision(own, constraint, floor, axes, swept.against, **line_at(place), **hollow)
             failed = [run.cost(swept.against) for run in own if run.failure]
-            axes.plot(failed, [top] * len(failed), "x", color=method_line(method)["color"], markersize=4)
+            axes.plot(failed, [top] * len(failed), "x", color=line_at(place)["color"], markersize=4)
         front = swept.constraint_front if constraint else swept.trajectory_front
         plot.pareto_front([runs[number] for number in front], constraint, floor, axes, swept.against)
         if any(run.failure for run in runs):
             axes.plot([], [], "x", color="0.4", label="diverged")
-        axes.set(xscale="log", yscale="log", title=scene, xlabel=plot.cost_label(swept.against, swept.recorded))
+        axes.set(
+            xscale="log", yscale="log", title=title_lines(scene), xlabel=plot.cost_label(swept.against, swept.recorded)
+        )
         axes.set_ylabel(plot.error_label(constraint))
-        figure.legend(loc="outside lower center", ncols=4)
+        for axis in (axes.xaxis, axes.yaxis):
+            mark_powers(axis)
+        legend_below(figure)
         return figure

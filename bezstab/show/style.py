@@ -1,18 +1,24 @@
 """What all figures share: size, fonts, colours and dashes, the plane of alpha_hat and beta_hat, and saving."""
 
+from collections.abc import Sequence
 from contextlib import AbstractContextManager
+from math import ceil, floor, log10
+from textwrap import fill, wrap
 from typing import Any, BinaryIO, Literal, TypeVar
+from zlib import crc32
 
 import numpy as np
 from matplotlib import style
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
+from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import MaxNLocator, NullFormatter
 from numpy.typing import NDArray
 
-from bezstab.methods import Method
+from bezstab.methods import REGISTRY, Method
 from bezstab.stability import FloatArray, Region, useful_window, window
 from bezstab.units import feedback_gains
 
@@ -22,30 +28,41 @@ COLUMN_WIDTH = 85 / 25.4  # inches
 STYLE: dict[str, Any] = {
     "font.size": 8,
     "axes.titlesize": 8,
+    "figure.titlesize": 8,
     "legend.fontsize": 7,
     "lines.linewidth": 1.2,
     "savefig.dpi": 300,
     "svg.hashsalt": "bezstab",
+    "svg.fonttype": "none",  # text that can be searched, read aloud and edited, not outlines of letters
     "axes.grid": True,
+    "axes.axisbelow": True,  # a grid is below what is drawn
     "grid.color": "0.9",
     "mathtext.fontset": "dejavusans",
 }
-FAMILIES = {  # by family: colours of Okabe & Ito that differ in lightness too, so that grey keeps them apart
-    "Adams-Bashforth-Moulton": "#cc79a7",
-    "Adams-Bashforth": "#e69f00",
-    "Bezier": "#00395c",
-    "Runge-Kutta": "#009e73",
-    "SIE": "#56b4e9",
-    "symplectic Euler": "#d55e00",
-}
-SINGLE = {"SIE", "symplectic Euler"}  # families of one: there is no number for the dashes to tell apart
-NO_FAMILY = "0.4"  # the colour of a user's method, and of families without one of their own
-ACCENT = FAMILIES["symplectic Euler"]  # for what must be seen first: a limit, a disagreement
+COLOURS = ("#00395c", "#e69f00", "#009e73", "#cc79a7", "#d55e00", "#56b4e9")
+"""Okabe and Ito's, which the colour-blind tell apart; neighbours differ in lightness, so that grey keeps them apart."""
+
+DASHES: list[str | tuple[int, tuple[float, ...]]] = [
+    "-",
+    (0, (5, 1.5)),
+    (0, (1.2, 1.2)),
+    (0, (5, 1.5, 1.2, 1.5)),
+    (0, (10, 2)),
+    (0, (5, 1.5, 1.2, 1.5, 1.2, 1.5)),
+    (0, (1.2, 3)),
+]
+"""One more than there are colours: 42 lines differ in colour or dashes, and the first six in both."""
+
+ACCENT = "#d55e00"  # for what must be seen first: a limit, a disagreement
 CLOSEST_TICKS = 0.06  # of an axis' length: labels nearer than that would overlap
 ABOVE_THE_AXES = 3  # their lines and ticks are drawn at 2.5
-MARKERS = "osD^v<>ph*"
+MARKERS = ("o", "s", "D", "^", "v", "<", ">", "p", "h", "*", "P", "X", "d", (4, 1, 0), (6, 1, 0))
 CONVERGES, DIVERGES = "#9ecae1", "0.45"
-DASHES: list[str | tuple[int, tuple[float, ...]]] = ["-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (5, 1.5, 1.2, 1.5))]
+LEGEND_WIDTH = 0.97  # of the figure's, at most: a little room for letters that are wider in the file than here
+LEGEND_HEIGHT = 0.8  # inches: what a legend takes beyond that makes the figure taller, not its axes smaller
+LABEL_WIDTH = 45  # characters of a label that has to be broken into lines
+TITLE_WIDTH = 44  # characters of a line above axes, which need not stand in the middle of a figure of column width
+MOST_POWERS = 6  # labels of a logarithmic axis
 
 
 def save(figure: Figure, form: Literal["png", "svg", "pdf"], file: BinaryIO) -> None:
@@ -65,6 +82,18 @@ def column_figure(height: float = 1.0) -> Figure:
     return Figure(figsize=(COLUMN_WIDTH, height * COLUMN_WIDTH), layout="constrained")
 
 
+def title_lines(*parts: str) -> str:
+    """Return a title, commas between its parts, in as many lines as it takes: broken at commas wherever that does."""
+    lines = [""]
+    for part in ", ".join(parts).split(", "):
+        longer = f"{lines[-1]}, {part}" if lines[-1] else part
+        if len(longer) <= TITLE_WIDTH:
+            lines[-1] = longer
+        else:
+            lines += wrap(part, TITLE_WIDTH)
+    return "\n".join(filter(None, lines))
+
+
 def plane_axes(title: str, h: float | None) -> tuple[Figure, Axes]:
     """Return a figure of column width with axes alpha_hat, beta_hat, or 2 alpha, beta^2 for a step of h seconds."""
     figure = column_figure()
@@ -73,7 +102,7 @@ def plane_axes(title: str, h: float | None) -> tuple[Figure, Axes]:
         axes.set(title=title, xlabel=r"$\hat\alpha = 2\alpha h$ (dimensionless)")
         axes.set_ylabel(r"$\hat\beta = \beta^2 h^2$ (dimensionless)")
     else:
-        axes.set(title=f"{title}, h = {h:g} s", xlabel=r"$2\alpha$ (1/s)", ylabel=r"$\beta^2$ (1/s$^2$)")
+        axes.set(title=title_lines(title, f"h = {h:g} s"), xlabel=r"$2\alpha$ (1/s)", ylabel=r"$\beta^2$ (1/s$^2$)")
         axes.ticklabel_format(scilimits=(-3, 4))
     return figure, axes
 
@@ -127,8 +156,8 @@ def curves(axes: Axes, region: Region, h: float | None, label: str, **line: Any)
     if region.bounded and shown == window(region):
         (drawn,) = axes.plot(x, y, label=label, **line)
         return drawn
-    drawn = Line2D(x, y, label=label, **line)
-    axes.add_artist(drawn)
+    (drawn,) = axes.plot([], [], label=label, **line)
+    drawn.set_data(x, y)  # which leaves the limits of the axes alone
     alpha_range, beta_range = (np.array(ends) for ends in shown)
     axes.update_datalim(np.stack(plane_coordinates(alpha_range, beta_range, h), axis=-1))
     axes.autoscale_view()
@@ -151,10 +180,67 @@ def _outer_edges(points: FloatArray) -> tuple[float, float]:
     return points[0] - half, points[-1] + half
 
 
-def method_line(method: Method) -> dict[str, Any]:
-    """Return colour and dashes by the method's family and number, the same in every figure."""
-    family = method.family
-    if family is None or family.name not in FAMILIES:
-        return {"color": NO_FAMILY, "linestyle": DASHES[0]}
-    number = 0 if family.name in SINGLE else family.number
-    return {"color": FAMILIES[family.name], "linestyle": DASHES[-number % len(DASHES)]}
+def line_at(place: int) -> dict[str, Any]:
+    """Return colour and dashes of the method that is drawn in that place, from 0, of a figure: no two share both."""
+    return {"color": COLOURS[place % len(COLOURS)], "linestyle": DASHES[place % len(DASHES)]}
+
+
+def next_line(axes: Axes) -> dict[str, Any]:
+    """Return colour and dashes of the line that is drawn next in the axes."""
+    return line_at(len(axes.lines))
+
+
+def method_marker(method: Method) -> Any:
+    """Return a method's marker, the same in every figure.
+
+    There are fewer markers than methods: where two in a figure share one, colour, dashes and size tell them apart.
+    """
+    names = list(REGISTRY)
+    number = names.index(method.name) if method.name in names else crc32(method.name.encode())
+    return MARKERS[number % len(MARKERS)]
+
+
+def legend_below(figure: Figure, handles: Sequence[Line2D] | None = None, **box: Any) -> Legend:
+    """Put a legend of all that has a label, or of some lines, below the axes, in as many columns as its width allows.
+
+    A label that is too long even for one column is broken into lines.
+    """
+    named = {} if handles is None else {"handles": handles}
+    for columns in (4, 3, 2, 1):
+        legend = figure.legend(loc="outside lower center", ncols=columns, **named, **box)
+        if legend.get_window_extent().width <= LEGEND_WIDTH * figure.bbox.width:
+            break
+        if columns > 1:
+            legend.remove()
+    else:
+        for text in legend.get_texts():
+            if "$" not in text.get_text():  # a formula cannot be broken
+                text.set_text(fill(text.get_text(), LABEL_WIDTH))
+    height = legend.get_window_extent().height / figure.dpi
+    figure.set_figheight(figure.get_figheight() + max(0.0, height - LEGEND_HEIGHT))
+    return legend
+
+
+def mark_powers(axis: Axis) -> None:
+    """Label a logarithmic axis, whose limits are final, at values so far apart that their labels do not overlap.
+
+    At powers of ten where it shows two or more; else at 1, 2 and 5 times those; else at a few round values.
+    """
+    low, high = axis.get_view_interval()
+    powers = [10.0**power for power in range(floor(log10(low)), ceil(log10(high)) + 1)]
+    finer = [digit * power for power in powers for digit in (1, 2, 5)]
+    few = [float(tick) for tick in MaxNLocator(3).tick_values(low, high)]
+    for ticks in (powers, finer, few):
+        shown = [tick for tick in ticks if low <= tick <= high]
+        if len(shown) >= 2:
+            break
+    shown = shown[:: ceil(len(shown) / MOST_POWERS)]
+    axis.set_ticks(shown, [_power_text(tick) for tick in shown])
+    axis.set_minor_formatter(NullFormatter())
+
+
+def _power_text(value: float) -> str:
+    """Return 10^3 or 2.5 x 10^3, to three digits, as matplotlib writes formulas."""
+    digits, exponent = f"{value:.2e}".split("e")
+    power = f"10^{{{int(exponent)}}}"
+    return f"${power}$" if float(digits) == 1 else rf"${float(digits):g}\times{power}$"

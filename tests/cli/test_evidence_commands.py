@@ -42,7 +42,7 @@ def test_a_blow_up_is_status_three_and_keeps_the_history(tmp_path: Path) -> None
     assert result.exit_code == 3
     assert "blow-up" in json.loads(result.stdout)[0]["failure"]
     assert "at t = 0.1" in result.stderr.splitlines()[-1]
-    assert len(list(tmp_path.iterdir())) == 2
+    assert [path.suffix for path in tmp_path.iterdir()] == [".png"]
 
 
 @pytest.mark.parametrize(

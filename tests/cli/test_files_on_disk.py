@@ -184,7 +184,7 @@ def test_a_full_disk_takes_one_line_and_resume_goes_on(size: int, whole: bytes, 
     "command",
     [
         "region --method B2 --grid 20 --table npz",
-        pytest.param("simulate --time 0.1", marks=SLOW),
+        pytest.param("simulate --time 0.1 --table csv", marks=SLOW),
         pytest.param("region --method B2 --grid 20 --figure svg", marks=SLOW),
         pytest.param("region --method B2 --grid 20 --figure pdf --table none", marks=SLOW),
         pytest.param("simulate --time 0.1 --figure none --table npz", marks=SLOW),

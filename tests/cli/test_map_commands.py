@@ -104,13 +104,17 @@ def test_an_ambiguous_method_is_answered_with_a_choice(name: str) -> None:
     assert "SIE" not in result.stderr
 
 
-def test_region_needs_no_option_and_writes_two_files(tmp_path: Path) -> None:
+def test_region_needs_no_option_and_writes_a_figure(tmp_path: Path) -> None:
     result = run("region", "--method", "B4")
     assert result.exit_code == 0
-    assert {path.name for path in tmp_path.iterdir()} == {"region_B4.png", "region_B4.csv"}
+    assert {path.name for path in tmp_path.iterdir()} == {"region_B4.png"}
     assert "0.8096847184" in result.stdout
     assert "wrote" not in result.stdout
-    assert result.stderr.count("wrote") == 2
+    assert result.stderr.count("wrote") == 1
+
+
+def test_the_long_table_of_region_is_written_when_asked_for(tmp_path: Path) -> None:
+    assert run("region", "--method", "B4", "--figure", "none", "--table", "csv").exit_code == 0
     table = list(csv.DictReader(io.StringIO((tmp_path / "region_B4.csv").read_text(encoding="utf-8"))))
     assert list(table[0]) == ["alpha_hat", "beta_hat", "z_abs", "z_angle_deg"]
     assert len(table) == 200**2
@@ -179,7 +183,8 @@ def test_quality_is_points_per_axis(tmp_path: Path) -> None:
 
 
 def test_compare_overlays_boundaries(tmp_path: Path) -> None:
-    assert run("region", "--compare", "--method", "B4", "--method", "RK4@5", "--h", "0.001").exit_code == 0
+    compared = ("region", "--compare", "--method", "B4", "--method", "RK4@5", "--h", "0.001", "--table", "csv")
+    assert run(*compared).exit_code == 0
     assert {path.suffix for path in tmp_path.iterdir()} == {".png", ".csv"}
     table = list(csv.DictReader(io.StringIO(next(tmp_path.glob("*.csv")).read_text(encoding="utf-8"))))
     assert {row["method"] for row in table} == {"B4", "RK4@5"}

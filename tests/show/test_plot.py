@@ -95,6 +95,47 @@ def test_a_mechanism_is_a_line_for_each_body() -> None:
     assert [line.get_label() for line in lines] == [body.name for body in scene.bodies]
 
 
+@pytest.mark.parametrize(
+    ("scene_name", "pivots"),
+    [
+        ("slider_crank", {"crank": (0, 0)}),
+        ("four_bar", {"crank": (0, 0), "rocker": (0.3, 0)}),
+        (
+            "andrews",
+            {"K1": (0, 0), "K3": (-0.03635, 0.03273), "K5": (-0.06934, -0.00227), "K7": (-0.06934, -0.00227)},
+        ),
+    ],
+)
+def test_a_body_on_a_pivot_is_drawn_from_it_and_only_what_slides_is_a_square(
+    scene_name: str, pivots: dict[str, tuple[float, float]]
+) -> None:
+    """Where pivots are: by hand from the scenes' files. No joint of a rigid body changes its distance as it turns."""
+    scene = load_scene(scene_name)
+    start = initial_state(compiled_mechanism(scene))[0]
+    lines = {str(line.get_label()): line for line in plot.mechanism(scene, start)}
+    lengths = {}
+    for name, pivot in pivots.items():
+        points = np.array(lines[name].get_xydata())
+        assert len(points) == 2
+        assert np.abs(points - pivot).sum(axis=1).min() == pytest.approx(0, abs=1e-15)
+        lengths[name] = np.hypot(*(points[1] - points[0]))
+    axes = next(iter(lines.values())).axes
+    assert isinstance(axes, Axes)
+    squares = [line for line in axes.lines if line.get_marker() == "s"]
+    assert len(squares) == (scene_name == "slider_crank")
+    supports = {tuple(np.array(line.get_xydata())[0].tolist()) for line in axes.lines if line.get_marker() == 6}
+    assert supports == set(pivots.values())
+    lengths_in_files = {"crank": {"slider_crank": 0.2, "four_bar": 0.1}.get(scene_name), "rocker": 0.25}
+    lengths_in_files |= {"K1": 0.007, "K3": 0.035, "K5": 0.04, "K7": 0.04}
+    assert lengths == pytest.approx({name: lengths_in_files[name] for name in pivots})
+
+
+def test_a_mechanism_of_many_bodies_can_be_drawn() -> None:
+    scene = load_scene("n_four_bar")
+    lines = plot.mechanism(scene, initial_state(compiled_mechanism(scene))[0])
+    assert len(lines) >= len(scene.bodies)
+
+
 def test_an_unbounded_region_makes_room_for_its_window_and_points_to_where_it_goes_on() -> None:
     shape = region(lookup("bdf6"))
     line = plot.region(shape)

@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.text import Text
 
 from bezstab.evidence import Cost, Run, Sweep, measured_runs, pareto_front, reference_motion, swept_runs, with_fronts
-from bezstab.mechanism import compiled_mechanism, initial_state, load_scene, simulated
+from bezstab.mechanism import at_speed, compiled_mechanism, initial_state, load_scene, simulated
 from bezstab.methods import lookup
 from bezstab.show.run_figures import history_figure, scene_figure, work_precision_figure
 from bezstab.show.style import save
@@ -103,6 +103,35 @@ def test_why_a_run_ended_is_written_whole_within_the_figure() -> None:
     assert box.x0 >= 0
     assert box.x1 <= figure.bbox.x1
     assert box.y1 <= figure.bbox.y1
+
+
+@pytest.mark.parametrize("scene", ["slider_crank_light", "four_bar"])
+def test_the_title_is_within_the_figure_and_names_the_speed(scene: str) -> None:
+    mechanism = compiled_mechanism(at_speed(load_scene(scene), 3.0))
+    run = simulated(mechanism, lookup("generalized-alpha"), h=0.001, duration=0.01, alpha_hat=1 / 3, beta_hat=1 / 36)
+    figure = history_figure(run)
+    save(figure, "png", BytesIO())
+    box = figure.texts[0].get_window_extent()
+    assert box.x0 >= 0
+    assert box.x1 <= figure.bbox.x1
+    assert box.y1 <= figure.bbox.y1
+    assert "3 times as fast" in figure.texts[0].get_text()
+
+
+@pytest.mark.parametrize("name", ["slider_crank", "four_bar", "andrews"])
+def test_names_in_a_scene_cut_no_body_and_lie_within_the_axes(name: str) -> None:
+    scene = load_scene(name)
+    figure = scene_figure(scene, initial_state(compiled_mechanism(scene))[0])
+    (axes,) = figure.axes
+    save(figure, "png", BytesIO())
+    bars = {str(line.get_label()): line for line in axes.lines if not str(line.get_label()).startswith("_")}
+    for text in axes.texts:
+        box = Text.get_window_extent(text)
+        assert axes.bbox.x0 < box.x0
+        assert box.x1 < axes.bbox.x1
+        points = axes.transData.transform(np.array(bars[text.get_text()].get_xydata()))
+        along = points[0] + np.linspace(0, 1, 200)[:, np.newaxis] * (points[-1] - points[0])
+        assert not any(box.contains(x, y) for x, y in along)
 
 
 @pytest.mark.parametrize(("h", "duration"), [(1e-3, 0.018), (1e-5, 1.3e-4), (1e-3, 2.0), (0.01, 170.0)])

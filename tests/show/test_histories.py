@@ -1,0 +1,60 @@
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+
+from bezstab.show.histories import history_line
+from bezstab.show.style import column_figure
+
+
+def panel() -> Axes:
+    return column_figure().add_subplot()
+
+
+def bands(axes: Axes) -> list[PolyCollection]:
+    return [each for each in axes.collections if isinstance(each, PolyCollection)]
+
+
+def test_a_slow_history_is_its_line() -> None:
+    t = np.linspace(0, 1, 5001)
+    values = np.sin(2 * np.pi * 10 * t)
+    line = history_line(axes := panel(), t, values)
+    assert np.array(line.get_ydata()).tolist() == values.tolist()
+    assert not bands(axes)
+
+
+@pytest.mark.parametrize("cycles", [100, 400, 2500])
+def test_a_fast_oscillation_is_its_envelope(cycles: int) -> None:
+    """exp(-t) cos: between -exp(-t) and exp(-t), to what a column of the band and its decay in it come to."""
+    t = np.linspace(0, 1, 10_001)
+    line = history_line(axes := panel(), t, np.exp(-t) * np.cos(2 * np.pi * cycles * t))
+    (band,) = bands(axes)
+    x, y = band.get_paths()[0].vertices.T
+    assert np.isnan(np.array(line.get_ydata(), dtype=float)[100:-100]).all()
+    assert np.abs(np.abs(y) / np.exp(-x) - 1).max() < 0.06
+    assert (y > 0).any()
+    assert (y < 0).any()
+
+
+def test_only_the_fast_part_is_a_band() -> None:
+    t = np.linspace(0, 1, 10_001)
+    values = np.where(t < 0.5, np.sin(2 * np.pi * 800 * t), 2 * t - 1)
+    line = history_line(axes := panel(), t, values)
+    (band,) = bands(axes)
+    x = band.get_paths()[0].vertices[:, 0]
+    column = 4 / (axes.bbox.width / axes.figure.dpi * 72)
+    assert x.min() == pytest.approx(0, abs=1.5 * column)
+    assert x.max() == pytest.approx(0.5, abs=1.5 * column)
+    drawn = np.array(line.get_ydata(), dtype=float)
+    late = t > 0.5 + 1.5 * column
+    assert drawn[late].tolist() == values[late].tolist()
+    assert np.isnan(drawn[t < 0.5 - 1.5 * column]).mean() > 0.9
+
+
+def test_gaps_stay_gaps_and_two_values_are_enough() -> None:
+    t = np.linspace(0, 1, 4001)
+    values = np.abs(np.sin(2 * np.pi * 500 * t))
+    values[::7] = np.nan
+    history_line(axes := panel(), t, values)
+    assert all(np.isfinite(band.get_paths()[0].vertices).all() for band in bands(axes))
+    assert np.array(history_line(panel(), t[:2], t[:2]).get_ydata()).tolist() == t[:2].tolist()
