@@ -6,18 +6,20 @@ with the step `h=` in s. A method is a name as on the command line ("B4", "RK4@5
 of one; a scene is a shipped scene's name, the path of a TOML file, or what `scene` made of one.
 """
 
+from __future__ import annotations  # so that help() shows annotations as they are written
+
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bezstab import evidence, mechanism, stability
-from bezstab.errors import InputError
+from bezstab.errors import InputError, shown
 from bezstab.mechanism import Scene, Simulation
 from bezstab.methods import REGISTRY, Method, Verdict, lookup
-from bezstab.rationals import exact, rational
+from bezstab.rationals import exact, rational, within_float64
 from bezstab.units import check_step, to_dimensionless
 
 FloatArray = NDArray[np.float64]
@@ -32,6 +34,8 @@ def method(name: str | Method) -> Method:
     Its steps last h, the user's step (s), or m h with @m appended to the name: "RK4@5". InputError, with the nearest
     name, if there is none. `Method.source` names the book or paper.
     """
+    if not isinstance(name, str | Method):
+        raise InputError(f"method {shown(name)}: expected one name such as 'B4', or what bezstab.method makes of one")
     return name if isinstance(name, Method) else lookup(name)
 
 
@@ -42,7 +46,12 @@ def scene(name: str | Scene, speed: float = 1.0) -> Scene:
     key, if it cannot be read, and where a speed has nothing to multiply. "slider_crank" is that of the paper's
     section 5.2.
     """
-    return mechanism.at_speed(name if isinstance(name, Scene) else mechanism.load_scene(name), speed)
+    if not isinstance(name, str | Scene):
+        raise InputError(
+            f"scene {shown(name)}: expected one name such as 'pendulum', or what bezstab.scene makes of one"
+        )
+    given = name if isinstance(name, Scene) else mechanism.load_scene(name)
+    return mechanism.at_speed(given, _real(speed, "speed"))
 
 
 def poles(
@@ -122,7 +131,7 @@ def region(method: str | Method, level: float = 1.0) -> stability.Region:
     and `contains(alpha_hat, beta_hat)`. InputError for another level; NumericalError if an edge cannot be found.
     Boundary locus of paper Eq. 17.
     """
-    return stability.region(_method(method), level)
+    return stability.region(_method(method), _real(level, "level"))
 
 
 def best_point(method: str | Method) -> stability.BestPoint | None:
@@ -153,6 +162,7 @@ def choose(
     meets the goal, and for a goal, spread or time that is none. The poles are those of paper Eq. 17, the goals this
     package's.
     """
+    spread = _real(spread, "spread")
     if h is None:
         if h_max is not None or settle is not None or goal == "gentle":
             raise InputError("h_max, settle and the goal gentle need the step h in s")
@@ -160,9 +170,9 @@ def choose(
     return stability.choose_at_step(
         _method(method),
         goal,
-        h=_exact(h),
-        h_max=_exact_if_given(h_max),
-        settle=_exact_if_given(settle),
+        h=_exact(h, "h"),
+        h_max=_exact_if_given(h_max, "h_max"),
+        settle=_exact_if_given(settle, "settle"),
         spread=spread,
         equal=equal,
     )
@@ -185,7 +195,7 @@ def check(
     if a pole leaves the range of float64.
     """
     a, b = _plane_point(alpha_hat, beta_hat, alpha, beta, h)
-    return stability.describe_point(_method(method), "as given", a, b, spread)
+    return stability.describe_point(_method(method), "as given", a, b, _real(spread, "spread"))
 
 
 def simulate(
@@ -208,15 +218,15 @@ def simulate(
     that cannot start, a duration below one step, and unless the point is given in one of the two ways; NumericalError
     for one that cannot be perturbed. Paper Eqs. 6 to 9.
     """
-    a, b = _plane_arrays(alpha_hat, beta_hat, alpha, beta, h)
+    a, b = _plane_point(alpha_hat, beta_hat, alpha, beta, h)
     return mechanism.simulated(
         mechanism.compiled_mechanism(_scene(scene)),
         _method(method),
-        h=h,
-        duration=duration,
+        h=_real(h, "h"),
+        duration=_real(duration, "duration"),
         alpha_hat=float(a),
         beta_hat=float(b),
-        perturb=perturb,
+        perturb=_real(perturb, "perturb"),
         start=start,
     )
 
@@ -236,6 +246,7 @@ def verify(
     `measured` is None, and `reason` says why, where no pole can be measured. InputError for a scene that cannot
     start, or unless the points are given in one of the two ways. Method: opposite kicks and linear prediction (Prony).
     """
+    h = _real(h, "h")
     check_step(h)
     a, b = np.broadcast_arrays(*_plane_arrays(alpha_hat, beta_hat, alpha, beta, h))
     compiled = mechanism.compiled_mechanism(_scene(scene))
@@ -270,7 +281,11 @@ def probe(
     point = _plane_point(alpha_hat, beta_hat, alpha, beta, h) if has_point else None
     if turning is not None and h is None:
         raise InputError("turning in 1/s needs the step h in s")
-    turned = None if turning is None or h is None else turning * float(_exact(h))
+    turned = None if turning is None or h is None else _real(turning, "turning") * float(_exact(h, "h"))
+    c = stability.real_array(c, "c")
+    minus = None if minus is None else stability.real_array(minus, "minus")
+    if methods is not None and (isinstance(methods, str | Method) or not isinstance(methods, Iterable)):
+        raise InputError(f"methods = {shown(methods)}: expected a list of methods")
     found = evidence.probed_pole(c, minus, differenced)
     if point is None:
         named = [_method(name) for name in methods or ()]
@@ -326,17 +341,31 @@ def _scene(scene_or_name: str | Scene) -> Scene:
     return scene(scene_or_name)
 
 
-def _exact(value: Number) -> Fraction:
-    """Return a number exactly: a text as it reads, a float as the decimal it shows; InputError if it is not finite."""
+def _exact(value: Number, name: str) -> Fraction:
+    """Return one number exactly: a text as it reads, a float as the decimal it shows; InputError for what is none."""
+    if isinstance(value, np.ndarray | np.generic) and value.ndim == 0 and not isinstance(value, np.ma.MaskedArray):
+        value = value.item()
+    if isinstance(value, bool) or not isinstance(value, int | float | str | Fraction):
+        raise InputError(f"{name} = {shown(value)}: expected one real number")
     if isinstance(value, str):
-        return rational(value)
+        try:
+            return rational(value)
+        except InputError as error:
+            raise InputError(f"{name}: {error}") from None
     if isinstance(value, float) and not math.isfinite(value):
-        raise InputError(f"{value} is not a finite number")
-    return Fraction(value) if isinstance(value, int | Fraction) else exact(value)
+        raise InputError(f"{name} = {value} is not a finite number")
+    return exact(value) if isinstance(value, float) else within_float64(Fraction(value), name)
 
 
-def _exact_if_given(value: Number | None) -> Fraction | None:
-    return None if value is None else _exact(value)
+def _exact_if_given(value: Number | None, name: str) -> Fraction | None:
+    return None if value is None else _exact(value, name)
+
+
+def _real(value: Number, name: str) -> float:
+    """Return one number as float64, infinite and nan ones too, which whoever takes it refuses in its own words."""
+    if isinstance(value, float) and not math.isfinite(value):
+        return value
+    return float(_exact(value, name))
 
 
 def _is_dimensionless(*, alpha_hat: object, beta_hat: object, alpha: object, beta: object, h: object) -> bool:
@@ -359,9 +388,20 @@ def _plane_arrays(
 ) -> tuple[FloatArray, FloatArray]:
     """Return alpha_hat and beta_hat as float64 arrays, from whichever of the two ways was taken."""
     if _is_dimensionless(alpha_hat=alpha_hat, beta_hat=beta_hat, alpha=alpha, beta=beta, h=h):
-        return np.asarray(alpha_hat, np.float64), np.asarray(beta_hat, np.float64)
+        return _broadcastable(stability.real_array(alpha_hat, "alpha_hat"), stability.real_array(beta_hat, "beta_hat"))
     assert h is not None
-    return to_dimensionless(np.asarray(alpha, np.float64), np.asarray(beta, np.float64), h)
+    in_seconds = _broadcastable(stability.real_array(alpha, "alpha"), stability.real_array(beta, "beta"))
+    return to_dimensionless(*in_seconds, _real(h, "h"))
+
+
+def _broadcastable(first: FloatArray, second: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return two arrays; InputError if their shapes do not fit each other."""
+    try:
+        np.broadcast_shapes(first.shape, second.shape)
+    except ValueError:
+        shapes = f"{first.shape} and {second.shape}"
+        raise InputError(f"shapes {shapes}: alpha and beta, or their hats, must broadcast, as numpy calls it") from None
+    return first, second
 
 
 def _plane_point(
@@ -371,8 +411,8 @@ def _plane_point(
     if _is_dimensionless(alpha_hat=alpha_hat, beta_hat=beta_hat, alpha=alpha, beta=beta, h=h):
         assert alpha_hat is not None
         assert beta_hat is not None
-        return _exact(alpha_hat), _exact(beta_hat)
+        return _exact(alpha_hat, "alpha_hat"), _exact(beta_hat, "beta_hat")
     assert alpha is not None
     assert beta is not None
     assert h is not None
-    return to_dimensionless(_exact(alpha), _exact(beta), _exact(h))
+    return to_dimensionless(_exact(alpha, "alpha"), _exact(beta, "beta"), _exact(h, "h"))

@@ -9,6 +9,8 @@ ArithmeticError
 import difflib
 from collections.abc import Iterable
 
+LONGEST_SHOWN = 60  # characters of a value
+
 
 class InputError(ValueError):
     """A user's mistake: one line that names what was given, its value and what is accepted.
@@ -23,6 +25,18 @@ class NumericalError(ArithmeticError):
 
     The input was acceptable. A run that blows up raises nothing: its trajectory ends early and says when and why.
     """
+
+
+def check_kind(value: object, kind: type, made_by: str) -> None:
+    """Raise InputError unless a value is of a kind, which `made_by` makes."""
+    if not isinstance(value, kind):
+        raise InputError(f"{shown(value)}: expected a {kind.__name__}, as {made_by} makes it")
+
+
+def shown(value: object) -> str:
+    """Return a value as a message can have it: on one line, and not longer than is read."""
+    text = " ".join(repr(value).split())
+    return text if len(text) <= LONGEST_SHOWN else f"{text[:LONGEST_SHOWN]}..."
 
 
 def unknown_name(kind: str, name: str, known: Iterable[str], file: str = "; or a .toml file") -> InputError:

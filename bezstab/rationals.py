@@ -40,7 +40,7 @@ def within_float64(value: Fraction, name: str) -> Fraction:
 
     InputError for any other, which begins with `name`, what the number is called.
     """
-    if value != 0 and not SMALLEST < abs(value) < LARGEST:
+    if value != 0 and not SMALLEST <= abs(value) <= LARGEST:
         raise InputError(f"{name} is outside the range of float64 (1e-307 to 1e308)")
     return value
 

@@ -1,14 +1,12 @@
 """Tables of TOML files, entry by entry checked: what is wrong is said with its place, key, value and what is expected.
 
-Nothing is ever executed: an entry is a text, a number, an exact rational written as a text, or a list or table of them.
+Nothing is ever executed: an entry is a text, a number, an exact number written as a text, or a list or table of them.
 """
 
-from collections.abc import Callable, Sequence
-from fractions import Fraction
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, TypeVar
 
 from bezstab.errors import InputError
-from bezstab.rationals import rational
 
 Point = tuple[float, float]
 
@@ -16,6 +14,9 @@ LEAST = 1e-100  # of a number that is not 0, and of the inverse of the largest: 
 LISTED = 200  # characters of the keys that are there, where one is missing
 SIZE = "0 or of size 1e-100 to 1e100"
 RATIONAL_STRINGS = 'rational strings like "175/108"'
+
+Exact = TypeVar("Exact")
+"""A number as the reader of its text makes it."""
 
 
 class TomlTable:
@@ -78,18 +79,18 @@ class TomlTable:
                 raise self.mistake(f"{key} names {name!r}, which is not among {', '.join(allowed)}")
         return {name: float(number) for name, number in entries.items()}
 
-    def rationals(self, key: str) -> tuple[Fraction, ...]:
-        """Return a list of exact rationals, each written as a text: "175/108", "-0.5", "2"."""
-        return self._exact(key, self.entry(key, _are_texts, f"a list of {RATIONAL_STRINGS}"))
+    def exact_numbers(self, key: str, read: Callable[[str], Exact]) -> tuple[Exact, ...]:
+        """Return a list of exact numbers, each written as a text ("175/108", "-0.5", "2") and read by `read`."""
+        return self._exact(key, self.entry(key, _are_texts, f"a list of {RATIONAL_STRINGS}"), read)
 
-    def rational_rows(self, key: str) -> tuple[tuple[Fraction, ...], ...]:
+    def exact_rows(self, key: str, read: Callable[[str], Exact]) -> tuple[tuple[Exact, ...], ...]:
         """Return a list of such lists."""
         rows = self.entry(key, _are_lists_of_texts, f"a list of rows, each a list of {RATIONAL_STRINGS}")
-        return tuple(self._exact(key, row) for row in rows)
+        return tuple(self._exact(key, row, read) for row in rows)
 
-    def _exact(self, key: str, texts: Sequence[str]) -> tuple[Fraction, ...]:
+    def _exact(self, key: str, texts: Sequence[str], read: Callable[[str], Exact]) -> tuple[Exact, ...]:
         try:
-            return tuple(rational(text) for text in texts)
+            return tuple(read(text) for text in texts)
         except InputError as error:
             raise self.mistake(f"{key}: {error}") from None
 
@@ -111,13 +112,18 @@ class TomlTable:
         table = self.table(key)
         return table if key in self.data else None
 
-    def refuse_unknown_keys(self) -> None:
-        """Raise InputError, listing the known ones, if a key here or in a table handed out was not asked for."""
+    def refuse_unknown_keys(self, instead: Mapping[str, str] | None = None) -> None:
+        """Raise InputError, listing the known ones, if a key here or in a table handed out was not asked for.
+
+        `instead` says of keys that people try here what to write in their place.
+        """
         for table in self.inner:
             table.refuse_unknown_keys()
         unknown = sorted(set(self.data) - set(self.known))
         if unknown:
-            raise self.mistake(f"unknown key {unknown[0]!r}: known are {', '.join(self.known)}")
+            advice = (instead or {}).get(unknown[0])
+            written_instead = f"write {advice}; " if advice else ""
+            raise self.mistake(f"unknown key {unknown[0]!r}: {written_instead}known are {', '.join(self.known)}")
 
 
 def is_number(value: object) -> bool:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, TypeVar, overload
 
-from bezstab.errors import InputError
+from bezstab.errors import InputError, shown
 from bezstab.rationals import within_float64
 
 if TYPE_CHECKING:
@@ -26,8 +26,22 @@ FloatOrArray = TypeVar("FloatOrArray", float, "NDArray[np.float64]")
 
 def check_step(h: Fraction | float, name: str = "h") -> None:
     """Raise InputError unless a step, so called, lies within 1e-100 to 1e100 s."""
+    is_number = isinstance(h, int | float | Fraction) or getattr(h, "shape", None) == ()
+    if isinstance(h, bool) or not is_number:
+        raise InputError(f"{name} = {shown(h)}: expected one number, in s")
     if not LEAST_STEP <= h <= LONGEST_STEP:
         raise InputError(f"{name} = {float(h):g} s: expected {LEAST_STEP:g} to {LONGEST_STEP:g} s")
+
+
+def _check_real(**values: object) -> None:
+    """Raise InputError unless each value, by its name, is a real number or an array of them without a mask."""
+    for name, value in values.items():
+        kind = getattr(getattr(value, "dtype", None), "kind", "")
+        is_array = kind in ("i", "u", "f") and not hasattr(value, "mask")
+        if isinstance(value, bool) or not (is_array or isinstance(value, int | float | Fraction)):
+            raise InputError(
+                f"{name} = {shown(value)}: expected a real number, or a numpy array of them without a mask"
+            )
 
 
 @overload
@@ -40,6 +54,7 @@ def to_dimensionless(alpha: Any, beta: Any, h: Any) -> tuple[Any, Any]:
     Dimensionless and of the shape of alpha and beta: exact numbers if all three are Fractions, else float64.
     InputError for h outside 1e-100 to 1e100 s, and where they leave the range of float64.
     """
+    _check_real(alpha=alpha, beta=beta)
     check_step(h)
     alpha_hat, beta_hat = 2 * alpha * h, beta * beta * h * h
     if isinstance(alpha_hat, Fraction) and isinstance(beta_hat, Fraction):
@@ -59,6 +74,7 @@ def from_dimensionless(alpha_hat: FloatOrArray, beta_hat: FloatOrArray, h: float
     """
     import numpy as np
 
+    _check_real(alpha_hat=alpha_hat, beta_hat=beta_hat)
     check_step(h)
     imaginary = ~(np.asarray(beta_hat) >= 0)  # not a number included
     if imaginary.any():

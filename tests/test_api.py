@@ -124,6 +124,7 @@ def test_a_mistake_is_refused_by_name_and_value(wrong: Callable[[], object], mes
     [
         ({"h": 0.0}, "h = 0 s: expected 1e-100 to"),
         ({"duration": 1e-4}, "duration 0.0001 s: expected at least one step of 0.001 s"),
+        ({"h": 1e-12, "duration": 1e6}, "duration 1e+06 s: expected at most 1e+08 steps of 1e-12 s"),
         ({"duration": float("inf")}, "duration inf s: expected at least one step"),
         ({"start": "heun"}, "start 'heun': expected rk4, ramp, euler"),
     ],
@@ -132,6 +133,53 @@ def test_a_run_that_cannot_be_is_refused_by_name_and_value(wrong: dict[str, Any]
     run: dict[str, Any] = {"h": 0.001, "duration": 0.1, "alpha_hat": 0.5, "beta_hat": 0.1}
     with pytest.raises(InputError, match=re.escape(message)):
         bezstab.simulate("pendulum", "AB3", **{**run, **wrong})
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        (
+            lambda: bezstab.verdict("B4", alpha_hat=cast(Any, [0.5, 1]), beta_hat=0.1),
+            "alpha_hat = [0.5, 1]: expected one",
+        ),
+        (lambda: bezstab.check("B4", alpha=1, beta=cast(Any, 1j), h=0.1), "beta = 1j: expected one real number"),
+        (lambda: bezstab.verdict("B4", alpha_hat="0.5", beta_hat=True), "beta_hat = True: expected one real number"),
+        (lambda: bezstab.verdict("B4", alpha_hat=10**400, beta_hat=1), "alpha_hat is outside the range of float64"),
+        (lambda: bezstab.region(cast(Any, ["B4", "AB4"])), "method ['B4', 'AB4']: expected one name"),
+        (lambda: bezstab.simulate(cast(Any, 3), "B4", h=0.1, duration=1), "expected"),
+        (lambda: bezstab.scene(cast(Any, ["pendulum"])), "scene ['pendulum']: expected one name"),
+        (
+            lambda: bezstab.from_dimensionless(cast(Any, [1, 2]), cast(Any, [1, 2]), 0.1),
+            "alpha_hat = [1, 2]: expected a",
+        ),
+        (lambda: bezstab.to_dimensionless(1.0, 2.0, cast(Any, [0.1])), "h = [0.1]: expected one number"),
+        (lambda: bezstab.plot.region(cast(Any, "B4")), "'B4': expected a Region, as bezstab.region makes it"),
+        (lambda: bezstab.plot.history(cast(Any, 3)), "3: expected a Simulation, as bezstab.simulate makes it"),
+        (lambda: bezstab.poles("B4", alpha_hat=1j, beta_hat=0.1), "alpha_hat = 1j: expected real numbers"),
+        (lambda: bezstab.poles("B4", alpha_hat=[1, 2], beta_hat=[1, 2, 3]), "shapes (2,) and (3,)"),
+        (lambda: bezstab.region("B4").contains(np.ma.masked_array([1.0]), 0.1), "alpha_hat is a masked array"),
+        (lambda: bezstab.probe(np.ones(50) + 1j), "c = array"),
+        (lambda: bezstab.probe([1, 2, 3], methods="B4"), "methods = 'B4': expected a list of methods"),
+        (lambda: bezstab.choose("B4", spread=cast(Any, [0.1])), "spread = [0.1]: expected one real number"),
+    ],
+)
+def test_lists_arrays_and_wrong_types_are_refused_in_the_callers_words(
+    wrong: Callable[[], object], message: str
+) -> None:
+    with pytest.raises(InputError, match=re.escape(message)) as caught:
+        wrong()
+    assert len(str(caught.value).splitlines()) == 1
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_help_shows_annotations_as_they_are_written(name: str) -> None:
+    """An alias such as ArrayLike, not the page of types that it stands for."""
+    for parameter in inspect.signature(getattr(bezstab, name)).parameters.values():
+        assert len(str(parameter)) < 60
+
+
+def test_the_public_plots_are_those_that_dir_shows() -> None:
+    assert dir(bezstab.plot) == sorted(bezstab.plot.__all__)
 
 
 def test_results_have_short_names_for_themselves() -> None:

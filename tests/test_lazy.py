@@ -16,3 +16,9 @@ def test_a_name_is_that_of_the_module_that_defines_it() -> None:
 def test_any_other_name_is_an_attribute_error_that_names_both() -> None:
     with pytest.raises(AttributeError, match="module 'bezstab' has no attribute 'rational'"):
         load("rational")
+
+
+def test_a_misspelt_name_is_answered_with_the_nearest_once() -> None:
+    with pytest.raises(AttributeError, match=r"no attribute 'exakt': did you mean exact\?$") as caught:
+        load("exakt")
+    assert caught.value.obj is None  # so that Python's traceback does not suggest a second time

@@ -34,14 +34,14 @@ def test_what_is_no_number_shows_none(x: float) -> None:
         exact(x)
 
 
-@pytest.mark.parametrize("size", ["1e-307", "1e-400", "1e308", "1e400"])
+@pytest.mark.parametrize("size", ["0.99e-307", "1e-400", "1.01e308", "1e400"])
 def test_what_float64_cannot_hold_is_refused_by_name(size: str) -> None:
     for value in (Fraction(size), -Fraction(size)):
         with pytest.raises(InputError, match=r"^h is outside the range of float64"):
             within_float64(value, "h")
 
 
-@pytest.mark.parametrize("value", [Fraction(0), Fraction("1.1e-307"), Fraction(-1, 3), Fraction("-9.9e307")])
+@pytest.mark.parametrize("value", [Fraction(0), Fraction("1e-307"), Fraction(-1, 3), Fraction("-1e308")])
 def test_what_float64_can_hold_is_returned(value: Fraction) -> None:
     assert within_float64(value, "h") is value
 
@@ -80,7 +80,7 @@ def test_a_printed_float_is_read_as_the_decimal_it_shows(x: float) -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        *("nan", "inf", "-inf", "1e999", "-1e999", "1e-999", "1e308", "1e-400", "1e99999", "1e999999999"),
+        *("nan", "inf", "-inf", "1e999", "-1e999", "1e-999", "1.1e308", "1e-400", "1e99999", "1e999999999"),
         *("1/0", "0/0", "1/-2", "1/2.0", "1.0/2", "1/2/3", "1/", "/2", "1 / 2"),
         *("", " ", ".", "-", "+", "e5", "1e", "1e+", ".e1", "--1", "+-1", "1 2", "1,5", "1.2.3"),
         *("0x10", "0b1", "1_000", "1j", "1f", "1e3.5", "True", "pi", "1+1", "2**3", "1\n2", "1\0"),
@@ -101,7 +101,7 @@ def test_any_text_is_an_exact_number_or_refused(text: str) -> None:
     except InputError:
         return
     assert value == Fraction(text.strip())
-    assert value == 0 or 1e-307 < abs(value) < 1e308
+    assert value == 0 or 1e-307 <= abs(value) <= 1e308
 
 
 @given(st.integers(-(10**50), 10**50), st.integers(1, 10**50), st.integers(0, 10**50))

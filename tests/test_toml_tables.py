@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bezstab.errors import InputError
+from bezstab.rationals import rational
 from bezstab.toml_tables import TomlTable
 
 
@@ -31,8 +32,8 @@ def test_entries_are_handed_out_as_what_they_are() -> None:
 
 def test_rationals_are_exact() -> None:
     table = TomlTable({"b": ["175/108", "-0.1"], "A": [["0", "0"], ["1/3", "0"]]})
-    assert table.rationals("b") == (Fraction(175, 108), Fraction(-1, 10))
-    assert table.rational_rows("A") == ((Fraction(0), Fraction(0)), (Fraction(1, 3), Fraction(0)))
+    assert table.exact_numbers("b", rational) == (Fraction(175, 108), Fraction(-1, 10))
+    assert table.exact_rows("A", rational) == ((Fraction(0), Fraction(0)), (Fraction(1, 3), Fraction(0)))
 
 
 def test_what_is_absent_takes_its_default() -> None:
@@ -79,13 +80,13 @@ def test_a_text_is_one_line_and_not_blank(value: Any) -> None:
 @pytest.mark.parametrize("value", [[1.0], ["1", 2], "1", {"a": "1"}])
 def test_a_rational_is_written_as_a_text(value: Any) -> None:
     assert 'expected a list of rational strings like "175/108"' in refusal(
-        lambda: TomlTable({"b": value}).rationals("b")
+        lambda: TomlTable({"b": value}).exact_numbers("b", rational)
     )
-    assert "rational strings" in refusal(lambda: TomlTable({"A": [value]}).rational_rows("A"))
+    assert "rational strings" in refusal(lambda: TomlTable({"A": [value]}).exact_rows("A", rational))
 
 
 def test_a_text_that_is_no_rational_is_named_with_its_key() -> None:
-    assert refusal(lambda: TomlTable({"b": ["1", "nan"]}).rationals("b")).startswith("b: 'nan' is not")
+    assert refusal(lambda: TomlTable({"b": ["1", "nan"]}).exact_numbers("b", rational)).startswith("b: 'nan' is not")
 
 
 @pytest.mark.parametrize("value", [[1.0], [1.0, 2.0, 3.0], [1.0, "2"], 1.0, "ab"])

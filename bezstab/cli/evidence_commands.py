@@ -54,7 +54,6 @@ if TYPE_CHECKING:
     from bezstab.evidence import Cost
     from bezstab.mechanism import Start
 
-MOST_STEPS = 10**8  # a run keeps its whole history: 10 GB and an hour for the slider-crank
 MOST_SWEPT = 10**6  # the reference takes up to 32 times as many
 MOST_LISTED = 20  # times in a message
 
@@ -198,6 +197,8 @@ def _passages_text(times: Sequence[float]) -> str:
 
 def _check_number_of_steps(time: Fraction, h: Fraction, method: Method) -> None:
     """Raise InputError unless the time (s) is a number of steps that a run can take."""
+    from bezstab.mechanism import MOST_STEPS
+
     steps = time / (h * method.step_multiple)
     if not 1 <= steps <= MOST_STEPS:
         taken = f"{float(steps):g} steps of {method.name}"

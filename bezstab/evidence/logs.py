@@ -20,6 +20,9 @@ from bezstab.stability import FloatArray
 LARGEST = 200_000_000
 """Bytes: minutes to read. A pole needs some hundred rows."""
 
+NUMBER = re.compile(r"[-+]?(?:(?:\d+[.,]?\d*|[.,]\d+)(?:e[-+]?\d+)?|nan|inf(?:inity)?)", re.ASCII | re.IGNORECASE)
+"""A number as simulators write it. float() would take 1_0, which is a label, and digits of other scripts."""
+
 COMMENTS = ("#", "%")
 """What lines begin with that are no data; the last of them above the data may hold the names, as numpy writes it."""
 
@@ -121,27 +124,15 @@ def _cells(line: str, delimiter: str | None) -> list[str]:
 
 def _numbers(row: Sequence[str], place: str) -> list[float]:
     """Return the numbers of a row's cells; InputError for a cell that holds none."""
-    try:
-        return [float(cell) if cell.strip() else math.nan for cell in row]
-    except ValueError:
-        pass
-    numbers = []
     for cell in row:
         if not _is_number_or_missing(cell):
             raise InputError(f"{place}: {cell[:50]!r} is not a number")
-        numbers.append(float(cell.replace(",", ".")) if cell.strip() else math.nan)
-    return numbers
+    return [float(cell.replace(",", ".")) if cell.strip() else math.nan for cell in row]
 
 
 def _is_number_or_missing(cell: str) -> bool:
     """Return whether a cell holds a number, with a decimal point or a decimal comma, or nothing."""
-    if not cell.strip():
-        return True
-    try:
-        float(cell.replace(",", "."))
-    except ValueError:
-        return False
-    return True
+    return not cell.strip() or NUMBER.fullmatch(cell.strip()) is not None
 
 
 def time_column(log: Log, chosen: str | None = None) -> int | None:

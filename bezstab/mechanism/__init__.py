@@ -74,7 +74,7 @@ from bezstab.mechanism.scenes import (
 )
 from bezstab.mechanism.second_order_memory import Memory, memory
 from bezstab.mechanism.second_order_turns import Action, Assigned, Evaluated, turn
-from bezstab.mechanism.simulation import Simulation, simulated
+from bezstab.mechanism.simulation import MOST_STEPS, Simulation, simulated
 from bezstab.mechanism.start import constraint_errors, constraint_jacobian, initial_state, perturbed_state
 from bezstab.mechanism.varying_runs import simulated_with_steps
 
@@ -82,6 +82,7 @@ __all__ = [
     "CHEAPER_TOGETHER",
     "COORDINATES",
     "GROUND",
+    "MOST_STEPS",
     "SINGULAR",
     "Action",
     "Assigned",

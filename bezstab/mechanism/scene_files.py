@@ -31,6 +31,13 @@ from bezstab.toml_tables import TomlTable, is_pair, is_point
 NOWHERE = (0.0, 0.0)  # no displacement, direction or force
 MOST_FOUR_BARS = 100  # in a chain: beyond any benchmark, so that a slip is refused rather than worked on for hours
 
+IN_PLACE_OF = {
+    **dict.fromkeys(("rpm", "RPM"), "rate, in rad/s (2π/60 times the rpm)"),
+    **dict.fromkeys(("speed", "omega", "velocity"), "rate, in rad/s"),
+    "frequency_hz": "frequency, in rad/s (2π times the Hz)",
+}
+"""What to write in a driver for keys that people try there."""
+
 
 def shipped_scenes() -> dict[str, Path]:
     """Return the scene files that come with the package, by name; in a source tree they are those of configs/scenes."""
@@ -150,6 +157,7 @@ def _driver(table: TomlTable, coordinates: Sequence[str]) -> Driver:
         frequency=table.number("frequency", default=0.0),
         phase=table.number("phase", default=0.0),
     )
+    table.refuse_unknown_keys(IN_PLACE_OF)
     if not driver.moves:
         raise table.mistake(f"it never moves {coordinate}: expected a rate, an acceleration or an oscillation")
     return driver
@@ -194,9 +202,10 @@ def _spring(table: TomlTable, body_names: Sequence[str]) -> Spring:
     for key, value in (("stiffness", stiffness), ("damping", damping)):
         if value < 0:
             raise table.mistake(f"{key} = {value:g}: expected 0 or more")
+    free_length = table.number("free_length", default=None if stiffness else 0.0)
+    table.refuse_unknown_keys()
     if stiffness == damping == 0:
         raise table.mistake("stiffness and damping are both 0: expected one of them positive")
-    free_length = table.number("free_length", default=None if stiffness else 0.0)
     if free_length < 0:
         raise table.mistake(f"free_length = {free_length:g}: expected 0 or more")
     return Spring(bodies, points, stiffness, free_length, damping)

@@ -13,6 +13,9 @@ from bezstab.mechanism.start import perturbed_state
 from bezstab.methods import Method
 from bezstab.units import check_step, feedback_gains
 
+MOST_STEPS = 10**8
+"""Of one run, which keeps its whole history: 10 GB and an hour for the slider-crank."""
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Simulation:
@@ -97,6 +100,14 @@ class Simulation:
         return f"Simulation({run}, {point}, {len(self.t)} times, to t = {self.t[-1]:.6g} s{ended})"
 
 
+def check_duration(duration: float, whole_step: float) -> None:
+    """Raise InputError unless a duration (s) is a number of a method's own steps (s) that a run can take."""
+    if not whole_step / 2 < duration < math.inf:
+        raise InputError(f"duration {duration:g} s: expected at least one step of {whole_step:g} s")
+    if duration > MOST_STEPS * whole_step:
+        raise InputError(f"duration {duration:g} s: expected at most {MOST_STEPS:g} steps of {whole_step:g} s")
+
+
 def simulated(
     mechanism: Mechanism,
     method: Method,
@@ -111,15 +122,13 @@ def simulated(
     """Return a run over `duration` (s) from the scene's initial state, its first constraint off by `perturb` (m).
 
     h (s) is the user's step, a method's own is its step multiple of that. InputError for a scene that cannot start, an
-    h outside 1e-100 to 1e100 s, a duration below a step and another `start`; NumericalError where the scene cannot be
-    perturbed; what goes wrong on the way is the run's `failure`. Paper Eqs 6 to 9.
+    h outside 1e-100 to 1e100 s, a duration below a step or above 1e8 of them, and another `start`; NumericalError where
+    the scene cannot be perturbed; what goes wrong on the way is the run's `failure`. Paper Eqs 6 to 9.
     """
     check_step(h)
     if start not in get_args(Start):
         raise InputError(f"start {start!r}: expected {', '.join(get_args(Start))}")
-    whole_step = h * float(method.step_multiple)
-    if not whole_step / 2 < duration < math.inf:
-        raise InputError(f"duration {duration:g} s: expected at least one step of {whole_step:g} s")
+    check_duration(duration, h * float(method.step_multiple))
     gains = feedback_gains(alpha_hat, beta_hat, h)
     state = perturbed_state(mechanism, perturb)
     trajectory = simulate(mechanism, method, h, duration, gains, state, start)

@@ -36,7 +36,7 @@ from bezstab.mechanism.runner import (
     recorded_in_blocks,
 )
 from bezstab.mechanism.second_order_memory import POSITION, VELOCITY, memory
-from bezstab.mechanism.simulation import Simulation
+from bezstab.mechanism.simulation import Simulation, check_duration
 from bezstab.mechanism.start import perturbed_state
 from bezstab.methods import Method, check_one_step, evaluations, implicit
 from bezstab.units import feedback_gains
@@ -66,6 +66,7 @@ def simulated_with_steps(
     steps, and as `simulated`.
     """
     check_one_step(method)
+    check_duration(duration, min(sequence) * float(method.step_multiple))
     q, v = perturbed_state(mechanism, perturb)
     first: State = (*q.tolist(), *v.tolist())
     blown_up = breakdown(first, pivot=1.0)

@@ -5,12 +5,13 @@ From exact numbers upwards; a file imports only from those above it:
     schur               where a polynomial's roots lie, proven in exact arithmetic
     plane_polynomials   polynomials in z, alpha_hat and beta_hat, and their determinants
     second_order        schemes for x'' = a(x, x') as a list of linear equations
+    algebraic_numbers   irrational coefficients as rationals good to 40 digits
+    square_roots        numbers with square roots, exactly, from text
     recipes             such equations as text
     schemes             the kinds of methods as frozen data that checks itself
     second_order_forms  every scheme written as a second-order one
     exact_motions       motions that every scheme follows exactly, and so when it evaluates
     forced_errors       the error that a method makes anew in each step, as a function of the feedback
-    algebraic_numbers   irrational coefficients as rationals good to 40 digits
     families            Bezier, Adams-Bashforth and their predictor-corrector pairs, by number of steps
     one_step_methods    Runge-Kutta methods and symplectic Euler
     runge_kutta_pairs   explicit Runge-Kutta methods that people run, most of them in pairs

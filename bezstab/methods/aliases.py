@@ -51,6 +51,7 @@ ALIASES = {
     **dict.fromkeys(("alexander2", "sdirk-2"), "sdirk2"),
     **dict.fromkeys(("alexander3", "sdirk3"), "dirk3"),
     **dict.fromkeys(("radau-iia-3", "radauiia3", "radau-iia3"), "radau3"),
+    **dict.fromkeys(("radau", "radau-iia-5", "radauiia5", "radau-iia5", "scipy-radau"), "radau5"),
     **dict.fromkeys(("gauss-legendre4", "hammer-hollingsworth"), "gauss4"),
 }
 """Names, in lower case, that mean one method."""
@@ -122,10 +123,16 @@ ADVICE = {
     ),
     **dict.fromkeys(("ode113", "ddeabm"), "changes its order; near it at a fixed one: ABM2 to ABM4 (PECE)"),
     # explicit Runge-Kutta
-    **dict.fromkeys(("runge-kutta", "rk", "kutta", "rk5", "rk6"), f"RK1 to RK4 (classical); of order 5: {FIFTH_ORDER}"),
+    **dict.fromkeys(
+        ("runge-kutta", "rk", "kutta", "rk5", "rk6", "rk12", "rk32", "rk43", "rk54", "rk56", "rk65"),
+        f"RK1 to RK4 (classical); of order 5: {FIFTH_ORDER}",
+    ),
     **dict.fromkeys(("rkf45", "fehlberg", "rkf"), f"not built in; pairs of order 5(4): {FIFTH_ORDER}; {TABLEAU}"),
     **dict.fromkeys(
-        ("dop853", "dopri853", "dopri8", "ode78", "ode89", "ode8", "rk8", "rkf78", "vern7", "vern9", "verner"),
+        (
+            *("dop853", "dopri853", "dopri8", "ode78", "ode89", "ode8", "rkf78", "vern7", "vern9", "verner"),
+            *("rk7", "rk8", "rk9", "rk10", "rk67", "rk78", "rk87", "rk89", "rk98"),
+        ),
         f"not built in; the highest order is 5: {FIFTH_ORDER}; {TABLEAU}",
     ),
     **dict.fromkeys(
@@ -142,8 +149,11 @@ ADVICE = {
     **dict.fromkeys(("rkc", "rock2", "rock4", "runge-kutta-chebyshev"), f"not built in; {TABLEAU}"),
     # implicit Runge-Kutta
     **dict.fromkeys(
-        ("radau", "radau5", "radau-iia", "radauiia", "radau-iia-5", "radau-iia5"),
-        f"built in is radau3 (Radau IIA, 2 stages, order 3); of another {TABLEAU}",
+        ("radau-iia", "radauiia"), f"radau3 (2 stages, order 3), radau5 (3 stages, order 5); of another {TABLEAU}"
+    ),
+    **dict.fromkeys(
+        ("radau9", "radau13", "radau-iia-9", "radau-ia", "radauia"),
+        f"not built in; of Radau IIA there are radau3 (order 3), radau5 (order 5); {TABLEAU}",
     ),
     **dict.fromkeys(
         ("gauss", "gauss2", "gauss-legendre", "gauss6"),
@@ -180,7 +190,7 @@ ADVICE = {
 }
 """What to say to names, in lower case, that mean several methods, or one that is not built in."""
 
-GREEK = str.maketrans({"α": "alpha", "β": "beta", "θ": "theta", "ρ": "rho"})
+GREEK = str.maketrans({"α": "alpha", "β": "beta", "γ": "gamma", "θ": "theta", "ρ": "rho"})
 LEAST_LETTERS = 5  # of a word that may be misspelt by other than the order of its letters
 CONTRARY = {"explicit": "implicit", "implicit": "explicit", "forward": "backward", "backward": "forward"}
 SIMILARITY = 0.8  # of such words: one letter wrong in five, two in eleven

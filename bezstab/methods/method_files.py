@@ -1,15 +1,18 @@
 """Methods in TOML files; configs/methods/README.md documents the format."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from bezstab.errors import InputError
 from bezstab.files import read_toml
+from bezstab.methods.algebraic_numbers import DIGITS
 from bezstab.methods.families import adams_bashforth, bezier
 from bezstab.methods.implicit_methods import MOST_BDF_STEPS, adams_moulton, bdf
 from bezstab.methods.one_step_methods import runge_kutta, semi_implicit_euler
 from bezstab.methods.recipes import recipe
-from bezstab.methods.schemes import Family, LinearMultistep, Method, RungeKutta, Scheme
+from bezstab.methods.schemes import Coefficients, Family, LinearMultistep, Method, RungeKutta, Scheme
+from bezstab.methods.square_roots import SQUARE_ROOT, RootSum, root_sum
 from bezstab.toml_tables import TomlTable
 
 EXAMPLE = "x0 + v0 + 1/2 a0"
@@ -24,9 +27,10 @@ MOST_STEPS_COMPARED = 12  # as in the largest built-in member; the weights of n 
 
 
 def read_method(path: Path) -> Method:
-    """Return the method in a TOML file: rho and sigma, or A and b, as rational strings, or a table of equations.
+    """Return the method in a TOML file: rho and sigma, or A and b, as strings, or a table of equations.
 
-    Name and source are the file's, if given.
+    Numbers are exact; rationals good to 40 digits stand for square roots, and `digits` says so. Name and source are the
+    file's, if given.
     Its family is the one that has a member with the same coefficients, whatever the file calls it, else None.
     Nothing in the file is executed. InputError, naming the file and the key, for anything else.
     """
@@ -37,29 +41,42 @@ def _parse_method(data: dict[str, Any], path: Path) -> Method:
     table = TomlTable(data)
     name = table.text("name", default=path.stem)
     source = table.text("source", default=str(path))
-    scheme = _parse_scheme(table)
-    return Method(name, scheme, source, family=_family_of(scheme))
+    scheme, irrational = _parse_scheme(table)
+    return Method(name, scheme, source, family=_family_of(scheme), digits=DIGITS if irrational else None)
 
 
-def _parse_scheme(table: TomlTable) -> Scheme:
-    """Return the scheme by the table or whichever pair of keys the file has; every other key is refused."""
+def _parse_scheme(table: TomlTable) -> tuple[Scheme, bool]:
+    """Return the scheme by the table or whichever pair of keys the file has, and whether a number of it is irrational.
+
+    InputError for every other key.
+    """
     found = set(table.data) - {"name", "source"}
     if "update" in found and not {"rho", "sigma", "A", "b"} & found:
         equations = table.entry("update", lambda value: isinstance(value, dict), EQUATIONS)
         table.refuse_unknown_keys()
-        return recipe({result: _sum_text(result, text) for result, text in equations.items()})
+        texts = {result: _sum_text(result, text) for result, text in equations.items()}
+        return recipe(texts), any(SQUARE_ROOT in text for text in texts.values())
     if {"rho", "sigma"} <= found and not {"A", "b"} & found:
-        rho, sigma = table.rationals("rho"), table.rationals("sigma")
+        rho, sigma = table.exact_numbers("rho", root_sum), table.exact_numbers("sigma", root_sum)
         table.refuse_unknown_keys()
         _refuse_more_than(MOST_STEPS, len(rho) - 1, "steps")
-        return LinearMultistep(rho, sigma)
+        return LinearMultistep(_in_decimals(rho), _in_decimals(sigma)), _some_are_irrational(rho, sigma)
     if {"A", "b"} <= found and not {"rho", "sigma"} & found:
-        tableau, weights = table.rational_rows("A"), table.rationals("b")
+        tableau, weights = table.exact_rows("A", root_sum), table.exact_numbers("b", root_sum)
         table.refuse_unknown_keys()
         _refuse_more_than(MOST_STAGES, len(weights), "stages")
-        return RungeKutta(tableau, weights)
+        scheme = RungeKutta(tuple(_in_decimals(row) for row in tableau), _in_decimals(weights))
+        return scheme, _some_are_irrational(*tableau, weights)
     listed = ", ".join(sorted(found)) or "none"
     raise InputError(f"expected the keys rho and sigma, or A and b, or the table update, but found {listed[:LISTED]}")
+
+
+def _in_decimals(numbers: Sequence[RootSum]) -> Coefficients:
+    return tuple(number.in_decimals() for number in numbers)
+
+
+def _some_are_irrational(*rows: Sequence[RootSum]) -> bool:
+    return any(number.irrational for row in rows for number in row)
 
 
 def _refuse_more_than(most: int, number: int, of_what: str) -> None:

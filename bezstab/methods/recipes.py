@@ -2,19 +2,18 @@
 
 equation       quantity = sum   |   quantity = acceleration(sum, sum)
 sum            [+-] product { +- product }
-product        [number [*]] quantity   |   [number [*]] ( sum )   |   quantity / number
-number         1/2, 0.5, 3                             exact
+product        [numbers [*]] quantity   |   [numbers [*]] ( sum )   |   quantity / number
+numbers        number { * number | / number }
+number         1/2, 0.5, 3, sqrt(2)                    exact, square roots to 40 digits
 quantity       x1, v0, a[-1]                           position, velocity, acceleration at a numbered step
                vh, vh[0]                               a helper, of this step and of the one before
 """
 
 import re
 from collections.abc import Mapping
-from fractions import Fraction
 from typing import NoReturn
 
 from bezstab.errors import InputError
-from bezstab.methods.plane_polynomials import ONE, ZERO
 from bezstab.methods.second_order import (
     ACCELERATION,
     MOST_EQUATIONS,
@@ -27,9 +26,10 @@ from bezstab.methods.second_order import (
     Quantity,
     SecondOrder,
 )
-from bezstab.rationals import rational
+from bezstab.methods.square_roots import SQUARE_ROOT, RootSum, root_sum
 
-NUMBER = r"(?P<number>\d+(?:\.\d*)?(?:/\d+)?)"
+PLAIN_NUMBER = r"\d+(?:\.\d*)?(?:/\d+)?"
+NUMBER = rf"(?P<number>{PLAIN_NUMBER}|{SQUARE_ROOT}\s*\(\s*{PLAIN_NUMBER}\s*\))"
 NAME = r"(?P<name>[A-Za-z_]\w*)(?P<index>\[\s*-?\d{1,3}\s*\])?"
 SIGN = r"(?P<sign>[-+*/(),])"
 EXPONENT = re.compile(r"\s*\d+(?:\.\d*)?[eE][-+]?\d+", re.ASCII)
@@ -41,6 +41,7 @@ LONGEST = 2000  # characters of one equation
 LONGEST_NAME = 30  # characters of a quantity's name
 SHOWN = 40  # characters shown of what was given
 DEEPEST = 20  # parentheses within each other
+PLUS_ONE, MINUS_ONE, NOTHING = root_sum("1"), root_sum("-1"), root_sum("0")
 
 
 def recipe(equations: Mapping[str, str]) -> SecondOrder:
@@ -127,47 +128,66 @@ class _Reader:
 
     def sum(self) -> Combination:
         """Return a sum of products, equal quantities added up."""
-        total: dict[Quantity, Fraction] = {}
-        sign = -ONE if self.take("-") else ONE
-        if sign == ONE:
+        return tuple((number.in_decimals(), quantity) for quantity, number in self._terms().items())
+
+    def _terms(self) -> dict[Quantity, RootSum]:
+        """Return the numbers of a sum by their quantities; none is zero."""
+        total: dict[Quantity, RootSum] = {}
+        sign = MINUS_ONE if self.take("-") else PLUS_ONE
+        if sign == PLUS_ONE:
             self.take("+")
         while True:
-            for coefficient, quantity in self.product():
-                total[quantity] = total.get(quantity, ZERO) + sign * coefficient
+            for quantity, number in self.product().items():
+                total[quantity] = total.get(quantity, NOTHING) + sign * number
             if self.take("+"):
-                sign = ONE
+                sign = PLUS_ONE
             elif self.take("-"):
-                sign = -ONE
+                sign = MINUS_ONE
             else:
-                return tuple((coefficient, quantity) for quantity, coefficient in total.items() if coefficient)
+                return {quantity: number for quantity, number in total.items() if number != NOTHING}
 
-    def product(self) -> Combination:
-        """Return a number times a quantity or times a sum in parentheses."""
-        factor = ONE
-        if self.place < len(self.words) and self.words[self.place].group("number"):
-            factor = self._number()
-            self.take("*")
+    def product(self) -> dict[Quantity, RootSum]:
+        """Return numbers times a quantity or times a sum in parentheses."""
+        factor = self._numbers() if self._is_number() else PLUS_ONE
         if self.take("("):
             self.depth += 1
             if self.depth > DEEPEST:
                 self._refuse("'('", f"at most {DEEPEST} parentheses within each other")
-            inner = self.sum()
+            inner = self._terms()
             self.expect(")")
             self.depth -= 1
         else:
-            inner = ((ONE, self.quantity()),)
+            inner = {self.quantity(): PLUS_ONE}
         while self.take("/"):
-            shown = self._shown()
-            divisor = self._number() if self._next()[:1].isdigit() else ZERO
-            if not divisor:
-                self._refuse(shown, "a number other than 0 to divide by")
-            factor /= divisor
-        return tuple((factor * coefficient, quantity) for coefficient, quantity in inner)
+            factor = factor * self._divisor()
+        return {quantity: factor * number for quantity, number in inner.items()}
 
-    def _number(self) -> Fraction:
+    def _numbers(self) -> RootSum:
+        """Return the product of numbers that the next words are, and go past the * after it."""
+        value = self._number()
+        while True:
+            if self.take("/"):
+                value = value * self._divisor()
+            elif self.take("*") and self._is_number():
+                value = value * self._number()
+            else:
+                return value
+
+    def _divisor(self) -> RootSum:
+        """Return one over the number that the next word is."""
+        shown = self._shown()
+        divisor = self._number() if self._is_number() else NOTHING
+        if divisor == NOTHING:
+            self._refuse(shown, "a number other than 0 to divide by")
+        return divisor.inverse()
+
+    def _is_number(self) -> bool:
+        return self.place < len(self.words) and self.words[self.place].group("number") is not None
+
+    def _number(self) -> RootSum:
         """Return the number that the next word is, and go past it."""
         try:
-            value = rational(self._next())
+            value = root_sum(self._next())
         except InputError:
             self._refuse(self._shown(), "a number like 1/2 or 0.5")
         self.place += 1

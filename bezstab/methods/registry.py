@@ -1,7 +1,7 @@
 """Every method by name: those built in, those in a file, and both with a step of several h."""
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache, partial
@@ -19,6 +19,7 @@ from bezstab.methods.implicit_methods import (
     implicit_euler,
     implicit_midpoint,
     radau3,
+    radau5,
     sdirk2,
     trapezoid,
 )
@@ -37,6 +38,43 @@ from bezstab.methods.schemes import Method
 from bezstab.rationals import rational
 
 ZERO, ONE, HALF = Fraction(0), Fraction(1), Fraction(1, 2)
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter in a method's name, and the least and largest value it takes."""
+
+    name: str
+    least: Fraction
+    largest: Fraction
+
+
+@dataclass(frozen=True)
+class ParametricMethod:
+    """A method whose name has parameters; `make` takes their values and the name."""
+
+    name: str
+    parameters: tuple[Parameter, ...]
+    make: Callable[..., Method]
+
+    def having(self, *values: Fraction) -> Method:
+        """Return the method with these parameters, in their order; its name says them: hht(alpha=-1/20)."""
+        said = [f"{parameter.name}={value}" for parameter, value in zip(self.parameters, values, strict=True)]
+        return self.make(*values, f"{self.name}({','.join(said)})")
+
+
+NEWMARK = ParametricMethod(
+    "newmark",
+    (Parameter("beta", ZERO, Fraction(10)), Parameter("gamma", ZERO, Fraction(10))),
+    second_order.newmark,
+)
+HHT = ParametricMethod("hht", (Parameter("alpha", Fraction(-1, 3), ZERO),), second_order.hht)
+GENERALIZED_ALPHA = ParametricMethod(
+    "generalized-alpha", (Parameter("rho_inf", ZERO, ONE),), second_order.generalized_alpha
+)
+
+PARAMETRIC = {method.name: method for method in (NEWMARK, HHT, GENERALIZED_ALPHA)}
+"""Methods with parameters, by name: newmark(1/4,1/2) or newmark(beta=1/4,gamma=1/2)."""
 
 
 @dataclass(frozen=True)
@@ -101,10 +139,10 @@ GROUPS = (
             "linear-acceleration": _newmark("linear-acceleration", Fraction(1, 6)),
             "fox-goodwin": _newmark("fox-goodwin", Fraction(1, 12)),
             "central-difference": _newmark("central-difference", ZERO),
-            "hht": partial(second_order.hht, Fraction(-1, 20), "hht"),
-            "generalized-alpha": partial(second_order.generalized_alpha, Fraction(4, 5), "generalized-alpha"),
+            "hht": partial(HHT.having, Fraction(-1, 20)),
+            "generalized-alpha": partial(GENERALIZED_ALPHA.having, Fraction(4, 5)),
         },
-        note="(with parameters: newmark(beta,gamma), hht(alpha), generalized-alpha(rho_inf))",
+        note="(with parameters: newmark(beta,gamma), hht(alpha), generalized-alpha(rho_inf), also as hht(alpha=-0.1))",
     ),
     MethodGroup(
         "Implicit in the velocity, of physics engines and control",
@@ -126,6 +164,7 @@ GROUPS = (
             "sdirk2": sdirk2,
             "dirk3": dirk3,
             "radau3": radau3,
+            "radau5": radau5,
             "gauss4": gauss4,
         },
     ),
@@ -138,32 +177,6 @@ REGISTRY: dict[str, Callable[[], Method]] = {
 """What makes each built-in method, by its name."""
 
 
-@dataclass(frozen=True)
-class Parameter:
-    """A parameter in a method's name, and the least and largest value it takes."""
-
-    name: str
-    least: Fraction
-    largest: Fraction
-
-
-@dataclass(frozen=True)
-class ParametricMethod:
-    """A method whose name has parameters; `make` takes their values and the name."""
-
-    parameters: tuple[Parameter, ...]
-    make: Callable[..., Method]
-
-
-PARAMETRIC = {
-    "newmark": ParametricMethod(
-        (Parameter("beta", ZERO, Fraction(10)), Parameter("gamma", ZERO, Fraction(10))), second_order.newmark
-    ),
-    "hht": ParametricMethod((Parameter("alpha", Fraction(-1, 3), ZERO),), second_order.hht),
-    "generalized-alpha": ParametricMethod((Parameter("rho_inf", ZERO, ONE),), second_order.generalized_alpha),
-}
-"""Methods with parameters, by name: newmark(1/4,1/2)."""
-
 FOLDED_NAMES = {folded(name): name for name in REGISTRY}
 
 
@@ -171,8 +184,8 @@ FOLDED_NAMES = {folded(name): name for name in REGISTRY}
 def lookup(text: str) -> Method:
     """Return the method called `text`: a built-in name or the path of a TOML file, either with @m for a step of m h.
 
-    'RK4', 'bdf2', 'newmark(1/4,1/2)', 'own.toml', 'RK4@5' and 'own.toml@1/2' are such texts, in upper or lower case;
-    parameters and m are exact, m from 1e-6 to 1e6. Other names by which a method is known work too.
+    'RK4', 'bdf2', 'newmark(1/4,1/2)', 'hht(alpha=-0.1)', 'own.toml', 'RK4@5' and 'own.toml@1/2' are such texts, in
+    upper or lower case; parameters and m are exact, m from 1e-6 to 1e6. Other names of a method work too.
     InputError, with advice or the nearest name of the same word, if there is no such method, and for what `read_method`
     refuses.
     """
@@ -213,12 +226,14 @@ def _built_in(name: str) -> Method:
 
 
 def _with_parameters(typed: str, word: str, texts: list[str]) -> Method:
-    """Return a method with the parameters of its name; the name of the result has them as exact fractions."""
+    """Return a method with the parameters of its name, which are given in their order or each by its name."""
     method = PARAMETRIC[word]
     names = ",".join(parameter.name for parameter in method.parameters)
     given = len([text for text in texts if text.strip()])
     if given != len(method.parameters):
         raise InputError(f"method {typed!r}: {given} parameters given, expected {word}({names})")
+    if any("=" in text for text in texts):
+        texts = _in_order(typed, method, texts)
     values = []
     for parameter, text in zip(method.parameters, texts, strict=True):
         try:
@@ -229,5 +244,16 @@ def _with_parameters(typed: str, word: str, texts: list[str]) -> Method:
             range_text = f"{parameter.least} to {parameter.largest}"
             raise InputError(f"method {typed!r}: {parameter.name} = {text.strip()}: expected {range_text}")
         values.append(value)
-    canonical = f"{word}({','.join(str(value) for value in values)})"
-    return method.make(*values, canonical)
+    return method.having(*values)
+
+
+def _in_order(typed: str, method: ParametricMethod, texts: Sequence[str]) -> list[str]:
+    """Return the values of texts such as 'alpha=-0.1', each of another parameter, in the order of the parameters."""
+    value_of: dict[str, str] = {}
+    for text in texts:
+        name, _, value = text.partition("=")
+        value_of[folded(name.strip())] = value
+    if sorted(value_of) != sorted(folded(parameter.name) for parameter in method.parameters):
+        expected = ",".join(f"{parameter.name}=..." for parameter in method.parameters)
+        raise InputError(f"method {typed!r}: expected {method.name}({expected}), or the values alone")
+    return [value_of[folded(parameter.name)] for parameter in method.parameters]

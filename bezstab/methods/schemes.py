@@ -10,6 +10,7 @@ A scheme is a formula, a method a scheme with its name, source, family and step:
 """
 
 from dataclasses import dataclass
+from decimal import Decimal
 from fractions import Fraction
 
 from bezstab.errors import InputError
@@ -20,8 +21,18 @@ Coefficients = tuple[Fraction, ...]
 
 ONE, ZERO = Fraction(1), Fraction(0)
 
+LARGEST_COEFFICIENT = Fraction(10**100)  # and the inverse of the least other than 0
+
 LEAST_STEP_MULTIPLE = Fraction("1e-6")
 LARGEST_STEP_MULTIPLE = Fraction("1e6")  # six orders either way: beyond any use, and powers of it stay within float64
+
+
+def _refuse_what_is_out_of_size(what: str, *coefficients: Fraction) -> None:
+    """Raise InputError for a coefficient whose square float64 cannot hold: no method that is used has one."""
+    for c in coefficients:
+        if c != 0 and not 1 / LARGEST_COEFFICIENT <= abs(c) <= LARGEST_COEFFICIENT:
+            found = Decimal(c.numerator) / c.denominator  # which may be too large for a float
+            raise InputError(f"{what}: found {found:.3g}, expected 0 or numbers of size 1e-100 to 1e100")
 
 
 @dataclass(frozen=True)
@@ -50,6 +61,7 @@ class LinearMultistep:
         leading = self.rho[0]
         object.__setattr__(self, "rho", tuple(a / leading for a in self.rho))
         object.__setattr__(self, "sigma", tuple(b / leading for b in self.sigma))
+        _refuse_what_is_out_of_size("rho and sigma, with 1 in front of rho", *self.rho, *self.sigma)
 
     @property
     def steps(self) -> int:
@@ -99,6 +111,7 @@ class RungeKutta:
             raise InputError(f"A must be square with a row for each of the {stages} weights b")
         if sum(self.weights) != 1:
             raise InputError(f"inconsistent: the weights b sum to {sum(self.weights)}, not 1")
+        _refuse_what_is_out_of_size("A and b", *self.weights, *(a for row in self.tableau for a in row))
 
     @property
     def implicit(self) -> bool:

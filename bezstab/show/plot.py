@@ -21,6 +21,7 @@ from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 from matplotlib.text import Annotation
 
+from bezstab.errors import check_kind
 from bezstab.methods import Method
 from bezstab.show.histories import history_line
 from bezstab.show.style import (
@@ -31,6 +32,7 @@ from bezstab.show.style import (
     cells,
     column_figure,
     curves,
+    label_plane,
     line_at,
     method_marker,
     next_line,
@@ -70,6 +72,11 @@ __all__ = [
     "work_precision",
 ]
 
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
+
+
 EDGE = 0.99
 """Share of the axes at which an arrow that points beyond them ends."""
 WORD = (0.16, 0.06)
@@ -88,6 +95,7 @@ def region(region: Region, axes: Axes | None = None, h: float | None = None, **l
     By default in colour and dashes that no other line in the axes has, labelled with the method's name, and as
     unbounded where it is. Of an empty region only the label shows.
     """
+    check_kind(region, Region, "bezstab.region")
     label = region.method.name if region.bounded else f"{region.method.name} (unbounded)"
     axes = _plane(axes, rf"$|z_p| = {region.level:g}$", h)
     style = {"label": label, **next_line(axes), **line}
@@ -107,6 +115,9 @@ def moving_region(
 
     With h (s) the axes are 2 alpha (1/s) and beta^2 (1/s^2).
     """
+    from bezstab.evidence import MovingRegion
+
+    check_kind(moving, MovingRegion, "bezstab.evidence.moving_region")
     drawn_on = _plane(axes, moving.method.name, h)
     x, y = plane_coordinates(moving.alpha_hat, moving.beta_hat, h)
     outside_the_law = moving.excluded & (moving.growth < 0)
@@ -130,6 +141,7 @@ def spectral_radius(
 
     Where |z_p| >= 1 it is blank. The ranges are dimensionless whatever the axes.
     """
+    check_kind(method, Method, "bezstab.method")
     alpha_hat = np.linspace(float(alpha_range[0]), float(alpha_range[1]), points)
     beta_hat = np.linspace(float(beta_range[0]), float(beta_range[1]), points)
     z_abs = spectral_radius_at(method, alpha_hat, beta_hat[:, np.newaxis])
@@ -174,6 +186,7 @@ def critical_damping(alpha_range: Range, axes: Axes | None = None, h: float | No
 
 def best_point(best: BestPoint, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
     """Draw a star at the point of least |z_p|, labelled with it, and return the line of one point."""
+    check_kind(best, BestPoint, "bezstab.best_point")
     label = "deadbeat: $|z_p| = 0$" if best.z_abs == 0 else f"least $|z_p|$: {best.z_abs:.4f}"
     style = {"marker": "*", "markersize": 8, "label": label, **line}
     return _one_point((best.alpha_hat, best.beta_hat), _plane(axes, best.method.name, h), h, **style)
@@ -181,6 +194,7 @@ def best_point(best: BestPoint, axes: Axes | None = None, h: float | None = None
 
 def choice(choice: Choice, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
     """Draw a circle at the point that was chosen, labelled with its goal and |z_p|; return the line of one point."""
+    check_kind(choice, Choice, "bezstab.choose")
     label = f"choose {choice.goal}: {f'{abs(choice.pole):.4f}' if choice.pole else 'deadbeat'}"
     style = {"marker": "o", "markersize": 5, "label": label, **line}
     return _one_point((choice.alpha_hat, choice.beta_hat), _plane(axes, choice.method.name, h), h, **style)
@@ -304,6 +318,9 @@ def verdicts(verdict_map: VerdictMap, axes: Axes | None = None) -> AxesImage:
     Values of shape (beta_hat.size, alpha_hat.size): 0 converges, 1 diverges, blank where the run broke down. What the
     colours mean is labelled.
     """
+    from bezstab.evidence import VerdictMap
+
+    check_kind(verdict_map, VerdictMap, "bezstab.evidence.verdict_map")
     axes = _plane(axes, f"{verdict_map.scene.name}, {verdict_map.method.name}", None)
     values = np.ma.masked_array(verdict_map.diverges, verdict_map.broken)
     colours = ListedColormap([CONVERGES, DIVERGES])
@@ -319,6 +336,9 @@ def verdicts(verdict_map: VerdictMap, axes: Axes | None = None) -> AxesImage:
 
 def disagreements(verdict_map: VerdictMap, axes: Axes | None = None) -> Line2D | None:
     """Cross the cells whose simulated verdict contradicts |z_p| < 1; return the line, None if there are none."""
+    from bezstab.evidence import VerdictMap
+
+    check_kind(verdict_map, VerdictMap, "bezstab.evidence.verdict_map")
     rows, columns = np.nonzero(verdict_map.disagrees)
     if not rows.size:
         return None
@@ -363,6 +383,9 @@ def history(
     Constraints count from 1. Where the error oscillates faster than print can show, a band between its least and its
     largest values stands for the line.
     """
+    from bezstab.mechanism import Simulation
+
+    check_kind(simulation, Simulation, "bezstab.simulate")
     trajectory = simulation.trajectory
     errors = simulation.cdot if derivative else simulation.c
     name = rf"$\dot c_{constraint}$ (SI)" if derivative else rf"$c_{constraint}$ (SI)"
@@ -376,6 +399,9 @@ def largest_error(simulation: Simulation, axes: Axes | None = None, **line: Any)
 
     A gap where all constraints hold to the last bit; a band as for `history`.
     """
+    from bezstab.mechanism import Simulation
+
+    check_kind(simulation, Simulation, "bezstab.simulate")
     trajectory = simulation.trajectory
     if axes is None:
         axes = _new_axes(f"{trajectory.mechanism.scene.name}, {trajectory.method.name}", "t (s)", "largest $|c|$ (SI)")
@@ -391,6 +417,9 @@ def mechanism(scene: Scene, q: FloatArray, axes: Axes | None = None) -> list[Lin
     A body's pivot on the ground is one of its points, on a triangle. A body with one joint that is free to move along
     is a square on it.
     """
+    from bezstab.mechanism import Scene
+
+    check_kind(scene, Scene, "bezstab.scene")
     if axes is None:
         axes = _new_axes(scene.name, "x (m)", "y (m)")
         axes.set_aspect("equal")
@@ -544,8 +573,10 @@ def _work_precision_axes(constraint: bool, against: Cost) -> Axes:
 
 
 def _plane(axes: Axes | None, title: str, h: float | None) -> Axes:
-    """Return the given axes, or those of a new figure for the plane."""
+    """Return the given axes, labelled if they are empty, or those of a new figure for the plane."""
     if axes is not None:
+        if not (axes.has_data() or axes.get_xlabel() or axes.get_ylabel()):
+            label_plane(axes, h)
         return axes
     with styled():
         return plane_axes(title, h)[1]

@@ -98,13 +98,19 @@ def plane_axes(title: str, h: float | None) -> tuple[Figure, Axes]:
     """Return a figure of column width with axes alpha_hat, beta_hat, or 2 alpha, beta^2 for a step of h seconds."""
     figure = column_figure()
     axes = figure.add_subplot()
+    axes.set_title(title if h is None else title_lines(title, f"h = {h:g} s"))
+    label_plane(axes, h)
+    return figure, axes
+
+
+def label_plane(axes: Axes, h: float | None) -> None:
+    """Say at the axes that they are alpha_hat and beta_hat, or 2 alpha and beta^2 for a step of h seconds."""
     if h is None:
-        axes.set(title=title, xlabel=r"$\hat\alpha = 2\alpha h$ (dimensionless)")
+        axes.set_xlabel(r"$\hat\alpha = 2\alpha h$ (dimensionless)")
         axes.set_ylabel(r"$\hat\beta = \beta^2 h^2$ (dimensionless)")
     else:
-        axes.set(title=title_lines(title, f"h = {h:g} s"), xlabel=r"$2\alpha$ (1/s)", ylabel=r"$\beta^2$ (1/s$^2$)")
+        axes.set(xlabel=r"$2\alpha$ (1/s)", ylabel=r"$\beta^2$ (1/s$^2$)")
         axes.ticklabel_format(scilimits=(-3, 4))
-    return figure, axes
 
 
 def plane_coordinates(alpha_hat: Number, beta_hat: Number, h: float | None) -> tuple[Number, Number]:

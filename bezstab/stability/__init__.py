@@ -51,7 +51,7 @@ from typing import TYPE_CHECKING
 
 from bezstab.lazy import lazy_names
 from bezstab.stability.answer_checks import Modulus
-from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, FloatArray
+from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, FloatArray, real_array
 from bezstab.stability.best_points import BestPoint, best_point, falls_towards
 from bezstab.stability.choices import (
     THOUSANDFOLD,
@@ -142,6 +142,7 @@ __all__ = [
     "pole_map",
     "pole_place",
     "poles",
+    "real_array",
     "region",
     "roots_in_z",
     "spectral_radius",

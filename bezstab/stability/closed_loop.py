@@ -24,7 +24,7 @@ from bezstab.methods import (
     recursion_verdict,
     without_shared_factor,
 )
-from bezstab.stability.arrays import EPS, ComplexArray, FloatArray
+from bezstab.stability.arrays import EPS, ComplexArray, FloatArray, real_array
 from bezstab.stability.compiled_maps import is_compiled, write_followed
 from bezstab.stability.dominant_roots import dominant_root, dominant_root_in_blocks, largest_of_one_step
 from bezstab.stability.exact_sums import feedback_roots
@@ -66,7 +66,7 @@ def poles(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexA
     Descending by modulus. Roots of paper Eq. 17. NumericalError if a root leaves the range of float64, or is infinite,
     where an implicit step has no solution.
     """
-    alpha_hat, beta_hat = np.broadcast_arrays(np.asarray(alpha_hat, float), np.asarray(beta_hat, float))
+    alpha_hat, beta_hat = np.broadcast_arrays(real_array(alpha_hat, "alpha_hat"), real_array(beta_hat, "beta_hat"))
     rows = _all_poles(any_pencil_of(method), alpha_hat.ravel(), beta_hat.ravel())
     z = rows.T.reshape(*alpha_hat.shape, len(rows))
     order = np.lexsort((-z.imag, -np.abs(z)), axis=-1)
@@ -110,7 +110,7 @@ def dominant_pole(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> 
     found = largest_pole(pencil, alpha_hat, beta_hat)
     infinite = ~np.isfinite(found)
     if infinite.any():
-        alpha_hat, beta_hat = np.broadcast_arrays(np.asarray(alpha_hat, float), np.asarray(beta_hat, float))
+        alpha_hat, beta_hat = np.broadcast_arrays(real_array(alpha_hat, "alpha_hat"), real_array(beta_hat, "beta_hat"))
         worst = f"({alpha_hat[infinite][0]:.6g}, {beta_hat[infinite][0]:.6g})"
         raise NumericalError(f"{method.name}: a pole is infinite at {worst}: the implicit step has no solution there")
     return found
@@ -132,7 +132,7 @@ def largest_pole(
 
     compiled: whether as machine code (compiled_maps); by default where that pays for so many points.
     """
-    alpha_hat, beta_hat = np.broadcast_arrays(np.asarray(alpha_hat, float), np.asarray(beta_hat, float))
+    alpha_hat, beta_hat = np.broadcast_arrays(real_array(alpha_hat, "alpha_hat"), real_array(beta_hat, "beta_hat"))
     alphas, betas = (each if each.ndim == 2 else each.reshape(1, -1) for each in (alpha_hat, beta_hat))
     dominant = np.empty(alpha_hat.size, complex)
     if compiled is None:

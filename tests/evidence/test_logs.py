@@ -45,6 +45,11 @@ def test_numbers_are_read_as_they_were_written(rows: list[list[float]]) -> None:
     assert parse_log(f"a,b,c\n{text}", "log").values.tolist() == rows
 
 
+def test_numbers_have_many_spellings() -> None:
+    log = parse_log("1;+2,5;.5;3.;-1E-3;1e+05;NaN;-inf\n", "log")
+    assert log.values[0].tolist() == pytest.approx([1, 2.5, 0.5, 3, -1e-3, 1e5, np.nan, -np.inf], nan_ok=True)
+
+
 def test_a_missing_number_is_none() -> None:
     log = parse_log("t,c,d\n0,1,\n1,nan,2\n", "log")
     assert np.isnan(log.values).tolist() == [[False, False, True], [False, True, False]]
@@ -57,6 +62,8 @@ def test_a_missing_number_is_none() -> None:
         ("\n  \n# nothing\n", "is empty"),
         ("t,c\n", "no rows of numbers"),
         ("t,c\n0,1\n1,x\n", "line 3: 'x' is not a number"),
+        ("t,c\n0,1\n1,1_0\n", "line 3: '1_0' is not a number"),
+        ("t,c\n0,1\n1,١\n", "line 3: '١' is not a number"),
         ("t,c\n0,1\n1\n", "line 3: 1 cells, expected 2"),
         ("t,c\n0,1\n\n# remark\n1,2,3\n", "line 5: 3 cells, expected 2"),
     ],

@@ -54,6 +54,10 @@ def test_the_chain_grows_with_its_count() -> None:
         ({"joint__type": "weld"}, "type"),
         ({"joint": {"type": "driver", "coordinate": "bob.theta"}}, "bob.theta"),
         ({"joint": {"type": "driver", "coordinate": "bob.x", "offset": 1.0}}, "never moves bob.x"),
+        (
+            {"joint": {"type": "driver", "coordinate": "bob.x", "rpm": 60}},
+            "unknown key 'rpm': write rate, in rad/s (2π/60 times the rpm); known are type, coordinate, offset, rate",
+        ),
         ({"joint": {"type": "driver", "coordinate": "bob.x", "amplitude": 1.0}}, "never moves bob.x"),
         ({"joint": {**LINE, "direction": [0, 0]}}, "direction"),
         ({"gravity": [0.0]}, "gravity"),

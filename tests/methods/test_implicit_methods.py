@@ -160,3 +160,29 @@ def test_gauss_nodes_are_half_minus_and_plus_root_three_sixths() -> None:
 
 def test_radau_coefficients_are_classical() -> None:
     assert runge_kutta("radau3") == RungeKutta((fractions("5/12 -1/12"), fractions("3/4 1/4")), fractions("3/4 1/4"))
+
+
+def test_radau5_is_scipys() -> None:
+    """Hairer & Wanner II, Table IV.5.6: the nodes, and the weights (16 -+ sqrt 6)/36 and 1/9."""
+    scheme = runge_kutta("radau5")
+    first, second, third = (sum(row, F(0)) for row in scheme.tableau)
+    assert third == 1
+    for node in (first, second):
+        assert abs(10 * node**2 - 8 * node + 1) < 100 * FORTY_DIGITS
+    for weight in scheme.weights[:2]:
+        assert abs((36 * weight - 16) ** 2 - 6) < 1000 * FORTY_DIGITS  # 36 * 2 sqrt 6 times what the weight is off
+    assert abs(scheme.weights[2] - F(1, 9)) < FORTY_DIGITS
+    assert scheme.tableau[-1] == scheme.weights
+
+
+def test_radau5_is_a_stable_as_rounded() -> None:
+    """|Q(iy)|^2 - |P(iy)|^2 of R = P/Q is c y^6 with c > 0 and nothing else, exactly."""
+    numerator, denominator = growth(lookup("radau5"))
+
+    def squared(polynomial: list[Fraction]) -> list[Fraction]:
+        a0, a1, a2, a3 = [*polynomial, F(0)][:4]
+        return [a0**2, a1**2 - 2 * a0 * a2, a2**2 - 2 * a1 * a3, a3**2]
+
+    difference = [q - p for q, p in zip(squared(denominator), squared(numerator), strict=True)]
+    assert not any(difference[:3])
+    assert difference[3] > 0

@@ -14,12 +14,14 @@ from bezstab.methods import (
     LinearMultistep,
     Method,
     RungeKutta,
+    accuracy,
     adams_bashforth,
     bezier,
     closed_loop_polynomial,
     implicit,
     lookup,
     read_method,
+    second_order_form,
     steps,
 )
 from tests.methods import kinds
@@ -328,6 +330,59 @@ def test_a_bad_file_is_refused_in_one_line_that_names_it(content: str | bytes, t
 def test_a_refusal_says_what_is_wrong(case: str, why: str, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=why):
         read_method(written(tmp_path, REFUSED[case]))
+
+
+SDIRK2 = """
+A = [["1 - sqrt(2)/2", "0"], ["1/sqrt(2)", "(2 - sqrt(2))/2"]]
+b = ["sqrt(2)/2", "1/(2 + sqrt(2))"]
+"""
+
+RADAU = """
+A = [
+  ["(88 - 7*sqrt(6))/360", "(296 - 169*sqrt(6))/1800", "(-2 + 3*sqrt(6))/225"],
+  ["(296 + 169*sqrt(6))/1800", "(88 + 7*sqrt(6))/360", "(-2 - 3*sqrt(6))/225"],
+  ["(16 - sqrt(6))/36", "(16 + sqrt(6))/36", "1/9"],
+]
+b = ["(16 - sqrt(6))/36", "(16 + sqrt(6))/36", "1/9"]
+"""
+
+
+@pytest.mark.parametrize(("content", "name"), [(SDIRK2, "sdirk2"), (RADAU, "radau5")])
+def test_coefficients_with_roots_are_those_of_the_book(content: str, name: str, tmp_path: Path) -> None:
+    """Weights that add up to one by way of the roots do so exactly, or the file would be refused."""
+    own, built_in = read_method(written(tmp_path, content)), lookup(name)
+    assert isinstance(own.scheme, RungeKutta)
+    assert isinstance(built_in.scheme, RungeKutta)
+    for mine, theirs in zip(own.scheme.tableau, built_in.scheme.tableau, strict=True):
+        assert all(abs(a - b) < Fraction(1, 10**38) for a, b in zip(mine, theirs, strict=True))
+    assert own.digits == built_in.digits == 40
+    assert accuracy(own)[0] == accuracy(built_in)[0]
+
+
+def test_a_multistep_file_with_roots_has_the_order_of_the_exact_method(tmp_path: Path) -> None:
+    """Of order two for every c: rho = (z - 1)(z - c) with the explicit sigma that belongs to it."""
+    c, of_newest, of_oldest = "1/(1 + sqrt(5))", "(3 - 1/(1 + sqrt(5)))/2", "-(1 + 1/(1 + sqrt(5)))/2"
+    content = f'rho = ["1", "-1 - {c}", "{c}"]\nsigma = ["0", "{of_newest}", "{of_oldest}"]\n'
+    assert accuracy(read_method(written(tmp_path, content)))[0] == 2
+
+
+def test_equations_with_roots_are_reckoned_exactly(tmp_path: Path) -> None:
+    update = "[update]\na0 = 'acceleration(x0, v0)'\nv1 = 'v0 + sqrt(2)/2 a0 + (a0 - a0/sqrt(2))'\nx1 = 'x0 + v1'\n"
+    own = read_method(written(tmp_path, update))
+    assert second_order_form(own.scheme).table == second_order_form(lookup("SYM").scheme).table
+    assert own.digits == 40
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        'rho = ["1", "-1", "0", "0"]\nsigma = ["0", "1e200", "-1e200", "1"]',
+        'rho = ["1", "-1", "0", "0"]\nsigma = ["0", "1", "1e-200", "-1e-200"]',
+        'A = [["0", "0"], ["1e-200", "0"]]\nb = ["1/2", "1/2"]',
+    ],
+)
+def test_sizes_whose_squares_float64_cannot_hold_are_refused(content: str, tmp_path: Path) -> None:
+    assert "expected 0 or numbers of size 1e-100 to 1e100" in refusal(written(tmp_path, content))
 
 
 def test_a_missing_file_or_a_folder_is_refused_in_one_line_that_names_it(tmp_path: Path) -> None:

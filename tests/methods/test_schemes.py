@@ -164,7 +164,7 @@ def test_a_second_order_scheme_is_implicit_where_equations_wait_for_each_other(n
 
 def test_a_rational_stands_for_irrational_coefficients_where_digits_say_so() -> None:
     rounded = {name: lookup(name).digits for name in REGISTRY if lookup(name).digits}
-    forty = ("forest-ruth", "yoshida4", "sdirk2", "dirk3", "gauss4")
+    forty = ("forest-ruth", "yoshida4", "sdirk2", "dirk3", "radau5", "gauss4")
     assert rounded == {"tsit5": 15, **dict.fromkeys(forty, 40)}
 
 

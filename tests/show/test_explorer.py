@@ -63,7 +63,7 @@ def test_a_decay_that_grows_beyond_float64_ends_there_in_silence() -> None:
 def test_what_is_printed_can_be_typed_into_a_shell() -> None:
     _, canvas, printed = window("newmark(1/4,1/2)")
     key(canvas, "p")
-    assert printed[0].startswith("--method 'newmark(1/4,1/2)' --alpha ")
+    assert printed[0].startswith("--method 'newmark(beta=1/4,gamma=1/2)' --alpha ")
 
 
 def test_a_click_proves() -> None:

@@ -183,3 +183,16 @@ def test_a_bounded_or_empty_region_does_not_go_on() -> None:
     axes = Figure().add_subplot()
     for shape in (region(lookup("B4")), region(lookup("AB4"), 0.1)):
         assert plot.goes_on(shape, axes) is None
+
+
+@pytest.mark.parametrize(("h", "names"), [(None, ("alpha", "beta")), (0.001, ("1/s", "1/s"))])
+def test_axes_that_are_given_empty_are_labelled_and_others_left_alone(h: float | None, names: tuple[str, str]) -> None:
+    stable = region(lookup("B4"))
+    empty, titled, used = Figure().subplots(1, 3)
+    titled.set_xlabel("mine")
+    used.plot([0, 1], [0, 1])
+    for axes in (empty, titled, used):
+        plot.region(stable, axes, h)
+    assert all(name in label for name, label in zip(names, (empty.get_xlabel(), empty.get_ylabel()), strict=True))
+    assert (titled.get_xlabel(), titled.get_ylabel()) == ("mine", "")
+    assert (used.get_xlabel(), used.get_ylabel()) == ("", "")
