@@ -19,6 +19,7 @@ def _factor(row: Row) -> str:
 LINTED = [
     column("element", "element"),
     column("kind", "kind"),
+    column("judged", "judged"),
     column("α̂", "alpha_hat", ".4f"),
     column("β̂", "beta_hat", ".4f"),
     column("map", "map"),
@@ -40,10 +41,11 @@ def lint(context: click.Context, model: Path, form: Format) -> None:
     simulated. A row for each equality, limit, friction loss, pair of contact parameters, spring, damper and drive: its
     point, the method that MuJoCo's integrator is there, and the line to write where it is unsafe, relies on refsafe or
     is needlessly soft; "not judged", and why, where no one point stands for an element. Of the points that solimp makes
-    of one setting the one with the largest |z| is shown. "stable for h times" is up to which multiple of the time step
-    it stays stable at the same physical parameters. The last row is of all equalities, springs and drives together,
-    which may be unsafe where each alone is not. Needs mujoco 3.7 or later, since when connect and weld have the term of
-    turning normals.
+    of one setting the one with the largest |z| is judged; "judged" says which, and why. "stable for h times" is up to
+    which multiple of the time step it stays stable at the same physical parameters. The last row is of all equalities,
+    springs and drives together, and decides: they may be unsafe where each alone is not, or safe where one alone,
+    without its closed loop, is not. Needs mujoco 3.7 or later, since when connect and weld have the term of turning
+    normals.
 
     Example: bezstab lint robot.xml
     """

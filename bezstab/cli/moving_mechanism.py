@@ -1,13 +1,13 @@
 """What poles, choose, check and region share when they are asked about a mechanism that moves: --scene and --speed."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import click
 
 from bezstab.cli.options import SPEED, Decorator, scene_option
-from bezstab.cli.output import say
+from bezstab.cli.output import progress, say
 from bezstab.show import Column, Row, column, formatted
 
 if TYPE_CHECKING:
@@ -40,10 +40,16 @@ def turning_of(scene: str | None, speed: Fraction, h: Fraction | None) -> "Turni
     from bezstab.evidence import LAW_HOLDS
     from bezstab.mechanism import at_speed, compiled_mechanism, load_scene, regular_motion, turning_normals
 
-    mechanism = compiled_mechanism(at_speed(load_scene(scene), float(speed)))
-    duration = mechanism.scene.duration
-    regular_motion(mechanism, duration)
-    turning = turning_normals(mechanism, duration)
+    moving = at_speed(load_scene(scene), float(speed))
+    stages: Sequence[Callable[[], object]] = (  # each keeps what it finds for the next
+        lambda: compiled_mechanism(moving),
+        lambda: regular_motion(compiled_mechanism(moving), moving.duration),
+        lambda: turning_normals(compiled_mechanism(moving), moving.duration),
+    )
+    for stage in progress(stages, moving.name):
+        stage()
+    mechanism = compiled_mechanism(moving)
+    turning = turning_normals(mechanism, moving.duration)
     turned = turning.kappa * float(h)
     if turned > LAW_HOLDS:
         name = mechanism.scene.name

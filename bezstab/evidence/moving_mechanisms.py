@@ -15,7 +15,7 @@ from functools import cache
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from bezstab.evidence.mixing_poles import NearestPoles, nearest_poles
 from bezstab.mechanism import TurningNormals
@@ -134,31 +134,49 @@ def _step_polynomials(turning: TurningNormals) -> FloatArray:
 
 
 def tabulated_rates(turning: TurningNormals, chi: ComplexArray) -> FloatArray:
-    """Return growth_rates for very many chi, between the entries of a table made once for a motion.
+    """Return growth_rates for very many chi, between the entries of a motion's table.
 
     Lambda depends on the motion and chi alone, is the same at conjugates, and grows in proportion far out. Linear
     between neighbours, which are 2 % apart in |chi| and 3 degrees in angle: good to about 1e-3 of Lambda, where the law
     itself leaves out terms of |chi| kappa h.
     """
-    radii, angles, rates = _growth_table(turning)
+    table = _growth_table(turning)
     radius = np.abs(chi)
-    beyond = np.maximum(1, radius / radii[-1])
-    row = np.interp(radius / beyond, radii, np.arange(radii.size))
-    column = np.interp(np.abs(np.angle(chi)), angles, np.arange(angles.size))
-    i = np.minimum(row.astype(int), radii.size - 2)
-    k = np.minimum(column.astype(int), angles.size - 2)
+    beyond = np.maximum(1, radius / LARGEST_CHI)
+    row = np.interp(radius / beyond, table.radii, np.arange(RADII))
+    column = np.interp(np.abs(np.angle(chi)), table.angles, np.arange(ANGLES))
+    i = np.minimum(row.astype(int), RADII - 2)
+    k = np.minimum(column.astype(int), ANGLES - 2)
     u, v = row - i, column - k
-    near = (1 - v) * rates[i, k] + v * rates[i, k + 1]
-    far = (1 - v) * rates[i + 1, k] + v * rates[i + 1, k + 1]
+    near = (1 - v) * table.entries(i, k) + v * table.entries(i, k + 1)
+    far = (1 - v) * table.entries(i + 1, k) + v * table.entries(i + 1, k + 1)
     return np.asarray(beyond * ((1 - u) * near + u * far))
 
 
-@cache
-def _growth_table(turning: TurningNormals) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return |chi| (radii,), angles (angles,) over half the circle, and Lambda at each pair (1/s)."""
-    radii = LARGEST_CHI * np.linspace(0, 1, RADII) ** 2
-    angles = np.linspace(0, np.pi, ANGLES)
-    return radii, angles, growth_rates(turning, radii[:, np.newaxis] * np.exp(1j * angles))
+class _GrowthTable:
+    """Lambda (1/s) at |chi| = `radii` and arg chi = `angles`, over half the circle, of one motion.
+
+    A search asks for few entries, and each takes long where there are many constraints: it is filled as it is asked.
+    """
+
+    def __init__(self, turning: TurningNormals) -> None:
+        self.turning = turning
+        self.radii = LARGEST_CHI * np.linspace(0, 1, RADII) ** 2
+        self.angles = np.linspace(0, np.pi, ANGLES)
+        self.rates = np.full((RADII, ANGLES), np.nan)  # not a number: not asked for yet
+
+    def entries(self, i: NDArray[np.intp], k: NDArray[np.intp]) -> FloatArray:
+        """Return the entries of radii i and angles k, of one shape."""
+        wanted = np.zeros(self.rates.shape, bool)
+        wanted[i, k] = True
+        rows, columns = np.nonzero(wanted & np.isnan(self.rates))
+        if rows.size:
+            chi = self.radii[rows] * np.exp(1j * self.angles[columns])
+            self.rates[rows, columns] = growth_rates(self.turning, chi)
+        return np.asarray(self.rates[i, k])
+
+
+_growth_table = cache(_GrowthTable)
 
 
 def momentary_rates(turning: TurningNormals, chi: ArrayLike) -> FloatArray:

@@ -16,7 +16,7 @@ IMEX-Euler where all damping is implicit, RK4 under RK4, else symplectic Euler, 
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache
 from itertools import accumulate
@@ -71,6 +71,9 @@ LEAST_SOFTENING = 1e-15
 FREE = 1e-5
 """Of z: double poles at one, of joints that nothing holds, are split so far by the root of rounding, and masses."""
 
+SEEN = 1e-3
+"""Relative: by so much a share differs from the impedance where it is worth a word."""
+
 SOFT = 5
 """Times slower than need be: then an equality or a limit is called soft."""
 
@@ -80,6 +83,8 @@ DEADBEAT = 1e-9
 LEAST_HOLD = 0.1
 """Of d at the constraint: with less, a small error hardly feels it, and |z| says only that."""
 
+SAFE_TOGETHER = "unsafe only alone: safe with what it is connected to, in the last row, which decides"
+
 HARD = ("contact", "contact pair", "joint friction", "tendon friction")
 """Kinds whose softness is a property of the material: nobody is told to change it."""
 
@@ -88,15 +93,17 @@ HARD = ("contact", "contact pair", "joint friction", "tendon friction")
 class Linted:
     """What one element of a MuJoCo model means, and whether it is safe at the model's step.
 
-    `setting` is what the model says, in its own words. (alpha_hat, beta_hat) is the point with the largest |z| of those
-    that it takes, proven by `verdict`; both are None where several elements move together and no one point stands for
-    them. `map` is the method, None where nothing was judged. `h_factor` is the factor on the step up to which it is
-    stable at the same physical parameters (below one where it is not); None where there is no such end.
+    `setting` is what the model says, in its own words, `judged` which of it the point stands for, and why.
+    (alpha_hat, beta_hat) is the point with the largest |z| of those that it takes, proven by `verdict`; both are None
+    where several elements move together and no one point stands for them. `map` is the method, None where nothing was
+    judged. `h_factor` is the factor on the step up to which it is stable at the same physical parameters (below one
+    where it is not); None where there is no such end. `safe_together`: unsafe only without what it is connected to.
     """
 
     element: str
     kind: str
     setting: str
+    judged: str
     alpha_hat: float | None
     beta_hat: float | None
     map: str | None
@@ -104,11 +111,26 @@ class Linted:
     z_abs: float | None
     h_factor: float | None
     advice: str
+    safe_together: bool = False
 
     @property
     def unsafe(self) -> bool:
         """Whether errors grow, or would at the smallest change; without damping they are only kept, at any step."""
+        return not self.safe_together and self._unsafe_alone
+
+    @property
+    def _unsafe_alone(self) -> bool:
         return self.verdict == "diverges" or (self.verdict == "marginal" and bool(self.alpha_hat))
+
+    def beside(self, together: "Linted | None") -> "Linted":
+        """Return the same, whose safety is decided by what it was judged together with, if it was.
+
+        That has the true inertia, as that of a closed loop. Where it neither grows nor decays, |z| = 1 to rounding, it
+        says that nothing diverges, but no more.
+        """
+        if not self._unsafe_alone or together is None or together.verdict in (None, "diverges", self.verdict):
+            return self
+        return replace(self, safe_together=True, advice=SAFE_TOGETHER)
 
 
 def linted_model(model: ModelData) -> Iterator[Linted]:
@@ -117,16 +139,18 @@ def linted_model(model: ModelData) -> Iterator[Linted]:
     NumericalError where the mass matrix is singular, and where a pole leaves the range of float64.
     """
     modes = _damping_modes(model)
-    for constraint in model.constraints:
-        yield _linted_constraint(model, modes, constraint)
     groups = _along_one_direction(model.feedbacks)
+    bilateral = [constraint for constraint in model.constraints if _is_bilateral(constraint)]
+    together = _linted_together(model, modes, bilateral) if len(bilateral) + len(groups) > 1 else None
+    for constraint in model.constraints:
+        alone = _linted_constraint(model, modes, constraint)
+        yield alone.beside(together) if _is_bilateral(constraint) else alone
     for group in groups:
-        yield _linted_drive(model, modes, group)
+        yield _linted_drive(model, modes, group).beside(together)
     for each in model.unjudged:
         yield _not_judged(each.element, each.kind, each.reason)
-    bilateral = [constraint for constraint in model.constraints if constraint.active and constraint.positional]
-    if len(bilateral) + len(groups) > 1:
-        yield _linted_together(model, modes, bilateral)
+    if together:
+        yield together
 
 
 def _not_judged(element: str, kind: str, reason: str) -> Linted:
@@ -134,6 +158,7 @@ def _not_judged(element: str, kind: str, reason: str) -> Linted:
         element=element,
         kind=kind,
         setting="",
+        judged="",
         alpha_hat=None,
         beta_hat=None,
         map=None,
@@ -241,11 +266,14 @@ def _implicit(model: ModelData, feedback: Feedback) -> bool:
 def _linted_constraint(model: ModelData, modes: _DampingModes, constraint: Constraint) -> Linted:
     method = _map(model)
     shares = _shares(modes, constraint)
-    point, verdict, z_abs = _worst(method, _constraint_points(model, constraint, shares, constraint.solref))
+    taken = _constraint_points(model, constraint, shares, constraint.solref)
+    point, verdict, z_abs = _worst(method, [each.point for each in taken])
+    (why, *_) = [each.why for each in taken if each.point == point]
     return Linted(
         element=constraint.element,
         kind=constraint.kind,
         setting=f'solref="{_numbers(constraint.solref)}" solimp="{_numbers(constraint.solimp)}"',
+        judged=f"{_solref_in_force(model, constraint)}, {why}",
         alpha_hat=float(point[0]),
         beta_hat=float(point[1]),
         map=method.name,
@@ -256,9 +284,27 @@ def _linted_constraint(model: ModelData, modes: _DampingModes, constraint: Const
     )
 
 
+def _solref_in_force(model: ModelData, constraint: Constraint) -> str:
+    """Return the solref that MuJoCo goes by, and why it is another than what the model says."""
+    if not _of_one_sign(constraint.solref):
+        return f'solref="{_numbers(DEFAULT_SOLREF)}" as the signs differ'
+    first, second = constraint.solref
+    if model.refsafe and 0 < first < 2 * model.h:
+        return f'solref="{_numbers((2 * model.h, second))}" by refsafe'
+    return f'solref="{_numbers(constraint.solref)}"'
+
+
+@dataclass(frozen=True)
+class _Taken:
+    """A point that a constraint takes, and what makes that of its solref."""
+
+    point: Point
+    why: str
+
+
 def _constraint_points(
     model: ModelData, constraint: Constraint, shares: Shares, solref: tuple[float, float]
-) -> list[Point]:
+) -> list[_Taken]:
     """Return the points that a constraint takes with that solref, at the constraint and past solimp's width, exactly.
 
     Where rows that nobody knows share out a reference, also with all of it, which is the most.
@@ -266,13 +312,21 @@ def _constraint_points(
     reference, held_from = _reference(model, constraint, solref)
     reached = Fraction(1) if held_from is None else min(Fraction(1), held_from)
     largest = exact(constraint.solimp[1])
-    found: list[Point] = []
-    for impedance in _impedances(constraint):
-        taken = shares(impedance, np.array([model.h]))[0].tolist()
+    found: list[_Taken] = []
+    for impedance, where in zip(_impedances(constraint), ("at the constraint", "past solimp's width"), strict=False):
+        of_directions = shares(impedance, np.array([model.h]))[0].tolist()
+        taken = [(share, _share_text(share, impedance)) for share in of_directions]
         if _is_shared_out(constraint):
-            taken.append(1.0)
-        found += [_taken(reference, reached, exact(impedance), exact(round(share, DIGITS)), largest) for share in taken]
+            taken.append((1.0, ", all of it where several contacts share it"))
+        for share, text in taken:
+            point = _taken(reference, reached, exact(impedance), exact(round(share, DIGITS)), largest)
+            found.append(_Taken(point, f"d = {impedance:g} {where}{text}"))
     return found
+
+
+def _share_text(share: float, impedance: float) -> str:
+    """Return the share of its reference that a direction gets, where that is not the impedance."""
+    return "" if abs(share - impedance) < SEEN * impedance else f", {share:.3g} by masses and damping"
 
 
 def _constraint_points_at(model: ModelData, constraint: Constraint, shares: Shares) -> Points:
@@ -386,7 +440,8 @@ def _softness(model: ModelData, constraint: Constraint, shares: Shares, z_abs: f
     if constraint.solimp[0] < LEAST_HOLD and constraint.solimp[2] > 0:
         return f"solimp leaves small errors alone: d = {constraint.solimp[0]:g} at the constraint itself"
     firm = (2 * model.h, 1.0)
-    faster = _worst(_map(model), _constraint_points(model, constraint, shares, firm))[2]
+    taken = _constraint_points(model, constraint, shares, firm)
+    faster = _worst(_map(model), [each.point for each in taken])[2]
     times = float(np.log(max(DEADBEAT, faster)) / np.log(max(DEADBEAT, z_abs)))
     return f'needlessly soft: solref="{_numbers(firm)}" settles {times:.0f} times as fast' if times > SOFT else ""
 
@@ -430,10 +485,12 @@ def _linted_drive(model: ModelData, modes: _DampingModes, group: Sequence[Feedba
     point, verdict, z_abs = _worst(own.method, [own.point])
     end = _end_of(own.points, own.method)
     damping = drive.explicit_damping + drive.implicit_damping
+    setting = f"kp {float(drive.stiffness):.6g}, kv {float(damping):.6g}, inertia {float(drive.inertia):.6g}"
     return Linted(
         element=", ".join(dict.fromkeys(feedback.element for feedback in group)),
         kind=_drive_kind(group, drive),
-        setting=f"kp {float(drive.stiffness):.6g}, kv {float(damping):.6g}, inertia {float(drive.inertia):.6g}",
+        setting=setting,
+        judged=f"{setting} with all other joints free",
         alpha_hat=float(point[0]),
         beta_hat=float(point[1]),
         map=own.method.name,
@@ -542,7 +599,8 @@ def _smaller_step(end: float | None, h: Fraction) -> str:
 def _linted_together(model: ModelData, modes: _DampingModes, constraints: Sequence[Constraint]) -> Linted:
     """Judge what holds both ways, as one linear system at qpos0: what is safe alone need not be safe together.
 
-    Without gravity, limits and contacts; in float64, so nothing is proven.
+    Nor is what is unsafe alone unsafe in a closed loop, where it has to move more. Without gravity, limits and
+    contacts; in float64, so nothing is proven.
     """
     if len(model.mass) > MOST_DOFS:
         return _not_judged("all at qpos0", "together", f"{len(model.mass)} degrees of freedom, at most {MOST_DOFS}")
@@ -564,6 +622,7 @@ def _linted_together(model: ModelData, modes: _DampingModes, constraints: Sequen
         element="all at qpos0",
         kind="together",
         setting="",
+        judged="all that hold both ways, as they are connected",
         alpha_hat=None,
         beta_hat=None,
         map=_map(model).name,
@@ -577,15 +636,33 @@ def _linted_together(model: ModelData, modes: _DampingModes, constraints: Sequen
 def _together_modulus(
     model: ModelData, modes: _DampingModes, constraints: Sequence[Constraint], factor: float
 ) -> float:
-    """Return the largest |z| of one step of all equalities, springs, dampers and drives; 0 where nothing is held."""
+    """Return the largest |z| of one step of all equalities, springs, dampers and drives; 0 where nothing is held.
+
+    With the equalities' impedances at the constraint, or past solimp's width, whichever is worse.
+    """
+    choices = {tuple(_impedances(each)[which] for each in constraints) for which in (0, -1)}
+    return max(_modulus_with_impedances(model, modes, constraints, impedances, factor) for impedances in choices)
+
+
+def _is_bilateral(constraint: Constraint) -> bool:
+    """Return whether a constraint holds both ways from the start, by rows that are known."""
+    return constraint.active and constraint.positional and constraint.jacobian is not None
+
+
+def _modulus_with_impedances(
+    model: ModelData,
+    modes: _DampingModes,
+    constraints: Sequence[Constraint],
+    impedances: Sequence[float],
+    factor: float,
+) -> float:
     stiffness, damping = _springs_and_dampers(model, model.feedbacks)
     h = factor * model.h
     inverse = modes.basis @ modes.basis.T  # of the mass
     by_position, by_velocity = -inverse @ stiffness, -inverse @ damping  # of the acceleration
-    known = [each for each in constraints if each.jacobian is not None and each.diagonal is not None]
-    if known:
-        jacobian = np.vstack([each.jacobian for each in known if each.jacobian is not None])
-        regularization, damper, spring = _regularized(model, known, factor)
+    if constraints:
+        jacobian = np.vstack([each.jacobian for each in constraints if each.jacobian is not None])
+        regularization, damper, spring = _regularized(model, constraints, impedances, factor)
         forces = np.linalg.inv(jacobian @ inverse @ jacobian.T + np.diag(regularization))
         to_acceleration = inverse @ jacobian.T @ forces
         by_position = by_position - to_acceleration @ (spring[:, np.newaxis] * jacobian + jacobian @ by_position)
@@ -605,21 +682,20 @@ def _together_modulus(
 
 
 def _regularized(
-    model: ModelData, constraints: Sequence[Constraint], factor: float
+    model: ModelData, constraints: Sequence[Constraint], impedances: Sequence[float], factor: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return R, b and k d of the constraints' rows: what softens them, their damping (1/s) and stiffness (1/s^2)."""
     softening: list[float] = []
     damper: list[float] = []
     spring: list[float] = []
     h = model.h * factor
-    for constraint in constraints:
+    for constraint, d in zip(constraints, impedances, strict=True):
         assert constraint.diagonal is not None
         first, second = constraint.solref if _of_one_sign(constraint.solref) else DEFAULT_SOLREF
         if model.refsafe and first > 0:
             first = max(first, 2 * h)
         alpha_hat, beta_hat = ENGINES["mujoco"].read(exact(h), exact(first), exact(second))
-        at_rest, largest, width = constraint.solimp
-        d = at_rest if width > 0 else (at_rest + largest) / 2
+        largest = constraint.solimp[1]
         softening += np.maximum(LEAST_SOFTENING, constraint.diagonal * (1 - d) / d).tolist()
         two_alpha, beta_squared = feedback_gains(float(alpha_hat), float(beta_hat), h)
         damper += [two_alpha / largest] * len(constraint.diagonal)

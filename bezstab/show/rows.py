@@ -387,7 +387,7 @@ def linted_row(linted: Linted) -> Row:
     None, too, for advice where there is none.
     """
     safe = None if linted.verdict is None else not linted.unsafe
-    return row(linted, without={"advice"}, advice=linted.advice or None, safe=safe)
+    return row(linted, without={"advice", "safe_together"}, advice=linted.advice or None, safe=safe)
 
 
 def verdict_map_row(verdicts: VerdictMap) -> Row:

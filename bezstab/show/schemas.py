@@ -81,7 +81,7 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
     "lint": [
         RowKind(
             "an element of a model",
-            _keys("element kind setting alpha_hat beta_hat map verdict safe z_abs h_factor advice"),
+            _keys("element kind setting judged alpha_hat beta_hat map verdict safe z_abs h_factor advice"),
             sometimes=("alpha_hat", "beta_hat", "map", "verdict", "safe", "z_abs"),
         )
     ],

@@ -198,6 +198,7 @@ VOCABULARY: Mapping[str, Key] = {
     # models and logs
     "element": Key("text", "Name of the element of a model"),
     "kind": Key("text", "What the element is"),
+    "judged": Key("text", "Which of its points is judged, and why"),
     "map": Key("text", "Method whose region judges the element"),
     "advice": Key("text", "What to write instead", null="where nothing is to be changed"),
     "uncertainty": Key("number", "How far the fitted pole may be off", null=NOT_MEASURED),

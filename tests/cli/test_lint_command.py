@@ -11,7 +11,20 @@ pytest.importorskip("mujoco")
 MODEL = """<mujoco><option timestep="0.004"><flag {flag}/></option>
 <worldbody><body><joint name="x"/><geom size=".1" pos=".3 0 0"/></body></worldbody>
 <equality><joint name="lock" joint1="x" solref="0.002 1"/></equality></mujoco>"""
-KEYS = ("element", "kind", "setting", "alpha_hat", "beta_hat", "map", "verdict", "z_abs", "h_factor", "advice", "safe")
+KEYS = (
+    "element",
+    "kind",
+    "setting",
+    "judged",
+    "alpha_hat",
+    "beta_hat",
+    "map",
+    "verdict",
+    "z_abs",
+    "h_factor",
+    "advice",
+    "safe",
+)
 
 
 def written(path: Path, text: str) -> str:
@@ -70,3 +83,15 @@ def test_what_cannot_be_read_ends_with_status_two(tmp_path: Path, monkeypatch: p
     result = run("lint", str(tmp_path / "broken.xml"))
     assert result.exit_code == 2
     assert "pip install 'bezstab[mujoco]'" in result.stderr
+
+
+def test_a_drive_in_a_closed_loop_is_no_reason_for_status_one() -> None:
+    """Alone it would diverge; what the whole loop does decides, and both rows say so."""
+    model = str(Path(__file__).parent / "data" / "closed_loop.xml")
+    result = run("lint", model)
+    assert result.exit_code == 0
+    assert 'solref="0.02 1"' in result.stdout
+    loop, servo, together = rows("lint", model)
+    assert [row["verdict"] for row in (loop, servo, together)] == ["converges", "diverges", "converges"]
+    assert [row["safe"] for row in (loop, servo, together)] == [True, True, True]
+    assert "which decides" in str(servo["advice"])

@@ -1,11 +1,22 @@
 """--scene and --speed of poles, choose, check and region."""
 
 import json
+import os
+import pty
+import subprocess
+import sys
+from pathlib import Path
 
+import numpy as np
 import pytest
+from numpy.typing import ArrayLike
 
+from bezstab.evidence import moving_mechanisms
+from bezstab.mechanism import TurningNormals
+from bezstab.stability import FloatArray
 from tests.cli.running import rows, run
 
+SIX_BAR = ("--scene", str(Path(__file__).parent / "data" / "six_bar.toml"), "--h", "0.001")
 FOUR_BAR = ("--scene", "driven_four_bar", "--h", "0.01")
 NO_FILES = ("--figure", "none", "--table", "none")
 
@@ -112,3 +123,35 @@ def test_a_mistake_is_one_line(command: str, options: tuple[str, ...], said: str
     assert result.exit_code == 2
     assert said in result.stderr
     assert len(result.stderr.splitlines()) == 1
+
+
+@pytest.mark.slow
+def test_choose_for_a_six_bar_computes_a_small_part_of_the_table_of_growth_rates(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """217 of 6161 entries; all of them are nine tenths of the time that such a mechanism would take."""
+    computed = 0
+    growth_rates = moving_mechanisms.growth_rates
+
+    def counted(turning: TurningNormals, chi: ArrayLike) -> FloatArray:
+        nonlocal computed
+        computed += np.size(chi)
+        return growth_rates(turning, chi)
+
+    monkeypatch.setattr(moving_mechanisms, "growth_rates", counted)
+    (row,) = rows("choose", "--method", "B4", *SIX_BAR)
+    assert row["moving_verdict"] == "converges"
+    assert 0 < computed < 0.1 * moving_mechanisms.RADII * moving_mechanisms.ANGLES
+
+
+@pytest.mark.slow
+def test_a_terminal_shows_that_a_mechanism_is_worked_on() -> None:
+    ours, theirs = pty.openpty()
+    command = [sys.executable, "-m", "bezstab", "poles", "--method", "B4", "--alpha", "0.5", "--beta", "0.1", *SIX_BAR]
+    answered = subprocess.run(command, stdout=subprocess.PIPE, stderr=theirs, check=True)
+    shown = os.read(ours, 65536).decode()
+    os.close(theirs)
+    os.close(ours)
+    assert "six-bar" in shown
+    assert "100%" in shown
+    assert b"six-bar" not in answered.stdout

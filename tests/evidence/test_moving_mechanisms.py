@@ -11,6 +11,7 @@ from bezstab.evidence import (
     growth_after_a_kick,
     growth_rates,
     momentary_rates,
+    moving_mechanisms,
     moving_pole,
     tabulated_rates,
 )
@@ -18,7 +19,7 @@ from bezstab.evidence.mixing_poles import NearestPoles, in_pairs
 from bezstab.evidence.moving_mechanisms import LARGEST_CHI, _safe_speeds, growth_rates_and_sure_ones
 from bezstab.mechanism import TurningNormals, compiled_mechanism, load_scene, simulate, turning_normals
 from bezstab.methods import lookup
-from bezstab.stability import poles, spectral_radius
+from bezstab.stability import FloatArray, poles, spectral_radius
 from bezstab.units import feedback_gains
 from tests.evidence.driven_four_bar import four_bar, turning
 from tests.methods.kinds import sampled
@@ -92,6 +93,24 @@ def test_the_table_is_good_to_half_a_percent_and_grows_in_proportion_beyond() ->
     assert np.abs(tabulated_rates(coarse, chi) - exact).max() < 5e-3 * exact.max()
     at_the_end = tabulated_rates(coarse, LARGEST_CHI * direction)
     assert tabulated_rates(coarse, 3 * LARGEST_CHI * direction) == pytest.approx(3 * at_the_end, rel=1e-12)
+
+
+def test_no_entry_of_the_table_is_computed_that_nobody_asks_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Four around each chi, and none twice: each is a motion's worth of products of matrices."""
+    computed: list[complex] = []
+
+    def counted(turning: TurningNormals, chi: ArrayLike) -> FloatArray:
+        computed.extend(np.ravel(chi).tolist())
+        return growth_rates(turning, chi)
+
+    monkeypatch.setattr(moving_mechanisms, "growth_rates", counted)
+    coarse = replace(turning(), rates=turning().rates[::8])
+    asked = np.array([0.3 + 0.4j, 2.0 - 1.0j])
+    first = tabulated_rates(coarse, asked)
+    assert len(computed) == 8
+    assert tabulated_rates(coarse, asked).tolist() == first.tolist()
+    tabulated_rates(coarse, asked.conj())
+    assert len(computed) == 8
 
 
 @pytest.mark.parametrize(

@@ -238,6 +238,68 @@ def test_what_is_safe_alone_may_be_unsafe_together(integrator: str) -> None:
     assert "timestep" in found.advice
 
 
+FOUR_BAR = f"""<body><joint name="crank" axis="0 1 0"/>
+  <geom type="capsule" fromto="0 0 0 .05 0 -.0866" size=".005" mass=".02" {WEIGHTLESS}/>
+  <body name="coupler" pos=".05 0 -.0866"><joint name="coupler" axis="0 1 0"/>
+    <geom type="capsule" fromto="0 0 0 .3 0 0" size=".01" mass="1" {WEIGHTLESS}/></body></body>
+<body name="rocker" pos=".35 0 -.2"><joint name="rocker" axis="0 1 0"/>
+  <geom type="capsule" fromto="0 0 0 0 0 .1134" size=".01" mass=".5" {WEIGHTLESS}/></body>"""
+LOOP = f'<connect name="loop" body1="coupler" body2="rocker" anchor=".3 0 0" solref=".02 1" {FLAT}/>'
+SERVO = '<position name="servo" joint="rocker" kp="100" kv="4"/>'
+
+
+def test_a_drive_in_a_closed_loop_is_decided_by_the_loop() -> None:
+    """It moves the coupler too: MuJoCo's step has |z| = 0.8936 there, and diverges once the loop is opened."""
+    closed = Case("position drive", FOUR_BAR, equality(LOOP) + actuator(SERVO))
+    model = closed.model("RK4")
+    _, servo, together = lint(model)
+    assert (servo.kind, servo.verdict, servo.unsafe) == ("position drive", "diverges", False)
+    assert "last row" in servo.advice
+    assert (together.kind, together.verdict, together.unsafe) == ("together", "converges", False)
+    data = mujoco.MjData(model)
+    assert step_moduli(mujoco, model, data)[0] == pytest.approx(together.z_abs, abs=1e-5)
+    assert grown(mujoco, model, data, kick=1e-9, steps=100) < 0.1
+    opened = replace(closed, more=actuator(SERVO)).model("RK4")
+    (alone,) = lint(opened)
+    assert alone.unsafe
+    moduli = step_moduli(mujoco, opened, mujoco.MjData(opened))
+    assert moduli[0] == pytest.approx(alone.z_abs, rel=1e-5)
+
+
+def test_a_drive_counts_for_itself_where_its_loop_diverges_or_need_not_be_closed() -> None:
+    closed = Case("position drive", FOUR_BAR, equality(LOOP) + actuator(SERVO))
+    _, servo, together = lint(closed.model("RK4", 4 * H))
+    assert (servo.unsafe, together.unsafe) == (True, True)
+    assert "last row" not in servo.advice
+    inactive = replace(closed, more=equality(LOOP.replace("name=", 'active="false" name=')) + actuator(SERVO))
+    assert [row.unsafe for row in lint(inactive.model("RK4"))] == [False, True]
+
+
+def test_all_together_are_judged_past_solimps_width_too() -> None:
+    """As one is: b = 2.2 at a = 1 is outside where r = 1, and 0.947 of it inside."""
+    solref = f'solref="{-2.2 / H**2!r} {-1.0 / H!r}"'
+    drive = actuator('<position joint="y" kp="3" kv="1"/>')
+    case = Case("joint equality", TWO.replace("1 0 .5", "1 0 0"), equality(f'<joint joint1="x" {solref}/>') + drive)
+    alone, _, together = lint(case.model("Euler"))
+    assert alone.verdict == "diverges"
+    assert alone.unsafe
+    assert together.verdict == "diverges"
+    assert together.z_abs == pytest.approx(alone.z_abs, rel=1e-6)
+
+
+def test_it_is_said_which_point_is_judged_and_why() -> None:
+    for solref, flags, words in (
+        (".002 1", "", f'solref="{2 * H:g} 1" by refsafe, d = 0.9 at the constraint'),
+        (".02 -1", "", 'solref="0.02 1" as the signs differ, d = 0.9'),
+        (f"{-2.2 / H**2!r} {-1.0 / H!r}", "", "d = 0.95 past solimp's width"),
+    ):
+        case = replace(EQUALITIES["joint"], flags=flags, more=equality(f'<joint joint1="x" solref="{solref}"/>'))
+        assert words in lint(case.model("Euler"))[0].judged
+    assert "all other joints free" in lint(DRIVES["position"].model("Euler"))[0].judged
+    ball = Case("contact", DROP.format(CONTACT, "sphere"), flags=UNSAFE, gravity=-10)
+    assert "all of it where several contacts share it" in lint(ball.model("Euler"))[0].judged
+
+
 def test_the_line_to_write_is_safe() -> None:
     """What is unsafe, relies on refsafe, is soft or mixes signs: the advised solref has no advice left."""
     for solref, flags, words in (
@@ -369,7 +431,7 @@ def random_arm(rng: np.random.Generator) -> Case:
         for name in names
         if rng.random() < 0.7
     )
-    solref = f'solref="{strength(-2.5, -1)} {strength(-0.3, 0.3)}" solimp="0.8 0.95 0.01"'
+    solref = f'solref="{strength(-2.5, -1)} {strength(-0.3, 0.3)}" {FLAT}'
     equalities = f'<joint joint1="{first}" joint2="{second}" {solref}/>' if rng.random() < 0.5 else ""
     flags = rng.choice(["", UNSAFE, 'eulerdamp="disable"'])
     return Case("", world, tendon + actuator(drives) + equality(equalities), str(flags))
