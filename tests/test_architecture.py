@@ -18,7 +18,7 @@ other; only appointed files see a library.
       |
     engines                what others call the feedback
       |
-    errors, rationals, files, toml_tables, units, stopping, lazy, compiling
+    errors, rationals, files, toml_tables, units, stopping, lazy, compiling, linear_equations
 """
 
 import ast
@@ -42,7 +42,9 @@ from bezstab.cli import main
 PACKAGE = Path(__file__).parent.parent / "bezstab"
 TESTS = PACKAGE.parent / "tests"
 ROOMS = ("engines", "methods", "stability", "mechanism", "evidence", "show", "cli", "paper")
-FOUNDATIONS = ("lazy", "stopping", "errors", "rationals", "files", "toml_tables", "units", "compiling")
+FOUNDATIONS = (
+    "lazy", "stopping", "errors", "rationals", "files", "toml_tables", "units", "compiling", "linear_equations"
+)  # fmt: skip
 """Beside the rooms, each importing only from those before it."""
 
 BELOW = {

@@ -41,6 +41,7 @@ From a method's polynomial in float64 (its pencil) upwards; a file imports only 
     best_points       the smallest |z_p|
     curve_choices     the best point of a curve
     choices           which parameters to take
+    feedback_costs    what accuracy a feedback costs
     gain_margins      which of two gains is used up
     step_families     methods by their number of steps, and their limit
 
@@ -62,6 +63,7 @@ from bezstab.stability.choices import (
     describe_point,
 )
 from bezstab.stability.closed_loop import dominant_pole, poles, spectral_radius, verdict
+from bezstab.stability.feedback_costs import FeedbackCost, feedback_cost
 from bezstab.stability.forced_errors import (
     LARGEST_OMEGA_H,
     OMEGA_H,
@@ -108,6 +110,7 @@ __all__ = [
     "Choice",
     "ComplexArray",
     "Extent",
+    "FeedbackCost",
     "FloatArray",
     "ForcedError",
     "GainLimits",
@@ -132,6 +135,7 @@ __all__ = [
     "exact_critical_damping_limit",
     "falls_towards",
     "family_members",
+    "feedback_cost",
     "first_where",
     "forced_error",
     "forced_response",

@@ -22,7 +22,7 @@ RATIOS = (0.5, 4.0)
 """alpha / beta: feedback that is damped less rings, for little that it gains; damped more, beta hardly acts."""
 
 FIRST_GRID = 49
-"""Points per axis of the first grid, over two to seven decades each: errors change by some powers of two from one to the next."""
+"""Points per axis of the first grid, over two to seven decades: errors change some twofold from one to the next."""
 
 GRID, SHRINK, ROUNDS = 13, 0.5, 18
 """Points per axis of a zoom, and its factor: 0.5^17 = 8e-6 of the first grid, where the error is flat to rounding."""
@@ -46,8 +46,9 @@ def accurate_point(
     """Return alpha_hat and beta_hat where the forced error is least, at worst over the spread.
 
     Looked at is feedback within the extent that `decays` as fast as is asked for with alpha and beta off by the spread;
-    `equal` keeps alpha = beta. The error is that of `worst_error`. InputError if nothing decays so fast; NumericalError if another grid has a better point. The test equation is that of methods/forced_errors.py;
-    the goal is this package's.
+    `equal` keeps alpha = beta. The error is that of `worst_error`. InputError if nothing decays so fast; NumericalError
+    if another grid has a better point. The test equation is that of methods/forced_errors.py; the goal is this
+    package's.
     """
     largest = np.array([extent[0][1] / 2, np.sqrt(extent[1][1])])  # alpha h and beta h
     weakest = min(float(omega_h) * DECAY / RATIOS[1], float(largest.min()))

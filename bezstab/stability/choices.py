@@ -119,11 +119,12 @@ def choose(
 
     accurate: the least error forced on a motion of omega_h rad a step (methods/forced_errors.py), at worst with alpha
     and beta off by the spread (a share), among what has |z_p| <= rate; by default errors fall by e^(-1/2) for each rad
-    of the motion, or half as fast as with robust where nothing is so fast. fastest: the smallest |z_p|. critical: the fastest dominant pole that is double, real and positive, on the way from
-    small parameters on, before another pole overtakes it. robust: the fastest at worst over every smaller step at the
-    same alpha, beta, and alpha and beta off by the spread, where fast means decay per second. gentle: the smallest
-    alpha = beta with |z_p| <= rate. `equal` keeps alpha = beta. `along` is a curve of points that alone are
-    looked at; of several that are best, the mildest is taken, and gentle is the mildest with |z_p| <= rate.
+    of the motion, or half as fast as with robust where nothing is so fast. fastest: the smallest |z_p|. critical: the
+    fastest dominant pole that is double, real and positive, on the way from small parameters on, before another pole
+    overtakes it. robust: the fastest at worst over every smaller step at the same alpha, beta, and alpha and beta off
+    by the spread, where fast means decay per second. gentle: the smallest alpha = beta with |z_p| <= rate. `equal`
+    keeps alpha = beta. `along` is a curve of points that alone are looked at; of several that are best, the mildest is
+    taken, and gentle is the mildest with |z_p| <= rate.
     `modulus` takes the place of |z_p| at rest, for a mechanism that moves; critical asks for poles at rest.
     InputError if nothing stable meets the goal, for another goal and for a spread outside 0 to 1; NumericalError if a
     second route contradicts the answer (answer_checks). The poles are those of paper Eq. 17; the goals are this
@@ -143,21 +144,11 @@ def choose(
     at_rest = modulus is None
     if modulus is None:
         modulus = partial(largest_modulus, pencil)
+    within = partial(all_within, pencil) if at_rest and isinstance(pencil, Pencil) else None
     if along:
         point, cut = _along_curve(method, along, goal, modulus, spread, rate, omega_h), False
     elif goal == "accurate":
-        within = partial(all_within, pencil) if at_rest and isinstance(pencil, Pencil) else None
-
-        def accurate(rate: float) -> tuple[float, float]:
-            decays = _decays(modulus, within, rate)
-            return accurate_point(method, box, decays, omega_h=omega_h, spread=spread, equal=equal)
-
-        try:
-            point = accurate(default_rate(method, omega_h) if rate is None else rate)
-        except InputError:
-            if rate is not None:
-                raise
-            point = accurate(choose(method, "robust", spread, equal=equal, modulus=modulus, margins=False).worst ** 0.5)
+        point = _accurate(method, box, modulus, within, omega_h=omega_h, rate=rate, spread=spread, equal=equal)
     elif goal == "gentle":
         of_all = partial(largest_modulus, any_pencil_of(method)) if at_rest else modulus
         rate = 0.0 if rate is None else rate
@@ -171,7 +162,6 @@ def choose(
                 f"--keep alpha=beta: the double mu of {method.name} is not at alpha = beta; no --goal critical"
             )
     elif goal == "robust":
-        within = partial(all_within, pencil) if at_rest and isinstance(pencil, Pencil) else None
         point = _checked_least(pencil, box, _slowest(method, modulus, within, spread), equal, cut)
     elif not equal and at_rest and (best := best_point(method)):
         point, cut = (best.alpha_hat, best.beta_hat), False
@@ -181,6 +171,32 @@ def choose(
     if choice.verdict != "converges":
         raise NumericalError(f"{method.name}: the point {point} found for {goal} is not stable")
     return replace(choice, searched=SEARCHED) if cut else choice
+
+
+def _accurate(
+    method: Method,
+    box: Extent,
+    modulus: Modulus,
+    within: Within | None,
+    *,
+    omega_h: Fraction,
+    rate: float | None,
+    spread: float,
+    equal: bool,
+) -> tuple[float, float]:
+    """Return the point of the goal accurate; where nothing decays as fast as it does by default, at half of robust."""
+
+    def found(rate: float) -> tuple[float, float]:
+        decays = _decays(modulus, within, rate)
+        return accurate_point(method, box, decays, omega_h=omega_h, spread=spread, equal=equal)
+
+    if rate is not None:
+        return found(rate)
+    try:
+        return found(default_rate(method, omega_h))
+    except InputError:
+        fast = choose(method, "robust", spread, equal=equal, modulus=modulus, margins=False)
+        return found(fast.worst**0.5)
 
 
 def _decays(modulus: Modulus, within: Within | None, rate: float) -> Decays:
@@ -257,9 +273,9 @@ def choose_at_step(
 
     At a smaller step the same alpha and beta are a smaller alpha_hat = 2 alpha h and beta_hat = beta^2 h^2 (paper Eq.
     16). `settle` (s) is the time in which the error of `gentle` and `accurate` falls a thousandfold; `modulus`, of the
-    largest step, `along` and `omega_h` are as for `choose`. Errors as for `choose`; InputError, too, for a step outside 1e-100 to 1e100 s, for
-    an h_max below h or without the goal robust, and for a settle that is not positive, missing with gentle, or with
-    another goal than those.
+    largest step, `along` and `omega_h` are as for `choose`. Errors as for `choose`; InputError, too, for a step outside
+    1e-100 to 1e100 s, for an h_max below h or without the goal robust, and for a settle that is not positive, missing
+    with gentle, or with another goal than those.
     """
     check_step(h)
     if h_max is not None and (goal != "robust" or h_max < h):

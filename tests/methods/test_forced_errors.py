@@ -1,4 +1,4 @@
-"""Steady errors of the feedback: closed forms by hand, each method's own recursion in fifty digits, orders that are left."""
+"""Steady errors of the feedback: closed forms by hand, each method's own recursion in sixty digits, orders left."""
 
 import math
 from dataclasses import replace
