@@ -155,7 +155,7 @@ def _least_weight(errors: ForcedErrors, terms: ExponentialSum) -> int:
 
 
 def _in_h(polynomial: PlanePolynomial, multiple: Fraction, power: int) -> PlanePolynomial:
-    """Return the coefficient of theta^power, of a step of `multiple` h, in terms of what theta and the parameters are of h."""
+    """Return the coefficient of theta^power of a step of `multiple` h, theta and the parameters being those of h."""
     return {(i, j): c * multiple ** (power + i + 2 * j) for (i, j), c in polynomial.items()}
 
 

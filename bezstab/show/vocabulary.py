@@ -130,6 +130,23 @@ VOCABULARY: Mapping[str, Key] = {
     "role": Key("text", "Whether the point was given, or is what to take instead", values=("given", "instead")),
     "goal": Key("text", "What the point was chosen for, or that it is as given"),
     "worst": Key("number", "Largest modulus of the dominant pole with alpha and beta off by the spread"),
+    "omega_h": Key("number", "Rate of the motion that the errors below are forced on", "radians a step"),
+    "forced_error": Key(
+        "number",
+        "Steady constraint error that the method makes anew with this feedback, as a share of the motion's amplitude",
+        null=UNSTABLE,
+    ),
+    "total_error": Key(
+        "number",
+        "The same at the frequency up to the motion's that answers it the most: what weak feedback lets gather counts",
+        null=UNSTABLE,
+    ),
+    "order_left": Key("integer", "Order of that error in h where alpha_hat and beta_hat are held"),
+    "times_least": Key(
+        "number",
+        "Total error over that at the point of the goal accurate",
+        null=f"{UNSTABLE}, or where there is no such point",
+    ),
     "searched": Key(
         "number", "Largest alpha h and beta h that were searched", null="where all of the region was, or none of it"
     ),

@@ -24,7 +24,7 @@ def real_array(values: ArrayLike | None, name: str) -> FloatArray:
         raise InputError(f"{name} is a masked array: expected one without a mask, as its .filled(...) or .compressed()")
     try:
         array = np.asarray(values)
-        # Objects may be fractions, but None is none, of which numpy would make nan. Of texts it reads what float() does.
+        # Objects may be fractions, but None is none, of which numpy would make nan. Of texts it reads what float does.
         kind = array.dtype.kind
         if kind in "iufU" or (kind == "O" and all(isinstance(value, SupportsFloat) for value in array.flat)):
             return np.asarray(array, np.float64)

@@ -133,13 +133,7 @@ def choose(
     if goal not in get_args(Goal):
         raise InputError(f"goal {goal!r}: expected {', '.join(get_args(Goal))}")
     _check_spread(spread)
-    stable = region(method)
-    if stable.extent is None:
-        reason = ""
-        if stable.fixed_poles and abs(stable.fixed_poles[0]) > 1 - SLOW:
-            reason = f": a pole stays at {pole_place(stable.fixed_poles[0])} on the unit circle"
-        raise InputError(f"{method.name} is stable for no parameters at all{reason}")
-    box, cut = _box(stable)
+    box, cut = _box(region(method))
     pencil = free_pencil_of(method)  # a pole that no parameters move must not hide the others
     at_rest = modulus is None
     if modulus is None:
@@ -245,8 +239,15 @@ def _check_spread(spread: float) -> None:
 
 
 def _box(stable: Region) -> tuple[Extent, bool]:
-    """Return the ranges over which to search, and whether they cut off a region that goes on."""
-    assert stable.extent
+    """Return the ranges over which to search, and whether they cut off a region that goes on.
+
+    InputError where the region is empty.
+    """
+    if stable.extent is None:
+        reason = ""
+        if stable.fixed_poles and abs(stable.fixed_poles[0]) > 1 - SLOW:
+            reason = f": a pole stays at {pole_place(stable.fixed_poles[0])} on the unit circle"
+        raise InputError(f"{stable.method.name} is stable for no parameters at all{reason}")
     multiple = float(stable.method.step_multiple)
     strongest = (2 * SEARCHED / multiple, (SEARCHED / multiple) ** 2)
     ranges = [
