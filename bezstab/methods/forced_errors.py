@@ -26,11 +26,11 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cache
 from itertools import count
-from math import factorial
+from math import factorial, lcm
 from typing import Literal
 
 from bezstab.methods.exact_motions import evaluation_times
-from bezstab.methods.plane_polynomials import ONE, ZERO, determinant
+from bezstab.methods.plane_polynomials import ONE, ZERO, Terms, determinant
 from bezstab.methods.schemes import Method
 from bezstab.methods.second_order import POSITION, VELOCITY, Evaluation, coefficient_rows, first_step
 from bezstab.methods.second_order_forms import second_order_form
@@ -103,7 +103,8 @@ def forced_errors(method: Method) -> ForcedErrors:
     """
     equations = second_order_form(method.scheme).equations
     times = evaluation_times(second_order_form(method.scheme))
-    rows = coefficient_rows(equations)
+    parts = lcm(*(time.denominator for time in times.values()))  # of a step, so that all times are whole
+    rows = [[_of_parts(terms, parts) for terms in row] for row in coefficient_rows(equations)]
     names = [equation.result.name for equation in equations]
     earliest = first_step(equations)
 
@@ -112,11 +113,12 @@ def forced_errors(method: Method) -> ForcedErrors:
         column = names.index(name)
         forced = [list(row) for row in rows]
         for row, equation in zip(forced, equations, strict=True):
-            at_time = {(times[equation.result] - earliest, 0, 0): ONE} if isinstance(equation, Evaluation) else {}
-            row[column] = at_time
-        return _as_sum(determinant(forced))
+            row[column] = {}
+            if isinstance(equation, Evaluation):
+                row[column] = {(int((times[equation.result] - earliest) * parts), 0, 0): ONE}
+        return _as_sum(determinant(forced), parts)
 
-    unforced = _as_sum(determinant(rows))
+    unforced = _as_sum(determinant(rows), parts)
     return ForcedErrors(
         method=method,
         position=_sum([*_times_forcing(with_forcing(POSITION)), (0, (0, 0), -ONE, unforced)]),
@@ -163,11 +165,16 @@ Summand = tuple[int, Powers, Fraction, ExponentialSum]
 """A power of theta, powers of alpha_hat and beta_hat and a factor, by which a sum is multiplied."""
 
 
-def _as_sum(terms: dict[tuple[int, int, int], Fraction]) -> ExponentialSum:
-    """Return a determinant's terms c z^k alpha_hat^i beta_hat^j at z = e^theta."""
+def _of_parts(terms: Terms, parts: int) -> Terms:
+    """Return a polynomial in z as one in the root of z that belongs to one of so many parts of a step."""
+    return {(k * parts, i, j): c for (k, i, j), c in terms.items()}
+
+
+def _as_sum(terms: Terms, parts: int) -> ExponentialSum:
+    """Return a determinant's terms, of so many parts of a step, at z = e^theta."""
     found: ExponentialSum = {}
     for (k, i, j), c in terms.items():
-        found.setdefault((i, j), {})[Fraction(k), 0] = c
+        found.setdefault((i, j), {})[Fraction(k, parts), 0] = c
     return found
 
 

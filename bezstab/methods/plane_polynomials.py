@@ -17,9 +17,8 @@ from bezstab.errors import InputError
 
 ONE, ZERO = Fraction(1), Fraction(0)
 
-Terms = dict[tuple[int | Fraction, int, int], Fraction]
-"""A polynomial: its coefficients other than zero by powers of z (of a time within a step: not whole), alpha_hat and
-beta_hat."""
+Terms = dict[tuple[int, int, int], Fraction]
+"""A polynomial: its coefficients other than zero by powers of z, alpha_hat and beta_hat."""
 
 Matrix = list[list[Terms]]
 
