@@ -18,7 +18,7 @@ other; only appointed files see a library.
       |
     engines                what others call the feedback
       |
-    errors, rationals, files, toml_tables, units, stopping, lazy, compiling, read_only
+    errors, rationals, files, toml_tables, units, stopping, lazy, compiling, read_only, linear_equations
 """
 
 import ast
@@ -42,7 +42,10 @@ from bezstab.cli import main
 PACKAGE = Path(__file__).parent.parent / "bezstab"
 TESTS = PACKAGE.parent / "tests"
 ROOMS = ("engines", "methods", "stability", "mechanism", "evidence", "show", "cli", "paper")
-FOUNDATIONS = ("lazy", "stopping", "errors", "rationals", "files", "toml_tables", "units", "compiling", "read_only")
+FOUNDATIONS = (
+    *("lazy", "stopping", "errors", "rationals", "files", "toml_tables", "units", "compiling", "read_only"),
+    "linear_equations",
+)
 """Beside the rooms, each importing only from those before it."""
 
 BELOW = {

@@ -7,7 +7,6 @@ From data upwards; a file imports only from those above it:
     scenes              bodies, joints, forces, springs and initial state as checked data
     scene_files         their file format
     equations           M, c, C_q, gamma and g by sympy
-    linear_equations    small systems of linear equations: exact, in any numbers, or many at a time
     second_order_memory what a second-order scheme carries from step to step, and when it evaluates
     second_order_turns  a step of a second-order scheme, and of all that are implicit, as a list of actions
     generated_code      the one place that writes and compiles Python source: accelerations, steppers
@@ -23,6 +22,7 @@ From data upwards; a file imports only from those above it:
     motions             the motion itself, as a function of time, and when it begins anew
     linearized          how the acceleration changes with position and velocity
     constraint_normals  how fast the directions of the constraints turn along a motion
+    constraint_motions  how a motion drives the constraints: its rate and amplitude
     simulation          a run and its observation as one value
     varying_runs        the same with steps that vary
 """
@@ -39,6 +39,7 @@ from bezstab.mechanism.compiled_steps import (
     CHEAPER_TOGETHER,
     runs_compiled,
 )
+from bezstab.mechanism.constraint_motions import ConstraintMotion, along_normals, constraint_motion
 from bezstab.mechanism.constraint_normals import TurningNormals, turning_normals
 from bezstab.mechanism.energies import EnergyBalance, energy_balance
 from bezstab.mechanism.equations import Equations, T, equations_of_motion
@@ -86,6 +87,7 @@ __all__ = [
     "Action",
     "Assigned",
     "Body",
+    "ConstraintMotion",
     "Distance",
     "Driver",
     "EnergyBalance",
@@ -108,11 +110,13 @@ __all__ = [
     "TurningNormals",
     "acceleration_function",
     "acceleration_jacobians",
+    "along_normals",
     "at_speed",
     "compiled_mechanism",
     "compiled_source",
     "constraint_errors",
     "constraint_jacobian",
+    "constraint_motion",
     "energy_balance",
     "equations_of_motion",
     "initial_state",

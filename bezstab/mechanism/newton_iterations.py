@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.mechanism.linear_equations import eliminate, inverses
+from bezstab.linear_equations import eliminate, inverses
 
 FloatArray = NDArray[np.float64]
 

@@ -23,7 +23,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from bezstab.mechanism.linear_equations import solution
+from bezstab.linear_equations import solution
 from bezstab.mechanism.second_order_memory import is_solved_together, memory
 from bezstab.methods import Assignment, Combination, Evaluation, Quantity, SecondOrder
 

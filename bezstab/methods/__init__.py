@@ -10,6 +10,8 @@ From exact numbers upwards; a file imports only from those above it:
     recipes             such equations as text
     schemes             the kinds of methods as frozen data that checks itself
     second_order_forms  every scheme written as a second-order one
+    exact_motions       motions that every scheme follows exactly, and so when it evaluates
+    forced_errors       the error that a method makes anew in each step, as a function of the feedback
     families            Bezier, Adams-Bashforth and their predictor-corrector pairs, by number of steps
     one_step_methods    Runge-Kutta methods and symplectic Euler
     runge_kutta_pairs   explicit Runge-Kutta methods that people run, most of them in pairs
@@ -33,7 +35,17 @@ What needs sympy is loaded when first used: naming a method, or proving a verdic
 from typing import TYPE_CHECKING
 
 from bezstab.lazy import lazy_names
+from bezstab.methods.exact_motions import (
+    ACCELERATED,
+    AT_REST,
+    STEADY,
+    Motions,
+    evaluation_times,
+    exact_motions,
+    value_at_start,
+)
 from bezstab.methods.families import adams_bashforth, adams_bashforth_moulton, bezier
+from bezstab.methods.forced_errors import ExponentialSum, ForcedErrors, LeadingError, Part, forced_errors, leading_error
 from bezstab.methods.method_files import read_method
 from bezstab.methods.recipes import recipe
 from bezstab.methods.registry import GROUPS, REGISTRY, MethodGroup, lookup
@@ -133,23 +145,31 @@ DERIVED = {
 __getattr__ = lazy_names(__name__, DERIVED)
 
 __all__ = [
+    "ACCELERATED",
     "ALPHA_HAT",
+    "AT_REST",
     "BETA_HAT",
     "GROUPS",
     "MU",
     "REGISTRY",
+    "STEADY",
     "Assignment",
     "Combination",
     "Crossing",
     "CurveTable",
     "Evaluation",
+    "ExponentialSum",
     "Family",
     "ForceAccuracy",
+    "ForcedErrors",
     "H",
+    "LeadingError",
     "Limit",
     "LinearMultistep",
     "Method",
     "MethodGroup",
+    "Motions",
+    "Part",
     "Partitioned",
     "PlaneStrips",
     "PlaneTable",
@@ -179,13 +199,17 @@ __all__ = [
     "closed_loop_table",
     "coefficient_table",
     "crossing_factors_in_plane",
+    "evaluation_times",
     "evaluations",
+    "exact_motions",
     "feedback_matrix",
     "feedback_polynomial",
     "first_order_form",
     "fixed_poles",
+    "forced_errors",
     "implicit",
     "is_schur",
+    "leading_error",
     "lookup",
     "mapping_equations",
     "mapping_text",
@@ -202,5 +226,6 @@ __all__ = [
     "second_order_form",
     "step_matrix",
     "steps",
+    "value_at_start",
     "without_shared_factor",
 ]

@@ -233,16 +233,16 @@ def _needed(result: Quantity, waiting: dict[Quantity, Equation]) -> set[Quantity
 
 def _determinant_table(equations: tuple[Equation, ...]) -> PlaneTable:
     """Return the determinant of the equations' coefficients as a table."""
-    return _table_of(determinant(_coefficient_rows(equations)))
+    return _table_of(determinant(coefficient_rows(equations)))
 
 
-def _coefficient_rows(equations: tuple[Equation, ...]) -> Matrix:
+def coefficient_rows(equations: tuple[Equation, ...]) -> Matrix:
     """Return the coefficients of each equation, one column for each quantity's name, in the order of the equations.
 
     A coefficient is a polynomial as a dict, by powers of z, alpha_hat and beta_hat.
     """
     column = {equation.result.name: number for number, equation in enumerate(equations)}
-    earliest = min(quantity.step for equation in equations for quantity in (equation.result, *equation.used))
+    earliest = first_step(equations)
     rows: Matrix = []
     for equation in equations:
         row: list[Terms] = [{} for _ in equations]
@@ -252,6 +252,11 @@ def _coefficient_rows(equations: tuple[Equation, ...]) -> Matrix:
             terms[powers] = terms.get(powers, ZERO) + coefficient
         rows.append([{powers: c for powers, c in terms.items() if c} for terms in row])
     return rows
+
+
+def first_step(equations: tuple[Equation, ...]) -> int:
+    """Return the earliest step of any quantity in the equations: it has the power 0 of z in their coefficients."""
+    return min(quantity.step for equation in equations for quantity in (equation.result, *equation.used))
 
 
 def _terms_of(equation: Equation) -> Iterator[tuple[Fraction, Quantity, tuple[int, int]]]:
@@ -271,7 +276,7 @@ def _responses(equations: tuple[Equation, ...]) -> tuple[Terms, Terms]:
     They are the minors of the coefficients without the row of that evaluation, the first that acts on x at all: on a
     motion z^k that satisfies all equations x and v are in their ratio (Cramer's rule).
     """
-    rows = _coefficient_rows(equations)
+    rows = coefficient_rows(equations)
     names = [equation.result.name for equation in equations]
     for number, equation in enumerate(equations):
         if isinstance(equation, Evaluation):

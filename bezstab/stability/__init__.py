@@ -36,10 +36,13 @@ From a method's polynomial in float64 (its pencil) upwards; a file imports only 
     step_sequences    whether feedback decays for every sequence of steps within a range
     damping_limits    up to which steps, by damping ratio
     far_limits        what |z_p| of a second-order scheme tends to far out
+    forced_errors     the error that a method forces with a feedback, over the plane
+    accurate_points   where that is least
     plane_best_points the smallest |z_p| of a second-order scheme
     best_points       the smallest |z_p|
     curve_choices     the best point of a curve
     choices           which parameters to take
+    feedback_costs    what accuracy a feedback costs
     gain_margins      which of two gains is used up
     step_families     methods by their number of steps, and their limit
 
@@ -62,6 +65,15 @@ from bezstab.stability.choices import (
 )
 from bezstab.stability.closed_loop import dominant_pole, poles, spectral_radius, verdict
 from bezstab.stability.far_limits import FarLimit
+from bezstab.stability.feedback_costs import FeedbackCost, feedback_cost
+from bezstab.stability.forced_errors import (
+    LARGEST_OMEGA_H,
+    OMEGA_H,
+    ForcedError,
+    check_omega_h,
+    forced_error,
+    forced_response,
+)
 from bezstab.stability.gain_margins import GainLimits, gain_limits
 from bezstab.stability.grid_maps import QUALITY, pole_map
 from bezstab.stability.margins import Margins, largest_stable_step, stability_margins, stable_up_to
@@ -91,6 +103,8 @@ __getattr__ = lazy_names(__name__, PROVEN)
 __all__ = [
     "EPS",
     "FAMILIES",
+    "LARGEST_OMEGA_H",
+    "OMEGA_H",
     "QUALITY",
     "THOUSANDFOLD",
     "BestPoint",
@@ -99,7 +113,9 @@ __all__ = [
     "ComplexArray",
     "Extent",
     "FarLimit",
+    "FeedbackCost",
     "FloatArray",
+    "ForcedError",
     "GainLimits",
     "Goal",
     "Limit",
@@ -114,6 +130,7 @@ __all__ = [
     "best_point_or_reason",
     "bezier_limit",
     "bisected",
+    "check_omega_h",
     "choose",
     "choose_at_step",
     "critical_damping_limit",
@@ -122,7 +139,10 @@ __all__ = [
     "exact_critical_damping_limit",
     "falls_towards",
     "family_members",
+    "feedback_cost",
     "first_where",
+    "forced_error",
+    "forced_response",
     "gain_limits",
     "largest_stable_step",
     "own_feedback_root",

@@ -12,6 +12,7 @@ import numpy as np
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method, Verdict, steps
 from bezstab.rationals import exact
+from bezstab.stability.accurate_points import Decays, accurate_point, default_rate, worst_error
 from bezstab.stability.answer_checks import (
     Modulus,
     Objective,
@@ -32,6 +33,7 @@ from bezstab.stability.closed_loop import (
 )
 from bezstab.stability.curve_choices import Curve, least_along, mildest_along
 from bezstab.stability.dominant_roots import dominant_root
+from bezstab.stability.forced_errors import OMEGA_H
 from bezstab.stability.line_crossings import IntArray
 from bezstab.stability.line_slices import all_within
 from bezstab.stability.margins import Margins, stability_margins
@@ -42,7 +44,7 @@ from bezstab.stability.regions import Extent, Region, pole_place, region
 from bezstab.stability.searches import first_where, zoom_on_minimum
 from bezstab.units import check_step
 
-Goal = Literal["robust", "fastest", "critical", "gentle"]
+Goal = Literal["accurate", "robust", "fastest", "critical", "gentle"]
 Within = Callable[[FloatArray, FloatArray, FloatArray], BoolArray]
 """Whether |z_p| is below a bound, over arrays of alpha_hat, beta_hat and bounds."""
 
@@ -106,21 +108,25 @@ class Choice:
 
 def choose(
     method: Method,
-    goal: Goal,
+    goal: Goal = "accurate",
     spread: float = 0.1,
     rate: float | None = None,
     equal: bool = False,
     modulus: Modulus | None = None,
     margins: bool = True,
     along: Curve | None = None,
+    omega_h: Fraction = OMEGA_H,
 ) -> Choice:
     """Return the point that a goal asks for, dimensionless and proven stable; without `margins` in less time.
 
-    fastest: the smallest |z_p|. critical: the fastest dominant pole that is double, real and positive, on the way from
-    small parameters on, before another pole overtakes it. robust: the fastest at worst over every smaller step at the
-    same alpha, beta, and alpha and beta off by the spread (a share), where fast means decay per second. gentle: the
-    smallest alpha = beta with |z_p| <= rate. `equal` keeps alpha = beta. `along` is a curve of points that alone are
-    looked at; of several that are best, the mildest is taken, and gentle is the mildest with |z_p| <= rate.
+    accurate: the least error forced on a motion of omega_h rad a step (methods/forced_errors.py), at worst with alpha
+    and beta off by the spread (a share), among what has |z_p| <= rate; by default errors fall by e^(-1/2) for each rad
+    of the motion, or half as fast as with robust where nothing is so fast. fastest: the smallest |z_p|. critical: the
+    fastest dominant pole that is double, real and positive, on the way from small parameters on, before another pole
+    overtakes it. robust: the fastest at worst over every smaller step at the same alpha, beta, and alpha and beta off
+    by the spread, where fast means decay per second. gentle: the smallest alpha = beta with |z_p| <= rate. `equal`
+    keeps alpha = beta. `along` is a curve of points that alone are looked at; of several that are best, the mildest is
+    taken, and gentle is the mildest with |z_p| <= rate.
     `modulus` takes the place of |z_p| at rest, for a mechanism that moves; critical asks for poles at rest.
     InputError if nothing stable meets the goal, for another goal and for a spread outside 0 to 1; NumericalError if a
     second route contradicts the answer (answer_checks). The poles are those of paper Eq. 17; the goals are this
@@ -129,19 +135,16 @@ def choose(
     if goal not in get_args(Goal):
         raise InputError(f"goal {goal!r}: expected {', '.join(get_args(Goal))}")
     _check_spread(spread)
-    stable = region(method)
-    if stable.extent is None:
-        reason = ""
-        if stable.fixed_poles and abs(stable.fixed_poles[0]) > 1 - SLOW:
-            reason = f": a pole stays at {pole_place(stable.fixed_poles[0])} on the unit circle"
-        raise InputError(f"{method.name} is stable for no parameters at all{reason}")
-    box, cut = _box(stable)
+    box, cut = _box(region(method))
     pencil = free_pencil_of(method)  # a pole that no parameters move must not hide the others
     at_rest = modulus is None
     if modulus is None:
         modulus = partial(largest_modulus, pencil)
+    within = partial(all_within, pencil) if at_rest and isinstance(pencil, Pencil) else None
     if along:
-        point, cut = _along_curve(method, along, goal, modulus, spread, 0.0 if rate is None else rate), False
+        point, cut = _along_curve(method, along, goal, modulus, spread, rate, omega_h), False
+    elif goal == "accurate":
+        point = _accurate(method, box, modulus, within, omega_h=omega_h, rate=rate, spread=spread, equal=equal)
     elif goal == "gentle":
         of_all = partial(largest_modulus, any_pencil_of(method)) if at_rest else modulus
         rate = 0.0 if rate is None else rate
@@ -155,7 +158,6 @@ def choose(
                 f"--keep alpha=beta: the double mu of {method.name} is not at alpha = beta; no --goal critical"
             )
     elif goal == "robust":
-        within = partial(all_within, pencil) if at_rest and isinstance(pencil, Pencil) else None
         point = _checked_least(pencil, box, _slowest(method, modulus, within, spread), equal, cut)
     elif not equal and at_rest and (best := best_point(method)):
         point, cut = (best.alpha_hat, best.beta_hat), False
@@ -167,10 +169,53 @@ def choose(
     return replace(choice, searched=SEARCHED) if cut else choice
 
 
+def _accurate(
+    method: Method,
+    box: Extent,
+    modulus: Modulus,
+    within: Within | None,
+    *,
+    omega_h: Fraction,
+    rate: float | None,
+    spread: float,
+    equal: bool,
+) -> tuple[float, float]:
+    """Return the point of the goal accurate; where nothing decays as fast as it does by default, at half of robust."""
+
+    def found(rate: float) -> tuple[float, float]:
+        decays = _decays(modulus, within, rate)
+        return accurate_point(method, box, decays, omega_h=omega_h, spread=spread, equal=equal)
+
+    if rate is not None:
+        return found(rate)
+    try:
+        return found(default_rate(method, omega_h))
+    except InputError:
+        fast = choose(method, "robust", spread, equal=equal, modulus=modulus, margins=False)
+        return found(fast.worst**0.5)
+
+
+def _decays(modulus: Modulus, within: Within | None, rate: float) -> Decays:
+    """Return whether |z_p| is at most a rate, as a function; `within` tells that faster than `modulus`."""
+    if within:
+        return lambda alpha_hat, beta_hat: within(alpha_hat, beta_hat, np.full(alpha_hat.shape, rate))
+    return lambda alpha_hat, beta_hat: modulus(alpha_hat, beta_hat) <= rate
+
+
 def _along_curve(
-    method: Method, curve: Curve, goal: Goal, modulus: Modulus, spread: float, rate: float
+    method: Method,
+    curve: Curve,
+    goal: Goal,
+    modulus: Modulus,
+    spread: float,
+    rate: float | None,
+    omega_h: Fraction,
 ) -> tuple[float, float]:
     """Return the point of a curve that a goal asks for; InputError where none meets it."""
+    if goal == "accurate":
+        decays = _decays(modulus, None, default_rate(method, omega_h) if rate is None else rate)
+        return least_along(curve, _accuracy(method, decays, omega_h, spread))
+    rate = 0.0 if rate is None else rate
     if goal == "critical":
         raise InputError("the goal critical asks for a double pole, and a curve of points has none to choose")
     if goal == "gentle":
@@ -181,14 +226,30 @@ def _along_curve(
     return least_along(curve, _slowest(method, modulus, None, spread) if goal == "robust" else _throughout(modulus))
 
 
+def _accuracy(method: Method, decays: Decays, omega_h: Fraction, spread: float) -> Objective:
+    """Return the objective of `accurate`, as `accurate_point` has it."""
+
+    def objective(alpha_hat: FloatArray, beta_hat: FloatArray, reached: float) -> FloatArray:
+        return worst_error(method, alpha_hat, beta_hat, decays, omega_h=omega_h, spread=spread)
+
+    return objective
+
+
 def _check_spread(spread: float) -> None:
     if not 0 <= spread < 1:
         raise InputError(f"spread {spread:g}: expected a share from 0 to 1")
 
 
 def _box(stable: Region) -> tuple[Extent, bool]:
-    """Return the ranges over which to search, and whether they cut off a region that goes on."""
-    assert stable.extent
+    """Return the ranges over which to search, and whether they cut off a region that goes on.
+
+    InputError where the region is empty.
+    """
+    if stable.extent is None:
+        reason = ""
+        if stable.fixed_poles and abs(stable.fixed_poles[0]) > 1 - SLOW:
+            reason = f": a pole stays at {pole_place(stable.fixed_poles[0])} on the unit circle"
+        raise InputError(f"{stable.method.name} is stable for no parameters at all{reason}")
     multiple = float(stable.method.step_multiple)
     strongest = (2 * SEARCHED / multiple, (SEARCHED / multiple) ** 2)
     ranges = [
@@ -209,26 +270,29 @@ def choose_at_step(
     equal: bool = False,
     modulus: Modulus | None = None,
     along: Curve | None = None,
+    omega_h: Fraction = OMEGA_H,
 ) -> Choice:
     """Return the choice for steps of h (s), as `choose` makes it for the largest step h_max (s) that may occur.
 
     At a smaller step the same alpha and beta are a smaller alpha_hat = 2 alpha h and beta_hat = beta^2 h^2 (paper Eq.
-    16). `settle` (s) is the time in which the error of `gentle` falls a thousandfold; `modulus`, of the largest step,
-    and `along` are as for `choose`. Errors as for `choose`; InputError, too, for a step outside 1e-100 to 1e100 s, for
-    an h_max below h or without the goal robust, and for a settle that is not positive or without the goal gentle, or
-    that without it.
+    16). `settle` (s) is the time in which the error of `gentle` and `accurate` falls a thousandfold; `modulus`, of the
+    largest step, `along` and `omega_h` are as for `choose`. Errors as for `choose`; InputError, too, for a step outside
+    1e-100 to 1e100 s, for an h_max below h or without the goal robust, and for a settle that is not positive, missing
+    with gentle, or with another goal than those.
     """
     check_step(h)
     if h_max is not None and (goal != "robust" or h_max < h):
         raise InputError(f"h_max = {float(h_max):g} s: only for the goal robust, and at least h = {float(h):g} s")
-    if (settle is not None) != (goal == "gentle"):
-        raise InputError("settle, a time in s, and the goal gentle go together")
+    if settle is None and goal == "gentle":
+        raise InputError("the goal gentle asks for settle: a time in s")
+    if settle is not None and goal not in ("gentle", "accurate"):
+        raise InputError(f"settle, a time in s, goes with the goals gentle and accurate, not {goal}")
     if settle is not None and settle <= 0:
         raise InputError(f"settle = {float(settle):g} s: expected a positive time")
     rate = None
     if settle is not None:
         rate = THOUSANDFOLD ** float(h * method.step_multiple / settle)
-    choice = choose(method, goal, spread, rate, equal, modulus, along=along)
+    choice = choose(method, goal, spread, rate, equal, modulus, along=along, omega_h=omega_h)
     if h_max is None or h_max == h:
         return choice
     share = h / h_max

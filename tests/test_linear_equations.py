@@ -7,7 +7,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from bezstab.mechanism.linear_equations import inverses, solution
+from bezstab.linear_equations import inverses, solution
 
 SMALL = st.integers(-5, 5).map(Fraction)
 

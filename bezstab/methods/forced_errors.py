@@ -1,0 +1,197 @@
+r"""The error that a method makes anew in each step, with this feedback: an exact function of it and of the motion.
+
+A constraint moves, q = phi(t), and the feedback holds q to it (Prothero and Robinson's test equation, 1974, carried to
+Baumgarte's feedback):
+
+    q'' = phi'' - 2 alpha (q' - phi') - beta^2 (q - phi),      phi = e^(i omega t),   theta = i omega h
+
+Its solution is phi. The method's own steady answer is found from the equations of its step (second_order.py), whose
+evaluations now see what is forced, at their times tau, in units in which h = 1:
+
+    a = -alpha_hat v - beta_hat x + F e^(tau theta),      F = theta^2 + alpha_hat theta + beta_hat
+
+A shift by one step is a factor z = e^theta, so that x and v follow by Cramer's rule: D is the determinant of the
+equations' coefficients (it is P up to a factor), D_x the same with e^(tau theta) in place of the column of x.
+
+    error of x  =  F D_x(z) / D(z) - 1      =  (F D_x - D) / D
+    error of hv =  F D_v(z) / D(z) - theta  =  (F D_v - theta D) / D
+
+Both numerators are sums of terms c theta^m e^(k theta) alpha_hat^i beta_hat^j with rational c and k: their power series
+in theta is exact. It begins with the power at which errors vanish with h where alpha_hat and beta_hat are held; that
+power's coefficient, over D at z = 1, is the error constant as a function of the feedback.
+"""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import cache
+from itertools import count
+from math import factorial, lcm
+from typing import Literal
+
+from bezstab.methods.exact_motions import evaluation_times
+from bezstab.methods.plane_polynomials import ONE, ZERO, Terms, determinant
+from bezstab.methods.schemes import Method
+from bezstab.methods.second_order import POSITION, VELOCITY, Evaluation, coefficient_rows, first_step
+from bezstab.methods.second_order_forms import second_order_form
+
+Part = Literal["x", "v"]
+
+Powers = tuple[int, int]
+"""Of alpha_hat and beta_hat."""
+
+PlanePolynomial = dict[Powers, Fraction]
+"""A polynomial in alpha_hat and beta_hat: its coefficients other than zero."""
+
+ExponentialSum = dict[Powers, dict[tuple[Fraction, int], Fraction]]
+"""By powers of alpha_hat and beta_hat: the coefficients of theta^m e^(k theta), by (k, m)."""
+
+KEPT_DIGITS = 2
+"""Of an irrational coefficient's rational, so many digits less than it has: what their sums leave over is not there."""
+
+
+@dataclass(frozen=True, eq=False)
+class ForcedErrors:
+    """The steady errors of position and velocity: two numerators over one denominator, exact, of the method's own step.
+
+    `denominator` is P(z; alpha_hat, beta_hat) up to a factor; `rounding` the share of its terms' sizes below which a
+    sum is taken for zero: 0 where the coefficients are the method's own.
+    """
+
+    method: Method
+    position: ExponentialSum = field(repr=False)
+    velocity: ExponentialSum = field(repr=False)
+    denominator: ExponentialSum = field(repr=False)
+    rounding: Fraction = field(repr=False)
+
+    def numerator(self, part: Part) -> ExponentialSum:
+        """Return the numerator of the error of x or of h v."""
+        return self.position if part == "x" else self.velocity
+
+    def coefficient(self, terms: ExponentialSum, power: int) -> PlanePolynomial:
+        """Return the coefficient of theta^power in one of the sums."""
+        found = {powers: self.series_coefficient(of_powers, power) for powers, of_powers in terms.items()}
+        return {powers: c for powers, c in found.items() if c}
+
+    def series_coefficient(self, of_powers: dict[tuple[Fraction, int], Fraction], power: int) -> Fraction:
+        """Return the coefficient of theta^power in a sum of c theta^m e^(k theta)."""
+        parts = [c * Fraction(k) ** (power - m) / factorial(power - m) for (k, m), c in of_powers.items() if m <= power]
+        total = sum(parts, ZERO)
+        return ZERO if abs(total) <= self.rounding * sum(map(abs, parts), ZERO) else total
+
+
+@dataclass(frozen=True)
+class LeadingError:
+    """What is left of a steady error as h shrinks: E theta^power where alpha_hat and beta_hat are held.
+
+    E = numerator / denominator, polynomials in alpha_hat and beta_hat. `order_left` is the order in h of the error, of
+    q itself or of its velocity, where alpha_hat and beta_hat are held; `order` where alpha and beta are.
+    """
+
+    power: int
+    numerator: PlanePolynomial
+    denominator: PlanePolynomial
+    order_left: int
+    order: int
+
+
+@cache
+def forced_errors(method: Method) -> ForcedErrors:
+    """Return the steady errors of a method, for any feedback and any motion e^(i omega t).
+
+    InputError where the determinant of its equations would take too long. Source: the docstring of this file.
+    """
+    equations = second_order_form(method.scheme).equations
+    times = evaluation_times(second_order_form(method.scheme))
+    parts = lcm(*(time.denominator for time in times.values()))  # of a step, so that all times are whole
+    rows = [[_of_parts(terms, parts) for terms in row] for row in coefficient_rows(equations)]
+    names = [equation.result.name for equation in equations]
+    earliest = first_step(equations)
+
+    def with_forcing(name: str) -> ExponentialSum:
+        """Return the determinant with what is forced, divided by F, in place of the column of a quantity."""
+        column = names.index(name)
+        forced = [list(row) for row in rows]
+        for row, equation in zip(forced, equations, strict=True):
+            row[column] = {}
+            if isinstance(equation, Evaluation):
+                row[column] = {(int((times[equation.result] - earliest) * parts), 0, 0): ONE}
+        return _as_sum(determinant(forced), parts)
+
+    unforced = _as_sum(determinant(rows), parts)
+    return ForcedErrors(
+        method=method,
+        position=_sum([*_times_forcing(with_forcing(POSITION)), (0, (0, 0), -ONE, unforced)]),
+        velocity=_sum([*_times_forcing(with_forcing(VELOCITY)), (1, (0, 0), -ONE, unforced)]),
+        denominator=unforced,
+        rounding=ZERO if method.digits is None else Fraction(1, 10 ** (method.digits - KEPT_DIGITS)),
+    )
+
+
+@cache
+def leading_error(method: Method, part: Part = "x") -> LeadingError:
+    """Return the first term of the steady error of x (or of h v) in powers of h, and the orders that it leaves.
+
+    The error of v itself is that of h v divided by h: its orders are less by one. Errors as `forced_errors`.
+    """
+    errors = forced_errors(method)
+    terms = errors.numerator(part)
+    power = next(power for power in count() if errors.coefficient(terms, power))
+    by_h = 0 if part == "x" else 1
+    return LeadingError(
+        power=power,
+        numerator=_in_h(errors.coefficient(terms, power), method.step_multiple, power),
+        denominator=_in_h(errors.coefficient(errors.denominator, 0), method.step_multiple, 0),
+        order_left=power - by_h,
+        order=_least_weight(errors, terms) - _least_weight(errors, errors.denominator) - by_h,
+    )
+
+
+def _least_weight(errors: ForcedErrors, terms: ExponentialSum) -> int:
+    """Return the lowest power of h in a sum where alpha and beta are held: alpha_hat counts one, beta_hat two."""
+    for weight in count():
+        for i, j in terms:
+            if i + 2 * j <= weight and errors.series_coefficient(terms[i, j], weight - i - 2 * j):
+                return weight
+    raise AssertionError("count() has no end")
+
+
+def _in_h(polynomial: PlanePolynomial, multiple: Fraction, power: int) -> PlanePolynomial:
+    """Return the coefficient of theta^power of a step of `multiple` h, theta and the parameters being those of h."""
+    return {(i, j): c * multiple ** (power + i + 2 * j) for (i, j), c in polynomial.items()}
+
+
+Summand = tuple[int, Powers, Fraction, ExponentialSum]
+"""A power of theta, powers of alpha_hat and beta_hat and a factor, by which a sum is multiplied."""
+
+
+def _of_parts(terms: Terms, parts: int) -> Terms:
+    """Return a polynomial in z as one in the root of z that belongs to one of so many parts of a step."""
+    return {(k * parts, i, j): c for (k, i, j), c in terms.items()}
+
+
+def _as_sum(terms: Terms, parts: int) -> ExponentialSum:
+    """Return a determinant's terms, of so many parts of a step, at z = e^theta."""
+    found: ExponentialSum = {}
+    for (k, i, j), c in terms.items():
+        found.setdefault((i, j), {})[Fraction(k, parts), 0] = c
+    return found
+
+
+def _times_forcing(terms: ExponentialSum) -> Iterator[Summand]:
+    """Yield F = theta^2 + alpha_hat theta + beta_hat times a sum."""
+    yield 2, (0, 0), ONE, terms
+    yield 1, (1, 0), ONE, terms
+    yield 0, (0, 1), ONE, terms
+
+
+def _sum(summands: Iterable[Summand]) -> ExponentialSum:
+    """Return the sum of products; like terms are added up, and those that cancel are left out."""
+    total: ExponentialSum = {}
+    for by_theta, (by_alpha, by_beta), factor, terms in summands:
+        for (i, j), of_powers in terms.items():
+            sum_so_far = total.setdefault((i + by_alpha, j + by_beta), {})
+            for (k, m), c in of_powers.items():
+                sum_so_far[k, m + by_theta] = sum_so_far.get((k, m + by_theta), ZERO) + factor * c
+    present = {powers: {key: c for key, c in of_powers.items() if c} for powers, of_powers in total.items()}
+    return {powers: of_powers for powers, of_powers in present.items() if of_powers}

@@ -1,0 +1,117 @@
+"""Where the error that a method forces is least, among the feedback that decays fast enough."""
+
+from collections.abc import Callable
+from fractions import Fraction
+
+import numpy as np
+
+from bezstab.errors import InputError, NumericalError
+from bezstab.methods import Method
+from bezstab.stability.arrays import BoolArray, FloatArray
+from bezstab.stability.forced_errors import forced_error
+from bezstab.stability.regions import Extent
+from bezstab.stability.searches import zoom_on_minimum
+
+Decays = Callable[[FloatArray, FloatArray], BoolArray]
+"""Whether errors decay as fast as is asked for, over rows of alpha_hat and beta_hat."""
+
+DECAY = 0.5
+"""Of the motion's own rate: in 14 rad of the motion, some two turns, what was there has fallen a thousandfold."""
+
+RATIOS = (0.5, 4.0)
+"""alpha / beta: feedback that is damped less rings, for little that it gains; damped more, beta hardly acts."""
+
+FIRST_GRID = 49
+"""Points per axis of the first grid, over two to seven decades: errors change some twofold from one to the next."""
+
+GRID, SHRINK, ROUNDS = 13, 0.5, 18
+"""Points per axis of a zoom, and its factor: 0.5^17 = 8e-6 of the first grid, where the error is flat to rounding."""
+
+SAMPLES = 64
+"""Per axis of another grid, which no point may have a lesser error on: by more than BETTER."""
+
+BETTER = 1e-3
+"""Relative: edges of what decays fast enough are met so closely."""
+
+
+def accurate_point(
+    method: Method,
+    extent: Extent,
+    decays: Decays,
+    *,
+    omega_h: Fraction,
+    spread: float = 0.1,
+    equal: bool = False,
+) -> tuple[float, float]:
+    """Return alpha_hat and beta_hat where the forced error is least, at worst over the spread.
+
+    Looked at is feedback within the extent that `decays` as fast as is asked for with alpha and beta off by the spread;
+    `equal` keeps alpha = beta. The error is that of `worst_error`. InputError if nothing decays so fast; NumericalError
+    if another grid has a better point. The test equation is that of methods/forced_errors.py; the goal is this
+    package's.
+    """
+    largest = np.array([extent[0][1] / 2, np.sqrt(extent[1][1])])  # alpha h and beta h
+    weakest = min(float(omega_h) * DECAY / RATIOS[1], float(largest.min()))
+    low = np.log([weakest, weakest])
+    high = np.log(largest)
+    if equal:
+        low, high = low[:1], high.min(keepdims=True)
+
+    def errors(points: FloatArray) -> FloatArray:
+        """Return the error at each of some points, given by the logarithms of alpha h and beta h."""
+        alpha_h, beta_h = np.exp(points[:, 0]), np.exp(points[:, -1])
+        values = np.full(len(points), np.inf)
+        usable = (alpha_h >= RATIOS[0] * beta_h) & (alpha_h <= RATIOS[1] * beta_h)
+        values[usable] = worst_error(
+            method, 2 * alpha_h[usable], beta_h[usable] ** 2, decays, omega_h=omega_h, spread=spread
+        )
+        return values
+
+    best, least = zoom_on_minimum(
+        errors,
+        (low + high) / 2,
+        (high - low) / 2,
+        first_points=FIRST_GRID,
+        points=GRID,
+        shrink=SHRINK,
+        rounds=ROUNDS,
+        turned=not equal,
+        fold=lambda points: np.clip(points, low, high),
+    )
+    if np.isinf(least):
+        raise InputError(f"{method.name}: no feedback decays so fast with α and β off by {spread:g} of themselves")
+    axes = np.meshgrid(*(np.linspace(first, last, SAMPLES) for first, last in zip(low, high, strict=True)))
+    sampled = errors(np.stack([axis.ravel() for axis in axes], axis=-1)).min()
+    if sampled < least * (1 - BETTER):
+        raise NumericalError(f"{method.name}: the point chosen forces {float(least):.9g}, another {sampled:.9g}")
+    return 2 * float(np.exp(best[0])), float(np.exp(best[-1])) ** 2
+
+
+def default_rate(method: Method, omega_h: Fraction) -> float:
+    """Return the |z_p| at which errors fall by e^(-1/2) for each rad of the motion, at a step of the method."""
+    return float(np.exp(-DECAY * float(omega_h * method.step_multiple)))
+
+
+def worst_error(
+    method: Method,
+    alpha_hat: FloatArray,
+    beta_hat: FloatArray,
+    decays: Decays,
+    *,
+    omega_h: Fraction,
+    spread: float,
+) -> FloatArray:
+    """Return the largest error with alpha and beta off by the spread; infinite where it decays too slowly.
+
+    The total of q, at any frequency, and that of the velocity, as shares: constraints see the one, trajectories both.
+    """
+    worst = np.zeros(alpha_hat.shape)
+    for by_alpha, by_beta in ((0, 0), (-1, -1), (-1, 1), (1, -1), (1, 1)):  # the centre first: it leaves out the most
+        left = np.flatnonzero(np.isfinite(worst))
+        alpha, beta = (1 + by_alpha * spread) * alpha_hat[left], (1 + by_beta * spread) ** 2 * beta_hat[left]
+        worst[left] = np.where(decays(alpha, beta), worst[left], np.inf)
+        left = np.flatnonzero(np.isfinite(worst))
+        alpha, beta = (1 + by_alpha * spread) * alpha_hat[left], (1 + by_beta * spread) ** 2 * beta_hat[left]
+        error = forced_error(method, alpha, beta, omega_h, any_frequency=True)
+        worst[left] = np.maximum(worst[left], error.total + error.velocity)
+    return worst

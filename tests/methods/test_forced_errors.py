@@ -1,0 +1,107 @@
+"""Steady errors of the feedback: closed forms by hand, each method's own recursion in sixty digits, orders left."""
+
+import math
+from dataclasses import replace
+from fractions import Fraction
+
+import mpmath
+import pytest
+import sympy as sp
+
+from bezstab.methods import REGISTRY, accuracy, forced_errors, leading_error, lookup
+from bezstab.methods.forced_errors import ExponentialSum, PlanePolynomial
+from bezstab.stability import spectral_radius
+from tests.methods.kinds import sampled
+from tests.reference.forced_runs import DIGITS, steady_errors
+
+A, B = sp.symbols("a b")
+
+
+def polynomial(terms: PlanePolynomial) -> sp.Expr:
+    return sum((sp.Rational(c.numerator, c.denominator) * A**i * B**j for (i, j), c in terms.items()), sp.Integer(0))
+
+
+CLOSED_FORMS = {
+    "SYM": A / (2 * B),
+    "RK2": (A - 2) / (4 * (2 * A - B - 4)),
+    "SIE": (A**2 + A * B - A - 2 * B) / (2 * B * (A - B - 1)),
+    "RK4": B
+    * (A * B - 4 * B + 24)
+    / (
+        4
+        * (24 * A**3 - 12 * A**2 * B - 96 * A**2 + 4 * A * B**2 - 24 * A * B + 288 * A - B**3 + 8 * B**2 + 48 * B - 576)
+    ),
+}
+"""Of theory.md, section 14: the coefficient of theta^2 of the error of x."""
+
+
+@pytest.mark.parametrize("name", CLOSED_FORMS)
+def test_the_leading_error_is_the_closed_form(name: str) -> None:
+    error = leading_error(lookup(name))
+    assert error.power == 2
+    assert sp.simplify(polynomial(error.numerator) / polynomial(error.denominator) - CLOSED_FORMS[name]) == 0
+
+
+@pytest.mark.parametrize("name", ["B2", "B4", "B12", "AB1", "AB4", "AB8", "bdf2", "bdf6", "am4", "trapezoid"])
+def test_of_a_multistep_method_it_is_its_error_constant_times_the_ratio_of_the_parameters(name: str) -> None:
+    # (sigma theta - rho)(a sigma + sigma theta + rho) over P: -C theta^(p+1) a / b, and C theta^(p+1) of h v
+    order, constant = accuracy(lookup(name))
+    position, velocity = leading_error(lookup(name)), leading_error(lookup(name), "v")
+    of_velocity = polynomial(velocity.numerator) / polynomial(velocity.denominator)
+    assert (position.power, velocity.power) == (order + 1, order + 1)
+    assert sp.simplify(polynomial(position.numerator) / polynomial(position.denominator) + of_velocity * A / B) == 0
+    assert abs(sp.simplify(of_velocity)) == sp.Rational(abs(constant).numerator, constant.denominator)
+
+
+def value(terms: ExponentialSum, alpha_hat: Fraction, beta_hat: Fraction, omega: Fraction) -> mpmath.mpc:
+    theta = 1j * mpmath.mpf(omega.numerator) / omega.denominator
+    return mpmath.fsum(
+        mpmath.mpf((c * alpha_hat**i * beta_hat**j).numerator)
+        / (c * alpha_hat**i * beta_hat**j).denominator
+        * theta**m
+        * mpmath.exp(theta * k.numerator / k.denominator)
+        for (i, j), of_powers in terms.items()
+        for (k, m), c in of_powers.items()
+    )
+
+
+OMEGA = Fraction(1, 10)
+POINT = (Fraction(9, 50), Fraction(1, 50))
+"""Where errors of built-in methods decay 0.93-fold a step or faster; AB6 to AB8 are not stable there."""
+NEARER = {"AB6": (Fraction(2, 25), Fraction(1, 400)), "AB7": (Fraction(3, 50), Fraction(1, 900)),
+          "AB8": (Fraction(3, 100), Fraction(1, 2000))}  # fmt: skip
+DECAYED = 1e-48
+"""What is left of the start."""
+
+
+@pytest.mark.parametrize("name", sampled(list(REGISTRY), ("B4", "AB4", "ABM3", "RK4", "SYM", "verlet-half", "gauss4")))
+def test_it_is_what_the_methods_own_recursion_ends_on_to_forty_digits(name: str) -> None:
+    method = replace(lookup(name), step_multiple=Fraction(1))
+    errors, point = forced_errors(method), NEARER.get(name, POINT)
+    steps = math.ceil(math.log(DECAYED) / math.log(float(spectral_radius(method, *map(float, point)))))
+    with mpmath.workdps(DIGITS):
+        found = steady_errors(method, *point, OMEGA, steps)
+        below = value(errors.denominator, *point, OMEGA)
+        assert abs(found[0] - value(errors.position, *point, OMEGA) / below) < mpmath.mpf(10) ** -40
+        assert abs(found[1] - value(errors.velocity, *point, OMEGA) / below) < mpmath.mpf(10) ** -40
+
+
+@pytest.mark.parametrize("name", REGISTRY)
+def test_with_alpha_and_beta_held_the_order_is_the_methods_own(name: str) -> None:
+    order, _ = accuracy(lookup(name))
+    assert leading_error(lookup(name)).order == order
+    assert leading_error(lookup(name), "v").order >= order
+
+
+def test_with_alpha_hat_and_beta_hat_held_methods_with_stages_lose_order() -> None:
+    left = {
+        name: leading_error(lookup(name)).order_left for name in ("RK4", "dopri5", "bs3", "radau3", "gauss4", "AB4")
+    }
+    assert left == {"RK4": 2, "dopri5": 2, "bs3": 2, "radau3": 3, "gauss4": 4, "AB4": 5}
+
+
+def test_a_step_of_five_h_forces_what_a_step_of_h_does_at_its_own_parameters() -> None:
+    five, one = leading_error(lookup("RK4@5")), leading_error(lookup("RK4"))
+    at_own = {A: 5 * A, B: 25 * B}
+    ratio = polynomial(one.numerator).subs(at_own) / polynomial(one.denominator).subs(at_own)
+    assert sp.simplify(polynomial(five.numerator) / polynomial(five.denominator) - 25 * ratio) == 0

@@ -1,0 +1,52 @@
+"""The goal accurate: what it chooses decays as asked within the spread, and forces no more than other points do."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from bezstab.errors import InputError
+from bezstab.methods import lookup
+from bezstab.stability import choose, forced_error, spectral_radius
+from bezstab.stability.accurate_points import default_rate
+
+OMEGA_H = Fraction(1, 50)
+
+
+@pytest.mark.parametrize("name", ["RK4", "B4", "SYM", "gauss4", "verlet-half"])
+def test_it_decays_as_asked_within_the_spread_and_no_sampled_point_forces_less(name: str) -> None:
+    method = lookup(name)
+    chosen = choose(method, "accurate", omega_h=OMEGA_H, margins=False)
+    assert chosen.worst <= default_rate(method, OMEGA_H) * (1 + 1e-9)
+
+    def error(alpha_hat: float, beta_hat: float) -> float:
+        """Return the largest error over the spread, infinite where it does not decay as asked."""
+        off = np.array([-0.1, 0.0, 0.1])
+        a, b = np.meshgrid(alpha_hat * (1 + off), beta_hat * (1 + off) ** 2)
+        if spectral_radius(method, a, b).max() > default_rate(method, OMEGA_H):
+            return float("inf")
+        found = forced_error(method, a, b, OMEGA_H, any_frequency=True)
+        return float((found.total + found.velocity).max())
+
+    here = error(chosen.alpha_hat, chosen.beta_hat * (1 - 1e-9))
+    random = np.random.default_rng(0)
+    for beta_h, ratio in zip(np.exp(random.uniform(-5, 1.3, 300)), random.uniform(0.5, 4, 300), strict=True):
+        assert error(2 * ratio * beta_h, beta_h**2) > here * (1 - 1e-2)
+
+
+def test_methods_with_stages_take_gentle_feedback_and_multistep_methods_strong() -> None:
+    chosen = {
+        name: choose(lookup(name), "accurate", omega_h=OMEGA_H, margins=False) for name in ("RK4", "dopri5", "B4")
+    }
+    for name in ("RK4", "dopri5"):  # alpha of half the motion's rate, and beta near that rate
+        assert chosen[name].alpha_hat / 2 == pytest.approx(0.02 * 0.5 / 0.9, rel=0.01)
+        assert chosen[name].beta_hat ** 0.5 == pytest.approx(0.8 * 0.02, rel=0.1)
+    assert chosen["B4"].beta_hat ** 0.5 > 20 * 0.02
+
+
+def test_where_nothing_decays_so_fast_it_is_half_as_fast_as_robust() -> None:
+    method = lookup("AB8")
+    with pytest.raises(InputError, match="no feedback decays so fast"):
+        choose(method, "accurate", omega_h=Fraction(6, 100), rate=default_rate(method, Fraction(6, 100)))
+    chosen = choose(method, "accurate", omega_h=Fraction(6, 100), margins=False)
+    assert chosen.worst <= choose(method, "robust", margins=False).worst ** 0.5 * (1 + 1e-9)

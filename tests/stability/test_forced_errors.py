@@ -1,0 +1,68 @@
+"""Forced errors in float64 against fifty digits, over ten decades; what is refused."""
+
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+import pytest
+
+from bezstab.errors import InputError
+from bezstab.methods import ExponentialSum, forced_errors, leading_error, lookup
+from bezstab.stability import forced_error, forced_response
+
+METHODS = ("B4", "AB4", "AB8", "RK4", "dopri5", "SYM", "verlet-half", "hht", "gauss4")
+OMEGAS = (Fraction(1, 10**6), Fraction(1, 100), Fraction(3, 10), Fraction(9, 10))
+POINTS = ((1e-5, 1e-10), (0.02, 1e-4), (0.02, 3e-4))
+
+
+def value(terms: ExponentialSum, alpha_hat: float, beta_hat: float, omega: Fraction) -> mpmath.mpc:
+    theta = 1j * mpmath.mpf(omega.numerator) / omega.denominator
+    return mpmath.fsum(
+        mpmath.mpf(c.numerator)
+        / c.denominator
+        * mpmath.mpf(alpha_hat) ** i
+        * mpmath.mpf(beta_hat) ** j
+        * theta**m
+        * mpmath.exp(theta * k.numerator / k.denominator)
+        for (i, j), of_powers in terms.items()
+        for (k, m), c in of_powers.items()
+    )
+
+
+@pytest.mark.parametrize("omega", OMEGAS, ids=str)
+@pytest.mark.parametrize("name", METHODS)
+def test_it_has_ten_digits_of_the_exact_functions(name: str, omega: Fraction) -> None:
+    errors = forced_errors(lookup(name))
+    for point in POINTS:
+        found = forced_error(lookup(name), *point, omega)
+        with mpmath.workdps(150):  # down to theta^10 = 1e-60 all terms cancel
+            below = abs(value(errors.denominator, *point, omega))
+            position = abs(value(errors.position, *point, omega)) / below
+            velocity = abs(value(errors.velocity, *point, omega)) / below / float(omega)
+        # D is a difference of powers of z - 1: ten digits are left where omega h is large and steps are many
+        assert float(found.position) == pytest.approx(float(position), rel=1e-10)
+        assert float(found.velocity) == pytest.approx(float(velocity), rel=1e-10)
+        assert found.total >= found.position * (1 - 1e-12)
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_a_response_is_the_error_over_the_power_of_theta_that_it_begins_with(name: str) -> None:
+    omega = Fraction(1, 10)
+    response = forced_response(lookup(name), 0.02, 3e-4, np.array([0.1, -0.1, 0.7]))
+    error = float(forced_error(lookup(name), 0.02, 3e-4, omega).position)
+    assert abs(response[0]) * 0.1 ** leading_error(lookup(name)).power == pytest.approx(error, rel=1e-9)
+    assert response[1] == pytest.approx(np.conj(response[0]))
+    assert response[2] == 0  # no step follows that
+
+
+def test_a_step_of_five_h_forces_what_its_own_parameters_do() -> None:
+    five = forced_error(lookup("RK4@5"), 0.1, 0.01, Fraction(1, 100))
+    one = forced_error(lookup("RK4"), 0.5, 0.25, Fraction(1, 20))
+    assert float(five.position) == pytest.approx(float(one.position), rel=1e-12)
+    assert float(five.velocity) == pytest.approx(float(one.velocity), rel=1e-12)
+
+
+@pytest.mark.parametrize("omega", [Fraction(0), Fraction(1), Fraction(1, 10**7)])
+def test_a_motion_that_no_step_follows_or_that_is_none_is_refused(omega: Fraction) -> None:
+    with pytest.raises(InputError, match="rad a step: expected 1e-06 to 1"):
+        forced_error(lookup("RK4"), 0.5, 0.1, omega)
