@@ -23,6 +23,7 @@ The only room in which stability and mechanism meet. A file imports only from th
     mujoco_lint         what they mean in alpha_hat and beta_hat, and whether they are safe
     mujoco_witness      an engine that is not ours must diverge where the map says
     reference_motions   a motion known to some thirteen digits
+    forced_runs         the constraint error that a method forces on a mechanism, predicted and measured
     pareto              which runs no other beats
     accuracy_costs      what a method and a step cost in simulation, and what they buy
     recorded_times      processor times that an earlier sweep measured

@@ -10,8 +10,8 @@ From exact numbers upwards; a file imports only from those above it:
     recipes             such equations as text
     schemes             the kinds of methods as frozen data that checks itself
     second_order_forms  every scheme written as a second-order one
-    exact_motions       motions that every scheme follows exactly, and so when it evaluates
-    forced_errors       the error that a method makes anew in each step, as a function of the feedback
+    scheme_motions      motions that every scheme follows exactly, and so when it evaluates
+    steady_errors       the error that a method makes anew in each step, as a function of the feedback
     families            Bezier, Adams-Bashforth and their predictor-corrector pairs, by number of steps
     one_step_methods    Runge-Kutta methods and symplectic Euler
     runge_kutta_pairs   explicit Runge-Kutta methods that people run, most of them in pairs
@@ -35,7 +35,11 @@ What needs sympy is loaded when first used: naming a method, or proving a verdic
 from typing import TYPE_CHECKING
 
 from bezstab.lazy import lazy_names
-from bezstab.methods.exact_motions import (
+from bezstab.methods.families import adams_bashforth, adams_bashforth_moulton, bezier
+from bezstab.methods.method_files import read_method
+from bezstab.methods.recipes import recipe
+from bezstab.methods.registry import GROUPS, REGISTRY, MethodGroup, lookup
+from bezstab.methods.scheme_motions import (
     ACCELERATED,
     AT_REST,
     STEADY,
@@ -44,11 +48,6 @@ from bezstab.methods.exact_motions import (
     exact_motions,
     value_at_start,
 )
-from bezstab.methods.families import adams_bashforth, adams_bashforth_moulton, bezier
-from bezstab.methods.forced_errors import ExponentialSum, ForcedErrors, LeadingError, Part, forced_errors, leading_error
-from bezstab.methods.method_files import read_method
-from bezstab.methods.recipes import recipe
-from bezstab.methods.registry import GROUPS, REGISTRY, MethodGroup, lookup
 from bezstab.methods.schemes import (
     Family,
     LinearMultistep,
@@ -63,6 +62,7 @@ from bezstab.methods.schemes import (
 from bezstab.methods.schur import Polynomial, Verdict, is_schur, recursion_verdict
 from bezstab.methods.second_order import Assignment, Combination, Evaluation, PlaneTable, Quantity, SecondOrder
 from bezstab.methods.second_order_forms import second_order_form
+from bezstab.methods.steady_errors import ExponentialSum, ForcedErrors, LeadingError, Part, forced_errors, leading_error
 from bezstab.methods.step_matrices import (
     StepMatrix,
     StepPolynomial,

@@ -47,7 +47,7 @@ def accurate_point(
 
     Looked at is feedback within the extent that `decays` as fast as is asked for with alpha and beta off by the spread;
     `equal` keeps alpha = beta. The error is that of `worst_error`. InputError if nothing decays so fast; NumericalError
-    if another grid has a better point. The test equation is that of methods/forced_errors.py; the goal is this
+    if another grid has a better point. The test equation is that of methods/steady_errors.py; the goal is this
     package's.
     """
     largest = np.array([extent[0][1] / 2, np.sqrt(extent[1][1])])  # alpha h and beta h

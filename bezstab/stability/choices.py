@@ -119,7 +119,7 @@ def choose(
 ) -> Choice:
     """Return the point that a goal asks for, dimensionless and proven stable; without `margins` in less time.
 
-    accurate: the least error forced on a motion of omega_h rad a step (methods/forced_errors.py), at worst with alpha
+    accurate: the least error forced on a motion of omega_h rad a step (methods/steady_errors.py), at worst with alpha
     and beta off by the spread (a share), among what has |z_p| <= rate; by default errors fall by e^(-1/2) for each rad
     of the motion, or half as fast as with robust where nothing is so fast. fastest: the smallest |z_p|. critical: the
     fastest dominant pole that is double, real and positive, on the way from small parameters on, before another pole

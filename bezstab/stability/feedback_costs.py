@@ -33,7 +33,7 @@ class FeedbackCost:
 def feedback_cost(method: Method, alpha_hat: float, beta_hat: float, omega_h: Fraction = OMEGA_H) -> FeedbackCost:
     """Return what accuracy a feedback costs on a motion of omega_h rad a step; InputError unless 1e-6 <= omega_h < 1.
 
-    Source: methods/forced_errors.py; the goal accurate is this package's.
+    Source: methods/steady_errors.py; the goal accurate is this package's.
     """
     order, _ = accuracy(method)
     errors = forced_error(method, alpha_hat, beta_hat, omega_h)

@@ -1,7 +1,7 @@
 """The second map: the error that a method forces with a feedback, over any points of the plane, in float64.
 
 |z_p| says how fast errors decay that are there; this says how large those are that each step makes anew. From the exact
-numerators of methods/forced_errors.py at one theta = i omega h:
+numerators of methods/steady_errors.py at one theta = i omega h:
 
     forced error    |N(theta)| / |D(e^theta)|                                    at the motion's own frequency
     total error     |N(theta)| / the least |D(e^(i omega' h))|, 0 <= omega' <= omega
@@ -75,7 +75,7 @@ def forced_error(
 
     `any_frequency`: the total takes the frequency that answers the most among all that steps can tell apart, not only
     those up to omega, so that it grows where the poles come near the circle anywhere: that is what `choose` weighs.
-    InputError unless 1e-6 <= omega_h < 1. Stability is not looked at. Source: methods/forced_errors.py.
+    InputError unless 1e-6 <= omega_h < 1. Stability is not looked at. Source: methods/steady_errors.py.
     """
     tables = error_tables(method, omega_h)
     alpha_hat, beta_hat = np.broadcast_arrays(np.asarray(alpha_hat, float), np.asarray(beta_hat, float))

@@ -29,8 +29,8 @@ from itertools import count
 from math import factorial, lcm
 from typing import Literal
 
-from bezstab.methods.exact_motions import evaluation_times
 from bezstab.methods.plane_polynomials import ONE, ZERO, Terms, determinant
+from bezstab.methods.scheme_motions import evaluation_times
 from bezstab.methods.schemes import Method
 from bezstab.methods.second_order import POSITION, VELOCITY, Evaluation, coefficient_rows, first_step
 from bezstab.methods.second_order_forms import second_order_form

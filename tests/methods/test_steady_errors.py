@@ -9,7 +9,7 @@ import pytest
 import sympy as sp
 
 from bezstab.methods import REGISTRY, accuracy, forced_errors, leading_error, lookup
-from bezstab.methods.forced_errors import ExponentialSum, PlanePolynomial
+from bezstab.methods.steady_errors import ExponentialSum, PlanePolynomial
 from bezstab.stability import spectral_radius
 from tests.methods.kinds import sampled
 from tests.reference.forced_runs import DIGITS, steady_errors
