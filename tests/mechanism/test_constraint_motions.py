@@ -17,9 +17,9 @@ def test_a_mechanism_at_rest_has_no_rate() -> None:
     hanging = parse_scene({
         "name": "plumb",
         "gravity": [0.0, -9.81],
-        "body": [{"name": "bob", "mass": 1.0, "inertia": 0.1, "free": ["x", "y"]}],
-        "joint": [{"type": "distance", "bodies": ["bob", "ground"], "points": [[0.0, 0.0], [0.0, 0.0]], "length": 1.0}],
-        "initial": {"position": {"bob.x": 0.0, "bob.y": -1.0}},
+        "body": [{"name": "bob", "mass": 1.0, "free": ["x", "y"]}],
+        "joint": [{"type": "distance", "bodies": ["ground", "bob"], "points": [[0.0, 0.0], [0.0, 0.0]], "length": 1.0}],
+        "initial": {"position": {"bob.x": 0.0, "bob.y": -1.0}, "velocity": {"bob.x": 0.0, "bob.y": 0.0}},
     })  # fmt: skip
     with pytest.raises(InputError, match="plumb is at rest"):
         constraint_motion(compiled_mechanism(hanging), 1.0)
