@@ -7,6 +7,7 @@ from bezstab.methods import lookup
 from bezstab.paper import influence
 from bezstab.paper.influence import (
     TABLE_4,
+    VISIBLE,
     angle_is_the_frequency,
     behaviours,
     derivative_behaves_alike,
@@ -92,7 +93,18 @@ def test_the_figures_draw_the_histories(derivative: bool) -> None:
     runs = list(kicked_runs())
     panels = histories_figure(runs, derivative).axes
     for axes, run in zip(panels, runs, strict=True):
+        history = run.cdot if derivative else run.c
         (line,) = axes.lines
-        assert np.array(line.get_xdata()) == pytest.approx(1e3 * run.t)
-        assert np.array(line.get_ydata()) == pytest.approx(run.cdot if derivative else run.c)
+        t, drawn = np.array(line.get_xdata()), np.array(line.get_ydata())
+        assert t == pytest.approx(1e3 * run.t[: t.size])
+        assert np.abs(history[t.size :]).max(initial=0.0) <= VISIBLE * np.abs(history).max()  # the rest is its axis
+        in_a_band = np.isnan(drawn)
+        assert drawn[~in_a_band] == pytest.approx(history[: t.size][~in_a_band])
+        for band in axes.collections:
+            ((x_low, low), (x_high, high)) = band.get_paths()[0].get_extents().get_points()
+            inside = in_a_band & (t >= x_low) & (t <= x_high)
+            assert low <= history[: t.size][inside].min()
+            assert high >= history[: t.size][inside].max()
+            in_a_band &= ~inside
+        assert not in_a_band.any()  # each hidden time has its band
         assert f"{run.alpha_hat:g}" in axes.get_title()
