@@ -92,8 +92,8 @@ SLOW = 0.05
 
 IN_NOISE = "in noise of {}, which shows two poles very close together as one"
 FORCED_IN_NOISE = (
-    "noise of {}, beside what hardly changes: forced by the motion, or a slow pole; two runs, kicked and not, tell them "
-    "apart"
+    "noise of {}, beside what hardly changes: forced by the motion, or a slow pole; two runs, kicked and not, tell "
+    "them apart"
 )
 ALL_NOISE = f"noise of {{}}: nothing that decays or grows stands out of it for {VISIBLE} rows"
 HIDDEN_IN_NOISE = "noise of {} hides the pole: it may be {:.4g}, but off by {:.1g}"
