@@ -8,11 +8,14 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
 from bezstab.cli import main
-from bezstab.methods import read_method
+from bezstab.methods import lookup, read_method
+from bezstab.stability import poles
+from tests.reference.sampled_responses import of_poles
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -76,7 +79,8 @@ INLINE = sorted({command for page in PAGES for command in commands(page)})
 def _with_the_files_of_the_pages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Work in a directory with files called as on the pages."""
     monkeypatch.chdir(tmp_path)
-    shutil.copy(DATA / "pendulum.csv", "log.csv")
+    response = of_poles(poles(lookup("B4"), 0.5, 0.1), 300, seed=2)  # at the point that the page asks about
+    np.savetxt("log.csv", response, "%.9g", header="c", comments="")
     shutil.copy(DATA / "two_joints.xml", "robot.xml")
 
 

@@ -31,10 +31,6 @@ STANDARD_ERRORS = 3.0
 FREEDOM = 24
 """Samples more than unknowns, at least: of fewer nobody can tell whether what is left over is white."""
 
-WORTH = 1.0
-"""Times ln(samples) for each unknown, by which one more pole must lessen samples times ln(squares left over): as much
-as by Bayes' information criterion. With twice that, weak poles are left out and shift the others unseen."""
-
 VISIBLE = 8
 """Samples in which a pole must stand out of the noise to be counted: of fewer, a pair is not told from a real one."""
 
@@ -122,9 +118,9 @@ def _goes_on(noise: Sequence[float], rest: FloatArray) -> bool:
     """
     if len(rest) < FREEDOM:
         return True
-    variances = np.mean(np.diff(rest, n=4, axis=0) ** 2, axis=0) / 70
-    with np.errstate(divide="ignore"):
-        apart = np.abs(np.log(variances) - 2 * np.log(noise))
+    with np.errstate(all="ignore"):  # zero, and what is too large for float64, are no noise of that size
+        variances = np.mean(np.diff(rest / noise, n=4, axis=0) ** 2, axis=0) / 70
+        apart = np.abs(np.log(variances))
     # White noise has logarithms of mean squares with the variance 2 / n, and that of its fourth differences some 4.5
     # times as much, as they are related.
     return bool((apart < SURE * np.sqrt(9 / len(rest))).all())
@@ -132,13 +128,14 @@ def _goes_on(noise: Sequence[float], rest: FloatArray) -> bool:
 
 def _fit_stretch(samples: FloatArray, order: int) -> tuple[tuple[NoisyPole, ...], tuple[float, ...]] | None:
     """Return the poles and the noise of one stretch, shape (samples, responses); None if what is left is no noise."""
-    if samples.shape[1] > 1:  # each has noise of its own size: what many poles leave over of it
-        levels = np.array([_sums(column[:, np.newaxis], order)[-1].deviation for column in samples.T])
+    levels = np.abs(samples).max(axis=0)
+    if not levels.all():
+        return None
+    if len(levels) > 1:  # each has noise of its own size: what many poles leave over of it
+        levels *= [_sums(column[:, np.newaxis], order)[-1].deviation for column in (samples / levels).T]
         if not levels.all():
             return None
-        samples = samples / levels
-    else:
-        levels = np.ones(1)
+    samples = samples / levels
     sums = _sums(samples, order)
     worth = [each.left_over_worth for each in sums[: order + 1]]
     best = int(np.argmin(worth))
@@ -259,13 +256,16 @@ class _Sum:
 
     @property
     def left_over_worth(self) -> float:
-        """What is the less, the more likely a sum is: squares that are left over, and unknowns that they cost."""
+        """What is the less, the more likely a sum is: squares left over, and the unknowns it takes (Bayes' criterion).
+
+        With a larger price weak poles are left out, and shift the others unseen.
+        """
         samples = self.left_over.size
         with np.errstate(divide="ignore"):
-            return float(samples * np.log(self.squares) + WORTH * self.unknowns * np.log(samples))
+            return float(samples * np.log(self.squares) + self.unknowns * np.log(samples))
 
     def errors(self) -> FloatArray:
-        """Return the standard error of each pole in the plane; infinite where two are the same."""
+        """Return the standard error of each pole in the plane, of a pair that of both parts together."""
         scatter = np.linalg.pinv(self.slopes)
         of_unknowns = self.deviation**2 * np.sum(scatter**2, axis=1)
         owners = np.repeat(np.arange(len(self.z)), np.where(self.z.imag != 0, 2, 1))

@@ -117,6 +117,13 @@ def test_responses_with_noise_of_different_sizes_are_weighed_by_it() -> None:
     assert (fit_in_noise(both, ORDER) or fit).samples <= 150
 
 
+def test_the_unit_of_the_samples_does_not_matter() -> None:
+    c = two_poles(200, 0.8, 0.6, 0.3, 0.0) + white(np.random.default_rng(7), 1e-4, 200)
+    fits = [fit_in_noise(column(np.ldexp(c, exponent)), ORDER) for exponent in (-900, 0, 900)]
+    first, plain, last = (fit for fit in fits if fit)
+    assert first.poles == plain.poles == last.poles
+
+
 def test_a_pole_that_noise_hides_is_said_to_be_hidden() -> None:
     """Between what is told and nothing to be seen there are poles that are there, but may be anywhere near."""
     random = np.random.default_rng(6)
