@@ -2,7 +2,7 @@
 
 From a method's polynomial in float64 (its pencil) upwards; a file imports only from those above it:
 
-    arrays            names for arrays
+    arrays            names for arrays, and how those of others are read
     exact_sums        sums that keep their rounding; the feedback's roots mu
     root_finding      all roots of many polynomials
     pencils           what float64 needs to know of a method, made once
