@@ -1,6 +1,6 @@
 """Commands about the plane: poles, region, methods, family."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -32,7 +32,7 @@ from bezstab.cli.options import (
     output_option,
     physical_option,
 )
-from bezstab.cli.output import file_name, progress, show_blocks, show_groups, show_rows, write_figure, write_table
+from bezstab.cli.output import file_name, progress, say, show_blocks, show_groups, show_rows, write_figure, write_table
 from bezstab.cli.typed_points import (
     DRIVE_COLUMNS,
     as_typed_option,
@@ -45,7 +45,7 @@ from bezstab.cli.typed_points import (
     typed_point,
 )
 from bezstab.engines import Drive, Engine
-from bezstab.errors import InputError
+from bezstab.errors import InputError, NumericalError
 from bezstab.files import output_directory
 from bezstab.methods import GROUPS, Method, lookup
 from bezstab.show import (
@@ -298,11 +298,12 @@ def region(
     if compare:
         level = chosen_levels[0] if chosen_levels else 1.0
         rows = _compare_regions(methods, level, alpha_range, beta_range, step, alpha_beta, output, figure, table)
+        complete = True
     else:
         marks = _engine_marks(engine, h) if engine and h else {}
         scene_name = _scene_name(scene) if scene else ""
-        rows = []
-        for method in methods:
+
+        def rows_of(method: Method) -> list[Row]:
             points = grid or QUALITY[quality]
             moving = _moving_regions(method, turnings, step)
             names = [file_name(name) for name in (method.name, *([Path(scene).stem] if scene else []))]
@@ -322,17 +323,39 @@ def region(
                 moving,
                 scene_name,
             )
-            rows += [
+            of_speeds: list[Row] = [
                 {**row, "speed": speed, "kappa": kappa, "area_moving": of_speed.area}
                 for (speed, kappa), of_speed in moving.items()
-            ] or [row]
+            ]
             no_motion: Row = {"speed": None, "kappa": None, "area_moving": None} if scene else {}
-            rows += [{**of_level, **no_motion} for of_level in _level_rows(method, chosen_levels)]
+            of_levels = [{**of_level, **no_motion} for of_level in _level_rows(method, chosen_levels)]
+            return [*(of_speeds or [row]), *of_levels]
+
+        rows, complete = _each_for_itself(methods, rows_of)
     name, *shape = REGIONS
     columns = [name, *(LEVELS if levels else []), *shape, *(MOVING_REGIONS if scene else [])]
     show_rows(rows, columns, form, sentence=region_sentence)
-    if any(str(row["best_reason"]).startswith(NOT_KNOWN) for row in rows):
+    if not complete or any(str(row["best_reason"]).startswith(NOT_KNOWN) for row in rows):
         click.get_current_context().exit(NUMERICAL_TROUBLE)
+
+
+def _each_for_itself(methods: Sequence[Method], rows_of: Callable[[Method], list[Row]]) -> tuple[list[Row], bool]:
+    """Return the rows of all methods that have some, and whether that is all of them; what failed is said.
+
+    NumericalError if nothing is left.
+    """
+    rows: list[Row] = []
+    failed: list[NumericalError] = []
+    for method in methods:
+        try:
+            rows += rows_of(method)
+        except NumericalError as error:
+            failed.append(error)
+    if failed and not rows:
+        raise failed[0]
+    for each in failed:
+        say(f"bezstab: {each}")
+    return rows, not failed
 
 
 def _check_window(option: str, window: Window | None) -> None:

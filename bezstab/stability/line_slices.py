@@ -21,7 +21,7 @@ from math import comb
 import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval
 
-from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
+from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, FloatArray
 from bezstab.stability.exact_sums import feedback_roots
 from bezstab.stability.pencils import Pencil, deadbeat_mu, roots_in_mu
 from bezstab.stability.root_finding import horner
@@ -38,6 +38,7 @@ ILLINOIS = 14  # false positions from one sample to the next: the seventh is exa
 REFINEMENTS = 5  # of Newton's method, from eight digits or more
 TO_ANOTHER = 0.2  # of theta: a longer step could reach another zero
 FAR = 1e300  # a finite stand-in for an infinite mu
+NOISE_ANGLES: FloatArray = np.linspace(0.1, 3.1, 16)  # at which the rounding of crossings is estimated
 LEADING = 1e-14  # of the largest coefficient: a leading coefficient below it is rounding of a zero
 
 
@@ -256,6 +257,24 @@ def _multistep_crossings(pencil: Pencil, level: float, radius: FloatArray) -> Fl
     with np.errstate(all="ignore"):
         rho, minus_sigma = polyval(level * np.exp(1j * theta), pencil.table)
         return np.asarray(np.clip((-rho / minus_sigma).real, -around, around))
+
+
+def edge_noise(pencil: Pencil, level: float, squared: bool) -> float:
+    """Return by what share of its |mu| rounding moves the locus |z| = level of a one-step method z = N / Q, at worst.
+
+    `squared`: where lines cross it, which are zeros of |N|^2 - level^2 |Q|^2; else by its own equation. Terms are
+    rounded at the size that they have without their signs, and of many stages they cancel: of twenty implicit Euler
+    steps composed, z = (1 - mu / 20)^-20, their squares to nothing.
+    """
+    mu = roots_in_mu(pencil, level * np.exp(1j * NOISE_ANGLES)).ravel()
+    mu = mu[np.isfinite(mu) & (np.abs(mu) < AT_INFINITY)]
+    numerator, denominator = pencil.table
+    with np.errstate(all="ignore"):
+        size = sum(polyval(np.abs(mu), np.abs(row)) for row in pencil.table)
+        n, d = polyval(mu, numerator), polyval(mu, denominator)
+        rate = np.abs(mu * (polyval(mu, polyder(numerator)) / n - polyval(mu, polyder(denominator)) / d))
+        noise = EPS * (size / np.abs(d)) ** (2 if squared else 1) / rate
+    return float(noise[np.isfinite(noise)].max(initial=0))
 
 
 def _refined(cosine: FloatArray, step_at: Callable[[FloatArray], FloatArray]) -> FloatArray:

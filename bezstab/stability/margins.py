@@ -7,17 +7,21 @@ from fractions import Fraction
 
 import numpy as np
 
-from bezstab.errors import InputError
+from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method
 from bezstab.stability.answer_checks import EITHER_SIDE, check_margin
 from bezstab.stability.arrays import BoolArray, FloatArray
-from bezstab.stability.closed_loop import converges
+from bezstab.stability.closed_loop import any_pencil_of, converges
+from bezstab.stability.line_slices import edge_noise
 from bezstab.stability.path_crossings import Path, crossing_factors
+from bezstab.stability.pencils import Pencil
 from bezstab.stability.searches import first_where
 from bezstab.units import to_dimensionless
 
 STEPS_TRIED = np.power(1.25, np.arange(93.0))
 """Times h, up to 1e9: stretches of unstable steps are wider than a fourth."""
+
+TOO_FEW_DIGITS = 1e-6  # of mu, lost on the edge: the search for an end, good to 1e-9, then takes minutes
 
 
 @dataclass(frozen=True)
@@ -38,8 +42,12 @@ def stability_margins(method: Method, alpha_hat: Fraction | float, beta_hat: Fra
     A factor s on h makes (s alpha_hat, s^2 beta_hat), on alpha (s alpha_hat, beta_hat), on beta (alpha_hat,
     s^2 beta_hat): paper Eq. 16. An end without |z_p| = 1 (a pole of paper Eq. 17) is infinite, or zero.
     Ends are where the path crosses the exact boundary, and the proven verdict turns there: one part in 1e9 nearer it
-    converges, one part further it does not. NumericalError if it does not turn so, as from a point that is not stable.
+    converges, one part further it does not. NumericalError if it does not turn so, as from a point that is not stable,
+    and at once for a method of so many stages that float64 hardly knows the boundary.
     """
+    pencil = any_pencil_of(method)
+    if isinstance(pencil, Pencil) and pencil.steps == 1 and edge_noise(pencil, 1.0, squared=False) > TOO_FEW_DIGITS:
+        raise NumericalError(f"{method.name}: float64 keeps too few digits of where |z_p| = 1: too many stages")
     exact_point = Fraction(alpha_hat), Fraction(beta_hat)
     by_h, by_alpha, by_beta = (Path(method, *exact_point, powers) for powers in ((1, 2), (1, 0), (0, 2)))
     return Margins(h=_ends(by_h)[1], alpha=_ends(by_alpha), beta=_ends(by_beta))

@@ -36,7 +36,7 @@ from bezstab.read_only import ReadOnlyArrays
 from bezstab.stability.arrays import BoolArray, FloatArray
 from bezstab.stability.boundary_locus import Arc, Bounds, bounds_of, feedback_coefficients
 from bezstab.stability.closed_loop import spectral_radius
-from bezstab.stability.line_slices import RIM, rim_radius
+from bezstab.stability.line_slices import RIM, edge_noise, rim_radius
 from bezstab.stability.pencils import Pencil, deadbeat_mu, pencil_of
 from bezstab.stability.plane_cells import Approached, Edges, plane_shape
 from bezstab.stability.plane_checks import check_plane
@@ -53,6 +53,7 @@ GROWN = 2.5  # times the range: as the fourth root of the radius it would have g
 ROUNDING_FAR_OUT = 1e-6  # of everything finite: so far out an arc along the imaginary axis is good to less
 FLAT = 1e-6  # of |mu|: a coordinate that varies less along an arc is constant, and turns by rounding alone
 USUAL_SIZE = 4.0  # alpha h and beta h up to 2: the least that is shown of what has no end
+NO_DIGITS = 0.05  # of mu, lost where lines cross the edge: the check then fails anyway, but after minutes
 GAP = 1e-6  # of a curve's size: where two arcs meet in a double mu, each ends within the root of rounding
 
 Extent = tuple[tuple[float, float], tuple[float, float]]
@@ -108,7 +109,8 @@ def region(method: Method, level: float = 1.0) -> Region:
     Dimensionless; from the boundary locus of paper Eq. 17, held against slices that share nothing with it
     (self_checks). InputError for another level; NumericalError if they disagree, or its edges leave a gap, on a finer
     sampling of the locus as well: not found is an edge on which several roots have |z| = level, or one so short, where
-    the level is hardly above the least |z_p|, that it lies between two samples.
+    the level is hardly above the least |z_p|, that it lies between two samples. And at once for a method of so many
+    stages (seventeen implicit Euler steps composed) that float64 keeps no digits of an edge.
     """
     if not 0 < level <= 1:
         raise InputError(f"level {level:g}: expected above 0 and at most 1, the stability boundary")
@@ -122,6 +124,9 @@ def region(method: Method, level: float = 1.0) -> Region:
         return _plane_region(method, level, stuck)
     if stuck:
         return replace(region(without_shared_factor(method), level), method=method, fixed_poles=stuck)
+    pencil = pencil_of(method)
+    if pencil.steps == 1 and edge_noise(pencil, level, squared=True) > NO_DIGITS:
+        raise NumericalError(f"{method.name}: float64 keeps no digits of where |z_p| = {level:g}: too many stages")
     try:
         return _checked_region(method, level, finer=1)
     except NumericalError:

@@ -1,6 +1,7 @@
 """What is known is printed when a part of an answer fails, and what failed is named."""
 
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -45,6 +46,31 @@ def test_without_a_best_point_region_still_prints_the_area(monkeypatch: pytest.M
     assert result.exit_code == 3
     assert "0.8096847184" in result.stdout
     assert "not known: B4: two branches could not be told apart" in " ".join(result.stdout.split())
+
+
+def test_a_method_without_a_region_withholds_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
+    of_any = stability.region
+    monkeypatch.setattr(
+        stability, "region", lambda method, *level: (of_any if method.name == "B4" else failing)(method)
+    )
+    result = run("region", "--method", "AB4", "--method", "B4", "--figure", "none", "--table", "none")
+    assert result.exit_code == 3
+    assert "0.8096847184" in result.stdout
+    assert result.stderr == "bezstab: B4: two branches could not be told apart\n"
+
+
+STEPS = 40  # implicit Euler steps composed, z = (1 - mu / 40)^-40: as many stages as a file may have
+
+
+def test_of_any_stages_the_verdict_is_given(tmp_path: Path) -> None:
+    rows_of_a = ", ".join(str(["1/40"] * (k + 1) + ["0"] * (STEPS - k - 1)) for k in range(STEPS))
+    path = tmp_path / "composed.toml"
+    path.write_text(f"A = [{rows_of_a}]\nb = {['1/40'] * STEPS}\n")
+    result = run("check", "--method", str(path), "--alpha", "1", "--beta", "1/4")
+    assert result.exit_code == 0
+    assert result.stdout.startswith("Safe. The error shrinks")
+    assert "too many stages" in " ".join(result.stdout.split())
+    assert "too many stages" in result.stderr
 
 
 def test_a_defect_does_not_end_as_unsafe(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,11 +7,13 @@ from math import pi
 import numpy as np
 import pytest
 
+from bezstab.errors import NumericalError
 from bezstab.methods import Method, RungeKutta, lookup
-from bezstab.stability import pencil_of
+from bezstab.stability import pencil_of, region
 from bezstab.stability.line_slices import (
     RIM,
     all_inside,
+    edge_noise,
     island_radii,
     mu_bound,
     paired_crossings,
@@ -19,7 +21,7 @@ from bezstab.stability.line_slices import (
     rim_radius,
     slices,
 )
-from bezstab.stability.pencils import moduli_in_z
+from bezstab.stability.pencils import moduli_in_z, roots_in_mu
 from bezstab.stability.self_checks import proven_inside
 from tests.reference.random_methods import random_method
 from tests.reference.slice_integral import slice_area
@@ -113,3 +115,27 @@ def test_beyond_the_features_of_an_implicit_method_the_verdict_depends_on_the_di
     expected = {"trapezoid": half_plane, "gauss4": half_plane, "am4": np.full(101, False)}
     for row in inside:
         assert (row == expected.get(name, np.full(101, True)))[off_axis].all()
+
+
+@pytest.mark.parametrize("steps", [4, 8, 12, 16])
+def test_the_noise_of_an_edge_is_no_less_than_its_error(steps: int) -> None:
+    """Of implicit Euler steps composed: z = (1 - mu / n)^-n lies on the circle where |mu - n| = n."""
+    h = Fraction(1, steps)
+    rows = tuple((h,) * (k + 1) + (Fraction(0),) * (steps - k - 1) for k in range(steps))
+    pencil = pencil_of(Method("composed", RungeKutta(rows, (h,) * steps), ""))
+    radius = np.linspace(0.3, 1.95, 40) * steps
+    crossings = paired_crossings(pencil, 1.0, radius)
+    off = np.nanmin(np.abs(crossings - radius[:, np.newaxis] ** 2 / (2 * steps)), axis=1) / radius
+    assert off.max() < 2 * edge_noise(pencil, 1.0, squared=True)
+    mu = roots_in_mu(pencil, np.exp(1j * np.linspace(0.2, 3, 15)))
+    off = np.abs(np.abs(mu - steps) - steps) / np.abs(mu)
+    noise = edge_noise(pencil, 1.0, squared=False)
+    assert noise / 1e4 < off.max() < 2 * noise
+
+
+def test_of_too_many_stages_there_is_no_region() -> None:
+    """Float64 rounds the squares of twenty implicit Euler steps' (1 + 2)^20 by more than the one they differ by."""
+    h = Fraction(1, 20)
+    rows = tuple((h,) * (k + 1) + (Fraction(0),) * (19 - k) for k in range(20))
+    with pytest.raises(NumericalError, match="composed: float64 keeps no digits"):
+        region(Method("composed", RungeKutta(rows, (h,) * 20), ""))
