@@ -102,7 +102,7 @@ def test_a_region_knows_what_it_contains() -> None:
         (lambda: bezstab.region("B4", level=float("nan")), "level nan: expected above 0 and at most 1"),
         (
             lambda: bezstab.choose("B4", goal=cast(Any, "quick")),
-            "goal 'quick': expected robust, fastest, critical, gentle",
+            "goal 'quick': expected accurate, robust, fastest, critical, gentle",
         ),
         (lambda: bezstab.choose("B4", goal="gentle"), "the goal gentle need the step h in s"),
         (lambda: bezstab.choose("B4", spread=-0.5), "spread -0.5: expected a share from 0 to 1"),

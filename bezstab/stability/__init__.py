@@ -36,10 +36,10 @@ From a method's polynomial in float64 (its pencil) upwards; a file imports only 
     step_sequences    whether feedback decays for every sequence of steps within a range
     damping_limits    up to which steps, by damping ratio
     far_limits        what |z_p| of a second-order scheme tends to far out
-    forced_errors     the error that a method forces with a feedback, over the plane
-    accurate_points   where that is least
     plane_best_points the smallest |z_p| of a second-order scheme
     best_points       the smallest |z_p|
+    forced_errors     the error that a method forces with a feedback, over the plane
+    accurate_points   where that is least
     curve_choices     the best point of a curve
     choices           which parameters to take
     feedback_costs    what accuracy a feedback costs
