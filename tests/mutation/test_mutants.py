@@ -12,7 +12,6 @@ from tests.mutation.campaign import harmless_reasons
 from tests.mutation.executed_lines import ExecutedLines, rings
 from tests.mutation.mutants import KINDS, ROOT, Mutant, all_mutants, sampled
 
-
 every_mutant = cache(all_mutants)  # some 10,700: a second or two
 
 
