@@ -7,6 +7,8 @@ mu^2 + alpha_hat mu + beta_hat = 0. Eliminating mu from the two by a resultant g
 from collections.abc import Sequence
 from fractions import Fraction
 from functools import cache
+from math import lcm
+from operator import mul
 
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
@@ -185,12 +187,15 @@ def closed_loop_at(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> l
     zero where a root is infinite: there an implicit step has no solution.
     """
     if isinstance(method.scheme, SecondOrder):
+        planes, scale_of_planes = _whole_planes(method)
+        alpha_powers = _whole_powers(alpha_hat, len(planes[0]) - 1)
+        beta_powers = _whole_powers(beta_hat, len(planes[0][0]) - 1)
+        scale = scale_of_planes * alpha_powers[0] * beta_powers[0]
         return [
-            sum(
-                (c * alpha_hat**i * beta_hat**j for i, row in enumerate(in_plane) for j, c in enumerate(row)),
-                ZERO,
+            Fraction(
+                sum(a * sum(map(mul, row, beta_powers)) for a, row in zip(alpha_powers, in_plane, strict=True)), scale
             )
-            for in_plane in reversed(closed_loop_table(method))
+            for in_plane in planes
         ]
     # The feedback is mu^2 + p mu + q = 0 with roots mu_1, mu_2. Modulo it every power of mu is u + v mu, hence
     # pi = A(z) + B(z) mu at either root, and P is the product of the two (the norm of pi):
@@ -208,6 +213,19 @@ def closed_loop_at(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> l
     scale = scale_of_feedback * (scale_of_rows * scale_of_powers) ** 2
     terms = zip(_product(A, A), _product(A, B), _product(B, B), strict=True)
     return [Fraction(on_AA * aa + on_AB * ab + on_BB * bb, scale) for aa, ab, bb in terms]
+
+
+@cache
+def _whole_planes(method: Method) -> tuple[list[list[list[int]]], int]:
+    """Return a multiple of the closed loop's table that is whole, by descending powers of z, and the factor."""
+    descending = closed_loop_table(method)[::-1]
+    scale = lcm(*(c.denominator for in_plane in descending for row in in_plane for c in row))
+    return [[[int(c * scale) for c in row] for row in in_plane] for in_plane in descending], scale
+
+
+def _whole_powers(number: Fraction, most: int) -> list[int]:
+    """Return d^most number^k for k = 0 to `most`, d its denominator: whole numbers, whose sums are fast."""
+    return [number.numerator**k * number.denominator ** (most - k) for k in range(most + 1)]
 
 
 @cache
