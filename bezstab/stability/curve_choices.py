@@ -22,6 +22,7 @@ Curve = Callable[[Any], tuple[Any, Any]]
 
 SAMPLES = 1000  # |z_p| has no features as narrow as that, and what is narrower the zoom finds
 GRID, ZOOM, ROUNDS = 21, 0.2, 15  # 0.2^15 = 3e-11 of the curve, where the objective is flat to rounding
+ROUNDING = 1e-14  # of a share: so near to a sample it is the sample, which may be an exact point, as beta_hat = 1 is
 CHECKED = 400  # shares, between the samples
 
 
@@ -46,6 +47,8 @@ def least_along(curve: Curve, objective: Objective) -> tuple[float, float]:
         rounds=ROUNDS,
         fold=lambda points: np.clip(points, samples[0], 1),
     )
+    if abs(zoomed - nearest) < ROUNDING:
+        zoomed = nearest
     as_small = min(float(least), float(sampled.min())) * (1 + AS_SMALL)
     shares = np.sort(np.append(samples, zoomed))
     found = first_where(lambda some: values(some, as_small) <= as_small, shares)

@@ -10,7 +10,7 @@ real axis.
                       \(   )|               leans furthest into the left half-plane meet no edge; if all of the
            --------------'--0----  Re mu    negative axis lies in S_1, so do they
 
-A method without mu (second-order, or partitioned) has P instead: along a parabola its coefficients are polynomials in
+A second-order scheme, which has no mu, has P instead: along a parabola its coefficients are polynomials in
 beta h, and edges lie at zeros of the last conditions for stability (quadrant_proofs), which are isolated exactly.
 """
 
@@ -23,7 +23,6 @@ import sympy as sp
 
 from bezstab.methods import (
     Method,
-    Partitioned,
     SecondOrder,
     closed_loop_table,
     coefficient_table,
@@ -62,7 +61,7 @@ def critical_damping_limit(method: Method) -> float | None:
         return 0.0
     if stable_for_all(method) == "proven":
         return None
-    if isinstance(method.scheme, SecondOrder | Partitioned):
+    if isinstance(method.scheme, SecondOrder):
         return _limit_at(method, Fraction(1))
     bounds = _stable_mu(without_shared_factor(method))
     size = max((end - start for start, end in bounds.intervals), default=0.0)
@@ -84,7 +83,7 @@ def exact_critical_damping_limit(method: Method) -> Fraction | None:
     limit = critical_damping_limit(method)
     if limit == 0:
         return Fraction(0)
-    if limit is None or isinstance(method.scheme, SecondOrder | Partitioned):
+    if limit is None or isinstance(method.scheme, SecondOrder):
         return None
     roots = [root for polynomial in _at_real_roots(method) for root in polynomial.ground_roots()]
     limits = [-Fraction(int(root.p), int(root.q)) / method.step_multiple for root in roots]
@@ -102,7 +101,7 @@ def unconditional_damping_ratio(method: Method) -> float | None:
         return None
     if stable_for_all(method) == "proven":
         return 0.0
-    if isinstance(method.scheme, SecondOrder | Partitioned):
+    if isinstance(method.scheme, SecondOrder):
         return _ratio_by_halving(method)
     if critical_damping_limit(method) is not None:
         return None  # both mu real is the strongest damping

@@ -253,8 +253,8 @@ def test_a_drive_without_one_of_its_gains_is_shown_too(gains: str) -> None:
         (("check", "--engine", "bullet", "--h", "0.01"), "'bullet' has no values: expected bullet=ERP"),
         (("check", "--pd", "1,2,0", "--h", "0.01"), "'--pd': inertia 0: expected above 0"),
         (
-            ("choose", "--engine", "bullet", "--h", "0.01", "--goal", "critical"),
-            "ask `check --engine bullet=ERP` about values of yours",
+            ("choose", "--engine", "box2d", "--h", "0.01", "--goal", "critical"),
+            "ask `check --engine box2d=hertz,dampingRatio` about values of yours",
         ),
     ],
 )

@@ -21,9 +21,7 @@ def test_a_path_that_stays_where_it_is_crosses_nothing() -> None:
     assert crossing_factors(Path(lookup("RK4"), Fraction(0), Fraction(1, 10), (1, 0))) == []
 
 
-@pytest.mark.parametrize(
-    "name", sampled(["B4", "AB4", "ABM3", "RK4", "SYM", "bdf3", "hht", "yoshida4"], quick=["B4", "SYM"])
-)
+@pytest.mark.parametrize("name", sampled(["B4", "AB4", "ABM3", "RK4", "bdf3", "hht", "yoshida4"], quick=["B4"]))
 @pytest.mark.parametrize("powers", [(1, 2), (1, 0), (0, 2)])
 @settings(deadline=None, max_examples=3)
 @given(
