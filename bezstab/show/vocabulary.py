@@ -151,7 +151,7 @@ VOCABULARY: Mapping[str, Key] = {
     ),
     "times_least": Key(
         "number",
-        "total_error over that at the point of the goal accurate, which weighs velocities as well",
+        "Total error over that at the point of the goal accurate, which weighs velocities as well",
         null=f"{NO_ERROR}, or that point is",
     ),
     # choices and checks

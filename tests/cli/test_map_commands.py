@@ -23,6 +23,11 @@ def test_poles_prints_the_default_methods_and_keys() -> None:
         "z_angle_deg",
         "verdict",
         "safe",
+        "omega_h",
+        "forced_error",
+        "total_error",
+        "order_left",
+        "times_least",
     ]
     assert {row["verdict"] for row in found} == {"converges"}
 
