@@ -72,7 +72,7 @@ def typed_omega_h(
         assert scene
         of_scene = _motion_of(scene, speed)
         omega, amplitude = exact(of_scene.omega), of_scene.amplitude
-        given, whose = f"--scene {scene}", f"that of {scene}"
+        given, whose = f"--scene {scene} moves with ω = {float(omega):.3g} 1/s", f"that of {scene}"
     else:
         given, whose = f"--omega {typed_number(omega)}", "one"
     omega_h = omega * h
