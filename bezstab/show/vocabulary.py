@@ -144,6 +144,9 @@ VOCABULARY: Mapping[str, Key] = {
         "Constraint error that is left in a run, as such a share: the largest that is forced at any rate up to omega",
         null=NO_ERROR,
     ),
+    "velocity_error": Key(
+        "number", "Error forced on the velocity of that motion, as a share of the velocity's amplitude", null=NO_ERROR
+    ),
     "order_left": Key(
         "integer",
         "Order in h of the forced error where alpha_hat and beta_hat are held, at most the method's own",
@@ -152,7 +155,10 @@ VOCABULARY: Mapping[str, Key] = {
     "times_least": Key(
         "number",
         "Total error over that at the point of the goal accurate, which weighs velocities as well",
-        null=f"{NO_ERROR}, or that point is",
+        null=f"{NO_ERROR}, or that point is not",
+    ),
+    "times_least_velocity": Key(
+        "number", "Velocity error over that at the same point", null=f"{NO_ERROR}, or that point is not"
     ),
     # choices and checks
     "role": Key("text", "Whether the point was given, or is what to take instead", values=("given", "instead")),

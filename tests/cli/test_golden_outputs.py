@@ -104,7 +104,7 @@ ADDED = (
     *("judged_runs", "judged", "agreeing", "too_close", "margins_reason"),
     *("safe", "error_constant", "engine_h_limit", "z_abs_below", "critical_damping_limit_exact", "approached"),
     *("role", "setting", "sweeps"),
-    *("omega_h", "forced_error", "total_error", "order_left", "times_least"),
+    *("omega_h", "forced_error", "total_error", "velocity_error", "order_left", "times_least", "times_least_velocity"),
 )
 """Keys that rows have got since, in their place: more of what a region, a choice and a method is, work in a run,
 what the motion does to a measured pole, up to which step an engine's values are stable, whether the engine sweeps,
