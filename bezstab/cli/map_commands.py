@@ -177,7 +177,7 @@ def poles(
         say_if_units_were_mistaken(methods, alpha, beta, h)
     turning = turning_of(scene, speed, h)
     motion = typed_omega_h(omega, scene, speed, h)
-    say_if_it_turns_too_far(turning, scene, h)
+    say_if_it_turns_too_far(turning, scene, speed, h)
     alpha_hat, beta_hat = map(float, typed.point)
     poles_of = stability.poles if all_poles else stability.dominant_pole
     rows: list[Row] = []
@@ -318,9 +318,10 @@ def region(
     methods = methods_asked(methods, engine, None)
     if scene and compare:
         raise click.UsageError("--scene draws one map for each method: not with --compare")
-    turnings = {float(speed): turning_of(scene, speed, h) for speed in speeds or [Fraction(1)]}
-    for turning in turnings.values():
-        say_if_it_turns_too_far(turning, scene, h)
+    turnings = {}
+    for speed in speeds or [Fraction(1)]:
+        turnings[float(speed)] = turning_of(scene, speed, h)
+        say_if_it_turns_too_far(turnings[float(speed)], scene, speed, h)
     if compare and len(levels) > 1:
         raise InputError(f"--compare takes one --level, but {len(levels)} were given")
     if figure != "none" or table != "none":
