@@ -19,6 +19,12 @@ from bezstab.units import feedback_gains
 LIMITS = ("alpha_hat_min", "alpha_hat_max", "beta_hat_min", "beta_hat_max")
 """The ends of a region's ranges, as rows name them."""
 
+COST = (
+    *("omega_h", "forced_error", "total_error", "velocity_error", "order_left"),
+    *("times_least", "times_least_velocity"),
+)
+"""What accuracy a feedback costs, as rows name it."""
+
 NOT_KNOWN = "not known"
 """How the reason begins where the search for a best point failed."""
 
@@ -39,7 +45,7 @@ if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
     )
     from bezstab.mechanism import Simulation
     from bezstab.methods import Verdict
-    from bezstab.stability import BestPoint, Choice, Limit, Member, Region
+    from bezstab.stability import BestPoint, Choice, FeedbackCost, Limit, Member, Region
 
 
 def row(result: DataclassInstance, without: Collection[str] = (), **more: Value) -> dict[str, Value]:
@@ -488,6 +494,14 @@ def choice_row(
         beta_factor_min=beta_min,
         beta_factor_max=beta_max,
     )
+
+
+def cost_row(cost: FeedbackCost | None, omega_h: float) -> dict[str, Value]:
+    """Return what accuracy a feedback costs on a motion of omega_h rad a step; None for what is not known."""
+    if cost is None:
+        nothing = dict.fromkeys(COST)
+        return {**nothing, "omega_h": omega_h}
+    return row(cost, without={"order", "least_at"})
 
 
 def alpha_and_beta(alpha_hat: float, beta_hat: float, h: float) -> tuple[float, float | None]:

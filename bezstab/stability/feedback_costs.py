@@ -4,51 +4,94 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 
+import numpy as np
+
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method, accuracy, leading_error
+from bezstab.rationals import exact
+from bezstab.stability.arrays import FloatArray
 from bezstab.stability.choices import choose
-from bezstab.stability.closed_loop import spectral_radius
-from bezstab.stability.forced_errors import OMEGA_H, forced_error
+from bezstab.stability.closed_loop import converges
+from bezstab.stability.forced_errors import OMEGA_H, check_omega_h, forced_error
 
 
 @dataclass(frozen=True)
 class FeedbackCost:
     """Errors as shares of the amplitude of a motion of omega_h rad a step; None where errors do not decay at all.
 
-    forced_error: of the constraint, in the steady state. total_error: what is left in a run (forced_errors.py).
-    order_left: the order in h of the error where alpha_hat and beta_hat are held, at most `order`, the method's own.
-    times_least: total_error over that at `least_at`, (alpha_hat, beta_hat) of the goal accurate; None where there is
-    no such point.
+    None, too, where they leave the range of float64. forced_error: of the constraint, in the steady state. total_error:
+    what is left of it in a run (forced_errors.py). velocity_error: of its velocity, as a share of that one's amplitude.
+    order_left: the order in h of the forced error where alpha_hat and beta_hat are held, at most `order`, the method's
+    own. times_least, times_least_velocity: total and velocity error over those at `least_at`, (alpha_hat, beta_hat) of
+    the goal accurate, which weighs both: elsewhere one of the two may be less. None where no such point is known.
     """
 
     omega_h: float
     forced_error: float | None
     total_error: float | None
+    velocity_error: float | None
     order_left: int
     order: int
     times_least: float | None
+    times_least_velocity: float | None
     least_at: tuple[float, float] | None
 
 
-def feedback_cost(method: Method, alpha_hat: float, beta_hat: float, omega_h: Fraction = OMEGA_H) -> FeedbackCost:
+def feedback_cost(
+    method: Method, alpha_hat: float | Fraction, beta_hat: float | Fraction, omega_h: Fraction = OMEGA_H
+) -> FeedbackCost:
     """Return what accuracy a feedback costs on a motion of omega_h rad a step; InputError unless 1e-6 <= omega_h < 1.
 
-    Source: methods/steady_errors.py; the goal accurate is this package's.
+    InputError, too, where what the method forces would take too long to find (methods/steady_errors.py, the source);
+    the goal accurate is this package's.
     """
     order, _ = accuracy(method)
-    errors = forced_error(method, alpha_hat, beta_hat, omega_h)
-    decays = bool(spectral_radius(method, alpha_hat, beta_hat) < 1)
+    leading = leading_error(method)
+    shares = _shares(method, alpha_hat, beta_hat, omega_h)
     least_at = _least_at(method, omega_h)
-    least = None if least_at is None else float(forced_error(method, *least_at, omega_h).total)
+    least = _NONE if least_at is None else _shares(method, *least_at, omega_h)
     return FeedbackCost(
         omega_h=float(omega_h),
-        forced_error=float(errors.position) if decays else None,
-        total_error=float(errors.total) if decays else None,
-        order_left=min(order, leading_error(method).order_left),
+        forced_error=shares.position,
+        total_error=shares.total,
+        velocity_error=shares.velocity,
+        order_left=min(order, leading.order_left),
         order=order,
-        times_least=float(errors.total) / least if decays and least else None,
+        times_least=_times(shares.total, least.total),
+        times_least_velocity=_times(shares.velocity, least.velocity),
         least_at=least_at,
     )
+
+
+@dataclass(frozen=True)
+class _Shares:
+    """Forced errors at one point; None in place of what is not finite, or not decaying."""
+
+    position: float | None = None
+    total: float | None = None
+    velocity: float | None = None
+
+
+_NONE = _Shares()
+
+
+def _shares(method: Method, alpha_hat: float | Fraction, beta_hat: float | Fraction, omega_h: Fraction) -> _Shares:
+    """Return the errors at a point."""
+    check_omega_h(omega_h)
+    a, b = (each if isinstance(each, Fraction) else exact(each) for each in (alpha_hat, beta_hat))
+    if not converges(method, a, b):
+        return _NONE
+    with np.errstate(over="ignore", invalid="ignore"):  # found below
+        errors = forced_error(method, float(a), float(b), omega_h)
+    return _Shares(*(_finite(error) for error in (errors.position, errors.total, errors.velocity)))
+
+
+def _finite(error: FloatArray) -> float | None:
+    return float(error) if np.isfinite(error) else None
+
+
+def _times(error: float | None, least: float | None) -> float | None:
+    return error / least if error is not None and least else None
 
 
 @lru_cache(maxsize=256)
