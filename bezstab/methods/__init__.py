@@ -93,7 +93,7 @@ if TYPE_CHECKING:
         mapping_equations,
     )
     from bezstab.methods.first_order_forms import first_order_form
-    from bezstab.methods.formulas import characteristic_text, mapping_text, recursion_text
+    from bezstab.methods.formulas import characteristic_text, mapping_text, recursion_text, steady_error_text
     from bezstab.methods.orders import ForceAccuracy, accuracy, accuracy_by_force
     from bezstab.methods.plane_edges import (
         Crossing,
@@ -126,7 +126,7 @@ DERIVED = {
         "mapping_equations",
     ),
     "first_order_forms": ("first_order_form",),
-    "formulas": ("characteristic_text", "mapping_text", "recursion_text"),
+    "formulas": ("characteristic_text", "mapping_text", "recursion_text", "steady_error_text"),
     "orders": ("ForceAccuracy", "accuracy", "accuracy_by_force"),
     "plane_edges": (
         "Crossing",
@@ -224,6 +224,7 @@ __all__ = [
     "recursion_verdict",
     "reduced_table",
     "second_order_form",
+    "steady_error_text",
     "step_matrix",
     "steps",
     "value_at_start",

@@ -131,14 +131,31 @@ def method_row(method: Method) -> Row:
 
 
 def formula_row(method: Method, latex: bool = False) -> Row:
-    """Return one method's recursion, s->z mapping and characteristic polynomial (paper Tables 1 and 2), as text."""
-    from bezstab.methods import characteristic_text, mapping_text, recursion_text  # loads sympy
+    """Return one method's recursion, s->z mapping, characteristic polynomial (paper Tables 1 and 2), steady errors.
+
+    As text. `steady_error` is that of constraints, `steady_velocity_error` that of their velocities, each as a share of
+    the motion's; `order_left` the order of constraint errors where alpha_hat and beta_hat are held, at most the
+    method's own.
+    """
+    from bezstab.methods import (  # loads sympy
+        accuracy,
+        characteristic_text,
+        leading_error,
+        mapping_text,
+        recursion_text,
+        steady_error_text,
+    )
+
+    order, _ = accuracy(method)
 
     return {
         "method": method.name,
         "recursion": recursion_text(method, latex),
         "mapping": mapping_text(method, latex),
         "characteristic_polynomial": characteristic_text(method, latex),
+        "steady_error": steady_error_text(method, "x", latex),
+        "steady_velocity_error": steady_error_text(method, "v", latex),
+        "order_left": min(order, leading_error(method).order_left),
     }
 
 

@@ -59,7 +59,8 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
         RowKind("a method in the list", _keys(f"{METHOD} group")),
         RowKind(
             "a method that was named",
-            _keys(f"{METHOD} recursion mapping characteristic_polynomial {REGION}"),
+            _keys(f"""{METHOD} recursion mapping characteristic_polynomial steady_error steady_velocity_error order_left
+                {REGION}"""),
         ),
     ],
     "family": [

@@ -131,6 +131,16 @@ VOCABULARY: Mapping[str, Key] = {
     "recursion": Key("text", "The method's recursion"),
     "mapping": Key("text", "The method's mapping from s to z"),
     "characteristic_polynomial": Key("text", "Polynomial in z whose roots are the poles"),
+    "steady_error": Key(
+        "text",
+        "What the method forces on a constraint that moves as e^(i omega t), as a share of that motion: the first term "
+        "in theta = i omega h where alpha_hat and beta_hat are held",
+    ),
+    "steady_velocity_error": Key("text", "The same of the velocity, as a share of that of the motion"),
+    "order_left": Key(
+        "integer",
+        "Order in h that constraint errors keep where alpha_hat and beta_hat are held, at most the method's own",
+    ),
     # choices and checks
     "role": Key("text", "Whether the point was given, or is what to take instead", values=("given", "instead")),
     "goal": Key("text", "What the point was chosen for, or that it is as given"),

@@ -103,10 +103,11 @@ ADDED = (
     *("judged_runs", "judged", "agreeing", "too_close", "margins_reason"),
     *("safe", "error_constant", "engine_h_limit", "z_abs_below", "critical_damping_limit_exact", "approached"),
     *("role", "setting", "sweeps"),
+    *("steady_error", "steady_velocity_error", "order_left"),
 )
 """Keys that rows have got since, in their place: more of what a region, a choice and a method is, work in a run,
 what the motion does to a measured pole, up to which step an engine's values are stable, whether the engine sweeps, and
-which rows of check were given."""
+which rows of check were given; the error that a method forces on what moves."""
 
 
 def tolerance(command: str, key: str) -> Tolerance:
