@@ -27,6 +27,7 @@ if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
 
     from bezstab.engines import Drive, Engine
     from bezstab.evidence import (
+        HalvedStep,
         Likeness,
         LikePoint,
         Linted,
@@ -357,6 +358,27 @@ def measurement_row(scene: str, measurement: Measurement) -> Row:
         "verdicts_agree": measurement.verdicts_agree,
         "right": measurement.right,
     }
+
+
+def forced_rows(scene: str, pair: HalvedStep) -> list[Row]:
+    """Return what two runs at one point were predicted to force and did, the larger step first; SI units.
+
+    None where a run broke down; orders are between the two, and stand in the row of the smaller step.
+    """
+    return [
+        row(
+            run,
+            without={"predicted", "measured"},
+            scene=scene,
+            gain_share=pair.share,
+            predicted_error=run.predicted,
+            measured_error=None if run.failure else run.measured,
+            quotient=None if run.failure else run.quotient,
+            predicted_order=pair.predicted_order if run is pair.half else None,
+            observed_order=None if run is pair.whole or pair.holds is None else pair.observed_order,
+        )
+        for run in (pair.whole, pair.half)
+    ]
 
 
 def summary_row(measurements: Sequence[Row]) -> Row:

@@ -119,6 +119,11 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
             ),
         ),
         RowKind(
+            "what a method forces on a mechanism",
+            _keys("""scene method gain_share alpha_hat beta_hat h predicted_error measured_error quotient
+                predicted_order observed_order failure"""),
+        ),
+        RowKind(
             "a run of an engine that is not ours",
             _keys("""scene integrator method alpha_hat beta_hat times_boundary predicted_z_abs predicted_verdict
                 measured_verdict remaining run_steps"""),

@@ -298,6 +298,16 @@ VOCABULARY: Mapping[str, Key] = {
     "measurable": Key("truth", "Whether the pole could be measured"),
     "verdicts_agree": Key("truth", "Whether predicted and measured verdict agree", null="where either is not settled"),
     "right": Key("text", "Which predictions have the measured verdict: at rest, law, exact (or over the run)"),
+    # predicted against measured errors
+    "gain_share": Key("number", "Times alpha and beta of the point that was chosen or given"),
+    "predicted_error": Key("number", "Largest constraint error predicted for the later half of the run", "m or rad"),
+    "measured_error": Key(
+        "number", "Largest constraint error in the later half of the run", "m or rad", "if the run failed"
+    ),
+    "quotient": Key("number", "Measured over predicted error, 1 if they agree", null="if the run failed"),
+    "predicted_order": Key(
+        "number", "Order in h of the predicted error between this and the next larger step", null="of the largest step"
+    ),
     # maps of simulated verdicts
     "runs": Key("integer", "Number of runs"),
     "undecided": Key("integer", "Runs that gave no verdict"),
