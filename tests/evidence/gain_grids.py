@@ -6,7 +6,6 @@ python -m tests.evidence.gain_grids [METHOD ...]      the table of bezstab/evide
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 
 import numpy as np
 
@@ -104,13 +103,13 @@ def measured(scene: str, method: Method, h: float, duration: float, point: Point
 def print_table(names: Sequence[str]) -> None:
     """Print for each scene and method how far each goal is from the best, and by what the default is beaten."""
     heads = " | ".join(f"{goal}: c, q" for goal in GOALS)
-    print(f"| scene | method | {heads} | default beaten |")  # noqa: T201
-    print("|---" * (len(GOALS) + 3) + "|")  # noqa: T201
+    print(f"| scene | method | {heads} | default beaten |")
+    print("|---" * (len(GOALS) + 3) + "|")
     for scene in SCENES:
         for name in names:
             found = grid(scene, name)
             cells = " | ".join("{:.2g}, {:.2g}".format(*found.from_best(goal)) for goal in GOALS)
-            print(f"| {scene} | {name} | {cells} | {found.beaten('accurate'):.2f} |", flush=True)  # noqa: T201
+            print(f"| {scene} | {name} | {cells} | {found.beaten('accurate'):.2f} |", flush=True)
 
 
 if __name__ == "__main__":
