@@ -64,7 +64,8 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
         RowKind("a method in the list", _keys(f"{METHOD} group")),
         RowKind(
             "a method that was named",
-            _keys(f"{METHOD} recursion mapping characteristic_polynomial {REGION}"),
+            _keys(f"""{METHOD} recursion mapping characteristic_polynomial steady_error steady_velocity_error order_left
+                {REGION}"""),
         ),
     ],
     "family": [
@@ -121,6 +122,11 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
                 "scene method h run_steps runs undecided judged_runs agreeing agreeing_share band too_close farthest "
                 "disagreeing"
             ),
+        ),
+        RowKind(
+            "what a method forces on a mechanism",
+            _keys("""scene method gain_share alpha_hat beta_hat h predicted_error measured_error quotient
+                predicted_order observed_order failure"""),
         ),
         RowKind(
             "a run of an engine that is not ours",

@@ -132,6 +132,12 @@ VOCABULARY: Mapping[str, Key] = {
     "recursion": Key("text", "The method's recursion"),
     "mapping": Key("text", "The method's mapping from s to z"),
     "characteristic_polynomial": Key("text", "Polynomial in z whose roots are the poles"),
+    "steady_error": Key(
+        "text",
+        "What the method forces on a constraint that moves as e^(i omega t), as a share of that motion: the first term "
+        "in theta = i omega h where alpha_hat and beta_hat are held",
+    ),
+    "steady_velocity_error": Key("text", "The same of the velocity, as a share of that of the motion"),
     # what accuracy a feedback costs
     "omega_h": Key("number", "How far the motion that errors are told of turns in a step, omega h", "rad"),
     "forced_error": Key(
@@ -317,6 +323,16 @@ VOCABULARY: Mapping[str, Key] = {
     "measurable": Key("truth", "Whether the pole could be measured"),
     "verdicts_agree": Key("truth", "Whether predicted and measured verdict agree", null="where either is not settled"),
     "right": Key("text", "Which predictions have the measured verdict: at rest, law, exact (or over the run)"),
+    # predicted against measured errors
+    "gain_share": Key("number", "Times alpha and beta of the point that was chosen or given"),
+    "predicted_error": Key("number", "Largest constraint error predicted for the later half of the run", "m or rad"),
+    "measured_error": Key(
+        "number", "Largest constraint error in the later half of the run", "m or rad", "if the run failed"
+    ),
+    "quotient": Key("number", "Measured over predicted error, 1 if they agree", null="if the run failed"),
+    "predicted_order": Key(
+        "number", "Order in h of the predicted error between this and the next larger step", null="of the largest step"
+    ),
     # maps of simulated verdicts
     "runs": Key("integer", "Number of runs"),
     "undecided": Key("integer", "Runs that gave no verdict"),

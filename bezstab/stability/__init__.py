@@ -73,6 +73,7 @@ from bezstab.stability.forced_errors import (
     check_omega_h,
     forced_error,
     forced_response,
+    turning_response,
 )
 from bezstab.stability.gain_margins import GainLimits, gain_limits
 from bezstab.stability.grid_maps import QUALITY, pole_map
@@ -157,6 +158,7 @@ __all__ = [
     "stability_margins",
     "stable_for_all",
     "stable_up_to",
+    "turning_response",
     "turning_sensitivity",
     "turning_shift",
     "unconditional_damping_ratio",

@@ -105,10 +105,11 @@ ADDED = (
     *("safe", "error_constant", "engine_h_limit", "z_abs_below", "critical_damping_limit_exact", "approached"),
     *("role", "setting", "sweeps"),
     *("omega_h", "forced_error", "total_error", "velocity_error", "order_left", "times_least", "times_least_velocity"),
+    *("steady_error", "steady_velocity_error"),
 )
 """Keys that rows have got since, in their place: more of what a region, a choice and a method is, work in a run,
 what the motion does to a measured pole, up to which step an engine's values are stable, whether the engine sweeps,
-which rows of check were given, and what accuracy the feedback costs."""
+which rows of check were given, the error that a method forces on what moves, and what accuracy the feedback costs."""
 
 
 def tolerance(command: str, key: str) -> Tolerance:
