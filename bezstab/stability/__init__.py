@@ -10,9 +10,6 @@ From a method's polynomial in float64 (its pencil) upwards; a file imports only 
     neighbourhoods    the points of a grid in blocks of neighbours
     real_factors      the largest root of real polynomials, by a quadratic factor followed among neighbours
     plane_pencils     the same of a second-order scheme, and its poles
-    dominant_roots    the largest root at many mu, followed among neighbours
-    compiled_roots    as machine code: the largest root along a row of polynomials
-    compiled_maps     whether a map is compiled, and its rows shared among the cores
     closed_loop       poles, |z_p|, the proven verdict
     turning           what turning constraints do to a pole, to first order
     searches          where a condition comes to hold; where a value is least

@@ -34,10 +34,9 @@ from bezstab.methods import Method, SecondOrder, first_order_form, fixed_poles, 
 from bezstab.stability.answer_checks import check_best_point, check_deadbeat, check_plane_best_point
 from bezstab.stability.arrays import ComplexArray, FloatArray
 from bezstab.stability.closed_loop import free_pencil_of, largest_modulus
-from bezstab.stability.dominant_roots import dominant_root
 from bezstab.stability.far_limits import FarLimit
 from bezstab.stability.line_slices import all_inside
-from bezstab.stability.pencils import Pencil, deadbeat_mu, pencil_of, roots_in_mu, roots_in_z
+from bezstab.stability.pencils import Pencil, deadbeat_mu, largest_root_in_z, pencil_of, roots_in_mu, roots_in_z
 from bezstab.stability.plane_best_points import PlaneLeast, plane_least
 from bezstab.stability.plane_pencils import plane_pencil_of
 from bezstab.stability.regions import Extent, region
@@ -427,7 +426,7 @@ def _local_minima(pencil: Pencil, search: _Search) -> list[_Candidate]:
 
 def _largest_modulus(pencil: Pencil, mu: ComplexArray) -> FloatArray:
     """Return f(mu); shape of mu."""
-    return np.abs(dominant_root(pencil, mu.ravel())).reshape(mu.shape)
+    return np.abs(largest_root_in_z(pencil, mu.ravel())).reshape(mu.shape)
 
 
 def _kinks(pencil: Pencil, mu: complex) -> list[_Kink]:

@@ -259,12 +259,11 @@ def _multistep_crossings(pencil: Pencil, level: float, radius: FloatArray) -> Fl
         return np.asarray(np.clip((-rho / minus_sigma).real, -around, around))
 
 
-def edge_noise(pencil: Pencil, level: float, squared: bool) -> float:
-    """Return by what share of its |mu| rounding moves the locus |z| = level of a one-step method z = N / Q, at worst.
+def edge_noise(pencil: Pencil, level: float) -> float:
+    """Return by what share of |mu| rounding moves where lines cross |z| = level of a one-step z = N / Q, at worst.
 
-    `squared`: where lines cross it, which are zeros of |N|^2 - level^2 |Q|^2; else by its own equation. Terms are
-    rounded at the size that they have without their signs, and of many stages they cancel: of twenty implicit Euler
-    steps composed, z = (1 - mu / 20)^-20, their squares to nothing.
+    They are zeros of |N|^2 - level^2 |Q|^2. Terms are rounded at the size that they have without their signs, and of
+    many stages they cancel: of twenty implicit Euler steps composed, z = (1 - mu / 20)^-20, their squares to nothing.
     """
     mu = roots_in_mu(pencil, level * np.exp(1j * NOISE_ANGLES)).ravel()
     mu = mu[np.isfinite(mu) & (np.abs(mu) < AT_INFINITY)]
@@ -273,7 +272,7 @@ def edge_noise(pencil: Pencil, level: float, squared: bool) -> float:
         size = sum(polyval(np.abs(mu), np.abs(row)) for row in pencil.table)
         n, d = polyval(mu, numerator), polyval(mu, denominator)
         rate = np.abs(mu * (polyval(mu, polyder(numerator)) / n - polyval(mu, polyder(denominator)) / d))
-        noise = EPS * (size / np.abs(d)) ** (2 if squared else 1) / rate
+        noise = EPS * (size / np.abs(d)) ** 2 / rate
     return float(noise[np.isfinite(noise)].max(initial=0))
 
 

@@ -125,7 +125,7 @@ def region(method: Method, level: float = 1.0) -> Region:
     if stuck:
         return replace(region(without_shared_factor(method), level), method=method, fixed_poles=stuck)
     pencil = pencil_of(method)
-    if pencil.steps == 1 and edge_noise(pencil, level, squared=True) > NO_DIGITS:
+    if pencil.steps == 1 and edge_noise(pencil, level) > NO_DIGITS:
         raise NumericalError(f"{method.name}: float64 keeps no digits of where |z_p| = {level:g}: too many stages")
     try:
         return _checked_region(method, level, finer=1)

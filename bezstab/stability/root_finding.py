@@ -1,8 +1,7 @@
 """All roots of many polynomials at once: of sum_kj table[k, j] y^k x^j in y, for every x of a row.
 
 Along a row of a map neighbouring x have neighbouring roots. So one x in STRIDE is solved from scratch, with starts
-from the Newton polygon, and its roots start Aberth's iteration for the others. If but one root of each is wanted, it
-can be followed by Newton's method alone (`followed_roots`), which is several times faster.
+from the Newton polygon, and its roots start Aberth's iteration for the others.
 """
 
 from collections.abc import Sequence
@@ -22,7 +21,6 @@ FAR = 1e15  # |z| whose 16th power still fits float64
 NEAR = 0.2  # relative distance of x within which the roots of a neighbour are better starts than the polygon's
 NUDGE = 1e-3  # about a step of a map's grid, so it costs no iteration
 CONVERGED = 1e-9  # relative correction after which a quadratically convergent iterate is exact to rounding
-NEWTON_STEPS = 4  # from a start that is off by the square of a map's spacing two suffice
 LOG_OF_ZERO = -1e300  # a finite stand-in for log 0, below every logarithm of a float64
 
 
@@ -267,19 +265,3 @@ def newton_correction(coefficients: Sequence[Any] | FloatArray, y: ComplexArray)
         value = value * y + coefficient
     correction: ComplexArray = value / slope
     return correction
-
-
-def followed_roots(table: FloatArray, x: ComplexArray, starts: ComplexArray, bound: FloatArray) -> ComplexArray:
-    """Return the roots y that Newton's method reaches from the starts; nan where not settled, or not above the bound.
-
-    x, starts and the result have one shape, `bound` broadcasts to it: the modulus that no other root exceeds.
-    """
-    coefficients = [horner(row, x) if row[1:].any() else row[0] for row in table]
-    y = starts
-    for _ in range(NEWTON_STEPS):
-        step = newton_correction(coefficients, y)
-        y = y - step
-        settled = np.abs(step) <= CONVERGED * np.abs(y)
-        if settled.all():
-            break
-    return np.where(settled & (np.abs(y) > bound), y, np.nan)

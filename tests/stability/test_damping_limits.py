@@ -11,7 +11,6 @@ from bezstab.stability import (
     region,
     unconditional_damping_ratio,
 )
-from bezstab.stability.damping_limits import _limit_at
 from tests.methods.kinds import SECOND_ORDER
 from tests.reference.companion_poles import radius
 from tests.stability.made_methods import multistep, runge_kutta
@@ -107,12 +106,6 @@ def test_the_verdict_turns_at_the_limit_and_not_before(name: str) -> None:
     for share in (*(Fraction(k, 12) for k in range(1, 12)), 1 - Fraction(1, 10**9)):
         assert converges(method, Fraction(1), share * Fraction(limit))
     assert not converges(method, Fraction(1), (1 + Fraction(1, 10**9)) * Fraction(limit))
-
-
-@pytest.mark.parametrize("name", ["B2", "AB3", "am3", "RK2"])
-def test_both_routes_to_the_limit_agree(name: str) -> None:
-    by_p = _limit_at(lookup(name), Fraction(1))
-    assert by_p == pytest.approx(critical_damping_limit(lookup(name)), rel=1e-14)
 
 
 @pytest.mark.parametrize("name", ["implicit-euler", "bdf2", "bdf6", "gauss4", "average-acceleration", "hht"])

@@ -21,7 +21,7 @@ from bezstab.stability.line_slices import (
     rim_radius,
     slices,
 )
-from bezstab.stability.pencils import moduli_in_z, roots_in_mu
+from bezstab.stability.pencils import moduli_in_z
 from bezstab.stability.self_checks import proven_inside
 from tests.reference.random_methods import random_method
 from tests.reference.slice_integral import slice_area
@@ -125,11 +125,7 @@ def test_the_noise_of_an_edge_is_no_less_than_its_error(steps: int) -> None:
     radius = np.linspace(0.3, 1.95, 40) * steps
     crossings = paired_crossings(pencil, 1.0, radius)
     off = np.nanmin(np.abs(crossings - radius[:, np.newaxis] ** 2 / (2 * steps)), axis=1) / radius
-    assert off.max() < 2 * edge_noise(pencil, 1.0, squared=True)
-    mu = roots_in_mu(pencil, np.exp(1j * np.linspace(0.2, 3, 15)))
-    off = np.abs(np.abs(mu - steps) - steps) / np.abs(mu)
-    noise = edge_noise(pencil, 1.0, squared=False)
-    assert noise / 1e4 < off.max() < 2 * noise
+    assert off.max() < 2 * edge_noise(pencil, 1.0)
 
 
 def test_of_too_many_stages_there_is_no_region() -> None:

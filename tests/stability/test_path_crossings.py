@@ -18,7 +18,7 @@ def test_a_path_scales_its_point() -> None:
 
 
 def test_a_path_that_stays_where_it_is_crosses_nothing() -> None:
-    assert crossing_factors(Path(lookup("RK4"), Fraction(0), Fraction(1, 10), (1, 0))) == []
+    assert crossing_factors(Path(lookup("RK4"), Fraction(0), Fraction(1, 10), (1, 0))) == ()
 
 
 @pytest.mark.parametrize("name", sampled(["B4", "AB4", "ABM3", "RK4", "bdf3", "hht", "yoshida4"], quick=["B4"]))
