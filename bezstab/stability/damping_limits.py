@@ -15,7 +15,7 @@ from functools import cache
 
 import numpy as np
 
-from bezstab.methods import Method, SecondOrder, closed_loop_at
+from bezstab.methods import Method, SecondOrder, Z, characteristic_polynomial, without_shared_factor
 from bezstab.stability.arrays import BoolArray, FloatArray
 from bezstab.stability.path_crossings import ONE, ZERO, Path, crossing_factors, stable_end
 from bezstab.stability.quadrant_proofs import stable_for_all
@@ -23,6 +23,9 @@ from bezstab.stability.searches import first_where
 
 RATIOS: FloatArray = 1000 / 2 ** np.arange(21.0)
 """Damping ratios from one that stands for all large ones down to a thousandth: the last without a limit is bisected."""
+
+KNOWN_TO = Fraction(1, 2**60)
+"""Of itself: a limit that is not short is known to 70 bits, of which the path's own arithmetic may take some."""
 
 
 @cache
@@ -47,9 +50,10 @@ def exact_critical_damping_limit(method: Method) -> Fraction | None:
         return limit
     if isinstance(method.scheme, SecondOrder):
         return None
-    polynomial = closed_loop_at(method, 2 * limit, limit**2)
-    at_one, at_minus_one = sum(polynomial, ZERO), sum(((-1) ** k * c for k, c in enumerate(polynomial)), ZERO)
-    return None if at_one and at_minus_one else limit
+    pi = characteristic_polynomial(without_shared_factor(method))
+    rational_mu = [mu for z in (1, -1) for mu in pi.eval(Z, z).ground_roots()]
+    limits = [-Fraction(int(mu.p), int(mu.q)) / method.step_multiple for mu in rational_mu]
+    return next((exact for exact in limits if abs(exact - limit) <= KNOWN_TO * limit), None)
 
 
 @cache
