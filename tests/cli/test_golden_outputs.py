@@ -4,8 +4,9 @@ golden/outputs.json holds exit status, rows and written files of each command, w
 runs share. Changed since, on purpose: the row on Eq. 23, of which the paper prints five entries, not six; the source of
 SIE, which says what it is not; engines, of which there are more, with what they do to their values applied by check and
 left out of the line that choose prints, and two of their sources, whose words were wider than a narrow terminal; what
-the paper says, which is quoted, and rows for what it says that had none. What choose did without a goal it does with
---goal robust since: of its default goal there are rows of their own, and what check gives instead has that goal.
+the paper says, which is quoted, and rows for what it says that had none, the oscillation of RK4 among them. What choose
+did without a goal it does with --goal robust since: of its default goal there are rows of their own, and what check
+gives instead has that goal.
 """
 
 import json
