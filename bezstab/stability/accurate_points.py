@@ -8,7 +8,7 @@ import numpy as np
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method
 from bezstab.stability.arrays import BoolArray, FloatArray
-from bezstab.stability.forced_errors import forced_error
+from bezstab.stability.forced_errors import combined_error
 from bezstab.stability.regions import Extent
 from bezstab.stability.searches import zoom_on_minimum
 
@@ -101,10 +101,7 @@ def worst_error(
     omega_h: Fraction,
     spread: float,
 ) -> FloatArray:
-    """Return the largest error with alpha and beta off by the spread; infinite where it decays too slowly.
-
-    The total of q, at any frequency, and that of the velocity, as shares: constraints see the one, trajectories both.
-    """
+    """Return the largest combined error with alpha and beta off by the spread; infinite where it decays too slowly."""
     worst = np.zeros(alpha_hat.shape)
     for by_alpha, by_beta in ((0, 0), (-1, -1), (-1, 1), (1, -1), (1, 1)):  # the centre first: it leaves out the most
         left = np.flatnonzero(np.isfinite(worst))
@@ -112,6 +109,5 @@ def worst_error(
         worst[left] = np.where(decays(alpha, beta), worst[left], np.inf)
         left = np.flatnonzero(np.isfinite(worst))
         alpha, beta = (1 + by_alpha * spread) * alpha_hat[left], (1 + by_beta * spread) ** 2 * beta_hat[left]
-        error = forced_error(method, alpha, beta, omega_h, any_frequency=True)
-        worst[left] = np.maximum(worst[left], error.total + error.velocity)
+        worst[left] = np.maximum(worst[left], combined_error(method, alpha, beta, omega_h))
     return worst
