@@ -146,27 +146,34 @@ def best_point(method: str | Method) -> stability.BestPoint | None:
 def choose(
     method: str | Method,
     *,
-    goal: stability.Goal = "robust",
+    goal: stability.Goal = "accurate",
     spread: float = 0.1,
     h: Number | None = None,
     h_max: Number | None = None,
     settle: Number | None = None,
     equal: bool = False,
+    omega: Number | None = None,
+    omega_h: Number | None = None,
 ) -> stability.Choice:
     """Return the point that a goal asks for, dimensionless, proven stable, with the margins that remain.
 
-    robust: fastest at worst over smaller steps and over alpha, beta off by the share `spread`; with `h` and `h_max`
-    (s) the steps up to h_max, for use at h. fastest: least |z_p|. critical: the fastest dominant pole that is double,
-    real and positive. gentle: the mildest alpha = beta whose error falls a thousandfold within `settle` (s) at the step
-    `h` (s). `equal` keeps alpha = beta. `from_dimensionless` turns the answer into 1/s. InputError if nothing stable
-    meets the goal, and for a goal, spread or time that is none. The poles are those of paper Eq. 17, the goals this
-    package's.
+    accurate: the least error forced on a motion of `omega` (1/s, with the step `h` in s) or `omega_h` (rad a step,
+    0.01 unless given), among what settles within `settle` (s), or while that motion turns by 14 rad. robust: fastest at
+    worst over smaller steps and over alpha, beta off by the share `spread`; both with `h` and `h_max` (s) for the steps
+    up to h_max, for use at h, and then omega_h is that of h_max. fastest: least |z_p|. critical: the fastest dominant
+    pole that is double, real and positive. gentle: the mildest alpha = beta whose error falls a thousandfold within
+    `settle` (s) at the step `h` (s). `equal` keeps alpha = beta. `from_dimensionless` turns the answer into 1/s.
+    InputError if nothing stable meets the goal, and for a goal, spread, time or motion that is none. The poles are
+    those of paper Eq. 17, the goals this package's.
     """
     spread = _real(spread, "spread")
+    if goal != "accurate" and not (omega is None and omega_h is None):
+        raise InputError(f"omega and omega_h go with the goal accurate, not {goal}")
+    motion = _omega_h(omega, omega_h, h if h_max is None else h_max)
     if h is None:
         if h_max is not None or settle is not None or goal == "gentle":
             raise InputError("h_max, settle and the goal gentle need the step h in s")
-        return stability.choose(_method(method), goal, spread=spread, equal=equal)
+        return stability.choose(_method(method), goal, spread=spread, equal=equal, omega_h=motion)
     return stability.choose_at_step(
         _method(method),
         goal,
@@ -175,6 +182,7 @@ def choose(
         settle=_exact_if_given(settle, "settle"),
         spread=spread,
         equal=equal,
+        omega_h=motion,
     )
 
 
@@ -196,6 +204,29 @@ def check(
     """
     a, b = _plane_point(alpha_hat, beta_hat, alpha, beta, h)
     return stability.describe_point(_method(method), "as given", a, b, _real(spread, "spread"))
+
+
+def feedback_cost(
+    method: str | Method,
+    *,
+    alpha_hat: Number | None = None,
+    beta_hat: Number | None = None,
+    alpha: Number | None = None,
+    beta: Number | None = None,
+    h: Number | None = None,
+    omega: Number | None = None,
+    omega_h: Number | None = None,
+) -> stability.FeedbackCost:
+    """Return the error that a feedback forces on a motion, as a share of its amplitude; and which order it leaves.
+
+    The motion turns by `omega_h` (rad a step, 0.01 unless given), or by `omega` (1/s) at the step `h` (s).
+    `forced_error` is that of the constraint in the steady state, `total_error` what is left in a run, `times_least`
+    that over what the goal accurate of `choose` has; None where errors do not decay. `order_left` is the order in h
+    where alpha_hat and beta_hat are held, of `order`, the method's own. InputError unless the point is given in one of
+    the two ways, and omega h is 1e-6 to 1. The test equation of Prothero and Robinson (Math. Comp. 28, 1974).
+    """
+    a, b = _plane_point(alpha_hat, beta_hat, alpha, beta, h)
+    return stability.feedback_cost(_method(method), a, b, _omega_h(omega, omega_h, h))
 
 
 def simulate(
@@ -359,6 +390,25 @@ def _exact(value: Number, name: str) -> Fraction:
 
 def _exact_if_given(value: Number | None, name: str) -> Fraction | None:
     return None if value is None else _exact(value, name)
+
+
+def _omega_h(omega: Number | None, omega_h: Number | None, h: Number | None) -> Fraction:
+    """Return how far a motion turns in a step (rad), from omega in 1/s and h in s, or as it is; else what is usual.
+
+    InputError for both, for omega without h, and unless 1e-6 <= omega h < 1.
+    """
+    if omega is None:
+        found = stability.OMEGA_H if omega_h is None else _exact(omega_h, "omega_h")
+    elif omega_h is not None:
+        raise InputError("the motion is given as omega= in 1/s with h= in s, or as omega_h= in rad a step, not as both")
+    elif h is None:
+        raise InputError("omega in 1/s needs the step h in s")
+    else:
+        step = _exact(h, "h")
+        check_step(step)
+        found = _exact(omega, "omega") * step
+    stability.check_omega_h(found)
+    return found
 
 
 def _real(value: Number, name: str) -> float:

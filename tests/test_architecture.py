@@ -76,7 +76,10 @@ APPOINTED = {
     "click": {f"cli/{name}.py" for name in ("options", "output", "command_group")}
     | {f"cli/{name}_commands.py" for name in ("map", "choose", "evidence")}
     | {f"cli/{name}_command.py" for name in ("verify", "schema", "lint", "probe")}
-    | {f"cli/{name}.py" for name in ("moving_mechanism", "completion", "typed_points", "varying_steps")}
+    | {
+        f"cli/{name}.py"
+        for name in ("moving_mechanism", "completion", "typed_points", "varying_steps", "accuracy_options")
+    }
     | {"paper/command.py"},
     "mujoco": {"evidence/mujoco_models.py"},
     "distributed": {"evidence/worker_pools.py"},

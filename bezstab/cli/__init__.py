@@ -10,6 +10,7 @@ three ways to measure, lint, probe, schema) have one each beside it. A file impo
     typed_points        how a point is typed: in α̂, β̂, in 1/s, in an engine's words, as a drive's gains
     moving_mechanism    what several ask about a mechanism that moves
     varying_steps       what several ask about steps that vary
+    accuracy_options    what several say of the accuracy that a feedback costs
     map_commands        poles, region, methods, family
     choose_commands     choose, check, engines, explore
     evidence_commands   simulate, tradeoff, extremes

@@ -9,6 +9,20 @@ from typing import TYPE_CHECKING, Literal
 
 import click
 
+from bezstab.cli.accuracy_options import (
+    Chosen,
+    TypedMotion,
+    accuracy_columns,
+    cost_sentence,
+    known_cost,
+    omega_option,
+    say_cost,
+    say_motion,
+    say_trade,
+    trade_lines,
+    typed_omega_h,
+    with_cost,
+)
 from bezstab.cli.moving_mechanism import (
     modulus_as_it_moves,
     moving_columns,
@@ -73,7 +87,7 @@ from bezstab.show import (
 
 if TYPE_CHECKING:
     from bezstab.mechanism import TurningNormals
-    from bezstab.stability import Choice, Goal
+    from bezstab.stability import Choice, FeedbackCost, Goal, Modulus
 
 
 def range_column(heading: str, low_key: str, high_key: str) -> Column:
@@ -125,6 +139,8 @@ CHOICES = [
     range_column("β times", "beta_factor_min", "beta_factor_max"),
 ]
 PASTE = column("to paste", "setting")
+UP_TO_LONGEST = ("accurate", "robust")
+"""The goals that are for all steps up to --h-max."""
 SEARCHED = Column("searched", _searched)
 
 
@@ -152,16 +168,19 @@ def choice_sentence(row: Row) -> str:
 @click.option("--h", type=SECONDS, required=True, help="Step size in s.")
 @click.option(
     "--goal",
-    type=click.Choice(["robust", "fastest", "critical", "gentle"]),
-    default="robust",
-    help="robust: fastest at worst over smaller steps and the spread; fastest: least |z_p|; critical: fastest without "
-    "oscillation; gentle: the mildest α = β that settles in time.",
+    type=click.Choice(["accurate", "robust", "fastest", "critical", "gentle"]),
+    help="accurate: the least error forced on the motion, among what settles in time; robust: fastest at worst over "
+    "smaller steps and the spread; fastest: least |z_p|; critical: fastest without oscillation; gentle: the mildest "
+    "α = β that settles in time [accurate; robust for an --engine that can express a curve of points alone].",
 )
-@click.option("--h-max", type=SECONDS, help="robust, or with --h-min: the largest step in s that may occur [--h].")
+@omega_option
+@click.option(
+    "--h-max", type=SECONDS, help="accurate, robust, or with --h-min: the largest step in s that may occur [--h]."
+)
 @h_min_option
 @hold_option
 @click.option("--spread", type=NUMBER, default="0.1", help="By what share α and β may be off.")
-@click.option("--settle", type=SECONDS, help="gentle: the time in s in which c falls a thousandfold.")
+@click.option("--settle", type=SECONDS, help="gentle, accurate: the time in s in which c falls a thousandfold.")
 @click.option("--keep", type=click.Choice(["alpha=beta"]), help="Only points with α = β.")
 @click.option("--engine", metavar="NAME", type=ENGINE, help="Choose what that engine can express; print what to paste.")
 @drive_option
@@ -171,7 +190,8 @@ def choice_sentence(row: Row) -> str:
 def choose(
     methods: Sequence[Method],
     h: Fraction,
-    goal: "Goal",
+    goal: "Goal | None",
+    omega: Fraction | None,
     h_max: Fraction | None,
     h_min: Fraction | None,
     hold: bool,
@@ -186,9 +206,13 @@ def choose(
 ) -> None:
     """Recommend α and β for an integrator and its step size.
 
-    The answer is proven stable, and the margins that remain are printed. The fastest point is a kink: towards more
-    damping |z_p| rises like a square root. Hence robust is the default. "within the spread" is the largest |z_p| with α
-    and β off by --spread. Where no feedback is too strong, those up to αh, βh = 4 are searched, and "searched" says so.
+    The answer is proven stable, and the margins that remain are printed. Feedback forces errors of its own on a
+    mechanism that moves: accurate, the default, has the least of them among what settles while the motion turns by 14
+    rad, or within --settle. How fast the motion is --omega says, or --scene. Below, two lines tell what faster decay
+    would cost and what slower decay would gain. The fastest point is a kink: towards more damping |z_p| rises like a
+    square root, hence robust. "within the spread" is the largest |z_p| with α and β off by --spread. Where no feedback
+    is too strong, those up to αh, βh = 4 are searched, and "searched" says so.
+
     With --engine the method is the engine's own unless given, and only what the engine can express is searched: of
     several that are best, as where it fixes α̂, the mildest is taken. With --pd each way of applying a joint drive is
     shown, with the kp and kd to set instead. With --h-min steps may vary from one to the next, and "varying steps" says
@@ -198,14 +222,9 @@ def choose(
     Example: bezstab choose --method B4 --h 0.001
     """
     from bezstab.show import choice_row, drive_row
-    from bezstab.stability import choose_at_step
 
-    if not 0 <= spread < 1:
-        raise InputError(f"--spread {float(spread):g}: expected a share from 0 to 1")
-    if h_max is not None and ((goal != "robust" and h_min is None) or h_max < h):
-        raise InputError(f"--h-max {float(h_max):g}: only for --goal robust or --h-min, and at least --h {float(h):g}")
-    if (settle is not None) != (goal == "gentle"):
-        raise click.UsageError("--settle and --goal gentle go together")
+    goal = goal or default_goal(engine, drive)
+    _check_goal(goal, h, h_min, h_max, spread, settle)
     if engine and drive:
         raise click.UsageError("--engine and --pd print two kinds of words: give one")
     if engine and engine.level != "acceleration" and (h_max or h_min):
@@ -215,38 +234,105 @@ def choose(
     methods = methods_asked(methods, engine, drive)
     steps = step_range(methods, h, h_min, h_max, hold)
     turning = turning_of(scene, speed, h)
+    motion = typed_omega_h(omega, scene, speed, h, h_max)
     rows: list[Row] = []
-    chosen: list[tuple[Fraction, Fraction]] = []
+    choices: list[Choice] = []
+    alternatives: list[Chosen] = []
     for method in progress(methods, goal):
-        robust_up_to = h_max if goal == "robust" else None
-        choice = choose_at_step(
+        chosen = partial(
+            _choose_for,
             method,
-            goal,
             h=h,
-            h_max=robust_up_to,
-            settle=settle,
+            h_max=h_max,
             spread=float(spread),
             equal=keep is not None,
             modulus=modulus_as_it_moves(method, turning, h_max or h),
-            along=engine.curve if engine and keep is None and goal != "critical" else None,
+            engine=engine if keep is None else None,
+            omega_h=motion.omega_h_max,
         )
+        choice = chosen(goal, settle=settle)
         row = choice_row(choice, h)
         if engine:
             row |= _engine_cells(engine, choice, h)
         if drive:
             row |= drive_row(choice, drive, float(h))
         rows += moving_rows([row], [method], [(choice.alpha_hat, choice.beta_hat)], turning, h)
-        chosen.append(_exact_point(choice))
-    varying = varying_answers(steps, methods, chosen, scene, speed)
-    rows = with_varying(rows, varying)
+        choices.append(choice)
+        alternatives.append(partial(chosen, margins=False))
+    points = [_exact_point(choice) for choice in choices]
+    costs = known_cost(methods, points, motion)
+    varying = varying_answers(steps, methods, points, scene, speed)
+    rows = with_varying(with_cost(rows, costs, motion), varying)
     more = [*moving_columns(turning), *varying_columns(steps)]
-    more += [*([PASTE] if engine else []), *(DRIVE_COLUMNS if drive else [])]
+    more += [*([PASTE] if engine else []), *(DRIVE_COLUMNS if drive else accuracy_columns(motion))]
     show_rows(rows, [*choice_columns(rows), *more], form, sentence=choice_sentence)
     say_varying(varying, form)
+    if for_reading(form) and not drive:
+        for choice, cost, alternative in zip(choices, costs, alternatives, strict=True):
+            name = choice.method.name if len(methods) > 1 else ""
+            say_trade(trade_lines(choice, cost, motion, h, alternative), name)
+        say_motion(motion)
     if engine and for_reading(form):
         say_what_is_left_out(engine)
     if not all(row["safe"] for row in rows):
         click.get_current_context().exit(1)
+
+
+def _check_goal(
+    goal: "Goal", h: Fraction, h_min: Fraction | None, h_max: Fraction | None, spread: Fraction, settle: Fraction | None
+) -> None:
+    """Refuse options that do not go with a goal, and a spread that is no share."""
+    if not 0 <= spread < 1:
+        raise InputError(f"--spread {float(spread):g}: expected a share from 0 to 1")
+    if h_max is not None and (not (goal in UP_TO_LONGEST or h_min) or h_max < h):
+        raise InputError(
+            f"--h-max {float(h_max):g}: only for --goal accurate, robust or --h-min, and at least --h {float(h):g}"
+        )
+    if settle is None and goal == "gentle":
+        raise click.UsageError("--goal gentle needs --settle: the time in s in which c falls a thousandfold")
+    if settle is not None and goal not in ("gentle", "accurate"):
+        raise click.UsageError(f"--settle goes with --goal gentle or accurate, not {goal}")
+
+
+def default_goal(engine: Engine | None, drive: Drive | None) -> "Goal":
+    """Return the goal that is taken unless told otherwise.
+
+    Along a curve of points there is no gentle feedback of another ratio to find; and nothing feeds the acceleration of
+    a drive's target forward, so that the error of a weak one is not what the method forces.
+    """
+    return "robust" if drive or (engine and engine.curve) else "accurate"
+
+
+def _choose_for(
+    method: Method,
+    goal: "Goal",
+    *,
+    h: Fraction,
+    h_max: Fraction | None,
+    spread: float,
+    equal: bool,
+    modulus: "Modulus | None",
+    engine: Engine | None,
+    omega_h: Fraction,
+    settle: Fraction | None = None,
+    margins: bool = True,
+) -> "Choice":
+    """Return what `choose_at_step` does, with h_max where the goal has one, among what an engine can express."""
+    from bezstab.stability import choose_at_step
+
+    return choose_at_step(
+        method,
+        goal,
+        h=h,
+        h_max=h_max if goal in UP_TO_LONGEST else None,
+        settle=settle,
+        spread=spread,
+        equal=equal,
+        modulus=modulus,
+        along=engine.curve if engine and goal != "critical" else None,
+        omega_h=omega_h,
+        margins=margins,
+    )
 
 
 def _engine_cells(engine: Engine, choice: "Choice", h: Fraction) -> Row:
@@ -283,6 +369,7 @@ class Asked:
 @engine_values_option
 @as_typed_option
 @drive_option
+@omega_option
 @h_min_option
 @click.option("--h-max", type=SECONDS, help="With --h-min: the longest step in s [--h].")
 @hold_option
@@ -300,6 +387,7 @@ def check(
     engine: EngineValues | None,
     as_typed: bool,
     drive: Drive | None,
+    omega: Fraction | None,
     h_min: Fraction | None,
     h_max: Fraction | None,
     hold: bool,
@@ -313,6 +401,9 @@ def check(
     what `choose` would give instead. All that is about constant steps, and steps that are each stable alone may grow
     when they alternate: with --h-min and --h-max safe is what is proven for every sequence of steps in that range.
     With α and β in 1/s (--physical) and no --h, the step up to which every one is safe is the answer.
+
+    What is safe may still be inaccurate: on a mechanism that moves, feedback that is strong, or weak, forces errors of
+    its own. Where they are ten times the least or more, a sentence says so.
 
     With --engine the method is the engine's own unless given, and what the engine does to its values (clamps, scaling)
     is applied first; what the conversion leaves out is said. How far the step may grow is asked of the engine's values,
@@ -328,13 +419,11 @@ def check(
 
     Example: bezstab check --method RK2 --h 0.002 --alpha 50 --beta 50 --physical
     """
-    from bezstab.show import choice_row, drive_row
-
     if h_max is not None and h_min is None:
         raise click.UsageError("--h-max goes with --h-min: the range of steps that vary")
     if h_min is not None:
         h = h or h_max
-    if physical and not (h or scene or engine or drive or as_typed or hold):
+    if physical and not (h or scene or engine or drive or as_typed or hold or omega):
         turning_of(scene, speed, h)  # no speed without a scene
         safe = _check_without_step(methods_asked(methods, None, None), both_or_none(alpha, beta), form)
         context.exit(0 if safe else 1)
@@ -346,37 +435,31 @@ def check(
     if alpha is not None and beta is not None and not physical:
         say_if_units_were_mistaken(methods, alpha, beta, h)
     turning = turning_of(scene, speed, h)
-    asked, nothing_instead = _asked(methods, typed, turning, h)
-    rows: list[Row] = []
-    for each in asked:
-        given = each.role == "given"
-        row = {"role": each.role, **choice_row(each.choice, h, each.point if given else None)}
-        row |= engine_keys(typed, given and each.choice.goal == "as given")
-        if engine and h is not None:
-            row |= (
-                _limit_of_values(engine, as_typed, each.choice, h)
-                if given
-                else _engine_cells(engine[0], each.choice, h)
-            )
-        if drive and h is not None:
-            row |= drive_row(each.choice, drive, float(h), given=given)
-        rows.append(row)
+    motion = typed_omega_h(omega, scene, speed, h)
+    asked, nothing_instead = _asked(methods, typed, turning, h, motion)
+    rows = [_row_of(each, typed, engine, as_typed, drive, h) for each in asked]
     methods_of_rows = [each.choice.method for each in asked]
     rows = moving_rows(
         rows, methods_of_rows, [(each.choice.alpha_hat, each.choice.beta_hat) for each in asked], turning, h
     )
-    varying = varying_answers(steps, methods_of_rows, [each.point for each in asked], scene, speed)
-    rows = with_varying(rows, varying)
+    points = [each.point for each in asked]
+    costs = known_cost(methods_of_rows, points, motion)
+    varying = varying_answers(steps, methods_of_rows, points, scene, speed)
+    rows = with_varying(with_cost(rows, costs, motion), varying)
     columns = [*choice_columns(rows), *moving_columns(turning), *varying_columns(steps)]
-    columns += DRIVE_COLUMNS if drive else []
+    columns += DRIVE_COLUMNS if drive else accuracy_columns(motion)
     given_rows = [row for row in rows if row["role"] == "given"]
     if for_reading(form):
         show_rows(given_rows, columns, form, sentence=choice_sentence)
         say_varying([answer for row, answer in zip(rows, varying, strict=False) if row["role"] == "given"], form)
+        if not drive:
+            _say_costs(asked, costs, motion, h, in_own_words=engine is not None)
         if instead := [row for row in rows if row["role"] == "instead"]:
             show_text("\nWhat `choose` gives instead:\n")
             columns += [PASTE] if engine else []
             show_rows(instead, columns, form, sentence=choice_sentence)
+        if not drive:
+            say_motion(motion)
     else:
         show_rows(rows, columns, form)
     for reason in nothing_instead:
@@ -385,8 +468,44 @@ def check(
     context.exit(0 if all(row["safe"] for row in given_rows) else 1)
 
 
+def _row_of(
+    each: Asked, typed: TypedPoint, engine: EngineValues | None, as_typed: bool, drive: Drive | None, h: Fraction | None
+) -> Row:
+    """Return what there is to say of one point at rest, in an engine's or a drive's words too."""
+    from bezstab.show import choice_row, drive_row
+
+    given = each.role == "given"
+    row: Row = {"role": each.role, **choice_row(each.choice, h, each.point if given else None)}
+    row = {**row, **engine_keys(typed, given and each.choice.goal == "as given")}
+    if engine and h is not None and given:
+        row = {**row, **_limit_of_values(engine, as_typed, each.choice, h)}
+    elif engine and h is not None:
+        row = {**row, **_engine_cells(engine[0], each.choice, h)}
+    if drive and h is not None:
+        row = {**row, **drive_row(each.choice, drive, float(h), given=given)}
+    return row
+
+
+def _say_costs(
+    asked: Sequence[Asked],
+    costs: "Sequence[FeedbackCost | None]",
+    motion: TypedMotion,
+    h: Fraction | None,
+    *,
+    in_own_words: bool,
+) -> None:
+    """Print for each point that was given what accuracy it costs, where that is much."""
+    for each, cost in zip(asked, costs, strict=True):
+        if each.role == "given":
+            say_cost(cost_sentence(each.choice.method.name, cost, motion, h, in_own_words=in_own_words))
+
+
 def _asked(
-    methods: Sequence[Method], typed: TypedPoint, turning: "TurningNormals | None", h: Fraction | None
+    methods: Sequence[Method],
+    typed: TypedPoint,
+    turning: "TurningNormals | None",
+    h: Fraction | None,
+    motion: TypedMotion,
 ) -> tuple[list[Asked], list[str]]:
     """Return for each method the points that were given and what `choose` gives instead; and why it gives nothing."""
     from bezstab.stability import choose, describe_point
@@ -399,7 +518,9 @@ def _asked(
             asked.append(Asked("given", describe_point(method, label, *point), point))
         modulus = modulus_as_it_moves(method, turning, h)
         try:
-            choice = choose(method, "robust", modulus=modulus, along=engine.curve if engine else None)
+            goal = default_goal(engine, typed.drive)
+            along = engine.curve if engine else None
+            choice = choose(method, goal, modulus=modulus, along=along, omega_h=motion.omega_h)
             if engine and h is not None:
                 engine.setting(_exact_point(choice), h)  # which the engine must be able to express
         except (InputError, NumericalError) as error:  # the verdict stands without it

@@ -7,6 +7,14 @@ from typing import TYPE_CHECKING
 
 import click
 
+from bezstab.cli.accuracy_options import (
+    NARROW_ACCURACY,
+    known_cost,
+    omega_option,
+    say_motion,
+    typed_omega_h,
+    with_cost,
+)
 from bezstab.cli.moving_mechanism import (
     moving_columns,
     moving_rows,
@@ -32,7 +40,17 @@ from bezstab.cli.options import (
     output_option,
     physical_option,
 )
-from bezstab.cli.output import file_name, progress, say, show_blocks, show_groups, show_rows, write_figure, write_table
+from bezstab.cli.output import (
+    file_name,
+    for_reading,
+    progress,
+    say,
+    show_blocks,
+    show_groups,
+    show_rows,
+    write_figure,
+    write_table,
+)
 from bezstab.cli.typed_points import (
     DRIVE_COLUMNS,
     as_typed_option,
@@ -113,12 +131,13 @@ def one_pole_sentence(row: Row) -> str:
 @methods_option(*USUAL_METHODS)
 @click.option("--alpha", type=NUMBER, help="α̂, a decimal or fraction, read exactly; α in 1/s with --physical.")
 @click.option("--beta", type=NUMBER, help="β̂, a decimal or fraction, read exactly; β in 1/s with --physical.")
-@click.option("--h", type=SECONDS, help="Step size in s, for --physical, --engine, --pd and --scene.")
+@click.option("--h", type=SECONDS, help="Step size in s, for --physical, --engine, --pd, --scene and --omega.")
 @physical_option
 @engine_values_option
 @as_typed_option
 @drive_option
 @click.option("--all-poles", is_flag=True, help="Every root, not only the dominant one.")
+@omega_option
 @moving_scene_option("Also what the motion of this mechanism does to the poles; needs --h.")
 @moving_speed_option
 @format_option
@@ -132,6 +151,7 @@ def poles(
     as_typed: bool,
     drive: Drive | None,
     all_poles: bool,
+    omega: Fraction | None,
     scene: str | None,
     speed: Fraction,
     form: Format,
@@ -139,7 +159,8 @@ def poles(
     """Print each method's dominant pole at one point, and the verdict.
 
     converges: every |z| < 1. marginal: bounded without decay. diverges: a root outside the unit circle, or a repeated
-    one on it. Proven by a Schur-Cohn test in exact arithmetic on the numbers as typed.
+    one on it. Proven by a Schur-Cohn test in exact arithmetic on the numbers as typed. "error" is what the feedback
+    forces on a motion, as a share of its amplitude, and "× least" how many times that at the goal accurate of `choose`.
 
     Example: bezstab poles --alpha 0.5 --beta 0.1
     """
@@ -147,30 +168,37 @@ def poles(
     from bezstab.show import drive_row, pole_rows
 
     in_seconds = physical or engine is not None or drive is not None
-    if (physical and h is None) or (h is not None and not in_seconds and scene is None):
+    if (physical and h is None) or (h is not None and not in_seconds and scene is None and omega is None):
         raise click.UsageError("--physical and --h go together: α and β in 1/s need the step in s")
     typed = typed_point(alpha, beta, h, physical, engine, drive, as_typed)
     methods = methods_asked(methods, typed.engine, drive)
     if alpha is not None and beta is not None and not physical:
         say_if_units_were_mistaken(methods, alpha, beta, h)
     turning = turning_of(scene, speed, h)
+    motion = typed_omega_h(omega, scene, speed, h)
     alpha_hat, beta_hat = map(float, typed.point)
     poles_of = stability.poles if all_poles else stability.dominant_pole
     rows: list[Row] = []
-    for method in methods:
+    costs = known_cost(methods, [typed.point] * len(methods), motion)
+    for method, cost in zip(methods, costs, strict=True):
         z = poles_of(method, alpha_hat, beta_hat).reshape(-1)
-        of_method = [
+        of_method: list[Row] = [
             {**row, **engine_keys(typed, given=True)}
             for row in pole_rows(method, alpha_hat, beta_hat, z, stability.verdict(method, *typed.point))
         ]
         if drive and h is not None:
             gains = drive_row(stability.describe_point(method, "as given", *typed.point), drive, float(h), given=True)
             of_method = [{**row, **gains} for row in of_method]
+        of_method = with_cost(of_method, [cost] * len(of_method), motion)
         points = [(alpha_hat, beta_hat)] * len(of_method)
         rows += moving_rows(of_method, [method] * len(of_method), points, turning, h)
-    columns = [*POLES, *moving_columns(turning), *(DRIVE_COLUMNS if drive else [])]
+    costs_shown = not (all_poles or drive)
+    columns = [*POLES, *(NARROW_ACCURACY if costs_shown else []), *moving_columns(turning)]
+    columns += DRIVE_COLUMNS if drive else []
     sentence = one_pole_sentence if all_poles else pole_sentence
     show_rows(rows, columns, form, f"α̂ = {alpha_hat:.10g}, β̂ = {beta_hat:.10g}", sentence)
+    if costs_shown and for_reading(form):
+        say_motion(motion)
     say_what_was_made(typed, form)
 
 

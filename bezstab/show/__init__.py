@@ -43,6 +43,7 @@ from bezstab.show.rows import (
     NOT_KNOWN,
     choice_row,
     complex_parts,
+    cost_row,
     drive_row,
     engine_row,
     family_row,
@@ -70,7 +71,7 @@ from bezstab.show.rows import (
 from bezstab.show.schemas import ROW_KINDS, json_schema
 from bezstab.show.varying_rows import repeated, sequence_text, varying_row, varying_words
 from bezstab.show.vocabulary import VOCABULARY
-from bezstab.show.words import growth_words, safety_words, seconds_words
+from bezstab.show.words import change_words, growth_words, safety_words, seconds_words, times_words
 
 if TYPE_CHECKING:
     from bezstab.show import plot
@@ -136,11 +137,13 @@ __all__ = [
     "Value",
     "block",
     "boundary_arrays",
+    "change_words",
     "choice_row",
     "column",
     "column_figure",
     "comparison_figure",
     "complex_parts",
+    "cost_row",
     "drive_row",
     "engine_row",
     "family_figure",
@@ -185,6 +188,7 @@ __all__ = [
     "stable_steps_words",
     "styled",
     "summary_row",
+    "times_words",
     "transposed",
     "untimed_arrays",
     "varying_row",

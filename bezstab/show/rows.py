@@ -39,7 +39,7 @@ if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
     )
     from bezstab.mechanism import Simulation
     from bezstab.methods import Verdict
-    from bezstab.stability import BestPoint, Choice, Limit, Member, Region
+    from bezstab.stability import BestPoint, Choice, FeedbackCost, Limit, Member, Region
 
 
 def row(result: DataclassInstance, without: Collection[str] = (), **more: Value) -> dict[str, Value]:
@@ -488,6 +488,14 @@ def choice_row(
         beta_factor_min=beta_min,
         beta_factor_max=beta_max,
     )
+
+
+def cost_row(cost: FeedbackCost | None, omega_h: float) -> dict[str, Value]:
+    """Return what accuracy a feedback costs on a motion of omega_h rad a step; None for what is not known."""
+    if cost is None:
+        nothing = dict.fromkeys(("forced_error", "total_error", "order_left", "times_least"))
+        return {"omega_h": omega_h, **nothing}
+    return row(cost, without={"order", "least_at"})
 
 
 def alpha_and_beta(alpha_hat: float, beta_hat: float, h: float) -> tuple[float, float | None]:

@@ -36,8 +36,10 @@ REGION = """z_abs_below area alpha_hat_min alpha_hat_max beta_hat_min beta_hat_m
     critical_damping_limit critical_damping_limit_exact"""
 METHOD = """method steps evaluations order order_position_forces order_velocity_forces error_constant
     error_constant_exact source implicit digits"""
+COST = "omega_h forced_error total_error order_left times_least"
+"""What accuracy the feedback costs."""
 CHOICE = f"""method goal alpha_hat beta_hat verdict safe {POLE} worst searched h alpha beta settle_steps settle_seconds
-    margins_reason h_factor h_limit alpha_factor_min alpha_factor_max beta_factor_min beta_factor_max"""
+    margins_reason h_factor h_limit alpha_factor_min alpha_factor_max beta_factor_min beta_factor_max {COST}"""
 
 APPLIED = ("applied", "excludes", "sweeps")
 """What --engine adds."""
@@ -51,7 +53,9 @@ LIKE_POINT = _keys("alpha_hat beta_hat alpha_hat_error beta_hat_error h alpha be
 ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
     "poles": [
         RowKind(
-            "a pole of a method", _keys(f"method alpha_hat beta_hat {POLE} verdict safe"), (*APPLIED, *DRIVE, *MOVING)
+            "a pole of a method",
+            _keys(f"method alpha_hat beta_hat {POLE} verdict safe {COST}"),
+            (*APPLIED, *DRIVE, *MOVING),
         )
     ],
     "region": [RowKind("the region of a method", _keys(f"method {REGION}"), _keys("speed kappa area_moving"))],

@@ -39,6 +39,7 @@ UNKNOWN_STEP = "where no step is given"
 UNSTABLE = "where the point is not stable"
 NOT_MEASURED = "where nothing could be measured; `reason` says why"
 LEVEL_ROW = "in the row of a level below 1, which is of the mechanism at rest"
+NO_ERROR = "where errors do not decay, or it is not known"
 NO_BEST = "where there is no best point; `best_reason` says why"
 UNBOUNDED = "where the region has no end there, or is empty"
 
@@ -131,6 +132,28 @@ VOCABULARY: Mapping[str, Key] = {
     "recursion": Key("text", "The method's recursion"),
     "mapping": Key("text", "The method's mapping from s to z"),
     "characteristic_polynomial": Key("text", "Polynomial in z whose roots are the poles"),
+    # what accuracy a feedback costs
+    "omega_h": Key("number", "How far the motion that errors are told of turns in a step, omega h", "rad"),
+    "forced_error": Key(
+        "number",
+        "Constraint error that the method forces on that motion in the steady state, as a share of its amplitude",
+        null=NO_ERROR,
+    ),
+    "total_error": Key(
+        "number",
+        "Constraint error that is left in a run, as such a share: the largest that is forced at any rate up to omega",
+        null=NO_ERROR,
+    ),
+    "order_left": Key(
+        "integer",
+        "Order in h of the forced error where alpha_hat and beta_hat are held, at most the method's own",
+        null="where it is not known",
+    ),
+    "times_least": Key(
+        "number",
+        "total_error over that at the point of the goal accurate, which weighs velocities as well",
+        null=f"{NO_ERROR}, or that point is",
+    ),
     # choices and checks
     "role": Key("text", "Whether the point was given, or is what to take instead", values=("given", "instead")),
     "goal": Key("text", "What the point was chosen for, or that it is as given"),

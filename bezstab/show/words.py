@@ -4,6 +4,7 @@ from bezstab.show.columns import Row, Value
 
 MOST_DIGITS = 17  # of float64: with so many every number other than one is shown as another
 THOUSAND = 1000.0
+PLAIN = 1e7  # a factor from here on has so many zeros that nobody counts them
 GONE = 1e-6  # of |z|: after three steps an error is below rounding; at a double root that is zero |z| comes out as 1e-8
 UNITS = ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"))
 """Of times, the largest first: each with its seconds."""
@@ -20,6 +21,12 @@ def seconds_words(seconds: float) -> str:
 def growth_words(factor: Value) -> str:
     """Return how far something may be scaled up: to 1.32 times, or without limit where there is no factor."""
     return f"to {factor:.3g} times" if isinstance(factor, float) else "without limit"
+
+
+def times_words(factor: float) -> str:
+    """Return a factor to two digits, as a sentence has it: 0.25, 1.1, 3,400; powers of ten from ten millions on."""
+    digits = f"{factor:.2g}"
+    return f"{float(digits):,.0f}" if 100 <= float(digits) < PLAIN else digits
 
 
 def change_words(z_abs: float, verdict: Value) -> str:

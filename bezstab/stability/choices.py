@@ -97,13 +97,21 @@ class Choice:
 
         None if the point is unstable, or so near to it that rounding leaves no digits.
         """
+        return self._steps_to_settle(abs(self.pole))
+
+    @property
+    def settle_steps_at_worst(self) -> int | None:
+        """The same with alpha and beta off by the spread; None, too, where errors do not decay there."""
+        return self._steps_to_settle(self.worst)
+
+    def _steps_to_settle(self, z_abs: float) -> int | None:
         if self.verdict != "converges":
             return None
-        if abs(self.pole) < DEADBEAT:
+        if z_abs < DEADBEAT:
             return 2 * steps(self.method)
-        if 1 - abs(self.pole) < SLOW:
+        if 1 - z_abs < SLOW:
             return None
-        return math.ceil(math.log(THOUSANDFOLD) / math.log(abs(self.pole)))
+        return math.ceil(math.log(THOUSANDFOLD) / math.log(z_abs))
 
 
 def choose(
@@ -213,8 +221,15 @@ def _along_curve(
 ) -> tuple[float, float]:
     """Return the point of a curve that a goal asks for; InputError where none meets it."""
     if goal == "accurate":
-        decays = _decays(modulus, None, default_rate(method, omega_h) if rate is None else rate)
-        return least_along(curve, _accuracy(method, decays, omega_h, spread))
+        rate = default_rate(method, omega_h) if rate is None else rate
+        objective = _accuracy(method, _decays(modulus, None, rate), omega_h, spread)
+        point = least_along(curve, objective)
+        if np.isinf(objective(np.array([point[0]]), np.array([point[1]]), np.inf)).any():
+            raise InputError(
+                f"{method.name}: no setting of the engine has |z_p| <= {rate:.6g} with α and β off by {spread:g} of "
+                "themselves"
+            )
+        return point
     rate = 0.0 if rate is None else rate
     if goal == "critical":
         raise InputError("the goal critical asks for a double pole, and a curve of points has none to choose")
@@ -271,18 +286,21 @@ def choose_at_step(
     modulus: Modulus | None = None,
     along: Curve | None = None,
     omega_h: Fraction = OMEGA_H,
+    margins: bool = True,
 ) -> Choice:
     """Return the choice for steps of h (s), as `choose` makes it for the largest step h_max (s) that may occur.
 
     At a smaller step the same alpha and beta are a smaller alpha_hat = 2 alpha h and beta_hat = beta^2 h^2 (paper Eq.
-    16). `settle` (s) is the time in which the error of `gentle` and `accurate` falls a thousandfold; `modulus`, of the
-    largest step, `along` and `omega_h` are as for `choose`. Errors as for `choose`; InputError, too, for a step outside
-    1e-100 to 1e100 s, for an h_max below h or without the goal robust, and for a settle that is not positive, missing
-    with gentle, or with another goal than those.
+    16). `settle` (s) is the time in which the error of `gentle` and `accurate` falls a thousandfold; `modulus` and
+    `omega_h`, of the largest step, `along` and `margins` are as for `choose`. Errors as for `choose`; InputError, too,
+    for a step outside 1e-100 to 1e100 s, for an h_max below h or with another goal than robust and accurate, and for a
+    settle that is not positive, missing with gentle, or with another goal than gentle and accurate.
     """
     check_step(h)
-    if h_max is not None and (goal != "robust" or h_max < h):
-        raise InputError(f"h_max = {float(h_max):g} s: only for the goal robust, and at least h = {float(h):g} s")
+    if h_max is not None and (goal not in ("robust", "accurate") or h_max < h):
+        raise InputError(
+            f"h_max = {float(h_max):g} s: only for the goals robust and accurate, and at least h = {float(h):g} s"
+        )
     if settle is None and goal == "gentle":
         raise InputError("the goal gentle asks for settle: a time in s")
     if settle is not None and goal not in ("gentle", "accurate"):
@@ -291,13 +309,13 @@ def choose_at_step(
         raise InputError(f"settle = {float(settle):g} s: expected a positive time")
     rate = None
     if settle is not None:
-        rate = THOUSANDFOLD ** float(h * method.step_multiple / settle)
-    choice = choose(method, goal, spread, rate, equal, modulus, along=along, omega_h=omega_h)
+        rate = THOUSANDFOLD ** float((h_max or h) * method.step_multiple / settle)
+    choice = choose(method, goal, spread, rate, equal, modulus, margins, along, omega_h)
     if h_max is None or h_max == h:
         return choice
     share = h / h_max
     alpha_hat, beta_hat = exact(choice.alpha_hat) * share, exact(choice.beta_hat) * share**2
-    return replace(describe_point(method, goal, alpha_hat, beta_hat, spread), searched=choice.searched)
+    return replace(describe_point(method, goal, alpha_hat, beta_hat, spread, margins), searched=choice.searched)
 
 
 def describe_point(

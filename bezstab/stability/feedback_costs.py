@@ -4,21 +4,24 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 
+import numpy as np
+
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method, accuracy, leading_error
+from bezstab.rationals import exact
 from bezstab.stability.choices import choose
-from bezstab.stability.closed_loop import spectral_radius
-from bezstab.stability.forced_errors import OMEGA_H, forced_error
+from bezstab.stability.closed_loop import converges
+from bezstab.stability.forced_errors import OMEGA_H, check_omega_h, forced_error
 
 
 @dataclass(frozen=True)
 class FeedbackCost:
     """Errors as shares of the amplitude of a motion of omega_h rad a step; None where errors do not decay at all.
 
-    forced_error: of the constraint, in the steady state. total_error: what is left in a run (forced_errors.py).
-    order_left: the order in h of the error where alpha_hat and beta_hat are held, at most `order`, the method's own.
-    times_least: total_error over that at `least_at`, (alpha_hat, beta_hat) of the goal accurate; None where there is
-    no such point.
+    None, too, where they leave the range of float64. forced_error: of the constraint, in the steady state. total_error:
+    what is left in a run (forced_errors.py). order_left: the order in h of the error where alpha_hat and beta_hat are
+    held, at most `order`, the method's own. times_least: total_error over that at `least_at`, (alpha_hat, beta_hat) of
+    the goal accurate, which weighs the velocity as well and may have a little more; None where no such point is known.
     """
 
     omega_h: float
@@ -30,25 +33,42 @@ class FeedbackCost:
     least_at: tuple[float, float] | None
 
 
-def feedback_cost(method: Method, alpha_hat: float, beta_hat: float, omega_h: Fraction = OMEGA_H) -> FeedbackCost:
+def feedback_cost(
+    method: Method, alpha_hat: float | Fraction, beta_hat: float | Fraction, omega_h: Fraction = OMEGA_H
+) -> FeedbackCost:
     """Return what accuracy a feedback costs on a motion of omega_h rad a step; InputError unless 1e-6 <= omega_h < 1.
 
-    Source: methods/steady_errors.py; the goal accurate is this package's.
+    InputError, too, where what the method forces would take too long to find (methods/steady_errors.py, the source);
+    the goal accurate is this package's.
     """
     order, _ = accuracy(method)
-    errors = forced_error(method, alpha_hat, beta_hat, omega_h)
-    decays = bool(spectral_radius(method, alpha_hat, beta_hat) < 1)
+    leading = leading_error(method)
+    position, total = _shares(method, alpha_hat, beta_hat, omega_h)
     least_at = _least_at(method, omega_h)
-    least = None if least_at is None else float(forced_error(method, *least_at, omega_h).total)
+    _, least = (None, None) if least_at is None else _shares(method, *least_at, omega_h)
     return FeedbackCost(
         omega_h=float(omega_h),
-        forced_error=float(errors.position) if decays else None,
-        total_error=float(errors.total) if decays else None,
-        order_left=min(order, leading_error(method).order_left),
+        forced_error=position,
+        total_error=total,
+        order_left=min(order, leading.order_left),
         order=order,
-        times_least=float(errors.total) / least if decays and least else None,
+        times_least=total / least if total is not None and least else None,
         least_at=least_at,
     )
+
+
+def _shares(
+    method: Method, alpha_hat: float | Fraction, beta_hat: float | Fraction, omega_h: Fraction
+) -> tuple[float | None, float | None]:
+    """Return forced and total error at a point; None where errors do not decay, or in place of what is not finite."""
+    check_omega_h(omega_h)
+    a, b = (each if isinstance(each, Fraction) else exact(each) for each in (alpha_hat, beta_hat))
+    if not converges(method, a, b):
+        return None, None
+    with np.errstate(over="ignore", invalid="ignore"):  # found below
+        errors = forced_error(method, float(a), float(b), omega_h)
+    position, total = (float(each) if np.isfinite(each) else None for each in (errors.position, errors.total))
+    return position, total
 
 
 @lru_cache(maxsize=256)

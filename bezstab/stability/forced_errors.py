@@ -36,6 +36,9 @@ SLOWEST = Fraction(1, 10**6)
 BETWEEN = 24
 """Frequencies at which |D| is looked at from 0 on, besides the feedback's own resonance: |D| is smooth."""
 
+AT_ONCE = 2**17
+"""Values of D in one go: few calls for few points, and no more than some megabytes for a map."""
+
 DIGITS = 120
 """Of what is summed: with omega h = 1e-6 and order 12 all but theta^14 = 1e-84 cancels, and enough are left."""
 
@@ -86,8 +89,11 @@ def forced_error(
     highest = np.pi if any_frequency else theta
     resonance = np.sqrt(np.clip(b - a**2 / 2, 0.0, highest**2))
     least = np.minimum(at_own, _denominator_size(of_powers, resonance))
-    for frequency in np.linspace(0.0, highest, BETWEEN + 1):
-        least = np.minimum(least, _denominator_size(of_powers, np.asarray(frequency)))
+    between = np.linspace(0.0, highest, BETWEEN + 1).reshape(-1, *[1] * alpha_hat.ndim)
+    at_once = 1 + AT_ONCE // max(1, alpha_hat.size)
+    for first in range(0, len(between), at_once):
+        sizes = _denominator_size(of_powers, between[first : first + at_once])
+        least = np.minimum(least, sizes.min(axis=0))
     of_position = np.abs(polyval2d(a, b, tables.position))
     of_velocity = np.abs(polyval2d(a, b, tables.velocity)) / theta
     with np.errstate(divide="ignore"):  # a pole that answers a frequency without bound
@@ -173,10 +179,13 @@ def _shape(terms: ExponentialSum) -> tuple[int, int]:
 
 
 def _denominator_size(of_powers: Sequence[FloatArray], theta: FloatArray) -> FloatArray:
-    """Return |D(e^(i theta))|, from the coefficients of the powers of z - 1 at each point, by Horner's rule."""
+    """Return |D(e^(i theta))|, from the coefficients of the powers of z - 1 at each point, by Horner's rule.
+
+    Shape of theta and the coefficients broadcast.
+    """
     from_one = np.expm1(1j * theta)
-    total = np.zeros_like(of_powers[0], dtype=complex)
-    for coefficient in reversed(of_powers):
+    total = of_powers[-1] + 0j * from_one
+    for coefficient in reversed(of_powers[:-1]):
         total = total * from_one + coefficient
     return np.asarray(np.abs(total))
 
