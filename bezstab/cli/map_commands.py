@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 
 import click
 
+from bezstab.cli.accuracy_maps import ACCURATE, Window, accuracy_keys, accurate_choice, write_accuracy_map
 from bezstab.cli.accuracy_options import (
     NARROW_ACCURACY,
+    TypedMotion,
     known_cost,
     omega_option,
     say_motion,
@@ -48,6 +50,7 @@ from bezstab.cli.output import (
     show_blocks,
     show_groups,
     show_rows,
+    show_text,
     write_figure,
     write_table,
 )
@@ -90,8 +93,6 @@ if TYPE_CHECKING:
 
 NUMERICAL_TROUBLE = 3
 """Exit status where a part of an answer could not be found: the rest is printed, with the reason."""
-
-Window = tuple[Fraction, Fraction]
 
 MOST_DRAWN = 1e100  # of a window's ends: their squares are drawn as well
 MOST_FIXED = 1e6  # a modulus from here on is shown with an exponent
@@ -269,10 +270,16 @@ MOVING_REGIONS = [
     "a quarter of the way from the least |z_p| to 1.",
 )
 @click.option("--compare", is_flag=True, help="One figure with the boundaries of all methods (default level 1).")
+@click.option(
+    "--accuracy",
+    is_flag=True,
+    help="Draw the error that the feedback forces on a motion over |z_p|, on logarithmic axes, with both best points.",
+)
+@omega_option
 @click.option("--h", type=SECONDS, help="Step size in s: axes become 2α (1/s) and β² (1/s²).")
 @click.option("--alpha-beta", is_flag=True, help="Mark the axes of the figure in α and β (1/s); needs --h.")
 @click.option("--engine", metavar="NAME", type=ENGINE, help="Mark that engine's defaults and rules; needs --h.")
-@moving_scene_option("Also the region of this mechanism as it moves; needs --h.")
+@moving_scene_option("Also the region of this mechanism as it moves, or with --accuracy its motion; needs --h.")
 @click.option(
     "--speed", "speeds", type=SPEED, multiple=True, help="With --scene: times the scene's own. Repeatable [1]."
 )
@@ -288,6 +295,8 @@ def region(
     beta_range: Window | None,
     levels: Sequence[Fraction],
     compare: bool,
+    accuracy: bool,
+    omega: Fraction | None,
     h: Fraction | None,
     alpha_beta: bool,
     engine: Engine | None,
@@ -299,7 +308,8 @@ def region(
 
     Writes region_METHOD.png and prints the axis limits of the exact region, its area, the smallest |z_p| and where.
     With --table csv also region_METHOD.csv, which holds α̂, β̂, |z_p| and ∠z_p; with --compare, the boundary curves.
-    With --scene also the region of that mechanism as it moves, into region_METHOD_SCENE.
+    With --scene also the region of that mechanism as it moves, into region_METHOD_SCENE. With --accuracy, instead,
+    region_METHOD_accuracy: the error that the feedback forces, position and velocity together, as a share of a motion.
 
     Example: bezstab region --method B4
     """
@@ -316,7 +326,15 @@ def region(
     methods = methods_asked(methods, engine, None)
     if scene and compare:
         raise click.UsageError("--scene draws one map for each method: not with --compare")
-    turnings = {float(speed): turning_of(scene, speed, h) for speed in speeds or [Fraction(1)]}
+    if accuracy and (compare or alpha_beta or len(speeds) > 1):
+        other = "--compare" if compare else "--alpha-beta" if alpha_beta else "several --speed"
+        raise click.UsageError(f"--accuracy draws one map for each method, on logarithmic axes: not with {other}")
+    if omega is not None and not accuracy:
+        raise click.UsageError("--omega goes with --accuracy: it is the motion on which errors are told")
+    if accuracy and speeds and scene is None:
+        raise click.UsageError("--speed goes with --scene: it is the mechanism that is so many times as fast")
+    motion = typed_omega_h(omega, scene, speeds[0] if speeds else Fraction(1), h) if accuracy else None
+    turnings = {} if accuracy else {float(speed): turning_of(scene, speed, h) for speed in speeds or [Fraction(1)]}
     if compare and len(levels) > 1:
         raise InputError(f"--compare takes one --level, but {len(levels)} were given")
     if figure != "none" or table != "none":
@@ -327,6 +345,12 @@ def region(
         level = chosen_levels[0] if chosen_levels else 1.0
         rows = _compare_regions(methods, level, alpha_range, beta_range, step, alpha_beta, output, figure, table)
         complete = True
+    elif motion:
+        shown = (alpha_range, beta_range, grid or QUALITY[quality], step)
+        marks = _engine_marks(engine, h) if engine and h else {}
+        rows, complete = _each_for_itself(
+            methods, lambda method: _accuracy_rows(method, motion, chosen_levels, *shown, marks, output, figure, table)
+        )
     else:
         marks = _engine_marks(engine, h) if engine and h else {}
         scene_name = _scene_name(scene) if scene else ""
@@ -361,8 +385,13 @@ def region(
 
         rows, complete = _each_for_itself(methods, rows_of)
     name, *shape = REGIONS
-    columns = [name, *(LEVELS if levels else []), *shape, *(MOVING_REGIONS if scene else [])]
-    show_rows(rows, columns, form, sentence=region_sentence)
+    added = ACCURATE if motion else MOVING_REGIONS if scene else []
+    show_rows(rows, [name, *(LEVELS if levels else []), *shape, *added], form, sentence=region_sentence)
+    if motion and for_reading(form):
+        show_text(
+            "\nErrors are of position and velocity together, each as a share of the amplitude of its motion, here "
+            f"{motion.words}."
+        )
     if not complete or any(str(row["best_reason"]).startswith(NOT_KNOWN) for row in rows):
         click.get_current_context().exit(NUMERICAL_TROUBLE)
 
@@ -483,6 +512,45 @@ def _map_region(
     write_table(path, map_arrays(alpha_hat, beta_hat, z, h), table)
     write_figure(path, draw, figure)
     return row
+
+
+def _accuracy_rows(
+    method: Method,
+    motion: TypedMotion,
+    levels: Sequence[float],
+    alpha_range: Window | None,
+    beta_range: Window | None,
+    points: int,
+    h: float | None,
+    marks: Mapping[str, tuple[float, float]],
+    output: Path,
+    figure: FigureForm,
+    table: TableForm,
+) -> list[Row]:
+    """Write the map of the error that one method forces; return the row of its region and of each level."""
+    from bezstab import stability
+    from bezstab.show import region_row
+
+    stable = stability.region(method)
+    best, trouble = stability.best_point_or_reason(method)
+    chosen = accurate_choice(method, motion)
+    write_accuracy_map(
+        method,
+        motion,
+        best,
+        chosen,
+        alpha_range=alpha_range,
+        beta_range=beta_range,
+        points=points,
+        levels=[level for level in levels if level < 1],
+        h=h,
+        marks=marks,
+        path=output / f"region_{file_name(method.name)}_accuracy",
+        figure=figure,
+        table=table,
+    )
+    added = accuracy_keys(method, motion, best, chosen)
+    return [{**row, **added} for row in (region_row(stable, best, trouble), *_level_rows(method, levels))]
 
 
 def _scene_name(scene: str) -> str:

@@ -41,6 +41,8 @@ COST = "omega_h forced_error total_error order_left times_least"
 CHOICE = f"""method goal alpha_hat beta_hat verdict safe {POLE} worst searched h alpha beta settle_steps settle_seconds
     margins_reason h_factor h_limit alpha_factor_min alpha_factor_max beta_factor_min beta_factor_max {COST}"""
 
+ACCURATE = _keys("omega_h accurate_alpha_hat accurate_beta_hat accurate_z_abs accurate_error best_error")
+"""What --accuracy adds."""
 APPLIED = ("applied", "excludes", "sweeps")
 """What --engine adds."""
 DRIVE = _keys("drive kp kd inertia kp_max kd_max used_up")
@@ -58,7 +60,9 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
             (*APPLIED, *DRIVE, *MOVING),
         )
     ],
-    "region": [RowKind("the region of a method", _keys(f"method {REGION}"), _keys("speed kappa area_moving"))],
+    "region": [
+        RowKind("the region of a method", _keys(f"method {REGION}"), (*_keys("speed kappa area_moving"), *ACCURATE))
+    ],
     "methods": [
         RowKind("a method in the list", _keys(f"{METHOD} group")),
         RowKind(

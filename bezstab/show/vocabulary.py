@@ -40,6 +40,7 @@ UNSTABLE = "where the point is not stable"
 NOT_MEASURED = "where nothing could be measured; `reason` says why"
 LEVEL_ROW = "in the row of a level below 1, which is of the mechanism at rest"
 NO_ERROR = "where errors do not decay, or it is not known"
+NO_CHOICE = "where no feedback decays so fast"
 NO_BEST = "where there is no best point; `best_reason` says why"
 UNBOUNDED = "where the region has no end there, or is empty"
 
@@ -154,6 +155,17 @@ VOCABULARY: Mapping[str, Key] = {
         "total_error over that at the point of the goal accurate, which weighs velocities as well",
         null=f"{NO_ERROR}, or that point is",
     ),
+    "velocity_error": Key(
+        "number", "Error of the velocity that the method forces on that motion, as a share of the velocity's amplitude"
+    ),
+    "combined_error": Key(
+        "number", "The largest constraint error that is forced at any rate and velocity_error, such shares, added up"
+    ),
+    "accurate_alpha_hat": Key("number", "alpha_hat of the goal accurate", null=NO_CHOICE),
+    "accurate_beta_hat": Key("number", "beta_hat of the goal accurate", null=NO_CHOICE),
+    "accurate_z_abs": Key("number", "Modulus of the dominant pole there", null=NO_CHOICE),
+    "accurate_error": Key("number", "combined_error there", null=NO_CHOICE),
+    "best_error": Key("number", "combined_error where the modulus of the dominant pole is smallest", null=NO_BEST),
     # choices and checks
     "role": Key("text", "Whether the point was given, or is what to take instead", values=("given", "instead")),
     "goal": Key("text", "What the point was chosen for, or that it is as given"),

@@ -63,10 +63,10 @@ Logarithms = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 
 @dataclass(frozen=True)
 class FrontPoint:
-    """The point of least error among those with |z_p| <= z_abs_below; z_abs is its own |z_p|.
+    """The point of least combined error among those with |z_p| <= z_abs_below; z_abs is its own |z_p|.
 
-    Errors are shares of the amplitudes of a motion of omega_h rad a step: total_error of q at any frequency,
-    velocity_error of the velocity, combined_error both added up, which is what is least.
+    Errors are shares of the amplitudes of a motion of omega_h rad a step: total_error of q, velocity_error of the
+    velocity, and combined_error as `combined_error` adds them up.
     """
 
     method: Method
@@ -109,7 +109,7 @@ def error_front(method: Method, rates: Sequence[float] = RATES, omega_h: Fractio
 
 
 def _front_point(method: Method, omega_h: Fraction, rate: float, alpha_hat: float, beta_hat: float) -> FrontPoint:
-    errors = forced_error(method, alpha_hat, beta_hat, omega_h, any_frequency=True)
+    errors = forced_error(method, alpha_hat, beta_hat, omega_h)
     return FrontPoint(
         method=method,
         omega_h=float(omega_h),

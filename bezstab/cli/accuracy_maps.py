@@ -1,0 +1,150 @@
+"""The second map of region --accuracy and the trade of tradeoff --predicted: forced errors over the plane, exact."""
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from bezstab.cli.accuracy_options import TypedMotion
+from bezstab.cli.options import FigureForm, TableForm
+from bezstab.cli.output import progress, say, write_figure, write_table
+from bezstab.errors import InputError, NumericalError
+from bezstab.methods import Method
+from bezstab.show import Row, column
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from bezstab.stability import BestPoint, Choice, Extent, FloatArray
+
+Window = tuple[Fraction, Fraction]
+
+SLOWER = 10
+"""Times: so much weaker than the motion's own rate the feedback is where a map begins, ..."""
+
+DECADES = 100
+"""... and times weaker at least than the strongest that is shown."""
+
+BEYOND = 1.25
+"""Times the parameters of a point: so far is shown beyond one that lies outside."""
+
+ACCURATE = [
+    column("accurate α̂", "accurate_alpha_hat", ".6g"),
+    column("accurate β̂", "accurate_beta_hat", ".6g"),
+    column("|z_p| there", "accurate_z_abs", ".6f"),
+    column("error forced there", "accurate_error", ".2e"),
+    column("error forced at the least |z_p|", "best_error", ".2e"),
+]
+
+
+def accuracy_keys(method: Method, motion: TypedMotion, best: "BestPoint | None", chosen: "Choice | None") -> Row:
+    """Return what the best points of both maps force, the fastest and the most accurate, as keys of a region's row."""
+    from bezstab.stability import combined_error
+
+    def error(point: "BestPoint | Choice | None") -> float | None:
+        """Return the error at a point, None without one."""
+        return point and float(combined_error(method, point.alpha_hat, point.beta_hat, motion.omega_h))
+
+    return {
+        "omega_h": float(motion.omega_h),
+        "accurate_alpha_hat": chosen and chosen.alpha_hat,
+        "accurate_beta_hat": chosen and chosen.beta_hat,
+        "accurate_z_abs": chosen and abs(chosen.pole),
+        "accurate_error": error(chosen),
+        "best_error": error(best),
+    }
+
+
+def accurate_choice(method: Method, motion: TypedMotion) -> "Choice | None":
+    """Return the choice of the goal accurate; None where there is none, which is said."""
+    from bezstab.stability import choose
+
+    try:
+        return choose(method, "accurate", margins=False, omega_h=motion.omega_h)
+    except (InputError, NumericalError) as error:
+        say(f"bezstab: no most accurate point: {error}")
+        return None
+
+
+def write_accuracy_map(
+    method: Method,
+    motion: TypedMotion,
+    best: "BestPoint | None",
+    chosen: "Choice | None",
+    *,
+    alpha_range: Window | None,
+    beta_range: Window | None,
+    points: int,
+    levels: Sequence[float],
+    h: float | None,
+    marks: Mapping[str, tuple[float, float]],
+    path: Path,
+    figure: FigureForm,
+    table: TableForm,
+) -> None:
+    """Write the map of forced errors over |z_p| as figure and table at `path`, or nothing where both forms are none."""
+    if figure == table == "none":
+        return
+    import numpy as np
+
+    from bezstab import stability
+    from bezstab.show import map_arrays
+
+    fitting = _fitting(stability.useful_window(stability.region(method)), motion, best, chosen)
+    alpha_hat, beta_hat = (
+        _axis(option, given, ends, points)
+        for option, given, ends in zip(
+            ("--alpha-range", "--beta-range"), (alpha_range, beta_range), fitting, strict=True
+        )
+    )
+    blocks = stability.pole_map(method, alpha_hat, beta_hat)
+    z = np.concatenate(list(progress(blocks, method.name, points, len)))
+    error = stability.combined_error(method, alpha_hat, beta_hat[:, np.newaxis], motion.omega_h)
+    decaying = np.where(np.abs(z) < 1, error, np.nan)
+
+    def draw() -> "Figure":
+        from bezstab.show import accuracy_map_figure
+
+        return accuracy_map_figure(
+            method.name,
+            float(motion.omega_h),
+            alpha_hat,
+            beta_hat,
+            np.abs(z),
+            decaying,
+            levels=levels or [stability.default_rate(method, motion.omega_h)],
+            best=best,
+            chosen=chosen,
+            h=h,
+            marks=marks,
+        )
+
+    columns = {**map_arrays(alpha_hat, beta_hat, z, h), "combined_error": decaying.ravel()}
+    write_table(path, columns, table)
+    write_figure(path, draw, figure)
+
+
+def _fitting(
+    shown: "Extent", motion: TypedMotion, best: "BestPoint | None", chosen: "Choice | None"
+) -> "Extent":
+    """Return ranges above zero: from feedback much slower than the motion on, up to the region's ends and both points."""
+    (_, alpha_hat_max), (_, beta_hat_max) = shown
+    for point in (best, chosen):
+        if point:
+            alpha_hat_max = max(alpha_hat_max, BEYOND * point.alpha_hat)
+            beta_hat_max = max(beta_hat_max, BEYOND * point.beta_hat)
+    slow = float(motion.omega_h) / SLOWER  # alpha h and beta h
+    return (
+        (min(2 * slow, alpha_hat_max / DECADES), alpha_hat_max),
+        (min(slow**2, beta_hat_max / DECADES), beta_hat_max),
+    )
+
+
+def _axis(option: str, given: Window | None, fitting: tuple[float, float], points: int) -> "FloatArray":
+    """Return the points on a logarithmic axis; InputError for a range that does not begin above zero."""
+    import numpy as np
+
+    low, high = map(float, given or fitting)
+    if low <= 0:
+        raise InputError(f"{option} {low:g} {high:g}: the axes of --accuracy are logarithmic, and begin above 0")
+    return np.geomspace(low, high, points)
