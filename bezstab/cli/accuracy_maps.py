@@ -43,13 +43,15 @@ def accuracy_keys(method: Method, motion: TypedMotion, best: "BestPoint | None",
 
     def error(point: "BestPoint | Choice | None") -> float | None:
         """Return the error at a point, None without one."""
-        return point and float(combined_error(method, point.alpha_hat, point.beta_hat, motion.omega_h))
+        if point is None:
+            return None
+        return float(combined_error(method, point.alpha_hat, point.beta_hat, motion.omega_h))
 
     return {
         "omega_h": float(motion.omega_h),
-        "accurate_alpha_hat": chosen and chosen.alpha_hat,
-        "accurate_beta_hat": chosen and chosen.beta_hat,
-        "accurate_z_abs": chosen and abs(chosen.pole),
+        "accurate_alpha_hat": chosen.alpha_hat if chosen else None,
+        "accurate_beta_hat": chosen.beta_hat if chosen else None,
+        "accurate_z_abs": abs(chosen.pole) if chosen else None,
         "accurate_error": error(chosen),
         "best_error": error(best),
     }
@@ -90,7 +92,8 @@ def write_accuracy_map(
     from bezstab import stability
     from bezstab.show import map_arrays
 
-    fitting = _fitting(stability.useful_window(stability.region(method)), motion, best, chosen)
+    stable = stability.region(method)
+    fitting = _fitting(stability.useful_window(stable), motion, best, chosen)
     alpha_hat, beta_hat = (
         _axis(option, given, ends, points)
         for option, given, ends in zip(
@@ -106,7 +109,7 @@ def write_accuracy_map(
         from bezstab.show import accuracy_map_figure
 
         return accuracy_map_figure(
-            method.name,
+            stable,
             float(motion.omega_h),
             alpha_hat,
             beta_hat,
@@ -124,10 +127,8 @@ def write_accuracy_map(
     write_figure(path, draw, figure)
 
 
-def _fitting(
-    shown: "Extent", motion: TypedMotion, best: "BestPoint | None", chosen: "Choice | None"
-) -> "Extent":
-    """Return ranges above zero: from feedback much slower than the motion on, up to the region's ends and both points."""
+def _fitting(shown: "Extent", motion: TypedMotion, best: "BestPoint | None", chosen: "Choice | None") -> "Extent":
+    """Return ranges above zero: from feedback much slower than the motion on, to the region's ends and both points."""
     (_, alpha_hat_max), (_, beta_hat_max) = shown
     for point in (best, chosen):
         if point:

@@ -326,15 +326,13 @@ def region(
     methods = methods_asked(methods, engine, None)
     if scene and compare:
         raise click.UsageError("--scene draws one map for each method: not with --compare")
-    if accuracy and (compare or alpha_beta or len(speeds) > 1):
-        other = "--compare" if compare else "--alpha-beta" if alpha_beta else "several --speed"
-        raise click.UsageError(f"--accuracy draws one map for each method, on logarithmic axes: not with {other}")
-    if omega is not None and not accuracy:
+    motion = None
+    if accuracy:
+        _check_accuracy_alone(compare, alpha_beta, speeds, scene)
+        motion = typed_omega_h(omega, scene, speeds[0] if speeds else Fraction(1), h)
+    elif omega is not None:
         raise click.UsageError("--omega goes with --accuracy: it is the motion on which errors are told")
-    if accuracy and speeds and scene is None:
-        raise click.UsageError("--speed goes with --scene: it is the mechanism that is so many times as fast")
-    motion = typed_omega_h(omega, scene, speeds[0] if speeds else Fraction(1), h) if accuracy else None
-    turnings = {} if accuracy else {float(speed): turning_of(scene, speed, h) for speed in speeds or [Fraction(1)]}
+    turnings = {} if motion else {float(speed): turning_of(scene, speed, h) for speed in speeds or [Fraction(1)]}
     if compare and len(levels) > 1:
         raise InputError(f"--compare takes one --level, but {len(levels)} were given")
     if figure != "none" or table != "none":
@@ -345,43 +343,15 @@ def region(
         level = chosen_levels[0] if chosen_levels else 1.0
         rows = _compare_regions(methods, level, alpha_range, beta_range, step, alpha_beta, output, figure, table)
         complete = True
-    elif motion:
+    else:
         shown = (alpha_range, beta_range, grid or QUALITY[quality], step)
         marks = _engine_marks(engine, h) if engine and h else {}
-        rows, complete = _each_for_itself(
-            methods, lambda method: _accuracy_rows(method, motion, chosen_levels, *shown, marks, output, figure, table)
-        )
-    else:
-        marks = _engine_marks(engine, h) if engine and h else {}
-        scene_name = _scene_name(scene) if scene else ""
 
         def rows_of(method: Method) -> list[Row]:
-            points = grid or QUALITY[quality]
-            moving = _moving_regions(method, turnings, step)
-            names = [file_name(name) for name in (method.name, *([Path(scene).stem] if scene else []))]
-            path = output / "_".join(["region", *names])
-            row = _map_region(
-                method,
-                chosen_levels,
-                alpha_range,
-                beta_range,
-                points,
-                step,
-                alpha_beta,
-                marks,
-                path,
-                figure,
-                table,
-                moving,
-                scene_name,
-            )
-            of_speeds: list[Row] = [
-                {**row, "speed": speed, "kappa": kappa, "area_moving": of_speed.area}
-                for (speed, kappa), of_speed in moving.items()
-            ]
-            no_motion: Row = {"speed": None, "kappa": None, "area_moving": None} if scene else {}
-            of_levels = [{**of_level, **no_motion} for of_level in _level_rows(method, chosen_levels)]
-            return [*(of_speeds or [row]), *of_levels]
+            drawn = (*shown, marks, output, figure, table)
+            if motion:
+                return _accuracy_rows(method, motion, chosen_levels, *drawn)
+            return _region_rows(method, chosen_levels, *drawn, alpha_beta, turnings, scene)
 
         rows, complete = _each_for_itself(methods, rows_of)
     name, *shape = REGIONS
@@ -394,6 +364,15 @@ def region(
         )
     if not complete or any(str(row["best_reason"]).startswith(NOT_KNOWN) for row in rows):
         click.get_current_context().exit(NUMERICAL_TROUBLE)
+
+
+def _check_accuracy_alone(compare: bool, alpha_beta: bool, speeds: Sequence[Fraction], scene: str | None) -> None:
+    """Raise UsageError for an option that does not go with --accuracy."""
+    if compare or alpha_beta or len(speeds) > 1:
+        other = "--compare" if compare else "--alpha-beta" if alpha_beta else "several --speed"
+        raise click.UsageError(f"--accuracy draws one map for each method, on logarithmic axes: not with {other}")
+    if speeds and scene is None:
+        raise click.UsageError("--speed goes with --scene: it is the mechanism that is so many times as fast")
 
 
 def _each_for_itself(methods: Sequence[Method], rows_of: Callable[[Method], list[Row]]) -> tuple[list[Row], bool]:
@@ -512,6 +491,47 @@ def _map_region(
     write_table(path, map_arrays(alpha_hat, beta_hat, z, h), table)
     write_figure(path, draw, figure)
     return row
+
+
+def _region_rows(
+    method: Method,
+    levels: Sequence[float],
+    alpha_range: Window | None,
+    beta_range: Window | None,
+    points: int,
+    h: float | None,
+    marks: Mapping[str, tuple[float, float]],
+    output: Path,
+    figure: FigureForm,
+    table: TableForm,
+    alpha_beta: bool,
+    turnings: "Mapping[float, TurningNormals | None]",
+    scene: str | None,
+) -> list[Row]:
+    """Write the |z_p| map of one method; return the rows of its region, of each speed of a scene, and of each level."""
+    moving = _moving_regions(method, turnings, h)
+    names = [file_name(name) for name in (method.name, *([Path(scene).stem] if scene else []))]
+    row = _map_region(
+        method,
+        levels,
+        alpha_range,
+        beta_range,
+        points,
+        h,
+        alpha_beta,
+        marks,
+        output / "_".join(["region", *names]),
+        figure,
+        table,
+        moving,
+        _scene_name(scene) if scene else "",
+    )
+    of_speeds: list[Row] = [
+        {**row, "speed": speed, "kappa": kappa, "area_moving": of_speed.area}
+        for (speed, kappa), of_speed in moving.items()
+    ]
+    no_motion: Row = {"speed": None, "kappa": None, "area_moving": None} if scene else {}
+    return [*(of_speeds or [row]), *({**of_level, **no_motion} for of_level in _level_rows(method, levels))]
 
 
 def _accuracy_rows(

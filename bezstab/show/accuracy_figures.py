@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from math import ceil, floor
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,7 +12,7 @@ from matplotlib.colors import FuncNorm
 from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patheffects import withStroke
+from matplotlib.patheffects import AbstractPathEffect, withStroke
 
 from bezstab.show import plot
 from bezstab.show.plot import Point
@@ -26,7 +27,7 @@ from bezstab.show.style import (
     plane_coordinates,
     styled,
 )
-from bezstab.stability import BestPoint, Choice, FloatArray, FrontPoint
+from bezstab.stability import BestPoint, Choice, FloatArray, FrontPoint, Region
 
 TICKS = (0.1, 0.5, 0.8, 0.9, 0.95, 0.98, 0.99, 0.995, 0.998, 0.999, 0.9999)
 """Of |z_p|, where it is drawn evenly in how often errors fall."""
@@ -46,7 +47,7 @@ MOST_CONTOURS = 12
 LABEL_ROOM = 0.06
 """Of the axes: a label nearer to their edges, to another or to a marker is left out."""
 
-HALO = [withStroke(linewidth=1.5, foreground="black")]
+HALO: list[AbstractPathEffect] = [withStroke(linewidth=1.5, foreground="black")]
 """So that a white line shows on any colour, in grey too."""
 
 
@@ -61,7 +62,7 @@ def from_decay_scale(values: FloatArray) -> FloatArray:
 
 
 def accuracy_map_figure(
-    name: str,
+    region: Region,
     omega_h: float,
     alpha_hat: FloatArray,
     beta_hat: FloatArray,
@@ -75,12 +76,11 @@ def accuracy_map_figure(
 ) -> Figure:
     """Return contours of the forced error over the map of |z_p|, on logarithmic axes, with both best points.
 
-    z_abs and error (a share of the motion of omega_h rad a step) have shape (beta_hat.size, alpha_hat.size), of a
-    method of that name on two ascending axes > 0. Dashed are further `levels` of |z_p|. Axes and `marks` are as for
-    region_figure.
+    z_abs and error (a share of the motion of omega_h rad a step) have shape (beta_hat.size, alpha_hat.size), on two
+    ascending axes > 0. Dashed are further `levels` of |z_p|. Axes and `marks` are as for region_figure.
     """
     with styled():
-        figure, axes = plane_axes(rf"{name}, forced errors at $\omega h$ = {omega_h:.3g}", h)
+        figure, axes = plane_axes(rf"{region.method.name}, forced errors at $\omega h$ = {omega_h:.3g}", h)
         axes.set(xscale="log", yscale="log", facecolor="0.93")
         axes.grid(visible=False)
         x, y = plane_coordinates(alpha_hat, beta_hat, h)
@@ -93,9 +93,13 @@ def accuracy_map_figure(
         bar.set_ticks(_ticks(shown.min(), shown.max(), UP))
         bar.ax.minorticks_off()
         contours = _error_contours(axes, x, y, np.ma.masked_where(z_abs >= 1, error))
-        _level_line(axes, x, y, z_abs, 1.0, linewidth=1.2)
+        boundary = plane_coordinates(*_for_logarithmic_axes(region.boundary), h)
+        axes.plot(*boundary, color="black", linestyle="-", label=f"$|z_p| = {region.level:g}$")
         for number, level in enumerate(levels, start=1):
-            _level_line(axes, x, y, z_abs, level, linewidth=0.8, linestyle=DASHES[number % 4])
+            dashes = DASHES[number % 4]
+            axes.contour(x, y, z_abs, levels=[level], colors="black", linewidths=0.8, linestyles=[dashes])
+            label = f"$|z_p| = {level:.4g}$"  # the key of what has none
+            axes.plot([], [], color="black", linewidth=0.8, linestyle=dashes, label=label)
         plot.critical_damping((alpha_hat[0], alpha_hat[-1]), axes, h)
         points = [plot.best_point(best, axes, h)] if best else []
         points += [plot.choice(chosen, axes, h)] if chosen else []
@@ -112,18 +116,23 @@ def _error_contours(axes: Axes, x: FloatArray, y: FloatArray, error: np.ma.Maske
     logarithm = np.ma.log10(error)
     lowest, highest = ceil(logarithm.min()), min(0, floor(logarithm.max()))
     powers = np.arange(lowest, highest + 1, max(1, ceil((highest - lowest) / MOST_CONTOURS)))
-    style = {"colors": "white", "linewidths": 0.7, "linestyles": "-"}
+    style: dict[str, Any] = {"colors": "white", "linewidths": 0.7, "linestyles": "-"}
     contours: QuadContourSet = axes.contour(x, y, logarithm, levels=powers, **style)
     contours.set_path_effects(HALO)
     axes.plot([], [], color="white", linewidth=0.7, path_effects=HALO, label="forced error / motion")  # a key
     return contours
 
 
-def _level_line(axes: Axes, x: FloatArray, y: FloatArray, z_abs: FloatArray, level: float, **line: object) -> None:
-    """Draw the line on which |z_p| is of a level, with a key."""
-    (key,) = axes.plot([], [], color="black", label=f"$|z_p| = {level:.4g}$", **line)
-    style = {"linewidths": key.get_linewidth(), "linestyles": [line.get("linestyle", "-")]}
-    axes.contour(x, y, z_abs, levels=[level], colors="black", **style)
+def _for_logarithmic_axes(curves: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
+    """Return curves, nan between them, with so many points on each chord that it is smooth down to its last decade."""
+    close = np.geomspace(1e-9, 0.5, 60)
+    shares = np.concatenate([[0.0], close, 1 - close[::-1]])[:, np.newaxis]
+    pieces = [np.empty((0, 2))]
+    for curve in curves:
+        chords = curve[:-1] + shares[..., np.newaxis] * np.diff(curve, axis=0)
+        pieces += [chords.swapaxes(0, 1).reshape(-1, 2), curve[-1:], np.full((1, 2), np.nan)]
+    points = np.concatenate(pieces)
+    return points[:, 0], points[:, 1]
 
 
 def _label(axes: Axes, contours: QuadContourSet, points: Sequence[Line2D]) -> None:
@@ -140,16 +149,17 @@ def _label(axes: Axes, contours: QuadContourSet, points: Sequence[Line2D]) -> No
     taken = [shares(np.asarray(point.get_xydata()))[0] for point in points]
     places = []
     for path in contours.get_paths():
-        if not len(path.vertices):
+        vertices = np.asarray(path.vertices)
+        if not vertices.size:
             continue
-        along = shares(np.asarray(path.vertices))
+        along = shares(vertices)
         room = np.minimum(along, 1 - along).min(axis=1)
         for other in taken:
             room = np.minimum(room, np.hypot(*(along - other).T))
         widest = int(room.argmax())
         if room[widest] > LABEL_ROOM:
             taken.append(along[widest])
-            places.append(tuple(path.vertices[widest]))
+            places.append((vertices[widest, 0], vertices[widest, 1]))
     labels = axes.clabel(
         contours, fmt=lambda power: f"$10^{{{power:.0f}}}$", fontsize=6, colors="black", inline=False, manual=places
     )

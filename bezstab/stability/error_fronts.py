@@ -93,7 +93,7 @@ def error_front(method: Method, rates: Sequence[float] = RATES, omega_h: Fractio
     (_, alpha_hat_max), (_, beta_hat_max) = search_box(region(method))[0]
     best, _ = best_point_or_reason(method)
     reached = sorted({rate for rate in rates if best is None or rate > best.z_abs}, reverse=True)
-    points = []
+    points: list[tuple[float, float, float]] = []
     if reached:
         high = np.log([alpha_hat_max / 2, np.sqrt(beta_hat_max)])
         low = np.minimum(np.log(-WEAKEST * np.log(reached[0])), high - 1)
@@ -102,19 +102,23 @@ def error_front(method: Method, rates: Sequence[float] = RATES, omega_h: Fractio
             found = _front(looked_at, low, high, np.array(reached), method.name, finer=1)
         except NumericalError:
             found = _front(looked_at, low, high, np.array(reached), method.name, finer=FINER)
-        points = [(rate, *_plane(point)) for rate, point in zip(reached, found, strict=False)]
+        alpha_hat, beta_hat = _plane(found)
+        points = list(zip(reached, alpha_hat.tolist(), beta_hat.tolist(), strict=False))
     if best:
         points.append((best.z_abs, best.alpha_hat, best.beta_hat))
-    return [_front_point(method, omega_h, rate, float(a), float(b)) for rate, a, b in points]
+    return [_front_point(method, omega_h, *point) for point in points]
 
 
 def _front_point(method: Method, omega_h: Fraction, rate: float, alpha_hat: float, beta_hat: float) -> FrontPoint:
+    """Return a point of the front, alpha_hat and beta_hat being dimensionless, with its errors."""
     errors = forced_error(method, alpha_hat, beta_hat, omega_h)
     return FrontPoint(
         method=method,
         omega_h=float(omega_h),
         z_abs_below=rate,
-        z_abs=min(rate, float(largest_modulus(free_pencil_of(method), alpha_hat, beta_hat))),  # a double pole is rounded
+        z_abs=min(
+            rate, float(largest_modulus(free_pencil_of(method), alpha_hat, beta_hat))
+        ),  # a double pole is rounded
         alpha_hat=alpha_hat,
         beta_hat=beta_hat,
         total_error=float(errors.total),
