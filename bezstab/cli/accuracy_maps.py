@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 from bezstab.cli.accuracy_options import TypedMotion
 from bezstab.cli.options import FigureForm, TableForm
-from bezstab.cli.output import progress, say, write_figure, write_table
+from bezstab.cli.output import for_reading, progress, say, show_rows, show_text, write_figure, write_table
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method
-from bezstab.show import Row, column
+from bezstab.show import Format, Row, column, formatted
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -27,6 +27,17 @@ DECADES = 100
 
 BEYOND = 1.25
 """Times the parameters of a point: so far is shown beyond one that lies outside."""
+
+FRONT = [
+    column("method", "method"),
+    column("|z_p| at most", "z_abs_below", ".4g"),
+    column("α̂", "alpha_hat", ".6g"),
+    column("β̂", "beta_hat", ".6g"),
+    column("error of position", "total_error", ".2e"),
+    column("of velocity", "velocity_error", ".2e"),
+    column("both", "combined_error", ".2e"),
+]
+PHYSICAL = [column("α (1/s)", "alpha", ".6g"), column("β (1/s)", "beta", ".6g")]
 
 ACCURATE = [
     column("accurate α̂", "accurate_alpha_hat", ".6g"),
@@ -125,6 +136,52 @@ def write_accuracy_map(
     columns = {**map_arrays(alpha_hat, beta_hat, z, h), "combined_error": decaying.ravel()}
     write_table(path, columns, table)
     write_figure(path, draw, figure)
+
+
+def front_sentence(row: Row) -> str:
+    """Return how little a method can force while errors decay so fast."""
+    error, z_abs = formatted(row["combined_error"], ".1e"), formatted(row["z_abs_below"], ".4g")
+    return f"With |z_p| of {z_abs} at most {row['method']} forces {error} of the motion at least."
+
+
+def show_predicted_trade(
+    methods: Sequence[Method],
+    motion: TypedMotion,
+    rates: Sequence[float],
+    *,
+    h: float | None,
+    path: Path,
+    figure: FigureForm,
+    table: TableForm,
+    form: Format,
+) -> None:
+    """Print, draw and write at `path` how little each method can force while errors decay so fast; h in s."""
+    from bezstab.show import front_row, untimed_arrays
+    from bezstab.stability import RATES, error_front
+
+    asked = list(dict.fromkeys(methods))
+    fronts = [error_front(method, rates or RATES, motion.omega_h) for method in progress(asked, "fronts", len(asked))]
+    rows = [front_row(point, h) for front in fronts for point in front]
+
+    def draw() -> "Figure":
+        from bezstab.show import error_front_figure
+
+        return error_front_figure([front for front in fronts if front])
+
+    write_table(path, untimed_arrays(rows), table)
+    write_figure(path, draw, figure)
+    columns = FRONT if h is None else [*FRONT[:4], *PHYSICAL, *FRONT[4:]]
+    show_rows(rows, columns, form, sentence=front_sentence)
+    if for_reading(form):
+        say_combined(motion)
+
+
+def say_combined(motion: TypedMotion) -> None:
+    """Print below a table of combined errors what they are shares of."""
+    show_text(
+        "\nErrors of position and velocity are shares of the amplitudes of a motion's own position and velocity, here "
+        f"{motion.words}."
+    )
 
 
 def _fitting(shown: "Extent", motion: TypedMotion, best: "BestPoint | None", chosen: "Choice | None") -> "Extent":

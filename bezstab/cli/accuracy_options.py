@@ -51,10 +51,16 @@ class TypedMotion:
 
 
 def typed_omega_h(
-    omega: Fraction | None, scene: str | None, speed: Fraction, h: Fraction | None, h_max: Fraction | None = None
+    omega: Fraction | None,
+    scene: str | None,
+    speed: Fraction,
+    h: Fraction | None,
+    h_max: Fraction | None = None,
+    duration: Fraction | None = None,
 ) -> TypedMotion:
     """Return the motion that --omega says (1/s), else that of --scene, else one that is usual; h and h_max in s.
 
+    A motion that does not begin anew is followed for a `duration` (s), by default the scene's own.
     UsageError for --omega without a step; InputError for a scene at rest, and unless 1e-6 <= omega_h < 1.
     """
     from bezstab.stability import OMEGA_H
@@ -70,7 +76,7 @@ def typed_omega_h(
     amplitude = None
     if omega is None:
         assert scene
-        of_scene = _motion_of(scene, speed)
+        of_scene = _motion_of(scene, speed, duration)
         omega, amplitude = exact(of_scene.omega), of_scene.amplitude
         given, whose = f"--scene {scene}", f"that of {scene}"
     else:
@@ -80,13 +86,13 @@ def typed_omega_h(
     return _within_range(TypedMotion(omega_h, omega_h * longer, words, amplitude), given)
 
 
-def _motion_of(scene: str, speed: Fraction) -> "ConstraintMotion":
+def _motion_of(scene: str, speed: Fraction, duration: Fraction | None) -> "ConstraintMotion":
     """Return rate and amplitude of a scene's motion; InputError for one at rest, else as `load_scene` and `motion`."""
     from bezstab.mechanism import at_speed, compiled_mechanism, constraint_motion, load_scene
 
     moving = at_speed(load_scene(scene), float(speed))
     try:
-        return constraint_motion(compiled_mechanism(moving), moving.duration)
+        return constraint_motion(compiled_mechanism(moving), float(duration or moving.duration))
     except InputError as error:
         raise InputError(f"--scene {scene}: {error}; --omega gives one") from None
 

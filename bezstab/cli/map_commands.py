@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from bezstab.cli.accuracy_maps import ACCURATE, Window, accuracy_keys, accurate_choice, write_accuracy_map
+from bezstab.cli.accuracy_maps import ACCURATE, Window, accuracy_keys, accurate_choice, say_combined, write_accuracy_map
 from bezstab.cli.accuracy_options import (
     NARROW_ACCURACY,
     TypedMotion,
@@ -50,7 +50,6 @@ from bezstab.cli.output import (
     show_blocks,
     show_groups,
     show_rows,
-    show_text,
     write_figure,
     write_table,
 )
@@ -358,10 +357,7 @@ def region(
     added = ACCURATE if motion else MOVING_REGIONS if scene else []
     show_rows(rows, [name, *(LEVELS if levels else []), *shape, *added], form, sentence=region_sentence)
     if motion and for_reading(form):
-        show_text(
-            "\nErrors are of position and velocity together, each as a share of the amplitude of its motion, here "
-            f"{motion.words}."
-        )
+        say_combined(motion)
     if not complete or any(str(row["best_reason"]).startswith(NOT_KNOWN) for row in rows):
         click.get_current_context().exit(NUMERICAL_TROUBLE)
 

@@ -142,9 +142,14 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
     "tradeoff": [
         RowKind(
             "a run of a method with a step",
-            _keys("""method h alpha_hat beta_hat z_abs trajectory_error c_max c_rms cdot_max cdot_rms energy_drift
-                run_evaluations seconds seconds_min seconds_max failure observed_order front"""),
-        )
+            _keys("""method h alpha_hat beta_hat z_abs trajectory_error c_max c_later predicted_error c_rms cdot_max
+                cdot_rms energy_drift run_evaluations seconds seconds_min seconds_max failure observed_order front"""),
+        ),
+        RowKind(
+            "the least error that a method can force with |z_p| at most so large",
+            _keys("""method omega_h z_abs_below z_abs alpha_hat beta_hat h alpha beta total_error velocity_error
+                combined_error"""),
+        ),
     ],
     "extremes": [RowKind("a check", _keys("group case expected seen held"))],
     "paper": [RowKind("a claim of the paper", _keys("where claim paper here agreement"))],

@@ -87,7 +87,7 @@ VOCABULARY: Mapping[str, Key] = {
         "number", "Area of the region of the moving mechanism in alpha_hat and beta_hat", null=LEVEL_ROW
     ),
     # a region
-    "z_abs_below": Key("number", "What |z_p| is below in the region; 1 where the method is stable"),
+    "z_abs_below": Key("number", "What |z_p| is below, or on a front at most; 1 where the method is stable"),
     "area": Key("number", "Area of the region in alpha_hat and beta_hat", null="where it is infinite or empty"),
     "alpha_hat_min": Key("number", "Smallest alpha_hat of the region", null=UNBOUNDED),
     "alpha_hat_max": Key("number", "Largest alpha_hat of the region", null=UNBOUNDED),
@@ -273,6 +273,15 @@ VOCABULARY: Mapping[str, Key] = {
     "run_steps": Key("integer", "Steps of the whole run"),
     "run_evaluations": Key("integer", "Evaluations of the right-hand side in the whole run"),
     "c_max": Key("number", "Largest constraint error", "m or rad"),
+    "c_later": Key(
+        "number", "Largest constraint error in the later half of the run, where the start has died away", "m or rad"
+    ),
+    "predicted_error": Key(
+        "number",
+        "The same as the feedback forces it on the scene's own motion: predicted, without anything fitted",
+        "m or rad",
+        "where errors do not decay, or the motion cannot be followed for longer than the run",
+    ),
     "c_rms": Key("number", "Root mean square of the constraint error", "m or rad"),
     "cdot_max": Key("number", "Largest rate of the constraint error", "m/s or rad/s"),
     "cdot_rms": Key("number", "Root mean square of the rate of the constraint error", "m/s or rad/s"),
