@@ -13,6 +13,7 @@ import pytest
 
 import bezstab
 from bezstab.errors import InputError
+from tests.cli.running import rows
 
 PAGE = Path(__file__).parent.parent / "bezstab" / "README.md"
 FUNCTIONS = sorted(set(bezstab.__all__) - {"plot"})
@@ -81,6 +82,25 @@ def test_a_point_is_never_guessed(point: dict[str, float]) -> None:
             function("B4", **point)
 
 
+def test_a_motion_is_the_same_in_both_ways_and_the_command_line_has_the_same_cost() -> None:
+    in_seconds = bezstab.feedback_cost("RK4", alpha=400, beta=500, h=0.002, omega=5)
+    assert in_seconds == bezstab.feedback_cost("RK4", alpha_hat="1.6", beta_hat=1, omega_h="1/100")
+    assert in_seconds == bezstab.feedback_cost("RK4", alpha_hat=1.6, beta_hat=1)  # as usual
+    asked = ("check", "--method", "RK4", "--alpha", "400", "--beta", "500", "--h", "0.002", "--physical")
+    given = rows(*asked, "--omega", "5")[0]
+    for name in ("omega_h", "forced_error", "total_error", "velocity_error", "order_left", "times_least"):
+        assert given[name] == getattr(in_seconds, name)
+
+
+def test_a_choice_is_accurate_unless_told_otherwise_and_takes_the_motion_in_both_ways() -> None:
+    chosen = bezstab.choose("RK4", h=0.002, omega=10)
+    assert chosen.goal == "accurate"
+    assert chosen == bezstab.choose("RK4", goal="accurate", omega_h=0.02)
+    of_longest = bezstab.choose("RK4", h=0.001, h_max=0.002, omega=10)
+    assert of_longest.alpha_hat == pytest.approx(chosen.alpha_hat / 2)
+    assert bezstab.choose("RK4").alpha_hat == pytest.approx(chosen.alpha_hat / 2, rel=1e-3)  # omega h = 0.01
+
+
 def test_units_go_there_and_back() -> None:
     alpha, beta = np.array([10.0, 50.0]), np.array([20.0, 0.0])
     there = bezstab.to_dimensionless(alpha, beta, 0.002)
@@ -105,6 +125,15 @@ def test_a_region_knows_what_it_contains() -> None:
             "goal 'quick': expected accurate, robust, fastest, critical, gentle",
         ),
         (lambda: bezstab.choose("B4", goal="gentle"), "the goal gentle need the step h in s"),
+        (lambda: bezstab.choose("B4", omega=5), "omega in 1/s needs the step h in s"),
+        (lambda: bezstab.choose("B4", omega=500, h=0.01), "omega h = 5 rad a step: expected 1e-06 to 1"),
+        (lambda: bezstab.choose("B4", omega=0, h=0.01), "omega h = 0 rad a step: expected 1e-06 to 1"),
+        (lambda: bezstab.choose("B4", goal="robust", omega_h=0.01), "go with the goal accurate, not robust"),
+        (
+            lambda: bezstab.feedback_cost("B4", alpha_hat=0.5, beta_hat=0.1, omega=5, omega_h=0.1),
+            "as omega= in 1/s with h= in s, or as omega_h= in rad a step, not as both",
+        ),
+        (lambda: bezstab.feedback_cost("B4", alpha=1, beta=1, omega_h=0.1), "alpha and beta in 1/s need the step h"),
         (lambda: bezstab.choose("B4", spread=-0.5), "spread -0.5: expected a share from 0 to 1"),
         (lambda: bezstab.choose("B4", h=-1), "h = -1 s: expected 1e-100 to"),
         (lambda: bezstab.choose("B4", goal="gentle", h=0.001, settle=-1), "settle = -1 s: expected a positive time"),

@@ -121,7 +121,7 @@ def test_python_prints_what_the_readme_shows() -> None:
 
 def test_the_readme_is_short() -> None:
     lines = README.splitlines()
-    assert len(lines) <= 150
+    assert len(lines) <= 165
     assert max(map(len, lines)) <= 100
 
 

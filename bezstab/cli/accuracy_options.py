@@ -12,7 +12,7 @@ from bezstab.cli.output import say, show_text
 from bezstab.cli.typed_points import typed_number
 from bezstab.errors import InputError, NumericalError
 from bezstab.rationals import exact
-from bezstab.show import MISSING, Column, Row, column, times_words
+from bezstab.show import MISSING, Column, Row, column, formatted, times_words
 from bezstab.units import from_dimensionless
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ def typed_omega_h(
     if omega is None and scene is None:
         at_longest = "" if longer == 1 else " at --h-max"
         whose = "--omega says" if h else "--omega and --h say"
-        words = f"one with ωh = {float(OMEGA_H):g}{at_longest}: {whose} how fast yours is"
+        words = f"one with ωh = {float(OMEGA_H):g}{at_longest} ({whose} how fast yours is)"
         return _within_range(TypedMotion(OMEGA_H / longer, OMEGA_H, words), "--h and --h-max")
     if h is None:
         raise click.UsageError("--omega needs --h: the step in s, to make ωh of it")
@@ -78,7 +78,7 @@ def typed_omega_h(
         assert scene
         of_scene = _motion_of(scene, speed, duration)
         omega, amplitude = exact(of_scene.omega), of_scene.amplitude
-        given, whose = f"--scene {scene}", f"that of {scene}"
+        given, whose = f"--scene {scene} moves with ω = {float(omega):.3g} 1/s", f"that of {scene}"
     else:
         given, whose = f"--omega {typed_number(omega)}", "one"
     omega_h = omega * h
@@ -140,22 +140,34 @@ def _times_least(row: Row) -> str:
     return times_words(times) if isinstance(times, float) else MISSING
 
 
+def _both_times_least(row: Row) -> str:
+    velocity = row["times_least_velocity"]
+    return f"{_times_least(row)}; velocity: {times_words(velocity)}" if isinstance(velocity, float) else MISSING
+
+
+def _both_errors(row: Row) -> str:
+    error, velocity = row["total_error"], row["velocity_error"]
+    return MISSING if error is None else f"{formatted(error, '.1e')}; velocity: {formatted(velocity, '.1e')}"
+
+
 def accuracy_columns(motion: TypedMotion) -> list[Column]:
     """Return the columns that show what with_cost adds: all but the steady share, which is seldom another."""
     return [
-        column(f"error at ωh = {float(motion.omega_h):.3g}", "total_error", ".2g"),
+        Column(f"error at ωh = {float(motion.omega_h):.3g}", _both_errors),
         column("order left", "order_left", "d"),
-        Column("times the least error", _times_least),
+        Column("times the least error", _both_times_least),
     ]
 
 
 NARROW_ACCURACY = [column("error", "total_error", ".1e"), Column("× least", _times_least)]
-"""The same beside the columns of poles, within 80 characters."""
+"""The same of the constraint beside the columns of poles, within 80 characters."""
 
 
 def say_motion(motion: TypedMotion) -> None:
-    """Print below a table what its errors are shares of."""
-    show_text(f"\nErrors are shares of the amplitude of a motion, here {motion.words}.")
+    """Print below a table what its errors are shares of, and what is called the least."""
+    show_text(
+        f"\nErrors are shares of the amplitude of a motion, here {motion.words}. The least are those of --goal accurate."
+    )
 
 
 def say_cost(sentence: str | None) -> None:
@@ -177,18 +189,34 @@ def cost_sentence(
 
     With a step (s) the better point is given in 1/s; `in_own_words`, where an engine has words of its own, it is not.
     """
-    if cost is None or cost.times_least is None or cost.times_least < COSTLY:
+    if cost is None or cost.least_at is None:
         return None
-    assert cost.least_at
+    least = "the least" if in_own_words else f"that at {_point_words(cost.least_at, h)}"
+    if _is_costly(cost.times_least):
+        return f"This feedback costs accuracy: {_constraint_words(name, cost, motion, least)}"
+    if _is_costly(cost.times_least_velocity):
+        assert cost.times_least_velocity
+        return (
+            f"This feedback costs accuracy: with {name} the error it forces on velocities is "
+            f"{times_words(cost.times_least_velocity)} times {least}. It is {cost.velocity_error:.1e} of their "
+            "amplitude."
+        )
+    return None
+
+
+def _is_costly(times: float | None) -> bool:
+    return times is not None and times >= COSTLY
+
+
+def _constraint_words(name: str, cost: "FeedbackCost", motion: TypedMotion, least: str) -> str:
+    """Return which order is left and how large the constraint's error is, `least` being what it is compared with."""
+    assert cost.times_least is not None
     assert cost.total_error is not None
     keeps = f"order {cost.order_left} of {cost.order}" if cost.order_left < cost.order else f"its order {cost.order}"
-    least = f"that at {_point_words(cost.least_at, h)}"
-    if in_own_words:
-        least = "the least"
-    in_units = "" if motion.amplitude is None else f", {cost.total_error * motion.amplitude:.2g} m or rad"
+    in_units = "" if motion.amplitude is None else f", {cost.total_error * motion.amplitude:.1e} m or rad"
     return (
-        f"This feedback costs accuracy: {name} keeps {keeps}; the error it forces is {times_words(cost.times_least)} "
-        f"times {least}. It is {cost.total_error:.2g} of the motion's amplitude{in_units}."
+        f"{name} keeps {keeps}; the error it forces is {times_words(cost.times_least)} times {least}. "
+        f"It is {cost.total_error:.1e} of the motion's amplitude{in_units}."
     )
 
 
@@ -219,12 +247,13 @@ def _faster(choice: "Choice", cost: "FeedbackCost", motion: TypedMotion, chosen:
         found = _alternative(chosen, goal)
         if found is None or abs(found.pole) >= abs(choice.pole):
             continue
-        times = _times_the_error(found, cost, motion)
+        times = _times_the_errors(found, cost, motion)
         if times is None:
             return None
+        before, after = abs(choice.pole), abs(found.pole)
         return (
-            f"Faster decay: --goal {goal} takes |z_p| from {abs(choice.pole):.4f} to {abs(found.pole):.4f} a step, and "
-            f"the feedback forces {times_words(times)} times the error."
+            f"Faster decay: --goal {goal} takes |z_p| from {before:.4f} to {after:.4f} a step, and the feedback "
+            f"forces {_errors_words(times)}."
         )
     return "Faster decay: there is none."
 
@@ -236,14 +265,12 @@ def _slower(choice: "Choice", cost: "FeedbackCost", motion: TypedMotion, h: Frac
         return None
     settle = Fraction(f"{float(SLOWER * steps * h * choice.method.step_multiple):.2g}")
     found = _alternative(chosen, "accurate", settle)
-    times = None if found is None else _times_the_error(found, cost, motion)
+    times = None if found is None else _times_the_errors(found, cost, motion)
     if times is None:
         return None
-    gain = "Slower decay:" if times < GAIN else "Slower decay gains nothing:"
+    gain = "Slower decay:" if min(times) < GAIN else "Slower decay gains nothing:"
     goal = "" if choice.goal == "accurate" else "--goal accurate "
-    return (
-        f"{gain} with {goal}--settle {typed_number(settle)} the feedback forces {times_words(times)} times the error."
-    )
+    return f"{gain} with {goal}--settle {typed_number(settle)} the feedback forces {_errors_words(times)}."
 
 
 def _alternative(chosen: Chosen, goal: "Goal", settle: Fraction | None = None) -> "Choice | None":
@@ -254,11 +281,17 @@ def _alternative(chosen: Chosen, goal: "Goal", settle: Fraction | None = None) -
         return None
 
 
-def _times_the_error(found: "Choice", cost: "FeedbackCost", motion: TypedMotion) -> float | None:
-    """Return the error at another choice over that at this one."""
+def _times_the_errors(found: "Choice", cost: "FeedbackCost", motion: TypedMotion) -> tuple[float, float] | None:
+    """Return the errors of constraint and velocity at another choice over those at this one; None if not known."""
     from bezstab.stability import feedback_cost
 
     other = feedback_cost(found.method, exact(found.alpha_hat), exact(found.beta_hat), motion.omega_h)
-    if other.total_error is None or not cost.total_error:
+    if not (cost.total_error and cost.velocity_error) or other.total_error is None or other.velocity_error is None:
         return None
-    return other.total_error / cost.total_error
+    return other.total_error / cost.total_error, other.velocity_error / cost.velocity_error
+
+
+def _errors_words(times: tuple[float, float]) -> str:
+    """Return how many times as large the errors of constraint and velocity are."""
+    of_constraint, of_velocity = times
+    return f"{times_words(of_constraint)} times the error, {times_words(of_velocity)} times that of velocities"

@@ -29,6 +29,7 @@ from bezstab.cli.moving_mechanism import (
     moving_rows,
     moving_scene_option,
     moving_speed_option,
+    say_if_it_turns_too_far,
     turning_of,
 )
 from bezstab.cli.options import (
@@ -171,7 +172,7 @@ def choice_sentence(row: Row) -> str:
     type=click.Choice(["accurate", "robust", "fastest", "critical", "gentle"]),
     help="accurate: the least error forced on the motion, among what settles in time; robust: fastest at worst over "
     "smaller steps and the spread; fastest: least |z_p|; critical: fastest without oscillation; gentle: the mildest "
-    "α = β that settles in time [accurate; robust for an --engine that can express a curve of points alone].",
+    "α = β that settles in time [accurate; robust with --pd and for an --engine that can express a curve alone].",
 )
 @omega_option
 @click.option(
@@ -235,6 +236,7 @@ def choose(
     steps = step_range(methods, h, h_min, h_max, hold)
     turning = turning_of(scene, speed, h)
     motion = typed_omega_h(omega, scene, speed, h, h_max)
+    say_if_it_turns_too_far(turning, scene, h)
     rows: list[Row] = []
     choices: list[Choice] = []
     alternatives: list[Chosen] = []
@@ -436,6 +438,7 @@ def check(
         say_if_units_were_mistaken(methods, alpha, beta, h)
     turning = turning_of(scene, speed, h)
     motion = typed_omega_h(omega, scene, speed, h)
+    say_if_it_turns_too_far(turning, scene, h)
     asked, nothing_instead = _asked(methods, typed, turning, h, motion)
     rows = [_row_of(each, typed, engine, as_typed, drive, h) for each in asked]
     methods_of_rows = [each.choice.method for each in asked]

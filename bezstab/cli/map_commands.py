@@ -22,6 +22,7 @@ from bezstab.cli.moving_mechanism import (
     moving_rows,
     moving_scene_option,
     moving_speed_option,
+    say_if_it_turns_too_far,
     turning_of,
 )
 from bezstab.cli.options import (
@@ -176,6 +177,7 @@ def poles(
         say_if_units_were_mistaken(methods, alpha, beta, h)
     turning = turning_of(scene, speed, h)
     motion = typed_omega_h(omega, scene, speed, h)
+    say_if_it_turns_too_far(turning, scene, h)
     alpha_hat, beta_hat = map(float, typed.point)
     poles_of = stability.poles if all_poles else stability.dominant_pole
     rows: list[Row] = []
@@ -332,6 +334,8 @@ def region(
     elif omega is not None:
         raise click.UsageError("--omega goes with --accuracy: it is the motion on which errors are told")
     turnings = {} if motion else {float(speed): turning_of(scene, speed, h) for speed in speeds or [Fraction(1)]}
+    for turning in turnings.values():
+        say_if_it_turns_too_far(turning, scene, h)
     if compare and len(levels) > 1:
         raise InputError(f"--compare takes one --level, but {len(levels)} were given")
     if figure != "none" or table != "none":

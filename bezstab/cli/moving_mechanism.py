@@ -28,8 +28,8 @@ def moving_scene_option(help_text: str) -> Decorator:
 def turning_of(scene: str | None, speed: Fraction, h: Fraction | None) -> "TurningNormals | None":
     """Return how the normals of the scene's constraints turn; None without a scene.
 
-    Where they turn too far in a step for the first-order law, that is said. UsageError for a scene without a step (h in
-    s), or a speed without a scene; else errors as `load_scene` and `regular_motion`.
+    UsageError for a scene without a step (h in s), or a speed without a scene; else errors as `load_scene` and
+    `regular_motion`.
     """
     if scene is None:
         if speed != 1:
@@ -37,7 +37,6 @@ def turning_of(scene: str | None, speed: Fraction, h: Fraction | None) -> "Turni
         return None
     if h is None:
         raise click.UsageError("--scene needs --h: how far the mechanism moves in a step depends on it")
-    from bezstab.evidence import LAW_HOLDS
     from bezstab.mechanism import at_speed, compiled_mechanism, load_scene, regular_motion, turning_normals
 
     moving = at_speed(load_scene(scene), float(speed))
@@ -48,13 +47,18 @@ def turning_of(scene: str | None, speed: Fraction, h: Fraction | None) -> "Turni
     )
     for stage in progress(stages, moving.name):
         stage()
-    mechanism = compiled_mechanism(moving)
-    turning = turning_normals(mechanism, moving.duration)
+    return turning_normals(compiled_mechanism(moving), moving.duration)
+
+
+def say_if_it_turns_too_far(turning: "TurningNormals | None", scene: str | None, h: Fraction | None) -> None:
+    """Say on standard error, if so, that a scene's constraints turn too far in a step (s) for the first-order law."""
+    if turning is None or h is None:
+        return
+    from bezstab.evidence import LAW_HOLDS
+
     turned = turning.kappa * float(h)
     if turned > LAW_HOLDS:
-        name = mechanism.scene.name
-        say(f"bezstab: constraints of {name} turn by κh = {turned:.2g} a step: beyond {LAW_HOLDS:g} the law fails")
-    return turning
+        say(f"bezstab: constraints of {scene} turn by κh = {turned:.2g} a step: beyond {LAW_HOLDS:g} the law fails")
 
 
 def modulus_as_it_moves(method: "Method", turning: "TurningNormals | None", h: Fraction | None) -> "Modulus | None":

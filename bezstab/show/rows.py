@@ -19,6 +19,12 @@ from bezstab.units import feedback_gains
 LIMITS = ("alpha_hat_min", "alpha_hat_max", "beta_hat_min", "beta_hat_max")
 """The ends of a region's ranges, as rows name them."""
 
+COST = (
+    *("omega_h", "forced_error", "total_error", "velocity_error", "order_left"),
+    *("times_least", "times_least_velocity"),
+)
+"""What accuracy a feedback costs, as rows name it."""
+
 NOT_KNOWN = "not known"
 """How the reason begins where the search for a best point failed."""
 
@@ -499,8 +505,8 @@ def choice_row(
 def cost_row(cost: FeedbackCost | None, omega_h: float) -> dict[str, Value]:
     """Return what accuracy a feedback costs on a motion of omega_h rad a step; None for what is not known."""
     if cost is None:
-        nothing = dict.fromkeys(("forced_error", "total_error", "order_left", "times_least"))
-        return {"omega_h": omega_h, **nothing}
+        nothing = dict.fromkeys(COST)
+        return {**nothing, "omega_h": omega_h}
     return row(cost, without={"order", "least_at"})
 
 

@@ -36,10 +36,11 @@ REGION = """z_abs_below area alpha_hat_min alpha_hat_max beta_hat_min beta_hat_m
     critical_damping_limit critical_damping_limit_exact"""
 METHOD = """method steps evaluations order order_position_forces order_velocity_forces error_constant
     error_constant_exact source implicit digits"""
-COST = "omega_h forced_error total_error order_left times_least"
+COST = "omega_h forced_error total_error velocity_error order_left times_least times_least_velocity"
 """What accuracy the feedback costs."""
 CHOICE = f"""method goal alpha_hat beta_hat verdict safe {POLE} worst searched h alpha beta settle_steps settle_seconds
-    margins_reason h_factor h_limit alpha_factor_min alpha_factor_max beta_factor_min beta_factor_max {COST}"""
+    margins_reason h_factor h_limit alpha_factor_min alpha_factor_max beta_factor_min beta_factor_max
+    {COST}"""
 
 ACCURATE = _keys("omega_h accurate_alpha_hat accurate_beta_hat accurate_z_abs accurate_error best_error")
 """What --accuracy adds."""

@@ -145,6 +145,9 @@ VOCABULARY: Mapping[str, Key] = {
         "Constraint error that is left in a run, as such a share: the largest that is forced at any rate up to omega",
         null=NO_ERROR,
     ),
+    "velocity_error": Key(
+        "number", "Error forced on the velocity of that motion, as a share of the velocity's amplitude", null=NO_ERROR
+    ),
     "order_left": Key(
         "integer",
         "Order in h of the forced error where alpha_hat and beta_hat are held, at most the method's own",
@@ -152,11 +155,11 @@ VOCABULARY: Mapping[str, Key] = {
     ),
     "times_least": Key(
         "number",
-        "total_error over that at the point of the goal accurate, which weighs velocities as well",
-        null=f"{NO_ERROR}, or that point is",
+        "Total error over that at the point of the goal accurate, which weighs velocities as well",
+        null=f"{NO_ERROR}, or that point is not",
     ),
-    "velocity_error": Key(
-        "number", "Error of the velocity that the method forces on that motion, as a share of the velocity's amplitude"
+    "times_least_velocity": Key(
+        "number", "Velocity error over that at the same point", null=f"{NO_ERROR}, or that point is not"
     ),
     "combined_error": Key(
         "number", "The largest constraint error that is forced at any rate and velocity_error, such shares, added up"

@@ -9,6 +9,7 @@ import numpy as np
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method, accuracy, leading_error
 from bezstab.rationals import exact
+from bezstab.stability.arrays import FloatArray
 from bezstab.stability.choices import choose
 from bezstab.stability.closed_loop import converges
 from bezstab.stability.forced_errors import OMEGA_H, check_omega_h, forced_error
@@ -19,17 +20,20 @@ class FeedbackCost:
     """Errors as shares of the amplitude of a motion of omega_h rad a step; None where errors do not decay at all.
 
     None, too, where they leave the range of float64. forced_error: of the constraint, in the steady state. total_error:
-    what is left in a run (forced_errors.py). order_left: the order in h of the error where alpha_hat and beta_hat are
-    held, at most `order`, the method's own. times_least: total_error over that at `least_at`, (alpha_hat, beta_hat) of
-    the goal accurate, which weighs the velocity as well and may have a little more; None where no such point is known.
+    what is left of it in a run (forced_errors.py). velocity_error: of its velocity, as a share of that one's amplitude.
+    order_left: the order in h of the forced error where alpha_hat and beta_hat are held, at most `order`, the method's
+    own. times_least, times_least_velocity: total and velocity error over those at `least_at`, (alpha_hat, beta_hat) of
+    the goal accurate, which weighs both: elsewhere one of the two may be less. None where no such point is known.
     """
 
     omega_h: float
     forced_error: float | None
     total_error: float | None
+    velocity_error: float | None
     order_left: int
     order: int
     times_least: float | None
+    times_least_velocity: float | None
     least_at: tuple[float, float] | None
 
 
@@ -43,32 +47,51 @@ def feedback_cost(
     """
     order, _ = accuracy(method)
     leading = leading_error(method)
-    position, total = _shares(method, alpha_hat, beta_hat, omega_h)
+    shares = _shares(method, alpha_hat, beta_hat, omega_h)
     least_at = _least_at(method, omega_h)
-    _, least = (None, None) if least_at is None else _shares(method, *least_at, omega_h)
+    least = _NONE if least_at is None else _shares(method, *least_at, omega_h)
     return FeedbackCost(
         omega_h=float(omega_h),
-        forced_error=position,
-        total_error=total,
+        forced_error=shares.position,
+        total_error=shares.total,
+        velocity_error=shares.velocity,
         order_left=min(order, leading.order_left),
         order=order,
-        times_least=total / least if total is not None and least else None,
+        times_least=_times(shares.total, least.total),
+        times_least_velocity=_times(shares.velocity, least.velocity),
         least_at=least_at,
     )
 
 
-def _shares(
-    method: Method, alpha_hat: float | Fraction, beta_hat: float | Fraction, omega_h: Fraction
-) -> tuple[float | None, float | None]:
-    """Return forced and total error at a point; None where errors do not decay, or in place of what is not finite."""
+@dataclass(frozen=True)
+class _Shares:
+    """Forced errors at one point; None in place of what is not finite, or not decaying."""
+
+    position: float | None = None
+    total: float | None = None
+    velocity: float | None = None
+
+
+_NONE = _Shares()
+
+
+def _shares(method: Method, alpha_hat: float | Fraction, beta_hat: float | Fraction, omega_h: Fraction) -> _Shares:
+    """Return the errors at a point."""
     check_omega_h(omega_h)
     a, b = (each if isinstance(each, Fraction) else exact(each) for each in (alpha_hat, beta_hat))
     if not converges(method, a, b):
-        return None, None
+        return _NONE
     with np.errstate(over="ignore", invalid="ignore"):  # found below
         errors = forced_error(method, float(a), float(b), omega_h)
-    position, total = (float(each) if np.isfinite(each) else None for each in (errors.position, errors.total))
-    return position, total
+    return _Shares(*(_finite(error) for error in (errors.position, errors.total, errors.velocity)))
+
+
+def _finite(error: FloatArray) -> float | None:
+    return float(error) if np.isfinite(error) else None
+
+
+def _times(error: float | None, least: float | None) -> float | None:
+    return error / least if error is not None and least else None
 
 
 @lru_cache(maxsize=256)

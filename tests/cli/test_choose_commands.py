@@ -61,7 +61,7 @@ def test_check_judges_the_textbook_rule(name: str, verdict: str) -> None:
     given, instead = json.loads(result.stdout)
     assert given["verdict"] == verdict
     assert (given["h_factor"] is None) == (verdict != "converges")
-    assert (instead["goal"], instead["verdict"]) == ("robust", "converges")
+    assert (instead["goal"], instead["verdict"]) == ("accurate", "converges")
 
 
 @pytest.mark.parametrize(

@@ -23,6 +23,13 @@ def test_poles_prints_the_default_methods_and_keys() -> None:
         "z_angle_deg",
         "verdict",
         "safe",
+        "omega_h",
+        "forced_error",
+        "total_error",
+        "velocity_error",
+        "order_left",
+        "times_least",
+        "times_least_velocity",
     ]
     assert {row["verdict"] for row in found} == {"converges"}
 

@@ -29,13 +29,16 @@ def own_method(path: Path, name: str) -> str:
 def test_an_ascii_terminal_gets_words_in_columns(environment: dict[str, str | None], tmp_path: Path) -> None:
     run = finished("poles", "--alpha", "0.5", "--beta", "0.1", cwd=tmp_path, environment=environment)
     assert run.returncode == 0
-    heading, _, columns, *rows = run.stdout.decode("ascii").splitlines()
+    heading, table, errors = run.stdout.decode("ascii").split("\n\n")
+    columns, *rows = table.splitlines()
     assert heading == "alpha_hat = 0.5, beta_hat = 0.1"
     assert columns.split("  ")[0] == "method"
     assert "angle z (deg)" in columns
     assert any(" +- " in row for row in rows)
     starts = columns.index("verdict")
     assert {row[starts:].split()[0] for row in rows} <= {"converges", "marginal", "diverges"}
+    assert columns.endswith("x least")
+    assert "omega h = 0.01" in errors
 
 
 @pytest.mark.parametrize(

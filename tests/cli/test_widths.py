@@ -52,8 +52,8 @@ def test_only_a_path_is_wider() -> None:
 @pytest.mark.parametrize("columns", ["", "0", "-1", "wide", "1000"])
 def test_without_a_width_several_rows_are_a_table_and_one_row_is_a_block(columns: str) -> None:
     several = text_of("poles --alpha 0.5 --beta 0.1", columns).splitlines()
-    assert several[2].split() == ["method", "pole", "z", "|z|", "∠z", "(deg)", "verdict"]
-    assert len(several) == 2 + 1 + 8
+    assert several[2].split() == ["method", "pole", "z", "|z|", "∠z", "(deg)", "verdict", "error", "×", "least"]
+    assert len(several) == 2 + 1 + 8 + 2  # the last line says what errors are shares of
     single = text_of("poles --alpha 0.5 --beta 0.1 --method B4", columns).splitlines()
     assert single[2] == "Safe. The error shrinks 0.78-fold a step."
     assert single[4].split() == ["method", "B4"]

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bezstab.show import Row
-from bezstab.show.words import change_words, growth_words, safety_words, seconds_words
+from bezstab.show.words import change_words, growth_words, safety_words, seconds_words, times_words
 
 
 @pytest.mark.parametrize(
@@ -51,6 +51,28 @@ def test_the_proven_verdict_counts_more_than_a_rounded_modulus() -> None:
 
 def test_growth_has_a_factor_or_no_limit() -> None:
     assert (growth_words(1.3174), growth_words(None)) == ("to 1.32 times", "without limit")
+
+
+@pytest.mark.parametrize(
+    ("factor", "words"),
+    [
+        (0.2531, "0.25"),
+        (1.0, "1"),
+        (12.4, "12"),
+        (99.6, "100"),
+        (3437.0, "3,400"),
+        (9.94e6, "9,900,000"),
+        (3.3e7, "3.3e+07"),
+        (1e-7, "1e-07"),
+    ],
+)
+def test_a_factor_has_two_digits_and_no_power_of_ten_that_could_be_counted(factor: float, words: str) -> None:
+    assert times_words(factor) == words
+
+
+@given(st.floats(1e-100, 1e100))
+def test_a_factor_in_words_is_the_factor_to_two_digits(factor: float) -> None:
+    assert float(times_words(factor).replace(",", "")) == pytest.approx(factor, rel=0.05)
 
 
 def test_the_motion_is_said_as_well() -> None:

@@ -193,6 +193,25 @@ def test_a_choice_for_larger_steps_is_the_same_alpha_and_beta_at_a_smaller_step(
             choose_at_step(lookup("RK2"), goal, h=h, h_max=above)  # type: ignore[arg-type]
 
 
+def test_the_accurate_choice_for_larger_steps_is_the_same_alpha_and_beta_too() -> None:
+    h, h_max, omega_h = Fraction(1, 1000), Fraction(1, 250), Fraction(1, 50)
+    smaller = choose_at_step(lookup("RK4"), "accurate", h=h, h_max=h_max, settle=Fraction(2), omega_h=omega_h)
+    largest = choose_at_step(lookup("RK4"), "accurate", h=h_max, settle=Fraction(2), omega_h=omega_h)
+    assert smaller.alpha_hat / float(h) == pytest.approx(largest.alpha_hat / float(h_max), rel=1e-14)  # 2 alpha
+    assert smaller.beta_hat / float(h) ** 2 == pytest.approx(largest.beta_hat / float(h_max) ** 2, rel=1e-14)
+    assert largest.worst ** float(2 / h_max) <= 1e-3 * (1 + 1e-9)
+
+
+def test_the_steps_to_settle_at_worst_are_those_of_the_worst_pole() -> None:
+    found = describe_point(lookup("B4"), "", Fraction(1, 5), Fraction(1, 50))
+    assert found.settle_steps_at_worst
+    assert found.worst**found.settle_steps_at_worst <= 1e-3 < found.worst ** (found.settle_steps_at_worst - 1)
+    edge = describe_point(lookup("SYM"), "", Fraction(1), Fraction(199, 100))  # off by a tenth it is not stable
+    assert edge.worst > 1
+    assert edge.settle_steps
+    assert edge.settle_steps_at_worst is None
+
+
 def test_a_time_to_settle_goes_with_the_goal_gentle_and_is_met() -> None:
     h, settle = Fraction(1, 1000), Fraction(1, 20)
     gentle = choose_at_step(lookup("RK2@2"), "gentle", h=h, settle=settle)  # 25 steps of 2 ms

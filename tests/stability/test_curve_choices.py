@@ -54,3 +54,12 @@ def test_choose_keeps_to_the_curve() -> None:
         choose(lookup("SYM"), "gentle", rate=0.8, along=lambda share: (1.0, 0.1 * share))
     with pytest.raises(InputError, match="critical"):
         choose(lookup("SYM"), "critical", along=one_step)
+
+
+def test_of_a_curve_the_accurate_point_decays_as_asked_or_is_refused() -> None:
+    """At alpha_hat = 1 and off by a tenth of alpha and beta the slowest pole is at least 0.35, whatever beta is."""
+    accurate = choose(lookup("SYM"), "accurate", rate=0.9, along=one_step)
+    assert accurate.alpha_hat == 1
+    assert accurate.worst <= 0.9
+    with pytest.raises(InputError, match=r"no setting of the engine has \|z_p\| <= 0.3"):
+        choose(lookup("SYM"), "accurate", rate=0.3, along=one_step)

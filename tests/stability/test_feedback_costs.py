@@ -2,8 +2,10 @@
 
 from fractions import Fraction
 
+import numpy as np
 import pytest
 
+from bezstab.errors import InputError
 from bezstab.methods import lookup
 from bezstab.stability import choose, feedback_cost
 
@@ -25,6 +27,42 @@ def test_at_the_goal_accurate_it_is_once_the_least_and_at_robust_thousands_of_ti
     assert times > 1000
 
 
-def test_of_what_does_not_decay_no_error_is_told() -> None:
-    cost = feedback_cost(lookup("RK4"), 10.0, 10.0)
-    assert (cost.forced_error, cost.total_error, cost.times_least) == (None, None, None)
+@pytest.mark.parametrize("point", [(10.0, 10.0), (1.0, 2.0), (1.0, 0.0)])  # diverges; marginal twice
+def test_of_what_does_not_decay_no_error_is_told(point: tuple[float, float]) -> None:
+    cost = feedback_cost(lookup("SYM"), *point)
+    assert (cost.forced_error, cost.total_error, cost.velocity_error) == (None, None, None)
+    assert (cost.times_least, cost.times_least_velocity) == (None, None)
+
+
+def test_whether_errors_decay_is_proven_where_rounding_cannot_tell() -> None:
+    """|z_p| = 1 - 5e-18 is one in float64."""
+    assert feedback_cost(lookup("RK4"), 1e-17, 1e-34).forced_error is not None
+    assert feedback_cost(lookup("SYM"), Fraction(1), 2 + Fraction(1, 10**20)).forced_error is None
+    assert feedback_cost(lookup("SYM"), Fraction(1), 2 - Fraction(1, 10**20)).forced_error is not None
+
+
+def test_symplectic_euler_leaves_velocities_half_a_step_off() -> None:
+    """theta / 2 of the velocity's amplitude, whatever the feedback: no feedback has less."""
+    cost = feedback_cost(lookup("SYM"), 0.5, 0.1, Fraction(1, 1000))
+    assert cost.velocity_error == pytest.approx(0.0005, rel=0.01)
+    assert cost.times_least_velocity == pytest.approx(1, rel=0.01)
+
+
+def test_strong_feedback_costs_gauss4_velocities_alone() -> None:
+    robust = choose(lookup("gauss4"), "robust", margins=False)
+    cost = feedback_cost(lookup("gauss4"), robust.alpha_hat, robust.beta_hat)
+    assert cost.times_least is not None
+    assert cost.times_least_velocity is not None
+    assert cost.times_least < 1
+    assert cost.times_least_velocity > 1000
+
+
+def test_a_motion_too_fast_for_its_steps_is_refused() -> None:
+    for point in ((0.5, 0.1), (10.0, 10.0)):
+        with pytest.raises(InputError, match="omega h = 1 rad a step"):
+            feedback_cost(lookup("SYM"), *point, Fraction(1))
+
+
+def test_what_leaves_the_range_of_float64_is_not_told() -> None:
+    cost = feedback_cost(lookup("bdf2"), 1e200, 1e300)
+    assert all(error is None or np.isfinite(error) for error in (cost.forced_error, cost.total_error))

@@ -45,6 +45,16 @@ def test_it_has_ten_digits_of_the_exact_functions(name: str, omega: Fraction) ->
         assert found.total >= found.position * (1 - 1e-12)
 
 
+def test_points_of_a_map_have_the_errors_that_they_have_alone() -> None:
+    """A map's points are looked at in fewer frequencies at a time: the answer is the same."""
+    alpha_hat, beta_hat = np.linspace(0.01, 0.9, 400), np.linspace(0.001, 0.4, 400)[:, np.newaxis]
+    of_map = forced_error(lookup("B4"), alpha_hat, beta_hat, any_frequency=True)
+    for i, j in ((0, 0), (17, 399), (399, 200)):
+        alone = forced_error(lookup("B4"), alpha_hat[j], beta_hat[i, 0], any_frequency=True)
+        assert float(of_map.total[i, j]) == pytest.approx(float(alone.total), rel=1e-12)
+    assert forced_error(lookup("B4"), [], []).total.shape == (0,)
+
+
 @pytest.mark.parametrize("name", METHODS)
 def test_a_response_is_the_error_over_the_power_of_theta_that_it_begins_with(name: str) -> None:
     omega = Fraction(1, 10)
