@@ -15,7 +15,7 @@ from bezstab.show import Format, Row, column, formatted
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from bezstab.stability import BestPoint, Choice, Extent, FloatArray
+    from bezstab.stability import BestPoint, Choice, Extent
 
 Window = tuple[Fraction, Fraction]
 
@@ -95,7 +95,14 @@ def write_accuracy_map(
     figure: FigureForm,
     table: TableForm,
 ) -> None:
-    """Write the map of forced errors over |z_p| as figure and table at `path`, or nothing where both forms are none."""
+    """Write the map of forced errors over |z_p| as figure and table at `path`, or nothing where both forms are none.
+
+    InputError for a range that does not begin above zero.
+    """
+    for option, given in (("--alpha-range", alpha_range), ("--beta-range", beta_range)):
+        if given and given[0] <= 0:
+            typed = f"{option} {float(given[0]):g} {float(given[1]):g}"
+            raise InputError(f"{typed}: the axes of --accuracy are logarithmic, and begin above 0")
     if figure == table == "none":
         return
     import numpy as np
@@ -106,10 +113,8 @@ def write_accuracy_map(
     stable = stability.region(method)
     fitting = _fitting(stability.useful_window(stable), motion, best, chosen)
     alpha_hat, beta_hat = (
-        _axis(option, given, ends, points)
-        for option, given, ends in zip(
-            ("--alpha-range", "--beta-range"), (alpha_range, beta_range), fitting, strict=True
-        )
+        np.geomspace(float(low), float(high), points)
+        for low, high in (alpha_range or fitting[0], beta_range or fitting[1])
     )
     blocks = stability.pole_map(method, alpha_hat, beta_hat)
     z = np.concatenate(list(progress(blocks, method.name, points, len)))
@@ -196,13 +201,3 @@ def _fitting(shown: "Extent", motion: TypedMotion, best: "BestPoint | None", cho
         (min(2 * slow, alpha_hat_max / DECADES), alpha_hat_max),
         (min(slow**2, beta_hat_max / DECADES), beta_hat_max),
     )
-
-
-def _axis(option: str, given: Window | None, fitting: tuple[float, float], points: int) -> "FloatArray":
-    """Return the points on a logarithmic axis; InputError for a range that does not begin above zero."""
-    import numpy as np
-
-    low, high = map(float, given or fitting)
-    if low <= 0:
-        raise InputError(f"{option} {low:g} {high:g}: the axes of --accuracy are logarithmic, and begin above 0")
-    return np.geomspace(low, high, points)

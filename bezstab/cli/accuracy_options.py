@@ -72,7 +72,8 @@ def typed_omega_h(
         words = f"one with ωh = {float(OMEGA_H):g}{at_longest} ({whose} how fast yours is)"
         return _within_range(TypedMotion(OMEGA_H / longer, OMEGA_H, words), "--h and --h-max")
     if h is None:
-        raise click.UsageError("--omega needs --h: the step in s, to make ωh of it")
+        given = "--scene" if omega is None else "--omega"
+        raise click.UsageError(f"{given} needs --h: the step in s, to make ωh of it")
     amplitude = None
     if omega is None:
         assert scene

@@ -327,12 +327,7 @@ def region(
     methods = methods_asked(methods, engine, None)
     if scene and compare:
         raise click.UsageError("--scene draws one map for each method: not with --compare")
-    motion = None
-    if accuracy:
-        _check_accuracy_alone(compare, alpha_beta, speeds, scene)
-        motion = typed_omega_h(omega, scene, speeds[0] if speeds else Fraction(1), h)
-    elif omega is not None:
-        raise click.UsageError("--omega goes with --accuracy: it is the motion on which errors are told")
+    motion = _motion_asked(accuracy, omega, compare, alpha_beta, speeds, scene, h)
     turnings = {} if motion else {float(speed): turning_of(scene, speed, h) for speed in speeds or [Fraction(1)]}
     for turning in turnings.values():
         say_if_it_turns_too_far(turning, scene, h)
@@ -366,13 +361,26 @@ def region(
         click.get_current_context().exit(NUMERICAL_TROUBLE)
 
 
-def _check_accuracy_alone(compare: bool, alpha_beta: bool, speeds: Sequence[Fraction], scene: str | None) -> None:
-    """Raise UsageError for an option that does not go with --accuracy."""
+def _motion_asked(
+    accuracy: bool,
+    omega: Fraction | None,
+    compare: bool,
+    alpha_beta: bool,
+    speeds: Sequence[Fraction],
+    scene: str | None,
+    h: Fraction | None,
+) -> TypedMotion | None:
+    """Return the motion of --accuracy, None without it; UsageError for an option that does not go with it, h in s."""
+    if not accuracy:
+        if omega is not None:
+            raise click.UsageError("--omega goes with --accuracy: it is the motion on which errors are told")
+        return None
     if compare or alpha_beta or len(speeds) > 1:
         other = "--compare" if compare else "--alpha-beta" if alpha_beta else "several --speed"
         raise click.UsageError(f"--accuracy draws one map for each method, on logarithmic axes: not with {other}")
     if speeds and scene is None:
         raise click.UsageError("--speed goes with --scene: it is the mechanism that is so many times as fast")
+    return typed_omega_h(omega, scene, speeds[0] if speeds else Fraction(1), h)
 
 
 def _each_for_itself(methods: Sequence[Method], rows_of: Callable[[Method], list[Row]]) -> tuple[list[Row], bool]:
