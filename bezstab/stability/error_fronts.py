@@ -11,13 +11,14 @@ For a rate r the front has the least combined error (forced_errors.py) among all
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 
 import numpy as np
 
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method
 from bezstab.stability.arrays import FloatArray
-from bezstab.stability.best_points import best_point_or_reason
+from bezstab.stability.best_points import BestPoint, best_point_or_reason
 from bezstab.stability.choices import search_box
 from bezstab.stability.closed_loop import free_pencil_of, largest_modulus
 from bezstab.stability.forced_errors import OMEGA_H, combined_error, forced_error
@@ -40,9 +41,9 @@ STARTS = 6
 SPACINGS = 2.0
 """Of the first grid: so far around a minimum the search goes on."""
 
-GRID, SHRINK, FIRST_ROUNDS, ROUNDS = 13, 0.5, 4, 20
+GRID, SHRINK, FIRST_ROUNDS, ROUNDS = 21, 0.5, 4, 20
 """Points per axis of a zoom, its factor, how often all starts are zoomed in on, and how often the best of them is, to
-0.5^22 of those spacings: there the error is flat to rounding."""
+0.5^22 of those spacings: there the error is flat to rounding. Thirteen points would stall in narrow corners."""
 
 CHECKED = 230
 """Points per axis of another grid, which no point may have a lesser error on, by more than BETTER."""
@@ -97,11 +98,11 @@ def error_front(method: Method, rates: Sequence[float] = RATES, omega_h: Fractio
     if reached:
         high = np.log([alpha_hat_max / 2, np.sqrt(beta_hat_max)])
         low = np.minimum(np.log(-WEAKEST * np.log(reached[0])), high - 1)
-        looked_at = _logarithms(method, omega_h)
+        front = partial(_front, method, _logarithms(method, omega_h), low, high, np.array(reached), best)
         try:
-            found = _front(looked_at, low, high, np.array(reached), method.name, finer=1)
+            found = front(finer=1)
         except NumericalError:
-            found = _front(looked_at, low, high, np.array(reached), method.name, finer=FINER)
+            found = front(finer=FINER)
         alpha_hat, beta_hat = _plane(found)
         points = list(zip(reached, alpha_hat.tolist(), beta_hat.tolist(), strict=False))
     if best:
@@ -111,14 +112,13 @@ def error_front(method: Method, rates: Sequence[float] = RATES, omega_h: Fractio
 
 def _front_point(method: Method, omega_h: Fraction, rate: float, alpha_hat: float, beta_hat: float) -> FrontPoint:
     """Return a point of the front, alpha_hat and beta_hat being dimensionless, with its errors."""
+    z_abs = largest_modulus(free_pencil_of(method), alpha_hat, beta_hat)
     errors = forced_error(method, alpha_hat, beta_hat, omega_h)
     return FrontPoint(
         method=method,
         omega_h=float(omega_h),
         z_abs_below=rate,
-        z_abs=min(
-            rate, float(largest_modulus(free_pencil_of(method), alpha_hat, beta_hat))
-        ),  # a double pole is rounded
+        z_abs=min(rate, float(z_abs)),  # where poles meet at the least |z_p| rounding parts them
         alpha_hat=alpha_hat,
         beta_hat=beta_hat,
         total_error=float(errors.total),
@@ -149,11 +149,18 @@ def _within(error: FloatArray, z_abs: FloatArray, rates: FloatArray) -> FloatArr
 
 
 def _front(
-    looked_at: Logarithms, low: FloatArray, high: FloatArray, rates: FloatArray, name: str, finer: int
+    method: Method,
+    looked_at: Logarithms,
+    low: FloatArray,
+    high: FloatArray,
+    rates: FloatArray,
+    fastest: BestPoint | None,
+    finer: int,
 ) -> FloatArray:
     """Return the best point for each of the rates, which descend, in a box of logarithms, shape (rates, 2).
 
-    The last rates have none where nothing there decays so fast. NumericalError where the check finds a better point.
+    That of least |z_p| decays fast enough for each of them, where there is one, and competes. The last rates have none
+    where nothing there decays so fast. NumericalError where the check finds a better point.
     """
 
     def objective(points: FloatArray) -> FloatArray:
@@ -174,6 +181,9 @@ def _front(
         )
 
     starts = _starts(looked_at, low, high, rates, finer)
+    if fastest:
+        there = np.log(np.maximum([fastest.alpha_hat / 2, np.sqrt(fastest.beta_hat)], np.exp(low)))  # not zero
+        starts = np.concatenate([starts, np.broadcast_to(there, (len(rates), 1, 2))], axis=1)
     reach = SPACINGS * (high - low) / (finer * FIRST_GRID)
     points, values = zoomed(starts, reach, FIRST_ROUNDS)
     best = values.argmin(axis=1)[:, np.newaxis, np.newaxis]
@@ -183,7 +193,9 @@ def _front(
             points[place], values[place] = points[place + 1], values[place + 1]
     checked = _within(*looked_at(_grid(low, high, CHECKED).reshape(-1, 2)), rates[:, np.newaxis]).min(axis=1)
     if better := np.flatnonzero(checked < values + np.log1p(-BETTER)).tolist():
-        raise NumericalError(f"{name}: on the front with |z_p| of {rates[better[0]]:g} at most another point is better")
+        raise NumericalError(
+            f"{method.name}: on the front with |z_p| of {rates[better[0]]:g} at most another point is better"
+        )
     return points[values < TOO_SLOW]
 
 
