@@ -53,7 +53,7 @@ def test_each_point_decays_as_fast_as_is_said_and_forces_what_is_said(name: str)
     bounds = [point.z_abs_below for point in front]
     assert bounds == sorted(bounds, reverse=True)
     for slower, faster in pairwise(point.combined_error for point in front):
-        assert slower <= faster * (1 + 1e-7)  # the least |z_p| may be on an edge, of which logarithms see the inside
+        assert slower <= faster * (1 + PROMISED)  # the least |z_p| may be at alpha = 0, which no other point is
 
 
 def test_it_ends_at_the_least_modulus_and_at_no_rate_that_is_not_reached() -> None:
