@@ -59,7 +59,7 @@ OF_ORDER_THREE_AND_MORE = ("RK3", "bs3", "ssprk3", "dirk3", "RK4", "gauss4", "do
 @pytest.mark.parametrize("name", OF_ORDER_THREE_AND_MORE)
 @pytest.mark.parametrize("omega_h", [Fraction(1, 1000), Fraction(1, 20)], ids=str)
 def test_the_law_of_runge_kutta_methods_from_order_three_on(name: str, omega_h: Fraction) -> None:
-    """Alpha of 0.55 omega, so that errors fall by e^(-1/2) for each rad even with 10 % less, and beta near 0.8 omega."""
+    """Alpha of 0.55 omega: errors fall by e^(-1/2) for each rad even with 10 % less; and beta near 0.8 omega."""
     method = lookup(name)
     chosen = choose(method, "accurate", omega_h=omega_h, margins=False)
     assert chosen.alpha_hat / 2 / float(omega_h) == pytest.approx(0.556, rel=0.01)
