@@ -356,10 +356,10 @@ def tradeoff(
     step_sizes = tuple(sorted({float(step) for step in steps or evidence.STEPS}))
     _check_swept_time(float(time), step_sizes, methods)
     times = recorded and evidence.read_times(recorded, [method.name for method in methods], step_sizes)
+    rate = None if point else _rate_of_motion(omega, scene, speed, time, step_sizes)
     loaded_scene = at_speed(load_scene(scene), float(speed))
     reference = evidence.reference_motion(loaded_scene, step_sizes[0], float(time))
     given = None if point is None else (float(point[0]), float(point[1]))
-    rate = None if point else _rate_of_motion(omega, scene, speed, time, step_sizes)
     compiled = evidence.sweep_compiled(loaded_scene, methods, step_sizes, float(time), repeats)
     of_all = (loaded_scene, step_sizes, float(time), given, physical, repeats)
     sweeps = [evidence.Sweep(method, *of_all, reference, rate, compiled) for method in dict.fromkeys(methods)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from math import ceil, floor
 from typing import Any
 
@@ -124,13 +125,18 @@ def _error_contours(axes: Axes, x: FloatArray, y: FloatArray, error: np.ma.Maske
 
 
 def _for_logarithmic_axes(curves: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
-    """Return curves, nan between them, with so many points on each chord that it is smooth down to its last decade."""
-    close = np.geomspace(1e-9, 0.5, 60)
-    shares = np.concatenate([[0.0], close, 1 - close[::-1]])[:, np.newaxis]
+    """Return curves, nan between them, with points on each long chord, which is straight on other axes alone.
+
+    Long is what doubles a coordinate. The points are closest to both ends, down to a billionth of the chord.
+    """
+    close = np.geomspace(1e-9, 0.5, 60)[:, np.newaxis]
+    shares = np.concatenate([[[0.0]], close, 1 - close[::-1]])
     pieces = [np.empty((0, 2))]
     for curve in curves:
-        chords = curve[:-1] + shares[..., np.newaxis] * np.diff(curve, axis=0)
-        pieces += [chords.swapaxes(0, 1).reshape(-1, 2), curve[-1:], np.full((1, 2), np.nan)]
+        for start, end in pairwise(curve):
+            long = np.any((np.maximum(start, end) > 2 * np.minimum(start, end)) & (np.maximum(start, end) > 0))
+            pieces.append(start + shares * (end - start) if long else start[np.newaxis])
+        pieces += [curve[-1:], np.full((1, 2), np.nan)]
     points = np.concatenate(pieces)
     return points[:, 0], points[:, 1]
 
