@@ -166,9 +166,8 @@ NARROW_ACCURACY = [column("error", "total_error", ".1e"), Column("× least", _ti
 
 def say_motion(motion: TypedMotion) -> None:
     """Print below a table what its errors are shares of, and what is called the least."""
-    show_text(
-        f"\nErrors are shares of the amplitude of a motion, here {motion.words}. The least are those of --goal accurate."
-    )
+    shares = f"Errors are shares of the amplitude of a motion, here {motion.words}."
+    show_text(f"\n{shares} The least are those of --goal accurate.")
 
 
 def say_cost(sentence: str | None) -> None:

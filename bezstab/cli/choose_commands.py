@@ -236,7 +236,7 @@ def choose(
     steps = step_range(methods, h, h_min, h_max, hold)
     turning = turning_of(scene, speed, h)
     motion = typed_omega_h(omega, scene, speed, h, h_max)
-    say_if_it_turns_too_far(turning, scene, h)
+    say_if_it_turns_too_far(turning, scene, speed, h)
     rows: list[Row] = []
     choices: list[Choice] = []
     alternatives: list[Chosen] = []
@@ -438,7 +438,7 @@ def check(
         say_if_units_were_mistaken(methods, alpha, beta, h)
     turning = turning_of(scene, speed, h)
     motion = typed_omega_h(omega, scene, speed, h)
-    say_if_it_turns_too_far(turning, scene, h)
+    say_if_it_turns_too_far(turning, scene, speed, h)
     asked, nothing_instead = _asked(methods, typed, turning, h, motion)
     rows = [_row_of(each, typed, engine, as_typed, drive, h) for each in asked]
     methods_of_rows = [each.choice.method for each in asked]

@@ -177,7 +177,7 @@ def poles(
         say_if_units_were_mistaken(methods, alpha, beta, h)
     turning = turning_of(scene, speed, h)
     motion = typed_omega_h(omega, scene, speed, h)
-    say_if_it_turns_too_far(turning, scene, h)
+    say_if_it_turns_too_far(turning, scene, speed, h)
     alpha_hat, beta_hat = map(float, typed.point)
     poles_of = stability.poles if all_poles else stability.dominant_pole
     rows: list[Row] = []
@@ -328,9 +328,7 @@ def region(
     if scene and compare:
         raise click.UsageError("--scene draws one map for each method: not with --compare")
     motion = _motion_asked(accuracy, omega, compare, alpha_beta, speeds, scene, h)
-    turnings = {} if motion else {float(speed): turning_of(scene, speed, h) for speed in speeds or [Fraction(1)]}
-    for turning in turnings.values():
-        say_if_it_turns_too_far(turning, scene, h)
+    turnings = {} if motion else _turnings(scene, speeds or [Fraction(1)], h)
     if compare and len(levels) > 1:
         raise InputError(f"--compare takes one --level, but {len(levels)} were given")
     if figure != "none" or table != "none":
@@ -359,6 +357,17 @@ def region(
         say_combined(motion)
     if not complete or any(str(row["best_reason"]).startswith(NOT_KNOWN) for row in rows):
         click.get_current_context().exit(NUMERICAL_TROUBLE)
+
+
+def _turnings(
+    scene: str | None, speeds: Sequence[Fraction], h: Fraction | None
+) -> "dict[float, TurningNormals | None]":
+    """Return by speed how the normals of a scene's constraints turn; where they turn too far, that is said."""
+    turnings = {}
+    for speed in speeds:
+        turnings[float(speed)] = turning_of(scene, speed, h)
+        say_if_it_turns_too_far(turnings[float(speed)], scene, speed, h)
+    return turnings
 
 
 def _motion_asked(

@@ -50,15 +50,19 @@ def turning_of(scene: str | None, speed: Fraction, h: Fraction | None) -> "Turni
     return turning_normals(compiled_mechanism(moving), moving.duration)
 
 
-def say_if_it_turns_too_far(turning: "TurningNormals | None", scene: str | None, h: Fraction | None) -> None:
+def say_if_it_turns_too_far(
+    turning: "TurningNormals | None", scene: str | None, speed: Fraction, h: Fraction | None
+) -> None:
     """Say on standard error, if so, that a scene's constraints turn too far in a step (s) for the first-order law."""
-    if turning is None or h is None:
+    if turning is None or scene is None or h is None:
         return
     from bezstab.evidence import LAW_HOLDS
+    from bezstab.mechanism import at_speed, load_scene
 
     turned = turning.kappa * float(h)
     if turned > LAW_HOLDS:
-        say(f"bezstab: constraints of {scene} turn by κh = {turned:.2g} a step: beyond {LAW_HOLDS:g} the law fails")
+        name = at_speed(load_scene(scene), float(speed)).name
+        say(f"bezstab: constraints of {name} turn by κh = {turned:.2g} a step: beyond {LAW_HOLDS:g} the law fails")
 
 
 def modulus_as_it_moves(method: "Method", turning: "TurningNormals | None", h: Fraction | None) -> "Modulus | None":

@@ -102,12 +102,12 @@ def worst_error(
     spread: float,
 ) -> FloatArray:
     """Return the largest combined error with alpha and beta off by the spread; infinite where it decays too slowly."""
-    worst = np.zeros(alpha_hat.shape)
-    for by_alpha, by_beta in ((0, 0), (-1, -1), (-1, 1), (1, -1), (1, 1)):  # the centre first: it leaves out the most
-        left = np.flatnonzero(np.isfinite(worst))
-        alpha, beta = (1 + by_alpha * spread) * alpha_hat[left], (1 + by_beta * spread) ** 2 * beta_hat[left]
-        worst[left] = np.where(decays(alpha, beta), worst[left], np.inf)
-        left = np.flatnonzero(np.isfinite(worst))
-        alpha, beta = (1 + by_alpha * spread) * alpha_hat[left], (1 + by_beta * spread) ** 2 * beta_hat[left]
-        worst[left] = np.maximum(worst[left], combined_error(method, alpha, beta, omega_h))
+    by_alpha, by_beta = 1 + spread * np.array([(0, 0), (-1, -1), (-1, 1), (1, -1), (1, 1)]).T[:, :, np.newaxis]
+    worst = np.full(alpha_hat.shape, np.inf)
+    left = np.arange(alpha_hat.size)
+    for some in (slice(0, 1), slice(1, None)):  # the centre first: it leaves out the most
+        alpha, beta = by_alpha[some] * alpha_hat[left], by_beta[some] ** 2 * beta_hat[left]
+        left = left[decays(alpha.ravel(), beta.ravel()).reshape(alpha.shape).all(axis=0)]
+    error = combined_error(method, by_alpha * alpha_hat[left], by_beta**2 * beta_hat[left], omega_h)
+    worst[left] = error.max(axis=0)
     return worst

@@ -176,12 +176,20 @@ def test_a_mistake_takes_one_line_status_two_and_no_file(command: str, named: st
 NUMBERS = ["0", "-0.1", "0.5", "1", "2", "1e-17", "-1e-30", "1e-300", "1e100", "1e300", "6/11", "nan", "1e999", "x"]
 STEPS = ["1e-100", "0.001", "1", "1e100", "0", "1e300"]
 TYPED: dict[str, dict[str, list[str] | None]] = {
-    "poles": {"--alpha": NUMBERS, "--beta": NUMBERS, "--h": STEPS, "--physical": None, "--all-poles": None},
+    "poles": {
+        "--alpha": NUMBERS,
+        "--beta": NUMBERS,
+        "--h": STEPS,
+        "--physical": None,
+        "--all-poles": None,
+        "--omega": NUMBERS,
+    },
     "check": {
         "--alpha": NUMBERS,
         "--beta": NUMBERS,
         "--h": STEPS,
         "--physical": None,
+        "--omega": NUMBERS,
         "--engine": ["mujoco=0.02,1", "mujoco=0,0", "bullet=0.2", "box2d=60,-2", "drake=1e300,1", "ode=", "x=1"],
     },
     "engines": {"--alpha": NUMBERS, "--beta": NUMBERS, "--h": STEPS},

@@ -91,9 +91,12 @@ def test_choose_that_is_not_safe_over_the_motion_ends_with_status_1() -> None:
 
 @pytest.mark.slow
 def test_check_offers_instead_what_choose_chooses_for_the_same_motion() -> None:
-    """The point chosen at rest is not settled as this four-bar moves."""
-    moving = ("--method", "AB4", "--scene", "driven_four_bar", "--h", "0.02")
-    checked = run("check", *moving, "--alpha", "0.3", "--beta", "0.1", "--format", "json")
+    """The point chosen at rest, for the same omega, is not settled as this four-bar moves."""
+    method = ("--method", "AB4", "--h", "0.015")
+    moving = (*method, "--scene", "driven_four_bar")
+    (at_rest,) = rows("choose", *method, "--omega", "7.873")
+    point = ("--alpha", repr(at_rest["alpha_hat"]), "--beta", repr(at_rest["beta_hat"]))
+    checked = run("check", *moving, *point, "--format", "json")
     assert checked.exit_code == 1
     _, instead = json.loads(checked.stdout)
     (chosen,) = rows("choose", *moving)
