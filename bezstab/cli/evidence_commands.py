@@ -235,7 +235,7 @@ RUNS = [
     Column("trajectory error (m, rad)", _error_or_diverged),
     column("order seen", "observed_order", ".2f"),
     column("largest |c| (m, rad)", "c_max", ".1e"),
-    column("in the later half", "c_later", ".1e"),
+    column("in the later half", "measured_error", ".1e"),
     column("predicted there", "predicted_error", ".1e"),
     column("rms c (m, rad)", "c_rms", ".1e"),
     column("largest |ċ| (m/s, rad/s)", "cdot_max", ".1e"),

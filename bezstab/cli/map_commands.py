@@ -703,6 +703,15 @@ def method_sentence(row: Row) -> str:
     return f"{row['method']} is {kind}, of order {_order_text(row)}, with {count} in each {each}."
 
 
+def whole_method_sentence(row: Row) -> str:
+    """Return that, and the order that strong feedback leaves it, for a method that is shown whole."""
+    left = "it is kept, too" if row["order_left"] == row["order"] else f"order {row['order_left']} is left"
+    return (
+        f"{method_sentence(row)} Constraint errors keep the order while α and β are held as h shrinks; while α̂ and β̂ "
+        f"are, {left}. Their steady part is given in θ = iωh, for a motion of ω rad/s."
+    )
+
+
 @click.command()
 @click.argument("methods", metavar="[NAME]...", type=METHOD, nargs=-1)
 @click.option("--latex", is_flag=True, help="Formulas as LaTeX.")
@@ -712,7 +721,8 @@ def methods(methods: Sequence[Method], latex: bool, form: Format) -> None:
 
     Steps, evaluations of f per step (of an implicit method: per iteration), order of accuracy and error constant,
     computed from the coefficients; in parentheses the order where forces depend on positions alone. For one method also
-    its recursion, s→z mapping, characteristic polynomial and stability region (the paper's Tables 1, 2) and its source.
+    its recursion, s→z mapping, characteristic polynomial and stability region (the paper's Tables 1, 2), its source,
+    and the error that it forces on a constraint that moves, as a share of that motion.
 
     SIE, the paper's "Euler semi-implicit", is not what engines call semi-implicit Euler: that is SYM.
 
@@ -747,7 +757,7 @@ def methods(methods: Sequence[Method], latex: bool, form: Format) -> None:
         if number:
             click.echo()
         shown = with_unbounded(row)
-        show_blocks([shown], [property_column(key, shown) for key in shown], method_sentence)
+        show_blocks([shown], [property_column(key, shown) for key in shown], whole_method_sentence)
 
 
 def property_column(key: str, row: Row) -> Column:

@@ -41,10 +41,12 @@ from bezstab.units import to_dimensionless
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from bezstab.evidence import VerdictMap
+    from bezstab.evidence import HalvedStep, VerdictMap
     from bezstab.mechanism import Mechanism
 
 RANDOM_POINTS = 20  # unless told otherwise
+NUMERICAL_TROUBLE = 3
+"""Exit status where runs break down."""
 
 MEASUREMENTS = [
     column("method", "method"),
@@ -132,6 +134,29 @@ def verdict_map_sentence(row: Row) -> str:
     return f"{row['method']}: {given}; {row['disagreeing']} that are not too close to call differ."
 
 
+FORCED = [
+    column("method", "method"),
+    column("gains", "gain_share", "g"),
+    column("α̂", "alpha_hat", ".4g"),
+    column("β̂", "beta_hat", ".4g"),
+    column("h (s)", "h", "g"),
+    column("predicted |c|", "predicted_error", ".2e"),
+    column("measured |c|", "measured_error", ".2e"),
+    column("quotient", "quotient", ".3f"),
+    column("order predicted", "predicted_order", ".2f"),
+    column("order seen", "observed_order", ".2f"),
+    column("broke down", "failure"),
+]
+
+
+def forced_sentence(row: Row) -> str:
+    """Return what was measured of a run, over what was predicted."""
+    at = f"{row['method']} at {row['gain_share']:g} of the gains, steps of {row['h']:g} s"
+    if row["failure"]:
+        return f"{at}: the run broke down {row['failure']}."
+    return f"{at}: |c| is {formatted(row['quotient'], '.3f')} times what was predicted."
+
+
 WITNESSED = [
     column("scene", "scene"),
     column("MuJoCo's integrator", "integrator"),
@@ -165,6 +190,7 @@ def witness_sentence(row: Row) -> str:
 @click.option(
     "--floquet", is_flag=True, help="Also exact rates, of a motion that begins anew, by its linearised steps."
 )
+@click.option("--accuracy", is_flag=True, help="Predicted and measured errors at shares of a point's gains.")
 @click.option("--witness", type=click.Choice(["mujoco"]), help="Its own integrators.")
 @step_option
 @compiled_option
@@ -181,6 +207,7 @@ def verify(
     points: int | None,
     cells: int | None,
     floquet: bool,
+    accuracy: bool,
     witness: str | None,
     h: Fraction,
     output: Path,
@@ -199,12 +226,19 @@ def verify(
     exact boundary, by chunks that --workers or --scheduler share and a killed run keeps for --resume.
     --witness mujoco runs the scene in MuJoCo, at 0.9 and 1.1 times the boundary of what its integrators are.
 
+    --accuracy compares the constraint error that a method forces anew in each step, predicted in metres without any
+    run, with that of runs: at 0.2 to 1 times α and β of the point, or of what choose --goal robust finds, with steps of
+    --h and of half of it. Exit status 1 where measured over predicted is off one by more than a quarter, 3 where a run
+    broke down.
+
     Example: bezstab verify --method AB4 --points 20
     """
     from bezstab.mechanism import at_speed, compiled_mechanism, load_scene
     from bezstab.show import verdict_map_row
 
     point = both_or_none(alpha, beta)
+    if accuracy and any((points, cells, witness, floquet)):
+        raise click.UsageError("--accuracy goes with --alpha and --beta or alone, not with --points, --map, ...")
     if sum(choice is not None for choice in (point, points, cells, witness)) > 1:
         raise click.UsageError("choose one of --alpha with --beta, --points, --map and --witness")
     if physical and point is None:
@@ -215,6 +249,8 @@ def verify(
         else:
             say_if_units_were_mistaken(methods, *point, h)
     mechanism = compiled_mechanism(at_speed(load_scene(scene), float(speed)))
+    if accuracy:
+        click.get_current_context().exit(_show_forced_errors(mechanism, methods, float(h), point, form))
     if witness:
         show_rows(_witness_rows(mechanism, float(h)), WITNESSED, form, sentence=witness_sentence)
     elif cells is None:
@@ -238,6 +274,55 @@ def _witness_rows(mechanism: "Mechanism", h: float) -> list[Row]:
 
     witnesses = progress(mujoco_witnesses(mechanism, h), "MuJoCo", witness_count())
     return [witness_row(mechanism.scene.name, witnessed) for witnessed in witnesses]
+
+
+def _show_forced_errors(
+    mechanism: "Mechanism", methods: Sequence[Method], h: float, point: tuple[Fraction, Fraction] | None, form: Format
+) -> int:
+    """Print predicted and measured errors at shares of a point's gains, and return the exit status; h in s."""
+    from bezstab.evidence import SHARES, halved_steps
+    from bezstab.show import forced_rows
+    from bezstab.stability import choose
+
+    rows: list[Row] = []
+    conclusions: list[str] = []
+    outcomes: set[bool | None] = set()
+    for method in methods:
+        if point:
+            at = float(point[0]), float(point[1])
+        else:
+            chosen = choose(method, "robust", margins=False)
+            at = chosen.alpha_hat, chosen.beta_hat
+        pairs = list(
+            progress(halved_steps(mechanism, method, h, at, mechanism.scene.duration), method.name, len(SHARES))
+        )
+        rows += [row for pair in pairs for row in forced_rows(mechanism.scene.name, pair)]
+        conclusions.append(_conclusion(method, pairs))
+        outcomes |= {pair.holds for pair in pairs}
+    show_rows(rows, FORCED, form, sentence=forced_sentence)
+    if for_reading(form):
+        click.echo()
+        for conclusion in conclusions:
+            show_text(conclusion)
+    if None in outcomes:
+        return NUMERICAL_TROUBLE
+    return 0 if outcomes == {True} else 1
+
+
+def _conclusion(method: Method, pairs: "Sequence[HalvedStep]") -> str:
+    """Return in words whether one method forces what was predicted, and how that shrinks with the step."""
+    broken = sum(pair.holds is None for pair in pairs)
+    kept = [pair for pair in pairs if pair.holds is not None]
+    if not kept:
+        return f"{method.name}: all runs broke down."
+    quotients = [run.quotient for pair in kept for run in (pair.whole, pair.half)]
+    holds = "the prediction holds" if all(pair.holds for pair in kept) else "the prediction does NOT hold"
+    predicted, seen = ([getattr(pair, name) for pair in kept] for name in ("predicted_order", "observed_order"))
+    without = f" At {broken} of {len(pairs)} points a run broke down." if broken else ""
+    return (
+        f"{method.name}: measured over predicted is {min(quotients):.3f} to {max(quotients):.3f}: {holds}. The order "
+        f"in h is {min(seen):.2f} to {max(seen):.2f}, predicted {min(predicted):.2f} to {max(predicted):.2f}.{without}"
+    )
 
 
 def _show_measurements(

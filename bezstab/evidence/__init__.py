@@ -48,6 +48,7 @@ from bezstab.evidence.chunk_stores import Arrays, chunk_store
 from bezstab.evidence.chunks import ATTEMPTS, completed_chunks
 from bezstab.evidence.extremes import Check, extreme_checks
 from bezstab.evidence.floquet import floquet_rates
+from bezstab.evidence.forced_runs import HOLDS, SHARES, ForcedMotion, HalvedStep, forced_motions, halved_steps
 from bezstab.evidence.linear_prediction import SPREAD, Fit, Refusal, fit_dominant_pole
 from bezstab.evidence.logs import Log, error_columns, log_from, parse_log, read_log, row_step, time_column
 from bezstab.evidence.measured_poles import (
@@ -96,9 +97,11 @@ from bezstab.evidence.worker_pools import worker_pool
 __all__ = [
     "ATTEMPTS",
     "CLOSE",
+    "HOLDS",
     "LAW_HOLDS",
     "LINEAR",
     "METHODS",
+    "SHARES",
     "SPREAD",
     "STEPS",
     "TIMES",
@@ -106,6 +109,8 @@ __all__ = [
     "Check",
     "Cost",
     "Fit",
+    "ForcedMotion",
+    "HalvedStep",
     "Held",
     "LikePoint",
     "Likeness",
@@ -133,8 +138,10 @@ __all__ = [
     "extreme_checks",
     "fit_dominant_pole",
     "floquet_rates",
+    "forced_motions",
     "growth_after_a_kick",
     "growth_rates",
+    "halved_steps",
     "has_own_motion",
     "kicked_constraint_errors",
     "kicked_responses",

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.evidence.forced_runs import COMPARED, forced_motions
+from bezstab.evidence.forced_runs import COMPARED, predicted_errors
 from bezstab.evidence.pareto import pareto_front
 from bezstab.evidence.reference_motions import ReferenceMotion
 from bezstab.mechanism import (
@@ -66,9 +66,10 @@ class Sweep:
 class Run:
     """One run: errors (SI; the trajectory's None if it failed), cost, and order against the next larger step.
 
-    c_later is the largest |c| in the later half, where the start has died away, and predicted_error what the feedback
-    forces there (forced_runs.py): None where errors do not decay, or the motion cannot be followed for longer than the
-    run. Processor time in s: the median of the repeats, the least and the largest.
+    measured_error is the largest |c| in the later half, where the start has died away, None of a run that failed;
+    predicted_error what the feedback forces there (forced_runs.py), None where errors do not decay, or the motion
+    cannot be followed for longer than the run. Processor time in s: the median of the repeats, the least and the
+    largest.
     """
 
     method: Method = field(repr=False)
@@ -78,7 +79,7 @@ class Run:
     z_abs: float
     trajectory_error: float | None
     c_max: float
-    c_later: float
+    measured_error: float | None
     predicted_error: float | None
     c_rms: float = field(repr=False)
     cdot_max: float = field(repr=False)
@@ -184,7 +185,7 @@ def _measured_run(sweep: Sweep, h: float, point: tuple[float, float]) -> dict[st
         "z_abs": z_abs,
         "trajectory_error": trajectory_error,
         "c_max": float(np.abs(seen.c).max()),
-        "c_later": float(np.abs(seen.c[run.t >= COMPARED * run.t[-1]]).max()),
+        "measured_error": np.nan if run.failure else float(np.abs(seen.c[run.t >= COMPARED * run.t[-1]]).max()),
         "predicted_error": _predicted_error(sweep, h, point) if z_abs < 1 else np.nan,
         "c_rms": float(np.sqrt((seen.c**2).mean())),
         "cdot_max": float(np.abs(seen.cdot).max()),
@@ -201,10 +202,10 @@ def _measured_run(sweep: Sweep, h: float, point: tuple[float, float]) -> dict[st
 def _predicted_error(sweep: Sweep, h: float, point: tuple[float, float]) -> float:
     """Return the largest |c| (SI) that the feedback forces in the later half of a run; nan where that is not known."""
     try:
-        (found,) = forced_motions(compiled_mechanism(sweep.scene), sweep.method, h, [point], sweep.duration)
-    except (InputError, NumericalError):  # the motion goes on for longer than the run
+        (error,) = predicted_errors(compiled_mechanism(sweep.scene), sweep.method, h, [point], sweep.duration)
+    except (InputError, NumericalError):  # the motion is followed for longer than the run
         return np.nan
-    return found.predicted
+    return error
 
 
 def _timed_run(sweep: Sweep, h: float, gains: tuple[float, float]) -> tuple[Trajectory, list[float]]:
@@ -230,7 +231,7 @@ def swept_runs(sweep: Sweep, measured: Mapping[str, NDArray[np.generic]]) -> lis
     runs: list[Run] = []
     for index in np.argsort(sweep.steps)[::-1].tolist():
         values = {key: column[index].item() for key, column in measured.items()}
-        for key in ("trajectory_error", "predicted_error"):
+        for key in ("trajectory_error", "measured_error", "predicted_error"):
             values[key] = None if np.isnan(values[key]) else values[key]
         values["failure"] = values["failure"] or None
         h = sweep.steps[index]

@@ -5,30 +5,52 @@ method forces is proportional to a derivative of q, the k-th, of which a constra
 
     C_q q^(k)  ---  response of the method at each frequency  -->  c(t)
 
-No amplitude is fitted: measured over predicted should be one.
+and, of a method such as Gauss's whose errors cancel along a normal that stands still, also the part of q^(k-1) that
+does not lie along the normals, as far as they turn. No amplitude is fitted: measured over predicted should be one.
 
 A motion that begins anew is a Fourier series. One that does not is followed for longer than the run, and fades in and
 out beyond the stretch that is compared.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from bezstab.mechanism import Mechanism, Motion, along_normals, motion, observe, simulate
+from bezstab.errors import InputError
+from bezstab.mechanism import (
+    Mechanism,
+    Motion,
+    along_normals,
+    constraint_motion,
+    motion,
+    observe,
+    simulate,
+    turned_across,
+)
 from bezstab.methods import Method, leading_error
-from bezstab.stability import LARGEST_OMEGA_H, FloatArray, forced_response
+from bezstab.stability import LARGEST_OMEGA_H, FloatArray, forced_response, spectral_radius, turning_response
 from bezstab.units import feedback_gains
 
 COMPARED = 0.5
 """Of the run: from there on, the start has died away."""
 
-FOLLOWED = 1.25
+FOLLOWED = 1.5
 """Times the run: how long a motion is followed that does not begin anew."""
 
-FADED = 0.12
-"""Of that, at either end."""
+FADED = 0.2
+"""Of that, at either end; and of the frequencies that a step follows, the highest."""
+
+SHARES = (0.2, 0.3, 0.5, 0.7, 1.0)
+"""Of a point's alpha and beta: what is forced changes some hundredfold over them."""
+
+DIED_AWAY = 1e-6
+"""What may be left of the start where the comparison begins: it is some hundred times what is forced at most."""
+
+HOLDS = 0.25
+"""By how much measured over predicted may be off one: the next order in h, and the motion that the method itself makes,
+account for less where steps follow the motion well."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +60,7 @@ class ForcedMotion:
     `measured` is nan where the run broke down: `failure` says when and why.
     """
 
-    method: Method
+    method: Method = field(repr=False)
     h: float
     alpha_hat: float
     beta_hat: float
@@ -52,6 +74,59 @@ class ForcedMotion:
         return self.measured / self.predicted
 
 
+@dataclass(frozen=True)
+class HalvedStep:
+    """Two runs at the same alpha_hat and beta_hat, with steps of h and of half of it.
+
+    `share` is of the alpha and beta of the point that was asked for.
+    """
+
+    share: float
+    whole: ForcedMotion
+    half: ForcedMotion
+
+    @property
+    def predicted_order(self) -> float:
+        """The order in h of what is predicted."""
+        return math.log2(self.whole.predicted / self.half.predicted)
+
+    @property
+    def observed_order(self) -> float:
+        """The order in h of what was measured, nan where a run broke down."""
+        return float(np.log2(self.whole.measured / self.half.measured))
+
+    @property
+    def holds(self) -> bool | None:
+        """Whether what was measured is what was predicted, at both steps; None where a run broke down."""
+        if self.whole.failure or self.half.failure:
+            return None
+        return all(abs(run.quotient - 1) <= HOLDS for run in (self.whole, self.half))
+
+
+def halved_steps(
+    mechanism: Mechanism, method: Method, h: float, point: tuple[float, float], duration: float
+) -> Iterator[HalvedStep]:
+    """Yield predicted and measured errors at shares of a point's alpha and beta, with steps of h (s) and of half of it.
+
+    Runs take `duration` (s), or longer where what the start has left takes longer to die away. InputError where a
+    share of the point is not stable, and of a mechanism at rest; else errors as `forced_motions`.
+    """
+    points = [(share * point[0], share**2 * point[1]) for share in SHARES]
+    for share, at in zip(SHARES, points, strict=True):
+        if spectral_radius(method, *at) >= 1:
+            raise InputError(
+                f"{method.name} is not stable at {share:g} times the gains of α̂ = {point[0]:g}, β̂ = {point[1]:g}"
+            )
+    constraint_motion(mechanism, FOLLOWED * duration)  # one at rest forces nothing, and is refused
+    slowest = max(float(spectral_radius(method, *at)) for at in points)
+    steps = math.log(DIED_AWAY) / math.log(slowest) / COMPARED
+    duration = max(duration, steps * h * float(method.step_multiple))
+    whole = forced_motions(mechanism, method, h, points, duration)
+    half = forced_motions(mechanism, method, h / 2, points, duration)
+    for share, of_whole, of_half in zip(SHARES, whole, half, strict=True):
+        yield HalvedStep(share, of_whole, of_half)
+
+
 def forced_motions(
     mechanism: Mechanism, method: Method, h: float, points: Sequence[tuple[float, float]], duration: float
 ) -> list[ForcedMotion]:
@@ -59,26 +134,16 @@ def forced_motions(
 
     InputError and NumericalError as `motion`.
     """
-    along = motion(mechanism, FOLLOWED * duration)
-    power = leading_error(method).power
-    driving = _driving_derivative(mechanism, along, power, h)
-    spectrum = np.fft.fft(driving, axis=0)
-    omega_h = 2 * np.pi * np.fft.fftfreq(len(driving), along.t[1]) * h
-    times = along.t[:-1]
-    later_half = (times >= COMPARED * duration) & (times <= duration)
-    compared = np.ones(times.shape, dtype=bool) if along.closed else later_half
     found = []
-    for alpha_hat, beta_hat in points:
-        response = forced_response(method, alpha_hat, beta_hat, omega_h)[:, np.newaxis]
-        error = np.fft.ifft(spectrum * response * h**power, axis=0).real
-        measured, failure = _measured(mechanism, method, h, (alpha_hat, beta_hat), duration)
+    for point, predicted in zip(points, predicted_errors(mechanism, method, h, points, duration), strict=True):
+        measured, failure = _measured(mechanism, method, h, point, duration)
         found.append(
             ForcedMotion(
                 method=method,
                 h=h,
-                alpha_hat=alpha_hat,
-                beta_hat=beta_hat,
-                predicted=float(np.abs(error[compared]).max()),
+                alpha_hat=point[0],
+                beta_hat=point[1],
+                predicted=predicted,
                 measured=measured,
                 failure=failure,
             )
@@ -86,20 +151,64 @@ def forced_motions(
     return found
 
 
-def _driving_derivative(mechanism: Mechanism, along: Motion, power: int, h: float) -> FloatArray:
-    """Return C_q q^(power) along a motion, its last time left out: SI units, shape (times, m)."""
+def predicted_errors(
+    mechanism: Mechanism, method: Method, h: float, points: Sequence[tuple[float, float]], duration: float
+) -> list[float]:
+    """Return the largest constraint errors (SI) that points force in the later half of runs over `duration` (s).
+
+    InputError and NumericalError as `motion`.
+    """
+    along = motion(mechanism, FOLLOWED * duration)
+    times = along.t[:-1]
+    later_half = (times >= COMPARED * duration) & (times <= duration)
+    compared = np.ones(times.shape, dtype=bool) if along.closed else later_half
+    errors = _errors_along(mechanism, method, h, points, along)
+    return [float(np.abs(error[compared]).max()) for error in errors]
+
+
+def _errors_along(
+    mechanism: Mechanism, method: Method, h: float, points: Sequence[tuple[float, float]], along: Motion
+) -> Iterator[FloatArray]:
+    """Yield the constraint errors along a motion at each point, its last time left out: SI, shape (times, m)."""
+    power = leading_error(method).power
+    spectrum = np.fft.fft(along_normals(mechanism, along, _derivative(along, power, h)), axis=0)
+    omega_h = 2 * np.pi * np.fft.fftfreq(len(spectrum), along.t[1]) * h
+    turning: FloatArray | None = None
+    for alpha_hat, beta_hat in points:
+        response = forced_response(method, alpha_hat, beta_hat, omega_h)[:, np.newaxis]
+        error = np.fft.ifft(spectrum * response * h**power, axis=0).real
+        turned = turning_response(method, alpha_hat, beta_hat)
+        if turned:
+            lower, factor = turned
+            if turning is None:
+                turning = turned_across(mechanism, along, _derivative(along, lower, h)) * h ** (lower + 1)
+            error = error + factor * turning
+        yield error
+
+
+def _derivative(along: Motion, power: int, h: float) -> FloatArray:
+    """Return q^(power) along a motion, its last time left out: SI units, shape (times, n)."""
     fading = np.ones(len(along.t) - 1) if along.closed else _fading(len(along.t) - 1)
     omega = 2 * np.pi * np.fft.fftfreq(len(along.t) - 1, along.t[1])
-    followed = (1j * omega) ** (power - 2) * (np.abs(omega * h) < LARGEST_OMEGA_H)  # beyond, derivatives are noise
+    followed = _rising((1 - np.abs(omega * h) / LARGEST_OMEGA_H) / FADED)  # beyond, derivatives are noise
     spectrum = np.fft.fft(along.a[:-1] * fading[:, np.newaxis], axis=0)
-    derivative = np.fft.ifft(spectrum * followed[:, np.newaxis], axis=0).real
-    return along_normals(mechanism, along, derivative)
+    factors = followed * (1j * omega) ** (power - 2)
+    return np.asarray(np.fft.ifft(spectrum * factors[:, np.newaxis], axis=0).real)
 
 
 def _fading(count: int) -> FloatArray:
-    """Return factors that rise smoothly from zero to one at the start of a stretch, and fall at its end."""
-    from_an_end = np.minimum(np.arange(count), np.arange(count)[::-1]) / (FADED * count)
-    return np.asarray(0.5 - 0.5 * np.cos(np.pi * np.minimum(from_an_end, 1.0)))
+    """Return factors that rise from zero to one at the start of a stretch, and fall at its end."""
+    from_an_end = np.minimum(np.arange(count), np.arange(count)[::-1])
+    return _rising(from_an_end / (FADED * count))
+
+
+def _rising(x: FloatArray) -> FloatArray:
+    """Return a function that is zero up to x = 0, and one from x = 1 on, with all its derivatives continuous.
+
+    What fades so, in time and in frequency, is seen nearby only: an edge would ring through the whole of a motion.
+    """
+    inside = np.clip(x, 0.002, 0.998)  # from there on it is 0 and 1 to rounding
+    return np.asarray(1 / (1 + np.exp(1 / inside - 1 / (1 - inside))))
 
 
 def _measured(

@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from bezstab.evidence.accuracy_costs import Run
+from bezstab.evidence.forced_runs import HOLDS
 from bezstab.methods import Method, accuracy, evaluations, implicit, leading_error, steps
 from bezstab.stability import critical_damping_limit, region, spectral_radius
 
@@ -22,9 +23,6 @@ HELD_WORDS: dict[Held, str] = {
 
 ORDER_LOST = 0.5
 """Of an order: below the stated one by more, it has fallen."""
-
-NEAR_ONE = 0.25
-"""Of one: so near measured over predicted is wherever a step follows the motion."""
 
 ALIKE = 1.05
 """Ratios nearer to one are neither won nor lost."""
@@ -167,11 +165,11 @@ def _order_sentences(summaries: Sequence[Summary], held: Held) -> Iterator[str]:
 
 def _prediction_sentence(runs: Sequence[Run]) -> Iterator[str]:
     """Yield how near the measured constraint errors are to those predicted, if there are any."""
-    quotients = [run.c_later / run.predicted_error for run in runs if run.predicted_error and not run.failure]
+    quotients = [run.measured_error / run.predicted_error for run in runs if run.measured_error and run.predicted_error]
     if quotients:
-        near = sum(abs(quotient - 1) <= NEAR_ONE for quotient in quotients)
+        near = sum(abs(quotient - 1) <= HOLDS for quotient in quotients)
         yield (
-            f"Constraint error in the later half of a run, measured over predicted: within {NEAR_ONE:.0%} of one in "
+            f"Constraint error in the later half of a run, measured over predicted: within {HOLDS:.0%} of one in "
             f"{near} of {len(quotients)} runs, from {min(quotients):.2g} to {max(quotients):.2g} in all."
         )
 

@@ -40,7 +40,7 @@ from bezstab.mechanism.compiled_steps import (
     runs_compiled,
 )
 from bezstab.mechanism.constraint_motions import ConstraintMotion, along_normals, constraint_motion
-from bezstab.mechanism.constraint_normals import TurningNormals, turning_normals
+from bezstab.mechanism.constraint_normals import TurningNormals, turned_across, turning_normals
 from bezstab.mechanism.energies import EnergyBalance, energy_balance
 from bezstab.mechanism.equations import Equations, T, equations_of_motion
 from bezstab.mechanism.generated_code import compiled_source
@@ -144,5 +144,6 @@ __all__ = [
     "states_needed",
     "stepper_code",
     "turn",
+    "turned_across",
     "turning_normals",
 ]

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.mechanism.compiled import Mechanism
-from bezstab.mechanism.motions import STEPS, motion
+from bezstab.mechanism.motions import STEPS, Motion, motion
 from bezstab.mechanism.start import geometry
 
 FloatArray = NDArray[np.float64]
@@ -85,11 +85,31 @@ def turning_normals(mechanism: Mechanism, duration: float) -> TurningNormals:
 
 
 def _rate(mechanism: Mechanism, t: float, q: FloatArray, v: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return K and S at one moment; Cdot_q is C_q's derivative along the motion, by a complex step."""
-    at = geometry(mechanism)
-    jacobian = np.asarray(at.jacobian(q, t), float)
-    ahead: Any = at.jacobian(q + 1j * IMAGINARY_STEP * v, t + 1j * IMAGINARY_STEP)  # type: ignore[arg-type]
-    turning = np.asarray(ahead.imag / IMAGINARY_STEP, float)
+    """Return K and S at one moment."""
+    jacobian, turning = _jacobian_and_turning(mechanism, t, q, v)
     by_forces = jacobian.T / np.array(mechanism.equations.mass, float)[:, np.newaxis]  # M^-1 C_q^T
     metric = jacobian @ by_forces
     return np.linalg.solve(metric, (turning @ by_forces).T).T, metric  # S is symmetric
+
+
+def _jacobian_and_turning(
+    mechanism: Mechanism, t: float, q: FloatArray, v: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return C_q and Cdot_q at one moment, the latter by a complex step along the motion."""
+    at = geometry(mechanism)
+    ahead: Any = at.jacobian(q + 1j * IMAGINARY_STEP * v, t + 1j * IMAGINARY_STEP)  # type: ignore[arg-type]
+    return np.asarray(at.jacobian(q, t), float), np.asarray(ahead.imag / IMAGINARY_STEP, float)
+
+
+def turned_across(mechanism: Mechanism, along: Motion, vectors: FloatArray) -> FloatArray:
+    """Return Cdot_q times the part of a vector that lies along the constraints, at each of the first times of a motion.
+
+    That part is what C_q does not see, in the metric of the masses; shapes (times, n) and (times, m).
+    """
+    across = []
+    for t, q, v, vector in zip(along.t, along.q, along.v, vectors, strict=False):
+        jacobian, turning = _jacobian_and_turning(mechanism, float(t), q, v)
+        by_forces = jacobian.T / np.array(mechanism.equations.mass, float)[:, np.newaxis]  # M^-1 C_q^T
+        normal = by_forces @ np.linalg.solve(jacobian @ by_forces, jacobian @ vector)
+        across.append(turning @ (vector - normal))
+    return np.stack(across)

@@ -44,6 +44,7 @@ from bezstab.methods.scheme_motions import (
     AT_REST,
     STEADY,
     Motions,
+    evaluation_errors,
     evaluation_times,
     exact_motions,
     value_at_start,
@@ -62,7 +63,16 @@ from bezstab.methods.schemes import (
 from bezstab.methods.schur import Polynomial, Verdict, is_schur, recursion_verdict
 from bezstab.methods.second_order import Assignment, Combination, Evaluation, PlaneTable, Quantity, SecondOrder
 from bezstab.methods.second_order_forms import second_order_form
-from bezstab.methods.steady_errors import ExponentialSum, ForcedErrors, LeadingError, Part, forced_errors, leading_error
+from bezstab.methods.steady_errors import (
+    ExponentialSum,
+    ForcedErrors,
+    LeadingError,
+    Part,
+    TurningError,
+    forced_errors,
+    leading_error,
+    turning_error,
+)
 from bezstab.methods.step_matrices import (
     StepMatrix,
     StepPolynomial,
@@ -93,7 +103,7 @@ if TYPE_CHECKING:
         mapping_equations,
     )
     from bezstab.methods.first_order_forms import first_order_form
-    from bezstab.methods.formulas import characteristic_text, mapping_text, recursion_text
+    from bezstab.methods.formulas import characteristic_text, mapping_text, recursion_text, steady_error_text
     from bezstab.methods.orders import ForceAccuracy, accuracy, accuracy_by_force
     from bezstab.methods.plane_edges import (
         Crossing,
@@ -126,7 +136,7 @@ DERIVED = {
         "mapping_equations",
     ),
     "first_order_forms": ("first_order_form",),
-    "formulas": ("characteristic_text", "mapping_text", "recursion_text"),
+    "formulas": ("characteristic_text", "mapping_text", "recursion_text", "steady_error_text"),
     "orders": ("ForceAccuracy", "accuracy", "accuracy_by_force"),
     "plane_edges": (
         "Crossing",
@@ -182,6 +192,7 @@ __all__ = [
     "StepMatrix",
     "StepPolynomial",
     "Strip",
+    "TurningError",
     "Verdict",
     "Z",
     "accuracy",
@@ -199,6 +210,7 @@ __all__ = [
     "closed_loop_table",
     "coefficient_table",
     "crossing_factors_in_plane",
+    "evaluation_errors",
     "evaluation_times",
     "evaluations",
     "exact_motions",
@@ -224,8 +236,10 @@ __all__ = [
     "recursion_verdict",
     "reduced_table",
     "second_order_form",
+    "steady_error_text",
     "step_matrix",
     "steps",
+    "turning_error",
     "value_at_start",
     "without_shared_factor",
 ]

@@ -1,4 +1,4 @@
-"""A method's recursion, s->z mapping and characteristic polynomial, written as text or LaTeX."""
+"""A method's recursion, s->z mapping, characteristic polynomial and steady error, written as text or LaTeX."""
 
 from collections.abc import Iterable
 from fractions import Fraction
@@ -11,9 +11,14 @@ from bezstab.methods.first_order_forms import first_order_form
 from bezstab.methods.schemes import LinearMultistep, Method, Partitioned, PredictorCorrector, RungeKutta
 from bezstab.methods.second_order import SecondOrder
 from bezstab.methods.second_order_formulas import SHOWN_DIGITS, is_long, second_order_text
+from bezstab.methods.steady_errors import LeadingError, Part, PlanePolynomial, leading_error
 
-LATEX = {ALPHA_HAT: r"\hat{\alpha}", BETA_HAT: r"\hat{\beta}", MU: r"\mu"}
-TEXT = {"alpha_hat": "α̂", "beta_hat": "β̂", "**": "^", "*": " "}
+THETA = sp.Symbol("_theta")  # i omega h; with the underscore it is written before alpha_hat and beta_hat
+LATEX = {ALPHA_HAT: r"\hat{\alpha}", BETA_HAT: r"\hat{\beta}", MU: r"\mu", THETA: r"\theta"}
+TEXT = {"_theta": "θ", "alpha_hat": "α̂", "beta_hat": "β̂", "**": "^", "*": " "}
+
+LONGEST = 400
+"""Letters of a steady error that is written out, as text: five lines of a terminal."""
 
 Terms = Iterable[tuple[Fraction, str]]
 """Coefficients and the names of what they multiply."""
@@ -78,6 +83,42 @@ def characteristic_text(method: Method, latex: bool = False) -> str:
     for (power,), coefficient in sp.Poly(polynomial.as_expr(), Z).terms():
         terms.append(_power_term(_readable(coefficient), power, latex))
     return " + ".join(terms).replace("+ -", "- ") + " = 0"
+
+
+def steady_error_text(method: Method, part: Part = "x", latex: bool = False) -> str:
+    """Return the leading term in theta = i omega h of the steady error of x (or of v), as a share of the motion's.
+
+    A quotient of polynomials in alpha_hat and beta_hat, which are held as h shrinks; source: steady_errors.py. Where
+    rationals stand for irrational coefficients they are shown as decimals. Text that is too long to be read says how
+    long it is instead; LaTeX is written out.
+    """
+    error = leading_error(method, part)
+    power = error.power if part == "x" else error.power - 1  # h v of the motion itself is theta
+    formula = THETA**power * _quotient(error, exact=method.digits is None)
+    text = _written(formula, latex)
+    if latex or len(text) <= LONGEST:
+        return text
+    lengths = f"{len(error.numerator)} terms over {len(error.denominator)}"
+    return f"{_written(THETA**power, latex)} times {lengths}, too long to be read; as LaTeX it is written out"
+
+
+def _quotient(error: LeadingError, exact: bool) -> sp.Expr:
+    """Return numerator over denominator, with factors taken out; of rounded coefficients what all terms share."""
+    if exact:
+        return sp.factor(_plane_expression(error.numerator) / _plane_expression(error.denominator))
+    by_alpha, by_beta = (min(powers[axis] for powers in (*error.numerator, *error.denominator)) for axis in (0, 1))
+    first = error.denominator[min(error.denominator)]
+
+    def reduced(terms: PlanePolynomial) -> sp.Expr:
+        return _plane_expression({(i - by_alpha, j - by_beta): c / first for (i, j), c in terms.items()})
+
+    return _readable(reduced(error.numerator) / reduced(error.denominator))
+
+
+def _plane_expression(terms: PlanePolynomial) -> sp.Expr:
+    """Return a polynomial in alpha_hat and beta_hat as an expression."""
+    summands = (sp.Rational(c.numerator, c.denominator) * ALPHA_HAT**i * BETA_HAT**j for (i, j), c in terms.items())
+    return sp.Add(*summands)
 
 
 def _readable(expression: sp.Expr) -> sp.Expr:

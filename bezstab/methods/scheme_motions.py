@@ -6,16 +6,18 @@
     accelerated         j^2 / 2     j and a number      1            a + b j + c j^2
 
 The steady motion tells the time of an evaluation, as the position at which it takes place.
+
+A motion j^k / k! of a higher power k is followed at the steps, as far as the order of accuracy goes, but not always at
+the evaluations in between: how far these are off is what a method with stages makes of it.
 """
 
 from fractions import Fraction
 from functools import cache
-from math import comb
+from math import comb, factorial
 
 from bezstab.linear_equations import solution
 from bezstab.methods.second_order import POSITION, Assignment, Combination, Evaluation, Quantity, SecondOrder
 
-POWERS = range(3)  # of j in the three motions
 AT_REST, STEADY, ACCELERATED = range(3)
 
 Motions = dict[str, list[list[Fraction]]]
@@ -23,34 +25,47 @@ Motions = dict[str, list[list[Fraction]]]
 
 
 @cache
-def exact_motions(scheme: SecondOrder) -> Motions:
-    """Return the three motions. A scheme that is consistent and zero-stable has them, and no others."""
+def exact_motions(scheme: SecondOrder, highest: int = ACCELERATED) -> Motions:
+    """Return the three motions. A scheme that is consistent and zero-stable has them, and no others.
+
+    Up to a `highest` above two also those whose accelerations are j^(k - 2) / (k - 2)! at each evaluation's own time.
+    """
+    powers = range(highest + 1)
+    times = evaluation_times(scheme) if highest > ACCELERATED else {}
     names = [equation.result.name for equation in scheme.equations]
-    column = {(name, power): len(POWERS) * i + power for i, name in enumerate(names) for power in POWERS}
+    column = {(name, power): len(powers) * i + power for i, name in enumerate(names) for power in powers}
     rows: list[list[Fraction]] = []
     right_sides: list[list[Fraction]] = []
 
-    def add_row(combination: Combination, power: int, values: list[int]) -> None:
-        """Demand of a combination that its coefficient of j^power has these values in the three motions."""
+    def add_row(combination: Combination, power: int, values: list[Fraction]) -> None:
+        """Demand of a combination that its coefficient of j^power has these values in the motions."""
         row = [Fraction(0)] * len(column)
         for coefficient, quantity in combination:
-            for own_power in range(power, len(POWERS)):  # (j + step)^own_power
+            for own_power in range(power, len(powers)):  # (j + step)^own_power
                 shifted = comb(own_power, power) * quantity.step ** (own_power - power)
                 row[column[quantity.name, own_power]] += coefficient * shifted
         rows.append(row)
-        right_sides.append([Fraction(value) for value in values])
+        right_sides.append(values)
+
+    def acceleration(result: Quantity, power: int, motion: int) -> Fraction:
+        """Return the coefficient of j^power in the acceleration of a motion, (j + time)^(motion - 2) / (motion - 2)!"""
+        left = motion - ACCELERATED - power
+        if left < 0:
+            return Fraction(0)
+        return (times[result] if left else Fraction(1)) ** left / (factorial(power) * factorial(left))
 
     for equation in scheme.equations:
         value = equation.value if isinstance(equation, Assignment) else ()
         difference = ((Fraction(1), equation.result), *((-coefficient, quantity) for coefficient, quantity in value))
-        for power in POWERS:
-            accelerated = isinstance(equation, Evaluation) and power == 0
-            add_row(difference, power, [0, 0, 1] if accelerated else [0, 0, 0])
+        evaluated = isinstance(equation, Evaluation)
+        for power in powers:
+            values = [acceleration(equation.result, power, motion) if evaluated else Fraction(0) for motion in powers]
+            add_row(difference, power, values)
     position = ((Fraction(1), Quantity(POSITION, 0)),)
-    add_row(position, 0, [1, 0, 0])
-    add_row(position, 1, [0, 1, 0])
+    for power in (AT_REST, STEADY):
+        add_row(position, power, [Fraction(motion == power) for motion in powers])
     found = solution(rows, right_sides)
-    return {name: [found[column[name, power]] for power in POWERS] for name in names}
+    return {name: [found[column[name, power]] for power in powers] for name in names}
 
 
 def value_at_start(motions: Motions, combination: Combination, motion: int) -> Fraction:
@@ -59,7 +74,7 @@ def value_at_start(motions: Motions, combination: Combination, motion: int) -> F
         (
             coefficient * motions[quantity.name][power][motion] * quantity.step**power
             for coefficient, quantity in combination
-            for power in POWERS
+            for power in range(len(motions[quantity.name]))
         ),
         Fraction(0),
     )
@@ -73,3 +88,19 @@ def evaluation_times(scheme: SecondOrder) -> dict[Quantity, Fraction]:
         for equation in scheme.equations
         if isinstance(equation, Evaluation)
     }
+
+
+def evaluation_errors(scheme: SecondOrder, power: int) -> dict[Quantity, tuple[Fraction, Fraction]]:
+    """Return by how much position and velocity are off at each evaluation in the motion j^power / power!
+
+    By the evaluation's result, in the turn that begins at j = 0, with h = 1.
+    """
+    motions = exact_motions(scheme, max(power, ACCELERATED))
+    errors = {}
+    for equation in scheme.equations:
+        if isinstance(equation, Evaluation):
+            time = value_at_start(motions, equation.position, STEADY)
+            position = value_at_start(motions, equation.position, power) - time**power / factorial(power)
+            velocity = value_at_start(motions, equation.velocity, power) - time ** (power - 1) / factorial(power - 1)
+            errors[equation.result] = position, velocity
+    return errors

@@ -19,20 +19,40 @@ equations' coefficients (it is P up to a factor), D_x the same with e^(tau theta
 Both numerators are sums of terms c theta^m e^(k theta) alpha_hat^i beta_hat^j with rational c and k: their power series
 in theta is exact. It begins with the power at which errors vanish with h where alpha_hat and beta_hat are held; that
 power's coefficient, over D at z = 1, is the error constant as a function of the feedback.
+
+**Normals that turn.** A mechanism's C_q turns while it moves, and what a method makes of the motion along a constraint,
+too, comes to lie across it. Where evaluations are off by rho theta^r and nu theta^r in position and velocity (h v) and
+the errors they make cancel, so that x begins with a power above r only, as Gauss's two stages do, what cancels is
+C_q q^(r); with the normals turned from one evaluation to the next, and with hcdot = C_q h v + h Cdot_q x, there is left
+
+    h^(r+1) Cdot_q q_t^(r) T,      T = - R_1(alpha_hat nu + beta_hat rho) - R_0(alpha_hat rho),
+
+of the order of theta^(r+1) itself. q_t is the part of q^(r) along the constraint, of which the test equation knows
+nothing, and R_0 + R_1 theta + ... the response of x to accelerations of the evaluations: D_x / D with these in place of
+what is forced.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cache
 from itertools import count
 from math import factorial, lcm
+from types import MappingProxyType
 from typing import Literal
 
 from bezstab.methods.plane_polynomials import ONE, ZERO, Terms, determinant
-from bezstab.methods.scheme_motions import evaluation_times
+from bezstab.methods.scheme_motions import evaluation_errors, evaluation_times
 from bezstab.methods.schemes import Method
-from bezstab.methods.second_order import POSITION, VELOCITY, Evaluation, coefficient_rows, first_step
+from bezstab.methods.second_order import (
+    POSITION,
+    VELOCITY,
+    Evaluation,
+    Quantity,
+    SecondOrder,
+    coefficient_rows,
+    first_step,
+)
 from bezstab.methods.second_order_forms import second_order_form
 
 Part = Literal["x", "v"]
@@ -95,37 +115,55 @@ class LeadingError:
     order: int
 
 
+@dataclass(frozen=True)
+class TurningError:
+    """What normals that turn add to the leading error: T h^(power + 1) Cdot_q q_t^(power), T = numerator / denominator.
+
+    q_t^(power) is the part of a derivative of the motion that lies along the constraint (docstring of this file).
+    """
+
+    power: int
+    numerator: PlanePolynomial
+    denominator: PlanePolynomial
+
+
 @cache
 def forced_errors(method: Method) -> ForcedErrors:
     """Return the steady errors of a method, for any feedback and any motion e^(i omega t).
 
     InputError where the determinant of its equations would take too long. Source: the docstring of this file.
     """
-    equations = second_order_form(method.scheme).equations
-    times = evaluation_times(second_order_form(method.scheme))
-    parts = lcm(*(time.denominator for time in times.values()))  # of a step, so that all times are whole
-    rows = [[_of_parts(terms, parts) for terms in row] for row in coefficient_rows(equations)]
-    names = [equation.result.name for equation in equations]
-    earliest = first_step(equations)
-
-    def with_forcing(name: str) -> ExponentialSum:
-        """Return the determinant with what is forced, divided by F, in place of the column of a quantity."""
-        column = names.index(name)
-        forced = [list(row) for row in rows]
-        for row, equation in zip(forced, equations, strict=True):
-            row[column] = {}
-            if isinstance(equation, Evaluation):
-                row[column] = {(int((times[equation.result] - earliest) * parts), 0, 0): ONE}
-        return _as_sum(determinant(forced), parts)
-
-    unforced = _as_sum(determinant(rows), parts)
+    step = second_order_form(method.scheme)
+    alike: dict[Quantity, PlanePolynomial] = {result: {(0, 0): ONE} for result in evaluation_times(step)}
+    unforced = _determinant(step)
     return ForcedErrors(
         method=method,
-        position=_sum([*_times_forcing(with_forcing(POSITION)), (0, (0, 0), -ONE, unforced)]),
-        velocity=_sum([*_times_forcing(with_forcing(VELOCITY)), (1, (0, 0), -ONE, unforced)]),
+        position=_sum([*_times_forcing(_determinant(step, POSITION, alike)), (0, (0, 0), -ONE, unforced)]),
+        velocity=_sum([*_times_forcing(_determinant(step, VELOCITY, alike)), (1, (0, 0), -ONE, unforced)]),
         denominator=unforced,
         rounding=ZERO if method.digits is None else Fraction(1, 10 ** (method.digits - KEPT_DIGITS)),
     )
+
+
+def _determinant(
+    step: SecondOrder, name: str | None = None, forced: Mapping[Quantity, PlanePolynomial] = MappingProxyType({})
+) -> ExponentialSum:
+    """Return the determinant D of the equations, or D_name: with what is forced in place of the column of a quantity.
+
+    `forced` is what each evaluation adds to its acceleration, by its result, at its own time: times e^(time theta).
+    """
+    times = evaluation_times(step)
+    parts = lcm(*(time.denominator for time in times.values()))  # of a step, so that all times are whole
+    rows = [[_of_parts(terms, parts) for terms in row] for row in coefficient_rows(step.equations)]
+    if name is not None:
+        column = [equation.result.name for equation in step.equations].index(name)
+        earliest = first_step(step.equations)
+        for row, equation in zip(rows, step.equations, strict=True):
+            row[column] = {}
+            if isinstance(equation, Evaluation):
+                later = int((times[equation.result] - earliest) * parts)
+                row[column] = {(later, i, j): c for (i, j), c in forced[equation.result].items()}
+    return _as_sum(determinant(rows), parts)
 
 
 @cache
@@ -145,6 +183,33 @@ def leading_error(method: Method, part: Part = "x") -> LeadingError:
         order_left=power - by_h,
         order=_least_weight(errors, terms) - _least_weight(errors, errors.denominator) - by_h,
     )
+
+
+@cache
+def turning_error(method: Method) -> TurningError | None:
+    """Return what normals that turn add to the leading error of x; None where nothing of its order.
+
+    Errors as `forced_errors`. Source: the docstring of this file.
+    """
+    errors, step = forced_errors(method), second_order_form(method.scheme)
+    for power in range(2, leading_error(method).power):
+        off = evaluation_errors(step, power)
+        if max(max(map(abs, pair)) for pair in off.values()) <= errors.rounding:
+            continue
+        normal = {result: {(0, 1): position, (1, 0): velocity} for result, (position, velocity) in off.items()}
+        across = {result: {(1, 0): position} for result, (position, _) in off.items()}
+        by_normal = errors.coefficient(_determinant(step, POSITION, normal), 1)  # at 0 they cancel
+        by_across = errors.coefficient(_determinant(step, POSITION, across), 0)
+        sums = {
+            powers: -by_normal.get(powers, ZERO) - by_across.get(powers, ZERO) for powers in {*by_normal, *by_across}
+        }
+        numerator = {powers: c for powers, c in sums.items() if abs(c) > errors.rounding}
+        return TurningError(
+            power=power,
+            numerator=_in_h(numerator, method.step_multiple, power + 1),
+            denominator=_in_h(errors.coefficient(errors.denominator, 0), method.step_multiple, 0),
+        )
+    return None
 
 
 def _least_weight(errors: ForcedErrors, terms: ExponentialSum) -> int:

@@ -33,6 +33,7 @@ if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
 
     from bezstab.engines import Drive, Engine
     from bezstab.evidence import (
+        HalvedStep,
         Likeness,
         LikePoint,
         Linted,
@@ -137,14 +138,31 @@ def method_row(method: Method) -> Row:
 
 
 def formula_row(method: Method, latex: bool = False) -> Row:
-    """Return one method's recursion, s->z mapping and characteristic polynomial (paper Tables 1 and 2), as text."""
-    from bezstab.methods import characteristic_text, mapping_text, recursion_text  # loads sympy
+    """Return one method's recursion, s->z mapping, characteristic polynomial (paper Tables 1 and 2), steady errors.
+
+    As text. `steady_error` is that of constraints, `steady_velocity_error` that of their velocities, each as a share of
+    the motion's; `order_left` the order of constraint errors where alpha_hat and beta_hat are held, at most the
+    method's own.
+    """
+    from bezstab.methods import (  # loads sympy
+        accuracy,
+        characteristic_text,
+        leading_error,
+        mapping_text,
+        recursion_text,
+        steady_error_text,
+    )
+
+    order, _ = accuracy(method)
 
     return {
         "method": method.name,
         "recursion": recursion_text(method, latex),
         "mapping": mapping_text(method, latex),
         "characteristic_polynomial": characteristic_text(method, latex),
+        "steady_error": steady_error_text(method, "x", latex),
+        "steady_velocity_error": steady_error_text(method, "v", latex),
+        "order_left": min(order, leading_error(method).order_left),
     }
 
 
@@ -346,6 +364,27 @@ def measurement_row(scene: str, measurement: Measurement) -> Row:
         "verdicts_agree": measurement.verdicts_agree,
         "right": measurement.right,
     }
+
+
+def forced_rows(scene: str, pair: HalvedStep) -> list[Row]:
+    """Return what two runs at one point were predicted to force and did, the larger step first; SI units.
+
+    None where a run broke down; orders are between the two, and stand in the row of the smaller step.
+    """
+    return [
+        row(
+            run,
+            without={"predicted", "measured"},
+            scene=scene,
+            gain_share=pair.share,
+            predicted_error=run.predicted,
+            measured_error=None if run.failure else run.measured,
+            quotient=None if run.failure else run.quotient,
+            predicted_order=pair.predicted_order if run is pair.half else None,
+            observed_order=None if run is pair.whole or pair.holds is None else pair.observed_order,
+        )
+        for run in (pair.whole, pair.half)
+    ]
 
 
 def summary_row(measurements: Sequence[Row]) -> Row:

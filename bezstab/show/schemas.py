@@ -68,7 +68,8 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
         RowKind("a method in the list", _keys(f"{METHOD} group")),
         RowKind(
             "a method that was named",
-            _keys(f"{METHOD} recursion mapping characteristic_polynomial {REGION}"),
+            _keys(f"""{METHOD} recursion mapping characteristic_polynomial steady_error steady_velocity_error order_left
+                {REGION}"""),
         ),
     ],
     "family": [
@@ -127,6 +128,11 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
             ),
         ),
         RowKind(
+            "what a method forces on a mechanism",
+            _keys("""scene method gain_share alpha_hat beta_hat h predicted_error measured_error quotient
+                predicted_order observed_order failure"""),
+        ),
+        RowKind(
             "a run of an engine that is not ours",
             _keys("""scene integrator method alpha_hat beta_hat times_boundary predicted_z_abs predicted_verdict
                 measured_verdict remaining run_steps"""),
@@ -143,8 +149,8 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
     "tradeoff": [
         RowKind(
             "a run of a method with a step",
-            _keys("""method h alpha_hat beta_hat z_abs trajectory_error c_max c_later predicted_error c_rms cdot_max
-                cdot_rms energy_drift run_evaluations seconds seconds_min seconds_max failure observed_order front"""),
+            _keys("""method h alpha_hat beta_hat z_abs trajectory_error c_max measured_error predicted_error c_rms
+                cdot_max cdot_rms energy_drift run_evaluations seconds seconds_min seconds_max failure observed_order front"""),
         ),
         RowKind(
             "the least error that a method can force with |z_p| at most so large",

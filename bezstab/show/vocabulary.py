@@ -164,11 +164,19 @@ VOCABULARY: Mapping[str, Key] = {
     "combined_error": Key(
         "number", "The largest constraint error that is forced at any rate and velocity_error, such shares, added up"
     ),
-    "accurate_alpha_hat": Key("number", "alpha_hat of the goal accurate", null=NO_CHOICE),
-    "accurate_beta_hat": Key("number", "beta_hat of the goal accurate", null=NO_CHOICE),
-    "accurate_z_abs": Key("number", "Modulus of the dominant pole there", null=NO_CHOICE),
-    "accurate_error": Key("number", "combined_error there", null=NO_CHOICE),
-    "best_error": Key("number", "combined_error where the modulus of the dominant pole is smallest", null=NO_BEST),
+    "accurate_alpha_hat": Key("number", "Where the goal accurate chooses to be, in alpha_hat", null=NO_CHOICE),
+    "accurate_beta_hat": Key("number", "Where the goal accurate chooses to be, in beta_hat", null=NO_CHOICE),
+    "accurate_z_abs": Key(
+        "number", "Modulus of the dominant pole where the goal accurate chooses to be", null=NO_CHOICE
+    ),
+    "accurate_error": Key("number", "What combined_error is where the goal accurate chooses to be", null=NO_CHOICE),
+    "best_error": Key("number", "What combined_error is at best_alpha_hat, best_beta_hat", null=NO_BEST),
+    "steady_error": Key(
+        "text",
+        "What the method forces on a constraint that moves as e^(i omega t), as a share of that motion: the first term "
+        "in theta = i omega h where alpha_hat and beta_hat are held",
+    ),
+    "steady_velocity_error": Key("text", "The same of the velocity, as a share of that of the motion"),
     # choices and checks
     "role": Key("text", "Whether the point was given, or is what to take instead", values=("given", "instead")),
     "goal": Key("text", "What the point was chosen for, or that it is as given"),
@@ -276,15 +284,6 @@ VOCABULARY: Mapping[str, Key] = {
     "run_steps": Key("integer", "Steps of the whole run"),
     "run_evaluations": Key("integer", "Evaluations of the right-hand side in the whole run"),
     "c_max": Key("number", "Largest constraint error", "m or rad"),
-    "c_later": Key(
-        "number", "Largest constraint error in the later half of the run, where the start has died away", "m or rad"
-    ),
-    "predicted_error": Key(
-        "number",
-        "The same as the feedback forces it on the scene's own motion: predicted, without anything fitted",
-        "m or rad",
-        "where errors do not decay, or the motion cannot be followed for longer than the run",
-    ),
     "c_rms": Key("number", "Root mean square of the constraint error", "m or rad"),
     "cdot_max": Key("number", "Largest rate of the constraint error", "m/s or rad/s"),
     "cdot_rms": Key("number", "Root mean square of the rate of the constraint error", "m/s or rad/s"),
@@ -335,6 +334,21 @@ VOCABULARY: Mapping[str, Key] = {
     "measurable": Key("truth", "Whether the pole could be measured"),
     "verdicts_agree": Key("truth", "Whether predicted and measured verdict agree", null="where either is not settled"),
     "right": Key("text", "Which predictions have the measured verdict: at rest, law, exact (or over the run)"),
+    # predicted against measured errors
+    "gain_share": Key("number", "Times alpha and beta of the point that was chosen or given"),
+    "predicted_error": Key(
+        "number",
+        "Largest constraint error predicted for the later half of the run, with nothing fitted",
+        "m or rad",
+        "where errors do not decay, or the motion cannot be followed for longer than the run",
+    ),
+    "measured_error": Key(
+        "number", "Largest constraint error in the later half of the run", "m or rad", "if the run failed"
+    ),
+    "quotient": Key("number", "Measured over predicted error, 1 if they agree", null="if the run failed"),
+    "predicted_order": Key(
+        "number", "Order in h of the predicted error between this and the next larger step", null="of the largest step"
+    ),
     # maps of simulated verdicts
     "runs": Key("integer", "Number of runs"),
     "undecided": Key("integer", "Runs that gave no verdict"),

@@ -77,6 +77,7 @@ from bezstab.stability.forced_errors import (
     combined_error,
     forced_error,
     forced_response,
+    turning_response,
 )
 from bezstab.stability.gain_margins import GainLimits, gain_limits
 from bezstab.stability.grid_maps import QUALITY, pole_map
@@ -166,6 +167,7 @@ __all__ = [
     "stability_margins",
     "stable_for_all",
     "stable_up_to",
+    "turning_response",
     "turning_sensitivity",
     "turning_shift",
     "unconditional_damping_ratio",

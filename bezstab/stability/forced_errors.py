@@ -24,7 +24,7 @@ from numpy.polynomial.polynomial import polyval2d
 from numpy.typing import ArrayLike
 
 from bezstab.errors import InputError
-from bezstab.methods import ExponentialSum, ForcedErrors, Method, forced_errors, leading_error
+from bezstab.methods import ExponentialSum, ForcedErrors, Method, forced_errors, leading_error, turning_error
 from bezstab.stability.arrays import ComplexArray, FloatArray
 
 OMEGA_H = Fraction(1, 100)
@@ -218,6 +218,21 @@ def forced_response(method: Method, alpha_hat: float, beta_hat: float, omega_h: 
     )
     found = numerator / denominator * multiple**power
     return np.asarray(np.where(np.abs(omega_h) < LARGEST_OMEGA_H, found, 0.0))
+
+
+def turning_response(method: Method, alpha_hat: float, beta_hat: float) -> tuple[int, float] | None:
+    """Return r and T, where normals that turn add T h^(r + 1) Cdot_q q_t^(r) to the steady error of q; None: nothing.
+
+    To leading order in h. Source: methods/steady_errors.py.
+    """
+    turning = turning_error(method)
+    if turning is None:
+        return None
+    numerator, denominator = (
+        sum(float(c) * alpha_hat**i * beta_hat**j for (i, j), c in terms.items())
+        for terms in (turning.numerator, turning.denominator)
+    )
+    return turning.power, numerator / denominator
 
 
 @lru_cache(maxsize=64)

@@ -74,6 +74,14 @@ def test_methods_lists_and_shows() -> None:
         assert piece in text
 
 
+def test_a_method_shown_whole_says_what_order_strong_feedback_leaves_it() -> None:
+    (row,) = rows("methods", "RK4")
+    assert (row["order"], row["order_left"]) == (4, 2)
+    assert str(row["steady_error"]).startswith("θ^2 β̂ (α̂ β̂ - 4 β̂ + 24)/")
+    assert "while α̂ and β̂ are, order 2 is left" in " ".join(run("methods", "RK4").stdout.split())
+    assert "while α̂ and β̂ are, it is kept, too" in " ".join(run("methods", "AB4").stdout.split())
+
+
 def test_the_list_of_methods_is_grouped_and_fits_80_columns() -> None:
     lines = run("methods").stdout.splitlines()
     assert max(map(len, lines)) <= 80

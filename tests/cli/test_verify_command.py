@@ -91,3 +91,36 @@ def test_without_floquet_nothing_exact_is_computed() -> None:
 def test_on_fast_scenes_hardly_a_verdict_that_is_not_flagged_is_wrong(scene: str, method: str) -> None:
     measured = rows("verify", "--scene", scene, "--method", method, "--points", "200")
     assert sum(row["verdicts_agree"] is False for row in measured) <= 2
+
+
+def test_predicted_and_measured_errors_are_compared_at_shares_of_the_gains() -> None:
+    command = ("verify", "--accuracy", "--scene", "driven_four_bar", "--h", "0.004", "--method", "SYM")
+    found = rows(*command)
+    assert [(row["gain_share"], row["h"]) for row in found] == [
+        (share, h) for share in (0.2, 0.3, 0.5, 0.7, 1) for h in (0.004, 0.002)
+    ]
+    for row in found:
+        assert row["quotient"] == pytest.approx(1, abs=0.05)
+        assert row["predicted_order"] == (None if row["h"] == 0.004 else pytest.approx(2, abs=0.05))  # at strong gains
+        assert row["failure"] is None
+    text = run(*command)
+    assert text.exit_code == 0
+    assert "the prediction holds" in text.stdout
+
+
+def test_where_the_prediction_does_not_hold_the_exit_status_says_so() -> None:
+    # 40 steps a turn of the crank: AB4's fifth derivative needs the tenfold
+    command = ("verify", "--accuracy", "--scene", "driven_four_bar", "--h", "0.025", "--method", "AB4")
+    result = run(*command)
+    assert result.exit_code == 1
+    assert "the prediction does NOT hold" in result.stdout
+
+
+def test_accuracy_goes_with_one_point_or_none() -> None:
+    (mistaken, unstable) = (
+        run("verify", "--accuracy", "--points", "3"),
+        run("verify", "--accuracy", "--scene", "driven_four_bar", "--alpha", "0.5", "--beta", "1"),
+    )
+    assert (mistaken.exit_code, unstable.exit_code) == (2, 2)
+    assert "--accuracy goes with --alpha and --beta or alone" in mistaken.stderr
+    assert "B4 is not stable at 1 times the gains of α̂ = 0.5, β̂ = 1" in unstable.stderr

@@ -14,7 +14,6 @@ from bezstab.evidence import (
     swept_runs,
     with_fronts,
 )
-from bezstab.evidence.forced_runs import ForcedMotion
 from bezstab.mechanism import load_scene
 from bezstab.methods import accuracy, lookup
 from bezstab.rationals import exact
@@ -83,22 +82,23 @@ def test_its_own_choice_at_each_step_costs_no_order(name: str) -> None:
 def test_in_the_later_half_of_a_run_the_constraint_error_is_the_predicted_one(name: str, within: float) -> None:
     """Of RK4 at its gentle choice, whose errors curved constraints change the most, within a third."""
     for run in swept(name, (8e-4, 1.6e-3)):
-        assert run.predicted_error is not None
-        assert run.c_later == pytest.approx(run.predicted_error, rel=within)
-        assert run.c_later <= run.c_max
+        assert run.predicted_error
+        assert run.measured_error
+        assert run.measured_error == pytest.approx(run.predicted_error, rel=within)
+        assert run.measured_error <= run.c_max
 
 
 def test_where_errors_do_not_decay_none_is_predicted() -> None:
     failed, ended = swept("AB4", (0.002, 0.0125), SOFT)
-    assert failed.predicted_error is None
-    assert ended.predicted_error is not None
+    assert (failed.predicted_error, failed.measured_error) == (None, None)
+    assert ended.predicted_error
 
 
 def test_where_the_motion_cannot_be_followed_none_is_predicted(monkeypatch: pytest.MonkeyPatch) -> None:
-    def broken(*_: object) -> list[ForcedMotion]:
+    def broken(*_: object) -> list[float]:
         raise NumericalError("the motion breaks down after the run")
 
-    monkeypatch.setattr(accuracy_costs, "forced_motions", broken)
+    monkeypatch.setattr(accuracy_costs, "predicted_errors", broken)
     sweep = small_sweep("SYM", (0.0125,), SOFT)
     (run,) = swept_runs(sweep, measured_runs(sweep))
     assert run.failure is None

@@ -20,7 +20,7 @@ def test_the_sentences_name_the_cheapest_run_and_the_numbers() -> None:
     best = min(within, key=lambda run: run.evaluations)
     assert f"{best.method.name} at h = {best.h:g} s" in cheapest
     assert orders.startswith("Order of accuracy with α and β held while h shrinks, ")
-    quotients = [run.c_later / run.predicted_error for run in both if run.predicted_error]
+    quotients = [run.measured_error / run.predicted_error for run in both if run.predicted_error and run.measured_error]
     near = sum(0.75 <= quotient <= 1.25 for quotient in quotients)
     assert f"within 25% of one in {near} of 7 runs" in predicted
     assert f"from {min(quotients):.2g} to {max(quotients):.2g} in all" in predicted

@@ -1,6 +1,7 @@
 import math
 import re
 from collections.abc import Callable
+from typing import get_args
 
 import pytest
 import sympy as sp
@@ -14,10 +15,13 @@ from bezstab.methods import (
     Z,
     characteristic_text,
     closed_loop_polynomial,
+    leading_error,
     lookup,
     mapping_text,
     recursion_text,
+    steady_error_text,
 )
+from bezstab.methods.steady_errors import Part
 from tests.methods.kinds import FEW, SAMPLE, SOLVED, sampled
 from tests.reference.second_order_methods import as_second_order
 
@@ -83,10 +87,57 @@ def test_the_printed_polynomial_is_the_derived_one_in_whole_numbers(name: str) -
     assert sp.igcd(*printed.coeffs(), 0) == 1
 
 
+def steady_error_latex(method: Method, latex: bool) -> str:
+    return steady_error_text(method, latex=latex)
+
+
 @pytest.mark.parametrize("name", sampled(NAMES, quick=[*FEW, *SOLVED]))
-@pytest.mark.parametrize("write", [recursion_text, mapping_text, characteristic_text])
+@pytest.mark.parametrize("write", [recursion_text, mapping_text, characteristic_text, steady_error_latex])
 def test_latex_can_be_typeset(name: str, write: object) -> None:
     assert callable(write)
     for part in re.split(r"; |: ", write(lookup(name), True)):
         typeset = part.replace(r"\left", "").replace(r"\right", "")  # which mathtext wants in pairs per line
         MathTextParser("path").parse(f"${typeset}$")
+
+
+PRINTED = {  # theory.md, section 14, and by hand; a share of the motion, of the velocity's motion
+    "RK4": (
+        "θ^2 β̂ (α̂ β̂ - 4 β̂ + 24)/(4 (24 α̂^3 - 12 α̂^2 β̂ - 96 α̂^2 + 4 α̂ β̂^2 - 24 α̂ β̂ + 288 α̂ - β̂^3 + 8 β̂^2 + 48 β̂ - 576))",
+        None,
+    ),
+    "RK2": ("θ^2 (α̂ - 2)/(4 (2 α̂ - β̂ - 4))", None),
+    "SYM": ("θ^2 α̂/(2 β̂)", "-θ/2"),
+    "B4": ("-11 θ^3 α̂/(36 β̂)", "11 θ^2/36"),
+    "gauss4": ("θ^4 (0.003472222222 - 0.0001929012346 β̂)", "-0.002314814815 θ^2 β̂"),  # (18 - b)/5184, -b/432
+}
+
+
+@pytest.mark.parametrize("name", PRINTED)
+def test_a_steady_error_is_written_as_by_hand(name: str) -> None:
+    for part, expected in zip(get_args(Part), PRINTED[name], strict=True):
+        assert expected in (None, steady_error_text(lookup(name), part))
+
+
+@pytest.mark.parametrize(
+    "name", sampled([name for name in NAMES if name != "tsit5"], quick=[*SAMPLE, *SOLVED, "gauss4"])
+)
+@pytest.mark.parametrize("part", get_args(Part))
+def test_a_written_steady_error_is_that_of_the_method(name: str, part: Part) -> None:
+    error = leading_error(lookup(name), part)
+    a, b, theta = sp.Rational(2, 7), sp.Rational(3, 11), sp.Integer(3)
+    over, under = (
+        sum((sp.Rational(c.numerator, c.denominator) * a**i * b**j for (i, j), c in terms.items()), sp.Integer(0))
+        for terms in (error.numerator, error.denominator)
+    )
+    text = (
+        steady_error_text(lookup(name), part).replace("α̂", "a").replace("β̂", "b").replace("θ", "t").replace("^", "**")
+    )
+    written = sp.sympify(re.sub(r"(?<=[\w)]) (?=[\w(])", " * ", text), locals={"a": a, "b": b, "t": theta})
+    exact = over / under * theta ** (error.power - (part == "v"))
+    assert float(written) == pytest.approx(float(exact), rel=1e-7 if lookup(name).digits else 1e-15)  # ten digits shown
+
+
+def test_a_steady_error_too_long_to_be_read_says_so_and_is_written_out_as_latex() -> None:
+    said = "θ^2 times 9 terms over 21, too long to be read; as LaTeX it is written out"
+    assert steady_error_text(lookup("tsit5")) == said
+    assert steady_error_text(lookup("tsit5"), latex=True).count(r"\hat{\beta}") > 20

@@ -5,12 +5,25 @@ from dataclasses import replace
 from fractions import Fraction
 
 import mpmath
+import numpy as np
 import pytest
 import sympy as sp
 
-from bezstab.methods import REGISTRY, accuracy, forced_errors, leading_error, lookup
+from bezstab.methods import (
+    REGISTRY,
+    Method,
+    RungeKutta,
+    accuracy,
+    evaluation_errors,
+    forced_errors,
+    leading_error,
+    lookup,
+    second_order_form,
+    turning_error,
+)
 from bezstab.methods.steady_errors import ExponentialSum, PlanePolynomial
 from bezstab.stability import spectral_radius
+from bezstab.stability.arrays import FloatArray
 from tests.methods.kinds import sampled
 from tests.reference.forced_runs import DIGITS, steady_errors
 
@@ -105,3 +118,95 @@ def test_a_step_of_five_h_forces_what_a_step_of_h_does_at_its_own_parameters() -
     at_own = {A: 5 * A, B: 25 * B}
     ratio = polynomial(one.numerator).subs(at_own) / polynomial(one.denominator).subs(at_own)
     assert sp.simplify(polynomial(five.numerator) / polynomial(five.denominator) - 25 * ratio) == 0
+
+
+SMALLEST = Fraction(1, 10**12)
+"""What rationals that stand for irrational coefficients leave over, and more."""
+
+
+@pytest.mark.parametrize("name", sampled(list(REGISTRY), ("B4", "AB4", "RK4", "dopri5", "SYM", "hht", "gauss4")))
+def test_errors_begin_where_evaluations_begin_to_be_off_but_for_those_that_gauss_cancels(name: str) -> None:
+    """So normals that turn add nothing of the leading order to any built-in method but gauss4."""
+    step = second_order_form(lookup(name).scheme)
+    power = 2
+    while max(abs(error) for pair in evaluation_errors(step, power).values() for error in pair) < SMALLEST:
+        power += 1
+    assert leading_error(lookup(name)).power == power + (name == "gauss4")
+    assert (turning_error(lookup(name)) is not None) == (name == "gauss4")
+
+
+@pytest.mark.parametrize("multiple", [1, 5])
+def test_what_turning_normals_add_to_gauss_is_as_by_hand(multiple: int) -> None:
+    # beside (18 - b)/5184 of C_q q'''' there is -b/5184 of Cdot_q q_t''', for a step of the method's own
+    method = replace(lookup("gauss4"), step_multiple=Fraction(multiple))
+    turning, position = turning_error(method), leading_error(method)
+    assert turning
+    assert turning.power == 3
+    below, b = position.denominator[0, 1], multiple**2
+    assert (set(turning.numerator), set(turning.denominator)) == ({(0, 2)}, {(0, 1)})
+    for found, expected in (
+        (turning.numerator[0, 2] / turning.denominator[0, 1], -b * multiple**4),
+        (position.numerator[0, 1] / below, 18 * multiple**4),
+        (position.numerator[0, 2] / below, -b * multiple**4),
+    ):
+        assert abs(found - Fraction(expected, 5184)) < SMALLEST
+
+
+Vectors = tuple[FloatArray, FloatArray, FloatArray]
+
+
+def moved(t: float) -> Vectors:
+    """Return phi, a motion in the plane, and its first two derivatives."""
+    return (
+        np.array([math.cos(2 * t), math.sin(t)]),
+        np.array([-2 * math.sin(2 * t), math.cos(t)]),
+        np.array([-4 * math.cos(2 * t), -math.sin(t)]),
+    )
+
+
+def turned(t: float) -> Vectors:
+    """Return n, the normal of a line that turns, and its first two derivatives."""
+    n, along = np.array([math.cos(t), math.sin(t)]), np.array([-math.sin(t), math.cos(t)])
+    return n, along, -n
+
+
+def error_across_a_turning_line(method: Method, h: float, alpha_hat: float, beta_hat: float, time: float) -> float:
+    """Return c = n (q - phi) of a Runge-Kutta method at a time, from q'' = phi'' - n (c'' + 2 alpha c' + beta^2 c).
+
+    In place of c'' stand the terms that keep c'' itself at -2 alpha c' - beta^2 c, as the acceleration of a mechanism
+    has them: 2 n' (q' - phi') + n'' (q - phi).
+    """
+    assert isinstance(method.scheme, RungeKutta)
+    rows = [[float(a) for a in row] for row in method.scheme.tableau]
+    times, count = [sum(row) for row in rows], len(rows)
+
+    def equation(t: float) -> tuple[FloatArray, FloatArray]:
+        """Return the matrix and the rest of y' = L y + g, y = (q, q')."""
+        n, n1, n2 = turned(t)
+        phi, phi1, phi2 = moved(t)
+        by_position = -np.outer(n, alpha_hat / h * n1 + beta_hat / h**2 * n + n2)
+        by_velocity = -np.outer(n, alpha_hat / h * n + 2 * n1)
+        matrix = np.block([[np.zeros((2, 2)), np.eye(2)], [by_position, by_velocity]])
+        return matrix, np.concatenate([np.zeros(2), phi2 - by_position @ phi - by_velocity @ phi1])
+
+    y = np.concatenate(moved(0.0)[:2])
+    for step in range(round(time / h)):
+        stages = [equation((step + c) * h) for c in times]
+        coupled = np.block([[rows[i][j] * stages[i][0] for j in range(count)] for i in range(count)])
+        right = np.concatenate([matrix @ y + rest for matrix, rest in stages])
+        slopes = np.linalg.solve(np.eye(4 * count) - h * coupled, right).reshape(count, 4)
+        y = y + h * np.array([float(weight) for weight in method.scheme.weights]) @ slopes
+    return float(turned(time)[0] @ (y[:2] - moved(time)[0]))
+
+
+@pytest.mark.parametrize("beta_hat", [1.0, 12.0])
+def test_a_line_that_turns_shows_both_terms(beta_hat: float) -> None:
+    alpha_hat, time, h = 2.0, 1.0, 0.01
+    n, along, _ = turned(time)
+    third = np.array([8 * math.sin(2 * time), -math.cos(time)])
+    fourth = np.array([16 * math.cos(2 * time), math.sin(time)])
+    expected = ((18 - beta_hat) * n @ fourth - beta_hat * along @ third) / 5184  # n' is the line's own direction
+    whole, half = (
+        error_across_a_turning_line(lookup("gauss4"), step, alpha_hat, beta_hat, time) / step**4 for step in (h, h / 2)
+    )
+    assert 2 * half - whole == pytest.approx(expected, rel=1e-3)  # what is left is of the order of h^2

@@ -73,6 +73,16 @@ def test_a_misprint_is_noticed_and_a_half_digit_is_not() -> None:
     assert (cut_off, rest) == ("-0.12 should be -0.13 (cut off, not rounded)", [None] * 3)
 
 
+def test_the_oscillation_of_rk4_is_that_of_feedback_chosen_for_stability() -> None:
+    finding = found("constant oscillation about zero is a disadvantage")
+    assert finding.agreement == "not confirmed"
+    assert "RK4@5 keeps order 2 of 4 and forces 4e+04 to 9e+04 times the error" in finding.here
+    assert "B4 keeps order 2 of 2 and forces 0.7 to 4 times" in finding.here
+    rk4, b4, rk4_as_compared, b4_as_compared = map(float, re.findall(r"\d+e-\d+", finding.here))
+    assert rk4 < b4 / 50
+    assert rk4_as_compared > 1000 * b4_as_compared
+
+
 def test_euler_semi_implicit_is_an_euler_step_corrected_once() -> None:
     finding = what_semi_implicit_euler_is()
     assert finding.agreement == "confirmed with a correction"

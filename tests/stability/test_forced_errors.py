@@ -8,7 +8,7 @@ import pytest
 
 from bezstab.errors import InputError
 from bezstab.methods import ExponentialSum, forced_errors, leading_error, lookup
-from bezstab.stability import forced_error, forced_response
+from bezstab.stability import forced_error, forced_response, turning_response
 
 METHODS = ("B4", "AB4", "AB8", "RK4", "dopri5", "SYM", "verlet-half", "hht", "gauss4")
 OMEGAS = (Fraction(1, 10**6), Fraction(1, 100), Fraction(3, 10), Fraction(9, 10))
@@ -76,3 +76,11 @@ def test_a_step_of_five_h_forces_what_its_own_parameters_do() -> None:
 def test_a_motion_that_no_step_follows_or_that_is_none_is_refused(omega: Fraction) -> None:
     with pytest.raises(InputError, match="rad a step: expected 1e-06 to 1"):
         forced_error(lookup("RK4"), 0.5, 0.1, omega)
+
+
+def test_normals_that_turn_add_to_gauss_alone() -> None:
+    found = turning_response(lookup("gauss4"), 3.0, 12.0)
+    assert found
+    assert found[0] == 3
+    assert found[1] == pytest.approx(-12 / 5184, rel=1e-14)
+    assert turning_response(lookup("RK4"), 1.0, 1.0) is None

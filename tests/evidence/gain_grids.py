@@ -1,0 +1,116 @@
+"""What runs cost at gains of all sizes, and at those that a goal chooses: errors of constraints and of the trajectory.
+
+python -m tests.evidence.gain_grids [METHOD ...]      the table of bezstab/evidence/README.md, in some minutes
+"""
+
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from bezstab.mechanism import compiled_mechanism, constraint_motion, load_scene, motion, observe, simulate
+from bezstab.methods import Method, lookup
+from bezstab.rationals import exact
+from bezstab.stability import Goal, choose, spectral_radius
+from bezstab.units import feedback_gains
+
+METHODS = ("RK4", "dopri5", "bs3", "B4", "AB2", "AB4", "ABM4", "SYM", "verlet-half", "bdf2", "hht", "gauss4")
+SCENES = {"slider_crank_light": (0.004, 2.0), "driven_four_bar": (0.003, 1.0), "andrews": (1e-4, 0.03)}
+"""Step and duration (s)."""
+
+GOALS: tuple[Goal, ...] = ("accurate", "robust", "fastest", "critical")
+SCALES = tuple(3.0**-n for n in range(8))
+"""Of the robust choice's beta: down to a two-thousandth, where errors take longer to decay than the runs last."""
+
+DAMPING_RATIOS = (0.5, 1.0, 2.0)
+
+COMPARED = 0.5
+"""Of a run: before, errors are those of the start."""
+
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Errors:
+    """Largest errors (SI) of constraints and coordinates in the later half of a run; infinite where it breaks down."""
+
+    constraint: float
+    trajectory: float
+
+    def beaten_by(self, other: "Errors") -> float:
+        """Return by what factor another run is better in both errors at once."""
+        return min(self.constraint / other.constraint, self.trajectory / other.trajectory)
+
+
+@dataclass(frozen=True)
+class Grid:
+    """The errors of all stable points of the grid, and of the points that goals choose."""
+
+    points: dict[Point, Errors]
+    goals: dict[Goal, Errors]
+
+    def beaten(self, goal: Goal) -> float:
+        """Return by what factor some point of the grid beats a goal's in both errors at once."""
+        return max(self.goals[goal].beaten_by(errors) for errors in self.points.values())
+
+    def from_best(self, goal: Goal) -> tuple[float, float]:
+        """Return how many times the least of all there are a goal's constraint and trajectory errors are."""
+        every = [*self.points.values(), *self.goals.values()]
+        return (
+            self.goals[goal].constraint / min(errors.constraint for errors in every),
+            self.goals[goal].trajectory / min(errors.trajectory for errors in every),
+        )
+
+
+def grid(scene: str, name: str, goals: Sequence[Goal] = GOALS) -> Grid:
+    """Return the errors of a method on a scene, over the grid and at the choices of goals."""
+    h, duration = SCENES[scene]
+    method = lookup(name)
+    omega = constraint_motion(compiled_mechanism(load_scene(scene)), duration).omega
+    robust = choose(method, "robust", margins=False)
+    strongest = np.sqrt(robust.beta_hat)
+    points = [(2 * ratio * scale * strongest, (scale * strongest) ** 2) for scale in SCALES for ratio in DAMPING_RATIOS]
+    chosen = {goal: choose(method, goal, margins=False, omega_h=exact(h) * exact(omega)) for goal in goals}
+    return Grid(
+        points={
+            point: measured(scene, method, h, duration, point)
+            for point in points
+            if spectral_radius(method, *point) < 1
+        },
+        goals={
+            goal: measured(scene, method, h, duration, (choice.alpha_hat, choice.beta_hat))
+            for goal, choice in chosen.items()
+        },
+    )
+
+
+def measured(scene: str, method: Method, h: float, duration: float, point: Point) -> Errors:
+    """Return the errors of one run, of steps of h (s)."""
+    mechanism = compiled_mechanism(load_scene(scene))
+    gains = feedback_gains(*point, h)
+    run = simulate(mechanism, method, h, duration, gains)
+    if run.failure:
+        return Errors(np.inf, np.inf)
+    later = run.t >= COMPARED * duration
+    exactly, _, _ = motion(mechanism, duration).at(run.t[later])
+    return Errors(
+        constraint=float(np.abs(observe(mechanism, run.t, run.q, run.v, *gains).c[later]).max()),
+        trajectory=float(np.abs(run.q[later] - exactly).max()),
+    )
+
+
+def print_table(names: Sequence[str]) -> None:
+    """Print for each scene and method how far each goal is from the best, and by what the default is beaten."""
+    heads = " | ".join(f"{goal}: c, q" for goal in GOALS)
+    print(f"| scene | method | {heads} | default beaten |")
+    print("|---" * (len(GOALS) + 3) + "|")
+    for scene in SCENES:
+        for name in names:
+            found = grid(scene, name)
+            cells = " | ".join("{:.2g}, {:.2g}".format(*found.from_best(goal)) for goal in GOALS)
+            print(f"| {scene} | {name} | {cells} | {found.beaten('accurate'):.2f} |", flush=True)
+
+
+if __name__ == "__main__":
+    print_table(sys.argv[1:] or METHODS)
