@@ -150,7 +150,8 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
         RowKind(
             "a run of a method with a step",
             _keys("""method h alpha_hat beta_hat z_abs trajectory_error c_max measured_error predicted_error c_rms
-                cdot_max cdot_rms energy_drift run_evaluations seconds seconds_min seconds_max failure observed_order front"""),
+                cdot_max cdot_rms energy_drift run_evaluations seconds seconds_min seconds_max failure observed_order
+                front"""),
         ),
         RowKind(
             "the least error that a method can force with |z_p| at most so large",
