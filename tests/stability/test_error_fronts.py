@@ -81,6 +81,33 @@ def test_stronger_feedback_costs_methods_with_stages_a_hundred_thousandfold_and_
     assert of_b4[0.7] == pytest.approx(of_b4[0.999], rel=0.01)
 
 
+@pytest.mark.parametrize(
+    ("names", "falls", "constraint", "velocity"),
+    [
+        ("B4 AB4 bdf2 trapezoid SYM", True, (0.85, 1.05), (0.99, 1.7)),
+        ("ABM4", True, (2.0, 2.5), (0.99, 1.7)),
+        ("verlet-half", True, (0.85, 1.05), (0.0, 0.1)),
+        ("hht", False, (0.2, 0.3), (0.97, 1.05)),
+        ("RK2 heun sdirk2 implicit-midpoint radau3", False, (0.33, 0.9), (1.0, 60.0)),
+        ("RK3 bs3 ssprk3", False, (10.0, 20.0), (1e3, 2e3)),
+        ("RK4 dopri5 tsit5 cash-karp", False, (1e3, np.inf), (1e4, np.inf)),
+        ("gauss4 radau5", False, (0.8, 4.0), (500.0, 2e3)),
+    ],
+)
+def test_what_strong_feedback_does_depends_on_the_kind_of_method(
+    names: str, falls: bool, constraint: tuple[float, float], velocity: tuple[float, float]
+) -> None:
+    """From alpha = beta = 2 omega to k times that, as stability/README.md has it; `falls`: as alpha / beta^2, by 1 / k."""
+    omega_h = float(OMEGA_H)
+    for name in names.split():
+        method = lookup(name)
+        k = next(k for k in (40, 20, 10) if spectral_radius(method, 4 * k * omega_h, (2 * k * omega_h) ** 2) < 1)
+        weak, strong = (forced_error(method, 2 * g * omega_h, (g * omega_h) ** 2, OMEGA_H) for g in (2, 2 * k))
+        of_constraint = strong.total / weak.total * (k if falls else 1)
+        assert constraint[0] <= of_constraint <= constraint[1]
+        assert velocity[0] <= strong.velocity / weak.velocity <= velocity[1]
+
+
 @pytest.mark.parametrize("rate", [0.0, 1.0, -0.5, float("nan")])
 def test_a_rate_at_which_nothing_decays_is_refused(rate: float) -> None:
     with pytest.raises(InputError, match="expected a number between 0 and 1"):
