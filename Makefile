@@ -4,8 +4,12 @@ BIN := .venv/bin
 # a hundred tests start processes, which would each compile the package anew
 unexport PYTHONDONTWRITEBYTECODE
 
-ANDREWS := --scene andrews --time 0.01 --h 16e-6 --h 32e-6 --h 64e-6 --h 128e-6 --alpha 500 --beta 500 --physical \
+ANDREWS := --scene andrews --time 0.01 --h 16e-6 --h 32e-6 --h 64e-6 --h 128e-6 \
     --method ABM4 --method AB4 --method RK4 --method dopri5 --method B4 --method trapezoid --table none
+
+# methods for strong feedback, and two that force much more with it
+BOTH_KINDS := --method B4 --method AB4 --method ABM4 --method SYM --method verlet-half --method bdf2 --method RK4 \
+    --method dopri5
 
 .PHONY: region figures times test quick test-slow test-oldest witnesses mutants campaign extremes lint bench clean
 
@@ -18,6 +22,8 @@ figures: .venv/installed  ## draw what the README shows, into figures/
 	$(BIN)/bezstab verify --map 60 --method AB4 --table none -o figures
 	$(BIN)/bezstab family bezier -o figures
 	$(BIN)/bezstab paper -o figures
+	$(BIN)/bezstab region --method RK4 --accuracy --table none -o figures
+	$(BIN)/bezstab tradeoff --predicted $(BOTH_KINDS) --table none -o figures
 	$(BIN)/bezstab tradeoff --table none -o figures
 	$(BIN)/bezstab tradeoff $(ANDREWS) --repeats 1 --against time --recorded figures/andrews_times.json -o figures
 

@@ -11,6 +11,7 @@ three ways to measure, lint, probe, schema) have one each beside it. A file impo
     moving_mechanism    what several ask about a mechanism that moves
     varying_steps       what several ask about steps that vary
     accuracy_options    what several say of the accuracy that a feedback costs
+    accuracy_maps       the map of forced errors over the plane, and the trade against decay
     map_commands        poles, region, methods, family
     choose_commands     choose, check, engines, explore
     evidence_commands   simulate, tradeoff, extremes

@@ -51,10 +51,16 @@ class TypedMotion:
 
 
 def typed_omega_h(
-    omega: Fraction | None, scene: str | None, speed: Fraction, h: Fraction | None, h_max: Fraction | None = None
+    omega: Fraction | None,
+    scene: str | None,
+    speed: Fraction,
+    h: Fraction | None,
+    h_max: Fraction | None = None,
+    duration: Fraction | None = None,
 ) -> TypedMotion:
     """Return the motion that --omega says (1/s), else that of --scene, else one that is usual; h and h_max in s.
 
+    A motion that does not begin anew is followed for a `duration` (s), by default the scene's own.
     UsageError for --omega without a step; InputError for a scene at rest, and unless 1e-6 <= omega_h < 1.
     """
     from bezstab.stability import OMEGA_H
@@ -66,11 +72,12 @@ def typed_omega_h(
         words = f"one with ωh = {float(OMEGA_H):g}{at_longest} ({whose} how fast yours is)"
         return _within_range(TypedMotion(OMEGA_H / longer, OMEGA_H, words), "--h and --h-max")
     if h is None:
-        raise click.UsageError("--omega needs --h: the step in s, to make ωh of it")
+        given = "--scene" if omega is None else "--omega"
+        raise click.UsageError(f"{given} needs --h: the step in s, to make ωh of it")
     amplitude = None
     if omega is None:
         assert scene
-        of_scene = _motion_of(scene, speed)
+        of_scene = _motion_of(scene, speed, duration)
         omega, amplitude = exact(of_scene.omega), of_scene.amplitude
         given, whose = f"--scene {scene} moves with ω = {float(omega):.3g} 1/s", f"that of {scene}"
     else:
@@ -80,13 +87,13 @@ def typed_omega_h(
     return _within_range(TypedMotion(omega_h, omega_h * longer, words, amplitude), given)
 
 
-def _motion_of(scene: str, speed: Fraction) -> "ConstraintMotion":
+def _motion_of(scene: str, speed: Fraction, duration: Fraction | None) -> "ConstraintMotion":
     """Return rate and amplitude of a scene's motion; InputError for one at rest, else as `load_scene` and `motion`."""
     from bezstab.mechanism import at_speed, compiled_mechanism, constraint_motion, load_scene
 
     moving = at_speed(load_scene(scene), float(speed))
     try:
-        return constraint_motion(compiled_mechanism(moving), moving.duration)
+        return constraint_motion(compiled_mechanism(moving), float(duration or moving.duration))
     except InputError as error:
         raise InputError(f"--scene {scene}: {error}; --omega gives one") from None
 

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from bezstab.cli.accuracy_maps import show_predicted_trade
+from bezstab.cli.accuracy_options import omega_option, typed_omega_h
 from bezstab.cli.options import (
     METHOD,
     NUMBER,
@@ -45,17 +47,21 @@ from bezstab.cli.typed_points import say_if_units_were_mistaken
 from bezstab.errors import InputError, NumericalError
 from bezstab.files import output_directory
 from bezstab.methods import Method, check_one_step
+from bezstab.rationals import exact
 from bezstab.show import Column, Format, Row, column, formatted, seconds_words, yes_no_column
 from bezstab.units import to_dimensionless
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from bezstab.evidence import Cost
+    from bezstab.evidence import Cost, Held
     from bezstab.mechanism import Start
 
 MOST_SWEPT = 10**6  # the reference takes up to 32 times as many
 MOST_LISTED = 20  # times in a message
+
+PREDICTED = ("scene", "speed", "methods", "steps", "omega", "predicted", "levels", "output", "figure", "table", "form")
+"""Parameters of tradeoff that go with --predicted."""
 
 EVALUATIONS = column("evaluations", "run_evaluations", "d")
 ITERATIONS = column("Newton's iterations", "iterations", "d")
@@ -229,6 +235,8 @@ RUNS = [
     Column("trajectory error (m, rad)", _error_or_diverged),
     column("order seen", "observed_order", ".2f"),
     column("largest |c| (m, rad)", "c_max", ".1e"),
+    column("in the later half", "measured_error", ".1e"),
+    column("predicted there", "predicted_error", ".1e"),
     column("rms c (m, rad)", "c_rms", ".1e"),
     column("largest |ċ| (m/s, rad/s)", "cdot_max", ".1e"),
     column("rms ċ (m/s, rad/s)", "cdot_rms", ".1e"),
@@ -256,9 +264,26 @@ def cost_sentence(row: Row) -> str:
 @methods_option("B2", "B3", "B4", "AB2", "AB4", "ABM4", "RK4", "SIE", "SYM")
 @click.option("--h", "steps", type=SECONDS, multiple=True, help="Step in s [ten from 0.0001 to 0.02].")
 @click.option("--time", type=SECONDS, default="2", help="Duration in s.")
-@click.option("--alpha", type=NUMBER, help="α̂ of every run; α in 1/s with --physical [each method's robust choice].")
+@click.option(
+    "--alpha",
+    type=NUMBER,
+    help="α̂ of every run; α in 1/s with --physical [the goal accurate for the scene's motion, at each step].",
+)
 @click.option("--beta", type=NUMBER, help="β̂ of every run; β in 1/s with --physical.")
 @physical_option
+@omega_option
+@click.option(
+    "--predicted",
+    is_flag=True,
+    help="Nothing is simulated: the least error that each method can force on a motion while errors decay so fast.",
+)
+@click.option(
+    "--level",
+    "levels",
+    type=POSITIVE,
+    multiple=True,
+    help="With --predicted: |z_p| of LEVEL at most, below 1. Repeatable [fifteen from 0.1 to 0.999].",
+)
 @click.option("--tolerance", type=POSITIVE, default="1e-6", help="In m and rad.")
 @click.option("--repeats", type=click.IntRange(1, 100), default=3, help="Of each timing.")
 @click.option(
@@ -286,6 +311,9 @@ def tradeoff(
     alpha: Fraction | None,
     beta: Fraction | None,
     physical: bool,
+    omega: Fraction | None,
+    predicted: bool,
+    levels: Sequence[Fraction],
     tolerance: Fraction,
     repeats: int,
     against: "Cost",
@@ -305,8 +333,12 @@ def tradeoff(
     lose. Writes the table, without times, and two figures, of errors --against evaluations or time. A run that fails
     is marked as diverged.
 
-    The default choice holds α̂ and β̂ while h shrinks: then methods with stages lose order. So does the start of a
-    multistep method, which is RK4, and in a run as short as 1 s its error is the largest.
+    Unless a point is given, each step has that of the goal accurate for the scene's own motion, or --omega. Where α̂ and
+    β̂ are held while h shrinks, methods with stages lose order. So does the start of a multistep method, which is RK4:
+    "in the later half" of a run it has died away, and there the feedback forces what is "predicted".
+
+    With --predicted nothing is simulated: for each method and |z_p| the least error that can be forced on a motion, of
+    --omega or a --scene that is given with one --h, else at ωh = 0.01. Writes tradeoff_predicted.
 
     Example: bezstab tradeoff --method B4 --method AB4 --h 0.002 --h 0.004 --time 2
     """
@@ -314,26 +346,25 @@ def tradeoff(
     from bezstab.mechanism import at_speed, load_scene
     from bezstab.show import run_row, untimed_arrays
 
+    if predicted:
+        _predicted_trade(methods, omega, scene, speed, steps, levels, output, figure, table, form)
+        return
     point = both_or_none(alpha, beta)
-    if physical and point is None:
-        raise click.UsageError("--physical needs --alpha and --beta")
-    if recorded and against != "time":
-        raise click.UsageError("--recorded goes with --against time")
+    _check_simulated_options(point, physical, omega, levels, recorded, against)
     if point and steps and not physical:
         say_if_units_were_mistaken(methods, *point, max(steps))
     step_sizes = tuple(sorted({float(step) for step in steps or evidence.STEPS}))
     _check_swept_time(float(time), step_sizes, methods)
     times = recorded and evidence.read_times(recorded, [method.name for method in methods], step_sizes)
+    rate = None if point else _rate_of_motion(omega, scene, speed, time, step_sizes)
     loaded_scene = at_speed(load_scene(scene), float(speed))
     reference = evidence.reference_motion(loaded_scene, step_sizes[0], float(time))
     given = None if point is None else (float(point[0]), float(point[1]))
     compiled = evidence.sweep_compiled(loaded_scene, methods, step_sizes, float(time), repeats)
-    sweeps = [
-        evidence.Sweep(method, loaded_scene, step_sizes, float(time), given, physical, repeats, reference, compiled)
-        for method in dict.fromkeys(methods)
-    ]
+    of_all = (loaded_scene, step_sizes, float(time), given, physical, repeats)
+    sweeps = [evidence.Sweep(method, *of_all, reference, rate, compiled) for method in dict.fromkeys(methods)]
     path = output / f"tradeoff_{file_name(Path(scene).stem)}"
-    job = f"{methods} {(loaded_scene, step_sizes, float(time), given, physical, repeats)}"
+    job = f"{methods} {(*of_all, rate)}"
     with results_of_chunks(evidence.measured_runs, sweeps, path, job, workers, scheduler, resume) as results:
         per_method = (evidence.swept_runs(*each) for each in zip(sweeps, results, strict=True))
         runs = list(chain.from_iterable(per_method))
@@ -357,8 +388,88 @@ def tradeoff(
         show_text(f"\nThe reference is known to {reference.error:.0e} (m, rad).")
         if recorded:
             show_text(f"Processor times are not of this run: they are those in {recorded}.")
-        for sentence in evidence.sweep_sentences(swept.runs, float(tolerance), physical):
+        if rate is not None:
+            show_text(f"Each point is the choice of the goal accurate for a motion with ω = {float(rate):.3g} 1/s.")
+        held: Held = "own choice" if rate else "alpha and beta" if physical else "alpha_hat and beta_hat"
+        for sentence in evidence.sweep_sentences(swept.runs, float(tolerance), held):
             show_text(sentence)
+
+
+def _check_simulated_options(
+    point: tuple[Fraction, Fraction] | None,
+    physical: bool,
+    omega: Fraction | None,
+    levels: Sequence[Fraction],
+    recorded: Path | None,
+    against: "Cost",
+) -> None:
+    """Raise UsageError for options of tradeoff that do not go together."""
+    if levels:
+        raise click.UsageError("--level goes with --predicted: it is the |z_p| that is asked for")
+    if physical and point is None:
+        raise click.UsageError("--physical needs --alpha and --beta")
+    if omega is not None and point:
+        raise click.UsageError("--omega is the motion for which points are chosen: not with --alpha and --beta")
+    if recorded and against != "time":
+        raise click.UsageError("--recorded goes with --against time")
+
+
+def _predicted_trade(
+    methods: Sequence[Method],
+    omega: Fraction | None,
+    scene: str,
+    speed: Fraction,
+    steps: Sequence[Fraction],
+    levels: Sequence[Fraction],
+    output: Path,
+    figure: FigureForm,
+    table: TableForm,
+    form: Format,
+) -> None:
+    """Show what tradeoff --predicted asks for; UsageError and InputError where that cannot be."""
+    _check_nothing_simulated(steps)
+    if wrong := [float(level) for level in levels if float(level) >= 1]:
+        raise InputError(f"--level {wrong[0]:g}: expected a |z_p| below 1, where errors decay")
+    h = steps[0] if steps else None
+    motion = typed_omega_h(omega, None if left_at_default("scene") else scene, speed, h)
+    if figure != "none" or table != "none":
+        output_directory(output)
+    show_predicted_trade(
+        methods,
+        motion,
+        [float(level) for level in levels],
+        h=None if h is None else float(h),
+        path=output / "tradeoff_predicted",
+        figure=figure,
+        table=table,
+        form=form,
+    )
+
+
+def _check_nothing_simulated(steps: Sequence[Fraction]) -> None:
+    """Raise UsageError for an option of the running command that is about runs, beside --predicted."""
+    context = click.get_current_context()
+    for parameter in context.command.params:
+        typed = context.get_parameter_source(str(parameter.name)) == click.core.ParameterSource.COMMANDLINE
+        if typed and parameter.name not in PREDICTED:
+            raise click.UsageError(f"--predicted simulates nothing: not with {parameter.opts[0]}")
+    if len(steps) > 1:
+        raise click.UsageError(f"--predicted takes one --h, but {len(steps)} were given")
+    if left_at_default("scene") and not left_at_default("speed"):
+        raise click.UsageError("--speed goes with --scene: it is the mechanism that is so many times as fast")
+    if steps and left_at_default("scene") and left_at_default("omega"):
+        raise click.UsageError("--predicted takes --h with --omega or --scene: what happens in a step depends on both")
+
+
+def _rate_of_motion(
+    omega: Fraction | None, scene: str, speed: Fraction, time: Fraction, step_sizes: Sequence[float]
+) -> Fraction:
+    """Return --omega, else the rate (1/s) of the scene's motion over a time (s).
+
+    InputError for a scene at rest, and where a step (s) is too long or too short for the motion.
+    """
+    shortest, longest = exact(min(step_sizes)), exact(max(step_sizes))
+    return typed_omega_h(omega, scene, speed, shortest, longest, duration=time).omega_h / shortest
 
 
 def _check_swept_time(time: float, step_sizes: Sequence[float], methods: Sequence[Method]) -> None:

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 
 import click
 
+from bezstab.cli.accuracy_maps import ACCURATE, Window, accuracy_keys, accurate_choice, say_combined, write_accuracy_map
 from bezstab.cli.accuracy_options import (
     NARROW_ACCURACY,
+    TypedMotion,
     known_cost,
     omega_option,
     say_motion,
@@ -92,8 +94,6 @@ if TYPE_CHECKING:
 
 NUMERICAL_TROUBLE = 3
 """Exit status where a part of an answer could not be found: the rest is printed, with the reason."""
-
-Window = tuple[Fraction, Fraction]
 
 MOST_DRAWN = 1e100  # of a window's ends: their squares are drawn as well
 MOST_FIXED = 1e6  # a modulus from here on is shown with an exponent
@@ -272,10 +272,16 @@ MOVING_REGIONS = [
     "a quarter of the way from the least |z_p| to 1.",
 )
 @click.option("--compare", is_flag=True, help="One figure with the boundaries of all methods (default level 1).")
+@click.option(
+    "--accuracy",
+    is_flag=True,
+    help="Draw the error that the feedback forces on a motion over |z_p|, on logarithmic axes, with both best points.",
+)
+@omega_option
 @click.option("--h", type=SECONDS, help="Step size in s: axes become 2α (1/s) and β² (1/s²).")
 @click.option("--alpha-beta", is_flag=True, help="Mark the axes of the figure in α and β (1/s); needs --h.")
 @click.option("--engine", metavar="NAME", type=ENGINE, help="Mark that engine's defaults and rules; needs --h.")
-@moving_scene_option("Also the region of this mechanism as it moves; needs --h.")
+@moving_scene_option("Also the region of this mechanism as it moves, or with --accuracy its motion; needs --h.")
 @click.option(
     "--speed", "speeds", type=SPEED, multiple=True, help="With --scene: times the scene's own. Repeatable [1]."
 )
@@ -291,6 +297,8 @@ def region(
     beta_range: Window | None,
     levels: Sequence[Fraction],
     compare: bool,
+    accuracy: bool,
+    omega: Fraction | None,
     h: Fraction | None,
     alpha_beta: bool,
     engine: Engine | None,
@@ -302,7 +310,8 @@ def region(
 
     Writes region_METHOD.png and prints the axis limits of the exact region, its area, the smallest |z_p| and where.
     With --table csv also region_METHOD.csv, which holds α̂, β̂, |z_p| and ∠z_p; with --compare, the boundary curves.
-    With --scene also the region of that mechanism as it moves, into region_METHOD_SCENE.
+    With --scene also the region of that mechanism as it moves, into region_METHOD_SCENE. With --accuracy, instead,
+    region_METHOD_accuracy: the error that the feedback forces, position and velocity together, as a share of a motion.
 
     Example: bezstab region --method B4
     """
@@ -319,10 +328,8 @@ def region(
     methods = methods_asked(methods, engine, None)
     if scene and compare:
         raise click.UsageError("--scene draws one map for each method: not with --compare")
-    turnings = {}
-    for speed in speeds or [Fraction(1)]:
-        turnings[float(speed)] = turning_of(scene, speed, h)
-        say_if_it_turns_too_far(turnings[float(speed)], scene, speed, h)
+    motion = _motion_asked(accuracy, omega, compare, alpha_beta, speeds, scene, h)
+    turnings = {} if motion else _turnings(scene, speeds or [Fraction(1)], h)
     if compare and len(levels) > 1:
         raise InputError(f"--compare takes one --level, but {len(levels)} were given")
     if figure != "none" or table != "none":
@@ -334,43 +341,56 @@ def region(
         rows = _compare_regions(methods, level, alpha_range, beta_range, step, alpha_beta, output, figure, table)
         complete = True
     else:
+        shown = (alpha_range, beta_range, grid or QUALITY[quality], step)
         marks = _engine_marks(engine, h) if engine and h else {}
-        scene_name = _scene_name(scene) if scene else ""
 
         def rows_of(method: Method) -> list[Row]:
-            points = grid or QUALITY[quality]
-            moving = _moving_regions(method, turnings, step)
-            names = [file_name(name) for name in (method.name, *([Path(scene).stem] if scene else []))]
-            path = output / "_".join(["region", *names])
-            row = _map_region(
-                method,
-                chosen_levels,
-                alpha_range,
-                beta_range,
-                points,
-                step,
-                alpha_beta,
-                marks,
-                path,
-                figure,
-                table,
-                moving,
-                scene_name,
-            )
-            of_speeds: list[Row] = [
-                {**row, "speed": speed, "kappa": kappa, "area_moving": of_speed.area}
-                for (speed, kappa), of_speed in moving.items()
-            ]
-            no_motion: Row = {"speed": None, "kappa": None, "area_moving": None} if scene else {}
-            of_levels = [{**of_level, **no_motion} for of_level in _level_rows(method, chosen_levels)]
-            return [*(of_speeds or [row]), *of_levels]
+            drawn = (*shown, marks, output, figure, table)
+            if motion:
+                return _accuracy_rows(method, motion, chosen_levels, *drawn)
+            return _region_rows(method, chosen_levels, *drawn, alpha_beta, turnings, scene)
 
         rows, complete = _each_for_itself(methods, rows_of)
     name, *shape = REGIONS
-    columns = [name, *(LEVELS if levels else []), *shape, *(MOVING_REGIONS if scene else [])]
-    show_rows(rows, columns, form, sentence=region_sentence)
+    added = ACCURATE if motion else MOVING_REGIONS if scene else []
+    show_rows(rows, [name, *(LEVELS if levels else []), *shape, *added], form, sentence=region_sentence)
+    if motion and for_reading(form):
+        say_combined(motion)
     if not complete or any(str(row["best_reason"]).startswith(NOT_KNOWN) for row in rows):
         click.get_current_context().exit(NUMERICAL_TROUBLE)
+
+
+def _turnings(
+    scene: str | None, speeds: Sequence[Fraction], h: Fraction | None
+) -> "dict[float, TurningNormals | None]":
+    """Return by speed how the normals of a scene's constraints turn; where they turn too far, that is said."""
+    turnings = {}
+    for speed in speeds:
+        turnings[float(speed)] = turning_of(scene, speed, h)
+        say_if_it_turns_too_far(turnings[float(speed)], scene, speed, h)
+    return turnings
+
+
+def _motion_asked(
+    accuracy: bool,
+    omega: Fraction | None,
+    compare: bool,
+    alpha_beta: bool,
+    speeds: Sequence[Fraction],
+    scene: str | None,
+    h: Fraction | None,
+) -> TypedMotion | None:
+    """Return the motion of --accuracy, None without it; UsageError for an option that does not go with it, h in s."""
+    if not accuracy:
+        if omega is not None:
+            raise click.UsageError("--omega goes with --accuracy: it is the motion on which errors are told")
+        return None
+    if compare or alpha_beta or len(speeds) > 1:
+        other = "--compare" if compare else "--alpha-beta" if alpha_beta else "several --speed"
+        raise click.UsageError(f"--accuracy draws one map for each method, on logarithmic axes: not with {other}")
+    if speeds and scene is None:
+        raise click.UsageError("--speed goes with --scene: it is the mechanism that is so many times as fast")
+    return typed_omega_h(omega, scene, speeds[0] if speeds else Fraction(1), h)
 
 
 def _each_for_itself(methods: Sequence[Method], rows_of: Callable[[Method], list[Row]]) -> tuple[list[Row], bool]:
@@ -489,6 +509,86 @@ def _map_region(
     write_table(path, map_arrays(alpha_hat, beta_hat, z, h), table)
     write_figure(path, draw, figure)
     return row
+
+
+def _region_rows(
+    method: Method,
+    levels: Sequence[float],
+    alpha_range: Window | None,
+    beta_range: Window | None,
+    points: int,
+    h: float | None,
+    marks: Mapping[str, tuple[float, float]],
+    output: Path,
+    figure: FigureForm,
+    table: TableForm,
+    alpha_beta: bool,
+    turnings: "Mapping[float, TurningNormals | None]",
+    scene: str | None,
+) -> list[Row]:
+    """Write the |z_p| map of one method; return the rows of its region, of each speed of a scene, and of each level."""
+    moving = _moving_regions(method, turnings, h)
+    names = [file_name(name) for name in (method.name, *([Path(scene).stem] if scene else []))]
+    row = _map_region(
+        method,
+        levels,
+        alpha_range,
+        beta_range,
+        points,
+        h,
+        alpha_beta,
+        marks,
+        output / "_".join(["region", *names]),
+        figure,
+        table,
+        moving,
+        _scene_name(scene) if scene else "",
+    )
+    of_speeds: list[Row] = [
+        {**row, "speed": speed, "kappa": kappa, "area_moving": of_speed.area}
+        for (speed, kappa), of_speed in moving.items()
+    ]
+    no_motion: Row = {"speed": None, "kappa": None, "area_moving": None} if scene else {}
+    return [*(of_speeds or [row]), *({**of_level, **no_motion} for of_level in _level_rows(method, levels))]
+
+
+def _accuracy_rows(
+    method: Method,
+    motion: TypedMotion,
+    levels: Sequence[float],
+    alpha_range: Window | None,
+    beta_range: Window | None,
+    points: int,
+    h: float | None,
+    marks: Mapping[str, tuple[float, float]],
+    output: Path,
+    figure: FigureForm,
+    table: TableForm,
+) -> list[Row]:
+    """Write the map of the error that one method forces; return the row of its region and of each level."""
+    from bezstab import stability
+    from bezstab.show import region_row
+
+    stable = stability.region(method)
+    best, trouble = stability.best_point_or_reason(method)
+    chosen = accurate_choice(method, motion)
+    write_accuracy_map(
+        method,
+        motion,
+        best,
+        chosen,
+        alpha_range=alpha_range,
+        beta_range=beta_range,
+        points=points,
+        levels=[level for level in levels if level < 1],
+        h=h,
+        marks=marks,
+        path=output / f"region_{file_name(method.name)}_accuracy",
+        figure=figure,
+        table=table,
+    )
+    added = accuracy_keys(method, motion, best, chosen)
+    return [{**row, **added} for row in (region_row(stable, best, trouble), *_level_rows(method, levels))]
 
 
 def _scene_name(scene: str) -> str:

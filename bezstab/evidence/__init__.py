@@ -90,14 +90,13 @@ from bezstab.evidence.probed_poles import (
 from bezstab.evidence.probed_recursions import recursion_likenesses
 from bezstab.evidence.recorded_times import read_times, with_recorded_times
 from bezstab.evidence.reference_motions import ReferenceMotion, reference_motion
-from bezstab.evidence.sweep_summaries import FINE, Summary, summary, sweep_sentences
+from bezstab.evidence.sweep_summaries import Held, Summary, summary, sweep_sentences
 from bezstab.evidence.verdict_maps import MapRows, VerdictMap, map_rows, simulated_verdicts, verdict_map
 from bezstab.evidence.worker_pools import worker_pool
 
 __all__ = [
     "ATTEMPTS",
     "CLOSE",
-    "FINE",
     "HOLDS",
     "LAW_HOLDS",
     "LINEAR",
@@ -112,6 +111,7 @@ __all__ = [
     "Fit",
     "ForcedMotion",
     "HalvedStep",
+    "Held",
     "LikePoint",
     "Likeness",
     "Linted",

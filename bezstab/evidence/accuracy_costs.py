@@ -3,11 +3,14 @@
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from fractions import Fraction
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from bezstab.errors import InputError, NumericalError
+from bezstab.evidence.forced_runs import COMPARED, predicted_errors
 from bezstab.evidence.pareto import pareto_front
 from bezstab.evidence.reference_motions import ReferenceMotion
 from bezstab.mechanism import (
@@ -42,8 +45,9 @@ Cost = Literal["evaluations", "time"]
 class Sweep:
     """The runs of one method: its steps and the duration (s), repeats of each timing, the motion to compare with.
 
-    `point` holds alpha_hat and beta_hat, or with `physical` alpha and beta in 1/s; by default `choose` finds it.
-    `compiled` says whether machine code takes the steps, which changes nothing but their time.
+    `point` holds alpha_hat and beta_hat, or with `physical` alpha and beta in 1/s; without one the goal accurate of
+    `choose` finds one at each step, for a motion of rate `omega` (1/s). `compiled` says whether machine code takes the
+    steps, which changes nothing but their time.
     """
 
     method: Method = field(repr=False)
@@ -54,6 +58,7 @@ class Sweep:
     physical: bool
     repeats: int
     reference: ReferenceMotion
+    omega: Fraction | None = None
     compiled: bool = False
 
 
@@ -61,7 +66,10 @@ class Sweep:
 class Run:
     """One run: errors (SI; the trajectory's None if it failed), cost, and order against the next larger step.
 
-    Processor time in s: the median of the repeats, the least and the largest.
+    measured_error is the largest |c| in the later half, where the start has died away, None of a run that failed;
+    predicted_error what the feedback forces there (forced_runs.py), None where errors do not decay, or the motion
+    cannot be followed for longer than the run. Processor time in s: the median of the repeats, the least and the
+    largest.
     """
 
     method: Method = field(repr=False)
@@ -71,6 +79,8 @@ class Run:
     z_abs: float
     trajectory_error: float | None
     c_max: float
+    measured_error: float | None
+    predicted_error: float | None
     c_rms: float = field(repr=False)
     cdot_max: float = field(repr=False)
     cdot_rms: float = field(repr=False)
@@ -137,7 +147,7 @@ def sweep_compiled(
 def measured_runs(sweep: Sweep) -> dict[str, NDArray[np.generic]]:
     """Return for each step, in their order, what Run has, as arrays to be stored; what a failed run lacks is nan.
 
-    InputError where alpha and beta in 1/s leave the range of float64 at a step; NumericalError from `choose`.
+    InputError where alpha and beta in 1/s leave the range of float64 at a step; errors of `choose`.
     """
     measured = [_measured_run(sweep, h, point) for h, point in zip(sweep.steps, _points(sweep), strict=True)]
     return {key: np.array([values[key] for values in measured]) for key in measured[0]}
@@ -146,8 +156,10 @@ def measured_runs(sweep: Sweep) -> dict[str, NDArray[np.generic]]:
 def _points(sweep: Sweep) -> list[tuple[float, float]]:
     """Return alpha_hat and beta_hat at each step."""
     if sweep.point is None:
-        chosen = choose(sweep.method, "robust")
-        return [(chosen.alpha_hat, chosen.beta_hat)] * len(sweep.steps)
+        assert sweep.omega is not None
+        motions = (sweep.omega * exact(h) for h in sweep.steps)
+        chosen = [choose(sweep.method, "accurate", margins=False, omega_h=omega_h) for omega_h in motions]
+        return [(each.alpha_hat, each.beta_hat) for each in chosen]
     if not sweep.physical:
         return [sweep.point] * len(sweep.steps)
     alpha, beta = map(exact, sweep.point)
@@ -166,12 +178,15 @@ def _measured_run(sweep: Sweep, h: float, point: tuple[float, float]) -> dict[st
     run, seconds = _timed_run(sweep, h, gains)
     seen = observe(mechanism, run.t, run.q, run.v, *gains)
     trajectory_error = np.nan if run.failure else float(np.abs(run.q - sweep.reference.at(run.t)).max())
+    z_abs = float(spectral_radius(method, *point))
     return {
         "alpha_hat": point[0],
         "beta_hat": point[1],
-        "z_abs": float(spectral_radius(method, *point)),
+        "z_abs": z_abs,
         "trajectory_error": trajectory_error,
         "c_max": float(np.abs(seen.c).max()),
+        "measured_error": np.nan if run.failure else float(np.abs(seen.c[run.t >= COMPARED * run.t[-1]]).max()),
+        "predicted_error": _predicted_error(sweep, h, point) if z_abs < 1 else np.nan,
         "c_rms": float(np.sqrt((seen.c**2).mean())),
         "cdot_max": float(np.abs(seen.cdot).max()),
         "cdot_rms": float(np.sqrt((seen.cdot**2).mean())),
@@ -182,6 +197,15 @@ def _measured_run(sweep: Sweep, h: float, point: tuple[float, float]) -> dict[st
         "seconds_max": max(seconds),
         "failure": run.failure or "",
     }
+
+
+def _predicted_error(sweep: Sweep, h: float, point: tuple[float, float]) -> float:
+    """Return the largest |c| (SI) that the feedback forces in the later half of a run; nan where that is not known."""
+    try:
+        (error,) = predicted_errors(compiled_mechanism(sweep.scene), sweep.method, h, [point], sweep.duration)
+    except (InputError, NumericalError):  # the motion is followed for longer than the run
+        return np.nan
+    return error
 
 
 def _timed_run(sweep: Sweep, h: float, gains: tuple[float, float]) -> tuple[Trajectory, list[float]]:
@@ -207,11 +231,11 @@ def swept_runs(sweep: Sweep, measured: Mapping[str, NDArray[np.generic]]) -> lis
     runs: list[Run] = []
     for index in np.argsort(sweep.steps)[::-1].tolist():
         values = {key: column[index].item() for key, column in measured.items()}
-        error = None if np.isnan(values["trajectory_error"]) else values["trajectory_error"]
-        values["trajectory_error"] = error
+        for key in ("trajectory_error", "measured_error", "predicted_error"):
+            values[key] = None if np.isnan(values[key]) else values[key]
         values["failure"] = values["failure"] or None
         h = sweep.steps[index]
-        order = _observed_order(runs[-1], h, error, sweep.reference.error) if runs else None
+        order = _observed_order(runs[-1], h, values["trajectory_error"], sweep.reference.error) if runs else None
         runs.append(Run(method=sweep.method, h=h, order=order, **values))
     return runs
 

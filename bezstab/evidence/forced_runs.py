@@ -134,12 +134,8 @@ def forced_motions(
 
     InputError and NumericalError as `motion`.
     """
-    along = motion(mechanism, FOLLOWED * duration)
-    times = along.t[:-1]
-    later_half = (times >= COMPARED * duration) & (times <= duration)
-    compared = np.ones(times.shape, dtype=bool) if along.closed else later_half
     found = []
-    for point, error in zip(points, _predicted_errors(mechanism, method, h, points, along), strict=True):
+    for point, predicted in zip(points, predicted_errors(mechanism, method, h, points, duration), strict=True):
         measured, failure = _measured(mechanism, method, h, point, duration)
         found.append(
             ForcedMotion(
@@ -147,7 +143,7 @@ def forced_motions(
                 h=h,
                 alpha_hat=point[0],
                 beta_hat=point[1],
-                predicted=float(np.abs(error[compared]).max()),
+                predicted=predicted,
                 measured=measured,
                 failure=failure,
             )
@@ -155,7 +151,22 @@ def forced_motions(
     return found
 
 
-def _predicted_errors(
+def predicted_errors(
+    mechanism: Mechanism, method: Method, h: float, points: Sequence[tuple[float, float]], duration: float
+) -> list[float]:
+    """Return the largest constraint errors (SI) that points force in the later half of runs over `duration` (s).
+
+    InputError and NumericalError as `motion`.
+    """
+    along = motion(mechanism, FOLLOWED * duration)
+    times = along.t[:-1]
+    later_half = (times >= COMPARED * duration) & (times <= duration)
+    compared = np.ones(times.shape, dtype=bool) if along.closed else later_half
+    errors = _errors_along(mechanism, method, h, points, along)
+    return [float(np.abs(error[compared]).max()) for error in errors]
+
+
+def _errors_along(
     mechanism: Mechanism, method: Method, h: float, points: Sequence[tuple[float, float]], along: Motion
 ) -> Iterator[FloatArray]:
     """Yield the constraint errors along a motion at each point, its last time left out: SI, shape (times, m)."""

@@ -3,18 +3,23 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Literal
 
 import numpy as np
 
 from bezstab.evidence.accuracy_costs import Run
-from bezstab.methods import LinearMultistep, Method, accuracy, evaluations, implicit, steps
+from bezstab.evidence.forced_runs import HOLDS
+from bezstab.methods import Method, accuracy, evaluations, implicit, leading_error, steps
 from bezstab.stability import critical_damping_limit, region, spectral_radius
 
-FINE = 1e-8
-"""m or rad: the trajectory error at which high order shows."""
+Held = Literal["own choice", "alpha and beta", "alpha_hat and beta_hat"]
+"""What stays while h shrinks: the goal of `choose`, by which each step has a point of its own, or these parameters."""
 
-BEYOND = 1e3
-"""Times the evaluations of the dearest run: no power law is trusted further."""
+HELD_WORDS: dict[Held, str] = {
+    "own choice": "of each step's own choice",
+    "alpha and beta": "with α and β held while h shrinks",
+    "alpha_hat and beta_hat": "with α̂ and β̂ held while h shrinks",
+}
 
 ORDER_LOST = 0.5
 """Of an order: below the stated one by more, it has fallen."""
@@ -35,8 +40,9 @@ class Summary:
 
     order: observed between the two smallest steps whose error is well above the reference's. alpha_step: the largest
     alpha h per evaluation with alpha = beta that is stable, None for an implicit method, whose evaluations are not so
-    many for each step; `unlimited` where there is no largest. evaluations_needed: for a trajectory error of FINE,
-    interpolated or extrapolated. largest_step: in s, of the runs that did not fail.
+    many for each step; `unlimited` where there is no largest. costs: evaluations and trajectory errors (SI) of the runs
+    that did not fail, the largest step first, down to those that are as near as the reference itself. largest_step: in
+    s, of the runs that did not fail.
     """
 
     method: Method
@@ -45,8 +51,25 @@ class Summary:
     area: float | None
     alpha_step: float | None
     unlimited: bool
-    evaluations_needed: float | None
+    costs: Sequence[tuple[int, float]]
     largest_step: float | None
+
+    @property
+    def least_error(self) -> float | None:
+        """The least trajectory error (SI) that is told of."""
+        return min((error for _, error in self.costs), default=None)
+
+    def evaluations_for(self, error: float) -> float | None:
+        """Return the evaluations at which the trajectory's error (SI) falls to `error`; None beyond the runs.
+
+        Between two neighbouring runs log error falls linearly with log evaluations, a power law; the first two count
+        between which the error lies.
+        """
+        for (cheaper, larger), (dearer, smaller) in pairwise(self.costs):
+            if smaller <= error <= larger:
+                share = np.log(larger / error) / np.log(larger / smaller) if larger > smaller else 0.0
+                return float(cheaper * (dearer / cheaper) ** share)
+        return None
 
 
 def summary(runs: Sequence[Run]) -> Summary:
@@ -65,7 +88,11 @@ def summary(runs: Sequence[Run]) -> Summary:
         area=region(method).area,
         alpha_step=None if implicit(method) else _largest_stable_alpha_step(method) / evaluations(method),
         unlimited=implicit(method) and critical_damping_limit(method) is None,
-        evaluations_needed=_evaluations_needed(FINE, ended),
+        costs=[
+            (run.evaluations, run.trajectory_error)
+            for run in ended
+            if run.trajectory_error and (run.order is not None or run is ended[0])  # else it is the reference's error
+        ],
         largest_step=ended[0].h if ended else None,
     )
 
@@ -80,39 +107,16 @@ def _largest_stable_alpha_step(method: Method) -> float:
     return float(alpha_step[stable].max(initial=0.0))
 
 
-def _evaluations_needed(error: float, ended: Sequence[Run]) -> float | None:
-    """Return the evaluations at which the trajectory's error falls to `error`; None where nothing can be told.
-
-    log error falls linearly with log evaluations (a power law) between two neighbouring runs: the first two between
-    which `error` lies, or, to extrapolate, the last two. Runs without an observed order are left out but for the first,
-    because their error is that of the reference.
-    """
-    usable = [run for run in ended if run.trajectory_error and (run.order is not None or run is ended[0])]
-    if len(usable) < 2:
-        return None
-    chosen = (usable[-2], usable[-1])
-    for coarser, finer in pairwise(usable):
-        if finer.trajectory_error is not None and finer.trajectory_error <= error:
-            chosen = (coarser, finer)
-            break
-    (first_cost, first_error), (second_cost, second_error) = (
-        np.log([run.evaluations, run.trajectory_error or np.nan]) for run in chosen
-    )
-    share = (np.log(error) - first_error) / (second_error - first_error)
-    needed = float(np.exp(first_cost + (second_cost - first_cost) * share))
-    return needed if needed < BEYOND * ended[-1].evaluations else None
-
-
-def sweep_sentences(runs: Sequence[Run], tolerance: float, physical: bool) -> list[str]:
+def sweep_sentences(runs: Sequence[Run], tolerance: float, held: Held) -> list[str]:
     """Return the answers as sentences: the cheapest run within the tolerance (SI), orders kept and lost, comparisons.
 
-    The runs of each method stand with the largest step first. `physical` says whether alpha and beta (1/s) were held
-    while h shrank, or alpha_hat and beta_hat. The Bezier method of most steps is compared with each that is none.
+    The runs of each method stand with the largest step first; `held` says by what each has its point. The Bezier method
+    of most steps is compared with each that is none.
     """
     methods = dict.fromkeys(run.method for run in runs)
     summaries = [summary([run for run in runs if run.method == method]) for method in methods]
     bezier = [one for one in summaries if _is_bezier(one.method)]
-    sentences = [_cheapest_sentence(runs, tolerance), *_order_sentences(summaries, physical)]
+    sentences = [_cheapest_sentence(runs, tolerance), *_order_sentences(summaries, held), *_prediction_sentence(runs)]
     if bezier:
         most_steps = max(bezier, key=lambda one: steps(one.method))
         sentences += [_comparison_sentence(most_steps, other) for other in summaries if other not in bezier]
@@ -137,9 +141,8 @@ def _cheapest_sentence(runs: Sequence[Run], tolerance: float) -> str:
     )
 
 
-def _order_sentences(summaries: Sequence[Summary], physical: bool) -> Iterator[str]:
+def _order_sentences(summaries: Sequence[Summary], held: Held) -> Iterator[str]:
     """Yield the orders of accuracy that are lost, and those that are kept, if there are any."""
-    held = "α and β" if physical else "α̂ and β̂"
     lost, kept = [], []
     for one in summaries:
         if one.order is None:
@@ -151,18 +154,30 @@ def _order_sentences(summaries: Sequence[Summary], physical: bool) -> Iterator[s
             kept.append(text)
     for verb, texts in (("lost", lost), ("kept", kept)):
         if texts:
-            yield f"Order of accuracy with {held} held while h shrinks, {verb}: {', '.join(texts)}."
+            yield f"Order of accuracy {HELD_WORDS[held]}, {verb}: {', '.join(texts)}."
     started = [one.method.name for one in summaries if _lost(one) and _has_start_of_stages(one.method)]
-    if started and not physical:
+    if started and held != "alpha and beta":
         yield (
             f"{' and '.join(started)} would keep the order; the start by RK4 loses it, and in a short run its error is "
             "the largest."
         )
 
 
+def _prediction_sentence(runs: Sequence[Run]) -> Iterator[str]:
+    """Yield how near the measured constraint errors are to those predicted, if there are any."""
+    quotients = [run.measured_error / run.predicted_error for run in runs if run.measured_error and run.predicted_error]
+    if quotients:
+        near = sum(abs(quotient - 1) <= HOLDS for quotient in quotients)
+        yield (
+            f"Constraint error in the later half of a run, measured over predicted: within {HOLDS:.0%} of one in "
+            f"{near} of {len(quotients)} runs, from {min(quotients):.2g} to {max(quotients):.2g} in all."
+        )
+
+
 def _has_start_of_stages(method: Method) -> bool:
     """Return whether a method keeps its order at fixed alpha_hat and beta_hat, but not its start, which is RK4."""
-    return isinstance(method.scheme, LinearMultistep) and steps(method) > 1 and not implicit(method)
+    kept = min(leading_error(method, "x").order_left, leading_error(method, "v").order_left)
+    return steps(method) > 1 and not implicit(method) and kept >= accuracy(method)[0]
 
 
 def _lost(one: Summary) -> bool:
@@ -195,6 +210,9 @@ def _advantages(bezier: Summary, other: Summary) -> Iterator[tuple[float, str]]:
     if bezier.largest_step and other.largest_step:
         ends = f"runs through up to h = {bezier.largest_step:g} s, the other up to {other.largest_step:g} s"
         yield bezier.largest_step / other.largest_step, ends
-    if bezier.evaluations_needed and other.evaluations_needed:
-        ratio = bezier.evaluations_needed / other.evaluations_needed
-        yield 1 / ratio, f"a trajectory error of {FINE:g} with {ratio:.2g} times the evaluations"
+    if bezier.least_error and other.least_error:
+        error = max(bezier.least_error, other.least_error)  # the least that runs of both have reached
+        needed, by_other = bezier.evaluations_for(error), other.evaluations_for(error)
+        if needed and by_other:
+            ratio = needed / by_other
+            yield 1 / ratio, f"a trajectory error of {error:.1e} with {ratio:.2g} times the evaluations"

@@ -15,6 +15,7 @@ A file imports only from those above it; what draws is not loaded before it is u
     histories           a history as a line, or as its envelope
     plot                one result on one Axes
     plane_figures       figures of the alpha_hat-beta_hat plane
+    accuracy_figures    the error that feedback forces over the plane, and against decay
     run_figures         figures of simulations
     explorer            the window
 """
@@ -49,6 +50,7 @@ from bezstab.show.rows import (
     family_row,
     forced_rows,
     formula_row,
+    front_row,
     like_point_row,
     likeness_row,
     limit_row,
@@ -76,6 +78,7 @@ from bezstab.show.words import change_words, growth_words, safety_words, seconds
 
 if TYPE_CHECKING:
     from bezstab.show import plot
+    from bezstab.show.accuracy_figures import accuracy_map_figure, error_front_figure
     from bezstab.show.arrays import (
         boundary_arrays,
         history_arrays,
@@ -91,6 +94,7 @@ if TYPE_CHECKING:
     from bezstab.show.style import DASHES, column_figure, legend_below, line_at, save, styled
 
 LOADED_LATE = {
+    "accuracy_figures": ("accuracy_map_figure", "error_front_figure"),
     "arrays": (
         "boundary_arrays",
         "history_arrays",
@@ -136,6 +140,7 @@ __all__ = [
     "Format",
     "Row",
     "Value",
+    "accuracy_map_figure",
     "block",
     "boundary_arrays",
     "change_words",
@@ -147,6 +152,7 @@ __all__ = [
     "cost_row",
     "drive_row",
     "engine_row",
+    "error_front_figure",
     "family_figure",
     "family_row",
     "finite",
@@ -154,6 +160,7 @@ __all__ = [
     "forced_rows",
     "formatted",
     "formula_row",
+    "front_row",
     "growth_words",
     "history_arrays",
     "history_figure",

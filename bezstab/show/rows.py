@@ -46,7 +46,7 @@ if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
     )
     from bezstab.mechanism import Simulation
     from bezstab.methods import Verdict
-    from bezstab.stability import BestPoint, Choice, FeedbackCost, Limit, Member, Region
+    from bezstab.stability import BestPoint, Choice, FeedbackCost, FrontPoint, Limit, Member, Region
 
 
 def row(result: DataclassInstance, without: Collection[str] = (), **more: Value) -> dict[str, Value]:
@@ -492,6 +492,12 @@ def run_row(run: Run, front: str) -> Row:
         observed_order=run.order,
         front=front,
     )
+
+
+def front_row(point: FrontPoint, h: float | None) -> Row:
+    """Return a point of the front of |z_p| against forced error, with h (s) in 1/s too."""
+    alpha, beta = (None, None) if h is None else alpha_and_beta(point.alpha_hat, point.beta_hat, h)
+    return row(point, h=h, alpha=alpha, beta=beta)
 
 
 def choice_row(

@@ -42,6 +42,8 @@ CHOICE = f"""method goal alpha_hat beta_hat verdict safe {POLE} worst searched h
     margins_reason h_factor h_limit alpha_factor_min alpha_factor_max beta_factor_min beta_factor_max
     {COST}"""
 
+ACCURATE = _keys("omega_h accurate_alpha_hat accurate_beta_hat accurate_z_abs accurate_error best_error")
+"""What --accuracy adds."""
 APPLIED = ("applied", "excludes", "sweeps")
 """What --engine adds."""
 DRIVE = _keys("drive kp kd inertia kp_max kd_max used_up")
@@ -59,7 +61,9 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
             (*APPLIED, *DRIVE, *MOVING),
         )
     ],
-    "region": [RowKind("the region of a method", _keys(f"method {REGION}"), _keys("speed kappa area_moving"))],
+    "region": [
+        RowKind("the region of a method", _keys(f"method {REGION}"), (*_keys("speed kappa area_moving"), *ACCURATE))
+    ],
     "methods": [
         RowKind("a method in the list", _keys(f"{METHOD} group")),
         RowKind(
@@ -145,9 +149,15 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
     "tradeoff": [
         RowKind(
             "a run of a method with a step",
-            _keys("""method h alpha_hat beta_hat z_abs trajectory_error c_max c_rms cdot_max cdot_rms energy_drift
-                run_evaluations seconds seconds_min seconds_max failure observed_order front"""),
-        )
+            _keys("""method h alpha_hat beta_hat z_abs trajectory_error c_max measured_error predicted_error c_rms
+                cdot_max cdot_rms energy_drift run_evaluations seconds seconds_min seconds_max failure observed_order
+                front"""),
+        ),
+        RowKind(
+            "the least error that a method can force with |z_p| at most so large",
+            _keys("""method omega_h z_abs_below z_abs alpha_hat beta_hat h alpha beta total_error velocity_error
+                combined_error"""),
+        ),
     ],
     "extremes": [RowKind("a check", _keys("group case expected seen held"))],
     "paper": [RowKind("a claim of the paper", _keys("where claim paper here agreement"))],

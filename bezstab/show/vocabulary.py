@@ -40,6 +40,7 @@ UNSTABLE = "where the point is not stable"
 NOT_MEASURED = "where nothing could be measured; `reason` says why"
 LEVEL_ROW = "in the row of a level below 1, which is of the mechanism at rest"
 NO_ERROR = "where errors do not decay, or it is not known"
+NO_CHOICE = "where no feedback decays so fast"
 NO_BEST = "where there is no best point; `best_reason` says why"
 UNBOUNDED = "where the region has no end there, or is empty"
 
@@ -86,7 +87,7 @@ VOCABULARY: Mapping[str, Key] = {
         "number", "Area of the region of the moving mechanism in alpha_hat and beta_hat", null=LEVEL_ROW
     ),
     # a region
-    "z_abs_below": Key("number", "What |z_p| is below in the region; 1 where the method is stable"),
+    "z_abs_below": Key("number", "What |z_p| is below, or on a front at most; 1 where the method is stable"),
     "area": Key("number", "Area of the region in alpha_hat and beta_hat", null="where it is infinite or empty"),
     "alpha_hat_min": Key("number", "Smallest alpha_hat of the region", null=UNBOUNDED),
     "alpha_hat_max": Key("number", "Largest alpha_hat of the region", null=UNBOUNDED),
@@ -166,6 +167,16 @@ VOCABULARY: Mapping[str, Key] = {
     "times_least_velocity": Key(
         "number", "Velocity error over that at the same point", null=f"{NO_ERROR}, or that point is not"
     ),
+    "combined_error": Key(
+        "number", "The largest constraint error that is forced at any rate and velocity_error, such shares, added up"
+    ),
+    "accurate_alpha_hat": Key("number", "Where the goal accurate chooses to be, in alpha_hat", null=NO_CHOICE),
+    "accurate_beta_hat": Key("number", "Where the goal accurate chooses to be, in beta_hat", null=NO_CHOICE),
+    "accurate_z_abs": Key(
+        "number", "Modulus of the dominant pole where the goal accurate chooses to be", null=NO_CHOICE
+    ),
+    "accurate_error": Key("number", "What combined_error is where the goal accurate chooses to be", null=NO_CHOICE),
+    "best_error": Key("number", "What combined_error is at best_alpha_hat, best_beta_hat", null=NO_BEST),
     # choices and checks
     "role": Key("text", "Whether the point was given, or is what to take instead", values=("given", "instead")),
     "goal": Key("text", "What the point was chosen for, or that it is as given"),
@@ -325,7 +336,12 @@ VOCABULARY: Mapping[str, Key] = {
     "right": Key("text", "Which predictions have the measured verdict: at rest, law, exact (or over the run)"),
     # predicted against measured errors
     "gain_share": Key("number", "Times alpha and beta of the point that was chosen or given"),
-    "predicted_error": Key("number", "Largest constraint error predicted for the later half of the run", "m or rad"),
+    "predicted_error": Key(
+        "number",
+        "Largest constraint error predicted for the later half of the run, with nothing fitted",
+        "m or rad",
+        "where errors do not decay, or the motion cannot be followed for longer than the run",
+    ),
     "measured_error": Key(
         "number", "Largest constraint error in the later half of the run", "m or rad", "if the run failed"
     ),

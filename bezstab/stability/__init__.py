@@ -39,6 +39,7 @@ From a method's polynomial in float64 (its pencil) upwards; a file imports only 
     accurate_points   where that is least
     curve_choices     the best point of a curve
     choices           which parameters to take
+    error_fronts      how little error a method can force while what is there decays so fast
     feedback_costs    what accuracy a feedback costs
     gain_margins      which of two gains is used up
     step_families     methods by their number of steps, and their limit
@@ -49,6 +50,7 @@ What needs sympy's polynomials is loaded when first used: poles and maps do not.
 from typing import TYPE_CHECKING
 
 from bezstab.lazy import lazy_names
+from bezstab.stability.accurate_points import default_rate
 from bezstab.stability.answer_checks import Modulus
 from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, FloatArray, real_array
 from bezstab.stability.best_points import BestPoint, best_point, best_point_or_reason, falls_towards
@@ -61,6 +63,7 @@ from bezstab.stability.choices import (
     describe_point,
 )
 from bezstab.stability.closed_loop import dominant_pole, poles, spectral_radius, verdict
+from bezstab.stability.error_fronts import RATES, FrontPoint, error_front
 from bezstab.stability.far_limits import FarLimit
 from bezstab.stability.feedback_costs import FeedbackCost, feedback_cost
 from bezstab.stability.forced_errors import (
@@ -68,6 +71,7 @@ from bezstab.stability.forced_errors import (
     OMEGA_H,
     ForcedError,
     check_omega_h,
+    combined_error,
     forced_error,
     forced_response,
     turning_response,
@@ -104,6 +108,7 @@ __all__ = [
     "LARGEST_OMEGA_H",
     "OMEGA_H",
     "QUALITY",
+    "RATES",
     "THOUSANDFOLD",
     "BestPoint",
     "BoolArray",
@@ -114,6 +119,7 @@ __all__ = [
     "FeedbackCost",
     "FloatArray",
     "ForcedError",
+    "FrontPoint",
     "GainLimits",
     "Goal",
     "Limit",
@@ -131,9 +137,12 @@ __all__ = [
     "check_omega_h",
     "choose",
     "choose_at_step",
+    "combined_error",
     "critical_damping_limit",
+    "default_rate",
     "describe_point",
     "dominant_pole",
+    "error_front",
     "exact_critical_damping_limit",
     "falls_towards",
     "family_members",

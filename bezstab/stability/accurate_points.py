@@ -8,7 +8,7 @@ import numpy as np
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method
 from bezstab.stability.arrays import BoolArray, FloatArray
-from bezstab.stability.forced_errors import forced_error
+from bezstab.stability.forced_errors import combined_error
 from bezstab.stability.regions import Extent
 from bezstab.stability.searches import zoom_on_minimum
 
@@ -101,16 +101,13 @@ def worst_error(
     omega_h: Fraction,
     spread: float,
 ) -> FloatArray:
-    """Return the largest error with alpha and beta off by the spread; infinite where it decays too slowly.
-
-    The total of q, at any frequency, and that of the velocity, as shares: constraints see the one, trajectories both.
-    """
+    """Return the largest combined error with alpha and beta off by the spread; infinite where it decays too slowly."""
     by_alpha, by_beta = 1 + spread * np.array([(0, 0), (-1, -1), (-1, 1), (1, -1), (1, 1)]).T[:, :, np.newaxis]
     worst = np.full(alpha_hat.shape, np.inf)
     left = np.arange(alpha_hat.size)
     for some in (slice(0, 1), slice(1, None)):  # the centre first: it leaves out the most
         alpha, beta = by_alpha[some] * alpha_hat[left], by_beta[some] ** 2 * beta_hat[left]
         left = left[decays(alpha.ravel(), beta.ravel()).reshape(alpha.shape).all(axis=0)]
-    error = forced_error(method, by_alpha * alpha_hat[left], by_beta**2 * beta_hat[left], omega_h, any_frequency=True)
-    worst[left] = (error.total + error.velocity).max(axis=0)
+    error = combined_error(method, by_alpha * alpha_hat[left], by_beta**2 * beta_hat[left], omega_h)
+    worst[left] = error.max(axis=0)
     return worst

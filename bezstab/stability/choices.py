@@ -142,7 +142,7 @@ def choose(
     if goal not in get_args(Goal):
         raise InputError(f"goal {goal!r}: expected {', '.join(get_args(Goal))}")
     _check_spread(spread)
-    box, cut = _box(region(method))
+    box, cut = search_box(region(method))
     pencil = free_pencil_of(method)  # a pole that no parameters move must not hide the others
     at_rest = modulus is None
     if modulus is None:
@@ -254,7 +254,7 @@ def _check_spread(spread: float) -> None:
         raise InputError(f"spread {spread:g}: expected a share from 0 to 1")
 
 
-def _box(stable: Region) -> tuple[Extent, bool]:
+def search_box(stable: Region) -> tuple[Extent, bool]:
     """Return the ranges over which to search, and whether they cut off a region that goes on.
 
     InputError where the region is empty.

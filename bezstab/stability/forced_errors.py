@@ -95,8 +95,20 @@ def forced_error(
         sizes = _denominator_size(of_powers, between[first : first + at_once])
         least = np.minimum(least, sizes.min(axis=0))
     of_position = np.abs(polyval2d(a, b, tables.position))
-    velocity = np.abs(polyval2d(a, b, tables.velocity)) / at_own / theta
-    return ForcedError(position=of_position / at_own, velocity=velocity, total=of_position / least)
+    of_velocity = np.abs(polyval2d(a, b, tables.velocity)) / theta
+    with np.errstate(divide="ignore"):  # a pole that answers a frequency without bound
+        return ForcedError(position=of_position / at_own, velocity=of_velocity / at_own, total=of_position / least)
+
+
+def combined_error(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike, omega_h: Fraction) -> FloatArray:
+    """Return the total error of q at any frequency and that of the velocity, added up: shares of the motion.
+
+    It is what the goal accurate makes least: constraints see the one, trajectories both. Alone the total would ask for
+    too weak a feedback of methods of order four, and for undamped feedback of methods of order two. Errors and shape as
+    `forced_error`.
+    """
+    errors = forced_error(method, alpha_hat, beta_hat, omega_h, any_frequency=True)
+    return errors.total + errors.velocity
 
 
 def check_omega_h(omega_h: Fraction) -> None:

@@ -17,7 +17,7 @@ LOG = (
 
 EXAMPLES: dict[str, list[str]] = {
     "poles": ["poles --alpha 0.5 --beta 0.1", "poles --alpha 1 --beta 2 --method SYM --all-poles"],
-    "region": [f"region --method SYM --method bdf3 {SMALL}"],
+    "region": [f"region --method SYM --method bdf3 {SMALL}", f"region --method SYM --method bdf3 --accuracy {SMALL}"],
     "methods": ["methods", "methods SYM RK4@5"],
     "family": ["family bezier --from 2 --to 3 --figure none"],
     "choose": ["choose --engine mujoco --h 0.002"],
@@ -33,7 +33,10 @@ EXAMPLES: dict[str, list[str]] = {
         "verify --scene pendulum --method SYM --points 3",
         "verify --scene pendulum --method RK2 --alpha 2 --beta 2",
     ],
-    "tradeoff": [f"tradeoff --scene pendulum --method SYM --h 0.01 --h 0.02 --time 0.1 {SMALL}"],
+    "tradeoff": [
+        f"tradeoff --scene pendulum --method SYM --h 0.01 --h 0.02 --time 0.1 {SMALL}",
+        f"tradeoff --predicted --method SYM --level 0.9 --h 0.01 --omega 2 {SMALL}",
+    ],
     "extremes": ["extremes --short"],
     "paper": ["paper --only fig7 --figure none"],
 }

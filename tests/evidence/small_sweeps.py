@@ -1,5 +1,6 @@
 """Sweeps of a few runs of the light slider-crank, made once for all tests that look at them."""
 
+from fractions import Fraction
 from functools import cache
 
 from bezstab.evidence import ReferenceMotion, Run, Sweep, measured_runs, reference_motion, swept_runs
@@ -11,6 +12,9 @@ DURATION = 2.0  # s: in the first one AB4 shows the error of its RK4 start, of o
 SOFT = (50.0, 50.0)
 """alpha and beta in 1/s."""
 
+OMEGA = Fraction(143, 10)
+"""1/s: the rate of its motion, for which points are chosen otherwise."""
+
 
 @cache
 def reference() -> ReferenceMotion:
@@ -19,7 +23,7 @@ def reference() -> ReferenceMotion:
 
 
 def small_sweep(name: str, steps: tuple[float, ...], point: tuple[float, float] | None = None) -> Sweep:
-    """Return the sweep of one method over steps in s, with alpha = beta = 50/s or its robust choice."""
+    """Return the sweep of one method over steps in s, with alpha = beta = 50/s or its own choice at each step."""
     return Sweep(
         method=lookup(name),
         scene=load_scene(SCENE),
@@ -29,6 +33,7 @@ def small_sweep(name: str, steps: tuple[float, ...], point: tuple[float, float] 
         physical=point == SOFT,
         repeats=1,
         reference=reference(),
+        omega=None if point else OMEGA,
     )
 
 

@@ -3,10 +3,22 @@
 import numpy as np
 import pytest
 
-from bezstab.evidence import METHODS, STEPS, Cost, measured_runs, sweep_compiled, swept_runs, with_fronts
+from bezstab.errors import NumericalError
+from bezstab.evidence import (
+    METHODS,
+    STEPS,
+    Cost,
+    accuracy_costs,
+    measured_runs,
+    sweep_compiled,
+    swept_runs,
+    with_fronts,
+)
 from bezstab.mechanism import load_scene
 from bezstab.methods import accuracy, lookup
-from tests.evidence.small_sweeps import DURATION, SOFT, small_sweep, swept
+from bezstab.rationals import exact
+from bezstab.stability import choose
+from tests.evidence.small_sweeps import DURATION, OMEGA, SOFT, small_sweep, swept
 from tests.reference.undominated import undominated
 
 QUICK = {"B4", "ABM4", "RK4", "SYM"}
@@ -40,6 +52,10 @@ def test_so_does_one_that_solves_equations_or_treats_velocities_differently(name
         assert least <= run.evaluations <= most
 
 
+ROBUST = {"RK4": (2.843, 2.737), "B4": (0.8644, 0.2737), "ABM4": (0.9673, 0.3367), "AB4": (0.3656, 0.04868)}
+"""alpha_hat and beta_hat of fast decay, of the goal robust."""
+
+
 @pytest.mark.parametrize(
     ("name", "order"),
     [
@@ -50,8 +66,43 @@ def test_so_does_one_that_solves_equations_or_treats_velocities_differently(name
     ],
 )
 def test_with_alpha_hat_fixed_stages_cost_order(name: str, order: int) -> None:
-    *_, fine = swept(name, (1e-4, 2e-4) if name == "ABM4" else (8e-4, 1.6e-3))
+    *_, fine = swept(name, (1e-4, 2e-4) if name == "ABM4" else (8e-4, 1.6e-3), ROBUST[name])
     assert fine.order == pytest.approx(order, abs=0.2)
+
+
+@pytest.mark.parametrize("name", ["RK4", "B4"])
+def test_its_own_choice_at_each_step_costs_no_order(name: str) -> None:
+    *_, fine = swept(name, (8e-4, 1.6e-3))
+    assert fine.order == pytest.approx(accuracy(lookup(name))[0], abs=0.2)
+    chosen = choose(lookup(name), "accurate", omega_h=OMEGA * exact(fine.h), margins=False)
+    assert (fine.alpha_hat, fine.beta_hat) == (chosen.alpha_hat, chosen.beta_hat)
+
+
+@pytest.mark.parametrize(("name", "within"), [("B4", 0.01), ("AB4", 0.01), ("SYM", 0.01), ("RK4", 0.35)])
+def test_in_the_later_half_of_a_run_the_constraint_error_is_the_predicted_one(name: str, within: float) -> None:
+    """Of RK4 at its gentle choice, whose errors curved constraints change the most, within a third."""
+    for run in swept(name, (8e-4, 1.6e-3)):
+        assert run.predicted_error
+        assert run.measured_error
+        assert run.measured_error == pytest.approx(run.predicted_error, rel=within)
+        assert run.measured_error <= run.c_max
+
+
+def test_where_errors_do_not_decay_none_is_predicted() -> None:
+    failed, ended = swept("AB4", (0.002, 0.0125), SOFT)
+    assert (failed.predicted_error, failed.measured_error) == (None, None)
+    assert ended.predicted_error
+
+
+def test_where_the_motion_cannot_be_followed_none_is_predicted(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*_: object) -> list[float]:
+        raise NumericalError("the motion breaks down after the run")
+
+    monkeypatch.setattr(accuracy_costs, "predicted_errors", broken)
+    sweep = small_sweep("SYM", (0.0125,), SOFT)
+    (run,) = swept_runs(sweep, measured_runs(sweep))
+    assert run.failure is None
+    assert run.predicted_error is None
 
 
 def test_a_run_that_fails_is_kept_and_says_so() -> None:

@@ -26,6 +26,8 @@ def run_of(evaluations: int) -> Run:
         z_abs=0.9,
         trajectory_error=1e-3,
         c_max=1e-5,
+        measured_error=1e-5,
+        predicted_error=1e-5,
         c_rms=1e-5,
         cdot_max=1e-5,
         cdot_rms=1e-5,

@@ -1,0 +1,210 @@
+"""Figures of the second map: the error that feedback forces, over |z_p|, and the trade between the two."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+from math import ceil, floor
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import FuncNorm
+from matplotlib.contour import QuadContourSet
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patheffects import AbstractPathEffect, withStroke
+
+from bezstab.show import plot
+from bezstab.show.plot import Point
+from bezstab.show.style import (
+    DASHES,
+    column_figure,
+    keep_markers_whole,
+    legend_below,
+    line_at,
+    method_marker,
+    plane_axes,
+    plane_coordinates,
+    styled,
+)
+from bezstab.stability import BestPoint, Choice, FloatArray, FrontPoint, Region
+
+TICKS = (0.1, 0.5, 0.8, 0.9, 0.95, 0.98, 0.99, 0.995, 0.998, 0.999, 0.9999)
+"""Of |z_p|, where it is drawn evenly in how often errors fall."""
+
+UP, ACROSS = 0.07, 0.13
+"""Of an axis: labels nearer than that would overlap, one above or one beside the other."""
+
+LARGEST_MARKER, MARKER_STEP, MARKER_SIZES = 7.0, 0.5, 10
+"""Points: hollow markers of falling size, so that coinciding fronts all show."""
+
+FASTEST_DRAWN, SLOWEST_DRAWN = 0.1, 0.9999
+"""|z_p|: beyond, three steps are enough, or tens of thousands are not, and colours no longer change."""
+
+MOST_CONTOURS = 12
+"""Powers of ten of a map, up to one: of more only every second is drawn, or third, ..."""
+
+LABEL_ROOM = 0.06
+"""Of the axes: a label nearer to their edges, to another or to a marker is left out."""
+
+HALO: list[AbstractPathEffect] = [withStroke(linewidth=1.5, foreground="black")]
+"""So that a white line shows on any colour, in grey too."""
+
+
+def decay_scale(z_abs: FloatArray) -> FloatArray:
+    """Return -ln(-ln |z_p|), even in the logarithm of how fast errors fall, clipped short of 0 and 1; nan if masked."""
+    return -np.log(-np.log(np.clip(np.ma.filled(z_abs, np.nan), 1e-9, 1 - 1e-12)))
+
+
+def from_decay_scale(values: FloatArray) -> FloatArray:
+    """Return |z_p| from its `decay_scale`."""
+    return np.exp(-np.exp(-np.asarray(values)))
+
+
+def accuracy_map_figure(
+    region: Region,
+    omega_h: float,
+    alpha_hat: FloatArray,
+    beta_hat: FloatArray,
+    z_abs: FloatArray,
+    error: FloatArray,
+    levels: Sequence[float] = (),
+    best: BestPoint | None = None,
+    chosen: Choice | None = None,
+    h: float | None = None,
+    marks: Mapping[str, Point] | None = None,
+) -> Figure:
+    """Return contours of the forced error over the map of |z_p|, on logarithmic axes, with both best points.
+
+    z_abs and error (a share of the motion of omega_h rad a step) have shape (beta_hat.size, alpha_hat.size), on two
+    ascending axes > 0. Dashed are further `levels` of |z_p|. Axes and `marks` are as for region_figure.
+    """
+    with styled():
+        figure, axes = plane_axes(rf"{region.method.name}, forced errors at $\omega h$ = {omega_h:.3g}", h)
+        axes.set(xscale="log", yscale="log", facecolor="0.93")
+        axes.grid(visible=False)
+        x, y = plane_coordinates(alpha_hat, beta_hat, h)
+        stable = np.ma.masked_greater_equal(z_abs, 1.0)
+        shown = np.clip(stable.compressed(), FASTEST_DRAWN, SLOWEST_DRAWN)
+        norm = FuncNorm((decay_scale, from_decay_scale), vmin=shown.min(), vmax=shown.max())
+        # as an image in files of lines, too: a mesh of so many cells has no place there
+        mesh = axes.pcolormesh(x, y, stable, cmap="cividis", norm=norm, shading="nearest", rasterized=True)
+        bar = figure.colorbar(mesh, label="$|z_p|$", extend="both", format=lambda value, _: f"{value:g}")
+        bar.set_ticks(_ticks(shown.min(), shown.max(), UP))
+        bar.ax.minorticks_off()
+        contours = _error_contours(axes, x, y, np.ma.masked_where(z_abs >= 1, error))
+        boundary = plane_coordinates(*_for_logarithmic_axes(region.boundary), h)
+        axes.plot(*boundary, color="black", linestyle="-", label=f"$|z_p| = {region.level:g}$")
+        for number, level in enumerate(levels, start=1):
+            dashes = DASHES[number % 4]
+            axes.contour(x, y, z_abs, levels=[level], colors="black", linewidths=0.8, linestyles=[dashes])
+            label = f"$|z_p| = {level:.4g}$"  # the key of what has none
+            axes.plot([], [], color="black", linewidth=0.8, linestyle=dashes, label=label)
+        plot.critical_damping((alpha_hat[0], alpha_hat[-1]), axes, h)
+        points = [plot.best_point(best, axes, h)] if best else []
+        points += [plot.choice(chosen, axes, h)] if chosen else []
+        points += plot.marks(marks or {}, axes, h)
+        axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
+        keep_markers_whole(axes)
+        _label(axes, contours, points)
+        legend_below(figure, facecolor="0.75")
+        return figure
+
+
+def _error_contours(axes: Axes, x: FloatArray, y: FloatArray, error: np.ma.MaskedArray) -> QuadContourSet:
+    """Draw the lines on which the error is a power of ten, and return them."""
+    logarithm = np.ma.log10(error)
+    lowest, highest = ceil(logarithm.min()), min(0, floor(logarithm.max()))
+    powers = np.arange(lowest, highest + 1, max(1, ceil((highest - lowest) / MOST_CONTOURS)))
+    style: dict[str, Any] = {"colors": "white", "linewidths": 0.7, "linestyles": "-"}
+    contours: QuadContourSet = axes.contour(x, y, logarithm, levels=powers, **style)
+    contours.set_path_effects(HALO)
+    axes.plot([], [], color="white", linewidth=0.7, path_effects=HALO, label="forced error / motion")  # a key
+    return contours
+
+
+def _for_logarithmic_axes(curves: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
+    """Return curves, nan between them, with points on each long chord, which is straight on other axes alone.
+
+    Long is what doubles a coordinate. The points are closest to both ends, down to a billionth of the chord.
+    """
+    close = np.geomspace(1e-9, 0.5, 60)[:, np.newaxis]
+    shares = np.concatenate([[[0.0]], close, 1 - close[::-1]])
+    pieces = [np.empty((0, 2))]
+    for curve in curves:
+        for start, end in pairwise(curve):
+            long = np.any((np.maximum(start, end) > 2 * np.minimum(start, end)) & (np.maximum(start, end) > 0))
+            pieces.append(start + shares * (end - start) if long else start[np.newaxis])
+        pieces += [curve[-1:], np.full((1, 2), np.nan)]
+    points = np.concatenate(pieces)
+    return points[:, 0], points[:, 1]
+
+
+def _label(axes: Axes, contours: QuadContourSet, points: Sequence[Line2D]) -> None:
+    """Write its power of ten on each contour, where that is farthest from the axes' edges, other labels and markers.
+
+    On logarithmic axes, whose limits are final.
+    """
+    low, high = np.log(np.transpose([axes.get_xlim(), axes.get_ylim()]))
+
+    def shares(points: FloatArray) -> FloatArray:
+        """Return where points lie, in shares of the axes."""
+        return np.asarray((np.log(points) - low) / (high - low))
+
+    taken = [shares(np.asarray(point.get_xydata()))[0] for point in points]
+    places = []
+    for path in contours.get_paths():
+        vertices = np.asarray(path.vertices)
+        if not vertices.size:
+            continue
+        along = shares(vertices)
+        room = np.minimum(along, 1 - along).min(axis=1)
+        for other in taken:
+            room = np.minimum(room, np.hypot(*(along - other).T))
+        widest = int(room.argmax())
+        if room[widest] > LABEL_ROOM:
+            taken.append(along[widest])
+            places.append((vertices[widest, 0], vertices[widest, 1]))
+    labels = axes.clabel(
+        contours, fmt=lambda power: f"$10^{{{power:.0f}}}$", fontsize=6, colors="black", inline=False, manual=places
+    )
+    for label in labels:
+        label.set(rotation=0, bbox={"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none"})
+
+
+def _ticks(low: float, high: float, apart: float) -> list[float]:
+    """Return those of TICKS between two |z_p| that are so far apart on their axis, in shares of it."""
+    places = decay_scale(np.array(TICKS))
+    first, last = decay_scale(np.array([low, high]))
+    shown: list[int] = []
+    for number in reversed(range(len(TICKS))):
+        far = not shown or places[shown[-1]] - places[number] >= apart * (last - first)
+        if low <= TICKS[number] <= high and far:
+            shown.append(number)
+    return [TICKS[number] for number in reversed(shown)]
+
+
+def error_front_figure(fronts: Sequence[Sequence[FrontPoint]]) -> Figure:
+    """Return how little error each method can force, a share of the motion, against |z_p|, even in how fast that is.
+
+    A front for each method, at least one point each, all of one motion.
+    """
+    with styled():
+        figure = column_figure(1.05)
+        axes = figure.add_subplot()
+        axes.set_xscale("function", functions=(decay_scale, from_decay_scale))
+        axes.set_yscale("log")
+        for place, front in enumerate(fronts):
+            drawn = [point for point in front if point.z_abs_below >= FASTEST_DRAWN]
+            size = LARGEST_MARKER - MARKER_STEP * (place % MARKER_SIZES)
+            hollow = {"markersize": size, "markerfacecolor": "none", "markeredgewidth": 0.7, "linewidth": 0.8}
+            style = {**line_at(place), **hollow, "marker": method_marker(front[0].method)}
+            x, y = [point.z_abs_below for point in drawn], [point.combined_error for point in drawn]
+            axes.plot(x, y, label=front[0].method.name, **style)
+        axes.set(xlabel="$|z_p|$ at most", ylabel="least forced error / motion")
+        axes.set_title(rf"equal steps, $\omega h$ = {fronts[0][0].omega_h:.3g}")
+        low, high = axes.get_xlim()
+        axes.set_xticks(ticks := _ticks(low, high, ACROSS), [f"{tick:g}" for tick in ticks])
+        legend_below(figure)
+        return figure

@@ -1,0 +1,216 @@
+"""The trade itself: how little error a method can force while what is there decays so fast. Exact, no simulation.
+
+For a rate r the front has the least combined error (forced_errors.py) among all points with |z_p| <= r:
+
+    error |  \\
+          |   \\               its left end is at the least |z_p|: nothing decays faster
+          |    \\_______       where it is level, slower decay gains nothing
+          +----+-------- r
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import partial
+
+import numpy as np
+
+from bezstab.errors import InputError, NumericalError
+from bezstab.methods import Method
+from bezstab.stability.arrays import FloatArray
+from bezstab.stability.best_points import BestPoint, best_point_or_reason
+from bezstab.stability.choices import search_box
+from bezstab.stability.closed_loop import free_pencil_of, largest_modulus
+from bezstab.stability.forced_errors import OMEGA_H, combined_error, forced_error
+from bezstab.stability.regions import region
+from bezstab.stability.searches import zoom_on_minimum
+
+RATES = (0.999, 0.998, 0.995, 0.99, 0.98, 0.95, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1)
+"""|z_p|: what was there has fallen a thousandfold after 6900 steps, ..., 3."""
+
+WEAKEST = 0.25
+"""Times -ln r of the slowest r: alpha h and beta h. No pole e^mu decays by more than either of them a step; a quarter
+leaves room for what methods make of that."""
+
+FIRST_GRID = 201
+"""Points per axis of the first grid, over some four decades: errors change by a twentieth from one to the next."""
+
+STARTS = 6
+"""Of its minima, for each rate: the best are followed, since there may be islands and valleys in which N vanishes."""
+
+SPACINGS = 2.0
+"""Of the first grid: so far around a minimum the search goes on."""
+
+GRID, SHRINK, FIRST_ROUNDS, ROUNDS = 21, 0.5, 4, 20
+"""Points per axis of a zoom, its factor, how often all starts are zoomed in on, and how often the best of them is, to
+0.5^22 of those spacings: there the error is flat to rounding. Thirteen points would stall in narrow corners."""
+
+CHECKED = 230
+"""Points per axis of another grid, which no point may have a lesser error on, by more than BETTER."""
+
+BETTER = 1e-3
+"""Relative: corners of what decays fast enough are met so closely."""
+
+FINER = 2
+"""Times as many points of the first grid, and starts, where the first search failed its check."""
+
+TOO_SLOW, SLOWEST = 1e3, 1e3
+"""Where errors decay too slowly, TOO_SLOW + |z_p| stands in for the error's logarithm, which is never so large: the
+search goes to where they decay faster. |z_p| beyond SLOWEST is no slower."""
+
+Logarithms = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
+"""Of the error, and |z_p| itself, at points (..., 2), given by the logarithms of alpha h and beta h."""
+
+
+@dataclass(frozen=True)
+class FrontPoint:
+    """The point of least combined error among those with |z_p| <= z_abs_below; z_abs is its own |z_p|.
+
+    Errors are shares of the amplitudes of a motion of omega_h rad a step: total_error of q, velocity_error of the
+    velocity, and combined_error as `combined_error` adds them up.
+    """
+
+    method: Method
+    omega_h: float
+    z_abs_below: float
+    z_abs: float
+    alpha_hat: float
+    beta_hat: float
+    total_error: float
+    velocity_error: float
+    combined_error: float
+
+
+def error_front(method: Method, rates: Sequence[float] = RATES, omega_h: Fraction = OMEGA_H) -> list[FrontPoint]:
+    """Return the front at those of the rates that the method reaches, the slowest first, and last at its least |z_p|.
+
+    All points with alpha, beta > 0 compete; of a region without end those that `choose` looks at. InputError for a rate
+    outside 0 to 1, for omega h outside 1e-6 to 1, and where nothing is stable; NumericalError where a point of another
+    grid is better, after a finer search, too. The test equation is that of methods/steady_errors.py; the front is this
+    package's.
+    """
+    if wrong := [rate for rate in rates if not 0 < rate < 1]:
+        raise InputError(f"|z_p| of {wrong[0]:g} at most: expected a number between 0 and 1")
+    (_, alpha_hat_max), (_, beta_hat_max) = search_box(region(method))[0]
+    best, _ = best_point_or_reason(method)
+    reached = sorted({rate for rate in rates if best is None or rate > best.z_abs}, reverse=True)
+    points: list[tuple[float, float, float]] = []
+    if reached:
+        high = np.log([alpha_hat_max / 2, np.sqrt(beta_hat_max)])
+        low = np.minimum(np.log(-WEAKEST * np.log(reached[0])), high - 1)
+        front = partial(_front, method, _logarithms(method, omega_h), low, high, np.array(reached), best)
+        try:
+            found = front(finer=1)
+        except NumericalError:
+            found = front(finer=FINER)
+        alpha_hat, beta_hat = _plane(found)
+        points = list(zip(reached, alpha_hat.tolist(), beta_hat.tolist(), strict=False))
+    if best:
+        points.append((best.z_abs, best.alpha_hat, best.beta_hat))
+    return [_front_point(method, omega_h, *point) for point in points]
+
+
+def _front_point(method: Method, omega_h: Fraction, rate: float, alpha_hat: float, beta_hat: float) -> FrontPoint:
+    """Return a point of the front, alpha_hat and beta_hat being dimensionless, with its errors."""
+    z_abs = largest_modulus(free_pencil_of(method), alpha_hat, beta_hat)
+    errors = forced_error(method, alpha_hat, beta_hat, omega_h)
+    return FrontPoint(
+        method=method,
+        omega_h=float(omega_h),
+        z_abs_below=rate,
+        z_abs=min(rate, float(z_abs)),  # where poles meet at the least |z_p| rounding parts them
+        alpha_hat=alpha_hat,
+        beta_hat=beta_hat,
+        total_error=float(errors.total),
+        velocity_error=float(errors.velocity),
+        combined_error=float(combined_error(method, alpha_hat, beta_hat, omega_h)),
+    )
+
+
+def _plane(points: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return alpha_hat and beta_hat of points given by the logarithms of alpha h and beta h, shape (..., 2)."""
+    return 2 * np.exp(points[..., 0]), np.exp(2 * points[..., 1])
+
+
+def _logarithms(method: Method, omega_h: Fraction) -> Logarithms:
+    pencil = free_pencil_of(method)  # a pole that no parameters move must not hide the others
+
+    def looked_at(points: FloatArray) -> tuple[FloatArray, FloatArray]:
+        alpha_hat, beta_hat = _plane(points)
+        error = combined_error(method, alpha_hat, beta_hat, omega_h)
+        return np.log(error), largest_modulus(pencil, alpha_hat, beta_hat)
+
+    return looked_at
+
+
+def _within(error: FloatArray, z_abs: FloatArray, rates: FloatArray) -> FloatArray:
+    """Return the logarithm of the error where it decays so fast, what stands in for it elsewhere; shapes broadcast."""
+    return np.where(z_abs <= rates, error, TOO_SLOW + np.minimum(z_abs, SLOWEST))
+
+
+def _front(
+    method: Method,
+    looked_at: Logarithms,
+    low: FloatArray,
+    high: FloatArray,
+    rates: FloatArray,
+    fastest: BestPoint | None,
+    finer: int,
+) -> FloatArray:
+    """Return the best point for each of the rates, which descend, in a box of logarithms, shape (rates, 2).
+
+    That of least |z_p| decays fast enough for each of them, where there is one, and competes. The last rates have none
+    where nothing there decays so fast. NumericalError where the check finds a better point.
+    """
+
+    def objective(points: FloatArray) -> FloatArray:
+        """Return what is to be least, at points of shape (rates, ..., 2)."""
+        return _within(*looked_at(points), rates.reshape(-1, *[1] * (points.ndim - 2)))
+
+    def zoomed(starts: FloatArray, reach: FloatArray, rounds: int) -> tuple[FloatArray, FloatArray]:
+        return zoom_on_minimum(
+            objective,
+            starts,
+            np.broadcast_to(reach, starts.shape),
+            points=GRID,
+            shrink=SHRINK,
+            rounds=rounds,
+            turned=True,
+            patient=True,
+            fold=lambda points: np.clip(points, low, high),
+        )
+
+    starts = _starts(looked_at, low, high, rates, finer)
+    if fastest:
+        there = np.log(np.maximum([fastest.alpha_hat / 2, np.sqrt(fastest.beta_hat)], np.exp(low)))  # not zero
+        starts = np.concatenate([starts, np.broadcast_to(there, (len(rates), 1, 2))], axis=1)
+    reach = SPACINGS * (high - low) / (finer * FIRST_GRID)
+    points, values = zoomed(starts, reach, FIRST_ROUNDS)
+    best = values.argmin(axis=1)[:, np.newaxis, np.newaxis]
+    points, values = zoomed(np.take_along_axis(points, best, axis=1)[:, 0], reach * SHRINK**FIRST_ROUNDS, ROUNDS)
+    for place in reversed(range(len(rates) - 1)):  # what decays faster competes, too
+        if values[place + 1] < values[place]:
+            points[place], values[place] = points[place + 1], values[place + 1]
+    checked = _within(*looked_at(_grid(low, high, CHECKED).reshape(-1, 2)), rates[:, np.newaxis]).min(axis=1)
+    if better := np.flatnonzero(checked < values + np.log1p(-BETTER)).tolist():
+        raise NumericalError(
+            f"{method.name}: on the front with |z_p| of {rates[better[0]]:g} at most another point is better"
+        )
+    return points[values < TOO_SLOW]
+
+
+def _starts(looked_at: Logarithms, low: FloatArray, high: FloatArray, rates: FloatArray, finer: int) -> FloatArray:
+    """Return the best local minima of a grid for each rate, shape (rates, starts, 2)."""
+    grid = _grid(low, high, finer * FIRST_GRID)
+    values = _within(*looked_at(grid), rates[:, np.newaxis, np.newaxis])
+    around = np.pad(values, ((0, 0), (1, 1), (1, 1)), constant_values=np.inf)
+    rows, columns = values.shape[1:]
+    neighbours = [around[:, i : i + rows, j : j + columns] for i in range(3) for j in range(3)]
+    minima = np.where(values <= np.min(neighbours, axis=0), values, np.inf).reshape(len(rates), -1)
+    return grid.reshape(-1, 2)[np.argsort(minima, axis=1)[:, : finer * STARTS]]
+
+
+def _grid(low: FloatArray, high: FloatArray, points: int) -> FloatArray:
+    """Return the points of a grid over a box, so many per axis: shape (points, points, 2)."""
+    axes = (np.linspace(first, last, points) for first, last in zip(low, high, strict=True))
+    return np.stack(np.meshgrid(*axes), axis=-1)

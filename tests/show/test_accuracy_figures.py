@@ -1,0 +1,170 @@
+"""Figures of forced errors: what their artists hold is what was given, and it can be read."""
+
+import io
+from fractions import Fraction
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
+from matplotlib.contour import QuadContourSet
+from matplotlib.figure import Figure
+from matplotlib.text import Text
+
+from bezstab.methods import lookup
+from bezstab.show.accuracy_figures import accuracy_map_figure, decay_scale, error_front_figure, from_decay_scale
+from bezstab.show.style import save
+from bezstab.stability import (
+    FloatArray,
+    best_point,
+    choose,
+    combined_error,
+    error_front,
+    region,
+    spectral_radius,
+)
+
+OMEGA_H = Fraction(1, 100)
+
+
+def drawn_map(name: str = "RK4", h: float | None = None) -> tuple[Figure, FloatArray, FloatArray, FloatArray]:
+    """Return the map of a method, |z_p| in it, and the errors with both of its axes."""
+    method = lookup(name)
+    alpha_hat, beta_hat = np.geomspace(2e-3, 6, 61), np.geomspace(1e-6, 9, 61)
+    z_abs = spectral_radius(method, alpha_hat, beta_hat[:, np.newaxis])
+    error = combined_error(method, alpha_hat, beta_hat[:, np.newaxis], OMEGA_H)
+    figure = accuracy_map_figure(
+        region(method),
+        float(OMEGA_H),
+        alpha_hat,
+        beta_hat,
+        z_abs,
+        np.where(z_abs < 1, error, np.nan),
+        levels=[0.99],
+        best=best_point(method),
+        chosen=choose(method, "accurate", margins=False),
+        h=h,
+        marks={"a rule": (0.1, 0.01)},
+    )
+    return figure, z_abs, alpha_hat, beta_hat
+
+
+def contours(axes: Axes) -> list[QuadContourSet]:
+    return [each for each in axes.collections if isinstance(each, QuadContourSet)]
+
+
+@pytest.mark.parametrize("h", [None, 0.001])
+def test_the_map_draws_what_it_is_given(h: float | None) -> None:
+    figure, z_abs, alpha_hat, beta_hat = drawn_map(h=h)
+    axes, scale = figure.axes[0], np.array([1 / (h or 1), 1 / (h or 1) ** 2])
+    (mesh,) = [each for each in axes.collections if isinstance(each, QuadMesh)]
+    shown = np.ma.masked_array(mesh.get_array())
+    assert (np.ma.getmaskarray(shown) == (z_abs >= 1)).all()
+    assert shown.compressed().tolist() == z_abs[z_abs < 1].tolist()
+    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
+    assert axes.get_xlim() == pytest.approx(tuple(alpha_hat[[0, -1]] * scale[0]))
+    assert axes.get_ylim() == pytest.approx(tuple(beta_hat[[0, -1]] * scale[1]))
+    lines = {str(line.get_label()): np.array(line.get_xydata()) for line in axes.lines}
+    best, chosen = best_point(lookup("RK4")), choose(lookup("RK4"), "accurate", margins=False)
+    assert best
+    assert lines["deadbeat: $|z_p| = 0$"][0] == pytest.approx(np.array([best.alpha_hat, best.beta_hat]) * scale)
+    there = lines[f"choose accurate: {abs(chosen.pole):.4f}"][0]
+    assert there == pytest.approx(np.array([chosen.alpha_hat, chosen.beta_hat]) * scale)
+    assert lines["a rule"][0] == pytest.approx(np.array([0.1, 0.01]) * scale)
+    assert {"$|z_p| = 1$", "$|z_p| = 0.99$", "forced error / motion"} <= set(lines)
+    assert r"\omega h$ = 0.01" in axes.get_title()
+    assert r"\alpha" in axes.get_xlabel()
+    assert r"\beta" in axes.get_ylabel()
+    assert ("1/s" in axes.get_xlabel()) == (h is not None)
+
+
+def test_each_contour_is_where_the_error_is_its_power_of_ten() -> None:
+    method = lookup("RK4")
+    axes = drawn_map()[0].axes[0]
+    errors, level = contours(axes)
+    assert list(errors.levels) == list(range(-10, 0))
+    for power, path in zip(errors.levels, errors.get_paths(), strict=True):
+        if power < -3:  # nearer to the boundary the grid is too coarse
+            along_alpha, along_beta = np.asarray(path.vertices).T
+            found = np.log10(combined_error(method, along_alpha, along_beta, OMEGA_H))
+            assert np.median(abs(found - power)) < 0.02
+    (path,) = level.get_paths()
+    alpha_hat, beta_hat = np.asarray(path.vertices).T
+    assert np.median(abs(spectral_radius(method, alpha_hat, beta_hat) - 0.99)) < 1e-3
+
+
+def test_the_boundary_is_exact_down_to_the_last_decade() -> None:
+    """Chords of a few points would be straight on other axes."""
+    for name in ("SYM", "B4"):
+        axes = drawn_map(name)[0].axes[0]
+        (boundary,) = [line for line in axes.lines if line.get_label() == "$|z_p| = 1$"]
+        points = np.array(boundary.get_xydata())
+        inside = points[(points > 1e-6).all(axis=1)]
+        assert spectral_radius(lookup(name), *inside.T) == pytest.approx(1, abs=2e-4)  # chords of the drawn arcs
+        steps = np.abs(np.diff(np.log(points[(points[:, 0] > 2e-3) & (points[:, 1] > 1e-6)]), axis=0))
+        assert np.max(steps) < np.log(2)
+
+
+@pytest.mark.parametrize("name", ["RK4", "B4", "SYM"])
+def test_labels_lie_within_the_axes_and_hide_neither_one_another_nor_a_point(name: str) -> None:
+    figure, *_ = drawn_map(name)
+    (axes, _) = figure.axes
+    figure.savefig(io.BytesIO())
+    errors, *_ = contours(axes)
+    boxes = [text.get_window_extent() for text in errors.labelTexts]
+    assert len(boxes) >= 3
+    drawn = [np.array(line.get_xydata()) for line in axes.lines]
+    points = [axes.transData.transform(each)[0] for each in drawn if len(each) == 1]
+    for number, box in enumerate(boxes):
+        assert axes.bbox.x0 < box.x0
+        assert box.x1 < axes.bbox.x1
+        assert axes.bbox.y0 < box.y0
+        assert box.y1 < axes.bbox.y1
+        assert not any(box.contains(*point) for point in points)
+        assert not any(box.overlaps(other) for other in boxes[:number])
+
+
+def test_moduli_are_drawn_evenly_in_how_fast_errors_fall() -> None:
+    z_abs = np.array([0.1, 0.5, 0.9, 0.99, 0.9999])
+    assert from_decay_scale(decay_scale(z_abs)) == pytest.approx(z_abs)
+    slower = decay_scale(z_abs ** (1 / 10))  # a tenth as fast
+    assert slower - decay_scale(z_abs) == pytest.approx(np.full(5, np.log(10)))
+    assert np.isnan(decay_scale(np.ma.masked_greater(z_abs, 0.95))[3:]).all()
+
+
+def test_the_front_figure_has_every_point_of_every_front() -> None:
+    fronts = [error_front(lookup(name), [0.999, 0.9, 0.5, 0.2]) for name in ("RK4", "B4", "AB4")]
+    (axes,) = error_front_figure(fronts).axes
+    for front, line in zip(fronts, axes.lines, strict=True):
+        assert line.get_label() == front[0].method.name
+        drawn = [[point.z_abs_below, point.combined_error] for point in front if point.z_abs_below >= 0.1]
+        assert np.array(line.get_xydata()).tolist() == drawn
+    assert (
+        len(fronts[0]) == len(np.array(axes.lines[0].get_xydata())) + 1
+    )  # deadbeat: its |z_p| = 0 is infinitely far away
+    assert axes.get_yscale() == "log"
+    assert r"\omega h$ = 0.01" in axes.get_title()
+    looks = {(line.get_marker(), str(line.get_color()), str(line.get_linestyle())) for line in axes.lines}
+    assert len(looks) == 3
+
+
+def test_the_marks_below_the_front_are_apart() -> None:
+    figure = error_front_figure([error_front(lookup("RK4"))])
+    figure.savefig(io.BytesIO())
+    (axes,) = figure.axes
+    boxes = [Text.get_window_extent(label) for label in axes.get_xticklabels()]
+    assert len(boxes) >= 5
+    assert all(left.x1 < right.x0 for left, right in pairwise(boxes))
+
+
+@pytest.mark.parametrize("form", ["png", *(pytest.param(form, marks=pytest.mark.slow) for form in ("svg", "pdf"))])
+def test_the_same_figure_is_the_same_bytes(form: str) -> None:
+    def saved(figure: Figure) -> bytes:
+        file = io.BytesIO()
+        save(figure, form, file)  # type: ignore[arg-type]
+        return file.getvalue()
+
+    assert saved(drawn_map()[0]) == saved(drawn_map()[0])
+    front = [error_front(lookup("SYM"), [0.9, 0.5])]
+    assert saved(error_front_figure(front)) == saved(error_front_figure(front))

@@ -1,0 +1,129 @@
+"""The front of |z_p| against forced error: what it says holds, and brute force over the plane finds nothing better."""
+
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+
+from bezstab.errors import InputError, NumericalError
+from bezstab.methods import REGISTRY, lookup
+from bezstab.stability import best_point, combined_error, error_front, error_fronts, forced_error, spectral_radius
+from bezstab.stability.searches import zoom_on_minimum
+
+OMEGA_H = Fraction(1, 100)
+QUICK = ("RK4", "B4", "SYM")
+TRADED = ("B2", "B3", "AB2", "AB4", "ABM4", "SIE", "dopri5", "bs3", "gauss4", "verlet-half", "bdf2", "hht")
+"""One of each kind besides; the others in make test-slow."""
+
+POINTS = 450
+"""Per axis of brute force, over five decades: errors change by a twentieth from one to the next."""
+
+PROMISED = 1e-3
+"""Relative: what the front is checked to, as brute force meets its corners no more closely."""
+
+
+@pytest.mark.parametrize("name", [*QUICK, *(pytest.param(name, marks=pytest.mark.slow) for name in TRADED)])
+@pytest.mark.parametrize("omega_h", [OMEGA_H, pytest.param(Fraction(1, 3), marks=pytest.mark.slow)], ids=str)
+def test_brute_force_finds_nothing_better(name: str, omega_h: Fraction) -> None:
+    method = lookup(name)
+    front = error_front(method, omega_h=omega_h)
+    alpha_h, beta_h = np.geomspace(1e-4, 4, POINTS), np.geomspace(1e-4, 4, POINTS)[:, np.newaxis]
+    z_abs = spectral_radius(method, 2 * alpha_h, beta_h**2)
+    error = combined_error(method, 2 * alpha_h, beta_h**2, omega_h)
+    for point in front:
+        found = np.min(error, where=z_abs <= point.z_abs_below, initial=np.inf)
+        assert point.combined_error <= found * (1 + PROMISED)
+
+
+@pytest.mark.parametrize("name", [*QUICK, *(pytest.param(name, marks=pytest.mark.slow) for name in REGISTRY)])
+def test_each_point_decays_as_fast_as_is_said_and_forces_what_is_said(name: str) -> None:
+    method = lookup(name)
+    front = error_front(method)
+    for point in front:
+        there = (point.alpha_hat, point.beta_hat)
+        assert point.z_abs <= point.z_abs_below
+        # an ABM4 pole of multiplicity four is good to a quarter of the digits
+        assert spectral_radius(method, *there) <= point.z_abs_below + 1e-3
+        errors = forced_error(method, *there, OMEGA_H)
+        assert (point.total_error, point.velocity_error) == (float(errors.total), float(errors.velocity))
+        at_any = forced_error(method, *there, OMEGA_H, any_frequency=True)
+        assert point.combined_error == at_any.total + at_any.velocity
+    bounds = [point.z_abs_below for point in front]
+    assert bounds == sorted(bounds, reverse=True)
+    for slower, faster in pairwise(point.combined_error for point in front):
+        assert slower <= faster * (1 + PROMISED)  # the least |z_p| may be at alpha = 0, which no other point is
+
+
+def test_it_ends_at_the_least_modulus_and_at_no_rate_that_is_not_reached() -> None:
+    best = best_point(lookup("B4"))
+    assert best
+    *_, last = front = error_front(lookup("B4"), [0.9, 0.6, 0.7, 0.9])
+    assert [point.z_abs_below for point in front] == [0.9, 0.7, best.z_abs]  # 0.6 is less than any |z_p|
+    assert (last.alpha_hat, last.beta_hat) == (best.alpha_hat, best.beta_hat)
+    assert [point.z_abs_below for point in error_front(lookup("B4"), [0.5])] == [best.z_abs]
+
+
+def test_where_modulus_falls_on_without_end_rates_beyond_what_is_looked_at_have_no_point() -> None:
+    front = error_front(lookup("bdf3"))
+    assert best_point(lookup("bdf3")) is None
+    assert 0.1 not in {point.z_abs_below for point in front}
+    assert front[0].z_abs_below == 0.999
+
+
+def test_stronger_feedback_costs_methods_with_stages_a_hundred_thousandfold_and_multistep_methods_nothing() -> None:
+    of_rk4, of_b4 = (
+        {point.z_abs_below: point.combined_error for point in error_front(lookup(name), [0.999, 0.7])}
+        for name in ("RK4", "B4")
+    )
+    assert of_rk4[0.7] > 1e5 * of_rk4[0.999]
+    assert of_b4[0.7] == pytest.approx(of_b4[0.999], rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("names", "falls", "constraint", "velocity"),
+    [
+        ("B4 AB4 bdf2 trapezoid SYM", True, (0.85, 1.05), (0.99, 1.7)),
+        ("ABM4", True, (2.0, 2.5), (0.99, 1.7)),
+        ("verlet-half", True, (0.85, 1.05), (0.0, 0.1)),
+        ("hht", False, (0.2, 0.3), (0.97, 1.05)),
+        ("RK2 heun sdirk2 implicit-midpoint radau3", False, (0.33, 0.9), (1.0, 60.0)),
+        ("RK3 bs3 ssprk3", False, (10.0, 20.0), (1e3, 2e3)),
+        ("RK4 dopri5 tsit5 cash-karp", False, (1e3, np.inf), (1e4, np.inf)),
+        ("gauss4 radau5", False, (0.8, 4.0), (500.0, 2e3)),
+    ],
+)
+def test_what_strong_feedback_does_depends_on_the_kind_of_method(
+    names: str, falls: bool, constraint: tuple[float, float], velocity: tuple[float, float]
+) -> None:
+    """From alpha = beta = 2 omega to k times that, as stability/README.md has it; `falls`: as alpha / beta^2, by 1 / k."""
+    omega_h = float(OMEGA_H)
+    for name in names.split():
+        method = lookup(name)
+        k = next(k for k in (40, 20, 10) if spectral_radius(method, 4 * k * omega_h, (2 * k * omega_h) ** 2) < 1)
+        weak, strong = (forced_error(method, 2 * g * omega_h, (g * omega_h) ** 2, OMEGA_H) for g in (2, 2 * k))
+        of_constraint = strong.total / weak.total * (k if falls else 1)
+        assert constraint[0] <= of_constraint <= constraint[1]
+        assert velocity[0] <= strong.velocity / weak.velocity <= velocity[1]
+
+
+@pytest.mark.parametrize("rate", [0.0, 1.0, -0.5, float("nan")])
+def test_a_rate_at_which_nothing_decays_is_refused(rate: float) -> None:
+    with pytest.raises(InputError, match="expected a number between 0 and 1"):
+        error_front(lookup("SYM"), [0.5, rate])
+
+
+def test_a_motion_that_no_step_follows_is_refused() -> None:
+    with pytest.raises(InputError, match="rad a step"):
+        error_front(lookup("SYM"), omega_h=Fraction(1))
+
+
+def test_a_search_that_ends_elsewhere_is_no_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+    def off(*arguments: Any, **options: Any) -> Any:
+        points, values = zoom_on_minimum(*arguments, **options)
+        return points, values + 0.01  # as if the error were a hundredth larger
+
+    monkeypatch.setattr(error_fronts, "zoom_on_minimum", off)
+    with pytest.raises(NumericalError, match="another point is better"):
+        error_front(lookup("B4"), [0.9])
