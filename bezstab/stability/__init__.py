@@ -33,6 +33,7 @@ From a method's polynomial in float64 (its pencil) upwards; a file imports only 
     step_sequences    whether feedback decays for every sequence of steps within a range
     damping_limits    up to which steps, by damping ratio
     far_limits        what |z_p| of a second-order scheme tends to far out
+    least_modulus     the least of the largest |z|, from the poles that decide
     plane_best_points the smallest |z_p| of a second-order scheme
     best_points       the smallest |z_p|
     forced_errors     the error that a method forces with a feedback, over the plane
