@@ -32,7 +32,7 @@ from numpy.polynomial.polynomial import polyder, polymul, polyroots, polysub
 from bezstab.errors import NumericalError
 from bezstab.methods import Method, SecondOrder, first_order_form, fixed_poles, implicit, without_shared_factor
 from bezstab.stability.answer_checks import check_best_point, check_deadbeat, check_plane_best_point
-from bezstab.stability.arrays import ComplexArray, FloatArray
+from bezstab.stability.arrays import ComplexArray, Extent, FloatArray
 from bezstab.stability.closed_loop import free_pencil_of, largest_modulus
 from bezstab.stability.far_limits import FarLimit
 from bezstab.stability.least_modulus import Active, Coefficients, solved
@@ -40,7 +40,7 @@ from bezstab.stability.line_slices import all_inside
 from bezstab.stability.pencils import Pencil, deadbeat_mu, largest_root_in_z, pencil_of, roots_in_mu, roots_in_z
 from bezstab.stability.plane_best_points import PlaneLeast, plane_least
 from bezstab.stability.plane_pencils import plane_pencil_of
-from bezstab.stability.regions import Extent, region
+from bezstab.stability.regions import region
 from bezstab.stability.searches import zoom_on_minimum
 
 ROUNDING = 1e-9  # relative; a solved kink's moduli agree to about 1e-15, neighbouring candidates differ far more

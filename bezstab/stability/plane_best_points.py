@@ -22,11 +22,10 @@ import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval2d, polyval3d
 
 from bezstab.errors import NumericalError
-from bezstab.stability.arrays import EPS, ComplexArray, FloatArray
+from bezstab.stability.arrays import EPS, ComplexArray, Extent, FloatArray
 from bezstab.stability.closed_loop import largest_modulus
 from bezstab.stability.far_limits import FarLimit, least_far_limit
 from bezstab.stability.least_modulus import Active, solved
-from bezstab.stability.plane_cells import Extent
 from bezstab.stability.plane_pencils import PlanePencil, plane_roots
 from bezstab.stability.searches import zoom_on_minimum
 
