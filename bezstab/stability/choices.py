@@ -21,7 +21,7 @@ from bezstab.stability.answer_checks import (
     check_least,
     check_least_equal,
 )
-from bezstab.stability.arrays import BoolArray, FloatArray
+from bezstab.stability.arrays import BoolArray, Extent, FloatArray
 from bezstab.stability.best_points import AS_SMALL, best_point
 from bezstab.stability.closed_loop import (
     AnyPencil,
@@ -39,7 +39,7 @@ from bezstab.stability.margins import Margins, stability_margins
 from bezstab.stability.pencils import Pencil, largest_root_in_z
 from bezstab.stability.plane_best_points import critical_point
 from bezstab.stability.plane_pencils import PlanePencil
-from bezstab.stability.regions import Extent, Region, pole_place, region
+from bezstab.stability.regions import Region, pole_place, region
 from bezstab.stability.searches import first_where, zoom_on_minimum
 from bezstab.units import check_step
 

@@ -56,8 +56,14 @@ def verdict(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> Verdict:
 @lru_cache(maxsize=PROVEN)
 def converges(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> bool:
     """Return whether the verdict is 'converges': proven as `verdict`, without asking what else it might be."""
+    return decays_faster(method, Fraction(1), alpha_hat, beta_hat)
+
+
+def decays_faster(method: Method, level: Fraction, alpha_hat: Fraction, beta_hat: Fraction) -> bool:
+    """Return whether |z_p| < level at one exact, dimensionless point: Schur's recursion in rationals, a proof."""
     polynomial = closed_loop_at(method, alpha_hat, beta_hat)
-    return polynomial[0] != 0 and is_schur(polynomial)
+    degree = len(polynomial) - 1
+    return polynomial[0] != 0 and is_schur([c * level ** (degree - i) for i, c in enumerate(polynomial)])
 
 
 def poles(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexArray:

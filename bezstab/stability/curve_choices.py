@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from bezstab.errors import NumericalError
-from bezstab.stability.answer_checks import BETTER, NO_LESS, PLASTIC, Modulus, Objective
-from bezstab.stability.arrays import BoolArray, FloatArray
+from bezstab.stability.answer_checks import BETTER, NO_LESS, Modulus, Objective
+from bezstab.stability.arrays import BoolArray, FloatArray, even_points
 from bezstab.stability.best_points import AS_SMALL
 from bezstab.stability.searches import first_where, zoom_on_minimum
 
@@ -54,7 +54,7 @@ def least_along(curve: Curve, objective: Objective) -> tuple[float, float]:
     found = first_where(lambda some: values(some, as_small) <= as_small, shares)
     best = float(zoomed) if found is None else found[1]
     here = float(values(np.array([best]))[0])
-    between = (np.arange(1, CHECKED + 1) / PLASTIC) % 1
+    between, _ = even_points(CHECKED)
     if values(between).min() < here * (1 - BETTER) - NO_LESS:
         raise NumericalError(f"the point chosen along the curve has {here:.9g}, but another has less")
     return _point(curve, best)

@@ -24,7 +24,7 @@ from numpy.polynomial.polynomial import polyder, polyval
 from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, FloatArray
 from bezstab.stability.exact_sums import feedback_roots
 from bezstab.stability.pencils import Pencil, deadbeat_mu, roots_in_mu
-from bezstab.stability.root_finding import horner
+from bezstab.stability.root_finding import horner, inside_circle
 from bezstab.stability.searches import false_position
 
 COSINE_SLACK = 1e-6  # a double zero splits by sqrt(eps) = 1e-8 into the complex plane; more candidates do no harm
@@ -380,13 +380,7 @@ def all_inside(pencil: Pencil, mu: ComplexArray, level: float | FloatArray) -> B
     for row, coefficients in zip(p, pencil.table, strict=True):
         np.multiply(horner(coefficients, mu), size, out=row)
         size = size * level
-    inside = np.ones(mu.shape, bool)
-    with np.errstate(all="ignore"):  # of a point that is out nothing more is asked
-        while len(p) > 1:
-            k = p[0] / p[-1].conj()
-            inside &= np.abs(k) < 1
-            p = p[1:] - k * p[-2::-1].conj()
-    return inside
+    return inside_circle(p)
 
 
 def all_within(pencil: Pencil, alpha_hat: FloatArray, beta_hat: FloatArray, level: FloatArray) -> BoolArray:

@@ -5,11 +5,14 @@ from the Newton polygon, and its roots start Aberth's iteration for the others.
 """
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
+
+Number = TypeVar("Number", FloatArray, ComplexArray)
 
 CHUNK = 16384  # points at a time: all the work arrays of one chunk stay in a core's cache
 STRIDE = 16  # of a row of points one in so many has all its roots solved for, the others start from them
@@ -253,7 +256,7 @@ def _repulsion_of_others(z: ComplexArray) -> ComplexArray:
     return np.asarray(reciprocals.sum(axis=1))
 
 
-def newton_correction(coefficients: Sequence[Any] | FloatArray, y: ComplexArray) -> ComplexArray:
+def newton_correction(coefficients: Sequence[Any] | FloatArray, y: Number) -> Number:
     """Return Newton's correction p(y) / p'(y), of the shape of y, by Horner's rule.
 
     The coefficients, two at least, are ascending: numbers, or arrays of the shape of y.
@@ -263,5 +266,20 @@ def newton_correction(coefficients: Sequence[Any] | FloatArray, y: ComplexArray)
     for coefficient in coefficients[-3::-1]:
         slope = slope * y + value
         value = value * y + coefficient
-    correction: ComplexArray = value / slope
+    correction: Number = value / slope
     return correction
+
+
+def inside_circle(ascending: NDArray[np.inexact]) -> BoolArray:
+    """Return whether all roots of polynomials have |z| < 1, by Schur's recursion; False where one is infinite.
+
+    Coefficients, real or complex, in ascending powers along the first axis; the shape of the others.
+    """
+    p = ascending
+    inside = np.ones(p.shape[1:], bool)
+    with np.errstate(all="ignore"):  # of a point that is out nothing more is asked
+        while len(p) > 1:
+            k = p[0] / p[-1].conj()
+            inside &= np.abs(k) < 1
+            p = p[1:] - k * p[-2::-1].conj()  # without the last coefficient, p(0) - k lead(p), which was 0
+    return inside
