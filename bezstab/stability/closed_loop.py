@@ -33,7 +33,8 @@ from bezstab.stability.pencils import Pencil, largest_root_in_z, pencil_of, root
 from bezstab.stability.plane_pencils import PlanePencil, largest_plane_root, plane_pencil_of, plane_roots
 from bezstab.stability.root_finding import CHUNK
 
-BLOCK = 16 * CHUNK  # points whose poles are followed in one go: enough to outweigh the calls for their middles
+BLOCK = 16 * CHUNK  # points whose poles are followed in one go: enough to outweigh the calls for their middles,
+POLES = 7  # each of so many poles; of more poles as many fewer points, so that work arrays stay below 50 MB
 MOST_FOLLOWED = 18  # poles: of more, whose factors lie close together, most points need all roots, and mu halves them
 NEARLY_DOUBLE = 1e-5  # of (mu_1 + mu_2)^2 / 4: with less between the mu P's roots would keep less than 12 digits
 
@@ -137,8 +138,9 @@ def largest_pole(pencil: AnyPencil, alpha_hat: ArrayLike, beta_hat: ArrayLike) -
     alphas, betas = (each if each.ndim == 2 else each.reshape(1, -1) for each in (alpha_hat, beta_hat))
     dominant = np.empty(alpha_hat.size, complex)
     columns = max(1, alphas.shape[1])  # of no points, too
-    whole_rows = BLOCK // columns // SIDE * SIDE * columns
-    block = whole_rows or BLOCK
+    most = BLOCK * POLES // max(POLES, pencil.degree if isinstance(pencil, PlanePencil) else 2 * pencil.steps)
+    whole_rows = most // columns // SIDE * SIDE * columns
+    block = whole_rows or most
     for start in range(0, alpha_hat.size, block):
         stop = min(start + block, alpha_hat.size)
         shape = ((stop - start) // columns, columns) if whole_rows else (1, stop - start)
