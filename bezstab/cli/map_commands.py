@@ -51,6 +51,7 @@ from bezstab.cli.output import (
     show_blocks,
     show_groups,
     show_rows,
+    show_text,
     write_figure,
     write_table,
 )
@@ -705,11 +706,8 @@ def method_sentence(row: Row) -> str:
 
 def whole_method_sentence(row: Row) -> str:
     """Return that, and the order that strong feedback leaves it, for a method that is shown whole."""
-    left = "it is kept, too" if row["order_left"] == row["order"] else f"order {row['order_left']} is left"
-    return (
-        f"{method_sentence(row)} Constraint errors keep the order while α and β are held as h shrinks; while α̂ and β̂ "
-        f"are, {left}. Their steady part is given in θ = iωh, for a motion of ω rad/s."
-    )
+    left = "keep that order" if row["order_left"] == row["order"] else f"are of order {row['order_left']}"
+    return f"{method_sentence(row)} With α̂ and β̂ held as h shrinks, constraint errors {left}."
 
 
 @click.command()
@@ -758,6 +756,8 @@ def methods(methods: Sequence[Method], latex: bool, form: Format) -> None:
             click.echo()
         shown = with_unbounded(row)
         show_blocks([shown], [property_column(key, shown) for key in shown], whole_method_sentence)
+    if form == "text":
+        show_text("\nSteady errors are shares of a motion of ω rad/s, to leading order in θ = iωh.")
 
 
 def property_column(key: str, row: Row) -> Column:

@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 
 RANDOM_POINTS = 20  # unless told otherwise
 NUMERICAL_TROUBLE = 3
-"""Exit status where runs break down."""
+"""Exit status where runs break down, or show nothing but rounding."""
 
 MEASUREMENTS = [
     column("method", "method"),
@@ -145,15 +145,15 @@ FORCED = [
     column("quotient", "quotient", ".3f"),
     column("order predicted", "predicted_order", ".2f"),
     column("order seen", "observed_order", ".2f"),
-    column("broke down", "failure"),
+    column("not compared", "reason"),
 ]
 
 
 def forced_sentence(row: Row) -> str:
     """Return what was measured of a run, over what was predicted."""
     at = f"{row['method']} at {row['gain_share']:g} of the gains, steps of {row['h']:g} s"
-    if row["failure"]:
-        return f"{at}: the run broke down {row['failure']}."
+    if row["reason"]:
+        return f"{at}: not compared: {row['reason']}."
     return f"{at}: |c| is {formatted(row['quotient'], '.3f')} times what was predicted."
 
 
@@ -228,8 +228,8 @@ def verify(
 
     --accuracy compares the constraint error that a method forces anew in each step, predicted in metres without any
     run, with that of runs: at 0.2 to 1 times α and β of the point, or of what choose --goal robust finds, with steps of
-    --h and of half of it. Exit status 1 where measured over predicted is off one by more than a quarter, 3 where a run
-    broke down.
+    --h and of half of it. Exit status 1 where measured over predicted is off one by more than a quarter, 3 where there
+    is nothing to compare: a run broke down, or rounding is as large.
 
     Example: bezstab verify --method AB4 --points 20
     """
@@ -311,14 +311,14 @@ def _show_forced_errors(
 
 def _conclusion(method: Method, pairs: "Sequence[HalvedStep]") -> str:
     """Return in words whether one method forces what was predicted, and how that shrinks with the step."""
-    broken = sum(pair.holds is None for pair in pairs)
     kept = [pair for pair in pairs if pair.holds is not None]
     if not kept:
-        return f"{method.name}: all runs broke down."
+        return f"{method.name}: nothing could be compared."
     quotients = [run.quotient for pair in kept for run in (pair.whole, pair.half)]
     holds = "the prediction holds" if all(pair.holds for pair in kept) else "the prediction does NOT hold"
     predicted, seen = ([getattr(pair, name) for pair in kept] for name in ("predicted_order", "observed_order"))
-    without = f" At {broken} of {len(pairs)} points a run broke down." if broken else ""
+    left_out = len(pairs) - len(kept)
+    without = f" {left_out} of {len(pairs)} points could not be compared." if left_out else ""
     return (
         f"{method.name}: measured over predicted is {min(quotients):.3f} to {max(quotients):.3f}: {holds}. The order "
         f"in h is {min(seen):.2f} to {max(seen):.2f}, predicted {min(predicted):.2f} to {max(predicted):.2f}.{without}"

@@ -53,6 +53,10 @@ HOLDS = 0.25
 account for less where steps follow the motion well."""
 
 
+ROUNDED = 1e-14
+"""m or rad: a run's |c| is some roundings of coordinates of the order of one."""
+
+
 @dataclass(frozen=True)
 class ForcedMotion:
     """Largest constraint errors (SI) in the later half of a run with steps of h (s): predicted, and measured.
@@ -72,6 +76,15 @@ class ForcedMotion:
     def quotient(self) -> float:
         """Measured over predicted."""
         return self.measured / self.predicted
+
+    @property
+    def reason(self) -> str | None:
+        """Why there is nothing to compare, in words; None where there is."""
+        if self.failure:
+            return f"the run broke down {self.failure}"
+        if self.predicted < ROUNDED:
+            return f"below {ROUNDED:g} rounding is as large"
+        return None
 
 
 @dataclass(frozen=True)
@@ -97,8 +110,8 @@ class HalvedStep:
 
     @property
     def holds(self) -> bool | None:
-        """Whether what was measured is what was predicted, at both steps; None where a run broke down."""
-        if self.whole.failure or self.half.failure:
+        """Whether what was measured is what was predicted, at both steps; None where that cannot be told."""
+        if self.whole.reason or self.half.reason:
             return None
         return all(abs(run.quotient - 1) <= HOLDS for run in (self.whole, self.half))
 

@@ -369,19 +369,20 @@ def measurement_row(scene: str, measurement: Measurement) -> Row:
 def forced_rows(scene: str, pair: HalvedStep) -> list[Row]:
     """Return what two runs at one point were predicted to force and did, the larger step first; SI units.
 
-    None where a run broke down; orders are between the two, and stand in the row of the smaller step.
+    None where there is nothing to compare; orders are between the two, and stand in the row of the smaller step.
     """
     return [
         row(
             run,
-            without={"predicted", "measured"},
+            without={"predicted", "measured", "failure"},
             scene=scene,
             gain_share=pair.share,
             predicted_error=run.predicted,
             measured_error=None if run.failure else run.measured,
-            quotient=None if run.failure else run.quotient,
+            quotient=None if run.reason else run.quotient,
             predicted_order=pair.predicted_order if run is pair.half else None,
             observed_order=None if run is pair.whole or pair.holds is None else pair.observed_order,
+            reason=run.reason or "",
         )
         for run in (pair.whole, pair.half)
     ]

@@ -130,7 +130,7 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
         RowKind(
             "what a method forces on a mechanism",
             _keys("""scene method gain_share alpha_hat beta_hat h predicted_error measured_error quotient
-                predicted_order observed_order failure"""),
+                predicted_order observed_order reason"""),
         ),
         RowKind(
             "a run of an engine that is not ours",

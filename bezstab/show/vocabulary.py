@@ -345,7 +345,7 @@ VOCABULARY: Mapping[str, Key] = {
     "measured_error": Key(
         "number", "Largest constraint error in the later half of the run", "m or rad", "if the run failed"
     ),
-    "quotient": Key("number", "Measured over predicted error, 1 if they agree", null="if the run failed"),
+    "quotient": Key("number", "Measured over predicted error, 1 if they agree", null="where `reason` says why"),
     "predicted_order": Key(
         "number", "Order in h of the predicted error between this and the next larger step", null="of the largest step"
     ),

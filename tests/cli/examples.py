@@ -57,6 +57,7 @@ LONG = {
         f"verify --scene pendulum --method SYM --map 3 {SMALL}",
         "verify --witness mujoco",
         "verify --scene driven_four_bar --h 0.01 --alpha 0.5 --beta 0.1 --floquet",
+        "verify --scene driven_four_bar --h 0.01 --method SYM --accuracy",
     ],
 }
 """More of them, which take longer."""

@@ -78,8 +78,8 @@ def test_a_method_shown_whole_says_what_order_strong_feedback_leaves_it() -> Non
     (row,) = rows("methods", "RK4")
     assert (row["order"], row["order_left"]) == (4, 2)
     assert str(row["steady_error"]).startswith("θ^2 β̂ (α̂ β̂ - 4 β̂ + 24)/")
-    assert "while α̂ and β̂ are, order 2 is left" in " ".join(run("methods", "RK4").stdout.split())
-    assert "while α̂ and β̂ are, it is kept, too" in " ".join(run("methods", "AB4").stdout.split())
+    for name, left in (("RK4", "constraint errors are of order 2."), ("AB4", "constraint errors keep that order.")):
+        assert f"With α̂ and β̂ held as h shrinks, {left}" in " ".join(run("methods", name).stdout.split())
 
 
 def test_the_list_of_methods_is_grouped_and_fits_80_columns() -> None:

@@ -102,7 +102,7 @@ def test_predicted_and_measured_errors_are_compared_at_shares_of_the_gains() -> 
     for row in found:
         assert row["quotient"] == pytest.approx(1, abs=0.05)
         assert row["predicted_order"] == (None if row["h"] == 0.004 else pytest.approx(2, abs=0.05))  # at strong gains
-        assert row["failure"] is None
+        assert row["reason"] == ""
     text = run(*command)
     assert text.exit_code == 0
     assert "the prediction holds" in text.stdout
@@ -114,6 +114,13 @@ def test_where_the_prediction_does_not_hold_the_exit_status_says_so() -> None:
     result = run(*command)
     assert result.exit_code == 1
     assert "the prediction does NOT hold" in result.stdout
+
+
+def test_what_is_as_small_as_rounding_is_not_compared() -> None:
+    result = run("verify", "--accuracy", "--method", "ABM4")  # 4e-16 m on the slider-crank with the flywheel
+    assert result.exit_code == 3
+    assert "below 1e-14 rounding is as large" in result.stdout
+    assert "ABM4: nothing could be compared." in result.stdout
 
 
 def test_accuracy_goes_with_one_point_or_none() -> None:

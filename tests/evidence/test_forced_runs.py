@@ -1,5 +1,7 @@
 """The constraint error that a method forces on a moving mechanism: predicted in metres, none fitted, and measured."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -119,6 +121,8 @@ def test_a_prediction_holds_if_no_quotient_is_off_by_a_quarter() -> None:
     assert HalvedStep(1.0, run(1.2e-6), run(0.7e-6)).holds is False
     assert HalvedStep(1.0, run(1.3e-6), run(0.8e-6)).holds is False
     assert HalvedStep(1.0, run(np.nan, "at t = 1 s"), run(0.8e-6)).holds is None
+    assert run(np.nan, "at t = 1 s").reason == "the run broke down at t = 1 s"
+    assert HalvedStep(1.0, run(1e-6), replace(run(1e-6), predicted=9e-15)).holds is None
 
 
 def test_what_is_not_stable_is_refused() -> None:

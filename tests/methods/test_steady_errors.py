@@ -1,6 +1,7 @@
 """Steady errors of the feedback: closed forms by hand, each method's own recursion in sixty digits, orders left."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 
@@ -8,7 +9,10 @@ import mpmath
 import numpy as np
 import pytest
 import sympy as sp
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
 
+from bezstab.linear_equations import solution
 from bezstab.methods import (
     REGISTRY,
     Method,
@@ -113,13 +117,6 @@ def test_with_alpha_hat_and_beta_hat_held_methods_with_stages_lose_order() -> No
     assert left == {"RK4": 2, "dopri5": 2, "bs3": 2, "radau3": 3, "gauss4": 4, "AB4": 5}
 
 
-def test_a_step_of_five_h_forces_what_a_step_of_h_does_at_its_own_parameters() -> None:
-    five, one = leading_error(lookup("RK4@5")), leading_error(lookup("RK4"))
-    at_own = {A: 5 * A, B: 25 * B}
-    ratio = polynomial(one.numerator).subs(at_own) / polynomial(one.denominator).subs(at_own)
-    assert sp.simplify(polynomial(five.numerator) / polynomial(five.denominator) - 25 * ratio) == 0
-
-
 SMALLEST = Fraction(1, 10**12)
 """What rationals that stand for irrational coefficients leave over, and more."""
 
@@ -210,3 +207,73 @@ def test_a_line_that_turns_shows_both_terms(beta_hat: float) -> None:
         error_across_a_turning_line(lookup("gauss4"), step, alpha_hat, beta_hat, time) / step**4 for step in (h, h / 2)
     )
     assert 2 * half - whole == pytest.approx(expected, rel=1e-3)  # what is left is of the order of h^2
+
+
+COEFFICIENTS = st.fractions(min_value=-2, max_value=2, max_denominator=6)
+
+
+@st.composite
+def runge_kutta_methods(draw: st.DrawFn) -> Method:
+    """Return a Runge-Kutta method of two or three stages, implicit or not; its order is mostly one."""
+    stages = draw(st.integers(2, 3))
+    explicit = draw(st.booleans())
+    tableau = tuple(
+        tuple(draw(COEFFICIENTS) if j < i or not explicit else Fraction(0) for j in range(stages))
+        for i in range(stages)
+    )
+    first = [draw(COEFFICIENTS) for _ in range(stages - 1)]
+    return Method("random", RungeKutta(tableau, (*first, 1 - sum(first, Fraction(0)))), "")
+
+
+def position_error_by_stages(scheme: RungeKutta, a: Fraction, b: Fraction) -> Fraction:
+    """Return the coefficient of theta^2 of the error of x, from the stages' own equations for phi = t^2 / 2.
+
+    Unknown are the errors X and V at the steps and s_j, what the feedback adds to phi'' = 1 at stage j:
+
+        s_j = -a (V + sum_i a_ji s_i) - b (X + c_j V + sum_i (A A)_ji (1 + s_i) - c_j^2 / 2)
+        sum_j b_j s_j = 0,      V + sum_j (b A)_j (1 + s_j) = 1/2
+    """
+    rows, weights, count = scheme.tableau, scheme.weights, len(scheme.weights)
+    times = [sum(row, Fraction(0)) for row in rows]
+
+    def times_rows(row: Sequence[Fraction]) -> list[Fraction]:
+        return [sum((row[k] * rows[k][i] for k in range(count)), Fraction(0)) for i in range(count)]
+
+    squares, through = [times_rows(row) for row in rows], times_rows(weights)
+    equations = [[Fraction(0), Fraction(0), *weights], [Fraction(0), Fraction(1), *through]]
+    right = [[Fraction(0)], [Fraction(1, 2) - sum(through)]]
+    for j in range(count):
+        feedback = [Fraction(i == j) + a * rows[j][i] + b * squares[j][i] for i in range(count)]
+        equations.append([b, a + b * times[j], *feedback])
+        right.append([b * (times[j] ** 2 / 2 - sum(squares[j]))])
+    return Fraction(solution(equations, right)[0][0])
+
+
+@given(runge_kutta_methods(), st.integers(1, 40), st.integers(1, 40))
+@settings(deadline=None, max_examples=60)
+def test_of_any_runge_kutta_method_it_is_what_its_stages_miss(method: Method, tenths_a: int, tenths_b: int) -> None:
+    a, b = Fraction(tenths_a, 10), Fraction(tenths_b, 10)
+    errors = forced_errors(method)
+    over, under = (
+        sum((c * a**i * b**j for (i, j), c in errors.coefficient(terms, power).items()), Fraction(0))
+        for terms, power in ((errors.position, 2), (errors.denominator, 0))
+    )
+    assume(under)  # else a pole at 1 and no steady state
+    assert isinstance(method.scheme, RungeKutta)
+    assert over / under == position_error_by_stages(method.scheme, a, b)
+    assert not errors.coefficient(errors.position, 1)  # a consistent method follows what is uniform
+
+
+@given(st.sampled_from(("B4", "AB3", "ABM2", "RK4", "SYM", "verlet-half", "hht", "radau3")), st.integers(1, 30))
+@settings(deadline=None, max_examples=40)
+def test_a_step_of_several_h_forces_what_its_own_parameters_do(name: str, tenths: int) -> None:
+    """E of m h at (a, b) is m^k times E of h at (m a, m^2 b), in theta of h."""
+    multiple = Fraction(tenths, 10)
+    long, short = leading_error(lookup(f"{name}@{multiple}")), leading_error(lookup(name))
+    a, b = Fraction(3, 7), Fraction(2, 5)
+
+    def at(terms: PlanePolynomial, factor: Fraction) -> Fraction:
+        return sum((c * (factor * a) ** i * (factor**2 * b) ** j for (i, j), c in terms.items()), Fraction(0))
+
+    expected = multiple**short.power * at(short.numerator, multiple) / at(short.denominator, multiple)
+    assert at(long.numerator, Fraction(1)) / at(long.denominator, Fraction(1)) == expected

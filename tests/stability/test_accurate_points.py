@@ -9,6 +9,7 @@ from bezstab.errors import InputError
 from bezstab.methods import lookup
 from bezstab.stability import choose, forced_error, spectral_radius
 from bezstab.stability.accurate_points import default_rate
+from tests.methods.kinds import sampled
 
 OMEGA_H = Fraction(1, 50)
 
@@ -42,6 +43,19 @@ def test_methods_with_stages_take_gentle_feedback_and_multistep_methods_strong()
         assert chosen[name].alpha_hat / 2 == pytest.approx(0.02 * 0.5 / 0.9, rel=0.01)
         assert chosen[name].beta_hat ** 0.5 == pytest.approx(0.8 * 0.02, rel=0.1)
     assert chosen["B4"].beta_hat ** 0.5 > 20 * 0.02
+
+
+@pytest.mark.parametrize(
+    "name", sampled(["RK3", "bs3", "ssprk3", "RK4", "rkn4", "dopri5", "cash-karp", "gauss4", "radau5"], quick=("RK4",))
+)
+def test_of_methods_with_stages_it_is_a_multiple_of_the_motions_own_rate_whatever_the_step(name: str) -> None:
+    """All terms of the error have the same power of omega h where alpha and beta are of the size of omega."""
+    rates = (Fraction(1, 10), Fraction(1, 100), Fraction(1, 1000))
+    chosen = [choose(lookup(name), "accurate", omega_h=rate, margins=False) for rate in rates]
+    multiples = [choice.beta_hat**0.5 / float(rate) for choice, rate in zip(chosen, rates, strict=True)]
+    assert 0.75 < min(multiples) <= max(multiples) < 1.1
+    assert multiples[0] == pytest.approx(multiples[2], rel=0.05)  # at omega h = 0.1 the next order counts
+    assert multiples[1] == pytest.approx(multiples[2], rel=0.006)
 
 
 def test_where_nothing_decays_so_fast_it_is_half_as_fast_as_robust() -> None:
