@@ -10,6 +10,7 @@ from bezstab.evidence import (
     Cost,
     accuracy_costs,
     measured_runs,
+    summary,
     sweep_compiled,
     swept_runs,
     with_fronts,
@@ -86,6 +87,30 @@ def test_in_the_later_half_of_a_run_the_constraint_error_is_the_predicted_one(na
         assert run.measured_error
         assert run.measured_error == pytest.approx(run.predicted_error, rel=within)
         assert run.measured_error <= run.c_max
+
+
+def test_strong_feedback_costs_rk4_what_the_front_page_says() -> None:
+    robust = choose(lookup("RK4"), "robust", margins=False)
+    (strong,), (own,) = swept("RK4", (0.005,), (robust.alpha_hat, robust.beta_hat)), swept("RK4", (0.005,))
+    assert strong.trajectory_error
+    assert own.trajectory_error
+    assert strong.c_max / own.c_max == pytest.approx(2500, rel=0.05)
+    assert strong.trajectory_error / own.trajectory_error == pytest.approx(700, rel=0.05)
+
+
+@pytest.mark.slow
+def test_b4_costs_against_ab4_what_the_front_page_says_and_rk4_as_much_as_ab4() -> None:
+    b4, ab4 = summary(swept("B4", (1e-4, 2e-4))), summary(swept("AB4", (0.0004, 0.0008, 0.0016, 0.0032)))
+    rk4 = summary(swept("RK4", (0.0032, 0.008, 0.0125)))
+    assert b4.least_error
+    assert b4.least_error == pytest.approx(1.2e-6, rel=0.05)
+    dear, cheap = b4.evaluations_for(b4.least_error), ab4.evaluations_for(b4.least_error)
+    assert dear
+    assert cheap
+    assert dear / cheap == pytest.approx(17, rel=0.05)
+    same = rk4.evaluations_for(b4.least_error)
+    assert same
+    assert 0.5 < same / cheap < 2
 
 
 def test_where_errors_do_not_decay_none_is_predicted() -> None:

@@ -97,7 +97,7 @@ def test_stronger_feedback_costs_methods_with_stages_a_hundred_thousandfold_and_
 def test_what_strong_feedback_does_depends_on_the_kind_of_method(
     names: str, falls: bool, constraint: tuple[float, float], velocity: tuple[float, float]
 ) -> None:
-    """From alpha = beta = 2 omega to k times that, `falls`: as alpha / beta^2, by 1 / k."""
+    """From alpha = beta = 2 omega to k times that, as stability/README.md has it; `falls`: as alpha / beta^2."""
     omega_h = float(OMEGA_H)
     for name in names.split():
         method = lookup(name)
