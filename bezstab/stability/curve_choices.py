@@ -47,12 +47,12 @@ def least_along(curve: Curve, objective: Objective) -> tuple[float, float]:
         rounds=ROUNDS,
         fold=lambda points: np.clip(points, samples[0], 1),
     )
-    if abs(zoomed - nearest) < ROUNDING:
-        zoomed = nearest
     as_small = min(float(least), float(sampled.min())) * (1 + AS_SMALL)
     shares = np.sort(np.append(samples, zoomed))
     found = first_where(lambda some: values(some, as_small) <= as_small, shares)
     best = float(zoomed) if found is None else found[1]
+    if abs(best - nearest) < ROUNDING:
+        best = float(nearest)
     here = float(values(np.array([best]))[0])
     between, _ = even_points(CHECKED)
     if values(between).min() < here * (1 - BETTER) - NO_LESS:

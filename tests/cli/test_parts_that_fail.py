@@ -69,8 +69,8 @@ def test_of_any_stages_the_verdict_is_given(tmp_path: Path) -> None:
     result = run("check", "--method", str(path), "--alpha", "1", "--beta", "1/4")
     assert result.exit_code == 0
     assert result.stdout.startswith("Safe. The error shrinks")
-    assert "too many stages" in " ".join(result.stdout.split())
-    assert "too many stages" in result.stderr
+    assert "h may grow without limit, α without limit, β without limit" in result.stdout  # it is A-stable
+    assert "too many stages" in result.stderr  # to look for what to take instead
 
 
 BOTH_ENDS_AT_ONCE = (
