@@ -16,8 +16,8 @@ from tests.reference.random_methods import other_random_method, random_method
 from tests.stability import campaign
 from tests.stability.campaign import DIFFERENT, cases_of, compared, other_cases_of, other_compared
 
-SAMPLE = range(0, 6000, 101)  # 60 methods: 101 goes round the fifteen kinds
-OTHER_SAMPLE = range(0, 5000, 181)  # 28 methods: 181 goes round the six kinds
+SAMPLE = range(0, 6000, 202)  # 30 methods: 202 goes round the fifteen kinds
+OTHER_SAMPLE = range(0, 5000, 361)  # 14 methods: 361 goes round the six kinds
 
 
 @pytest.mark.slow
