@@ -31,6 +31,9 @@ times: .venv/installed  ## measure anew the processor times that figures and tab
 	$(BIN)/bezstab tradeoff $(ANDREWS) --repeats 9 --workers 1 --figure none --format json > figures/andrews_times.json
 	$(BIN)/python -m tests.paper.record_times
 
+# two processes on two cores: threads of linear algebra in each would wait for each other most of the time
+quick test-slow test-oldest campaign: export OPENBLAS_NUM_THREADS := 1
+
 test: .venv/tested  ## what CI runs: style and types, and at the same time the quick tests
 	$(MAKE) --no-print-directory --jobs 2 lint quick
 

@@ -1,4 +1,4 @@
-"""Whether functions run as machine code, by numba, an optional package: one choice for runs and for maps."""
+"""Whether functions run as machine code, by numba, an optional package: one choice for all runs."""
 
 import importlib.util
 import os
@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 from bezstab.errors import InputError
 
 COMPILED_CHOICE = "BEZSTAB_COMPILED"
-"""The environment variable that says whether runs and maps are compiled: auto (also if it is not set), yes or no."""
+"""The environment variable that says whether runs are compiled: auto (also if it is not set), yes or no."""
 
 NEEDS_NUMBA = "compiled runs need an optional package: pip install 'bezstab[fast]'"
 
@@ -48,15 +48,6 @@ def compiler() -> Any:
             "compiled runs need NUMBA_DISABLE_INTEL_SVML=1: Intel's functions round otherwise than Python's"
         )
     return numba
-
-
-def machine_code(function: Function) -> Function:
-    """Return a function of numbers and arrays, to be compiled when it is first called; InputError without numba.
-
-    Every operation is rounded as Python's; divisions by zero give inf or nan. Threads run it at the same time.
-    """
-    compiled: Function = compiler().njit(nogil=True, error_model="numpy")(function)
-    return compiled
 
 
 def shared_with_machine_code(functions: Iterable[Callable[..., object]]) -> None:

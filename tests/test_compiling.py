@@ -10,7 +10,6 @@ from bezstab.compiling import (
     compiled_choice,
     compiler,
     cores,
-    machine_code,
     shared_with_machine_code,
 )
 from bezstab.errors import InputError
@@ -48,4 +47,4 @@ def test_a_shared_function_serves_python_and_machine_code() -> None:
         return thirds(thirds(x))
 
     shared_with_machine_code([thirds])
-    assert machine_code(ninths)(1.0) == ninths(1.0) == 1 / 3 / 3
+    assert compiler().njit(ninths)(1.0) == ninths(1.0) == 1 / 3 / 3

@@ -217,30 +217,41 @@ DRIVE_COLUMNS = [
 """What --pd adds to the columns of check, choose and poles."""
 
 
+LARGE = 10
+"""alpha_hat or beta_hat: a feedback that leaves e^-5 of an error after a step is seldom meant, and 10/s is weak."""
+
+
 def say_if_units_were_mistaken(
     methods: Sequence[Method], alpha: Fraction, beta: Fraction, h: Fraction | None, of_what: str = ""
 ) -> None:
     """Say on standard error, if so, that alpha_hat and beta_hat as typed look like alpha and beta in 1/s.
 
-    So it is where as typed none of the methods is stable, and all are at alpha and beta in 1/s for the step h (s).
-    `of_what` are the command's arguments, if it has any.
+    So it is where as typed none of the methods is stable, and all are at alpha and beta in 1/s for the step h (s): then
+    the line to type is said; or where a number is LARGE. `of_what` are the command's arguments, if it has any.
     """
-    if h is None:
-        return
     from bezstab.stability import verdict
 
-    try:
-        meant = to_dimensionless(alpha, beta, h)
-    except InputError:  # out of range: not meant
-        return
     if any(verdict(method, alpha, beta) == "converges" for method in methods):
         return
-    if all(verdict(method, *meant) == "converges" for method in methods):
+    taken = "note: --alpha and --beta were taken as α̂ and β̂, without unit; if they are in 1/s, add --physical"
+    if h is not None and _all_stable(methods, alpha, beta, h):
         command = f"bezstab {click.get_current_context().info_name}{of_what and ' '}{of_what}"
         given = "" if left_at_default("methods") else "".join(f" --method {method.name}" for method in methods)
         numbers = f"--alpha {typed_number(alpha)} --beta {typed_number(beta)} --h {typed_number(h)}"
-        line = f"{command}{given} {numbers} --physical"
-        say(f"note: --alpha and --beta were taken as α̂ and β̂, without unit; if they are in 1/s, add --physical: {line}")
+        say(f"{taken}: {command}{given} {numbers} --physical")
+    elif max(alpha, beta) > LARGE:
+        say(f"{taken}{' and your --h' if left_at_default('h') else ''}")
+
+
+def _all_stable(methods: Sequence[Method], alpha: Fraction, beta: Fraction, h: Fraction) -> bool:
+    """Return whether alpha and beta in 1/s are stable with every method at a step of h (s)."""
+    from bezstab.stability import verdict
+
+    try:
+        point = to_dimensionless(alpha, beta, h)
+    except InputError:  # out of range: not meant
+        return False
+    return all(verdict(method, *point) == "converges" for method in methods)
 
 
 def typed_number(number: Fraction) -> str:

@@ -259,12 +259,13 @@ def moving_poles(
     worst[alone] = at_rest[alone] + step * momentary_rates(turning, chi[alone])
     speeds = _safe_speeds(nearest, at_rest, growth, turned)
     reach, of_pairs = nearest.reach(turned), nearest.left_out(turned)
+    of_one = (np.abs(chi) * turned) ** 2 if turned else np.zeros(z.shape)  # at rest however large chi is
     return [
         _moving_pole(
             z_abs=float(nearest.z_abs[i]),
             middle=nearest.middle[i],
             reach=np.where(mixing[i], reach[i], 0.0),
-            left_out=np.where(mixing[i], of_pairs[i], (np.abs(chi[i]) * turned) ** 2),
+            left_out=np.where(mixing[i], of_pairs[i], of_one[i]),
             chi_abs=np.abs(chi[i]),
             moving=at_rest[i] + growth[i],
             lowest=float((at_rest[i] + sure[i]).max()),

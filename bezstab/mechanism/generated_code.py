@@ -54,7 +54,6 @@ from bezstab.mechanism.second_order_turns import (
 from bezstab.methods import (
     LinearMultistep,
     Method,
-    Partitioned,
     PredictorCorrector,
     Quantity,
     RungeKutta,
@@ -1091,8 +1090,6 @@ def first_order_stepper(acceleration: AccelerationCode, method: Method) -> Stepp
             lines += _multistep_lines(state, corrector, slope_at_the_end="p")
         case RungeKutta() as scheme:
             lines += _runge_kutta_lines(acceleration, scheme)
-        case Partitioned() as scheme:
-            lines += _partitioned_lines(acceleration.coordinates, scheme)
         case SecondOrder():
             raise TypeError(f"{method.name}: a second-order scheme has steps of its own")
     lines += _moves(size, method)
@@ -1165,17 +1162,6 @@ def _runge_kutta_lines(acceleration: AccelerationCode, scheme: RungeKutta) -> li
     return [*lines, *_update_lines(state, old_state, weighted)]
 
 
-def _partitioned_lines(coordinates: int, scheme: Partitioned) -> list[str]:
-    """Return the step of the velocities, then that of the coordinates, which may use the new velocities."""
-    new_velocity, old_velocity = (float(coefficient) for coefficient in scheme.position.sigma)
-    acceleration = float(scheme.velocity.sigma[1])
-    lines = []
-    for i in range(coordinates):
-        lines.append(f"v{i} = y{coordinates + i} + h * ({acceleration!r} * a{i})")
-        lines.append(f"q{i} = y{i} + h * ({old_velocity!r} * y{coordinates + i} + {new_velocity!r} * v{i})")
-    return lines
-
-
 def _moves(size: int, method: Method) -> list[Moved]:
     """Return what moves the past on by one step, oldest first, as far as the method uses it.
 
@@ -1186,7 +1172,7 @@ def _moves(size: int, method: Method) -> list[Moved]:
             schemes = [scheme]
         case PredictorCorrector(predictor, corrector):
             schemes = [predictor, corrector]
-        case RungeKutta() | Partitioned() | SecondOrder():
+        case RungeKutta() | SecondOrder():
             schemes = []
     kinds = []
     if any(coefficient for scheme in schemes for coefficient in scheme.rho[2:]):

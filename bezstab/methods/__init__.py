@@ -24,6 +24,7 @@ From exact numbers upwards; a file imports only from those above it:
     first_order_forms   second-order schemes that spell out a multistep method or a PECE
     shared_factors      poles that no feedback moves
     plane_edges         where a second-order scheme's plane turns from stable to unstable, exactly
+    path_edges          where a path through any method's plane may turn so, exactly
     orders              order of accuracy and error constant
     step_matrices       one step of a one-step method as an exact matrix, for steps that differ in length
     second_order_formulas  the equations of a second-order scheme as text or LaTeX
@@ -53,7 +54,6 @@ from bezstab.methods.schemes import (
     Family,
     LinearMultistep,
     Method,
-    Partitioned,
     PredictorCorrector,
     RungeKutta,
     evaluations,
@@ -99,19 +99,18 @@ if TYPE_CHECKING:
         closed_loop_table,
         coefficient_table,
         feedback_matrix,
-        feedback_polynomial,
         mapping_equations,
     )
     from bezstab.methods.first_order_forms import first_order_form
     from bezstab.methods.formulas import characteristic_text, mapping_text, recursion_text, steady_error_text
     from bezstab.methods.orders import ForceAccuracy, accuracy, accuracy_by_force
+    from bezstab.methods.path_edges import turning_factors
     from bezstab.methods.plane_edges import (
         Crossing,
         CurveTable,
         Limit,
         PlaneStrips,
         Strip,
-        crossing_factors_in_plane,
         plane_strips,
         points_between_edges,
     )
@@ -132,20 +131,20 @@ DERIVED = {
         "closed_loop_table",
         "coefficient_table",
         "feedback_matrix",
-        "feedback_polynomial",
         "mapping_equations",
     ),
     "first_order_forms": ("first_order_form",),
     "formulas": ("characteristic_text", "mapping_text", "recursion_text", "steady_error_text"),
     "orders": ("ForceAccuracy", "accuracy", "accuracy_by_force"),
+    "path_edges": ("turning_factors",),
     "plane_edges": (
         "Crossing",
         "CurveTable",
         "Limit",
         "PlaneStrips",
         "Strip",
-        "crossing_factors_in_plane",
         "plane_strips",
+        "path_edges",
         "points_between_edges",
     ),
     "shared_factors": ("fixed_poles", "reduced_table", "without_shared_factor"),
@@ -180,7 +179,6 @@ __all__ = [
     "MethodGroup",
     "Motions",
     "Part",
-    "Partitioned",
     "PlaneStrips",
     "PlaneTable",
     "Polynomial",
@@ -209,13 +207,11 @@ __all__ = [
     "closed_loop_polynomial",
     "closed_loop_table",
     "coefficient_table",
-    "crossing_factors_in_plane",
     "evaluation_errors",
     "evaluation_times",
     "evaluations",
     "exact_motions",
     "feedback_matrix",
-    "feedback_polynomial",
     "first_order_form",
     "fixed_poles",
     "forced_errors",
@@ -240,6 +236,7 @@ __all__ = [
     "step_matrix",
     "steps",
     "turning_error",
+    "turning_factors",
     "value_at_start",
     "without_shared_factor",
 ]

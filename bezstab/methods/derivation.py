@@ -7,6 +7,8 @@ mu^2 + alpha_hat mu + beta_hat = 0. Eliminating mu from the two by a resultant g
 from collections.abc import Sequence
 from fractions import Fraction
 from functools import cache
+from math import lcm
+from operator import mul
 
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
@@ -18,7 +20,6 @@ from bezstab.methods.schemes import (
     Coefficients,
     LinearMultistep,
     Method,
-    Partitioned,
     PredictorCorrector,
     RungeKutta,
 )
@@ -55,8 +56,8 @@ def characteristic_polynomial(method: Method) -> sp.Poly:
     """Return pi(z, mu) of one step on y' = lambda y, mu = h lambda, h the length of that step.
 
     Multistep: rho - mu sigma. Runge-Kutta: z - R(mu), R = 1 + mu b^T (I - mu A)^-1 1, times det(I - mu A), which is one
-    for an explicit method. PECE: the corrector's pi with the predictor's value in place of the new one. Partitioned:
-    that of the velocity map. Monic in z for mu = 0; for every mu unless implicit.
+    for an explicit method. PECE: the corrector's pi with the predictor's value in place of the new one. Monic in z for
+    mu = 0; for every mu unless implicit.
     TypeError for a second-order scheme, which treats position and velocity differently and has no mu.
     """
     match method.scheme:
@@ -72,8 +73,6 @@ def characteristic_polynomial(method: Method) -> sp.Poly:
             unused = above.gcd(below)  # a factor of stages that the step does not depend on
             unused = unused.quo_ground(unused.const())
             pi = RING_Z * below.quo(unused) - above.quo(unused)
-        case Partitioned(velocity=velocity):
-            pi = multistep_polynomial(velocity)
         case SecondOrder():
             raise TypeError(f"{method.name}: a second-order scheme has no pi(z, mu)")
     return sp.Poly.from_dict({(k, j): c for (k, j, _, _), c in pi.items()}, Z, MU, domain=sp.QQ)
@@ -85,26 +84,6 @@ def _determinant_less_mu_times(matrix: Sequence[Sequence[Fraction]]) -> PolyElem
     rows = [[sp.QQ(c.numerator, c.denominator) for c in row] for row in matrix]
     coefficients = DomainMatrix(rows, (size, size), sp.QQ).charpoly()
     return RING.from_dict({(0, k, 0, 0): c for k, c in enumerate(coefficients) if c})
-
-
-@cache
-def feedback_polynomial(method: Method) -> sp.Poly:
-    """Return what stabilisation asks of mu: mu^2 + alpha_hat mu + beta_hat with a step of step_multiple h.
-
-    Monic in mu, coefficients in QQ[alpha_hat, beta_hat]. Position and velocity maps s_1 and s_2 of a partitioned method
-    differ: there it is the numerator of (h s_1)(mu + alpha_hat) + beta_hat with z eliminated by the velocity map.
-    """
-    m = _in_ring(method.step_multiple)
-    feedback = RING_MU * (RING_MU + RING_ALPHA) + RING_BETA
-    if isinstance(method.scheme, Partitioned):
-        position, velocity = method.scheme.position, method.scheme.velocity
-        # h s_1 = rho/sigma of the position, so that rho (mu + alpha_hat) + beta_hat sigma = 0, where mu = h s_2 is a
-        # function of z. The resultant over z is zero exactly where some z satisfies this and the velocity map.
-        numerator = _in_z(position.rho) * (RING_MU + RING_ALPHA) + RING_BETA * _in_z(position.sigma)
-        feedback = multistep_polynomial(velocity).resultant(numerator).set_ring(RING)
-    feedback = feedback.quo_ground(feedback.coeff(RING_MU**2))
-    feedback = feedback.compose([(RING_ALPHA, m * RING_ALPHA), (RING_BETA, m**2 * RING_BETA)])
-    return _over_the_plane(feedback, variable=1, symbol=MU)
 
 
 @cache
@@ -185,12 +164,15 @@ def closed_loop_at(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> l
     zero where a root is infinite: there an implicit step has no solution.
     """
     if isinstance(method.scheme, SecondOrder):
+        planes, scale_of_planes = _whole_planes(method)
+        alpha_powers = _whole_powers(alpha_hat, len(planes[0]) - 1)
+        beta_powers = _whole_powers(beta_hat, len(planes[0][0]) - 1)
+        scale = scale_of_planes * alpha_powers[0] * beta_powers[0]
         return [
-            sum(
-                (c * alpha_hat**i * beta_hat**j for i, row in enumerate(in_plane) for j, c in enumerate(row)),
-                ZERO,
+            Fraction(
+                sum(a * sum(map(mul, row, beta_powers)) for a, row in zip(alpha_powers, in_plane, strict=True)), scale
             )
-            for in_plane in reversed(closed_loop_table(method))
+            for in_plane in planes
         ]
     # The feedback is mu^2 + p mu + q = 0 with roots mu_1, mu_2. Modulo it every power of mu is u + v mu, hence
     # pi = A(z) + B(z) mu at either root, and P is the product of the two (the norm of pi):
@@ -208,6 +190,19 @@ def closed_loop_at(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> l
     scale = scale_of_feedback * (scale_of_rows * scale_of_powers) ** 2
     terms = zip(_product(A, A), _product(A, B), _product(B, B), strict=True)
     return [Fraction(on_AA * aa + on_AB * ab + on_BB * bb, scale) for aa, ab, bb in terms]
+
+
+@cache
+def _whole_planes(method: Method) -> tuple[list[list[list[int]]], int]:
+    """Return a multiple of the closed loop's table that is whole, by descending powers of z, and the factor."""
+    descending = closed_loop_table(method)[::-1]
+    scale = lcm(*(c.denominator for in_plane in descending for row in in_plane for c in row))
+    return [[[int(c * scale) for c in row] for row in in_plane] for in_plane in descending], scale
+
+
+def _whole_powers(number: Fraction, most: int) -> list[int]:
+    """Return d^most number^k for k = 0 to `most`, d its denominator: whole numbers, whose sums are fast."""
+    return [number.numerator**k * number.denominator ** (most - k) for k in range(most + 1)]
 
 
 @cache
@@ -237,16 +232,12 @@ def _product(first: list[int], second: list[int]) -> list[int]:
     return product
 
 
-@cache
 def feedback_matrix(method: Method) -> Table:
     """Return the 2x2 matrix that takes (alpha_hat, beta_hat) to the coefficients of mu^1 and mu^0 in the feedback.
 
-    Exact and dimensionless. The identity for most; it holds the step multiple, and for a partitioned method the
-    difference of its two maps.
+    mu^2 + alpha_hat mu + beta_hat = 0 for a step of h, so that the parameters of the method's own step stand in it.
     """
-    by_power = feedback_polynomial(method).rep.to_dict()
-    p, q = (by_power.get((j,), {}) for j in (1, 0))
-    return tuple(tuple(_fraction(c.get(x, 0)) for x in ((1, 0), (0, 1))) for c in (p, q))
+    return (method.step_multiple, ZERO), (ZERO, method.step_multiple**2)
 
 
 @cache
@@ -287,15 +278,13 @@ def branch_polynomial(method: Method) -> tuple[Fraction, ...]:
 def mapping_equations(method: Method) -> list[sp.Equality]:
     """Return the s->z mapping as equations between s and z (paper Eq. 14, Table 1); h is the user's step.
 
-    One equation solved for s for a multistep method, for z for a Runge-Kutta method, left implicit for PECE, and two
-    (position, then velocity) for a partitioned method; none for a second-order scheme, which has no such mapping.
+    One equation solved for s for a multistep method, for z for a Runge-Kutta method, left implicit for PECE; none for a
+    second-order scheme, which has no such mapping.
     """
     h = method.step_multiple * H
     match method.scheme:
         case LinearMultistep() as scheme:
             return [_solved_for_s(scheme, h)]
-        case Partitioned(position, velocity):
-            return [_solved_for_s(position, h), _solved_for_s(velocity, h)]
         case RungeKutta():
             pi = sp.Poly(characteristic_polynomial(method).as_expr(), Z)
             growth = -pi.nth(0) / pi.nth(1)

@@ -8,7 +8,7 @@ import sympy as sp
 
 from bezstab.methods.derivation import ALPHA_HAT, BETA_HAT, MU, Z, closed_loop_polynomial, mapping_equations
 from bezstab.methods.first_order_forms import first_order_form
-from bezstab.methods.schemes import LinearMultistep, Method, Partitioned, PredictorCorrector, RungeKutta
+from bezstab.methods.schemes import LinearMultistep, Method, PredictorCorrector, RungeKutta
 from bezstab.methods.second_order import SecondOrder
 from bezstab.methods.second_order_formulas import SHOWN_DIGITS, is_long, second_order_text
 from bezstab.methods.steady_errors import LeadingError, Part, PlanePolynomial, leading_error
@@ -39,10 +39,6 @@ def recursion_text(method: Method, latex: bool = False) -> str:
             predict = _multistep("p", predictor, "y", "f", multiple, latex)
             correct = _multistep("y_{k+1}", corrector, "y", "f", multiple, latex, new_slope="f(p)")
             lines = [predict, correct]
-        case Partitioned(position, velocity):
-            velocity_step = _multistep("v_{k+1}", velocity, "v", "a", multiple, latex)
-            position_step = _multistep("x_{k+1}", position, "x", "v", multiple, latex)
-            lines = [velocity_step, position_step]
         case SecondOrder() as scheme:
             return second_order_text(scheme, multiple, latex)
         case RungeKutta(tableau, weights):
@@ -66,8 +62,6 @@ def mapping_text(method: Method, latex: bool = False) -> str:
         f"{_written(_readable(equation.lhs), latex)} = {_written(_readable(equation.rhs), latex)}"
         for equation in mapping_equations(method)
     ]
-    if isinstance(method.scheme, Partitioned):
-        sides = [f"{name}: {text}" for name, text in zip(("position", "velocity"), sides, strict=True)]
     return "; ".join(sides)
 
 

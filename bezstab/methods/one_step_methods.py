@@ -2,7 +2,8 @@
 
 from fractions import Fraction
 
-from bezstab.methods.schemes import ONE, ZERO, Family, LinearMultistep, Method, Partitioned, RungeKutta
+from bezstab.methods.recipes import recipe
+from bezstab.methods.schemes import ZERO, Family, Method, RungeKutta
 
 KUTTA = "Kutta, Z. Math. Phys. 46, 1901"
 
@@ -34,9 +35,11 @@ def semi_implicit_euler() -> Method:
 
 def symplectic_euler() -> Method:
     """Return SYM: v_{k+1} = v_k + h a_k, then x_{k+1} = x_k + h v_{k+1} (Hairer, Lubich & Wanner, Eq. I.1.9)."""
-    backward = LinearMultistep((ONE, -ONE), (ONE, ZERO))
-    forward = LinearMultistep((ONE, -ONE), (ZERO, ONE))
-    scheme = Partitioned(position=backward, velocity=forward)
+    scheme = recipe({
+        "a0": "acceleration(x0, v0)",
+        "v1": "v0 + a0",
+        "x1": "x0 + v1",
+    })  # fmt: skip
     return Method("SYM", scheme, "Hairer, Lubich & Wanner, Eq. I.1.9", family=Family("symplectic Euler", 0))
 
 

@@ -6,15 +6,12 @@ from fractions import Fraction
 from itertools import combinations_with_replacement, count
 from math import factorial, prod
 
-import sympy as sp
-
-from bezstab.methods.derivation import MU, Table, Z, coefficient_table, multistep_polynomial, table_of
+from bezstab.methods.derivation import Table, coefficient_table
 from bezstab.methods.schemes import (
     ONE,
     ZERO,
     LinearMultistep,
     Method,
-    Partitioned,
     PredictorCorrector,
     RungeKutta,
 )
@@ -34,8 +31,8 @@ def accuracy(method: Method) -> Accuracy:
 
     The error constant is the coefficient of mu^(p+1) in the local error on y' = lambda y, divided by sigma(1)
     (Hairer, Norsett & Wanner I, Eq. III.2.13). A Runge-Kutta method's p is that of its rooted-tree conditions, which
-    nonlinear right-hand sides need (ibid., Theorem II.2.13); a partitioned method has the worse of its two maps. Where
-    rationals stand for irrational coefficients, a condition holds if it does to all but two of their digits.
+    nonlinear right-hand sides need (ibid., Theorem II.2.13). Where rationals stand for irrational coefficients,
+    a condition holds if it does to all but two of their digits.
 
     A second-order scheme's p is that of linear motions under forces of position and of velocity: symplectic
     compositions, whose kicks see an old velocity, have order one however many kicks they have, and what they reach
@@ -45,9 +42,6 @@ def accuracy(method: Method) -> Accuracy:
         case RungeKutta() as scheme:
             p = _runge_kutta_order(scheme, _rounding(method))
             return p, _local_error(coefficient_table(method), p + 1)
-        case Partitioned(position, velocity):
-            errors = [_multistep_error(velocity), _multistep_error(position)]
-            return min(errors, key=_goodness)
         case LinearMultistep() | PredictorCorrector():
             return _leading_error(coefficient_table(method))
         case SecondOrder() as scheme:
@@ -57,10 +51,10 @@ def accuracy(method: Method) -> Accuracy:
             return p, min((by_force.position, by_force.velocity), key=_goodness)[1]
 
 
-def _goodness(error: Accuracy) -> tuple[int, Fraction]:
-    """Return what is less for the worse of two."""
+def _goodness(error: Accuracy) -> tuple[int, Fraction, Fraction]:
+    """Return what is less for the worse of two; of two that differ in sign alone the positive one is shown."""
     order, constant = error
-    return order, -abs(constant)
+    return order, -abs(constant), -constant
 
 
 @dataclass(frozen=True)
@@ -79,7 +73,7 @@ def accuracy_by_force(method: Method) -> ForceAccuracy:
     as for `accuracy`, or v = mu (1 + c mu^p + ...) x if that is what errs. Where position and velocity are stepped
     alike both are what `accuracy` returns.
     """
-    if not isinstance(method.scheme, Partitioned | SecondOrder):
+    if not isinstance(method.scheme, SecondOrder):
         return ForceAccuracy(accuracy(method), accuracy(method))
     scheme = second_order_form(method.scheme)
     rounding = _rounding(method)
@@ -148,10 +142,6 @@ def _ratio_error(scheme: SecondOrder, power: int) -> LeftOver:
 def _rounding(method: Method) -> Fraction:
     """Return how far an order condition may be off: not at all where the coefficients are the method's own."""
     return ZERO if method.digits is None else Fraction(100, 10**method.digits)
-
-
-def _multistep_error(scheme: LinearMultistep) -> tuple[int, Fraction]:
-    return _leading_error(table_of(sp.Poly(multistep_polynomial(scheme).as_expr(), Z, MU)))
 
 
 def _leading_error(table: Table) -> tuple[int, Fraction]:

@@ -21,15 +21,17 @@ Where a crossing comes to at a strip's end, a number or an infinite alpha_hat, a
                |    /  \ \____ /
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 from itertools import combinations, pairwise
 from math import gcd, inf
+from typing import Any
 
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
+from sympy.polys.rings import PolyElement
 
 from bezstab.errors import NumericalError
 from bezstab.methods.schemes import ONE, ZERO, Method
@@ -91,7 +93,8 @@ def plane_strips(method: Method, level: Fraction) -> PlaneStrips | None:
     NumericalError where numbers have so many digits that it would take minutes.
     """
     coefficients = _coefficients(reduced_table(method), level)
-    edges = _edges(coefficients)
+    in_ring = [RING.from_sympy(coefficient.as_expr()) for coefficient in coefficients]
+    edges = [sp.Poly(RING.to_sympy(edge), A, B, domain=sp.QQ) for edge in crossing_polynomials(in_ring, RING)]
     if any(not edge for edge in edges):
         return None  # a pair z_i z_j = r^2, or a root +-r, everywhere
     factors = _factors(edges)
@@ -112,32 +115,6 @@ def plane_strips(method: Method, level: Fraction) -> PlaneStrips | None:
             limits = {crossing: (at_low[crossing], at_high[crossing]) for crossing in crossings}
         strips.append(Strip(low, high, crossings, stable, limits))
     return PlaneStrips(tables, tuple(strips), tuple(lost))
-
-
-def crossing_factors_in_plane(
-    method: Method, alpha_hat: Fraction, beta_hat: Fraction, powers: tuple[int, int]
-) -> list[float]:
-    """Return every factor s > 0 at which the path (s^i alpha_hat, s^j beta_hat) meets an edge of |z_p| < 1, or a level.
-
-    Of a second-order scheme, exactly cut (`plane_strips`); (i, j) are the powers, all is dimensionless. Good to
-    rounding; in no order.
-    """
-    strips = plane_strips(method, ONE)
-    if strips is None:
-        return []
-    found: list[Fraction | float] = []
-    for curve in strips.curves:
-        along = [ZERO] * (powers[0] * (len(curve) - 1) + powers[1] * (len(curve[0]) - 1) + 1)
-        for i, row in enumerate(curve):
-            for j, c in enumerate(row):
-                along[powers[0] * i + powers[1] * j] += c * alpha_hat**i * beta_hat**j
-        line = sp.Poly([sp.Rational(c.numerator, c.denominator) for c in reversed(along)], A, domain=sp.QQ)
-        if not line.is_zero:
-            found += _line_roots(line.sqf_part())
-    if powers[1] and beta_hat:
-        levels = [strip.high / beta_hat for strip in strips.strips if strip.high is not None]
-        found += [float(level) ** (1 / powers[1]) for level in levels if level > 0]
-    return [float(factor) for factor in found if factor > 0]
 
 
 def points_between_edges(strips: PlaneStrips, alpha_hat: Fraction) -> list[Fraction]:
@@ -189,27 +166,30 @@ def _table(polynomial: sp.Poly) -> CurveTable:
     return tuple(tuple(terms.get((i, j), ZERO) for j in range(highest[1] + 1)) for i in range(highest[0] + 1))
 
 
-def _edges(coefficients: list[sp.Poly]) -> list[sp.Poly]:
-    """Return the four polynomials that vanish where a root may pass the circle."""
+def crossing_polynomials(coefficients: Sequence[PolyElement], ring: Any, pairs: bool = True) -> list[PolyElement]:
+    """Return the four polynomials that vanish where a root may pass |z| = 1: P(1), P(-1), c_n, and that of pairs.
+
+    `coefficients` of P in ascending powers of z, elements of a polynomial ring, or numbers. pairs: without it the
+    fourth is left out, a determinant that takes longer than all else.
+    """
     n = len(coefficients) - 1
-    at_one = sum(coefficients[1:], coefficients[0])
-    at_minus_one = sum((c if k % 2 == 0 else -c for k, c in enumerate(coefficients)), sp.Poly(0, A, B, domain=sp.QQ))
+    at_one = sum(coefficients, ring.zero)
+    at_minus_one = sum((c if k % 2 == 0 else -c for k, c in enumerate(coefficients)), ring.zero)
     edges = [at_one, at_minus_one, coefficients[n]]
-    if n < 2:
+    if n < 2 or not pairs:
         return edges
     rows = []
     for i in range(n - 1):
         row = []
         for j in range(n - 1):
-            entry = RING.zero
+            entry = ring.zero
             if j >= i:
-                entry += RING.from_sympy(coefficients[n - (j - i)].as_expr())
+                entry += coefficients[n - (j - i)]
             if j >= n - 2 - i:
-                entry -= RING.from_sympy(coefficients[j - (n - 2 - i)].as_expr())
+                entry -= coefficients[j - (n - 2 - i)]
             row.append(entry)
         rows.append(row)
-    pairs = DomainMatrix(rows, (n - 1, n - 1), RING).charpoly()[-1]
-    return [*edges, sp.Poly(RING.to_sympy(pairs), A, B, domain=sp.QQ)]
+    return [*edges, DomainMatrix(rows, (n - 1, n - 1), ring).det()]
 
 
 def _factors(polynomials: Iterable[sp.Poly]) -> list[sp.Poly]:
@@ -279,7 +259,7 @@ def _levels(factors: list[sp.Poly], curves: list[sp.Poly]) -> tuple[list[Fractio
     different: dict[tuple[int, ...], None] = {}
     for polynomial in in_beta:
         for factor, _ in polynomial.factor_list()[1]:
-            different[_whole(factor)] = None
+            different[whole_coefficients(factor)] = None
     roots = {factor: real_roots(factor) for factor in different if len(factor) > 1}
     levels = sorted(root for found in roots.values() for root in found)
     lost = []
@@ -290,7 +270,7 @@ def _levels(factors: list[sp.Poly], curves: list[sp.Poly]) -> tuple[list[Fractio
             number = 0  # of leading coefficients that vanish together
             while number < len(top) and (top[number].is_zero or top[number].rem(factor).is_zero):
                 number += 1
-            of_curve.update(dict.fromkeys(roots.get(_whole(factor), []), number))
+            of_curve.update(dict.fromkeys(roots.get(whole_coefficients(factor), []), number))
         lost.append(of_curve)
     return levels, lost
 
@@ -299,7 +279,7 @@ def _leading(curve: sp.Poly) -> sp.Poly:
     return sp.Poly(sp.Poly(curve.as_expr(), A).LC(), B)
 
 
-def _whole(polynomial: sp.Poly) -> tuple[int, ...]:
+def whole_coefficients(polynomial: sp.Poly) -> tuple[int, ...]:
     """Return the coefficients, descending, as whole numbers without a common factor, the first positive."""
     fractions = [Fraction(int(c.p), int(c.q)) for c in polynomial.set_domain(sp.QQ).all_coeffs()]
     whole, _ = whole_multiples(fractions)
@@ -317,12 +297,12 @@ def real_roots(whole: tuple[int, ...]) -> tuple[Fraction, ...]:
         return (Fraction(-whole[1], whole[0]),)
     polynomial = sp.Poly(whole, B)
     return tuple(
-        _refined(whole, Fraction(int(low.p), int(low.q)), Fraction(int(high.p), int(high.q)))
+        refined_root(whole, Fraction(int(low.p), int(low.q)), Fraction(int(high.p), int(high.q)))
         for (low, high), _ in polynomial.intervals()
     )
 
 
-def _refined(whole: tuple[int, ...], low: Fraction, high: Fraction) -> Fraction:
+def refined_root(whole: Sequence[int], low: Fraction, high: Fraction) -> Fraction:
     """Return the one root between two numbers, by bisection on a grid of binary fractions."""
     if low == high:
         return low
@@ -340,19 +320,19 @@ def _refined(whole: tuple[int, ...], low: Fraction, high: Fraction) -> Fraction:
         bits *= 2  # nearer to zero than the interval told
 
 
-def _neighbours(whole: tuple[int, ...], bits: int, low: Fraction, high: Fraction) -> tuple[int, int]:
+def _neighbours(whole: Sequence[int], bits: int, low: Fraction, high: Fraction) -> tuple[int, int]:
     """Return neighbours on the grid of 2^-bits that enclose the root."""
     slope = tuple(c * (len(whole) - 1 - i) for i, c in enumerate(whole[:-1]))
-    rising = (_sign(whole, low) or _sign(slope, low)) < 0  # another root may lie at the end of the interval
+    rising = (sign_at(whole, low) or sign_at(slope, low)) < 0  # another root may lie at the end of the interval
 
     def has_passed_the_root(number: int) -> bool:
         place = Fraction(number, 1 << bits)
-        return place > low and (place >= high or (_sign(whole, place) < 0) != rising)
+        return place > low and (place >= high or (sign_at(whole, place) < 0) != rising)
 
     return bisected_integers(has_passed_the_root, int(low * (1 << bits)) - 1, int(high * (1 << bits)) + 1)
 
 
-def _sign(whole: tuple[int, ...], x: Fraction) -> int:
+def sign_at(whole: Sequence[int], x: Fraction) -> int:
     """Return a number with the sign of the polynomial at x: its value times a power of x's denominator."""
     total, scale = 0, 1
     for c in whole:
@@ -401,13 +381,13 @@ def _crossings(curves: list[sp.Poly], beta_hat: Fraction) -> tuple[tuple[Crossin
 
 def _line_roots(line: sp.Poly) -> list[Fraction]:
     """Return the simple real roots of a polynomial in alpha_hat, ascending, to LEVEL_BITS bits."""
-    whole = _whole(line)
+    whole = whole_coefficients(line)
     if len(whole) < 2:
         return []
     if len(whole) == 2:
         return [Fraction(-whole[1], whole[0])]
     return [
-        _refined(whole, Fraction(int(low.p), int(low.q)), Fraction(int(high.p), int(high.q)))
+        refined_root(whole, Fraction(int(low.p), int(low.q)), Fraction(int(high.p), int(high.q)))
         for (low, high), _ in sp.Poly(whole, A).intervals()
     ]
 

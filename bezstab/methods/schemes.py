@@ -5,8 +5,7 @@ A scheme is a formula, a method a scheme with its name, source, family and step:
     LinearMultistep      rho(E) y = h sigma(E) f                          B4, AB4, BDF2, trapezoidal rule
     PredictorCorrector   two of them: predict, evaluate, correct          ABM4
     RungeKutta           stages by a Butcher tableau A, weights b         RK4, SIE, SDIRK2
-    Partitioned          one map for velocities, one for positions        SYM
-    SecondOrder          equations for x, v, a and helpers                Verlet, Newmark (second_order.py)
+    SecondOrder          equations for x, v, a and helpers                SYM, Verlet, Newmark (second_order.py)
 """
 
 from dataclasses import dataclass
@@ -119,22 +118,7 @@ class RungeKutta:
         return any(a != 0 for i, row in enumerate(self.tableau) for a in row[i:])
 
 
-@dataclass(frozen=True)
-class Partitioned:
-    """One-step maps for velocity (explicit, taken first) and position (which may use the new velocity).
-
-    InputError unless both are one-step maps and that of the velocity is explicit.
-    """
-
-    position: LinearMultistep
-    velocity: LinearMultistep
-
-    def __post_init__(self) -> None:
-        if self.velocity.implicit or (self.position.steps, self.velocity.steps) != (1, 1):
-            raise InputError("a partitioned method needs one-step maps, that of the velocity explicit")
-
-
-Scheme = LinearMultistep | PredictorCorrector | RungeKutta | Partitioned | SecondOrder
+Scheme = LinearMultistep | PredictorCorrector | RungeKutta | SecondOrder
 
 
 @dataclass(frozen=True)
@@ -178,7 +162,7 @@ def steps(method: Method) -> int:
             return scheme.steps
         case PredictorCorrector(predictor=scheme):
             return scheme.steps
-        case RungeKutta() | Partitioned():
+        case RungeKutta():
             return 1
         case SecondOrder() as scheme:
             return 1 - scheme.oldest
@@ -189,7 +173,7 @@ def implicit(method: Method) -> bool:
     match method.scheme:
         case LinearMultistep() | RungeKutta() | SecondOrder() as scheme:
             return scheme.implicit
-        case PredictorCorrector() | Partitioned():
+        case PredictorCorrector():
             return False
 
 
@@ -199,7 +183,7 @@ def evaluations(method: Method) -> int:
     Of an implicit method: for one iteration.
     """
     match method.scheme:
-        case LinearMultistep() | Partitioned():
+        case LinearMultistep():
             return 1
         case PredictorCorrector():
             return 2

@@ -9,7 +9,7 @@ from fractions import Fraction
 from functools import cache
 
 from bezstab.methods.plane_polynomials import ONE
-from bezstab.methods.schemes import LinearMultistep, Partitioned, PredictorCorrector, RungeKutta, Scheme
+from bezstab.methods.schemes import LinearMultistep, PredictorCorrector, RungeKutta, Scheme
 from bezstab.methods.second_order import (
     ACCELERATION,
     POSITION,
@@ -40,14 +40,6 @@ def second_order_form(scheme: Scheme) -> SecondOrder:
             return SecondOrder(tuple(_predictor_corrector(predictor, corrector)))
         case RungeKutta():
             return SecondOrder(tuple(_runge_kutta(scheme)))
-        case Partitioned(position, velocity):
-            old, new = _at(VELOCITY, 0), _at(VELOCITY, 1)
-            (by_new, by_old), (_, by_acceleration) = position.sigma, velocity.sigma
-            return SecondOrder((
-                Evaluation(_at(ACCELERATION, 0), _one(POSITION, 0), _one(VELOCITY, 0)),
-                Assignment(new, _sum([(ONE, old), (by_acceleration, _at(ACCELERATION, 0))])),
-                Assignment(_at(POSITION, 1), _sum([(ONE, _at(POSITION, 0)), (by_new, new), (by_old, old)])),
-            ))  # fmt: skip
 
 
 def _at(name: str, step: int) -> Quantity:

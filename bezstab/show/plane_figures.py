@@ -132,10 +132,10 @@ def comparison_figure(
 def verdict_figure(verdicts: VerdictMap, region: Region) -> Figure:
     """Return the simulated verdicts as cells under the exact boundary; cells that disagree are crossed."""
     with styled():
+        run = (verdicts.scene.name, verdicts.method.name, f"h = {verdicts.h:g} s", f"{verdicts.run} steps")
         given = f"{verdicts.judged} of {verdicts.undecided.size} runs gave a verdict"
         agreeing = f"{given}, {verdicts.agreeing} of them agree" if verdicts.judged else "no run gave a verdict"
-        run = title_lines(verdicts.scene.name, verdicts.method.name, f"h = {verdicts.h:g} s")
-        title = f"{run}\n{verdicts.run} steps: {agreeing}"
+        title = f"{title_lines(*run)}\n{title_lines(agreeing)}"
         figure, axes = plane_axes(title, None)
         plot.verdicts(verdicts, axes)
         plot.region(region, axes, color="black", linestyle="-", label=r"$|z_p| = 1$")

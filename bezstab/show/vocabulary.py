@@ -133,6 +133,12 @@ VOCABULARY: Mapping[str, Key] = {
     "recursion": Key("text", "The method's recursion"),
     "mapping": Key("text", "The method's mapping from s to z"),
     "characteristic_polynomial": Key("text", "Polynomial in z whose roots are the poles"),
+    "steady_error": Key(
+        "text",
+        "What the method forces on a constraint that moves as e^(i omega t), as a share of that motion: the first term "
+        "in theta = i omega h where alpha_hat and beta_hat are held",
+    ),
+    "steady_velocity_error": Key("text", "The same of the velocity, as a share of that of the motion"),
     # what accuracy a feedback costs
     "omega_h": Key("number", "How far the motion that errors are told of turns in a step, omega h", "rad"),
     "forced_error": Key(
@@ -171,12 +177,6 @@ VOCABULARY: Mapping[str, Key] = {
     ),
     "accurate_error": Key("number", "What combined_error is where the goal accurate chooses to be", null=NO_CHOICE),
     "best_error": Key("number", "What combined_error is at best_alpha_hat, best_beta_hat", null=NO_BEST),
-    "steady_error": Key(
-        "text",
-        "What the method forces on a constraint that moves as e^(i omega t), as a share of that motion: the first term "
-        "in theta = i omega h where alpha_hat and beta_hat are held",
-    ),
-    "steady_velocity_error": Key("text", "The same of the velocity, as a share of that of the motion"),
     # choices and checks
     "role": Key("text", "Whether the point was given, or is what to take instead", values=("given", "instead")),
     "goal": Key("text", "What the point was chosen for, or that it is as given"),

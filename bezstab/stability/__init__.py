@@ -2,7 +2,7 @@
 
 From a method's polynomial in float64 (its pencil) upwards; a file imports only from those above it:
 
-    arrays            names for arrays, and how those of others are read
+    arrays            names for arrays, how those of others are read, even points
     exact_sums        sums that keep their rounding; the feedback's roots mu
     root_finding      all roots of many polynomials
     pencils           what float64 needs to know of a method, made once
@@ -10,9 +10,6 @@ From a method's polynomial in float64 (its pencil) upwards; a file imports only 
     neighbourhoods    the points of a grid in blocks of neighbours
     real_factors      the largest root of real polynomials, by a quadratic factor followed among neighbours
     plane_pencils     the same of a second-order scheme, and its poles
-    dominant_roots    the largest root at many mu, followed among neighbours
-    compiled_roots    as machine code: the largest root along a row of polynomials
-    compiled_maps     whether a map is compiled, and its rows shared among the cores
     closed_loop       poles, |z_p|, the proven verdict
     turning           what turning constraints do to a pole, to first order
     searches          where a condition comes to hold; where a value is least
@@ -36,6 +33,7 @@ From a method's polynomial in float64 (its pencil) upwards; a file imports only 
     step_sequences    whether feedback decays for every sequence of steps within a range
     damping_limits    up to which steps, by damping ratio
     far_limits        what |z_p| of a second-order scheme tends to far out
+    least_modulus     the least of the largest |z|, from the poles that decide
     plane_best_points the smallest |z_p| of a second-order scheme
     best_points       the smallest |z_p|
     forced_errors     the error that a method forces with a feedback, over the plane
@@ -55,7 +53,7 @@ from typing import TYPE_CHECKING
 from bezstab.lazy import lazy_names
 from bezstab.stability.accurate_points import default_rate
 from bezstab.stability.answer_checks import Modulus
-from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, FloatArray, real_array
+from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, Extent, FloatArray, real_array
 from bezstab.stability.best_points import BestPoint, best_point, best_point_or_reason, falls_towards
 from bezstab.stability.choices import (
     THOUSANDFOLD,
@@ -83,7 +81,7 @@ from bezstab.stability.gain_margins import GainLimits, gain_limits
 from bezstab.stability.grid_maps import QUALITY, pole_map
 from bezstab.stability.margins import Margins, largest_stable_step, stability_margins, stable_up_to
 from bezstab.stability.pencils import Pencil, pencil_of, roots_in_z
-from bezstab.stability.regions import Extent, Region, pole_place, region, useful_window, window
+from bezstab.stability.regions import Region, pole_place, region, useful_window, window
 from bezstab.stability.searches import bisected, first_where
 from bezstab.stability.step_families import FAMILIES, Limit, Member, bezier_limit, family_members
 from bezstab.stability.step_sequences import VaryingSteps, varying_steps

@@ -7,9 +7,8 @@ import numpy as np
 
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method
-from bezstab.stability.arrays import BoolArray, FloatArray
+from bezstab.stability.arrays import BoolArray, Extent, FloatArray
 from bezstab.stability.forced_errors import combined_error
-from bezstab.stability.regions import Extent
 from bezstab.stability.searches import zoom_on_minimum
 
 Decays = Callable[[FloatArray, FloatArray], BoolArray]

@@ -8,7 +8,7 @@ import numpy as np
 
 from bezstab.errors import NumericalError
 from bezstab.methods import Method
-from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, FloatArray
+from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, Extent, FloatArray, even_points
 from bezstab.stability.closed_loop import AnyPencil, any_pencil_of, converges, largest_modulus, largest_pole
 from bezstab.stability.line_slices import all_within, mu_bound, real_events, slices, turning_radii
 from bezstab.stability.path_crossings import Path
@@ -16,7 +16,6 @@ from bezstab.stability.pencils import Pencil
 from bezstab.stability.plane_pencils import PlanePencil
 from bezstab.stability.searches import bisected
 
-Extent = tuple[tuple[float, float], tuple[float, float]]
 Modulus = Callable[[FloatArray, FloatArray], FloatArray]
 """|z_p|, or what takes its place, over arrays of alpha_hat and beta_hat."""
 Objective = Callable[[FloatArray, FloatArray, float], FloatArray]
@@ -41,15 +40,14 @@ EITHER_SIDE = Fraction(1, 10**9)  # relative: from a margin's end, which is good
 BETWEEN = 80  # factors on the way to an end, at which |z_p| must be below one
 FURTHEST = (1e-8, 1e8)  # factors on the way to which |z_p| is looked at where there is no end
 ONE = Fraction(1)
-PLASTIC = 1.32471795724474602596  # x^3 = x + 1: multiples of 1/x and 1/x^2 fill a square evenly (M. Roberts, 2018)
 
 
 def sampled_points(extent: Extent, alpha_hat: float, beta_hat: float) -> tuple[FloatArray, FloatArray]:
     """Return alpha_hat and beta_hat of points over a region's box, on its parabola of double mu, and around a point."""
     (alpha_low, alpha_high), (beta_low, beta_high) = extent
-    k = np.arange(1, SAMPLES + 1)
-    over_alpha = alpha_low + (alpha_high - alpha_low) * ((0.5 + k / PLASTIC) % 1)
-    over_beta = beta_low + (beta_high - beta_low) * ((0.5 + k / PLASTIC**2) % 1) ** 2  # even in |mu|
+    across, up = even_points(SAMPLES)
+    over_alpha = alpha_low + (alpha_high - alpha_low) * across
+    over_beta = beta_low + (beta_high - beta_low) * up**2  # even in |mu|
     on_parabola = np.linspace(0, alpha_high, SAMPLES // 4 + 1)[1:]
     angle = 2 * np.pi * np.arange(NEIGHBOURS) / NEIGHBOURS + 0.1
     ring_alpha = alpha_hat + np.outer(RINGS, (alpha_high - alpha_low) * np.cos(angle)).ravel()

@@ -1,4 +1,4 @@
-"""Names for the arrays of this room, the spacing of their numbers, and how arrays of somebody else are read."""
+"""Names for the arrays of this room, the spacing of their numbers, even points, and how arrays of others are read."""
 
 from typing import SupportsFloat
 
@@ -11,8 +11,14 @@ BoolArray = NDArray[np.bool_]
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
+Extent = tuple[tuple[float, float], tuple[float, float]]
+"""((alpha_hat_min, alpha_hat_max), (beta_hat_min, beta_hat_max)), dimensionless."""
+
 EPS = float(np.finfo(float).eps)
 """The spacing of float64 at one, 2^-52."""
+
+PLASTIC = 1.32471795724474602596
+"""The number with x^3 = x + 1: multiples of 1/x and 1/x^2 fill a square evenly (M. Roberts, 2018)."""
 
 
 def real_array(values: ArrayLike | None, name: str) -> FloatArray:
@@ -31,3 +37,9 @@ def real_array(values: ArrayLike | None, name: str) -> FloatArray:
     except (ValueError, TypeError, OverflowError):  # rows of different lengths, words, None
         pass
     raise InputError(f"{name} = {shown(values)}: expected real numbers, one or an array of them")
+
+
+def even_points(count: int) -> tuple[FloatArray, FloatArray]:
+    """Return so many points that fill the unit square evenly: both coordinates, each of shape (count,)."""
+    k = np.arange(1, count + 1)
+    return (0.5 + k / PLASTIC) % 1, (0.5 + k / PLASTIC**2) % 1

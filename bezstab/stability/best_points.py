@@ -11,8 +11,8 @@ zero.
         |     \ /   |z_2|         z and -z); elsewhere the two gradients must be parallel as well, or a third root
         +------+-------- mu       must close the gap between them
 
-Every kind is a square system of equations for mu and the roots that meet; a sampled minimum starts Newton's method on
-each kind, and the least solution that is a maximum over all roots is the answer, to rounding.
+Every kind is an active set (least_modulus); a sampled minimum starts Newton's method on each, and the least solution
+that is a maximum over all roots is the answer, to rounding.
 
 Of an implicit method mu is kept to Re mu <= 0, which is alpha_hat >= 0: f may be least on that edge, where a kink of
 two roots, or a single one without slope along the edge, is enough. And far out, where all roots tend to those of the
@@ -20,34 +20,32 @@ highest power of mu, it may be lower than anywhere: then no point has the least 
 """
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import product
 
 import numpy as np
-from numpy.polynomial.polynomial import polyder, polymul, polyroots, polysub, polyval2d
+from numpy.polynomial.polynomial import polyder, polymul, polyroots, polysub
 
 from bezstab.errors import NumericalError
 from bezstab.methods import Method, SecondOrder, first_order_form, fixed_poles, implicit, without_shared_factor
 from bezstab.stability.answer_checks import check_best_point, check_deadbeat, check_plane_best_point
-from bezstab.stability.arrays import ComplexArray, FloatArray
+from bezstab.stability.arrays import ComplexArray, Extent, FloatArray
 from bezstab.stability.closed_loop import free_pencil_of, largest_modulus
-from bezstab.stability.dominant_roots import dominant_root
 from bezstab.stability.far_limits import FarLimit
+from bezstab.stability.least_modulus import Active, Coefficients, solved
 from bezstab.stability.line_slices import all_inside
-from bezstab.stability.pencils import Pencil, deadbeat_mu, pencil_of, roots_in_mu, roots_in_z
+from bezstab.stability.pencils import Pencil, deadbeat_mu, largest_root_in_z, pencil_of, roots_in_mu, roots_in_z
 from bezstab.stability.plane_best_points import PlaneLeast, plane_least
 from bezstab.stability.plane_pencils import plane_pencil_of
-from bezstab.stability.regions import Extent, region
+from bezstab.stability.regions import region
 from bezstab.stability.searches import zoom_on_minimum
 
 ROUNDING = 1e-9  # relative; a solved kink's moduli agree to about 1e-15, neighbouring candidates differ far more
 DOUBLE = 1e-6  # relative; two roots closer than this are one double root, which float64 splits by sqrt(eps) = 1e-8
 REACH = 1e150  # of mu, whose square is beta_hat; one zero of R is always within its degree, as R(0) = R'(0) = 1
-NEWTON_STEPS = 16  # from a narrowed minimum three to ten lead to its kink; most kinds have none there
-STEP_SETTLED = ROUNDING**1.5  # relative, 3e-14: a Newton step this small changes nothing that is compared
 AS_SMALL = 1e-10  # relative: a value by so much above the least so far is looked at; Schur's recursion rounds by less
 SAME_MINIMUM = 1e-5  # of |mu|: minima that were narrowed to less than that and lie closer are one
 FINER = 4  # times as many samples of the plane along either axis, where the first sampling failed the check
@@ -85,15 +83,6 @@ class BestPoint:
     def __repr__(self) -> str:
         place = f"alpha_hat = {self.alpha_hat:.6g}, beta_hat = {self.beta_hat:.6g}"
         return f"BestPoint({self.method.name}: |z_p| = {self.z_abs:.6g} at {place})"
-
-
-@dataclass(frozen=True, eq=False)
-class _Kink:
-    """One kind of least value: its equations in (mu, z_1, ...), where the z start, and how often each is a root."""
-
-    equations: Callable[[ComplexArray], FloatArray]
-    starts: list[complex]
-    multiplicity: int = 1
 
 
 @dataclass(frozen=True)
@@ -368,12 +357,12 @@ def _smallest(pencil: Pencil, search: _Search) -> _Candidate:
         known = any(abs(candidate.mu - other.mu) <= SAME_MINIMUM * abs(candidate.mu) for other in followed)
         if not known and candidate.z_abs <= lowest * (1 + search.near):
             followed.append(candidate)
-    solved = [solution for candidate in followed for solution in _solutions(pencil, candidate.mu)]
-    best = min((solution.z_abs for solution in solved), default=np.inf)
+    solutions = [solution for candidate in followed for solution in _solutions(pencil, candidate.mu)]
+    best = min((solution.z_abs for solution in solutions), default=np.inf)
     if not best <= lowest * (1 + ROUNDING):
         name = pencil.method.name
         raise NumericalError(f"{name}: |z_p| = {lowest:.6g} was sampled, but no kink as low could be solved for")
-    as_low = [solution for solution in solved if solution.z_abs <= best * (1 + ROUNDING)]
+    as_low = [solution for solution in solutions if solution.z_abs <= best * (1 + ROUNDING)]
     return min(as_low, key=lambda solution: (abs(solution.mu.imag), solution.z_abs))
 
 
@@ -427,81 +416,53 @@ def _local_minima(pencil: Pencil, search: _Search) -> list[_Candidate]:
 
 def _largest_modulus(pencil: Pencil, mu: ComplexArray) -> FloatArray:
     """Return f(mu); shape of mu."""
-    return np.abs(dominant_root(pencil, mu.ravel())).reshape(mu.shape)
+    return np.abs(largest_root_in_z(pencil, mu.ravel())).reshape(mu.shape)
 
 
-def _kinks(pencil: Pencil, mu: complex) -> list[_Kink]:
-    """Return the kinds of least value, the roots at a nearby mu as their starts.
-
-    The unknowns are mu and the roots z that meet there, as complex numbers x[0] and x[1:]; equations are real. Both
-    have a second axis, of as many places as they are asked for at once.
-    """
-
-    def on_the_locus(x: ComplexArray) -> FloatArray:
-        z = x[1:]
-        residuals = polyval2d(z, np.broadcast_to(x[0], z.shape), pencil.table)
-        return np.concatenate([residuals.real, residuals.imag])
-
-    def equal_moduli(x: ComplexArray) -> FloatArray:
-        return np.asarray(np.log(np.abs(x[1:-1] / x[2:])))
-
-    def two_on_the_axis(x: ComplexArray) -> FloatArray:
-        return np.concatenate([on_the_locus(x), equal_moduli(x), x[:1].imag])
-
-    def two_opposed(x: ComplexArray) -> FloatArray:
-        z = x[1:]
-        same_mu = np.broadcast_to(x[0], z.shape)
-        by_mu, by_z = polyval2d(z, same_mu, pencil.table_by_mu), polyval2d(z, same_mu, pencil.table_by_z)
-        first, second = -by_mu / (z * by_z)  # d log z / d mu: parallel if their ratio is real
-        return np.concatenate([on_the_locus(x), equal_moduli(x), [(first / second).imag]])
-
-    def three(x: ComplexArray) -> FloatArray:
-        return np.concatenate([on_the_locus(x), equal_moduli(x)])
-
-    def double_root(x: ComplexArray) -> FloatArray:
-        slope = polyval2d(x[1:], x[:1], pencil.table_by_z)
-        return np.concatenate([on_the_locus(x), slope.real, slope.imag])
-
-    def without_slope_on_edge(x: ComplexArray) -> FloatArray:
-        z = x[1:]
-        same_mu = np.broadcast_to(x[0], z.shape)
-        by_mu, by_z = polyval2d(z, same_mu, pencil.table_by_mu), polyval2d(z, same_mu, pencil.table_by_z)
-        return np.concatenate([on_the_locus(x), (-by_mu / (z * by_z)).imag, x[:1].real])
-
-    def two_on_edge(x: ComplexArray) -> FloatArray:
-        return np.concatenate([on_the_locus(x), equal_moduli(x), x[:1].real])
-
+def _active_sets(pencil: Pencil, mu: complex) -> Iterator[tuple[list[Active], int | None]]:
+    """Yield the sets of poles that may decide near a mu, and which part of mu is zero: 0 the real one, 1 the other."""
     roots = roots_in_z(pencil, np.array([mu]))[:, 0]
-    z = roots[np.argsort(-np.abs(roots))]
-    kinks = [_Kink(two_on_the_axis, [z[0], other]) for other in z[1:3]]
-    kinks.append(_Kink(two_opposed, [z[0], z[1]]))
-    kinks.append(_Kink(double_root, [z[:2].mean()], multiplicity=2))
-    if len(z) > 2:
-        kinks.append(_Kink(three, [z[0], z[1], z[2]]))
+    first, *others = (Active(complex(z)) for z in roots[np.argsort(-np.abs(roots))][:3])
+    pairs = [[first, other] for other in others]
+    yield from ((pair, 1) for pair in pairs)  # on the real axis, where a curve of equal |z_p| ends
+    yield pairs[0], None
+    yield [Active((first.z + others[0].z) / 2, multiplicity=2)], None
+    if len(others) == 2:
+        yield [first, *others], None
     if pencil.implicit and abs(mu.real) < ON_EDGE * abs(mu):
-        kinks.append(_Kink(without_slope_on_edge, [z[0]]))
-        kinks += [_Kink(two_on_edge, [z[0], other]) for other in z[1:3]]
-    return kinks
+        yield from ((active, 0) for active in ([first], *pairs))
+
+
+def _coefficients_over_mu(pencil: Pencil) -> Coefficients:
+    """Return pi's coefficients in z and their slopes as functions of Re mu and Im mu."""
+
+    def coefficients(x: float, y: float) -> ComplexArray:
+        powers = complex(x, y) ** np.arange(pencil.table.shape[1])
+        slope = pencil.table_by_mu @ powers[:-1]
+        return np.stack([pencil.table @ powers, slope, 1j * slope])
+
+    return coefficients
 
 
 def _solutions(pencil: Pencil, start: complex) -> Iterator[_Candidate]:
-    """Yield the solution of every kind of least value that Newton's method finds from a nearby start.
+    """Yield the solution of every active set that Newton's method finds from a nearby start.
 
     A solution counts if its z are roots there indeed (along an arc of equal |z_p| the equations are dependent, and
     least squares may end at what solves nothing) and no other root is larger.
     """
-    ends = [(kink, _newton(kink.equations, np.array([start, *kink.starts]))) for kink in _kinks(pencil, start)]
-    solved = [(kink, x) for kink, x in ends if np.isfinite(x).all()]
-    all_roots = roots_in_z(pencil, np.array([x[0] for _, x in solved], complex))
-    for (kink, x), roots in zip(solved, all_roots.T, strict=True):
-        z_abs = float(np.abs(x[1:]).max())
-        others = roots
-        matched = True
-        for z in np.repeat(x[1:], kink.multiplicity):
+    coefficients = _coefficients_over_mu(pencil)
+    for active, held in _active_sets(pencil, start):
+        found = solved(coefficients, (start.real, start.imag), active, held)
+        if found is None:
+            continue
+        mu, z_abs = complex(*found.parameters), float(np.abs(found.z).max())
+        others = roots_in_z(pencil, np.array([mu]))[:, 0]
+        matched = z_abs == 0 or z_abs > ROUNDING  # what is between is the rounding of zero
+        for z in np.repeat(found.z, [each.multiplicity for each in active]):
             closest = np.argmin(np.abs(others - z))
             matched &= bool(np.abs(others[closest] - z) <= DOUBLE * z_abs)
             others = np.delete(others, closest)
-        mu = _upper(x[0])
+        mu = _upper(mu)
         if pencil.implicit and mu.real > 0:
             matched &= mu.real <= ROUNDING * abs(mu)
             mu = complex(0, mu.imag)
@@ -512,28 +473,6 @@ def _solutions(pencil: Pencil, start: complex) -> Iterator[_Candidate]:
 def _upper(mu: complex) -> complex:
     """Return mu or its conjugate, Im mu >= 0, on the real axis if it is there to rounding."""
     return complex(mu.real, abs(mu.imag) if abs(mu.imag) > ROUNDING * abs(mu) else 0)
-
-
-def _newton(equations: Callable[[ComplexArray], FloatArray], x: ComplexArray) -> ComplexArray:
-    """Return a zero by Gauss-Newton steps with central differences; nan where none is reached.
-
-    Least squares, because along an arc of equal |z_p| the equations are dependent.
-    """
-    scale = np.abs(x).max()
-    directions = 1e-6 * scale * np.concatenate([np.eye(len(x)), 1j * np.eye(len(x))])  # truncation 1e-12, noise 1e-10
-    around = np.concatenate([directions, -directions, np.zeros((1, len(x)))]).T
-    with np.errstate(all="ignore"):
-        for _ in range(NEWTON_STEPS):
-            values = equations(x[:, np.newaxis] + around)
-            if not np.isfinite(values).all():
-                break
-            forward, backward, residual = np.split(values, [len(directions), 2 * len(directions)], axis=1)
-            slopes = (forward - backward) / 2
-            step = np.linalg.lstsq(slopes, residual[:, 0], rcond=1e-9)[0] @ directions
-            x = x - step
-            if np.abs(step).max() < STEP_SETTLED * scale:
-                return x
-    return np.full_like(x, np.nan)
 
 
 # B2 and AB2 are as fast along a whole curve of mu: two roots of equal modulus, the least value, all along it. That

@@ -42,7 +42,7 @@ from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
 from bezstab.stability.locus_tracks import Track, tracks
 from bezstab.stability.pencils import Pencil, moduli_in_z, roots_in_mu
 from bezstab.stability.root_finding import roots_of_table
-from bezstab.stability.searches import BISECTIONS, bisected, zoom_on_minimum
+from bezstab.stability.searches import bisected, zoom_on_minimum
 
 ARC_POINTS = 400  # drawn per arc: chords stay within 1e-5 of the curve
 NODES = 16  # of Gauss and Legendre on a panel
@@ -309,13 +309,8 @@ def _drawn_angles(track: Track, start: float, end: float) -> FloatArray:
     return np.unique(np.append(theta, followed))
 
 
-def sign_changes(
-    values_at: Callable[[FloatArray], FloatArray], samples: FloatArray, halvings: int = BISECTIONS
-) -> FloatArray:
-    """Return where a continuous function changes sign along ascending samples, shape (changes,).
-
-    To rounding, unless the spacing of the samples is to be halved less often.
-    """
+def sign_changes(values_at: Callable[[FloatArray], FloatArray], samples: FloatArray) -> FloatArray:
+    """Return where a continuous function changes sign along ascending samples, to rounding; shape (changes,)."""
     theta, values = _with_dips(values_at, samples)
     positive = values >= 0
     change = np.flatnonzero(positive[1:] != positive[:-1])
@@ -326,7 +321,7 @@ def sign_changes(
     def has_changed(inside: FloatArray) -> BoolArray:
         return np.asarray((values_at(inside.ravel()).reshape(inside.shape) >= 0) == after)
 
-    low, high = bisected(has_changed, theta[change], theta[change + 1], halvings, at_once=CUT_POINTS)
+    low, high = bisected(has_changed, theta[change], theta[change + 1], at_once=CUT_POINTS)
     return (low + high) / 2
 
 

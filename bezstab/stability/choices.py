@@ -21,7 +21,7 @@ from bezstab.stability.answer_checks import (
     check_least,
     check_least_equal,
 )
-from bezstab.stability.arrays import BoolArray, FloatArray
+from bezstab.stability.arrays import BoolArray, Extent, FloatArray
 from bezstab.stability.best_points import AS_SMALL, best_point
 from bezstab.stability.closed_loop import (
     AnyPencil,
@@ -32,15 +32,14 @@ from bezstab.stability.closed_loop import (
     verdict,
 )
 from bezstab.stability.curve_choices import Curve, least_along, mildest_along
-from bezstab.stability.dominant_roots import dominant_root
 from bezstab.stability.forced_errors import OMEGA_H
 from bezstab.stability.line_crossings import IntArray
 from bezstab.stability.line_slices import all_within
 from bezstab.stability.margins import Margins, stability_margins
-from bezstab.stability.pencils import Pencil
+from bezstab.stability.pencils import Pencil, largest_root_in_z
 from bezstab.stability.plane_best_points import critical_point
 from bezstab.stability.plane_pencils import PlanePencil
-from bezstab.stability.regions import Extent, Region, pole_place, region
+from bezstab.stability.regions import Region, pole_place, region
 from bezstab.stability.searches import first_where, zoom_on_minimum
 from bezstab.units import check_step
 
@@ -521,7 +520,7 @@ def _critical(pencil: Pencil, furthest_mu: float) -> tuple[float, float]:
     """
 
     def real_dominant_root(mu: FloatArray) -> FloatArray:
-        z = dominant_root(pencil, mu.astype(complex))
+        z = largest_root_in_z(pencil, mu.astype(complex))
         return np.where((np.abs(z.imag) < REAL * np.abs(z)) & (z.real > 0), z.real, np.inf)
 
     mu = -np.linspace(0, furthest_mu, SAMPLES)[1:]

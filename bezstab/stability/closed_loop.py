@@ -1,12 +1,13 @@
 """Closed-loop poles over any broadcastable alpha_hat and beta_hat, and the proven verdict at one exact point.
 
-The poles are the roots of pi(z, mu) at the two roots mu of the feedback. Compared with eigenvalues of P's companion
+At single points the poles are the roots of pi(z, mu) at the two roots mu of the feedback. Compared with the roots of P
 that halves the degree, needs one solve where the mu are conjugate, and keeps all digits on beta_hat = alpha_hat^2/4,
 where the roots of P pair up. A second-order scheme has no mu, unless it spells out a first-order method: there the
-poles are the roots of P (plane_pencils).
+poles are the roots of P (plane_pencils). On grids the largest pole of every method is the largest root of P, followed
+among neighbours (real_factors), but for explicit one-step methods, whose R(mu) is known, and next to
+beta_hat = alpha_hat^2/4.
 """
 
-from collections.abc import Callable
 from fractions import Fraction
 from functools import lru_cache
 
@@ -25,17 +26,17 @@ from bezstab.methods import (
     without_shared_factor,
 )
 from bezstab.stability.arrays import EPS, ComplexArray, FloatArray, real_array
-from bezstab.stability.compiled_maps import is_compiled, write_followed
-from bezstab.stability.dominant_roots import dominant_root, dominant_root_in_blocks, largest_of_one_step
-from bezstab.stability.exact_sums import feedback_roots
-from bezstab.stability.neighbourhoods import FEWEST, SIDE, blocks_of_neighbours
-from bezstab.stability.pencils import Pencil, pencil_of, roots_in_z
+from bezstab.stability.exact_sums import feedback_discriminant, feedback_roots
+from bezstab.stability.low_degrees import largest_quadratic_root, polynomial_of_pair
+from bezstab.stability.neighbourhoods import FEWEST, SIDE
+from bezstab.stability.pencils import Pencil, largest_root_in_z, pencil_of, roots_in_z
 from bezstab.stability.plane_pencils import PlanePencil, largest_plane_root, plane_pencil_of, plane_roots
 from bezstab.stability.root_finding import CHUNK
 
-BLOCK = 8 * CHUNK  # points whose roots are followed in one go: enough to outweigh the calls for their middles
-PLANE_BLOCK = 2 * BLOCK  # the same of a second-order scheme: following its real factors takes half of the memory
-COMPILED_BLOCK = 2**20  # points that the cores share in one go: at the end of each they wait for each other
+BLOCK = 16 * CHUNK  # points whose poles are followed in one go: enough to outweigh the calls for their middles,
+POLES = 7  # each of so many poles; of more poles as many fewer points, so that work arrays stay below 50 MB
+MOST_FOLLOWED = 18  # poles: of more, whose factors lie close together, most points need all roots, and mu halves them
+NEARLY_DOUBLE = 1e-5  # of (mu_1 + mu_2)^2 / 4: with less between the mu P's roots would keep less than 12 digits
 
 PROVEN = 64  # verdicts that are remembered: a margin's end is asked for when it is found, and when it is checked
 ORDINARY = 1e12  # of alpha_hat and beta_hat: their products, of degree 12 at most, are within float64
@@ -56,8 +57,14 @@ def verdict(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> Verdict:
 @lru_cache(maxsize=PROVEN)
 def converges(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> bool:
     """Return whether the verdict is 'converges': proven as `verdict`, without asking what else it might be."""
+    return decays_faster(method, Fraction(1), alpha_hat, beta_hat)
+
+
+def decays_faster(method: Method, level: Fraction, alpha_hat: Fraction, beta_hat: Fraction) -> bool:
+    """Return whether |z_p| < level at one exact, dimensionless point: Schur's recursion in rationals, a proof."""
     polynomial = closed_loop_at(method, alpha_hat, beta_hat)
-    return polynomial[0] != 0 and is_schur(polynomial)
+    degree = len(polynomial) - 1
+    return polynomial[0] != 0 and is_schur([c * level ** (degree - i) for i, c in enumerate(polynomial)])
 
 
 def poles(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexArray:
@@ -125,28 +132,20 @@ def spectral_radius(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -
     return largest_modulus(any_pencil_of(method), alpha_hat, beta_hat)
 
 
-def largest_pole(
-    pencil: AnyPencil, alpha_hat: ArrayLike, beta_hat: ArrayLike, compiled: bool | None = None
-) -> ComplexArray:
-    """Return what dominant_pole does, from a pencil; infinite where an implicit step has no solution.
-
-    compiled: whether as machine code (compiled_maps); by default where that pays for so many points.
-    """
+def largest_pole(pencil: AnyPencil, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexArray:
+    """Return what dominant_pole does, from a pencil; infinite where an implicit step has no solution."""
     alpha_hat, beta_hat = np.broadcast_arrays(real_array(alpha_hat, "alpha_hat"), real_array(beta_hat, "beta_hat"))
     alphas, betas = (each if each.ndim == 2 else each.reshape(1, -1) for each in (alpha_hat, beta_hat))
     dominant = np.empty(alpha_hat.size, complex)
-    if compiled is None:
-        compiled = is_compiled(pencil, alpha_hat.size)
-    write = _write_compiled if compiled else _write_largest_poles
     columns = max(1, alphas.shape[1])  # of no points, too
-    in_plane = isinstance(pencil, PlanePencil)
-    most = COMPILED_BLOCK if compiled else PLANE_BLOCK if in_plane else BLOCK
+    most = BLOCK * POLES // max(POLES, pencil.degree if isinstance(pencil, PlanePencil) else 2 * pencil.steps)
     whole_rows = most // columns // SIDE * SIDE * columns
     block = whole_rows or most
     for start in range(0, alpha_hat.size, block):
         stop = min(start + block, alpha_hat.size)
         shape = ((stop - start) // columns, columns) if whole_rows else (1, stop - start)
-        write(pencil, _points(alphas, start, stop), _points(betas, start, stop), shape, dominant[start:stop])
+        points = _points(alphas, start, stop), _points(betas, start, stop)
+        _write_largest_poles(pencil, *points, shape, dominant[start:stop])
     return dominant.reshape(alpha_hat.shape)
 
 
@@ -163,60 +162,51 @@ def largest_modulus(pencil: AnyPencil, alpha_hat: ArrayLike, beta_hat: ArrayLike
     return np.abs(largest_pole(pencil, alpha_hat, beta_hat))
 
 
-def _write_compiled(
-    pencil: AnyPencil, alpha_hat: FloatArray, beta_hat: FloatArray, _shape: tuple[int, int], poles: ComplexArray
-) -> None:
-    """Write into `poles` what _write_largest_poles does, by machine code but for the points that it leaves."""
-    write_followed(pencil, alpha_hat, beta_hat, poles)
-    left = np.flatnonzero(np.isnan(poles.real))
-    if left.size:
-        few = np.empty(left.size, complex)
-        _write_largest_poles(pencil, alpha_hat[left], beta_hat[left], (1, left.size), few)
-        poles[left] = few
-
-
 def _write_largest_poles(
     pencil: AnyPencil, alpha_hat: FloatArray, beta_hat: FloatArray, shape: tuple[int, int], poles: ComplexArray
 ) -> None:
-    """Write into `poles` the dominant pole of each point of a row: those of a grid of that shape, row by row.
-
-    Conjugate mu have conjugate poles, so one of the two is enough; of two real mu both are looked at.
-    """
+    """Write into `poles` the dominant pole of each point of a row: those of a grid of that shape, row by row."""
     if isinstance(pencil, PlanePencil):
         largest_plane_root(pencil, alpha_hat, beta_hat, shape, into=poles)
-        return
-    if pencil.steps == 1 and poles.size >= FEWEST and _ordinary(alpha_hat, beta_hat):
-        if pencil.implicit:
-            largest_plane_root(plane_pencil_of(pencil.method), alpha_hat, beta_hat, shape, into=poles)  # a quadratic
-        else:
-            largest_of_one_step(pencil, alpha_hat, beta_hat, into=poles)
-        return
-    first_mu, second_mu = np.empty_like(poles), np.empty_like(poles)
-    for i in range(0, poles.size, CHUNK):
-        chunk = slice(i, i + CHUNK)
-        first_mu[chunk], second_mu[chunk] = feedback_roots(pencil.feedback, alpha_hat[chunk], beta_hat[chunk])
-    if pencil.steps > 2 and poles.size >= FEWEST:
-        blocks = blocks_of_neighbours(*shape)
-        poles[blocks] = _larger_of_both_mu(pencil, first_mu[blocks], second_mu[blocks])
+    elif pencil.steps == 1 and not pencil.implicit and poles.size >= FEWEST and _ordinary(alpha_hat, beta_hat):
+        _write_largest_of_one_step(pencil, alpha_hat, beta_hat, into=poles)
+    elif poles.size >= FEWEST and 2 * pencil.steps <= MOST_FOLLOWED and _ordinary(alpha_hat, beta_hat):
+        largest_plane_root(plane_pencil_of(pencil.method), alpha_hat, beta_hat, shape, into=poles)
+        p, q = (of_alpha * alpha_hat + of_beta * beta_hat for of_alpha, of_beta in pencil.to_feedback)
+        square = p * p / 4
+        close = np.flatnonzero(np.abs(square - q) <= NEARLY_DOUBLE * square)
+        poles[close] = _largest_by_mu(pencil, alpha_hat[close], beta_hat[close])
     else:
-        poles[:] = _larger_of_both_mu(pencil, first_mu, second_mu)
-    poles.imag = np.abs(poles.imag)
+        for i in range(0, poles.size, CHUNK):
+            chunk = slice(i, i + CHUNK)
+            poles[chunk] = _largest_by_mu(pencil, alpha_hat[chunk], beta_hat[chunk])
     _without_rounding(poles)
 
 
-def _larger_of_both_mu(pencil: Pencil, first_mu: ComplexArray, second_mu: ComplexArray) -> ComplexArray:
-    """Return the dominant pole at each pair of mu: in a row, or in blocks of neighbours."""
-    dominant: Callable[[Pencil, ComplexArray], ComplexArray]
-    if first_mu.ndim == 2:
-        dominant, some = dominant_root_in_blocks, np.flatnonzero((first_mu.imag == 0).any(axis=1))
-    else:
-        dominant, some = dominant_root, np.flatnonzero(first_mu.imag == 0)
-    if first_mu.size + some.size < FEWEST:  # one call for all of them is faster than one for each
-        found = dominant(pencil, np.concatenate([first_mu, second_mu[some]]))
-        found, others = found[: first_mu.size], found[first_mu.size :]
-    else:
-        found, others = dominant(pencil, first_mu), dominant(pencil, second_mu[some])
+def _write_largest_of_one_step(pencil: Pencil, alpha_hat: FloatArray, beta_hat: FloatArray, into: ComplexArray) -> None:
+    """Write the larger pole, Im >= 0, of an explicit one-step method, z = R(mu), at each of a row of points.
+
+    From R at the sum and the product of both mu, as P's coefficients, of high degree, would lose digits.
+    """
+    stability_function = (-pencil.table[0] / pencil.table[1, 0]).tolist()
+    for start in range(0, alpha_hat.size, CHUNK):
+        chunk = slice(start, start + CHUNK)
+        p, q, discriminant = feedback_discriminant(pencil.feedback, alpha_hat[chunk], beta_hat[chunk])
+        middle, factor = polynomial_of_pair(stability_function, p, q)
+        largest_quadratic_root(-middle, factor * factor * discriminant, into[chunk])
+
+
+def _largest_by_mu(pencil: Pencil, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
+    """Return the dominant pole, Im >= 0, of each point of a row: of all roots of pi at both mu.
+
+    Conjugate mu have conjugate poles, so one of the two is enough; of two real mu both are looked at.
+    """
+    first_mu, second_mu = feedback_roots(pencil.feedback, alpha_hat, beta_hat)
+    some = np.flatnonzero(first_mu.imag == 0)
+    both = largest_root_in_z(pencil, np.concatenate([first_mu, second_mu[some]]))
+    found, others = both[: first_mu.size], both[first_mu.size :]
     found[some] = np.where(np.abs(others) > np.abs(found[some]), others, found[some])
+    found.imag = np.abs(found.imag)
     return found
 
 

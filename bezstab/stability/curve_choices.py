@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from bezstab.errors import NumericalError
-from bezstab.stability.answer_checks import BETTER, NO_LESS, PLASTIC, Modulus, Objective
-from bezstab.stability.arrays import BoolArray, FloatArray
+from bezstab.stability.answer_checks import BETTER, NO_LESS, Modulus, Objective
+from bezstab.stability.arrays import BoolArray, FloatArray, even_points
 from bezstab.stability.best_points import AS_SMALL
 from bezstab.stability.searches import first_where, zoom_on_minimum
 
@@ -22,6 +22,7 @@ Curve = Callable[[Any], tuple[Any, Any]]
 
 SAMPLES = 1000  # |z_p| has no features as narrow as that, and what is narrower the zoom finds
 GRID, ZOOM, ROUNDS = 21, 0.2, 15  # 0.2^15 = 3e-11 of the curve, where the objective is flat to rounding
+ROUNDING = 1e-14  # of a share: so near to a sample it is the sample, which may be an exact point, as beta_hat = 1 is
 CHECKED = 400  # shares, between the samples
 
 
@@ -50,8 +51,10 @@ def least_along(curve: Curve, objective: Objective) -> tuple[float, float]:
     shares = np.sort(np.append(samples, zoomed))
     found = first_where(lambda some: values(some, as_small) <= as_small, shares)
     best = float(zoomed) if found is None else found[1]
+    if abs(best - nearest) < ROUNDING:
+        best = float(nearest)
     here = float(values(np.array([best]))[0])
-    between = (np.arange(1, CHECKED + 1) / PLASTIC) % 1
+    between, _ = even_points(CHECKED)
     if values(between).min() < here * (1 - BETTER) - NO_LESS:
         raise NumericalError(f"the point chosen along the curve has {here:.9g}, but another has less")
     return _point(curve, best)

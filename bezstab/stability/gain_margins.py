@@ -7,22 +7,14 @@ beta_hat                      x a stable point: each gain may grow up to the edg
    +------------ alpha_hat
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Literal
 
 import numpy as np
 
-from bezstab.stability.arrays import FloatArray
 from bezstab.stability.choices import Choice
-from bezstab.stability.closed_loop import spectral_radius
-from bezstab.stability.searches import first_where
-
-LOWERED = np.geomspace(1, 1e-6, 600)
-"""Factors on a gain that is lowered: neighbours are 2.3 % apart, and nobody is off by more than a million."""
-
-ON_THE_CIRCLE = 1e-12
-"""Within which of one a computed modulus is no decay: some thousand roundings, more than a pole on the circle has."""
+from bezstab.stability.path_crossings import Path, first_stable_below
 
 Gain = Literal["alpha_hat", "beta_hat"]
 
@@ -43,16 +35,15 @@ class GainLimits:
 def gain_limits(choice: Choice) -> GainLimits:
     """Return how far each of a point's two gains is from its limit, upwards from a stable point, else downwards.
 
-    Dimensionless. NumericalError if a pole (a root of paper Eq. 17) leaves the range of float64.
+    Dimensionless; where the proven verdict turns.
     """
-    a, b = choice.alpha_hat, choice.beta_hat
+    factors: tuple[float | None, float | None]
     if choice.margins:
-        factors: tuple[float | None, float | None] = (choice.margins.alpha[1], choice.margins.beta[1] ** 2)
+        factors = choice.margins.alpha[1], choice.margins.beta[1] ** 2
     else:
-        factors = (
-            _largest_stable(lambda factor: spectral_radius(choice.method, factor * a, b)),
-            _largest_stable(lambda factor: spectral_radius(choice.method, a, factor * b)),
-        )
+        point = Fraction(choice.alpha_hat), Fraction(choice.beta_hat)
+        by_alpha, by_beta = (first_stable_below(Path(choice.method, *point, powers)) for powers in ((1, 0), (0, 2)))
+        factors = (None if by_alpha is None else float(by_alpha), None if by_beta is None else float(by_beta**2))
     # the distance is the ratio of the gain and its limit, whichever is larger
     by_gain: dict[Gain, float | None] = {"alpha_hat": factors[0], "beta_hat": factors[1]}
     ratios = {
@@ -60,13 +51,7 @@ def gain_limits(choice: Choice) -> GainLimits:
     }
     nearest_first = sorted(ratios, key=lambda gain: ratios[gain])
     return GainLimits(
-        alpha_hat=None if factors[0] is None else factors[0] * a,
-        beta_hat=None if factors[1] is None else factors[1] * b,
+        alpha_hat=None if factors[0] is None else factors[0] * choice.alpha_hat,
+        beta_hat=None if factors[1] is None else factors[1] * choice.beta_hat,
         nearest=nearest_first[0] if nearest_first else None,
     )
-
-
-def _largest_stable(modulus: Callable[[FloatArray], FloatArray]) -> float | None:
-    """Return the largest of LOWERED's factors, and between them, with a modulus below one; None if none is."""
-    met = first_where(lambda factor: modulus(factor) < 1 - ON_THE_CIRCLE, LOWERED)
-    return met[1] if met else None

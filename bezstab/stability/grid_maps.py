@@ -7,7 +7,6 @@ import numpy as np
 from bezstab.methods import Method
 from bezstab.stability.arrays import ComplexArray, FloatArray
 from bezstab.stability.closed_loop import any_pencil_of, largest_pole
-from bezstab.stability.compiled_maps import is_compiled
 
 BLOCK = 65536  # points between two looks at the progress bar
 
@@ -22,7 +21,6 @@ def pole_map(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> Ite
     Eq. 17 leaves the range of float64.
     """
     pencil = any_pencil_of(method)
-    compiled = is_compiled(pencil, alpha_hat.size * beta_hat.size)
     rows = max(1, BLOCK // alpha_hat.size)
     for start in range(0, beta_hat.size, rows):
-        yield largest_pole(pencil, alpha_hat, beta_hat[start : start + rows, np.newaxis], compiled)
+        yield largest_pole(pencil, alpha_hat, beta_hat[start : start + rows, np.newaxis])

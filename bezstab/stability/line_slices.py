@@ -24,7 +24,7 @@ from numpy.polynomial.polynomial import polyder, polyval
 from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, FloatArray
 from bezstab.stability.exact_sums import feedback_roots
 from bezstab.stability.pencils import Pencil, deadbeat_mu, roots_in_mu
-from bezstab.stability.root_finding import horner
+from bezstab.stability.root_finding import horner, inside_circle
 from bezstab.stability.searches import false_position
 
 COSINE_SLACK = 1e-6  # a double zero splits by sqrt(eps) = 1e-8 into the complex plane; more candidates do no harm
@@ -259,12 +259,11 @@ def _multistep_crossings(pencil: Pencil, level: float, radius: FloatArray) -> Fl
         return np.asarray(np.clip((-rho / minus_sigma).real, -around, around))
 
 
-def edge_noise(pencil: Pencil, level: float, squared: bool) -> float:
-    """Return by what share of its |mu| rounding moves the locus |z| = level of a one-step method z = N / Q, at worst.
+def edge_noise(pencil: Pencil, level: float) -> float:
+    """Return by what share of |mu| rounding moves where lines cross |z| = level of a one-step z = N / Q, at worst.
 
-    `squared`: where lines cross it, which are zeros of |N|^2 - level^2 |Q|^2; else by its own equation. Terms are
-    rounded at the size that they have without their signs, and of many stages they cancel: of twenty implicit Euler
-    steps composed, z = (1 - mu / 20)^-20, their squares to nothing.
+    They are zeros of |N|^2 - level^2 |Q|^2. Terms are rounded at the size that they have without their signs, and of
+    many stages they cancel: of twenty implicit Euler steps composed, z = (1 - mu / 20)^-20, their squares to nothing.
     """
     mu = roots_in_mu(pencil, level * np.exp(1j * NOISE_ANGLES)).ravel()
     mu = mu[np.isfinite(mu) & (np.abs(mu) < AT_INFINITY)]
@@ -273,7 +272,7 @@ def edge_noise(pencil: Pencil, level: float, squared: bool) -> float:
         size = sum(polyval(np.abs(mu), np.abs(row)) for row in pencil.table)
         n, d = polyval(mu, numerator), polyval(mu, denominator)
         rate = np.abs(mu * (polyval(mu, polyder(numerator)) / n - polyval(mu, polyder(denominator)) / d))
-        noise = EPS * (size / np.abs(d)) ** (2 if squared else 1) / rate
+        noise = EPS * (size / np.abs(d)) ** 2 / rate
     return float(noise[np.isfinite(noise)].max(initial=0))
 
 
@@ -381,13 +380,7 @@ def all_inside(pencil: Pencil, mu: ComplexArray, level: float | FloatArray) -> B
     for row, coefficients in zip(p, pencil.table, strict=True):
         np.multiply(horner(coefficients, mu), size, out=row)
         size = size * level
-    inside = np.ones(mu.shape, bool)
-    with np.errstate(all="ignore"):  # of a point that is out nothing more is asked
-        while len(p) > 1:
-            k = p[0] / p[-1].conj()
-            inside &= np.abs(k) < 1
-            p = p[1:] - k * p[-2::-1].conj()
-    return inside
+    return inside_circle(p)
 
 
 def all_within(pencil: Pencil, alpha_hat: FloatArray, beta_hat: FloatArray, level: FloatArray) -> BoolArray:

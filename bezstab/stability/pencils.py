@@ -141,6 +141,22 @@ def roots_in_z(pencil: Pencil, mu: ComplexArray) -> ComplexArray:
     return z
 
 
+def largest_root_in_z(pencil: Pencil, mu: ComplexArray) -> ComplexArray:
+    """Return the root z of pi(., mu) of largest modulus for each of a row of mu; complex, dimensionless.
+
+    Infinite where an implicit step has no solution. NumericalError if a finite root leaves the range of float64.
+    """
+    z = roots_of_table(pencil.table, mu)
+    largest: ComplexArray = np.take_along_axis(z, np.argmax(np.abs(z), axis=0)[np.newaxis], axis=0)[0]
+    bad = np.flatnonzero(~np.isfinite(largest))  # argmax prefers nan
+    if bad.size:
+        infinite = has_infinite_root(pencil, mu[bad])
+        if not infinite.all():
+            raise_not_finite(pencil, mu[bad[~infinite]])
+        largest[bad] = np.inf
+    return largest
+
+
 def raise_not_finite(pencil: Pencil, mu: ComplexArray) -> None:
     """Raise NumericalError for a row of mu (one at least) at which a root is not finite."""
     name, worst = pencil.method.name, mu[0]

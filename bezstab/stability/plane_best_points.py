@@ -3,8 +3,8 @@ r"""The smallest |z_p| of a second-order scheme over alpha_hat, beta_hat >= 0, a
 Its poles depend on both parameters as they like, so besides the kinks of mu-methods (see best_points) there are more
 kinds of least value: poles that are all zero, a triple one, a double one that is least along the curve on which it is
 double, and a single pair where its modulus has no slope. And it may lie on the edge alpha_hat = 0, where a slope along
-the edge decides. Every kind is a square system of real equations for alpha_hat,
-beta_hat and the poles that meet; sampled minima start Newton's method on each, and the least solution is the answer.
+the edge decides. Every kind but the first is an active set (least_modulus); sampled minima start Newton's method on
+each, and the least solution is the answer.
 
       beta_hat |     all zero    two equations               |z_1| = |z_2| = |z_3|    or two of them with
                |        x                                        \   /                gradients that oppose
@@ -14,18 +14,18 @@ beta_hat and the poles that meet; sampled minima start Newton's method on each, 
 """
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import combinations, pairwise
+from itertools import combinations
 
 import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval2d, polyval3d
 
 from bezstab.errors import NumericalError
-from bezstab.stability.arrays import EPS, ComplexArray, FloatArray
+from bezstab.stability.arrays import EPS, ComplexArray, Extent, FloatArray
 from bezstab.stability.closed_loop import largest_modulus
 from bezstab.stability.far_limits import FarLimit, least_far_limit
-from bezstab.stability.plane_cells import Extent
+from bezstab.stability.least_modulus import Active, solved
 from bezstab.stability.plane_pencils import PlanePencil, plane_roots
 from bezstab.stability.searches import zoom_on_minimum
 
@@ -61,28 +61,22 @@ class PlaneLeast:
     residual: float = 0.0
 
 
-@dataclass(frozen=True, eq=False)
-class _Kind:
-    """Equations in (alpha_hat, beta_hat, Re z_1, Im z_1, ...), where the z start, and each one's multiplicity."""
-
-    equations: Callable[[float, float, ComplexArray], list[float]]
-    starts: list[complex]
-    multiplicity: int = 1
-    loose: float = 0.0  # added to the residual of a kind that is solved to half the digits where another fits better
-
-
 class _Tables:
     """P's table in float64 and those of its derivatives, and their values."""
 
     def __init__(self, pencil: PlanePencil) -> None:
         self.p = np.array(pencil.split)[..., 0]
         self.by_z = _derivative(self.p, 0)
-        self.by_z_twice = _derivative(self.by_z, 0)
-        self.by_alpha, self.by_beta = (_derivative(self.p, axis) for axis in (1, 2))
+        by_alpha, by_beta = (_derivative(self.p, axis) for axis in (1, 2))
+        self._with_slopes = [np.moveaxis(table, 0, -1) for table in (self.p, by_alpha, by_beta)]
 
     def coefficients(self, alpha_hat: float, beta_hat: float) -> FloatArray:
         """Return P's coefficients at a point, ascending."""
         return np.asarray(polyval2d(alpha_hat, beta_hat, np.moveaxis(self.p, 0, -1)), float)
+
+    def with_slopes(self, alpha_hat: float, beta_hat: float) -> ComplexArray:
+        """Return the same, and their slopes by alpha_hat and by beta_hat; shape (3, degree + 1)."""
+        return np.array([polyval2d(alpha_hat, beta_hat, table) for table in self._with_slopes], complex)
 
     def vanish(self, alpha_hat: float, beta_hat: float) -> bool:
         """Return whether all of P's coefficients but the leading one are zero, to rounding.
@@ -115,12 +109,12 @@ def plane_least(pencil: PlanePencil, view: Extent, unbounded: bool, finer: int =
         high = np.maximum(high, FAR)
     sampled = sorted(_local_minima(pencil, high, finer), key=lambda minimum: minimum[0])
     lowest = min(value for value, _ in sampled)
-    solved: list[PlaneLeast] = []
+    solutions: list[PlaneLeast] = []
     for value, place in sampled:
-        best = _best(solved)
+        best = _best(solutions)
         if best is None or value < HOPEFUL * best.z_abs:
-            solved += _solutions(pencil, place)
-    best = _best(solved)
+            solutions += _solutions(pencil, place)
+    best = _best(solutions)
     limit = least_far_limit(pencil)
     if limit.z_abs < min(lowest, best.z_abs if best else np.inf) * (1 - NO_LONGER):
         return limit
@@ -131,12 +125,12 @@ def plane_least(pencil: PlanePencil, view: Extent, unbounded: bool, finer: int =
     return best
 
 
-def _best(solved: list[PlaneLeast]) -> PlaneLeast | None:
+def _best(solutions: list[PlaneLeast]) -> PlaneLeast | None:
     """Return the least solution; of those alike but for the rounding of multiple poles, the one solved best."""
-    if not solved:
+    if not solutions:
         return None
-    least = min(each.z_abs for each in solved)
-    alike = [each for each in solved if each.z_abs <= least + ALIKE * (least or 1.0)]
+    least = min(each.z_abs for each in solutions)
+    alike = [each for each in solutions if each.z_abs <= least + ALIKE * (least or 1.0)]
 
     def how_well(each: PlaneLeast) -> tuple[int, int, float]:
         return math.frexp(max(each.residual, EPS))[1] // 8, -each.multiplicity, each.beta_hat
@@ -185,160 +179,97 @@ def _local_minima(pencil: PlanePencil, high: FloatArray, finer: int) -> Iterator
         yield float(value), np.array([place[0], place[1] ** 2])
 
 
-def _kinds(tables: _Tables, z: ComplexArray, on_edge: bool) -> Iterator[_Kind]:
-    """Yield the kinds of least value near a point with these poles, the largest first; on_edge: with alpha_hat = 0."""
+def _active_sets(z: ComplexArray, on_edge: bool) -> Iterator[tuple[list[Active], int | None]]:
+    """Yield the sets of poles that may decide near a point with these, the largest first, and which parameter is zero.
 
-    def parts(values: list[complex]) -> list[float]:
-        return [part for value in values for part in (value.real, value.imag)]
-
-    def on_p(a: float, b: float, z: ComplexArray) -> list[float]:
-        return parts([tables.at(tables.p, each, a, b) for each in z])
-
-    def equal(z: ComplexArray) -> list[float]:
-        return [float(np.log(abs(first / second))) for first, second in pairwise(z)]
-
-    def log_gradient(a: float, b: float, z: complex) -> FloatArray:
-        by_z = tables.at(tables.by_z, z, a, b)
-        if not by_z or not z:
-            return np.full(2, np.nan)
-        slopes = [-tables.at(table, z, a, b) / (z * by_z) for table in (tables.by_alpha, tables.by_beta)]
-        # by the logarithms of large parameters: by themselves every slope fades where they grow
-        return np.array([slope.real for slope in slopes]) * (max(a, 1.0), max(b, 1.0))
-
-    def all_zero(a: float, b: float, z: ComplexArray) -> list[float]:
-        *others, leading = tables.coefficients(a, b)
-        return [float(c / leading) for c in others]
-
-    def all_zero_twice(a: float, b: float, z: ComplexArray) -> list[float]:
-        constant = [polyval2d(a, b, _derivative(tables.p[:1], axis)[0]) for axis in (1, 2)]
-        return [*all_zero(a, b, z)[1:], *(float(c) for c in constant)]
-
-    def double(a: float, b: float, z: ComplexArray) -> list[float]:
-        return [*on_p(a, b, z[:1]), *parts([tables.at(tables.by_z, z[0], a, b)])]
-
-    def double_everywhere(a: float, b: float, z: ComplexArray) -> list[float]:
-        slopes = [tables.at(tables.by_z, each, a, b) for each in z]
-        return [*on_p(a, b, z), *parts(slopes), *equal(z), *(z.imag.tolist())]
-
-    def triple(a: float, b: float, z: ComplexArray) -> list[float]:
-        return [*double(a, b, z), tables.at(tables.by_z_twice, z[0], a, b).real, z[0].imag]
-
-    def double_and_another(a: float, b: float, z: ComplexArray) -> list[float]:
-        return [*double(a, b, z), *on_p(a, b, z[1:]), *equal(z), z[0].imag]
-
-    def least_double(a: float, b: float, z: ComplexArray) -> list[float]:
-        slope_tables = [(_derivative(t, 1), _derivative(t, 2)) for t in (tables.p, tables.by_z)]
-        (p_a, p_b), (q_a, q_b) = ([tables.at(t, z[0], a, b).real for t in pair] for pair in slope_tables)
-        return [*double(a, b, z), p_a * q_b - p_b * q_a, z[0].imag]
-
-    def without_slope(a: float, b: float, z: ComplexArray) -> list[float]:
-        return [*on_p(a, b, z), *log_gradient(a, b, complex(z[0])).tolist()]
-
-    def two_opposed(a: float, b: float, z: ComplexArray) -> list[float]:
-        first, second = (log_gradient(a, b, complex(each)) for each in z)
-        return [*on_p(a, b, z), *equal(z), float(first[0] * second[1] - first[1] * second[0])]
-
-    def several(a: float, b: float, z: ComplexArray) -> list[float]:
-        return [*on_p(a, b, z), *equal(z)]
-
-    def edge_without_slope(a: float, b: float, z: ComplexArray) -> list[float]:
-        return [*on_p(a, b, z), a, float(log_gradient(a, b, complex(z[0]))[1])]
-
-    def edge_two(a: float, b: float, z: ComplexArray) -> list[float]:
-        return [*several(a, b, z), a]
-
-    def edge_double(a: float, b: float, z: ComplexArray) -> list[float]:
-        return [*double(a, b, z), a]
-
+    Poles that nearly meet may be one multiple pole, which float64 parts. on_edge: alpha_hat may be zero.
+    """
     upper = [complex(each.real, abs(each.imag)) for each in z]
     different: list[complex] = []
     for each in upper:
         if all(abs(each - other) > SPLIT * abs(each) for other in different):
             different.append(each)
-    middle = complex(np.mean([each.real for each in upper[:2]]))
-    yield _Kind(all_zero, [], loose=ROUNDING)
-    yield _Kind(all_zero_twice, [])  # where P's last coefficient touches zero without passing it
-    yield _Kind(least_double, [middle], multiplicity=2)
-    yield _Kind(without_slope, different[:1])
+    first, *others = (Active(each, real=each.imag <= SPLIT * abs(each)) for each in different[:4])
+    closest = min(combinations(z[:4].tolist(), 2), key=lambda two: abs(two[0] - two[1]))
+    places = {(upper[0].real + upper[1].real) / 2, (closest[0].real + closest[1].real) / 2}
+    doubles = [Active(complex(place), multiplicity=2, real=True) for place in sorted(places)]
+    pairs = [[first, other] for other in others]
+    inside = [*([double] for double in doubles), [first], *pairs]
     if len(z) > 2:
-        yield _Kind(triple, [complex(np.mean([each.real for each in upper[:3]]))], multiplicity=3)
-        for other in different[1:4]:
-            yield _Kind(double_and_another, [middle, other], multiplicity=2)
+        triple = Active(complex(np.mean([each.real for each in upper[:3]])), multiplicity=3, real=True)
+        inside += [[triple], *([double, other] for double in doubles for other in (first, *others))]
     if len(z) > 3:
-        yield _Kind(double, [different[0]], multiplicity=2)
-        yield _Kind(double_everywhere, [middle, complex(-middle.real)], multiplicity=2)
-    for other in different[1:4]:
-        yield _Kind(two_opposed, [different[0], other])
-    if len(different) > 2:
-        yield _Kind(several, different[:3])
+        inside.append([Active(different[0], multiplicity=2)])
+        inside += [[double, Active(-double.z, multiplicity=2, real=True)] for double in doubles]
+    if len(others) > 1:
+        inside.append([first, *others[:2]])
+    yield from ((active, None) for active in inside)
     if on_edge:
-        yield _Kind(edge_without_slope, different[:1])
-        yield _Kind(edge_double, [middle], multiplicity=2)
-        for other in different[1:4]:
-            yield _Kind(edge_two, [different[0], other])
+        yield from ((active, 0) for active in ([first], *([double] for double in doubles), *pairs))
 
 
 def _solutions(pencil: PlanePencil, start: FloatArray) -> Iterator[PlaneLeast]:
-    """Yield the solution of every kind that Newton's method finds from a nearby start, if no other pole is larger."""
+    """Yield the solution of every active set that Newton's method finds from a nearby start, if no pole is larger.
+
+    And where all poles are zero, which is no set of simple poles.
+    """
     tables = _Tables(pencil)
+    yield from _all_zero(tables, pencil.degree, start)
     z = plane_roots(pencil, start[:1], start[1:])[:, 0]
     z = z[np.argsort(-np.abs(z), kind="stable")]
     if abs(z[0]) < EPS**0.25:  # so near to all zero that nothing else is to be told
-        z = z + EPS**0.25
-    for kind in _kinds(tables, z, on_edge=bool(start[0] < ON_EDGE)):
-        found = _newton(kind, start)
-        if found is None:
+        return
+    for active, held in _active_sets(z, on_edge=bool(start[0] < ON_EDGE)):
+        found = solved(tables.with_slopes, (float(start[0]), float(start[1])), active, held)
+        if found is None or found.residual > ROUNDING:
             continue
-        alpha_hat, beta_hat, meeting, residual = found
-        alpha_hat, beta_hat = (0.0 if abs(x) < SETTLED else x for x in (alpha_hat, beta_hat))
+        alpha_hat, beta_hat = (0.0 if abs(x) < SETTLED else x for x in found.parameters)
         if not (alpha_hat >= 0 and beta_hat >= 0):
             continue
-        if not kind.starts:
-            if tables.vanish(alpha_hat, beta_hat):
-                yield PlaneLeast(0.0, alpha_hat, beta_hat, (0j,), pencil.degree, residual + kind.loose)
-            continue
-        z_abs = float(np.abs(meeting).max())
+        z_abs = float(np.abs(found.z).max())
         others = plane_roots(pencil, np.array([alpha_hat]), np.array([beta_hat]))[:, 0]
-        rounding = 10 * EPS ** (1 / (kind.multiplicity + 1))  # of poles of one multiplicity more, differing from one
-        different_ones = all(abs(a - b) > rounding for a, b in combinations(meeting, 2))
-        near = different_ones and all(np.abs(others - each).min() <= max(rounding, ROUNDING) for each in meeting)
-        if near and np.abs(others).max() <= z_abs + rounding and np.abs(np.abs(meeting) - z_abs).max() <= ROUNDING:
-            real = [complex(each.real, abs(each.imag) if abs(each.imag) > rounding * z_abs else 0) for each in meeting]
-            yield PlaneLeast(
-                z_abs, alpha_hat, beta_hat, tuple(sorted(real, key=lambda z: -z.real)), kind.multiplicity, residual
-            )
+        multiplicity = active[0].multiplicity
+        rounding = 10 * EPS ** (1 / (multiplicity + 1))  # of poles of one multiplicity more, differing from one
+        different_ones = all(abs(a - b) > rounding for a, b in combinations(found.z, 2))
+        near = different_ones and all(np.abs(others - each).min() <= max(rounding, ROUNDING) for each in found.z)
+        if near and np.abs(others).max() <= z_abs + rounding and np.abs(np.abs(found.z) - z_abs).max() <= ROUNDING:
+            real = [complex(each.real, abs(each.imag) if abs(each.imag) > rounding * z_abs else 0) for each in found.z]
+            meeting = tuple(sorted(real, key=lambda z: -z.real))
+            yield PlaneLeast(z_abs, alpha_hat, beta_hat, meeting, multiplicity, found.residual)
 
 
-def _newton(kind: _Kind, start: FloatArray) -> tuple[float, float, ComplexArray, float] | None:
-    """Return alpha_hat, beta_hat, the poles, and what is left of the equations, by Gauss-Newton steps; None if much.
+def _all_zero(tables: _Tables, degree: int, start: FloatArray) -> Iterator[PlaneLeast]:
+    """Yield the points near a start where all of P's coefficients but the leading one vanish.
 
-    Least squares, because some kinds have an equation to spare.
+    By Newton's method for all of them, and where the last only touches zero, for its slopes in its place.
     """
-    starts = np.array(kind.starts, complex)
-    x = np.concatenate([start, starts.real, starts.imag])
-    count = len(starts)
+    last_slopes = [_derivative(tables.p[:1], axis) for axis in (1, 2)]
 
-    def residual(x: FloatArray) -> FloatArray:
-        return np.array(kind.equations(float(x[0]), float(x[1]), x[2 : 2 + count] + 1j * x[2 + count :]), float)
+    def coefficients(x: FloatArray) -> FloatArray:
+        values = tables.coefficients(float(x[0]), float(x[1]))
+        return np.asarray(values[:-1] / values[-1])
 
-    scale = np.maximum(np.abs(x), np.concatenate([[1e-3, 1e-3], np.ones(2 * count)]))
-    with np.errstate(all="ignore"):
-        for _ in range(NEWTON_STEPS):
-            columns = []
-            for k, size in enumerate(1e-6 * scale):
-                offset = np.zeros_like(x)
-                offset[k] = size
-                columns.append((residual(x + offset) - residual(x - offset)) / 2)
-            value = residual(x)
-            if not np.isfinite([*columns, value]).all():
-                return None
-            step = np.linalg.lstsq(np.stack(columns, axis=1), value, rcond=1e-9)[0] * 1e-6 * scale
-            x = x - step
-            if np.all(np.abs(step) <= SETTLED**0.75 * scale):
-                left = float(np.abs(residual(x)).max(initial=0.0))
-                z = x[2 : 2 + count] + 1j * x[2 + count :]
-                return (float(x[0]), float(x[1]), z, left) if left < ROUNDING else None
-    return None
+    def where_the_last_touches(x: FloatArray) -> FloatArray:
+        return np.array([*coefficients(x)[1:], *(float(polyval2d(x[0], x[1], table[0])) for table in last_slopes)])
+
+    for equations, loose in ((coefficients, ROUNDING), (where_the_last_touches, 0.0)):
+        x = start
+        with np.errstate(all="ignore"):
+            for _ in range(NEWTON_STEPS):
+                beside = 1e-6 * np.maximum(np.abs(x), 1e-3)
+                sides = [equations(x + by) - equations(x - by) for by in np.diag(beside)]
+                value = equations(x)
+                if not np.isfinite([*sides, value]).all():
+                    break
+                step = np.linalg.lstsq(np.array(sides).T / 2, value, rcond=1e-9)[0] * beside
+                x = x - step
+                if np.all(np.abs(step) <= SETTLED**0.75 * np.maximum(np.abs(x), 1e-3)):
+                    residual = float(np.abs(equations(x)).max())
+                    alpha_hat, beta_hat = (0.0 if abs(each) < SETTLED else float(each) for each in x)
+                    positive = alpha_hat >= 0 and beta_hat >= 0
+                    if positive and residual < ROUNDING and tables.vanish(alpha_hat, beta_hat):
+                        yield PlaneLeast(0.0, alpha_hat, beta_hat, (0j,), degree, residual + loose)
+                    break
 
 
 def critical_point(pencil: PlanePencil, high: tuple[float, float]) -> tuple[float, float] | None:

@@ -22,8 +22,9 @@ import numpy as np
 
 from bezstab.errors import NumericalError
 from bezstab.methods import Crossing, CurveTable, Limit, PlaneStrips, Strip
-from bezstab.stability.arrays import ComplexArray, FloatArray
+from bezstab.stability.arrays import ComplexArray, Extent, FloatArray
 from bezstab.stability.exact_sums import double_polynomial, split
+from bezstab.stability.root_finding import newton_correction
 from bezstab.stability.searches import zoom_on_minimum
 
 POLISH = 3  # steps of Newton's method on a root that companion eigenvalues have to a few eps of the largest
@@ -46,7 +47,6 @@ FAR_OUT = 1e8  # of a level, or LEAST_VIEW: from so near to a strip's end up to 
 FLAT = 1e-12  # of alpha_hat: an edge that comes near a limit turns by no more, but for rounding
 OUT_OF_VIEW = 3.0  # times what is to be seen: curves that go on are drawn so far
 
-Extent = tuple[tuple[float, float], tuple[float, float]]
 Approached = tuple[tuple[bool, bool], tuple[bool, bool]]
 
 
@@ -159,12 +159,7 @@ def _real_roots(coefficients: FloatArray, count: int) -> FloatArray:
         x = np.sort(_most_real(roots, count), axis=1).T
         allowed = np.maximum(SETTLED * np.abs(x), EIGENVALUE_ERROR * np.abs(roots).max(axis=1))
         for _ in range(POLISH):
-            value = np.broadcast_to(coefficients[-1], x.shape)
-            slope = np.zeros_like(x)
-            for coefficient in coefficients[-2::-1]:
-                slope = slope * x + value
-                value = value * x + coefficient
-            step = value / slope
+            step = newton_correction(coefficients, x)
             x = x - np.where(np.abs(step) < allowed, step, 0)
         return np.where(lost, np.inf, x)
 

@@ -19,16 +19,17 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method, closed_loop_at, is_schur, points_between_edges
+from bezstab.methods import Method, points_between_edges
 from bezstab.rationals import exact
-from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
+from bezstab.stability.arrays import BoolArray, ComplexArray, Extent, FloatArray, even_points
+from bezstab.stability.closed_loop import decays_faster
 from bezstab.stability.line_crossings import crossed_levels
-from bezstab.stability.plane_cells import Edges, Extent, PlaneShape
+from bezstab.stability.plane_cells import Edges, PlaneShape
 from bezstab.stability.plane_pencils import PlanePencil, coefficients_at
+from bezstab.stability.root_finding import inside_circle
 from bezstab.stability.searches import bisected
 
 POINTS = 600  # all over the view: 0.1 ms
-PLASTIC = 1.32471795724474602596  # x^3 = x + 1: multiples of 1/x and 1/x^2 fill a square evenly (M. Roberts, 2018)
 UNDECIDED = 1e-9  # of |z_p|: nearer to the level float64 may be wrong where poles nearly meet
 BESIDE = 1e-9  # of what is seen: nearer to an edge a point may fall to either side
 NODES = 8  # of Gauss and Legendre on a panel
@@ -80,10 +81,9 @@ def _check_points(
     pencil: PlanePencil, level: float, edges: Edges | None, shape: PlaneShape | None, view: Extent
 ) -> None:
     """Raise NumericalError where a point is inside by the poles and outside by the cells, or the contrary."""
-    k = np.arange(1, POINTS + 1)
+    across, up = even_points(POINTS)
     (left, right), (low, high) = view
-    alpha_hat = left + (right - left) * (1.2 * ((0.5 + k / PLASTIC) % 1) - 0.1)
-    beta_hat = low + (high - low) * (1.2 * ((0.5 + k / PLASTIC**2) % 1) - 0.1)
+    alpha_hat, beta_hat = left + (right - left) * (1.2 * across - 0.1), low + (high - low) * (1.2 * up - 0.1)
     by_poles = _inside(pencil, level, alpha_hat, beta_hat)
     by_cells = np.zeros(POINTS, bool)
     distance = np.full(POINTS, np.inf)
@@ -99,23 +99,12 @@ def _check_points(
 
 def _inside(pencil: PlanePencil, level: float, alpha_hat: FloatArray, beta_hat: FloatArray) -> BoolArray:
     """Return whether |z_p| < level, by Schur's recursion in float64; False where a pole is infinite."""
-    p = np.stack([c * level**k for k, c in enumerate(coefficients_at(pencil, alpha_hat, beta_hat))])
-    inside = np.full(alpha_hat.shape, True)
-    with np.errstate(all="ignore"):
-        while len(p) > 1:
-            k = p[0] / p[-1]
-            inside &= np.abs(k) < 1
-            p = (p - k * p[::-1])[1:]  # whose last coefficient, p(0) - k lead(p), was 0
-    return inside
+    return inside_circle(np.stack([c * level**k for k, c in enumerate(coefficients_at(pencil, alpha_hat, beta_hat))]))
 
 
 def proven(method: Method, level: float, alpha_hat: float, beta_hat: float | Fraction) -> bool:
     """Return whether |z_p| < level at one point: Schur's recursion in rationals, a proof."""
-    polynomial = closed_loop_at(method, Fraction(alpha_hat), Fraction(beta_hat))
-    scale, degree = exact(level), len(polynomial) - 1
-    if polynomial[0] == 0:
-        return False
-    return is_schur([c * scale ** (degree - i) for i, c in enumerate(polynomial)])
+    return decays_faster(method, exact(level), Fraction(alpha_hat), Fraction(beta_hat))
 
 
 def _all_proven(method: Method, level: float, alpha_hat: FloatArray, beta_hat: FloatArray) -> BoolArray:

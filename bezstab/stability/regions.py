@@ -33,7 +33,7 @@ from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method, SecondOrder, first_order_form, fixed_poles, plane_strips, without_shared_factor
 from bezstab.rationals import exact
 from bezstab.read_only import ReadOnlyArrays
-from bezstab.stability.arrays import BoolArray, FloatArray
+from bezstab.stability.arrays import BoolArray, Extent, FloatArray
 from bezstab.stability.boundary_locus import Arc, Bounds, bounds_of, feedback_coefficients
 from bezstab.stability.closed_loop import spectral_radius
 from bezstab.stability.line_slices import RIM, edge_noise, rim_radius
@@ -55,9 +55,6 @@ FLAT = 1e-6  # of |mu|: a coordinate that varies less along an arc is constant, 
 USUAL_SIZE = 4.0  # alpha h and beta h up to 2: the least that is shown of what has no end
 NO_DIGITS = 0.05  # of mu, lost where lines cross the edge: the check then fails anyway, but after minutes
 GAP = 1e-6  # of a curve's size: where two arcs meet in a double mu, each ends within the root of rounding
-
-Extent = tuple[tuple[float, float], tuple[float, float]]
-"""((alpha_hat_min, alpha_hat_max), (beta_hat_min, beta_hat_max)), dimensionless."""
 
 ATTAINED: Approached = ((False, False), (False, False))
 
@@ -125,7 +122,7 @@ def region(method: Method, level: float = 1.0) -> Region:
     if stuck:
         return replace(region(without_shared_factor(method), level), method=method, fixed_poles=stuck)
     pencil = pencil_of(method)
-    if pencil.steps == 1 and edge_noise(pencil, level, squared=True) > NO_DIGITS:
+    if pencil.steps == 1 and edge_noise(pencil, level) > NO_DIGITS:
         raise NumericalError(f"{method.name}: float64 keeps no digits of where |z_p| = {level:g}: too many stages")
     try:
         return _checked_region(method, level, finer=1)

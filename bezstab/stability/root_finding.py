@@ -1,16 +1,18 @@
 """All roots of many polynomials at once: of sum_kj table[k, j] y^k x^j in y, for every x of a row.
 
 Along a row of a map neighbouring x have neighbouring roots. So one x in STRIDE is solved from scratch, with starts
-from the Newton polygon, and its roots start Aberth's iteration for the others. If but one root of each is wanted, it
-can be followed by Newton's method alone (`followed_roots`), which is several times faster.
+from the Newton polygon, and its roots start Aberth's iteration for the others.
 """
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
+
+Number = TypeVar("Number", FloatArray, ComplexArray)
 
 CHUNK = 16384  # points at a time: all the work arrays of one chunk stay in a core's cache
 STRIDE = 16  # of a row of points one in so many has all its roots solved for, the others start from them
@@ -22,7 +24,6 @@ FAR = 1e15  # |z| whose 16th power still fits float64
 NEAR = 0.2  # relative distance of x within which the roots of a neighbour are better starts than the polygon's
 NUDGE = 1e-3  # about a step of a map's grid, so it costs no iteration
 CONVERGED = 1e-9  # relative correction after which a quadratically convergent iterate is exact to rounding
-NEWTON_STEPS = 4  # from a start that is off by the square of a map's spacing two suffice
 LOG_OF_ZERO = -1e300  # a finite stand-in for log 0, below every logarithm of a float64
 
 
@@ -255,7 +256,7 @@ def _repulsion_of_others(z: ComplexArray) -> ComplexArray:
     return np.asarray(reciprocals.sum(axis=1))
 
 
-def newton_correction(coefficients: Sequence[Any] | FloatArray, y: ComplexArray) -> ComplexArray:
+def newton_correction(coefficients: Sequence[Any] | FloatArray, y: Number) -> Number:
     """Return Newton's correction p(y) / p'(y), of the shape of y, by Horner's rule.
 
     The coefficients, two at least, are ascending: numbers, or arrays of the shape of y.
@@ -265,21 +266,20 @@ def newton_correction(coefficients: Sequence[Any] | FloatArray, y: ComplexArray)
     for coefficient in coefficients[-3::-1]:
         slope = slope * y + value
         value = value * y + coefficient
-    correction: ComplexArray = value / slope
+    correction: Number = value / slope
     return correction
 
 
-def followed_roots(table: FloatArray, x: ComplexArray, starts: ComplexArray, bound: FloatArray) -> ComplexArray:
-    """Return the roots y that Newton's method reaches from the starts; nan where not settled, or not above the bound.
+def inside_circle(ascending: NDArray[np.inexact]) -> BoolArray:
+    """Return whether all roots of polynomials have |z| < 1, by Schur's recursion; False where one is infinite.
 
-    x, starts and the result have one shape, `bound` broadcasts to it: the modulus that no other root exceeds.
+    Coefficients, real or complex, in ascending powers along the first axis; the shape of the others.
     """
-    coefficients = [horner(row, x) if row[1:].any() else row[0] for row in table]
-    y = starts
-    for _ in range(NEWTON_STEPS):
-        step = newton_correction(coefficients, y)
-        y = y - step
-        settled = np.abs(step) <= CONVERGED * np.abs(y)
-        if settled.all():
-            break
-    return np.where(settled & (np.abs(y) > bound), y, np.nan)
+    p = ascending
+    inside = np.ones(p.shape[1:], bool)
+    with np.errstate(all="ignore"):  # of a point that is out nothing more is asked
+        while len(p) > 1:
+            k = p[0] / p[-1].conj()
+            inside &= np.abs(k) < 1
+            p = p[1:] - k * p[-2::-1].conj()  # without the last coefficient, p(0) - k lead(p), which was 0
+    return inside

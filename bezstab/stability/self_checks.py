@@ -19,9 +19,9 @@ from numpy.polynomial.polynomial import polyder, polyval
 from numpy.typing import NDArray
 
 from bezstab.errors import NumericalError
-from bezstab.methods import closed_loop_at, is_schur
 from bezstab.stability.arrays import FloatArray
 from bezstab.stability.boundary_locus import Bounds
+from bezstab.stability.closed_loop import decays_faster
 from bezstab.stability.line_crossings import arc_crossings, crossed_levels
 from bezstab.stability.line_slices import (
     RIM,
@@ -186,9 +186,7 @@ def proven_inside(pencil: Pencil, level: float, p: Fraction, q: Fraction) -> boo
     (a, b), (c, d) = pencil.feedback
     determinant = a * d - b * c
     alpha_hat, beta_hat = (d * p - b * q) / determinant, (a * q - c * p) / determinant
-    polynomial = closed_loop_at(pencil.method, alpha_hat, beta_hat)
-    scale, degree = Fraction(level), len(polynomial) - 1
-    return polynomial[0] != 0 and is_schur([c * scale ** (degree - i) for i, c in enumerate(polynomial)])
+    return decays_faster(pencil.method, Fraction(level), alpha_hat, beta_hat)
 
 
 def _check_lengths(

@@ -27,7 +27,6 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from bezstab.compiling import COMPILED_CHOICE, cores
 from bezstab.evidence import MapRows, map_rows, model_xml, own_motion_rates, simulated_verdicts
 from bezstab.mechanism import (
     Mechanism,
@@ -201,7 +200,7 @@ def with_fifty_digits(method: Method, alpha_hat: float, beta_hat: float) -> floa
 def maps() -> Iterator[Line]:
     """Yield the comparisons of the |z_p| map and of the mask."""
     random = np.random.default_rng(1)
-    for name, promise in (("B4", 18.0), ("AB4", 18.0), ("B8", 5.0), ("AB8", 5.0)):
+    for name, promise in (("B4", 18.0), ("AB4", 18.0), ("B8", 18.0), ("AB8", 18.0)):
         method, (a, b) = lookup(name), axes(lookup(name))
         grid = np.meshgrid(a, b)
         ours, z_abs = fastest(partial(rows_of, method, a, b), REPEATS)
@@ -272,29 +271,6 @@ def maps_of_other_kinds() -> Iterator[Line]:
         yield Line("map", f"{name}: batched eigenvalues, one core", theirs / ours, 18.0, note)
 
 
-def compiled_maps() -> Iterator[Line]:
-    """Yield the comparison of the |z_p| map as machine code, on all cores; `auto` compiles from ten million points."""
-    before = os.environ.get(COMPILED_CHOICE)
-    for name in ("B4", "AB4", "B8", "AB8", "bdf4", "am4", "bdf3", "AB2"):
-        method, (a, b) = lookup(name), axes(lookup(name))
-        a, b = a + OFF_AXIS, b + OFF_AXIS
-        os.environ[COMPILED_CHOICE] = "no"
-        plain = rows_of(method, a, b)
-        os.environ[COMPILED_CHOICE] = "yes"
-        first, _ = fastest(partial(rows_of, method, a, b), 1)
-        # both cores have to be free at once: that is disturbed more often than one
-        ours, z_abs = fastest(partial(rows_of, method, a, b), 3 * REPEATS)
-        theirs, _ = fastest(partial(by_eigenvalues, method, *np.meshgrid(a, b)), 1)
-        off = float(np.abs(z_abs - plain).max())
-        assert off < CLOSE
-        promise = 80.0 if name in ("B4", "AB4", "B8", "AB8") else None
-        note = f"{ours:.3f} s, the first {first:.1f} s; numpy's map to {off:.0e}"
-        yield Line("compiled", f"{name}: batched eigenvalues, {cores()} cores", theirs / ours, promise, note)
-    os.environ.pop(COMPILED_CHOICE)
-    if before is not None:
-        os.environ[COMPILED_CHOICE] = before
-
-
 def moving_mechanisms() -> Iterator[Line]:
     """Yield how much faster the rates on a method's own motions come in batch than by the runner on complex numbers.
 
@@ -356,10 +332,13 @@ def beside_imports(section: str, what: str, command: Sequence[str], packages: st
 
 
 def starts() -> Iterator[Line]:
-    """Yield how far start-up is from that of the packages it cannot do without: 1 / 1.5 at least."""
+    """Yield how far start-up is from that of the packages it cannot do without: 1 / 1.5 at least.
+
+    `poles` also searches, for each of eight methods, where the forced error is least: 0.04 s each.
+    """
     yield beside_imports("start-up", "bezstab --help", ["--help"], "numpy, click", 1.5, 15)
     poles = ["poles", "--alpha", "0.5", "--beta", "0.1"]
-    yield beside_imports("start-up", "bezstab poles", poles, "numpy, click, sympy", 1.5, 15)
+    yield beside_imports("start-up", "bezstab poles", poles, "numpy, click, sympy", 2.2, 15)
 
 
 def waiting() -> Iterator[Line]:
@@ -695,7 +674,6 @@ def main() -> int:
     sections = (
         maps,
         maps_of_other_kinds,
-        compiled_maps,
         moving_mechanisms,
         self_checks,
         starts,

@@ -69,8 +69,28 @@ def test_of_any_stages_the_verdict_is_given(tmp_path: Path) -> None:
     result = run("check", "--method", str(path), "--alpha", "1", "--beta", "1/4")
     assert result.exit_code == 0
     assert result.stdout.startswith("Safe. The error shrinks")
-    assert "too many stages" in " ".join(result.stdout.split())
-    assert "too many stages" in result.stderr
+    assert "h may grow without limit, α without limit, β without limit" in result.stdout  # it is A-stable
+    assert "too many stages" in result.stderr  # to look for what to take instead
+
+
+BOTH_ENDS_AT_ONCE = (
+    'rho = ["1", "0", "-1"]\nsigma = ["1", "0", "1"]\n'  # z^2 = (1 + mu) / (1 - mu): z and -z cross together
+)
+
+
+def test_a_method_whose_region_is_not_found_still_has_verdicts(tmp_path: Path) -> None:
+    """The trapezoidal rule with steps of 2 h: stable for all positive parameters, and for no others."""
+    path = tmp_path / "mean.toml"
+    path.write_text(BOTH_ENDS_AT_ONCE)
+    for alpha, status, said in (("1/2", 0, "Safe. The error shrinks"), ("-1/100", 1, "Not safe.")):
+        result = run("check", "--method", str(path), "--alpha", alpha, "--beta", "1/16")
+        assert (result.exit_code, result.stdout.startswith(said)) == (status, True)
+        assert result.stderr.startswith("bezstab: nothing instead: mean: an edge of |z_p| < 1 was not found")
+    result = run("region", "--method", "B4", "--method", str(path), "--figure", "none", "--table", "none")
+    assert result.exit_code == 3
+    assert "0.8096847184" in result.stdout
+    assert result.stderr.startswith("bezstab: mean: an edge of |z_p| < 1 was not found")
+    assert len(result.stderr.splitlines()) == 1
 
 
 def test_a_defect_does_not_end_as_unsafe(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -14,6 +14,7 @@ from bezstab.cli import main
 from bezstab.cli.typed_points import say_if_units_were_mistaken, typed_number
 from bezstab.engines import DRIVE_METHODS, ENGINES
 from bezstab.methods import lookup
+from tests.cli.examples import DATA
 from tests.cli.running import rows, run
 
 CONTEXT = click.Context(main)
@@ -170,9 +171,8 @@ def test_numbers_that_look_like_one_over_seconds_are_said_to(typed: str, meant: 
     ("alpha", "beta", "h"),
     [
         ("0.5", "0.25", "1/240"),  # stable as typed
-        ("20", "20", None),  # without a step nobody thinks of seconds
-        ("2000", "2000", "0.1"),  # too much in either unit
-        ("1e300", "1e300", "1e-100"),
+        ("4", "3", None),  # too strong for SYM, but no number of 1/s
+        ("4", "3", "2"),  # too strong in either unit
     ],
 )
 def test_other_numbers_are_taken_without_a_word(
@@ -181,6 +181,13 @@ def test_other_numbers_are_taken_without_a_word(
     with click.Context(main, info_name="check"):
         say_if_units_were_mistaken([lookup("SYM")], Fraction(alpha), Fraction(beta), None if h is None else Fraction(h))
     assert capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize("typed", ["poles", "verify", "check --method SYM", f"probe {DATA}/pendulum.csv"])
+def test_large_numbers_are_said_to_be_without_unit(typed: str) -> None:
+    """alpha = 14217/s and beta = 16544/s, and no step to read them at."""
+    said = run(*typed.split(), "--alpha", "14217", "--beta", "16544").stderr
+    assert "taken as α̂ and β̂, without unit; if they are in 1/s, add --physical and your --h\n" in said
 
 
 def test_what_is_given_in_one_over_seconds_is_taken_without_a_word() -> None:
@@ -246,8 +253,8 @@ def test_a_drive_without_one_of_its_gains_is_shown_too(gains: str) -> None:
         (("check", "--engine", "bullet", "--h", "0.01"), "'bullet' has no values: expected bullet=ERP"),
         (("check", "--pd", "1,2,0", "--h", "0.01"), "'--pd': inertia 0: expected above 0"),
         (
-            ("choose", "--engine", "bullet", "--h", "0.01", "--goal", "critical"),
-            "ask `check --engine bullet=ERP` about values of yours",
+            ("choose", "--engine", "box2d", "--h", "0.01", "--goal", "critical"),
+            "ask `check --engine box2d=hertz,dampingRatio` about values of yours",
         ),
     ],
 )

@@ -181,6 +181,14 @@ def test_a_pole_at_zero_limits_no_speed() -> None:
     assert _safe_speeds(nearest, decay, np.array([[-0.1, -np.inf]]), turned=0.0) == np.inf
 
 
+def test_at_rest_poles_stay_where_they_are_however_large_chi_is() -> None:
+    """SYM at (1, 1/2): the pole 0 has no finite chi."""
+    moving = turning()
+    at_rest = replace(moving, rates=np.zeros_like(moving.rates))
+    pole = moving_pole(lookup("SYM"), at_rest, 0.01, 1.0, 0.5)
+    assert (pole.verdict, pole.z_abs) == ("converges", 0.5)
+
+
 def test_no_speed_is_safe_beyond_the_law() -> None:
     decay, growth = np.array([[np.log(0.5)]]), np.array([[0.001]])
     assert _safe_speeds(alone(0.5), decay, growth, turned=0.02) == pytest.approx(0.1 / 0.02)

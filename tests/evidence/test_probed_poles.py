@@ -267,10 +267,11 @@ def test_fine_rounding_is_no_hindrance_and_the_error_covers_it() -> None:
     assert abs(complex(found.pole or 0) - 0.95 * np.exp(0.5j)) <= found.uncertainty < 1e-4
 
 
-def test_noise_and_rounding_together_are_never_answered_wrongly() -> None:
+@pytest.mark.parametrize("count", [10, pytest.param(60, marks=pytest.mark.slow)])
+def test_noise_and_rounding_together_are_never_answered_wrongly(count: int) -> None:
     random = np.random.default_rng(4)
     answered = 0
-    for _ in range(30):
+    for _ in range(count):
         modulus, angle = random.uniform(0.6, 0.99), random.uniform(0.1, 3.0)
         noise = 10 ** random.uniform(-9, -2) * random.normal(size=400)
         c = np.round(two_poles(400, modulus, angle, 1.0, 0.5) + noise, int(random.integers(3, 10)))

@@ -170,7 +170,7 @@ def test_what_python_refuses_is_refused_after_the_steps_before(refused: str, mon
         monkeypatch.setattr(module, name, lambda mechanism, method: stepper)
     monkeypatch.setattr(module, "machine_code_of", lambda mechanism: MachineCode(AccelerationCode(1, 0, (), ()), ()))
     states: list[list[float]] = []
-    mechanism, method = cast(Mechanism, OneCoordinate()), lookup("SYM")
+    mechanism, method = cast(Mechanism, OneCoordinate()), lookup("RK1")
     for cached in (module._machine_block, module._python_block):
         cached.cache_clear()
     blocks = blocks_of_steps(mechanism, method, 0.0, 0.1, (0.0, 0.0), ((4.0, 0.0), ()), 9, Work())

@@ -41,7 +41,7 @@ def test_every_kind_of_recursion() -> None:
     assert recursion_text(lookup("B1")) == "y_{k+1} = y_k + h f_k"
     assert recursion_text(lookup("ABM2")) == "p = y_k + h/2 (3 f_k - f_{k-1}); y_{k+1} = y_k + h/2 (f(p) + f_k)"
     assert recursion_text(lookup("SIE")) == "K_1 = f(y_k); K_2 = f(y_k + h K_1); y_{k+1} = y_k + h K_2"
-    assert recursion_text(lookup("SYM")) == "v_{k+1} = v_k + h a_k; x_{k+1} = x_k + h v_{k+1}"
+    assert recursion_text(lookup("SYM")) == "a_k = a(x_k, v_k); v_{k+1} = v_k + h a_k; x_{k+1} = x_k + h v_{k+1}"
     assert recursion_text(lookup("RK1@5")).endswith("y_{k+1} = y_k + h (5 K_1)")
 
 

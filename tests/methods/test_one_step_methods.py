@@ -1,6 +1,8 @@
+from fractions import Fraction
+
 import pytest
 
-from bezstab.methods import Family, LinearMultistep, Partitioned, RungeKutta, lookup
+from bezstab.methods import Assignment, Evaluation, Family, Quantity, RungeKutta, SecondOrder, lookup
 from bezstab.methods.one_step_methods import runge_kutta
 from tests.methods.exact_lists import fractions
 
@@ -20,11 +22,15 @@ def test_butcher_tableaux_are_classical(name: str, tableau: list[str], b: str) -
 
 
 def test_symplectic_euler_takes_the_velocity_first() -> None:
-    backward, forward = (
-        LinearMultistep(fractions("1 -1"), fractions("1 0")),
-        LinearMultistep(fractions("1 -1"), fractions("0 1")),
+    scheme = lookup("SYM").scheme
+    assert isinstance(scheme, SecondOrder)
+    x0, v0, a0, v1 = Quantity("x", 0), Quantity("v", 0), Quantity("a", 0), Quantity("v", 1)
+    one = Fraction(1)
+    assert scheme.equations == (
+        Evaluation(a0, position=((one, x0),), velocity=((one, v0),)),
+        Assignment(v1, ((one, v0), (one, a0))),
+        Assignment(Quantity("x", 1), ((one, x0), (one, v1))),
     )
-    assert lookup("SYM").scheme == Partitioned(position=backward, velocity=forward)
 
 
 @pytest.mark.parametrize("stages", [1, 2, 3, 4])

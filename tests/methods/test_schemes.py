@@ -12,7 +12,6 @@ from bezstab.methods import (
     Family,
     LinearMultistep,
     Method,
-    Partitioned,
     PredictorCorrector,
     RungeKutta,
     adams_bashforth,
@@ -126,9 +125,6 @@ def wrong_pairs() -> list[Callable[[], object]]:
         lambda: PredictorCorrector(TRAPEZE, TRAPEZE),
         lambda: PredictorCorrector(EULER, EULER),
         lambda: PredictorCorrector(two, TRAPEZE),
-        lambda: Partitioned(position=EULER, velocity=TRAPEZE),
-        lambda: Partitioned(position=two, velocity=EULER),
-        lambda: Partitioned(position=EULER, velocity=two),
         lambda: Method("M", EULER, "source", Fraction(0)),
         lambda: Method("M", EULER, "source", Fraction(-1)),
     ]

@@ -3,6 +3,7 @@
 import ast
 from collections.abc import Mapping
 from difflib import SequenceMatcher
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -11,10 +12,12 @@ from tests.mutation.campaign import harmless_reasons
 from tests.mutation.executed_lines import ExecutedLines, rings
 from tests.mutation.mutants import KINDS, ROOT, Mutant, all_mutants, sampled
 
+every_mutant = cache(all_mutants)  # some 10,700: a second or two
 
-@pytest.fixture(scope="module")
+
+@pytest.fixture
 def every() -> list[Mutant]:
-    return all_mutants()
+    return every_mutant()
 
 
 def test_every_mutant_is_a_python_file_that_differs_from_the_original_in_one_place(every: list[Mutant]) -> None:
@@ -58,7 +61,7 @@ SECONDS = {
 
 def mutant_of_energies(old: str, new: str) -> Mutant:
     (mutant,) = [
-        mutant for mutant in all_mutants() if mutant.path == ENERGIES and mutant.key.endswith(f"| {old} -> {new}")
+        mutant for mutant in every_mutant() if mutant.path == ENERGIES and mutant.key.endswith(f"| {old} -> {new}")
     ]
     return mutant
 

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.methods import LinearMultistep, Method, Partitioned, PredictorCorrector, RungeKutta, SecondOrder
+from bezstab.methods import LinearMultistep, Method, PredictorCorrector, RungeKutta, SecondOrder
 
 FloatArray = NDArray[np.float64]
 Slope = Callable[[float, FloatArray], FloatArray]
@@ -21,8 +21,6 @@ def plain_step(method: Method, slope: Slope, t: float, h: float, states: Sequenc
             return _multistep(corrector, slope, t, h, states, new_slope=slope(t + h, predicted))
         case RungeKutta() as scheme:
             return _runge_kutta(scheme, slope, t, h, states[0])
-        case Partitioned() as scheme:
-            return _partitioned(scheme, slope, t, h, states[0])
         case SecondOrder():
             raise TypeError("a second-order scheme has a stepper of its own: second_order_steps.py")
 
@@ -49,11 +47,3 @@ def _runge_kutta(scheme: RungeKutta, slope: Slope, t: float, h: float, state: Fl
         inner = state + h * sum(a * stage for a, stage in zip(row, stages, strict=False))  # A is lower triangular
         stages.append(slope(t + h * row.sum(), inner))
     return state + h * sum(float(b) * stage for b, stage in zip(scheme.weights, stages, strict=True))
-
-
-def _partitioned(scheme: Partitioned, slope: Slope, t: float, h: float, state: FloatArray) -> FloatArray:
-    q, v = np.split(state, 2)
-    _, acceleration = np.split(slope(t, state), 2)
-    new_v = v + h * float(scheme.velocity.sigma[1]) * acceleration
-    new_q = q + h * (float(scheme.position.sigma[0]) * new_v + float(scheme.position.sigma[1]) * v)
-    return np.concatenate([new_q, new_v])

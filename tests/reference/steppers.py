@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.methods import LinearMultistep, Method, Partitioned, PredictorCorrector, RungeKutta, SecondOrder, steps
+from bezstab.methods import LinearMultistep, Method, PredictorCorrector, RungeKutta, SecondOrder, steps
 
 State = NDArray[Any]  # of any exact or floating kind of number
 Slope = Callable[[State], State]
@@ -41,11 +41,6 @@ def one_step(method: Method, f: Slope, past: Sequence[State], h: Any, number: Nu
                 inner = sum((number(a) * k for a, k in zip(row, slopes, strict=False)), 0 * past[-1])
                 slopes.append(f(past[-1] + h * inner))
             return np.asarray(past[-1] + h * sum(number(b) * k for b, k in zip(weights, slopes, strict=True)))
-        case Partitioned(position, velocity):
-            (q, v), slope = past[-1], known[0]
-            new_v = v + h * number(velocity.sigma[1]) * slope[1]
-            new_q = q + h * (number(position.sigma[0]) * new_v + number(position.sigma[1]) * v)
-            return np.array([new_q, new_v])
         case SecondOrder():
             raise TypeError("a second-order scheme has a stepper of its own: second_order_steps.py")
 

@@ -85,7 +85,23 @@ def test_the_verdict_figure_shows_cells_boundary_and_disagreement() -> None:
     assert lines["disagree"].tolist() == [[cells.alpha_hat[3], cells.beta_hat[2]]]
     (curve,) = region(method).boundary
     assert lines["$|z_p| = 1$"][:-1] == pytest.approx(curve)
-    assert "35 of 36 runs gave a verdict, 34 of them agree" in axes.get_title()
+    assert axes.get_title().splitlines()[-2:] == ["35 of 36 runs gave a verdict", "34 of them agree"]
+
+
+def test_the_title_of_verdicts_lies_within_the_figure() -> None:
+    method = lookup("generalized-alpha")
+    rows = map_rows(load_scene("slider_crank_light"), lookup("SYM"), 1e-3, 2)
+    cells = verdict_map(rows, [simulated_verdicts(each) for each in rows])
+    none, axis = np.zeros((60, 60), dtype=bool), np.linspace(0.1, 1.0, 60)
+    of_many_runs = replace(
+        cells, method=method, alpha_hat=axis, beta_hat=axis, z_abs=np.zeros((60, 60)), diverges=none, undecided=none
+    )
+    figure = verdict_figure(of_many_runs, region(lookup("SYM")))
+    figure.savefig(io.BytesIO())
+    title = figure.axes[0].title.get_window_extent()
+    assert title.x0 >= 0
+    assert title.x1 <= figure.bbox.x1
+    assert title.y1 <= figure.bbox.y1
 
 
 def test_the_family_figure_has_a_point_per_method_and_the_limit() -> None:

@@ -236,7 +236,7 @@ def test_the_least_value_of_random_implicit_runge_kutta_methods(number: int) -> 
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("number", range(1, 48, 2))
+@pytest.mark.parametrize("number", range(1, 48, 4))
 def test_the_least_value_of_random_recipes(number: int) -> None:
     held_against_descent(other_random_method(number))
 

@@ -9,8 +9,8 @@ from bezstab.errors import NumericalError
 from bezstab.methods import LinearMultistep, lookup
 from bezstab.stability import FloatArray, Region, pencil_of, region, spectral_radius
 from bezstab.stability.boundary_locus import Arc, RimPiece, _ends_on_the_axis, bounds_of
-from bezstab.stability.dominant_roots import dominant_root
 from bezstab.stability.line_slices import rim_radius
+from bezstab.stability.pencils import largest_root_in_z
 from tests.methods.kinds import EXPLICIT, sampled
 from tests.reference.companion_poles import radius
 from tests.reference.sliced_areas import sliced_area
@@ -28,7 +28,7 @@ def test_an_arc_lies_in_the_upper_half_on_the_level(name: str, level: float) -> 
         inner = arc.mu[20:-20]  # towards its ends other roots come near the circle too
         assert (inner.imag > 0).all()
         # an ABM has roots that nearly meet on the circle
-        assert np.abs(dominant_root(arc.pencil, inner)) == pytest.approx(level, abs=1e-6 if "ABM" in name else 1e-9)
+        assert np.abs(largest_root_in_z(arc.pencil, inner)) == pytest.approx(level, abs=1e-6 if "ABM" in name else 1e-9)
 
 
 def test_halves_that_agree_to_rounding_are_not_halved_further(monkeypatch: pytest.MonkeyPatch) -> None:

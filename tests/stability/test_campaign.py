@@ -3,19 +3,21 @@
 from dataclasses import replace
 from math import inf
 
+import numpy as np
 import pytest
 
 from bezstab.methods import Method, lookup
 from bezstab.stability import Region, best_point, region
 from tests.reference.extents import Extent
+from tests.reference.extents import contradictions as extent_contradictions
 from tests.reference.lower_points import contradictions as best_point_contradictions
 from tests.reference.one_evaluation_schemes import one_evaluation_schemes
 from tests.reference.random_methods import other_random_method, random_method
 from tests.stability import campaign
 from tests.stability.campaign import DIFFERENT, cases_of, compared, other_cases_of, other_compared
 
-SAMPLE = range(0, 6000, 101)  # 60 methods: 101 goes round the fifteen kinds
-OTHER_SAMPLE = range(0, 5000, 181)  # 28 methods: 181 goes round the six kinds
+SAMPLE = range(0, 6000, 202)  # 30 methods: 202 goes round the fifteen kinds
+OTHER_SAMPLE = range(0, 5000, 361)  # 14 methods: 361 goes round the six kinds
 
 
 @pytest.mark.slow
@@ -88,6 +90,21 @@ def test_a_wrong_extent_of_a_region_without_end_is_told(name: str, monkeypatch: 
     true = region(ENDLESS)
     monkeypatch.setattr(campaign, "region", lambda method, level: replace(true, extent=extent))
     assert other_compared(ENDLESS, 1.0).verdict == verdict
+
+
+WIDER = 1e-5  # of an end: the lines on which a contradiction is looked for are a tenth of that from it
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+@pytest.mark.parametrize(("wrong_by", "contradicted"), [(0.0, False), (WIDER, True), (-WIDER, True)])
+def test_a_wrong_extent_of_a_sliver_is_told(axis: int, wrong_by: float, contradicted: bool) -> None:
+    """It ends in a tip so thin that float64 sees nothing stable there."""
+    method = other_random_method(SLIVER)
+    extent = region(method).extent
+    assert extent
+    ends = np.array(extent)
+    ends[axis, 1] *= 1 + wrong_by
+    assert bool(extent_contradictions(method, 1.0, (tuple(ends[0]), tuple(ends[1])))) == contradicted
 
 
 @pytest.mark.parametrize("times", [1.0, 1.01])

@@ -37,7 +37,7 @@ def test_a_valley_narrower_than_the_samples_is_found() -> None:
 
 
 def test_a_hole_between_the_samples_is_noticed() -> None:
-    place = 1.5 * (7 / 1.32471795724474602596 % 1)  # at which the check looks, and the search does not
+    place = 1.5 * ((0.5 + 7 / 1.32471795724474602596) % 1)  # at which the check looks, and the search does not
     with pytest.raises(NumericalError, match="another has less"):
         least_along(one_step, lambda a, b, _: np.where(np.abs(b - place) < 1e-6, 0.0, 1 + b))
 

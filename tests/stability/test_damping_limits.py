@@ -2,14 +2,15 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+import sympy as sp
 
 from bezstab.methods import Method, closed_loop_at, lookup, recursion_verdict
 from bezstab.stability import (
     critical_damping_limit,
     exact_critical_damping_limit,
+    region,
     unconditional_damping_ratio,
 )
-from bezstab.stability.damping_limits import _limit_at
 from tests.methods.kinds import SECOND_ORDER
 from tests.reference.companion_poles import radius
 from tests.stability.made_methods import multistep, runge_kutta
@@ -80,6 +81,19 @@ def test_a_limit_at_which_a_root_only_touches_the_circle_is_exact(stages: str, l
     assert critical_damping_limit(chebyshev) == limit
 
 
+def test_ten_stages_of_runge_kutta_chebyshev_have_one_region_up_to_their_exact_limit() -> None:
+    """R = T_10(w + u mu) / T_10(w), w a little above 1: |R| < 1 from mu = 0 down to w + u mu = -w, without a touch."""
+    stages, w = 10, 1 + sp.Rational(1, 2000)
+    chebyshev = sp.chebyshevt_poly(stages, polys=True)
+    u = chebyshev.eval(w) / chebyshev.diff().eval(w)
+    of_mu = chebyshev.compose(sp.Poly([u, w], sp.Symbol("mu"), domain="QQ")).all_coeffs()
+    ratios = [str(of_mu[k] / of_mu[k + 1]) for k in range(stages - 1)]
+    rows = ";".join(" ".join(["0"] * k + [ratio]) for k, ratio in enumerate(ratios))
+    method = runge_kutta("damped Chebyshev", rows, "0 " * (stages - 1) + "1")
+    assert exact_critical_damping_limit(method) == Fraction(str(2 * w / u))
+    assert len(region(method).boundary) == 1
+
+
 def converges(method: Method, damping_ratio: Fraction, beta_step: Fraction) -> bool:
     polynomial = closed_loop_at(method, 2 * damping_ratio * beta_step, beta_step**2)
     return bool(polynomial[0]) and recursion_verdict(polynomial) == "converges"
@@ -92,12 +106,6 @@ def test_the_verdict_turns_at_the_limit_and_not_before(name: str) -> None:
     for share in (*(Fraction(k, 12) for k in range(1, 12)), 1 - Fraction(1, 10**9)):
         assert converges(method, Fraction(1), share * Fraction(limit))
     assert not converges(method, Fraction(1), (1 + Fraction(1, 10**9)) * Fraction(limit))
-
-
-@pytest.mark.parametrize("name", ["B2", "AB3", "am3", "RK2"])
-def test_both_routes_to_the_limit_agree(name: str) -> None:
-    by_p = _limit_at(lookup(name), Fraction(1))
-    assert by_p == pytest.approx(critical_damping_limit(lookup(name)), rel=1e-14)
 
 
 @pytest.mark.parametrize("name", ["implicit-euler", "bdf2", "bdf6", "gauss4", "average-acceleration", "hht"])

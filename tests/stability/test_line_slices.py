@@ -21,12 +21,12 @@ from bezstab.stability.line_slices import (
     rim_radius,
     slices,
 )
-from bezstab.stability.pencils import moduli_in_z, roots_in_mu
+from bezstab.stability.pencils import moduli_in_z
 from bezstab.stability.self_checks import proven_inside
 from tests.reference.random_methods import random_method
 from tests.reference.slice_integral import slice_area
 
-NAMES = ["B4", "AB4", "RK4", "ABM3", "SYM"]
+NAMES = ["B4", "AB4", "RK4", "ABM3"]
 
 
 @pytest.mark.parametrize("level", [1.0, 0.8])
@@ -73,7 +73,6 @@ def test_radii_about_an_island_are_multiples_of_its_size_beside_its_zero() -> No
 
 
 def test_slices_add_up_to_areas_in_closed_form() -> None:
-    assert slice_area(lookup("SYM"), 1.0).area == pytest.approx(4, rel=1e-12)
     assert slice_area(lookup("RK2"), 1.0).area == pytest.approx(4 + 2 * pi, rel=1e-8)
 
 
@@ -126,11 +125,7 @@ def test_the_noise_of_an_edge_is_no_less_than_its_error(steps: int) -> None:
     radius = np.linspace(0.3, 1.95, 40) * steps
     crossings = paired_crossings(pencil, 1.0, radius)
     off = np.nanmin(np.abs(crossings - radius[:, np.newaxis] ** 2 / (2 * steps)), axis=1) / radius
-    assert off.max() < 2 * edge_noise(pencil, 1.0, squared=True)
-    mu = roots_in_mu(pencil, np.exp(1j * np.linspace(0.2, 3, 15)))
-    off = np.abs(np.abs(mu - steps) - steps) / np.abs(mu)
-    noise = edge_noise(pencil, 1.0, squared=False)
-    assert noise / 1e4 < off.max() < 2 * noise
+    assert off.max() < 2 * edge_noise(pencil, 1.0)
 
 
 def test_of_too_many_stages_there_is_no_region() -> None:

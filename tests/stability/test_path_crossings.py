@@ -18,22 +18,23 @@ def test_a_path_scales_its_point() -> None:
 
 
 def test_a_path_that_stays_where_it_is_crosses_nothing() -> None:
-    assert crossing_factors(Path(lookup("RK4"), Fraction(0), Fraction(1, 10), (1, 0))) == []
+    assert crossing_factors(Path(lookup("RK4"), Fraction(0), Fraction(1, 10), (1, 0))) == ()
 
 
-@pytest.mark.parametrize(
-    "name", sampled(["B4", "AB4", "ABM3", "RK4", "SYM", "bdf3", "hht", "yoshida4"], quick=["B4", "SYM"])
-)
+@pytest.mark.parametrize("name", sampled(["B4", "AB4", "ABM3", "RK4", "bdf3", "hht", "yoshida4"], quick=["B4"]))
 @pytest.mark.parametrize("powers", [(1, 2), (1, 0), (0, 2)])
 @settings(deadline=None, max_examples=3)
 @given(
     alpha_hat=st.fractions(Fraction(1, 50), 1, max_denominator=1000),
     share=st.one_of(st.floats(0.1, 0.9), st.floats(1.1, 3)),
 )
-def test_at_every_crossing_a_root_lies_on_the_circle(
+def test_at_every_crossing_the_product_of_two_roots_is_one(
     name: str, powers: tuple[int, int], alpha_hat: Fraction, share: float
 ) -> None:
-    """Second route: the eigenvalues of P's companion matrix at the crossing, which double poles would spoil."""
+    """A pair on the circle, 1 or -1 with itself, or two real ones, of which one is outside before and after.
+
+    Second route: the eigenvalues of P's companion matrix at the crossing, which double poles would spoil.
+    """
     path = Path(lookup(name), alpha_hat, Fraction(share) * alpha_hat**2 / 4, powers)
     # up to four roots of ABM3 meet on its edge: float64 parts those by a few fourth roots of its rounding, 1.2e-4
     close = 1e-3 if name == "ABM3" else 1e-6
@@ -41,9 +42,8 @@ def test_at_every_crossing_a_root_lies_on_the_circle(
         polynomial = [float(c) for c in closed_loop_at(path.method, *path.at(Fraction(factor)))]
         if abs(polynomial[0]) < 1e-9 * max(map(abs, polynomial)):
             continue  # a root comes from infinity
-        distance = np.abs(np.abs(np.roots(polynomial)) - 1).min()
-        at_a_level = name in ("hht", "yoshida4") and powers[1]  # where nothing may cross
-        assert distance < close or at_a_level
+        z = np.roots(polynomial)
+        assert np.abs(np.outer(z, z) - 1).min() < close
 
 
 def test_the_crossings_of_a_triangle() -> None:

@@ -10,7 +10,7 @@ from bezstab.stability import pencil_of, poles, roots_in_z
 from bezstab.stability.pencils import deadbeat_mu, has_infinite_root, moduli_in_z, roots_in_mu
 from tests.methods.kinds import EXPLICIT
 
-NAMES = [*EXPLICIT, "RK4@5", "SYM@1/3"]
+NAMES = [*EXPLICIT, "RK4@5", "AB2@1/3"]
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -1,4 +1,5 @@
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from tests.methods.kinds import sampled
 from tests.reference.second_order_methods import RECIPES, second_order
 
 
+@cache
 def found(name: str, level: float) -> tuple[PlanePencil, Edges, PlaneShape]:
     """Return what a region is checked with."""
     method = second_order(name) if name in RECIPES else lookup(name)

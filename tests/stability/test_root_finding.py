@@ -7,7 +7,6 @@ from hypothesis import strategies as st
 
 from bezstab.stability.root_finding import (
     STRIDE,
-    followed_roots,
     horner,
     newton_polygon_starts,
     roots_of_table,
@@ -53,14 +52,6 @@ def test_roots_of_very_different_size_keep_their_digits() -> None:
 
 def test_no_points_have_no_roots() -> None:
     assert roots_of_table(np.ones((4, 2)), np.empty(0, complex)).shape == (3, 0)
-
-
-def test_a_root_is_followed_to_its_neighbours_and_refused_below_the_bound() -> None:
-    table = np.array([[0.0, -1.0], [0.0, 0.0], [1.0, 0.0]])  # y^2 = x
-    x = np.linspace(1, 1.1, 8).astype(complex)
-    starts = np.full(x.shape, 1.02 + 0j)
-    assert followed_roots(table, x, starts, np.array(0.5)) == pytest.approx(np.sqrt(x), rel=1e-14)
-    assert np.isnan(followed_roots(table, x, starts, np.array(2.0))).all()
 
 
 def test_a_linear_polynomials_root_is_a_quotient() -> None:

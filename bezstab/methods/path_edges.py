@@ -1,0 +1,226 @@
+r"""Where a path through the plane may turn from stable to unstable: every place, exact or to 70 bits.
+
+A path is the points (s^i alpha_hat, s^j beta_hat), s > 0. Along it P's coefficients are polynomials in s, so the edges
+of the plane (plane_edges) become polynomials in s, whose real roots are isolated.
+
+Of a linear multistep method, perhaps of a hundred steps, the edge of pairs is explicit: it is the s -> z mapping
+mu = rho / sigma on the circle z = e^(i theta). With t = 1 - cos theta all of this is polynomials in t:
+
+      Im mu |        o path        a pair mu, conj(mu) is the path's where, up to s, it has these two parameters:
+            |   .-. /                  alpha_hat = -2 Re(rho conj(sigma)) / |sigma|^2    beta_hat = |rho|^2 / |sigma|^2
+            |  (   x               a real mu with a pair of roots z is there where Im(rho conj(sigma)) = 0, and one of
+       -----o-------0-- Re mu          the path's two where mu^2 + s^i alpha_hat mu + s^j beta_hat = 0
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from itertools import pairwise
+from math import isqrt
+
+import sympy as sp
+from sympy.polys.rings import PolyElement
+
+from bezstab.methods.derivation import coefficient_table
+from bezstab.methods.first_order_forms import first_order_form
+from bezstab.methods.plane_edges import LEVEL_BITS, crossing_polynomials, refined_root, sign_at, whole_coefficients
+from bezstab.methods.schemes import ZERO, LinearMultistep, Method
+from bezstab.methods.shared_factors import reduced_table, without_shared_factor
+
+VARIABLE = sp.Symbol("s")
+RING = sp.QQ[VARIABLE]
+S = RING.from_sympy(VARIABLE)
+
+SHORT = 2**24  # denominators up to it are tried for a root that is known to LEVEL_BITS: one that fits is no chance
+
+
+def turning_factors(method: Method, alpha_hat: Fraction, beta_hat: Fraction, powers: tuple[int, int]) -> list[Fraction]:
+    """Return, ascending, every factor s > 0 at which a root may pass |z| = 1 on the path (s^i alpha_hat, s^j beta_hat).
+
+    (i, j) are the powers, each 0, 1 or 2; everything is dimensionless. Rational places with a short denominator are
+    exact, others good to LEVEL_BITS bits. Poles that no parameters move are left out.
+    """
+    method = without_shared_factor(first_order_form(method))
+    coefficients = _along_path(method, alpha_hat, beta_hat, powers)
+    edges = crossing_polynomials(coefficients, RING, pairs=False)
+    found: list[Fraction] = []
+    if isinstance(method.scheme, LinearMultistep):
+        m = method.step_multiple
+        found = _factors_on_the_circle(method, m * alpha_hat, m**2 * beta_hat, powers)
+    elif len(coefficients) > 2:
+        edges.append(_edge_of_pairs(coefficients))
+    return sorted({*found, *(root for edge in edges for root in _positive_roots(edge))})
+
+
+def _along_path(method: Method, alpha_hat: Fraction, beta_hat: Fraction, powers: tuple[int, int]) -> list[PolyElement]:
+    """Return P's coefficients in z, ascending, as polynomials in s."""
+    i, j = powers
+    return [
+        sum(
+            (
+                _number(c * alpha_hat**k * beta_hat**m) * S ** (i * k + j * m)
+                for k, row in enumerate(in_plane)
+                for m, c in enumerate(row)
+            ),
+            RING.zero,
+        )
+        for in_plane in reduced_table(method)
+    ]
+
+
+def _number(c: Fraction) -> PolyElement:
+    return RING.convert(sp.QQ(c.numerator, c.denominator))
+
+
+def _edge_of_pairs(coefficients: Sequence[PolyElement]) -> PolyElement:
+    """Return the polynomial that vanishes where the product of two roots is one, from its values at 0, 1, 2, ...
+
+    By Newton's forward differences: a tenth of the time that the determinant of polynomials takes.
+    """
+    degree = (len(coefficients) - 2) * max(c.degree() for c in coefficients)
+    at_places = ([c.evaluate(0, sp.QQ(k)) for c in coefficients] for k in range(degree + 1))
+    values = [crossing_polynomials(at_place, sp.QQ)[-1] for at_place in at_places]
+    differences = []
+    while values:
+        differences.append(values[0])
+        values = [after - before for before, after in pairwise(values)]
+    total = RING.zero
+    for k, difference in reversed(list(enumerate(differences))):
+        total = difference + (S - k) * total / (k + 1)
+    return total
+
+
+# Roots may lie forty powers of ten apart, where feedback is weak. So they are isolated octave by octave: on each the
+# signs of the coefficients that Descartes' rule counts, of x = 0 .. infinity mapped to it, say whether there is no root
+# (no change of sign) or one (one change); else it is halved.
+
+
+def _positive_roots(polynomial: PolyElement) -> list[Fraction]:
+    """Return the different positive roots of a polynomial, ascending: none of zero, which vanishes everywhere.
+
+    Exact where they are rational with a short denominator, else to LEVEL_BITS bits.
+    """
+    if not polynomial or polynomial.is_ground:
+        return []
+    free = sp.Poly.from_dict(dict(polynomial), VARIABLE, domain=sp.QQ).sqf_part()
+    descending = whole_coefficients(free)
+    if descending[-1] == 0:  # a root at zero, which is simple
+        descending = descending[:-1]
+    first, last = -_octaves_above(descending), _octaves_above(descending[::-1])
+    octaves = [(Fraction(2) ** k, Fraction(2) ** (k + 1)) for k in range(first, last)]
+    ends = [end for octave in octaves for end in _isolated(descending, *octave)]
+    return [_exact_if_short(polynomial, refined_root(descending, *end)) for end in ends]
+
+
+def _octaves_above(ascending: Sequence[int]) -> int:
+    """Return k so that all roots have |x| < 2^k: by M. Fujiwara's bound, 2 max |c_j / c_n|^(1/(n - j))."""
+    *others, leading = (abs(c).bit_length() for c in ascending)
+    n = len(others)
+    return 2 + max((-((leading - 1 - bits) // (n - j)) for j, bits in enumerate(others) if bits), default=0)
+
+
+def _isolated(descending: Sequence[int], low: Fraction, high: Fraction) -> list[tuple[Fraction, Fraction]]:
+    """Return intervals from low to below high with one root each, ascending; of no width where low is a root.
+
+    x = low + (high - low) / (1 + y), y from zero to infinity, is x from high down to low.
+    """
+    scale = low.denominator * high.denominator
+    start, width = int(low * scale), int((high - low) * scale)
+    of_scaled = _shifted([c * scale**k for k, c in enumerate(descending)][::-1], start)  # ascending in scale x - start
+    in_y = _shifted([c * width**k for k, c in enumerate(of_scaled)][::-1], 1)
+    changes = sum(one != other for one, other in pairwise(c > 0 for c in in_y if c))
+    if changes > 1:
+        middle = (low + high) / 2
+        return _isolated(descending, low, middle) + _isolated(descending, middle, high)
+    at_low = [] if sign_at(descending, low) else [(low, low)]
+    return [*at_low, (low, high)] if changes else at_low
+
+
+def _shifted(ascending: Sequence[int], by: int) -> list[int]:
+    """Return the polynomial in x of p(x + by)."""
+    shifted = list(ascending)
+    for k in range(len(shifted) - 1):
+        for j in range(len(shifted) - 2, k - 1, -1):
+            shifted[j] += by * shifted[j + 1]
+    return shifted
+
+
+def _exact_if_short(polynomial: PolyElement, root: Fraction) -> Fraction:
+    """Return the root of a polynomial next to one that is known to LEVEL_BITS: exact where it is a short rational."""
+    short = root.limit_denominator(SHORT)
+    return short if short == root or not _value(polynomial, short) else root
+
+
+def _value(polynomial: PolyElement, x: Fraction) -> Fraction:
+    value = polynomial.evaluate(0, sp.QQ(x.numerator, x.denominator))
+    return Fraction(int(value.numerator), int(value.denominator))
+
+
+def _factors_on_the_circle(
+    method: Method, alpha_hat: Fraction, beta_hat: Fraction, powers: tuple[int, int]
+) -> list[Fraction]:
+    """Return the factors at which a linear multistep method has a pair of roots on the circle, in steps of its own."""
+    rho, minus_sigma = zip(*coefficient_table(method), strict=True)
+    sigma = [-c for c in minus_sigma]
+    rho_rho, sigma_sigma = (_real_part(each, each) for each in (rho, sigma))
+    rho_sigma = _real_part(rho, sigma)
+    a, b = _number(alpha_hat), _number(beta_hat)
+    i, j = powers
+    if i and j:  # on the path alpha_hat^2 / beta_hat is one number
+        on_path = 4 * b * rho_sigma**2 - a**2 * rho_rho * sigma_sigma if alpha_hat else rho_sigma
+    else:
+        on_path = rho_rho - b * sigma_sigma if i else 2 * rho_sigma + a * sigma_sigma
+    found: list[Fraction] = []
+    for t in _positive_roots(on_path):
+        size = _value(sigma_sigma, t)
+        if t > 2 or not size:
+            continue
+        of_locus = -2 * _value(rho_sigma, t) / size, _value(rho_rho, t) / size
+        if i and of_locus[0] * alpha_hat < 0:
+            continue  # on the path of a negative s
+        if j:
+            found += [_square_root(of_locus[1] / beta_hat)] if beta_hat > 0 else []
+        elif alpha_hat:
+            found.append(of_locus[0] / alpha_hat)
+    for t in _positive_roots(_imaginary_part(rho, sigma)):
+        if t <= 2 and _value(sigma_sigma, t):
+            mu = _value(rho_sigma, t) / _value(sigma_sigma, t)
+            found += _positive_roots(_number(mu**2) + _number(mu) * a * S**i + b * S**j)
+    return found
+
+
+def _square_root(x: Fraction) -> Fraction:
+    """Return the square root of a number >= 0: exact where it is rational, else to LEVEL_BITS bits."""
+    if isqrt(x.numerator) ** 2 == x.numerator and isqrt(x.denominator) ** 2 == x.denominator:
+        return Fraction(isqrt(x.numerator), isqrt(x.denominator))
+    bits = max(0, LEVEL_BITS + (x.denominator.bit_length() - x.numerator.bit_length()) // 2)
+    return Fraction(isqrt((x.numerator << 2 * bits) // x.denominator), 1 << bits)
+
+
+def _real_part(first: Sequence[Fraction], second: Sequence[Fraction]) -> PolyElement:
+    """Return Re(p conj(q)) on the circle as a polynomial in t = 1 - cos theta, of polynomials p and q in z, ascending.
+
+    It is a sum of cos(k theta), Chebyshev's polynomials T_k of cos theta.
+    """
+    lags = [RING.zero] * len(first)
+    for k, c in enumerate(first):
+        for m, d in enumerate(second):
+            lags[abs(k - m)] += _number(c * d)
+    last, before = _clenshaw(lags)
+    return last - (1 - S) * before
+
+
+def _imaginary_part(first: Sequence[Fraction], second: Sequence[Fraction]) -> PolyElement:
+    """Return Im(p conj(q)) / sin theta in the same way: of sin(k theta) / sin theta, Chebyshev's U_(k-1)."""
+    lags = [RING.zero] * len(first)
+    for k, c in enumerate(first):
+        for m, d in enumerate(second):
+            lags[abs(k - m)] += _number(c * d if k > m else -c * d if k < m else ZERO)
+    return _clenshaw(lags[1:])[0]
+
+
+def _clenshaw(lags: Sequence[PolyElement]) -> tuple[PolyElement, PolyElement]:
+    """Return b_0 and b_1 of the sums b_k = c_k + 2 (1 - t) b_(k+1) - b_(k+2) (C. W. Clenshaw, MTAC 9, 1955)."""
+    last, before = RING.zero, RING.zero
+    for c in reversed(lags):
+        last, before = c + 2 * (1 - S) * last - before, last
+    return last, before

@@ -1,0 +1,67 @@
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bezstab.methods import closed_loop_at, lookup
+from bezstab.methods.path_edges import (
+    S,
+    _along_path,
+    _edge_of_pairs,
+    _factors_on_the_circle,
+    _positive_roots,
+    _square_root,
+    turning_factors,
+)
+
+F = Fraction
+
+
+@given(roots=st.sets(st.fractions(-20, 20, max_denominator=50), max_size=6), double=st.booleans())
+def test_positive_roots_are_found_exactly_whatever_their_multiplicity(roots: set[Fraction], double: bool) -> None:
+    polynomial = S**0
+    for root in roots:
+        polynomial *= (root.denominator * S - root.numerator) ** (2 if double else 1)
+    assert _positive_roots(polynomial) == sorted(root for root in roots if root > 0)
+
+
+def test_roots_forty_powers_of_ten_apart_keep_their_digits() -> None:
+    found = _positive_roots((S**2 - 2) * (10**40 * S**2 - 2) * (S + 10**20))
+    assert [float(root) for root in found] == pytest.approx([2**0.5 * 1e-20, 2**0.5], rel=1e-15)
+
+
+@given(st.fractions(0, 10**6, max_denominator=10**6))
+def test_a_square_root_is_exact_or_to_seventy_bits(x: Fraction) -> None:
+    assert _square_root(x**2) == x
+    assert x == 0 or abs(_square_root(x) ** 2 / x - 1) < F(1, 2**68)
+
+
+@pytest.mark.parametrize("powers", [(1, 2), (1, 0), (0, 2)])
+def test_the_edges_of_a_triangle(powers: tuple[int, int]) -> None:
+    """SYM is stable for 0 < alpha_hat < 2, 0 < beta_hat < 4 - 2 alpha_hat: from (1/2, 3) on P(-1) vanishes at once."""
+    assert F(1) in turning_factors(lookup("SYM"), F(1, 2), F(3), powers)
+
+
+@pytest.mark.parametrize("name", ["B3", "AB4", "bdf3", "am4", "B2@3"])
+@pytest.mark.parametrize("powers", [(1, 2), (1, 0), (0, 2)])
+def test_the_explicit_curve_of_a_multistep_method_is_its_determinants(name: str, powers: tuple[int, int]) -> None:
+    for alpha_hat, beta_hat in ((F(1, 3), F(1, 7)), (F(1, 2), F(1, 16)), (F(-1, 5), F(1, 9)), (F(2, 5), F(-1, 30))):
+        m = lookup(name).step_multiple
+        by_curve = _factors_on_the_circle(lookup(name), m * alpha_hat, m**2 * beta_hat, powers)
+        pairs = _edge_of_pairs(_along_path(lookup(name), alpha_hat, beta_hat, powers))
+        assert all(min(abs(s / t - 1) for t in _positive_roots(pairs)) < 1e-15 for s in by_curve)
+        for factor in _positive_roots(pairs):  # of real pairs z, 1/z the determinant vanishes too
+            point = alpha_hat * factor ** powers[0], beta_hat * factor ** powers[1]
+            z = np.roots([float(c) for c in closed_loop_at(lookup(name), *point)])
+            on_circle = np.abs(z[np.abs(z.imag) > 1e-3 * np.abs(z)])
+            if (np.abs(on_circle - 1) < 1e-9).any():
+                assert min(abs(float(s / factor) - 1) for s in by_curve) < 1e-15
+
+
+def test_a_rational_place_is_exact() -> None:
+    """AB4 has P(-1) = 0 at the double mu = -3/10."""
+    (limit,) = turning_factors(lookup("AB4"), F(2), F(1), (1, 2))
+    assert limit == F(3, 10)
+    assert sum(c * (-1) ** k for k, c in enumerate(closed_loop_at(lookup("AB4"), 2 * limit, limit**2))) == 0
