@@ -337,7 +337,7 @@ def _show_measurements(
     """Print the poles measured at one point, else at random ones, and where there are several how well they agree."""
     import numpy as np
 
-    from bezstab.evidence import has_own_motion, measure_poles, random_points
+    from bezstab.evidence import measure_poles, random_points
     from bezstab.show import measurement_row, summary_row
 
     rows: list[Row] = []
@@ -363,10 +363,10 @@ def _show_measurements(
                     "shown is how errors grow over the run."
                 )
                 continue
-            whose = "the mechanism's motion"
-            if has_own_motion(mechanism, method):
-                whose = f"the method's own motion, where there is none along {whose}"
-            show_text(f"Exact rates of {method.name}: along {whose}.")
+            show_text(
+                f"Exact rates of {method.name}: along the method's own motion, where there is none along the "
+                "mechanism's motion."
+            )
     if for_reading(form) and len(rows) > len(methods):  # of one point each there is nothing to sum up
         click.echo()
         show_rows(summaries, SUMMARIES + (MOTION_SUMMARIES if floquet else []), form, sentence=summary_sentence)

@@ -74,7 +74,7 @@ from bezstab.evidence.moving_regions import MovingRegion, moving_growth, moving_
 from bezstab.evidence.mujoco_lint import Linted, linted_model
 from bezstab.evidence.mujoco_models import ModelData, model_data, mujoco_module, read_mujoco_model
 from bezstab.evidence.mujoco_witness import TIMES, Witnessed, model_xml, mujoco_witnesses, witness_count
-from bezstab.evidence.own_motions import has_own_motion, own_motion_rates
+from bezstab.evidence.own_motions import own_motion_rates
 from bezstab.evidence.pareto import pareto_front
 from bezstab.evidence.probed_poles import (
     Likeness,
@@ -142,7 +142,6 @@ __all__ = [
     "growth_after_a_kick",
     "growth_rates",
     "halved_steps",
-    "has_own_motion",
     "kicked_constraint_errors",
     "kicked_responses",
     "likenesses",

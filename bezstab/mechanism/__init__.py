@@ -44,7 +44,7 @@ from bezstab.mechanism.constraint_normals import TurningNormals, turned_across, 
 from bezstab.mechanism.energies import EnergyBalance, energy_balance
 from bezstab.mechanism.equations import Equations, T, equations_of_motion
 from bezstab.mechanism.generated_code import compiled_source
-from bezstab.mechanism.linearized import acceleration_jacobians, linearized_acceleration
+from bezstab.mechanism.linearized import linearized_acceleration
 from bezstab.mechanism.motions import Motion, motion, regular_motion, revolution_period
 from bezstab.mechanism.observation import Observation, observe, singular_passages
 from bezstab.mechanism.runner import (
@@ -73,7 +73,7 @@ from bezstab.mechanism.scenes import (
     at_speed,
 )
 from bezstab.mechanism.second_order_memory import Memory, memory
-from bezstab.mechanism.second_order_turns import Action, Assigned, Evaluated, turn
+from bezstab.mechanism.second_order_turns import Assigned, Evaluated, Solved, turn
 from bezstab.mechanism.simulation import MOST_STEPS, Simulation, simulated
 from bezstab.mechanism.start import constraint_errors, constraint_jacobian, initial_state, perturbed_state
 from bezstab.mechanism.varying_runs import simulated_with_steps
@@ -84,7 +84,6 @@ __all__ = [
     "GROUND",
     "MOST_STEPS",
     "SINGULAR",
-    "Action",
     "Assigned",
     "Body",
     "ConstraintMotion",
@@ -103,13 +102,13 @@ __all__ = [
     "Revolute",
     "Scene",
     "Simulation",
+    "Solved",
     "Spring",
     "Start",
     "T",
     "Trajectory",
     "TurningNormals",
     "acceleration_function",
-    "acceleration_jacobians",
     "along_normals",
     "at_speed",
     "compiled_mechanism",

@@ -34,11 +34,3 @@ def linearized_acceleration(
             accelerations[some, k] = found[k]
         jacobians[some] = np.moveaxis(np.stack(changes, axis=1), -1, 0)
     return accelerations.reshape(*shape, size), jacobians.reshape(*shape, size, 2 * size)
-
-
-def acceleration_jacobians(
-    mechanism: Mechanism, t: ArrayLike, two_alpha: ArrayLike, beta_squared: ArrayLike, q: FloatArray, v: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Return the derivatives of qddot by q and by qdot; shape (..., n, n) each. Arguments as above."""
-    _, jacobians = linearized_acceleration(mechanism, t, two_alpha, beta_squared, q, v)
-    return jacobians[..., : mechanism.size], jacobians[..., mechanism.size :]

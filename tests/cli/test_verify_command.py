@@ -70,7 +70,7 @@ def test_verify_tells_what_the_motion_does_to_a_prediction() -> None:
     ("scene", "method", "said"),
     [
         ("driven_four_bar", "B4", "Exact rates of B4: along the method's own motion"),
-        ("driven_four_bar", "bdf2", "Exact rates of bdf2: along the mechanism's motion."),  # implicit
+        ("driven_four_bar", "bdf2", "Exact rates of bdf2: along the method's own motion"),  # implicit
         ("four_bar", "B4", "No rate of B4 is exact: the motion does not begin anew, as nothing drives it."),
     ],
 )

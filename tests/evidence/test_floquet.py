@@ -4,12 +4,9 @@ import numpy as np
 import pytest
 
 from bezstab.evidence import floquet_rates
-from bezstab.evidence.floquet import _leading_rates, _rates_of_all, _rates_over_revolutions
-from bezstab.evidence.linearized_steps import Course, course_of_steps
 from bezstab.mechanism import compiled_mechanism, load_scene
 from bezstab.methods import Method, lookup, second_order_form
-from bezstab.stability import FloatArray, spectral_radius
-from bezstab.units import feedback_gains
+from bezstab.stability import spectral_radius
 from tests.evidence.driven_four_bar import four_bar, swinging_four_bar
 from tests.reference.perturbed_revolutions import runner_multipliers
 
@@ -80,31 +77,3 @@ def test_a_run_without_a_driver_has_the_rate_of_its_constraint_errors() -> None:
     at_rest = spectral_radius(lookup("B4"), np.array([0.1, 0.5]), np.array([0.1, 0.1]))
     # a conjugate pair is seen at two phases, apart by a factor of about two, 40 steps or more from each other
     assert np.abs(rates / at_rest - 1).max() < 3e-2
-
-
-@pytest.mark.parametrize(("name", "columns"), [("B4", 12), ("AB4", 22), ("B8", 12), ("bdf2", 12)])
-def test_few_columns_show_the_same_rate_as_all(name: str, columns: int) -> None:
-    """Two poles of each of the five constraints, or four where others die out slowly, and two columns to spare."""
-    course, gains = course_of(name, [0.1, 0.2, 0.25], [0.02, 0.05, 0.1])
-    few, settled = _leading_rates(course, gains, columns)
-    assert settled.all()
-    assert columns < course.rows
-    assert few == pytest.approx(_rates_of_all(course, gains), rel=1e-12)
-
-
-def test_too_few_columns_are_found_out() -> None:
-    """Complex poles come in pairs, one for each of five constraints: nine columns do not hold them."""
-    course, gains = course_of("B4", [0.1, 0.2], [0.1, 0.2])
-    assert not _leading_rates(course, gains, 9)[1].any()
-
-
-def test_points_for_which_columns_do_not_suffice_are_taken_again() -> None:
-    course, gains = course_of("B4", [0.1, 0.2, 0.3], [0.1, 0.2, 0.1])
-    rates = _rates_over_revolutions(course, gains, np.array([2, 3, 12]))
-    assert rates == pytest.approx(_rates_of_all(course, gains), rel=1e-12)
-
-
-def course_of(name: str, alpha_hat: list[float], beta_hat: list[float]) -> tuple[Course, FloatArray]:
-    """Return the course of 200 steps over the four-bar's revolution, and the gains of points."""
-    course = course_of_steps(four_bar(), lookup(name), 1 / 200, 1.0)
-    return course, np.array(feedback_gains(np.array(alpha_hat), np.array(beta_hat), course.step))

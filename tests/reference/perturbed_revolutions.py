@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bezstab.mechanism import Mechanism, motion, resume
+from bezstab.mechanism import Mechanism, motion, resume, simulate
 from bezstab.methods import Method, steps
 from bezstab.stability import FloatArray
 from bezstab.units import feedback_gains
@@ -17,6 +17,8 @@ AnyArray = NDArray[Any]  # of real or complex numbers
 EPSILON = 1e-30
 CORRECTIONS = 12  # of Newton's method
 PERIODIC = 1e-10  # m, rad: what a revolution may leave
+REVOLUTIONS, SETTLED = 30, 1e-9  # m, rad: what the last of so many may still change
+REACH = 1e-5  # m, rad and per s: cubic terms leave 1e-10, rounding 1e-11
 LARGEST, SMALLEST = 1e-4, 1e-12  # m, rad: a difference of runs that is linear, and one that is no rounding
 
 
@@ -54,6 +56,30 @@ def runner_motion(
                 return start, float(np.abs(np.linalg.eigvals(linearized)).max() ** (1 / count))
             start = start + np.linalg.solve(np.eye(start.size) - linearized, missing)
     return None
+
+
+def settled_multiplier(mechanism: Mechanism, method: Method, count: int, alpha_hat: float, beta_hat: float) -> float:
+    """Return |z| per step of the motion to which runs of a one-step method settle, by differences of whole revolutions.
+
+    For any method whose step starts from position and velocity alone, implicit ones too, where errors decay.
+    """
+    h = motion(mechanism, 1.0).duration / count
+    gains = feedback_gains(alpha_hat, beta_hat, h / float(method.step_multiple))
+
+    def after_a_revolution(state: FloatArray) -> FloatArray:
+        q, v = np.split(state, 2)
+        run = simulate(mechanism, method, h, count * h, gains, (q, v))
+        return np.concatenate([run.q[-1], run.v[-1]])
+
+    along = motion(mechanism, 1.0)
+    whole_turn = np.concatenate([along.q[-1] - along.q[0], np.zeros(mechanism.size)])
+    state = np.concatenate([along.q[0], along.v[0]])
+    for _ in range(REVOLUTIONS):
+        before, state = state, after_a_revolution(state) - whole_turn
+    assert np.abs(state - before).max() < SETTLED
+    shifts = REACH * np.eye(state.size)
+    columns = [(after_a_revolution(state + each) - after_a_revolution(state - each)) / (2 * REACH) for each in shifts]
+    return float(np.abs(np.linalg.eigvals(np.transpose(columns))).max() ** (1 / count))
 
 
 def rates_after_kicks(
