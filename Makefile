@@ -69,7 +69,7 @@ lint: .venv/tested  ## style, format and types
 bench: .venv/benched  ## speed, as ratios measured in one run, into figures/bench.md
 	$(BIN)/python tests/bench/bench.py
 
-campaign: .venv/tested  ## areas of 10,000 random methods against an independent integral, in half an hour to two
+campaign: .venv/tested  ## areas, extents, best points of 10,000 random methods against independent ones, in hours
 	$(BIN)/python tests/stability/campaign.py
 
 clean:  ## remove the virtual environments
