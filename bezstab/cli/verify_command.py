@@ -99,7 +99,7 @@ SUMMARIES = [
     column("wrong verdicts", "wrong", "d"),
 ]
 MOTION_SUMMARIES = [
-    column("followed over the motion", "revolutions_measured", "d"),
+    column("followed over a revolution", "revolutions_measured", "d"),
     column("median error at rest", "map_error", ".1e"),
     column("median error of the law", "law_error", ".1e"),
     column("median error of the exact rate", "floquet_error", ".1e"),  # of a motion that begins anew, else of none

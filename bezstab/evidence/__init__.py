@@ -13,6 +13,7 @@ The only room in which stability and mechanism meet. A file imports only from th
     linearized_steps    a method's steps along a motion, linearised
     floquet             the exact rates of a mechanism that moves
     own_motions         the same along the motion that the method itself makes
+    kicked_revolutions  the rate of runs that are kicked from that motion
     measured_poles      predicted against measured poles of a running mechanism
     logs                logs of somebody else's simulator, as columns of numbers
     probed_poles        the dominant pole in a log, and whose it is

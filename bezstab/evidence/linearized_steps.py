@@ -124,7 +124,7 @@ def on_the_motion(course: Course) -> Values:
 def take_steps(
     course: Course, gains: FloatArray, start: Values, *, places_on_it: bool = False
 ) -> tuple[Values, list[FloatArray]]:
-    """Take all steps side by side; return what they hand on, and how accelerations answer changes of their places.
+    """Take all steps side by side; return all that is known then, and how accelerations answer changes of their places.
 
     `start` holds what the steps start with, shape (steps, points, n) each; gains 2 alpha (1/s) and beta^2 (1/s^2) have
     shape (2, points). With `places_on_it` accelerations that are solved for, and those at the state of one step, are
@@ -141,7 +141,7 @@ def take_steps(
             found, answer = find(course, gains, action, values)
             values |= {result: found[:, :, i] for i, result in enumerate(action.results)}
             answers.append(answer)
-    return _handed_on(course, values), answers
+    return values, answers
 
 
 def linearized_step(course: Course, answers: Sequence[FloatArray], changes: Values) -> Values:
@@ -157,10 +157,10 @@ def linearized_step(course: Course, answers: Sequence[FloatArray], changes: Valu
             places = np.concatenate([_total(part, values) for part in action.known], axis=1)
             found = np.split(next(answer) @ places, len(action.results), axis=1)
             values |= dict(zip(action.results, found, strict=True))
-    return _handed_on(course, values)
+    return handed_on(course, values)
 
 
-def _handed_on(course: Course, values: Values) -> Values:
+def handed_on(course: Course, values: Values) -> Values:
     """Return what the next step starts with: of each quantity that is carried the one a step later."""
     return {each: values[Quantity(each.name, each.step + 1)] for each in course.memory.carried}
 

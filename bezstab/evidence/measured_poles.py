@@ -19,9 +19,10 @@ from typing import Literal
 
 import numpy as np
 
+from bezstab.evidence.kicked_revolutions import rates_of_kicked_revolutions
 from bezstab.evidence.linear_prediction import SAMPLES, SETTLED, SPREAD, Fit, Refusal, fit_dominant_pole
 from bezstab.evidence.moving_mechanisms import MovingPole, MovingVerdict, growth_after_a_kick, moving_poles
-from bezstab.evidence.own_motions import own_motion_rates
+from bezstab.evidence.own_motions import find_own_motions
 from bezstab.mechanism import (
     CHEAPER_TOGETHER,
     Mechanism,
@@ -78,12 +79,6 @@ CLOSE = 1e-4
 """Of |z|: nearer to the circle than a hundred of the fit's errors no verdict is given; on a mechanism that moves not
 nearer than |chi| kappa h, by which its poles move."""
 
-LEAST_RESPONSE = 1e-12
-"""SI units: a response below it is lost in the rounding of coordinates of about a metre."""
-
-SETTLING = 30
-"""Steps after the kick until the lesser poles have died out."""
-
 SURROUNDINGS = 0.1
 """Of the window that shows the region, added on every side."""
 
@@ -100,7 +95,7 @@ class Measurement:
     unless asked for. Where the motion is not `periodic` that is no exact rate, but a growth over the run.
     `measured` is what the first steps after the kick show, `law_fitted_abs` what the law makes of `predicted` for those
     very steps, None where nothing was measured or the law fails. `measured_rate` is |z| per step over whole
-    revolutions, of a mechanism that a driver turns, where the response can be followed for so long.
+    revolutions beside the method's own motion, None unless the exact rate is asked for and it can be followed so long.
     """
 
     method: Method
@@ -181,8 +176,12 @@ def measure_poles(
     turning = turning_normals(mechanism, duration)
     moving = moving_poles(method, turning, h, alpha_hat, beta_hat)
     exact_rates: list[float | None] = [None] * alpha_hat.size
+    shown_rates: list[float | None] = [None] * alpha_hat.size
     if floquet:
-        exact_rates = own_motion_rates(mechanism, method, h, alpha_hat, beta_hat, duration).tolist()
+        motions = find_own_motions(mechanism, method, h, alpha_hat, beta_hat, duration)
+        shown = rates_of_kicked_revolutions(mechanism, method, motions)
+        exact_rates = motions.rates.tolist()
+        shown_rates = [float(rate) if np.isfinite(rate) else None for rate in shown]
     return [
         _measurement(
             method,
@@ -190,6 +189,7 @@ def measure_poles(
             float(b),
             moving[i],
             exact_rates[i],
+            shown_rates[i],
             h,
             turning,
             difference[:, :, i],
@@ -232,6 +232,7 @@ def _measurement(
     beta_hat: float,
     moving: MovingPole,
     floquet_abs: float | None,
+    measured_rate: float | None,
     h: float,
     turning: TurningNormals,
     difference: FloatArray,
@@ -244,7 +245,6 @@ def _measurement(
     """
     predicted = complex(dominant_pole(method, alpha_hat, beta_hat))
     measured, law_fitted_abs, reason = None, None, ""
-    revolution = round(turning.duration / (h * float(method.step_multiple))) if turning.closed else None
     all_poles = poles(method, alpha_hat, beta_hat)
     rival = _rival(all_poles, predicted)
     # Over a window of SAMPLES steps the lesser of two such moduli does not even fall to 1/e of the other.
@@ -274,7 +274,7 @@ def _measurement(
         periodic=turning.closed,
         measured=measured,
         law_fitted_abs=law_fitted_abs,
-        measured_rate=None if revolution is None else _rate_over_revolutions(revolution, difference, size),
+        measured_rate=measured_rate,
         measured_verdict=measured_verdict,
         reason=reason,
     )
@@ -297,30 +297,6 @@ def _by_the_law(
     with np.errstate(all="ignore"):  # an infinite chi is no number's, and so is what it makes grow
         rate = growth_after_a_kick(turning, chi, kick, first, first + fit.samples * step)
     return float(abs(predicted) * np.exp(step * rate)) if np.isfinite(rate) else None
-
-
-def _rate_over_revolutions(revolution: int, difference: FloatArray, size: FloatArray) -> float | None:
-    """Return |z| per step over as many whole revolutions as a response stays linear and above rounding.
-
-    What the motion does to it comes back after a revolution; a quarter of one shows its size whatever the phase. The
-    first revolution only turns what was kicked into what grows most; None where there are no two.
-    """
-    window = max(revolution // 4, 2)
-    longest, rate = 1, None
-    for response, largest in zip(difference.T, size.T, strict=True):
-        usable = largest < LINEAR[0]
-        end = len(usable) if usable.all() else int(np.argmin(usable))
-        if end < SETTLING + window + 2 * revolution:
-            continue
-        strengths = np.sqrt(np.convolve(response[SETTLING:end] ** 2, np.ones(window) / window, "valid"))
-        clear = strengths > LEAST_RESPONSE
-        last = len(clear) if clear.all() else int(np.argmin(clear))
-        revolutions = (last - 1) // revolution
-        if revolutions > longest:
-            longest = revolutions
-            growth = strengths[revolutions * revolution] / strengths[revolution]
-            rate = float(growth ** (1 / ((revolutions - 1) * revolution)))
-    return rate
 
 
 def _number_of_poles(method: Method) -> int:

@@ -20,6 +20,8 @@ revolution it is off by a metre, no run comes near its own motion, whether there
 motion of the mechanism is given, and has to settle nothing.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from bezstab.evidence.floquet import (
@@ -35,18 +37,39 @@ from bezstab.evidence.linearized_steps import (
     Course,
     Values,
     course_of_steps,
+    handed_on,
     linearized_step,
     on_the_motion,
     take_steps,
 )
 from bezstab.mechanism import Mechanism
-from bezstab.methods import Method
-from bezstab.stability import FloatArray
+from bezstab.methods import Method, Quantity
+from bezstab.stability import BoolArray, FloatArray
 
 PASSES = 12  # over the revolution: Newton's method squares the error, more passes only find nothing
 AMPLIFIED = 1e8  # in a revolution: more leaves solving no digits
 CLOSED = 1e-8  # m, rad: the last correction, the next would be its square; a rate is off by about 1/100 of it
 BESIDE = 1.0  # m, rad, from the motion of the mechanism: weak feedback drifts by 0.3, other closures lie further off
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class OwnMotions:
+    """The method's own motions at a row of points, `steps` steps of `step` (s) each, with 2 alpha and beta^2, `gains`.
+
+    `rates` are |z| per step, on the mechanism's motion where there is none of the method's own; shape (points,).
+    `states` hold q and v (SI units) as steps begin, shape (steps, points, 2 n), not a number where there is none.
+    """
+
+    step: float
+    steps: int
+    gains: FloatArray
+    rates: FloatArray
+    states: FloatArray
+
+    @property
+    def there(self) -> BoolArray:
+        """Where a motion is found; shape (points,)."""
+        return np.asarray(np.isfinite(self.states).all(axis=(0, 2)))
 
 
 def own_motion_rates(
@@ -57,35 +80,46 @@ def own_motion_rates(
     Those of `floquet_rates`, whose arguments and errors these are, for a motion that is no revolution, and at points
     where the method has no such motion near that of the mechanism.
     """
+    return find_own_motions(mechanism, method, h, alpha_hat, beta_hat, duration).rates
+
+
+def find_own_motions(
+    mechanism: Mechanism, method: Method, h: float, alpha_hat: FloatArray, beta_hat: FloatArray, duration: float
+) -> OwnMotions:
+    """Return the motions that have these rates; arguments and errors as `own_motion_rates`."""
     course = course_of_steps(mechanism, method, h, duration)
     gains = gains_on(course, method, alpha_hat, beta_hat)
     rates = np.full(alpha_hat.size, np.nan)
+    states = np.full((course.steps, alpha_hat.size, 2 * mechanism.size), np.nan)
     if course.along.closed:
         for some in batches(course, rates.size):
-            rates[some] = _rates_on_own_motions(course, gains[:, some])
+            rates[some], states[:, some] = _rates_and_states(course, gains[:, some])
     lost = np.isnan(rates)
     if lost.any():
         rates[lost] = rates_on_the_motion(course, gains[:, lost])
-    return rates
+    return OwnMotions(course.step, course.steps, gains, rates, states)
 
 
-def _rates_on_own_motions(course: Course, gains: FloatArray) -> FloatArray:
-    """Return |z| per step of points with these gains, shape (2, points); no number where there is no motion for it."""
+def _rates_and_states(course: Course, gains: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return rates and states of points with these gains, shape (2, points); no numbers where there is no motion."""
     rates = np.full(gains.shape[1], np.nan)
+    states = np.full((course.steps, rates.size, 2 * course.mechanism.size), np.nan)
     along = on_the_motion(course)
     motions = at_points(along, rates.size)
     start = np.concatenate([value[0] for value in along.values()])
     left = np.arange(rates.size)
     for _ in range(PASSES):
         with np.errstate(all="ignore"):  # of what runs into infinity; what is not a number is not less
-            after, answers = take_steps(course, gains[:, left], motions)
-            missing = {name: value - _next_starts(course, motions)[name] for name, value in after.items()}
+            values, answers = take_steps(course, gains[:, left], motions)
+            next_starts = _next_starts(course, motions)
+            missing = {name: value - next_starts[name] for name, value in handed_on(course, values).items()}
             around = revolution(course, answers, missing)
             correction = _correction(around)
             begins = np.concatenate([value[0] for value in motions.values()], axis=1)
             beside = np.abs(begins + correction - start).max(axis=1) < BESIDE
             closed = beside & (np.abs(correction).max(axis=1) < CLOSED)
         rates[left[closed]] = around.at(closed).rates()
+        states[:, left[closed]] = _states(course, values)[:, closed]
         going_on = beside & ~closed
         left = left[going_on]
         if not left.size:
@@ -93,7 +127,15 @@ def _rates_on_own_motions(course: Course, gains: FloatArray) -> FloatArray:
         motions, missing = ({name: value[:, going_on] for name, value in each.items()} for each in (motions, missing))
         answers = [answer[:, going_on] for answer in answers]
         motions = _corrected(course, motions, answers, missing, correction[going_on])
-    return rates
+    return rates, states
+
+
+def _states(course: Course, values: Values) -> FloatArray:
+    """Return q and v as steps begin, from what is known after each of them; before the first it is a turn earlier."""
+    x, v = (values[Quantity(name, 1)] for name in ("x", "v"))
+    states = np.roll(np.concatenate([x, v / course.step], axis=2), 1, axis=0)
+    states[0, :, : course.mechanism.size] -= course.along.q[-1] - course.along.q[0]
+    return states
 
 
 def _next_starts(course: Course, motions: Values) -> Values:

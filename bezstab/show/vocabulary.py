@@ -322,8 +322,8 @@ VOCABULARY: Mapping[str, Key] = {
     ),
     "measured_rate": Key(
         "number",
-        "Growth per step measured over whole revolutions, the first left out",
-        null="where it cannot be followed for so long",
+        "Growth per step measured over a whole revolution beside the motion the method makes, the first left out",
+        null="without --floquet, and where it cannot be followed for so long",
     ),
     "measured_verdict": Key("text", "Verdict of the simulation", values=OUTCOMES),
     "difference_z_real": Key("number", "Real part measured less that predicted", null=NOT_MEASURED),

@@ -1,0 +1,76 @@
+"""The rate of runs that are kicked from the method's own motion, measured over whole revolutions.
+
+What the exact rate predicts (`own_motions`) is how differences of runs beside that motion grow in the long run. At each
+point the newest state is kicked in 2 n directions, up and down, and the differences are compared as revolutions end:
+
+    kick      D_1 settled: lesser poles are gone       D_2 = A D_1: the largest eigenvalue of A is |z|^N
+      |--------------------|------------------------------|
+           a revolution             another one
+
+Runs that set out from the scene's initial state show another rate for as long as they drift to their own motion.
+"""
+
+from itertools import islice
+from typing import Any
+
+import numpy as np
+
+from bezstab.evidence.own_motions import OwnMotions
+from bezstab.mechanism import Mechanism, acceleration_function, resume, states_needed
+from bezstab.methods import Method, steps
+from bezstab.stability import FloatArray
+
+KICK_OF_GROWTH, KICK_OF_DECAY = 1e-9, 1e-4  # m, rad: up and down together only cubic terms are left, of about 1e-8
+LARGEST, SMALLEST = 1e-3, 1e-11  # m, rad: a difference that is linear, and one that is ten thousand times its rounding
+
+
+def rates_of_kicked_revolutions(mechanism: Mechanism, method: Method, motions: OwnMotions) -> FloatArray:
+    """Return |z| per step of the differences of runs that are kicked from the method's own motion; shape (points,).
+
+    Not a number where there is no such motion, and where after two revolutions the differences are no longer linear, or
+    lost in rounding.
+    """
+    rates = np.full(motions.rates.size, np.nan)
+    there = np.flatnonzero(motions.there)
+    known = 1 + max(steps(method), states_needed(method) - 1)
+    if known > motions.steps or not there.size:
+        return rates
+    with np.errstate(all="ignore"):  # of runs that run into infinity
+        run = _kicked_runs(mechanism, method, motions, there, known)
+        settled, later = (_differences(next(islice(run, motions.steps - 1, None)), motions.step) for _ in range(2))
+    for point, before, after in zip(there, settled, later, strict=True):
+        if all(SMALLEST < np.abs(each).max() < LARGEST for each in (before, after)):
+            directions, sizes, shares = np.linalg.svd(before)
+            kept = sizes > SMALLEST
+            mapped = directions[:, kept].T @ after @ shares[kept].T / sizes[kept]
+            rates[point] = np.abs(np.linalg.eigvals(mapped)).max() ** (1 / motions.steps)
+    return rates
+
+
+def _differences(step: Any, h: float) -> FloatArray:
+    """Return the differences of runs kicked up and down, of q and h v; shape (points, 2 n, kicks)."""
+    state, _, _ = step
+    q_and_v = np.stack(np.broadcast_arrays(*state))
+    q_and_v[len(q_and_v) // 2 :] *= h
+    return np.asarray(np.moveaxis(q_and_v[:, 0] - q_and_v[:, 1], 2, 0))
+
+
+def _kicked_runs(mechanism: Mechanism, method: Method, motions: OwnMotions, there: Any, known: int) -> Any:
+    """Return the runs of some points as `resume` yields them, entries of shape (2, kicks, points).
+
+    They begin with so many states of the own motion, of which the newest is kicked, q or h v, a coordinate each.
+    """
+    n = mechanism.size
+    gains = motions.gains[0, there], motions.gains[1, there]
+    history = [tuple(state.T) for state in motions.states[:known, there]]
+    slopes = []
+    for k, state in enumerate(history[:-1]):
+        acceleration = acceleration_function(mechanism, np)(k * motions.step, *gains, state[:n], state[n:])
+        slopes.append((*state[n:], *acceleration))
+    undisturbed = history[-1]
+    kick = np.where(motions.rates[there] > 1, KICK_OF_GROWTH, KICK_OF_DECAY) * np.array([[[1]], [[-1]]])
+    directions = np.eye(2 * n) / np.repeat([1, motions.step], n)
+    history[-1] = tuple(
+        value + share[:, np.newaxis] * kick for value, share in zip(undisturbed, directions, strict=True)
+    )
+    return resume(mechanism, method, motions.step, gains, history, slopes, np, undisturbed=undisturbed)
