@@ -231,7 +231,7 @@ def say_if_units_were_mistaken(
     """
     from bezstab.stability import verdict
 
-    if any(verdict(method, alpha, beta) == "converges" for method in methods):
+    if max(alpha, beta) < 1 or any(verdict(method, alpha, beta) == "converges" for method in methods):
         return
     taken = "note: --alpha and --beta were taken as α̂ and β̂, without unit; if they are in 1/s, add --physical"
     if h is not None and _all_stable(methods, alpha, beta, h):

@@ -64,6 +64,13 @@ TOLERANCES = (
         "simulate|tradeoff", "energy_drift", 1e-6, 1e-10, "the difference of two energies of some 10 J, each rounded"
     ),
     Tolerance(
+        "tradeoff --predicted",
+        "alpha_hat|beta_hat|total_error|velocity_error",
+        2e-2,
+        0.0,
+        "along an edge where combined_error changes by a millionth: rounding decides how far along",
+    ),
+    Tolerance(
         "tradeoff --predicted|region .*--accuracy",
         "alpha_hat|beta_hat|z_abs|accurate_.*|.*_error",
         1e-3,

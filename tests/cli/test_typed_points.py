@@ -173,6 +173,7 @@ def test_numbers_that_look_like_one_over_seconds_are_said_to(typed: str, meant: 
         ("0.5", "0.25", "1/240"),  # stable as typed
         ("4", "3", None),  # too strong for SYM, but no number of 1/s
         ("4", "3", "2"),  # too strong in either unit
+        ("-0.5", "0.9", "1e-3"),  # no feedback in 1/s is so weak
     ],
 )
 def test_other_numbers_are_taken_without_a_word(
