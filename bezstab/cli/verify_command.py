@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from bezstab.cli.asking import say_if_units_were_mistaken
 from bezstab.cli.options import (
     NUMBER,
     FigureForm,
@@ -33,7 +34,6 @@ from bezstab.cli.output import (
     write_figure,
     write_table,
 )
-from bezstab.cli.typed_points import say_if_units_were_mistaken
 from bezstab.methods import Method
 from bezstab.show import Column, Format, Row, column, formatted, yes_no_column
 from bezstab.units import to_dimensionless

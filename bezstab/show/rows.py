@@ -10,7 +10,7 @@ from fractions import Fraction
 from statistics import median
 from typing import TYPE_CHECKING
 
-from bezstab.engines import DRIVE_METHODS, witness_of
+from bezstab.engines import witness_of
 from bezstab.errors import InputError
 from bezstab.methods import Method, evaluations, implicit, steps
 from bezstab.show.columns import Row, Value
@@ -31,7 +31,7 @@ NOT_KNOWN = "not known"
 if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
     from _typeshed import DataclassInstance
 
-    from bezstab.engines import Drive, Engine
+    from bezstab.engines import Engine
     from bezstab.evidence import (
         HalvedStep,
         Likeness,
@@ -46,7 +46,7 @@ if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
     )
     from bezstab.mechanism import Simulation
     from bezstab.methods import Verdict
-    from bezstab.stability import BestPoint, Choice, FeedbackCost, FrontPoint, Limit, Member, Region
+    from bezstab.stability import BestPoint, Choice, FrontPoint, Limit, Member, Region
 
 
 def row(result: DataclassInstance, without: Collection[str] = (), **more: Value) -> dict[str, Value]:
@@ -529,7 +529,7 @@ def choice_row(
         beta_min, beta_max = choice.margins.beta
     return row(
         choice,
-        without={"margins"},
+        without={"margins", "question", "role", "point"},
         safe=choice.verdict == "converges",
         h=h,
         alpha=alpha,
@@ -543,14 +543,6 @@ def choice_row(
         beta_factor_min=beta_min,
         beta_factor_max=beta_max,
     )
-
-
-def cost_row(cost: FeedbackCost | None, omega_h: float) -> dict[str, Value]:
-    """Return what accuracy a feedback costs on a motion of omega_h rad a step; None for what is not known."""
-    if cost is None:
-        nothing = dict.fromkeys(COST)
-        return {**nothing, "omega_h": omega_h}
-    return row(cost, without={"order", "least_at"})
 
 
 def alpha_and_beta(alpha_hat: float, beta_hat: float, h: float) -> tuple[float, float | None]:
@@ -594,25 +586,3 @@ def engine_row(engine: Engine, point: tuple[Fraction, Fraction] | None, h: Fract
         setting=setting,
     )
     return {"engine": engine.name, **words}
-
-
-def drive_row(choice: Choice, drive: Drive, h: float, given: bool = False) -> dict[str, Value]:
-    """Return the gains that a point is on a drive's inertia at a step of h (s), their limits, and which is used up.
-
-    Of a point that is given by the drive's own gains, those as they are. A limit is infinite where there is none, None
-    where lowering that gain alone does not help. The largest kp goes with this kd, the largest kd with this kp.
-    """
-    from bezstab.stability import gain_limits
-
-    limits = gain_limits(choice)
-    kp, kd = (float(drive.kp), float(drive.kd)) if given else drive.gains(choice.alpha_hat, choice.beta_hat, h)
-    kp_of_one, kd_of_one = drive.gains(1.0, 1.0, h)
-    return {
-        "drive": DRIVE_METHODS.get(choice.method.name),
-        "kp": kp,
-        "kd": kd,
-        "inertia": float(drive.inertia),
-        "kp_max": None if limits.beta_hat is None else limits.beta_hat * kp_of_one,
-        "kd_max": None if limits.alpha_hat is None else limits.alpha_hat * kd_of_one,
-        "used_up": {"alpha_hat": "kd", "beta_hat": "kp", None: None}[limits.nearest],
-    }
