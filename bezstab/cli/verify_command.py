@@ -67,7 +67,6 @@ SUMMARIES = [
     column("measured points", "measured", "d"),
     column("median error of |z|", "median_error", ".1e"),
     column("largest error of |z|", "largest_error", ".1e"),
-    column("median error with the law", "law_fitted_error", ".1e"),
     column("verdicts called", "called", "d"),
     column("wrong verdicts", "wrong", "d"),
 ]
@@ -76,6 +75,7 @@ MOTION_SUMMARIES = [
     column("median error at rest", "map_error", ".1e"),
     column("median error of the law", "law_error", ".1e"),
     column("median error of the exact rate", "floquet_error", ".1e"),  # of a motion that begins anew, else of none
+    column("on the wrong side of one: at rest, law, exact", "wrong_sides"),
 ]
 
 

@@ -897,14 +897,6 @@ MEASUREMENTS = RowKind(
             null=NOT_MEASURED,
         ),
         Field(
-            "law_fitted_z_abs",
-            "number",
-            "Modulus that the first-order law of the motion predicts for the very steps that were measured",
-            "by the law for these steps",
-            ".6f",
-            null="where nothing could be measured, or at a double pole",
-        ),
-        Field(
             "measured_rate",
             "number",
             "Growth per step measured over a whole revolution beside the motion the method makes, the first left out",

@@ -293,7 +293,6 @@ def measurement_row(scene: str, measurement: Measurement) -> Row:
         "law_z_abs": measurement.law_abs,
         "floquet_z_abs": measurement.floquet_abs,
         **{f"measured_{key}": value for key, value in measured.items()},
-        "law_fitted_z_abs": measurement.law_fitted_abs,
         **{f"difference_{key}": value for key, value in difference.items()},
         "measurable": measurement.measured is not None,
     }
@@ -327,17 +326,21 @@ def forced_rows(scene: str, pair: HalvedStep) -> list[Row]:
 def summary_row(measurements: Sequence[Row]) -> Row:
     """Return how well the measured poles of one method agree: errors of |z|, and verdicts that contradict theory.
 
-    From its rows by measurement_row, at least one.
+    From its rows by measurement_row, at least one. Of the points that were followed over a revolution also the median
+    errors of the rate at rest, of the law's and of the exact one, and how many of each are on the wrong side of one.
     """
     errors = [abs(each["difference_z_abs"]) for each in measurements if isinstance(each["difference_z_abs"], float)]
-    fitted = [(each["measured_z_abs"], each["law_fitted_z_abs"]) for each in measurements]
-    by_the_law = [abs(a - b) for a, b in fitted if isinstance(a, float) and isinstance(b, float)]
 
-    def median_over_the_motion(key: str) -> float | None:
-        """Return the median difference of a prediction from the rate over whole revolutions."""
-        pairs = [(each[key], each["measured_rate"]) for each in measurements]
-        apart = [abs(a - b) for a, b in pairs if isinstance(a, float) and isinstance(b, float)]
-        return float(median(apart)) if apart else None
+    followed = [each for each in measurements if each["measured_rate"] is not None]
+    measured, *predicted = (
+        [rate for each in followed if isinstance(rate := each[key], float)]
+        for key in ("measured_rate", "predicted_z_abs", "law_z_abs", "floquet_z_abs")
+    )
+    pairs = [list(zip(rates, measured, strict=True)) for rates in predicted]
+    map_error, law_error, floquet_error = (
+        float(median(abs(a - b) for a, b in of_one)) if followed else None for of_one in pairs
+    )
+    wrong_sides = [str(sum((a > 1) != (b > 1) for a, b in of_one)) for of_one in pairs]
 
     return {
         "method": measurements[0]["method"],
@@ -345,13 +348,13 @@ def summary_row(measurements: Sequence[Row]) -> Row:
         "measured": len(errors),
         "median_error": float(median(errors)) if errors else None,
         "largest_error": max(errors, default=None),
-        "law_fitted_error": float(median(by_the_law)) if by_the_law else None,
         "called": sum(each["verdicts_agree"] is not None for each in measurements),
         "wrong": sum(each["verdicts_agree"] is False for each in measurements),
-        "revolutions_measured": sum(isinstance(each["measured_rate"], float) for each in measurements),
-        "map_error": median_over_the_motion("predicted_z_abs"),
-        "law_error": median_over_the_motion("law_z_abs"),
-        "floquet_error": median_over_the_motion("floquet_z_abs"),
+        "revolutions_measured": len(followed),
+        "map_error": map_error,
+        "law_error": law_error,
+        "floquet_error": floquet_error,
+        "wrong_sides": ", ".join(wrong_sides) if followed else "",
     }
 
 
