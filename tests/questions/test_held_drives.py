@@ -47,7 +47,9 @@ def test_of_an_unstable_drive_what_it_would_be_stable_without_is_used_up(
 def test_of_a_stable_drive_the_number_nearest_to_its_end_is_used_up() -> None:
     """Held for two steps it is stable for 2 A + B / 2 < 4 and A > B / 4, with A = 2 a and B = 4 b."""
     assert explicit("200", "45", Timing(2)).used_up == "kd"  # a = 0.9, where it may be 0.996
-    assert explicit("200", "0.21", Timing(2)).used_up == "too little kd"  # a = 0.0042, where b = 0.008 needs more than 0.004
+    assert (
+        explicit("200", "0.21", Timing(2)).used_up == "too little kd"
+    )  # a = 0.0042, where b = 0.008 needs more than 0.004
     weak = explicit("200", "0.21", Timing(2)).limits
     assert weak.kd == pytest.approx((0.004 / 0.0042, 0.996 / 0.0042), rel=1e-9)
 

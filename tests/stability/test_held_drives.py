@@ -152,13 +152,12 @@ def test_limits_lie_where_the_verdict_turns() -> None:
     assert found.kp is not None
     assert found.kd is not None
     assert found.kp[0] == 0
-    for factor, inwards, point in (
-        (found.kp[1], -1, lambda factor: (a, factor * b)),
-        (found.kd[1], -1, lambda factor: (factor * a, b)),
-        (found.kd[0], 1, lambda factor: (factor * a, b)),
-    ):
-        for sign, verdict in ((inwards, "converges"), (-inwards, "diverges")):
-            assert held_verdict("SYM", *point(Fraction((1 + sign * 1e-6) * factor)), timing) == verdict
+    less, more = Fraction(999_999, 10**6), Fraction(1_000_001, 10**6)
+    kp_max, kd_min, kd_max = (Fraction(factor) for factor in (found.kp[1], *found.kd))
+    inside = [(a, kp_max * less * b), (kd_min * more * a, b), (kd_max * less * a, b)]
+    outside = [(a, kp_max * more * b), (kd_min * less * a, b), (kd_max * more * a, b)]
+    for points, verdict in ((inside, "converges"), (outside, "diverges")):
+        assert [held_verdict("SYM", *point, timing) for point in points] == [verdict] * 3
     assert found.every is not None
     assert found.late is not None
     assert held_verdict("SYM", a, b, Timing(found.every, timing.late)) == "converges"
