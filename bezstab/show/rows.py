@@ -434,9 +434,8 @@ def likeness_row(column: str, likeness: Likeness) -> Row:
     """Return how far the pole in a column of a log is from a method's, per row of the log, angle in degrees."""
     return row(
         likeness,
-        without={"predicted", "error", "reason"},
+        without={"predicted", "error"},
         column=column,
-        reason=likeness.reason or None,
         predicted_z_abs=abs(likeness.predicted),
         predicted_z_angle_deg=complex_parts("", likeness.predicted)["angle_deg"],
         fits=likeness.fits,

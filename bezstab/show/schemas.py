@@ -50,7 +50,7 @@ DRIVE = _keys("drive kp kd inertia kp_max kd_max used_up")
 """What --pd adds."""
 VARYING = _keys("varying varying_h_min varying_h_max hold certificate_kind certificate sequence growth shown_by")
 """What --h-min adds."""
-LIKENESS = _keys("method predicted_z_abs predicted_z_angle_deg distance allowed dominant same_as judged_by fits")
+LIKENESS = _keys("method predicted_z_abs predicted_z_angle_deg distance allowed dominant same_as fits")
 LIKE_POINT = _keys("alpha_hat beta_hat alpha_hat_error beta_hat_error h alpha beta")
 
 ROW_KINDS: Mapping[str, Sequence[RowKind]] = {

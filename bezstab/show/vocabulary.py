@@ -257,21 +257,8 @@ VOCABULARY: Mapping[str, Key] = {
     "advice": Key("text", "What to write instead", null="where nothing is to be changed"),
     "uncertainty": Key("number", "How far the fitted pole may be off", null=NOT_MEASURED),
     "samples": Key("integer", "Samples that the fit has used"),
-    "distance": Key(
-        "number",
-        "Distance of the fitted pole from that of the method; or by which share of themselves its poles must shift for "
-        "its recursion to explain the log; or, by exclusion, which share of a term its recursion leaves over at least",
-        null=NOT_MEASURED,
-    ),
-    "judged_by": Key(
-        "text",
-        "How a method is judged: by its pole, by its recursion, or, where the log can test neither, by whether it can "
-        "exclude the method; `reason` says so",
-        values=("pole", "recursion", "exclusion"),
-    ),
-    "fits": Key(
-        "truth", "Whether the log may be the method's: agrees with it within its uncertainty, or cannot exclude it"
-    ),
+    "distance": Key("number", "Distance of the fitted pole from that of the method", null=NOT_MEASURED),
+    "fits": Key("truth", "Whether the log may be the method's: it agrees with it within its uncertainty"),
     "column": Key("text", "Name of the column of the log"),
     "allowed": Key("number", "Largest distance that still fits"),
     "dominant": Key("truth", "Whether the method's nearest pole is its dominant one"),
