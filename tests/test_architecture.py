@@ -51,7 +51,7 @@ FOUNDATIONS = (
 BELOW = {
     "engines": {*FOUNDATIONS},
     "methods": {*FOUNDATIONS},
-    "stability": {*FOUNDATIONS, "methods"},
+    "stability": {*FOUNDATIONS, "engines", "methods"},
     "mechanism": {*FOUNDATIONS, "methods"},
     "evidence": {*FOUNDATIONS, "engines", "methods", "stability", "mechanism"},
     "show": {*FOUNDATIONS, "engines", "methods", "stability", "mechanism", "evidence"},
