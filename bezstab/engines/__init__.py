@@ -17,7 +17,7 @@ From data upwards; a file imports only from those above it:
 
 from bezstab.engines.conversions import Applied, Curve, Engine, Point
 from bezstab.engines.drives import DRIVE_METHODS, Drive
-from bezstab.engines.engine_list import ENGINES, RUN_UNDERNEATH, WITNESSES, engine_named, witness_of
+from bezstab.engines.engine_list import ENGINES, RUN_UNDERNEATH, WITNESSES, engine_and_values, engine_named, witness_of
 from bezstab.engines.sweeping import (
     MOST_SWEEPS,
     Move,
@@ -44,6 +44,7 @@ __all__ = [
     "SweptStep",
     "VelocityOfMove",
     "check_iterations",
+    "engine_and_values",
     "engine_named",
     "hard_velocity_step",
     "witness_of",

@@ -46,6 +46,11 @@ ACCURATE = _keys("omega_h accurate_alpha_hat accurate_beta_hat accurate_z_abs ac
 """What --accuracy adds."""
 APPLIED = ("applied", "excludes", "sweeps")
 """What --engine adds."""
+CHAIN = _keys(
+    "chain chain_bodies chain_mass_ratio chain_iterations chain_z_abs chain_accuracy alone_z_abs stable_iterations "
+    "chain_setting"
+)
+"""What --chain adds."""
 DRIVE = _keys("drive kp kd inertia kp_max kd_max used_up")
 """What --pd adds."""
 VARYING = _keys("varying varying_h_min varying_h_max hold certificate_kind certificate sequence growth shown_by")
@@ -78,12 +83,14 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
             _keys("steps method area alpha_hat_max beta_hat_max best_z_abs order error_constant"),
         )
     ],
-    "choose": [RowKind("a choice", _keys(CHOICE), ("setting", "sweeps", "engine_h_limit", *DRIVE, *MOVING, *VARYING))],
+    "choose": [
+        RowKind("a choice", _keys(CHOICE), ("setting", "sweeps", "engine_h_limit", *CHAIN, *DRIVE, *MOVING, *VARYING))
+    ],
     "check": [
         RowKind(
             "a point, or what to take instead",
             _keys(f"role {CHOICE}"),
-            (*APPLIED, "setting", "engine_h_limit", *DRIVE, *MOVING, *VARYING),
+            (*APPLIED, "setting", "engine_h_limit", *CHAIN, *DRIVE, *MOVING, *VARYING),
             sometimes=("excludes",),
         ),
         RowKind("the largest step of alpha and beta, without a step", _keys("role method alpha beta safe h_limit")),
@@ -115,7 +122,7 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
             _keys("""scene method alpha_hat beta_hat
                 predicted_z_real predicted_z_imag predicted_z_abs predicted_z_angle_deg predicted_verdict
                 law_z_abs law_verdict floquet_z_abs
-                measured_z_real measured_z_imag measured_z_abs measured_z_angle_deg law_fitted_z_abs
+                measured_z_real measured_z_imag measured_z_abs measured_z_angle_deg
                 measured_rate measured_verdict
                 difference_z_real difference_z_imag difference_z_abs difference_z_angle_deg
                 reason measurable verdicts_agree right"""),

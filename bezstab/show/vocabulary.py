@@ -239,6 +239,20 @@ VOCABULARY: Mapping[str, Key] = {
     "applied": Key(
         "text", "What the engine does to its values before it uses them", null="where nothing is known of it"
     ),
+    # chains in engines that sweep
+    "chain": Key("text", "The chain of bodies that is asked about"),
+    "chain_bodies": Key("integer", "Bodies of the chain, the first held by the world"),
+    "chain_mass_ratio": Key("number", "Mass of the last body of the chain over that of each other"),
+    "chain_iterations": Key("integer", "Sweeps that the engine makes in a step"),
+    "chain_z_abs": Key("number", "Factor by which a step multiplies the error of the chain in the long run"),
+    "chain_accuracy": Key("number", "How far that factor may be off by rounding, to first order"),
+    "alone_z_abs": Key("number", "The same factor for one constraint alone, with as many sweeps"),
+    "stable_iterations": Key("integer", "From how many sweeps the chain is stable", null="where none tried is"),
+    "chain_setting": Key(
+        "text",
+        "What to paste for the strongest feedback that the chain allows, even if it were stronger by the spread",
+        null="where there is none, or nothing to set",
+    ),
     # drives
     "drive": Key("text", "How the drive is applied", null="where the method is no drive's"),
     "kp": Key("number", "Stiffness of the drive", "N m/rad or N/m"),
@@ -315,11 +329,6 @@ VOCABULARY: Mapping[str, Key] = {
         null="without --floquet",
     ),
     **_pole("measured_", "the pole measured in the simulation", NOT_MEASURED),
-    "law_fitted_z_abs": Key(
-        "number",
-        "Modulus that the first-order law of the motion predicts for the very steps that were measured",
-        null="where nothing could be measured, or at a double pole",
-    ),
     "measured_rate": Key(
         "number",
         "Growth per step measured over a whole revolution beside the motion the method makes, the first left out",

@@ -144,27 +144,6 @@ def test_scaling_a_constraint_or_all_masses_changes_nothing() -> None:
     assert scaled.factor == pytest.approx(plain.factor, rel=1e-9)
 
 
-@pytest.mark.parametrize("name", [name for name, engine in ENGINES.items() if engine.sweeping])
-def test_one_constraint_swept_is_the_engines_point(name: str) -> None:
-    from bezstab.methods import lookup
-    from bezstab.stability import spectral_radius as of_method
-
-    engine, h = ENGINES[name], Fraction(1, 240)
-    typed = {"chipmunk": ("1/500",), "box2d": (60, 2), "rapier": (30, 1), "jolt-spring": (5, "1/2"), "pbd": ("2/3",)}
-    values = tuple(map(Fraction, typed.get(name, ("1/5",) * len(engine.parameters))))
-    assert engine.sweeping
-    assert engine.method
-    growth = swept_growth(chain(1), engine.sweeping.step(engine.sweeping.iterations, h, *values))
-    point = engine.applied(values, h).point
-    assert growth.factor == pytest.approx(float(of_method(lookup(engine.method), *map(float, point))), abs=1e-7)
-    assert engine.sweeping.source
-    assert engine.sweeping.excludes
-
-
-def test_an_engine_that_says_how_it_sweeps_sweeps() -> None:
-    assert all(engine.sweeps for engine in ENGINES.values() if engine.sweeping)
-
-
 def test_what_rounding_leaves_open_is_refused() -> None:
     with pytest.raises(NumericalError, match="too near 1"):
         _ = Growth(1.000001, 1e-5).decays
