@@ -43,6 +43,7 @@ From a method's polynomial in float64 (its pencil) upwards; a file imports only 
     error_fronts      how little error a method can force while what is there decays so fast
     feedback_costs    what accuracy a feedback costs
     gain_margins      which of two gains is used up
+    held_drives       drives whose torque is held for several steps, or applied late
     step_families     methods by their number of steps, and their limit
     sweeps            by what a step multiplies the errors of constraints that are solved in sweeps
 
@@ -103,10 +104,18 @@ if TYPE_CHECKING:
         exact_critical_damping_limit,
         unconditional_damping_ratio,
     )
+    from bezstab.stability.held_drives import (
+        HeldLimits,
+        Timing,
+        held_limits,
+        held_spectral_radius,
+        held_verdict,
+    )
     from bezstab.stability.quadrant_proofs import StableForAll, stable_for_all
 
 PROVEN = {
     "damping_limits": ("critical_damping_limit", "exact_critical_damping_limit", "unconditional_damping_ratio"),
+    "held_drives": ("HeldLimits", "Timing", "held_limits", "held_spectral_radius", "held_verdict"),
     "quadrant_proofs": ("StableForAll", "stable_for_all"),
 }
 """What is loaded when first used, by module."""
@@ -136,6 +145,7 @@ __all__ = [
     "GainLimits",
     "Goal",
     "Growth",
+    "HeldLimits",
     "Limit",
     "Margins",
     "Member",
@@ -143,6 +153,7 @@ __all__ = [
     "Pencil",
     "Region",
     "StableForAll",
+    "Timing",
     "VaryingSteps",
     "best_point",
     "best_point_or_reason",
@@ -167,6 +178,9 @@ __all__ = [
     "forced_error",
     "forced_response",
     "gain_limits",
+    "held_limits",
+    "held_spectral_radius",
+    "held_verdict",
     "inverse_effective_masses",
     "largest_stable_step",
     "own_feedback_root",
