@@ -7,6 +7,8 @@ from math import lcm
 
 from bezstab.errors import InputError
 
+ONE, ZERO = Fraction(1), Fraction(0)
+
 # Within float64's normal range, with room for the rounding of its ends.
 SMALLEST = Fraction("1e-307")
 LARGEST = Fraction("1e308")

@@ -36,7 +36,7 @@ from bezstab.mechanism import (
     states_needed,
     turning_normals,
 )
-from bezstab.methods import Method, SecondOrder, Verdict, closed_loop_table, evaluations, steps
+from bezstab.methods import Method, Verdict, closed_loop_table, evaluations, steps
 from bezstab.rationals import exact
 from bezstab.stability import (
     ComplexArray,
@@ -276,7 +276,7 @@ def _measurement(
 
 def _number_of_poles(method: Method) -> int:
     """Return the degree of P: for each of two mu as many as the method steps, or that of a second-order scheme."""
-    if isinstance(method.scheme, SecondOrder):
+    if not method.has_mu:
         return len(closed_loop_table(method)) - 1
     return 2 * steps(method)
 

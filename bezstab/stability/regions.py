@@ -30,7 +30,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.methods import Method, SecondOrder, first_order_form, fixed_poles, plane_strips, without_shared_factor
+from bezstab.methods import Method, fixed_poles, plane_strips, without_shared_factor
 from bezstab.rationals import exact
 from bezstab.read_only import ReadOnlyArrays
 from bezstab.stability.arrays import BoolArray, Extent, FloatArray
@@ -111,13 +111,10 @@ def region(method: Method, level: float = 1.0) -> Region:
     """
     if not 0 < level <= 1:
         raise InputError(f"level {level:g}: expected above 0 and at most 1, the stability boundary")
-    form = first_order_form(method)
-    if form is not method:
-        return replace(region(form, level), method=method)
     stuck = fixed_poles(method)
     if stuck and abs(stuck[0]) >= level * (1 - ROUNDING):
         return Region(method, level, 0.0, (), None, stuck)
-    if isinstance(method.scheme, SecondOrder):
+    if not method.has_mu:
         return _plane_region(method, level, stuck)
     if stuck:
         return replace(region(without_shared_factor(method), level), method=method, fixed_poles=stuck)
