@@ -584,30 +584,14 @@ LIKENESS = (
     METHOD,
     PREDICTED_Z_ABS,
     PREDICTED_Z_ANGLE_DEG,
-    Field(
-        "distance",
-        "number",
-        "Distance of the fitted pole from that of the method; or by which share of themselves its poles must "
-        "shift for its recursion to explain the log; or, by exclusion, which share of a term its recursion "
-        "leaves over at least",
-        "distance",
-        ".1e",
-        null=NOT_MEASURED,
-    ),
+    Field("distance", "number", "Distance of the fitted pole from that of the method", "distance", ".1e"),
     Field("allowed", "number", "Largest distance that still fits", "allowed", ".1e"),
     Field("dominant", "truth", "Whether the method's nearest pole is its dominant one"),
     Field("same_as", "text", "Methods that no log can tell from this one"),
     Field(
-        "judged_by",
-        "text",
-        "How a method is judged: by its pole, by its recursion, or, where the log can test neither, by "
-        "whether it can exclude the method; `reason` says so",
-        values=("pole", "recursion", "exclusion"),
-    ),
-    Field(
         "fits",
         "truth",
-        "Whether the log may be the method's: agrees with it within its uncertainty, or cannot exclude it",
+        "Whether the log may be the method's: it agrees with it within its uncertainty",
         "fits",
         text=yes_no_text("fits"),
     ),
