@@ -54,7 +54,7 @@ witnesses: .venv/tested  ## engines that are not ours, run: PyBullet, pymunk, Ex
 	$(BIN)/pip install --quiet --editable '.[witnesses]'
 	$(BIN)/python -m pytest tests/witnesses tests/evidence/test_mujoco_witness.py
 
-mutants: .venv/tested  ## are the tests able to fail? an hour or two; results stay in a temporary folder, so that it goes on
+mutants: .venv/tested  ## are the tests able to fail? hours; results stay in a temporary folder, so that it goes on
 	$(BIN)/pip install --quiet --editable '.[mutants]'
 	$(BIN)/python -m tests.mutation.campaign --count 200 --seed 1
 

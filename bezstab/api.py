@@ -9,13 +9,16 @@ of one; a scene is a shipped scene's name, the path of a TOML file, or what `sce
 from __future__ import annotations  # so that help() shows annotations as they are written
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+import re
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from fractions import Fraction
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bezstab import evidence, mechanism, stability
+from bezstab import evidence, mechanism, questions, stability
+from bezstab.engines import Drive, engine_and_values, engine_named
 from bezstab.errors import InputError, shown
 from bezstab.mechanism import Scene, Simulation
 from bezstab.methods import REGISTRY, Method, Verdict, lookup
@@ -144,66 +147,127 @@ def best_point(method: str | Method) -> stability.BestPoint | None:
 
 
 def choose(
-    method: str | Method,
+    method: str | Method | None = None,
     *,
-    goal: stability.Goal = "accurate",
+    goal: stability.Goal | None = None,
     spread: float = 0.1,
     h: Number | None = None,
+    h_min: Number | None = None,
     h_max: Number | None = None,
+    hold: bool = False,
     settle: Number | None = None,
     equal: bool = False,
     omega: Number | None = None,
     omega_h: Number | None = None,
-) -> stability.Choice:
+    engine: str | None = None,
+    pd: Sequence[Number] | None = None,
+    scene: str | Scene | None = None,
+    speed: Number = 1,
+) -> questions.Answer:
     """Return the point that a goal asks for, dimensionless, proven stable, with the margins that remain.
 
-    accurate: the least error forced on a motion of `omega` (1/s, with the step `h` in s) or `omega_h` (rad a step,
-    0.01 unless given), among what settles within `settle` (s), or while that motion turns by 14 rad. robust: fastest at
-    worst over smaller steps and over alpha, beta off by the share `spread`; both with `h` and `h_max` (s) for the steps
-    up to h_max, for use at h, and then omega_h is that of h_max. fastest: least |z_p|. critical: the fastest dominant
-    pole that is double, real and positive. gentle: the mildest alpha = beta whose error falls a thousandfold within
-    `settle` (s) at the step `h` (s). `equal` keeps alpha = beta. `from_dimensionless` turns the answer into 1/s.
-    InputError if nothing stable meets the goal, and for a goal, spread, time or motion that is none. The poles are
-    those of paper Eq. 17, the goals this package's.
+    accurate, the usual goal: the least error forced on a motion of `omega` (1/s, with the step `h` in s) or `omega_h`
+    (rad a step, 0.01 unless given), among what settles within `settle` (s), or while that motion turns by 14 rad.
+    robust: fastest at worst over smaller steps and over alpha, beta off by the share `spread`; both with `h`, `h_max`
+    (s) for the steps up to h_max, for use at h, and then omega_h is that of h_max. fastest: least |z_p|. critical: the
+    fastest dominant pole that is double, real and positive. gentle: the mildest alpha = beta whose error falls a
+    thousandfold within `settle` (s) at the step `h` (s). `equal` keeps alpha = beta. What else `check` says of a point
+    this says of the choice: `engine` is a name, and `setting` the line to paste; with `pd` `gains` are those to set.
+    `from_dimensionless` turns the answer into 1/s. Without a method it is the engine's own. InputError if nothing
+    stable meets the goal, and for a goal, spread, time or motion that is none. The poles are those of paper Eq. 17, the
+    goals this package's.
     """
-    spread = _real(spread, "spread")
-    if goal != "accurate" and not (omega is None and omega_h is None):
-        raise InputError(f"omega and omega_h go with the goal accurate, not {goal}")
-    motion = _omega_h(omega, omega_h, h if h_max is None else h_max)
-    if h is None:
-        if h_max is not None or settle is not None or goal == "gentle":
-            raise InputError("h_max, settle and the goal gentle need the step h in s")
-        return stability.choose(_method(method), goal, spread=spread, equal=equal, omega_h=motion)
-    return stability.choose_at_step(
-        _method(method),
-        goal,
-        h=_exact(h, "h"),
-        h_max=_exact_if_given(h_max, "h_max"),
-        settle=_exact_if_given(settle, "settle"),
-        spread=spread,
-        equal=equal,
-        omega_h=motion,
-    )
+    named = None if engine is None else engine_named(engine)
+    drive = _drive(pd)
+    if method is None and drive:
+        raise InputError("pd: name one method, such as 'SYM' where the drive is applied explicitly")
+    with _in_keywords():
+        question = questions.Question(
+            methods=() if method is None else (_method(method),),
+            goal=goal or questions.usual_goal(named, drive),
+            h=_exact_if_given(h, "h"),
+            h_min=_exact_if_given(h_min, "h_min"),
+            h_max=_exact_if_given(h_max, "h_max"),
+            hold=hold,
+            engine=named,
+            drive=drive,
+            omega=_exact_if_given(omega, "omega"),
+            omega_h=_exact_if_given(omega_h, "omega_h"),
+            scene=_scene_or_name(scene),
+            speed=_exact(speed, "speed"),
+            spread=_real(spread, "spread"),
+            settle=_exact_if_given(settle, "settle"),
+            equal=equal,
+        )
+        (chosen,) = questions.answers(question)
+    return chosen
 
 
 def check(
-    method: str | Method,
+    method: str | Method | None = None,
     *,
     alpha_hat: Number | None = None,
     beta_hat: Number | None = None,
     alpha: Number | None = None,
     beta: Number | None = None,
     h: Number | None = None,
+    h_min: Number | None = None,
+    h_max: Number | None = None,
+    hold: bool = False,
     spread: float = 0.1,
-) -> stability.Choice:
+    omega: Number | None = None,
+    omega_h: Number | None = None,
+    engine: str | None = None,
+    as_typed: bool = False,
+    pd: Sequence[Number] | None = None,
+    scene: str | Scene | None = None,
+    speed: Number = 1,
+) -> questions.Answer:
     """Return what there is to say of a point of your own: proven verdict, dominant pole, margins; dimensionless.
 
-    `margins` has the factors by which h, alpha and beta may be scaled alone; None unless the point is stable.
-    Errors as for `verdict`, whose sources it shares; InputError, too, for a `spread` outside 0 to 1, and NumericalError
-    if a pole leaves the range of float64.
+    The point is also what an engine makes of its values (`engine="mujoco=0.02,1"`), or a drive of its gains
+    (`pd=(kp, kd, inertia)`), each with the step `h` (s). `safe` is whether errors shrink: with a `scene`, as it moves
+    `speed` times as fast as given there; with `h_min` and `h_max` (s), for every sequence of such steps. `margins` has
+    the factors by which h, alpha and beta may be scaled alone; None unless the point is stable. Found when asked for:
+    `cost` (of accuracy, on a motion of `omega` in 1/s or `omega_h` in rad a step), `instead`, `moving`, `varying`,
+    `setting`, `gains`. Without a method it is the engine's own. Of several points that an engine takes, or ways of
+    applying a drive, the answer is the first that is not safe. Errors as for `verdict`, whose sources it shares;
+    InputError, too, for a `spread` outside 0 to 1, and NumericalError if a pole leaves the range of float64.
     """
-    a, b = _plane_point(alpha_hat, beta_hat, alpha, beta, h)
-    return stability.describe_point(_method(method), "as given", a, b, _real(spread, "spread"))
+    named, values = (None, None) if engine is None else engine_and_values(engine)
+    drive = _drive(pd)
+    point = None
+    if not (named or drive) or any(each is not None for each in (alpha_hat, beta_hat, alpha, beta)):
+        point = _plane_point(alpha_hat, beta_hat, alpha, beta, h_max if h is None else h)
+    with _in_keywords():
+        question = questions.Question(
+            methods=() if method is None else (_method(method),),
+            point=point,
+            h=_exact_if_given(h, "h"),
+            h_min=_exact_if_given(h_min, "h_min"),
+            h_max=_exact_if_given(h_max, "h_max"),
+            hold=hold,
+            engine=named,
+            values=values,
+            as_typed=as_typed,
+            drive=drive,
+            omega=_exact_if_given(omega, "omega"),
+            omega_h=_exact_if_given(omega_h, "omega_h"),
+            scene=_scene_or_name(scene),
+            speed=_exact(speed, "speed"),
+            spread=_real(spread, "spread"),
+        )
+        given = list(questions.answers(question))
+    return next((answer for answer in given if not answer.safe), given[0])
+
+
+def largest_step(method: str | Method, *, alpha: Number, beta: Number) -> float:
+    """Return the step (s) up to which every one is stable with alpha and beta (1/s), proven where the verdict turns.
+
+    Infinite where every step is, zero where small ones are not. InputError unless the numbers are finite. The path of
+    all steps through the plane of paper Eq. 17.
+    """
+    return questions.largest_step(_method(method), _exact(alpha, "alpha"), _exact(beta, "beta")).h_limit
 
 
 def feedback_cost(
@@ -226,7 +290,11 @@ def feedback_cost(
     the two ways, and omega h is 1e-6 to 1. The test equation of Prothero and Robinson (Math. Comp. 28, 1974).
     """
     a, b = _plane_point(alpha_hat, beta_hat, alpha, beta, h)
-    return stability.feedback_cost(_method(method), a, b, _omega_h(omega, omega_h, h))
+    with _in_keywords():
+        step = _exact_if_given(h, "h")
+        rate, turned = _exact_if_given(omega, "omega"), _exact_if_given(omega_h, "omega_h")
+        motion = questions.motion_of(rate, None, Fraction(1), step, omega_h=turned)
+    return stability.feedback_cost(_method(method), a, b, motion.omega_h)
 
 
 def simulate(
@@ -392,23 +460,28 @@ def _exact_if_given(value: Number | None, name: str) -> Fraction | None:
     return None if value is None else _exact(value, name)
 
 
-def _omega_h(omega: Number | None, omega_h: Number | None, h: Number | None) -> Fraction:
-    """Return how far a motion turns in a step (rad), from omega in 1/s and h in s, or as it is; else what is usual.
+def _drive(gains: Sequence[Number] | None) -> Drive | None:
+    """Return the drive of gains (kp, kd, inertia); InputError for another number of them."""
+    if gains is None:
+        return None
+    if isinstance(gains, str) or not isinstance(gains, Sequence) or len(gains) != 3:
+        raise InputError(f"pd = {shown(gains)}: expected (kp, kd, inertia)")
+    return Drive(*(_exact(gain, name) for gain, name in zip(gains, ("kp", "kd", "inertia"), strict=True)))
 
-    InputError for both, for omega without h, and unless 1e-6 <= omega h < 1.
-    """
-    if omega is None:
-        found = stability.OMEGA_H if omega_h is None else _exact(omega_h, "omega_h")
-    elif omega_h is not None:
-        raise InputError("the motion is given as omega= in 1/s with h= in s, or as omega_h= in rad a step, not as both")
-    elif h is None:
-        raise InputError("omega in 1/s needs the step h in s")
-    else:
-        step = _exact(h, "h")
-        check_step(step)
-        found = _exact(omega, "omega") * step
-    stability.check_omega_h(found)
-    return found
+
+def _scene_or_name(given: str | Scene | None) -> str | Scene | None:
+    """Return a scene or its name as given; InputError for anything else."""
+    return given if given is None or isinstance(given, str) else scene(given)
+
+
+@contextmanager
+def _in_keywords() -> Iterator[None]:
+    """Turn the options that an InputError names (--h-max) into the keywords of a function (h_max)."""
+    try:
+        yield
+    except InputError as error:
+        said = re.sub(r"--([a-z]+(?:-[a-z]+)*)", lambda option: option[1].replace("-", "_"), str(error))
+        raise InputError(said) from None
 
 
 def _real(value: Number, name: str) -> float:

@@ -7,6 +7,8 @@ from math import lcm
 
 from bezstab.errors import InputError
 
+ONE, ZERO = Fraction(1), Fraction(0)
+
 # Within float64's normal range, with room for the rounding of its ends.
 SMALLEST = Fraction("1e-307")
 LARGEST = Fraction("1e308")
@@ -61,3 +63,14 @@ def bisected_integers(holds: Callable[[int], bool], before: int, after: int) -> 
         middle = (before + after) // 2
         before, after = (before, middle) if holds(middle) else (middle, after)
     return before, after
+
+
+def typed_number(number: Fraction) -> str:
+    """Return a number as somebody would type it: a decimal where that is short and exact, else a fraction.
+
+    Of a fraction that is longer than a float, as those are that were computed, the decimal that float64 reads as it.
+    """
+    decimal = f"{float(number):.12g}"
+    if Fraction(decimal) == number:
+        return decimal
+    return min(str(number), repr(float(number)), key=len)

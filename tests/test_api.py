@@ -1,5 +1,6 @@
 import doctest
 import inspect
+import json
 import re
 import subprocess
 import sys
@@ -13,7 +14,8 @@ import pytest
 
 import bezstab
 from bezstab.errors import InputError
-from tests.cli.running import rows
+from bezstab.show import answer_row, render
+from tests.cli.running import rows, run
 
 PAGE = Path(__file__).parent.parent / "bezstab" / "README.md"
 FUNCTIONS = sorted(set(bezstab.__all__) - {"plot"})
@@ -76,7 +78,7 @@ def test_both_ways_to_give_a_point_agree() -> None:
         {},
     ],
 )
-def test_a_point_is_never_guessed(point: dict[str, float]) -> None:
+def test_a_point_is_never_guessed(point: dict[str, Any]) -> None:
     for function in (bezstab.poles, bezstab.dominant_pole, bezstab.spectral_radius, bezstab.verdict, bezstab.check):
         with pytest.raises(InputError, match=r"h=? in s"):
             function("B4", **point)
@@ -99,6 +101,45 @@ def test_a_choice_is_accurate_unless_told_otherwise_and_takes_the_motion_in_both
     of_longest = bezstab.choose("RK4", h=0.001, h_max=0.002, omega=10)
     assert of_longest.alpha_hat == pytest.approx(chosen.alpha_hat / 2)
     assert bezstab.choose("RK4").alpha_hat == pytest.approx(chosen.alpha_hat / 2, rel=1e-3)  # omega h = 0.01
+
+
+@pytest.mark.parametrize(
+    ("typed", "asked"),
+    [
+        ("--engine mujoco=0.0001,1 --h 0.002", {"engine": "mujoco=0.0001,1", "h": 0.002}),
+        ("--pd 1000,80,0.1 --h 1/240 --method stable-pd", {"pd": (1000, 80, 0.1), "h": "1/240", "method": "stable-pd"}),
+        (
+            "--method SYM --alpha 2 --beta 100 --physical --h-min 0.00917 --h-max 1/60",
+            {"method": "SYM", "alpha": 2, "beta": 100, "h_min": 0.00917, "h_max": "1/60"},
+        ),
+        pytest.param(
+            "--method SYM --alpha 1 --beta 0.5 --h 0.01 --scene driven_four_bar --speed 2",
+            {"method": "SYM", "alpha_hat": 1, "beta_hat": 0.5, "h": 0.01, "scene": "driven_four_bar", "speed": 2},
+            marks=pytest.mark.slow,
+        ),
+    ],
+)
+def test_check_answers_what_the_command_line_answers(typed: str, asked: dict[str, Any]) -> None:
+    printed = json.loads(run("check", *typed.split(), "--format", "json").stdout)
+    answer = bezstab.check(**asked)
+    for row, found in ((printed[0], answer), (printed[-1], answer.instead)):
+        assert row == json.loads(render([answer_row(found)], [], "json"))[0]
+
+
+@pytest.mark.parametrize(
+    ("typed", "asked"),
+    [
+        ("--engine bullet --h 1/240", {"engine": "bullet", "h": "1/240"}),
+        ("--pd 1000,80,0.1 --method SYM --h 1/240", {"pd": (1000, 80, 0.1), "method": "SYM", "h": "1/240"}),
+        (
+            "--method SYM --h 0.01 --goal fastest --h-min 0.005",
+            {"method": "SYM", "h": 0.01, "goal": "fastest", "h_min": 0.005},
+        ),
+    ],
+)
+def test_choose_answers_what_the_command_line_answers(typed: str, asked: dict[str, Any]) -> None:
+    (printed,) = json.loads(run("choose", *typed.split(), "--format", "json").stdout)
+    assert printed == json.loads(render([answer_row(bezstab.choose(**asked))], [], "json"))[0]
 
 
 def test_units_go_there_and_back() -> None:
@@ -124,11 +165,11 @@ def test_a_region_knows_what_it_contains() -> None:
             lambda: bezstab.choose("B4", goal=cast(Any, "quick")),
             "goal 'quick': expected accurate, robust, fastest, critical, gentle",
         ),
-        (lambda: bezstab.choose("B4", goal="gentle"), "the goal gentle need the step h in s"),
-        (lambda: bezstab.choose("B4", omega=5), "omega in 1/s needs the step h in s"),
+        (lambda: bezstab.choose("B4", goal="gentle"), "goal gentle needs settle: the time in s"),
+        (lambda: bezstab.choose("B4", settle=1), "settle, engine and pd need h: the step in s"),
+        (lambda: bezstab.choose("B4", omega=5), "omega needs h: the step in s"),
         (lambda: bezstab.choose("B4", omega=500, h=0.01), "omega h = 5 rad a step: expected 1e-06 to 1"),
         (lambda: bezstab.choose("B4", omega=0, h=0.01), "omega h = 0 rad a step: expected 1e-06 to 1"),
-        (lambda: bezstab.choose("B4", goal="robust", omega_h=0.01), "go with the goal accurate, not robust"),
         (
             lambda: bezstab.feedback_cost("B4", alpha_hat=0.5, beta_hat=0.1, omega=5, omega_h=0.1),
             "as omega= in 1/s with h= in s, or as omega_h= in rad a step, not as both",
@@ -136,7 +177,7 @@ def test_a_region_knows_what_it_contains() -> None:
         (lambda: bezstab.feedback_cost("B4", alpha=1, beta=1, omega_h=0.1), "alpha and beta in 1/s need the step h"),
         (lambda: bezstab.choose("B4", spread=-0.5), "spread -0.5: expected a share from 0 to 1"),
         (lambda: bezstab.choose("B4", h=-1), "h = -1 s: expected 1e-100 to"),
-        (lambda: bezstab.choose("B4", goal="gentle", h=0.001, settle=-1), "settle = -1 s: expected a positive time"),
+        (lambda: bezstab.choose("B4", goal="gentle", h=0.001, settle=-1), "settle -1 s: expected a positive time"),
         (lambda: bezstab.check("B4", alpha_hat=0.5, beta_hat=0.1, spread=1), "spread 1: expected a share from 0 to 1"),
         (lambda: bezstab.verdict("B4", alpha_hat=float("nan"), beta_hat=0.1), "nan is not a finite number"),
         (lambda: bezstab.poles("B4", alpha=1.0, beta=1.0, h=0.0), "h = 0 s: expected 1e-100 to"),

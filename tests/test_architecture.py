@@ -9,6 +9,8 @@ other; only appointed files see a library.
     cli        api         what people type, on the command line and in Python
       |         |
     show -------+          what they see
+      |         |
+    questions --+          what they ask, and the answers
       |
     evidence               the only place where stability and mechanism meet
       |      \
@@ -41,7 +43,7 @@ from bezstab.cli import main
 
 PACKAGE = Path(__file__).parent.parent / "bezstab"
 TESTS = PACKAGE.parent / "tests"
-ROOMS = ("engines", "methods", "stability", "mechanism", "evidence", "show", "cli", "paper")
+ROOMS = ("engines", "methods", "stability", "mechanism", "evidence", "questions", "show", "cli", "paper")
 FOUNDATIONS = (
     *("lazy", "stopping", "errors", "rationals", "files", "toml_tables", "units", "compiling", "read_only"),
     "linear_equations",
@@ -54,18 +56,20 @@ BELOW = {
     "stability": {*FOUNDATIONS, "methods"},
     "mechanism": {*FOUNDATIONS, "methods"},
     "evidence": {*FOUNDATIONS, "engines", "methods", "stability", "mechanism"},
-    "show": {*FOUNDATIONS, "engines", "methods", "stability", "mechanism", "evidence"},
-    "cli": {*FOUNDATIONS, "engines", "methods", "stability", "mechanism", "evidence", "show"},
+    "questions": {*FOUNDATIONS, "engines", "methods", "stability", "mechanism", "evidence"},
+    "show": {*FOUNDATIONS, "engines", "methods", "stability", "mechanism", "evidence", "questions"},
+    "cli": {*FOUNDATIONS, "engines", "methods", "stability", "mechanism", "evidence", "questions", "show"},
     "paper": {*FOUNDATIONS, "methods", "stability", "mechanism", "evidence", "show", "cli"},
-    "api": {*FOUNDATIONS, "methods", "stability", "mechanism", "evidence"},
+    "api": {*FOUNDATIONS, "engines", "methods", "stability", "mechanism", "evidence", "questions"},
 }
 SHARED_WITH_EXTENSIONS = {"cli.options", "cli.output"}
 """What a command outside the room `cli`, such as the paper's, is written with."""
 
 APPOINTED = {
     "sympy": {
-        *("methods/derivation.py", "methods/formulas.py", "methods/orders.py", "methods/shared_factors.py"),
-        *("methods/plane_edges.py", "methods/path_edges.py", "stability/quadrant_proofs.py"),
+        *("methods/determinants.py", "methods/derivation.py", "methods/formulas.py", "methods/shared_factors.py"),
+        *("methods/plane_edges.py", "methods/path_edges.py", "methods/step_matrices.py"),
+        *("stability/quadrant_proofs.py", "stability/held_drives.py"),
         *("mechanism/equations.py", "mechanism/generated_code.py", "mechanism/start.py", "mechanism/observation.py"),
     },
     "matplotlib": {
@@ -76,10 +80,7 @@ APPOINTED = {
     "click": {f"cli/{name}.py" for name in ("options", "output", "command_group")}
     | {f"cli/{name}_commands.py" for name in ("map", "choose", "evidence")}
     | {f"cli/{name}_command.py" for name in ("verify", "schema", "lint", "probe")}
-    | {
-        f"cli/{name}.py"
-        for name in ("moving_mechanism", "completion", "typed_points", "varying_steps", "accuracy_options")
-    }
+    | {"cli/completion.py", "cli/asking.py"}
     | {"paper/command.py"},
     "mujoco": {"evidence/mujoco_models.py"},
     "distributed": {"evidence/worker_pools.py"},

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bezstab.errors import InputError
-from bezstab.rationals import bisected_integers, exact, rational, within_float64
+from bezstab.rationals import bisected_integers, exact, rational, typed_number, within_float64
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False))
@@ -114,3 +114,9 @@ def test_bisecting_integers_asks_neither_end() -> None:
         raise AssertionError(number)
 
     assert bisected_integers(refuse, 7, 8) == (7, 8)
+
+
+def test_a_number_is_shown_as_it_would_be_typed() -> None:
+    shown = [typed_number(Fraction(text)) for text in ("20", "0.002", "1/240", "-1/2", "1e-9", "0.1234567890123")]
+    assert shown == ["20", "0.002", "1/240", "-0.5", "1e-09", "0.1234567890123"]
+    assert typed_number(Fraction(0.1)) == "0.1"  # which float64 reads as that very number

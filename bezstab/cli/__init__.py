@@ -7,10 +7,7 @@ three ways to measure, lint, probe, schema) have one each beside it. A file impo
     completion          what the shell offers after a press of the tab key
     options             parameter types and the options that commands share
     output              rows, files, messages, progress
-    typed_points        how a point is typed: in α̂, β̂, in 1/s, in an engine's words, as a drive's gains
-    moving_mechanism    what several ask about a mechanism that moves
-    varying_steps       what several ask about steps that vary
-    accuracy_options    what several say of the accuracy that a feedback costs
+    asking              the options of a question, and what is said below its answers
     accuracy_maps       the map of forced errors over the plane, and the trade against decay
     map_commands        poles, region, methods, family
     choose_commands     choose, check, engines, explore

@@ -5,7 +5,6 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from bezstab.cli.accuracy_options import TypedMotion
 from bezstab.cli.options import FigureForm, TableForm
 from bezstab.cli.output import for_reading, progress, say, show_rows, show_text, write_figure, write_table
 from bezstab.errors import InputError, NumericalError
@@ -15,6 +14,7 @@ from bezstab.show import Format, Row, column, formatted
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from bezstab.questions import ReferenceMotion
     from bezstab.stability import BestPoint, Choice, Extent
 
 Window = tuple[Fraction, Fraction]
@@ -48,7 +48,7 @@ ACCURATE = [
 ]
 
 
-def accuracy_keys(method: Method, motion: TypedMotion, best: "BestPoint | None", chosen: "Choice | None") -> Row:
+def accuracy_keys(method: Method, motion: "ReferenceMotion", best: "BestPoint | None", chosen: "Choice | None") -> Row:
     """Return what the best points of both maps force, the fastest and the most accurate, as keys of a region's row."""
     from bezstab.stability import combined_error
 
@@ -68,7 +68,7 @@ def accuracy_keys(method: Method, motion: TypedMotion, best: "BestPoint | None",
     }
 
 
-def accurate_choice(method: Method, motion: TypedMotion) -> "Choice | None":
+def accurate_choice(method: Method, motion: "ReferenceMotion") -> "Choice | None":
     """Return the choice of the goal accurate; None where there is none, which is said."""
     from bezstab.stability import choose
 
@@ -81,7 +81,7 @@ def accurate_choice(method: Method, motion: TypedMotion) -> "Choice | None":
 
 def write_accuracy_map(
     method: Method,
-    motion: TypedMotion,
+    motion: "ReferenceMotion",
     best: "BestPoint | None",
     chosen: "Choice | None",
     *,
@@ -151,7 +151,7 @@ def front_sentence(row: Row) -> str:
 
 def show_predicted_trade(
     methods: Sequence[Method],
-    motion: TypedMotion,
+    motion: "ReferenceMotion",
     rates: Sequence[float],
     *,
     h: float | None,
@@ -181,7 +181,7 @@ def show_predicted_trade(
         say_combined(motion)
 
 
-def say_combined(motion: TypedMotion) -> None:
+def say_combined(motion: "ReferenceMotion") -> None:
     """Print below a table of combined errors what they are shares of."""
     show_text(
         "\nErrors of position and velocity are shares of the amplitudes of a motion's own position and velocity, here "
@@ -189,7 +189,7 @@ def say_combined(motion: TypedMotion) -> None:
     )
 
 
-def _fitting(shown: "Extent", motion: TypedMotion, best: "BestPoint | None", chosen: "Choice | None") -> "Extent":
+def _fitting(shown: "Extent", motion: "ReferenceMotion", best: "BestPoint | None", chosen: "Choice | None") -> "Extent":
     """Return ranges above zero: from feedback much slower than the motion on, to the region's ends and both points."""
     (_, alpha_hat_max), (_, beta_hat_max) = shown
     for point in (best, chosen):

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from bezstab.cli.accuracy_maps import show_predicted_trade
-from bezstab.cli.accuracy_options import omega_option, typed_omega_h
+from bezstab.cli.asking import omega_option, say_if_units_were_mistaken
 from bezstab.cli.options import (
     METHOD,
     NUMBER,
@@ -43,7 +43,6 @@ from bezstab.cli.output import (
     write_figure,
     write_table,
 )
-from bezstab.cli.typed_points import say_if_units_were_mistaken
 from bezstab.errors import InputError, NumericalError
 from bezstab.files import output_directory
 from bezstab.methods import Method, check_one_step
@@ -431,7 +430,9 @@ def _predicted_trade(
     if wrong := [float(level) for level in levels if float(level) >= 1]:
         raise InputError(f"--level {wrong[0]:g}: expected a |z_p| below 1, where errors decay")
     h = steps[0] if steps else None
-    motion = typed_omega_h(omega, None if left_at_default("scene") else scene, speed, h)
+    from bezstab.questions import motion_of
+
+    motion = motion_of(omega, None if left_at_default("scene") else scene, speed, h)
     if figure != "none" or table != "none":
         output_directory(output)
     show_predicted_trade(
@@ -468,8 +469,10 @@ def _rate_of_motion(
 
     InputError for a scene at rest, and where a step (s) is too long or too short for the motion.
     """
+    from bezstab.questions import motion_of
+
     shortest, longest = exact(min(step_sizes)), exact(max(step_sizes))
-    return typed_omega_h(omega, scene, speed, shortest, longest, duration=time).omega_h / shortest
+    return motion_of(omega, scene, speed, shortest, longest, duration=time).omega_h / shortest
 
 
 def _check_swept_time(time: float, step_sizes: Sequence[float], methods: Sequence[Method]) -> None:

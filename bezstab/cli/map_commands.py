@@ -8,22 +8,22 @@ from typing import TYPE_CHECKING
 import click
 
 from bezstab.cli.accuracy_maps import ACCURATE, Window, accuracy_keys, accurate_choice, say_combined, write_accuracy_map
-from bezstab.cli.accuracy_options import (
+from bezstab.cli.asking import (
+    DRIVE_COLUMNS,
+    MOVING_COLUMNS,
     NARROW_ACCURACY,
-    TypedMotion,
-    known_cost,
-    omega_option,
-    say_motion,
-    typed_omega_h,
-    with_cost,
-)
-from bezstab.cli.moving_mechanism import (
-    moving_columns,
-    moving_rows,
+    as_typed_option,
+    asked,
+    drive_option,
+    engine_values_option,
+    methods_typed,
     moving_scene_option,
     moving_speed_option,
+    omega_option,
     say_if_it_turns_too_far,
-    turning_of,
+    say_unknown_costs,
+    say_what_was_made,
+    turning_with_bar,
 )
 from bezstab.cli.options import (
     ENGINE,
@@ -55,17 +55,6 @@ from bezstab.cli.output import (
     write_figure,
     write_table,
 )
-from bezstab.cli.typed_points import (
-    DRIVE_COLUMNS,
-    as_typed_option,
-    drive_option,
-    engine_keys,
-    engine_values_option,
-    methods_asked,
-    say_if_units_were_mistaken,
-    say_what_was_made,
-    typed_point,
-)
 from bezstab.engines import Drive, Engine
 from bezstab.errors import InputError, NumericalError
 from bezstab.files import output_directory
@@ -90,6 +79,7 @@ if TYPE_CHECKING:
 
     from bezstab.evidence import MovingRegion
     from bezstab.mechanism import TurningNormals
+    from bezstab.questions import ReferenceMotion
     from bezstab.stability import BestPoint, Extent, FloatArray
 
 NUMERICAL_TROUBLE = 3
@@ -121,7 +111,7 @@ POLES = [
 
 def pole_sentence(row: Row) -> str:
     """Return whether the method of a dominant pole is safe at its point, and how fast errors shrink."""
-    return f"{safety_words(row)}."
+    return safety_words(row)
 
 
 def one_pole_sentence(row: Row) -> str:
@@ -167,42 +157,32 @@ def poles(
     Example: bezstab poles --alpha 0.5 --beta 0.1
     """
     from bezstab import stability
-    from bezstab.show import drive_row, pole_rows
+    from bezstab.questions import answers
+    from bezstab.show import added_cells, engine_cells, motion_words, pole_rows
 
     in_seconds = physical or engine is not None or drive is not None
     if (physical and h is None) or (h is not None and not in_seconds and scene is None and omega is None):
         raise click.UsageError("--physical and --h go together: α and β in 1/s need the step in s")
-    typed = typed_point(alpha, beta, h, physical, engine, drive, as_typed)
-    methods = methods_asked(methods, typed.engine, drive)
-    if alpha is not None and beta is not None and not physical:
-        say_if_units_were_mistaken(methods, alpha, beta, h)
-    turning = turning_of(scene, speed, h)
-    motion = typed_omega_h(omega, scene, speed, h)
-    say_if_it_turns_too_far(turning, scene, speed, h)
-    alpha_hat, beta_hat = map(float, typed.point)
+    question = asked(
+        methods, alpha, beta, h, physical, engine, drive, as_typed=as_typed, omega=omega, scene=scene, speed=speed
+    )
     poles_of = stability.poles if all_poles else stability.dominant_pole
+    at_point = [each for each in answers(question, margins=drive is not None) if each.goal == "as given"]
     rows: list[Row] = []
-    costs = known_cost(methods, [typed.point] * len(methods), motion)
-    for method, cost in zip(methods, costs, strict=True):
-        z = poles_of(method, alpha_hat, beta_hat).reshape(-1)
-        of_method: list[Row] = [
-            {**row, **engine_keys(typed, given=True)}
-            for row in pole_rows(method, alpha_hat, beta_hat, z, stability.verdict(method, *typed.point))
-        ]
-        if drive and h is not None:
-            gains = drive_row(stability.describe_point(method, "as given", *typed.point), drive, float(h), given=True)
-            of_method = [{**row, **gains} for row in of_method]
-        of_method = with_cost(of_method, [cost] * len(of_method), motion)
-        points = [(alpha_hat, beta_hat)] * len(of_method)
-        rows += moving_rows(of_method, [method] * len(of_method), points, turning, h)
+    for each in at_point:
+        z = poles_of(each.method, each.alpha_hat, each.beta_hat).reshape(-1)
+        added = {**engine_cells(each), **added_cells(each), "safe": each.safe}
+        rows += [{**row, **added} for row in pole_rows(each.method, each.alpha_hat, each.beta_hat, z, each.verdict)]
     costs_shown = not (all_poles or drive)
-    columns = [*POLES, *(NARROW_ACCURACY if costs_shown else []), *moving_columns(turning)]
+    columns = [*POLES, *(NARROW_ACCURACY if costs_shown else []), *(MOVING_COLUMNS if scene else [])]
     columns += DRIVE_COLUMNS if drive else []
     sentence = one_pole_sentence if all_poles else pole_sentence
+    alpha_hat, beta_hat = map(float, question.given.point)
     show_rows(rows, columns, form, f"α̂ = {alpha_hat:.10g}, β̂ = {beta_hat:.10g}", sentence)
+    say_unknown_costs(at_point)
     if costs_shown and for_reading(form):
-        say_motion(motion)
-    say_what_was_made(typed, form)
+        show_text(f"\n{motion_words(question.motion)}")
+    say_what_was_made(question, form)
 
 
 def unbounded_column(heading: str, key: str, form: str) -> Column:
@@ -315,6 +295,7 @@ def region(
 
     Example: bezstab region --method B4
     """
+    from bezstab.questions import methods_for
     from bezstab.stability import QUALITY
 
     _check_window("--alpha-range", alpha_range)
@@ -325,7 +306,7 @@ def region(
         raise click.UsageError("--engine marks one map and needs --h: the step in s")
     if alpha_beta and h is None:
         raise click.UsageError("--alpha-beta marks the axes in α and β and needs --h: the step in s")
-    methods = methods_asked(methods, engine, None)
+    methods = methods_for(methods_typed(methods, engine is not None), engine, None)
     if scene and compare:
         raise click.UsageError("--scene draws one map for each method: not with --compare")
     motion = _motion_asked(accuracy, omega, compare, alpha_beta, speeds, scene, h)
@@ -366,8 +347,8 @@ def _turnings(
     """Return by speed how the normals of a scene's constraints turn; where they turn too far, that is said."""
     turnings = {}
     for speed in speeds:
-        turnings[float(speed)] = turning_of(scene, speed, h)
-        say_if_it_turns_too_far(turnings[float(speed)], scene, speed, h)
+        turnings[float(speed)] = turning_with_bar(scene, speed, h)
+        say_if_it_turns_too_far(scene, speed, h)
     return turnings
 
 
@@ -379,7 +360,7 @@ def _motion_asked(
     speeds: Sequence[Fraction],
     scene: str | None,
     h: Fraction | None,
-) -> TypedMotion | None:
+) -> "ReferenceMotion | None":
     """Return the motion of --accuracy, None without it; UsageError for an option that does not go with it, h in s."""
     if not accuracy:
         if omega is not None:
@@ -390,7 +371,9 @@ def _motion_asked(
         raise click.UsageError(f"--accuracy draws one map for each method, on logarithmic axes: not with {other}")
     if speeds and scene is None:
         raise click.UsageError("--speed goes with --scene: it is the mechanism that is so many times as fast")
-    return typed_omega_h(omega, scene, speeds[0] if speeds else Fraction(1), h)
+    from bezstab.questions import motion_of
+
+    return motion_of(omega, scene, speeds[0] if speeds else Fraction(1), h)
 
 
 def _each_for_itself(methods: Sequence[Method], rows_of: Callable[[Method], list[Row]]) -> tuple[list[Row], bool]:
@@ -554,7 +537,7 @@ def _region_rows(
 
 def _accuracy_rows(
     method: Method,
-    motion: TypedMotion,
+    motion: "ReferenceMotion",
     levels: Sequence[float],
     alpha_range: Window | None,
     beta_range: Window | None,

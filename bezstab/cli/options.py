@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
 
 import click
 
-from bezstab.engines import ENGINES, Engine, engine_named
+from bezstab.engines import ENGINES, Engine, engine_and_values, engine_named
 from bezstab.errors import InputError
 from bezstab.methods import REGISTRY, lookup
 from bezstab.rationals import rational
@@ -96,20 +96,6 @@ def _speed(text: str) -> Fraction:
     return number
 
 
-def _engine_values(text: str) -> EngineValues:
-    """Return an engine and values of its parameters from text such as mujoco=0.02,1."""
-    name, _, numbers = text.partition("=")
-    engine = engine_named(name)
-    if not numbers and not engine.parameters:  # it has none, or none that it needs
-        return engine, ()
-    if not numbers:
-        raise InputError(f"{name!r} has no values: expected {name}={engine.words()}")
-    try:
-        return engine, tuple(rational(number) for number in numbers.split(","))
-    except InputError as error:
-        raise InputError(f"{error}: expected {name}={engine.words()}") from None
-
-
 def _sequence(text: str) -> list[Fraction]:
     """Return steps in s from text such as 3*0.01,0.02 (three of the first, then the other), or from a file of such."""
     path = Path(text)
@@ -135,7 +121,7 @@ SPEED = ParsedType("number", _speed)
 SEQUENCE = ParsedType("steps", _sequence)
 METHOD = ParsedType("method", lookup, (*REGISTRY, *WITH_PARAMETERS))
 ENGINE = ParsedType("NAME", engine_named, ENGINES)
-ENGINE_VALUES = ParsedType("name=values", _engine_values, [f"{name}=" for name in ENGINES])
+ENGINE_VALUES = ParsedType("name=values", engine_and_values, [f"{name}=" for name in ENGINES])
 
 
 def methods_option(*default: str) -> Decorator:

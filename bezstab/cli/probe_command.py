@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from bezstab.cli.asking import say_if_units_were_mistaken
 from bezstab.cli.options import (
     METHOD,
     NUMBER,
@@ -22,7 +23,6 @@ from bezstab.cli.options import (
     physical_option,
 )
 from bezstab.cli.output import for_reading, show_rows, show_text
-from bezstab.cli.typed_points import say_if_units_were_mistaken
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import REGISTRY, Method, lookup
 from bezstab.rationals import rational

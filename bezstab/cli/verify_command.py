@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from bezstab.cli.asking import say_if_units_were_mistaken
 from bezstab.cli.options import (
     NUMBER,
     FigureForm,
@@ -33,7 +34,6 @@ from bezstab.cli.output import (
     write_figure,
     write_table,
 )
-from bezstab.cli.typed_points import say_if_units_were_mistaken
 from bezstab.methods import Method
 from bezstab.show import Column, Format, Row, column, formatted, yes_no_column
 from bezstab.units import to_dimensionless
@@ -55,7 +55,6 @@ MEASUREMENTS = [
     column("predicted |z|", "predicted_z_abs", ".6f"),
     column("|z| by the law", "law_z_abs", ".6f"),
     column("measured |z|", "measured_z_abs", ".6f"),
-    column("by the law for these steps", "law_fitted_z_abs", ".6f"),
     column("difference of |z|", "difference_z_abs", "+.1e"),
     column("predicted ∠z (deg)", "predicted_z_angle_deg", ".3f"),
     column("measured ∠z (deg)", "measured_z_angle_deg", ".3f"),
@@ -94,7 +93,6 @@ SUMMARIES = [
     column("measured points", "measured", "d"),
     column("median error of |z|", "median_error", ".1e"),
     column("largest error of |z|", "largest_error", ".1e"),
-    column("median error with the law", "law_fitted_error", ".1e"),
     column("verdicts called", "called", "d"),
     column("wrong verdicts", "wrong", "d"),
 ]
@@ -103,6 +101,7 @@ MOTION_SUMMARIES = [
     column("median error at rest", "map_error", ".1e"),
     column("median error of the law", "law_error", ".1e"),
     column("median error of the exact rate", "floquet_error", ".1e"),  # of a motion that begins anew, else of none
+    column("on the wrong side of one: at rest, law, exact", "wrong_sides"),
 ]
 
 

@@ -16,7 +16,7 @@ From data upwards; a file imports only from those above it:
 
 from bezstab.engines.conversions import Applied, Curve, Engine, Point
 from bezstab.engines.drives import DRIVE_METHODS, Drive
-from bezstab.engines.engine_list import ENGINES, RUN_UNDERNEATH, WITNESSES, engine_named, witness_of
+from bezstab.engines.engine_list import ENGINES, RUN_UNDERNEATH, WITNESSES, engine_and_values, engine_named, witness_of
 
 __all__ = [
     "DRIVE_METHODS",
@@ -28,6 +28,7 @@ __all__ = [
     "Drive",
     "Engine",
     "Point",
+    "engine_and_values",
     "engine_named",
     "witness_of",
 ]

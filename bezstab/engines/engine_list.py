@@ -3,6 +3,8 @@
 An engine is listed if its formula has a source or is derived from one; what is not known is not printed.
 """
 
+from fractions import Fraction
+
 from bezstab.engines.acceleration_engines import (
     CHRONO_EXPLICIT,
     CROCODDYL,
@@ -31,6 +33,7 @@ from bezstab.engines.velocity_engines import (
     RAPIER,
 )
 from bezstab.errors import InputError, unknown_name
+from bezstab.rationals import rational
 
 ENGINES = {
     engine.name: engine
@@ -91,6 +94,20 @@ def engine_named(name: str) -> Engine:
     if name.lower() in RUN_UNDERNEATH:
         raise InputError(f"{name}: {RUN_UNDERNEATH[name.lower()]}")
     raise unknown_name("engine", name, ENGINES, file="")
+
+
+def engine_and_values(text: str) -> tuple[Engine, tuple[Fraction, ...]]:
+    """Return an engine and values of its parameters, from text such as mujoco=0.02,1; InputError as `engine_named`."""
+    name, _, numbers = text.partition("=")
+    engine = engine_named(name)
+    if not numbers and not engine.parameters:  # it has none, or none that it needs
+        return engine, ()
+    if not numbers:
+        raise InputError(f"{name!r} has no values: expected {name}={engine.words()}")
+    try:
+        return engine, tuple(rational(number) for number in numbers.split(","))
+    except InputError as error:
+        raise InputError(f"{error}: expected {name}={engine.words()}") from None
 
 
 def witness_of(name: str) -> str | None:

@@ -29,7 +29,7 @@ from bezstab.mechanism import (
     runs_compiled,
     simulate,
 )
-from bezstab.methods import LinearMultistep, Method, PredictorCorrector, SecondOrder, evaluations, lookup, steps
+from bezstab.methods import LinearMultistep, Method, PredictorCorrector, evaluations, lookup, steps
 from bezstab.stability import EPS, FloatArray, describe_point, poles, region, spectral_radius, verdict
 from bezstab.units import feedback_gains
 
@@ -98,7 +98,7 @@ def extreme_checks(full: bool) -> Iterator[Callable[[], Check]]:
     """Yield every check, to be called; without `full` fewer methods and shorter runs."""
     sizes = ALL_SIZES if full else SHORT_SIZES
     for method in map(lookup, ALL_METHODS if full else SHORT_METHODS):
-        if not isinstance(method.scheme, SecondOrder):  # whose poles are judged by pi(z, mu)
+        if method.has_mu:  # whose poles are judged by pi(z, mu)
             yield partial(_sizes, method, sizes)
             yield partial(_double_mu, method)
         yield partial(_boundary, method)

@@ -4,9 +4,10 @@ What the exact rate predicts (`own_motions`) is how differences of runs beside t
 point the newest state is kicked in 2 n directions, up and down, and the differences are compared as revolutions end:
 
     kick      D_1 settled: lesser poles are gone       D_2 = A D_1: the largest eigenvalue of A is |z|^N
-      |--------------------|------------------------------|
+      |--------------------|------------------------------|--- ...
            a revolution             another one
 
+Differences that still are neither large nor lost in rounding go on for a few more revolutions, and the last two count.
 Runs that set out from the scene's initial state show another rate for as long as they drift to their own motion.
 """
 
@@ -18,17 +19,20 @@ import numpy as np
 from bezstab.evidence.own_motions import OwnMotions
 from bezstab.mechanism import Mechanism, acceleration_function, resume, states_needed
 from bezstab.methods import Method, steps
-from bezstab.stability import FloatArray
+from bezstab.stability import BoolArray, FloatArray
 
 KICK_OF_GROWTH, KICK_OF_DECAY = 1e-9, 1e-4  # m, rad: up and down together only cubic terms are left, of about 1e-8
-LARGEST, SMALLEST = 1e-3, 1e-11  # m, rad: a difference that is linear, and one that is ten thousand times its rounding
+LARGEST, SMALLEST = 1e-3, 1e-9  # m, rad: a difference that is linear, and one that is a million times its rounding
+DIRECTION = 1e-11  # m, rad: part of a difference in a direction of its own, ten thousand times its rounding
+
+REVOLUTIONS = 5  # at most: where lesser multipliers are nearly as large, each takes their share off the rate
 
 
 def rates_of_kicked_revolutions(mechanism: Mechanism, method: Method, motions: OwnMotions) -> FloatArray:
     """Return |z| per step of the differences of runs that are kicked from the method's own motion; shape (points,).
 
     Not a number where there is no such motion, and where after two revolutions the differences are no longer linear, or
-    lost in rounding.
+    nearly lost in rounding.
     """
     rates = np.full(motions.rates.size, np.nan)
     there = np.flatnonzero(motions.there)
@@ -37,14 +41,31 @@ def rates_of_kicked_revolutions(mechanism: Mechanism, method: Method, motions: O
         return rates
     with np.errstate(all="ignore"):  # of runs that run into infinity
         run = _kicked_runs(mechanism, method, motions, there, known)
-        settled, later = (_differences(next(islice(run, motions.steps - 1, None)), motions.step) for _ in range(2))
-    for point, before, after in zip(there, settled, later, strict=True):
-        if all(SMALLEST < np.abs(each).max() < LARGEST for each in (before, after)):
-            directions, sizes, shares = np.linalg.svd(before)
-            kept = sizes > SMALLEST
-            mapped = directions[:, kept].T @ after @ shares[kept].T / sizes[kept]
-            rates[point] = np.abs(np.linalg.eigvals(mapped)).max() ** (1 / motions.steps)
+        before = _differences(next(islice(run, motions.steps - 1, None)), motions.step)
+        following = _in_range(before)
+        for _ in range(REVOLUTIONS - 1):
+            if not following.any():
+                break
+            after = _differences(next(islice(run, motions.steps - 1, None)), motions.step)
+            following &= _in_range(after)
+            for point in np.flatnonzero(following):
+                rates[there[point]] = _largest_multiplier(before[point], after[point]) ** (1 / motions.steps)
+            before = after
     return rates
+
+
+def _in_range(differences: FloatArray) -> BoolArray:
+    """Return at which points differences are linear and above their rounding; shape (points,)."""
+    largest = np.abs(differences).max(axis=(1, 2))
+    return np.asarray((largest > SMALLEST) & (largest < LARGEST))
+
+
+def _largest_multiplier(before: FloatArray, after: FloatArray) -> float:
+    """Return the largest |eigenvalue| of A in after = A before, on what of `before` stands out of its rounding."""
+    directions, sizes, shares = np.linalg.svd(before)
+    kept = sizes > DIRECTION
+    mapped = directions[:, kept].T @ after @ shares[kept].T / sizes[kept]
+    return float(np.abs(np.linalg.eigvals(mapped)).max())
 
 
 def _differences(step: Any, h: float) -> FloatArray:

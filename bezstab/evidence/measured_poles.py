@@ -20,13 +20,12 @@ from typing import Literal
 import numpy as np
 
 from bezstab.evidence.kicked_revolutions import rates_of_kicked_revolutions
-from bezstab.evidence.linear_prediction import SAMPLES, SETTLED, SPREAD, Fit, Refusal, fit_dominant_pole
-from bezstab.evidence.moving_mechanisms import MovingPole, MovingVerdict, growth_after_a_kick, moving_poles
+from bezstab.evidence.linear_prediction import SAMPLES, SETTLED, SPREAD, Refusal, fit_dominant_pole
+from bezstab.evidence.moving_mechanisms import MovingPole, MovingVerdict, moving_poles
 from bezstab.evidence.own_motions import find_own_motions
 from bezstab.mechanism import (
     CHEAPER_TOGETHER,
     Mechanism,
-    TurningNormals,
     constraint_errors,
     initial_state,
     march,
@@ -37,7 +36,7 @@ from bezstab.mechanism import (
     states_needed,
     turning_normals,
 )
-from bezstab.methods import Method, SecondOrder, Verdict, closed_loop_table, evaluations, steps
+from bezstab.methods import Method, Verdict, closed_loop_table, evaluations, steps
 from bezstab.rationals import exact
 from bezstab.stability import (
     ComplexArray,
@@ -45,7 +44,6 @@ from bezstab.stability import (
     dominant_pole,
     poles,
     region,
-    turning_sensitivity,
     useful_window,
     verdict,
 )
@@ -93,9 +91,8 @@ class Measurement:
     `predicted` and its verdict are those of the mechanism at rest; `law_abs` and `law_verdict` what the first-order law
     makes of them for the motion (`moving_mechanisms`), `floquet_abs` the exact rate over the method's own motion, None
     unless asked for. Where the motion is not `periodic` that is no exact rate, but a growth over the run.
-    `measured` is what the first steps after the kick show, `law_fitted_abs` what the law makes of `predicted` for those
-    very steps, None where nothing was measured or the law fails. `measured_rate` is |z| per step over whole
-    revolutions beside the method's own motion, None unless the exact rate is asked for and it can be followed so long.
+    `measured` is what the first steps after the kick show. `measured_rate` is |z| per step over whole revolutions
+    beside the method's own motion, None unless the exact rate is asked for and it can be followed so long.
     """
 
     method: Method
@@ -108,7 +105,6 @@ class Measurement:
     floquet_abs: float | None
     periodic: bool
     measured: complex | None
-    law_fitted_abs: float | None
     measured_rate: float | None
     measured_verdict: MeasuredVerdict
     reason: str
@@ -191,7 +187,7 @@ def measure_poles(
             exact_rates[i],
             shown_rates[i],
             h,
-            turning,
+            turning.closed,
             difference[:, :, i],
             size[:, :, i],
             bool(thrown_apart[i]),
@@ -234,7 +230,7 @@ def _measurement(
     floquet_abs: float | None,
     measured_rate: float | None,
     h: float,
-    turning: TurningNormals,
+    periodic: bool,
     difference: FloatArray,
     size: FloatArray,
     thrown_apart: bool = False,
@@ -244,7 +240,7 @@ def _measurement(
     `thrown_apart`: feedback has thrown the mechanism apart within a few steps.
     """
     predicted = complex(dominant_pole(method, alpha_hat, beta_hat))
-    measured, law_fitted_abs, reason = None, None, ""
+    measured, reason = None, ""
     all_poles = poles(method, alpha_hat, beta_hat)
     rival = _rival(all_poles, predicted)
     # Over a window of SAMPLES steps the lesser of two such moduli does not even fall to 1/e of the other.
@@ -258,7 +254,6 @@ def _measurement(
             reason = f"the kick hardly excites the dominant pole: what answers is one of modulus {abs(fit.pole):.6g}"
         else:
             measured = fit.pole
-            law_fitted_abs = _by_the_law(method, alpha_hat, beta_hat, predicted, h, turning, fit)
     measured_verdict = _measured_verdict(measured, difference, size, max(CLOSE, moving.shift(method, h)))
     if thrown_apart and measured_verdict == "too close to call":  # so fast that no growth shows in the linear range
         measured_verdict, reason = "diverges", f"the feedback throws the mechanism apart within {AT_ONCE} steps"
@@ -271,37 +266,17 @@ def _measurement(
         law_abs=moving.z_abs_moving,
         law_verdict=moving.verdict,
         floquet_abs=floquet_abs,
-        periodic=turning.closed,
+        periodic=periodic,
         measured=measured,
-        law_fitted_abs=law_fitted_abs,
         measured_rate=measured_rate,
         measured_verdict=measured_verdict,
         reason=reason,
     )
 
 
-def _by_the_law(
-    method: Method,
-    alpha_hat: float,
-    beta_hat: float,
-    predicted: complex,
-    h: float,
-    turning: TurningNormals,
-    fit: Fit,
-) -> float | None:
-    """Return the |z| that the first-order law gives the fitted samples, None where it gives no number; h in s."""
-    step = h * float(method.step_multiple)
-    chi = complex(turning_sensitivity(method, alpha_hat, beta_hat, predicted))
-    kick = _steps_before_the_kick(method) * step
-    first = kick + fit.start * step
-    with np.errstate(all="ignore"):  # an infinite chi is no number's, and so is what it makes grow
-        rate = growth_after_a_kick(turning, chi, kick, first, first + fit.samples * step)
-    return float(abs(predicted) * np.exp(step * rate)) if np.isfinite(rate) else None
-
-
 def _number_of_poles(method: Method) -> int:
     """Return the degree of P: for each of two mu as many as the method steps, or that of a second-order scheme."""
-    if isinstance(method.scheme, SecondOrder):
+    if not method.has_mu:
         return len(closed_loop_table(method)) - 1
     return 2 * steps(method)
 

@@ -24,8 +24,6 @@ from bezstab.stability import ComplexArray, FloatArray
 
 LAW_HOLDS = 0.1  # rad, kappa h: at twice that terms beside chi, too, have been seen to turn 0.94 into 1.05
 
-STEPS_AFTER_A_KICK = 50  # of Runge and Kutta's rule to each time asked for: K turns by a revolution at most meanwhile
-
 LARGEST_CHI = 32.0  # of the table: ten times what is seen on a boundary; further out the law does not hold at any speed
 RADII, ANGLES = 101, 61
 AT_A_TIME = 1024  # chi whose Y stay in a core's cache through all steps
@@ -186,45 +184,6 @@ def momentary_rates(turning: TurningNormals, chi: ArrayLike) -> FloatArray:
     """
     eigenvalues = np.linalg.eigvals(turning.rates).ravel()
     return np.asarray((np.multiply.outer(np.asarray(chi, complex), eigenvalues)).real.max(axis=-1))
-
-
-def growth_after_a_kick(turning: TurningNormals, chi: complex, kick: float, first: float, last: float) -> float:
-    """Return at what rate (1/s) the first constraint's error grows from `first` to `last` (s), kicked alone at `kick`.
-
-    ln(|w_1(last)| / |w_1(first)|) / (last - first) of Y' = chi K(t) Y from Y(kick) = e_1, beside what the pole at rest
-    makes of it. Over less than a motion that is not what its growth over all of it is. Theory: the first-order law of
-    the moving mechanism. Not finite where chi is not, or where the error passes through zero.
-    """
-    error = np.zeros(turning.rates.shape[1], complex)
-    error[0] = 1
-
-    def slope(t: float, error: ComplexArray) -> ComplexArray:
-        return np.asarray(chi * _turned(turning, t, error))
-
-    sizes = []
-    for start, end in ((kick, first), (first, last)):
-        step = (end - start) / STEPS_AFTER_A_KICK
-        for t in start + step * np.arange(STEPS_AFTER_A_KICK):
-            first_slope = slope(t, error)
-            second_slope = slope(t + step / 2, error + step / 2 * first_slope)
-            third_slope = slope(t + step / 2, error + step / 2 * second_slope)
-            fourth_slope = slope(t + step, error + step * third_slope)
-            error = error + step / 6 * (first_slope + 2 * second_slope + 2 * third_slope + fourth_slope)
-        sizes.append(float(np.abs(error[0])))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return float(np.log(np.divide(sizes[1], sizes[0])) / (last - first))
-
-
-def _turned(turning: TurningNormals, t: float, error: ComplexArray) -> ComplexArray:
-    """Return K(t) times an error (t in s), between two samples linear: products cost less than sums of matrices."""
-    share = t / turning.duration
-    samples = len(turning.rates) - 1
-    place = samples * (share % 1 if turning.closed else min(max(share, 0.0), 1.0))
-    below = min(int(place), samples - 1)
-    part = place - below
-    parts = np.stack([error.real, error.imag], axis=-1)  # so that K need not become complex for each product
-    turned = (1 - part) * (turning.rates[below] @ parts) + part * (turning.rates[below + 1] @ parts)
-    return np.asarray(turned[:, 0] + 1j * turned[:, 1])
 
 
 def moving_pole(method: Method, turning: TurningNormals, h: float, alpha_hat: float, beta_hat: float) -> MovingPole:

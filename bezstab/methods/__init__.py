@@ -2,14 +2,15 @@
 
 From exact numbers upwards; a file imports only from those above it:
 
+    polynomials         polynomials with rational coefficients as data
     schur               where a polynomial's roots lie, proven in exact arithmetic
-    plane_polynomials   polynomials in z, alpha_hat and beta_hat, and their determinants
-    second_order        schemes for x'' = a(x, x') as a list of linear equations
+    step_equations      the equations of a step, for x, v, a and helpers
+    determinants        these as a matrix over z, alpha_hat and beta_hat, and its determinants
+    second_order        schemes for x'' = a(x, x') as a list of such equations, in any order
     algebraic_numbers   irrational coefficients as rationals good to 40 digits
     square_roots        numbers with square roots, exactly, from text
-    recipes             such equations as text
+    recipes             equations of a step as text
     schemes             the kinds of methods as frozen data that checks itself
-    second_order_forms  every scheme written as a second-order one
     scheme_motions      motions that every scheme follows exactly, and so when it evaluates
     steady_errors       the error that a method makes anew in each step, as a function of the feedback
     families            Bezier, Adams-Bashforth and their predictor-corrector pairs, by number of steps
@@ -20,17 +21,16 @@ From exact numbers upwards; a file imports only from those above it:
     method_files        a user's method, from TOML
     aliases             what else they are called, and advice
     registry            every built-in method by name
-    derivation          by sympy: s->z mapping, characteristic polynomial, closed loop
-    first_order_forms   second-order schemes that spell out a multistep method or a PECE
+    derivation          its polynomials pi(z, mu) and P(z; alpha_hat, beta_hat), and the s->z mapping
     shared_factors      poles that no feedback moves
-    plane_edges         where a second-order scheme's plane turns from stable to unstable, exactly
-    path_edges          where a path through any method's plane may turn so, exactly
+    plane_edges         where the plane turns from stable to unstable, exactly
+    path_edges          where a path through the plane may turn so, exactly
     orders              order of accuracy and error constant
     step_matrices       one step of a one-step method as an exact matrix, for steps that differ in length
-    second_order_formulas  the equations of a second-order scheme as text or LaTeX
+    second_order_formulas  the equations of a step as text or LaTeX
     formulas            all that as text or LaTeX
 
-What needs sympy is loaded when first used: naming a method, or proving a verdict, does not.
+What needs sympy is loaded when first used: naming a multistep or Runge-Kutta method does not.
 """
 
 from typing import TYPE_CHECKING
@@ -38,6 +38,7 @@ from typing import TYPE_CHECKING
 from bezstab.lazy import lazy_names
 from bezstab.methods.families import adams_bashforth, adams_bashforth_moulton, bezier
 from bezstab.methods.method_files import read_method
+from bezstab.methods.polynomials import PlaneTable, Polynomial
 from bezstab.methods.recipes import recipe
 from bezstab.methods.registry import GROUPS, REGISTRY, MethodGroup, lookup
 from bezstab.methods.scheme_motions import (
@@ -56,33 +57,15 @@ from bezstab.methods.schemes import (
     Method,
     PredictorCorrector,
     RungeKutta,
+    check_one_step,
     evaluations,
     implicit,
+    second_order_form,
     steps,
 )
-from bezstab.methods.schur import Polynomial, Verdict, is_schur, recursion_verdict
-from bezstab.methods.second_order import Assignment, Combination, Evaluation, PlaneTable, Quantity, SecondOrder
-from bezstab.methods.second_order_forms import second_order_form
-from bezstab.methods.steady_errors import (
-    ExponentialSum,
-    ForcedErrors,
-    LeadingError,
-    Part,
-    TurningError,
-    forced_errors,
-    leading_error,
-    turning_error,
-)
-from bezstab.methods.step_matrices import (
-    StepMatrix,
-    StepPolynomial,
-    characteristic,
-    check_one_step,
-    matrix_product,
-    polynomial_determinant,
-    polynomial_product,
-    step_matrix,
-)
+from bezstab.methods.schur import Verdict, is_schur, recursion_verdict
+from bezstab.methods.second_order import SecondOrder
+from bezstab.methods.step_equations import Assignment, Combination, Evaluation, Quantity
 
 if TYPE_CHECKING:
     from bezstab.methods.derivation import (
@@ -101,7 +84,7 @@ if TYPE_CHECKING:
         feedback_matrix,
         mapping_equations,
     )
-    from bezstab.methods.first_order_forms import first_order_form
+    from bezstab.methods.determinants import characteristic
     from bezstab.methods.formulas import characteristic_text, mapping_text, recursion_text, steady_error_text
     from bezstab.methods.orders import ForceAccuracy, accuracy, accuracy_by_force
     from bezstab.methods.path_edges import turning_factors
@@ -115,6 +98,24 @@ if TYPE_CHECKING:
         points_between_edges,
     )
     from bezstab.methods.shared_factors import fixed_poles, reduced_table, without_shared_factor
+    from bezstab.methods.steady_errors import (
+        ExponentialSum,
+        ForcedErrors,
+        LeadingError,
+        Part,
+        TurningError,
+        forced_errors,
+        leading_error,
+        turning_error,
+    )
+    from bezstab.methods.step_matrices import (
+        StepMatrix,
+        StepPolynomial,
+        matrix_product,
+        polynomial_determinant,
+        polynomial_product,
+        step_matrix,
+    )
 
 DERIVED = {
     "derivation": (
@@ -133,7 +134,7 @@ DERIVED = {
         "feedback_matrix",
         "mapping_equations",
     ),
-    "first_order_forms": ("first_order_form",),
+    "determinants": ("characteristic",),
     "formulas": ("characteristic_text", "mapping_text", "recursion_text", "steady_error_text"),
     "orders": ("ForceAccuracy", "accuracy", "accuracy_by_force"),
     "path_edges": ("turning_factors",),
@@ -144,10 +145,27 @@ DERIVED = {
         "PlaneStrips",
         "Strip",
         "plane_strips",
-        "path_edges",
         "points_between_edges",
     ),
     "shared_factors": ("fixed_poles", "reduced_table", "without_shared_factor"),
+    "steady_errors": (
+        "ExponentialSum",
+        "ForcedErrors",
+        "LeadingError",
+        "Part",
+        "TurningError",
+        "forced_errors",
+        "leading_error",
+        "turning_error",
+    ),
+    "step_matrices": (
+        "StepMatrix",
+        "StepPolynomial",
+        "matrix_product",
+        "polynomial_determinant",
+        "polynomial_product",
+        "step_matrix",
+    ),
 }
 """What is loaded when first used, by module."""
 
@@ -212,7 +230,6 @@ __all__ = [
     "evaluations",
     "exact_motions",
     "feedback_matrix",
-    "first_order_form",
     "fixed_poles",
     "forced_errors",
     "implicit",

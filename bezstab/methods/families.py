@@ -13,7 +13,8 @@ from collections.abc import Sequence
 from fractions import Fraction
 from math import comb, prod
 
-from bezstab.methods.schemes import ONE, ZERO, Family, LinearMultistep, Method, PredictorCorrector
+from bezstab.methods.schemes import Family, LinearMultistep, Method, PredictorCorrector
+from bezstab.rationals import ONE, ZERO
 
 
 def bezier(n: int) -> Method:

@@ -7,7 +7,6 @@ from math import lcm
 import sympy as sp
 
 from bezstab.methods.derivation import ALPHA_HAT, BETA_HAT, MU, Z, closed_loop_polynomial, mapping_equations
-from bezstab.methods.first_order_forms import first_order_form
 from bezstab.methods.schemes import LinearMultistep, Method, PredictorCorrector, RungeKutta
 from bezstab.methods.second_order import SecondOrder
 from bezstab.methods.second_order_formulas import SHOWN_DIGITS, is_long, second_order_text
@@ -51,12 +50,8 @@ def recursion_text(method: Method, latex: bool = False) -> str:
 
 
 def mapping_text(method: Method, latex: bool = False) -> str:
-    """Return the s->z mapping (paper Eq. 14, Table 1); of a second-order scheme that it has none.
-
-    Unless it spells out a multistep method or a PECE: then theirs.
-    """
-    method = first_order_form(method)
-    if isinstance(method.scheme, SecondOrder):
+    """Return the s->z mapping (paper Eq. 14, Table 1); of a second-order scheme that it has none."""
+    if not method.has_mu:
         return "none: positions and velocities are stepped differently"
     sides = [
         f"{_written(_readable(equation.lhs), latex)} = {_written(_readable(equation.rhs), latex)}"

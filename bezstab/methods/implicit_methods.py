@@ -8,7 +8,8 @@ from fractions import Fraction
 
 from bezstab.methods.algebraic_numbers import DIGITS, decimal_root
 from bezstab.methods.families import adams_moulton_scheme
-from bezstab.methods.schemes import ONE, ZERO, Coefficients, Family, LinearMultistep, Method, RungeKutta
+from bezstab.methods.schemes import Coefficients, Family, LinearMultistep, Method, RungeKutta
+from bezstab.rationals import ONE, ZERO
 
 HALF = Fraction(1, 2)
 MOST_BDF_STEPS = 6  # with more the method is not zero-stable

@@ -3,7 +3,8 @@
 from fractions import Fraction
 
 from bezstab.methods.recipes import recipe
-from bezstab.methods.schemes import ZERO, Family, Method, RungeKutta
+from bezstab.methods.schemes import Family, Method, RungeKutta
+from bezstab.rationals import ZERO
 
 KUTTA = "Kutta, Z. Math. Phys. 46, 1901"
 

@@ -6,17 +6,11 @@ from fractions import Fraction
 from itertools import combinations_with_replacement, count
 from math import factorial, prod
 
-from bezstab.methods.derivation import Table, coefficient_table
-from bezstab.methods.schemes import (
-    ONE,
-    ZERO,
-    LinearMultistep,
-    Method,
-    PredictorCorrector,
-    RungeKutta,
-)
+from bezstab.methods.derivation import coefficient_table
+from bezstab.methods.polynomials import MuTable
+from bezstab.methods.schemes import Method, RungeKutta
 from bezstab.methods.second_order import SecondOrder, defect
-from bezstab.methods.second_order_forms import second_order_form
+from bezstab.rationals import ONE, ZERO
 
 Tree = tuple["Tree", ...]
 """A rooted tree: the subtrees of its root, in a fixed order. () is a single vertex, ((),) one with a leaf on it."""
@@ -38,17 +32,15 @@ def accuracy(method: Method) -> Accuracy:
     compositions, whose kicks see an old velocity, have order one however many kicks they have, and what they reach
     without such forces is in `accuracy_by_force`, whose worse part the constant is.
     """
-    match method.scheme:
-        case RungeKutta() as scheme:
-            p = _runge_kutta_order(scheme, _rounding(method))
-            return p, _local_error(coefficient_table(method), p + 1)
-        case LinearMultistep() | PredictorCorrector():
-            return _leading_error(coefficient_table(method))
-        case SecondOrder() as scheme:
-            rounding = _rounding(method)
-            p = next(p for p in count() if not _is_exact(scheme, p + 1, rounding, _any_force))
-            by_force = accuracy_by_force(method)
-            return p, min((by_force.position, by_force.velocity), key=_goodness)[1]
+    scheme, rounding = method.scheme, _rounding(method)
+    if isinstance(scheme, RungeKutta):
+        p = _runge_kutta_order(scheme, rounding)
+        return p, _local_error(coefficient_table(method), p + 1)
+    if method.has_mu:
+        return _leading_error(coefficient_table(method))
+    p = next(p for p in count() if not _is_exact(scheme.second_order, p + 1, rounding, _any_force))
+    by_force = accuracy_by_force(method)
+    return p, min((by_force.position, by_force.velocity), key=_goodness)[1]
 
 
 def _goodness(error: Accuracy) -> tuple[int, Fraction, Fraction]:
@@ -73,9 +65,9 @@ def accuracy_by_force(method: Method) -> ForceAccuracy:
     as for `accuracy`, or v = mu (1 + c mu^p + ...) x if that is what errs. Where position and velocity are stepped
     alike both are what `accuracy` returns.
     """
-    if not isinstance(method.scheme, SecondOrder):
+    if method.has_mu:
         return ForceAccuracy(accuracy(method), accuracy(method))
-    scheme = second_order_form(method.scheme)
+    scheme = method.scheme.second_order
     rounding = _rounding(method)
     return ForceAccuracy(
         position=_error_under(scheme, rounding, _force_of_position),
@@ -144,7 +136,7 @@ def _rounding(method: Method) -> Fraction:
     return ZERO if method.digits is None else Fraction(100, 10**method.digits)
 
 
-def _leading_error(table: Table) -> tuple[int, Fraction]:
+def _leading_error(table: MuTable) -> tuple[int, Fraction]:
     """Return p and the first coefficient of the local error that is not zero, that of mu^(p+1)."""
     for p in count():
         error = _local_error(table, p + 1)
@@ -153,7 +145,7 @@ def _leading_error(table: Table) -> tuple[int, Fraction]:
     raise AssertionError("e^mu is no algebraic function of mu: some coefficient is not zero")
 
 
-def _local_error(table: Table, power: int) -> Fraction:
+def _local_error(table: MuTable, power: int) -> Fraction:
     """Return the coefficient of mu^power in pi(e^mu, mu) / (d pi/dz)(1, 0).
 
     On y' = lambda y the exact solution grows by e^mu in a step: pi(e^mu, mu) is what is left when it is put into the

@@ -21,10 +21,10 @@ import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from bezstab.methods.derivation import coefficient_table
-from bezstab.methods.first_order_forms import first_order_form
 from bezstab.methods.plane_edges import LEVEL_BITS, crossing_polynomials, refined_root, sign_at, whole_coefficients
-from bezstab.methods.schemes import ZERO, LinearMultistep, Method
+from bezstab.methods.schemes import Method
 from bezstab.methods.shared_factors import reduced_table, without_shared_factor
+from bezstab.rationals import ZERO
 
 VARIABLE = sp.Symbol("s")
 RING = sp.QQ[VARIABLE]
@@ -39,16 +39,16 @@ def turning_factors(method: Method, alpha_hat: Fraction, beta_hat: Fraction, pow
     (i, j) are the powers, each 0, 1 or 2; everything is dimensionless. Rational places with a short denominator are
     exact, others good to LEVEL_BITS bits. Poles that no parameters move are left out.
     """
-    method = without_shared_factor(first_order_form(method))
+    method = without_shared_factor(method)
     coefficients = _along_path(method, alpha_hat, beta_hat, powers)
     edges = crossing_polynomials(coefficients, RING, pairs=False)
     found: list[Fraction] = []
-    if isinstance(method.scheme, LinearMultistep):
+    if method.has_mu and len(coefficient_table(method)[0]) == 2:  # linear in mu
         m = method.step_multiple
         found = _factors_on_the_circle(method, m * alpha_hat, m**2 * beta_hat, powers)
     elif len(coefficients) > 2:
         edges.append(_edge_of_pairs(coefficients))
-    return sorted({*found, *(root for edge in edges for root in _positive_roots(edge))})
+    return sorted({*found, *(root for edge in edges for root in _positive_roots(edge))} - {ZERO})
 
 
 def _along_path(method: Method, alpha_hat: Fraction, beta_hat: Fraction, powers: tuple[int, int]) -> list[PolyElement]:

@@ -34,10 +34,10 @@ from sympy.polys.matrices import DomainMatrix
 from sympy.polys.rings import PolyElement
 
 from bezstab.errors import NumericalError
-from bezstab.methods.schemes import ONE, ZERO, Method
+from bezstab.methods.schemes import Method
 from bezstab.methods.schur import is_schur
 from bezstab.methods.shared_factors import reduced_table
-from bezstab.rationals import bisected_integers, whole_multiples
+from bezstab.rationals import ONE, ZERO, bisected_integers, whole_multiples
 
 A, B = sp.symbols("alpha_hat beta_hat")
 RING = sp.QQ[A, B]

@@ -14,9 +14,10 @@ from collections.abc import Mapping
 from typing import NoReturn
 
 from bezstab.errors import InputError
-from bezstab.methods.second_order import (
+from bezstab.methods.second_order import MOST_EQUATIONS, SecondOrder
+from bezstab.methods.square_roots import SQUARE_ROOT, RootSum, root_sum
+from bezstab.methods.step_equations import (
     ACCELERATION,
-    MOST_EQUATIONS,
     POSITION,
     VELOCITY,
     Assignment,
@@ -24,9 +25,7 @@ from bezstab.methods.second_order import (
     Equation,
     Evaluation,
     Quantity,
-    SecondOrder,
 )
-from bezstab.methods.square_roots import SQUARE_ROOT, RootSum, root_sum
 
 PLAIN_NUMBER = r"\d+(?:\.\d*)?(?:/\d+)?"
 NUMBER = rf"(?P<number>{PLAIN_NUMBER}|{SQUARE_ROOT}\s*\(\s*{PLAIN_NUMBER}\s*\))"

@@ -35,9 +35,9 @@ from bezstab.methods.runge_kutta_pairs import (
     tsitouras,
 )
 from bezstab.methods.schemes import Method
-from bezstab.rationals import rational
+from bezstab.rationals import ONE, ZERO, rational
 
-ZERO, ONE, HALF = Fraction(0), Fraction(1), Fraction(1, 2)
+HALF = Fraction(1, 2)
 
 
 @dataclass(frozen=True)

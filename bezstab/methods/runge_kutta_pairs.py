@@ -8,7 +8,8 @@ as many evaluations as the pair has in each accepted step.
 from fractions import Fraction
 
 from bezstab.methods.one_step_methods import explicit_scheme
-from bezstab.methods.schemes import ONE, ZERO, Method, RungeKutta
+from bezstab.methods.schemes import Method, RungeKutta
+from bezstab.rationals import ONE, ZERO
 
 
 def heun() -> Method:

@@ -16,7 +16,8 @@ from functools import cache
 from math import comb, factorial
 
 from bezstab.linear_equations import solution
-from bezstab.methods.second_order import POSITION, Assignment, Combination, Evaluation, Quantity, SecondOrder
+from bezstab.methods.second_order import SecondOrder
+from bezstab.methods.step_equations import POSITION, Combination, Quantity
 
 AT_REST, STEADY, ACCELERATED = range(3)
 
@@ -55,9 +56,9 @@ def exact_motions(scheme: SecondOrder, highest: int = ACCELERATED) -> Motions:
         return (times[result] if left else Fraction(1)) ** left / (factorial(power) * factorial(left))
 
     for equation in scheme.equations:
-        value = equation.value if isinstance(equation, Assignment) else ()
-        difference = ((Fraction(1), equation.result), *((-coefficient, quantity) for coefficient, quantity in value))
-        evaluated = isinstance(equation, Evaluation)
+        right_side = ((-coefficient, quantity) for coefficient, quantity in equation.without_feedback)
+        difference = ((Fraction(1), equation.result), *right_side)
+        evaluated = equation in scheme.evaluated
         for power in powers:
             values = [acceleration(equation.result, power, motion) if evaluated else Fraction(0) for motion in powers]
             add_row(difference, power, values)
@@ -83,11 +84,7 @@ def value_at_start(motions: Motions, combination: Combination, motion: int) -> F
 def evaluation_times(scheme: SecondOrder) -> dict[Quantity, Fraction]:
     """Return when each evaluation takes place, from the step's start at 0 on, in steps, by the evaluation's result."""
     motions = exact_motions(scheme)
-    return {
-        equation.result: value_at_start(motions, equation.position, STEADY)
-        for equation in scheme.equations
-        if isinstance(equation, Evaluation)
-    }
+    return {evaluation.result: value_at_start(motions, evaluation.position, STEADY) for evaluation in scheme.evaluated}
 
 
 def evaluation_errors(scheme: SecondOrder, power: int) -> dict[Quantity, tuple[Fraction, Fraction]]:
@@ -97,10 +94,9 @@ def evaluation_errors(scheme: SecondOrder, power: int) -> dict[Quantity, tuple[F
     """
     motions = exact_motions(scheme, max(power, ACCELERATED))
     errors = {}
-    for equation in scheme.equations:
-        if isinstance(equation, Evaluation):
-            time = value_at_start(motions, equation.position, STEADY)
-            position = value_at_start(motions, equation.position, power) - time**power / factorial(power)
-            velocity = value_at_start(motions, equation.velocity, power) - time ** (power - 1) / factorial(power - 1)
-            errors[equation.result] = position, velocity
+    for evaluation in scheme.evaluated:
+        time = value_at_start(motions, evaluation.position, STEADY)
+        position = value_at_start(motions, evaluation.position, power) - time**power / factorial(power)
+        velocity = value_at_start(motions, evaluation.velocity, power) - time ** (power - 1) / factorial(power - 1)
+        errors[evaluation.result] = position, velocity
     return errors

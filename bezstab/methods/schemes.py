@@ -6,19 +6,37 @@ A scheme is a formula, a method a scheme with its name, source, family and step:
     PredictorCorrector   two of them: predict, evaluate, correct          ABM4
     RungeKutta           stages by a Butcher tableau A, weights b         RK4, SIE, SDIRK2
     SecondOrder          equations for x, v, a and helpers                SYM, Verlet, Newmark (second_order.py)
+
+Whatever a scheme is, it says how many past points it uses (`steps`), whether a step solves equations (`implicit`), how
+often it evaluates (`evaluations`), and what its step is as equations for x, v and a (`second_order`), in which the
+state is y = (x, v) and its slope f = (v, a). On y' = lambda y all but a SecondOrder are a polynomial pi(z, mu),
+mu = h lambda: `mu_table`, where `has_mu`. All have their P(z; alpha_hat, beta_hat): `table`.
 """
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
+from functools import cached_property
+from itertools import zip_longest
 
 from bezstab.errors import InputError
+from bezstab.methods.polynomials import MuTable, PlaneTable, Polynomial, polynomial_gcd, quotient_and_remainder
 from bezstab.methods.schur import recursion_verdict
 from bezstab.methods.second_order import SecondOrder
+from bezstab.methods.step_equations import (
+    ACCELERATION,
+    POSITION,
+    VELOCITY,
+    Assignment,
+    Combination,
+    Equation,
+    Evaluation,
+    Quantity,
+)
+from bezstab.rationals import ONE, ZERO
 
 Coefficients = tuple[Fraction, ...]
-
-ONE, ZERO = Fraction(1), Fraction(0)
 
 LARGEST_COEFFICIENT = Fraction(10**100)
 
@@ -34,8 +52,26 @@ def _refuse_what_is_out_of_size(what: str, *coefficients: Fraction) -> None:
             raise InputError(f"{what}: found {found:.3g}, expected numbers up to 1e100 in size")
 
 
+class FirstOrder(ABC):
+    """A scheme that steps position and velocity alike, and so has a pi(z, mu)."""
+
+    has_mu = True
+
+    @property
+    @abstractmethod
+    def mu_table(self) -> MuTable:
+        """pi(z, mu)."""
+
+    @cached_property
+    def table(self) -> PlaneTable:
+        """P(z; alpha_hat, beta_hat) for a step of h: the product of pi(z, mu) over both mu of the feedback."""
+        from bezstab.methods.determinants import product_over_feedback  # loads sympy
+
+        return product_over_feedback(self.mu_table)
+
+
 @dataclass(frozen=True)
-class LinearMultistep:
+class LinearMultistep(FirstOrder):
     """rho(E) y = h sigma(E) f: coefficients in descending powers of z, rho monic after construction.
 
     InputError unless the method is consistent (rho(1) = 0, sigma(1) = rho'(1)) and zero-stable (the roots of rho in
@@ -44,6 +80,8 @@ class LinearMultistep:
 
     rho: Coefficients
     sigma: Coefficients
+
+    evaluations = 1
 
     def __post_init__(self) -> None:
         if len(self.rho) != len(self.sigma) or len(self.rho) < 2:
@@ -72,9 +110,39 @@ class LinearMultistep:
         """Whether f at the new point enters the step."""
         return self.sigma[0] != 0
 
+    @cached_property
+    def mu_table(self) -> MuTable:
+        """rho(z) - mu sigma(z)."""
+        return tuple((a, -b) for a, b in zip(self.rho[::-1], self.sigma[::-1], strict=True))
+
+    @cached_property
+    def second_order(self) -> SecondOrder:
+        """The equations of a step, which evaluates the acceleration at the newest point that it needs."""
+        step = 1 if self.implicit else 0
+        evaluation = Evaluation(_at(ACCELERATION, step), _one(POSITION, step), _one(VELOCITY, step))
+        updates = self.updates("")
+        return SecondOrder((*updates, evaluation) if self.implicit else (evaluation, *updates))
+
+    def updates(self, new: str, slopes: str = "") -> list[Equation]:
+        """Return the assignments to x and v at the end of the step, called so with `new` in front.
+
+        `slopes` stands in front of what their slopes there are called.
+        """
+        equations: list[Equation] = []
+        for part, slope in ((POSITION, VELOCITY), (VELOCITY, ACCELERATION)):
+            past = [(-a, _at(part, -j)) for j, a in enumerate(self.rho[1:])]
+            weighted = [(b, _at(slope if j else slopes + slope, 1 - j)) for j, b in enumerate(self.sigma)]
+            equations.append(Assignment(_at(new + part, 1), _sum([*past, *weighted])))
+        return equations
+
+    def divided(self, factor: Polynomial) -> "LinearMultistep":
+        """Return the scheme with rho and sigma divided by a factor of both."""
+        rho, sigma = (quotient_and_remainder(part, factor)[0] for part in (self.rho, self.sigma))
+        return LinearMultistep(tuple(rho), tuple(sigma))
+
 
 @dataclass(frozen=True)
-class PredictorCorrector:
+class PredictorCorrector(FirstOrder):
     """PECE: the explicit predictor's value is evaluated once for the implicit corrector, whose value is evaluated.
 
     InputError unless the predictor is explicit, the corrector implicit, and both use the same number of past values.
@@ -83,13 +151,42 @@ class PredictorCorrector:
     predictor: LinearMultistep
     corrector: LinearMultistep
 
+    implicit = False
+    evaluations = 2
+
     def __post_init__(self) -> None:
         if self.predictor.implicit or not self.corrector.implicit or self.predictor.steps != self.corrector.steps:
             raise InputError("a predictor-corrector needs an explicit predictor, an implicit corrector, equal steps")
 
+    @property
+    def steps(self) -> int:
+        """The number of past values one step uses."""
+        return self.corrector.steps
+
+    @cached_property
+    def mu_table(self) -> MuTable:
+        """The corrector's pi with the predictor's value in place of the new one."""
+        b = self.corrector.sigma[0]
+        pairs = zip(self.corrector.mu_table, self.predictor.mu_table, strict=True)
+        return tuple((rho, slope + b * predicted, b * by_mu) for (rho, slope), (predicted, by_mu) in pairs)
+
+    @cached_property
+    def second_order(self) -> SecondOrder:
+        """The equations of a step: evaluate, predict, evaluate, correct."""
+        evaluation = Evaluation(_at(ACCELERATION, 0), _one(POSITION, 0), _one(VELOCITY, 0))
+        at_predicted = Evaluation(
+            _at(PREDICTED + ACCELERATION, 1), _one(PREDICTED + POSITION, 1), _one(PREDICTED + VELOCITY, 1)
+        )
+        predicted, corrected = self.predictor.updates(PREDICTED), self.corrector.updates("", slopes=PREDICTED)
+        return SecondOrder((evaluation, *predicted, at_predicted, *corrected))
+
+    def divided(self, factor: Polynomial) -> "PredictorCorrector":
+        """Return the scheme with predictor and corrector divided by a factor of all four polynomials."""
+        return PredictorCorrector(self.predictor.divided(factor), self.corrector.divided(factor))
+
 
 @dataclass(frozen=True)
-class RungeKutta:
+class RungeKutta(FirstOrder):
     """A Runge-Kutta method by its Butcher tableau; explicit where A is strictly lower triangular.
 
         0    |
@@ -104,6 +201,8 @@ class RungeKutta:
     tableau: tuple[Coefficients, ...]
     weights: Coefficients
 
+    steps = 1
+
     def __post_init__(self) -> None:
         stages = len(self.weights)
         if stages == 0 or len(self.tableau) != stages or any(len(row) != stages for row in self.tableau):
@@ -116,6 +215,72 @@ class RungeKutta:
     def implicit(self) -> bool:
         """Whether some stage needs itself or a later one: an entry of A on or above the diagonal."""
         return any(a != 0 for i, row in enumerate(self.tableau) for a in row[i:])
+
+    @property
+    def evaluations(self) -> int:
+        """The number of stages."""
+        return len(self.weights)
+
+    @cached_property
+    def mu_table(self) -> MuTable:
+        """z - R(mu), R = 1 + mu b^T (I - mu A)^-1 1, times det(I - mu A), which is one for an explicit method.
+
+        det(I - mu A + mu 1 b^T) / det(I - mu A) = R(mu) (Hairer & Wanner II, Proposition IV.3.2), less a factor of
+        stages that the step does not depend on.
+        """
+        from bezstab.methods.determinants import characteristic  # loads sympy
+
+        less_weights = [[a - b for a, b in zip(row, self.weights, strict=True)] for row in self.tableau]
+        # det(I - mu M) is the characteristic polynomial of M backwards: its descending powers are ascending here
+        above, below = ([*_without_zeros(characteristic(each))][::-1] for each in (less_weights, self.tableau))
+        unused = polynomial_gcd(above, below)
+        above, below = (
+            [c * unused[-1] for c in quotient_and_remainder(each, unused)[0][::-1]] for each in (above, below)
+        )
+        columns = list(zip_longest(above, below, fillvalue=ZERO))
+        return tuple(-a for a, _ in columns), tuple(b for _, b in columns)
+
+    @cached_property
+    def second_order(self) -> SecondOrder:
+        """The equations of the stages, V_i = v + sum_j a_ij A_j and X_i = x + sum_j a_ij V_j, and of the step."""
+        stages = range(len(self.weights))
+        velocity = [_at(f"stage_v_{i + 1}", 1) for i in stages]
+        acceleration = [_at(f"stage_a_{i + 1}", 1) for i in stages]
+
+        def moved(part: str, weights: Coefficients, slopes: list[Quantity]) -> Combination:
+            return _sum([(ONE, _at(part, 0)), *zip(weights, slopes, strict=True)])
+
+        equations: list[Equation] = []
+        for i, row in enumerate(self.tableau):
+            equations.append(Assignment(velocity[i], moved(VELOCITY, row, acceleration)))
+            equations.append(Evaluation(acceleration[i], moved(POSITION, row, velocity), ((ONE, velocity[i]),)))
+        equations.append(Assignment(_at(POSITION, 1), moved(POSITION, self.weights, velocity)))
+        equations.append(Assignment(_at(VELOCITY, 1), moved(VELOCITY, self.weights, acceleration)))
+        return SecondOrder(tuple(equations))
+
+    def divided(self, factor: Polynomial) -> "RungeKutta":
+        """Return the scheme: the roots of z - R(mu) all depend on mu."""
+        return self
+
+
+PREDICTED = "predicted_"
+
+
+def _at(name: str, step: int) -> Quantity:
+    return Quantity(name, step)
+
+
+def _one(name: str, step: int) -> Combination:
+    return ((ONE, Quantity(name, step)),)
+
+
+def _sum(terms: list[tuple[Fraction, Quantity]]) -> Combination:
+    return tuple((coefficient, quantity) for coefficient, quantity in terms if coefficient)
+
+
+def _without_zeros(ascending: list[Fraction]) -> list[Fraction]:
+    """Return coefficients without the zeros at their end."""
+    return ascending[: max(k for k, c in enumerate(ascending) if c) + 1]
 
 
 Scheme = LinearMultistep | PredictorCorrector | RungeKutta | SecondOrder
@@ -154,27 +319,20 @@ class Method:
         if not LEAST_STEP_MULTIPLE <= self.step_multiple <= LARGEST_STEP_MULTIPLE:
             raise InputError(f"step multiple {float(self.step_multiple):g}: expected 1e-6 to 1e6")
 
+    @property
+    def has_mu(self) -> bool:
+        """Whether position and velocity are stepped alike, so that the poles are those of y' = lambda y."""
+        return self.scheme.has_mu
+
 
 def steps(method: Method) -> int:
     """Return the number of past points the method uses: n for an n-step method, 1 for a one-step method."""
-    match method.scheme:
-        case LinearMultistep() as scheme:
-            return scheme.steps
-        case PredictorCorrector(predictor=scheme):
-            return scheme.steps
-        case RungeKutta():
-            return 1
-        case SecondOrder() as scheme:
-            return 1 - scheme.oldest
+    return method.scheme.steps
 
 
 def implicit(method: Method) -> bool:
     """Return whether a step has to solve equations for what it evaluates at."""
-    match method.scheme:
-        case LinearMultistep() | RungeKutta() | SecondOrder() as scheme:
-            return scheme.implicit
-        case PredictorCorrector():
-            return False
+    return method.scheme.implicit
 
 
 def evaluations(method: Method) -> int:
@@ -182,12 +340,32 @@ def evaluations(method: Method) -> int:
 
     Of an implicit method: for one iteration.
     """
-    match method.scheme:
-        case LinearMultistep():
-            return 1
-        case PredictorCorrector():
-            return 2
-        case RungeKutta(weights=weights):
-            return len(weights)
-        case SecondOrder() as scheme:
-            return scheme.evaluations
+    return method.scheme.evaluations
+
+
+def second_order_form(scheme: Scheme) -> SecondOrder:
+    """Return the step of a scheme as equations for x, v and a, with h = 1."""
+    return scheme.second_order
+
+
+STATE = (POSITION, VELOCITY, ACCELERATION)
+
+
+def check_one_step(method: Method) -> None:
+    """Raise InputError unless the state at the end of a step follows from x, v and a at its start alone."""
+    scheme = method.scheme.second_order
+    latest = {equation.result.name: equation.result.step for equation in scheme.equations}
+    if steps(method) > 1 or latest[POSITION] != 1 or latest[VELOCITY] != 1:
+        raise InputError(
+            f"{method.name} uses values of several steps, and its coefficients assume that these are of equal length: "
+            "nothing can be said of steps that vary"
+        )
+    results = {equation.result for equation in scheme.equations}
+    for equation in scheme.equations:
+        for quantity in equation.used:
+            carried = quantity not in results
+            if carried and (quantity.name not in STATE or quantity.step != 0):
+                raise InputError(
+                    f"{method.name} carries {quantity} from step to step: nothing is known of how it changes when the "
+                    "step does"
+                )

@@ -3,16 +3,14 @@
 Polynomials are sequences of Fraction in descending powers of z.
 """
 
-from collections.abc import Sequence
 from fractions import Fraction
-from itertools import zip_longest
 from math import gcd
 from typing import Literal
 
+from bezstab.methods.polynomials import Polynomial, polynomial_gcd, quotient_and_remainder, trimmed
 from bezstab.rationals import whole_multiples
 
 Verdict = Literal["converges", "marginal", "diverges"]
-Polynomial = Sequence[Fraction]
 
 WORKING_BITS = 1024  # a step loses up to 25 of them where 24 roots lie near z = 1; what they leave open takes all bits
 
@@ -28,12 +26,12 @@ def recursion_verdict(polynomial: Polynomial) -> Verdict:
     G = gcd(P, P*). A reciprocal G has all its roots on the circle, and simple, if and only if every root of G'
     has |z| < 1 (A. Cohn, Math. Z. 14, 1922); what is left of P must have its roots inside.
     """
-    p = _trimmed(polynomial)
+    p = trimmed(polynomial)
     if is_schur(p):
         return "converges"
     if abs(p[-1]) > abs(p[0]):  # the product of all |z| exceeds one
         return "diverges"
-    reciprocal = _trimmed(p[::-1])
+    reciprocal = trimmed(p[::-1])
     shared = polynomial_gcd(p, reciprocal)
     rest, _ = quotient_and_remainder(p, shared)
     if is_schur(_derivative(shared)) and is_schur(rest):
@@ -77,35 +75,7 @@ def _whole_is_schur(p: list[int], bits: int | None) -> bool | None:
     return True
 
 
-def _trimmed(polynomial: Polynomial) -> list[Fraction]:
-    """Return the monic polynomial with the same roots, leading zeros dropped."""
-    p = list(polynomial)
-    while len(p) > 1 and p[0] == 0:
-        del p[0]
-    return [a / p[0] for a in p]
-
-
 def _derivative(p: Polynomial) -> list[Fraction]:
     """Return the derivative; 1 in place of the 0 of a constant, as neither has a root outside."""
     degree = len(p) - 1
     return [(degree - i) * a for i, a in enumerate(p[:-1])] or [Fraction(1)]
-
-
-def quotient_and_remainder(p: Polynomial, divisor: Polynomial) -> tuple[list[Fraction], list[Fraction]]:
-    """Return quotient and remainder of polynomial long division; the divisor's leading coefficient is not zero."""
-    remainder, quotient = list(p), []
-    while len(remainder) >= len(divisor):
-        factor = remainder[0] / divisor[0]
-        quotient.append(factor)
-        difference = [a - factor * b for a, b in zip_longest(remainder, divisor, fillvalue=Fraction(0))]
-        remainder = difference[1:]  # the leading coefficient has become 0
-    return quotient, remainder
-
-
-def polynomial_gcd(p: Polynomial, q: Polynomial) -> list[Fraction]:
-    """Return the monic greatest common divisor by Euclid's algorithm."""
-    while any(q):
-        divisor = _trimmed(q)
-        _, remainder = quotient_and_remainder(p, divisor)
-        p, q = divisor, remainder
-    return _trimmed(p)

@@ -21,70 +21,20 @@ An equation can be taken as soon as what it needs is known. Where some wait for 
 together, and the scheme is implicit: that is found here, not declared.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from math import comb, factorial
 
 from bezstab.errors import InputError
-from bezstab.methods.plane_polynomials import ONE, ZERO, Matrix, Terms, determinant
-from bezstab.methods.schur import quotient_and_remainder, recursion_verdict
+from bezstab.methods.polynomials import MuTable, PlaneTable, Polynomial, quotient_and_remainder
+from bezstab.methods.schur import recursion_verdict
+from bezstab.methods.step_equations import POSITION, VELOCITY, Assignment, Equation, Evaluation, Quantity, in_order
+from bezstab.rationals import ONE, ZERO
 
-POSITION, VELOCITY, ACCELERATION = "x", "v", "a"
 MOST_EQUATIONS = 60  # some 20 stages
 FURTHEST_BACK = -20  # steps
 LATEST = 2  # step of a result: beyond the end of the step by as much as a multistep formula may be written
-
-PlaneTable = tuple[tuple[tuple[Fraction, ...], ...], ...]
-"""A polynomial in z, alpha_hat and beta_hat: table[k][i][j] belongs to z^k alpha_hat^i beta_hat^j."""
-
-
-@dataclass(frozen=True, order=True)
-class Quantity:
-    """A value at a numbered step: 1 is the end of the step being taken, 0 its start, -1 the start of the one before."""
-
-    name: str
-    step: int
-
-    def __str__(self) -> str:
-        if self.name not in (POSITION, VELOCITY, ACCELERATION):
-            return self.name if self.step == 1 else f"{self.name}[{self.step}]"
-        return f"{self.name}{self.step}" if self.step >= 0 else f"{self.name}[{self.step}]"
-
-
-Combination = tuple[tuple[Fraction, Quantity], ...]
-"""A sum of coefficients times quantities."""
-
-
-@dataclass(frozen=True)
-class Assignment:
-    """result = value, a sum of numbers times quantities, in units in which h = 1."""
-
-    result: Quantity
-    value: Combination
-
-    @property
-    def used(self) -> tuple[Quantity, ...]:
-        """What the right-hand side needs."""
-        return tuple(quantity for _, quantity in self.value)
-
-
-@dataclass(frozen=True)
-class Evaluation:
-    """result = acceleration(position, velocity), in units in which h = 1."""
-
-    result: Quantity
-    position: Combination
-    velocity: Combination
-
-    @property
-    def used(self) -> tuple[Quantity, ...]:
-        """What the right-hand side needs."""
-        return tuple(quantity for _, quantity in (*self.position, *self.velocity))
-
-
-Equation = Assignment | Evaluation
 
 
 @dataclass(frozen=True)
@@ -100,6 +50,8 @@ class SecondOrder:
     """
 
     equations: tuple[Equation, ...]
+
+    has_mu = False
 
     def __post_init__(self) -> None:
         self._check_names()
@@ -152,10 +104,9 @@ class SecondOrder:
 
     def _parts_stay_bounded(self) -> bool:
         """Return whether without feedback velocities do not depend on positions, and neither part grows by itself."""
-        value_of = {
-            equation.result.name: equation.value if isinstance(equation, Assignment) else ()  # no feedback: a = 0
-            for equation in self.equations
-        }
+        from bezstab.methods.determinants import determinant_table  # loads sympy
+
+        value_of = {equation.result.name: equation.without_feedback for equation in self.equations}
         velocities: set[str] = set()
         found = {VELOCITY}
         while found:
@@ -169,15 +120,34 @@ class SecondOrder:
                 name = equation.result.name
                 if name in part:
                     alone.append(Assignment(equation.result, tuple(x for x in value_of[name] if x[1].name in part)))
-            free = [in_plane[0][0] for in_plane in reversed(_determinant_table(tuple(alone)))]
+            free = [in_plane[0][0] for in_plane in reversed(determinant_table(alone))]
             if recursion_verdict(free) == "diverges":
                 return False
         return True
 
     @property
+    def second_order(self) -> "SecondOrder":
+        """The scheme itself."""
+        return self
+
+    @property
+    def mu_table(self) -> MuTable:
+        """Position and velocity may be stepped differently: no such polynomial, TypeError."""
+        raise TypeError("a second-order scheme has no pi(z, mu)")
+
+    def divided(self, factor: Polynomial) -> "SecondOrder":
+        """Return the scheme: its equations stay, whatever factor its P has for all alpha_hat and beta_hat."""
+        return self
+
+    @property
+    def evaluated(self) -> tuple[Evaluation, ...]:
+        """The equations that evaluate the acceleration."""
+        return tuple(equation for equation in self.equations if isinstance(equation, Evaluation))
+
+    @property
     def evaluations(self) -> int:
         """How often a step evaluates the acceleration: an implicit one so often for each of Newton's iterations."""
-        return sum(isinstance(equation, Evaluation) for equation in self.equations)
+        return len(self.evaluated)
 
     @property
     def implicit(self) -> bool:
@@ -189,10 +159,15 @@ class SecondOrder:
         """The earliest step that is looked back to, at most 0: 0 for a one-step method."""
         return min(0, *(quantity.step for equation in self.equations for quantity in equation.used))
 
+    @property
+    def steps(self) -> int:
+        """The number of past points that a step uses."""
+        return 1 - self.oldest
+
     @cached_property
     def groups(self) -> tuple[tuple[Equation, ...], ...]:
         """The equations in an order in which each can be taken; those that wait for each other form one group."""
-        return tuple(_in_order(self.equations))
+        return tuple(in_order(self.equations))
 
     @cached_property
     def table(self) -> PlaneTable:
@@ -200,119 +175,19 @@ class SecondOrder:
 
         Leading coefficient one at alpha_hat = beta_hat = 0.
         """
-        return _determinant_table(self.equations)
+        from bezstab.methods.determinants import determinant_table  # loads sympy
+
+        return determinant_table(self.equations)
 
     @cached_property
     def responses(self) -> tuple[PlaneTable, PlaneTable]:
-        """Polynomials in the ratio of x and v on every motion z^k, from the equations without one evaluation."""
-        position, velocity = _responses(self.equations)
-        lowest = min(k for k, _, _ in (*position, *velocity))
-        return _table_from(position, lowest), _table_from(velocity, lowest)
+        """Polynomials in the ratio of x and v on every motion z^k, from the equations without one evaluation.
 
+        InputError if no acceleration acts on x.
+        """
+        from bezstab.methods.determinants import responses  # loads sympy
 
-def _in_order(equations: tuple[Equation, ...]) -> Iterator[tuple[Equation, ...]]:
-    """Yield the equations in groups that can be taken one after the other, as far as possible as they are listed."""
-    waiting = {equation.result: equation for equation in equations}
-    while waiting:
-        needed = {result: _needed(result, waiting) for result in waiting}
-        # whatever the first of the smallest sets waits for waits for it too: else its own set were smaller
-        smallest = min(needed.values(), key=len)
-        yield tuple(equation for result, equation in waiting.items() if result in smallest)
-        waiting = {result: equation for result, equation in waiting.items() if result not in smallest}
-
-
-def _needed(result: Quantity, waiting: dict[Quantity, Equation]) -> set[Quantity]:
-    """Return the quantities, itself included, whose equations must be taken before this one is there."""
-    needed: set[Quantity] = set()
-    found = {result}
-    while found:
-        needed |= found
-        found = {quantity for each in found for quantity in waiting[each].used if quantity in waiting} - needed
-    return needed
-
-
-def _determinant_table(equations: tuple[Equation, ...]) -> PlaneTable:
-    """Return the determinant of the equations' coefficients as a table."""
-    return _table_of(determinant(coefficient_rows(equations)))
-
-
-def coefficient_rows(equations: tuple[Equation, ...]) -> Matrix:
-    """Return the coefficients of each equation, one column for each quantity's name, in the order of the equations.
-
-    A coefficient is a polynomial as a dict, by powers of z, alpha_hat and beta_hat.
-    """
-    column = {equation.result.name: number for number, equation in enumerate(equations)}
-    earliest = first_step(equations)
-    rows: Matrix = []
-    for equation in equations:
-        row: list[Terms] = [{} for _ in equations]
-        for coefficient, quantity, (by_velocity, by_position) in _terms_of(equation):
-            terms = row[column[quantity.name]]
-            powers = (quantity.step - earliest, by_velocity, by_position)
-            terms[powers] = terms.get(powers, ZERO) + coefficient
-        rows.append([{powers: c for powers, c in terms.items() if c} for terms in row])
-    return rows
-
-
-def first_step(equations: tuple[Equation, ...]) -> int:
-    """Return the earliest step of any quantity in the equations: it has the power 0 of z in their coefficients."""
-    return min(quantity.step for equation in equations for quantity in (equation.result, *equation.used))
-
-
-def _terms_of(equation: Equation) -> Iterator[tuple[Fraction, Quantity, tuple[int, int]]]:
-    """Yield what stands in `result - right-hand side = 0`: coefficient, quantity, powers of alpha_hat and beta_hat."""
-    yield ONE, equation.result, (0, 0)
-    match equation:
-        case Assignment(value=value):
-            yield from ((-coefficient, quantity, (0, 0)) for coefficient, quantity in value)
-        case Evaluation(position=position, velocity=velocity):
-            yield from ((coefficient, quantity, (0, 1)) for coefficient, quantity in position)
-            yield from ((coefficient, quantity, (1, 0)) for coefficient, quantity in velocity)
-
-
-def _responses(equations: tuple[Equation, ...]) -> tuple[Terms, Terms]:
-    """Return x and v where the acceleration of one evaluation is free, up to one factor, as polynomials.
-
-    They are the minors of the coefficients without the row of that evaluation, the first that acts on x at all: on a
-    motion z^k that satisfies all equations x and v are in their ratio (Cramer's rule).
-    """
-    rows = coefficient_rows(equations)
-    names = [equation.result.name for equation in equations]
-    for number, equation in enumerate(equations):
-        if isinstance(equation, Evaluation):
-            position, velocity = (
-                determinant(_with_unit_row(rows, number, names.index(name))) for name in (POSITION, VELOCITY)
-            )
-            if sum(c for (_, i, j), c in position.items() if (i, j) == (0, 0)):
-                return position, velocity
-    raise InputError("inconsistent: no acceleration acts on x1")
-
-
-def _with_unit_row(rows: Matrix, number: int, column: int) -> Matrix:
-    """Return the matrix with 1 in one column of one row, and 0 in its others."""
-    unit: list[Terms] = [{(0, 0, 0): ONE} if place == column else {} for place in range(len(rows))]
-    return [unit if place == number else row for place, row in enumerate(rows)]
-
-
-def _table_of(terms: Terms) -> PlaneTable:
-    """Return the table of a polynomial without roots z = 0 that no parameters move; () for zero.
-
-    Leading coefficient one at alpha_hat = beta_hat = 0, if there is one.
-    """
-    if not terms:
-        return ()
-    at_origin = [k for k, i, j in terms if (i, j) == (0, 0)]
-    scale = terms[max(at_origin), 0, 0] if at_origin else ONE
-    return _table_from({powers: c / scale for powers, c in terms.items()}, lowest=min(k for k, _, _ in terms))
-
-
-def _table_from(terms: Terms, lowest: int) -> PlaneTable:
-    """Return the table of a polynomial other than zero, divided by z^lowest."""
-    highest = [max(powers[axis] for powers in terms) for axis in range(3)]
-    return tuple(
-        tuple(tuple(terms.get((k, i, j), ZERO) for j in range(highest[2] + 1)) for i in range(highest[1] + 1))
-        for k in range(lowest, highest[0] + 1)
-    )
+        return responses(self.equations)
 
 
 def defect(table: PlaneTable, degree: int) -> list[Fraction]:

@@ -9,7 +9,8 @@ velocity if it is a sum of velocities and accelerations.
 
 from fractions import Fraction
 
-from bezstab.methods.second_order import (
+from bezstab.methods.second_order import SecondOrder
+from bezstab.methods.step_equations import (
     ACCELERATION,
     POSITION,
     VELOCITY,
@@ -17,7 +18,6 @@ from bezstab.methods.second_order import (
     Combination,
     Evaluation,
     Quantity,
-    SecondOrder,
 )
 
 SHOWN_DIGITS = 10  # of a coefficient that is shown as a decimal
@@ -68,10 +68,9 @@ def _derivatives(scheme: SecondOrder) -> dict[str, int]:
     for _ in scheme.equations:  # a sum may have a helper in it whose own sum comes later: so often at most
         for equation in scheme.equations:
             result = equation.result.name
-            if isinstance(equation, Assignment) and result not in KNOWN_DERIVATIVES:
-                derivatives[result] = min(
-                    (derivatives[quantity.name] for quantity in equation.used), default=KNOWN_DERIVATIVES[ACCELERATION]
-                )
+            if result not in KNOWN_DERIVATIVES:
+                added_up = (derivatives[quantity.name] for _, quantity in equation.without_feedback)
+                derivatives[result] = min(added_up, default=KNOWN_DERIVATIVES[ACCELERATION])
     return derivatives
 
 

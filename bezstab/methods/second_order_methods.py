@@ -11,8 +11,9 @@ from fractions import Fraction
 
 from bezstab.methods.algebraic_numbers import DIGITS, decimal_root
 from bezstab.methods.recipes import recipe
-from bezstab.methods.schemes import ONE, Method
+from bezstab.methods.schemes import Method
 from bezstab.methods.second_order import SecondOrder
+from bezstab.rationals import ONE
 
 HALF = Fraction(1, 2)
 

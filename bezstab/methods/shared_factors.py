@@ -10,11 +10,10 @@ from functools import cache
 import sympy as sp
 
 from bezstab.methods.derivation import Z, closed_loop_table, coefficient_table
-from bezstab.methods.schemes import LinearMultistep, Method, PredictorCorrector, Scheme
-from bezstab.methods.schur import polynomial_gcd, quotient_and_remainder
-from bezstab.methods.second_order import PlaneTable, SecondOrder
-
-ZERO = Fraction(0)
+from bezstab.methods.determinants import in_field
+from bezstab.methods.polynomials import MuTable, PlaneTable, polynomial_gcd, quotient_and_remainder, trimmed
+from bezstab.methods.schemes import Method
+from bezstab.rationals import ONE
 
 
 @cache
@@ -26,23 +25,19 @@ def shared_factor(method: Method) -> tuple[Fraction, ...]:
     algorithm, exact. A root of it at zero, an unused past value, is left out: it never decides.
     """
     shared: list[Fraction] = []
-    for ascending in _coefficients_in_z(method):
-        descending = ascending[::-1]
-        if any(descending):
-            shared = polynomial_gcd(shared, descending) if shared else descending
-    shared = polynomial_gcd(shared, [ZERO])
+    for ascending in zip(*_by_power_of_z(method), strict=True):
+        if any(ascending):
+            shared = polynomial_gcd(shared, ascending[::-1]) if shared else trimmed(ascending[::-1])
     while len(shared) > 1 and shared[-1] == 0:
         shared.pop()
     return tuple(shared)
 
 
-def _coefficients_in_z(method: Method) -> list[list[Fraction]]:
-    """Return the polynomials in z, ascending powers, that the powers of mu, or of the parameters, are multiplied by."""
-    if isinstance(method.scheme, SecondOrder):
-        by_power = [[c for row in in_plane for c in row] for in_plane in closed_loop_table(method)]
-    else:
-        by_power = [list(row) for row in coefficient_table(method)]
-    return [list(column) for column in zip(*by_power, strict=True)]
+def _by_power_of_z(method: Method) -> MuTable:
+    """Return what each power of z, ascending, is multiplied by: the coefficients of the powers of mu, or of P's."""
+    if method.has_mu:
+        return coefficient_table(method)
+    return tuple(tuple(c for row in in_plane for c in row) for in_plane in closed_loop_table(method))
 
 
 @cache
@@ -52,7 +47,7 @@ def reduced_table(method: Method) -> PlaneTable:
     Exact, of the same layout; dimensionless.
     """
     table = closed_loop_table(method)
-    factor = shared_factor(method) if isinstance(method.scheme, SecondOrder) else (Fraction(1),)
+    factor = (ONE,) if method.has_mu else shared_factor(method)
     if len(factor) == 1:
         return table
     quotients = [
@@ -73,7 +68,7 @@ def fixed_poles(method: Method) -> tuple[complex, ...]:
     They are the roots of the factor that rho and sigma share, each at least a double pole, or that all coefficients of
     a second-order scheme's P share; dimensionless. None for an ordinary method.
     """
-    factor = sp.Poly([sp.Rational(c.numerator, c.denominator) for c in shared_factor(method)], Z)
+    factor = sp.Poly([in_field(c) for c in shared_factor(method)], Z, domain=sp.QQ)
     poles: list[complex] = []
     if factor.degree() > 0:
         for part, _ in factor.sqf_list()[1]:  # without its multiple roots, which float64 would split
@@ -89,23 +84,4 @@ def without_shared_factor(method: Method) -> Method:
     `reduced_table`.
     """
     factor = shared_factor(method)
-    if len(factor) == 1 or isinstance(method.scheme, SecondOrder):
-        return method
-    scheme: Scheme = method.scheme
-    match method.scheme:
-        case LinearMultistep() as multistep:
-            scheme = _cancelled(multistep, factor)
-        case PredictorCorrector(predictor, corrector):
-            scheme = PredictorCorrector(_cancelled(predictor, factor), _cancelled(corrector, factor))
-    return replace(method, scheme=scheme)
-
-
-def _cancelled(scheme: LinearMultistep, factor: tuple[Fraction, ...]) -> LinearMultistep:
-    """Return a scheme with rho and sigma divided by a factor of both."""
-    quotients = []
-    for polynomial in (scheme.rho, scheme.sigma):
-        leading_zeros = next(i for i, coefficient in enumerate(polynomial) if coefficient)
-        quotient, _ = quotient_and_remainder(polynomial[leading_zeros:], factor)
-        quotients.append((*[ZERO] * leading_zeros, *quotient))
-    rho, sigma = quotients
-    return LinearMultistep(rho, sigma)
+    return method if len(factor) == 1 else replace(method, scheme=method.scheme.divided(factor))

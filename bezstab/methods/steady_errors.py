@@ -37,23 +37,16 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cache
 from itertools import count
-from math import factorial, lcm
+from math import ceil, factorial, lcm
 from types import MappingProxyType
 from typing import Literal
 
-from bezstab.methods.plane_polynomials import ONE, ZERO, Terms, determinant
+from bezstab.methods.determinants import RING, as_fraction, coefficient_rows, determinant, in_field
 from bezstab.methods.scheme_motions import evaluation_errors, evaluation_times
 from bezstab.methods.schemes import Method
-from bezstab.methods.second_order import (
-    POSITION,
-    VELOCITY,
-    Evaluation,
-    Quantity,
-    SecondOrder,
-    coefficient_rows,
-    first_step,
-)
-from bezstab.methods.second_order_forms import second_order_form
+from bezstab.methods.second_order import SecondOrder
+from bezstab.methods.step_equations import POSITION, VELOCITY, Quantity
+from bezstab.rationals import ONE, ZERO
 
 Part = Literal["x", "v"]
 
@@ -133,7 +126,7 @@ def forced_errors(method: Method) -> ForcedErrors:
 
     InputError where the determinant of its equations would take too long. Source: the docstring of this file.
     """
-    step = second_order_form(method.scheme)
+    step = method.scheme.second_order
     alike: dict[Quantity, PlanePolynomial] = {result: {(0, 0): ONE} for result in evaluation_times(step)}
     unforced = _determinant(step)
     return ForcedErrors(
@@ -154,16 +147,19 @@ def _determinant(
     """
     times = evaluation_times(step)
     parts = lcm(*(time.denominator for time in times.values()))  # of a step, so that all times are whole
-    rows = [[_of_parts(terms, parts) for terms in row] for row in coefficient_rows(step.equations)]
+    rows = coefficient_rows(step.equations, parts)
+    steps = {equation.result.name: equation.result.step for equation in step.equations}
     if name is not None:
-        column = [equation.result.name for equation in step.equations].index(name)
-        earliest = first_step(step.equations)
+        column, latest = list(steps).index(name), ceil(max(times.values()))
         for row, equation in zip(rows, step.equations, strict=True):
-            row[column] = {}
-            if isinstance(equation, Evaluation):
-                later = int((times[equation.result] - earliest) * parts)
-                row[column] = {(later, i, j): c for (i, j), c in forced[equation.result].items()}
-    return _as_sum(determinant(rows), parts)
+            earlier = int((latest - times.get(equation.result, ZERO)) * parts)
+            added = forced.get(equation.result, {})
+            row[column] = RING.from_dict({(earlier, i, j): in_field(c) for (i, j), c in added.items()})
+        steps[name] = latest
+    found: ExponentialSum = {}
+    for (k, i, j), c in determinant(rows).terms():
+        found.setdefault((i, j), {})[sum(steps.values()) - Fraction(k, parts), 0] = as_fraction(c)
+    return found
 
 
 @cache
@@ -191,7 +187,7 @@ def turning_error(method: Method) -> TurningError | None:
 
     Errors as `forced_errors`. Source: the docstring of this file.
     """
-    errors, step = forced_errors(method), second_order_form(method.scheme)
+    errors, step = forced_errors(method), method.scheme.second_order
     for power in range(2, leading_error(method).power):
         off = evaluation_errors(step, power)
         if max(max(map(abs, pair)) for pair in off.values()) <= errors.rounding:
@@ -228,19 +224,6 @@ def _in_h(polynomial: PlanePolynomial, multiple: Fraction, power: int) -> PlaneP
 
 Summand = tuple[int, Powers, Fraction, ExponentialSum]
 """A power of theta, powers of alpha_hat and beta_hat and a factor, by which a sum is multiplied."""
-
-
-def _of_parts(terms: Terms, parts: int) -> Terms:
-    """Return a polynomial in z as one in the root of z that belongs to one of so many parts of a step."""
-    return {(k * parts, i, j): c for (k, i, j), c in terms.items()}
-
-
-def _as_sum(terms: Terms, parts: int) -> ExponentialSum:
-    """Return a determinant's terms, of so many parts of a step, at z = e^theta."""
-    found: ExponentialSum = {}
-    for (k, i, j), c in terms.items():
-        found.setdefault((i, j), {})[Fraction(k, parts), 0] = c
-    return found
 
 
 def _times_forcing(terms: ExponentialSum) -> Iterator[Summand]:

@@ -10,6 +10,7 @@ A file imports only from those above it; what draws is not loaded before it is u
     best_point_text     a best point in words
     rows                results as rows
     varying_rows        what steps that vary do, as keys of a row and in a sentence
+    answer_rows         answers to a question as rows, and in words
     arrays              histories and maps as arrays for files
     style               what all figures share
     histories           a history as a line, or as its envelope
@@ -23,6 +24,18 @@ A file imports only from those above it; what draws is not loaded before it is u
 from typing import TYPE_CHECKING
 
 from bezstab.lazy import lazy_names
+from bezstab.show.answer_rows import (
+    added_cells,
+    answer_row,
+    answer_sentence,
+    costs_words,
+    engine_cells,
+    growing_run,
+    largest_step_row,
+    motion_words,
+    step_limit,
+    trade_words,
+)
 from bezstab.show.blocks import block, fits, wrapped
 from bezstab.show.columns import (
     MISSING,
@@ -42,10 +55,7 @@ from bezstab.show.columns import (
 )
 from bezstab.show.rows import (
     NOT_KNOWN,
-    choice_row,
     complex_parts,
-    cost_row,
-    drive_row,
     engine_row,
     family_row,
     forced_rows,
@@ -57,7 +67,6 @@ from bezstab.show.rows import (
     linted_row,
     measurement_row,
     method_row,
-    moving_row,
     pole_rows,
     probed_pole_row,
     region_row,
@@ -141,16 +150,18 @@ __all__ = [
     "Row",
     "Value",
     "accuracy_map_figure",
+    "added_cells",
+    "answer_row",
+    "answer_sentence",
     "block",
     "boundary_arrays",
     "change_words",
-    "choice_row",
     "column",
     "column_figure",
     "comparison_figure",
     "complex_parts",
-    "cost_row",
-    "drive_row",
+    "costs_words",
+    "engine_cells",
     "engine_row",
     "error_front_figure",
     "family_figure",
@@ -161,11 +172,13 @@ __all__ = [
     "formatted",
     "formula_row",
     "front_row",
+    "growing_run",
     "growth_words",
     "history_arrays",
     "history_figure",
     "history_line",
     "json_schema",
+    "largest_step_row",
     "legend_below",
     "like_point_row",
     "likeness_row",
@@ -175,7 +188,7 @@ __all__ = [
     "map_arrays",
     "measurement_row",
     "method_row",
-    "moving_row",
+    "motion_words",
     "open_explorer",
     "plot",
     "pole_column",
@@ -195,9 +208,11 @@ __all__ = [
     "shown_width",
     "simulation_row",
     "stable_steps_words",
+    "step_limit",
     "styled",
     "summary_row",
     "times_words",
+    "trade_words",
     "transposed",
     "untimed_arrays",
     "varying_row",

@@ -10,7 +10,7 @@ from fractions import Fraction
 from statistics import median
 from typing import TYPE_CHECKING
 
-from bezstab.engines import DRIVE_METHODS, witness_of
+from bezstab.engines import witness_of
 from bezstab.errors import InputError
 from bezstab.methods import Method, evaluations, implicit, steps
 from bezstab.show.columns import Row, Value
@@ -31,7 +31,7 @@ NOT_KNOWN = "not known"
 if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
     from _typeshed import DataclassInstance
 
-    from bezstab.engines import Drive, Engine
+    from bezstab.engines import Engine
     from bezstab.evidence import (
         HalvedStep,
         Likeness,
@@ -46,7 +46,7 @@ if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
     )
     from bezstab.mechanism import Simulation
     from bezstab.methods import Verdict
-    from bezstab.stability import BestPoint, Choice, FeedbackCost, FrontPoint, Limit, Member, Region
+    from bezstab.stability import BestPoint, Choice, FrontPoint, Limit, Member, Region
 
 
 def row(result: DataclassInstance, without: Collection[str] = (), **more: Value) -> dict[str, Value]:
@@ -355,7 +355,6 @@ def measurement_row(scene: str, measurement: Measurement) -> Row:
         "law_verdict": measurement.law_verdict,
         "floquet_z_abs": measurement.floquet_abs,
         **{f"measured_{key}": value for key, value in measured.items()},
-        "law_fitted_z_abs": measurement.law_fitted_abs,
         "measured_rate": measurement.measured_rate,
         "measured_verdict": measurement.measured_verdict,
         **{f"difference_{key}": value for key, value in difference.items()},
@@ -391,17 +390,21 @@ def forced_rows(scene: str, pair: HalvedStep) -> list[Row]:
 def summary_row(measurements: Sequence[Row]) -> Row:
     """Return how well the measured poles of one method agree: errors of |z|, and verdicts that contradict theory.
 
-    From its rows by measurement_row, at least one.
+    From its rows by measurement_row, at least one. Of the points that were followed over a revolution also the median
+    errors of the rate at rest, of the law's and of the exact one, and how many of each are on the wrong side of one.
     """
     errors = [abs(each["difference_z_abs"]) for each in measurements if isinstance(each["difference_z_abs"], float)]
-    fitted = [(each["measured_z_abs"], each["law_fitted_z_abs"]) for each in measurements]
-    by_the_law = [abs(a - b) for a, b in fitted if isinstance(a, float) and isinstance(b, float)]
 
-    def median_over_the_motion(key: str) -> float | None:
-        """Return the median difference of a prediction from the rate over whole revolutions."""
-        pairs = [(each[key], each["measured_rate"]) for each in measurements]
-        apart = [abs(a - b) for a, b in pairs if isinstance(a, float) and isinstance(b, float)]
-        return float(median(apart)) if apart else None
+    followed = [each for each in measurements if each["measured_rate"] is not None]
+    measured, *predicted = (
+        [rate for each in followed if isinstance(rate := each[key], float)]
+        for key in ("measured_rate", "predicted_z_abs", "law_z_abs", "floquet_z_abs")
+    )
+    pairs = [list(zip(rates, measured, strict=True)) for rates in predicted]
+    map_error, law_error, floquet_error = (
+        float(median(abs(a - b) for a, b in of_one)) if followed else None for of_one in pairs
+    )
+    wrong_sides = [str(sum((a > 1) != (b > 1) for a, b in of_one)) for of_one in pairs]
 
     return {
         "method": measurements[0]["method"],
@@ -409,13 +412,13 @@ def summary_row(measurements: Sequence[Row]) -> Row:
         "measured": len(errors),
         "median_error": float(median(errors)) if errors else None,
         "largest_error": max(errors, default=None),
-        "law_fitted_error": float(median(by_the_law)) if by_the_law else None,
         "called": sum(each["verdicts_agree"] is not None for each in measurements),
         "wrong": sum(each["verdicts_agree"] is False for each in measurements),
-        "revolutions_measured": sum(isinstance(each["measured_rate"], float) for each in measurements),
-        "map_error": median_over_the_motion("predicted_z_abs"),
-        "law_error": median_over_the_motion("law_z_abs"),
-        "floquet_error": median_over_the_motion("floquet_z_abs"),
+        "revolutions_measured": len(followed),
+        "map_error": map_error,
+        "law_error": law_error,
+        "floquet_error": floquet_error,
+        "wrong_sides": ", ".join(wrong_sides) if followed else "",
     }
 
 
@@ -526,7 +529,7 @@ def choice_row(
         beta_min, beta_max = choice.margins.beta
     return row(
         choice,
-        without={"margins"},
+        without={"margins", "question", "role", "point"},
         safe=choice.verdict == "converges",
         h=h,
         alpha=alpha,
@@ -540,14 +543,6 @@ def choice_row(
         beta_factor_min=beta_min,
         beta_factor_max=beta_max,
     )
-
-
-def cost_row(cost: FeedbackCost | None, omega_h: float) -> dict[str, Value]:
-    """Return what accuracy a feedback costs on a motion of omega_h rad a step; None for what is not known."""
-    if cost is None:
-        nothing = dict.fromkeys(COST)
-        return {**nothing, "omega_h": omega_h}
-    return row(cost, without={"order", "least_at"})
 
 
 def alpha_and_beta(alpha_hat: float, beta_hat: float, h: float) -> tuple[float, float | None]:
@@ -591,25 +586,3 @@ def engine_row(engine: Engine, point: tuple[Fraction, Fraction] | None, h: Fract
         setting=setting,
     )
     return {"engine": engine.name, **words}
-
-
-def drive_row(choice: Choice, drive: Drive, h: float, given: bool = False) -> dict[str, Value]:
-    """Return the gains that a point is on a drive's inertia at a step of h (s), their limits, and which is used up.
-
-    Of a point that is given by the drive's own gains, those as they are. A limit is infinite where there is none, None
-    where lowering that gain alone does not help. The largest kp goes with this kd, the largest kd with this kp.
-    """
-    from bezstab.stability import gain_limits
-
-    limits = gain_limits(choice)
-    kp, kd = (float(drive.kp), float(drive.kd)) if given else drive.gains(choice.alpha_hat, choice.beta_hat, h)
-    kp_of_one, kd_of_one = drive.gains(1.0, 1.0, h)
-    return {
-        "drive": DRIVE_METHODS.get(choice.method.name),
-        "kp": kp,
-        "kd": kd,
-        "inertia": float(drive.inertia),
-        "kp_max": None if limits.beta_hat is None else limits.beta_hat * kp_of_one,
-        "kd_max": None if limits.alpha_hat is None else limits.alpha_hat * kd_of_one,
-        "used_up": {"alpha_hat": "kd", "beta_hat": "kp", None: None}[limits.nearest],
-    }

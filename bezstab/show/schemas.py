@@ -115,7 +115,7 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
             _keys("""scene method alpha_hat beta_hat
                 predicted_z_real predicted_z_imag predicted_z_abs predicted_z_angle_deg predicted_verdict
                 law_z_abs law_verdict floquet_z_abs
-                measured_z_real measured_z_imag measured_z_abs measured_z_angle_deg law_fitted_z_abs
+                measured_z_real measured_z_imag measured_z_abs measured_z_angle_deg
                 measured_rate measured_verdict
                 difference_z_real difference_z_imag difference_z_abs difference_z_angle_deg
                 reason measurable verdicts_agree right"""),

@@ -315,11 +315,6 @@ VOCABULARY: Mapping[str, Key] = {
         null="without --floquet",
     ),
     **_pole("measured_", "the pole measured in the simulation", NOT_MEASURED),
-    "law_fitted_z_abs": Key(
-        "number",
-        "Modulus that the first-order law of the motion predicts for the very steps that were measured",
-        null="where nothing could be measured, or at a double pole",
-    ),
     "measured_rate": Key(
         "number",
         "Growth per step measured over a whole revolution beside the motion the method makes, the first left out",

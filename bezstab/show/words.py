@@ -19,8 +19,8 @@ def seconds_words(seconds: float) -> str:
 
 
 def growth_words(factor: Value) -> str:
-    """Return how far something may be scaled up: to 1.32 times, or without limit where there is no factor."""
-    return f"to {factor:.3g} times" if isinstance(factor, float) else "without limit"
+    """Return how far something may grow: 1.32-fold, or without limit where there is no factor."""
+    return f"{factor:.3g}-fold" if isinstance(factor, float) else "without limit"
 
 
 def times_words(factor: float) -> str:
@@ -29,46 +29,47 @@ def times_words(factor: float) -> str:
     return f"{float(digits):,.0f}" if 100 <= float(digits) < PLAIN else digits
 
 
-def change_words(z_abs: float, verdict: Value) -> str:
-    """Return what an error does at every step by its proven verdict: shrinks 0.65-fold a step, grows, or neither.
+def change_words(z_abs: float, verdict: Value, error: str = "the error") -> str:
+    """Return what a step does to an error by its proven verdict: each step multiplies the error by 0.65.
 
     Two digits of the modulus, and as many more as it takes to tell it from one. Where rounding has left it on the wrong
     side of one, the verdict alone.
     """
     if verdict == "marginal":
-        return "neither shrinks nor grows"
+        return f"{error} neither shrinks nor grows"
     converges = verdict == "converges"
-    verb = "shrinks" if converges else "grows"
     if converges and z_abs < GONE:
-        return "is gone within a few steps"
+        return f"{error} is gone within a few steps"
     if not (z_abs < 1 if converges else z_abs > 1):
-        return f"{verb}, by less at a step than rounding shows"
+        return f"{error} {'shrinks' if converges else 'grows'}, by less at a step than rounding shows"
     digits = next(digits for digits in range(2, MOST_DIGITS + 1) if float(f"{z_abs:.{digits}g}") != 1)
-    return f"{verb} {z_abs:.{digits}g}-fold a step"
+    return f"each step multiplies {error} by {z_abs:.{digits}g}"
 
 
-def safety_words(row: Row, error: str = "the error") -> str:
-    """Return whether a point is safe and how fast errors shrink, from a row with `safe`, `verdict` and `z_abs`.
+def safety_words(row: Row) -> str:
+    """Return in a sentence or two whether a point is safe and what a step does to errors.
 
-    With --scene also what they do over the motion, with --h-min that they do so with constant steps; of an engine that
-    sweeps over its constraints, that one of them alone is meant. Without the last full stop.
+    From a row with `safe`, `verdict` and `z_abs`. With --scene also what happens over the motion, with --h-min what
+    steps that vary do; of an engine that solves its constraints one after another, that one of them alone is meant.
     """
     safe = "Safe" if row["safe"] else "Not safe"
     if row["safe"] and row.get("sweeps"):
         safe = "One constraint alone: safe"
     z_abs, moving = row["z_abs"], row.get("z_abs_moving")
     assert isinstance(z_abs, float)
-    constant = f" with steps that vary: {row['varying']}. With constant steps" if "varying" in row else ""
-    at_rest = f"{error} {change_words(z_abs, row['verdict'])}"
-    if constant and not isinstance(moving, float):
-        return f"{safe}{constant} {at_rest}"
+    at_rest = change_words(z_abs, row["verdict"])
+    varying = f" when steps vary ({row['varying']})" if "varying" in row else ""
     if not isinstance(moving, float):
-        return f"{safe}. {at_rest[0].upper()}{at_rest[1:]}"
+        begin = f"With constant steps {at_rest}" if varying else at_rest[0].upper() + at_rest[1:]
+        return f"{safe}{varying}. {begin}."
     if row["moving_verdict"] in ("converges", "diverges"):
-        return f"{safe}. At rest {at_rest}, over the motion it {change_words(moving, row['moving_verdict'])}"
-    unsettled = f"{safe}. At rest {at_rest}; over the motion it is {row['moving_verdict']}"
+        over_the_motion = change_words(moving, row["moving_verdict"])
+        return f"{safe}{varying}. At rest {at_rest}. Over the motion {over_the_motion}."
+    unsettled = f"{safe}{varying}. At rest {at_rest}. Over the motion it is {row['moving_verdict']}"
     if row["double_pole"]:
+        worst = f"{row['z_abs_worst']:.3g}"
         return (
-            f"{unsettled}: nearly a double pole, which moves like (κh)^½, at worst {row['z_abs_worst']:.3g}-fold a step"
+            f"{unsettled}: two poles nearly meet there, and the motion moves them by as much as (κh)^½; a step "
+            f"multiplies the error by {worst} at worst."
         )
-    return unsettled
+    return f"{unsettled}."

@@ -42,6 +42,7 @@ From a method's polynomial in float64 (its pencil) upwards; a file imports only 
     error_fronts      how little error a method can force while what is there decays so fast
     feedback_costs    what accuracy a feedback costs
     gain_margins      which of two gains is used up
+    held_drives       drives whose torque is held for several steps, or applied late
     step_families     methods by their number of steps, and their limit
 
 What needs sympy's polynomials is loaded when first used: poles and maps do not.
@@ -92,10 +93,18 @@ if TYPE_CHECKING:
         exact_critical_damping_limit,
         unconditional_damping_ratio,
     )
+    from bezstab.stability.held_drives import (
+        HeldLimits,
+        Timing,
+        held_limits,
+        held_spectral_radius,
+        held_verdict,
+    )
     from bezstab.stability.quadrant_proofs import StableForAll, stable_for_all
 
 PROVEN = {
     "damping_limits": ("critical_damping_limit", "exact_critical_damping_limit", "unconditional_damping_ratio"),
+    "held_drives": ("HeldLimits", "Timing", "held_limits", "held_spectral_radius", "held_verdict"),
     "quadrant_proofs": ("StableForAll", "stable_for_all"),
 }
 """What is loaded when first used, by module."""
@@ -122,6 +131,7 @@ __all__ = [
     "FrontPoint",
     "GainLimits",
     "Goal",
+    "HeldLimits",
     "Limit",
     "Margins",
     "Member",
@@ -129,6 +139,7 @@ __all__ = [
     "Pencil",
     "Region",
     "StableForAll",
+    "Timing",
     "VaryingSteps",
     "best_point",
     "best_point_or_reason",
@@ -151,6 +162,9 @@ __all__ = [
     "forced_error",
     "forced_response",
     "gain_limits",
+    "held_limits",
+    "held_spectral_radius",
+    "held_verdict",
     "largest_stable_step",
     "own_feedback_root",
     "pencil_of",

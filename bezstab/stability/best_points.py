@@ -30,7 +30,7 @@ import numpy as np
 from numpy.polynomial.polynomial import polyder, polymul, polyroots, polysub
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method, SecondOrder, first_order_form, fixed_poles, implicit, without_shared_factor
+from bezstab.methods import Method, fixed_poles, implicit, without_shared_factor
 from bezstab.stability.answer_checks import check_best_point, check_deadbeat
 from bezstab.stability.arrays import ComplexArray, Extent, FloatArray
 from bezstab.stability.closed_loop import free_pencil_of, largest_modulus
@@ -155,14 +155,10 @@ def best_point_or_reason(method: Method) -> tuple[BestPoint | None, str | None]:
 
 @cache
 def _best_or_limit(method: Method) -> BestPoint | FarLimit | None:
-    form = first_order_form(method)
-    if form is not method:
-        found = _best_or_limit(form)
-        return replace(found, method=method) if isinstance(found, BestPoint) else found
     stuck = fixed_poles(method)
     if stuck:
         return _beside_a_fixed_pole(method, stuck[0])
-    if isinstance(method.scheme, SecondOrder):
+    if not method.has_mu:
         return _in_the_plane(method)
     pencil = pencil_of(method)
     return _one_step(pencil) if pencil.steps == 1 else _kink(pencil)
@@ -293,8 +289,7 @@ def _beside_a_fixed_pole(method: Method, fixed: complex) -> BestPoint | FarLimit
     """
     if region(method).extent is None:
         return None
-    second_order = isinstance(method.scheme, SecondOrder)
-    others = _in_the_plane(method) if second_order else _best_or_limit(without_shared_factor(method))
+    others = _best_or_limit(without_shared_factor(method)) if method.has_mu else _in_the_plane(method)
     if others is None:
         return None
     if isinstance(others, FarLimit):

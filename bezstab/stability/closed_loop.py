@@ -2,8 +2,8 @@
 
 At single points the poles are the roots of pi(z, mu) at the two roots mu of the feedback. Compared with the roots of P
 that halves the degree, needs one solve where the mu are conjugate, and keeps all digits on beta_hat = alpha_hat^2/4,
-where the roots of P pair up. A second-order scheme has no mu, unless it spells out a first-order method: there the
-poles are the roots of P (plane_pencils). On grids the largest pole of every method is the largest root of P, followed
+where the roots of P pair up. A second-order scheme has no mu: there the poles are the
+roots of P (plane_pencils). On grids the largest pole of every method is the largest root of P, followed
 among neighbours (real_factors), but for explicit one-step methods, whose R(mu) is known, and next to
 beta_hat = alpha_hat^2/4.
 """
@@ -17,10 +17,8 @@ from numpy.typing import ArrayLike
 from bezstab.errors import NumericalError
 from bezstab.methods import (
     Method,
-    SecondOrder,
     Verdict,
     closed_loop_at,
-    first_order_form,
     is_schur,
     recursion_verdict,
     without_shared_factor,
@@ -87,20 +85,13 @@ def poles(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexA
 
 
 def any_pencil_of(method: Method) -> AnyPencil:
-    """Return the pencil of a method of either kind; NumericalError if its coefficients leave the range of float64.
-
-    Of a second-order scheme that spells out a first-order method it is that method's.
-    """
-    form = first_order_form(method)
-    return plane_pencil_of(form) if isinstance(form.scheme, SecondOrder) else pencil_of(form)
+    """Return the pencil of a method of either kind; NumericalError if its coefficients leave the range of float64."""
+    return pencil_of(method) if method.has_mu else plane_pencil_of(method)
 
 
 def free_pencil_of(method: Method) -> AnyPencil:
     """Return the pencil of a method of either kind without the poles that no parameters move."""
-    form = first_order_form(method)
-    if isinstance(form.scheme, SecondOrder):
-        return plane_pencil_of(form, free=True)
-    return pencil_of(without_shared_factor(form))
+    return pencil_of(without_shared_factor(method)) if method.has_mu else plane_pencil_of(method, free=True)
 
 
 def _all_poles(pencil: AnyPencil, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:

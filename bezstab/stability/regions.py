@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.methods import Method, SecondOrder, first_order_form, fixed_poles, without_shared_factor
+from bezstab.methods import Method, fixed_poles, without_shared_factor
 from bezstab.read_only import ReadOnlyArrays
 from bezstab.stability.arrays import BoolArray, Extent, FloatArray
 from bezstab.stability.closed_loop import spectral_radius
@@ -103,10 +103,9 @@ def region(method: Method, level: float = 1.0) -> Region:
 
 def shape_source(method: Method, level: float) -> Callable[..., Shape | None]:
     """Return what makes the shape from so many times finer samples: the locus of a method that has a mu, or strips."""
-    form = first_order_form(method)
-    if isinstance(form.scheme, SecondOrder):
-        return lambda finer: strips_shape(form, level)
-    return partial(locus_shape, pencil_of(without_shared_factor(form)), level)
+    if method.has_mu:
+        return partial(locus_shape, pencil_of(without_shared_factor(method)), level)
+    return lambda finer: strips_shape(method, level)
 
 
 def pole_place(z: complex) -> str:

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.polynomial.polynomial import polyval2d
 from numpy.typing import ArrayLike
 
-from bezstab.methods import Method, SecondOrder, closed_loop_table
+from bezstab.methods import Method, closed_loop_table
 from bezstab.stability.arrays import ComplexArray, FloatArray
 from bezstab.stability.exact_sums import feedback_roots
 from bezstab.stability.pencils import pencil_of
@@ -46,7 +46,7 @@ def turning_shift(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike, z: 
         np.asarray(alpha_hat, float), np.asarray(beta_hat, float), np.asarray(z, complex)
     )
     with np.errstate(all="ignore"):
-        if isinstance(method.scheme, SecondOrder):
+        if not method.has_mu:
             return _by_closed_loop(method, alpha_hat, beta_hat, z)
         return _by_feedback_roots(method, alpha_hat, beta_hat, z)
 
@@ -59,7 +59,7 @@ def own_feedback_root(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike,
     alpha_hat, beta_hat, z = np.broadcast_arrays(
         np.asarray(alpha_hat, float), np.asarray(beta_hat, float), np.asarray(z, complex)
     )
-    if isinstance(method.scheme, SecondOrder):
+    if not method.has_mu:
         return np.zeros(z.shape, complex)
     pencil = pencil_of(method)
     mu = np.stack(feedback_roots(pencil.feedback, alpha_hat.ravel(), beta_hat.ravel())).reshape(2, *z.shape)

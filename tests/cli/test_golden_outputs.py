@@ -115,7 +115,7 @@ ADDED = (
     *("bounded", "stable_for_all", "unconditional_damping_ratio", "critical_damping_limit"),
     *("implicit", "digits", "order_position_forces", "order_velocity_forces", "group"),
     *("driver_work", "force_work", "iterations", "singular_passages"),
-    *("law_z_abs", "law_verdict", "floquet_z_abs", "law_fitted_z_abs", "measured_rate", "right"),
+    *("law_z_abs", "law_verdict", "floquet_z_abs", "measured_rate", "right"),
     *("judged_runs", "judged", "agreeing", "too_close", "margins_reason"),
     *("safe", "error_constant", "engine_h_limit", "z_abs_below", "critical_damping_limit_exact", "approached"),
     *("role", "setting", "sweeps"),

@@ -8,6 +8,7 @@ import pytest
 
 from bezstab import stability
 from bezstab.errors import NumericalError
+from bezstab.questions import answering
 from bezstab.stability import best_points, choices
 from tests.cli.running import rows, run
 
@@ -31,7 +32,7 @@ def test_without_margins_check_still_answers_and_claims_no_limit(monkeypatch: py
     monkeypatch.setattr(choices, "stability_margins", failing)
     result = run("check", *POINT, "--h", "0.001")
     assert result.exit_code == 0
-    assert result.stdout.startswith("Safe. The error shrinks")
+    assert result.stdout.startswith("Safe. Each step multiplies the error by")
     assert "not known: B4: two branches could not be told apart" in " ".join(result.stdout.split())
     assert "unlimited" not in result.stdout
     assert "without limit" not in result.stdout
@@ -68,8 +69,8 @@ def test_of_any_stages_the_verdict_is_given(tmp_path: Path) -> None:
     path.write_text(f"A = [{rows_of_a}]\nb = {['1/40'] * STEPS}\n")
     result = run("check", "--method", str(path), "--alpha", "1", "--beta", "1/4")
     assert result.exit_code == 0
-    assert result.stdout.startswith("Safe. The error shrinks")
-    assert "h may grow without limit, α without limit, β without limit" in result.stdout  # it is A-stable
+    assert result.stdout.startswith("Safe. Each step multiplies the error by")
+    assert "The step, α and β may grow without limit." in result.stdout  # it is A-stable
     assert "too many stages" in result.stderr  # to look for what to take instead
 
 
@@ -82,7 +83,7 @@ def test_a_method_whose_region_is_not_found_still_has_verdicts(tmp_path: Path) -
     """The trapezoidal rule with steps of 2 h: stable for all positive parameters, and for no others."""
     path = tmp_path / "mean.toml"
     path.write_text(BOTH_ENDS_AT_ONCE)
-    for alpha, status, said in (("1/2", 0, "Safe. The error shrinks"), ("-1/100", 1, "Not safe.")):
+    for alpha, status, said in (("1/2", 0, "Safe. Each step multiplies the error by"), ("-1/100", 1, "Not safe.")):
         result = run("check", "--method", str(path), "--alpha", alpha, "--beta", "1/16")
         assert (result.exit_code, result.stdout.startswith(said)) == (status, True)
         assert result.stderr.startswith("bezstab: nothing instead: mean: an edge of |z_p| < 1 was not found")
@@ -97,7 +98,7 @@ def test_a_defect_does_not_end_as_unsafe(monkeypatch: pytest.MonkeyPatch) -> Non
     def broken(*_: Any) -> Any:
         return Fraction(1, 0)
 
-    monkeypatch.setattr(stability, "describe_point", broken)
+    monkeypatch.setattr(answering, "describe_point", broken)
     result = run("check", *POINT)
     assert result.exit_code == 70
     assert "defect" in result.stderr

@@ -55,7 +55,7 @@ def test_without_a_width_several_rows_are_a_table_and_one_row_is_a_block(columns
     assert several[2].split() == ["method", "pole", "z", "|z|", "∠z", "(deg)", "verdict", "error", "×", "least"]
     assert len(several) == 2 + 1 + 8 + 2  # the last line says what errors are shares of
     single = text_of("poles --alpha 0.5 --beta 0.1 --method B4", columns).splitlines()
-    assert single[2] == "Safe. The error shrinks 0.78-fold a step."
+    assert single[2] == "Safe. Each step multiplies the error by 0.78."
     assert single[4].split() == ["method", "B4"]
 
 
@@ -91,14 +91,14 @@ def _read(terminal: int) -> bytes:
     [
         pytest.param(
             "check --method B4 --h 0.001 --alpha 432.215 --beta 523.205 --physical",
-            "Safe. The error shrinks 0.65-fold a step; h may grow to 1.56 ms, α to 1.32 times, β to 1.62 times.",
+            "Safe. Each step multiplies the error by 0.65. The step may grow to 1.56 ms, α 1.32-fold, β 1.62-fold.",
             marks=pytest.mark.slow,
         ),
-        ("check --method SYM --alpha 2 --beta 2", "Not safe. The error grows 2.4-fold a step."),
+        ("check --method SYM --alpha 2 --beta 2", "Not safe. Each step multiplies the error by 2.4."),
         ("check --method SYM --alpha 1 --beta 2", "Not safe. The error neither shrinks nor grows."),
         (
             "check --method trapezoid --alpha 1 --beta 1 --h 0.01",
-            "Safe. The error shrinks 0.65-fold a step; h may grow without limit, α without limit, β without limit.",
+            "Safe. Each step multiplies the error by 0.65. The step, α and β may grow without limit.",
         ),
         ("region --method SYM --figure none --table none", "SYM is stable in a region of area 4; the least |z_p| is"),
         ("methods SYM", "SYM is explicit, of order 1, with 1 evaluation in each step."),

@@ -10,7 +10,7 @@ import pytest
 from bezstab.compiling import COMPILED_CHOICE
 from bezstab.evidence import LINEAR, SPREAD, Measurement, MovingPole, floquet_rates, measure_poles, random_points
 from bezstab.evidence.measured_poles import KICKS, _kicked_responses, _measured_verdict, _measurement
-from bezstab.mechanism import Mechanism, TurningNormals, compiled_mechanism, load_scene
+from bezstab.mechanism import Mechanism, compiled_mechanism, load_scene
 from bezstab.methods import LinearMultistep, Method, lookup, steps
 from bezstab.stability import best_point, dominant_pole, poles, spectral_radius
 from tests.mechanism.test_scenes import small
@@ -25,8 +25,6 @@ HANGING = ("B1", "AB8", "RK1", "dopri5")
 
 Points are drawn one after the other: of more points, which `make test-slow` takes, the first are those of fewer.
 """
-LEFT_BY_THE_LAW = 1e-6  # of |z|, in the median: second order in omega h, 1e-3; and the fit's own error, 1e-8
-LEFT_OF_FAR_REACHING_BDF = 5e-6  # likewise: where beta_hat is 20 to 300, second order is 1e-6 and 3e-6 of |z|
 LARGEST_BIAS = 1e-3  # of |z|, by which both mechanisms at 10 rpm move a pole at most
 # Regions that reach feedback of alpha_hat = 7, where poles of nearly equal modulus are measured across.
 FAR_REACHING = ("dopri5", "tsit5", "cash-karp")
@@ -44,13 +42,6 @@ def errors(found: list[Measurement]) -> list[float]:
     return [abs(abs(one.measured) - abs(one.predicted)) for one in found if one.measured is not None]
 
 
-def errors_of_the_law(found: list[Measurement]) -> list[float]:
-    """Return the errors that are left where the law of the motion has taken out what the motion does."""
-    return [
-        abs(abs(one.measured) - one.law_fitted_abs) for one in found if one.measured and one.law_fitted_abs is not None
-    ]
-
-
 def contradictions(found: list[Measurement]) -> list[Measurement]:
     called = [one for one in found if one.measured_verdict != "too close to call"]
     return [one for one in called if (one.predicted_verdict == "diverges") != (one.measured_verdict == "diverges")]
@@ -63,7 +54,6 @@ def check(scene: str, name: str, count: int) -> None:
     assert len(wrong) > count / 2
     stages = steps(lookup(name)) == 1 and not isinstance(lookup(name).scheme, LinearMultistep)
     assert np.median(wrong) < (3e-5 if stages else 1e-5)
-    assert np.median(errors_of_the_law(found)) < LEFT_BY_THE_LAW
     hard = name in FAR_REACHING or (scene == "pendulum" and name in SLOW_FEEDBACK)
     assert max(wrong) < (1e-2 if hard else LARGEST_BIAS)
     assert not contradictions(found)
@@ -99,16 +89,8 @@ def check_promise(scene: str, name: str, count: int) -> None:
     assert len(wrong) > count / (3 if name == "forest-ruth" else 2)
     without_stages = isinstance(lookup(name).scheme, LinearMultistep)
     assert np.median(wrong) < (1e-5 if without_stages else 3e-5)
-    far = scene == "pendulum" and name in ("bdf5", "bdf6")
-    assert np.median(errors_of_the_law(found)) < (LEFT_OF_FAR_REACHING_BDF if far else LEFT_BY_THE_LAW)
     assert max(wrong) < LARGEST_BIAS
     assert not contradictions(found)
-
-
-def still(revolution: int | None) -> TurningNormals:
-    """Return constraints that do not turn, over a revolution of so many steps, or along a run."""
-    no_rates, metric = np.zeros((3, 1, 1)), np.ones((2, 1, 1))
-    return TurningNormals((revolution or 1000) * H, no_rates, metric, closed=revolution is not None)
 
 
 def slider_crank(rpm: float) -> Mechanism:
@@ -276,6 +258,6 @@ def test_two_poles_are_told_apart_if_in_400_samples_the_lesser_falls_to_1_over_e
     dominant = float(abs(dominant_pole(method, 2 * place, place**2)))
     responses = sampled_responses.for_every_kick(sampled_responses.geometric(1001, dominant))
     at_rest = MovingPole(dominant, 0.0, 0.0, dominant, dominant, double=False, settled=True, safe_speed=np.inf)
-    found = _measurement(method, 2 * place, place**2, at_rest, None, None, H, still(None), *responses)
+    found = _measurement(method, 2 * place, place**2, at_rest, None, None, H, False, *responses)
     assert (found.measured is not None) == told
     assert ("too near" in found.reason) != told

@@ -8,7 +8,6 @@ from numpy.typing import ArrayLike
 
 from bezstab.evidence import (
     floquet_rates,
-    growth_after_a_kick,
     growth_rates,
     momentary_rates,
     moving_mechanisms,
@@ -40,33 +39,6 @@ def test_a_triangular_k_does_not_make_errors_grow() -> None:
     """On the driven slider-crank K is triangular in some basis: only its diagonal's mean, zero, would count."""
     turning = turning_normals(compiled_mechanism(load_scene("driven_slider_crank")), 1.0)
     assert np.abs(growth_rates(turning, np.array([2.4, 2.4j, -1 + 1j]))).max() < 1e-6 * OMEGA
-
-
-def turned_by(rates: ArrayLike, closed: bool = False) -> TurningNormals:
-    """Return constraints that turn at these rates, evenly spaced over 2 s; shape (samples + 1, m, m)."""
-    found = np.array(rates, float)
-    return TurningNormals(2.0, found, np.stack([np.eye(found.shape[1])] * 2), closed)
-
-
-def test_after_a_kick_an_error_grows_as_its_equation_says() -> None:
-    """Y' = chi K Y from e_1: exponentials where K is a number, cosines where it rotates two constraints."""
-    number, rotation = turned_by(np.full((5, 1, 1), 0.3)), turned_by([[[0, -1], [1, 0]]] * 5)
-    assert growth_after_a_kick(number, 2 + 1j, 0.1, 0.5, 1.5) == pytest.approx(0.6, rel=1e-8)
-    expected = np.log(np.cos(0.9) / np.cos(0.4)) / 0.5  # fourth order, steps of 0.01: 1e-10 a step
-    assert growth_after_a_kick(rotation, 1, 0.1, 0.5, 1.0) == pytest.approx(expected, rel=1e-8)
-    assert growth_after_a_kick(rotation, 0, 0.1, 0.5, 1.0) == 0
-
-
-@pytest.mark.parametrize(("closed", "mean"), [(False, 1.0), (True, 0.25)])
-def test_rates_are_those_of_the_next_revolution_where_the_motion_begins_anew(closed: bool, mean: float) -> None:
-    """K rises from 0 to 1 within 2 s: between 2 and 3 s it does so again, from 0 to 1/2, or stays where a run ends."""
-    rising = turned_by(np.linspace(0, 1, 5)[:, np.newaxis, np.newaxis], closed)
-    assert growth_after_a_kick(rising, 1, 0.5, 2 + 1e-9, 3) == pytest.approx(mean, rel=1e-6)
-
-
-def test_where_chi_is_infinite_there_is_no_rate() -> None:
-    with np.errstate(invalid="ignore"):
-        assert not np.isfinite(growth_after_a_kick(turned_by(np.full((5, 1, 1), 0.3)), complex("inf"), 0.1, 0.5, 1.5))
 
 
 def test_the_momentary_rate_bounds_a_scalar_one() -> None:

@@ -23,7 +23,6 @@ from bezstab.methods import (
 )
 from bezstab.methods.steady_errors import Part
 from tests.methods.kinds import FEW, SAMPLE, SOLVED, sampled
-from tests.reference.second_order_methods import as_second_order
 
 NAMES = [*REGISTRY, "RK4@5", "B3@5/2", "hht@1/3"]
 ROUNDED = [name for name in REGISTRY if lookup(name).digits]
@@ -54,11 +53,6 @@ def test_a_second_order_scheme_is_written_with_its_powers_of_h() -> None:
     assert recursion_text(lookup("imex-euler@1/2"), latex=True) == (
         r"a_{k+1} = a(x_k, v_{k+1}); v_{k+1} = v_k + \frac{h}{2} a_{k+1}; x_{k+1} = x_k + \frac{h}{2} v_{k+1}"
     )
-
-
-@pytest.mark.parametrize("name", ["B3", "bdf2@5", "ABM3"])
-def test_a_recipe_that_spells_out_a_method_has_its_mapping(name: str) -> None:
-    assert mapping_text(as_second_order(name)) == mapping_text(lookup(name))
 
 
 @pytest.mark.parametrize("name", ROUNDED)

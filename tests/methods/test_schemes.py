@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import FrozenInstanceError, replace
 from fractions import Fraction
 
+import numpy as np
 import pytest
 
 from bezstab.errors import InputError
@@ -14,8 +15,10 @@ from bezstab.methods import (
     Method,
     PredictorCorrector,
     RungeKutta,
+    Z,
     adams_bashforth,
     bezier,
+    closed_loop_polynomial,
     evaluations,
     implicit,
     lookup,
@@ -23,6 +26,7 @@ from bezstab.methods import (
 )
 from tests.methods import kinds
 from tests.methods.exact_lists import fractions
+from tests.reference.steppers import one_step
 
 NAMES = list(REGISTRY)
 
@@ -179,3 +183,57 @@ def test_family_takes_part_in_equality() -> None:
     without = Method("M", EULER, "source")
     assert without != replace(without, family=Family("Bezier", 1))
     assert lookup("RK4@5").family == Family("Runge-Kutta", 4)
+
+
+# The same step as equations for x, v and a
+
+
+@pytest.mark.parametrize("name", [*kinds.MU_METHODS, "bdf2@2"])
+def test_the_form_has_the_same_closed_loop(name: str) -> None:
+    method = lookup(name)
+    form = Method("form", method.scheme.second_order, "", step_multiple=method.step_multiple)
+    derived, of_form = closed_loop_polynomial(method), closed_loop_polynomial(form)
+    unused = derived.degree() - of_form.degree()  # past values that no parameters bring in: roots z = 0
+    assert unused >= 0
+    assert derived.as_expr().expand() == (of_form.as_expr() * Z**unused).expand()
+
+
+@pytest.mark.parametrize("name", kinds.MU_METHODS)
+def test_the_form_is_implicit_if_the_scheme_is(name: str) -> None:
+    scheme = lookup(name).scheme.second_order
+    assert scheme.implicit == implicit(lookup(name))
+
+
+@pytest.mark.parametrize("name", ["AB3", "B4", "RK4", "SIE", "ABM3", "dopri5"])
+def test_the_form_takes_the_same_steps_under_any_force(name: str) -> None:
+    """Exact steps of x'' = x^2 - v x, equation by equation in their order, against the definition of the scheme."""
+    method = lookup(name)
+    scheme = method.scheme.second_order
+
+    def force(x: Fraction, v: Fraction) -> Fraction:
+        return x * x - v * x
+
+    past = [np.array([Fraction(k, 3), Fraction(1, k + 2)]) for k in range(steps(method))]
+    new = one_step(method, lambda y: np.array([y[1], force(y[0], y[1])]), past, Fraction(1), Fraction)
+    values: dict[tuple[str, int], Fraction] = {}
+    for back, (x, v) in enumerate(reversed(past)):
+        values["x", -back], values["v", -back] = x, v
+        values["a", -back] = force(x, v)
+    for equation in (equation for group in scheme.groups for equation in group):
+        sums = [
+            sum((c * values[q.name, q.step] for c, q in terms), Fraction(0))
+            for terms in ([equation.value] if hasattr(equation, "value") else [equation.position, equation.velocity])
+        ]
+        values[equation.result.name, equation.result.step] = sums[0] if len(sums) == 1 else force(*sums)
+    assert [values["x", 1], values["v", 1]] == list(new)
+
+
+@pytest.mark.parametrize("scheme", [lookup("bdf3").scheme, lookup("am4").scheme, lookup("gauss4").scheme])
+def test_an_implicit_form_has_one_group_to_solve(scheme: LinearMultistep | RungeKutta) -> None:
+    form = scheme.second_order
+    assert sum(len(group) > 1 for group in form.groups) == 1
+
+
+def test_a_diagonally_implicit_form_has_a_group_for_each_stage() -> None:
+    form = lookup("dirk3").scheme.second_order
+    assert sum(len(group) > 1 for group in form.groups) == 3

@@ -101,40 +101,6 @@ def test_the_order_in_which_equations_are_listed_does_not_matter(equations: dict
     assert recipe(equations).table == recipe(dict(reversed(equations.items()))).table
 
 
-def test_equations_are_taken_when_what_they_need_is_there() -> None:
-    backwards = recipe(dict(reversed(VERLET.items())))
-    taken = [[str(equation.result) for equation in group] for group in backwards.groups]
-    assert taken.index(["vh"]) < taken.index(["a1"]) < taken.index(["v1"])
-    assert taken.index(["x1"]) < taken.index(["a1"])
-    assert not backwards.implicit
-
-
-def test_equations_in_a_circle_are_taken_together() -> None:
-    scheme = recipe(VERLET | {"a1": "acceleration(x1, v1)"})
-    assert [{str(equation.result) for equation in group} for group in scheme.groups] == [{"x1"}, {"vh"}, {"a1", "v1"}]
-    assert scheme.implicit
-
-
-def test_an_equation_that_uses_its_own_result_is_implicit() -> None:
-    assert recipe({"a0": "acceleration(x0 + v0, v0 + a0)", "v1": "v0 + a0", "x1": "x0 + v1"}).implicit
-
-
-def test_two_circles_are_two_groups() -> None:
-    scheme = recipe({
-        "p": "1/2 q + 1/2 v0",
-        "q": "1/2 p + 1/2 v0",
-        "x1": "x0 + p",
-        "v1": "v0 + a1",
-        "a1": "acceleration(x1, v1)",
-    })  # fmt: skip
-    assert [{str(equation.result) for equation in group} for group in scheme.groups] == [
-        {"p", "q"},
-        {"x1"},
-        {"v1", "a1"},
-    ]
-    assert closed_loop_at(Method("own", scheme, ""), F(1), F(1)) == [2, F(-2), 1]
-
-
 @pytest.mark.parametrize(
     ("more", "oldest", "evaluations"),
     [

@@ -106,7 +106,7 @@ def test_the_polynomial_of_hilber_hughes_and_taylor_is_that_of_theory(alpha: str
 @pytest.mark.parametrize("radius", ["0", "1/2", "9/10", "1"])
 def test_rho_infinity_is_the_modulus_where_the_feedback_is_infinitely_strong(radius: str) -> None:
     """P / beta_hat for beta_hat -> infinity: its roots have the modulus rho_inf, all three."""
-    table = lookup(f"generalized-alpha({radius})").scheme.table  # type: ignore[union-attr]
+    table = lookup(f"generalized-alpha({radius})").scheme.table
     stiff = [in_plane[0][1] for in_plane in reversed(table)]
     roots = sp.Poly([sp.Rational(c.numerator, c.denominator) for c in stiff], z)
     r = sp.Rational(radius)

@@ -4,8 +4,8 @@ import pytest
 from hypothesis import given
 
 from bezstab.errors import InputError
-from bezstab.methods import closed_loop_at, lookup, step_matrix
-from bezstab.methods.step_matrices import characteristic, matrix_product, polynomial_determinant, polynomial_product
+from bezstab.methods import characteristic, closed_loop_at, lookup, step_matrix
+from bezstab.methods.step_matrices import matrix_product, polynomial_determinant, polynomial_product
 from tests.reference.rationals import rationals
 
 ONE_STEP = (

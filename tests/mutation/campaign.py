@@ -1,260 +1,146 @@
 """Do the quick tests notice when the code is wrong? `make mutants` changes one thing at a time and looks.
 
-Once, every quick test is run on the code as it is, and recorded which lines it executes. A mutant is caught if a test
-that can notice it fails on it or does not end: those that execute its line are asked, of the module's own test file
-first, then the quickest, up to the first failure (executed_lines.py says which others are asked). What survives is
-listed in harmless.toml with the reason why nothing that is promised changes, or it calls for a test. A mutant is out of
-time if the tests asked within its budget of processor time found nothing and some were not asked, or if a test waited
-for ever: that counts as survived.
+    the tree, copied ── pytest-testmon records which test executes which function (once)
+          │
+    one mutant written ── pytest-testmon runs the tests that execute what was changed ── caught │ survived │ out of time
 
-    python -m tests.mutation.campaign --count 200 --seed 1 --workers 2 --results /tmp/mutants
+What survives is printed with its line. It calls for a test, unless nothing that is promised changes: that is for the
+reader to judge. Results are appended to a file in the folder of results, and the same command goes on from there;
+delete the folder after a change of the code or the tests.
 
-What is found is appended to results.jsonl in the results' folder; an interrupted campaign goes on from there. Delete
-the folder after a change of the code or the tests. `--again` judges those anew that survived.
+    python -m tests.mutation.campaign --count 200 --seed 1 --results mutants
 """
 
 import argparse
-import importlib
 import json
 import os
-import signal
+import shutil
+import subprocess
 import sys
 import tempfile
-import time
-import tomllib
 from collections import Counter
-from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import dataclass
+from collections.abc import Iterable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Any, Literal, TypedDict
+from queue import SimpleQueue
+from typing import Literal
 
-from tests.mutation.executed_lines import RECORDED, ExecutedLines, read_lines, rings
-from tests.mutation.judging import Tree, Watch, asked_in_a_child
-from tests.mutation.mutants import Mutant, all_mutants, sampled
+from tests.mutation.mutants import ROOT, Mutant, all_mutants, sampled
 
-HARMLESS = Path(__file__).parent / "harmless.toml"
-PROMISED = 0.95  # the share of mutants that must be caught
-TAKES_LONG = (
-    *("numpy", "numpy.testing", "numpy.random", "sympy", "mpmath", "hypothesis", "hypothesis.strategies", "click"),
-    *("matplotlib.figure", "mujoco", "numba", "jsonschema"),
-)
-"""Imported once for all mutants, where it is installed."""
+TREE = ("bezstab", "configs", "tests", "figures", "pyproject.toml", "README.md", "Makefile")
+"""What the tests read: the parts of the project that are copied."""
 
-LAST_RESORT = 3600.0  # s by the clock for one mutant: it waits for something, or gets no processor; tells nothing
-POLL = 0.05  # s between two looks at the running processes
-PROBES = [
-    "tests/methods/test_schemes.py",
-    "tests/stability/test_pencils.py",
-    "tests/mechanism/test_start.py",
-    "tests/evidence/test_pareto.py",
-]
-"""Quick test files, one of each room, that pass before any mutant is judged."""
+NOTHING_FAILED = {0: "every test passed", 5: "no test executes it"}  # pytest's exit status, and what it means
 
 Outcome = Literal["caught", "survived", "out of time"]
 
 
-class Result(TypedDict):
-    """One line of results.jsonl."""
-
-    key: str
-    kind: str
-    outcome: Outcome
-    by: str
-    left: int
-    seconds: float
-
-
-@dataclass(frozen=True)
-class Running:
-    """A process that judges a mutant, in the tree of one worker."""
-
-    mutant: Mutant
-    worker: int
-    answer: Path
-    started: float
-    ends: ExitStack
+def copied_tree(folder: Path) -> Path:
+    """Copy what the tests read into a new folder, and return it."""
+    shutil.rmtree(folder, ignore_errors=True)
+    for part in TREE:
+        if (ROOT / part).is_dir():
+            shutil.copytree(ROOT / part, folder / part, ignore=shutil.ignore_patterns("__pycache__"))
+        else:
+            shutil.copy(ROOT / part, folder / part)
+    return folder
 
 
-def recorded(results: Path, tree: Tree) -> tuple[dict[str, float], ExecutedLines]:
-    """Return the processor time in s of each quick test, and the lines that each executes.
+def quick_tests(tree: Path, *options: str, seconds: float | None = None) -> int:
+    """Run the quick tests that pytest-testmon selects in a tree; return pytest's exit status.
 
-    RuntimeError if one fails on the code as it is: a judge that calls everything caught would be worse than none.
-    What was recorded before is taken from the results' folder, but a few tests of each room are asked again.
+    Random tests have a fixed seed, so that the same mutant is caught again. subprocess.TimeoutExpired if the tests
+    take longer than so many seconds.
     """
-    seconds: dict[str, float] = {}
-    files = []
-    for folder in RECORDED:
-        name = folder.replace("/", "-")
-        file, lines = results / f"{name}.seconds.json", results / f"{name}.lines"
-        if not file.exists():
-            print(f"which lines {folder} executes", flush=True)
-            file.write_text(json.dumps(_unchanged(results, tree, [folder], lines)), encoding="utf-8")
-        seconds |= json.loads(file.read_text(encoding="utf-8"))
-        files.append(lines)
-    _unchanged(results, tree, PROBES)
-    return seconds, ExecutedLines(read_lines(files, tree.folder))
+    selected = ["-m", "not slow", "--testmon", "--testmon-forceselect", "--hypothesis-seed", "1"]
+    command = [sys.executable, "-m", "pytest", "-q", *selected, *options]
+    environment = os.environ | {"OPENBLAS_NUM_THREADS": "1", "PYTHONPATH": str(tree)}
+    return subprocess.run(
+        command, cwd=tree, env=environment, timeout=seconds, stdout=subprocess.DEVNULL, check=False
+    ).returncode
 
 
-def _unchanged(results: Path, tree: Tree, tests: list[str], record: Path | None = None) -> dict[str, float]:
-    """Run tests on the code as it is; return the processor time of each. RuntimeError if one fails."""
-    if not tests:
-        return {}
-    answer = results / "unchanged.json"
-    answer.unlink(missing_ok=True)
-    number = asked_in_a_child(tree, [tests], Watch(seconds={}, budget=float("inf")), answer, record)
-    os.waitpid(number, 0)
-    found = _read_answer(answer)
-    if found["failed"] or not found["took"]:
-        raise RuntimeError(f"without any mutant: failed {found['failed']}, {len(found['took'])} tests asked")
-    took: dict[str, float] = found["took"]
-    return took
+def recorded_tree(folder: Path) -> Path:
+    """Return a copy of the tree in which is recorded which test executes which function.
+
+    RuntimeError if a test fails on the code as it is: then it would be said to catch every mutant.
+    """
+    if not (folder / ".testmondata").exists():
+        status = quick_tests(copied_tree(folder))
+        if status != 0:
+            (folder / ".testmondata").unlink(missing_ok=True)
+            raise RuntimeError(f"without any mutant the quick tests end with exit status {status}")
+    return folder
 
 
-def _read_answer(answer: Path) -> dict[str, Any]:
-    """Return what a judging process wrote; RuntimeError if the judging itself failed."""
-    found: dict[str, Any] = json.loads(answer.read_text(encoding="utf-8"))
-    if "broken" in found:
-        raise RuntimeError(f"the judge is broken: {found['broken']}; see {answer.with_suffix('.log')}")
-    return found
-
-
-def judged(mutants: list[Mutant], results: Path, workers: int, budget: float) -> None:
-    """Judge the mutants, so many at a time, and append each result to results.jsonl as it comes."""
-    trees = [Tree.copied_to(results / f"tree{worker}") for worker in range(workers)]
-    seconds, executed = recorded(results, trees[0])
-    waiting, running, idle = list(reversed(mutants)), dict[int, Running](), list(range(workers))
-    with (results / "results.jsonl").open("a", encoding="utf-8") as lines, _ended_at_last(running):
-        while waiting or running:
-            while waiting and idle:
-                mutant, worker = waiting.pop(), idle.pop()
-                own = f"tests/{mutant.path.parts[1]}/test_{mutant.path.stem}.py"
-                asked = rings(mutant, own, executed, seconds)
-                answer = results / f"worker{worker}" / "answer.json"
-                answer.parent.mkdir(exist_ok=True)
-                answer.unlink(missing_ok=True)
-                ends = ExitStack()
-                ends.enter_context(trees[worker].mutated(mutant.path, mutant.source))
-                number = asked_in_a_child(trees[worker], asked, Watch(seconds, budget), answer)
-                running[number] = Running(mutant, worker, answer, time.monotonic(), ends)
-            time.sleep(POLL)
-            for number, run in list(running.items()):
-                took = time.monotonic() - run.started
-                ended, status = os.waitpid(number, os.WNOHANG)
-                if not ended and took < LAST_RESORT:
-                    continue
-                _end_with_all_it_started(number, reaped=bool(ended))
-                result = _result(run, took, died_of=os.WTERMSIG(status) if ended else signal.SIGKILL)
-                lines.write(json.dumps(result) + "\n")
-                lines.flush()
-                print(f"{result['outcome']:12}{took:6.0f} s  {result['key']}  [{result['by']}]", flush=True)
-                run.ends.close()
-                del running[number]
-                idle.append(run.worker)
-    # without a mutant they passed among all others: do they when asked by themselves?
-    _unchanged(results, trees[0], sorted({result["by"] for result in read_results(results).values()} & seconds.keys()))
-
-
-@contextmanager
-def _ended_at_last(running: dict[int, Running]) -> Iterator[None]:
-    """Leave no judging process behind when the campaign is interrupted."""
+def outcome(mutant: Mutant, tree: Path, seconds: float) -> Outcome:
+    """Return what the quick tests say of a mutant, written into a recorded tree for as long as they run."""
+    changed = tree / mutant.path
+    original = changed.read_text(encoding="utf-8")
+    changed.write_text(mutant.source, encoding="utf-8")
     try:
-        yield
+        status = quick_tests(tree, "--testmon-nocollect", "--exitfirst", seconds=seconds)
+    except subprocess.TimeoutExpired:
+        return "out of time"
     finally:
-        for number in running:
-            _end_with_all_it_started(number, reaped=False)
+        changed.write_text(original, encoding="utf-8")
+    return "survived" if status in NOTHING_FAILED else "caught"
 
 
-def _end_with_all_it_started(number: int, *, reaped: bool) -> None:
-    """End a judging process, and those that its tests have left behind: they share its group."""
-    with suppress(ProcessLookupError):
-        os.killpg(number, signal.SIGKILL)
-    if not reaped:
-        os.waitpid(number, 0)
+def judged(mutants: Iterable[Mutant], results: Path, workers: int, seconds: float) -> None:
+    """Judge the mutants, so many at a time, each in a tree of its own; append each result as it comes."""
+    first = recorded_tree(results / "tree0")
+    trees: SimpleQueue[Path] = SimpleQueue()
+    trees.put(first)
+    for worker in range(1, workers):
+        trees.put(shutil.copytree(first, results / f"tree{worker}", dirs_exist_ok=True))
+
+    def judge(mutant: Mutant) -> None:
+        tree = trees.get()
+        try:
+            found = outcome(mutant, tree, seconds)
+        finally:
+            trees.put(tree)
+        with (results / "results.jsonl").open("a", encoding="utf-8") as lines:
+            lines.write(json.dumps({"key": mutant.key, "outcome": found}) + "\n")
+        print(f"{found:12}{mutant.path}:{mutant.line}: {mutant.key}", flush=True)
+
+    with ThreadPoolExecutor(workers) as pool:
+        for _ in pool.map(judge, mutants):  # raises what a judge raised
+            pass
 
 
-def _result(run: Running, took: float, died_of: int) -> Result:
-    """Return what came of a mutant; a process that was killed, by us or for want of memory, tells nothing."""
-    mutant, left = run.mutant, 0
-    outcome, by = ("out of time", "") if died_of == signal.SIGKILL else ("caught", f"the process died of {died_of}")
-    if run.answer.exists():
-        found = _read_answer(run.answer)
-        left = found["left"]
-        by = found["failed"] or ""
-        outcome = "caught" if by else "out of time" if left else "survived"
-    return Result(
-        key=mutant.key,
-        kind=mutant.kind,
-        outcome=outcome,  # type: ignore[typeddict-item]
-        by=by,
-        left=left,
-        seconds=round(took, 1),
-    )
-
-
-def read_results(results: Path) -> dict[str, Result]:
-    """Return the last result of each mutant, by its key."""
+def read_outcomes(results: Path) -> dict[str, Outcome]:
+    """Return the outcome of each mutant judged so far, by its key."""
     file = results / "results.jsonl"
-    if not file.exists():
-        return {}
-    lines = [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()]
-    return {line["key"]: line for line in lines}
+    lines = file.read_text(encoding="utf-8").splitlines() if file.exists() else []
+    return {line["key"]: line["outcome"] for line in map(json.loads, lines)}
 
 
-def harmless_reasons() -> dict[str, str]:
-    """Return why nothing changes, for each mutant listed in harmless.toml, by its key."""
-    entries = tomllib.loads(HARMLESS.read_text(encoding="utf-8")).get("harmless", [])
-    return {entry["mutant"]: entry["because"] for entry in entries}
-
-
-def main() -> int:
-    """Judge a sample of mutants and print the share that is caught; exit status 1 below what is promised."""
+def main() -> None:
+    """Judge a sample of mutants; print the share that is caught, and each that is not."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--count", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--budget", type=float, default=300.0, help="Processor time for one mutant, in s.")
+    parser.add_argument("--seconds", type=float, default=600.0, help="For the tests of one mutant, by the clock.")
     parser.add_argument("--results", type=Path, default=Path(tempfile.gettempdir()) / "bezstab-mutants")
-    parser.add_argument("--again", action="store_true", help="Judge survivors anew, after a change of the tests.")
-    parser.add_argument("--match", default="", help="Judge only mutants with this text in their key.")
     options = parser.parse_args()
-    signal.signal(signal.SIGTERM, signal.default_int_handler)  # ends like Ctrl-C, with what was started
     results = options.results.resolve()
     results.mkdir(parents=True, exist_ok=True)
-    os.environ.update(OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", MPLBACKEND="Agg")
-    for module in TAKES_LONG:
-        with suppress(ImportError):
-            importlib.import_module(module)
 
-    harmless = harmless_reasons()
-    mutants = all_mutants()
-    for key in sorted(set(harmless) - {mutant.key for mutant in mutants}):
-        print(f"{HARMLESS.name}: no such mutant any more: {key}")
-    chosen = sampled(mutants, options.count, options.seed)
-    known = read_results(results)
-    telling = [mutant for mutant in chosen if mutant.key not in harmless]
-    to_judge = [
-        mutant
-        for mutant in telling
-        if options.match in mutant.key
-        and (mutant.key not in known or (options.again and known[mutant.key]["outcome"] != "caught"))
-    ]
-    judged(to_judge, results, options.workers, options.budget)
+    chosen = sampled(all_mutants(), options.count, options.seed)
+    known = read_outcomes(results)
+    judged([mutant for mutant in chosen if mutant.key not in known], results, options.workers, options.seconds)
 
-    known = read_results(results)
-    outcomes = Counter(known[mutant.key]["outcome"] if mutant.key in known else "not judged" for mutant in telling)
-    share = outcomes["caught"] / max(1, len(telling))
-    for mutant in telling:
-        if mutant.key in known and known[mutant.key]["outcome"] != "caught":
-            print(f"{known[mutant.key]['outcome']}: {mutant.path}:{mutant.line}: {mutant.key}")
-    counted = ", ".join(f"{number} {outcome}" for outcome, number in sorted(outcomes.items()))
-    print(f"{len(chosen)} mutants, seed {options.seed}: {len(chosen) - len(telling)} harmless; of the others {counted}")
-    print(f"{share:.1%} of {len(telling)} caught; {PROMISED:.0%} is promised")
-    return 0 if share >= PROMISED else 1
+    known = read_outcomes(results)
+    print()
+    for mutant in chosen:
+        if known[mutant.key] != "caught":
+            print(f"{known[mutant.key]}: {mutant.path}:{mutant.line}: {mutant.key}")
+    counts = Counter(known[mutant.key] for mutant in chosen)
+    print(f"{len(chosen)} mutants, seed {options.seed}: {', '.join(f'{n} {what}' for what, n in counts.most_common())}")
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main())
-    except KeyboardInterrupt:
-        sys.exit("interrupted: what was judged is kept, and the same command goes on from there")
+    main()

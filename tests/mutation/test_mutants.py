@@ -1,15 +1,13 @@
 """Mutants are what they are said to be: one change each, of what computes, and the same for the same seed."""
 
 import ast
-from collections.abc import Mapping
 from difflib import SequenceMatcher
 from functools import cache
 from pathlib import Path
 
 import pytest
 
-from tests.mutation.campaign import harmless_reasons
-from tests.mutation.executed_lines import ExecutedLines, rings
+from tests.mutation import campaign
 from tests.mutation.mutants import KINDS, ROOT, Mutant, all_mutants, sampled
 
 every_mutant = cache(all_mutants)  # some 10,700: a second or two
@@ -44,64 +42,19 @@ def test_a_sample_has_as_many_of_each_kind_and_is_the_same_for_the_same_seed(
     assert sample != sampled(every, 201, seed=2)
 
 
-def test_what_is_listed_as_harmless_has_a_reason() -> None:
-    assert all(len(reason) > 20 for reason in harmless_reasons().values())
+@pytest.mark.parametrize(("status", "expected"), [(1, "caught"), (2, "caught"), (0, "survived"), (5, "survived")])
+def test_a_mutant_is_caught_if_a_test_fails_on_it_and_the_tree_is_itself_again(
+    every: list[Mutant], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, status: int, expected: str
+) -> None:
+    mutant = every[0]
+    changed = tmp_path / mutant.path
+    changed.parent.mkdir(parents=True)
+    changed.write_text("the original", encoding="utf-8")
 
+    def tests_of(tree: Path, *options: str, seconds: float | None = None) -> int:
+        assert (tree / mutant.path).read_text(encoding="utf-8") == mutant.source
+        return status
 
-ENERGIES = Path("bezstab/mechanism/energies.py")
-OWN = "tests/mechanism/test_energies.py"
-SECONDS = {
-    f"{OWN}::slow": 2.0,
-    f"{OWN}::quick": 0.1,
-    f"{OWN}::of_something_else": 0.1,
-    "other::quick": 0.01,
-    "far": 1.0,
-}
-
-
-def mutant_of_energies(old: str, new: str) -> Mutant:
-    (mutant,) = [
-        mutant for mutant in every_mutant() if mutant.path == ENERGIES and mutant.key.endswith(f"| {old} -> {new}")
-    ]
-    return mutant
-
-
-def line_of(text: str) -> int:
-    lines = (ROOT / ENERGIES).read_text(encoding="utf-8").splitlines()
-    (number,) = [number for number, line in enumerate(lines, start=1) if text in line]
-    return number
-
-
-def asked(mutant: Mutant, executed: Mapping[str, set[str]]) -> list[list[str]]:
-    """Return the rings of tests where these tests execute the lines with these texts, and no others."""
-    lines = {line_of(text): frozenset(tests) for text, tests in executed.items()}
-    return rings(mutant, OWN, ExecutedLines(lambda path: lines if path == ENERGIES else {}), SECONDS)
-
-
-def test_who_executes_the_line_is_asked_first_of_the_own_file_and_then_the_quickest() -> None:
-    mutant = mutant_of_energies("2", "3")
-    own, first, rest, second, third = asked(
-        mutant,
-        {
-            "middle = (nodes - 1) // 2": {"far", "other::quick", f"{OWN}::slow", f"{OWN}::quick"},
-            "weights = _interval_weights(nodes)": {"far", "another of the function"},
-        },
-    )
-    assert own == [f"{OWN}::quick", f"{OWN}::slow"]
-    assert first == ["other::quick", "far"]
-    assert (rest, third) == ([], [])
-    assert second == [f"{OWN}::of_something_else", "another of the function"]
-
-
-def test_of_a_constant_those_are_asked_that_execute_a_line_with_its_name() -> None:
-    mutant = mutant_of_energies("10", "11")
-    _, first, *_ = asked(mutant, {"nodes = min(NODES, len(rates))": {"far"}, "bases = [": {"other::quick"}})
-    assert first == ["far"]
-
-
-def test_a_line_that_nobody_executes_is_asked_of_those_that_execute_the_module() -> None:
-    mutant = mutant_of_energies("2", "3")
-    own, first, _, second, third = asked(mutant, {"bases = [": {"other::quick"}})
-    assert own == first == []
-    assert sorted(second) == sorted(test for test in SECONDS if test.startswith(OWN))
-    assert third == ["other::quick"]
+    monkeypatch.setattr(campaign, "quick_tests", tests_of)
+    assert campaign.outcome(mutant, tmp_path, seconds=1.0) == expected
+    assert changed.read_text(encoding="utf-8") == "the original"

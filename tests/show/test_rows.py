@@ -11,7 +11,6 @@ from bezstab.show.rows import (
     LIMITS,
     alpha_and_beta,
     choice_row,
-    cost_row,
     engine_row,
     region_row,
     row,
@@ -19,7 +18,7 @@ from bezstab.show.rows import (
     whole_row,
     with_unbounded,
 )
-from bezstab.stability import best_point, describe_point, feedback_cost, region
+from bezstab.stability import best_point, describe_point, region
 from bezstab.units import to_dimensionless
 
 
@@ -77,14 +76,6 @@ def test_a_choice_has_its_margins_or_none() -> None:
     assert stable["h_limit"] == pytest.approx(0.002 * float(str(stable["h_factor"])))
     assert (unstable["h_limit"], unstable["alpha_factor_max"], unstable["settle_seconds"]) == (None, None, None)
     assert unstable["alpha"] == 500
-
-
-def test_what_is_not_known_of_accuracy_has_the_same_keys() -> None:
-    known = cost_row(feedback_cost(lookup("SYM"), 1.0, 0.5), 0.01)
-    unknown = cost_row(None, 0.01)
-    assert list(known) == list(unknown)
-    assert (known["omega_h"], known["order_left"]) == (0.01, 1)
-    assert {key: value for key, value in unknown.items() if value is not None} == {"omega_h": 0.01}
 
 
 def test_an_engine_without_a_setting_says_why() -> None:

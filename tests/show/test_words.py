@@ -32,25 +32,24 @@ def test_a_time_in_words_is_the_time_to_three_digits(seconds: float) -> None:
 
 @given(st.floats(1e-3, 1e3).filter(lambda z_abs: z_abs != 1))
 def test_what_shrinks_is_never_said_to_be_times_one(z_abs: float) -> None:
-    verb, fold = change_words(z_abs, "converges" if z_abs < 1 else "diverges").split()[:2]
-    assert verb == ("shrinks" if z_abs < 1 else "grows")
-    assert (float(fold.removesuffix("-fold")) < 1) == (z_abs < 1)
-    assert float(fold.removesuffix("-fold")) == pytest.approx(z_abs, rel=0.05)
+    begin, number = change_words(z_abs, "converges" if z_abs < 1 else "diverges").rsplit(maxsplit=1)
+    assert begin == "each step multiplies the error by"
+    assert (float(number) < 1) == (z_abs < 1)
+    assert float(number) == pytest.approx(z_abs, rel=0.05)
 
 
 def test_the_proven_verdict_counts_more_than_a_rounded_modulus() -> None:
-    assert change_words(1.0000000000000002, "converges") == "shrinks, by less at a step than rounding shows"
-    assert (
-        change_words(1.0, "diverges") == "grows, by less at a step than rounding shows"
-    )  # a repeated root on the circle
-    assert change_words(math.nextafter(1, 2), "marginal") == "neither shrinks nor grows"
-    assert change_words(0.0, "converges") == "is gone within a few steps"
-    assert change_words(5.1e-8, "converges") == "is gone within a few steps"  # a double root zero, rounded
-    assert change_words(1e-5, "converges") == "shrinks 1e-05-fold a step"
+    by_less = "by less at a step than rounding shows"
+    assert change_words(1.0000000000000002, "converges") == f"the error shrinks, {by_less}"
+    assert change_words(1.0, "diverges") == f"the error grows, {by_less}"  # a repeated root on the circle
+    assert change_words(math.nextafter(1, 2), "marginal") == "the error neither shrinks nor grows"
+    assert change_words(0.0, "converges") == "the error is gone within a few steps"
+    assert change_words(5.1e-8, "converges") == "the error is gone within a few steps"  # a double root zero, rounded
+    assert change_words(1e-5, "converges") == "each step multiplies the error by 1e-05"
 
 
 def test_growth_has_a_factor_or_no_limit() -> None:
-    assert (growth_words(1.3174), growth_words(None)) == ("to 1.32 times", "without limit")
+    assert (growth_words(1.3174), growth_words(None)) == ("1.32-fold", "without limit")
 
 
 @pytest.mark.parametrize(
@@ -84,13 +83,19 @@ def test_the_motion_is_said_as_well() -> None:
         "moving_verdict": "diverges",
     }
     assert safety_words(row) == (
-        "Not safe. At rest the error shrinks 0.98-fold a step, over the motion it grows 1.2-fold a step"
+        "Not safe. At rest each step multiplies the error by 0.98. "
+        "Over the motion each step multiplies the error by 1.2."
     )
     unsettled: Row = {**row, "moving_verdict": "not settled for this mechanism", "double_pole": False}
-    assert safety_words(unsettled).endswith("; over the motion it is not settled for this mechanism")
+    assert safety_words(unsettled).endswith(" Over the motion it is not settled for this mechanism.")
     double: Row = {**unsettled, "double_pole": True, "z_abs_worst": 1.0613}
-    assert safety_words(double) == (
-        f"{safety_words(unsettled)}: nearly a double pole, which moves like (κh)^½, at worst 1.06-fold a step"
-    )
+    assert safety_words(double).endswith("a step multiplies the error by 1.06 at worst.")
     at_rest: Row = {"safe": True, "verdict": "converges", "z_abs": 0.98}
-    assert safety_words(at_rest) == "Safe. The error shrinks 0.98-fold a step"
+    assert safety_words(at_rest) == "Safe. Each step multiplies the error by 0.98."
+
+
+def test_of_steps_that_vary_it_says_what_is_proven() -> None:
+    row: Row = {"safe": False, "verdict": "converges", "z_abs": 0.98, "varying": "refuted"}
+    assert safety_words(row) == (
+        "Not safe when steps vary (refuted). With constant steps each step multiplies the error by 0.98."
+    )

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method, closed_loop_at, lookup
+from bezstab.methods import Method, closed_loop_at
 from bezstab.stability import dominant_pole, poles, spectral_radius, verdict
-from bezstab.stability.plane_pencils import plane_pencil_of, plane_roots
+from bezstab.stability.plane_pencils import plane_pencil_of
 from tests.reference.second_order_methods import RECIPES, as_second_order, companion_poles, newmark, second_order
 
 METHODS = [second_order(name) for name in RECIPES] + [as_second_order(name) for name in ("SYM", "B2", "RK4", "AB3")]
@@ -38,21 +38,6 @@ def test_dominant_poles_are_right_to_fifty_digits_but_for_their_condition(method
             gap = min((abs(nearest - other) for other in roots if other is not nearest), default=1)
             # rounding of the coefficients, times the condition of a root among others
             assert abs(nearest - mpmath.mpc(complex(z))) < 1e-13 * max(1, abs(nearest)) / min(1, gap) ** 2
-
-
-@pytest.mark.parametrize("name", ["B2", "ABM2", "AB3", "bdf3@2", "B4", "ABM4"])
-def test_poles_of_a_recipe_that_spells_out_a_method_are_those_of_the_plane(name: str) -> None:
-    """The recipe's poles are roots of pi(z, mu); those of the plane are roots of P."""
-    recipe = as_second_order(name)
-    alpha_hat, beta_hat = np.random.default_rng(2).uniform(0, 2, (2, 500))
-    by_mu = poles(recipe, alpha_hat, beta_hat)
-    in_plane = plane_roots(plane_pencil_of(recipe), alpha_hat, beta_hat).T
-    distance = np.abs(by_mu[:, :, np.newaxis] - in_plane[:, np.newaxis, :])
-    for nearest in (distance.min(axis=1), distance.min(axis=2)):
-        assert nearest.max() < 1e-5  # two of P's may meet: they keep half the digits, or a third where three do
-        assert np.median(nearest) < 1e-14
-    grid = np.linspace(0.01, 2, 60), np.linspace(0.01, 2, 40)[:, np.newaxis]
-    assert np.array_equal(spectral_radius(recipe, *grid), spectral_radius(lookup(name), *grid))
 
 
 def test_where_two_poles_meet_no_digits_are_lost() -> None:

@@ -286,23 +286,12 @@ def test_pece_as_a_recipe_has_its_region_at_a_level_of_two_digits(name: str) -> 
     assert by_strips.area == pytest.approx(region(lookup(name), 0.61).area, rel=1e-11)
 
 
-@pytest.mark.parametrize("name", ["B4@5", "ABM4", "bdf3"])
-@pytest.mark.parametrize("level", [1.0, 0.61])
-def test_a_recipe_that_spells_out_a_method_has_the_region_of_its_locus(name: str, level: float) -> None:
-    recipe = as_second_order(name)
-    of_recipe, of_method = region(recipe, level), region(lookup(name), level)
-    assert of_recipe.method is recipe
-    assert (of_recipe.area, of_recipe.extent, of_recipe.view) == (of_method.area, of_method.extent, of_method.view)
-    for curve, same in zip(of_recipe.boundary, of_method.boundary, strict=True):
-        assert np.array_equal(curve, same)
-
-
 def test_a_recipe_keeps_the_poles_that_no_feedback_moves() -> None:
     # (z - 1/2) times AB2's rho and sigma
     method = multistep("AB2 and a half", "1 -3/2 1/2 0", "0 3/2 -5/4 1/4")
     recipe = Method("recipe", second_order_form(method.scheme), "")
     assert region(recipe).fixed_poles == region(method).fixed_poles == (0.5,)
-    assert region(recipe).area == region(lookup("AB2")).area
+    assert region(recipe).area == pytest.approx(region(lookup("AB2")).area, rel=1e-12)
     assert region(recipe, 0.49).area == 0
 
 

@@ -1,0 +1,315 @@
+"""What poles, check and choose share: the options of a question, and what is said below its answers."""
+
+from collections.abc import Iterable, Sequence
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+import click
+
+from bezstab.cli.options import (
+    ENGINE_VALUES,
+    POSITIVE,
+    SECONDS,
+    SPEED,
+    Decorator,
+    EngineValues,
+    ParsedType,
+    left_at_default,
+    scene_option,
+)
+from bezstab.cli.output import for_reading, progress, say, show_command, show_text
+from bezstab.engines import Drive, Engine
+from bezstab.errors import InputError
+from bezstab.methods import Method
+from bezstab.rationals import rational, typed_number
+from bezstab.show import MISSING, Column, Format, Row, column, formatted, times_words
+from bezstab.units import to_dimensionless
+
+if TYPE_CHECKING:
+    from bezstab.mechanism import TurningNormals
+    from bezstab.questions import Answer, Question, ReferenceMotion
+
+GAINS = ("kp", "kd", "inertia")
+
+
+def _drive(text: str) -> Drive:
+    """Return the drive that a text such as 100,2,0.01 says."""
+    try:
+        numbers = [rational(number) for number in text.split(",")]
+    except InputError as error:
+        raise InputError(f"{error}: expected {','.join(GAINS)}") from None
+    if len(numbers) != len(GAINS):
+        raise InputError(f"{len(numbers)} values, expected {','.join(GAINS)}")
+    return Drive(*numbers)
+
+
+DRIVE = ParsedType(",".join(GAINS), _drive)
+
+engine_values_option = click.option(
+    "--engine", type=ENGINE_VALUES, help="An engine's own values, such as mujoco=0.02,1, instead; needs --h."
+)
+drive_option = click.option(
+    "--pd", "drive", type=DRIVE, help="A joint drive's gains and its inertia (SI units), instead; needs --h."
+)
+as_typed_option = click.option(
+    "--as-typed", is_flag=True, help="With --engine: take the values as they are, without the engine's clamps."
+)
+omega_option = click.option(
+    "--omega",
+    type=POSITIVE,
+    help="How fast the motion is, in 1/s, for the errors that the feedback forces on it; needs --h [the scene's, else "
+    "ωh = 0.01].",
+)
+h_min_option = click.option(
+    "--h-min", type=SECONDS, help="The shortest step in s of a range: is every sequence of steps up to --h-max safe?"
+)
+hold_option = click.option(
+    "--hold", is_flag=True, help="With --h-min: α̂ and β̂ stay as steps vary, as in engines with ERP; not α and β."
+)
+moving_speed_option = click.option(
+    "--speed", type=SPEED, default="1", help="With --scene: times the scene's own, its drivers' and its start's."
+)
+
+
+def moving_scene_option(help_text: str) -> Decorator:
+    """Return the option --scene of a command that also works without one."""
+    return scene_option(None, help_text)
+
+
+def asked(
+    methods: Sequence[Method],
+    alpha: Fraction | None,
+    beta: Fraction | None,
+    h: Fraction | None,
+    physical: bool,
+    engine: EngineValues | None,
+    drive: Drive | None,
+    *,
+    as_typed: bool,
+    omega: Fraction | None,
+    scene: str | None,
+    speed: Fraction,
+    h_min: Fraction | None = None,
+    h_max: Fraction | None = None,
+    hold: bool = False,
+) -> "Question":
+    """Return the question about a point as it was typed; what looks mistaken in it is said. InputError as Question."""
+    from bezstab.questions import Question
+
+    longest = h or (h_max if h_min else None)
+    if physical and longest is None:
+        raise InputError("--physical, --engine and --pd need --h: the step in s")
+    point = None if alpha is None or beta is None else (alpha, beta)
+    if (engine or drive) and (alpha is not None or beta is not None or physical):
+        raise InputError(f"{'--engine' if engine else '--pd'} takes the place of --alpha, --beta and --physical")
+    if point and physical and longest is not None:
+        point = to_dimensionless(*point, longest)
+    question = Question(
+        methods=methods_typed(methods, engine is not None or drive is not None),
+        point=point,
+        h=h,
+        h_min=h_min,
+        h_max=h_max,
+        hold=hold,
+        engine=engine[0] if engine else None,
+        values=engine[1] if engine else None,
+        as_typed=as_typed,
+        drive=drive,
+        omega=omega,
+        scene=scene,
+        speed=speed,
+    )
+    if alpha is not None and beta is not None and not physical:
+        say_if_units_were_mistaken(question.methods, alpha, beta, question.h)
+    prepare(question)
+    return question
+
+
+def methods_typed(methods: Sequence[Method], has_usual_ones: bool) -> tuple[Method, ...]:
+    """Return the methods that were typed, else none where an engine or a drive has its own, else the default."""
+    return () if has_usual_ones and left_at_default("methods") else tuple(methods)
+
+
+def prepare(question: "Question") -> None:
+    """Find how the scene of a question moves, with a bar on a terminal; where the law fails for it, that is said."""
+    scene = question.scene if isinstance(question.scene, str) else None
+    turning_with_bar(scene, question.speed, question.h)
+    _ = question.motion
+    say_if_it_turns_too_far(scene, question.speed, question.h)
+
+
+def turning_with_bar(scene: str | None, speed: Fraction, h: Fraction | None) -> "TurningNormals | None":
+    """Return how the normals of a scene's constraints turn, None without one; h in s, errors as `turning_of`.
+
+    A bar on a terminal shows that it is worked on.
+    """
+    from bezstab.questions import turning_of, turning_stages
+
+    if scene and h is not None:
+        name, stages = turning_stages(scene, speed)
+        for stage in progress(stages, name):
+            stage()
+    return turning_of(scene, speed, h)
+
+
+def say_if_it_turns_too_far(scene: str | None, speed: Fraction, h: Fraction | None) -> None:
+    """Say on standard error, if so, that a scene's constraints turn too far in a step (s) for the first-order law."""
+    from bezstab.questions import turns_too_far
+
+    if warning := turns_too_far(scene, speed, h):
+        say(f"bezstab: {warning}")
+
+
+def say_what_was_made(question: "Question", form: Format) -> None:
+    """Say on standard error, where people read, what the engine made of its values and what that leaves out."""
+    if question.engine and for_reading(form):
+        for note in question.given.notes or ():
+            say(f"{question.engine.name}: {note} (--as-typed leaves that out)")
+        say_what_is_left_out(question.engine)
+
+
+def say_what_is_left_out(engine: Engine) -> None:
+    """Say on standard error what the conversion of an engine's values leaves out."""
+    swept = "; it solves each constraint by itself, in sweeps: chains of them may diverge all the same"
+    say(f"{engine.name}: left out: {engine.excludes}{swept if engine.sweeps else ''}")
+
+
+def say_unknown_costs(answers: "Iterable[Answer]") -> None:
+    """Say on standard error why it is not known what accuracy a feedback costs, each reason once."""
+    for reason in dict.fromkeys(answer.cost_reason for answer in answers):
+        if reason:
+            say(f"bezstab: {reason}")
+
+
+def say_varying(answers: "Iterable[Answer]") -> None:
+    """Print a sentence on steps that vary below the table, and the line that shows that errors grow."""
+    from bezstab.show import growing_run, varying_words
+
+    for answer in answers:
+        if answer.varying:
+            show_text("\n" + varying_words(answer.method.name, answer.varying))
+            if line := growing_run(answer):
+                show_text("\nThis shows errors grow:\n")
+                show_command(line)
+
+
+def _times_least(row: Row) -> str:
+    times = row["times_least"]
+    return times_words(times) if isinstance(times, float) else MISSING
+
+
+def _both_times_least(row: Row) -> str:
+    velocity = row["times_least_velocity"]
+    return f"{_times_least(row)}; velocity: {times_words(velocity)}" if isinstance(velocity, float) else MISSING
+
+
+def _both_errors(row: Row) -> str:
+    error, velocity = row["total_error"], row["velocity_error"]
+    return MISSING if error is None else f"{formatted(error, '.1e')}; velocity: {formatted(velocity, '.1e')}"
+
+
+NARROW_ACCURACY = [column("error", "total_error", ".1e"), Column("× least", _times_least)]
+"""What accuracy a feedback costs, of the constraint alone: beside the columns of poles within 80 characters."""
+
+
+def _safe_speed(row: Row) -> str:
+    speed = row["safe_speed"]
+    return "any" if speed is None and row["moving_verdict"] == "converges" else formatted(speed, ".3g")
+
+
+MOVING_COLUMNS = [
+    column("κ (1/s)", "kappa", ".4g"),
+    column("|χ|", "chi_abs", ".3f"),
+    column("|z| moving", "z_abs_moving", ".6f"),
+    column("|z| at worst", "z_abs_worst", ".6f"),
+    column("moving verdict", "moving_verdict"),
+    Column("safe to speed", _safe_speed),
+]
+"""What --scene adds."""
+
+
+def _limit_text(gain: str) -> Column:
+    """Return the column of a gain's largest stable value: any, or that none helps."""
+
+    def text(row: Row) -> str:
+        limit = row[f"{gain}_max"]
+        if limit is None:
+            return "any" if row["verdict"] == "converges" else "none helps"
+        return formatted(limit, ".4g")
+
+    return Column(f"{gain} to", text)
+
+
+def _used_up(row: Row) -> str:
+    """Return which gain is nearest its limit, and how much of that it is."""
+    gain = row["used_up"]
+    if gain is None:
+        return formatted(gain)
+    value, limit = row[f"{gain}"], row[f"{gain}_max"]
+    if not (isinstance(value, float) and isinstance(limit, float) and limit):  # out of range, or none of it
+        return str(gain)
+    return f"{gain} {100 * value / limit:.0f} %"
+
+
+DRIVE_COLUMNS = [
+    column("applied", "drive"),
+    column("kp", "kp", ".4g"),
+    _limit_text("kp"),
+    column("kd", "kd", ".4g"),
+    _limit_text("kd"),
+    Column("used up", _used_up),
+]
+"""What --pd adds."""
+
+
+def added_columns(question: "Question") -> list[Column]:
+    """Return the columns that a scene, a range of steps, and a drive or else the motion add to those of a point."""
+    moving = MOVING_COLUMNS if question.scene else []
+    varying = [column("varying steps", "varying")] if question.steps else []
+    return [*moving, *varying, *(DRIVE_COLUMNS if question.drive else accuracy_columns(question.motion))]
+
+
+def accuracy_columns(motion: "ReferenceMotion") -> list[Column]:
+    """Return the columns of what accuracy a feedback costs: all but the steady share, which is seldom another."""
+    return [
+        Column(f"error at ωh = {float(motion.omega_h):.3g}", _both_errors),
+        column("order left", "order_left", "d"),
+        Column("times the least error", _both_times_least),
+    ]
+
+
+LARGE = 10
+"""alpha_hat or beta_hat: a feedback that leaves e^-5 of an error after a step is seldom meant, and 10/s is weak."""
+
+
+def say_if_units_were_mistaken(
+    methods: Sequence[Method], alpha: Fraction, beta: Fraction, h: Fraction | None, of_what: str = ""
+) -> None:
+    """Say on standard error, if so, that alpha_hat and beta_hat as typed look like alpha and beta in 1/s.
+
+    So it is where as typed none of the methods is stable, and all are at alpha and beta in 1/s for the step h (s): then
+    the line to type is said; or where a number is LARGE. `of_what` are the command's arguments, if it has any.
+    """
+    from bezstab.stability import verdict
+
+    if max(alpha, beta) < 1 or any(verdict(method, alpha, beta) == "converges" for method in methods):
+        return
+    taken = "note: --alpha and --beta were taken as α̂ and β̂, without unit; if they are in 1/s, add --physical"
+    if h is not None and _all_stable(methods, alpha, beta, h):
+        command = f"bezstab {click.get_current_context().info_name}{of_what and ' '}{of_what}"
+        given = "" if left_at_default("methods") else "".join(f" --method {method.name}" for method in methods)
+        numbers = f"--alpha {typed_number(alpha)} --beta {typed_number(beta)} --h {typed_number(h)}"
+        say(f"{taken}: {command}{given} {numbers} --physical")
+    elif max(alpha, beta) > LARGE:
+        say(f"{taken}{' and your --h' if left_at_default('h') else ''}")
+
+
+def _all_stable(methods: Sequence[Method], alpha: Fraction, beta: Fraction, h: Fraction) -> bool:
+    """Return whether alpha and beta in 1/s are stable with every method at a step of h (s)."""
+    from bezstab.stability import verdict
+
+    try:
+        point = to_dimensionless(alpha, beta, h)
+    except InputError:  # out of range: not meant
+        return False
+    return all(verdict(method, *point) == "converges" for method in methods)

@@ -1,0 +1,166 @@
+"""The equations of a step as a matrix of polynomials in w = 1/z, alpha_hat, beta_hat, and its determinants, by sympy.
+
+A shift back by one step is a factor w. Most rows have a number on the diagonal: they are eliminated exactly; sympy
+expands the little that remains.
+
+    | c   r |
+    |       |   det = c det(S - s r / c)
+    | s   S |
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from math import lcm
+
+import sympy as sp
+from sympy.polys.matrices import DomainMatrix
+from sympy.polys.rings import PolyElement, ring
+
+from bezstab.errors import InputError
+from bezstab.methods.polynomials import MuTable, PlaneTable
+from bezstab.methods.step_equations import POSITION, VELOCITY, Equation, Evaluation
+from bezstab.rationals import ZERO
+
+RING, RING_W, RING_ALPHA, RING_BETA = ring("w, alpha_hat, beta_hat", sp.QQ)
+WHOLE_RING = RING.clone(domain=sp.ZZ)
+
+Matrix = list[list[PolyElement]]
+
+MOST_TOGETHER = 12  # rows whose determinant is expanded: in some seconds
+
+
+def coefficient_rows(equations: Sequence[Equation], parts: int = 1) -> Matrix:
+    """Return the coefficients of each equation, one column for each quantity's name, in the order of the equations.
+
+    A column belongs to its quantity at the step of the result, the latest there is; a value that many parts of a step
+    earlier has that power of w. So the determinant in z is this one times z to the sum of the results' steps.
+    """
+    place = {equation.result.name: (number, equation.result.step) for number, equation in enumerate(equations)}
+    rows = []
+    for number, equation in enumerate(equations):
+        row = [RING.zero for _ in equations]
+        row[number] += RING.one
+        for coefficient, quantity, (by_velocity, by_position) in equation.terms:
+            column, latest = place[quantity.name]
+            powers = (parts * (latest - quantity.step), by_velocity, by_position)
+            row[column] -= RING.term_new(powers, in_field(coefficient))
+        rows.append(row)
+    return rows
+
+
+def in_field(number: Fraction) -> sp.Rational:
+    """Return a rational number as one of sympy's field."""
+    return sp.QQ(number.numerator, number.denominator)
+
+
+def as_fraction(number: sp.Rational) -> Fraction:
+    """Return a number of sympy's field as a Fraction."""
+    return Fraction(int(number.numerator), int(number.denominator))
+
+
+def determinant(rows: Matrix) -> PolyElement:
+    """Return the determinant; InputError for more than 12 rows that cannot be eliminated: it would take too long."""
+    matrix = [list(row) for row in rows]
+    remaining = list(range(len(rows)))
+    factor = sp.QQ(1)
+    while (number := _simple_row(matrix, remaining)) is not None:
+        remaining.remove(number)
+        pivot = matrix[number][number].LC
+        factor *= pivot
+        for other in remaining:
+            multiple = matrix[other][number].quo_ground(pivot)
+            for column in remaining if multiple else ():
+                if matrix[number][column]:
+                    matrix[other][column] -= multiple * matrix[number][column]
+    n = len(remaining)
+    if n > MOST_TOGETHER:
+        raise InputError(f"{n} equations wait for each other: expected at most {MOST_TOGETHER}")
+    rest = []
+    for row in remaining:  # as whole numbers, whose products are fast
+        entries = [matrix[row][column] for column in remaining]
+        scale = lcm(*(int(c.denominator) for entry in entries for c in entry.values()))
+        rest.append([entry.mul_ground(scale).set_ring(WHOLE_RING) for entry in entries])
+        factor /= scale
+    expanded = DomainMatrix(rest, (n, n), WHOLE_RING.to_domain()).charpoly()[-1]
+    return WHOLE_RING(expanded).set_ring(RING) * ((-1) ** n * factor)
+
+
+def _simple_row(matrix: Matrix, remaining: Sequence[int]) -> int | None:
+    """Return the first of the remaining rows with a number other than 0 on the diagonal; None if none has."""
+    return next((number for number in remaining if matrix[number][number] and matrix[number][number].is_ground), None)
+
+
+def determinant_table(equations: Sequence[Equation]) -> PlaneTable:
+    """Return the determinant of the equations without roots z = 0 that no parameters move; () for zero.
+
+    Leading coefficient one at alpha_hat = beta_hat = 0, if there is one.
+    """
+    found = determinant(coefficient_rows(equations))
+    return tables_of(_made_monic(found))[0] if found else ()
+
+
+def _made_monic(polynomial: PolyElement) -> PolyElement:
+    """Return a multiple whose leading coefficient in z is one at alpha_hat = beta_hat = 0, if there it has one."""
+    at_origin = {k: c for (k, i, j), c in polynomial.terms() if i == j == 0}
+    return polynomial.quo_ground(at_origin[min(at_origin)]) if at_origin else polynomial
+
+
+def responses(equations: Sequence[Equation]) -> tuple[PlaneTable, PlaneTable]:
+    """Return x and v where the acceleration of one evaluation is free, up to one factor, as polynomials.
+
+    They are the minors of the coefficients without the row of that evaluation, the first that acts on x at all: on a
+    motion z^k that satisfies all equations x and v are in their ratio (Cramer's rule). InputError if none acts on x.
+    """
+    rows = coefficient_rows(equations)
+    results = [equation.result for equation in equations]
+    for number, equation in enumerate(equations):
+        if isinstance(equation, Evaluation):
+            minors = []
+            for name in (POSITION, VELOCITY):
+                unit = [RING_W**result.step if result.name == name else RING.zero for result in results]
+                minors.append(determinant([unit if place == number else row for place, row in enumerate(rows)]))
+            position, velocity = minors
+            if sum(c for (_, i, j), c in position.terms() if i == j == 0):
+                position, velocity = tables_of(position, velocity)
+                return position, velocity
+    raise InputError("inconsistent: no acceleration acts on x1")
+
+
+def tables_of(*polynomials: PolyElement) -> list[PlaneTable]:
+    """Return the tables of polynomials other than zero, all multiplied by the power of z that makes them such in z."""
+    degree = max(k for polynomial in polynomials for k, _, _ in polynomial)
+    tables = []
+    for polynomial in polynomials:
+        lowest, (_, most_alpha, most_beta) = min(k for k, _, _ in polynomial), polynomial.degrees()
+        tables.append(
+            tuple(
+                tuple(
+                    tuple(as_fraction(polynomial.get((k, i, j), ZERO)) for j in range(most_beta + 1))
+                    for i in range(most_alpha + 1)
+                )
+                for k in range(degree, lowest - 1, -1)
+            )
+        )
+    return tables
+
+
+def product_over_feedback(pi: MuTable) -> PlaneTable:
+    """Return, up to a factor, the product of pi(z, mu) over both roots of mu^2 + alpha_hat mu + beta_hat = 0.
+
+    Modulo the feedback every power of mu is u + v mu, hence pi = A + B mu at either root. Their sum is -alpha_hat and
+    their product beta_hat: (A + B mu_1) (A + B mu_2) = A^2 - alpha_hat A B + beta_hat B^2. Leading coefficient one at
+    alpha_hat = beta_hat = 0.
+    """
+    A, B = RING.zero, RING.zero
+    u, v = RING.one, RING.zero  # mu^j = u + v mu
+    for column in zip(*pi, strict=True):
+        in_w = RING.from_dict({(k, 0, 0): in_field(c) for k, c in enumerate(reversed(column)) if c})
+        A, B = A + in_w * u, B + in_w * v
+        u, v = -RING_BETA * v, u - RING_ALPHA * v  # mu (u + v mu) = u mu + v (-alpha_hat mu - beta_hat)
+    return tables_of(_made_monic(A**2 - RING_ALPHA * A * B + RING_BETA * B**2))[0]
+
+
+def characteristic(matrix: Sequence[Sequence[Fraction]]) -> list[Fraction]:
+    """Return the coefficients of det(z - matrix) in descending powers of z, exact."""
+    rows = [[in_field(c) for c in row] for row in matrix]
+    return [as_fraction(c) for c in DomainMatrix(rows, (len(rows), len(rows)), sp.QQ).charpoly()]

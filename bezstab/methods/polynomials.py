@@ -1,0 +1,55 @@
+"""Polynomials with rational coefficients as data, in two forms, and the arithmetic of the first.
+
+Polynomial             coefficients in descending powers of one variable
+MuTable, PlaneTable    tables by ascending powers: of z and mu, and of z, alpha_hat and beta_hat
+
+Algebra in several variables is sympy's (determinants, derivation).
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from itertools import zip_longest
+
+Polynomial = Sequence[Fraction]
+
+MuTable = tuple[tuple[Fraction, ...], ...]
+"""A polynomial in z and mu: table[k][j] belongs to z^k mu^j."""
+
+PlaneTable = tuple[tuple[tuple[Fraction, ...], ...], ...]
+"""A polynomial in z, alpha_hat and beta_hat: table[k][i][j] belongs to z^k alpha_hat^i beta_hat^j."""
+
+
+def horner(descending: Polynomial, x: Fraction) -> Fraction:
+    """Return the value of a polynomial."""
+    value = Fraction(0)
+    for coefficient in descending:
+        value = value * x + coefficient
+    return value
+
+
+def trimmed(polynomial: Polynomial) -> list[Fraction]:
+    """Return the monic polynomial with the same roots, leading zeros dropped; ZeroDivisionError for zero."""
+    p = list(polynomial)
+    while len(p) > 1 and p[0] == 0:
+        del p[0]
+    return [a / p[0] for a in p]
+
+
+def quotient_and_remainder(p: Polynomial, divisor: Polynomial) -> tuple[list[Fraction], list[Fraction]]:
+    """Return quotient and remainder of polynomial long division; the divisor's leading coefficient is not zero."""
+    remainder, quotient = list(p), []
+    while len(remainder) >= len(divisor):
+        factor = remainder[0] / divisor[0]
+        quotient.append(factor)
+        difference = [a - factor * b for a, b in zip_longest(remainder, divisor, fillvalue=Fraction(0))]
+        remainder = difference[1:]  # the leading coefficient has become 0
+    return quotient, remainder
+
+
+def polynomial_gcd(p: Polynomial, q: Polynomial) -> list[Fraction]:
+    """Return the monic greatest common divisor by Euclid's algorithm."""
+    while any(q):
+        divisor = trimmed(q)
+        _, remainder = quotient_and_remainder(p, divisor)
+        p, q = divisor, remainder
+    return trimmed(p)

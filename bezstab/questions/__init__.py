@@ -1,0 +1,36 @@
+"""What somebody has, and what there is to answer: the one door of the command line and of `import bezstab`.
+
+    methods, a point or a goal, steps, an engine or a drive, a scene   →   Question   →   answers   →   row, table, text
+
+A file imports only from those above it:
+
+    points      how a point is given
+    motions     the motion that a question is about
+    question    what somebody asks, checked at birth
+    answering   what there is to answer
+"""
+
+from bezstab.questions.answering import SLOWER, Answer, Gains, LargestStep, answers, largest_step
+from bezstab.questions.motions import ReferenceMotion, motion_of, turning_of, turning_stages, turns_too_far
+from bezstab.questions.points import GivenPoint
+from bezstab.questions.question import WHICH_METHOD, Question, StepRange, methods_for, usual_goal
+
+__all__ = [
+    "SLOWER",
+    "WHICH_METHOD",
+    "Answer",
+    "Gains",
+    "GivenPoint",
+    "LargestStep",
+    "Question",
+    "ReferenceMotion",
+    "StepRange",
+    "answers",
+    "largest_step",
+    "methods_for",
+    "motion_of",
+    "turning_of",
+    "turning_stages",
+    "turns_too_far",
+    "usual_goal",
+]

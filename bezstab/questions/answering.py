@@ -1,0 +1,312 @@
+"""What there is to answer: for each method and point the verdict, and whatever else somebody asks of it.
+
+An answer is a point with its proven verdict, pole and margins; what takes time beyond that is found when first asked
+for, and kept:
+
+    answers(question)  →  Answer (given, or chosen)  ·  cost  ·  moving  ·  varying  ·  setting  ·  gains
+                            ├── instead              what `choose` gives in its place
+                            └── faster, slower       what faster decay costs, and slower decay gains
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, fields
+from fractions import Fraction
+from functools import cached_property
+from typing import TYPE_CHECKING, Literal
+
+from bezstab.engines import Point
+from bezstab.errors import InputError, NumericalError
+from bezstab.methods import Method
+from bezstab.questions.points import all_points
+from bezstab.questions.question import UP_TO_LONGEST, Question, usual_goal
+from bezstab.rationals import rational
+from bezstab.stability import (
+    Choice,
+    FeedbackCost,
+    Goal,
+    Modulus,
+    VaryingSteps,
+    choose,
+    choose_at_step,
+    describe_point,
+    feedback_cost,
+    gain_limits,
+    largest_stable_step,
+    stable_up_to,
+    varying_steps,
+)
+
+if TYPE_CHECKING:
+    from bezstab.evidence import MovingPole
+
+Role = Literal["given", "instead", "chosen"]
+"""Whether a point was given, is what to take instead of one that was, or is what a goal asks for."""
+
+SLOWER = 2
+"""Times as long to settle, of what slower decay would gain."""
+
+
+@dataclass(frozen=True)
+class Gains:
+    """The gains (SI units) that a point is on a drive's inertia, and how far each may go alone.
+
+    A limit is infinite where there is none, None where lowering that gain alone does not help. The largest kp goes with
+    this kd, the largest kd with this kp. `used_up` is the gain at its limit, or nearest to it; None without limits.
+    """
+
+    kp: float
+    kd: float
+    kp_max: float | None
+    kd_max: float | None
+    used_up: Literal["kp", "kd"] | None
+
+
+@dataclass(frozen=True, repr=False, kw_only=True)
+class Answer(Choice):
+    """A point, what `Choice` says of it, and what it means for the question; `point` is the point exactly.
+
+    What is None was not asked about: `moving` without a scene, `varying` without h_min, `setting` without an engine,
+    `gains` without a drive.
+    """
+
+    question: Question = field(compare=False)
+    role: Role
+    point: Point
+
+    def __repr__(self) -> str:
+        place = f"alpha_hat = {self.alpha_hat:.6g}, beta_hat = {self.beta_hat:.6g}"
+        safe = "safe" if self.safe else "not safe"
+        return f"Answer({self.method.name}, {self.goal}: {place}, |z_p| = {abs(self.pole):.6g}, {safe})"
+
+    @property
+    def safe(self) -> bool:
+        """Whether every error is proven to shrink; of a scene as it moves, and for steps that vary, where asked."""
+        as_it_moves = self.moving is None or self.moving.verdict == "converges"
+        as_steps_vary = self.varying is None or self.varying.varying == "proven"
+        return self.verdict == "converges" and as_it_moves and as_steps_vary
+
+    @cached_property
+    def moving(self) -> "MovingPole | None":
+        """What the motion of the scene does to the poles."""
+        if self.question.turning is None or self.question.h is None:
+            return None
+        from bezstab.evidence import moving_pole
+
+        return moving_pole(self.method, self.question.turning, float(self.question.h), self.alpha_hat, self.beta_hat)
+
+    @cached_property
+    def varying(self) -> VaryingSteps | None:
+        """What sequences of steps do that vary from h_min to h_max."""
+        steps = self.question.steps
+        if steps is None:
+            return None
+        return varying_steps(self.method, *self.point, h=steps.h, h_min=steps.h_min, h_max=steps.h_max, hold=steps.hold)
+
+    @property
+    def cost(self) -> FeedbackCost | None:
+        """What accuracy the feedback costs on the motion of the question; None where `cost_reason` says why."""
+        return self._cost_or_reason[0]
+
+    @property
+    def cost_reason(self) -> str | None:
+        """Why the cost is not known; None where it is."""
+        return self._cost_or_reason[1]
+
+    @cached_property
+    def _cost_or_reason(self) -> tuple[FeedbackCost | None, str | None]:
+        omega_h = self.question.motion.omega_h
+        try:
+            return feedback_cost(self.method, *self.point, omega_h), None
+        except (InputError, NumericalError) as error:  # the verdict stands without it
+            return None, f"what accuracy the feedback costs is not known: {error}"
+
+    @property
+    def setting(self) -> str | None:
+        """What to write in the engine's words for a point that it was not given; InputError where it has no words."""
+        engine, h = self.question.engine, self.question.h
+        return engine.setting(self.point, h) if engine and h is not None and self.role != "given" else None
+
+    @cached_property
+    def engine_h_limit(self) -> float | None:
+        """Up to which step (s) the engine's values are stable, as it reads them at each step.
+
+        None where they are not stable, or at any step, and without an engine.
+        """
+        engine, h = self.question.engine, self.question.h
+        if engine is None or h is None or self.verdict != "converges":
+            return None
+        values, as_typed = self.question.values, self.question.as_typed
+        if self.role != "given":
+            values, as_typed = tuple(rational(value) for value in engine.values(self.point, h)), False
+        assert values is not None
+        return largest_stable_step(
+            self.method, lambda step: all_points(engine, values, step, as_typed=as_typed), float(h)
+        )
+
+    @cached_property
+    def gains(self) -> Gains | None:
+        """The gains of the drive at this point, and their limits."""
+        drive, h = self.question.drive, self.question.h
+        if drive is None or h is None:
+            return None
+        limits = gain_limits(self)
+        kp, kd = drive.gains(self.alpha_hat, self.beta_hat, float(h))
+        if self.role == "given":
+            kp, kd = float(drive.kp), float(drive.kd)
+        kp_of_one, kd_of_one = drive.gains(1.0, 1.0, float(h))
+        return Gains(
+            kp=kp,
+            kd=kd,
+            kp_max=None if limits.beta_hat is None else limits.beta_hat * kp_of_one,
+            kd_max=None if limits.alpha_hat is None else limits.alpha_hat * kd_of_one,
+            used_up=None if limits.nearest is None else "kd" if limits.nearest == "alpha_hat" else "kp",
+        )
+
+    @cached_property
+    def instead(self) -> "Answer":
+        """What `choose` gives for the same question by its usual goal.
+
+        InputError where nothing is stable or the engine cannot express it, NumericalError where it cannot be found.
+        """
+        goal = usual_goal(self.question.engine, self.question.drive)
+        found = _answer(self.question, "instead", _choice(self.question, self.method, goal))
+        _ = found.setting
+        return found
+
+    @cached_property
+    def faster(self) -> "Answer | None":
+        """The choice of the first goal of robust and fastest that decays faster than this; None if neither does."""
+        goals: tuple[Goal, ...] = ("robust", "fastest")
+        for goal in goals:
+            found = self._alternative(goal)
+            if found and abs(found.pole) < abs(self.pole):
+                return found
+        return None
+
+    @property
+    def slower_settle(self) -> Fraction | None:
+        """SLOWER times as long (s, to two digits) as this choice takes to settle at worst; None where it does not."""
+        steps, h = self.settle_steps_at_worst, self.question.h
+        if steps is None or h is None:
+            return None
+        return Fraction(f"{float(SLOWER * steps * h * self.method.step_multiple):.2g}")
+
+    @cached_property
+    def slower(self) -> "Answer | None":
+        """The choice of the goal accurate that may take `slower_settle` to settle; None where there is none."""
+        return None if self.slower_settle is None else self._alternative("accurate", self.slower_settle)
+
+    def times_the_errors(self, other: "Answer") -> tuple[float, float] | None:
+        """Return the errors of constraint and velocity at another answer over those at this one; None if not known."""
+        here, there = self.cost, other.cost
+        if here is None or there is None or not (here.total_error and here.velocity_error):
+            return None
+        if there.total_error is None or there.velocity_error is None:
+            return None
+        return there.total_error / here.total_error, there.velocity_error / here.velocity_error
+
+    def _alternative(self, goal: Goal, settle: Fraction | None = None) -> "Answer | None":
+        """Return another choice; None where there is none, or it cannot be found: this one stands without it."""
+        try:
+            found = _choice(self.question, self.method, goal, settle, margins=False)
+        except (InputError, NumericalError):
+            return None
+        return _answer(self.question, "chosen", found)
+
+
+def answers(question: Question, *, margins: bool = True) -> Iterator[Answer]:
+    """Yield the answers for each method: at the point that is given and at those an engine also takes, or the choice.
+
+    Without `margins` none are found. InputError if nothing stable meets the goal, or an engine cannot express it;
+    NumericalError as `describe_point` and `choose_at_step`.
+    """
+    for method in question.methods:
+        if question.goal:
+            found = _choice(question, method, question.goal, question.settle, margins=margins)
+            chosen = _answer(question, "chosen", found)
+            _check_expressible(chosen)
+            yield chosen
+            continue
+        for label, point in (("as given", question.given.point), *question.given.also):
+            yield _answer(question, "given", describe_point(method, label, *point, question.spread, margins), point)
+
+
+def _answer(question: Question, role: Role, choice: Choice, point: Point | None = None) -> Answer:
+    """Return a choice as an answer; its point is exactly that of its floats unless given."""
+    exactly = point or (Fraction(choice.alpha_hat), Fraction(choice.beta_hat))
+    own = {each.name: getattr(choice, each.name) for each in fields(Choice)}
+    return Answer(question=question, role=role, point=exactly, **own)
+
+
+def _choice(
+    question: Question, method: Method, goal: Goal, settle: Fraction | None = None, *, margins: bool = True
+) -> Choice:
+    """Return what a goal asks for: of a question that has a goal, for all steps up to h_max where this goal has one."""
+    engine, motion = question.engine, question.motion
+    along = engine.curve if engine and goal != "critical" and not question.equal else None
+    longest = question.h_max if question.goal else None
+    modulus = _modulus_as_it_moves(question, method, longest or question.h)
+    if question.h is None:
+        return choose(
+            method,
+            goal,
+            spread=question.spread,
+            equal=question.equal,
+            modulus=modulus,
+            margins=margins,
+            along=along,
+            omega_h=motion.omega_h_max,
+        )
+    return choose_at_step(
+        method,
+        goal,
+        h=question.h,
+        h_max=longest if goal in UP_TO_LONGEST else None,
+        settle=settle,
+        spread=question.spread,
+        equal=question.equal,
+        modulus=modulus,
+        along=along,
+        omega_h=motion.omega_h_max,
+        margins=margins,
+    )
+
+
+def _modulus_as_it_moves(question: Question, method: Method, h: Fraction | None) -> Modulus | None:
+    """Return |z_p| over the motion at steps of h (s), to be taken in place of that at rest; None without a scene."""
+    if question.turning is None or h is None:
+        return None
+    from bezstab.evidence import moving_modulus
+
+    return moving_modulus(method, question.turning, float(h))
+
+
+def _check_expressible(chosen: Answer) -> None:
+    """Raise InputError, saying what to ask instead, where the engine has no words for a choice."""
+    engine = chosen.question.engine
+    try:
+        _ = chosen.setting
+    except InputError as error:
+        assert engine
+        values = f"{engine.name}={engine.words()}"
+        raise InputError(f"{error}: ask `check --engine {values}` about values of yours") from None
+
+
+@dataclass(frozen=True)
+class LargestStep:
+    """Up to which step (s) every one is stable with alpha and beta (1/s): infinite without an end, zero for none."""
+
+    method: Method
+    alpha: Fraction
+    beta: Fraction
+    h_limit: float
+
+    @property
+    def safe(self) -> bool:
+        """Whether small steps are stable at all."""
+        return self.h_limit > 0
+
+
+def largest_step(method: Method, alpha: Fraction, beta: Fraction) -> LargestStep:
+    """Return up to which step every one is stable with alpha and beta (1/s); errors as `stable_up_to`."""
+    return LargestStep(method, alpha, beta, stable_up_to(method, alpha, beta))

@@ -1,0 +1,146 @@
+"""The motion that a question is about: how fast it is, and how the constraints of a scene turn with it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+
+from bezstab.errors import InputError
+from bezstab.mechanism import (
+    ConstraintMotion,
+    Scene,
+    TurningNormals,
+    at_speed,
+    compiled_mechanism,
+    constraint_motion,
+    load_scene,
+    regular_motion,
+    turning_normals,
+)
+from bezstab.rationals import exact, typed_number
+from bezstab.stability import OMEGA_H, check_omega_h
+
+
+@dataclass(frozen=True)
+class ReferenceMotion:
+    """The motion on which errors are told: it turns by omega_h rad in a step, as `words` say.
+
+    `omega_h_max` is the same at the longest step that may occur. `amplitude` is that of a scene's motion (m or rad).
+    """
+
+    omega_h: Fraction
+    omega_h_max: Fraction
+    words: str
+    amplitude: float | None = None
+
+
+def motion_of(
+    omega: Fraction | None,
+    scene: str | Scene | None,
+    speed: Fraction,
+    h: Fraction | None,
+    h_max: Fraction | None = None,
+    duration: Fraction | None = None,
+    omega_h: Fraction | None = None,
+) -> ReferenceMotion:
+    """Return the motion of rate omega (1/s) or omega_h (rad a step of h_max), else a scene's, else one that is usual.
+
+    h and h_max in s; without h_max every step is h. A scene's motion that does not repeat itself is followed for a
+    `duration` (s), by default the scene's own. InputError for omega or a scene without h, for both omega and omega_h,
+    for a scene at rest, and unless 1e-6 <= omega h < 1.
+    """
+    if omega is not None and omega_h is not None:
+        raise InputError("the motion is given as omega= in 1/s with h= in s, or as omega_h= in rad a step, not as both")
+    longer = h_max / h if h and h_max else Fraction(1)
+    if omega_h is not None:
+        words = f"one with ωh = {float(omega_h):.3g}"
+        return _within_range(ReferenceMotion(omega_h / longer, omega_h, words), "--omega-h")
+    if omega is None and scene is None:
+        at_longest = "" if longer == 1 else " at --h-max"
+        whose = "--omega says" if h else "--omega and --h say"
+        words = f"one with ωh = {float(OMEGA_H):g}{at_longest} ({whose} how fast yours is)"
+        return _within_range(ReferenceMotion(OMEGA_H / longer, OMEGA_H, words), "--h and --h-max")
+    if h is None:
+        given = "--scene" if omega is None else "--omega"
+        raise InputError(f"{given} needs --h: the step in s, to make ωh of it")
+    amplitude = None
+    if omega is None:
+        assert scene
+        of_scene = _motion_of_scene(scene, speed, duration)
+        omega, amplitude = exact(of_scene.omega), of_scene.amplitude
+        name = name_of(scene)
+        given, whose = f"--scene {name} moves with ω = {float(omega):.3g} 1/s", f"that of {name}"
+    else:
+        given, whose = f"--omega {typed_number(omega)}", "one"
+    turned = omega * h
+    words = f"{whose} with ω = {float(omega):.3g} 1/s, ωh = {float(turned):.3g}"
+    return _within_range(ReferenceMotion(turned, turned * longer, words, amplitude), given)
+
+
+def name_of(scene: str | Scene) -> str:
+    """Return what a scene is called where it was given: its name, or the path of its file as typed."""
+    return scene if isinstance(scene, str) else scene.name
+
+
+def scene_at_speed(scene: str | Scene, speed: Fraction) -> Scene:
+    """Return a scene, loaded where its name or file is given, so many times as fast; errors as `load_scene`."""
+    return at_speed(load_scene(scene) if isinstance(scene, str) else scene, float(speed))
+
+
+def turning_stages(scene: str | Scene, speed: Fraction) -> tuple[str, list[Callable[[], object]]]:
+    """Return a scene's name and the stages of finding how its normals turn; each keeps its result for the next."""
+    moving = scene_at_speed(scene, speed)
+    stages: list[Callable[[], object]] = [
+        lambda: compiled_mechanism(moving),
+        lambda: regular_motion(compiled_mechanism(moving), moving.duration),
+        lambda: turning_normals(compiled_mechanism(moving), moving.duration),
+    ]
+    return moving.name, stages
+
+
+def turning_of(scene: str | Scene | None, speed: Fraction, h: Fraction | None) -> TurningNormals | None:
+    """Return how the normals of a scene's constraints turn; None without a scene.
+
+    InputError for a scene without a step (h in s), or a speed without a scene; else errors as `load_scene` and
+    `regular_motion`.
+    """
+    if scene is None:
+        if speed != 1:
+            raise InputError("--speed goes with --scene: it is the mechanism that is so many times as fast")
+        return None
+    if h is None:
+        raise InputError("--scene needs --h: how far the mechanism moves in a step depends on it")
+    moving = scene_at_speed(scene, speed)
+    return turning_normals(compiled_mechanism(moving), moving.duration)
+
+
+def turns_too_far(scene: str | Scene | None, speed: Fraction, h: Fraction | None) -> str | None:
+    """Return a warning where a scene's constraints turn too far in a step (h in s) for the first-order law."""
+    turning = turning_of(scene, speed, h)
+    if turning is None or scene is None or h is None:
+        return None
+    from bezstab.evidence import LAW_HOLDS
+
+    turned = turning.kappa * float(h)
+    if turned <= LAW_HOLDS:
+        return None
+    name = scene_at_speed(scene, speed).name
+    return f"constraints of {name} turn by κh = {turned:.2g} a step: beyond {LAW_HOLDS:g} the law fails"
+
+
+def _motion_of_scene(scene: str | Scene, speed: Fraction, duration: Fraction | None) -> ConstraintMotion:
+    """Return rate and amplitude of a scene's motion; InputError for one at rest, else as `load_scene` and `motion`."""
+    moving = scene_at_speed(scene, speed)
+    try:
+        return constraint_motion(compiled_mechanism(moving), float(duration or moving.duration))
+    except InputError as error:
+        raise InputError(f"--scene {name_of(scene)}: {error}; --omega gives one") from None
+
+
+def _within_range(motion: ReferenceMotion, given: str) -> ReferenceMotion:
+    """Return the motion; InputError, naming what was given, for one too slow or too fast for its steps."""
+    try:
+        check_omega_h(motion.omega_h)
+        check_omega_h(motion.omega_h_max)
+    except InputError as error:
+        raise InputError(f"{given}: {error}") from None
+    return motion

@@ -1,0 +1,69 @@
+"""How a point is given: alpha_hat and beta_hat, an engine's own values, or a drive's gains."""
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+
+from bezstab.engines import Drive, Engine, Point
+from bezstab.errors import InputError
+from bezstab.units import feedback_gains
+
+SAME_GAINS = 1e-9
+"""Of gains in 1/s and 1/s^2: roots and powers that engines take are rounded to float64."""
+
+
+@dataclass(frozen=True)
+class GivenPoint:
+    """A point (alpha_hat, beta_hat), exact, and what gave it.
+
+    `notes` say what the engine did to its values before it used them; None where they were taken as typed, or no
+    engine gave them. `also` are further points that the engine takes, labelled: safe is what is safe there too.
+    """
+
+    point: Point
+    notes: tuple[str, ...] | None = None
+    also: tuple[tuple[str, Point], ...] = ()
+
+
+def point_of_engine(engine: Engine, values: tuple[Fraction, ...], h: Fraction, *, as_typed: bool) -> GivenPoint:
+    """Return the point that an engine makes of its values at a step of h (s), its clamps left out where `as_typed`.
+
+    InputError as `Engine.applied`.
+    """
+    if as_typed:
+        return GivenPoint(engine.point(values, h))
+    applied = engine.applied(values, h)
+    return GivenPoint(applied.point, applied.notes, applied.also)
+
+
+def point_of_drive(drive: Drive, h: Fraction) -> GivenPoint:
+    """Return the point that a drive's gains are at a step of h (s); InputError as `Drive.point`."""
+    return GivenPoint(drive.point(h))
+
+
+def all_points(engine: Engine, values: tuple[Fraction, ...], h: Fraction, *, as_typed: bool) -> list[Point]:
+    """Return every point that an engine takes for its values at a step of h (s); InputError as `Engine.applied`."""
+    given = point_of_engine(engine, values, h, as_typed=as_typed)
+    return [given.point, *(point for _, point in given.also)]
+
+
+def engine_holds(
+    engine: Engine, values: tuple[Fraction, ...], shorter: Fraction, longer: Fraction, *, as_typed: bool
+) -> bool:
+    """Return whether an engine's values mean the same alpha_hat and beta_hat at both steps (s), or alpha and beta.
+
+    InputError where they mean neither, as those do that are clamped to the step.
+    """
+    at_both = [all_points(engine, values, step, as_typed=as_typed) for step in (shorter, longer)]
+    if at_both[0] == at_both[1]:
+        return True
+    of_shorter, of_longer = (
+        [float(gain) for point in points for gain in feedback_gains(*point, step)]
+        for points, step in zip(at_both, (shorter, longer), strict=True)
+    )
+    if all(math.isclose(*gains, rel_tol=SAME_GAINS) for gains in zip(of_shorter, of_longer, strict=True)):
+        return False
+    raise InputError(
+        f"--h-min: {engine.name} makes of these values neither the same α and β nor the same α̂ and β̂ at steps of "
+        f"{float(shorter):g} and {float(longer):g} s; with --hold, what it makes of them at --h is asked about"
+    )

@@ -1,0 +1,204 @@
+"""What somebody asks: about which methods and which point, or for a point that a goal asks for; checked at birth.
+
+Messages name options as the command line has them (--h-max); `bezstab.api` turns them into keywords (h_max).
+"""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import get_args
+
+from bezstab.engines import DRIVE_METHODS, Drive, Engine, Point
+from bezstab.errors import InputError
+from bezstab.mechanism import Scene, TurningNormals
+from bezstab.methods import Method, check_one_step, lookup
+from bezstab.questions.motions import ReferenceMotion, motion_of, turning_of
+from bezstab.questions.points import GivenPoint, engine_holds, point_of_drive, point_of_engine
+from bezstab.stability import Goal
+from bezstab.units import check_step
+
+WHICH_METHOD = (
+    "which integrator? --method SYM (semi-implicit Euler, as most engines have), RK4, rk45 (solve_ivp's), AB4, "
+    "B4 or another of `bezstab methods`; or an --engine; or --pd"
+)
+UP_TO_LONGEST = ("accurate", "robust")
+"""The goals that are for all steps up to --h-max."""
+
+SETTLING = ("gentle", "accurate")
+"""The goals that may be given a time to settle."""
+
+
+@dataclass(frozen=True)
+class StepRange:
+    """A range of steps (s); with `hold` alpha_hat and beta_hat, given for steps of h (s), stay as steps vary."""
+
+    h: Fraction
+    h_min: Fraction
+    h_max: Fraction
+    hold: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class Question:
+    """A question about feedback: is a point safe (no `goal`), or which point does a `goal` ask for?
+
+    The point is `point` (alpha_hat, beta_hat), or what an `engine` makes of its `values`, or a `drive`. Without
+    `methods` they are the engine's own, or all ways of applying the drive. Steps are `h` (s). With `h_max` (s) a choice
+    is for all steps up to it; with `h_min` (s) the question is also whether every sequence of steps from h_min to h_max
+    decays: alpha and beta stay as steps vary, with `hold` alpha_hat and beta_hat do. Errors are told on a motion of
+    rate `omega` (1/s) or `omega_h` (rad a step), or on that of a `scene`, `speed` times as fast as given there; with a
+    scene safe is what is safe as it moves. `spread` is the share by which alpha and beta may be off, `settle` (s) the
+    time in which errors fall a thousandfold, `equal` keeps alpha = beta, `as_typed` leaves out an engine's clamps.
+    InputError for what does not go together.
+    """
+
+    methods: tuple[Method, ...] = ()
+    point: Point | None = None
+    goal: Goal | None = None
+    h: Fraction | None = None
+    h_min: Fraction | None = None
+    h_max: Fraction | None = None
+    hold: bool = False
+    engine: Engine | None = None
+    values: tuple[Fraction, ...] | None = None
+    as_typed: bool = False
+    drive: Drive | None = None
+    omega: Fraction | None = None
+    omega_h: Fraction | None = None
+    scene: str | Scene | None = None
+    speed: Fraction = Fraction(1)
+    spread: float = 0.1
+    settle: Fraction | None = None
+    equal: bool = False
+
+    def __post_init__(self) -> None:
+        for name in ("h", "h_min", "h_max"):
+            if (step := getattr(self, name)) is not None:
+                check_step(step, name)
+        if not self.goal:
+            self._check_given()
+        else:
+            self._check_goal(self.goal)
+        if self.scene is None and self.speed != 1:
+            raise InputError("--speed goes with --scene: it is the mechanism that is so many times as fast")
+        object.__setattr__(self, "methods", methods_for(self.methods, self.engine, self.drive))
+        if self.steps:
+            for method in self.methods:
+                check_one_step(method)
+
+    def _check_given(self) -> None:
+        """Raise InputError unless a point is given in one of its ways, with the step that this way needs."""
+        ways = [self.point is not None, self.values is not None, self.drive is not None]
+        if self.h_max is not None and self.h_min is None:
+            raise InputError("--h-max goes with --h-min: the range of steps that vary")
+        if (self.values is not None or self.drive) and self.h is None and self.h_max is None:
+            raise InputError("--physical, --engine and --pd need --h: the step in s")
+        if self.as_typed and self.values is None:
+            raise InputError("--as-typed goes with --engine: it is the engine's clamps that are left out")
+        if self.values is not None and self.drive:
+            raise InputError("--engine and --pd are two points: give one")
+        if sum(ways) > 1:
+            option = "--engine" if self.engine else "--pd"
+            raise InputError(f"{option} takes the place of --alpha, --beta and --physical")
+        if not any(ways):
+            raise InputError("--alpha and --beta are needed, or --engine, or --pd")
+        if self.h is None and self.h_min is not None:
+            object.__setattr__(self, "h", self.h_max)
+
+    def _check_goal(self, goal: Goal) -> None:
+        """Raise InputError for what does not go with a goal, and for a spread that is no share."""
+        if goal not in get_args(Goal):
+            raise InputError(f"goal {goal!r}: expected {', '.join(get_args(Goal))}")
+        if not 0 <= self.spread < 1:
+            raise InputError(f"--spread {self.spread:g}: expected a share from 0 to 1")
+        if self.settle is None and goal == "gentle":
+            raise InputError("--goal gentle needs --settle: the time in s in which c falls a thousandfold")
+        if self.settle is not None and goal not in SETTLING:
+            raise InputError(f"--settle goes with --goal gentle or accurate, not {goal}")
+        if self.settle is not None and self.settle <= 0:
+            raise InputError(f"--settle {float(self.settle):g} s: expected a positive time")
+        in_seconds = (self.h_min, self.h_max, self.settle, self.engine, self.drive)
+        if self.h is None:
+            if any(each is not None for each in in_seconds):
+                raise InputError("--h-min, --h-max, --settle, --engine and --pd need --h: the step in s")
+            return
+        if self.h_max is not None and (not (goal in UP_TO_LONGEST or self.h_min) or self.h_max < self.h):
+            raise InputError(
+                f"--h-max {float(self.h_max):g}: only for --goal accurate, robust or --h-min, and at least --h "
+                f"{float(self.h):g}"
+            )
+        if self.engine and self.drive:
+            raise InputError("--engine and --pd print two kinds of words: give one")
+        if self.engine and self.engine.level != "acceleration" and (self.h_max or self.h_min):
+            raise InputError(
+                f"--h-max and --h-min: what {self.engine.name} makes of its values at other steps is told by "
+                "`check --engine`"
+            )
+
+    @cached_property
+    def given(self) -> GivenPoint:
+        """The point that is asked about."""
+        if self.values is not None and self.engine and self.h is not None:
+            return point_of_engine(self.engine, self.values, self.h, as_typed=self.as_typed)
+        if self.drive and self.h is not None:
+            return point_of_drive(self.drive, self.h)
+        assert self.point
+        return GivenPoint(self.point)
+
+    @cached_property
+    def steps(self) -> StepRange | None:
+        """The range that h_min begins, up to h_max, by default h; None without h_min. InputError unless it is one."""
+        if self.h_min is None:
+            if self.hold:
+                raise InputError("--hold goes with --h-min: it is about steps that vary")
+            return None
+        highest = self.h_max or self.h
+        if highest is None:
+            raise InputError("--h-min needs --h-max or --h: the longest step in s")
+        if highest < self.h_min:
+            raise InputError(f"--h-min {float(self.h_min):g}: expected at most the longest step, {float(highest):g} s")
+        hold = self.hold
+        if self.engine and self.values is not None and not hold:
+            hold = engine_holds(self.engine, self.values, self.h_min, highest, as_typed=self.as_typed)
+        return StepRange(self.h or highest, self.h_min, highest, hold)
+
+    @cached_property
+    def motion(self) -> ReferenceMotion:
+        """The motion on which errors are told; errors as `motion_of`."""
+        longest = self.h_max if self.goal else None
+        return motion_of(self.omega, self.scene, self.speed, self.h, longest, omega_h=self.omega_h)
+
+    @cached_property
+    def turning(self) -> TurningNormals | None:
+        """How the normals of the scene's constraints turn; None without a scene; errors as `turning_of`."""
+        return turning_of(self.scene, self.speed, self.h)
+
+
+def methods_for(methods: tuple[Method, ...], engine: Engine | None, drive: Drive | None) -> tuple[Method, ...]:
+    """Return the methods that are asked about: those given, else the engine's own, else all ways of applying a drive.
+
+    InputError where there are none, and for another method than its own with an engine whose steps are of one alone.
+    """
+    if not methods and engine and engine.method is None:
+        raise InputError(f"{engine.name} has no integrator of its own: name yours with --method")
+    if not methods and engine and engine.method:
+        return (lookup(engine.method),)
+    if not methods and drive:
+        return tuple(map(lookup, DRIVE_METHODS))
+    if not methods:
+        raise InputError(WHICH_METHOD)
+    if engine and engine.level != "acceleration" and [method.name for method in methods] != [engine.method]:
+        raise InputError(
+            f"{engine.name} works at {engine.level} level: its steps are those of {engine.method}, only with --method "
+            f"{engine.method}"
+        )
+    return methods
+
+
+def usual_goal(engine: Engine | None, drive: Drive | None) -> Goal:
+    """Return the goal that is taken unless told otherwise.
+
+    Along an engine's curve of points there is no gentle feedback of another ratio to find; and nothing feeds the
+    acceleration of a drive's target forward, so that the error of a weak one is not what the method forces.
+    """
+    return "robust" if drive or (engine and engine.curve) else "accurate"

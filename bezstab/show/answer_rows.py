@@ -1,0 +1,245 @@
+"""Answers to a question as rows, and in words: is it safe, how far may it go, what does it cost."""
+
+from __future__ import annotations
+
+import math
+import shlex
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import TYPE_CHECKING
+
+from bezstab.engines import DRIVE_METHODS
+from bezstab.errors import InputError
+from bezstab.methods import lookup
+from bezstab.rationals import typed_number
+from bezstab.show.columns import Row, Value
+from bezstab.show.rows import COST, choice_row, moving_row, row
+from bezstab.show.varying_rows import repeated, varying_row
+from bezstab.show.words import growth_words, safety_words, seconds_words, times_words
+from bezstab.units import from_dimensionless
+
+if TYPE_CHECKING:
+    from fractions import Fraction
+
+    from bezstab.questions import Answer, LargestStep, ReferenceMotion
+    from bezstab.stability import FeedbackCost
+
+COSTLY = 10.0
+"""Times the least error: from here on a sentence says what the feedback costs."""
+
+GAIN = 0.95
+"""Of an error: what is not below is called no gain."""
+
+AT_REST = "--scene driven_slider_crank --speed 1e-9"
+"""A mechanism without degrees of freedom, all but at rest: what changes in it is the error alone, at any step."""
+
+PERTURBED = 1e-6  # m, the error at first: small enough to grow visibly before it is no longer small
+GROWN = 1e4  # times that
+MOST_STEPS = 10**5  # of a run: some seconds
+
+
+def answer_row(answer: Answer) -> Row:
+    """Return all that an answer has as a row; keys of an engine, a drive, a scene, a range of steps where asked for."""
+    given, h = answer.role == "given", answer.question.h
+    cells: dict[str, Value] = {} if answer.role == "chosen" else {"role": answer.role}
+    cells |= choice_row(answer, h, answer.point if given else None)
+    cells |= _engine_cells(answer)
+    return {**cells, **added_cells(answer), "safe": answer.safe}
+
+
+def added_cells(answer: Answer) -> dict[str, Value]:
+    """Return what a drive, a scene, the motion and a range of steps add to a row of an answer's point."""
+    cells: dict[str, Value] = {}
+    if answer.gains and answer.question.drive:
+        cells |= {
+            "drive": DRIVE_METHODS.get(answer.method.name),
+            "inertia": float(answer.question.drive.inertia),
+            **asdict(answer.gains),
+        }
+    if answer.moving:
+        cells |= moving_row(answer.moving)
+    if answer.cost:
+        cells |= row(answer.cost, without={"order", "least_at"})
+    else:
+        cells |= {**dict.fromkeys(COST), "omega_h": float(answer.question.motion.omega_h)}
+    if answer.varying:
+        cells |= {**varying_row(answer.varying), "shown_by": growing_run(answer)}
+    return cells
+
+
+def _engine_cells(answer: Answer) -> dict[str, Value]:
+    """Return what an engine makes of its values, or the line to paste for a point that it was not given."""
+    engine = answer.question.engine
+    if not engine:
+        return {}
+    cells = engine_cells(answer) if answer.role != "chosen" else {"sweeps": engine.sweeps}
+    return {**cells, "engine_h_limit": answer.engine_h_limit, "setting": answer.setting}
+
+
+def engine_cells(answer: Answer) -> dict[str, Value]:
+    """Return what an engine does to its values, and what is left out; None for values that were not given."""
+    engine = answer.question.engine
+    if not engine:
+        return {}
+    if answer.role != "given" or answer.goal != "as given":
+        return {"applied": None, "excludes": None, "sweeps": engine.sweeps}
+    notes = answer.question.given.notes
+    return {
+        "applied": "as typed" if notes is None else "; ".join(notes),
+        "excludes": engine.excludes,
+        "sweeps": engine.sweeps,
+    }
+
+
+def largest_step_row(found: LargestStep) -> Row:
+    """Return up to which step (s) alpha and beta (1/s) are stable: None where small steps are not."""
+    return row(found, role="given", safe=found.safe, h_limit=found.h_limit if found.safe else None)
+
+
+def answer_sentence(row: Row) -> str:
+    """Return whether a point is safe, what a step does to the error, and how far step, α and β may grow, at rest."""
+    if not row["safe"]:
+        return safety_words(row)
+    if row["margins_reason"]:
+        return f"{safety_words(row)} How far the step, α and β may grow is not known: {row['margins_reason']}."
+    limit = step_limit(row)
+    factor = row["h_factor"] if row["h"] is None else None
+    step = f"to {seconds_words(limit)}" if isinstance(limit, float) else growth_words(factor)
+    alpha, beta = growth_words(row["alpha_factor_max"]), growth_words(row["beta_factor_max"])
+    begin = "At rest the" if "z_abs_moving" in row else "The"
+    if {step, alpha, beta} == {growth_words(None)}:
+        return f"{safety_words(row)} {begin} step, α and β may grow {step}."
+    return f"{safety_words(row)} {begin} step may grow {step}, α {alpha}, β {beta}."
+
+
+def step_limit(row: Row) -> Value:
+    """Return the largest stable step (s): of an engine's values where those were given, else of alpha and beta."""
+    return row["engine_h_limit" if "engine_h_limit" in row else "h_limit"]
+
+
+def costs_words(answer: Answer) -> str | None:
+    """Return that the feedback of an answer costs accuracy, and how much; None where that is little, or not known.
+
+    The better point is given in 1/s where there is a step, and not at all where an engine has words of its own.
+    """
+    cost = answer.cost
+    if cost is None or cost.least_at is None:
+        return None
+    name, h = answer.method.name, answer.question.h
+    least = "the least" if answer.question.engine else f"that at {_point_words(cost.least_at, h)}"
+    if _is_costly(cost.times_least):
+        return f"This feedback costs accuracy: {_constraint_words(name, cost, answer.question.motion, least)}"
+    if _is_costly(cost.times_least_velocity):
+        assert cost.times_least_velocity
+        return (
+            f"This feedback costs accuracy: with {name} the error it forces on velocities is "
+            f"{times_words(cost.times_least_velocity)} times {least}. It is {cost.velocity_error:.1e} of their "
+            "amplitude."
+        )
+    return None
+
+
+def _is_costly(times: float | None) -> bool:
+    return times is not None and times >= COSTLY
+
+
+def _constraint_words(name: str, cost: FeedbackCost, motion: ReferenceMotion, least: str) -> str:
+    """Return which order is left and how large the constraint's error is, `least` being what it is compared with."""
+    assert cost.times_least is not None
+    assert cost.total_error is not None
+    keeps = f"order {cost.order_left} of {cost.order}" if cost.order_left < cost.order else f"its order {cost.order}"
+    in_units = "" if motion.amplitude is None else f", {cost.total_error * motion.amplitude:.1e} m or rad"
+    return (
+        f"{name} keeps {keeps}; the error it forces is {times_words(cost.times_least)} times {least}. "
+        f"It is {cost.total_error:.1e} of the motion's amplitude{in_units}."
+    )
+
+
+def _point_words(point: tuple[float, float], h: Fraction | None) -> str:
+    """Return a point in 1/s, or without a step (s) as it is."""
+    if h is None:
+        return "α̂ = {:.3g}, β̂ = {:.3g}".format(*point)
+    return "α = {:.3g} 1/s, β = {:.3g} 1/s".format(*from_dimensionless(*point, float(h)))
+
+
+def trade_words(answer: Answer) -> list[str]:
+    """Return what faster decay than a choice's costs, and what slower decay gains, where that is known."""
+    if answer.cost is None or answer.cost.total_error is None:
+        return []
+    return [line for line in (_faster_words(answer), _slower_words(answer)) if line]
+
+
+def _faster_words(answer: Answer) -> str | None:
+    faster = answer.faster
+    if faster is None:
+        return "Faster decay: there is none."
+    times = answer.times_the_errors(faster)
+    if times is None:
+        return None
+    return (
+        f"Faster decay: --goal {faster.goal} takes |z_p| from {abs(answer.pole):.4f} to {abs(faster.pole):.4f} a step, "
+        f"and the feedback forces {_errors_words(times)}."
+    )
+
+
+def _slower_words(answer: Answer) -> str | None:
+    slower, settle = answer.slower, answer.slower_settle
+    times = None if slower is None else answer.times_the_errors(slower)
+    if times is None or settle is None:
+        return None
+    gain = "Slower decay:" if min(times) < GAIN else "Slower decay gains nothing:"
+    goal = "" if answer.goal == "accurate" else "--goal accurate "
+    return f"{gain} with {goal}--settle {typed_number(settle)} the feedback forces {_errors_words(times)}."
+
+
+def _errors_words(times: tuple[float, float]) -> str:
+    """Return how many times as large the errors of constraint and velocity are."""
+    of_constraint, of_velocity = times
+    return f"{times_words(of_constraint)} times the error, {times_words(of_velocity)} times that of velocities"
+
+
+def motion_words(motion: ReferenceMotion) -> str:
+    """Return what errors are shares of, and what is called the least."""
+    shares = f"Errors are shares of the amplitude of a motion, here {motion.words}."
+    return f"{shares} The least are those of --goal accurate."
+
+
+def growing_run(answer: Answer) -> str | None:
+    """Return the line with which simulate shows an error of PERTURBED grow about GROWN times.
+
+    None unless a sequence of steps was found that lets errors grow, and where no run shows it: of a method or a scene
+    without a name to type, and where errors grow too slowly.
+    """
+    varying, steps, question = answer.varying, answer.question.steps, answer.question
+    if varying is None or steps is None or varying.sequence is None or not (varying.growth and varying.growth > 1):
+        return None
+    scene = question.scene
+    if not _can_be_typed(answer) or not (scene is None or isinstance(scene, str)):
+        return None
+    rounds = max(1, math.floor(math.log(GROWN) / math.log(varying.growth)))
+    if rounds * len(varying.sequence) > MOST_STEPS:
+        return None
+    mechanism = AT_REST if scene is None else f"--scene {shlex.quote(scene)}"
+    if scene and question.speed != 1:
+        mechanism += f" --speed {typed_number(question.speed)}"
+    alpha_hat, beta_hat = answer.point
+    time = sum(varying.sequence) * answer.method.step_multiple * rounds
+    return (
+        f"bezstab simulate {mechanism} --method {shlex.quote(answer.method.name)} --alpha {typed_number(alpha_hat)} "
+        f"--beta {typed_number(beta_hat)} --h {typed_number(steps.h)} --steps {_typed_sequence(varying.sequence)}"
+        f"{' --hold' if steps.hold else ''} --perturb {PERTURBED:g} --time {float(time):.6g}"
+    )
+
+
+def _can_be_typed(answer: Answer) -> bool:
+    """Return whether the method has a name to type: not so a user's own, from a file."""
+    try:
+        return lookup(answer.method.name) == answer.method
+    except InputError:
+        return False
+
+
+def _typed_sequence(sequence: Sequence[Fraction]) -> str:
+    return ",".join(
+        typed_number(step) if count == 1 else f"{count}*{typed_number(step)}" for step, count in repeated(sequence)
+    )

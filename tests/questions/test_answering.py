@@ -1,0 +1,95 @@
+"""Answers: what is asked of them is found then, and agrees with the function that finds it."""
+
+from fractions import Fraction
+
+import pytest
+
+from bezstab.engines import ENGINES, Drive
+from bezstab.errors import InputError
+from bezstab.methods import lookup
+from bezstab.questions import Answer, Question, answers, largest_step
+from bezstab.stability import choose, describe_point, feedback_cost
+
+SYM = (lookup("SYM"),)
+POINT = (Fraction(1), Fraction(1, 2))
+H = Fraction(1, 240)
+
+
+def first(question: Question) -> Answer:
+    return next(answers(question))
+
+
+def test_an_answer_has_what_a_description_of_its_point_has() -> None:
+    answer, described = first(Question(methods=SYM, point=POINT)), describe_point(SYM[0], "as given", *POINT)
+    for name in ("verdict", "pole", "worst", "margins", "settle_steps"):
+        assert getattr(answer, name) == getattr(described, name)
+    assert (answer.role, answer.point, answer.safe) == ("given", POINT, True)
+    assert answer.cost == feedback_cost(SYM[0], *POINT)
+    assert (answer.moving, answer.varying, answer.gains, answer.setting) == (None, None, None, None)
+
+
+def test_what_to_take_instead_is_not_looked_for_unless_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object, **__: object) -> None:
+        raise AssertionError("looked for a choice")
+
+    monkeypatch.setattr("bezstab.questions.answering.choose", refuse)
+    assert [answer.role for answer in answers(Question(methods=SYM, point=POINT))] == ["given"]
+
+
+def test_instead_is_what_choose_gives() -> None:
+    instead = first(Question(methods=SYM, point=POINT)).instead
+    chosen = choose(SYM[0])
+    assert (instead.role, instead.goal) == ("instead", "accurate")
+    assert (instead.alpha_hat, instead.beta_hat) == (chosen.alpha_hat, chosen.beta_hat)
+
+
+def test_safe_is_what_is_safe_as_steps_vary_and_as_a_scene_moves() -> None:
+    h = Fraction("0.01")
+    weak = (Fraction("0.02"), Fraction("0.5"))
+    assert first(Question(methods=SYM, point=weak, h=h)).safe
+    varying = first(Question(methods=SYM, point=weak, h=h, h_min=h / 3, h_max=2 * h))
+    assert varying.varying
+    assert varying.safe == (varying.varying.varying == "proven")
+    moving = first(Question(methods=SYM, point=(Fraction("1.9"), Fraction("0.1")), h=h, scene="driven_four_bar"))
+    assert moving.moving
+    assert moving.safe == (moving.moving.verdict == "converges")
+
+
+def test_an_engine_answers_for_every_point_that_it_takes() -> None:
+    values = (Fraction("-135000"), Fraction("-920"))  # what solimp makes of large errors is another point
+    small, large = answers(Question(engine=ENGINES["mujoco"], values=values, h=Fraction("0.002")))
+    assert (small.verdict, large.verdict) == ("converges", "diverges")
+    assert small.setting is None
+    assert "solref" in str(small.instead.setting)
+
+
+def test_a_choice_that_an_engine_cannot_express_says_what_to_ask() -> None:
+    with pytest.raises(InputError, match="ask `check --engine box2d=hertz,dampingRatio` about values of yours"):
+        first(Question(engine=ENGINES["box2d"], goal="critical", h=H))
+
+
+def test_of_a_drive_kp_and_kd_are_told() -> None:
+    drive = Drive(Fraction(1000), Fraction(80), Fraction("0.1"))
+    explicit = first(Question(drive=drive, h=H))
+    assert explicit.gains
+    assert (explicit.gains.kp, explicit.gains.kd, explicit.gains.used_up) == (1000, 80, "kd")
+    assert explicit.gains.kp_max is None
+
+
+def test_faster_decay_costs_and_slower_decay_gains() -> None:
+    chosen = first(Question(methods=(lookup("RK4"),), goal="accurate", h=Fraction("0.002")))
+    assert chosen.faster
+    assert abs(chosen.faster.pole) < abs(chosen.pole)
+    assert chosen.slower
+    assert abs(chosen.slower.pole) >= abs(chosen.pole)
+    dearer, cheaper = chosen.times_the_errors(chosen.faster), chosen.times_the_errors(chosen.slower)
+    assert dearer
+    assert cheaper
+    assert min(dearer) > 1 > max(cheaper)
+
+
+def test_the_largest_step_of_alpha_and_beta_ends_where_they_do() -> None:
+    found = largest_step(SYM[0], Fraction(60), Fraction(55))
+    h = Fraction(found.h_limit)
+    assert 4 * 60 * h + 55**2 * h**2 == pytest.approx(4)  # 2 alpha_hat + beta_hat = 4
+    assert not largest_step(SYM[0], Fraction(0), Fraction(1)).safe

@@ -1,0 +1,46 @@
+from fractions import Fraction
+
+import pytest
+
+from bezstab.errors import InputError
+from bezstab.questions import motion_of, turning_of, turning_stages, turns_too_far
+from bezstab.stability import OMEGA_H
+
+ONE = Fraction(1)
+H = Fraction(1, 100)
+
+
+def test_a_motion_is_that_of_omega_else_the_usual_one() -> None:
+    assert motion_of(Fraction(2), None, ONE, H).omega_h == Fraction(1, 50)
+    assert motion_of(None, None, ONE, H).omega_h == OMEGA_H
+
+
+def test_at_shorter_steps_a_motion_turns_less() -> None:
+    by_rate = motion_of(Fraction(2), None, ONE, H, 2 * H)
+    assert (by_rate.omega_h, by_rate.omega_h_max) == (Fraction(1, 50), Fraction(1, 25))
+    by_angle = motion_of(None, None, ONE, H, 2 * H, omega_h=Fraction(1, 25))
+    assert (by_angle.omega_h, by_angle.omega_h_max) == (Fraction(1, 50), Fraction(1, 25))
+
+
+def test_a_motion_out_of_range_is_refused_by_what_gave_it() -> None:
+    with pytest.raises(InputError, match="--omega 200: omega h = 2 rad a step: expected"):
+        motion_of(Fraction(200), None, ONE, H)
+    with pytest.raises(InputError, match="--omega needs --h"):
+        motion_of(Fraction(200), None, ONE, None)
+
+
+def test_a_scene_turns_so_much_faster_as_it_moves_faster() -> None:
+    once, twice = (turning_of("driven_four_bar", Fraction(speed), H) for speed in (1, 2))
+    assert once
+    assert twice
+    assert twice.kappa == pytest.approx(2 * once.kappa, rel=1e-6)
+    assert turning_stages("driven_four_bar", ONE)[0] == "driven four-bar"
+    assert turns_too_far("driven_four_bar", ONE, Fraction(1, 10**4)) is None
+    assert "beyond 0.1 the law fails" in str(turns_too_far("driven_four_bar", Fraction(10), H))
+
+
+def test_a_speed_goes_with_a_scene_and_a_scene_with_a_step() -> None:
+    with pytest.raises(InputError, match="--speed goes with --scene"):
+        turning_of(None, Fraction(2), H)
+    with pytest.raises(InputError, match="--scene needs --h"):
+        turning_of("pendulum", ONE, None)

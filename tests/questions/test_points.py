@@ -1,0 +1,39 @@
+from fractions import Fraction
+
+import pytest
+
+from bezstab.engines import Drive, engine_and_values
+from bezstab.errors import InputError
+from bezstab.questions.points import all_points, engine_holds, point_of_drive, point_of_engine
+
+H = Fraction(1, 500)
+
+
+def test_an_engines_clamps_are_noted_and_may_be_left_out() -> None:
+    engine, values = engine_and_values("mujoco=0.0001,1")
+    applied = point_of_engine(engine, values, H, as_typed=False)
+    assert applied.notes
+    assert "refsafe raises timeconst" in applied.notes[0]
+    typed = point_of_engine(engine, values, H, as_typed=True)
+    assert typed.point == (Fraction(40), Fraction(400))
+    assert typed.notes is None
+
+
+def test_an_engine_may_take_further_points() -> None:
+    engine, values = engine_and_values(f"mujoco={-0.54 / 0.002**2!r},{-1.84 / 0.002!r}")
+    assert len(all_points(engine, values, H, as_typed=False)) == 2
+
+
+def test_a_drives_gains_are_a_point() -> None:
+    assert point_of_drive(Drive(Fraction(1000), Fraction(80), Fraction("0.1")), Fraction(1, 240)).point == (
+        Fraction(80, 24),
+        Fraction(1000) * 10 / 240**2,
+    )
+
+
+def test_an_engine_holds_alpha_hat_and_beta_hat_or_alpha_and_beta_or_is_refused() -> None:
+    bullet, spring = engine_and_values("bullet=0.2"), engine_and_values("brax-spring=5000,20,1")
+    assert engine_holds(*bullet, H, 2 * H, as_typed=False)
+    assert not engine_holds(*spring, H, 2 * H, as_typed=False)
+    with pytest.raises(InputError, match="box2d makes of these values neither"):
+        engine_holds(*engine_and_values("box2d=60,2"), H, 2 * H, as_typed=False)

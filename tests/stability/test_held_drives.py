@@ -1,0 +1,189 @@
+"""Drives whose torque is held for several steps or applied late: exact verdicts, closed forms, plain simulation."""
+
+from collections.abc import Callable
+from fractions import Fraction
+from math import floor
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bezstab.engines import DRIVE_METHODS
+from bezstab.errors import InputError
+from bezstab.methods import closed_loop_at, lookup
+from bezstab.stability.held_drives import (
+    SEEN,
+    Timing,
+    held_law,
+    held_limits,
+    held_polynomial,
+    held_spectral_radius,
+    held_verdict,
+    late_law,
+)
+
+POSITIVE = st.fractions(Fraction(1, 100), 4, max_denominator=1000)
+
+
+@pytest.mark.parametrize("way", DRIVE_METHODS)
+@given(a=POSITIVE, b=POSITIVE)
+@settings(deadline=None, max_examples=10)
+def test_a_fresh_drive_has_the_polynomial_of_its_method(way: str, a: Fraction, b: Fraction) -> None:
+    expected = closed_loop_at(lookup(way), a, b)
+    assert held_polynomial(way, a, b, Timing()) == [c / expected[0] for c in expected]
+
+
+@given(a=POSITIVE, b=POSITIVE)
+@settings(deadline=None, max_examples=10)
+def test_one_step_late_is_the_recipe_with_the_state_before(a: Fraction, b: Fraction) -> None:
+    found = held_polynomial("SYM", a, b, Timing(late=Fraction(1)))
+    assert found == [1, -2, 1 + a + b, -a]  # z (z - 1)^2 + b z + a (z - 1)
+
+
+@given(a=POSITIVE, b=POSITIVE, every=st.integers(1, 12))
+@settings(deadline=None, max_examples=60)
+def test_a_held_drive_converges_where_its_law_says(a: Fraction, b: Fraction, every: int) -> None:
+    a, b = a / every, b / every**2  # most of the region lies there
+    assert held_law(a, b, every) == (held_verdict("SYM", a, b, Timing(every)) == "converges")
+
+
+@given(a=st.fractions(0, 2, max_denominator=100), b=st.fractions(0, 1, max_denominator=100))
+@settings(deadline=None, max_examples=60)
+def test_a_drive_one_step_late_converges_where_its_law_says(a: Fraction, b: Fraction) -> None:
+    assert late_law(a, b) == (held_verdict("SYM", a, b, Timing(late=Fraction(1))) == "converges")
+
+
+@pytest.mark.parametrize("every", [2, 3, 10])
+def test_stiffness_alone_is_unstable_if_it_is_held(every: int) -> None:
+    assert held_verdict("SYM", Fraction(0), Fraction(1, 10**6), Timing(every)) == "diverges"
+
+
+DAMPING_RATIOS = (0.05, 0.1, 0.3, 0.7, 1, 2)
+LIMITS = {
+    Timing(): (1.902, 1.810, 1.488, 1.041, 0.828, 0.472),
+    Timing(late=Fraction(1)): (0.099, 0.192, 0.441, 0.473, 0.400, 0.235),
+    Timing(late=Fraction(2)): (0.050, 0.098, 0.243, 0.289, 0.2485, 0.146),
+    Timing(every=2): (0.200, 0.400, 0.936, 0.590, 0.449, 0.243),
+    Timing(every=4): (0.067, 0.133, 0.400, 0.320, 0.236, 0.123),
+    Timing(every=10): (0.022, 0.044, 0.133, 0.136, 0.098, 0.050),
+    Timing(every=4, late=Fraction(4)): (0.018, 0.036, 0.095, 0.123, 0.105, 0.060),
+}
+"""Largest stable omega h by damping ratio, in three digits: found in trials with another program."""
+
+
+@pytest.mark.parametrize("timing", LIMITS)
+def test_limits_by_damping_ratio_lie_between_two_proven_verdicts(timing: Timing) -> None:
+    for ratio, limit in zip(DAMPING_RATIOS, LIMITS[timing], strict=True):
+        below, above = (
+            held_verdict("SYM", Fraction(2 * ratio * omega), Fraction(omega**2), timing)
+            for omega in (limit - 0.0011, limit + 0.0011)
+        )
+        assert (below, above) == ("converges", "diverges"), ratio
+
+
+def grown(way: str, a: float, b: float, timing: Timing, steps: int) -> float:
+    """Return how much |x| + |v| grows in many steps, as a controller and a physics engine would compute it."""
+    x, v, filtered = 1.0, 0.3, 0.3
+    left = float(timing.late - floor(timing.late))
+    gain = float(1 / (1 + timing.filter_steps / timing.every)) if timing.filter_steps else 1.0
+    computed: dict[int, float] = {}
+
+    def of_step(step: int) -> float:
+        """The torque that was computed last by a step, 0 before the first."""
+        return computed.get(step // timing.every * timing.every, 0.0)
+
+    def torque_applied(step: int) -> float:
+        due = step - floor(timing.late)
+        return (1 - left) * of_step(due) + left * of_step(due - 1)
+
+    def controller(seen_x: float, seen_v: float) -> tuple[float, float]:
+        seen = filtered + gain * (seen_v - filtered)
+        return -b * seen_x - a * seen, seen
+
+    def seen(step: int, guess: float) -> tuple[float, float]:
+        """What the way of applying looks at, if the torque computed now is the guess."""
+        computed[step] = guess
+        p = torque_applied(step)
+        return {
+            "SYM": (x, v),
+            "imex-euler": (x, v + p),
+            "stable-pd": (x + v, v + p),
+            "implicit-euler": (x + v + p, v + p),
+        }[way]
+
+    sizes = []
+    for step in range(steps):
+        if step % timing.every == 0:
+            # the torque's equation is linear: guess = f(guess) has the root f(0) / (1 - slope)
+            at_zero = controller(*seen(step, 0.0))[0]
+            slope = controller(*seen(step, 1.0))[0] - at_zero
+            computed[step] = at_zero / (1 - slope)
+            filtered = controller(*seen(step, computed[step]))[1]
+        v += torque_applied(step)
+        x += v
+        sizes.append(abs(x) + abs(v))
+    return float((max(sizes[-200:]) / max(sizes[200:400])) ** (1 / (steps - 400)))
+
+
+@pytest.mark.parametrize("way", SEEN)
+@pytest.mark.parametrize(
+    "timing",
+    [
+        Timing(every=3),
+        Timing(late=Fraction(2)),
+        Timing(late=Fraction(1, 2)),
+        Timing(every=4, late=Fraction(3, 2)),
+        Timing(every=2, late=Fraction(5)),
+        Timing(every=2, late=Fraction(1), filter_steps=Fraction(3)),
+        Timing(filter_steps=Fraction(4)),
+    ],
+    ids=str,
+)
+def test_a_simulated_drive_grows_as_the_pole_says(way: str, timing: Timing) -> None:
+    a, b = Fraction("0.05"), Fraction("0.004")
+    assert grown(way, float(a), float(b), timing, 3000) == pytest.approx(
+        held_spectral_radius(way, a, b, timing),
+        abs=1e-3,  # two maxima of an oscillation, 2600 steps apart
+    )
+
+
+def test_limits_lie_where_the_verdict_turns() -> None:
+    a, b, timing = Fraction("0.1"), Fraction("0.008"), Timing(every=4, late=Fraction(1))
+    found = held_limits("SYM", a, b, timing)
+    assert found.stable
+    turns: list[tuple[float | None, Callable[[Fraction], tuple[Fraction, Fraction]]]] = [
+        (found.kp, lambda factor: (a, factor * b)),
+        (found.kd, lambda factor: (factor * a, b)),
+    ]
+    for factor, point in turns:
+        assert factor is not None
+        for times, verdict in ((1 - 1e-6, "converges"), (1 + 1e-6, "diverges")):
+            assert held_verdict("SYM", *point(Fraction(times * factor)), timing) == verdict
+    assert found.every is not None
+    assert found.late is not None
+    assert held_verdict("SYM", a, b, Timing(found.every, timing.late)) == "converges"
+    assert held_verdict("SYM", a, b, Timing(found.every + 1, timing.late)) != "converges"
+    assert held_verdict("SYM", a, b, Timing(4, Fraction(found.late))) == "converges"
+    assert held_verdict("SYM", a, b, Timing(4, Fraction(found.late + 1))) != "converges"
+
+
+def test_where_nothing_helps_it_is_said() -> None:
+    found = held_limits("SYM", Fraction(0), Fraction("0.01"), Timing(every=2))
+    assert not found.stable
+    assert (found.kp, found.kd, found.late) == (None, None, None)
+    assert found.every is None  # without damping it is marginal even when it is fresh
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ({"every": 0}, "--every 0: expected a whole number of steps from 1 to 100"),
+        ({"every": 101}, "--every 101: expected"),
+        ({"late": Fraction(201, 2)}, "--late 100.5: expected from 0 to 100 steps"),
+        ({"late": Fraction(-1)}, "--late -1: expected from 0 to 100 steps"),
+        ({"filter_steps": Fraction(-1)}, "--filter -1 steps: expected 0 or more"),
+    ],
+)
+def test_what_is_out_of_range_is_refused(values: dict[str, Fraction], words: str) -> None:
+    with pytest.raises(InputError, match=words.replace(".", r"\.")):
+        Timing(**values)  # type: ignore[arg-type]
