@@ -9,7 +9,7 @@ from bezstab.cli.options import FigureForm, TableForm
 from bezstab.cli.output import for_reading, progress, say, show_rows, show_text, write_figure, write_table
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method
-from bezstab.show import Format, Row, column, formatted
+from bezstab.show import FRONTS, Format, Row, formatted
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -27,25 +27,6 @@ DECADES = 100
 
 BEYOND = 1.25
 """Times the parameters of a point: so far is shown beyond one that lies outside."""
-
-FRONT = [
-    column("method", "method"),
-    column("|z_p| at most", "z_abs_below", ".4g"),
-    column("α̂", "alpha_hat", ".6g"),
-    column("β̂", "beta_hat", ".6g"),
-    column("error of position", "total_error", ".2e"),
-    column("of velocity", "velocity_error", ".2e"),
-    column("both", "combined_error", ".2e"),
-]
-PHYSICAL = [column("α (1/s)", "alpha", ".6g"), column("β (1/s)", "beta", ".6g")]
-
-ACCURATE = [
-    column("accurate α̂", "accurate_alpha_hat", ".6g"),
-    column("accurate β̂", "accurate_beta_hat", ".6g"),
-    column("|z_p| there", "accurate_z_abs", ".6f"),
-    column("error forced there", "accurate_error", ".2e"),
-    column("error forced at the least |z_p|", "best_error", ".2e"),
-]
 
 
 def accuracy_keys(method: Method, motion: "ReferenceMotion", best: "BestPoint | None", chosen: "Choice | None") -> Row:
@@ -175,8 +156,7 @@ def show_predicted_trade(
 
     write_table(path, untimed_arrays(rows), table)
     write_figure(path, draw, figure)
-    columns = FRONT if h is None else [*FRONT[:4], *PHYSICAL, *FRONT[4:]]
-    show_rows(rows, columns, form, sentence=front_sentence)
+    show_rows(rows, FRONTS.columns(rows), form, sentence=front_sentence)
     if for_reading(form):
         say_combined(motion)
 

@@ -22,12 +22,12 @@ from bezstab.engines import Drive, Engine
 from bezstab.errors import InputError
 from bezstab.methods import Method
 from bezstab.rationals import rational, typed_number
-from bezstab.show import MISSING, Column, Format, Row, column, formatted, times_words
+from bezstab.show import Format
 from bezstab.units import to_dimensionless
 
 if TYPE_CHECKING:
     from bezstab.mechanism import TurningNormals
-    from bezstab.questions import Answer, Question, ReferenceMotion
+    from bezstab.questions import Answer, Question
 
 GAINS = ("kp", "kd", "inertia")
 
@@ -191,91 +191,6 @@ def say_varying(answers: "Iterable[Answer]") -> None:
             if line := growing_run(answer):
                 show_text("\nThis shows errors grow:\n")
                 show_command(line)
-
-
-def _times_least(row: Row) -> str:
-    times = row["times_least"]
-    return times_words(times) if isinstance(times, float) else MISSING
-
-
-def _both_times_least(row: Row) -> str:
-    velocity = row["times_least_velocity"]
-    return f"{_times_least(row)}; velocity: {times_words(velocity)}" if isinstance(velocity, float) else MISSING
-
-
-def _both_errors(row: Row) -> str:
-    error, velocity = row["total_error"], row["velocity_error"]
-    return MISSING if error is None else f"{formatted(error, '.1e')}; velocity: {formatted(velocity, '.1e')}"
-
-
-NARROW_ACCURACY = [column("error", "total_error", ".1e"), Column("× least", _times_least)]
-"""What accuracy a feedback costs, of the constraint alone: beside the columns of poles within 80 characters."""
-
-
-def _safe_speed(row: Row) -> str:
-    speed = row["safe_speed"]
-    return "any" if speed is None and row["moving_verdict"] == "converges" else formatted(speed, ".3g")
-
-
-MOVING_COLUMNS = [
-    column("κ (1/s)", "kappa", ".4g"),
-    column("|χ|", "chi_abs", ".3f"),
-    column("|z| moving", "z_abs_moving", ".6f"),
-    column("|z| at worst", "z_abs_worst", ".6f"),
-    column("moving verdict", "moving_verdict"),
-    Column("safe to speed", _safe_speed),
-]
-"""What --scene adds."""
-
-
-def _limit_text(gain: str) -> Column:
-    """Return the column of a gain's largest stable value: any, or that none helps."""
-
-    def text(row: Row) -> str:
-        limit = row[f"{gain}_max"]
-        if limit is None:
-            return "any" if row["verdict"] == "converges" else "none helps"
-        return formatted(limit, ".4g")
-
-    return Column(f"{gain} to", text)
-
-
-def _used_up(row: Row) -> str:
-    """Return which gain is nearest its limit, and how much of that it is."""
-    gain = row["used_up"]
-    if gain is None:
-        return formatted(gain)
-    value, limit = row[f"{gain}"], row[f"{gain}_max"]
-    if not (isinstance(value, float) and isinstance(limit, float) and limit):  # out of range, or none of it
-        return str(gain)
-    return f"{gain} {100 * value / limit:.0f} %"
-
-
-DRIVE_COLUMNS = [
-    column("applied", "drive"),
-    column("kp", "kp", ".4g"),
-    _limit_text("kp"),
-    column("kd", "kd", ".4g"),
-    _limit_text("kd"),
-    Column("used up", _used_up),
-]
-"""What --pd adds."""
-
-
-def added_columns(question: "Question") -> list[Column]:
-    """Return the columns that a scene, a range of steps, and a drive or else the motion add to those of a point."""
-    moving = MOVING_COLUMNS if question.scene else []
-    varying = [column("varying steps", "varying")] if question.steps else []
-    return [*moving, *varying, *(DRIVE_COLUMNS if question.drive else accuracy_columns(question.motion))]
-
-
-def accuracy_columns(motion: "ReferenceMotion") -> list[Column]:
-    """Return the columns of what accuracy a feedback costs: all but the steady share, which is seldom another."""
-    return [
-        Column(f"error at ωh = {float(motion.omega_h):.3g}", _both_errors),
-        column("order left", "order_left", "d"),
-        Column("times the least error", _both_times_least),
-    ]
 
 
 LARGE = 10

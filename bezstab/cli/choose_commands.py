@@ -1,7 +1,6 @@
 """Commands that answer which parameters to take: choose, check, engines, explore."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from decimal import ROUND_FLOOR, Context
 from fractions import Fraction
 from itertools import groupby
 from typing import TYPE_CHECKING
@@ -9,7 +8,6 @@ from typing import TYPE_CHECKING
 import click
 
 from bezstab.cli.asking import (
-    added_columns,
     as_typed_option,
     asked,
     drive_option,
@@ -43,18 +41,18 @@ from bezstab.engines import ENGINES, RUN_UNDERNEATH, Drive, Engine
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method
 from bezstab.show import (
-    MISSING,
-    Column,
+    CHECKED,
+    CHOICES,
+    ENGINES_LISTED,
+    LARGEST_STEPS,
     Format,
     Row,
     answer_row,
     answer_sentence,
-    column,
     costs_words,
-    formatted,
     largest_step_row,
     motion_words,
-    step_limit,
+    safe_step_text,
     trade_words,
 )
 
@@ -63,56 +61,8 @@ if TYPE_CHECKING:
     from bezstab.stability import Goal
 
 
-def range_column(heading: str, low_key: str, high_key: str) -> Column:
-    """Return the column of the factors by which something may be scaled: 0.45 to 1.6; without an upper end, to any."""
-
-    def text(row: Row) -> str:
-        low, high = row[low_key], row[high_key]
-        if low is None:
-            return MISSING
-        return f"{formatted(low, '.3g')} to {'any' if high is None else formatted(high, '.3g')}"
-
-    return Column(heading, text)
-
-
-def _largest_step(row: Row) -> str:
-    """Return the largest stable step; a stable point without one is stable at any."""
-    limit = step_limit(row)
-    known = row["verdict"] == "converges" and row["margins_reason"] is None
-    if limit is None and row["h"] is not None and known:
-        return "unlimited"
-    return formatted(limit, ".4g")
-
-
-def _searched(row: Row) -> str:
-    strongest = row["searched"]
-    return "all" if strongest is None else f"αh, βh to {strongest:g}"
-
-
-CHOICES = [
-    column("method", "method"),
-    column("goal", "goal"),
-    column("α̂", "alpha_hat", ".6f"),
-    column("β̂", "beta_hat", ".6f"),
-    column("α (1/s)", "alpha", ".6g"),
-    column("β (1/s)", "beta", ".6g"),
-    column("verdict", "verdict"),
-    column("|z_p|", "z_abs", ".4f"),
-    column("∠z_p (deg)", "z_angle_deg", ".1f"),
-    column("|z_p| within the spread", "worst", ".4f"),
-    column("steps to 1/1000", "settle_steps", "d"),
-    column("seconds to 1/1000", "settle_seconds", ".3g"),
-    Column("stable for constant h (s) to", _largest_step),
-    range_column("α times", "alpha_factor_min", "alpha_factor_max"),
-    range_column("β times", "beta_factor_min", "beta_factor_max"),
-]
-PASTE = column("to paste", "setting")
-SEARCHED = Column("searched", _searched)
-
-
-def choice_columns(rows: Sequence[Row]) -> list[Column]:
-    """Return the columns of choices; how strong a feedback was searched where some region has no end."""
-    return [*CHOICES, SEARCHED] if any(row["searched"] is not None for row in rows) else CHOICES
+WITHOUT_ACCURACY = ("total_error", "order_left", "times_least_velocity")
+"""What tables of a drive leave out: nothing feeds its target's acceleration forward."""
 
 
 @click.command()
@@ -194,7 +144,7 @@ def choose(
     prepare(question)
     chosen = list(progress(answers(question), question.goal or "", len(question.methods)))
     rows = [answer_row(answer) for answer in chosen]
-    columns = [*choice_columns(rows), *added_columns(question), *([PASTE] if engine else [])]
+    columns = CHOICES.columns(rows, WITHOUT_ACCURACY if drive else ())
     show_rows(rows, columns, form, sentence=answer_sentence)
     say_unknown_costs(chosen)
     if for_reading(form):
@@ -295,20 +245,20 @@ def check(
     given = [answer for answer in found if answer.role == "given"]
     rows = [answer_row(answer) for answer in found]
     given_rows, instead_rows = ([row for row in rows if row["role"] == role] for role in ("given", "instead"))
-    columns = [*choice_columns(rows), *added_columns(question)]
+    without = WITHOUT_ACCURACY if drive else ()
     if for_reading(form):
-        show_rows(given_rows, columns, form, sentence=answer_sentence)
+        show_rows(given_rows, CHECKED.columns(given_rows, without), form, sentence=answer_sentence)
         say_varying(given)
         for sentence in map(costs_words, given if not drive else ()):
             if sentence:
                 show_text(f"\n{sentence}")
         if instead_rows:
             show_text("\nWhat `choose` gives instead:\n")
-            show_rows(instead_rows, [*columns, *([PASTE] if engine else [])], form, sentence=answer_sentence)
+            show_rows(instead_rows, CHECKED.columns(instead_rows, without), form, sentence=answer_sentence)
         if not drive:
             show_text(f"\n{motion_words(question.motion)}")
     else:
-        show_rows(rows, columns, form)
+        show_rows(rows, [], form)
     say_unknown_costs(found)
     say_what_was_made(question, form)
     context.exit(0 if all(answer.safe for answer in given) else 1)
@@ -325,24 +275,6 @@ def _with_instead(given: "Iterable[Answer]") -> "Iterator[Answer]":
             say(f"bezstab: nothing instead: {error}")
 
 
-def _largest_safe_step(row: Row) -> str:
-    """Return the largest safe step (s) to four digits, rounded down so that it is safe; unlimited, or none."""
-    limit = row["h_limit"]
-    if not row["safe"]:
-        return "none"
-    if not isinstance(limit, float) or limit == float("inf"):
-        return "unlimited"
-    return f"{float(Context(prec=4, rounding=ROUND_FLOOR).create_decimal_from_float(limit)):.4g}"
-
-
-LIMITS_OF_STEPS = [
-    column("method", "method"),
-    column("α (1/s)", "alpha", ".6g"),
-    column("β (1/s)", "beta", ".6g"),
-    Column("stable for constant h (s) to", _largest_safe_step),
-]
-
-
 def _check_without_step(methods: Sequence[Method], point: tuple[Fraction, Fraction] | None, form: Format) -> bool:
     """Print up to which step alpha and beta (1/s) are safe with each method; return whether each has such a step."""
     from bezstab.questions import largest_step, methods_for
@@ -350,31 +282,17 @@ def _check_without_step(methods: Sequence[Method], point: tuple[Fraction, Fracti
     if point is None:
         raise click.UsageError("--alpha and --beta are needed, or --engine, or --pd")
     found = [largest_step(method, *point) for method in methods_for(tuple(methods), None, None)]
-    show_rows([largest_step_row(each) for each in found], LIMITS_OF_STEPS, form, sentence=step_sentence)
+    rows = [largest_step_row(each) for each in found]
+    show_rows(rows, LARGEST_STEPS.columns(rows), form, sentence=step_sentence)
     return all(each.safe for each in found)
 
 
 def step_sentence(row: Row) -> str:
     """Return up to which step alpha and beta are safe."""
-    limit = _largest_safe_step(row)
+    limit = safe_step_text(row)
     if limit == "none":
         return "Not safe at small steps."
     return "Safe at any h." if limit == "unlimited" else f"Safe up to h = {limit} s."
-
-
-ENGINES_LISTED = [
-    column("engine", "engine"),
-    column("level", "level"),
-    Column("method", lambda row: formatted(row["method"] or "yours")),
-    column("parameters", "parameters"),
-    column("then", "optional"),
-    column("units", "units"),
-    column("for this point", "setting"),
-    Column("rests on", lambda row: "a run" if row["witness"] else "its source"),
-    column("source", "source"),
-    column("left out", "excludes"),
-    Column("sweeps", lambda row: "yes" if row["sweeps"] else "no"),
-]
 
 
 def engine_sentence(row: Row) -> str:
@@ -402,7 +320,7 @@ def engines(h: Fraction, alpha: Fraction | None, beta: Fraction | None, form: Fo
 
     point = both_or_none(alpha, beta)
     rows = [engine_row(engine, point, h) for engine in ENGINES.values()]
-    show_rows(rows, ENGINES_LISTED, form, sentence=engine_sentence)
+    show_rows(rows, ENGINES_LISTED.columns(rows), form, sentence=engine_sentence)
     if for_reading(form):
         show_text("\nAnd others, by what they run underneath:\n")
         for name, underneath in RUN_UNDERNEATH.items():

@@ -47,7 +47,7 @@ from bezstab.errors import InputError, NumericalError
 from bezstab.files import output_directory
 from bezstab.methods import Method, check_one_step
 from bezstab.rationals import exact
-from bezstab.show import Column, Format, Row, column, formatted, seconds_words, yes_no_column
+from bezstab.show import EXTREMES, SIMULATIONS, SWEPT, Format, Row, cells, diverged_text, formatted, seconds_words
 from bezstab.units import to_dimensionless
 
 if TYPE_CHECKING:
@@ -61,27 +61,6 @@ MOST_LISTED = 20  # times in a message
 
 PREDICTED = ("scene", "speed", "methods", "steps", "omega", "predicted", "levels", "output", "figure", "table", "form")
 """Parameters of tradeoff that go with --predicted."""
-
-EVALUATIONS = column("evaluations", "run_evaluations", "d")
-ITERATIONS = column("Newton's iterations", "iterations", "d")
-SIMULATIONS = [
-    column("scene", "scene"),
-    column("method", "method"),
-    column("α̂", "alpha_hat", ".6g"),
-    column("β̂", "beta_hat", ".6g"),
-    column("h (s)", "h", "g"),
-    column("until (s)", "time", ".6g"),
-    column("largest |c| (m, rad)", "c_max", ".3e"),
-    column("largest |ċ| (m/s, rad/s)", "cdot_max", ".3e"),
-    column("energy drift (J)", "energy_drift", ".3e"),
-    column("work of drivers (J)", "driver_work", ".3e"),
-    column("work of forces (J)", "force_work", ".3e"),
-    EVALUATIONS,
-    column("least pivot", "least_pivot", ".1e"),
-    column("least pivot at (s)", "pivot_time", ".6g"),
-    column("singular passages", "singular_passages", "d"),
-    column("failure", "failure"),
-]
 
 
 def run_sentence(row: Row) -> str:
@@ -181,10 +160,8 @@ def simulate(
     path = output / f"simulate_{file_name(Path(scene).stem)}_{file_name(method.name)}"
     write_table(path, history_arrays(simulation), table)
     write_figure(path, draw, figure)
-    columns = list(SIMULATIONS)
-    if simulation.trajectory.iterations is not None:  # an implicit method
-        columns.insert(columns.index(EVALUATIONS) + 1, ITERATIONS)
-    show_rows([simulation_row(simulation)], columns, form, sentence=run_sentence)
+    rows = [simulation_row(simulation)]
+    show_rows(rows, SIMULATIONS.columns(rows), form, sentence=run_sentence)
     if len(simulation.singular_times):
         say(f"bezstab: {_passages_text(simulation.singular_times.tolist())}")
     if simulation.failure:
@@ -210,43 +187,6 @@ def _check_number_of_steps(time: Fraction, h: Fraction, method: Method) -> None:
         raise InputError(f"--time {float(time):g}: {taken}, expected 1 to {MOST_STEPS:g}")
 
 
-def _error_or_diverged(row: Row) -> str:
-    return "diverged" if row["failure"] else formatted(row["trajectory_error"], ".1e")
-
-
-def _milliseconds(row: Row) -> str:
-    """Return median and range of the processor time of a run: 3.27 (3.24 to 3.41)."""
-    texts: list[str] = []
-    for key in ("seconds", "seconds_min", "seconds_max"):
-        seconds = row[key]
-        assert isinstance(seconds, float)
-        texts.append(formatted(1e3 * seconds, ".3g"))
-    median, shortest, longest = texts
-    return f"{median} ({shortest} to {longest})"
-
-
-RUNS = [
-    column("method", "method"),
-    column("h (s)", "h", "g"),
-    column("α̂", "alpha_hat", ".4g"),
-    column("β̂", "beta_hat", ".4g"),
-    column("|z_p|", "z_abs", ".4f"),
-    Column("trajectory error (m, rad)", _error_or_diverged),
-    column("order seen", "observed_order", ".2f"),
-    column("largest |c| (m, rad)", "c_max", ".1e"),
-    column("in the later half", "measured_error", ".1e"),
-    column("predicted there", "predicted_error", ".1e"),
-    column("rms c (m, rad)", "c_rms", ".1e"),
-    column("largest |ċ| (m/s, rad/s)", "cdot_max", ".1e"),
-    column("rms ċ (m/s, rad/s)", "cdot_rms", ".1e"),
-    column("energy drift (J)", "energy_drift", ".1e"),
-    column("evaluations", "run_evaluations", "d"),
-    Column("time (ms)", _milliseconds),
-    column("front", "front"),
-    column("failure", "failure"),
-]
-
-
 def cost_sentence(row: Row) -> str:
     """Return what one run costs and what it buys."""
     h = row["h"]
@@ -254,7 +194,7 @@ def cost_sentence(row: Row) -> str:
     with_step = f"{row['method']} with h = {seconds_words(h)}"
     if row["failure"]:
         return f"{with_step} diverged."
-    return f"{with_step}: a trajectory error of {_error_or_diverged(row)} for {row['run_evaluations']} evaluations."
+    return f"{with_step}: a trajectory error of {diverged_text(row)} for {row['run_evaluations']} evaluations."
 
 
 @click.command()
@@ -382,7 +322,7 @@ def tradeoff(
         write_figure(path.with_name(f"{path.name}_trajectory"), for_trajectory, figure)
         for_constraint = partial(draw, constraint=True, floor=0.0)
         write_figure(path.with_name(f"{path.name}_constraint"), for_constraint, figure)
-    show_rows(rows, RUNS, form, sentence=cost_sentence)
+    show_rows(rows, SWEPT.columns(rows), form, sentence=cost_sentence)
     if for_reading(form):
         show_text(f"\nThe reference is known to {reference.error:.0e} (m, rad).")
         if recorded:
@@ -483,15 +423,6 @@ def _check_swept_time(time: float, step_sizes: Sequence[float], methods: Sequenc
         raise InputError(f"--time {time:g}: expected one step ({longest:g} s) to {MOST_SWEPT:g} ({most:g} s)")
 
 
-CHECKS = [
-    column("group", "group"),
-    column("case", "case"),
-    column("expected", "expected"),
-    column("seen", "seen"),
-    yes_no_column("held", "held"),
-]
-
-
 def check_sentence(row: Row) -> str:
     """Return whether what was expected came out."""
     return "As expected." if row["held"] else "NOT as expected."
@@ -512,9 +443,9 @@ def extremes(context: click.Context, short: bool, form: Format) -> None:
     Example: bezstab extremes --short
     """
     from bezstab.evidence import extreme_checks
-    from bezstab.show import row
 
     checks = list(extreme_checks(not short))
     outcomes = [check() for check in progress(checks, "extremes")]
-    show_rows([row(outcome) for outcome in outcomes], CHECKS, form, sentence=check_sentence)
+    rows = [cells(EXTREMES.fields, outcome) for outcome in outcomes]
+    show_rows(rows, EXTREMES.columns(rows), form, sentence=check_sentence)
     context.exit(0 if all(outcome.held for outcome in outcomes) else 1)

@@ -6,28 +6,7 @@ import click
 
 from bezstab.cli.options import format_option
 from bezstab.cli.output import for_reading, progress, show_rows, show_text
-from bezstab.show import Column, Format, Row, column, formatted
-
-
-def _factor(row: Row) -> str:
-    """Return up to how many times the step it is stable: any where there is no end, none where no step is."""
-    if row["h_factor"] is None and row["verdict"] is not None:
-        return "none" if row["verdict"] == "diverges" else "any"
-    return formatted(row["h_factor"], ".4g")
-
-
-LINTED = [
-    column("element", "element"),
-    column("kind", "kind"),
-    column("judged", "judged"),
-    column("α̂", "alpha_hat", ".4f"),
-    column("β̂", "beta_hat", ".4f"),
-    column("map", "map"),
-    column("verdict", "verdict"),
-    column("|z|", "z_abs", ".4f"),
-    Column("stable for h times", _factor),
-    column("advice", "advice"),
-]
+from bezstab.show import LINTED, Format
 
 
 @click.command()
@@ -56,7 +35,8 @@ def lint(context: click.Context, model: Path, form: Format) -> None:
     linted = list(progress(linted_model(model_data), "lint", model_data.size))
     heading = f"{model.name}: timestep {model_data.h:g} s, integrator {model_data.integrator}"
     if linted or not for_reading(form):
-        show_rows([linted_row(each) for each in linted], LINTED, form, heading)
+        rows = [linted_row(each) for each in linted]
+        show_rows(rows, LINTED.columns(rows), form, heading)
     else:
         show_text(
             f"{heading}\n\nNothing to judge: no equality, limit, friction loss, contact, spring, damper or drive."

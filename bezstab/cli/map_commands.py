@@ -7,11 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from bezstab.cli.accuracy_maps import ACCURATE, Window, accuracy_keys, accurate_choice, say_combined, write_accuracy_map
+from bezstab.cli.accuracy_maps import Window, accuracy_keys, accurate_choice, say_combined, write_accuracy_map
 from bezstab.cli.asking import (
-    DRIVE_COLUMNS,
-    MOVING_COLUMNS,
-    NARROW_ACCURACY,
     as_typed_option,
     asked,
     drive_option,
@@ -60,16 +57,18 @@ from bezstab.errors import InputError, NumericalError
 from bezstab.files import output_directory
 from bezstab.methods import GROUPS, Method, lookup
 from bezstab.show import (
+    LISTED_METHODS,
+    MEMBERS,
     NOT_KNOWN,
+    POLES,
     PROPERTIES,
+    REGIONS,
     Column,
     Format,
     Row,
     column,
-    formatted,
-    pole_column,
+    order_text,
     safety_words,
-    stable_steps_words,
     transposed,
     with_unbounded,
 )
@@ -86,27 +85,6 @@ NUMERICAL_TROUBLE = 3
 """Exit status where a part of an answer could not be found: the rest is printed, with the reason."""
 
 MOST_DRAWN = 1e100  # of a window's ends: their squares are drawn as well
-MOST_FIXED = 1e6  # a modulus from here on is shown with an exponent
-
-
-def modulus_column(heading: str, key: str) -> Column:
-    """Return the column of a modulus: six decimals, or an exponent where it is huge."""
-
-    def text(row: Row) -> str:
-        modulus = row[key]
-        huge = isinstance(modulus, float) and modulus >= MOST_FIXED
-        return formatted(modulus, ".6e" if huge else ".6f")
-
-    return Column(heading, text)
-
-
-POLES = [
-    column("method", "method"),
-    pole_column("pole z"),
-    modulus_column("|z|", "z_abs"),
-    column("∠z (deg)", "z_angle_deg", ".3f"),
-    column("verdict", "verdict"),
-]
 
 
 def pole_sentence(row: Row) -> str:
@@ -171,11 +149,10 @@ def poles(
     rows: list[Row] = []
     for each in at_point:
         z = poles_of(each.method, each.alpha_hat, each.beta_hat).reshape(-1)
-        added = {**engine_cells(each), **added_cells(each), "safe": each.safe}
-        rows += [{**row, **added} for row in pole_rows(each.method, each.alpha_hat, each.beta_hat, z, each.verdict)]
+        added = {**engine_cells(each), **added_cells(each)}
+        rows += [{**row, **added} for row in pole_rows(each, z)]
     costs_shown = not (all_poles or drive)
-    columns = [*POLES, *(NARROW_ACCURACY if costs_shown else []), *(MOVING_COLUMNS if scene else [])]
-    columns += DRIVE_COLUMNS if drive else []
+    columns = POLES.columns(rows, () if costs_shown else ("total_error", "times_least"))
     sentence = one_pole_sentence if all_poles else pole_sentence
     alpha_hat, beta_hat = map(float, question.given.point)
     show_rows(rows, columns, form, f"α̂ = {alpha_hat:.10g}, β̂ = {beta_hat:.10g}", sentence)
@@ -183,31 +160,6 @@ def poles(
     if costs_shown and for_reading(form):
         show_text(f"\n{motion_words(question.motion)}")
     say_what_was_made(question, form)
-
-
-def unbounded_column(heading: str, key: str, form: str) -> Column:
-    """Return the column of an area or a limit of a region: the word "unbounded" where there is none."""
-
-    def text(row: Row) -> str:
-        value = with_unbounded(row)[key]
-        return value if isinstance(value, str) else formatted(value, form)
-
-    return Column(heading, text)
-
-
-REGIONS = [
-    column("method", "method"),
-    unbounded_column("area", "area", ".10g"),
-    unbounded_column("α̂ from", "alpha_hat_min", ".6g"),
-    unbounded_column("α̂ to", "alpha_hat_max", ".8g"),
-    unbounded_column("β̂ from", "beta_hat_min", ".6g"),
-    unbounded_column("β̂ to", "beta_hat_max", ".8g"),
-    Column("βh to (α = β)", stable_steps_words),
-    column("least |z_p|", "best_z_abs", ".8f"),
-    column("best α̂", "best_alpha_hat", ".8f"),
-    column("best β̂", "best_beta_hat", ".8f"),
-    column("poles there", "best_where"),
-]
 
 
 def region_sentence(row: Row) -> str:
@@ -220,15 +172,6 @@ def region_sentence(row: Row) -> str:
         return f"{row['method']} {what} {size}."
     best = f"({row['best_alpha_hat']:.4g}, {row['best_beta_hat']:.4g})"
     return f"{row['method']} {what} {size}; the least |z_p| is {row['best_z_abs']:.3g}, at α̂, β̂ = {best}."
-
-
-LEVELS = [column("|z_p| below", "z_abs_below", "g")]
-
-MOVING_REGIONS = [
-    column("speed", "speed", "g"),
-    column("κ (1/s)", "kappa", ".4g"),
-    column("area moving", "area_moving", ".6g"),
-]
 
 
 @click.command()
@@ -332,9 +275,8 @@ def region(
             return _region_rows(method, chosen_levels, *drawn, alpha_beta, turnings, scene)
 
         rows, complete = _each_for_itself(methods, rows_of)
-    name, *shape = REGIONS
-    added = ACCURATE if motion else MOVING_REGIONS if scene else []
-    show_rows(rows, [name, *(LEVELS if levels else []), *shape, *added], form, sentence=region_sentence)
+    columns = REGIONS.columns(rows, () if levels else ("z_abs_below",))
+    show_rows(rows, columns, form, sentence=region_sentence)
     if motion and for_reading(form):
         say_combined(motion)
     if not complete or any(str(row["best_reason"]).startswith(NOT_KNOWN) for row in rows):
@@ -647,44 +589,12 @@ def _engine_marks(engine: Engine, h: Fraction) -> dict[str, tuple[float, float]]
     return marks
 
 
-def _order_text(row: Row) -> str:
-    """Return the order of accuracy, with that for forces of position alone in parentheses if it is another."""
-    order, without_velocity = row["order"], row["order_position_forces"]
-    return str(order) if order == without_velocity else f"{order} ({without_velocity})"
-
-
-def _constant_text(row: Row) -> str:
-    """Return the error constant as a rational, or as a decimal where it is none."""
-    return formatted(
-        row["error_constant_exact"] or row["error_constant"], "" if row["error_constant_exact"] else ".10g"
-    )
-
-
-METHODS = [
-    column("method", "method"),
-    column("steps", "steps", "d"),
-    column("evaluations", "evaluations", "d"),
-    column("order of accuracy", "order", "d"),
-    column("error constant", "error_constant", ".10g"),
-    column("source", "source"),
-]
-LISTED = [
-    column("method", "method"),
-    column("steps", "steps", "d"),
-    column("evaluations", "evaluations", "d"),
-    Column("order", _order_text),
-    Column("error constant", _constant_text),
-    Column("implicit", lambda row: "yes" if row["implicit"] else ""),
-]
-"""What fits into a line of 80 characters."""
-
-
 def method_sentence(row: Row) -> str:
     """Return what a method is: explicit or not, its order, what a step of it costs."""
     kind = "implicit" if row["implicit"] else "explicit"
     count = "1 evaluation" if row["evaluations"] == 1 else f"{row['evaluations']} evaluations"
     each = "iteration" if row["implicit"] else "step"
-    return f"{row['method']} is {kind}, of order {_order_text(row)}, with {count} in each {each}."
+    return f"{row['method']} is {kind}, of order {order_text(row)}, with {count} in each {each}."
 
 
 def whole_method_sentence(row: Row) -> str:
@@ -713,23 +623,23 @@ def methods(methods: Sequence[Method], latex: bool, form: Format) -> None:
 
     if not methods:
         listed = [
-            (group, [{**method_row(lookup(name)), "method": name, "group": group.heading} for name in group.methods])
-            for group in GROUPS
+            (group, [method_row(lookup(name), name, group.heading) for name in group.methods]) for group in GROUPS
         ]
         if form == "text":
             show_groups(
                 [("\n".join(filter(None, (group.heading, group.note))), rows) for group, rows in listed],
-                LISTED,
+                LISTED_METHODS.columns([row for _, rows in listed for row in rows], ("source",)),
                 method_sentence,
             )
         else:
-            show_rows([row for _, rows in listed for row in rows], METHODS, form)
+            rows = [row for _, of_group in listed for row in of_group]
+            show_rows(rows, LISTED_METHODS.columns(rows), form)
         return
     from bezstab.stability import best_point_or_reason, region
 
     rows = [whole_row(method, region(method), *best_point_or_reason(method), latex=latex) for method in methods]
     if form in ("json", "csv"):
-        show_rows(rows, METHODS, form)
+        show_rows(rows, [], form)
         return
     for number, row in enumerate(rows):
         if form == "markdown":
@@ -746,22 +656,6 @@ def methods(methods: Sequence[Method], latex: bool, form: Format) -> None:
 def property_column(key: str, row: Row) -> Column:
     """Return the column of a key as a row is read from top to bottom: numbers to ten digits."""
     return column(key.replace("_", " "), key, ".10g" if isinstance(row[key], float) else "")
-
-
-def _steps_or_limit(row: Row) -> str:
-    return formatted(row["steps"]) if row["steps"] else "limit"
-
-
-FAMILY = [
-    Column("steps", _steps_or_limit),
-    column("method", "method"),
-    column("area", "area", ".10g"),
-    column("α̂ to", "alpha_hat_max", ".8g"),
-    column("β̂ to", "beta_hat_max", ".8g"),
-    column("least |z_p|", "best_z_abs", ".8f"),
-    column("order of accuracy", "order", "d"),
-    column("error constant", "error_constant", ".6f"),
-]
 
 
 def member_sentence(row: Row) -> str:
@@ -809,5 +703,5 @@ def family(name: str, first: int, last: int | None, output: Path, figure: Figure
             families[other] = members if other == name else family_members(other, 2, most)
         return family_figure(families, name, limit if name == "bezier" else None)
 
-    show_rows(rows, FAMILY, form, sentence=member_sentence)
+    show_rows(rows, MEMBERS.columns(rows), form, sentence=member_sentence)
     write_figure(output / f"family_{name}", draw, figure)

@@ -26,7 +26,7 @@ from bezstab.cli.output import for_reading, show_rows, show_text
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import REGISTRY, Method, lookup
 from bezstab.rationals import rational
-from bezstab.show import Column, Format, Row, column, formatted, yes_no_column
+from bezstab.show import PROBED, Format, Row
 from bezstab.units import to_dimensionless
 
 if TYPE_CHECKING:
@@ -47,49 +47,6 @@ EXCLUDED_SHOWN = 5
 
 FASTER = 3.0
 """Times what is allowed for: so much faster a mechanism may turn than somebody guessed."""
-
-
-def _pole_text(row: Row) -> str:
-    real, imaginary = row["z_real"], row["z_imag"]
-    if not isinstance(real, float) or not isinstance(imaginary, float):
-        return formatted(None)
-    return f"{real:.7f} ± {imaginary:.7f}i" if imaginary else f"{real:.7f}"
-
-
-FITS: Sequence[Column] = (
-    column("column", "column"),
-    Column("pole z, per row", _pole_text),
-    column("|z|", "z_abs", ".7f"),
-    column("∠z (deg)", "z_angle_deg", ".4f"),
-    column("± of z", "uncertainty", ".1e"),
-    column("rows", "samples"),
-    column("what is to be said of it", "reason"),
-)
-
-LIKENESSES: Sequence[Column] = (
-    column("column", "column"),
-    column("method", "method"),
-    column("|z| there", "predicted_z_abs", ".7f"),
-    column("∠z (deg)", "predicted_z_angle_deg", ".4f"),
-    column("distance", "distance", ".1e"),
-    column("allowed", "allowed", ".1e"),
-    yes_no_column("fits", "fits"),
-)
-
-
-def _with_error(key: str, error_key: str) -> Callable[[Row], str]:
-    """Return what shows a number with its error."""
-    return lambda row: f"{formatted(row[key], '.7g')} ± {formatted(row[error_key], '.1e')}"
-
-
-POINTS: Sequence[Column] = (
-    column("column", "column"),
-    column("method", "method"),
-    Column("α̂", _with_error("alpha_hat", "alpha_hat_error")),
-    Column("β̂", _with_error("beta_hat", "beta_hat_error")),
-)
-
-POINTS_IN_SECONDS: Sequence[Column] = (column("α (1/s)", "alpha", ".7g"), column("β (1/s)", "beta", ".7g"))
 
 
 def _turning(text: str) -> Fraction:
@@ -206,7 +163,7 @@ def probe(
             untold.append(f"{name}: {found.reason}")
         elif not any(one.fits for one in like):
             unfit.append(name)
-    _show(answers, form, in_seconds=step is not None)
+    _show(answers, form)
     if len(untold) + len(unfit) == len(groups):
         failures = [f"no pole can be told: {'; '.join(untold)}"] if untold else []
         failures += [f"nothing fits {', '.join(unfit)}"] if unfit else []
@@ -274,19 +231,16 @@ def _invert(
             answers.sentences.append(f"{column_name}: {method.name} has this pole for its dominant one nowhere.")
 
 
-def _show(answers: Answers, form: Format, in_seconds: bool) -> None:
+def _show(answers: Answers, form: Format) -> None:
     """Print all rows; for reading in a table of each kind, with the sentences below."""
     if not for_reading(form):
-        show_rows([*answers.fits, *answers.likenesses, *answers.points], FITS, form)
+        show_rows([*answers.fits, *answers.likenesses, *answers.points], [], form)
         return
-    show_rows(answers.fits, FITS, form)
-    for rows, columns in (
-        (_nearest(answers.likenesses), LIKENESSES),
-        (answers.points, [*POINTS, *(POINTS_IN_SECONDS if in_seconds else ())]),
-    ):
+    show_rows(answers.fits, PROBED.columns(answers.fits), form)
+    for rows in (_nearest(answers.likenesses), answers.points):
         if rows:
             click.echo()
-            show_rows(rows, columns, form)
+            show_rows(rows, PROBED.columns(rows, ("reason",)), form)
     for sentence in answers.sentences:
         show_text(f"\n{sentence}")
 

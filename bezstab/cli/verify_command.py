@@ -35,7 +35,7 @@ from bezstab.cli.output import (
     write_table,
 )
 from bezstab.methods import Method
-from bezstab.show import Column, Format, Row, column, formatted, yes_no_column
+from bezstab.show import FORCED, MEASUREMENTS, VERDICT_MAPS, WITNESSED, Format, Row, column, formatted
 from bezstab.units import to_dimensionless
 
 if TYPE_CHECKING:
@@ -48,23 +48,6 @@ RANDOM_POINTS = 20  # unless told otherwise
 NUMERICAL_TROUBLE = 3
 """Exit status where runs break down, or show nothing but rounding."""
 
-MEASUREMENTS = [
-    column("method", "method"),
-    column("α̂", "alpha_hat", ".6f"),
-    column("β̂", "beta_hat", ".6f"),
-    column("predicted |z|", "predicted_z_abs", ".6f"),
-    column("|z| by the law", "law_z_abs", ".6f"),
-    column("measured |z|", "measured_z_abs", ".6f"),
-    column("difference of |z|", "difference_z_abs", "+.1e"),
-    column("predicted ∠z (deg)", "predicted_z_angle_deg", ".3f"),
-    column("measured ∠z (deg)", "measured_z_angle_deg", ".3f"),
-    column("difference of ∠z (deg)", "difference_z_angle_deg", "+.0e"),
-    column("predicted verdict", "predicted_verdict"),
-    column("measured verdict", "measured_verdict"),
-    yes_no_column("verdicts agree", "verdicts_agree"),
-    column("not measurable because", "reason"),
-]
-
 
 def measurement_sentence(row: Row) -> str:
     """Return the predicted and the measured modulus, and whether the verdicts agree."""
@@ -76,15 +59,6 @@ def measurement_sentence(row: Row) -> str:
         return f"Not measurable: {row['reason']}.{verdict}"
     predicted, measured = formatted(row["predicted_z_abs"], ".6f"), formatted(row["measured_z_abs"], ".6f")
     return f"Predicted |z| {predicted}, measured {measured}: {ends[agree]}."
-
-
-def rate_columns(periodic: bool) -> list[Column]:
-    """Return the columns of --floquet: of a motion that does not begin anew no rate is exact."""
-    return [
-        column("measured over the motion", "measured_rate", ".6f"),
-        column("exact |z|" if periodic else "|z| over the run", "floquet_z_abs", ".6f"),
-        column("whose verdict was right", "right"),
-    ]
 
 
 SUMMARIES = [
@@ -110,21 +84,6 @@ def summary_sentence(row: Row) -> str:
     return f"{row['method']}: {row['measured']} of {row['points']} points measured, {row['wrong']} wrong verdicts."
 
 
-VERDICT_MAPS = [
-    column("scene", "scene"),
-    column("method", "method"),
-    column("runs", "runs", "d"),
-    column("steps of each", "run_steps", "d"),
-    column("gave a verdict", "judged_runs", "d"),
-    column("as predicted", "agreeing", "d"),
-    column("agreement", "agreeing_share", ".2%"),
-    column("too close to call: | |z_p| - 1 | below", "band", "g"),
-    column("too close, or moved by so much", "too_close", "d"),
-    column("largest | |z_p| - 1 | that disagrees", "farthest", ".2e"),
-    column("disagreeing, not too close", "disagreeing", "d"),
-]
-
-
 def verdict_map_sentence(row: Row) -> str:
     """Return how many runs gave a verdict, how many of these are as predicted, and how many others must not differ."""
     if not row["judged_runs"]:
@@ -133,42 +92,12 @@ def verdict_map_sentence(row: Row) -> str:
     return f"{row['method']}: {given}; {row['disagreeing']} that are not too close to call differ."
 
 
-FORCED = [
-    column("method", "method"),
-    column("gains", "gain_share", "g"),
-    column("α̂", "alpha_hat", ".4g"),
-    column("β̂", "beta_hat", ".4g"),
-    column("h (s)", "h", "g"),
-    column("predicted |c|", "predicted_error", ".2e"),
-    column("measured |c|", "measured_error", ".2e"),
-    column("quotient", "quotient", ".3f"),
-    column("order predicted", "predicted_order", ".2f"),
-    column("order seen", "observed_order", ".2f"),
-    column("not compared", "reason"),
-]
-
-
 def forced_sentence(row: Row) -> str:
     """Return what was measured of a run, over what was predicted."""
     at = f"{row['method']} at {row['gain_share']:g} of the gains, steps of {row['h']:g} s"
     if row["reason"]:
         return f"{at}: not compared: {row['reason']}."
     return f"{at}: |c| is {formatted(row['quotient'], '.3f')} times what was predicted."
-
-
-WITNESSED = [
-    column("scene", "scene"),
-    column("MuJoCo's integrator", "integrator"),
-    column("method", "method"),
-    column("α̂", "alpha_hat", ".4f"),
-    column("β̂", "beta_hat", ".4f"),
-    column("times the boundary", "times_boundary", "g"),
-    column("predicted |z|", "predicted_z_abs", ".4f"),
-    column("predicted verdict", "predicted_verdict"),
-    column("verdict seen", "measured_verdict"),
-    column("largest |c| at the end (m)", "remaining", ".1e"),
-    column("after steps", "run_steps", "d"),
-]
 
 
 def witness_sentence(row: Row) -> str:
@@ -251,11 +180,12 @@ def verify(
     if accuracy:
         click.get_current_context().exit(_show_forced_errors(mechanism, methods, float(h), point, form))
     if witness:
-        show_rows(_witness_rows(mechanism, float(h)), WITNESSED, form, sentence=witness_sentence)
+        rows = _witness_rows(mechanism, float(h))
+        show_rows(rows, WITNESSED.columns(rows), form, sentence=witness_sentence)
     elif cells is None:
         _show_measurements(mechanism, methods, float(h), point, points or RANDOM_POINTS, floquet, form)
     else:
-        rows: list[Row] = []
+        rows = []
         for method in methods:
             path = output / f"verify_{file_name(Path(scene).stem)}_{file_name(method.name)}"
             job = f"--map {cells} --h {h} {method} {mechanism.scene}"
@@ -263,7 +193,7 @@ def verify(
                 mechanism, method, float(h), cells, path, job, workers, scheduler, resume, figure, table
             )
             rows.append(verdict_map_row(verdicts))
-        show_rows(rows, VERDICT_MAPS, form, sentence=verdict_map_sentence)
+        show_rows(rows, VERDICT_MAPS.columns(rows), form, sentence=verdict_map_sentence)
 
 
 def _witness_rows(mechanism: "Mechanism", h: float) -> list[Row]:
@@ -298,7 +228,7 @@ def _show_forced_errors(
         rows += [row for pair in pairs for row in forced_rows(mechanism.scene.name, pair)]
         conclusions.append(_conclusion(method, pairs))
         outcomes |= {pair.holds for pair in pairs}
-    show_rows(rows, FORCED, form, sentence=forced_sentence)
+    show_rows(rows, FORCED.columns(rows), form, sentence=forced_sentence)
     if for_reading(form):
         click.echo()
         for conclusion in conclusions:
@@ -353,7 +283,8 @@ def _show_measurements(
         own_rows = [measurement_row(mechanism.scene.name, measurement) for measurement in measurements]
         rows += own_rows
         summaries.append(summary_row(own_rows))
-    show_rows(rows, MEASUREMENTS + (rate_columns(periodic) if floquet else []), form, sentence=measurement_sentence)
+    columns = MEASUREMENTS.columns(rows, () if floquet else ("right",))
+    show_rows(rows, columns, form, sentence=measurement_sentence)
     if floquet and for_reading(form):
         for method in methods:
             if not periodic:

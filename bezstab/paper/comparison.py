@@ -16,7 +16,7 @@ from bezstab.paper.findings import Finding, finding
 from bezstab.paper.printed import COMPARED, TABLE_5, PrintedCase, PrintedPole
 from bezstab.paper.reports import Progress, Report, captioned_table, pole_cells
 from bezstab.rationals import exact
-from bezstab.show import Row, column, column_figure, history_line, legend_below, line_at, pole_column, styled
+from bezstab.show import Column, Row, column, column_figure, history_line, legend_below, line_at, pole_text, styled
 from bezstab.stability import dominant_pole, feedback_cost, verdict
 
 ROUNDED = 1e-13  # m: below, c_1 is rounding amplified by beta^2 h^2 / |1 - z|, and differs between machines
@@ -31,7 +31,7 @@ PRINTED_POLES = [
     column("α̂", "alpha_hat", "g"),
     column("β̂", "beta_hat", "g"),
     column("method", "method"),
-    pole_column("dominant pole"),
+    Column("dominant pole", pole_text),
     column("|z_p|", "z_abs", ".4f"),
     column("∠z_p (deg)", "z_angle_deg", ".3f"),
     column("as printed (*: not ours)", "printed"),

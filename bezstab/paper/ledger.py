@@ -8,7 +8,7 @@ from typing import get_args
 from bezstab.paper import comparison, cost, drift, influence, methods, regions, slider_crank
 from bezstab.paper.findings import Agreement, Finding
 from bezstab.paper.reports import Progress, Report
-from bezstab.show import Row, column, render
+from bezstab.show import CLAIMS, Row, render
 
 
 @dataclass(frozen=True)
@@ -31,13 +31,7 @@ SUBJECTS = (
 )
 """In the order of the ledger."""
 
-FINDINGS = [
-    column("where", "where"),
-    column("claim", "claim"),
-    column("paper", "paper"),
-    column("here", "here"),
-    column("agreement", "agreement"),
-]
+FINDINGS = [field.column for field in CLAIMS.fields]
 
 
 def finding_rows(findings: Sequence[Finding]) -> list[Row]:

@@ -5,8 +5,10 @@ A file imports only from those above it; what draws is not loaded before it is u
     columns             typed columns, and rows as text, Markdown, CSV or JSON
     blocks              rows as blocks of lines, and text that wraps
     words               numbers as sentences have them
-    vocabulary          what every key of every row means
-    schemas             which keys the rows of each command have
+    cells               what a cell of a table shows where it takes more than a format
+    fields              a field of a row, from which rows, tables and schemas derive
+    row_kinds           every field of every row, and which fields the rows of each command have
+    schemas             the rows that each command prints, as a JSON Schema
     best_point_text     a best point in words
     rows                results as rows
     varying_rows        what steps that vary do, as keys of a row and in a sentence
@@ -33,10 +35,10 @@ from bezstab.show.answer_rows import (
     growing_run,
     largest_step_row,
     motion_words,
-    step_limit,
     trade_words,
 )
 from bezstab.show.blocks import block, fits, wrapped
+from bezstab.show.cells import diverged_text, order_text, pole_text, safe_step_text, stable_steps_text, with_unbounded
 from bezstab.show.columns import (
     MISSING,
     PROPERTIES,
@@ -47,11 +49,33 @@ from bezstab.show.columns import (
     column,
     finite,
     formatted,
-    pole_column,
     render,
     shown_width,
     transposed,
-    yes_no_column,
+)
+from bezstab.show.fields import Field, RowKind, cells
+from bezstab.show.row_kinds import (
+    CHECKED,
+    CHOICES,
+    CLAIMS,
+    ENGINES_LISTED,
+    EXTREMES,
+    FIELDS,
+    FORCED,
+    FRONTS,
+    LARGEST_STEPS,
+    LINTED,
+    LISTED_METHODS,
+    MEASUREMENTS,
+    MEMBERS,
+    POLES,
+    PROBED,
+    REGIONS,
+    ROW_KINDS,
+    SIMULATIONS,
+    SWEPT,
+    VERDICT_MAPS,
+    WITNESSED,
 )
 from bezstab.show.rows import (
     NOT_KNOWN,
@@ -70,19 +94,15 @@ from bezstab.show.rows import (
     pole_rows,
     probed_pole_row,
     region_row,
-    row,
     run_row,
     simulation_row,
-    stable_steps_words,
     summary_row,
     verdict_map_row,
     whole_row,
-    with_unbounded,
     witness_row,
 )
-from bezstab.show.schemas import ROW_KINDS, json_schema
+from bezstab.show.schemas import json_schema
 from bezstab.show.varying_rows import repeated, sequence_text, varying_row, varying_words
-from bezstab.show.vocabulary import VOCABULARY
 from bezstab.show.words import change_words, growth_words, safety_words, seconds_words, times_words
 
 if TYPE_CHECKING:
@@ -139,15 +159,36 @@ LOADED_LATE = {
 __getattr__ = lazy_names(__name__, LOADED_LATE, modules=("plot",))
 
 __all__ = [
+    "CHECKED",
+    "CHOICES",
+    "CLAIMS",
     "DASHES",
+    "ENGINES_LISTED",
+    "EXTREMES",
+    "FIELDS",
+    "FORCED",
+    "FRONTS",
+    "LARGEST_STEPS",
+    "LINTED",
+    "LISTED_METHODS",
+    "MEASUREMENTS",
+    "MEMBERS",
     "MISSING",
     "NOT_KNOWN",
+    "POLES",
+    "PROBED",
     "PROPERTIES",
+    "REGIONS",
     "ROW_KINDS",
-    "VOCABULARY",
+    "SIMULATIONS",
+    "SWEPT",
+    "VERDICT_MAPS",
+    "WITNESSED",
     "Column",
+    "Field",
     "Format",
     "Row",
+    "RowKind",
     "Value",
     "accuracy_map_figure",
     "added_cells",
@@ -155,12 +196,14 @@ __all__ = [
     "answer_sentence",
     "block",
     "boundary_arrays",
+    "cells",
     "change_words",
     "column",
     "column_figure",
     "comparison_figure",
     "complex_parts",
     "costs_words",
+    "diverged_text",
     "engine_cells",
     "engine_row",
     "error_front_figure",
@@ -190,16 +233,17 @@ __all__ = [
     "method_row",
     "motion_words",
     "open_explorer",
+    "order_text",
     "plot",
-    "pole_column",
     "pole_rows",
+    "pole_text",
     "probed_pole_row",
     "region_figure",
     "region_row",
     "render",
     "repeated",
-    "row",
     "run_row",
+    "safe_step_text",
     "safety_words",
     "save",
     "scene_figure",
@@ -207,8 +251,7 @@ __all__ = [
     "sequence_text",
     "shown_width",
     "simulation_row",
-    "stable_steps_words",
-    "step_limit",
+    "stable_steps_text",
     "styled",
     "summary_row",
     "times_words",
@@ -226,5 +269,4 @@ __all__ = [
     "work_precision_figure",
     "wrapped",
     "write_arrays",
-    "yes_no_column",
 ]

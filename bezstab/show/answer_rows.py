@@ -12,8 +12,11 @@ from bezstab.engines import DRIVE_METHODS
 from bezstab.errors import InputError
 from bezstab.methods import lookup
 from bezstab.rationals import typed_number
+from bezstab.show.cells import step_limit
 from bezstab.show.columns import Row, Value
-from bezstab.show.rows import COST, choice_row, moving_row, row
+from bezstab.show.fields import cells
+from bezstab.show.row_kinds import CHECKED, CHOICES, LARGEST_STEPS
+from bezstab.show.rows import choice_cells, cost_cells, moving_row
 from bezstab.show.varying_rows import repeated, varying_row
 from bezstab.show.words import growth_words, safety_words, seconds_words, times_words
 from bezstab.units import from_dimensionless
@@ -41,30 +44,25 @@ MOST_STEPS = 10**5  # of a run: some seconds
 def answer_row(answer: Answer) -> Row:
     """Return all that an answer has as a row; keys of an engine, a drive, a scene, a range of steps where asked for."""
     given, h = answer.role == "given", answer.question.h
-    cells: dict[str, Value] = {} if answer.role == "chosen" else {"role": answer.role}
-    cells |= choice_row(answer, h, answer.point if given else None)
-    cells |= _engine_cells(answer)
-    return {**cells, **added_cells(answer), "safe": answer.safe}
+    found = {**choice_cells(answer, h, answer.point if given else None), **cost_cells(answer)}
+    fields = CHOICES.fields if answer.role == "chosen" else CHECKED.fields
+    return {**cells(fields, answer, found), **_engine_cells(answer), **added_cells(answer)}
 
 
 def added_cells(answer: Answer) -> dict[str, Value]:
-    """Return what a drive, a scene, the motion and a range of steps add to a row of an answer's point."""
-    cells: dict[str, Value] = {}
+    """Return what a drive, a scene and a range of steps add to a row of an answer's point."""
+    added: dict[str, Value] = {}
     if answer.gains and answer.question.drive:
-        cells |= {
+        added |= {
             "drive": DRIVE_METHODS.get(answer.method.name),
             "inertia": float(answer.question.drive.inertia),
             **asdict(answer.gains),
         }
     if answer.moving:
-        cells |= moving_row(answer.moving)
-    if answer.cost:
-        cells |= row(answer.cost, without={"order", "least_at"})
-    else:
-        cells |= {**dict.fromkeys(COST), "omega_h": float(answer.question.motion.omega_h)}
+        added |= moving_row(answer.moving)
     if answer.varying:
-        cells |= {**varying_row(answer.varying), "shown_by": growing_run(answer)}
-    return cells
+        added |= {**varying_row(answer.varying), "shown_by": growing_run(answer)}
+    return added
 
 
 def _engine_cells(answer: Answer) -> dict[str, Value]:
@@ -72,8 +70,8 @@ def _engine_cells(answer: Answer) -> dict[str, Value]:
     engine = answer.question.engine
     if not engine:
         return {}
-    cells = engine_cells(answer) if answer.role != "chosen" else {"sweeps": engine.sweeps}
-    return {**cells, "engine_h_limit": answer.engine_h_limit, "setting": answer.setting}
+    of_engine = engine_cells(answer) if answer.role != "chosen" else {"sweeps": engine.sweeps}
+    return {**of_engine, "engine_h_limit": answer.engine_h_limit, "setting": answer.setting}
 
 
 def engine_cells(answer: Answer) -> dict[str, Value]:
@@ -93,7 +91,7 @@ def engine_cells(answer: Answer) -> dict[str, Value]:
 
 def largest_step_row(found: LargestStep) -> Row:
     """Return up to which step (s) alpha and beta (1/s) are stable: None where small steps are not."""
-    return row(found, role="given", safe=found.safe, h_limit=found.h_limit if found.safe else None)
+    return cells(LARGEST_STEPS.fields, found, {"role": "given", "h_limit": found.h_limit if found.safe else None})
 
 
 def answer_sentence(row: Row) -> str:
@@ -110,11 +108,6 @@ def answer_sentence(row: Row) -> str:
     if {step, alpha, beta} == {growth_words(None)}:
         return f"{safety_words(row)} {begin} step, α and β may grow {step}."
     return f"{safety_words(row)} {begin} step may grow {step}, α {alpha}, β {beta}."
-
-
-def step_limit(row: Row) -> Value:
-    """Return the largest stable step (s): of an engine's values where those were given, else of alpha and beta."""
-    return row["engine_h_limit" if "engine_h_limit" in row else "h_limit"]
 
 
 def costs_words(answer: Answer) -> str | None:

@@ -40,26 +40,6 @@ def formatted(value: Value, form: str = "") -> str:
     return format(value, form)
 
 
-def pole_column(heading: str) -> Column:
-    """Return the column of a complex pole, from z_real and z_imag: 0.762694 ± 0.142074i."""
-
-    def text(row: Row) -> str:
-        real, imaginary = row["z_real"], row["z_imag"]
-        assert isinstance(real, float)
-        assert isinstance(imaginary, float)
-        form = ".6f" if max(abs(real), imaginary) < 1e6 else ".6e"
-        visible = round(imaginary / max(1, abs(real)), 6) != 0
-        return f"{real:{form}} ± {imaginary:{form}}i" if visible else f"{real:{form}}"
-
-    return Column(heading, text)
-
-
-def yes_no_column(heading: str, key: str) -> Column:
-    """Return the column of a truth value: yes, NO, or a dash where it is None."""
-    words: Mapping[Value, str] = {True: "yes", False: "NO", None: MISSING}
-    return Column(heading, lambda row: words[row[key]])
-
-
 PROPERTIES: Sequence[Column] = (column("property", "property"), column("value", "value"))
 """The columns of a transposed row."""
 

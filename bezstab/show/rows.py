@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Collection, Iterable, Sequence
-from dataclasses import fields
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from statistics import median
 from typing import TYPE_CHECKING
@@ -13,24 +12,40 @@ from typing import TYPE_CHECKING
 from bezstab.engines import witness_of
 from bezstab.errors import InputError
 from bezstab.methods import Method, evaluations, implicit, steps
+from bezstab.show.cells import LIMITS
 from bezstab.show.columns import Row, Value
+from bezstab.show.fields import cells
+from bezstab.show.row_kinds import (
+    ENGINES_LISTED,
+    FORCED,
+    FRONTS,
+    LIKE_POINT,
+    LIKENESS,
+    LINTED,
+    LISTED_METHODS,
+    MEASUREMENTS,
+    MEMBERS,
+    MOVING,
+    POLES,
+    PROBED,
+    REGIONS,
+    SIMULATIONS,
+    SWEPT,
+    VERDICT_MAPS,
+    WITNESSED,
+)
 from bezstab.units import feedback_gains
-
-LIMITS = ("alpha_hat_min", "alpha_hat_max", "beta_hat_min", "beta_hat_max")
-"""The ends of a region's ranges, as rows name them."""
 
 COST = (
     *("omega_h", "forced_error", "total_error", "velocity_error", "order_left"),
     *("times_least", "times_least_velocity"),
 )
-"""What accuracy a feedback costs, as rows name it."""
+"""What accuracy a feedback costs, by key."""
 
 NOT_KNOWN = "not known"
 """How the reason begins where the search for a best point failed."""
 
 if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
-    from _typeshed import DataclassInstance
-
     from bezstab.engines import Engine
     from bezstab.evidence import (
         HalvedStep,
@@ -45,39 +60,8 @@ if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
         Witnessed,
     )
     from bezstab.mechanism import Simulation
-    from bezstab.methods import Verdict
+    from bezstab.questions import Answer
     from bezstab.stability import BestPoint, Choice, FrontPoint, Limit, Member, Region
-
-
-def row(result: DataclassInstance, without: Collection[str] = (), **more: Value) -> dict[str, Value]:
-    """Return a result's fields by name, then `more`, which also stands in for fields of the same name.
-
-    Numbers and texts as they are, an exact number as float64, a method or a scene by its name, a complex number by its
-    parts (see complex_parts; those of a field `pole` are called z_...). TypeError, naming the field and its type, for
-    a field that is none of these: it belongs into `without` or `more`.
-    """
-    cells: dict[str, Value] = {}
-    for field in fields(result):
-        if field.name in without or field.name in more:
-            continue
-        value = getattr(result, field.name)
-        if isinstance(value, complex):
-            cells |= complex_parts("z_" if field.name == "pole" else f"{field.name}_", value)
-        else:
-            cells[field.name] = _cell(f"{type(result).__name__}.{field.name}", value)
-    return {**cells, **more}
-
-
-def _cell(field: str, value: object) -> Value:
-    """Return what a row holds of one field's value."""
-    if isinstance(value, Fraction):
-        return float(value)
-    if value is None or isinstance(value, str | float | int):
-        return value
-    name = getattr(value, "name", None)
-    if isinstance(name, str):  # a method, a scene
-        return name
-    raise TypeError(f"{field} is a {type(value).__name__}: no row knows how to show it")
 
 
 def complex_parts(prefix: str, z: complex) -> dict[str, float]:
@@ -86,13 +70,16 @@ def complex_parts(prefix: str, z: complex) -> dict[str, float]:
     return {f"{prefix}{key}": value for key, value in parts.items()}
 
 
-def pole_rows(
-    method: Method, alpha_hat: float, beta_hat: float, poles: Iterable[complex], verdict: Verdict
-) -> list[Row]:
-    """Return a row for each pole of one method at one point (dimensionless), angles in degrees."""
-    point: Row = {"method": method.name, "alpha_hat": alpha_hat, "beta_hat": beta_hat}
-    safe = verdict == "converges"
-    return [{**point, **complex_parts("z_", complex(z)), "verdict": verdict, "safe": safe} for z in poles]
+def pole_rows(answer: Answer, poles: Iterable[complex]) -> list[Row]:
+    """Return a row for each pole of a method at the point of an answer (dimensionless), angles in degrees."""
+    return [cells(POLES.fields, answer, {**complex_parts("z_", complex(z)), **cost_cells(answer)}) for z in poles]
+
+
+def cost_cells(answer: Answer) -> dict[str, Value]:
+    """Return what accuracy the feedback of an answer costs; None for what is not known."""
+    if answer.cost is None:
+        return {**dict.fromkeys(COST), "omega_h": float(answer.question.motion.omega_h)}
+    return {key: getattr(answer.cost, key) for key in COST}
 
 
 def moving_row(moving: MovingPole) -> Row:
@@ -102,39 +89,38 @@ def moving_row(moving: MovingPole) -> Row:
     speed at which the rate is one or the law ends, None where no speed is safe, or every one.
     """
     speed = moving.safe_speed if math.isfinite(moving.safe_speed) else None
-    return row(
+    return cells(
+        MOVING,
         moving,
-        without={"z_abs", "double"},
-        double_pole=moving.double,
-        moving_verdict=moving.verdict,
-        safe_speed=speed,
+        {"double_pole": moving.double, "moving_verdict": moving.verdict, "safe_speed": speed},
     )
 
 
-def method_row(method: Method) -> Row:
+def method_row(method: Method, name: str = "", group: str | None = None) -> Row:
     """Return steps, evaluations per step, order of accuracy, error constant (as number, and exact as text) and source.
 
     The exact one is None where rationals stand for irrational coefficients; `digits` says to how many digits they do,
     None where they do not. `order_position_forces` and `order_velocity_forces` are the orders where forces
-    depend on the position alone, and on the velocity alone; `implicit` is whether a step solves equations.
+    depend on the position alone, and on the velocity alone; `implicit` is whether a step solves equations. `name` is
+    what the method is listed as, under the heading of its `group`.
     """
     from bezstab.methods import accuracy, accuracy_by_force  # loads sympy
 
     order, constant = accuracy(method)
     by_force = accuracy_by_force(method)
-    return {
-        "method": method.name,
+    found = {
+        "method": name or method.name,
+        "group": group,
         "steps": steps(method),
         "evaluations": evaluations(method),
         "order": order,
         "error_constant": float(constant),
         "error_constant_exact": str(constant) if method.digits is None else None,
-        "source": method.source,
         "implicit": implicit(method),
-        "digits": method.digits,
         "order_position_forces": by_force.position[0],
         "order_velocity_forces": by_force.velocity[0],
     }
+    return cells(LISTED_METHODS.fields if group else LISTED_METHODS.fields[:-1], method, found)
 
 
 def formula_row(method: Method, latex: bool = False) -> Row:
@@ -198,10 +184,8 @@ def region_row(region: Region, best: BestPoint | None, trouble: str | None = Non
     exact_limit = exact_critical_damping_limit(region.method)
     inside = best if best and best.z_abs < region.level else None
     reason = None if inside else f"{NOT_KNOWN}: {trouble}" if trouble else _nowhere(region, best)
-    return {
-        "method": region.method.name,
+    found = {
         "z_abs_below": region.level,
-        "area": region.area,
         **_limits(region),
         "approached": _approached(region),
         "best_z_abs": inside.z_abs if inside else None,
@@ -209,12 +193,12 @@ def region_row(region: Region, best: BestPoint | None, trouble: str | None = Non
         "best_beta_hat": inside.beta_hat if inside else None,
         "best_where": best_point_words(inside) if inside else reason,
         "best_reason": reason,
-        "bounded": region.bounded,
         "stable_for_all": stable_for_all(region.method),
         "unconditional_damping_ratio": unconditional_damping_ratio(region.method),
         "critical_damping_limit": critical_damping_limit(region.method),
         "critical_damping_limit_exact": None if exact_limit is None else str(exact_limit),
     }
+    return cells(REGIONS.fields, region, found)
 
 
 def _limits(region: Region) -> dict[str, float | None]:
@@ -228,35 +212,6 @@ def _approached(region: Region) -> str | None:
     """Return the names of those limits that no edge attains, None if there is no such limit."""
     only_near = [near for ends in region.approached for near in ends]
     return ", ".join(key for key, near in zip(LIMITS, only_near, strict=True) if near) or None
-
-
-def with_unbounded(row: Row) -> Row:
-    """Return a row of region_row for reading: words for what there is none of, an area or a limit of any kind.
-
-    A limit that the region only comes near, far out, is called "approached".
-    """
-    words: dict[str, Value] = {"bounded": "yes" if row["bounded"] else "no"}
-    if not row["bounded"]:
-        words |= {key: "unbounded" for key in ("area", *LIMITS) if row[key] is None}
-        words |= {key: f"{row[key]:.8g} (approached)" for key in str(row["approached"] or "").split(", ") if key}
-    if row["critical_damping_limit"] is None:
-        words["critical_damping_limit"] = "unlimited"
-    if row["unconditional_damping_ratio"] is None:
-        words["unconditional_damping_ratio"] = "none"
-    return {**row, **words}
-
-
-def stable_steps_words(row: Row) -> str:
-    """Return from a row of region_row up to which beta h all are stable at alpha = beta, and what all of them need."""
-    ratio, limit = row["unconditional_damping_ratio"], row["critical_damping_limit"]
-    if isinstance(limit, float):
-        exact = row["critical_damping_limit_exact"]
-        return f"{limit:.6g} = {exact}" if exact and "/" in str(exact) else f"{limit:.6g}"
-    if row["stable_for_all"] == "proven":
-        return "all (proven for any α, β)"
-    if ratio is None:
-        return "all"
-    return f"all, as from α/β = {ratio:.6g}" if ratio else "all (no unstable α, β found)"
 
 
 def _nowhere(region: Region, best: BestPoint | None) -> str | None:
@@ -279,30 +234,19 @@ def family_row(member: Member) -> Row:
     alpha_max = beta_max = None
     if member.region.extent:
         (_, alpha_max), (_, beta_max) = member.region.extent
-    return {
+    found = {
         "steps": member.n,
-        "method": member.method.name,
         "area": member.region.area,
         "alpha_hat_max": alpha_max,
         "beta_hat_max": beta_max,
         "best_z_abs": member.z_abs,
-        "order": member.order,
-        "error_constant": float(member.error_constant),
     }
+    return cells(MEMBERS.fields, member, found)
 
 
 def limit_row(limit: Limit) -> Row:
     """Return the row of the Bezier family's limit, of order two, which has no number of steps."""
-    return {
-        "steps": None,
-        "method": "B∞",
-        "area": limit.area,
-        "alpha_hat_max": limit.alpha_hat_max,
-        "beta_hat_max": limit.beta_hat_max,
-        "best_z_abs": limit.z_abs,
-        "order": 2,
-        "error_constant": float(limit.error_constant),
-    }
+    return cells(MEMBERS.fields, limit, {"steps": None, "method": "B∞", "best_z_abs": limit.z_abs, "order": 2})
 
 
 def simulation_row(simulation: Simulation) -> Row:
@@ -312,24 +256,23 @@ def simulation_row(simulation: Simulation) -> Row:
     of applied forces, which are there as well. `singular_passages` counts the singular configurations met.
     """
     trajectory = simulation.trajectory
-    return {
-        "scene": trajectory.mechanism.scene.name,
-        **row(
-            trajectory,
-            without={"mechanism", "t", "q", "v", "evaluations"},
-            run_evaluations=trajectory.evaluations,
-            alpha_hat=simulation.alpha_hat,
-            beta_hat=simulation.beta_hat,
-            h=simulation.h,
-            time=float(simulation.t[-1]),
-        ),
-        "c_max": float(abs(simulation.c).max()),
-        "cdot_max": float(abs(simulation.cdot).max()),
-        "energy_drift": float(simulation.energy_drift[-1]),
-        "driver_work": float(simulation.driver_work[-1]),
-        "force_work": float(simulation.force_work[-1]),
-        "singular_passages": len(simulation.singular_times),
-    }
+    return cells(
+        SIMULATIONS.fields,
+        simulation,
+        {
+            "scene": trajectory.mechanism.scene.name,
+            "method": trajectory.method.name,
+            "run_evaluations": trajectory.evaluations,
+            **{key: getattr(trajectory, key) for key in ("failure", "least_pivot", "pivot_time", "iterations")},
+            "time": float(simulation.t[-1]),
+            "c_max": float(abs(simulation.c).max()),
+            "cdot_max": float(abs(simulation.cdot).max()),
+            "energy_drift": float(simulation.energy_drift[-1]),
+            "driver_work": float(simulation.driver_work[-1]),
+            "force_work": float(simulation.force_work[-1]),
+            "singular_passages": len(simulation.singular_times),
+        },
+    )
 
 
 def measurement_row(scene: str, measurement: Measurement) -> Row:
@@ -344,25 +287,16 @@ def measurement_row(scene: str, measurement: Measurement) -> Row:
         parts = complex_parts("z_", measurement.measured)
         measured |= parts
         difference |= {key: parts[key] - predicted[key] for key in parts}
-    return {
+    found = {
         "scene": scene,
-        "method": measurement.method.name,
-        "alpha_hat": measurement.alpha_hat,
-        "beta_hat": measurement.beta_hat,
         **{f"predicted_{key}": value for key, value in predicted.items()},
-        "predicted_verdict": measurement.predicted_verdict,
         "law_z_abs": measurement.law_abs,
-        "law_verdict": measurement.law_verdict,
         "floquet_z_abs": measurement.floquet_abs,
         **{f"measured_{key}": value for key, value in measured.items()},
-        "measured_rate": measurement.measured_rate,
-        "measured_verdict": measurement.measured_verdict,
         **{f"difference_{key}": value for key, value in difference.items()},
-        "reason": measurement.reason,
         "measurable": measurement.measured is not None,
-        "verdicts_agree": measurement.verdicts_agree,
-        "right": measurement.right,
     }
+    return cells(MEASUREMENTS.fields, measurement, found)
 
 
 def forced_rows(scene: str, pair: HalvedStep) -> list[Row]:
@@ -371,17 +305,19 @@ def forced_rows(scene: str, pair: HalvedStep) -> list[Row]:
     None where there is nothing to compare; orders are between the two, and stand in the row of the smaller step.
     """
     return [
-        row(
+        cells(
+            FORCED.fields,
             run,
-            without={"predicted", "measured", "failure"},
-            scene=scene,
-            gain_share=pair.share,
-            predicted_error=run.predicted,
-            measured_error=None if run.failure else run.measured,
-            quotient=None if run.reason else run.quotient,
-            predicted_order=pair.predicted_order if run is pair.half else None,
-            observed_order=None if run is pair.whole or pair.holds is None else pair.observed_order,
-            reason=run.reason or "",
+            {
+                "scene": scene,
+                "gain_share": pair.share,
+                "predicted_error": run.predicted,
+                "measured_error": None if run.failure else run.measured,
+                "quotient": None if run.reason else run.quotient,
+                "predicted_order": pair.predicted_order if run is pair.half else None,
+                "observed_order": None if run is pair.whole or pair.holds is None else pair.observed_order,
+                "reason": run.reason or "",
+            },
         )
         for run in (pair.whole, pair.half)
     ]
@@ -427,26 +363,23 @@ def probed_pole_row(column: str, found: ProbedPole) -> Row:
     parts: dict[str, float | None] = dict.fromkeys(complex_parts("z_", 0))
     if found.pole is not None:
         parts |= complex_parts("z_", found.pole)
-    return {"column": column, **parts, **row(found, without={"pole", "poles", "rows"})}
+    return cells(PROBED.fields, found, {"column": column, **parts})
 
 
 def likeness_row(column: str, likeness: Likeness) -> Row:
     """Return how far the pole in a column of a log is from a method's, per row of the log, angle in degrees."""
-    return row(
-        likeness,
-        without={"predicted", "error", "reason"},
-        column=column,
-        reason=likeness.reason or None,
-        predicted_z_abs=abs(likeness.predicted),
-        predicted_z_angle_deg=complex_parts("", likeness.predicted)["angle_deg"],
-        fits=likeness.fits,
-    )
+    of_method = {
+        "predicted_z_abs": abs(likeness.predicted),
+        "predicted_z_angle_deg": complex_parts("", likeness.predicted)["angle_deg"],
+    }
+    return {"column": column, "reason": likeness.reason or None, **cells(LIKENESS, likeness, of_method)}
 
 
 def like_point_row(column: str, point: LikePoint, h: float | None) -> Row:
     """Return a point at which a method has the pole in a column of a log, with h (s) in 1/s too."""
     alpha, beta = (None, None) if h is None else alpha_and_beta(point.alpha_hat, point.beta_hat, h)
-    return row(point, column=column, h=h, alpha=alpha, beta=beta)
+    at_point = cells(LIKE_POINT, point, {"h": h, "alpha": alpha, "beta": beta})
+    return {"column": column, "method": point.method.name, **at_point}
 
 
 def linted_row(linted: Linted) -> Row:
@@ -455,59 +388,49 @@ def linted_row(linted: Linted) -> Row:
     None, too, for advice where there is none.
     """
     safe = None if linted.verdict is None else not linted.unsafe
-    return row(linted, without={"advice", "safe_together"}, advice=linted.advice or None, safe=safe)
+    return cells(LINTED.fields, linted, {"advice": linted.advice or None, "safe": safe})
 
 
 def verdict_map_row(verdicts: VerdictMap) -> Row:
     """Return how far simulated verdicts agree with |z_p| < 1, and how near to one those lie that do not."""
-    return row(
+    return cells(
+        VERDICT_MAPS.fields,
         verdicts,
-        without={"alpha_hat", "beta_hat", "z_abs", "diverges", "run", "moved"},
-        run_steps=verdicts.run,
-        runs=verdicts.undecided.size,
-        undecided=verdicts.undecided.size - verdicts.judged,
-        judged_runs=verdicts.judged,
-        agreeing=verdicts.agreeing,
-        agreeing_share=verdicts.agreement,
-        band=verdicts.band,
-        too_close=int(verdicts.too_close.sum()),
-        farthest=verdicts.farthest_disagreement,
-        disagreeing=verdicts.disagreements_beyond_band,
+        {
+            "run_steps": verdicts.run,
+            "runs": verdicts.undecided.size,
+            "undecided": verdicts.undecided.size - verdicts.judged,
+            "judged_runs": verdicts.judged,
+            "agreeing_share": verdicts.agreement,
+            "too_close": int(verdicts.too_close.sum()),
+            "farthest": verdicts.farthest_disagreement,
+            "disagreeing": verdicts.disagreements_beyond_band,
+        },
     )
 
 
 def witness_row(scene: str, witnessed: Witnessed) -> Row:
     """Return what another engine's integrator did in one run, and the method's pole that foretells it."""
-    return row(
-        witnessed,
-        without={"predicted_abs", "steps"},
-        scene=scene,
-        predicted_z_abs=witnessed.predicted_abs,
-        run_steps=witnessed.steps,
-    )
+    found: Row = {"scene": scene, "predicted_z_abs": witnessed.predicted_abs, "run_steps": witnessed.steps}
+    return cells(WITNESSED.fields, witnessed, found)
 
 
 def run_row(run: Run, front: str) -> Row:
     """Return one run of a sweep: its errors (SI), its cost (s of processor time), the fronts it is on."""
-    return row(
-        run,
-        without={"evaluations", "order"},
-        run_evaluations=run.evaluations,
-        observed_order=run.order,
-        front=front,
-    )
+    found: Row = {"run_evaluations": run.evaluations, "observed_order": run.order, "front": front}
+    return cells(SWEPT.fields, run, found)
 
 
 def front_row(point: FrontPoint, h: float | None) -> Row:
     """Return a point of the front of |z_p| against forced error, with h (s) in 1/s too."""
     alpha, beta = (None, None) if h is None else alpha_and_beta(point.alpha_hat, point.beta_hat, h)
-    return row(point, h=h, alpha=alpha, beta=beta)
+    return cells(FRONTS.fields, point, {"h": h, "alpha": alpha, "beta": beta})
 
 
-def choice_row(
+def choice_cells(
     choice: Choice, h: Fraction | float | None, typed: tuple[Fraction, Fraction] | None = None
 ) -> dict[str, Value]:
-    """Return a point, with h (s) in 1/s too, how fast it settles and by what it may be off; None for no limit.
+    """Return what a step makes of a choice: alpha and beta in 1/s, how fast it settles, how far it may be off.
 
     `typed` is the point (alpha_hat, beta_hat) before it was rounded: what was typed in 1/s is shown so again.
     """
@@ -527,22 +450,19 @@ def choice_row(
         h_factor = choice.margins.h
         alpha_min, alpha_max = choice.margins.alpha
         beta_min, beta_max = choice.margins.beta
-    return row(
-        choice,
-        without={"margins", "question", "role", "point"},
-        safe=choice.verdict == "converges",
-        h=h,
-        alpha=alpha,
-        beta=beta,
-        settle_steps=choice.settle_steps,
-        settle_seconds=settle_seconds,
-        h_factor=h_factor,
-        h_limit=h_limit,
-        alpha_factor_min=alpha_min,
-        alpha_factor_max=alpha_max,
-        beta_factor_min=beta_min,
-        beta_factor_max=beta_max,
-    )
+    return {
+        **complex_parts("z_", choice.pole),
+        "h": h,
+        "alpha": alpha,
+        "beta": beta,
+        "settle_seconds": settle_seconds,
+        "h_factor": h_factor,
+        "h_limit": h_limit,
+        "alpha_factor_min": alpha_min,
+        "alpha_factor_max": alpha_max,
+        "beta_factor_min": beta_min,
+        "beta_factor_max": beta_max,
+    }
 
 
 def alpha_and_beta(alpha_hat: float, beta_hat: float, h: float) -> tuple[float, float | None]:
@@ -576,13 +496,12 @@ def engine_row(engine: Engine, point: tuple[Fraction, Fraction] | None, h: Fract
             setting = engine.setting(point, h)
         except InputError as error:
             setting = str(error)
-    words = row(
-        engine,
-        without={"name", "read", "write", "paste", "apply", "marks", "curve"},
-        parameters=", ".join(engine.parameters),
-        optional=", ".join(engine.optional),
-        units=", ".join(engine.units),
-        witness=witness_of(engine.name),
-        setting=setting,
-    )
-    return {"engine": engine.name, **words}
+    found = {
+        "engine": engine.name,
+        "parameters": ", ".join(engine.parameters),
+        "optional": ", ".join(engine.optional),
+        "units": ", ".join(engine.units),
+        "witness": witness_of(engine.name),
+        "setting": setting,
+    }
+    return cells(ENGINES_LISTED.fields, engine, found)

@@ -24,12 +24,6 @@ def test_a_command_with_several_kinds_of_rows_has_each() -> None:
     ]
 
 
-def test_no_key_is_listed_twice() -> None:
-    for kinds in ROW_KINDS.values():
-        for kind in kinds:
-            assert len({*kind.keys, *kind.added}) == len(kind.keys) + len(kind.added)
-
-
 def test_an_unknown_command_is_refused() -> None:
     with pytest.raises(InputError, match="'explore' prints no rows: expected one of poles"):
         json_schema("explore")

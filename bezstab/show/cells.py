@@ -1,0 +1,213 @@
+"""What a cell of a table shows where it takes more than a format: texts made of a row."""
+
+from collections.abc import Callable, Mapping
+from decimal import ROUND_FLOOR, Context
+
+from bezstab.show.columns import MISSING, Row, Value, formatted
+from bezstab.show.words import times_words
+
+Text = Callable[[Row], str]
+
+MOST_FIXED = 1e6  # a modulus from here on is shown with an exponent
+
+LIMITS = ("alpha_hat_min", "alpha_hat_max", "beta_hat_min", "beta_hat_max")
+"""The ends of a region's ranges, as rows name them."""
+
+
+def pole_text(row: Row) -> str:
+    """Return a complex pole, from z_real and z_imag: 0.762694 ± 0.142074i."""
+    real, imaginary = row["z_real"], row["z_imag"]
+    assert isinstance(real, float)
+    assert isinstance(imaginary, float)
+    form = ".6f" if max(abs(real), imaginary) < MOST_FIXED else ".6e"
+    visible = round(imaginary / max(1, abs(real)), 6) != 0
+    return f"{real:{form}} ± {imaginary:{form}}i" if visible else f"{real:{form}}"
+
+
+def fitted_pole_text(row: Row) -> str:
+    """Return a pole that was fitted to a log; a dash where none was."""
+    real, imaginary = row["z_real"], row["z_imag"]
+    if not isinstance(real, float) or not isinstance(imaginary, float):
+        return MISSING
+    return f"{real:.7f} ± {imaginary:.7f}i" if imaginary else f"{real:.7f}"
+
+
+def modulus_text(row: Row) -> str:
+    """Return |z|: six decimals, or an exponent where it is huge."""
+    modulus = row["z_abs"]
+    huge = isinstance(modulus, float) and modulus >= MOST_FIXED
+    return formatted(modulus, ".6e" if huge else ".6f")
+
+
+def yes_no_text(key: str) -> Text:
+    """Return the text of a truth value: yes, NO, or a dash where it is None."""
+    words: Mapping[Value, str] = {True: "yes", False: "NO", None: MISSING}
+    return lambda row: words[row[key]]
+
+
+def range_text(gain: str) -> Text:
+    """Return the text of the factors by which a gain may be scaled: 0.45 to 1.6; without an upper end, to any."""
+
+    def text(row: Row) -> str:
+        low, high = row[f"{gain}_factor_min"], row[f"{gain}_factor_max"]
+        if low is None:
+            return MISSING
+        return f"{formatted(low, '.3g')} to {'any' if high is None else formatted(high, '.3g')}"
+
+    return text
+
+
+def step_limit(row: Row) -> Value:
+    """Return the largest stable step (s): of an engine's values where those were given, else of alpha and beta."""
+    return row["engine_h_limit" if "engine_h_limit" in row else "h_limit"]
+
+
+def step_text(row: Row) -> str:
+    """Return the largest stable step; a stable point without one is stable at any."""
+    limit = step_limit(row)
+    known = row["verdict"] == "converges" and row["margins_reason"] is None
+    if limit is None and row["h"] is not None and known:
+        return "unlimited"
+    return formatted(limit, ".4g")
+
+
+def searched_text(row: Row) -> str:
+    """Return how strong a feedback was searched: up to which alpha h and beta h; a dash where all of the region was."""
+    strongest = row["searched"]
+    return MISSING if strongest is None else f"αh, βh to {strongest:g}"
+
+
+def times_least_text(row: Row) -> str:
+    """Return how many times the least the error is that feedback forces on a constraint."""
+    times = row["times_least"]
+    return times_words(times) if isinstance(times, float) else MISSING
+
+
+def both_times_text(row: Row) -> str:
+    """Return the same of the constraint and of its velocity."""
+    velocity = row["times_least_velocity"]
+    return f"{times_least_text(row)}; velocity: {times_words(velocity)}" if isinstance(velocity, float) else MISSING
+
+
+def both_errors_text(row: Row) -> str:
+    """Return the errors that feedback forces on a constraint and on its velocity."""
+    error, velocity = row["total_error"], row["velocity_error"]
+    return MISSING if error is None else f"{formatted(error, '.1e')}; velocity: {formatted(velocity, '.1e')}"
+
+
+def speed_text(row: Row) -> str:
+    """Return up to how many times its speed a mechanism may move: any, where it does not turn."""
+    speed = row["safe_speed"]
+    return "any" if speed is None and row["moving_verdict"] == "converges" else formatted(speed, ".3g")
+
+
+def gain_limit_text(gain: str) -> Text:
+    """Return the text of a gain's largest stable value: any, or that none helps."""
+
+    def text(row: Row) -> str:
+        limit = row[f"{gain}_max"]
+        if limit is None:
+            return "any" if row["verdict"] == "converges" else "none helps"
+        return formatted(limit, ".4g")
+
+    return text
+
+
+def used_up_text(row: Row) -> str:
+    """Return which gain is nearest its limit, and how much of that it is."""
+    gain = row["used_up"]
+    if gain is None:
+        return MISSING
+    value, limit = row[f"{gain}"], row[f"{gain}_max"]
+    if not (isinstance(value, float) and isinstance(limit, float) and limit):  # out of range, or none of it
+        return str(gain)
+    return f"{gain} {100 * value / limit:.0f} %"
+
+
+def times_text(row: Row) -> str:
+    """Return up to how many times the step is stable: any where there is no end, none where no step is."""
+    if row["h_factor"] is None and row["verdict"] is not None:
+        return "none" if row["verdict"] == "diverges" else "any"
+    return formatted(row["h_factor"], ".4g")
+
+
+def unbounded_text(key: str, form: str) -> Text:
+    """Return the text of an area or a limit of a region: the word "unbounded" where there is none."""
+
+    def text(row: Row) -> str:
+        value = with_unbounded(row)[key]
+        return value if isinstance(value, str) else formatted(value, form)
+
+    return text
+
+
+def with_unbounded(row: Row) -> Row:
+    """Return a region's row for reading: words for what there is none of, an area or a limit of any kind.
+
+    A limit that the region only comes near, far out, is called "approached".
+    """
+    words: dict[str, Value] = {"bounded": "yes" if row["bounded"] else "no"}
+    if not row["bounded"]:
+        words |= {key: "unbounded" for key in ("area", *LIMITS) if row[key] is None}
+        words |= {key: f"{row[key]:.8g} (approached)" for key in str(row["approached"] or "").split(", ") if key}
+    if row["critical_damping_limit"] is None:
+        words["critical_damping_limit"] = "unlimited"
+    if row["unconditional_damping_ratio"] is None:
+        words["unconditional_damping_ratio"] = "none"
+    return {**row, **words}
+
+
+def stable_steps_text(row: Row) -> str:
+    """Return up to which beta h all steps are stable at alpha = beta, and what all of them need."""
+    ratio, limit = row["unconditional_damping_ratio"], row["critical_damping_limit"]
+    if isinstance(limit, float):
+        exact = row["critical_damping_limit_exact"]
+        return f"{limit:.6g} = {exact}" if exact and "/" in str(exact) else f"{limit:.6g}"
+    if row["stable_for_all"] == "proven":
+        return "all (proven for any α, β)"
+    if ratio is None:
+        return "all"
+    return f"all, as from α/β = {ratio:.6g}" if ratio else "all (no unstable α, β found)"
+
+
+def order_text(row: Row) -> str:
+    """Return the order of accuracy, with that for forces of position alone in parentheses if it is another."""
+    order, without_velocity = row["order"], row["order_position_forces"]
+    return str(order) if order == without_velocity else f"{order} ({without_velocity})"
+
+
+def constant_text(row: Row) -> str:
+    """Return the error constant as a rational, or as a decimal where it is none."""
+    exact = row["error_constant_exact"]
+    return formatted(exact) if exact else formatted(row["error_constant"], ".10g")
+
+
+def diverged_text(row: Row) -> str:
+    """Return the error of a run's trajectory, or that it diverged."""
+    return "diverged" if row["failure"] else formatted(row["trajectory_error"], ".1e")
+
+
+def milliseconds_text(row: Row) -> str:
+    """Return median and range of the processor time of a run: 3.27 (3.24 to 3.41)."""
+    texts: list[str] = []
+    for key in ("seconds", "seconds_min", "seconds_max"):
+        seconds = row[key]
+        assert isinstance(seconds, float)
+        texts.append(formatted(1e3 * seconds, ".3g"))
+    median, shortest, longest = texts
+    return f"{median} ({shortest} to {longest})"
+
+
+def found_text(key: str) -> Text:
+    """Return the text of a number that was found from a log, with its error."""
+    return lambda row: f"{formatted(row[key], '.7g')} ± {formatted(row[f'{key}_error'], '.1e')}"
+
+
+def safe_step_text(row: Row) -> str:
+    """Return the largest safe step (s) to four digits, rounded down so that it is safe; unlimited, or none."""
+    limit = row["h_limit"]
+    if not row["safe"]:
+        return "none"
+    if not isinstance(limit, float) or limit == float("inf"):
+        return "unlimited"
+    return f"{float(Context(prec=4, rounding=ROUND_FLOOR).create_decimal_from_float(limit)):.4g}"
