@@ -39,8 +39,9 @@ from bezstab.stability.boundary_locus import (
     rim_radius,
 )
 from bezstab.stability.pencils import Pencil, deadbeat_mu, roots_in_mu
-from bezstab.stability.shapes import JOINED, ROUNDING, USUAL_SIZE, Shape, joined
+from bezstab.stability.shapes import ROUNDING, USUAL_SIZE, Shape, joined
 
+MEETING = 1e-4  # of the curves' size: where branches meet on the circle an arc ends the root of SHORTEST from it
 FURTHER = 100.0  # times the radius of the rim, to see which ranges grow
 GROWN = 2.5  # times the range: as the fourth root of the radius it would have grown 3.2 times
 ROUNDING_FAR_OUT = 1e-6  # of everything finite: so far out an arc along the imaginary axis is good to less
@@ -68,7 +69,7 @@ def locus_shape(pencil: Pencil, level: float, finer: int) -> Shape | None:
     area = _area(pencil, bounds) if bounds.bounded else None
     if extent is None or (area is not None and not 0 < area <= np.prod(np.diff(extent))):
         return None  # noise, where two roots on the circle meet
-    curves = joined(edges, most=JOINED * np.abs(np.concatenate(edges)).max(axis=0))
+    curves = joined(edges, most=MEETING * np.abs(np.concatenate(edges)).max(axis=0))
     if not bounds.bounded:
         extent = _unbounded_extent(pencil, level, bounds, finer)
     view = extent if bounds.bounded else _view(pencil, bounds)

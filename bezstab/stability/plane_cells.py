@@ -27,7 +27,7 @@ from bezstab.stability.arrays import ComplexArray, Extent, FloatArray
 from bezstab.stability.exact_sums import double_polynomial, split
 from bezstab.stability.root_finding import newton_correction
 from bezstab.stability.searches import zoom_on_minimum
-from bezstab.stability.shapes import JOINED, ROUNDING, USUAL_SIZE, Approached, Shape, joined
+from bezstab.stability.shapes import ROUNDING, USUAL_SIZE, Approached, Shape, joined
 
 POLISH = 3  # steps of Newton's method on a root that companion eigenvalues have to a few eps of the largest
 SETTLED = 1e-4  # of a root: a larger step does not polish but leads away
@@ -40,6 +40,7 @@ NEGLIGIBLE = 1e-14  # of the area: a part that is off by less need not be halved
 MOST_HALVINGS = 12  # of a strip in which a singularity lies close
 DRAWN = 160  # points of an edge along its strip
 FAR_APART = 100.0  # ends of a strip, one so many times the other: what an edge does near the lower one needs its share
+JOINED = 1e-6  # of what is seen: two roots that meet are known to the root of rounding
 TURN_ROUNDS = 12  # of zooming on an edge's furthest point: its place to 1e-8 leaves its value at rounding
 BESIDE_LEVEL = 1e-13  # of a strip: nearer to a level, a crossing that is lost there may show at the wrong infinity
 FAR_OUT = 1e8  # of a level, or USUAL_SIZE: from so near to a strip's end up to so far from it turns are looked for

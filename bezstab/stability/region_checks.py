@@ -30,7 +30,7 @@ from bezstab.rationals import exact
 from bezstab.stability.arrays import EPS, BoolArray, FloatArray, even_points
 from bezstab.stability.closed_loop import all_within, decays_faster, free_pencil_of
 from bezstab.stability.searches import bisected
-from bezstab.stability.shapes import JOINED, Shape
+from bezstab.stability.shapes import Shape
 
 ON_THE_LEVEL = 1e-6  # of the level: a drawn point is good to 1e-12, or to its rounding
 CORNERS, CROWDING = 12, 0.1  # points of a curve, and a share of them, that may be further off: where poles meet
@@ -116,10 +116,9 @@ def _check_points(name: str, method: Method, level: float, curve: FloatArray) ->
 
 def _check_closed(name: str, shape: Shape) -> None:
     """Raise NumericalError unless each curve is closed, or of a region that goes on has its ends out of view."""
-    sizes = np.ptp(shape.view, axis=1)
     for curve in shape.curves:
         ends = curve[[0, -1]]
-        is_open = (np.abs(np.diff(ends, axis=0)) > JOINED * sizes).any()
+        is_open = (ends[0] != ends[1]).any()
         seen = (np.abs(ends) <= SEEN * np.abs(shape.view).max(axis=1)).all(axis=1)
         if is_open and (shape.area is not None or seen.any()):
             raise NumericalError(f"{name}: an edge was not found: it is very short, or several roots share it")

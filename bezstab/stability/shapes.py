@@ -16,9 +16,6 @@ from bezstab.stability.arrays import Extent, FloatArray
 ROUNDING = 1e-13
 """Of a range: an end this close to an axis lies on it."""
 
-JOINED = 1e-6
-"""Of a curve's size: where two edges meet in a double root, each ends within the root of rounding."""
-
 USUAL_SIZE = 4.0
 """alpha_hat and beta_hat up to which a region without end is shown at least: alpha h and beta h up to 2."""
 
