@@ -53,7 +53,7 @@ FOUNDATIONS = (
 BELOW = {
     "engines": {*FOUNDATIONS},
     "methods": {*FOUNDATIONS},
-    "stability": {*FOUNDATIONS, "methods"},
+    "stability": {*FOUNDATIONS, "engines", "methods"},
     "mechanism": {*FOUNDATIONS, "methods"},
     "evidence": {*FOUNDATIONS, "engines", "methods", "stability", "mechanism"},
     "questions": {*FOUNDATIONS, "engines", "methods", "stability", "mechanism", "evidence"},

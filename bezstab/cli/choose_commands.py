@@ -10,10 +10,13 @@ import click
 from bezstab.cli.asking import (
     as_typed_option,
     asked,
+    chain_option,
     drive_option,
     engine_values_option,
     h_min_option,
     hold_option,
+    iterations_option,
+    mass_ratio_option,
     methods_typed,
     moving_scene_option,
     moving_speed_option,
@@ -23,6 +26,7 @@ from bezstab.cli.asking import (
     say_varying,
     say_what_is_left_out,
     say_what_was_made,
+    typed_chain,
 )
 from bezstab.cli.options import (
     ENGINE,
@@ -85,6 +89,9 @@ WITHOUT_ACCURACY = ("total_error", "order_left", "times_least_velocity")
 @click.option("--settle", type=SECONDS, help="gentle, accurate: the time in s in which c falls a thousandfold.")
 @click.option("--keep", type=click.Choice(["alpha=beta"]), help="Only points with α = β.")
 @click.option("--engine", metavar="NAME", type=ENGINE, help="Choose what that engine can express; print what to paste.")
+@chain_option
+@mass_ratio_option
+@iterations_option
 @drive_option
 @moving_scene_option("Choose for this mechanism as it moves.")
 @moving_speed_option
@@ -101,6 +108,9 @@ def choose(
     settle: Fraction | None,
     keep: str | None,
     engine: Engine | None,
+    chain: int | None,
+    mass_ratio: Fraction | None,
+    iterations: int | None,
     drive: Drive | None,
     scene: str | None,
     speed: Fraction,
@@ -118,8 +128,9 @@ def choose(
     With --engine the method is the engine's own unless given, and only what the engine can express is searched: of
     several that are best, as where it fixes α̂, the mildest is taken. With --pd each way of applying a joint drive is
     shown, with the kp and kd to set instead. With --h-min steps may vary from one to the next, and "varying steps" says
-    whether every sequence of them up to --h-max decays. Exit status 1 if the answer is not proven safe, over the motion
-    of a --scene and for steps that vary as well.
+    whether every sequence of them up to --h-max decays. With --chain the answer also says from how many sweeps it is
+    stable in a straight chain of bodies, and the strongest feedback that this chain allows with --spread to spare. Exit
+    status 1 if the answer is not proven safe, over the motion of a --scene, for steps that vary and in a chain as well.
 
     Example: bezstab choose --method B4 --h 0.001
     """
@@ -140,6 +151,7 @@ def choose(
         spread=float(spread),
         settle=settle,
         equal=keep is not None,
+        chain=typed_chain(chain, mass_ratio, iterations),
     )
     prepare(question)
     chosen = list(progress(answers(question), question.goal or "", len(question.methods)))
@@ -155,8 +167,12 @@ def choose(
                 show_text("\n" + "\n".join(f"{name}{line}" for line in lines))
         if not drive:
             show_text(f"\n{motion_words(question.motion)}")
+        for answer in chosen if question.chain else ():
+            show_text(
+                f"\nThe strongest that the chain allows with the spread to spare: {answer.chain_setting or 'none'}."
+            )
         if engine:
-            say_what_is_left_out(engine)
+            say_what_is_left_out(engine, chain=question.chain is not None)
     if not all(answer.safe for answer in chosen):
         click.get_current_context().exit(1)
 
@@ -169,6 +185,9 @@ def choose(
 @physical_option
 @engine_values_option
 @as_typed_option
+@chain_option
+@mass_ratio_option
+@iterations_option
 @drive_option
 @omega_option
 @h_min_option
@@ -187,6 +206,9 @@ def check(
     physical: bool,
     engine: EngineValues | None,
     as_typed: bool,
+    chain: int | None,
+    mass_ratio: Fraction | None,
+    iterations: int | None,
     drive: Drive | None,
     omega: Fraction | None,
     h_min: Fraction | None,
@@ -210,7 +232,8 @@ def check(
     is applied first; what the conversion leaves out is said. How far the step may grow is asked of the engine's values,
     and whether it is α and β or α̂ and β̂ that stay as steps vary. What is given instead is what the engine can express,
     with the line to paste. An engine that solves its constraints one after another, in sweeps, is told about one
-    constraint alone: chains of them may diverge all the same.
+    constraint alone: chains of them may diverge all the same. With --chain safe is what is stable for so many bodies in
+    a straight chain, the last one --mass-ratio times as heavy, with --iterations sweeps.
 
     --pd kp,kd,inertia asks about a joint's drive, applied in four ways: explicit (SYM), implicit in velocity
     (imex-euler, as MuJoCo's implicitfast), as stable PD (stable-pd), fully implicit (implicit-euler, as PhysX). All
@@ -240,6 +263,7 @@ def check(
         h_min=h_min,
         h_max=h_max,
         hold=hold,
+        chain=typed_chain(chain, mass_ratio, iterations),
     )
     found = list(_with_instead(answers(question)))
     given = [answer for answer in found if answer.role == "given"]

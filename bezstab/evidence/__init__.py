@@ -17,7 +17,6 @@ The only room in which stability and mechanism meet. A file imports only from th
     measured_poles      predicted against measured poles of a running mechanism
     logs                logs of somebody else's simulator, as columns of numbers
     probed_poles        the dominant pole in a log, and whose it is
-    probed_recursions   whose recursion a log follows that shows no pole
     kick_fates          whether the constraint error that a kick has made grows or dies
     verdict_maps        simulated verdicts over the plane against |z_p| < 1
     mujoco_models       a MuJoCo model's step, constraints, springs, drives and masses
@@ -87,7 +86,6 @@ from bezstab.evidence.probed_poles import (
     probed_pole,
     steps_between_rows,
 )
-from bezstab.evidence.probed_recursions import recursion_likenesses
 from bezstab.evidence.recorded_times import read_times, with_recorded_times
 from bezstab.evidence.reference_motions import ReferenceMotion, reference_motion
 from bezstab.evidence.sweep_summaries import Held, Summary, summary, sweep_sentences
@@ -168,7 +166,6 @@ __all__ = [
     "read_log",
     "read_mujoco_model",
     "read_times",
-    "recursion_likenesses",
     "reference_motion",
     "row_step",
     "simulated_verdicts",

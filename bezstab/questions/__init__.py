@@ -6,11 +6,13 @@ A file imports only from those above it:
 
     points      how a point is given
     motions     the motion that a question is about
+    chains      a chain of bodies in an engine that sweeps
     question    what somebody asks, checked at birth
     answering   what there is to answer
 """
 
 from bezstab.questions.answering import SLOWER, Answer, Gains, LargestStep, answers, largest_step
+from bezstab.questions.chains import Chain, ChainAnswer
 from bezstab.questions.motions import ReferenceMotion, motion_of, turning_of, turning_stages, turns_too_far
 from bezstab.questions.points import GivenPoint
 from bezstab.questions.question import WHICH_METHOD, Question, StepRange, methods_for, usual_goal
@@ -19,6 +21,8 @@ __all__ = [
     "SLOWER",
     "WHICH_METHOD",
     "Answer",
+    "Chain",
+    "ChainAnswer",
     "Gains",
     "GivenPoint",
     "LargestStep",

@@ -489,6 +489,36 @@ ACCURACY = (
 APPLIED = Field(
     "applied", "text", "What the engine does to its values before it uses them", null="where nothing is known of it"
 )
+CHAIN = (
+    Field("chain", "text", "The chain of bodies that is asked about"),
+    Field("chain_bodies", "integer", "Bodies of the chain, the first held by the world"),
+    Field("chain_mass_ratio", "number", "Mass of the last body of the chain over that of each other"),
+    Field("chain_iterations", "integer", "Sweeps that the engine makes in a step", "sweeps", "d"),
+    Field(
+        "chain_z_abs",
+        "number",
+        "Factor by which a step multiplies the error of the chain in the long run",
+        "|z| of the chain",
+        ".4f",
+    ),
+    Field("chain_accuracy", "number", "How far that factor may be off by rounding, to first order"),
+    Field("alone_z_abs", "number", "The same factor for one constraint alone, with as many sweeps"),
+    Field(
+        "stable_iterations",
+        "integer",
+        "From how many sweeps the chain is stable",
+        "stable from sweeps",
+        "d",
+        null="where none tried is",
+    ),
+    Field(
+        "chain_setting",
+        "text",
+        "What to paste for the strongest feedback that the chain allows, even if it were stronger by the spread",
+        null="where there is none, or nothing to set",
+    ),
+)
+"""What --chain adds."""
 DRIVE = (
     Field("drive", "text", "How the drive is applied", "applied", null="where the method is no drive's"),
     Field("kp", "number", "Stiffness of the drive", "kp", ".4g", unit="N m/rad or N/m"),
@@ -554,30 +584,14 @@ LIKENESS = (
     METHOD,
     PREDICTED_Z_ABS,
     PREDICTED_Z_ANGLE_DEG,
-    Field(
-        "distance",
-        "number",
-        "Distance of the fitted pole from that of the method; or by which share of themselves its poles must "
-        "shift for its recursion to explain the log; or, by exclusion, which share of a term its recursion "
-        "leaves over at least",
-        "distance",
-        ".1e",
-        null=NOT_MEASURED,
-    ),
+    Field("distance", "number", "Distance of the fitted pole from that of the method", "distance", ".1e"),
     Field("allowed", "number", "Largest distance that still fits", "allowed", ".1e"),
     Field("dominant", "truth", "Whether the method's nearest pole is its dominant one"),
     Field("same_as", "text", "Methods that no log can tell from this one"),
     Field(
-        "judged_by",
-        "text",
-        "How a method is judged: by its pole, by its recursion, or, where the log can test neither, by "
-        "whether it can exclude the method; `reason` says so",
-        values=("pole", "recursion", "exclusion"),
-    ),
-    Field(
         "fits",
         "truth",
-        "Whether the log may be the method's: agrees with it within its uncertainty, or cannot exclude it",
+        "Whether the log may be the method's: it agrees with it within its uncertainty",
         "fits",
         text=yes_no_text("fits"),
     ),
@@ -748,7 +762,7 @@ CHOICES = RowKind(
         TIMES_LEAST,
         TIMES_LEAST_VELOCITY.shown("times the least error", text=both_times_text),
     ),
-    added=(*MOVING, *VARYING, *DRIVE, SWEEPS, ENGINE_H_LIMIT, SETTING.shown("to paste")),
+    added=(*MOVING, *VARYING, *CHAIN, *DRIVE, SWEEPS, ENGINE_H_LIMIT, SETTING.shown("to paste")),
 )
 CHECKED = RowKind(
     "a point, or what to take instead",

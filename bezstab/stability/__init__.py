@@ -44,6 +44,7 @@ From a method's polynomial in float64 (its pencil) upwards; a file imports only 
     gain_margins      which of two gains is used up
     held_drives       drives whose torque is held for several steps, or applied late
     step_families     methods by their number of steps, and their limit
+    sweeps            by what a step multiplies the errors of constraints that are solved in sweeps
 
 What needs sympy's polynomials is loaded when first used: poles and maps do not.
 """
@@ -85,6 +86,15 @@ from bezstab.stability.regions import Region, pole_place, region, useful_window,
 from bezstab.stability.searches import bisected, first_where
 from bezstab.stability.step_families import FAMILIES, Limit, Member, bezier_limit, family_members
 from bezstab.stability.step_sequences import VaryingSteps, varying_steps
+from bezstab.stability.sweeps import (
+    LARGEST_RATIO,
+    MOST_BODIES,
+    Growth,
+    chain,
+    fewest_sweeps,
+    inverse_effective_masses,
+    swept_growth,
+)
 from bezstab.stability.turning import own_feedback_root, turning_sensitivity, turning_shift
 
 if TYPE_CHECKING:
@@ -115,6 +125,8 @@ __all__ = [
     "EPS",
     "FAMILIES",
     "LARGEST_OMEGA_H",
+    "LARGEST_RATIO",
+    "MOST_BODIES",
     "OMEGA_H",
     "QUALITY",
     "RATES",
@@ -131,6 +143,7 @@ __all__ = [
     "FrontPoint",
     "GainLimits",
     "Goal",
+    "Growth",
     "HeldLimits",
     "Limit",
     "Margins",
@@ -145,6 +158,7 @@ __all__ = [
     "best_point_or_reason",
     "bezier_limit",
     "bisected",
+    "chain",
     "check_omega_h",
     "choose",
     "choose_at_step",
@@ -158,6 +172,7 @@ __all__ = [
     "falls_towards",
     "family_members",
     "feedback_cost",
+    "fewest_sweeps",
     "first_where",
     "forced_error",
     "forced_response",
@@ -165,6 +180,7 @@ __all__ = [
     "held_limits",
     "held_spectral_radius",
     "held_verdict",
+    "inverse_effective_masses",
     "largest_stable_step",
     "own_feedback_root",
     "pencil_of",
@@ -178,6 +194,7 @@ __all__ = [
     "stability_margins",
     "stable_for_all",
     "stable_up_to",
+    "swept_growth",
     "turning_response",
     "turning_sensitivity",
     "turning_shift",
