@@ -20,6 +20,7 @@ The only room in which stability and mechanism meet. A file imports only from th
     kick_fates          whether the constraint error that a kick has made grows or dies
     verdict_maps        simulated verdicts over the plane against |z_p| < 1
     mujoco_models       a MuJoCo model's step, constraints, springs, drives and masses
+    mujoco_controllers  what closes the loop of its motors from outside, every few steps and late
     mujoco_lint         what they mean in alpha_hat and beta_hat, and whether they are safe
     mujoco_witness      an engine that is not ours must diverge where the map says
     reference_motions   a motion known to some thirteen digits
@@ -70,6 +71,7 @@ from bezstab.evidence.moving_mechanisms import (
     tabulated_rates,
 )
 from bezstab.evidence.moving_regions import MovingRegion, moving_growth, moving_modulus, moving_region
+from bezstab.evidence.mujoco_controllers import MotorGains
 from bezstab.evidence.mujoco_lint import Linted, linted_model
 from bezstab.evidence.mujoco_models import ModelData, model_data, mujoco_module, read_mujoco_model
 from bezstab.evidence.mujoco_witness import TIMES, Witnessed, model_xml, mujoco_witnesses, witness_count
@@ -117,6 +119,7 @@ __all__ = [
     "MapRows",
     "Measurement",
     "ModelData",
+    "MotorGains",
     "MovingPole",
     "MovingRegion",
     "MovingVerdict",
