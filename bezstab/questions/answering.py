@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Literal
 
 from bezstab.engines import Point
 from bezstab.errors import InputError, NumericalError
+from bezstab.goals import Goal
 from bezstab.methods import Method
 from bezstab.questions.points import all_points
 from bezstab.questions.question import UP_TO_LONGEST, Question, usual_goal
@@ -23,7 +24,6 @@ from bezstab.rationals import rational
 from bezstab.stability import (
     Choice,
     FeedbackCost,
-    Goal,
     Modulus,
     VaryingSteps,
     choose,
