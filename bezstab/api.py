@@ -373,9 +373,8 @@ def probe(
     to subtract, unless c is such a difference already (`differenced`). With a point, given in one of the two ways,
     `likenesses` compares each of `methods` [all built-in ones], the nearest first; without one `points` are those at
     which `methods` have the pole. `every` steps of h (s) lie between two samples. `turning` is how fast the directions
-    of the constraints turn, in 1/s, and needs h. Where no pole can be told `found.reason` says why, and with a point
-    methods are judged by their recursions; one that the samples cannot test fits unless they exclude it. InputError
-    unless point, shapes and h fit together. Method: linear prediction (Prony).
+    of the constraints turn, in 1/s, and needs h. Where no pole can be told `found.reason` says why, and
+    nothing is compared. InputError unless point, shapes and h fit together. Method: linear prediction (Prony).
     """
     has_point = not (alpha_hat is None and beta_hat is None and alpha is None and beta is None)
     point = _plane_point(alpha_hat, beta_hat, alpha, beta, h) if has_point else None
@@ -392,10 +391,7 @@ def probe(
         points = [one for own in named for one in evidence.points_like(found, own, every)]
         return evidence.Probe(found, (), tuple(points))
     compared = [_method(name) for name in (REGISTRY if methods is None else methods)]
-    if found.pole is not None:
-        return evidence.Probe(found, tuple(evidence.likenesses(found, compared, *point, every, turned)), ())
-    followed = evidence.recursion_likenesses(c, compared, *point, minus, differenced, every, turned)
-    return evidence.Probe(found, tuple(followed), ())
+    return evidence.Probe(found, tuple(evidence.likenesses(found, compared, *point, every, turned)), ())
 
 
 def probe_step(

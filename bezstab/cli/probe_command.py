@@ -103,10 +103,9 @@ def probe(
 
     LOG is a CSV file, or - for standard input, with a row for each step from the kick on. Prints the pole with which
     each column's error decays; with --alpha and --beta how far it is from every method's, the nearest first (of those
-    that do not fit a few; JSON and CSV have all); without them, the α and β that it means under --method. Where no
-    pole can be told, --alpha and --beta also tell which methods' own recursions the rows follow, and of too few rows
-    for that, which methods they exclude. Where noise covers the rows, the pole that stands out of it is told, or that
-    none does. What cannot be told is said, with exit status 3, which also means that nothing fits any column.
+    that do not fit a few; JSON and CSV have all); without them, the α and β that it means under --method. Where
+    noise covers the rows, the pole that stands out of it is told, or that none does. What cannot be told is said, with
+    exit status 3, which also means that nothing fits any column.
 
     Example: bezstab probe log.csv --minus unkicked.csv --alpha 1 --beta 0.25
     """
@@ -114,11 +113,10 @@ def probe(
         error_columns,
         likenesses,
         probed_pole,
-        recursion_likenesses,
         steps_between_rows,
         time_column,
     )
-    from bezstab.show import probed_pole_row
+    from bezstab.show import likeness_row, probed_pole_row
 
     point = _point(alpha, beta, h, physical)
     if alpha is not None and beta is not None and not physical:
@@ -151,18 +149,14 @@ def probe(
             if compared_methods and not any(row["column"] == name for row in answers.points):
                 unfit.append(name)
             continue
-        like: list[Likeness] = []
-        if point and found.pole is not None:
-            like = likenesses(found, compared_methods, *point, between, turned)
-        elif point:
-            values = data.values[:, group]
-            like = recursion_likenesses(values, compared_methods, *point, subtracted, between=between, turned=turned)
+        like = likenesses(found, compared_methods, *point, between, turned) if point else []
         if point and like:
-            _compare(answers, name, like, point)
-        if not any(_is_tested(one) for one in like):
+            answers.likenesses.extend(likeness_row(name, one) for one in like)
+            answers.sentences.append(f"{name}: {likeness_sentence(like, point)}")
+            if not any(one.fits for one in like):
+                unfit.append(name)
+        else:
             untold.append(f"{name}: {found.reason}")
-        elif not any(one.fits for one in like):
-            unfit.append(name)
     _show(answers, form)
     if len(untold) + len(unfit) == len(groups):
         failures = [f"no pole can be told: {'; '.join(untold)}"] if untold else []
@@ -178,33 +172,6 @@ class Answers:
     likenesses: list[Row]
     points: list[Row]
     sentences: list[str]
-
-
-def _compare(
-    answers: Answers,
-    column_name: str,
-    like: "Sequence[Likeness]",
-    point: tuple[Fraction, Fraction],
-) -> None:
-    """Add how far a column is from each method at a point, and what follows."""
-    from bezstab.show import likeness_row
-
-    answers.likenesses.extend(likeness_row(column_name, one) for one in like)
-    if not any(_is_tested(one) for one in like):
-        answers.sentences.append(f"{column_name}: {exclusion_sentence(like, point)}")
-        return
-    answers.sentences.append(f"{column_name}: {likeness_sentence(like, point)}")
-    possible = [one.method.name for one in like if one.fits and not _is_tested(one)]
-    if possible:
-        these = _listed(possible) if len(possible) <= NAMED else f"{len(possible)} methods, such as {possible[0]},"
-        answers.sentences.append(
-            f"{column_name}: {these} may have made it too: it has too few rows to test such a recursion."
-        )
-
-
-def _is_tested(one: "Likeness") -> bool:
-    """Return whether a log has been held against a method, not only asked whether it excludes it."""
-    return one.judged_by != "exclusion"
 
 
 def _invert(
@@ -246,12 +213,10 @@ def _show(answers: Answers, form: Format) -> None:
 
 
 def _nearest(likenesses: Sequence[Row]) -> list[Row]:
-    """Return of each column's methods, the nearest first, those that fit and a few that do not; only tested ones."""
+    """Return of each column's methods, the nearest first, those that fit and a few that do not."""
     shown: list[Row] = []
     excluded: Counter[object] = Counter()
     for row in likenesses:
-        if row["judged_by"] == "exclusion":
-            continue
         excluded[row["column"]] += not row["fits"]
         if row["fits"] or excluded[row["column"]] <= EXCLUDED_SHOWN:
             shown.append(row)
@@ -261,14 +226,13 @@ def _nearest(likenesses: Sequence[Row]) -> list[Row]:
 def likeness_sentence(like: "Sequence[Likeness]", point: tuple[Fraction, Fraction]) -> str:
     """Return in words which methods a measured pole fits at a point, the nearest first, and which are excluded."""
     at = f"({float(point[0]):.6g}, {float(point[1]):.6g})"
-    fitting = [one for one in like if one.fits and _is_tested(one)]
+    fitting = [one for one in like if one.fits]
     excluded = [one for one in like if not one.fits]
     if not fitting:
         return _nothing_fits(like[0], at)
     first = fitting[0]
     equal = first.same_as.split(", ") if first.same_as else []
-    shown = "this behaves like" if first.judged_by == "pole" else "no pole shows, but this follows the recursion of"
-    parts = [f"{shown} {first.method.name} at {at} to {max(first.distance, first.error):.1g}"]
+    parts = [f"this behaves like {first.method.name} at {at} to {max(first.distance, first.error):.1g}"]
     if not first.dominant:
         parts[0] += ", by a lesser pole of it"
     if equal:
@@ -283,20 +247,6 @@ def likeness_sentence(like: "Sequence[Likeness]", point: tuple[Fraction, Fractio
         else:
             parts.append(f"{len(names)} others are excluded, the nearest {names[0]}, {excluded[0].distance:.1g} off")
     return "; ".join(parts) + "."
-
-
-def exclusion_sentence(like: "Sequence[Likeness]", point: tuple[Fraction, Fraction]) -> str:
-    """Return in words which methods are excluded by a log that can test none, and which may have made it."""
-    at = f"({float(point[0]):.6g}, {float(point[1]):.6g})"
-    possible = [one.method.name for one in like if one.fits]
-    excluded = [one.method.name for one in like if not one.fits]
-    told = f"these rows cannot test any method's recursion at {at}"
-    if not excluded:
-        return f"{told}, and exclude none of {len(like)} methods."
-    if len(excluded) <= len(possible):
-        return f"{told}, but exclude {_listed(excluded)}; any of {len(possible)} others may have made it."
-    others = f"{_listed(possible)} may have made it" if possible else "none is left"
-    return f"{told}, but exclude {len(excluded)} of {len(like)} methods; {others}."
 
 
 def _nothing_fits(nearest: "Likeness", at: str) -> str:

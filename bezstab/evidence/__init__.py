@@ -57,7 +57,6 @@ from bezstab.evidence.probed_poles import (
     probed_pole,
     steps_between_rows,
 )
-from bezstab.evidence.probed_recursions import recursion_likenesses
 from bezstab.evidence.recorded_times import read_times, with_recorded_times
 from bezstab.evidence.reference_motions import ReferenceMotion, reference_motion
 from bezstab.evidence.sweep_summaries import Held, Summary, summary, sweep_sentences
@@ -138,7 +137,6 @@ __all__ = [
     "read_log",
     "read_mujoco_model",
     "read_times",
-    "recursion_likenesses",
     "reference_motion",
     "row_step",
     "simulated_verdicts",

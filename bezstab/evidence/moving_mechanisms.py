@@ -12,7 +12,7 @@ Over a closed motion the integral of tr K is zero, so det Y = 1 and Lambda >= 0:
 
 from dataclasses import dataclass
 from functools import cache
-from typing import Literal
+from typing import Literal, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from bezstab.evidence.mixing_poles import NearestPoles, nearest_poles
 from bezstab.mechanism import TurningNormals
 from bezstab.methods import Method
-from bezstab.stability import ComplexArray, FloatArray
+from bezstab.stability import BoolArray, ComplexArray, FloatArray
 
 LAW_HOLDS = 0.1  # rad, kappa h: at twice that terms beside chi, too, have been seen to turn 0.94 into 1.05
 
@@ -28,6 +28,8 @@ LARGEST_CHI = 32.0  # of the table: ten times what is seen on a boundary; furthe
 RADII, ANGLES = 101, 61
 AT_A_TIME = 1024  # chi whose Y stay in a core's cache through all steps
 RESCALED = 20  # steps between two looks at how large Y has grown: e^(32 kappa T / 10) at most, within float64
+
+Value = TypeVar("Value", bound=np.generic)
 
 MovingVerdict = Literal["converges", "diverges", "not settled for this mechanism"]
 
@@ -186,6 +188,90 @@ def momentary_rates(turning: TurningNormals, chi: ArrayLike) -> FloatArray:
     return np.asarray((np.multiply.outer(np.asarray(chi, complex), eigenvalues)).real.max(axis=-1))
 
 
+@dataclass(frozen=True, eq=False)
+class Law:
+    """What the first-order law makes of the poles at a row of points; of shape (points, poles), the dominant one first.
+
+    `at_rest` is ln|z| a step, `growth` h Lambda of each pole and `sure` what of it is sure (`growth_rates_and_sure`),
+    minus infinity of a pole that does not count: too small ever to lead, or the conjugate of one that counts. `mixing`
+    are those that the law moves too near to their neighbours, or to no finite place; these come as far as their `reach`
+    (`mixing_poles`), whatever the law says. `turned` is kappa h of the method's own step.
+    """
+
+    nearest: NearestPoles
+    turned: float
+    at_rest: FloatArray
+    chi: ComplexArray
+    known: BoolArray
+    mixing: BoolArray
+    growth: FloatArray
+    sure: FloatArray
+
+    @property
+    def moving(self) -> FloatArray:
+        """ln|z| a step over the motion by the law alone."""
+        return self.at_rest + self.growth
+
+    @property
+    def furthest(self) -> FloatArray:
+        """The same of poles that do not mix, and of those that do what they reach."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.asarray(np.where(self.mixing, np.log(self.nearest.reach(self.turned)), self.moving))
+
+    @property
+    def rate(self) -> FloatArray:
+        """ln|z| a step over the motion of the pole that grows most; shape (points,).
+
+        That of a pole that mixes is at most what it reaches, and none is less than at rest.
+        """
+        with np.errstate(divide="ignore"):
+            at_rest = np.log(self.nearest.z_abs)
+        of_each = np.where(self.mixing, np.minimum(self.moving, self.furthest), self.moving)
+        return np.asarray(np.maximum(at_rest, of_each.max(axis=1)))
+
+    @property
+    def double(self) -> BoolArray:
+        """Where the pole that comes furthest is one that mixes; shape (points,)."""
+        return self.leading(self.mixing)
+
+    def leading(self, values: NDArray[Value]) -> NDArray[Value]:
+        """Return what the pole that comes furthest has of values of shape (points, poles); shape (points,)."""
+        return np.asarray(values[np.arange(len(values)), np.argmax(self.furthest, axis=1)])
+
+
+def first_order_law(
+    method: Method,
+    turning: TurningNormals,
+    h: float,
+    alpha_hat: FloatArray,
+    beta_hat: FloatArray,
+    *,
+    tabulated: bool = False,
+) -> Law:
+    """Return what a motion makes of the poles at a row of points; h in s, the rest dimensionless.
+
+    `tabulated`: by the motion's table (`tabulated_rates`), for very many points. There a pole so far from one that no
+    motion of this kappa could bring it there keeps its |z| at rest. NumericalError if a pole leaves the range of
+    float64.
+    """
+    nearest = nearest_poles(method, alpha_hat, beta_hat)
+    z, step = nearest.z, h * float(method.step_multiple)
+    turned = turning.kappa * step
+    with np.errstate(all="ignore"):
+        at_rest, chi = np.log(np.abs(z)), nearest.shift / z
+        reach = nearest.reach(turned)
+    counts = nearest.may_lead & (z.imag >= 0)  # of a conjugate pair both grow alike
+    mixing = counts & nearest.mix(turned) & (reach > 0)
+    known = counts & np.isfinite(chi)
+    growth, sure = np.where(counts, 0.0, -np.inf), np.full(z.shape, -np.inf)
+    if tabulated:
+        matters = known & (np.abs(at_rest) < np.abs(np.where(known, chi, 0)) * turning.largest_norm * step)
+        growth[matters] = step * tabulated_rates(turning, chi[matters])
+    else:
+        growth[known], sure[known] = step * np.array(growth_rates_and_sure_ones(turning, chi[known]))
+    return Law(nearest, turned, at_rest, chi, known, mixing, growth, sure)
+
+
 def moving_pole(method: Method, turning: TurningNormals, h: float, alpha_hat: float, beta_hat: float) -> MovingPole:
     """Return what becomes of the poles at one point on a mechanism that moves, h in s; as `moving_poles`."""
     (found,) = moving_poles(method, turning, h, np.array([alpha_hat]), np.array([beta_hat]))
@@ -200,86 +286,26 @@ def moving_poles(
     Theory: the first-order law of the moving mechanism (docstring of this file). NumericalError if a pole leaves the
     range of float64.
     """
-    nearest = nearest_poles(method, alpha_hat, beta_hat)
-    z, step = nearest.z, h * float(method.step_multiple)
-    turned = turning.kappa * step
+    law = first_order_law(method, turning, h, alpha_hat, beta_hat)
+    nearest, turned = law.nearest, law.turned
+    alone = law.known & ~law.mixing
+    worst = np.full(law.chi.shape, -np.inf)
+    worst[alone] = law.at_rest[alone] + h * float(method.step_multiple) * momentary_rates(turning, law.chi[alone])
+    highest = np.where(law.mixing, law.furthest, np.maximum(worst, law.moving)).max(axis=1)
     with np.errstate(all="ignore"):
-        at_rest = np.log(np.abs(z))
-        chi = nearest.shift / z
-    counts = nearest.may_lead & (z.imag >= 0)  # of a conjugate pair both grow alike
-    mixing = counts & nearest.mix(turned)
-    known = counts & np.isfinite(chi)
-    growth, sure = np.where(counts, 0.0, -np.inf), np.full(z.shape, -np.inf)
-    rates = growth_rates_and_sure_ones(turning, chi[known])
-    growth[known], sure[known] = step * rates[0], step * rates[1]
-    sure[mixing] = -np.inf
-    worst = np.full(z.shape, -np.inf)
-    alone = known & ~mixing
-    worst[alone] = at_rest[alone] + step * momentary_rates(turning, chi[alone])
-    speeds = _safe_speeds(nearest, at_rest, growth, turned)
-    reach, of_pairs = nearest.reach(turned), nearest.left_out(turned)
-    of_one = (np.abs(chi) * turned) ** 2 if turned else np.zeros(z.shape)  # at rest however large chi is
-    return [
-        _moving_pole(
-            z_abs=float(nearest.z_abs[i]),
-            middle=nearest.middle[i],
-            reach=np.where(mixing[i], reach[i], 0.0),
-            left_out=np.where(mixing[i], of_pairs[i], of_one[i]),
-            chi_abs=np.abs(chi[i]),
-            moving=at_rest[i] + growth[i],
-            lowest=float((at_rest[i] + sure[i]).max()),
-            worst=worst[i],
-            kappa=turning.kappa,
-            turned=turned,
-            safe_speed=float(speeds[i]),
-        )
-        for i in range(len(z))
-    ]
-
-
-def _moving_pole(
-    *,
-    z_abs: float,
-    middle: FloatArray,
-    reach: FloatArray,
-    left_out: FloatArray,
-    chi_abs: FloatArray,
-    moving: FloatArray,
-    lowest: float,
-    worst: FloatArray,
-    kappa: float,
-    turned: float,
-    safe_speed: float,
-) -> MovingPole:
-    """Return what becomes of the poles at one point, whose arrays have shape (poles,).
-
-    `moving`: ln|z| over the motion by the law, minus infinity of a pole that does not count. Of those that do not mix
-    `lowest` is the largest that is sure, and `worst` the same for a moment. `reach`: how far each that mixes may come,
-    from its pair's `middle`, else zero. `left_out`: terms of second order in ln|z|. `turned`: kappa h of the method's
-    own step; kappa in 1/s.
-    """
-    mixing = reach > 0
-    with np.errstate(divide="ignore"):
-        furthest, at_rest = np.log(reach), float(np.log(z_abs))
-    leading = int(np.argmax(np.where(mixing, furthest, moving)))
-    double = bool(mixing[leading])
-    highest = max(at_rest, float(np.where(mixing, furthest, np.maximum(worst, moving)).max()))
-    rate = max(at_rest, float(np.where(mixing, np.minimum(moving, furthest), moving).max()))
-    if double:
-        nearest_zero = max(float(2 * middle[leading] - reach[leading]), 0.0)
-        lowest = float(np.log(nearest_zero)) if nearest_zero else -np.inf
-    unsure = float(left_out[leading])
-    converges = highest < -unsure and turned <= LAW_HOLDS
-    return MovingPole(
-        z_abs=z_abs,
-        kappa=kappa,
-        chi_abs=float(chi_abs[leading]),
-        z_abs_moving=float(np.exp(rate)),
-        z_abs_worst=float(np.exp(highest)),
-        double=double,
-        settled=bool(converges or lowest > unsure),
-        safe_speed=safe_speed,
+        of_one = (np.abs(law.chi) * turned) ** 2 if turned else np.zeros(law.chi.shape)  # at rest however large chi is
+        unsure = law.leading(np.where(law.mixing, nearest.left_out(turned), of_one))
+        highest = np.maximum(highest, np.log(nearest.z_abs))
+        lowest_of_pair = np.log(np.maximum(law.leading(2 * nearest.middle - nearest.reach(turned)), 0))
+    lowest_alone = np.where(law.mixing, -np.inf, law.at_rest + law.sure).max(axis=1)
+    lowest = np.where(law.double, lowest_of_pair, lowest_alone)
+    settled = ((highest < -unsure) & (turned <= LAW_HOLDS)) | (lowest > unsure)
+    columns = (
+        *(nearest.z_abs, np.full(len(settled), turning.kappa), law.leading(np.abs(law.chi))),
+        *(np.exp(law.rate), np.exp(highest), law.double, settled),
+        _safe_speeds(nearest, law.at_rest, law.growth, turned),
     )
+    return [MovingPole(*values) for values in zip(*(column.tolist() for column in columns), strict=True)]
 
 
 def _safe_speeds(nearest: NearestPoles, at_rest: FloatArray, growth: FloatArray, turned: float) -> FloatArray:

@@ -8,16 +8,16 @@ r"""The region of a moving mechanism: where errors decay over its motion, inside
         |  /___/________\/
         +----------------- alpha_hat
 
-To first order Lambda >= 0 over a closed motion, so that the inner curve is inside. The law does not hold where the
-dominant pole's angle is within a few omega h of 0 or 180 degrees: there it mixes with its conjugate. Such points are
-counted as the law says, and marked.
+To first order Lambda >= 0 over a closed motion, so that the inner curve is inside. The law does not hold where the pole
+that decides mixes with another, its conjugate as a rule (`mixing_poles`). There it counts with what it reaches, if that
+is less than what the law says, and such points are marked.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from bezstab.evidence.moving_mechanisms import tabulated_rates
+from bezstab.evidence.moving_mechanisms import first_order_law
 from bezstab.mechanism import TurningNormals
 from bezstab.methods import Method
 from bezstab.read_only import ReadOnlyArrays
@@ -26,16 +26,13 @@ from bezstab.stability import (
     FloatArray,
     Modulus,
     bisected,
-    dominant_pole,
-    poles,
     region,
-    turning_sensitivity,
     useful_window,
 )
 
 LINES = 160  # of constant beta_hat, at Gauss and Legendre's nodes: the length of a line has kinks, so 1e-4 of the area
 SAMPLES = 241  # along a line; what is narrower than 1/240 of the window is not seen
-ALIKE = 4.0  # omega h: an angle so near to 0 or pi, in rad, is in an excluded sector
+AT_A_TIME = 4096  # points, whose distances between poles stay within a few MB
 HALVINGS = 20  # of a sample's width: 1e-6 of it, well below what the lines make of the area
 HOPELESS = 10.0  # of ln|z| a step: nothing is chosen there, and `choose` can still raise |z| to a power
 
@@ -71,19 +68,21 @@ def moving_growth(
     its value is that at rest. To first order in kappa h (evidence/README.md). NumericalError where a pole leaves the
     range of float64.
     """
-    z = poles(method, alpha_hat, beta_hat)
-    candidates = z[..., : min(4, z.shape[-1])]  # two conjugate pairs: what may come to lead
+    rates, _ = _rates_and_doubles(method, turning, h, alpha_hat, beta_hat)
+    return rates
+
+
+def _rates_and_doubles(
+    method: Method, turning: TurningNormals, h: float, alpha_hat: FloatArray, beta_hat: FloatArray
+) -> tuple[FloatArray, BoolArray]:
+    """Return the same, and where two poles mix so that the law does not hold (`Law.double`)."""
     alpha_hat, beta_hat = np.broadcast_arrays(alpha_hat, beta_hat)
-    step = h * float(method.step_multiple)
-    chi = turning_sensitivity(method, alpha_hat[..., np.newaxis], beta_hat[..., np.newaxis], candidates)
-    chi = np.where(np.isfinite(chi), chi, 0)
-    with np.errstate(divide="ignore"):
-        at_rest = np.log(np.abs(candidates))
-    furthest = np.abs(chi) * turning.largest_norm * step
-    matters = (candidates.imag >= 0) & (np.abs(at_rest) < furthest) & np.isfinite(at_rest)
-    growth = np.where(candidates.imag >= 0, at_rest, -np.inf)  # of a conjugate pair both grow alike
-    growth[matters] += step * tabulated_rates(turning, chi[matters])
-    return np.asarray(growth.max(axis=-1))
+    rates, doubles = np.empty(alpha_hat.size), np.empty(alpha_hat.size, bool)
+    for first in range(0, alpha_hat.size, AT_A_TIME):
+        some = slice(first, first + AT_A_TIME)
+        law = first_order_law(method, turning, h, alpha_hat.ravel()[some], beta_hat.ravel()[some], tabulated=True)
+        rates[some], doubles[some] = law.rate, law.double
+    return rates.reshape(alpha_hat.shape), doubles.reshape(alpha_hat.shape)
 
 
 def moving_modulus(method: Method, turning: TurningNormals, h: float) -> Modulus:
@@ -112,6 +111,7 @@ def moving_region(method: Method, turning: TurningNormals, h: float, points: int
     lengths = _stable_lengths(method, turning, h, np.linspace(alpha_low, alpha_high, SAMPLES), lines)
     alpha_hat = np.linspace(alpha_low, alpha_high, points)
     beta_hat = np.linspace(beta_low, beta_high, points)
+    growth, excluded = _rates_and_doubles(method, turning, h, alpha_hat, beta_hat[:, np.newaxis])
     return MovingRegion(
         method=method,
         h=h,
@@ -119,8 +119,8 @@ def moving_region(method: Method, turning: TurningNormals, h: float, points: int
         area=float((beta_high - beta_low) / 2 * weights @ lengths),
         alpha_hat=alpha_hat,
         beta_hat=beta_hat,
-        growth=moving_growth(method, turning, h, alpha_hat, beta_hat[:, np.newaxis]),
-        excluded=excluded_sectors(method, turning, h, alpha_hat, beta_hat[:, np.newaxis]),
+        growth=growth,
+        excluded=excluded,
     )
 
 
@@ -142,16 +142,3 @@ def _stable_lengths(
     lengths = np.where(held[:, -1], samples[-1], 0.0) - np.where(held[:, 0], samples[0], 0.0)
     np.add.at(lengths, row, np.where(after, -changed, changed))
     return lengths
-
-
-def excluded_sectors(
-    method: Method, turning: TurningNormals, h: float, alpha_hat: FloatArray, beta_hat: FloatArray
-) -> BoolArray:
-    """Return where the dominant pole's angle is so near 0 or pi that it mixes with its conjugate; shape broadcast.
-
-    Real poles, which have no conjugate, are not excluded.
-    """
-    angle = np.angle(dominant_pole(method, alpha_hat, beta_hat))
-    turned = ALIKE * 2 * np.pi / turning.duration * h * float(method.step_multiple)
-    excluded: BoolArray = ((angle > 0) & (angle < turned)) | ((angle > np.pi - turned) & (angle < np.pi))
-    return excluded

@@ -20,7 +20,6 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Literal
 
 import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval2d, polyval3d
@@ -137,9 +136,7 @@ class Likeness:
     `predicted` is the method's dominant pole, per row of the log; `distance` is that of the nearest of its poles, and
     `dominant` says whether that is the dominant one. It fits if the distance is at most `allowed`: the `error` of the
     fit and what the motion of the mechanism may do. `same_as` names methods with the same polynomial there but for
-    factors of z, which no log can tell from this one. `judged_by` is "pole", or "recursion" where the log shows no pole
-    (`probed_recursions`), or "exclusion" where its rows are too few or too disturbed to test the method's recursion: it
-    then fits unless they contradict it, and `reason` says so; without an equation the distance is not a number.
+    factors of z, which no log can tell from this one.
     """
 
     method: Method
@@ -149,19 +146,15 @@ class Likeness:
     allowed: float
     dominant: bool
     same_as: str
-    judged_by: Literal["pole", "recursion", "exclusion"] = "pole"
-    reason: str = ""
 
     def __repr__(self) -> str:
-        if self.reason:
-            return f"Likeness({self.method.name} {self.reason})"
         fit = "fits" if self.fits else "does not fit"
         return f"Likeness({self.method.name} {fit}: {self.distance:.3g} of {self.allowed:.3g} allowed)"
 
     @property
     def fits(self) -> bool:
         """Whether the log may be this method's."""
-        return not self.distance > self.allowed
+        return self.distance <= self.allowed
 
 
 @dataclass(frozen=True, repr=False)
@@ -201,7 +194,7 @@ class Probe:
 
     @property
     def fitting(self) -> tuple[str, ...]:
-        """The names of the methods that fit, the nearest first; last those that cannot be tested, nor are excluded."""
+        """The names of the methods that fit, the nearest first."""
         return tuple(one.method.name for one in self.likenesses if one.fits)
 
 
@@ -214,7 +207,7 @@ def probed_pole(c: ArrayLike, minus: ArrayLike | None = None, differenced: bool 
     that show no pole: `reason` says so. InputError for arrays of other shapes. Method: linear prediction
     (`fit_dominant_pole`); where noise covers the samples, nonlinear least squares (`fit_in_noise`).
     """
-    samples, rounding, cut = usable_response(c, minus)
+    samples, rounding, cut = _usable_response(c, minus)
     if len(samples) < FEWEST:
         return _refused(len(samples), f"{len(samples)} samples: at least {FEWEST} are needed", cut)
     largest = float(np.nanmax(np.abs(samples)))
@@ -238,7 +231,7 @@ def _fitted(samples: FloatArray, rounding: float, of_two_runs: bool, cut: str) -
     fits: list[Fit | Refusal] = []
     changes, floor = samples, rounding / 2
     for times in range(DIFFERENCES + 1):
-        fit = fit_dominant_pole(changes, ORDER, limits=linear_limits(changes), floor=floor)
+        fit = fit_dominant_pole(changes, ORDER, limits=_linear_limits(changes), floor=floor)
         fits.append(fit)
         if isinstance(fit, Fit) and not _on_the_circle(fit) and (of_two_runs or _is_not_forced(fit, changes)):
             return _claimed(fit, len(samples), _joined(DIFFERENCED if times else "", cut))
@@ -250,7 +243,7 @@ def _fitted(samples: FloatArray, rounding: float, of_two_runs: bool, cut: str) -
         # Only as far as differences, which are forced less, show the same pole, is it known to be none that is forced.
         uncertainty = max(as_given.uncertainty, abs(as_given.pole - of_changes.pole) + of_changes.uncertainty)
         return _claimed(replace(as_given, uncertainty=uncertainty), len(samples), _joined(SLOWLY, cut))
-    leaves_the_linear_range = len(linear_limits(samples)) > 1  # then what is left over is no noise, but looks like it
+    leaves_the_linear_range = len(_linear_limits(samples)) > 1  # then what is left over is no noise, but looks like it
     covered = None if leaves_the_linear_range else fit_in_noise(samples, ORDER)
     if covered is not None:
         return _told_in_noise(covered, len(samples), of_two_runs, cut)
@@ -319,7 +312,7 @@ def _joined(*reasons: str) -> str:
     return "; ".join(reason for reason in reasons if reason)
 
 
-def usable_response(c: ArrayLike, minus: ArrayLike | None) -> tuple[FloatArray, float, str]:
+def _usable_response(c: ArrayLike, minus: ArrayLike | None) -> tuple[FloatArray, float, str]:
     """Return the responses from the kick on, shape (samples, responses), their rounding, and what was cut off, if so.
 
     The rounding is zero if it is not to be seen. InputError for arrays of other shapes.
@@ -379,7 +372,7 @@ def _quantum(column: FloatArray) -> float:
     return 0.0
 
 
-def linear_limits(samples: FloatArray) -> Sequence[float]:
+def _linear_limits(samples: FloatArray) -> Sequence[float]:
     """Return the sizes up to which the samples are tried as linear: those of a response that grows may leave it."""
     sizes = np.nanmax(np.abs(samples), axis=1)
     largest = float(sizes.max())
@@ -407,33 +400,30 @@ def likenesses(
     if probed.pole is None or probed.uncertainty is None:
         return []
     found = []
-    for one in comparisons(methods, alpha_hat, beta_hat, between):
+    for one in _comparisons(methods, alpha_hat, beta_hat, between):
         with suppress(NumericalError):
             found.append(_likeness(probed, one, alpha_hat, beta_hat, turned))
     return sorted(found, key=lambda one: one.distance)
 
 
 @dataclass(frozen=True)
-class Comparison:
+class _Comparison:
     """A method that may have made a log: `between` of its steps lie between two rows.
 
-    `polynomial` is P at the point, monic in descending powers and without roots at zero, and `same_as` names the others
-    with the same one. Rows follow its recursion after the first few, as many as P has roots `at_zero`.
+    `same_as` names the others whose P at the point is the same but for roots at zero.
     """
 
     method: Method
     between: int
-    polynomial: tuple[Fraction, ...]
     same_as: str
-    at_zero: int
 
 
-def comparisons(
+def _comparisons(
     methods: Sequence[Method],
     alpha_hat: Fraction,
     beta_hat: Fraction,
     between: Callable[[Method], int | None] | int,
-) -> list[Comparison]:
+) -> list[_Comparison]:
     """Return what to compare a log with at a point; without methods whose steps are longer than its rows are apart."""
     compared: list[tuple[Method, int]] = []
     for method in methods:
@@ -442,13 +432,13 @@ def comparisons(
             compared.append((method, own_steps))
     polynomials = [_polynomial_without_zeros(method, alpha_hat, beta_hat) for method, _ in compared]
     answers = []
-    for (method, own_steps), (own, at_zero) in zip(compared, polynomials, strict=True):
+    for (method, own_steps), own in zip(compared, polynomials, strict=True):
         equal = [
             other.name
-            for (other, others_steps), (others, _) in zip(compared, polynomials, strict=True)
+            for (other, others_steps), others in zip(compared, polynomials, strict=True)
             if (others, others_steps) == (own, own_steps) and other is not method
         ]
-        answers.append(Comparison(method, own_steps, own, ", ".join(equal), at_zero))
+        answers.append(_Comparison(method, own_steps, ", ".join(equal)))
     return answers
 
 
@@ -493,34 +483,35 @@ def kicked_responses(
     return responses
 
 
-def _polynomial_without_zeros(
-    method: Method, alpha_hat: Fraction, beta_hat: Fraction
-) -> tuple[tuple[Fraction, ...], int]:
-    """Return P at one point in descending powers of z, monic and without roots at zero, and how many it has there."""
+def _polynomial_without_zeros(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> tuple[Fraction, ...]:
+    """Return P at one point in descending powers of z, monic and without roots at zero."""
     descending = list(closed_loop_at(method, alpha_hat, beta_hat))
-    at_zero = 0
     while descending and descending[-1] == 0:
         descending.pop()
-        at_zero += 1
     while descending and descending[0] == 0:
         descending.pop(0)
-    return tuple(coefficient / descending[0] for coefficient in descending), at_zero
+    return tuple(coefficient / descending[0] for coefficient in descending)
 
 
 def _likeness(
-    probed: ProbedPole, compared: Comparison, alpha_hat: Fraction, beta_hat: Fraction, turned: float | None
+    probed: ProbedPole, compared: _Comparison, alpha_hat: Fraction, beta_hat: Fraction, turned: float | None
 ) -> Likeness:
     assert probed.pole is not None
     assert probed.uncertainty is not None
     a, b = float(alpha_hat), float(beta_hat)
-    z, per_row = poles_per_row(compared, a, b)
+    z = poles(compared.method, a, b)
+    with np.errstate(over="ignore", invalid="ignore"):  # a pole far outside the circle, over many steps
+        per_row = z**compared.between
+    per_row = per_row.real + 1j * np.abs(per_row.imag)
     leading = np.abs(z) > (1 - 1 / SAMPLES) * np.abs(z[0])
     # Another pole answers only if the kick has hardly excited the dominant one, and that has not grown out of rounding.
     distances = np.abs(per_row - probed.pole)
     if probed.rows * np.log(max(np.abs(per_row[0]), 1.0)) > np.log(UNSEEN_GROWTH):
         distances[~leading] = np.inf
     nearest = int(np.argmin(distances))
-    moved = compared.between * motion_shift(compared.method, a, b, z, nearest, turned) * float(np.abs(per_row[nearest]))
+    moved = (
+        compared.between * _motion_shift(compared.method, a, b, z, nearest, turned) * float(np.abs(per_row[nearest]))
+    )
     return Likeness(
         method=compared.method,
         predicted=complex(per_row[0]),
@@ -532,15 +523,7 @@ def _likeness(
     )
 
 
-def poles_per_row(compared: Comparison, alpha_hat: float, beta_hat: float) -> tuple[ComplexArray, ComplexArray]:
-    """Return a method's poles, dominant ones first, and what they are per row of the log, in the upper half plane."""
-    z = poles(compared.method, alpha_hat, beta_hat)
-    with np.errstate(over="ignore", invalid="ignore"):  # a pole far outside the circle, over many steps
-        per_row = z**compared.between
-    return z, per_row.real + 1j * np.abs(per_row.imag)
-
-
-def motion_shift(
+def _motion_shift(
     method: Method, alpha_hat: float, beta_hat: float, z: ComplexArray, which: int, turned: float | None
 ) -> float:
     """Return by which share of itself, a step, the motion may shift one of a method's poles z; `turned` as above."""

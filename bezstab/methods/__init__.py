@@ -6,11 +6,11 @@ What needs sympy is loaded when first used: naming a multistep or Runge-Kutta me
 from typing import TYPE_CHECKING
 
 from bezstab.lazy import lazy_names
-from bezstab.methods.families import adams_bashforth, adams_bashforth_moulton, bezier
 from bezstab.methods.method_files import read_method
+from bezstab.methods.multistep_methods import adams_bashforth, adams_bashforth_moulton, bezier
 from bezstab.methods.polynomials import PlaneTable, Polynomial
 from bezstab.methods.recipes import recipe
-from bezstab.methods.registry import GROUPS, REGISTRY, MethodGroup, lookup
+from bezstab.methods.registry import GROUPS, REGISTRY, lookup
 from bezstab.methods.scheme_motions import (
     ACCELERATED,
     AT_REST,
@@ -25,6 +25,7 @@ from bezstab.methods.schemes import (
     Family,
     LinearMultistep,
     Method,
+    MethodGroup,
     PredictorCorrector,
     RungeKutta,
     check_one_step,

@@ -6,6 +6,8 @@
 """
 
 from bezstab.questions.answering import SLOWER, Answer, Gains, LargestStep, answers, largest_step
+from bezstab.questions.chains import Chain, ChainAnswer
+from bezstab.questions.held_drives import HeldAnswer, HeldQuestion, UsedUp, held_answers, held_gains
 from bezstab.questions.motions import ReferenceMotion, motion_of, turning_of, turning_stages, turns_too_far
 from bezstab.questions.points import GivenPoint
 from bezstab.questions.question import WHICH_METHOD, Question, StepRange, methods_for, usual_goal
@@ -14,13 +16,20 @@ __all__ = [
     "SLOWER",
     "WHICH_METHOD",
     "Answer",
+    "Chain",
+    "ChainAnswer",
     "Gains",
     "GivenPoint",
+    "HeldAnswer",
+    "HeldQuestion",
     "LargestStep",
     "Question",
     "ReferenceMotion",
     "StepRange",
+    "UsedUp",
     "answers",
+    "held_answers",
+    "held_gains",
     "largest_step",
     "methods_for",
     "motion_of",

@@ -34,6 +34,7 @@ from bezstab.show.columns import (
     transposed,
 )
 from bezstab.show.fields import Field, RowKind, cells
+from bezstab.show.held_rows import LATE_COMMANDS, NOT_JUDGED, held_row, held_sentence, timing_words
 from bezstab.show.row_kinds import (
     CHECKED,
     CHOICES,
@@ -43,6 +44,7 @@ from bezstab.show.row_kinds import (
     FIELDS,
     FORCED,
     FRONTS,
+    HELD,
     LARGEST_STEPS,
     LINTED,
     LISTED_METHODS,
@@ -148,12 +150,15 @@ __all__ = [
     "FIELDS",
     "FORCED",
     "FRONTS",
+    "HELD",
     "LARGEST_STEPS",
+    "LATE_COMMANDS",
     "LINTED",
     "LISTED_METHODS",
     "MEASUREMENTS",
     "MEMBERS",
     "MISSING",
+    "NOT_JUDGED",
     "NOT_KNOWN",
     "POLES",
     "PROBED",
@@ -197,6 +202,8 @@ __all__ = [
     "front_row",
     "growing_run",
     "growth_words",
+    "held_row",
+    "held_sentence",
     "history_arrays",
     "history_figure",
     "history_line",
@@ -235,6 +242,7 @@ __all__ = [
     "styled",
     "summary_row",
     "times_words",
+    "timing_words",
     "trade_words",
     "transposed",
     "untimed_arrays",

@@ -372,7 +372,7 @@ def likeness_row(column: str, likeness: Likeness) -> Row:
         "predicted_z_abs": abs(likeness.predicted),
         "predicted_z_angle_deg": complex_parts("", likeness.predicted)["angle_deg"],
     }
-    return {"column": column, "reason": likeness.reason or None, **cells(LIKENESS, likeness, of_method)}
+    return {"column": column, **cells(LIKENESS, likeness, of_method)}
 
 
 def like_point_row(column: str, point: LikePoint, h: float | None) -> Row:

@@ -40,6 +40,15 @@ from bezstab.stability.regions import Region, pole_place, region, useful_window,
 from bezstab.stability.searches import bisected, first_where
 from bezstab.stability.step_families import FAMILIES, Limit, Member, bezier_limit, family_members
 from bezstab.stability.step_sequences import VaryingSteps, varying_steps
+from bezstab.stability.sweeps import (
+    LARGEST_RATIO,
+    MOST_BODIES,
+    Growth,
+    chain,
+    fewest_sweeps,
+    inverse_effective_masses,
+    swept_growth,
+)
 from bezstab.stability.turning import own_feedback_root, turning_sensitivity, turning_shift
 
 if TYPE_CHECKING:
@@ -70,6 +79,8 @@ __all__ = [
     "EPS",
     "FAMILIES",
     "LARGEST_OMEGA_H",
+    "LARGEST_RATIO",
+    "MOST_BODIES",
     "OMEGA_H",
     "QUALITY",
     "RATES",
@@ -86,6 +97,7 @@ __all__ = [
     "FrontPoint",
     "GainLimits",
     "Goal",
+    "Growth",
     "HeldLimits",
     "Limit",
     "Margins",
@@ -100,6 +112,7 @@ __all__ = [
     "best_point_or_reason",
     "bezier_limit",
     "bisected",
+    "chain",
     "check_omega_h",
     "choose",
     "choose_at_step",
@@ -113,6 +126,7 @@ __all__ = [
     "falls_towards",
     "family_members",
     "feedback_cost",
+    "fewest_sweeps",
     "first_where",
     "forced_error",
     "forced_response",
@@ -120,6 +134,7 @@ __all__ = [
     "held_limits",
     "held_spectral_radius",
     "held_verdict",
+    "inverse_effective_masses",
     "largest_stable_step",
     "own_feedback_root",
     "pencil_of",
@@ -133,6 +148,7 @@ __all__ = [
     "stability_margins",
     "stable_for_all",
     "stable_up_to",
+    "swept_growth",
     "turning_response",
     "turning_sensitivity",
     "turning_shift",

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 import bezstab
 from bezstab.cli import main
-from bezstab.cli.probe_command import exclusion_sentence, likeness_sentence
+from bezstab.cli.probe_command import likeness_sentence
 from bezstab.errors import InputError
 from bezstab.evidence import Likeness, model_xml
 from bezstab.mechanism import compiled_mechanism, constraint_errors, load_scene, perturbed_state
@@ -121,30 +121,6 @@ def test_sentences_in_full() -> None:
     assert likeness_sentence([like("B4", 2e-2)], point).startswith("nothing fits at (1, 0.25): the nearest is B4, 0.02")
 
 
-def test_where_no_pole_shows_the_recursion_is_named() -> None:
-    write("log.csv", c=response("SYM", 0.5, 0.25, 8))
-    write("zero.csv", c=np.zeros(8))
-    command = "probe log.csv --minus zero.csv --alpha 0.5 --beta 0.25 --method SYM --method RK4 --method AB4"
-    result = run(*command.split())
-    assert result.exit_code == 0
-    assert "8 samples: at least 12 are needed" in result.stdout
-    told, too_long = result.stdout.splitlines()[-3::2]
-    assert told == "c: no pole shows, but this follows the recursion of SYM at (0.5, 0.25) to 0.001; RK4 is excluded."
-    assert too_long == "c: AB4 may have made it too: it has too few rows to test such a recursion."
-    fit, *methods = rows(*command.split())
-    assert fit["z_abs"] is None
-    assert [(row["method"], row["fits"], row["judged_by"]) for row in methods] == [
-        ("SYM", True, "recursion"),
-        ("RK4", False, "recursion"),
-        ("AB4", True, "exclusion"),
-    ]
-    assert (methods[2]["distance"], methods[2]["reason"]) == (None, "not excluded: too few rows for its recursion")
-    alone = run(
-        *["probe", "log.csv", "--minus", "zero.csv", "--method", "SYM"]
-    )  # without a point there is no recursion
-    assert (alone.exit_code, alone.stdout.count("recursion")) == (3, 0)
-
-
 def test_a_point_in_another_unit_is_noticed() -> None:
     write("my log.csv", c=response("SYM", 2 / 3, 1 / 4))
     command = ["probe", "my log.csv", "--alpha", "40", "--beta", "60", "--h", "1/120"]
@@ -155,62 +131,23 @@ def test_a_point_in_another_unit_is_noticed() -> None:
     assert "this behaves like SYM at (0.666667, 0.25)" in right.stdout
 
 
-def test_a_method_from_a_file_is_judged_by_its_recursion_too() -> None:
+def test_of_too_few_rows_nothing_is_compared() -> None:
+    write("log.csv", c=response("SYM", 0.5, 0.25, 8))
+    result = run(*["probe", "log.csv", "--alpha", "0.5", "--beta", "0.25", "--method", "SYM", "--method", "RK4"])
+    assert (result.exit_code, "SYM" in result.stdout) == (3, False)
+    assert "no pole can be told: c: 8 samples: at least 12 are needed" in result.stderr
+
+
+def test_a_method_from_a_file_is_compared_too() -> None:
     file = str(PAGE.parent.parent / "methods" / "houbolt.toml")
-    write("log.csv", c=response(file, 0.5, 0.2, 11))
-    write("zero.csv", c=np.zeros(11))
-    _, own, other = rows(
+    write("log.csv", c=response(file, 0.5, 0.2))
+    write("zero.csv", c=np.zeros(300))
+    _, own, _ = rows(
         *shlex.split(f"probe log.csv --minus zero.csv --alpha 1/2 --beta 0.2 --method RK4 --method {file}")
     )
-    assert (own["method"], own["fits"], own["judged_by"]) == ("Houbolt", True, "recursion")
+    assert (own["method"], own["fits"]) == ("Houbolt", True)
     assert isinstance(own["distance"], float)
     assert own["distance"] < 1e-6
-    assert (other["method"], other["judged_by"]) == ("RK4", "recursion")
-
-
-def test_rows_that_can_test_no_recursion_still_exclude_methods() -> None:
-    """A log of a blow-up, grown to a metre within five rows, of which the last is not linear any more."""
-    c = 1e-8 * of_poles(poles(lookup("RK4"), 8.0, 2.0), 5, seed=1)
-    write("log.csv", c=np.append(c[:4], -c[4] / 3))
-    write("zero.csv", c=np.zeros(5))
-    command = "probe log.csv --minus zero.csv --alpha 8 --beta 2"
-    result = run(*command.split())
-    assert result.exit_code == 3
-    assert "no pole can be told: c: 5 samples: at least 12 are needed" in result.stderr
-    assert "c: these rows cannot test any method's recursion at (8, 2), but exclude " in " ".join(result.stdout.split())
-    assert "yes" not in result.stdout  # no table of all that may be
-    judged = {row["method"]: row for row in json.loads(run(*command.split(), "--format", "json").stdout)[1:]}
-    assert set(judged) == {lookup(name).name for name in REGISTRY}
-    assert {row["judged_by"] for row in judged.values()} == {"exclusion"}
-    assert (judged["RK4"]["fits"], judged["SYM"]["fits"], judged["AB8"]["fits"]) == (True, False, True)
-    assert judged["SYM"]["distance"] > judged["SYM"]["allowed"]
-    assert judged["SYM"]["reason"].startswith("excluded: ")
-    assert judged["RK4"]["reason"].startswith("not excluded: too disturbed")
-    assert judged["AB8"]["reason"] == "not excluded: too few rows for its recursion"
-
-
-def test_sentences_about_exclusion() -> None:
-    def judged(name: str, left_over: float) -> Likeness:
-        return Likeness(lookup(name), 0.5 + 0j, left_over, 0.5, 0.5, True, "", "exclusion", "")
-
-    point = (Fraction(1), Fraction(1, 4))
-    not_one = "these rows cannot test any method's recursion at (1, 0.25), "
-    found = [judged("B4", 0.4), judged("AB8", np.nan), judged("SYM", 0.6)]
-    assert exclusion_sentence(found[:2], point) == f"{not_one}and exclude none of 2 methods."
-    assert exclusion_sentence(found, point) == f"{not_one}but exclude SYM; any of 2 others may have made it."
-    found = [found[0], found[2], judged("RK4", 1.0)]
-    assert exclusion_sentence(found, point) == f"{not_one}but exclude 2 of 3 methods; B4 may have made it."
-    assert exclusion_sentence(found[1:], point) == f"{not_one}but exclude 2 of 2 methods; none is left."
-
-
-def test_a_log_of_two_rows_excludes_nothing_and_one_of_none_is_refused() -> None:
-    for count, said in ((2, f"exclude none of {len(REGISTRY)} methods"), (1, "")):
-        write("log.csv", c=response("SYM", 0.5, 0.25, count))
-        result = run(*["probe", "log.csv", "--alpha", "0.5", "--beta", "0.25"])
-        assert result.exit_code == 3
-        assert f"{count} samples: at least 12 are needed" in result.stderr
-        assert said in " ".join(result.stdout.split())
-        assert ("recursion" in result.stdout) == bool(said)
 
 
 def test_without_a_point_the_point_is_found_in_both_units() -> None:
@@ -273,8 +210,7 @@ def test_noise_and_quantisation_are_status_three_with_their_reason() -> None:
     result = run("probe", "log.csv", "--alpha", "0.5", "--beta", "0.1", "--format", "json")
     assert result.exit_code == 3
     told = json.loads(result.stdout)
-    assert [row["z_abs"] for row in told if row["method"] is None] == [None, None]
-    assert {row["judged_by"] for row in told if row["method"] is not None} == {"exclusion"}
+    assert [row["z_abs"] for row in told] == [None, None]
     assert "no pole can be told: noisy: " in result.stderr
     assert "rounded: rounded to 1e-05" in result.stderr
     write("log.csv", noisy=noisy, clean=clean)

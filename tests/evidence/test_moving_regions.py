@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from bezstab.evidence import floquet_rates, moving_growth, moving_modulus, moving_region
+from bezstab.evidence import floquet_rates, moving_growth, moving_modulus, moving_poles, moving_region
 from bezstab.methods import lookup
-from bezstab.stability import region
+from bezstab.stability import region, spectral_radius
 from tests.evidence.driven_four_bar import four_bar, turning
 
 OMEGA = 2 * np.pi
@@ -36,6 +36,16 @@ def test_exact_rates_on_its_edge_are_one() -> None:
     rates = floquet_rates(four_bar(), method, h, alpha_hat, inside, 1.0)
     assert low.size == rates.size
     assert np.median(np.abs(rates - 1)) < 5e-4
+
+
+def test_a_region_and_a_point_follow_one_law_at_double_poles_too() -> None:
+    """On symplectic Euler's curve of double poles, where chi is not finite, and beside it; the table leaves 1e-3."""
+    method, h = lookup("SYM"), 0.05 / OMEGA
+    alpha_hat = np.repeat(np.linspace(0.4, 0.9, 6), 3)
+    beta_hat = (1 - np.sqrt(1 - alpha_hat)) ** 2 * np.tile([1, 1 + 1e-6, 1.02], 6)
+    of_points = np.log([pole.z_abs_moving for pole in moving_poles(method, turning(), h, alpha_hat, beta_hat)])
+    assert moving_growth(method, turning(), h, alpha_hat, beta_hat) == pytest.approx(of_points, abs=1e-4)
+    assert (of_points > np.log(spectral_radius(method, alpha_hat, beta_hat)) + 0.02).all()
 
 
 def test_its_grid_says_where_errors_decay_and_where_the_law_does_not_hold() -> None:

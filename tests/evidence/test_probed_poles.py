@@ -1,7 +1,6 @@
 """Poles found in logs: those that were put in, never others; and whose they are."""
 
 from collections import Counter
-from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -17,14 +16,14 @@ from bezstab.evidence import (
     likenesses,
     points_like,
     probed_pole,
-    recursion_likenesses,
     steps_between_rows,
 )
-from bezstab.evidence.probed_poles import FEWEST, LINEAR_SHARES, _quantum, linear_limits, usable_response
+from bezstab.evidence.probed_poles import FEWEST, LINEAR_SHARES, _linear_limits, _quantum, _usable_response
 from bezstab.methods import REGISTRY, Method, lookup
 from bezstab.rationals import exact
 from bezstab.stability import FloatArray, dominant_pole, poles, region, window
 from tests.evidence.random_logs import H, RandomLog, random_logs
+from tests.evidence.samples import of_campaign
 from tests.reference.sampled_responses import geometric, of_poles, two_poles
 
 ALL = [lookup(name) for name in REGISTRY]
@@ -235,9 +234,9 @@ def test_what_has_grown_and_died_away_is_not_taken_to_saturate() -> None:
     """The largest sample is then no sign of a limit: all rows are tried as linear, or none is left out of them."""
     rows = np.arange(60)[:, np.newaxis]
     died_away = 1.0 + 1e3 * np.exp(-((rows - 20.0) ** 2) / 40)
-    assert tuple(linear_limits(died_away)) == (np.inf,)
+    assert tuple(_linear_limits(died_away)) == (np.inf,)
     saturated = np.tanh(1e-3 * 1.5**rows)
-    assert tuple(linear_limits(saturated)) == tuple(share * saturated.max() for share in LINEAR_SHARES)
+    assert tuple(_linear_limits(saturated)) == tuple(share * saturated.max() for share in LINEAR_SHARES)
 
 
 def test_a_pole_is_told_out_of_noise_and_noise_is_told_as_noise() -> None:
@@ -347,48 +346,33 @@ def test_a_users_step_is_kicked_both_ways_and_by_parts_of_the_kick() -> None:
 
 
 def outcome(log: RandomLog, found: ProbedPole, turned: float | None) -> str:
-    """Return what came of a log: the true method first, among those that fit, or not excluded by few rows; or else."""
-    if found.pole is not None:
-        like = likenesses(found, ALL, log.alpha_hat, log.beta_hat, turned=turned)
-    else:
+    """Return what came of a log: the true method first, or among those that fit, no pole with a reason, or wrong."""
+    if found.pole is None:
         assert found.reason
-        like = recursion_likenesses(log.c, ALL, log.alpha_hat, log.beta_hat, log.minus, turned=turned)
-    if not like:
-        return "refused"
+        return "no pole"
+    like = likenesses(found, ALL, log.alpha_hat, log.beta_hat, turned=turned)
     (true,) = [one for one in like if one.method.name == log.method.name]
     if not true.fits:
-        return "nothing fits" if not any(one.fits for one in like) else "wrong"
-    if true.judged_by == "exclusion":
-        assert true.reason.startswith("not excluded: ")
-        return "not excluded" if any(not one.fits for one in like) else "nothing is excluded"
+        return "wrong"
     return "first" if log.method.name in (like[0].method.name, *like[0].same_as.split(", ")) else "among"
-
-
-STARTS_OF = 4  # of so many logs one is read again, cut off after
-START = 7  # rows
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [1, 2, 7])
 def test_the_true_method_is_named_whatever_made_the_log(seed: int) -> None:
-    """Of 200 logs it is first or among those that fit, whether or not one knows how fast the mechanism turns.
+    """Of random logs it is first or among those that fit, whether or not one knows how fast the mechanism turns.
 
-    Some four fifths show a pole, and of the others most follow their method's recursion. What is left has grown to a
-    metre within two to nine rows, or it is one run that shows next to nothing but what the motion forces: there the
-    true method is not excluded, while most of those logs exclude others. The same is asked of the starts of some.
+    Some four fifths show a pole. The others grow to a metre within a few rows, or are one run that shows next to
+    nothing but what the motion forces.
     """
+    count = of_campaign(200, 20)
     counts: Counter[str] = Counter()
-    of_starts: Counter[str] = Counter()
-    for number, log in enumerate(random_logs(count=200, seed=seed, rows=250)):
+    for log in random_logs(count=count, seed=seed, rows=250):
         found = probed_pole(log.c, log.minus)
         counts.update(outcome(log, found, turned) for turned in (log.turning * H, None))
-        if number % STARTS_OF == 0:
-            start = replace(log, c=log.c[:START], minus=None if log.minus is None else log.minus[:START])
-            of_starts[outcome(start, probed_pole(start.c, start.minus), start.turning * H)] += 1
-    assert set(counts) <= {"first", "among", "not excluded", "nothing is excluded"}
-    assert set(of_starts) <= {"first", "among", "not excluded", "nothing is excluded"}
-    assert counts["first"] >= 340
-    assert counts["nothing is excluded"] <= 16
+    assert set(counts) <= {"first", "among", "no pole"}
+    assert counts["first"] >= 1.4 * count  # of two for each log
+    assert counts["no pole"] <= 0.5 * count
 
 
 @pytest.mark.slow
@@ -426,7 +410,7 @@ def test_exact_numbers_are_compared_exactly() -> None:
 def test_what_is_no_number_ends_its_own_response_and_a_row_of_none_ends_all() -> None:
     c = np.cumprod(np.full((12, 2), [0.9, 0.8]), axis=0)
     c[5, 0] = c[8] = np.nan
-    responses, _, cut = usable_response(c, None)
+    responses, _, cut = _usable_response(c, None)
     assert responses.shape == (8, 2)
     assert np.isnan(responses[5:, 0]).all()  # though there are numbers after the gap
     assert np.array_equal(responses[:, 1], c[:8, 1])
