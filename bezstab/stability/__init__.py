@@ -15,12 +15,11 @@ From a method's polynomial in float64 (its pencil) upwards; a file imports only 
     searches          where a condition comes to hold; where a value is least
     locus_tracks      the branches of the curve |z| = r in mu, followed
     boundary_locus    that curve cut where it bounds the region, integrated
-    line_crossings    where an arc crosses lines
-    line_slices       where lines across the region are stable, by a second route
+    shapes            what a region is, wherever its edges come from
+    locus_shapes      the region of a method that has a mu, from that curve
     path_crossings    where a path from a point crosses the boundary
-    self_checks       every answer held against a second route
-    plane_cells       the stable cells of a second-order scheme's plane: area, extent, curves
-    plane_checks      those held against points, lines and the D-decomposition
+    plane_cells       that of a method that has none, from the stable cells of its plane
+    region_checks     every region held against the poles
     answer_checks     best points, choices and margins held against samples and proofs
     margins           how far h, alpha and beta are from the boundary, by factors
     regions           the exact region in alpha_hat and beta_hat
