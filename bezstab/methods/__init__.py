@@ -21,6 +21,7 @@ From exact numbers upwards; a file imports only from those above it:
     registry            every built-in method by name
     derivation          its polynomials pi(z, mu) and P(z; alpha_hat, beta_hat), and the s->z mapping
     shared_factors      poles that no feedback moves
+    root_isolation      the real roots of a polynomial, exact or to 70 bits
     plane_edges         where the plane turns from stable to unstable, exactly
     path_edges          where a path through the plane may turn so, exactly
     orders              order of accuracy and error constant
