@@ -5,11 +5,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
-from typing import Literal, get_args
+from typing import get_args
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bezstab.errors import InputError, NumericalError
+from bezstab.goals import Goal
 from bezstab.methods import Method, Verdict, steps
 from bezstab.rationals import exact
 from bezstab.stability.accurate_points import Decays, accurate_point, default_rate, worst_error
@@ -25,6 +27,7 @@ from bezstab.stability.arrays import BoolArray, Extent, FloatArray
 from bezstab.stability.best_points import AS_SMALL, best_point
 from bezstab.stability.closed_loop import (
     AnyPencil,
+    all_within,
     any_pencil_of,
     free_pencil_of,
     largest_modulus,
@@ -33,8 +36,6 @@ from bezstab.stability.closed_loop import (
 )
 from bezstab.stability.curve_choices import Curve, least_along, mildest_along
 from bezstab.stability.forced_errors import OMEGA_H
-from bezstab.stability.line_crossings import IntArray
-from bezstab.stability.line_slices import all_within
 from bezstab.stability.margins import Margins, stability_margins
 from bezstab.stability.pencils import Pencil, largest_root_in_z
 from bezstab.stability.plane_best_points import critical_point
@@ -43,7 +44,6 @@ from bezstab.stability.regions import Region, pole_place, region
 from bezstab.stability.searches import first_where, zoom_on_minimum
 from bezstab.units import check_step
 
-Goal = Literal["accurate", "robust", "fastest", "critical", "gentle"]
 Within = Callable[[FloatArray, FloatArray, FloatArray], BoolArray]
 """Whether |z_p| is below a bound, over arrays of alpha_hat, beta_hat and bounds."""
 
@@ -414,7 +414,7 @@ def _slowest(method: Method, modulus: Modulus, within: Within | None, spread: fl
         if not left.size:
             return worst
 
-        def complete(some: IntArray) -> None:
+        def complete(some: NDArray[np.intp]) -> None:
             """Let the smaller steps count as well, where one of them is the worst."""
             share, scaled_alpha, scaled_beta = scaled(smaller_steps, alpha_hat[some], beta_hat[some])
             counts = ~within(scaled_alpha, scaled_beta, worst[some] ** share) if within else np.full(share.shape, True)
