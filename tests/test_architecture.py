@@ -53,7 +53,7 @@ FOUNDATIONS = (
 BELOW = {
     "engines": {*FOUNDATIONS},
     "methods": {*FOUNDATIONS},
-    "stability": {*FOUNDATIONS, "methods"},
+    "stability": {*FOUNDATIONS, "engines", "methods"},
     "mechanism": {*FOUNDATIONS, "methods"},
     "evidence": {*FOUNDATIONS, "engines", "methods", "stability", "mechanism"},
     "questions": {*FOUNDATIONS, "engines", "methods", "stability", "mechanism", "evidence"},
@@ -80,7 +80,7 @@ APPOINTED = {
     "click": {f"cli/{name}.py" for name in ("options", "output", "command_group")}
     | {f"cli/{name}_commands.py" for name in ("map", "choose", "evidence")}
     | {f"cli/{name}_command.py" for name in ("verify", "schema", "lint", "probe")}
-    | {"cli/completion.py", "cli/asking.py"}
+    | {"cli/completion.py", "cli/asking.py", "cli/held_drives.py"}
     | {"paper/command.py"},
     "mujoco": {"evidence/mujoco_models.py"},
     "distributed": {"evidence/worker_pools.py"},

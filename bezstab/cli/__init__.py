@@ -8,6 +8,7 @@ three ways to measure, lint, probe, schema) have one each beside it. A file impo
     options             parameter types and the options that commands share
     output              rows, files, messages, progress
     asking              the options of a question, and what is said below its answers
+    held_drives         drives whose controller is slower than the physics
     accuracy_maps       the map of forced errors over the plane, and the trade against decay
     map_commands        poles, region, methods, family
     choose_commands     choose, check, engines, explore

@@ -8,6 +8,7 @@ import click
 
 from bezstab.cli.options import (
     ENGINE_VALUES,
+    NUMBER,
     POSITIVE,
     SECONDS,
     SPEED,
@@ -27,12 +28,12 @@ from bezstab.units import to_dimensionless
 
 if TYPE_CHECKING:
     from bezstab.mechanism import TurningNormals
-    from bezstab.questions import Answer, Question
+    from bezstab.questions import Answer, Chain, Question
 
 GAINS = ("kp", "kd", "inertia")
 
 
-def _drive(text: str) -> Drive:
+def drive_of(text: str) -> Drive:
     """Return the drive that a text such as 100,2,0.01 says."""
     try:
         numbers = [rational(number) for number in text.split(",")]
@@ -43,7 +44,7 @@ def _drive(text: str) -> Drive:
     return Drive(*numbers)
 
 
-DRIVE = ParsedType(",".join(GAINS), _drive)
+DRIVE = ParsedType(",".join(GAINS), drive_of)
 
 engine_values_option = click.option(
     "--engine", type=ENGINE_VALUES, help="An engine's own values, such as mujoco=0.02,1, instead; needs --h."
@@ -53,6 +54,15 @@ drive_option = click.option(
 )
 as_typed_option = click.option(
     "--as-typed", is_flag=True, help="With --engine: take the values as they are, without the engine's clamps."
+)
+chain_option = click.option(
+    "--chain", type=int, help="With --engine: safe for so many bodies in a straight chain, as the engine sweeps?"
+)
+mass_ratio_option = click.option(
+    "--mass-ratio", type=NUMBER, help="With --chain: how many times as heavy as the others the last body is [1]."
+)
+iterations_option = click.option(
+    "--iterations", type=int, help="With --chain: sweeps over all constraints in a step [the engine's own]."
 )
 omega_option = click.option(
     "--omega",
@@ -76,6 +86,19 @@ def moving_scene_option(help_text: str) -> Decorator:
     return scene_option(None, help_text)
 
 
+def typed_chain(bodies: int | None, mass_ratio: Fraction | None, iterations: int | None) -> "Chain | None":
+    """Return the chain that was typed, None without one; InputError for what goes with it alone."""
+    from bezstab.questions import Chain
+
+    if bodies is not None:
+        return Chain(bodies, Fraction(1) if mass_ratio is None else mass_ratio, iterations)
+    if mass_ratio is not None:
+        raise InputError("--mass-ratio goes with --chain: it is the last body of a chain")
+    if iterations is not None:
+        raise InputError("--iterations goes with --chain: one constraint alone needs one sweep")
+    return None
+
+
 def asked(
     methods: Sequence[Method],
     alpha: Fraction | None,
@@ -92,6 +115,7 @@ def asked(
     h_min: Fraction | None = None,
     h_max: Fraction | None = None,
     hold: bool = False,
+    chain: "Chain | None" = None,
 ) -> "Question":
     """Return the question about a point as it was typed; what looks mistaken in it is said. InputError as Question."""
     from bezstab.questions import Question
@@ -118,6 +142,7 @@ def asked(
         omega=omega,
         scene=scene,
         speed=speed,
+        chain=chain,
     )
     if alpha is not None and beta is not None and not physical:
         say_if_units_were_mistaken(question.methods, alpha, beta, question.h)
@@ -165,13 +190,16 @@ def say_what_was_made(question: "Question", form: Format) -> None:
     if question.engine and for_reading(form):
         for note in question.given.notes or ():
             say(f"{question.engine.name}: {note} (--as-typed leaves that out)")
-        say_what_is_left_out(question.engine)
+        say_what_is_left_out(question.engine, chain=question.chain is not None)
 
 
-def say_what_is_left_out(engine: Engine) -> None:
-    """Say on standard error what the conversion of an engine's values leaves out."""
+def say_what_is_left_out(engine: Engine, *, chain: bool = False) -> None:
+    """Say on standard error what the conversion of an engine's values leaves out; of a chain, what its sweeps do."""
     swept = "; it solves each constraint by itself, in sweeps: chains of them may diverge all the same"
-    say(f"{engine.name}: left out: {engine.excludes}{swept if engine.sweeps else ''}")
+    ask = ": ask with --chain" if engine.sweeping else ""
+    say(f"{engine.name}: left out: {engine.excludes}{swept + ask if engine.sweeps and not chain else ''}")
+    if chain and engine.sweeping:
+        say(f"{engine.name}: sweeps are its {engine.sweeping.word}; of them left out: {engine.sweeping.excludes}")
 
 
 def say_unknown_costs(answers: "Iterable[Answer]") -> None:

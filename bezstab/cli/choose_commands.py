@@ -10,10 +10,13 @@ import click
 from bezstab.cli.asking import (
     as_typed_option,
     asked,
+    chain_option,
     drive_option,
     engine_values_option,
     h_min_option,
     hold_option,
+    iterations_option,
+    mass_ratio_option,
     methods_typed,
     moving_scene_option,
     moving_speed_option,
@@ -23,6 +26,15 @@ from bezstab.cli.asking import (
     say_varying,
     say_what_is_left_out,
     say_what_was_made,
+    typed_chain,
+)
+from bezstab.cli.held_drives import (
+    bandwidth_option,
+    check_held,
+    choose_held,
+    inertia_option,
+    timing_options,
+    timing_typed,
 )
 from bezstab.cli.options import (
     ENGINE,
@@ -82,10 +94,17 @@ WITHOUT_ACCURACY = ("total_error", "order_left", "times_least_velocity")
 @h_min_option
 @hold_option
 @click.option("--spread", type=NUMBER, default="0.1", help="By what share α and β may be off.")
-@click.option("--settle", type=SECONDS, help="gentle, accurate: the time in s in which c falls a thousandfold.")
+@click.option(
+    "--settle", type=SECONDS, help="gentle, accurate, or with --pd: the time in s in which c falls a thousandfold."
+)
 @click.option("--keep", type=click.Choice(["alpha=beta"]), help="Only points with α = β.")
 @click.option("--engine", metavar="NAME", type=ENGINE, help="Choose what that engine can express; print what to paste.")
-@drive_option
+@chain_option
+@mass_ratio_option
+@iterations_option
+@inertia_option
+@bandwidth_option
+@timing_options
 @moving_scene_option("Choose for this mechanism as it moves.")
 @moving_speed_option
 @format_option
@@ -101,7 +120,14 @@ def choose(
     settle: Fraction | None,
     keep: str | None,
     engine: Engine | None,
+    chain: int | None,
+    mass_ratio: Fraction | None,
+    iterations: int | None,
     drive: Drive | None,
+    bandwidth: Fraction | None,
+    every: int | None,
+    late: Fraction | None,
+    filter_seconds: Fraction | None,
     scene: str | None,
     speed: Fraction,
     form: Format,
@@ -117,14 +143,26 @@ def choose(
 
     With --engine the method is the engine's own unless given, and only what the engine can express is searched: of
     several that are best, as where it fixes α̂, the mildest is taken. With --pd each way of applying a joint drive is
-    shown, with the kp and kd to set instead. With --h-min steps may vary from one to the next, and "varying steps" says
-    whether every sequence of them up to --h-max decays. Exit status 1 if the answer is not proven safe, over the motion
-    of a --scene and for steps that vary as well.
+    shown, with the kp and kd to set. With --bandwidth or --settle, or a controller that is slower than the physics
+    (--every, --late, --filter), they are critically damped gains for the explicit way, with a margin.
+
+    With --h-min steps may vary from one to the next, and "varying steps" says whether every sequence of them up to
+    --h-max decays. With --chain the answer also says from how many sweeps it is stable in a straight chain of bodies,
+    and the strongest feedback that this chain allows with --spread to spare. Exit status 1 if the answer is not proven
+    safe, over the motion of a --scene, for steps that vary and in a chain as well.
 
     Example: bezstab choose --method B4 --h 0.001
     """
     from bezstab.questions import Question, answers, usual_goal
+    from bezstab.stability import Timing
 
+    timing = timing_typed(every, late, filter_seconds, drive, h)
+    if bandwidth is not None and drive is None:
+        raise InputError("--bandwidth is that of a drive: it needs --pd")
+    if drive and (timing or bandwidth is not None or (settle is not None and goal is None)):
+        chosen_methods = methods_typed(methods, has_usual_ones=True)
+        safe = choose_held(drive.inertia, h, timing or Timing(), chosen_methods, bandwidth, settle, form)
+        click.get_current_context().exit(0 if safe else 1)
     question = Question(
         methods=methods_typed(methods, engine is not None or drive is not None),
         goal=goal or usual_goal(engine, drive),
@@ -140,6 +178,7 @@ def choose(
         spread=float(spread),
         settle=settle,
         equal=keep is not None,
+        chain=typed_chain(chain, mass_ratio, iterations),
     )
     prepare(question)
     chosen = list(progress(answers(question), question.goal or "", len(question.methods)))
@@ -155,8 +194,12 @@ def choose(
                 show_text("\n" + "\n".join(f"{name}{line}" for line in lines))
         if not drive:
             show_text(f"\n{motion_words(question.motion)}")
+        for answer in chosen if question.chain else ():
+            show_text(
+                f"\nThe strongest that the chain allows with the spread to spare: {answer.chain_setting or 'none'}."
+            )
         if engine:
-            say_what_is_left_out(engine)
+            say_what_is_left_out(engine, chain=question.chain is not None)
     if not all(answer.safe for answer in chosen):
         click.get_current_context().exit(1)
 
@@ -169,7 +212,11 @@ def choose(
 @physical_option
 @engine_values_option
 @as_typed_option
+@chain_option
+@mass_ratio_option
+@iterations_option
 @drive_option
+@timing_options
 @omega_option
 @h_min_option
 @click.option("--h-max", type=SECONDS, help="With --h-min: the longest step in s [--h].")
@@ -187,7 +234,13 @@ def check(
     physical: bool,
     engine: EngineValues | None,
     as_typed: bool,
+    chain: int | None,
+    mass_ratio: Fraction | None,
+    iterations: int | None,
     drive: Drive | None,
+    every: int | None,
+    late: Fraction | None,
+    filter_seconds: Fraction | None,
     omega: Fraction | None,
     h_min: Fraction | None,
     h_max: Fraction | None,
@@ -210,7 +263,8 @@ def check(
     is applied first; what the conversion leaves out is said. How far the step may grow is asked of the engine's values,
     and whether it is α and β or α̂ and β̂ that stay as steps vary. What is given instead is what the engine can express,
     with the line to paste. An engine that solves its constraints one after another, in sweeps, is told about one
-    constraint alone: chains of them may diverge all the same.
+    constraint alone: chains of them may diverge all the same. With --chain safe is what is stable for so many bodies in
+    a straight chain, the last one --mass-ratio times as heavy, with --iterations sweeps.
 
     --pd kp,kd,inertia asks about a joint's drive, applied in four ways: explicit (SYM), implicit in velocity
     (imex-euler, as MuJoCo's implicitfast), as stable PD (stable-pd), fully implicit (implicit-euler, as PhysX). All
@@ -218,10 +272,19 @@ def check(
     it kp or kd? "used up" says which of the two is at its limit, or nearest to it, and "to" how far each may go alone.
     Explicit needs 2 kd h + kp h² < 4 inertia. Mostly it is kd, which has no limit where the velocity is implicit.
 
+    --every, --late and --filter ask about a drive whose controller is slower than the physics: its torque is held for
+    several steps, comes late, or sees a filtered velocity. "used up" says whether gains, rate or delay are, and "to"
+    how far each may go alone.
+
+    A contact of stiffness k and damping c between bodies of reduced mass m is --pd k,c,m for as long as it is closed.
+
     Example: bezstab check --method RK2 --h 0.002 --alpha 50 --beta 50 --physical
     """
     from bezstab.questions import answers, turning_of
 
+    timing = timing_typed(every, late, filter_seconds, drive, h)
+    if timing and drive and h:
+        context.exit(0 if check_held(drive, h, timing, methods_typed(methods, has_usual_ones=True), form) else 1)
     if physical and not (h or h_min or scene or engine or drive or as_typed or hold or omega):
         turning_of(None, speed, None)  # no speed without a scene
         context.exit(0 if _check_without_step(methods, both_or_none(alpha, beta), form) else 1)
@@ -240,6 +303,7 @@ def check(
         h_min=h_min,
         h_max=h_max,
         hold=hold,
+        chain=typed_chain(chain, mass_ratio, iterations),
     )
     found = list(_with_instead(answers(question)))
     given = [answer for answer in found if answer.role == "given"]

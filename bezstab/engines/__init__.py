@@ -5,6 +5,7 @@
 
 From data upwards; a file imports only from those above it:
 
+    sweeping             how an engine that sweeps goes through a step
     conversions          what an engine is: its words read and written, its clamps, its own integrator
     acceleration_engines true Baumgarte feedback: the integrator decides
     velocity_engines     impulse engines, whose velocity update feeds part of the error back
@@ -17,18 +18,34 @@ From data upwards; a file imports only from those above it:
 from bezstab.engines.conversions import Applied, Curve, Engine, Point
 from bezstab.engines.drives import DRIVE_METHODS, Drive
 from bezstab.engines.engine_list import ENGINES, RUN_UNDERNEATH, WITNESSES, engine_and_values, engine_named, witness_of
+from bezstab.engines.sweeping import (
+    MOST_SWEEPS,
+    Move,
+    Pass,
+    SweptStep,
+    VelocityOfMove,
+    check_iterations,
+    hard_velocity_step,
+)
 
 __all__ = [
     "DRIVE_METHODS",
     "ENGINES",
+    "MOST_SWEEPS",
     "RUN_UNDERNEATH",
     "WITNESSES",
     "Applied",
     "Curve",
     "Drive",
     "Engine",
+    "Move",
+    "Pass",
     "Point",
+    "SweptStep",
+    "VelocityOfMove",
+    "check_iterations",
     "engine_and_values",
     "engine_named",
+    "hard_velocity_step",
     "witness_of",
 ]

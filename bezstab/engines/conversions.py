@@ -5,8 +5,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Literal
 
+from bezstab.engines.sweeping import Sweeping
 from bezstab.errors import InputError
 from bezstab.rationals import within_float64
+
+Level = Literal["acceleration", "velocity", "position"]
 
 Point = tuple[Fraction, Fraction]
 """alpha_hat and beta_hat."""
@@ -41,11 +44,12 @@ class Engine:
     them (clamps, scaling), None if nothing. `marks` are the settings everybody meets: a label, and the point as a
     function of h. `excludes` is what the conversion leaves out. `curve` are the points to choose among, None for all of
     the plane. `sweeps` is whether the engine solves each constraint by itself, one after another, rather than all
-    together: then what holds for one constraint alone says little about a chain of them.
+    together: then what holds for one constraint alone says little about a chain of them. `sweeping` is how it goes
+    through such a step, None where that is not written down here.
     """
 
     name: str
-    level: Literal["acceleration", "velocity", "position"]
+    level: Level
     method: str | None
     parameters: tuple[str, ...]
     units: tuple[str, ...]
@@ -59,6 +63,7 @@ class Engine:
     paste: Callable[..., str] | None = None
     curve: Curve | None = None
     sweeps: bool = False
+    sweeping: Sweeping | None = None
 
     def point(self, values: tuple[Fraction, ...], h: Fraction) -> Point:
         """Return (alpha_hat, beta_hat) for values as typed, in their order and the engine's units; h in s.
@@ -119,6 +124,51 @@ class Engine:
         alpha_hat, beta_hat = point
         option = f"--engine {self.name}"
         return within_float64(alpha_hat, f"{option}: α̂"), within_float64(beta_hat, f"{option}: β̂")
+
+
+def engine_without_parameters(
+    name: str,
+    level: Level,
+    point: Point,
+    *,
+    source: str,
+    excludes: str,
+    paste: str = "nothing to set",
+    sweeps: bool = False,
+    sweeping: Sweeping | None = None,
+) -> Engine:
+    """Return an engine whose feedback cannot be set: symplectic Euler at one point."""
+
+    def read(h: Fraction) -> Point:
+        return point
+
+    def write(asked: Point, h: Fraction) -> tuple[str, ...]:
+        if asked != point:
+            theirs, others = (f"({float(alpha_hat):g}, {float(beta_hat):g})" for alpha_hat, beta_hat in (point, asked))
+            raise InputError(f"{name} is {theirs}, not {others}")
+        return ()
+
+    def line() -> str:
+        return paste
+
+    def curve(share: Any) -> tuple[Any, Any]:
+        return float(point[0]), float(point[1])
+
+    return Engine(
+        name=name,
+        level=level,
+        method="SYM",
+        parameters=(),
+        units=(),
+        read=read,
+        write=write,
+        paste=line,
+        curve=curve,
+        source=source,
+        excludes=excludes,
+        sweeps=sweeps,
+        sweeping=sweeping,
+    )
 
 
 def in_words(value: float) -> str:

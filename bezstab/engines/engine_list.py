@@ -18,7 +18,7 @@ from bezstab.engines.acceleration_engines import (
 )
 from bezstab.engines.conversions import Engine
 from bezstab.engines.implicit_engines import BRAX_SPRING, JOLT_SPRING, PHYSX_DRIVE, XPBD
-from bezstab.engines.position_engines import BRAX_POSITIONAL, JOLT, PBD
+from bezstab.engines.position_engines import BOX2D_V2, BRAX_POSITIONAL, JOLT, PBD
 from bezstab.engines.velocity_engines import (
     BOX2D,
     BRAX_CONTACT,
@@ -28,8 +28,11 @@ from bezstab.engines.velocity_engines import (
     DART,
     DRAKE_SAP,
     GODOT,
+    GODOT_2D,
     KAMINO,
     ODE,
+    PHYSX,
+    PHYSX_TGS,
     RAPIER,
 )
 from bezstab.errors import InputError, unknown_name
@@ -52,14 +55,18 @@ ENGINES = {
         ODE,
         DART,
         BOX2D,
+        BOX2D_V2,
         RAPIER,
         CHIPMUNK,
         CHRONO_LINEARIZED,
         DRAKE_SAP,
         BRAX_CONTACT,
         GODOT,
+        GODOT_2D,
         KAMINO,
         JOLT_SPRING,
+        PHYSX,
+        PHYSX_TGS,
         PHYSX_DRIVE,
         JOLT,
         PBD,
@@ -74,8 +81,8 @@ RUN_UNDERNEATH = {
     "newton": "it has several solvers: ask about kamino, mujoco (MuJoCo Warp) or xpbd",
     "pybullet": "it is Bullet: ask about bullet",
     "pymunk": "it is Chipmunk: ask about chipmunk",
-    "unity": "it runs PhysX in 3D and Box2D in 2D: ask about physx-drive (a drive of its joints and articulations) or "
-    "about box2d (that of version 3); of PhysX's joints without a drive nothing is known here",
+    "unity": "it runs PhysX in 3D and Box2D in 2D: ask about physx or physx-tgs (joints), about "
+    "physx-drive (a drive of its joints and articulations), about box2d-v2, or about box2d (that of version 3)",
 }
 """What others that are asked for run underneath, by their names."""
 

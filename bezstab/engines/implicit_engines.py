@@ -9,6 +9,7 @@ import math
 from fractions import Fraction
 
 from bezstab.engines.conversions import Engine, Point, in_words, refuse_below_zero, refuse_unless_positive
+from bezstab.engines.sweeping import Sweeping, SweptStep, hard_velocity_step
 from bezstab.errors import InputError
 from bezstab.units import feedback_gains, from_feedback_gains
 
@@ -31,6 +32,12 @@ def _write_jolt_spring(point: Point, h: Fraction) -> tuple[str, ...]:
     return in_words(frequency), in_words(damping)
 
 
+def _jolt_spring_step(iterations: int, h: Fraction, frequency: Fraction, damping: Fraction) -> SweptStep:
+    alpha_hat, beta_hat = map(float, _read_jolt_spring(h, frequency, damping))
+    total = alpha_hat + beta_hat  # h (c + h k) over the effective mass
+    return hard_velocity_step(beta_hat / total, iterations, kept=1.0, softness=1 / total)
+
+
 JOLT_SPRING = Engine(
     name="jolt-spring",
     level="velocity",
@@ -42,6 +49,13 @@ JOLT_SPRING = Engine(
     sweeps=True,
     source="Jolt source, SpringPart.h (Catto, Soft constraints, GDC 2011, without relaxation)",
     excludes="its modes by stiffness; the error of iterations; for a hard constraint see jolt",
+    sweeping=Sweeping(
+        _jolt_spring_step,
+        iterations=10,
+        word="mNumVelocitySteps",
+        source="Jolt source, SpringPart.h, AxisConstraintPart.h, PhysicsSystem.cpp, PhysicsSettings.h",
+        excludes="large islands, which it splits; hard constraints beside the springs",
+    ),
 )
 
 

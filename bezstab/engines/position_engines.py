@@ -9,7 +9,8 @@ Two kinds, for one constraint of unit mass, c* = c0 + h c0' and a share s that a
 from fractions import Fraction
 from typing import Any
 
-from bezstab.engines.conversions import Engine, Point, in_words
+from bezstab.engines.conversions import Engine, Point, engine_without_parameters, in_words
+from bezstab.engines.sweeping import Move, Pass, Sweeping, SweptStep, VelocityOfMove
 from bezstab.errors import InputError
 
 ONE = Fraction(1)
@@ -48,6 +49,10 @@ def _pbd_default(h: Fraction) -> Point:
     return ONE, ONE
 
 
+def _pbd_step(iterations: int, h: Fraction, share: Fraction, typed: Fraction = ONE) -> SweptStep:
+    return SweptStep(0.0, (Move(), Pass("position", iterations, 1.0, relaxation=float(share)), VelocityOfMove()))
+
+
 PBD = Engine(
     name="pbd",
     level="position",
@@ -62,6 +67,13 @@ PBD = Engine(
     sweeps=True,
     source="Mueller et al., Position based dynamics, J. Vis. Commun. Image R. 18, 2007; derived",
     excludes="other constraints in between; above 1 it is over-relaxation; velocity damping",
+    sweeping=Sweeping(
+        _pbd_step,
+        iterations=1,
+        word="iterations",
+        source="Mueller et al., Position based dynamics, 2007, Section 3.3 (Gauss-Seidel); derived",
+        excludes="velocity damping",
+    ),
 )
 
 
@@ -112,6 +124,11 @@ def _jolt_default(h: Fraction) -> Point:
     return _read_jolt(h, Fraction("0.2"))
 
 
+def _jolt_step(iterations: int, h: Fraction, baumgarte: Fraction, position_steps: Fraction = Fraction(2)) -> SweptStep:
+    positions = Pass("position", int(position_steps), 1.0, relaxation=float(baumgarte))
+    return SweptStep(1.0, (Pass("velocity", iterations), Move(), positions))
+
+
 JOLT = Engine(
     name="jolt",
     level="position",
@@ -126,4 +143,39 @@ JOLT = Engine(
     sweeps=True,
     source="Jolt source, PhysicsSettings.h, AxisConstraintPart.h (SolvePositionConstraint)",
     excludes="constraints with springs, which are jolt-spring; contacts' slop; constraints that share bodies",
+    sweeping=Sweeping(
+        _jolt_step,
+        iterations=10,
+        word="mNumVelocitySteps",
+        source="Jolt source, PhysicsSystem.cpp (JobSolveVelocityConstraints), PhysicsSettings.h, AxisConstraintPart.h",
+        excludes="constraints of several dimensions, which it solves together; large islands, which it splits",
+    ),
+)
+
+
+# Box2D up to version 2.4: velocities are swept without error, then each sweep over positions takes back all of it
+
+
+BOX2D_V2_POSITION_SWEEPS = 3
+
+
+def _box2d_v2_step(iterations: int, h: Fraction) -> SweptStep:
+    return SweptStep(1.0, (Pass("velocity", iterations), Move(), Pass("position", BOX2D_V2_POSITION_SWEEPS, 1.0)))
+
+
+BOX2D_V2 = engine_without_parameters(
+    "box2d-v2",
+    "position",
+    (ONE, ONE),
+    sweeps=True,
+    source="Box2D 2.4 source, b2_revolute_joint.cpp (SolvePositionConstraints), b2_island.cpp",
+    excludes="joints; contacts take back a fifth; errors within the slop of 5 mm, which end the sweeps; joint springs",
+    sweeping=Sweeping(
+        _box2d_v2_step,
+        iterations=8,
+        word="velocityIterations",
+        source="Box2D 2.4 source, b2_island.cpp, b2_revolute_joint.cpp; its testbed's 8 velocity and 3 position sweeps",
+        excludes="position sweeps other than 3, and those that the slop of 5 mm ends; the two dimensions of a joint, "
+        "which it solves together",
+    ),
 )

@@ -13,7 +13,16 @@ import math
 from fractions import Fraction
 from typing import Any
 
-from bezstab.engines.conversions import Applied, Engine, Point, in_words, refuse_below_zero, refuse_unless_positive
+from bezstab.engines.conversions import (
+    Applied,
+    Engine,
+    Point,
+    engine_without_parameters,
+    in_words,
+    refuse_below_zero,
+    refuse_unless_positive,
+)
+from bezstab.engines.sweeping import Move, Pass, Sweeping, SweptStep, hard_velocity_step
 from bezstab.errors import InputError
 
 ONE = Fraction(1)
@@ -37,7 +46,14 @@ def _refuse_unless_one(name: str, alpha_hat: Fraction) -> None:
 
 
 def _engine_with_erp(
-    name: str, default: str, source: str, excludes: str, *, word: str = "ERP", sweeps: bool = False
+    name: str,
+    default: str,
+    source: str,
+    excludes: str,
+    *,
+    word: str = "ERP",
+    sweeps: bool = False,
+    sweeping: Sweeping | None = None,
 ) -> Engine:
     def read(h: Fraction, erp: Fraction) -> Point:
         return ONE, erp
@@ -62,11 +78,33 @@ def _engine_with_erp(
         excludes=excludes,
         curve=_hard,
         sweeps=sweeps,
+        sweeping=sweeping,
     )
 
 
 IMPULSES = "contacts, clamps, warm starts and the error of iterative solvers are left out"
-BULLET = _engine_with_erp("bullet", "0.2", "Bullet source, btContactSolverInfo.h", f"CFM = 0; {IMPULSES}", sweeps=True)
+
+
+def _cold_step(iterations: int, h: Fraction, share: Fraction) -> SweptStep:
+    """Return the step of engines whose joints start each step with no impulse."""
+    return hard_velocity_step(share, iterations, kept=0.0)
+
+
+BULLET = _engine_with_erp(
+    "bullet",
+    "0.2",
+    "Bullet source, btContactSolverInfo.h",
+    f"CFM = 0; {IMPULSES}",
+    sweeps=True,
+    sweeping=Sweeping(
+        _cold_step,
+        iterations=10,
+        word="m_numIterations",
+        source="Bullet source, btSequentialImpulseConstraintSolver.cpp (convertJoint sets m_appliedImpulse to 0), "
+        "btContactSolverInfo.h",
+        excludes="contacts, which it starts warm (0.85), and random order where that is switched on",
+    ),
+)
 DART = _engine_with_erp("dart", "0.01", "DART issue 317", f"CFM = 0; {IMPULSES}")
 BRAX_CONTACT = _engine_with_erp(
     "brax-contact",
@@ -78,11 +116,41 @@ BRAX_CONTACT = _engine_with_erp(
 GODOT = _engine_with_erp(
     "godot",
     "0.3",
-    "Godot source, godot_pin_joint_3d.cpp, godot_joints_2d.cpp (in 2D 0.2 unless set)",
+    "Godot source, godot_pin_joint_3d.cpp",
     "Jolt, which is jolt, and which new projects use in 3D; PinJoint3D's damping other than 1; other joints in 3D; "
-    f"softness in 2D; {IMPULSES}",
+    f"2D, which is godot-2d; {IMPULSES}",
     word="bias",
     sweeps=True,
+    sweeping=Sweeping(
+        _cold_step,
+        iterations=16,
+        word="physics/3d/solver/solver_iterations",
+        source="Godot source, godot_pin_joint_3d.cpp (setup sets m_appliedImpulse to 0), physics_server_3d.cpp",
+        excludes="priorities of constraints; a bias is added in every sweep, not to an accumulated impulse, which is "
+        "the same",
+    ),
+)
+
+
+def _godot_2d_step(iterations: int, h: Fraction, bias: Fraction) -> SweptStep:
+    return SweptStep(1.0, (Pass("velocity", iterations), Pass("position", iterations, float(bias)), Move()))
+
+
+GODOT_2D = _engine_with_erp(
+    "godot-2d",
+    "0.2",
+    "Godot source, godot_joints_2d.cpp (PinJoint2D without softness: a bias impulse for positions alone)",
+    f"softness; angular limits; grooves and springs; {IMPULSES}",
+    word="bias",
+    sweeps=True,
+    sweeping=Sweeping(
+        _godot_2d_step,
+        iterations=16,
+        word="physics/2d/solver/solver_iterations",
+        source="Godot source, godot_joints_2d.cpp (pre_solve applies P, solve has its own bias impulse), "
+        "godot_step_2d.cpp, physics_server_2d.cpp",
+        excludes="the two dimensions of a pin, which it solves together; contacts",
+    ),
 )
 KAMINO = _engine_with_erp(
     "kamino",
@@ -110,6 +178,13 @@ def _write_ode(point: Point, h: Fraction) -> tuple[str, ...]:
     return in_words(erp), in_words(cfm), "1"
 
 
+def _ode_step(
+    iterations: int, h: Fraction, erp: Fraction, cfm: Fraction = Fraction(0), mass: Fraction = ONE
+) -> SweptStep:
+    softness = float(cfm * mass / h)  # CFM / h beside 1 / mass
+    return hard_velocity_step(erp, iterations, kept=0.0, relaxation=1.3, softness=softness)
+
+
 def _ode_default(h: Fraction) -> Point:
     return _read_ode(h, Fraction("0.2"))
 
@@ -128,40 +203,25 @@ ODE = Engine(
     curve=_hard,  # which needs no effective mass
     sweeps=True,
     excludes=f"CFM = 0 unless given, with the effective mass 1 / (J M^-1 J'); {IMPULSES}",
+    sweeping=Sweeping(
+        _ode_step,
+        iterations=20,
+        word="dWorldSetQuickStepNumIterations",
+        source="ODE source, quickstep.cpp (WARM_STARTING not defined), objects.cpp (w = 1.3), include/ode/objects.h",
+        excludes="quickstep alone: dWorldStep solves exactly; its random order, new every 8 sweeps; the sweeps that it "
+        "leaves out or adds when little or much is left; CFM is taken as the same share of each effective mass",
+    ),
 )
 
 
 # Chrono's usual integrator, linearised implicit Euler: v1 = -c / h
 
 
-def _read_chrono(h: Fraction) -> Point:
-    return ONE, ONE
-
-
-def _write_chrono(point: Point, h: Fraction) -> tuple[str, ...]:
-    if point != (ONE, ONE):
-        raise InputError(f"chrono-linearized is (1, 1), not ({float(point[0]):g}, {float(point[1]):g})")
-    return ()
-
-
-def _paste_chrono() -> str:
-    return "EULER_IMPLICIT_LINEARIZED"
-
-
-def _only_chronos(share: Any) -> tuple[Any, Any]:
-    return 1.0, 1.0
-
-
-CHRONO_LINEARIZED = Engine(
-    name="chrono-linearized",
-    level="velocity",
-    method="SYM",
-    parameters=(),
-    units=(),
-    read=_read_chrono,
-    write=_write_chrono,
-    paste=_paste_chrono,
-    curve=_only_chronos,
+CHRONO_LINEARIZED = engine_without_parameters(
+    "chrono-linearized",
+    "velocity",
+    (ONE, ONE),
+    paste="EULER_IMPLICIT_LINEARIZED",
     sweeps=True,  # its default solver, PSOR
     source="Chrono source, ChTimestepperImplicit.cpp (EulerImplicitLinearized: Qc = C / dt)",
     excludes="the recovery speed (0.6 m/s unless set), above which an error is taken back at that speed; contacts",
@@ -192,6 +252,10 @@ def _chipmunk_default(h: Fraction) -> Point:
     return _read_chipmunk(h, Fraction("0.9") ** 60)
 
 
+def _chipmunk_step(iterations: int, h: Fraction, error_bias: Fraction) -> SweptStep:
+    return hard_velocity_step(_read_chipmunk(h, error_bias)[1], iterations, kept=1.0)  # its order of moves is the same
+
+
 CHIPMUNK = Engine(
     name="chipmunk",
     level="velocity",
@@ -205,6 +269,13 @@ CHIPMUNK = Engine(
     sweeps=True,
     source="Chipmunk source, cpConstraint.c, cpPivotJoint.c, cpSpaceStep.c (pymunk: error_bias)",
     excludes="maxBias and maxForce (infinite unless set); warm starts and the error of iterations; damped springs",
+    sweeping=Sweeping(
+        _chipmunk_step,
+        iterations=10,
+        word="iterations",
+        source="Chipmunk source, cpSpaceStep.c (cached impulses, then sweeps), cpSpace.c, cpPivotJoint.c",
+        excludes="the two dimensions of a pivot, which it solves together; contacts; steps that vary",
+    ),
 )
 
 
@@ -254,6 +325,19 @@ def _write_box2d(point: Point, h: Fraction) -> tuple[str, ...]:
     return f"{turn / (2 * math.pi * float(h)):.12g}", in_words(zeta)
 
 
+def _soft_terms(h: Fraction, hertz: Fraction, damping_ratio: Fraction) -> tuple[float, float]:
+    """Return the share e and the softness (1 - s) / s of a soft constraint."""
+    turn = float(_turn(hertz, h))
+    zeta = float(damping_ratio)
+    return turn / (2 * zeta + turn), 1 / (turn * (2 * zeta + turn))
+
+
+def _box2d_step(iterations: int, h: Fraction, hertz: Fraction, damping_ratio: Fraction) -> SweptStep:
+    share, softness = _soft_terms(h, min(hertz, MOST_TURNS / h), damping_ratio)
+    solved = Pass("velocity", iterations, share, softness)
+    return SweptStep(1.0, (solved, Move(), Pass("velocity", 1)))
+
+
 def _box2d_joints(share: Any) -> tuple[Any, Any]:
     return 1.0, LARGEST_SHARE * share
 
@@ -276,6 +360,14 @@ BOX2D = Engine(
     sweeps=True,
     source="Box2D v3 source, solver.h: b2MakeSoft; joint.c; revolute_joint.c (solved, then relaxed without bias)",
     excludes="h is the substep's; contacts, joint springs, warm starts and the error of Gauss-Seidel sweeps",
+    sweeping=Sweeping(
+        _box2d_step,
+        iterations=1,
+        word="ITERATIONS",
+        source="Box2D v3 source, solver.c (ITERATIONS, RELAX_ITERATIONS), revolute_joint.c, joint.c",
+        excludes="h is the substep's; its order by colours of a graph; the two dimensions of a joint, which it solves "
+        "together; ITERATIONS is set when it is compiled",
+    ),
 )
 
 
@@ -309,6 +401,13 @@ def _rapier_joints(share: Any) -> tuple[Any, Any]:
     return STIFFEST, STIFFEST * double_pole * share
 
 
+def _rapier_step(iterations: int, h: Fraction, natural_frequency: Fraction, damping_ratio: Fraction) -> SweptStep:
+    # its softness is the square of (1 / e - 1) over 4 zeta^2 / e: the same as Box2D's
+    share, softness = _soft_terms(h, natural_frequency, damping_ratio)
+    solved, relaxed = Pass("velocity", iterations, share, softness), Pass("velocity", 1, 0.0, softness)
+    return SweptStep(0.0, (solved, Move(), relaxed))
+
+
 def _rapier_default(h: Fraction) -> Point:
     return _read_rapier(h, Fraction(1_000_000), ONE)
 
@@ -326,6 +425,14 @@ RAPIER = Engine(
     sweeps=True,
     source="Rapier source, integration_parameters.rs, solve.rs in staged_island_solver, joint_velocity_constraint.rs",
     excludes="h is the substep's, dt / num_solver_iterations; limits' largest corrective speed; warmstart_joints",
+    sweeping=Sweeping(
+        _rapier_step,
+        iterations=1,
+        word="num_internal_pgs_iterations",
+        source="Rapier source, staged_island_solver (solve.rs, worker.rs), joint_velocity_constraint.rs, "
+        "integration_parameters.rs (warmstart_joints false, one stabilization sweep)",
+        excludes="h is the substep's; its order by colours of a graph; warmstart_joints",
+    ),
 )
 
 
@@ -406,4 +513,53 @@ DRAKE_SAP = Engine(
     marks=(("Drake SAP: near rigid", _read_sap),),
     source="Drake source, sap_holonomic_constraint.h and .cc; sap_ball_constraint.cc",
     excludes="without values a ball or a weld, which are near rigid; limits of impulses; constraints that share bodies",
+)
+
+
+# PhysX's joints, without drives or springs. PGS: position iterations that take back all of the error, a move, velocity
+# iterations without error. TGS: n substeps, each one sweep that takes back 1 / sqrt(n) of the error, and then a move;
+# after them velocity iterations without error. One constraint alone keeps 0 of an error, or (1 - 1 / sqrt(n))^n.
+
+TGS_ITERATIONS = 4
+
+
+def _physx_step(iterations: int, h: Fraction) -> SweptStep:
+    return SweptStep(0.0, (Pass("velocity", iterations, 1.0), Move(), Pass("velocity", 1)))
+
+
+def _physx_tgs_step(iterations: int, h: Fraction) -> SweptStep:
+    substep = (Pass("velocity", 1, math.sqrt(iterations)), Move(1 / iterations))  # of the whole step's velocity
+    return SweptStep(0.0, (*substep * iterations, Pass("velocity", 1)))
+
+
+PHYSX_JOINTS = "limits, drives and springs of joints; contacts; articulations; maxBiasCoefficient where it is set"
+PHYSX = engine_without_parameters(
+    "physx",
+    "velocity",
+    (ONE, ONE),
+    source="PhysX source, DyConstraintSetup.cpp (erp = 1), DySolverControl.cpp, DyCpuGpu1dConstraint.h",
+    excludes=f"TGS, which is physx-tgs; {PHYSX_JOINTS}",
+    sweeps=True,
+    sweeping=Sweeping(
+        _physx_step,
+        iterations=4,
+        word="minPositionIters",
+        source="PhysX source, DySolverControl.cpp, DySolverConstraint1D.h (appliedForce = 0), PxvDynamics.h (4 and 1)",
+        excludes="its order by partitions; minVelocityIters other than 1",
+    ),
+)
+PHYSX_TGS = engine_without_parameters(
+    "physx-tgs",
+    "velocity",
+    (ONE, 1 - (1 - Fraction(1, 2)) ** TGS_ITERATIONS),
+    source="PhysX source, DyTGSDynamics.cpp (mBiasCoefficient), DyTGSContactPrep.cpp (erp = mBiasCoefficient / 2)",
+    excludes=f"minPositionIters other than {TGS_ITERATIONS}, but for --chain; {PHYSX_JOINTS}",
+    sweeps=True,
+    sweeping=Sweeping(
+        _physx_tgs_step,
+        iterations=TGS_ITERATIONS,
+        word="minPositionIters",
+        source="PhysX source, DyTGSDynamics.cpp (iterativeSolveIsland), DyTGSContactPrep.cpp, PxvDynamics.h (4 and 1)",
+        excludes="its order by partitions; minVelocityIters other than 1",
+    ),
 )

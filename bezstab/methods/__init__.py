@@ -13,11 +13,9 @@ From exact numbers upwards; a file imports only from those above it:
     schemes             the kinds of methods as frozen data that checks itself
     scheme_motions      motions that every scheme follows exactly, and so when it evaluates
     steady_errors       the error that a method makes anew in each step, as a function of the feedback
-    families            Bezier, Adams-Bashforth and their predictor-corrector pairs, by number of steps
-    one_step_methods    Runge-Kutta methods and symplectic Euler
-    runge_kutta_pairs   explicit Runge-Kutta methods that people run, most of them in pairs
-    implicit_methods    BDF, Adams-Moulton, implicit Runge-Kutta
-    second_order_methods  Verlet, Newmark, symplectic compositions and such
+    multistep_methods   Bezier, Adams, predictor-corrector pairs, backward differentiation, by number of steps
+    runge_kutta_methods  explicit and implicit Runge-Kutta methods
+    second_order_methods  symplectic Euler, Verlet, Newmark, symplectic compositions and such
     method_files        a user's method, from TOML
     aliases             what else they are called, and advice
     registry            every built-in method by name
@@ -36,11 +34,11 @@ What needs sympy is loaded when first used: naming a multistep or Runge-Kutta me
 from typing import TYPE_CHECKING
 
 from bezstab.lazy import lazy_names
-from bezstab.methods.families import adams_bashforth, adams_bashforth_moulton, bezier
 from bezstab.methods.method_files import read_method
+from bezstab.methods.multistep_methods import adams_bashforth, adams_bashforth_moulton, bezier
 from bezstab.methods.polynomials import PlaneTable, Polynomial
 from bezstab.methods.recipes import recipe
-from bezstab.methods.registry import GROUPS, REGISTRY, MethodGroup, lookup
+from bezstab.methods.registry import GROUPS, REGISTRY, lookup
 from bezstab.methods.scheme_motions import (
     ACCELERATED,
     AT_REST,
@@ -55,6 +53,7 @@ from bezstab.methods.schemes import (
     Family,
     LinearMultistep,
     Method,
+    MethodGroup,
     PredictorCorrector,
     RungeKutta,
     check_one_step,

@@ -72,8 +72,8 @@ ENGINES = (
     *("crocoddyl", "pinocchio", "rbdl", "rigidbodydynamics.jl", "maplesim", "drake", "chrono-explicit"),
     *("brax-spring", "bullet", "ode", "dart", "box2d", "rapier", "chipmunk", "chrono-linearized", "drake-sap"),
     *("brax-contact", "jolt-spring", "physx-drive", "jolt", "pbd", "xpbd", "brax-positional"),
-    *("genesis", "godot", "kamino", "avian", "newton", "pybullet", "pymunk", "unity"),
-    *("chrono", "brax", "physx"),
+    *("genesis", "godot", "godot-2d", "kamino", "avian", "newton", "pybullet", "pymunk", "unity"),
+    *("chrono", "brax", "physx", "physx-tgs", "box2d-v2"),
 )
 """Engines other than MuJoCo: nobody means one method by them."""
 

@@ -7,10 +7,9 @@ from typing import Any
 from bezstab.errors import InputError
 from bezstab.files import read_toml
 from bezstab.methods.algebraic_numbers import DIGITS
-from bezstab.methods.families import adams_bashforth, bezier
-from bezstab.methods.implicit_methods import MOST_BDF_STEPS, adams_moulton, bdf
-from bezstab.methods.one_step_methods import runge_kutta, semi_implicit_euler
+from bezstab.methods.multistep_methods import MOST_BDF_STEPS, adams_bashforth, adams_moulton, bdf, bezier
 from bezstab.methods.recipes import recipe
+from bezstab.methods.runge_kutta_methods import MEMBERS, explicit
 from bezstab.methods.schemes import Coefficients, Family, LinearMultistep, Method, RungeKutta, Scheme
 from bezstab.methods.square_roots import SQUARE_ROOT, RootSum, root_sum
 from bezstab.toml_tables import TomlTable
@@ -104,7 +103,7 @@ def _family_of(scheme: Scheme) -> Family | None:
             if scheme.steps <= MOST_BDF_STEPS:
                 members.append(bdf(scheme.steps))
         case RungeKutta():
-            members = [runge_kutta(1), runge_kutta(2), runge_kutta(3), runge_kutta(4), semi_implicit_euler()]
+            members = [explicit(name) for name in MEMBERS]
     for member in members:
         if member.scheme == scheme:
             return member.family

@@ -27,6 +27,15 @@ def horner(descending: Polynomial, x: Fraction) -> Fraction:
     return value
 
 
+def lagrange_integral(node: Fraction | int, others: Sequence[Fraction | int], end: Fraction) -> Fraction:
+    """Return the integral from 0 to `end` of the polynomial that is 1 at `node` and 0 at the others."""
+    ascending = [Fraction(1)]
+    for other in others:
+        times_x, times_other = [Fraction(0), *ascending], [other * a for a in ascending] + [Fraction(0)]
+        ascending = [(a - b) / (node - other) for a, b in zip(times_x, times_other, strict=True)]
+    return sum((a * end ** (k + 1) / (k + 1) for k, a in enumerate(ascending)), Fraction(0))
+
+
 def trimmed(polynomial: Polynomial) -> list[Fraction]:
     """Return the monic polynomial with the same roots, leading zeros dropped; ZeroDivisionError for zero."""
     p = list(polynomial)

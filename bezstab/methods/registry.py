@@ -1,173 +1,26 @@
 """Every method by name: those built in, those in a file, and both with a step of several h."""
 
 import re
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from fractions import Fraction
-from functools import cache, partial
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 from bezstab.errors import InputError
-from bezstab.methods import second_order_methods as second_order
 from bezstab.methods.aliases import ALIASES, folded, unknown_method
-from bezstab.methods.families import adams_bashforth, adams_bashforth_moulton, bezier
-from bezstab.methods.implicit_methods import (
-    adams_moulton,
-    bdf,
-    dirk3,
-    gauss4,
-    implicit_euler,
-    implicit_midpoint,
-    radau3,
-    radau5,
-    sdirk2,
-    trapezoid,
-)
 from bezstab.methods.method_files import read_method
-from bezstab.methods.one_step_methods import runge_kutta, semi_implicit_euler, symplectic_euler
-from bezstab.methods.runge_kutta_pairs import (
-    bogacki_shampine,
-    cash_karp,
-    dormand_prince,
-    heun,
-    ralston,
-    ssprk3,
-    tsitouras,
-)
+from bezstab.methods.multistep_methods import EXPLICIT_MULTISTEP, IMPLICIT_MULTISTEP
+from bezstab.methods.runge_kutta_methods import EXPLICIT_RUNGE_KUTTA, IMPLICIT_RUNGE_KUTTA
 from bezstab.methods.schemes import Method
-from bezstab.rationals import ONE, ZERO, rational
-
-HALF = Fraction(1, 2)
-
-
-@dataclass(frozen=True)
-class Parameter:
-    """A parameter in a method's name, and the least and largest value it takes."""
-
-    name: str
-    least: Fraction
-    largest: Fraction
-
-
-@dataclass(frozen=True)
-class ParametricMethod:
-    """A method whose name has parameters; `make` takes their values and the name."""
-
-    name: str
-    parameters: tuple[Parameter, ...]
-    make: Callable[..., Method]
-
-    def having(self, *values: Fraction) -> Method:
-        """Return the method with these parameters, in their order; its name says them: hht(alpha=-1/20)."""
-        said = [f"{parameter.name}={value}" for parameter, value in zip(self.parameters, values, strict=True)]
-        return self.make(*values, f"{self.name}({','.join(said)})")
-
-
-NEWMARK = ParametricMethod(
-    "newmark",
-    (Parameter("beta", ZERO, Fraction(10)), Parameter("gamma", ZERO, Fraction(10))),
-    second_order.newmark,
-)
-HHT = ParametricMethod("hht", (Parameter("alpha", Fraction(-1, 3), ZERO),), second_order.hht)
-GENERALIZED_ALPHA = ParametricMethod(
-    "generalized-alpha", (Parameter("rho_inf", ZERO, ONE),), second_order.generalized_alpha
-)
-
-PARAMETRIC = {method.name: method for method in (NEWMARK, HHT, GENERALIZED_ALPHA)}
-"""Methods with parameters, by name: newmark(1/4,1/2) or newmark(beta=1/4,gamma=1/2)."""
-
-
-@dataclass(frozen=True)
-class MethodGroup:
-    """Methods that are listed together: what makes each of them, by its name; a line about their names if needed."""
-
-    heading: str
-    methods: Mapping[str, Callable[[], Method]]
-    note: str = ""
-
-
-def _newmark(name: str, beta: Fraction) -> Callable[[], Method]:
-    return partial(second_order.newmark, beta, HALF, name)
-
+from bezstab.methods.second_order_methods import PARAMETRIC, SECOND_ORDER, ParametricMethod
+from bezstab.rationals import rational
 
 GROUPS = (
-    MethodGroup("Bézier", {f"B{n}": partial(bezier, n) for n in range(1, 13)}),
-    MethodGroup("Adams-Bashforth", {f"AB{n}": partial(adams_bashforth, n) for n in range(1, 9)}),
-    MethodGroup(
-        "Adams-Bashforth-Moulton, predicted and corrected (PECE)",
-        {f"ABM{n}": partial(adams_bashforth_moulton, n) for n in range(2, 5)},
-    ),
-    MethodGroup(
-        "Runge-Kutta, explicit",
-        {
-            **{f"RK{n}": partial(runge_kutta, n) for n in range(1, 5)},
-            "SIE": semi_implicit_euler,
-            "heun": heun,
-            "ralston": ralston,
-            "ssprk3": ssprk3,
-            "bs3": bogacki_shampine,
-            "dopri5": dormand_prince,
-            "tsit5": tsitouras,
-            "cash-karp": cash_karp,
-        },
-        note="(SIE is the paper's 'Euler semi-implicit', not that of engines, which is SYM)",
-    ),
-    MethodGroup(
-        "Symplectic and Nyström",
-        {
-            "SYM": symplectic_euler,
-            "ruth3": second_order.ruth3,
-            "forest-ruth": second_order.forest_ruth,
-            "yoshida4": second_order.yoshida4,
-            "rkn4": second_order.rkn4,
-        },
-    ),
-    MethodGroup(
-        "Velocity Verlet, by the velocity that the feedback sees",
-        {
-            "verlet-half": second_order.verlet_half,
-            "verlet-predicted": second_order.verlet_predicted,
-            "verlet-old": second_order.verlet_old,
-            "verlet-implicit": second_order.verlet_implicit,
-            "verlet-kdk": second_order.verlet_kdk,
-        },
-    ),
-    MethodGroup(
-        "Newmark and generalised alpha",
-        {
-            "average-acceleration": _newmark("average-acceleration", Fraction(1, 4)),
-            "linear-acceleration": _newmark("linear-acceleration", Fraction(1, 6)),
-            "fox-goodwin": _newmark("fox-goodwin", Fraction(1, 12)),
-            "central-difference": _newmark("central-difference", ZERO),
-            "hht": partial(HHT.having, Fraction(-1, 20)),
-            "generalized-alpha": partial(GENERALIZED_ALPHA.having, Fraction(4, 5)),
-        },
-        note="(newmark(beta,gamma), hht(alpha=-0.1), generalized-alpha(rho_inf=0.8))",
-    ),
-    MethodGroup(
-        "Implicit in the velocity, of physics engines and control",
-        {"imex-euler": second_order.imex_euler, "stable-pd": second_order.stable_pd},
-    ),
-    MethodGroup(
-        "Implicit multistep",
-        {
-            "implicit-euler": implicit_euler,
-            "trapezoid": trapezoid,
-            **{f"bdf{n}": partial(bdf, n) for n in range(1, 7)},
-            **{f"am{n}": partial(adams_moulton, n) for n in range(2, 7)},
-        },
-    ),
-    MethodGroup(
-        "Runge-Kutta, implicit",
-        {
-            "implicit-midpoint": implicit_midpoint,
-            "sdirk2": sdirk2,
-            "dirk3": dirk3,
-            "radau3": radau3,
-            "radau5": radau5,
-            "gauss4": gauss4,
-        },
-    ),
+    *EXPLICIT_MULTISTEP,
+    EXPLICIT_RUNGE_KUTTA,
+    *SECOND_ORDER,
+    IMPLICIT_MULTISTEP,
+    IMPLICIT_RUNGE_KUTTA,
 )
 """The built-in methods as they are listed."""
 

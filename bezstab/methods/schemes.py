@@ -14,6 +14,7 @@ mu = h lambda: `mu_table`, where `has_mu`. All have their P(z; alpha_hat, beta_h
 """
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
@@ -323,6 +324,15 @@ class Method:
     def has_mu(self) -> bool:
         """Whether position and velocity are stepped alike, so that the poles are those of y' = lambda y."""
         return self.scheme.has_mu
+
+
+@dataclass(frozen=True)
+class MethodGroup:
+    """Methods that are listed together: what makes each of them, by its name; a line about their names if needed."""
+
+    heading: str
+    methods: Mapping[str, Callable[[], Method]]
+    note: str = ""
 
 
 def steps(method: Method) -> int:

@@ -7,74 +7,172 @@
 An acceleration that no line of the step gives (a0, where the step ends with a1) is the one stored in the step before.
 """
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 
 from bezstab.methods.algebraic_numbers import DIGITS, decimal_root
 from bezstab.methods.recipes import recipe
-from bezstab.methods.schemes import Method
+from bezstab.methods.schemes import Family, Method, MethodGroup
 from bezstab.methods.second_order import SecondOrder
-from bezstab.rationals import ONE
+from bezstab.rationals import ONE, ZERO
 
 HALF = Fraction(1, 2)
-
-# Velocity Verlet: where a force depends on the velocity, which velocity does it see?
-
 VERLET = "Swope, Andersen, Berens & Wilson, J. Chem. Phys. 76, 1982 (velocity Verlet; feedback sees {})"
 
+THETA = decimal_root(lambda theta: 2 * theta**3 + (1 - 2 * theta) ** 3, ONE, Fraction(2))
+"""1 / (2 - 2^(1/3)), to 40 digits: in steps of theta, 1 - 2 theta and theta the errors of order three cancel."""
 
-def verlet_half() -> Method:
-    """Return velocity Verlet whose feedback sees the half-step velocity: the poles of symplectic Euler."""
-    scheme = recipe({
-        "x1": "x0 + v0 + 1/2 a0",
-        "vh": "v0 + 1/2 a0",
-        "a1": "acceleration(x1, vh)",
-        "v1": "vh + 1/2 a1",
-    })  # fmt: skip
-    return Method("verlet-half", scheme, VERLET.format("the half-step velocity"))
+BACK, OUTER, INNER = 1 - 2 * THETA, THETA / 2, (1 - THETA) / 2
+
+RECIPES: dict[str, tuple[str, dict[str, str]]] = {
+    # what most engines call semi-implicit Euler
+    "SYM": (
+        "Hairer, Lubich & Wanner, Eq. I.1.9",
+        {
+            "a0": "acceleration(x0, v0)",
+            "v1": "v0 + a0",
+            "x1": "x0 + v1",
+        },
+    ),
+    # Compositions of kicks and drifts. Each kick sees the velocity before it: no more than order one where a force
+    # depends on the velocity, whatever their order without.
+    "ruth3": (
+        "Ruth, IEEE Trans. Nucl. Sci. 30, 1983 (order 3 for forces of position)",
+        {
+            "a_1": "acceleration(x0, v0)",
+            "v_1": "v0 + 7/24 a_1",
+            "x_1": "x0 + 2/3 v_1",
+            "a_2": "acceleration(x_1, v_1)",
+            "v_2": "v_1 + 3/4 a_2",
+            "x_2": "x_1 - 2/3 v_2",
+            "a_3": "acceleration(x_2, v_2)",
+            "v1": "v_2 - 1/24 a_3",
+            "x1": "x_2 + v1",
+        },
+    ),
+    "forest-ruth": (
+        "Forest & Ruth, Physica D 43, 1990 (drift first, order 4 for forces of position)",
+        {
+            "x_1": f"x0 + {OUTER} v0",
+            "a_1": "acceleration(x_1, v0)",
+            "v_1": f"v0 + {THETA} a_1",
+            "x_2": f"x_1 + ({INNER} v_1)",
+            "a_2": "acceleration(x_2, v_1)",
+            "v_2": f"v_1 + ({BACK} a_2)",
+            "x_3": f"x_2 + ({INNER} v_2)",
+            "a_3": "acceleration(x_3, v_2)",
+            "v1": f"v_2 + {THETA} a_3",
+            "x1": f"x_3 + {OUTER} v1",
+        },
+    ),
+    "yoshida4": (
+        "Yoshida, Phys. Lett. A 150, 1990 (kick first, order 4 for forces of position)",
+        {
+            "a_1": "acceleration(x0, v0)",
+            "v_1": f"v0 + {OUTER} a_1",
+            "x_1": f"x0 + {THETA} v_1",
+            "a_2": "acceleration(x_1, v_1)",
+            "v_2": f"v_1 + ({INNER} a_2)",
+            "x_2": f"x_1 + ({BACK} v_2)",
+            "a_3": "acceleration(x_2, v_2)",
+            "v_3": f"v_2 + ({INNER} a_3)",
+            "x1": f"x_2 + {THETA} v_3",
+            "a_4": "acceleration(x1, v_3)",
+            "v1": f"v_3 + {OUTER} a_4",
+        },
+    ),
+    "rkn4": (
+        "Nystroem, Acta Soc. Sci. Fenn. 50, 1925 (order 4)",
+        {
+            "a_1": "acceleration(x0, v0)",
+            "a_2": "acceleration(x0 + 1/2 v0 + 1/8 a_1, v0 + 1/2 a_1)",
+            "a_3": "acceleration(x0 + 1/2 v0 + 1/8 a_1, v0 + 1/2 a_2)",
+            "a_4": "acceleration(x0 + v0 + 1/2 a_3, v0 + a_3)",
+            "x1": "x0 + v0 + 1/6 a_1 + 1/6 a_2 + 1/6 a_3",
+            "v1": "v0 + 1/6 a_1 + 1/3 a_2 + 1/3 a_3 + 1/6 a_4",
+        },
+    ),
+    # Velocity Verlet: where a force depends on the velocity, which velocity does it see?
+    "verlet-half": (
+        VERLET.format("the half-step velocity"),
+        {
+            "x1": "x0 + v0 + 1/2 a0",
+            "vh": "v0 + 1/2 a0",
+            "a1": "acceleration(x1, vh)",
+            "v1": "vh + 1/2 a1",
+        },
+    ),
+    "verlet-predicted": (
+        VERLET.format("the predicted velocity v + h a"),
+        {
+            "x1": "x0 + v0 + 1/2 a0",
+            "vp": "v0 + a0",
+            "a1": "acceleration(x1, vp)",
+            "v1": "v0 + 1/2 a0 + 1/2 a1",
+        },
+    ),
+    # Chrono's leapfrog
+    "verlet-old": (
+        VERLET.format("the old velocity"),
+        {
+            "x1": "x0 + v0 + 1/2 a0",
+            "a1": "acceleration(x1, v0)",
+            "v1": "v0 + 1/2 a0 + 1/2 a1",
+        },
+    ),
+    # newmark(0,1/2)
+    "verlet-implicit": (
+        VERLET.format("the new velocity, by iteration"),
+        {
+            "x1": "x0 + v0 + 1/2 a0",
+            "a1": "acceleration(x1, v1)",
+            "v1": "v0 + 1/2 a0 + 1/2 a1",
+        },
+    ),
+    "verlet-kdk": (
+        "Hairer, Lubich & Wanner, Acta Numerica 12, 2003 (Verlet; kick, drift, kick, an acceleration for each)",
+        {
+            "a_start": "acceleration(x0, v0)",
+            "vh": "v0 + 1/2 a_start",
+            "x1": "x0 + vh",
+            "a_end": "acceleration(x1, vh)",
+            "v1": "vh + 1/2 a_end",
+        },
+    ),
+    # One velocity, then one position, as physics engines do
+    "imex-euler": (
+        "Ascher, Ruuth & Wetton, SIAM J. Numer. Anal. 32, 1995 (forward-backward Euler; MuJoCo's implicitfast)",
+        {
+            "a1": "acceleration(x0, v1)",
+            "v1": "v0 + a1",
+            "x1": "x0 + v1",
+        },
+    ),
+    # the feedback sees where x and v would be after the step
+    "stable-pd": (
+        "Tan, Liu & Turk, IEEE Comput. Graph. Appl. 31, 2011 (stable PD)",
+        {
+            "a0": "acceleration(x0 + v0, v0 + a0)",
+            "v1": "v0 + a0",
+            "x1": "x0 + v1",
+        },
+    ),
+}
+"""Methods by name: the source, and the equations of a step."""
 
 
-def verlet_predicted() -> Method:
-    """Return velocity Verlet whose feedback sees v + h a, corrected with the stored acceleration."""
-    scheme = recipe({
-        "x1": "x0 + v0 + 1/2 a0",
-        "vp": "v0 + a0",
-        "a1": "acceleration(x1, vp)",
-        "v1": "v0 + 1/2 a0 + 1/2 a1",
-    })  # fmt: skip
-    return Method("verlet-predicted", scheme, VERLET.format("the predicted velocity v + h a"))
-
-
-def verlet_old() -> Method:
-    """Return velocity Verlet whose feedback sees the old velocity: Chrono's leapfrog."""
-    scheme = recipe({
-        "x1": "x0 + v0 + 1/2 a0",
-        "a1": "acceleration(x1, v0)",
-        "v1": "v0 + 1/2 a0 + 1/2 a1",
-    })  # fmt: skip
-    return Method("verlet-old", scheme, VERLET.format("the old velocity"))
-
-
-def verlet_implicit() -> Method:
-    """Return velocity Verlet whose feedback sees the new velocity, which it helps to make; newmark(0,1/2)."""
-    scheme = recipe({
-        "x1": "x0 + v0 + 1/2 a0",
-        "a1": "acceleration(x1, v1)",
-        "v1": "v0 + 1/2 a0 + 1/2 a1",
-    })  # fmt: skip
-    return Method("verlet-implicit", scheme, VERLET.format("the new velocity, by iteration"))
-
-
-def verlet_kdk() -> Method:
-    """Return kick-drift-kick with an acceleration for each kick: at its start with v, at its end with v_half."""
-    scheme = recipe({
-        "a_start": "acceleration(x0, v0)",
-        "vh": "v0 + 1/2 a_start",
-        "x1": "x0 + vh",
-        "a_end": "acceleration(x1, vh)",
-        "v1": "vh + 1/2 a_end",
-    })  # fmt: skip
-    source = "Hairer, Lubich & Wanner, Acta Numerica 12, 2003 (Verlet; kick, drift, kick, an acceleration for each)"
-    return Method("verlet-kdk", scheme, source)
+def built_in(name: str) -> Method:
+    """Return a method by its name in RECIPES."""
+    source, equations = RECIPES[name]
+    return Method(
+        name,
+        recipe(equations),
+        source,
+        family=Family("symplectic Euler", 0) if name == "SYM" else None,
+        digits=DIGITS if name in ("forest-ruth", "yoshida4") else None,
+    )
 
 
 # Newmark's family and its descendants
@@ -132,108 +230,66 @@ def _alpha_scheme(alpha_m: Fraction, alpha_f: Fraction, beta: Fraction, gamma: F
     )
 
 
-# One velocity, then one position, as physics engines do
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter in a method's name, and the least and largest value it takes."""
+
+    name: str
+    least: Fraction
+    largest: Fraction
 
 
-def imex_euler() -> Method:
-    """Return Euler's method implicit in the velocity and explicit in the position: MuJoCo's implicitfast on drives."""
-    scheme = recipe({
-        "a1": "acceleration(x0, v1)",
-        "v1": "v0 + a1",
-        "x1": "x0 + v1",
-    })  # fmt: skip
-    source = "Ascher, Ruuth & Wetton, SIAM J. Numer. Anal. 32, 1995 (forward-backward Euler; MuJoCo's implicitfast)"
-    return Method("imex-euler", scheme, source)
+@dataclass(frozen=True)
+class ParametricMethod:
+    """A method whose name has parameters; `make` takes their values and the name."""
+
+    name: str
+    parameters: tuple[Parameter, ...]
+    make: Callable[..., Method]
+
+    def having(self, *values: Fraction) -> Method:
+        """Return the method with these parameters, in their order; its name says them: hht(alpha=-1/20)."""
+        said = [f"{parameter.name}={value}" for parameter, value in zip(self.parameters, values, strict=True)]
+        return self.make(*values, f"{self.name}({','.join(said)})")
 
 
-def stable_pd() -> Method:
-    """Return stable proportional-derivative control: the feedback sees where x and v would be after the step."""
-    scheme = recipe({
-        "a0": "acceleration(x0 + v0, v0 + a0)",
-        "v1": "v0 + a0",
-        "x1": "x0 + v1",
-    })  # fmt: skip
-    return Method("stable-pd", scheme, "Tan, Liu & Turk, IEEE Comput. Graph. Appl. 31, 2011 (stable PD)")
+NEWMARK = ParametricMethod(
+    "newmark",
+    (Parameter("beta", ZERO, Fraction(10)), Parameter("gamma", ZERO, Fraction(10))),
+    newmark,
+)
+HHT = ParametricMethod("hht", (Parameter("alpha", Fraction(-1, 3), ZERO),), hht)
+GENERALIZED_ALPHA = ParametricMethod("generalized-alpha", (Parameter("rho_inf", ZERO, ONE),), generalized_alpha)
+
+PARAMETRIC = {method.name: method for method in (NEWMARK, HHT, GENERALIZED_ALPHA)}
+"""Methods with parameters, by name: newmark(1/4,1/2) or newmark(beta=1/4,gamma=1/2)."""
 
 
-# Compositions of kicks and drifts. Each kick sees the velocity before it: no more than order one where a force depends
-# on the velocity, whatever their order without.
+def _newmark(name: str, beta: Fraction) -> Callable[[], Method]:
+    return partial(newmark, beta, HALF, name)
 
 
-def ruth3() -> Method:
-    """Return Ruth's symplectic method: three kicks, order three for forces of position."""
-    scheme = recipe({
-        "a_1": "acceleration(x0, v0)",
-        "v_1": "v0 + 7/24 a_1",
-        "x_1": "x0 + 2/3 v_1",
-        "a_2": "acceleration(x_1, v_1)",
-        "v_2": "v_1 + 3/4 a_2",
-        "x_2": "x_1 - 2/3 v_2",
-        "a_3": "acceleration(x_2, v_2)",
-        "v1": "v_2 - 1/24 a_3",
-        "x1": "x_2 + v1",
-    })  # fmt: skip
-    return Method("ruth3", scheme, "Ruth, IEEE Trans. Nucl. Sci. 30, 1983 (order 3 for forces of position)")
+def _group(heading: str, *names: str) -> MethodGroup:
+    return MethodGroup(heading, {name: partial(built_in, name) for name in names})
 
 
-def _triple_jump() -> Fraction:
-    """Return theta = 1 / (2 - 2^(1/3)): in steps of theta, 1 - 2 theta and theta the errors of order three cancel."""
-    return decimal_root(lambda theta: 2 * theta**3 + (1 - 2 * theta) ** 3, ONE, Fraction(2))
-
-
-def forest_ruth() -> Method:
-    """Return Forest and Ruth's symplectic method: three kicks between drifts, order four for forces of position."""
-    theta = _triple_jump()
-    outer, inner = theta / 2, (1 - theta) / 2
-    scheme = recipe({
-        "x_1": f"x0 + {outer} v0",
-        "a_1": "acceleration(x_1, v0)",
-        "v_1": f"v0 + {theta} a_1",
-        "x_2": f"x_1 + ({inner} v_1)",
-        "a_2": "acceleration(x_2, v_1)",
-        "v_2": f"v_1 + ({1 - 2 * theta} a_2)",
-        "x_3": f"x_2 + ({inner} v_2)",
-        "a_3": "acceleration(x_3, v_2)",
-        "v1": f"v_2 + {theta} a_3",
-        "x1": f"x_3 + {outer} v1",
-    })  # fmt: skip
-    source = "Forest & Ruth, Physica D 43, 1990 (drift first, order 4 for forces of position)"
-    return Method("forest-ruth", scheme, source, digits=DIGITS)
-
-
-def yoshida4() -> Method:
-    """Return Yoshida's composition of three velocity Verlet steps: four kicks, order four for forces of position."""
-    theta = _triple_jump()
-    outer, inner = theta / 2, (1 - theta) / 2
-    scheme = recipe({
-        "a_1": "acceleration(x0, v0)",
-        "v_1": f"v0 + {outer} a_1",
-        "x_1": f"x0 + {theta} v_1",
-        "a_2": "acceleration(x_1, v_1)",
-        "v_2": f"v_1 + ({inner} a_2)",
-        "x_2": f"x_1 + ({1 - 2 * theta} v_2)",
-        "a_3": "acceleration(x_2, v_2)",
-        "v_3": f"v_2 + ({inner} a_3)",
-        "x1": f"x_2 + {theta} v_3",
-        "a_4": "acceleration(x1, v_3)",
-        "v1": f"v_3 + {outer} a_4",
-    })  # fmt: skip
-    return Method(
-        "yoshida4",
-        scheme,
-        "Yoshida, Phys. Lett. A 150, 1990 (kick first, order 4 for forces of position)",
-        digits=DIGITS,
-    )
-
-
-def rkn4() -> Method:
-    """Return Nystroem's method of four stages and order four, for forces of position and velocity."""
-    scheme = recipe({
-        "a_1": "acceleration(x0, v0)",
-        "a_2": "acceleration(x0 + 1/2 v0 + 1/8 a_1, v0 + 1/2 a_1)",
-        "a_3": "acceleration(x0 + 1/2 v0 + 1/8 a_1, v0 + 1/2 a_2)",
-        "a_4": "acceleration(x0 + v0 + 1/2 a_3, v0 + a_3)",
-        "x1": "x0 + v0 + 1/6 a_1 + 1/6 a_2 + 1/6 a_3",
-        "v1": "v0 + 1/6 a_1 + 1/3 a_2 + 1/3 a_3 + 1/6 a_4",
-    })  # fmt: skip
-    return Method("rkn4", scheme, "Nystroem, Acta Soc. Sci. Fenn. 50, 1925 (order 4)")
+SECOND_ORDER = (
+    _group("Symplectic and Nyström", "SYM", "ruth3", "forest-ruth", "yoshida4", "rkn4"),
+    _group(
+        "Velocity Verlet, by the velocity that the feedback sees",
+        *("verlet-half", "verlet-predicted", "verlet-old", "verlet-implicit", "verlet-kdk"),
+    ),
+    MethodGroup(
+        "Newmark and generalised alpha",
+        {
+            "average-acceleration": _newmark("average-acceleration", Fraction(1, 4)),
+            "linear-acceleration": _newmark("linear-acceleration", Fraction(1, 6)),
+            "fox-goodwin": _newmark("fox-goodwin", Fraction(1, 12)),
+            "central-difference": _newmark("central-difference", ZERO),
+            "hht": partial(HHT.having, Fraction(-1, 20)),
+            "generalized-alpha": partial(GENERALIZED_ALPHA.having, Fraction(4, 5)),
+        },
+        note="(newmark(beta,gamma), hht(alpha=-0.1), generalized-alpha(rho_inf=0.8))",
+    ),
+    _group("Implicit in the velocity, of physics engines and control", "imex-euler", "stable-pd"),
+)

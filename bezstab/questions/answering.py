@@ -14,9 +14,10 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
-from bezstab.engines import Point
+from bezstab.engines import Engine, Point
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method
+from bezstab.questions.chains import ChainAnswer, chain_answer, strongest_setting
 from bezstab.questions.points import all_points
 from bezstab.questions.question import UP_TO_LONGEST, Question, usual_goal
 from bezstab.rationals import rational
@@ -66,7 +67,7 @@ class Answer(Choice):
     """A point, what `Choice` says of it, and what it means for the question; `point` is the point exactly.
 
     What is None was not asked about: `moving` without a scene, `varying` without h_min, `setting` without an engine,
-    `gains` without a drive.
+    `gains` without a drive, `chain` without one.
     """
 
     question: Question = field(compare=False)
@@ -80,7 +81,12 @@ class Answer(Choice):
 
     @property
     def safe(self) -> bool:
-        """Whether every error is proven to shrink; of a scene as it moves, and for steps that vary, where asked."""
+        """Whether every error is proven to shrink; of a scene as it moves, and for steps that vary, where asked.
+
+        In a chain, where asked, it is computed: more than its accuracy below one.
+        """
+        if self.chain and not self.chain.growth.decays:
+            return False
         as_it_moves = self.moving is None or self.moving.verdict == "converges"
         as_steps_vary = self.varying is None or self.varying.varying == "proven"
         return self.verdict == "converges" and as_it_moves and as_steps_vary
@@ -135,13 +141,32 @@ class Answer(Choice):
         engine, h = self.question.engine, self.question.h
         if engine is None or h is None or self.verdict != "converges":
             return None
-        values, as_typed = self.question.values, self.question.as_typed
-        if self.role != "given":
-            values, as_typed = tuple(rational(value) for value in engine.values(self.point, h)), False
-        assert values is not None
+        values, as_typed = self._engine_values(engine, h), self.question.as_typed and self.role == "given"
         return largest_stable_step(
             self.method, lambda step: all_points(engine, values, step, as_typed=as_typed), float(h)
         )
+
+    def _engine_values(self, engine: Engine, h: Fraction) -> tuple[Fraction, ...]:
+        """Return the engine's values at this point: those that were given, else what is pasted for it."""
+        if self.role == "given" and self.question.values is not None:
+            return self.question.values
+        return tuple(rational(value) for value in engine.values(self.point, h))
+
+    @cached_property
+    def chain(self) -> ChainAnswer | None:
+        """What the engine's sweeps make of the errors of a chain."""
+        engine, h, asked = self.question.engine, self.question.h, self.question.chain
+        if engine is None or h is None or asked is None:
+            return None
+        return chain_answer(engine, self._engine_values(engine, h), h, asked)
+
+    @cached_property
+    def chain_setting(self) -> str | None:
+        """What to paste for the strongest feedback that the chain allows, with the question's spread to spare."""
+        engine, h, asked = self.question.engine, self.question.h, self.question.chain
+        if engine is None or h is None or asked is None:
+            return None
+        return strongest_setting(engine, h, asked, self.question.spread)
 
     @cached_property
     def gains(self) -> Gains | None:

@@ -12,6 +12,7 @@ from bezstab.engines import DRIVE_METHODS, Drive, Engine, Point
 from bezstab.errors import InputError
 from bezstab.mechanism import Scene, TurningNormals
 from bezstab.methods import Method, check_one_step, lookup
+from bezstab.questions.chains import Chain, check_chain
 from bezstab.questions.motions import ReferenceMotion, motion_of, turning_of
 from bezstab.questions.points import GivenPoint, engine_holds, point_of_drive, point_of_engine
 from bezstab.stability import Goal
@@ -49,6 +50,7 @@ class Question:
     rate `omega` (1/s) or `omega_h` (rad a step), or on that of a `scene`, `speed` times as fast as given there; with a
     scene safe is what is safe as it moves. `spread` is the share by which alpha and beta may be off, `settle` (s) the
     time in which errors fall a thousandfold, `equal` keeps alpha = beta, `as_typed` leaves out an engine's clamps.
+    With a `chain` safe is what is also stable there in the engine's sweeps.
     InputError for what does not go together.
     """
 
@@ -70,6 +72,7 @@ class Question:
     spread: float = 0.1
     settle: Fraction | None = None
     equal: bool = False
+    chain: Chain | None = None
 
     def __post_init__(self) -> None:
         for name in ("h", "h_min", "h_max"):
@@ -81,6 +84,7 @@ class Question:
             self._check_goal(self.goal)
         if self.scene is None and self.speed != 1:
             raise InputError("--speed goes with --scene: it is the mechanism that is so many times as fast")
+        check_chain(self.chain, self.engine)
         object.__setattr__(self, "methods", methods_for(self.methods, self.engine, self.drive))
         if self.steps:
             for method in self.methods:

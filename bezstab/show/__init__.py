@@ -13,6 +13,7 @@ A file imports only from those above it; what draws is not loaded before it is u
     rows                results as rows
     varying_rows        what steps that vary do, as keys of a row and in a sentence
     answer_rows         answers to a question as rows, and in words
+    held_rows           drives that are held or late as rows, and in words
     arrays              histories and maps as arrays for files
     style               what all figures share
     histories           a history as a line, or as its envelope
@@ -54,6 +55,7 @@ from bezstab.show.columns import (
     transposed,
 )
 from bezstab.show.fields import Field, RowKind, cells
+from bezstab.show.held_rows import LATE_COMMANDS, NOT_JUDGED, held_row, held_sentence, timing_words
 from bezstab.show.row_kinds import (
     CHECKED,
     CHOICES,
@@ -63,6 +65,7 @@ from bezstab.show.row_kinds import (
     FIELDS,
     FORCED,
     FRONTS,
+    HELD,
     LARGEST_STEPS,
     LINTED,
     LISTED_METHODS,
@@ -168,12 +171,15 @@ __all__ = [
     "FIELDS",
     "FORCED",
     "FRONTS",
+    "HELD",
     "LARGEST_STEPS",
+    "LATE_COMMANDS",
     "LINTED",
     "LISTED_METHODS",
     "MEASUREMENTS",
     "MEMBERS",
     "MISSING",
+    "NOT_JUDGED",
     "NOT_KNOWN",
     "POLES",
     "PROBED",
@@ -217,6 +223,8 @@ __all__ = [
     "front_row",
     "growing_run",
     "growth_words",
+    "held_row",
+    "held_sentence",
     "history_arrays",
     "history_figure",
     "history_line",
@@ -255,6 +263,7 @@ __all__ = [
     "styled",
     "summary_row",
     "times_words",
+    "timing_words",
     "trade_words",
     "transposed",
     "untimed_arrays",

@@ -71,7 +71,25 @@ def _engine_cells(answer: Answer) -> dict[str, Value]:
     if not engine:
         return {}
     of_engine = engine_cells(answer) if answer.role != "chosen" else {"sweeps": engine.sweeps}
-    return {**of_engine, "engine_h_limit": answer.engine_h_limit, "setting": answer.setting}
+    return {**of_engine, **_chain_cells(answer), "engine_h_limit": answer.engine_h_limit, "setting": answer.setting}
+
+
+def _chain_cells(answer: Answer) -> dict[str, Value]:
+    """Return what the engine's sweeps make of a chain; nothing where none is asked about."""
+    found = answer.chain
+    if found is None:
+        return {}
+    return {
+        "chain": found.chain.words,
+        "chain_bodies": found.chain.bodies,
+        "chain_mass_ratio": float(found.chain.mass_ratio),
+        "chain_iterations": found.iterations,
+        "chain_z_abs": found.growth.factor,
+        "chain_accuracy": found.growth.accuracy,
+        "alone_z_abs": found.alone,
+        "stable_iterations": found.stable_iterations,
+        "chain_setting": answer.chain_setting,
+    }
 
 
 def engine_cells(answer: Answer) -> dict[str, Value]:
@@ -96,7 +114,7 @@ def largest_step_row(found: LargestStep) -> Row:
 
 def answer_sentence(row: Row) -> str:
     """Return whether a point is safe, what a step does to the error, and how far step, α and β may grow, at rest."""
-    if not row["safe"]:
+    if not row["safe"] or "chain" in row:
         return safety_words(row)
     if row["margins_reason"]:
         return f"{safety_words(row)} How far the step, α and β may grow is not known: {row['margins_reason']}."

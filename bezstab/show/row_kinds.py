@@ -489,6 +489,36 @@ ACCURACY = (
 APPLIED = Field(
     "applied", "text", "What the engine does to its values before it uses them", null="where nothing is known of it"
 )
+CHAIN = (
+    Field("chain", "text", "The chain of bodies that is asked about"),
+    Field("chain_bodies", "integer", "Bodies of the chain, the first held by the world"),
+    Field("chain_mass_ratio", "number", "Mass of the last body of the chain over that of each other"),
+    Field("chain_iterations", "integer", "Sweeps that the engine makes in a step", "sweeps", "d"),
+    Field(
+        "chain_z_abs",
+        "number",
+        "Factor by which a step multiplies the error of the chain in the long run",
+        "|z| of the chain",
+        ".4f",
+    ),
+    Field("chain_accuracy", "number", "How far that factor may be off by rounding, to first order"),
+    Field("alone_z_abs", "number", "The same factor for one constraint alone, with as many sweeps"),
+    Field(
+        "stable_iterations",
+        "integer",
+        "From how many sweeps the chain is stable",
+        "stable from sweeps",
+        "d",
+        null="where none tried is",
+    ),
+    Field(
+        "chain_setting",
+        "text",
+        "What to paste for the strongest feedback that the chain allows, even if it were stronger by the spread",
+        null="where there is none, or nothing to set",
+    ),
+)
+"""What --chain adds."""
 DRIVE = (
     Field("drive", "text", "How the drive is applied", "applied", null="where the method is no drive's"),
     Field("kp", "number", "Stiffness of the drive", "kp", ".4g", unit="N m/rad or N/m"),
@@ -732,7 +762,7 @@ CHOICES = RowKind(
         TIMES_LEAST,
         TIMES_LEAST_VELOCITY.shown("times the least error", text=both_times_text),
     ),
-    added=(*MOVING, *VARYING, *DRIVE, SWEEPS, ENGINE_H_LIMIT, SETTING.shown("to paste")),
+    added=(*MOVING, *VARYING, *CHAIN, *DRIVE, SWEEPS, ENGINE_H_LIMIT, SETTING.shown("to paste")),
 )
 CHECKED = RowKind(
     "a point, or what to take instead",
@@ -1163,6 +1193,67 @@ CLAIMS = RowKind(
         ),
     ),
 )
+_BY_KEY = {field.key: field for field in DRIVE}
+HELD = RowKind(
+    "a drive that is held or late",
+    fields=(
+        METHOD,
+        _BY_KEY["drive"],
+        VERDICT,
+        SAFE,
+        Z_ABS.shown("|z|", ".4f"),
+        Field(
+            "fresh_z_abs",
+            "number",
+            "Modulus of the same drive's pole if each step computes and applies its torque",
+            "|z| if fresh",
+            ".4f",
+        ),
+        H,
+        Field("every", "integer", "Steps of the physics from one computation of the torque to the next"),
+        Field("late", "number", "Steps of the physics until a torque is applied"),
+        Field("filter", "number", "Time constant of the filter through which the velocity is seen", unit="s"),
+        _BY_KEY["inertia"],
+        _BY_KEY["kp"],
+        _BY_KEY["kp_max"],
+        _BY_KEY["kd"],
+        Field(
+            "kd_min",
+            "number",
+            "Least stable damping with this stiffness",
+            "kd from",
+            ".4g",
+            unit="N m s/rad or N s/m",
+            null="where none helps",
+        ),
+        _BY_KEY["kd_max"],
+        Field(
+            "every_max",
+            "integer",
+            "Steps up to which the torque may be held, the rest as it is",
+            "every to",
+            "d",
+            null="where even one is unstable",
+        ),
+        Field(
+            "late_max",
+            "integer",
+            "Whole steps up to which the torque may be late, the rest as it is",
+            "late to",
+            "d",
+            null="where even none is unstable",
+        ),
+        Field(
+            "held_by",
+            "text",
+            "What an unstable drive would be stable without, or which number of a stable one is nearest to its end",
+            "used up",
+            null="where none has an end",
+            values=("gains", "rate", "delay", "rate and delay", "kp", "kd", "too little kd"),
+        ),
+    ),
+)
+
 ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
     "poles": (POLES,),
     "region": (REGIONS,),
@@ -1171,10 +1262,11 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
         NAMED_METHODS,
     ),
     "family": (MEMBERS,),
-    "choose": (CHOICES,),
+    "choose": (CHOICES, HELD),
     "check": (
         CHECKED,
         LARGEST_STEPS,
+        HELD,
     ),
     "lint": (LINTED,),
     "engines": (ENGINES_LISTED,),

@@ -15,12 +15,11 @@ From a method's polynomial in float64 (its pencil) upwards; a file imports only 
     searches          where a condition comes to hold; where a value is least
     locus_tracks      the branches of the curve |z| = r in mu, followed
     boundary_locus    that curve cut where it bounds the region, integrated
-    line_crossings    where an arc crosses lines
-    line_slices       where lines across the region are stable, by a second route
+    shapes            what a region is, wherever its edges come from
+    locus_shapes      the region of a method that has a mu, from that curve
     path_crossings    where a path from a point crosses the boundary
-    self_checks       every answer held against a second route
-    plane_cells       the stable cells of a second-order scheme's plane: area, extent, curves
-    plane_checks      those held against points, lines and the D-decomposition
+    plane_cells       that of a method that has none, from the stable cells of its plane
+    region_checks     every region held against the poles
     answer_checks     best points, choices and margins held against samples and proofs
     margins           how far h, alpha and beta are from the boundary, by factors
     regions           the exact region in alpha_hat and beta_hat
@@ -45,6 +44,7 @@ From a method's polynomial in float64 (its pencil) upwards; a file imports only 
     gain_margins      which of two gains is used up
     held_drives       drives whose torque is held for several steps, or applied late
     step_families     methods by their number of steps, and their limit
+    sweeps            by what a step multiplies the errors of constraints that are solved in sweeps
 
 What needs sympy's polynomials is loaded when first used: poles and maps do not.
 """
@@ -86,6 +86,15 @@ from bezstab.stability.regions import Region, pole_place, region, useful_window,
 from bezstab.stability.searches import bisected, first_where
 from bezstab.stability.step_families import FAMILIES, Limit, Member, bezier_limit, family_members
 from bezstab.stability.step_sequences import VaryingSteps, varying_steps
+from bezstab.stability.sweeps import (
+    LARGEST_RATIO,
+    MOST_BODIES,
+    Growth,
+    chain,
+    fewest_sweeps,
+    inverse_effective_masses,
+    swept_growth,
+)
 from bezstab.stability.turning import own_feedback_root, turning_sensitivity, turning_shift
 
 if TYPE_CHECKING:
@@ -116,6 +125,8 @@ __all__ = [
     "EPS",
     "FAMILIES",
     "LARGEST_OMEGA_H",
+    "LARGEST_RATIO",
+    "MOST_BODIES",
     "OMEGA_H",
     "QUALITY",
     "RATES",
@@ -132,6 +143,7 @@ __all__ = [
     "FrontPoint",
     "GainLimits",
     "Goal",
+    "Growth",
     "HeldLimits",
     "Limit",
     "Margins",
@@ -146,6 +158,7 @@ __all__ = [
     "best_point_or_reason",
     "bezier_limit",
     "bisected",
+    "chain",
     "check_omega_h",
     "choose",
     "choose_at_step",
@@ -159,6 +172,7 @@ __all__ = [
     "falls_towards",
     "family_members",
     "feedback_cost",
+    "fewest_sweeps",
     "first_where",
     "forced_error",
     "forced_response",
@@ -166,6 +180,7 @@ __all__ = [
     "held_limits",
     "held_spectral_radius",
     "held_verdict",
+    "inverse_effective_masses",
     "largest_stable_step",
     "own_feedback_root",
     "pencil_of",
@@ -179,6 +194,7 @@ __all__ = [
     "stability_margins",
     "stable_for_all",
     "stable_up_to",
+    "swept_growth",
     "turning_response",
     "turning_sensitivity",
     "turning_shift",

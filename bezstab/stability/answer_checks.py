@@ -1,7 +1,6 @@
 """Best points, choices and margins held against sampled points and proven verdicts before they are given."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -10,10 +9,8 @@ from bezstab.errors import NumericalError
 from bezstab.methods import Method
 from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, Extent, FloatArray, even_points
 from bezstab.stability.closed_loop import AnyPencil, any_pencil_of, converges, largest_modulus, largest_pole
-from bezstab.stability.line_slices import all_within, mu_bound, real_events, slices, turning_radii
 from bezstab.stability.path_crossings import Path
 from bezstab.stability.pencils import Pencil
-from bezstab.stability.plane_pencils import PlanePencil
 from bezstab.stability.searches import bisected
 
 Modulus = Callable[[FloatArray, FloatArray], FloatArray]
@@ -33,9 +30,6 @@ PARTED = 4.0  # times that: the point itself is found from poles of the same rou
 NO_LESS = 1e-9  # of one: the search for a least value of zero ends so far from it
 NEAR = (8.0, 64.0)  # alpha_hat, beta_hat: corners of a region may lie a thousandfold further out, least values do not
 ROOT_OF_ROUNDING = 1e-7  # a double pole at zero, as far as float64 tells it
-EMPTY_BELOW = 1e-4  # relative: so far below the least |z_p| a slice must be empty
-NO_LENGTH = 1e-6  # of the bound on mu: a slice through a double root splits by the root of rounding
-SLICES = 128
 EITHER_SIDE = Fraction(1, 10**9)  # relative: from a margin's end, which is good to rounding
 BETWEEN = 80  # factors on the way to an end, at which |z_p| must be below one
 FURTHEST = (1e-8, 1e8)  # factors on the way to which |z_p| is looked at where there is no end
@@ -67,39 +61,13 @@ def check_deadbeat(pencil: Pencil, alpha_hat: float, beta_hat: float) -> None:
         raise NumericalError(f"{pencil.method.name}: |z_p| = {z_abs:.6g} where all poles were to be zero")
 
 
-def check_best_point(pencil: Pencil, z_abs: float, alpha_hat: float, beta_hat: float, extent: Extent) -> None:
-    """Raise NumericalError unless |z_p| at the point is as said, and smaller at no sampled point and on no slice.
+def check_best_point(
+    pencil: AnyPencil, z_abs: float, alpha_hat: float, beta_hat: float, view: Extent, anywhere: bool
+) -> None:
+    """Raise NumericalError unless |z_p| at the point is as said, and smaller at no sampled point.
 
-    Of an implicit method where alpha_hat, beta_hat >= 0.
+    Sampled is where alpha_hat, beta_hat >= 0, or `anywhere`.
     """
-    name = pencil.method.name
-    here = float(largest_modulus(pencil, alpha_hat, beta_hat))
-    if abs(here - z_abs) > KINK:
-        raise NumericalError(f"{name}: |z_p| is {here:.9g} at the best point, not {z_abs:.9g}")
-    alpha_hats, beta_hats = sampled_points(extent, alpha_hat, beta_hat)
-    if pencil.implicit:
-        positive = (alpha_hats >= 0) & (beta_hats >= 0)
-        alpha_hats, beta_hats = alpha_hats[positive], beta_hats[positive]
-    better = z_abs * (1 - BETTER)
-    suspicious = np.flatnonzero(all_within(pencil, alpha_hats, beta_hats, np.full(alpha_hats.shape, better)))
-    for alpha, beta in zip(alpha_hats[suspicious], beta_hats[suspicious], strict=True):
-        value = float(largest_modulus(pencil, alpha, beta))
-        if value < better:
-            raise NumericalError(
-                f"{name}: |z_p| = {value:.9g} at ({alpha:.6g}, {beta:.6g}) is below the best point's {z_abs:.9g}"
-            )
-    below = z_abs * (1 - EMPTY_BELOW)
-    bound, events = mu_bound(pencil, below), real_events(pencil, below)
-    t = np.concatenate([np.linspace(0, bound, SLICES + 2)[1:-1], np.abs(events), turning_radii(pencil, below)])
-    t = t[np.isfinite(t) & (t > 0) & (t < bound)]
-    found = slices(pencil, below, t**2, events, bound)
-    lengths = (replace(found, ends=np.maximum(found.ends, 0)) if pencil.implicit else found).lengths()
-    if lengths.max() > NO_LENGTH * bound:
-        raise NumericalError(f"{name}: |z_p| < {below:.9g} on a slice: the best point has {z_abs:.9g}")
-
-
-def check_plane_best_point(pencil: PlanePencil, z_abs: float, alpha_hat: float, beta_hat: float, view: Extent) -> None:
-    """Raise NumericalError unless |z_p| of a second-order scheme is as said, and smaller at no sampled point."""
     name = pencil.method.name
     here = float(largest_modulus(pencil, alpha_hat, beta_hat))
     if abs(here - z_abs) > KINK:
@@ -107,8 +75,8 @@ def check_plane_best_point(pencil: PlanePencil, z_abs: float, alpha_hat: float, 
     near = [(0.0, min(high, strongest)) for (_, high), strongest in zip(view, NEAR, strict=True)]
     samples = [sampled_points(extent, alpha_hat, beta_hat) for extent in (view, (near[0], near[1]))]
     alpha_hats, beta_hats = (np.concatenate([each[axis] for each in samples]) for axis in (0, 1))
-    positive = (alpha_hats >= 0) & (beta_hats >= 0)
-    values = largest_modulus(pencil, alpha_hats[positive], beta_hats[positive])
+    sampled = anywhere | ((alpha_hats >= 0) & (beta_hats >= 0))
+    values = largest_modulus(pencil, alpha_hats[sampled], beta_hats[sampled])
     if values.min(initial=np.inf) < z_abs * (1 - BETTER) - ROOT_OF_ROUNDING:
         raise NumericalError(f"{name}: |z_p| = {values.min():.9g} was sampled below the best point's {z_abs:.9g}")
 

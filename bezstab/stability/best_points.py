@@ -31,13 +31,20 @@ from numpy.polynomial.polynomial import polyder, polymul, polyroots, polysub
 
 from bezstab.errors import NumericalError
 from bezstab.methods import Method, fixed_poles, implicit, without_shared_factor
-from bezstab.stability.answer_checks import check_best_point, check_deadbeat, check_plane_best_point
+from bezstab.stability.answer_checks import check_best_point, check_deadbeat
 from bezstab.stability.arrays import ComplexArray, Extent, FloatArray
 from bezstab.stability.closed_loop import free_pencil_of, largest_modulus
 from bezstab.stability.far_limits import FarLimit
 from bezstab.stability.least_modulus import Active, Coefficients, solved
-from bezstab.stability.line_slices import all_inside
-from bezstab.stability.pencils import Pencil, deadbeat_mu, largest_root_in_z, pencil_of, roots_in_mu, roots_in_z
+from bezstab.stability.pencils import (
+    Pencil,
+    all_inside,
+    deadbeat_mu,
+    largest_root_in_z,
+    pencil_of,
+    roots_in_mu,
+    roots_in_z,
+)
 from bezstab.stability.plane_best_points import PlaneLeast, plane_least
 from bezstab.stability.plane_pencils import plane_pencil_of
 from bezstab.stability.regions import region
@@ -228,7 +235,7 @@ def _checked_kink(pencil: Pencil, search: _Search) -> BestPoint | FarLimit | Non
         return limit
     end = _other_end(pencil, least)
     found = _described(pencil, least.z_abs, [least.mu] if end is None else [least.mu, end], arc=end is not None)
-    check_best_point(pencil, found.z_abs, found.alpha_hat, found.beta_hat, extent)
+    check_best_point(pencil, found.z_abs, found.alpha_hat, found.beta_hat, extent, anywhere=not pencil.implicit)
     return found
 
 
@@ -271,7 +278,7 @@ def _checked_plane_least(method: Method, view: Extent, unbounded: bool, finer: i
     pencil = plane_pencil_of(method, free=True)
     least = plane_least(pencil, view, unbounded, finer)
     if isinstance(least, PlaneLeast):
-        check_plane_best_point(pencil, least.z_abs, least.alpha_hat, least.beta_hat, view)
+        check_best_point(pencil, least.z_abs, least.alpha_hat, least.beta_hat, view, anywhere=False)
     return least
 
 

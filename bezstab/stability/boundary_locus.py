@@ -39,7 +39,7 @@ from numpy.polynomial.polynomial import polyval2d
 from numpy.typing import NDArray
 
 from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
-from bezstab.stability.locus_tracks import Track, tracks
+from bezstab.stability.locus_tracks import Track, sampled_angles, tracks
 from bezstab.stability.pencils import Pencil, moduli_in_z, roots_in_mu
 from bezstab.stability.root_finding import roots_of_table
 from bezstab.stability.searches import bisected, zoom_on_minimum
@@ -58,6 +58,8 @@ MARGIN = 1e-13  # of the level: rounding of a simple root's modulus, a hundredfo
 AXIS = 1e-7  # of |mu|: an arc that runs into the real axis ends this far from it, its conjugate root within MARGIN
 REAL = 1e-9  # an imaginary part below this times |mu| is rounding where a branch is known to cross the real axis
 ON_THE_RIM = 1e-9  # of its radius: an arc that was cut there ends on it to rounding
+RIM = 64.0  # times everything finite: far enough out to tell how the region goes on, near enough to be checked
+AT_INFINITY = 1e10  # a larger |mu| is the rounding of an infinite one
 FAR = 1e300  # a finite stand-in for the modulus of an infinite root
 SAME_MU = 1e-13  # of |mu|: simple roots of pi(+-level, .) closer than this are one, a hundredfold above rounding
 
@@ -135,37 +137,18 @@ def _turns(arc: Arc, towards: tuple[float, float]) -> FloatArray:
     return theta[:, 0]
 
 
-@dataclass(frozen=True)
-class RimPiece:
-    """A piece of the rim |mu| = radius in the upper half, at angles (rad) from `start` to `end`."""
-
-    radius: float
-    start: float
-    end: float
-
-    def plane(self) -> FloatArray:
-        """Return its two ends in the plane of the feedback's coefficients, between which it is straight: q is held."""
-        mu = self.radius * np.exp(1j * np.array([self.start, self.end]))
-        return feedback_coefficients(mu, mu.conj())
-
-    def area(self) -> float:
-        """Return its contribution to the area: -int 2 y^2 dx = 2 radius^3 int sin^3."""
-        cosine = np.cos(np.array([self.start, self.end]))
-        return float(2 * self.radius**3 * np.diff(cosine**3 / 3 - cosine)[0])
-
-
 @dataclass(frozen=True, eq=False)
 class Bounds:
     """What bounds S_r: arcs of the locus in its upper half, and the open intervals it cuts from the real axis.
 
-    `radius` is that of the rim, infinite for an explicit method, whose S_r is bounded anyway; `rim` has the pieces of
-    it that lie in S_r.
+    `radius` is that of the rim, infinite for an explicit method, whose S_r is bounded anyway; `rim` is the angle (rad)
+    of what lies in S_r of its upper half.
     """
 
     arcs: tuple[Arc, ...]
     intervals: tuple[Interval, ...]
     radius: float = inf
-    rim: tuple[RimPiece, ...] = ()
+    rim: float = 0.0
 
     @property
     def bounded(self) -> bool:
@@ -183,19 +166,32 @@ def bounds_of(pencil: Pencil, level: float, finer: int = 1, radius: float = inf)
     for track in tracks(pencil, level, finer):
         arcs += _bounding_arcs(track, radius)
     intervals = _real_intervals(pencil, level, arcs, radius)
-    return Bounds(tuple(arcs), tuple(intervals), radius, tuple(_rim_pieces(pencil, level, arcs, radius)))
+    return Bounds(tuple(arcs), tuple(intervals), radius, _rim_inside(pencil, level, arcs, radius))
 
 
-def _rim_pieces(pencil: Pencil, level: float, arcs: list[Arc], radius: float) -> Iterator[RimPiece]:
-    """Yield the pieces of the rim that lie in S_r: between two places where an arc meets it all or nothing does."""
+def rim_radius(pencil: Pencil, level: float) -> float:
+    """Return the radius of the rim of an implicit method: RIM times that of the disc that holds every feature.
+
+    Features are all finite mu with a root at z = +-level, with an infinite root, with a double root, with a root at
+    zero, and those at which the locus turns towards or away from zero.
+    """
+    on_locus = np.abs(roots_in_mu(pencil, level * np.exp(1j * sampled_angles(pencil, level, finer=1))))
+    rising = np.diff(on_locus, axis=1) > 0
+    turns = on_locus[:, 1:-1][rising[:, 1:] != rising[:, :-1]] if len(on_locus) == 1 else np.zeros(0)
+    at_places = np.abs(roots_in_mu(pencil, np.array([level, -level, 0], complex)).ravel())
+    sizes = np.concatenate([at_places, np.abs(pencil.branch_points), turns])
+    return RIM * float(sizes[sizes < AT_INFINITY].max(initial=1.0))
+
+
+def _rim_inside(pencil: Pencil, level: float, arcs: list[Arc], radius: float) -> float:
+    """Return the angle of the rim's upper half in S_r: between two places where an arc meets it all or nothing is."""
     if not isfinite(radius):
-        return
+        return 0.0
     ends = np.array([mu for arc in arcs for mu in (arc.mu[0], arc.mu[-1])], complex)
     met = np.angle(ends[np.abs(ends) > radius * (1 - ON_THE_RIM)])
-    for start, end in pairwise([0.0, *np.sort(met).tolist(), pi]):
-        middle = np.array([radius * np.exp(0.5j * (start + end))])
-        if end > start and _all_within(pencil, middle, level)[0]:
-            yield RimPiece(radius, start, end)
+    places = np.concatenate([[0.0], np.sort(met), [pi]])
+    middles = radius * np.exp(0.5j * (places[1:] + places[:-1]))
+    return float(np.diff(places)[_all_within(pencil, middles, level)].sum())
 
 
 def _all_within(pencil: Pencil, mu: ComplexArray, level: float) -> BoolArray:

@@ -8,6 +8,7 @@ from functools import partial
 from typing import Literal, get_args
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method, Verdict, steps
@@ -25,6 +26,7 @@ from bezstab.stability.arrays import BoolArray, Extent, FloatArray
 from bezstab.stability.best_points import AS_SMALL, best_point
 from bezstab.stability.closed_loop import (
     AnyPencil,
+    all_within,
     any_pencil_of,
     free_pencil_of,
     largest_modulus,
@@ -33,8 +35,6 @@ from bezstab.stability.closed_loop import (
 )
 from bezstab.stability.curve_choices import Curve, least_along, mildest_along
 from bezstab.stability.forced_errors import OMEGA_H
-from bezstab.stability.line_crossings import IntArray
-from bezstab.stability.line_slices import all_within
 from bezstab.stability.margins import Margins, stability_margins
 from bezstab.stability.pencils import Pencil, largest_root_in_z
 from bezstab.stability.plane_best_points import critical_point
@@ -414,7 +414,7 @@ def _slowest(method: Method, modulus: Modulus, within: Within | None, spread: fl
         if not left.size:
             return worst
 
-        def complete(some: IntArray) -> None:
+        def complete(some: NDArray[np.intp]) -> None:
             """Let the smaller steps count as well, where one of them is the worst."""
             share, scaled_alpha, scaled_beta = scaled(smaller_steps, alpha_hat[some], beta_hat[some])
             counts = ~within(scaled_alpha, scaled_beta, worst[some] ** share) if within else np.full(share.shape, True)

@@ -23,13 +23,19 @@ from bezstab.methods import (
     recursion_verdict,
     without_shared_factor,
 )
-from bezstab.stability.arrays import EPS, ComplexArray, FloatArray, real_array
+from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, FloatArray, real_array
 from bezstab.stability.exact_sums import feedback_discriminant, feedback_roots
 from bezstab.stability.low_degrees import largest_quadratic_root, polynomial_of_pair
 from bezstab.stability.neighbourhoods import FEWEST, SIDE
-from bezstab.stability.pencils import Pencil, largest_root_in_z, pencil_of, roots_in_z
-from bezstab.stability.plane_pencils import PlanePencil, largest_plane_root, plane_pencil_of, plane_roots
-from bezstab.stability.root_finding import CHUNK
+from bezstab.stability.pencils import Pencil, all_inside, largest_root_in_z, pencil_of, roots_in_z
+from bezstab.stability.plane_pencils import (
+    PlanePencil,
+    coefficients_at,
+    largest_plane_root,
+    plane_pencil_of,
+    plane_roots,
+)
+from bezstab.stability.root_finding import CHUNK, inside_circle
 
 BLOCK = 16 * CHUNK  # points whose poles are followed in one go: enough to outweigh the calls for their middles,
 POLES = 7  # each of so many poles; of more poles as many fewer points, so that work arrays stay below 50 MB
@@ -151,6 +157,21 @@ def _points(grid: FloatArray, start: int, stop: int) -> FloatArray:
 def largest_modulus(pencil: AnyPencil, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> FloatArray:
     """Return what spectral_radius does, from a pencil."""
     return np.abs(largest_pole(pencil, alpha_hat, beta_hat))
+
+
+def all_within(pencil: AnyPencil, alpha_hat: FloatArray, beta_hat: FloatArray, level: FloatArray) -> BoolArray:
+    """Return whether every pole has |z| < level at each point, by Schur's recursion; arrays of one shape.
+
+    False where an implicit step has no solution.
+    """
+    if isinstance(pencil, PlanePencil):
+        coefficients = coefficients_at(pencil, alpha_hat, beta_hat)
+        return inside_circle(np.stack([c * level**k for k, c in enumerate(coefficients)]))
+    first, second = feedback_roots(pencil.feedback, alpha_hat, beta_hat)
+    within = all_inside(pencil, first, level)
+    real = within & (first.imag == 0)  # of a conjugate pair both have the same moduli
+    within[real] = all_inside(pencil, second[real], level[real])
+    return within
 
 
 def _write_largest_poles(

@@ -16,7 +16,7 @@ from bezstab.errors import NumericalError
 from bezstab.methods import Method, branch_polynomial, coefficient_table, feedback_matrix
 from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, FloatArray
 from bezstab.stability.exact_sums import ExactMatrix
-from bezstab.stability.root_finding import roots_of_table
+from bezstab.stability.root_finding import horner, inside_circle, roots_of_table
 
 LEADING = 4 * EPS  # of the sum of its terms' sizes: a leading coefficient below it is rounding of zero
 
@@ -191,8 +191,22 @@ def roots_in_mu(pencil: Pencil, z: ComplexArray) -> ComplexArray:
 
 
 def deadbeat_mu(pencil: Pencil) -> ComplexArray:
-    """Return all finite mu at which the root z of a one-step method is zero, the zeros of R; shape (zeros,)."""
+    """Return all finite mu at which the root z of a one-step method is zero, the zeros of R; shape (zeros,).
+
+    None for a method of several steps.
+    """
     numerator = np.trim_zeros(pencil.table[0], "b")
-    if len(numerator) == 1:
+    if len(numerator) == 1 or pencil.steps > 1:
         return np.empty(0, complex)
     return np.asarray(roots_of_table(numerator[:, np.newaxis], np.zeros(1, complex))[:, 0])
+
+
+def all_inside(pencil: Pencil, mu: ComplexArray, level: float | FloatArray) -> BoolArray:
+    """Return whether every root z of pi(., mu) has |z| < level, by Schur's recursion; shape of mu, and of levels."""
+    size = np.ones_like(mu.real)
+    p = np.empty((len(pencil.table), *mu.shape), complex)
+    with np.errstate(over="ignore", invalid="ignore"):  # far out, where nothing is inside
+        for row, coefficients in zip(p, pencil.table, strict=True):
+            np.multiply(horner(coefficients, mu), size, out=row)
+            size = size * level
+    return inside_circle(p)

@@ -21,11 +21,13 @@ from itertools import pairwise
 import numpy as np
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Crossing, CurveTable, Limit, PlaneStrips, Strip
+from bezstab.methods import Crossing, CurveTable, Limit, Method, PlaneStrips, Strip, plane_strips
+from bezstab.rationals import exact
 from bezstab.stability.arrays import ComplexArray, Extent, FloatArray
 from bezstab.stability.exact_sums import double_polynomial, split
 from bezstab.stability.root_finding import newton_correction
 from bezstab.stability.searches import zoom_on_minimum
+from bezstab.stability.shapes import ROUNDING, USUAL_SIZE, Approached, Shape, joined
 
 POLISH = 3  # steps of Newton's method on a root that companion eigenvalues have to a few eps of the largest
 SETTLED = 1e-4  # of a root: a larger step does not polish but leads away
@@ -38,16 +40,12 @@ NEGLIGIBLE = 1e-14  # of the area: a part that is off by less need not be halved
 MOST_HALVINGS = 12  # of a strip in which a singularity lies close
 DRAWN = 160  # points of an edge along its strip
 FAR_APART = 100.0  # ends of a strip, one so many times the other: what an edge does near the lower one needs its share
+JOINED = 1e-6  # of what is seen: two roots that meet are known to the root of rounding
 TURN_ROUNDS = 12  # of zooming on an edge's furthest point: its place to 1e-8 leaves its value at rounding
 BESIDE_LEVEL = 1e-13  # of a strip: nearer to a level, a crossing that is lost there may show at the wrong infinity
-JOINED = 1e-6  # of what is seen: two roots that meet are known to the root of rounding
-ROUNDING = 1e-13  # of a range: an end this close to an axis lies on it
-LEAST_VIEW = 4.0  # alpha_hat and beta_hat: of a region without corners but the origin, that much is shown
-FAR_OUT = 1e8  # of a level, or LEAST_VIEW: from so near to a strip's end up to so far from it turns are looked for
+FAR_OUT = 1e8  # of a level, or USUAL_SIZE: from so near to a strip's end up to so far from it turns are looked for
 FLAT = 1e-12  # of alpha_hat: an edge that comes near a limit turns by no more, but for rounding
 OUT_OF_VIEW = 3.0  # times what is to be seen: curves that go on are drawn so far
-
-Approached = tuple[tuple[bool, bool], tuple[bool, bool]]
 
 
 @dataclass(frozen=True)
@@ -69,21 +67,6 @@ class Cell:
     def limits(self) -> tuple[Limit, ...]:
         """What alpha_hat comes to at the ends of the strip, along either crossing."""
         return *self.left_limits, *self.right_limits
-
-
-@dataclass(frozen=True)
-class PlaneShape:
-    """What a region is: stable cells, area (None: unbounded), extent, a finite view of it, and its boundary curves.
-
-    `approached`: of each finite end of the extent, whether edges only come near it, towards infinity.
-    """
-
-    cells: tuple[Cell, ...]
-    area: float | None
-    extent: Extent
-    approached: Approached
-    view: Extent
-    curves: tuple[FloatArray, ...]
 
 
 class Edges:
@@ -188,11 +171,18 @@ def _most_real(roots: ComplexArray, count: int) -> FloatArray:
     return chosen
 
 
-def plane_shape(strips: PlaneStrips, edges: Edges, name: str) -> PlaneShape | None:
-    """Return the region that the stable cells make; None if there are none. NumericalError if it cannot be integrated.
+def strips_shape(method: Method, level: float) -> Shape | None:
+    """Return the region |z_p| < level from the exact strips of a method's plane; None if it is empty.
 
-    `name` is what such an error is about.
+    NumericalError if its area cannot be integrated.
     """
+    strips = plane_strips(method, exact(level))
+    return None if strips is None else shape_of_strips(strips, f"{method.name}, |z_p| < {level:g}")
+
+
+def shape_of_strips(strips: PlaneStrips, name: str) -> Shape | None:
+    """Return what the stable cells make; None if there are none. `name` is what an error is about."""
+    edges = Edges(strips)
     cells = tuple(cell for strip in strips.strips for cell in _stable_cells(strip))
     if not cells:
         return None
@@ -201,7 +191,7 @@ def plane_shape(strips: PlaneStrips, edges: Edges, name: str) -> PlaneShape | No
     view = _view(extent, corners)
     bounded = bool(np.isfinite(extent).all())
     area = _area(edges, cells, name) if bounded else None
-    return PlaneShape(cells, area, extent, approached, view, tuple(_curves(edges, cells, view, bounded, name)))
+    return Shape(area, extent, view, tuple(_curves(edges, cells, view)), approached)
 
 
 def _stable_cells(strip: Strip) -> list[Cell]:
@@ -235,7 +225,7 @@ def _levels_to_infinity(cell: Cell) -> FloatArray:
     """Return beta_hat along a strip with an infinite end or two, up to FAR_OUT, where edges have taken their course."""
     finite = [end for end in (cell.low, cell.high) if math.isfinite(end)]
     start = finite[0] if finite else 0.0
-    away = max(LEAST_VIEW, abs(start)) * np.concatenate([[0], np.geomspace(1 / FAR_OUT, FAR_OUT, DRAWN)])
+    away = max(USUAL_SIZE, abs(start)) * np.concatenate([[0], np.geomspace(1 / FAR_OUT, FAR_OUT, DRAWN)])
     signs = [sign for sign, end in ((1, cell.high), (-1, cell.low)) if math.isinf(end)]
     return np.unique([start + sign * away for sign in signs])
 
@@ -311,12 +301,12 @@ def _view(extent: Extent, corners: FloatArray) -> Extent:
     """Return the extent of a bounded region; else ranges that hold all corners and turns with alpha_hat, beta_hat >= 0.
 
     What has no limit mostly goes on where a feedback would drive away, to corners a thousandfold further out, which
-    would leave nothing to see of the rest. At least LEAST_VIEW.
+    would leave nothing to see of the rest. At least USUAL_SIZE.
     """
     if np.isfinite(extent).all():
         return extent
     seen = corners[(corners >= 0).all(axis=1)]
-    alpha_hat_max, beta_hat_max = (float(seen[:, axis].max(initial=LEAST_VIEW)) for axis in (0, 1))
+    alpha_hat_max, beta_hat_max = (float(seen[:, axis].max(initial=USUAL_SIZE)) for axis in (0, 1))
     return (0.0, alpha_hat_max), (0.0, beta_hat_max)
 
 
@@ -366,15 +356,12 @@ def tanh_sinh(low: float, high: float) -> tuple[FloatArray, FloatArray]:
 #        below:   |---- |            |--- stable --|
 
 
-def _curves(edges: Edges, cells: tuple[Cell, ...], view: Extent, bounded: bool, name: str) -> list[FloatArray]:
+def _curves(edges: Edges, cells: tuple[Cell, ...], view: Extent) -> list[FloatArray]:
     """Return the boundary as curves of shape (points, 2): closed, or ending out of view where the region goes on."""
     box = _box(view)
     pieces = _walls(edges, cells, box) + _level_pieces(edges, cells, box)
     size = np.ptp(np.array(box), axis=1)
-    curves = _joined(pieces, size)
-    if bounded and any((np.abs(curve[0] - curve[-1]) > JOINED * size).any() for curve in curves):
-        raise NumericalError(f"{name}: an edge of the region was not found")
-    return curves
+    return joined(pieces, most=JOINED * size)
 
 
 def _box(view: Extent) -> Extent:
@@ -435,23 +422,3 @@ def _level_pieces(edges: Edges, cells: tuple[Cell, ...], box: Extent) -> list[Fl
             if inside[0] != inside[1]:
                 pieces.append(np.array([[start, level], [end, level]]))
     return pieces
-
-
-def _joined(pieces: list[FloatArray], size: FloatArray) -> list[FloatArray]:
-    """Return the pieces joined where their ends meet."""
-    curves = []
-    free = list(pieces)
-    while free:
-        curve = free.pop()
-        for _ in range(2):  # from one end, then from the other
-            while free and not ((np.abs(curve[0] - curve[-1]) <= JOINED * size).all() and len(curve) > 2):
-                ends = np.array([[piece[0], piece[-1]] for piece in free])
-                gaps = (np.abs(ends - curve[-1]) / size).max(axis=-1)
-                k, reverse = np.unravel_index(np.argmin(gaps), gaps.shape)
-                if gaps[k, reverse] > JOINED:
-                    break
-                piece = free.pop(int(k))
-                curve = np.concatenate([curve, piece[::-1] if reverse else piece])
-            curve = curve[::-1]
-        curves.append(curve)
-    return curves

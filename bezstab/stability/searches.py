@@ -59,32 +59,6 @@ def first_where(holds: Callable[[FloatArray], BoolArray], samples: FloatArray) -
     return float(ends[0][0]), float(ends[1][0])
 
 
-def false_position(
-    values_at: Callable[[FloatArray], FloatArray],
-    first: tuple[FloatArray, FloatArray],
-    last: tuple[FloatArray, FloatArray],
-    rounds: int,
-) -> FloatArray:
-    """Return where smooth functions are zero between two places, each given with the values there, of unlike signs.
-
-    Arrays of one shape, one search for each entry; values_at takes and returns such arrays. Each round draws a chord
-    through the ends; an end that stays twice has its value halved (Illinois algorithm: Dowell & Jarratt, BIT 11, 1971).
-    It takes a handful of rounds where bisection takes fifty.
-    """
-    low, below = first
-    high, above = last
-    middle = high
-    for _ in range(rounds):
-        with np.errstate(divide="ignore", invalid="ignore"):  # a chord between equal values leads nowhere
-            middle = low - below * (high - low) / (above - below)
-        middle = np.where(np.isfinite(middle), middle, (low + high) / 2)
-        off = values_at(middle)
-        same = np.sign(off) == np.sign(above)
-        low, below = np.where(same, low, high), np.where(same, below / 2, above)
-        high, above = middle, off
-    return middle
-
-
 # A zoom: a grid around the centre, a smaller grid around its best point, and so on.
 #
 #     +---+---+---+---+

@@ -5,12 +5,15 @@ from numpy.typing import NDArray
 
 from bezstab.methods import Method
 from bezstab.stability import FloatArray, pencil_of, region
-from bezstab.stability.boundary_locus import bounds_of
-from bezstab.stability.line_crossings import arc_crossings, crossed_levels
-from bezstab.stability.regions import straight_edges
+from bezstab.stability.arrays import EPS
+from bezstab.stability.boundary_locus import Arc, bounds_of
+from bezstab.stability.locus_shapes import straight_edges
 
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int_]
+
+ROUNDINGS = 2  # of the arc's furthest point: nearer than that a crossing is on its line
+FALSE_POSITIONS = 10  # from 1/400 of an arc: the sixth is exact to rounding but where the line nearly touches it
 
 
 def stable_mask(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray, level: float = 1.0) -> BoolArray:
@@ -58,3 +61,44 @@ def _edges(method: Method, level: float) -> list[list[list[float]]]:
     """Return the two ends (alpha_hat, beta_hat) of each straight edge."""
     pencil = pencil_of(method)
     return [edge.tolist() for edge in straight_edges(pencil, bounds_of(pencil, level))]
+
+
+def crossed_levels(levels: FloatArray, values: FloatArray) -> tuple[IntArray, IntArray]:
+    """Return every (i, k) such that the step from values[k] to values[k + 1] crosses levels[i]."""
+    below = np.searchsorted(levels, values)  # how many levels lie below each value
+    number = np.abs(np.diff(below))
+    step = np.repeat(np.arange(len(number)), number)
+    first = np.repeat(np.minimum(below[:-1], below[1:]) - np.cumsum(number) + number, number)
+    return first + np.arange(number.sum()), step
+
+
+def arc_crossings(arc: Arc, beta_hat: FloatArray, to_user: FloatArray) -> tuple[IntArray, FloatArray]:
+    """Return the numbers of the ascending levels beta_hat that an arc crosses, and alpha_hat there, by false position.
+
+    `to_user` takes (p, q) to (alpha_hat, beta_hat); the identity for lines of constant q.
+
+    Between two neighbouring turns or samples beta_hat is monotonic, so each crossing is bracketed. Illinois: the value
+    of an end that stays twice is halved, lest it stay for ever (M. Dowell & P. Jarratt, BIT 11, 1971).
+    """
+    turns = arc.turns(to_user[1])
+    theta = np.append(arc.theta, turns)
+    order = np.argsort(theta)
+    theta = theta[order]
+    values = np.append(arc.plane() @ to_user[1], arc.coordinate(turns, to_user[1]))[order]
+    rows, step = crossed_levels(beta_hat, values)
+    low, high, target = theta[step], theta[step + 1], beta_hat[rows]
+    below, above = values[step] - target, values[step + 1] - target
+    beyond = np.full(len(rows), False)
+    middle = low
+    rounding = ROUNDINGS * EPS * np.abs(values).max()
+    for k in range(FALSE_POSITIONS):
+        middle = low - below * (high - low) / (above - below)
+        off = arc.coordinate(middle, to_user[1]) - target
+        if (np.abs(off) <= rounding).all():
+            break
+        last = beyond
+        beyond = np.sign(off) == np.sign(above)
+        stays = np.where(last == beyond, 0.5 if k else 1.0, 1.0)
+        high, low = np.where(beyond, middle, high), np.where(beyond, low, middle)
+        above, below = np.where(beyond, off, stays * above), np.where(beyond, stays * below, off)
+    return rows, arc.coordinate(middle, to_user[0])

@@ -103,7 +103,7 @@ def test_an_engine_that_sweeps_is_safe_for_one_constraint_alone() -> None:
         "Safe. Each step multiplies the error by"
     )
     assert run("check", "--engine", "bullet=2.1", "--h", "1/240").stdout.startswith(
-        "Not safe. Each step multiplies the error by"
+        "One constraint alone: not safe. Each step multiplies the error by"
     )
 
 
@@ -168,3 +168,57 @@ def test_without_a_step_some_are_safe_at_any_and_some_at_none() -> None:
     undamped = run("check", "--method", "SYM", "--alpha", "0", "--beta", "1", "--physical")
     assert undamped.stdout.startswith("Not safe at small steps.")
     assert undamped.exit_code == 1
+
+
+CHIPMUNK = ("--engine", f"chipmunk={0.9**60!r}", "--h", "1/60")
+
+
+def test_chipmunks_defaults_come_apart_in_a_chain_of_ten() -> None:
+    result = run("check", *CHIPMUNK, "--chain", "10", "--mass-ratio", "10")
+    assert result.exit_code == 1
+    assert result.stdout.startswith(
+        "Not safe in a chain of 10 with the last body 10 times as heavy: each step multiplies the error by 1.0049 (one "
+        "constraint alone: 0.90). Stable from 12 sweeps."
+    )
+    in_json = run("check", *CHIPMUNK, "--chain", "10", "--mass-ratio", "10", "--format", "json")
+    given, instead = json.loads(in_json.stdout)
+    assert (given["safe"], given["verdict"], given["chain_iterations"]) == (False, "converges", 10)
+    assert given["chain_z_abs"] == pytest.approx(1.0049430, abs=1e-7)
+    assert instead["safe"] is False  # what is best for one constraint is worse for a chain
+    assert run("check", *CHIPMUNK, "--chain", "10", "--mass-ratio", "10", "--iterations", "12").exit_code == 0
+    assert run("check", *CHIPMUNK).stdout.startswith("One constraint alone: safe.")
+
+
+def test_choose_says_what_a_chain_allows() -> None:
+    """What it prints is stable there, and nearly a tenth more is; more than that is not."""
+    (row,) = rows("choose", *("--engine", "bullet", "--h", "1/60", "--chain", "3"))
+    assert row["safe"]
+    asked = ("--engine", "chipmunk", "--h", "1/60", "--chain", "10", "--mass-ratio", "10")
+    (row,) = json.loads(run("choose", *asked, "--format", "json").stdout)
+    assert not row["safe"]
+    left = float(str(row["chain_setting"]).removeprefix("errorBias = ")) ** (1 / 60)
+    for share, status in ((1 - left, 0), (1.09 * (1 - left), 0), (1.11 * (1 - left), 1)):
+        values = f"chipmunk={(1 - share) ** 60!r}"
+        assert (
+            run("check", "--engine", values, *CHIPMUNK[2:], "--chain", "10", "--mass-ratio", "10").exit_code == status
+        )
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--engine", "chipmunk=0.1", "--chain", "0"), "--chain 0: expected 1 to 100 bodies"),
+        (("--engine", "chipmunk=0.1", "--chain", "3", "--mass-ratio", "0"), "--mass-ratio 0: expected 1e-06 to 1e+06"),
+        (("--engine", "chipmunk=0.1", "--chain", "3", "--mass-ratio", "-2"), "--mass-ratio -2: expected"),
+        (("--engine", "chipmunk=0.1", "--chain", "3", "--iterations", "0"), "--iterations 0: expected 1 to 10000"),
+        (("--engine", "mujoco=0.02,1", "--chain", "3"), "--chain: mujoco solves all constraints together"),
+        (("--engine", "brax-contact=0.1", "--chain", "3"), "--chain: how brax-contact sweeps"),
+        (("--engine", "chipmunk=0.1", "--mass-ratio", "3"), "--mass-ratio goes with --chain"),
+        (("--engine", "chipmunk=0.1", "--iterations", "3"), "--iterations goes with --chain"),
+        (("--pd", "1,1,1", "--chain", "3"), "--chain goes with --engine"),
+    ],
+)
+def test_what_no_chain_can_be_asked_of_is_one_line(options: tuple[str, ...], said: str) -> None:
+    result = run("check", *options, "--h", "1/60")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert said in result.stderr.replace("\n", " ")

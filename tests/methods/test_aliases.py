@@ -9,7 +9,8 @@ from bezstab.engines import ENGINES
 from bezstab.errors import InputError
 from bezstab.methods import RungeKutta, accuracy, lookup
 from bezstab.methods.aliases import ADVICE, ALIASES, folded, near_names
-from bezstab.methods.registry import FOLDED_NAMES, PARAMETRIC, REGISTRY
+from bezstab.methods.registry import FOLDED_NAMES, REGISTRY
+from bezstab.methods.second_order_methods import PARAMETRIC
 from bezstab.stability import dominant_pole
 
 

@@ -10,6 +10,10 @@ from hypothesis import strategies as st
 from bezstab.methods import (
     ALPHA_HAT,
     BETA_HAT,
+    Assignment,
+    Evaluation,
+    Family,
+    Quantity,
     SecondOrder,
     Z,
     closed_loop_at,
@@ -199,3 +203,16 @@ def test_theta_of_the_triple_jump_is_good_to_forty_digits() -> None:
 def test_every_second_order_method_names_its_source_and_is_of_one_step(name: str) -> None:
     assert len(lookup(name).source) > 20
     assert steps(lookup(name)) == 1
+
+
+def test_symplectic_euler_takes_the_velocity_first() -> None:
+    scheme = lookup("SYM").scheme
+    assert isinstance(scheme, SecondOrder)
+    x0, v0, a0, v1 = Quantity("x", 0), Quantity("v", 0), Quantity("a", 0), Quantity("v", 1)
+    one = Fraction(1)
+    assert lookup("SYM").family == Family("symplectic Euler", 0)
+    assert scheme.equations == (
+        Evaluation(a0, position=((one, x0),), velocity=((one, v0),)),
+        Assignment(v1, ((one, v0), (one, a0))),
+        Assignment(Quantity("x", 1), ((one, x0), (one, v1))),
+    )

@@ -239,6 +239,56 @@ def godot(h: float, bias: float) -> Step:
     return step
 
 
+def godot_2d(h: float, bias: float) -> Step:
+    """Return the step of Godot's PinJoint2D: no velocity left, and a bias velocity that is forgotten."""
+
+    def step(c: float, v: float) -> tuple[float, float]:
+        bias_velocity = 0.0
+        for _ in range(16):
+            v -= v
+            bias_velocity += -c * bias / h - bias_velocity
+        return c + h * (v + bias_velocity), v
+
+    return step
+
+
+def physx(h: float) -> Step:
+    """Return the step of a PhysX joint with PGS: the velocity that takes back all, a move, and none afterwards."""
+
+    def step(c: float, v: float) -> tuple[float, float]:
+        for _ in range(4):
+            v += -c / h - v
+        return c + h * v, 0.0
+
+    return step
+
+
+def physx_tgs(h: float) -> Step:
+    """Return the step with TGS: four substeps that each take back erp of the error, then a velocity iteration."""
+    substep, erp_of_a_substep = h / 4, 0.5 * 2 * math.sqrt(1 / 4)
+
+    def step(c: float, v: float) -> tuple[float, float]:
+        for _ in range(4):
+            v += -erp_of_a_substep * c / substep - v
+            c += substep * v
+        return c, 0.0
+
+    return step
+
+
+def box2d_v2(h: float) -> Step:
+    """Return the step of a Box2D 2.4 joint: the velocity made zero, a move, then positions put right."""
+
+    def step(c: float, v: float) -> tuple[float, float]:
+        v -= v
+        c += h * v
+        for _ in range(3):
+            c -= c
+        return c, v
+
+    return step
+
+
 def kamino(h: float, alpha: float) -> Step:
     """Return Kamino's step by Moreau: half a step, J v1 = -(alpha / h) r with the error there, the other half."""
 
@@ -277,6 +327,10 @@ STEPS: dict[str, Callable[..., Step]] = {
     "brax-positional": pbd,
     "genesis": genesis,
     "godot": godot,
+    "godot-2d": godot_2d,
+    "physx": physx,
+    "physx-tgs": physx_tgs,
+    "box2d-v2": box2d_v2,
     "kamino": kamino,
 }
 """By the engine's name. Where the integrator is the user's, symplectic Euler, as the simplest that moves last."""

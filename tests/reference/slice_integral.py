@@ -12,7 +12,7 @@ from numpy.polynomial.legendre import leggauss
 
 from bezstab.methods import Method
 from bezstab.stability import FloatArray, pencil_of
-from bezstab.stability.line_slices import island_radii, mu_bound, real_events, slices, turning_radii
+from tests.reference.line_slices import island_radii, mu_bound, real_events, slices, turning_radii
 
 PANEL_NODES = 8  # of a Gauss-Legendre panel
 MAX_DEPTH = 30  # halvings: a square root at a panel's end then errs by 2^-45 of the first panel

@@ -44,7 +44,9 @@ def test_a_wrong_best_point_is_no_answer(name: str, factor: float, moved: float)
     assert right
     assert extent
     with pytest.raises(NumericalError):
-        check_best_point(pencil_of(lookup(name)), factor * right.z_abs, moved * right.alpha_hat, right.beta_hat, extent)
+        check_best_point(
+            pencil_of(lookup(name)), factor * right.z_abs, moved * right.alpha_hat, right.beta_hat, extent, True
+        )
 
 
 @pytest.mark.parametrize("name", ["B4", "AB4", "ABM3"])

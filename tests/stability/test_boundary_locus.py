@@ -8,8 +8,7 @@ from numpy.polynomial.polynomial import polyval2d
 from bezstab.errors import NumericalError
 from bezstab.methods import LinearMultistep, lookup
 from bezstab.stability import FloatArray, Region, pencil_of, region, spectral_radius
-from bezstab.stability.boundary_locus import Arc, RimPiece, _ends_on_the_axis, bounds_of
-from bezstab.stability.line_slices import rim_radius
+from bezstab.stability.boundary_locus import Arc, _ends_on_the_axis, bounds_of, rim_radius
 from bezstab.stability.pencils import largest_root_in_z
 from tests.methods.kinds import EXPLICIT, sampled
 from tests.reference.companion_poles import radius
@@ -177,12 +176,6 @@ def test_a_region_of_which_a_strip_lies_far_away_is_not_empty() -> None:
     assert shape.extent[1][1] > 1e7
 
 
-def test_a_piece_of_the_rim_adds_to_the_area_what_green_says() -> None:
-    half_disc = RimPiece(2.0, 0.0, np.pi)
-    assert half_disc.area() == pytest.approx(4 * 2 / 3 * 2.0**3, rel=1e-14)  # int int 4 y over it
-    assert half_disc.plane() == pytest.approx(np.array([[-4, 4], [4, 4]]), abs=1e-12)
-
-
 @pytest.mark.parametrize(
     ("name", "intervals", "stable_angle"),
     [
@@ -197,7 +190,7 @@ def test_an_unbounded_set_is_cut_off_at_its_rim(
     pencil = pencil_of(lookup(name))
     bounds = bounds_of(pencil, 1.0, 1, rim_radius(pencil, 1.0))
     assert np.array(bounds.intervals) == pytest.approx(np.array(intervals), abs=1e-9)
-    assert sum(piece.end - piece.start for piece in bounds.rim) == pytest.approx(stable_angle, abs=1e-9)
+    assert bounds.rim == pytest.approx(stable_angle, abs=1e-9)
     assert not bounds.bounded
 
 

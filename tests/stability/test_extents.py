@@ -7,13 +7,11 @@ import numpy as np
 import pytest
 
 from bezstab.errors import NumericalError
-from bezstab.methods import Method, PlaneStrips, Strip, lookup, plane_strips, recipe
-from bezstab.rationals import exact
+from bezstab.methods import Method, PlaneStrips, Strip, lookup, recipe
 from bezstab.show import region_row, with_unbounded
 from bezstab.stability import region, verdict
-from bezstab.stability.plane_cells import Edges, plane_shape
-from bezstab.stability.plane_checks import check_plane
-from bezstab.stability.plane_pencils import plane_pencil_of
+from bezstab.stability.plane_cells import shape_of_strips, strips_shape
+from bezstab.stability.region_checks import check_region
 from tests.methods.kinds import sampled
 from tests.reference.extents import contradictions
 from tests.reference.one_evaluation_schemes import one_evaluation_schemes, polygon_extent
@@ -59,17 +57,14 @@ def test_proven_verdicts_near_and_far_out_agree(name: str, level: float) -> None
     assert contradictions(found.method, level, found.extent) == []
 
 
-@pytest.mark.parametrize("wrong", [(-np.inf, 2.0), (0.0, np.inf)])
+@pytest.mark.parametrize("wrong", [(-np.inf, 2.0), (0.0, np.inf), (-3.0, np.inf)])
 def test_a_wrong_range_of_alpha_hat_does_not_pass_the_check(wrong: tuple[float, float]) -> None:
     method = SCHEMES[QUICK[0]]
-    strips = plane_strips(method, exact(1.0))
-    assert strips
-    edges = Edges(strips)
-    shape = plane_shape(strips, edges, method.name)
+    shape = strips_shape(method, 1.0)
     assert shape
-    check_plane(plane_pencil_of(method), 1.0, edges, shape)
-    with pytest.raises(NumericalError, match="the range of alpha_hat"):
-        check_plane(plane_pencil_of(method), 1.0, edges, replace(shape, extent=(wrong, shape.extent[1])))
+    check_region(method, 1.0, shape)
+    with pytest.raises(NumericalError, match="the extent"):
+        check_region(method, 1.0, replace(shape, extent=(wrong, shape.extent[1])))
 
 
 def test_a_limit_that_edges_come_near_is_told_from_an_end_that_they_attain() -> None:
@@ -84,7 +79,7 @@ def test_a_limit_that_edges_come_near_is_told_from_an_end_that_they_attain() -> 
         limits={(0, 0): (None, 0.0), (1, 0): (None, 2.0)},
     )
     strips = PlaneStrips((left, right), (strip,), lost=({}, {}))
-    shape = plane_shape(strips, Edges(strips), "made")
+    shape = shape_of_strips(strips, "made")
     assert shape
     assert shape.extent == ((0.0, 2.0), (1.0, np.inf))
     assert shape.approached == ((False, True), (False, False))

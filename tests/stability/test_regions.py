@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from bezstab.methods import LinearMultistep, Method, RungeKutta, lookup, second_order_form
 from bezstab.rationals import rational
 from bezstab.stability import Extent, FloatArray, Region, region, spectral_radius, useful_window, verdict, window
-from bezstab.stability.regions import _closed_curves, _plane_region
+from bezstab.stability.plane_cells import strips_shape
 from tests.methods.kinds import EXPLICIT, FEW, SOLVED, sampled
 from tests.reference.companion_poles import eigenvalues, polynomial_at, radius
 from tests.reference.enclosed_points import enclosed
@@ -280,7 +280,8 @@ def test_the_window_shows_the_region_the_origin_and_a_margin(level: float) -> No
 @pytest.mark.parametrize("name", sampled(["ABM3", "ABM4"], quick=["ABM3"]))
 def test_pece_as_a_recipe_has_its_region_at_a_level_of_two_digits(name: str) -> None:
     """By strips of the plane, and by the locus in mu: ABM4's curves at 0.61 have coefficients of 384 bits."""
-    by_strips = _plane_region(as_second_order(name), 0.61, ())
+    by_strips = strips_shape(as_second_order(name), 0.61)
+    assert by_strips
     # integrals by two rules, each good to 1e-12 of the area
     assert by_strips.area == pytest.approx(region(lookup(name), 0.61).area, rel=1e-11)
 
@@ -634,13 +635,3 @@ def test_a_shared_root_just_inside_the_circle_leaves_the_region_as_it_is() -> No
     assert region(with_the_root).area == pytest.approx(region(lookup("RK1")).area, rel=1e-12)
     (fixed,) = region(with_the_root).fixed_poles
     assert fixed == pytest.approx(complex(root), rel=1e-14)
-
-
-def test_edges_given_either_way_round_are_joined_into_one_closed_curve() -> None:
-    corners = np.array([[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [0.0, 1.0]])
-    sides = [np.linspace(corners[k], corners[(k + 1) % 4], 9) for k in range(4)]
-    for turned in range(16):
-        edges = [side[::-1] if turned >> k & 1 else side for k, side in enumerate(sides)]
-        (curve,) = _closed_curves(edges)
-        x, y = curve.T
-        assert abs(np.sum(x[:-1] * y[1:] - x[1:] * y[:-1])) == pytest.approx(6, rel=1e-14)  # twice the area

@@ -1,32 +1,25 @@
-"""BDF, Adams-Moulton and implicit Runge-Kutta methods: classical coefficients, order conditions, limits of theory."""
+"""Runge-Kutta methods: classical tableaux, nodes and orders, sums that hold exactly, stability functions of theory."""
 
 from fractions import Fraction
 
 import pytest
 
 from bezstab.methods import (
-    LinearMultistep,
+    Family,
     Method,
     RungeKutta,
-    closed_loop_at,
+    accuracy,
     coefficient_table,
-    is_schur,
+    evaluations,
     lookup,
-    recursion_verdict,
 )
-from bezstab.methods.implicit_methods import bdf
 from tests.methods.exact_lists import fractions
+from tests.reference.orders import DORMAND_PRINCE
 
 F = Fraction
 FORTY_DIGITS = F(
     1, 10**39
 )  # each coefficient is within 1e-40 of the irrational one, sums of a few within ten times that
-
-
-def multistep(name: str) -> LinearMultistep:
-    scheme = lookup(name).scheme
-    assert isinstance(scheme, LinearMultistep)
-    return scheme
 
 
 def runge_kutta(name: str) -> RungeKutta:
@@ -36,67 +29,79 @@ def runge_kutta(name: str) -> RungeKutta:
 
 
 @pytest.mark.parametrize(
-    ("name", "rho", "sigma"),
+    ("name", "tableau", "b"),
     [
-        ("implicit-euler", "1 -1", "1 0"),
-        ("trapezoid", "1 -1", "1/2 1/2"),
-        ("bdf1", "1 -1", "1 0"),
-        ("bdf2", "1 -4/3 1/3", "2/3 0 0"),
-        ("bdf3", "1 -18/11 9/11 -2/11", "6/11 0 0 0"),
-        ("bdf4", "1 -48/25 36/25 -16/25 3/25", "12/25 0 0 0 0"),
-        ("am2", "1 -1", "1/2 1/2"),
-        ("am3", "1 -1 0", "5/12 8/12 -1/12"),
-        ("am4", "1 -1 0 0", "9/24 19/24 -5/24 1/24"),
-        ("am5", "1 -1 0 0 0", "251/720 646/720 -264/720 106/720 -19/720"),
+        ("RK1", ["0"], "1"),
+        ("RK2", ["0 0", "1/2 0"], "0 1"),
+        ("RK3", ["0 0 0", "1/2 0 0", "-1 2 0"], "1/6 2/3 1/6"),
+        ("RK4", ["0 0 0 0", "1/2 0 0 0", "0 1/2 0 0", "0 0 1 0"], "1/6 1/3 1/3 1/6"),
+        ("SIE", ["0 0", "1 0"], "0 1"),
     ],
 )
-def test_multistep_coefficients_are_classical(name: str, rho: str, sigma: str) -> None:
-    assert multistep(name) == LinearMultistep(fractions(rho), fractions(sigma))
+def test_butcher_tableaux_are_classical(name: str, tableau: list[str], b: str) -> None:
+    assert lookup(name).scheme == RungeKutta(tuple(map(fractions, tableau)), fractions(b))
 
 
-@pytest.mark.parametrize("n", range(1, 7))
-def test_bdf_differentiates_every_polynomial_its_points_determine(n: int) -> None:
-    scheme = multistep(f"bdf{n}")
-    assert scheme.sigma[1:] == (0,) * n
-    for p in range(n + 1):
-        at_points = sum(c * F(-j) ** p for j, c in enumerate(scheme.rho))
-        assert at_points == scheme.sigma[0] * (1 if p == 1 else 0)  # the slope of t^p at t = 0, the new point
-    assert sum(c * F(-j) ** (n + 1) for j, c in enumerate(scheme.rho)) != 0
-
-
-def test_there_is_no_seventh_bdf() -> None:
-    with pytest.raises(ValueError, match="zero-unstable"):
-        bdf(7)
-
-
-@pytest.mark.parametrize("n", range(2, 7))
-def test_adams_moulton_integrates_every_polynomial_its_points_determine(n: int) -> None:
-    scheme = multistep(f"am{n}")
-    assert scheme.rho == (1, -1, *[0] * (n - 2))
-    for p in range(n):
-        assert sum(b * F(1 - j) ** p for j, b in enumerate(scheme.sigma)) == F(1, p + 1)
+def test_members_carry_their_family() -> None:
+    for stages in (1, 2, 3, 4):
+        assert lookup(f"RK{stages}").family == Family("Runge-Kutta", stages)
+    assert lookup("SIE").family == Family("SIE", 0)
+    assert lookup("heun").family is None
 
 
 @pytest.mark.parametrize(
-    ("name", "ratio"), [("bdf3", "0.0692"), ("bdf4", "0.2865"), ("bdf5", "0.6179"), ("bdf6", "0.9519")]
+    ("name", "order", "calls", "nodes"),
+    [
+        ("heun", 2, 2, "0 1"),
+        ("ralston", 2, 2, "0 2/3"),
+        ("ssprk3", 3, 3, "0 1 1/2"),
+        ("bs3", 3, 3, "0 1/2 3/4"),
+        ("dopri5", 5, 6, "0 1/5 3/10 4/5 8/9 1"),
+        ("tsit5", 5, 6, "0 161/1000 327/1000 9/10 9800255409045097/10000000000000000 1"),
+        ("cash-karp", 5, 6, "0 1/5 3/10 3/5 1 7/8"),
+    ],
 )
-def test_bdf_is_stable_at_all_steps_above_the_damping_ratio_of_theory(name: str, ratio: str) -> None:
-    """To its four digits: on a grid of steps above it, and somewhere unstable just below it."""
-    method = lookup(name)
-    step_grid = [F(3, 2) ** k for k in range(-6, 12)] + [F(k, 8) for k in range(1, 48)]
-
-    def stable(zeta: Fraction) -> bool:
-        return all(is_schur(closed_loop_at(method, 2 * zeta * beta_h, beta_h**2)) for beta_h in step_grid)
-
-    assert stable(F(ratio) + F(1, 10**4))
-    assert not stable(F(ratio) - F(1, 10**3))
+def test_order_evaluations_and_nodes_are_those_of_the_literature(name: str, order: int, calls: int, nodes: str) -> None:
+    scheme = runge_kutta(name)
+    assert tuple(sum(row) for row in scheme.tableau) == fractions(nodes)
+    assert sum(scheme.weights) == 1
+    assert accuracy(lookup(name))[0] == order
+    assert evaluations(lookup(name)) == calls
 
 
-@pytest.mark.parametrize(("name", "limit"), [("am3", F(6)), ("am4", F(3)), ("am5", F(90, 49)), ("am6", F(45, 38))])
-def test_adams_moulton_limits_where_alpha_is_beta_are_those_of_theory(name: str, limit: Fraction) -> None:
-    tiny = F(1, 10**20)
-    for beta_h, verdict in ((limit - tiny, "converges"), (limit + tiny, "diverges")):
-        assert recursion_verdict(closed_loop_at(lookup(name), 2 * beta_h, beta_h**2)) == verdict
+def test_dormand_prince_is_the_formula_of_dopri5() -> None:
+    assert lookup("dopri5").scheme == DORMAND_PRINCE.scheme
+
+
+@pytest.mark.parametrize("name", ["heun", "ralston", "ssprk3", "bs3", "dopri5", "tsit5", "cash-karp"])
+def test_no_stage_serves_the_error_estimate_alone(name: str) -> None:
+    """Every stage is weighted, or used by a later one."""
+    scheme = runge_kutta(name)
+    for stage, weight in enumerate(scheme.weights):
+        assert weight != 0 or any(row[stage] for row in scheme.tableau)
+
+
+def test_tsitouras_decimals_are_the_published_ones_to_their_last_digit() -> None:
+    """Those that follow from the sums here agree with what is printed: a_i1 for i = 2 to 6, and b_6."""
+    scheme = runge_kutta("tsit5")
+    derived = [row[0] for row in scheme.tableau[1:]] + [scheme.weights[-1]]
+    printed = "0.161 -0.008480655492356989 2.8971530571054935 5.325864828439257 5.86145544294642 2.324710524099774"
+    for value, decimal in zip(derived, fractions(printed), strict=True):
+        assert abs(value - decimal) < F(5, 10**15)  # half a unit of fifteen decimals, ten times over: sums of six
+
+
+def test_tsitouras_satisfies_his_order_conditions_to_his_digits() -> None:
+    scheme = runge_kutta("tsit5")
+    nodes = [sum(row) for row in scheme.tableau]
+    for power in range(5):
+        quadrature = sum(b * c**power for b, c in zip(scheme.weights, nodes, strict=True))
+        assert abs(quadrature - F(1, power + 1)) < F(1, 10**14)
+
+
+def test_what_is_first_same_as_last_is_said() -> None:
+    for name in ("bs3", "dopri5", "tsit5"):
+        assert "FSAL" in lookup(name).source
+    assert "not FSAL" in lookup("cash-karp").source
 
 
 def growth(method: Method) -> tuple[list[Fraction], list[Fraction]]:

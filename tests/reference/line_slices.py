@@ -1,4 +1,4 @@
-"""Where lines of constant q are stable: the region by a second route, without arcs, branches or intervals.
+"""Where lines of constant q are stable: a region by another route, without arcs, branches or intervals.
 
 The feedback is mu^2 + p mu + q = 0. On a line of constant q the verdict changes only where a root z of pi lies on the
 circle |z| = level: for a conjugate pair of mu, whose |mu|^2 is q, or for one real mu.
@@ -21,16 +21,12 @@ from math import comb
 import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval
 
-from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, FloatArray
-from bezstab.stability.exact_sums import feedback_roots
-from bezstab.stability.pencils import Pencil, deadbeat_mu, roots_in_mu
-from bezstab.stability.root_finding import horner, inside_circle
-from bezstab.stability.searches import false_position
+from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
+from bezstab.stability.boundary_locus import rim_radius
+from bezstab.stability.pencils import Pencil, all_inside, deadbeat_mu
 
 COSINE_SLACK = 1e-6  # a double zero splits by sqrt(eps) = 1e-8 into the complex plane; more candidates do no harm
 TRUE_DEGREE = 1e-12  # relative: Chebyshev coefficients of a polynomial of lower degree are rounding, 1e-16 or so
-RIM = 64.0  # times everything finite: far enough out to tell how the region goes on, near enough to be checked
-AT_INFINITY = 1e10  # a larger |mu| is the rounding of an infinite one
 SHARED = 1e-4  # of |mu|: a shared root is good to the root of rounding; more candidates do no harm
 QUADRATIC_SAMPLES = 2600  # of theta for PECE, besides the graded ends: another grid than the arcs'
 QUADRATIC_ZOOMS = 8  # each by 1/8: a turn to 1e-10 rad, where the modulus is flat to rounding
@@ -38,7 +34,6 @@ ILLINOIS = 14  # false positions from one sample to the next: the seventh is exa
 REFINEMENTS = 5  # of Newton's method, from eight digits or more
 TO_ANOTHER = 0.2  # of theta: a longer step could reach another zero
 FAR = 1e300  # a finite stand-in for an infinite mu
-NOISE_ANGLES: FloatArray = np.linspace(0.1, 3.1, 16)  # at which the rounding of crossings is estimated
 LEADING = 1e-14  # of the largest coefficient: a leading coefficient below it is rounding of a zero
 
 
@@ -61,25 +56,6 @@ def mu_bound(pencil: Pencil, level: float) -> float:
         highest = len(row) - 1
         bounds.append(2 * max((row[j] / row[-1]) ** (1 / (highest - j)) for j in range(highest)))
     return float(min(bounds))
-
-
-# An implicit method may be stable for arbitrarily large mu: then S_r is cut off at its rim |mu| = RIM times the size
-# of everything that it has of shape, and all that is checked lies within.
-
-
-def rim_radius(pencil: Pencil, level: float) -> float:
-    """Return the radius of the rim of an implicit method: RIM times that of the disc that holds every feature.
-
-    Features are all finite mu with a root at z = +-level, with an infinite root, with a double root, with a root at
-    zero, and those at which the locus turns towards or away from zero.
-    """
-    places = [
-        roots_in_mu(pencil, np.array([level, -level, 0], complex)).ravel(),
-        pencil.branch_points,
-        turning_radii(pencil, level).astype(complex),
-    ]
-    sizes = np.abs(np.concatenate(places))
-    return RIM * float(sizes[sizes < AT_INFINITY].max(initial=1.0))
 
 
 def _cosine_zeros(values_at: Callable[[FloatArray], FloatArray], degree: int, rows: int) -> FloatArray:
@@ -259,23 +235,6 @@ def _multistep_crossings(pencil: Pencil, level: float, radius: FloatArray) -> Fl
         return np.asarray(np.clip((-rho / minus_sigma).real, -around, around))
 
 
-def edge_noise(pencil: Pencil, level: float) -> float:
-    """Return by what share of |mu| rounding moves where lines cross |z| = level of a one-step z = N / Q, at worst.
-
-    They are zeros of |N|^2 - level^2 |Q|^2. Terms are rounded at the size that they have without their signs, and of
-    many stages they cancel: of twenty implicit Euler steps composed, z = (1 - mu / 20)^-20, their squares to nothing.
-    """
-    mu = roots_in_mu(pencil, level * np.exp(1j * NOISE_ANGLES)).ravel()
-    mu = mu[np.isfinite(mu) & (np.abs(mu) < AT_INFINITY)]
-    numerator, denominator = pencil.table
-    with np.errstate(all="ignore"):
-        size = sum(polyval(np.abs(mu), np.abs(row)) for row in pencil.table)
-        n, d = polyval(mu, numerator), polyval(mu, denominator)
-        rate = np.abs(mu * (polyval(mu, polyder(numerator)) / n - polyval(mu, polyder(denominator)) / d))
-        noise = EPS * (size / np.abs(d)) ** 2 / rate
-    return float(noise[np.isfinite(noise)].max(initial=0))
-
-
 def _refined(cosine: FloatArray, step_at: Callable[[FloatArray], FloatArray]) -> FloatArray:
     """Return the angles of cosines after some of Newton's steps, but for those that would lead to another zero."""
     angle = np.arccos(cosine)
@@ -373,25 +332,6 @@ def _quadratic_locus(pencil: Pencil, level: float) -> _QuadraticLocus:
     return _QuadraticLocus(pencil.table, level, theta, np.abs(unsampled.both(theta)))
 
 
-def all_inside(pencil: Pencil, mu: ComplexArray, level: float | FloatArray) -> BoolArray:
-    """Return whether every root z of pi(., mu) has |z| < level, by Schur's recursion; shape of mu, and of levels."""
-    size = np.ones_like(mu.real)
-    p = np.empty((len(pencil.table), *mu.shape), complex)
-    for row, coefficients in zip(p, pencil.table, strict=True):
-        np.multiply(horner(coefficients, mu), size, out=row)
-        size = size * level
-    return inside_circle(p)
-
-
-def all_within(pencil: Pencil, alpha_hat: FloatArray, beta_hat: FloatArray, level: FloatArray) -> BoolArray:
-    """Return whether every pole has |z| < level at each point; arrays of one shape."""
-    first, second = feedback_roots(pencil.feedback, alpha_hat, beta_hat)
-    within = all_inside(pencil, first, level)
-    real = within & (first.imag == 0)  # of a conjugate pair both have the same moduli
-    within[real] = all_inside(pencil, second[real], level[real])
-    return within
-
-
 @dataclass(frozen=True)
 class Slices:
     """Stable intervals of p = -(mu_1 + mu_2) on lines of constant q: ends of shape (lines, candidates), nan padded."""
@@ -440,3 +380,29 @@ def slices(pencil: Pencil, level: float, q: FloatArray, events: FloatArray, boun
         with np.errstate(all="ignore"):
             stable &= (np.abs(first) < bound) & (np.abs(second) < bound)
     return Slices(ends, stable & np.isfinite(p))
+
+
+def false_position(
+    values_at: Callable[[FloatArray], FloatArray],
+    first: tuple[FloatArray, FloatArray],
+    last: tuple[FloatArray, FloatArray],
+    rounds: int,
+) -> FloatArray:
+    """Return where smooth functions are zero between two places, each given with the values there, of unlike signs.
+
+    Arrays of one shape, one search for each entry; values_at takes and returns such arrays. Each round draws a chord
+    through the ends; an end that stays twice has its value halved (Illinois algorithm: Dowell & Jarratt, BIT 11, 1971).
+    It takes a handful of rounds where bisection takes fifty.
+    """
+    low, below = first
+    high, above = last
+    middle = high
+    for _ in range(rounds):
+        with np.errstate(divide="ignore", invalid="ignore"):  # a chord between equal values leads nowhere
+            middle = low - below * (high - low) / (above - below)
+        middle = np.where(np.isfinite(middle), middle, (low + high) / 2)
+        off = values_at(middle)
+        same = np.sign(off) == np.sign(above)
+        low, below = np.where(same, low, high), np.where(same, below / 2, above)
+        high, above = middle, off
+    return middle

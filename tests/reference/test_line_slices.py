@@ -7,26 +7,21 @@ from math import pi
 import numpy as np
 import pytest
 
-from bezstab.errors import NumericalError
 from bezstab.methods import Method, RungeKutta, lookup
-from bezstab.stability import pencil_of, region
-from bezstab.stability.line_slices import (
-    RIM,
-    all_inside,
-    edge_noise,
-    island_radii,
-    mu_bound,
-    paired_crossings,
-    real_events,
-    rim_radius,
-    slices,
-)
-from bezstab.stability.pencils import moduli_in_z
-from bezstab.stability.self_checks import proven_inside
+from bezstab.stability import pencil_of
+from bezstab.stability.boundary_locus import RIM, rim_radius
+from bezstab.stability.closed_loop import decays_faster
+from bezstab.stability.pencils import Pencil, all_inside, moduli_in_z
+from tests.reference.line_slices import island_radii, mu_bound, paired_crossings, real_events, slices
 from tests.reference.random_methods import random_method
 from tests.reference.slice_integral import slice_area
 
 NAMES = ["B4", "AB4", "RK4", "ABM3"]
+
+
+def proven_inside(pencil: Pencil, level: float, p: Fraction, q: Fraction) -> bool:
+    """Return whether all poles have |z| < level for the feedback mu^2 + p mu + q: of these methods' own parameters."""
+    return decays_faster(pencil.method, Fraction(level), p, q)
 
 
 @pytest.mark.parametrize("level", [1.0, 0.8])
@@ -114,23 +109,3 @@ def test_beyond_the_features_of_an_implicit_method_the_verdict_depends_on_the_di
     expected = {"trapezoid": half_plane, "gauss4": half_plane, "am4": np.full(101, False)}
     for row in inside:
         assert (row == expected.get(name, np.full(101, True)))[off_axis].all()
-
-
-@pytest.mark.parametrize("steps", [4, 8, 12, 16])
-def test_the_noise_of_an_edge_is_no_less_than_its_error(steps: int) -> None:
-    """Of implicit Euler steps composed: z = (1 - mu / n)^-n lies on the circle where |mu - n| = n."""
-    h = Fraction(1, steps)
-    rows = tuple((h,) * (k + 1) + (Fraction(0),) * (steps - k - 1) for k in range(steps))
-    pencil = pencil_of(Method("composed", RungeKutta(rows, (h,) * steps), ""))
-    radius = np.linspace(0.3, 1.95, 40) * steps
-    crossings = paired_crossings(pencil, 1.0, radius)
-    off = np.nanmin(np.abs(crossings - radius[:, np.newaxis] ** 2 / (2 * steps)), axis=1) / radius
-    assert off.max() < 2 * edge_noise(pencil, 1.0)
-
-
-def test_of_too_many_stages_there_is_no_region() -> None:
-    """Float64 rounds the squares of twenty implicit Euler steps' (1 + 2)^20 by more than the one they differ by."""
-    h = Fraction(1, 20)
-    rows = tuple((h,) * (k + 1) + (Fraction(0),) * (19 - k) for k in range(20))
-    with pytest.raises(NumericalError, match="composed: float64 keeps no digits"):
-        region(Method("composed", RungeKutta(rows, (h,) * 20), ""))

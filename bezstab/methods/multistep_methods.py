@@ -1,7 +1,8 @@
-"""Families of multistep methods by their number of steps, and how their weights come about.
+"""Multistep methods by their number of steps, and how their weights come about.
 
-All replace f(t, y(t)) beyond t_k by a curve through or along its last n values and integrate that curve over one
-step, from t_k to t_{k+1}; they differ in the curve. Time is counted in steps from t_k: the known values sit at
+Backward differentiation differentiates the polynomial through the values of y. All others replace f(t, y(t))
+beyond t_k by a curve through or along its last n values and integrate that curve over one step, from t_k to t_{k+1};
+they differ in the curve. Time is counted in steps from t_k: the known values sit at
 0, -1, ..., 1 - n.
 
     Adams-Bashforth   the polynomial through the values
@@ -10,11 +11,16 @@ step, from t_k to t_{k+1}; they differ in the curve. Time is counted in steps fr
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
-from math import comb, prod
+from functools import partial
+from math import comb
 
-from bezstab.methods.schemes import Family, LinearMultistep, Method, PredictorCorrector
+from bezstab.methods.polynomials import lagrange_integral
+from bezstab.methods.schemes import Family, LinearMultistep, Method, MethodGroup, PredictorCorrector
 from bezstab.rationals import ONE, ZERO
+
+MOST_BDF_STEPS = 6  # with more the method is not zero-stable
 
 
 def bezier(n: int) -> Method:
@@ -81,15 +87,70 @@ def _explicit_adams(weights: Sequence[Fraction]) -> LinearMultistep:
 
 def _interpolatory_weights(nodes: Sequence[int]) -> list[Fraction]:
     """Return the integrals over [0, 1] of the Lagrange polynomials on `nodes`, in their order."""
-    return [_lagrange_integral(node, [other for other in nodes if other != node]) for node in nodes]
+    return [lagrange_integral(node, [other for other in nodes if other != node], ONE) for node in nodes]
 
 
-def _lagrange_integral(node: int, others: Sequence[int]) -> Fraction:
-    """Return the integral over [0, 1] of the polynomial that is 1 at `node` and 0 at the others."""
-    numerator = [ONE]  # of prod (x - other), coefficients in ascending powers of x
-    for other in others:
-        times_x = [ZERO, *numerator]
-        unchanged = [*numerator, ZERO]
-        numerator = [a - other * b for a, b in zip(times_x, unchanged, strict=True)]
-    integral = sum((a / (power + 1) for power, a in enumerate(numerator)), ZERO)
-    return integral / prod(node - other for other in others)
+def bdf(n: int) -> Method:
+    """Return the n-step backward differentiation formula, of order n, 1 <= n <= 6; bdf1 is implicit Euler.
+
+    The polynomial through y_{k+1}, ..., y_{k+1-n} has the slope f_{k+1} at t_{k+1}. With nabla y = (1 - 1/z) y:
+    sum_{j=1}^n nabla^j y_{k+1} / j = h f_{k+1} (Hairer, Norsett & Wanner I, Eq. III.1.22'). For n > 6 it is unstable.
+    """
+    return Method(
+        f"bdf{n}",
+        _bdf_scheme(n),
+        "Curtiss & Hirschfelder, Proc. Natl. Acad. Sci. 38, 1952 (backward differentiation)",
+        family=Family("BDF", n),
+    )
+
+
+def _bdf_scheme(n: int) -> LinearMultistep:
+    rho = [ZERO] * (n + 1)  # of y_{k+1}, y_k, ...
+    difference = [ONE]  # of nabla^j
+    for j in range(1, n + 1):
+        difference = [a - b for a, b in zip([*difference, ZERO], [ZERO, *difference], strict=True)]
+        for i, a in enumerate(difference):
+            rho[i] += a / j
+    return LinearMultistep(tuple(rho), (ONE, *[ZERO] * n))
+
+
+def adams_moulton(n: int) -> Method:
+    """Return the Adams-Moulton method of order n >= 2, of n - 1 steps; am2 is the trapezoidal rule."""
+    return Method(
+        f"am{n}",
+        adams_moulton_scheme(n),
+        "Hairer, Norsett & Wanner I, Eq. III.1.9 (Adams-Moulton)",
+        family=Family("Adams-Moulton", n),
+    )
+
+
+def implicit_euler() -> Method:
+    """Return y_{k+1} = y_k + h f_{k+1}."""
+    source = "Hairer & Wanner II, Eq. IV.3.3 (implicit Euler; Catto's soft constraints, Jolt's springs)"
+    return replace(bdf(1), name="implicit-euler", source=source)
+
+
+def trapezoid() -> Method:
+    """Return y_{k+1} = y_k + h/2 (f_k + f_{k+1})."""
+    source = "Crank & Nicolson, Proc. Camb. Phil. Soc. 43, 1947 (trapezoidal rule)"
+    return replace(adams_moulton(2), name="trapezoid", source=source)
+
+
+EXPLICIT_MULTISTEP = (
+    MethodGroup("Bézier", {f"B{n}": partial(bezier, n) for n in range(1, 13)}),
+    MethodGroup("Adams-Bashforth", {f"AB{n}": partial(adams_bashforth, n) for n in range(1, 9)}),
+    MethodGroup(
+        "Adams-Bashforth-Moulton, predicted and corrected (PECE)",
+        {f"ABM{n}": partial(adams_bashforth_moulton, n) for n in range(2, 5)},
+    ),
+)
+
+IMPLICIT_MULTISTEP = MethodGroup(
+    "Implicit multistep",
+    {
+        "implicit-euler": implicit_euler,
+        "trapezoid": trapezoid,
+        **{f"bdf{n}": partial(bdf, n) for n in range(1, MOST_BDF_STEPS + 1)},
+        **{f"am{n}": partial(adams_moulton, n) for n in range(2, 7)},
+    },
+)

@@ -15,7 +15,12 @@ from bezstab.methods import (
     adams_bashforth,
     adams_bashforth_moulton,
     bezier,
+    closed_loop_at,
+    is_schur,
+    lookup,
+    recursion_verdict,
 )
+from bezstab.methods.multistep_methods import bdf
 from tests.methods.exact_lists import fractions
 from tests.reference.bezier_curves import de_casteljau_weights, limit_weight
 
@@ -126,6 +131,73 @@ def test_adams_bashforth_moulton_weights_are_classical(n: int, predictor: str, c
     assert scheme.predictor.sigma == (0, *fractions(predictor))
     assert scheme.corrector.sigma == fractions(corrector)
     assert scheme.predictor.rho == scheme.corrector.rho == (1, -1, *[0] * (n - 1))
+
+
+@pytest.mark.parametrize(
+    ("name", "rho", "sigma"),
+    [
+        ("implicit-euler", "1 -1", "1 0"),
+        ("trapezoid", "1 -1", "1/2 1/2"),
+        ("bdf1", "1 -1", "1 0"),
+        ("bdf2", "1 -4/3 1/3", "2/3 0 0"),
+        ("bdf3", "1 -18/11 9/11 -2/11", "6/11 0 0 0"),
+        ("bdf4", "1 -48/25 36/25 -16/25 3/25", "12/25 0 0 0 0"),
+        ("am2", "1 -1", "1/2 1/2"),
+        ("am3", "1 -1 0", "5/12 8/12 -1/12"),
+        ("am4", "1 -1 0 0", "9/24 19/24 -5/24 1/24"),
+        ("am5", "1 -1 0 0 0", "251/720 646/720 -264/720 106/720 -19/720"),
+    ],
+)
+def test_multistep_coefficients_are_classical(name: str, rho: str, sigma: str) -> None:
+    assert multistep(lookup(name)) == LinearMultistep(fractions(rho), fractions(sigma))
+
+
+@pytest.mark.parametrize("n", range(1, 7))
+def test_bdf_differentiates_every_polynomial_its_points_determine(n: int) -> None:
+    scheme = multistep(bdf(n))
+    assert scheme.sigma[1:] == (0,) * n
+    for p in range(n + 1):
+        at_points = sum(c * Fraction(-j) ** p for j, c in enumerate(scheme.rho))
+        assert at_points == scheme.sigma[0] * (1 if p == 1 else 0)  # the slope of t^p at t = 0, the new point
+    assert sum(c * Fraction(-j) ** (n + 1) for j, c in enumerate(scheme.rho)) != 0
+
+
+def test_there_is_no_seventh_bdf() -> None:
+    with pytest.raises(ValueError, match="zero-unstable"):
+        bdf(7)
+
+
+@pytest.mark.parametrize("n", range(2, 7))
+def test_adams_moulton_integrates_every_polynomial_its_points_determine(n: int) -> None:
+    scheme = multistep(lookup(f"am{n}"))
+    assert scheme.rho == (1, -1, *[0] * (n - 2))
+    for p in range(n):
+        assert sum(b * Fraction(1 - j) ** p for j, b in enumerate(scheme.sigma)) == Fraction(1, p + 1)
+
+
+@pytest.mark.parametrize(
+    ("name", "ratio"), [("bdf3", "0.0692"), ("bdf4", "0.2865"), ("bdf5", "0.6179"), ("bdf6", "0.9519")]
+)
+def test_bdf_is_stable_at_all_steps_above_the_damping_ratio_of_theory(name: str, ratio: str) -> None:
+    """To its four digits: on a grid of steps above it, and somewhere unstable just below it."""
+    method = lookup(name)
+    step_grid = [Fraction(3, 2) ** k for k in range(-6, 12)] + [Fraction(k, 8) for k in range(1, 48)]
+
+    def stable(zeta: Fraction) -> bool:
+        return all(is_schur(closed_loop_at(method, 2 * zeta * beta_h, beta_h**2)) for beta_h in step_grid)
+
+    assert stable(Fraction(ratio) + Fraction(1, 10**4))
+    assert not stable(Fraction(ratio) - Fraction(1, 10**3))
+
+
+@pytest.mark.parametrize(
+    ("name", "limit"),
+    [("am3", Fraction(6)), ("am4", Fraction(3)), ("am5", Fraction(90, 49)), ("am6", Fraction(45, 38))],
+)
+def test_adams_moulton_limits_where_alpha_is_beta_are_those_of_theory(name: str, limit: Fraction) -> None:
+    tiny = Fraction(1, 10**20)
+    for beta_h, verdict in ((limit - tiny, "converges"), (limit + tiny, "diverges")):
+        assert recursion_verdict(closed_loop_at(lookup(name), 2 * beta_h, beta_h**2)) == verdict
 
 
 @pytest.mark.parametrize("n", [2, 3, 4, 12])

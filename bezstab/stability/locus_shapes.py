@@ -1,0 +1,213 @@
+r"""The region |z_p| < r of a method that has a mu, from the boundary locus: no grid, no search over the plane.
+
+Both mu must lie in S_r = {mu : all roots of pi(., mu) inside |z| < r}. The region therefore splits into conjugate
+pairs mu = x +- iy, the image of S_r's upper half under (alpha_hat, beta_hat) = (-2x, x^2 + y^2), and pairs of real mu
+from S_r's real intervals. Its edges are images of the boundary locus pi(r e^(i theta), mu) = 0, as far as no other
+root lies outside, and straight lines: one mu held at the end of a real interval (theory: paper Eq. 17 on |z| = r).
+
+    beta_hat
+      |            .-o      both mu at the left end of the interval, theta = pi
+      |    arc  .-' /
+      |      .-'   /        line: one mu at the left end, the other anywhere in the interval
+      |    .'     /
+      |  .'      /          between arc and line runs the parabola beta_hat = alpha_hat^2 / 4 of double mu:
+      | /       /           above it mu is a conjugate pair, below it two real numbers
+      |/_______/_________ alpha_hat
+          line: one mu at the right end (for r = 1 mu = 0, the axis itself)
+
+(For a method whose feedback matrix is not the identity all this is its preimage, of a determinant that is not one.)
+
+Of an implicit method S_r may be unbounded. It is cut off at a rim |mu| = radius (boundary_locus): edges end there, and
+what grows with the radius has no end.
+"""
+
+import math
+from itertools import combinations
+
+import numpy as np
+from numpy.polynomial.polynomial import polyder, polyval
+
+from bezstab.errors import NumericalError
+from bezstab.stability.arrays import EPS, Extent, FloatArray
+from bezstab.stability.boundary_locus import (
+    AT_INFINITY,
+    ON_THE_RIM,
+    RIM,
+    Bounds,
+    bounds_of,
+    feedback_coefficients,
+    rim_radius,
+)
+from bezstab.stability.pencils import Pencil, deadbeat_mu, roots_in_mu
+from bezstab.stability.shapes import ROUNDING, USUAL_SIZE, Shape, joined
+
+MEETING = 1e-4  # of the curves' size: where branches meet on the circle an arc ends the root of SHORTEST from it
+FURTHER = 100.0  # times the radius of the rim, to see which ranges grow
+GROWN = 2.5  # times the range: as the fourth root of the radius it would have grown 3.2 times
+ROUNDING_FAR_OUT = 1e-6  # of everything finite: so far out an arc along the imaginary axis is good to less
+FLAT = 1e-6  # of |mu|: a coordinate that varies less along an arc is constant, and turns by rounding alone
+NO_DIGITS = 0.05  # of mu, lost on the locus: nothing else would find that out, or after minutes
+NOISE_ANGLES: FloatArray = np.linspace(0.1, 3.1, 16)  # at which the rounding of crossings is estimated
+REAL_ZERO = 1e-9  # of |mu|: an imaginary part below it is rounding of a simple real zero
+WELL_WIDE = 1e-11  # of |mu|: about a zero of R that narrow a part of S_r is a hundredfold above rounding of its ends
+
+
+def locus_shape(pencil: Pencil, level: float, finer: int) -> Shape | None:
+    """Return the region |z_p| < level; None if it is empty. `finer`: so many times the samples of the locus.
+
+    NumericalError if branches of the locus could not be told apart, or a part of it was not found.
+    """
+    if pencil.steps == 1 and _edge_noise(pencil, level) > NO_DIGITS:
+        raise NumericalError(
+            f"{pencil.method.name}: float64 keeps no digits of where |z_p| = {level:g}: too many stages"
+        )
+    radius = rim_radius(pencil, level) if pencil.implicit else math.inf
+    bounds = bounds_of(pencil, level, finer, radius)
+    edges = [arc.plane() @ pencil.to_user.T for arc in bounds.arcs]
+    edges += straight_edges(pencil, bounds)
+    extent = _extent(pencil, bounds)
+    area = _area(pencil, bounds) if bounds.bounded else None
+    if extent is None or (area is not None and not 0 < area <= np.prod(np.diff(extent))):
+        return None  # noise, where two roots on the circle meet
+    curves = joined(edges, most=MEETING * np.abs(np.concatenate(edges)).max(axis=0))
+    if not bounds.bounded:
+        extent = _unbounded_extent(pencil, level, bounds, finer)
+    view = extent if bounds.bounded else _view(pencil, bounds)
+    return Shape(area, extent, view, tuple(curves), known=_known(pencil, level, bounds))
+
+
+def _edge_noise(pencil: Pencil, level: float) -> float:
+    """Return by what share of |mu| rounding moves where lines cross |z| = level of a one-step z = N / Q, at worst.
+
+    They are zeros of |N|^2 - level^2 |Q|^2. Terms are rounded at the size that they have without their signs, and of
+    many stages they cancel: of twenty implicit Euler steps composed, z = (1 - mu / 20)^-20, their squares to nothing.
+    """
+    mu = roots_in_mu(pencil, level * np.exp(1j * NOISE_ANGLES)).ravel()
+    mu = mu[np.isfinite(mu) & (np.abs(mu) < AT_INFINITY)]
+    numerator, denominator = pencil.table
+    with np.errstate(all="ignore"):
+        size = sum(polyval(np.abs(mu), np.abs(row)) for row in pencil.table)
+        n, d = polyval(mu, numerator), polyval(mu, denominator)
+        rate = np.abs(mu * (polyval(mu, polyder(numerator)) / n - polyval(mu, polyder(denominator)) / d))
+        noise = EPS * (size / np.abs(d)) ** 2 / rate
+    return float(noise[np.isfinite(noise)].max(initial=0))
+
+
+def straight_edges(pencil: Pencil, bounds: Bounds) -> list[FloatArray]:
+    """Return the two ends of each straight edge in the user's plane, of shape (2, 2): one mu held, the other not.
+
+    It is held at an end of an interval other than the rim, the other runs along one.
+    """
+    held = [end for interval in bounds.intervals for end in interval if abs(end) < bounds.radius]
+    return [
+        feedback_coefficients(np.full(2, fixed), np.array(interval)) @ pencil.to_user.T
+        for fixed in held
+        for interval in bounds.intervals
+    ]
+
+
+def _area(pencil: Pencil, bounds: Bounds) -> float:
+    """Return the area in the user's plane: of conjugate pairs, of pairs from one interval, and from two.
+
+    For real mu (p, q) = (-(mu_1 + mu_2), mu_1 mu_2) has the Jacobian |mu_1 - mu_2|.
+    """
+    conjugate = sum(arc.area() for arc in bounds.arcs)
+    real = sum((end - start) ** 3 / 6 for start, end in bounds.intervals)
+    area = conjugate + real
+    for (a, b), (c, d) in combinations(bounds.intervals, 2):
+        area += (b - a) * (d - c) * ((c + d) - (a + b)) / 2
+    return area * float(np.linalg.det(pencil.to_user))
+
+
+def _extent(pencil: Pencil, bounds: Bounds) -> Extent | None:
+    """Return the ranges of alpha_hat and beta_hat within the rim: of pairs of ends, and of arcs' furthest points."""
+    ends = np.array(bounds.intervals).ravel()
+    corners = [feedback_coefficients(np.full(len(ends), end), ends) @ pencil.to_user.T for end in ends]
+    corners += [arc.plane() @ pencil.to_user.T for arc in bounds.arcs]
+    if not corners:
+        return None
+    points = np.concatenate(corners)
+
+    def furthest(axis: int, sign: int) -> float:
+        on_arcs = [arc.furthest(sign * pencil.to_user[axis]) for arc in bounds.arcs]
+        return max([float((sign * points[:, axis]).max()), *on_arcs])
+
+    def both(axis: int) -> tuple[float, float]:
+        below, above = furthest(axis, -1), furthest(axis, 1)
+        negligible = ROUNDING * (below + above)
+        return (0.0 if abs(below) < negligible else -below, 0.0 if abs(above) < negligible else above)
+
+    return both(0), both(1)
+
+
+def _known(pencil: Pencil, level: float, bounds: Bounds) -> FloatArray:
+    """Return the points at which every pole of a one-step method is zero: conjugate zeros of R.
+
+    By the maximum principle each part of S_r has a zero of R. NumericalError if a real one lies in no interval. Parts
+    too narrow for float64, of a size of about level / |R'|, are left out.
+    """
+    zeros = deadbeat_mu(pencil)
+    with np.errstate(all="ignore"):
+        size = level * np.abs(polyval(zeros, pencil.table[-1]) / polyval(zeros, polyder(pencil.table[0])))
+    wide = size > WELL_WIDE * np.abs(zeros)
+    real = np.abs(zeros.imag) <= REAL_ZERO * np.abs(zeros)
+    for zero in zeros[wide & real].real.tolist():
+        if not any(start < zero < end for start, end in bounds.intervals):
+            raise NumericalError(f"{pencil.method.name}: |z_p| < {level:g} around mu = {zero:.6g} was not found")
+    pairs = zeros[wide & ~real]
+    return np.asarray(feedback_coefficients(pairs, pairs.conj()) @ pencil.to_user.T)
+
+
+def _unbounded_extent(pencil: Pencil, level: float, bounds: Bounds, finer: int) -> Extent:
+    """Return the ranges of an unbounded region: infinite where they grow with the radius of the rim.
+
+    Where all of the rim is stable they all do. Else a range without limit grows at least as a root of the radius: from
+    a rim to one FURTHER out more than GROWN times, while one with a limit has come near it (an arc's asymptote to
+    about 1e-7).
+    """
+    everywhere = ((-math.inf, math.inf), (-math.inf, math.inf))
+    if bounds.rim >= math.pi * (1 - ROUNDING):
+        return everywhere
+    ranges = []
+    for radius in (bounds.radius, FURTHER * bounds.radius):
+        ranges.append(_extent(pencil, bounds_of(pencil, level, finer, radius)))
+    near, far = ranges
+    assert near
+    assert far
+    size = bounds.radius / RIM
+    scales = np.abs(pencil.to_user) @ np.array([size, size**2])
+
+    def limit(axis: int, end: int) -> float:
+        nearer, further = near[axis][end], far[axis][end]
+        sign = -1 if end == 0 else 1
+        if sign * further > GROWN * max(sign * nearer, scales[axis]):
+            return sign * math.inf
+        return nearer if abs(further - nearer) <= ROUNDING_FAR_OUT * scales[axis] else further
+
+    return (limit(0, 0), limit(0, 1)), (limit(1, 0), limit(1, 1))
+
+
+def _view(pencil: Pencil, bounds: Bounds) -> Extent:
+    """Return ranges that hold what an unbounded region has of shape where alpha_hat, beta_hat >= 0, and USUAL_SIZE.
+
+    That is its corners (both mu at an end of an interval), the arcs that do not run to infinity, of those that do their
+    ends and turns, and where every pole of a one-step method is zero. What lies at negative parameters, which nobody
+    asks for, may be far larger.
+    """
+    off_rim = bounds.radius * (1 - ON_THE_RIM)
+    ends = np.array([end for interval in bounds.intervals for end in interval if abs(end) < off_rim])
+    shapely = [feedback_coefficients(np.full(len(ends), end), ends) for end in ends]
+    deadbeat = deadbeat_mu(pencil)
+    shapely.append(feedback_coefficients(deadbeat, deadbeat.conj()))
+    for arc in bounds.arcs:
+        mu = arc.mu
+        if np.abs(mu[[0, -1]]).max() >= off_rim:
+            steep = [each for each in pencil.to_user if np.ptp(arc.plane() @ each) > FLAT * np.abs(mu).max()]
+            turns = [arc.turns(direction) for direction in steep]
+            mu = arc.at(np.concatenate([arc.theta[[0, -1]], *turns]))
+            mu = mu[np.abs(mu) < off_rim]
+        shapely.append(feedback_coefficients(mu, mu.conj()))
+    points = np.concatenate([*shapely, np.zeros((1, 2))]) @ pencil.to_user.T
+    size = np.array([USUAL_SIZE, USUAL_SIZE]) / float(pencil.method.step_multiple) ** np.array([1, 2])
+    alpha_max, beta_max = np.maximum(points[(points >= 0).all(axis=1)].max(axis=0, initial=0), size).tolist()
+    return (0.0, alpha_max), (0.0, beta_max)

@@ -1,0 +1,179 @@
+"""Engines that sweep over their constraints: how a step multiplies the errors of many constraints at once.
+
+Sequential impulses solve one constraint after another (Gauss-Seidel) and start from the impulses of the last step. Then
+the poles of one constraint say little about a chain. With A = J M^-1 J', the errors y = J x and u = h J v, one sweep
+towards B p = b with B = A + softness diag A is
+
+    p <- S p + P b            P = (diag B / relaxation + strictly lower part of B)^-1,  S = 1 - P B
+
+so that k sweeps are p <- T p + G b with T = S^k and G = P + S P + ... + S^(k-1) P. Every stage of a step is linear in
+(y, u, p), so a step is one matrix. It is exact where J is constant, as for a straight chain along its own line.
+
+Free motions are not in it, because y and u are errors, not coordinates. Of constraints that repeat others only the
+independent combinations are kept.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from bezstab.engines import MOST_SWEEPS, Move, Pass, SweptStep, VelocityOfMove
+from bezstab.errors import InputError, NumericalError
+from bezstab.stability.arrays import EPS, FloatArray
+
+MOST_BODIES = 100
+"""Of a chain: its matrices have three times as many rows."""
+LARGEST_RATIO = 1e6
+"""Of masses: beyond, rounding of the inverse effective masses leaves too few digits of the growth."""
+
+
+@dataclass(frozen=True)
+class Growth:
+    """The factor by which a step multiplies the error in the long run, the spectral radius, and how far it may be off.
+
+    The accuracy is to first order in rounding, so an estimate, no bound.
+    """
+
+    factor: float
+    accuracy: float
+
+    @property
+    def decays(self) -> bool:
+        """Whether errors decay; NumericalError where the accuracy leaves that open."""
+        if abs(self.factor - 1) <= self.accuracy:
+            raise NumericalError(
+                f"each step multiplies the error by {self.factor:.12g}, known to {self.accuracy:.1g} only: too near 1"
+            )
+        return self.factor < 1
+
+
+def chain(bodies: int, mass_ratio: float = 1.0) -> FloatArray:
+    """Return J M^-1 J' of a straight chain of unit masses along its own line, the first body held by the world.
+
+    Shape (bodies, bodies). The last body is `mass_ratio` times as heavy as the others. InputError for a chain or a
+    ratio out of range.
+    """
+    if not 1 <= bodies <= MOST_BODIES:
+        raise InputError(f"--chain {bodies}: expected 1 to {MOST_BODIES} bodies")
+    if not 1 / LARGEST_RATIO <= mass_ratio <= LARGEST_RATIO:
+        raise InputError(f"--mass-ratio {mass_ratio:g}: expected {1 / LARGEST_RATIO:g} to {LARGEST_RATIO:g}")
+    inverse_masses = np.ones(bodies)
+    inverse_masses[-1] = 1 / mass_ratio
+    jacobian = np.eye(bodies) - np.eye(bodies, k=-1)  # each link: where its body is, less where the body before is
+    return inverse_effective_masses(np.diag(1 / inverse_masses), jacobian)
+
+
+def inverse_effective_masses(mass: FloatArray, jacobian: FloatArray) -> FloatArray:
+    """Return A = J M^-1 J', shape (m, m), for a mass matrix (n, n) and a Jacobian (m, n)."""
+    return np.asarray(jacobian @ np.linalg.solve(mass, jacobian.T))
+
+
+def swept_growth(inverse_masses: FloatArray, step: SweptStep) -> Growth:
+    """Return by what factor a step multiplies the errors of constraints with such inverse effective masses.
+
+    `inverse_masses` is A = J M^-1 J', shape (m, m), symmetric, its diagonal above zero; constraints in their order.
+    NumericalError where a number leaves float64's range.
+    """
+    scale = 1 / np.sqrt(np.diag(inverse_masses))
+    scaled = scale[:, None] * inverse_masses * scale  # sweeps do the same; its diagonal is one
+    values, vectors = np.linalg.eigh(scaled)
+    independent = values > len(scaled) * EPS * values[-1]  # LAPACK's error of an eigenvalue
+    root = np.sqrt(values[independent])[:, None] * vectors[:, independent].T  # root' root = A
+    matrix = _step_matrix(scaled, root, step)
+    if not np.isfinite(matrix).all():
+        raise NumericalError("the matrix of a step with such sweeps leaves the range of float64")
+    return _spectral_radius(matrix)
+
+
+def _step_matrix(inverse_masses: FloatArray, root: FloatArray, step: SweptStep) -> FloatArray:
+    """Return the matrix of a step over errors, rates and impulses, shape (3 r, 3 r), for a root with root' root = A.
+
+    Errors and rates are root' of its first two thirds, impulses p with root p the last: there A is the identity.
+    """
+    rank = len(root)
+    errors, rates, impulses = np.split(np.eye(3 * rank), 3)
+    impulses = step.kept * impulses
+    rates = rates + impulses
+    before = errors
+    for stage in step.stages:
+        match stage:
+            case Move(part):
+                before, errors = errors, errors + part * rates
+            case VelocityOfMove():
+                rates = errors - before
+            case Pass("velocity"):
+                of_old, of_wanted = _sweeps(inverse_masses, root, stage)
+                new = of_old @ impulses + of_wanted @ (impulses - rates - stage.share * errors)
+                rates, impulses = rates + new - impulses, new
+            case Pass("position"):
+                _, of_wanted = _sweeps(inverse_masses, root, stage)
+                errors = errors - stage.share * of_wanted @ errors
+    return np.vstack([errors, rates, impulses])
+
+
+def _sweeps(inverse_masses: FloatArray, root: FloatArray, one_pass: Pass) -> tuple[FloatArray, FloatArray]:
+    """Return T and G in the coordinates of root: k sweeps make T p + G b of p.
+
+    By doubling: T of 2 k sweeps is T T, and G is G + T G.
+    """
+    diagonal = np.diag(inverse_masses)
+    triangle = np.diag(diagonal * (1 + one_pass.softness) / one_pass.relaxation) + np.tril(inverse_masses, -1)
+    added = root @ np.linalg.solve(triangle, root.T)  # G of one sweep
+    identity = np.eye(len(root))
+    softened = identity
+    if one_pass.softness:  # the inverse of root on the independent combinations
+        inverse = np.linalg.pinv(root)
+        softened = identity + one_pass.softness * inverse.T @ (diagonal[:, None] * inverse)
+    power = identity - added @ softened  # T of one sweep
+    of_old, of_wanted = identity, np.zeros_like(identity)  # of none, so far
+    remaining = one_pass.sweeps
+    while remaining:
+        if remaining % 2:
+            of_old, of_wanted = power @ of_old, added + power @ of_wanted
+        power, added = power @ power, added + power @ added
+        remaining //= 2
+    return of_old, of_wanted
+
+
+ROUNDINGS = 10
+"""Of sums as long as the matrix, before and within LAPACK: its errors are those of a matrix so near."""
+
+
+def _spectral_radius(matrix: FloatArray) -> Growth:
+    """Return the largest modulus of the eigenvalues, and how far rounding may have moved it, to first order.
+
+    An eigenvalue moves by at most its condition |x| |y| / |y' x| times the perturbation, x and y its right and left
+    eigenvectors. Others may be found worse, as 1 - share is, and 0, which sweeps make multiple: they are not largest
+    where that matters, and where they are, their own condition says so.
+    """
+    values, vectors = np.linalg.eig(matrix)
+    largest = int(np.argmax(np.abs(values)))
+    of_left, left_vectors = np.linalg.eig(matrix.T)
+    right, left = vectors[:, largest], left_vectors[:, np.argmin(np.abs(of_left - values[largest]))]
+    perturbation = ROUNDINGS * EPS * len(matrix) * float(np.linalg.norm(matrix))
+    overlap = float(np.abs(left @ right))  # both of length one
+    most = perturbation ** (1 / len(matrix))  # of one that is all of the matrix's, as 0 may be
+    return Growth(float(np.abs(values[largest])), min(perturbation / overlap, most) if overlap else most)
+
+
+def fewest_sweeps(growth: Callable[[int], Growth]) -> int | None:
+    """Return from how many sweeps errors decay, None if that is not so up to MOST_SWEEPS.
+
+    `growth` is the growth with so many sweeps. Twice as many are looked at until errors decay and do so with twice as
+    many again; the first number is then found by halving. Where stability comes and goes between, that is not seen:
+    in none of the chains tried did it.
+    """
+    enough = 1
+    while not (growth(enough).decays and growth(min(2 * enough, MOST_SWEEPS)).decays):
+        if enough == MOST_SWEEPS:
+            return None
+        enough = min(2 * enough, MOST_SWEEPS)
+    too_few = enough // 2
+    while enough - too_few > 1:
+        middle = (enough + too_few) // 2
+        if growth(middle).decays:
+            enough = middle
+        else:
+            too_few = middle
+    return enough

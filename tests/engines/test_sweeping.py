@@ -1,0 +1,35 @@
+"""Every engine that says how it sweeps: one constraint alone is its point, and numbers of sweeps are checked."""
+
+from fractions import Fraction
+
+import pytest
+
+from bezstab.engines import ENGINES, check_iterations
+from bezstab.errors import InputError
+from bezstab.methods import lookup
+from bezstab.stability import chain, spectral_radius, swept_growth
+
+
+@pytest.mark.parametrize("name", [name for name, engine in ENGINES.items() if engine.sweeping])
+def test_one_constraint_swept_is_the_engines_point(name: str) -> None:
+    engine, h = ENGINES[name], Fraction(1, 240)
+    typed = {"chipmunk": ("1/500",), "box2d": (60, 2), "rapier": (30, 1), "jolt-spring": (5, "1/2"), "pbd": ("2/3",)}
+    values = tuple(map(Fraction, typed.get(name, ("1/5",) * len(engine.parameters))))
+    assert engine.sweeping
+    assert engine.method
+    growth = swept_growth(chain(1), engine.sweeping.step(engine.sweeping.iterations, h, *values))
+    point = engine.applied(values, h).point
+    assert growth.factor == pytest.approx(float(spectral_radius(lookup(engine.method), *map(float, point))), abs=1e-7)
+    assert engine.sweeping.source
+    assert engine.sweeping.excludes
+
+
+def test_an_engine_that_says_how_it_sweeps_sweeps() -> None:
+    assert all(engine.sweeps for engine in ENGINES.values() if engine.sweeping)
+
+
+@pytest.mark.parametrize("iterations", [0, -1, 10_001])
+def test_a_number_of_sweeps_out_of_range_is_refused(iterations: int) -> None:
+    with pytest.raises(InputError, match=f"--iterations {iterations}: expected 1 to 10000"):
+        check_iterations(iterations)
+    assert check_iterations(10_000) == 10_000

@@ -1,0 +1,174 @@
+"""Sweeps over many constraints: the numbers of runs and tables, exact verdicts, and limits that are known."""
+
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+import pytest
+import sympy
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bezstab.engines import ENGINES, Move, Pass, SweptStep, hard_velocity_step
+from bezstab.errors import InputError, NumericalError
+from bezstab.methods.schur import recursion_verdict
+from bezstab.stability import Growth, chain, fewest_sweeps, inverse_effective_masses, swept_growth
+from tests.reference.swept_chains import columns, hard_step, position_step, soft_step
+
+
+def warm(bodies: int, ratio: float, sweeps: int, share: float) -> float:
+    return swept_growth(chain(bodies, ratio), hard_velocity_step(share, sweeps, kept=1.0)).factor
+
+
+@pytest.mark.parametrize(
+    ("bodies", "ratio", "sweeps", "share", "growth"),
+    [
+        (2, 1, 1, 0.9, 0.9826),
+        (10, 1, 1, 0.2, 1.0513),
+        (10, 1, 4, 0.2, 1.0338),
+        (10, 1, 10, 0.2, 0.9715),
+        (10, 1, 10, 0.8, 1.1096),
+        (10, 100, 10, 0.1, 1.0300),
+        (10, 10, 10, 0.1, 1.0049),
+        (10, 100, 120, 0.1, 0.9842),
+    ],
+)
+def test_chains_that_runs_of_chipmunk_confirmed(
+    bodies: int, ratio: float, sweeps: int, share: float, growth: float
+) -> None:
+    assert warm(bodies, ratio, sweeps, share) == pytest.approx(growth, abs=5e-5)
+
+
+@pytest.mark.parametrize(
+    ("bodies", "ratio", "fewest"),
+    [(5, 1, (1, 2, 5)), (10, 1, (4, 8, 17)), (20, 1, (16, 30, 66)), (10, 100, (89, 170, 376))],
+)
+def test_the_fewest_stable_sweeps(bodies: int, ratio: float, fewest: tuple[int, ...]) -> None:
+    masses = chain(bodies, ratio)
+
+    def found(share: float) -> int | None:
+        return fewest_sweeps(lambda sweeps: swept_growth(masses, hard_velocity_step(share, sweeps, kept=1.0)))
+
+    assert tuple(map(found, (0.1, 0.2, 0.5))) == fewest
+
+
+def test_box2d_needs_its_relaxing_sweep() -> None:
+    box2d = ENGINES["box2d"].sweeping
+    assert box2d
+    step = box2d.step(1, Fraction(1, 240), Fraction(60), Fraction(2))
+    growths = [swept_growth(chain(bodies, ratio), step).factor for bodies, ratio in ((1, 1), (10, 1), (10, 100))]
+    assert growths == pytest.approx([0.7469, 0.9573, 0.9977], abs=5e-5)
+    unrelaxed = SweptStep(step.kept, step.stages[:-1])
+    assert swept_growth(chain(10), unrelaxed).factor == pytest.approx(1.0030, abs=5e-5)
+    assert swept_growth(chain(10, 100), unrelaxed).factor == pytest.approx(1.0005, abs=5e-5)
+
+
+def spectral_radius(columns_of_step: list[list[float]]) -> float:
+    return float(np.abs(np.linalg.eigvals(np.array(columns_of_step).T)).max())
+
+
+@settings(max_examples=30, deadline=None)
+@given(
+    st.integers(1, 7), st.floats(0.1, 30), st.integers(1, 12), st.floats(0.1, 1.5), st.floats(0, 1), st.floats(0.5, 1.5)
+)
+def test_matrices_are_what_loops_over_links_do(
+    bodies: int, ratio: float, sweeps: int, share: float, kept: float, relaxation: float
+) -> None:
+    step = hard_velocity_step(share, sweeps, kept=kept, relaxation=relaxation)
+    of_loops = spectral_radius(columns(hard_step(bodies, ratio, sweeps, share, kept, relaxation), bodies))
+    # eigvals of the loops' matrix loses digits where it has many eigenvalues at 0, not those of the largest
+    assert swept_growth(chain(bodies, ratio), step).factor == pytest.approx(of_loops, abs=1e-4)
+
+
+@pytest.mark.parametrize("bodies", [2, 6])
+def test_soft_sweeps_and_moves_of_positions_are_what_loops_do(bodies: int) -> None:
+    soft = SweptStep(1.0, (Pass("velocity", 1, 0.28, 0.38), Move(), Pass("velocity", 2)))
+    of_loops = spectral_radius(columns(soft_step(bodies, 3, 0.28, 1 / 1.38, relaxing=2), bodies))
+    assert swept_growth(chain(bodies, 3), soft).factor == pytest.approx(of_loops, abs=1e-9)
+    jolt = SweptStep(1.0, (Pass("velocity", 4), Move(), Pass("position", 2, 1.0, relaxation=0.2)))
+    of_loops = spectral_radius(columns(position_step(bodies, 3, 4, 0.2, 2), bodies))
+    assert swept_growth(chain(bodies, 3), jolt).factor == pytest.approx(of_loops, abs=1e-9)
+
+
+@pytest.mark.parametrize("ratio", [1, 7, 40])
+@pytest.mark.parametrize("sweeps", [1, 2, 5])
+@pytest.mark.parametrize("share", ["1/5", "9/10", "13/10"])
+def test_verdicts_are_those_of_exact_arithmetic(ratio: int, sweeps: int, share: str) -> None:
+    """The step's matrix in fractions, its characteristic polynomial, and Schur's test: a proof of each verdict."""
+    bodies = 3
+    exact = columns(hard_step(bodies, Fraction(ratio), sweeps, Fraction(share)), bodies, Fraction(1))
+    matrix = sympy.Matrix([[sympy.Rational(x.numerator, x.denominator) for x in map(Fraction, row)] for row in exact])
+    coefficients = [Fraction(int(c.p), int(c.q)) for c in matrix.charpoly().all_coeffs()]
+    growth = swept_growth(chain(bodies, ratio), hard_velocity_step(Fraction(share), sweeps, kept=1.0))
+    assert growth.decays is (recursion_verdict(coefficients) == "converges")
+
+
+@pytest.mark.parametrize("kept", [0.0, 1.0])
+@pytest.mark.parametrize("share", [0.1, 0.8, 1.7])
+def test_many_sweeps_solve_exactly_so_that_one_constraint_tells_of_all(kept: float, share: float) -> None:
+    """What MuJoCo and direct solvers do: the pole is 1 - share whatever the chain."""
+    growth = swept_growth(chain(8, 20), hard_velocity_step(share, 10_000, kept=kept))
+    assert growth.factor == pytest.approx(abs(1 - share), abs=1e-9)
+    assert growth.factor == pytest.approx(
+        swept_growth(chain(1), hard_velocity_step(share, 1, kept=kept)).factor, abs=1e-9
+    )
+
+
+@pytest.mark.parametrize("bodies", [2, 5, 10])
+@pytest.mark.parametrize("sweeps", [1, 4, 10])
+def test_without_a_warm_start_chains_are_slow_but_stable(bodies: int, sweeps: int) -> None:
+    for share in (0.1, 0.5, 1.0):
+        growth = swept_growth(chain(bodies, 10), hard_velocity_step(share, sweeps, kept=0.0))
+        assert growth.decays
+    slow = swept_growth(chain(10), hard_velocity_step(0.2, 4, kept=0.0))
+    assert slow.factor == pytest.approx(0.9517, abs=5e-5)
+
+
+def test_free_motions_and_repeated_constraints_change_nothing() -> None:
+    """A planar chain that may swing, a body that nothing ties, and a constraint typed twice: the same growth."""
+    step = hard_velocity_step(0.3, 3, kept=1.0)
+    alone = swept_growth(chain(3), step).factor
+    jacobian = np.zeros((3, 8))
+    jacobian[:, :3] = np.eye(3) - np.eye(3, k=-1)
+    free = swept_growth(inverse_effective_masses(np.eye(8), jacobian), step)
+    assert free.factor == pytest.approx(alone, abs=1e-10)
+    twice = swept_growth(inverse_effective_masses(np.eye(8), np.repeat(jacobian, 2, axis=0)), step)
+    assert twice.factor == pytest.approx(alone, abs=1e-10)  # the second of two solved in turn has nothing left to do
+
+
+def test_scaling_a_constraint_or_all_masses_changes_nothing() -> None:
+    step = hard_velocity_step(0.6, 4, kept=1.0)
+    jacobian = np.eye(4) - np.eye(4, k=-1)
+    plain = swept_growth(inverse_effective_masses(np.eye(4), jacobian), step)
+    scaled = swept_growth(inverse_effective_masses(1e6 * np.eye(4), np.diag([1e-8, 1, 1e5, 3]) @ jacobian), step)
+    assert scaled.factor == pytest.approx(plain.factor, rel=1e-9)
+
+
+def test_what_rounding_leaves_open_is_refused() -> None:
+    with pytest.raises(NumericalError, match="too near 1"):
+        _ = Growth(1.000001, 1e-5).decays
+    assert Growth(0.99, 1e-3).decays
+    assert not Growth(1.01, 1e-3).decays
+
+
+@pytest.mark.parametrize(("bodies", "ratio", "sweeps", "kept"), [(4, 30, 2, 1), (6, 1000, 7, 1), (10, 10, 10, 1)])
+def test_the_stated_accuracy_holds_against_fifty_digits(bodies: int, ratio: int, sweeps: int, kept: int) -> None:
+    with mpmath.workdps(50):
+        step = hard_step(bodies, mpmath.mpf(ratio), sweeps, mpmath.mpf(0.1), kept)
+        eigenvalues, _ = mpmath.eig(mpmath.matrix(columns(step, bodies, mpmath.mpf(1))))
+        largest = max(abs(value) for value in eigenvalues)
+    growth = swept_growth(chain(bodies, ratio), hard_velocity_step(0.1, sweeps, kept=kept))
+    assert abs(growth.factor - largest) <= growth.accuracy <= 1e-8
+
+
+@pytest.mark.parametrize(
+    ("bodies", "ratio", "said"),
+    [(0, 1, "--chain 0"), (101, 1, "--chain 101"), (3, 0, "--mass-ratio 0"), (3, -1, "--mass-ratio -1")],
+)
+def test_a_chain_out_of_range_is_refused(bodies: int, ratio: float, said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        chain(bodies, ratio)
+
+
+def test_no_number_of_sweeps_helps_a_share_beyond_two() -> None:
+    assert fewest_sweeps(lambda sweeps: swept_growth(chain(2), hard_velocity_step(2.5, sweeps, kept=1.0))) is None
