@@ -94,7 +94,6 @@ if TYPE_CHECKING:
         PlaneStrips,
         Strip,
         plane_strips,
-        points_between_edges,
     )
     from bezstab.methods.shared_factors import fixed_poles, reduced_table, without_shared_factor
     from bezstab.methods.steady_errors import (
@@ -144,7 +143,6 @@ DERIVED = {
         "PlaneStrips",
         "Strip",
         "plane_strips",
-        "points_between_edges",
     ),
     "shared_factors": ("fixed_poles", "reduced_table", "without_shared_factor"),
     "steady_errors": (
@@ -239,7 +237,6 @@ __all__ = [
     "mapping_text",
     "matrix_product",
     "plane_strips",
-    "points_between_edges",
     "polynomial_determinant",
     "polynomial_product",
     "read_method",
