@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 GAINS = ("kp", "kd", "inertia")
 
 
-def _drive(text: str) -> Drive:
+def drive_of(text: str) -> Drive:
     """Return the drive that a text such as 100,2,0.01 says."""
     try:
         numbers = [rational(number) for number in text.split(",")]
@@ -44,7 +44,7 @@ def _drive(text: str) -> Drive:
     return Drive(*numbers)
 
 
-DRIVE = ParsedType(",".join(GAINS), _drive)
+DRIVE = ParsedType(",".join(GAINS), drive_of)
 
 engine_values_option = click.option(
     "--engine", type=ENGINE_VALUES, help="An engine's own values, such as mujoco=0.02,1, instead; needs --h."

@@ -28,6 +28,14 @@ from bezstab.cli.asking import (
     say_what_was_made,
     typed_chain,
 )
+from bezstab.cli.held_drives import (
+    bandwidth_option,
+    check_held,
+    choose_held,
+    inertia_option,
+    timing_options,
+    timing_typed,
+)
 from bezstab.cli.options import (
     ENGINE,
     NUMBER,
@@ -43,6 +51,7 @@ from bezstab.cli.options import (
 from bezstab.cli.output import for_reading, progress, say, show_rows, show_text
 from bezstab.engines import ENGINES, RUN_UNDERNEATH, Drive, Engine
 from bezstab.errors import InputError, NumericalError
+from bezstab.goals import GOALS, Goal
 from bezstab.methods import Method
 from bezstab.show import (
     CHECKED,
@@ -62,7 +71,6 @@ from bezstab.show import (
 
 if TYPE_CHECKING:
     from bezstab.questions import Answer
-    from bezstab.stability import Goal
 
 
 WITHOUT_ACCURACY = ("total_error", "order_left", "times_least_velocity")
@@ -74,10 +82,9 @@ WITHOUT_ACCURACY = ("total_error", "order_left", "times_least_velocity")
 @click.option("--h", type=SECONDS, required=True, help="Step size in s.")
 @click.option(
     "--goal",
-    type=click.Choice(["accurate", "robust", "fastest", "critical", "gentle"]),
-    help="accurate: the least error forced on the motion, among what settles in time; robust: fastest at worst over "
-    "smaller steps and the spread; fastest: least |z_p|; critical: fastest without oscillation; gentle: the mildest "
-    "α = β that settles in time [accurate; robust with --pd and for an --engine that can express a curve alone].",
+    type=click.Choice(list(GOALS)),
+    help="; ".join(f"{goal}: {meaning}" for goal, meaning in GOALS.items())
+    + " [accurate; robust with --pd and for an --engine that can express a curve alone].",
 )
 @omega_option
 @click.option(
@@ -86,20 +93,24 @@ WITHOUT_ACCURACY = ("total_error", "order_left", "times_least_velocity")
 @h_min_option
 @hold_option
 @click.option("--spread", type=NUMBER, default="0.1", help="By what share α and β may be off.")
-@click.option("--settle", type=SECONDS, help="gentle, accurate: the time in s in which c falls a thousandfold.")
+@click.option(
+    "--settle", type=SECONDS, help="gentle, accurate, or with --pd: the time in s in which c falls a thousandfold."
+)
 @click.option("--keep", type=click.Choice(["alpha=beta"]), help="Only points with α = β.")
 @click.option("--engine", metavar="NAME", type=ENGINE, help="Choose what that engine can express; print what to paste.")
 @chain_option
 @mass_ratio_option
 @iterations_option
-@drive_option
+@inertia_option
+@bandwidth_option
+@timing_options
 @moving_scene_option("Choose for this mechanism as it moves.")
 @moving_speed_option
 @format_option
 def choose(
     methods: Sequence[Method],
     h: Fraction,
-    goal: "Goal | None",
+    goal: Goal | None,
     omega: Fraction | None,
     h_max: Fraction | None,
     h_min: Fraction | None,
@@ -112,6 +123,10 @@ def choose(
     mass_ratio: Fraction | None,
     iterations: int | None,
     drive: Drive | None,
+    bandwidth: Fraction | None,
+    every: int | None,
+    late: Fraction | None,
+    filter_seconds: Fraction | None,
     scene: str | None,
     speed: Fraction,
     form: Format,
@@ -127,15 +142,26 @@ def choose(
 
     With --engine the method is the engine's own unless given, and only what the engine can express is searched: of
     several that are best, as where it fixes α̂, the mildest is taken. With --pd each way of applying a joint drive is
-    shown, with the kp and kd to set instead. With --h-min steps may vary from one to the next, and "varying steps" says
-    whether every sequence of them up to --h-max decays. With --chain the answer also says from how many sweeps it is
-    stable in a straight chain of bodies, and the strongest feedback that this chain allows with --spread to spare. Exit
-    status 1 if the answer is not proven safe, over the motion of a --scene, for steps that vary and in a chain as well.
+    shown, with the kp and kd to set. With --bandwidth or --settle, or a controller that is slower than the physics
+    (--every, --late, --filter), they are critically damped gains for the explicit way, with a margin.
+
+    With --h-min steps may vary from one to the next, and "varying steps" says whether every sequence of them up to
+    --h-max decays. With --chain the answer also says from how many sweeps it is stable in a straight chain of bodies,
+    and the strongest feedback that this chain allows with --spread to spare. Exit status 1 if the answer is not proven
+    safe, over the motion of a --scene, for steps that vary and in a chain as well.
 
     Example: bezstab choose --method B4 --h 0.001
     """
     from bezstab.questions import Question, answers, usual_goal
+    from bezstab.stability import Timing
 
+    timing = timing_typed(every, late, filter_seconds, drive, h)
+    if bandwidth is not None and drive is None:
+        raise InputError("--bandwidth is that of a drive: it needs --pd")
+    if drive and (timing or bandwidth is not None or (settle is not None and goal is None)):
+        chosen_methods = methods_typed(methods, has_usual_ones=True)
+        safe = choose_held(drive.inertia, h, timing or Timing(), chosen_methods, bandwidth, settle, form)
+        click.get_current_context().exit(0 if safe else 1)
     question = Question(
         methods=methods_typed(methods, engine is not None or drive is not None),
         goal=goal or usual_goal(engine, drive),
@@ -189,6 +215,7 @@ def choose(
 @mass_ratio_option
 @iterations_option
 @drive_option
+@timing_options
 @omega_option
 @h_min_option
 @click.option("--h-max", type=SECONDS, help="With --h-min: the longest step in s [--h].")
@@ -210,6 +237,9 @@ def check(
     mass_ratio: Fraction | None,
     iterations: int | None,
     drive: Drive | None,
+    every: int | None,
+    late: Fraction | None,
+    filter_seconds: Fraction | None,
     omega: Fraction | None,
     h_min: Fraction | None,
     h_max: Fraction | None,
@@ -241,10 +271,19 @@ def check(
     it kp or kd? "used up" says which of the two is at its limit, or nearest to it, and "to" how far each may go alone.
     Explicit needs 2 kd h + kp h² < 4 inertia. Mostly it is kd, which has no limit where the velocity is implicit.
 
+    --every, --late and --filter ask about a drive whose controller is slower than the physics: its torque is held for
+    several steps, comes late, or sees a filtered velocity. "used up" says whether gains, rate or delay are, and "to"
+    how far each may go alone.
+
+    A contact of stiffness k and damping c between bodies of reduced mass m is --pd k,c,m for as long as it is closed.
+
     Example: bezstab check --method RK2 --h 0.002 --alpha 50 --beta 50 --physical
     """
     from bezstab.questions import answers, turning_of
 
+    timing = timing_typed(every, late, filter_seconds, drive, h)
+    if timing and drive and h:
+        context.exit(0 if check_held(drive, h, timing, methods_typed(methods, has_usual_ones=True), form) else 1)
     if physical and not (h or h_min or scene or engine or drive or as_typed or hold or omega):
         turning_of(None, speed, None)  # no speed without a scene
         context.exit(0 if _check_without_step(methods, both_or_none(alpha, beta), form) else 1)

@@ -2,17 +2,12 @@
 
     methods, a point or a goal, steps, an engine or a drive, a scene   →   Question   →   answers   →   row, table, text
 
-A file imports only from those above it:
-
-    points      how a point is given
-    motions     the motion that a question is about
-    chains      a chain of bodies in an engine that sweeps
-    question    what somebody asks, checked at birth
-    answering   what there is to answer
+`cli` and `api` make questions and hand on answers; neither computes.
 """
 
 from bezstab.questions.answering import SLOWER, Answer, Gains, LargestStep, answers, largest_step
 from bezstab.questions.chains import Chain, ChainAnswer
+from bezstab.questions.held_drives import HeldAnswer, HeldQuestion, UsedUp, held_answers, held_gains
 from bezstab.questions.motions import ReferenceMotion, motion_of, turning_of, turning_stages, turns_too_far
 from bezstab.questions.points import GivenPoint
 from bezstab.questions.question import WHICH_METHOD, Question, StepRange, methods_for, usual_goal
@@ -25,11 +20,16 @@ __all__ = [
     "ChainAnswer",
     "Gains",
     "GivenPoint",
+    "HeldAnswer",
+    "HeldQuestion",
     "LargestStep",
     "Question",
     "ReferenceMotion",
     "StepRange",
+    "UsedUp",
     "answers",
+    "held_answers",
+    "held_gains",
     "largest_step",
     "methods_for",
     "motion_of",

@@ -1,26 +1,6 @@
 """Results as rows and tables, and as figures; `plot` is the public module that draws on a user's own Axes.
 
-A file imports only from those above it; what draws is not loaded before it is used:
-
-    columns             typed columns, and rows as text, Markdown, CSV or JSON
-    blocks              rows as blocks of lines, and text that wraps
-    words               numbers as sentences have them
-    cells               what a cell of a table shows where it takes more than a format
-    fields              a field of a row, from which rows, tables and schemas derive
-    row_kinds           every field of every row, and which fields the rows of each command have
-    schemas             the rows that each command prints, as a JSON Schema
-    best_point_text     a best point in words
-    rows                results as rows
-    varying_rows        what steps that vary do, as keys of a row and in a sentence
-    answer_rows         answers to a question as rows, and in words
-    arrays              histories and maps as arrays for files
-    style               what all figures share
-    histories           a history as a line, or as its envelope
-    plot                one result on one Axes
-    plane_figures       figures of the alpha_hat-beta_hat plane
-    accuracy_figures    the error that feedback forces over the plane, and against decay
-    run_figures         figures of simulations
-    explorer            the window
+What draws is not loaded before it is used.
 """
 
 from typing import TYPE_CHECKING
@@ -54,6 +34,7 @@ from bezstab.show.columns import (
     transposed,
 )
 from bezstab.show.fields import Field, RowKind, cells
+from bezstab.show.held_rows import LATE_COMMANDS, NOT_JUDGED, held_row, held_sentence, timing_words
 from bezstab.show.row_kinds import (
     CHECKED,
     CHOICES,
@@ -63,6 +44,7 @@ from bezstab.show.row_kinds import (
     FIELDS,
     FORCED,
     FRONTS,
+    HELD,
     LARGEST_STEPS,
     LINTED,
     LISTED_METHODS,
@@ -168,12 +150,15 @@ __all__ = [
     "FIELDS",
     "FORCED",
     "FRONTS",
+    "HELD",
     "LARGEST_STEPS",
+    "LATE_COMMANDS",
     "LINTED",
     "LISTED_METHODS",
     "MEASUREMENTS",
     "MEMBERS",
     "MISSING",
+    "NOT_JUDGED",
     "NOT_KNOWN",
     "POLES",
     "PROBED",
@@ -217,6 +202,8 @@ __all__ = [
     "front_row",
     "growing_run",
     "growth_words",
+    "held_row",
+    "held_sentence",
     "history_arrays",
     "history_figure",
     "history_line",
@@ -255,6 +242,7 @@ __all__ = [
     "styled",
     "summary_row",
     "times_words",
+    "timing_words",
     "trade_words",
     "transposed",
     "untimed_arrays",

@@ -5,7 +5,9 @@ documentation of keys (`bezstab schema`) take it from there.
 """
 
 from collections.abc import Mapping, Sequence
+from typing import get_args
 
+from bezstab.methods import Verdict
 from bezstab.show.cells import (
     both_errors_text,
     both_times_text,
@@ -32,7 +34,7 @@ from bezstab.show.cells import (
 )
 from bezstab.show.fields import Field, RowKind
 
-VERDICTS = ("converges", "marginal", "diverges")
+VERDICTS = get_args(Verdict)
 MOVING_VERDICTS = ("converges", "diverges", "not settled for this mechanism")
 OUTCOMES = ("converges", "diverges", "neither", "too close to call")
 UNKNOWN_STEP = "where no step is given"
@@ -1193,6 +1195,67 @@ CLAIMS = RowKind(
         ),
     ),
 )
+_BY_KEY = {field.key: field for field in DRIVE}
+HELD = RowKind(
+    "a drive that is held or late",
+    fields=(
+        METHOD,
+        _BY_KEY["drive"],
+        VERDICT,
+        SAFE,
+        Z_ABS.shown("|z|", ".4f"),
+        Field(
+            "fresh_z_abs",
+            "number",
+            "Modulus of the same drive's pole if each step computes and applies its torque",
+            "|z| if fresh",
+            ".4f",
+        ),
+        H,
+        Field("every", "integer", "Steps of the physics from one computation of the torque to the next"),
+        Field("late", "number", "Steps of the physics until a torque is applied"),
+        Field("filter", "number", "Time constant of the filter through which the velocity is seen", unit="s"),
+        _BY_KEY["inertia"],
+        _BY_KEY["kp"],
+        _BY_KEY["kp_max"],
+        _BY_KEY["kd"],
+        Field(
+            "kd_min",
+            "number",
+            "Least stable damping with this stiffness",
+            "kd from",
+            ".4g",
+            unit="N m s/rad or N s/m",
+            null="where none helps",
+        ),
+        _BY_KEY["kd_max"],
+        Field(
+            "every_max",
+            "integer",
+            "Steps up to which the torque may be held, the rest as it is",
+            "every to",
+            "d",
+            null="where even one is unstable",
+        ),
+        Field(
+            "late_max",
+            "integer",
+            "Whole steps up to which the torque may be late, the rest as it is",
+            "late to",
+            "d",
+            null="where even none is unstable",
+        ),
+        Field(
+            "held_by",
+            "text",
+            "What an unstable drive would be stable without, or which number of a stable one is nearest to its end",
+            "used up",
+            null="where none has an end",
+            values=("gains", "rate", "delay", "rate and delay", "kp", "kd", "too little kd"),
+        ),
+    ),
+)
+
 ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
     "poles": (POLES,),
     "region": (REGIONS,),
@@ -1201,10 +1264,11 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
         NAMED_METHODS,
     ),
     "family": (MEMBERS,),
-    "choose": (CHOICES,),
+    "choose": (CHOICES, HELD),
     "check": (
         CHECKED,
         LARGEST_STEPS,
+        HELD,
     ),
     "lint": (LINTED,),
     "engines": (ENGINES_LISTED,),

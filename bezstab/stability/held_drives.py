@@ -185,19 +185,21 @@ def _sum(*terms: tuple[Number, list[Number]]) -> list[Number]:
 # What is used up
 
 
+Stretch = tuple[float, float]
+"""Factors from and to which a drive is stable: from 0 where there is no lower end, to infinity without an upper one."""
+
+
 @dataclass(frozen=True)
 class HeldLimits:
-    """How far each of four numbers may go, upwards, with the others as they are.
+    """How far each of four numbers may go with the others as they are.
 
-    `kp` and `kd` are the factors on the gains at which the verdict turns: up to there it is stable if it is stable
-    now, else there it begins to be, downwards from 1. Infinite where there is no end up to FURTHEST, None where no
-    factor down to its inverse helps. `every` and `late` are the last whole numbers of steps up to which all are stable;
-    None where the least, 1 and 0, is unstable. `stable` is the proven verdict of the drive as it is.
+    `kp` and `kd` are the factors on the gains between which the drive is stable: the stretch that holds 1, else the one
+    nearest to it, None where there is none within FURTHEST. `every` and `late` are the last whole numbers of steps up
+    to which all are proven stable; None where the least, 1 and 0, is not.
     """
 
-    stable: bool
-    kp: float | None
-    kd: float | None
+    kp: Stretch | None
+    kd: Stretch | None
     every: int | None
     late: int | None
 
@@ -206,7 +208,7 @@ FURTHEST = 1e4
 """Factor on a gain beyond which nobody asks, and its inverse."""
 
 FACTORS = np.geomspace(1, FURTHEST, 185)
-"""Where the end of stability is looked for first, 5 % apart; a stable stretch that is shorter is not seen."""
+"""Where an end of stability is looked for first, 5 % apart; a stretch that is shorter is not seen."""
 
 
 def held_limits(way: str, alpha_hat: Fraction, beta_hat: Fraction, timing: Timing) -> HeldLimits:
@@ -216,29 +218,32 @@ def held_limits(way: str, alpha_hat: Fraction, beta_hat: Fraction, timing: Timin
         changed = Timing(every, late, timing.filter_steps)
         return held_verdict(way, alpha_hat, beta_hat, changed) == "converges"
 
-    def grows(kp: float = 1.0, kd: float = 1.0) -> bool:
-        return _modulus(SEEN[way], kd * float(alpha_hat), kp * float(beta_hat), timing) >= 1
+    def decays(kp: float = 1.0, kd: float = 1.0) -> bool:
+        return _modulus(SEEN[way], kd * float(alpha_hat), kp * float(beta_hat), timing) < 1
 
-    now = stable(timing.every, timing.late)
     return HeldLimits(
-        stable=now,
-        kp=_turning_factor(lambda factor: grows(kp=factor), now),
-        kd=_turning_factor(lambda factor: grows(kd=factor), now),
+        kp=_stable_stretch(lambda factor: decays(kp=factor)),
+        kd=_stable_stretch(lambda factor: decays(kd=factor)),
         every=_last_stable(lambda every: stable(every, timing.late), least=1),
         late=_last_stable(lambda late: stable(timing.every, Fraction(late)), least=0),
     )
 
 
-def _turning_factor(grows: Callable[[float], bool], stable: bool) -> float | None:
-    """Return the factor, up from 1 if stable and else down, at which a drive begins or ceases to grow."""
+def _stable_stretch(decays: Callable[[float], bool]) -> Stretch | None:
+    """Return the stretch of factors that decay around 1, else that nearest to 1; None if there is none."""
 
-    def turned(factors: FloatArray) -> BoolArray:
-        return np.array([grows(factor) == stable for factor in factors.tolist()])
+    def is_(wanted: bool) -> Callable[[FloatArray], BoolArray]:
+        return lambda factors: np.array([decays(factor) == wanted for factor in factors.tolist()])
 
-    found = first_where(turned, FACTORS if stable else 1 / FACTORS)
-    if found is None:
-        return np.inf if stable else None
-    return found[0] if stable else found[1]
+    start = 1.0
+    if not decays(start):
+        found = [first_where(is_(True), factors) for factors in (FACTORS, 1 / FACTORS)]
+        ends = [each[1] for each in found if each]
+        if not ends:
+            return None
+        start = min(ends, key=lambda factor: abs(np.log(factor)))
+    down, up = (first_where(is_(False), factors) for factors in (start / FACTORS, start * FACTORS))
+    return (down[0] if down else 0.0, up[0] if up else np.inf)
 
 
 def _last_stable(stable: Callable[[int], bool], least: int) -> int | None:

@@ -51,6 +51,7 @@ LONG = {
         "check --method SYM --alpha 2 --beta 100 --physical --h-min 0.00917 --h-max 1/60",
         "check --engine mujoco=0.02,1 --h 0.002",
         "check --pd 1000,80,0.1 --h 1/240",
+        "check --pd 200,5,0.1 --h 0.002 --every 4 --late 1",
         "check --method SYM --alpha 1 --beta 0.5 --h 0.01 --scene driven_four_bar",
     ],
     "verify": [

@@ -1,6 +1,5 @@
 """Drives whose torque is held for several steps or applied late: exact verdicts, closed forms, plain simulation."""
 
-from collections.abc import Callable
 from fractions import Fraction
 from math import floor
 
@@ -150,15 +149,15 @@ def test_a_simulated_drive_grows_as_the_pole_says(way: str, timing: Timing) -> N
 def test_limits_lie_where_the_verdict_turns() -> None:
     a, b, timing = Fraction("0.1"), Fraction("0.008"), Timing(every=4, late=Fraction(1))
     found = held_limits("SYM", a, b, timing)
-    assert found.stable
-    turns: list[tuple[float | None, Callable[[Fraction], tuple[Fraction, Fraction]]]] = [
-        (found.kp, lambda factor: (a, factor * b)),
-        (found.kd, lambda factor: (factor * a, b)),
-    ]
-    for factor, point in turns:
-        assert factor is not None
-        for times, verdict in ((1 - 1e-6, "converges"), (1 + 1e-6, "diverges")):
-            assert held_verdict("SYM", *point(Fraction(times * factor)), timing) == verdict
+    assert found.kp is not None
+    assert found.kd is not None
+    assert found.kp[0] == 0
+    less, more = Fraction(999_999, 10**6), Fraction(1_000_001, 10**6)
+    kp_max, kd_min, kd_max = (Fraction(factor) for factor in (found.kp[1], *found.kd))
+    inside = [(a, kp_max * less * b), (kd_min * more * a, b), (kd_max * less * a, b)]
+    outside = [(a, kp_max * more * b), (kd_min * less * a, b), (kd_max * more * a, b)]
+    for points, verdict in ((inside, "converges"), (outside, "diverges")):
+        assert [held_verdict("SYM", *point, timing) for point in points] == [verdict] * 3
     assert found.every is not None
     assert found.late is not None
     assert held_verdict("SYM", a, b, Timing(found.every, timing.late)) == "converges"
@@ -167,9 +166,16 @@ def test_limits_lie_where_the_verdict_turns() -> None:
     assert held_verdict("SYM", a, b, Timing(4, Fraction(found.late + 1))) != "converges"
 
 
+def test_an_unstable_drive_is_told_the_stretch_nearest_to_it() -> None:
+    """One step late it is stable for b < a (1 - a): at b = 0.09 for a from 0.1 to 0.9."""
+    found = held_limits("SYM", Fraction("0.05"), Fraction("0.09"), Timing(late=Fraction(1)))
+    assert found.kd == pytest.approx((0.1 / 0.05, 0.9 / 0.05), rel=1e-9)
+    assert found.kp == pytest.approx((0, 0.05 * 0.95 / 0.09), rel=1e-9)
+    assert (found.every, found.late) == (None, 0)
+
+
 def test_where_nothing_helps_it_is_said() -> None:
     found = held_limits("SYM", Fraction(0), Fraction("0.01"), Timing(every=2))
-    assert not found.stable
     assert (found.kp, found.kd, found.late) == (None, None, None)
     assert found.every is None  # without damping it is marginal even when it is fresh
 

@@ -1,15 +1,19 @@
 """pymunk (Chipmunk): a joint with error_bias e leaves e^h of an error each step: SYM at (1, 1 - e^h).
 
 Source: Chipmunk's bias_coef(errorBias, dt) = 1 - errorBias^dt, and bias = -bias_coef error / dt in its joints.
+
+Chains: pin joints between the centres of bodies in a straight line, which no motion along that line turns.
 """
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import pytest
 
+from bezstab.engines import hard_velocity_step
 from bezstab.methods import lookup
-from bezstab.stability import spectral_radius
+from bezstab.stability import Growth, chain, spectral_radius, swept_growth
 
 pymunk: Any = pytest.importorskip("pymunk")
 
@@ -54,3 +58,94 @@ def test_the_default_leaves_nine_tenths_each_step() -> None:
     space = pymunk.Space()
     joint = pymunk.PivotJoint(space.static_body, pymunk.Body(1, 1), (0, 0), (0, 0))
     assert joint.error_bias**H == pytest.approx(0.9)
+
+
+LINK = 20.0
+KICK = {True: 1e-7, False: 1e-1}
+"""Velocity of a kick that grows, or not: far above what rounding does to places of 200, and far below a link."""
+WINDOW = 60
+"""Steps: the error swings, its largest of so many falls or grows evenly."""
+
+
+def hung_chain(bodies: int, ratio: float, sweeps: int, share: float) -> tuple[Any, list[Any]]:
+    """Return a space and the bodies of a straight chain in it, downwards from the world, the last one heavier."""
+    space = pymunk.Space()
+    space.iterations = sweeps
+    chained = []
+    before = space.static_body
+    for number in range(1, bodies + 1):
+        body = pymunk.Body(ratio if number == bodies else 1, 1)
+        body.position = (0, -LINK * number)
+        joint = pymunk.PinJoint(before, body)
+        joint.error_bias = (1 - share) ** (1 / H)
+        space.add(body, joint)
+        chained.append(body)
+        before = body
+    return space, chained
+
+
+def worst_link(chained: list[Any]) -> float:
+    """Return by how much some link is too long or too short, at most."""
+    places = [(0.0, 0.0), *((body.position.x, body.position.y) for body in chained)]
+    lengths = [np.hypot(x - u, y - v) for (x, y), (u, v) in pairwise(places)]
+    return float(np.abs(np.array(lengths) - LINK).max())
+
+
+def predicted(bodies: int, ratio: float, sweeps: int, share: float) -> Growth:
+    return swept_growth(chain(bodies, ratio), hard_velocity_step(share, sweeps, kept=1.0))
+
+
+@pytest.mark.parametrize(
+    ("bodies", "ratio", "sweeps", "share"),
+    [
+        (2, 1, 1, 0.9),
+        (10, 1, 1, 0.2),
+        (10, 1, 4, 0.2),
+        (10, 1, 10, 0.2),
+        (10, 1, 10, 0.8),
+        (10, 10, 10, 0.1),
+        (10, 100, 10, 0.1),
+        (10, 100, 120, 0.1),
+    ],
+)
+def test_a_kicked_chain_grows_as_predicted(bodies: int, ratio: float, sweeps: int, share: float) -> None:
+    """To 2e-3 of the factor per step: fitted where the largest pole rules and errors are still small."""
+    space, chained = hung_chain(bodies, ratio, sweeps, share)
+    growing = not predicted(bodies, ratio, sweeps, share).decays
+    rng = np.random.default_rng(1)
+    for body in chained:
+        body.velocity = (0, KICK[growing] * float(rng.standard_normal()))
+    errors = [worst_link(chained)]
+    while len(errors) <= WINDOW or (len(errors) < 3000 and 1e-11 < max(errors[-WINDOW:]) < 0.1):
+        space.step(H)
+        errors.append(worst_link(chained))
+    envelope = [max(errors[start : start + WINDOW]) for start in range(len(errors) - WINDOW + 1)]
+    later = np.log(envelope[len(envelope) // 3 :])
+    measured = float(np.exp(np.polyfit(np.arange(len(later)), later, 1)[0]))
+    assert measured == pytest.approx(predicted(bodies, ratio, sweeps, share).factor, abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("bodies", "ratio", "sweeps", "decays"),
+    [
+        (5, 10, 10, True),
+        (10, 1, 10, True),
+        (10, 10, 10, False),
+        (10, 10, 20, True),
+        (10, 100, 10, False),
+        (10, 100, 120, True),
+        (20, 1, 10, False),
+        (20, 1, 30, True),
+    ],
+)
+def test_hanging_chains_come_apart_where_predicted(bodies: int, ratio: float, sweeps: int, decays: bool) -> None:
+    """Chipmunk's own share of a tenth, half a minute under gravity: links hold to a tenth of their length, or not."""
+    assert predicted(bodies, ratio, sweeps, 0.1).decays is decays
+    space, chained = hung_chain(bodies, ratio, sweeps, 0.1)
+    space.gravity = (0, -981)
+    worst = 0.0
+    for step in range(1800):
+        space.step(H)
+        if step >= 1500:
+            worst = max(worst, worst_link(chained))
+    assert (worst < LINK / 10) is decays

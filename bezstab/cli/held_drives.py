@@ -1,0 +1,108 @@
+"""Drives whose controller is slower than the physics: the options of check and choose, and what is printed."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import TYPE_CHECKING
+
+import click
+
+from bezstab.cli.options import NUMBER, Function, ParsedType
+from bezstab.cli.output import for_reading, show_rows, show_text
+from bezstab.engines import Drive
+from bezstab.errors import InputError
+from bezstab.methods import Method
+from bezstab.rationals import rational, typed_number
+from bezstab.show import HELD, LATE_COMMANDS, NOT_JUDGED, Format, held_row, held_sentence, timing_words
+
+if TYPE_CHECKING:
+    from bezstab.stability import Timing
+
+
+def timing_options(command: Function) -> Function:
+    """Add the options that say when a drive's torque is computed and applied."""
+    options = (
+        click.option("--every", type=int, help="With --pd: the torque is computed every so many steps, and held [1]."),
+        click.option("--late", type=NUMBER, help="With --pd: the torque is applied so many steps late [0]."),
+        click.option(
+            "--filter",
+            "filter_seconds",
+            type=NUMBER,
+            help="With --pd: the time constant in s of a first-order filter of the measured velocity [none].",
+        ),
+    )
+    for option in reversed(options):
+        command = option(command)
+    return command
+
+
+def timing_typed(
+    every: int | None, late: Fraction | None, filter_seconds: Fraction | None, drive: Drive | None, h: Fraction | None
+) -> "Timing | None":
+    """Return when the torque is computed and applied, None where no option says so; InputError without --pd and --h."""
+    from bezstab.stability import Timing
+
+    if every is None and late is None and filter_seconds is None:
+        return None
+    if drive is None or h is None:
+        raise InputError("--every, --late and --filter are about a drive: they need --pd and --h")
+    return Timing(
+        every=1 if every is None else every, late=late or Fraction(0), filter_steps=(filter_seconds or Fraction(0)) / h
+    )
+
+
+def check_held(drive: Drive, h: Fraction, timing: "Timing", methods: Sequence[Method], form: Format) -> bool:
+    """Print whether a held or late drive is safe, and what it is that is used up; return whether every way is safe."""
+    from bezstab.questions import HeldQuestion, held_answers
+
+    question = (
+        HeldQuestion(drive=drive, h=h, timing=timing, methods=tuple(methods))
+        if methods
+        else HeldQuestion(drive=drive, h=h, timing=timing)
+    )
+    found = list(held_answers(question))
+    rows = [held_row(answer) for answer in found]
+    show_rows(rows, HELD.columns(rows), form, timing_words(timing, float(h)), held_sentence)
+    if for_reading(form):
+        show_text(f"\n{LATE_COMMANDS} {NOT_JUDGED}")
+    return all(answer.safe for answer in found)
+
+
+def choose_held(
+    inertia: Fraction,
+    h: Fraction,
+    timing: "Timing",
+    methods: Sequence[Method],
+    bandwidth: Fraction | None,
+    settle: Fraction | None,
+    form: Format,
+) -> bool:
+    """Print gains for a bandwidth (Hz) or a time to settle (s) as `check` would; return whether every way is safe."""
+    from bezstab.methods import lookup
+    from bezstab.questions import held_gains
+
+    applied = list(methods) or [lookup("SYM")]
+    drive = held_gains(inertia, h, timing, bandwidth=bandwidth, settle=settle, methods=applied)
+    if for_reading(form):
+        show_text(f"kp = {typed_number(drive.kp)}, kd = {typed_number(drive.kd)}\n")
+    return check_held(drive, h, timing, applied, form)
+
+
+def _inertia_or_drive(text: str) -> Drive:
+    """Return the drive that 100,2,0.01 says, or the inertia alone, with gains that are to be chosen."""
+    from bezstab.cli.asking import drive_of
+
+    return Drive(Fraction(0), Fraction(0), rational(text)) if "," not in text else drive_of(text)
+
+
+inertia_option = click.option(
+    "--pd",
+    "drive",
+    type=ParsedType("inertia", _inertia_or_drive),
+    help="Choose gains for a joint drive on this inertia (SI units); of kp,kd,inertia only the inertia counts.",
+)
+bandwidth_option = click.option(
+    "--bandwidth",
+    type=NUMBER,
+    help="With --pd: critically damped gains of this natural frequency in Hz, for a controller as --every, --late and "
+    "--filter say.",
+)

@@ -1,0 +1,210 @@
+"""What to answer about a drive whose torque is held for several steps of the physics, or applied late.
+
+gains and inertia, h, timing   →   HeldQuestion   →   held_answers   →   what is used up, and what each may become
+inertia, bandwidth, timing     →   held_gains     →   gains to write
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+
+from bezstab.engines import DRIVE_METHODS, Drive
+from bezstab.errors import InputError
+from bezstab.methods import Method, Verdict, lookup
+from bezstab.rationals import exact
+from bezstab.stability import (
+    BoolArray,
+    FloatArray,
+    HeldLimits,
+    Timing,
+    first_where,
+    held_limits,
+    held_spectral_radius,
+    held_verdict,
+)
+from bezstab.units import check_step
+
+UsedUp = Literal["gains", "rate", "delay", "rate and delay", "kp", "kd", "too little kd"]
+"""What makes an unstable drive so, or which of its numbers is nearest to its end."""
+
+DIGITS = 3
+"""Of gains to write: nobody sets more."""
+
+MARGIN = 1.25
+"""Each gain alone may grow so many times: gains that are recommended leave a quarter for what is not modelled."""
+
+OMEGA_H = np.geomspace(1, 3e-6, 260)
+"""Radians a step, where the largest bandwidth is looked for: from one downwards, 5 % apart."""
+
+SETTLED = 9.2334
+"""omega t at which a critically damped error is a thousandth: (1 + omega t) e^(-omega t) = 1/1000."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class HeldQuestion:
+    """Is a drive safe whose torque is computed every few steps of h (s) and applied late? `methods` as DRIVE_METHODS.
+
+    InputError for a step that is not positive, and for a method that is no way of applying a drive.
+    """
+
+    drive: Drive
+    h: Fraction
+    timing: Timing
+    methods: tuple[Method, ...] = tuple(map(lookup, DRIVE_METHODS))
+
+    def __post_init__(self) -> None:
+        check_step(self.h, "h")
+        for method in self.methods:
+            if method.name not in DRIVE_METHODS:
+                raise InputError(
+                    f"--every, --late, --filter with --method {method.name}: expected a way of applying a drive, "
+                    f"{', '.join(DRIVE_METHODS)}"
+                )
+
+
+@dataclass(frozen=True)
+class HeldAnswer:
+    """What one way of applying a held or late drive does; `z_abs` is what a step of the physics multiplies errors by.
+
+    `verdict` is proven. `fresh_z_abs` is |z_p| of the same gains if each step computed its torque and applied it.
+    """
+
+    question: HeldQuestion
+    method: Method
+    verdict: Verdict
+    z_abs: float
+    fresh_z_abs: float
+
+    @property
+    def safe(self) -> bool:
+        """Whether the error is proven to shrink."""
+        return self.verdict == "converges"
+
+    @cached_property
+    def limits(self) -> HeldLimits:
+        """How far gains, rate and delay may go, each alone: factors on the gains, whole steps."""
+        return held_limits(self.method.name, *self.question.drive.point(self.question.h), self.question.timing)
+
+    @cached_property
+    def used_up(self) -> UsedUp | None:
+        """What makes it unstable; of a stable drive the number that is nearest to its end. None where none has one."""
+        return self._nearest_end() if self.safe else self._cause()
+
+    def _cause(self) -> UsedUp:
+        """Return what an unstable drive would be stable without."""
+        point, timing = self.question.drive.point(self.question.h), self.question.timing
+
+        def stable(**changed: int | Fraction) -> bool:
+            values = {"every": timing.every, "late": timing.late, "filter_steps": timing.filter_steps} | changed
+            return held_verdict(self.method.name, *point, Timing(**values)) == "converges"  # type: ignore[arg-type]
+
+        if not stable(every=1, late=Fraction(0), filter_steps=Fraction(0)):
+            return "gains"
+        if stable(late=Fraction(0)):
+            return "delay"
+        return "rate" if stable(every=1) else "rate and delay"
+
+    def _nearest_end(self) -> UsedUp | None:
+        limits, timing = self.limits, self.question.timing
+        ratios: dict[UsedUp, float] = {}
+        if limits.kp:
+            ratios["kp"] = limits.kp[1]
+        if limits.kd:
+            ratios["kd"] = limits.kd[1]
+            ratios["too little kd"] = 1 / limits.kd[0] if limits.kd[0] else math.inf
+        if limits.every:
+            ratios["rate"] = (limits.every + 1) / timing.every
+        if limits.late is not None and timing.late:
+            ratios["delay"] = (limits.late + 1) / float(timing.late)
+        nearest = min(ratios, key=lambda name: ratios[name])
+        return nearest if math.isfinite(ratios[nearest]) else None
+
+
+def held_answers(question: HeldQuestion) -> Iterator[HeldAnswer]:
+    """Yield the answer for each way of applying the drive."""
+    point = question.drive.point(question.h)
+    for method in question.methods:
+        yield HeldAnswer(
+            question=question,
+            method=method,
+            verdict=held_verdict(method.name, *point, question.timing),
+            z_abs=held_spectral_radius(method.name, *point, question.timing),
+            fresh_z_abs=held_spectral_radius(method.name, *point, Timing()),
+        )
+
+
+def held_gains(
+    inertia: Fraction,
+    h: Fraction,
+    timing: Timing,
+    *,
+    bandwidth: Fraction | None = None,
+    settle: Fraction | None = None,
+    methods: Sequence[Method] = (lookup("SYM"),),
+) -> Drive:
+    """Return critically damped gains for a bandwidth (Hz, the natural frequency) or a time to settle (s), to 3 digits.
+
+        kp = inertia omega^2        kd = 2 inertia omega        omega = 2 pi bandwidth = 9.2334 / settle
+
+    They are proven stable in every method, and so is each gain alone MARGIN times as large. InputError where they are
+    not, with the largest bandwidth, or the shortest time, for which they are.
+    """
+    if (bandwidth is None) == (settle is None):
+        raise InputError("--bandwidth or --settle: give one of them")
+    wanted = 2 * math.pi * float(bandwidth) if bandwidth is not None else SETTLED / float(settle or 1)
+    if not wanted > 0:
+        raise InputError(f"{_option(bandwidth, settle)}: expected a positive number")
+
+    def with_margin(omega: float) -> bool:
+        return _safe_with_margin(_critical_drive(omega, inertia), h, timing, methods)
+
+    if with_margin(wanted):
+        return _critical_drive(wanted, inertia)
+
+    def holds(omega_h: FloatArray) -> BoolArray:
+        return np.array([with_margin(each / float(h)) for each in omega_h.tolist()])
+
+    found = first_where(holds, OMEGA_H)
+    refused = f"{_option(bandwidth, settle)}: not safe with a margin of {MARGIN:g}-fold at this rate and delay"
+    if found is None:
+        raise InputError(f"{refused}, nor is any that is slower")
+    largest = found[1] / float(h)
+    reach = (
+        f"up to {_rounded_down(largest / (2 * math.pi))} Hz"
+        if bandwidth is not None
+        else (f"from {SETTLED / largest:.3g} s on")
+    )
+    raise InputError(f"{refused}; {reach} is")
+
+
+def _option(bandwidth: Fraction | None, settle: Fraction | None) -> str:
+    if bandwidth is not None:
+        return f"--bandwidth {float(bandwidth):g} Hz"
+    assert settle is not None
+    return f"--settle {float(settle):g} s"
+
+
+def _rounded_down(value: float) -> str:
+    """Return a number to three digits, not above it."""
+    unit = 10.0 ** (math.floor(math.log10(value)) - 2)
+    return f"{math.floor(value / unit) * unit:.3g}"
+
+
+def _critical_drive(omega: float, inertia: Fraction) -> Drive:
+    """Return the critically damped gains of a natural frequency (1/s), to DIGITS."""
+    kp, kd = (exact(float(f"{gain:.{DIGITS}g}")) for gain in (float(inertia) * omega**2, 2 * float(inertia) * omega))
+    return Drive(kp, kd, inertia)
+
+
+def _safe_with_margin(drive: Drive, h: Fraction, timing: Timing, methods: Sequence[Method]) -> bool:
+    """Return whether a drive is proven stable in every method, and with each gain alone MARGIN times as large."""
+    more = exact(MARGIN)
+    drives = (drive, Drive(more * drive.kp, drive.kd, drive.inertia), Drive(drive.kp, more * drive.kd, drive.inertia))
+    return all(
+        held_verdict(method.name, *each.point(h), timing) == "converges" for method in methods for each in drives
+    )

@@ -1,0 +1,107 @@
+"""Drives that are held or late as rows, and in words: what is used up, and what each number may become."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from bezstab.engines import DRIVE_METHODS
+from bezstab.show.columns import Row, Value, formatted
+from bezstab.show.fields import cells
+from bezstab.show.row_kinds import HELD
+from bezstab.show.words import change_words
+
+if TYPE_CHECKING:
+    from bezstab.questions import HeldAnswer
+    from bezstab.stability import Timing
+
+LATE_COMMANDS = (
+    "A target that comes late only delays the motion. A torque or a measurement that comes late takes stability."
+)
+NOT_JUDGED = "Not judged: a limit of the torque, friction, and what else the drive is connected to."
+
+CAUSES = {
+    "gains": "The gains are too large even if each step computes and applies its torque.",
+    "rate": "The torque is held too long: the same gains are stable if each step computes it.",
+    "delay": "The torque comes too late: the same gains and rate are stable without the delay.",
+    "rate and delay": "The torque is held too long and comes too late.",
+}
+"""Why a drive is unstable, by what is used up."""
+
+
+def held_row(answer: HeldAnswer) -> Row:
+    """Return what one way of applying a held or late drive does as a row; limits as gains and as steps."""
+    question, limits = answer.question, answer.limits
+    kp, kd = limits.kp or (None, None), limits.kd or (None, None)
+    drive, timing = question.drive, question.timing
+    found: dict[str, Value] = {
+        "drive": DRIVE_METHODS[answer.method.name],
+        "h": float(question.h),
+        "every": timing.every,
+        "late": float(timing.late),
+        "filter": float(timing.filter_steps * question.h),
+        "inertia": float(drive.inertia),
+        "kp": float(drive.kp),
+        "kd": float(drive.kd),
+        "kp_max": _times(float(drive.kp), kp[1]),
+        "kd_min": _times(float(drive.kd), kd[0]),
+        "kd_max": _times(float(drive.kd), kd[1]),
+        "every_max": limits.every,
+        "late_max": limits.late,
+        "held_by": answer.used_up,
+    }
+    return cells(HELD.fields, answer, found)
+
+
+def _times(gain: float, factor: float | None) -> float | None:
+    return None if factor is None or math.isinf(factor) else gain * factor
+
+
+def held_sentence(row: Row) -> str:
+    """Return whether a held or late drive is safe, what a step of the physics does to the error, and why if not."""
+    z_abs, fresh = row["z_abs"], row["fresh_z_abs"]
+    assert isinstance(z_abs, float)
+    change = change_words(z_abs, row["verdict"])
+    sentence = f"{'Safe' if row['safe'] else 'Not safe'} ({row['drive']}). {change[0].upper()}{change[1:]}"
+    sentence += f", by {formatted(fresh, '.2g')} if the torque were fresh."
+    if row["safe"]:
+        return sentence
+    return f"{sentence} {CAUSES[str(row['held_by'])]}{_remedies(row)}"
+
+
+def _remedies(row: Row) -> str:
+    """Return which change of one number alone makes an unstable drive stable."""
+    kp_max, kd_min, kd_max = row["kp_max"], row["kd_min"], row["kd_max"]
+    remedies = []
+    if isinstance(kp_max, float):
+        remedies.append(f"kp up to {kp_max:.3g}")
+    if isinstance(kd_min, float):
+        remedies.append(f"kd from {kd_min:.3g}" + (f" to {kd_max:.3g}" if isinstance(kd_max, float) else ""))
+    if row["every_max"] is not None:
+        remedies.append(f"a torque every {_steps(row['every_max'])}")
+    if row["late_max"] is not None:
+        remedies.append(f"at most {_steps(row['late_max'])} late")
+    return (
+        f" Stable with one of these alone: {', '.join(remedies)}." if remedies else " No single change makes it stable."
+    )
+
+
+def _steps(number: Value) -> str:
+    return "step" if number == 1 else f"{number} steps"
+
+
+def timing_words(timing: Timing, h: float) -> str:
+    """Return how a controller works in words: the torque is computed every 8 ms and applied 2 ms late."""
+    words = "The torque is computed in every step"
+    if timing.every > 1:
+        words = f"The torque is computed every {timing.every} steps ({_milliseconds(timing.every * h)})"
+    if timing.late:
+        late = float(timing.late)
+        words += f" and applied {late:g} step{'s' * (late > 1)} ({_milliseconds(late * h)}) late"
+    if timing.filter_steps:
+        words += f", with the velocity filtered over {_milliseconds(float(timing.filter_steps) * h)}"
+    return f"{words}."
+
+
+def _milliseconds(seconds: float) -> str:
+    return f"{1e3 * seconds:.4g} ms"
