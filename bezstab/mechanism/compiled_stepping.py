@@ -359,7 +359,11 @@ def machine_steps(mechanism: Mechanism, solving: bool) -> TakeSteps:
     allocating = "part_0" in generated
 
     def made(function: Any, **options: str) -> Any:
-        """Return a function as machine code that other machine code calls."""
+        """Return a function as machine code that other machine code calls, under a name of the scene's own.
+
+        Code from disk is linked by its names: two scenes must not share any.
+        """
+        function.__name__ = function.__qualname__ = f"{function.__name__}_{file.parent.name}"
         return numba.njit(error_model="numpy", _nrt=allocating, **INNER, **options)(function)
 
     def own(function: Any) -> Any:
@@ -374,7 +378,9 @@ def machine_steps(mechanism: Mechanism, solving: bool) -> TakeSteps:
     for function in (arguments, invert):
         namespace[function.__name__] = made(own(function))
     generated["take_steps"] = stepper(Operations(*(made(own(function)) for function in OPERATIONS)), made, solving)
-    steps: TakeSteps = numba.njit(_nrt=allocating, no_cfunc_wrapper=True, cache=_keep(file))(generated["take"])
+    take = generated["take"]
+    take.__name__ = take.__qualname__ = f"take_{file.parent.name}"
+    steps: TakeSteps = numba.njit(_nrt=allocating, no_cfunc_wrapper=True, cache=_keep(file))(take)
     _compiled.add((mechanism, solving))
     return steps
 
