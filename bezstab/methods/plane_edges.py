@@ -117,16 +117,6 @@ def plane_strips(method: Method, level: Fraction) -> PlaneStrips | None:
     return PlaneStrips(tables, tuple(strips), tuple(lost))
 
 
-def points_between_edges(strips: PlaneStrips, alpha_hat: Fraction) -> list[Fraction]:
-    """Return a beta_hat in each piece into which the edges and levels of a plane cut a line of constant alpha_hat."""
-    cuts = {strip.high for strip in strips.strips if strip.high is not None}
-    for curve in strips.curves:
-        on_line = [_value((column,), ZERO, alpha_hat) for column in zip(*curve, strict=True)]
-        if any(on_line):
-            cuts.update(_real_roots_of(_without_zeros(on_line)))
-    return _between(sorted(cuts))
-
-
 def _coefficients(table: Iterable[CurveTable], level: Fraction) -> list[sp.Poly]:
     """Return the coefficients of P(level z), ascending, without a factor that all of them share."""
     coefficients = []
