@@ -12,6 +12,7 @@ three ways to measure, lint, probe, schema) have one each beside it. A file impo
     accuracy_maps       the map of forced errors over the plane, and the trade against decay
     map_commands        poles, region, methods, family
     choose_commands     choose, check, engines, explore
+    chains_command      chains
     evidence_commands   simulate, tradeoff, extremes
     verify_command      verify
     schema_command      schema
