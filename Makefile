@@ -11,7 +11,7 @@ ANDREWS := --scene andrews --time 0.01 --h 16e-6 --h 32e-6 --h 64e-6 --h 128e-6 
 BOTH_KINDS := --method B4 --method AB4 --method ABM4 --method SYM --method verlet-half --method bdf2 --method RK4 \
     --method dopri5
 
-.PHONY: region figures times test quick test-slow test-oldest witnesses mutants campaign extremes lint bench clean
+.PHONY: region figures pages times test quick test-slow test-oldest witnesses mutants campaign extremes lint bench clean
 
 region: .venv/installed  ## draw where B4 is stable, into this directory
 	$(BIN)/bezstab region --method B4
@@ -21,12 +21,16 @@ figures: .venv/installed  ## draw what the README shows, into figures/
 	$(BIN)/bezstab region --method B4 --scene driven_four_bar --h 0.005 --speed 1 --speed 3 --speed 10 --table none -o figures
 	$(BIN)/bezstab verify --map 60 --method AB4 --table none -o figures
 	$(BIN)/bezstab family bezier -o figures
+	$(BIN)/python -m tests.show.draw_explorer figures/explore_B4.png
 	$(BIN)/bezstab paper -o figures
 	$(BIN)/bezstab chains --engine chipmunk=0.0017970103 --h 1/60 -o figures --format json > /dev/null
 	$(BIN)/bezstab region --method RK4 --accuracy --table none -o figures
 	$(BIN)/bezstab tradeoff --predicted $(BOTH_KINDS) --table none -o figures
 	$(BIN)/bezstab tradeoff --table none -o figures
 	$(BIN)/bezstab tradeoff $(ANDREWS) --repeats 1 --against time --recorded figures/andrews_times.json -o figures
+
+pages: .venv/installed  ## write anew what pages say that the code says already: tables of files, numbers
+	$(BIN)/python -m tests.pages
 
 times: .venv/installed  ## measure anew the processor times that figures and tables show: no two runs share them
 	$(BIN)/bezstab tradeoff $(ANDREWS) --repeats 9 --workers 1 --figure none --format json > figures/andrews_times.json

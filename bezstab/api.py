@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from bezstab import evidence, mechanism, questions, stability
 from bezstab.engines import Drive, engine_and_values, engine_named
 from bezstab.errors import InputError, shown
+from bezstab.goals import Goal
 from bezstab.mechanism import Scene, Simulation
 from bezstab.methods import REGISTRY, Method, Verdict, lookup
 from bezstab.rationals import exact, rational, within_float64
@@ -149,7 +150,7 @@ def best_point(method: str | Method) -> stability.BestPoint | None:
 def choose(
     method: str | Method | None = None,
     *,
-    goal: stability.Goal | None = None,
+    goal: Goal | None = None,
     spread: float = 0.1,
     h: Number | None = None,
     h_min: Number | None = None,

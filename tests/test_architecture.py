@@ -40,12 +40,11 @@ import pytest
 from click.testing import CliRunner
 
 from bezstab.cli import main
+from tests.pages import PACKAGE, ROOMS, files_in_order, tree_of
 
-PACKAGE = Path(__file__).parent.parent / "bezstab"
 TESTS = PACKAGE.parent / "tests"
-ROOMS = ("engines", "methods", "stability", "mechanism", "evidence", "questions", "show", "cli", "paper")
 FOUNDATIONS = (
-    *("lazy", "stopping", "errors", "rationals", "files", "toml_tables", "units", "compiling", "read_only"),
+    *("lazy", "stopping", "errors", "rationals", "files", "toml_tables", "units", "compiling", "read_only", "goals"),
     "linear_equations",
 )
 """Beside the rooms, each importing only from those before it."""
@@ -94,11 +93,6 @@ IN_ROOMS = [path for path in FILES if len(path.parts) == 2 and path.name != "__i
 
 
 @cache
-def tree_of(path: Path) -> ast.Module:
-    return ast.parse((PACKAGE / path).read_text(encoding="utf-8"))
-
-
-@cache
 def imports(path: Path, with_types: bool = True) -> list[tuple[str, tuple[str, ...]]]:
     """Return each module that a file imports, inside functions too, with the names taken from it."""
     return list(_imports(path, with_types))
@@ -130,60 +124,42 @@ def own_imports(path: Path) -> Iterator[tuple[str, tuple[str, ...]]]:
             yield module.removeprefix("bezstab."), names
 
 
-def listed(room: str) -> list[str]:
-    """Return the files of a room in the order in which its door lists them."""
-    text = importlib.import_module(f"bezstab.{room}").__doc__ or ""
-    listing = text.split("above it")[1]
-    return [line.split()[0] for line in listing.splitlines() if line.startswith("    ")]
+def test_no_files_of_a_room_import_each_other_in_a_circle() -> None:
+    for room in ROOMS:
+        files_in_order(room)
 
 
-@pytest.mark.parametrize("room", ROOMS)
-def test_the_door_of_a_room_lists_its_files(room: str) -> None:
-    assert sorted(listed(room)) == sorted(path.stem for path in IN_ROOMS if path.parts[0] == room)
+def test_a_room_imports_only_from_rooms_below() -> None:
+    for path in [*IN_ROOMS, Path("api.py")]:
+        room = path.parts[0].removesuffix(".py")
+        others = {module.split(".")[0] for module, _ in own_imports(path)} - {room, "__version__"}
+        assert others <= BELOW[room], path
 
 
-@pytest.mark.parametrize("path", IN_ROOMS, ids=str)
-def test_a_file_imports_only_from_those_above_it_in_its_room(path: Path) -> None:
-    room = path.parts[0]
-    lower = set(listed(room)[: listed(room).index(path.stem)])
-    for module, names in own_imports(path):
-        if module == room:  # from bezstab.room import other_file
-            assert set(names) <= lower
-        elif module.startswith(f"{room}."):
-            assert module.removeprefix(f"{room}.") in lower
+def test_the_foundations_stand_on_one_another_in_order() -> None:
+    for name in FOUNDATIONS:
+        used = {module for module, _ in own_imports(Path(f"{name}.py"))}
+        assert used <= set(FOUNDATIONS[: FOUNDATIONS.index(name)]), name
 
 
-@pytest.mark.parametrize("path", [*IN_ROOMS, Path("api.py")], ids=str)
-def test_a_room_imports_only_from_rooms_below(path: Path) -> None:
-    room = path.parts[0].removesuffix(".py")
-    others = {module.split(".")[0] for module, _ in own_imports(path)} - {room, "__version__"}
-    assert others <= BELOW[room]
+def test_another_room_is_entered_through_its_door() -> None:
+    for path in [*IN_ROOMS, Path("api.py")]:
+        for module, names in own_imports(path):
+            room = module.split(".")[0]
+            if room in ROOMS and room != path.parts[0] and module not in SHARED_WITH_EXTENSIONS:
+                assert module == room, path
+                assert set(names) <= set(importlib.import_module(f"bezstab.{room}").__all__), path
 
 
-@pytest.mark.parametrize("name", FOUNDATIONS)
-def test_the_foundations_stand_on_one_another_in_order(name: str) -> None:
-    used = {module for module, _ in own_imports(Path(f"{name}.py"))}
-    assert used <= set(FOUNDATIONS[: FOUNDATIONS.index(name)])
+def test_nobody_enters_the_paper() -> None:
+    for path in [path for path in FILES if path.parts[0] != "paper"]:
+        assert not [module for module, _ in own_imports(path) if module.split(".")[0] == "paper"], path
 
 
-@pytest.mark.parametrize("path", [*IN_ROOMS, Path("api.py")], ids=str)
-def test_another_room_is_entered_through_its_door(path: Path) -> None:
-    for module, names in own_imports(path):
-        room = module.split(".")[0]
-        if room in ROOMS and room != path.parts[0] and module not in SHARED_WITH_EXTENSIONS:
-            assert module == room
-            assert set(names) <= set(importlib.import_module(f"bezstab.{room}").__all__)
-
-
-@pytest.mark.parametrize("path", [path for path in FILES if path.parts[0] != "paper"], ids=str)
-def test_nobody_enters_the_paper(path: Path) -> None:
-    assert not [module for module, _ in own_imports(path) if module.split(".")[0] == "paper"]
-
-
-@pytest.mark.parametrize("path", FILES, ids=str)
-def test_only_the_appointed_files_see_a_library(path: Path) -> None:
-    for library in {module.split(".")[0] for module, _ in imports(path, with_types=False)} & set(APPOINTED):
-        assert path.as_posix() in APPOINTED[library]
+def test_only_the_appointed_files_see_a_library() -> None:
+    for path in FILES:
+        for library in {module.split(".")[0] for module, _ in imports(path, with_types=False)} & set(APPOINTED):
+            assert path.as_posix() in APPOINTED[library], path
 
 
 def test_every_library_that_is_imported_is_declared() -> None:
@@ -197,15 +173,18 @@ def test_every_library_that_is_imported_is_declared() -> None:
     assert imported - set(sys.stdlib_module_names) - {"bezstab", "__future__"} <= declared
 
 
-@pytest.mark.parametrize("path", [path for path in FILES if path.parts[0] != "cli"], ids=str)
-def test_computation_neither_prints_nor_exits_nor_filters_warnings(path: Path) -> None:
-    called = {ast.unparse(node.func) for node in ast.walk(tree_of(path)) if isinstance(node, ast.Call)}
-    assert not called & {"print", "exit", "sys.exit", "warnings.filterwarnings", "warnings.simplefilter", "np.seterr"}
-    modules = {module for module, _ in imports(path)}
-    assert "warnings" not in modules
-    if path.as_posix() != "show/explorer.py":  # pyplot is what opens a window
-        assert "matplotlib.pyplot" not in modules
-        assert ("matplotlib", ("pyplot",)) not in set(imports(path))
+SPEAKING = {"print", "exit", "sys.exit", "warnings.filterwarnings", "warnings.simplefilter", "np.seterr"}
+
+
+def test_computation_neither_prints_nor_exits_nor_filters_warnings() -> None:
+    for path in [path for path in FILES if path.parts[0] != "cli"]:
+        called = {ast.unparse(node.func) for node in ast.walk(tree_of(path)) if isinstance(node, ast.Call)}
+        assert not called & SPEAKING, path
+        modules = {module for module, _ in imports(path)}
+        assert "warnings" not in modules, path
+        if path.as_posix() != "show/explorer.py":  # pyplot is what opens a window
+            assert "matplotlib.pyplot" not in modules, path
+            assert ("matplotlib", ("pyplot",)) not in set(imports(path)), path
 
 
 WRITES_SOURCE = Path("mechanism/generated_code.py")
@@ -224,44 +203,44 @@ def dealings_with_source(path: Path) -> set[str]:
     return functions | used & {"exec", "eval", "compile", "ast", "inspect", "tokenize"}
 
 
-@pytest.mark.parametrize("path", [path for path in FILES if path != WRITES_SOURCE], ids=str)
-def test_one_file_writes_source_and_nobody_else_takes_it_apart_or_executes_it(path: Path) -> None:
+def test_one_file_writes_source_and_nobody_else_takes_it_apart_or_executes_it() -> None:
     assert {"exec", "def run(start, h, two_alpha, beta_squared, "} <= dealings_with_source(WRITES_SOURCE)
-    assert not dealings_with_source(path)
-    if "mechanism.generated_code" in {module for module, _ in own_imports(path)}:
-        assert path.as_posix() in TAKES_SOURCE
+    for path in [path for path in FILES if path != WRITES_SOURCE]:
+        assert not dealings_with_source(path), path
+        if "mechanism.generated_code" in {module for module, _ in own_imports(path)}:
+            assert path.as_posix() in TAKES_SOURCE, path
 
 
-@pytest.mark.parametrize("path", FILES, ids=str)
-def test_no_file_is_called_like_what_it_defines(path: Path) -> None:
-    defined = {node.name for node in tree_of(path).body if isinstance(node, ast.FunctionDef | ast.ClassDef)}
-    assert path.stem not in defined
+def test_no_file_is_called_like_what_it_defines() -> None:
+    for path in FILES:
+        defined = {node.name for node in tree_of(path).body if isinstance(node, ast.FunctionDef | ast.ClassDef)}
+        assert path.stem not in defined, path
 
 
-@pytest.mark.parametrize("package", ["bezstab", "bezstab.methods", "bezstab.show"])
-def test_what_is_loaded_late_is_what_tools_are_told(package: str) -> None:
-    module = importlib.import_module(package)
-    path = Path(module.__file__ or "").relative_to(PACKAGE)
-    at_run_time = set(imports(path, with_types=False))
-    for_tools = {name for entry in imports(path) if entry not in at_run_time for name in entry[1]}
-    late = {name for name in module.__all__ if name not in {name for _, names in at_run_time for name in names}}
-    assert for_tools == late
-    assert all(getattr(module, name) is not None for name in late)
+def test_what_is_loaded_late_is_what_tools_are_told() -> None:
+    for package in ["bezstab", "bezstab.methods", "bezstab.show"]:
+        module = importlib.import_module(package)
+        path = Path(module.__file__ or "").relative_to(PACKAGE)
+        at_run_time = set(imports(path, with_types=False))
+        for_tools = {name for entry in imports(path) if entry not in at_run_time for name in entry[1]}
+        late = {name for name in module.__all__ if name not in {name for _, names in at_run_time for name in names}}
+        assert for_tools == late, package
+        assert all(getattr(module, name) is not None for name in late), package
 
 
-@pytest.mark.parametrize("path", IN_ROOMS, ids=str)
-def test_the_tests_mirror_the_tree(path: Path) -> None:
-    without_logic = {"paper/lost.py", "paper/reports.py"}
-    if path.as_posix() not in without_logic:
-        assert (TESTS / path.parent / f"test_{path.name}").exists()
+def test_the_tests_mirror_the_tree() -> None:
+    for path in IN_ROOMS:
+        without_logic = {"paper/lost.py", "paper/reports.py"}
+        if path.as_posix() not in without_logic:
+            assert (TESTS / path.parent / f"test_{path.name}").exists(), path
 
 
-@pytest.mark.parametrize("code", ["import bezstab", "from bezstab.cli import main; main(['--help'])"])
-def test_import_and_help_are_light(code: str) -> None:
-    heavy = "{'sympy', 'matplotlib', 'mujoco', 'distributed'}"
-    probe = f"import atexit, sys; atexit.register(lambda: print('heavy:', {heavy} & set(sys.modules)))\n"
-    run = subprocess.run([sys.executable, "-c", probe + code], capture_output=True, text=True, check=True)
-    assert run.stdout.rstrip().endswith("heavy: set()")
+def test_import_and_help_are_light() -> None:
+    for code in ["import bezstab", "from bezstab.cli import main; main(['--help'])"]:
+        heavy = "{'sympy', 'matplotlib', 'mujoco', 'distributed'}"
+        probe = f"import atexit, sys; atexit.register(lambda: print('heavy:', {heavy} & set(sys.modules)))\n"
+        run = subprocess.run([sys.executable, "-c", probe + code], capture_output=True, text=True, check=True)
+        assert run.stdout.rstrip().endswith("heavy: set()"), code
 
 
 @pytest.mark.slow

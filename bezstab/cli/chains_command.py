@@ -52,7 +52,7 @@ def chains(
     figure: FigureForm,
     form: Format,
 ) -> None:
-    """Show from how many sweeps chains of bodies are stable in an engine.
+    """Show how many sweeps an engine's chains need.
 
     Game engines solve one constraint after another, in sweeps, and start from the last step's impulses. With few sweeps
     a chain of bodies may diverge though each constraint alone is stable. For each chain the fewest stable sweeps are

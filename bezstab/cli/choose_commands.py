@@ -51,6 +51,7 @@ from bezstab.cli.options import (
 from bezstab.cli.output import for_reading, progress, say, show_rows, show_text
 from bezstab.engines import ENGINES, RUN_UNDERNEATH, Drive, Engine
 from bezstab.errors import InputError, NumericalError
+from bezstab.goals import GOALS, Goal
 from bezstab.methods import Method
 from bezstab.show import (
     CHECKED,
@@ -70,7 +71,6 @@ from bezstab.show import (
 
 if TYPE_CHECKING:
     from bezstab.questions import Answer
-    from bezstab.stability import Goal
 
 
 WITHOUT_ACCURACY = ("total_error", "order_left", "times_least_velocity")
@@ -82,10 +82,9 @@ WITHOUT_ACCURACY = ("total_error", "order_left", "times_least_velocity")
 @click.option("--h", type=SECONDS, required=True, help="Step size in s.")
 @click.option(
     "--goal",
-    type=click.Choice(["accurate", "robust", "fastest", "critical", "gentle"]),
-    help="accurate: the least error forced on the motion, among what settles in time; robust: fastest at worst over "
-    "smaller steps and the spread; fastest: least |z_p|; critical: fastest without oscillation; gentle: the mildest "
-    "α = β that settles in time [accurate; robust with --pd and for an --engine that can express a curve alone].",
+    type=click.Choice(list(GOALS)),
+    help="; ".join(f"{goal}: {meaning}" for goal, meaning in GOALS.items())
+    + " [accurate; robust with --pd and for an --engine that can express a curve alone].",
 )
 @omega_option
 @click.option(
@@ -111,7 +110,7 @@ WITHOUT_ACCURACY = ("total_error", "order_left", "times_least_velocity")
 def choose(
     methods: Sequence[Method],
     h: Fraction,
-    goal: "Goal | None",
+    goal: Goal | None,
     omega: Fraction | None,
     h_max: Fraction | None,
     h_min: Fraction | None,

@@ -5,7 +5,7 @@ import re
 from collections.abc import Callable, Iterable
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar, get_args
 
 import click
 
@@ -13,6 +13,7 @@ from bezstab.engines import ENGINES, Engine, engine_and_values, engine_named
 from bezstab.errors import InputError
 from bezstab.methods import REGISTRY, lookup
 from bezstab.rationals import rational
+from bezstab.show import Format
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
@@ -152,20 +153,20 @@ output_option = click.option(
     "-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory for what is written."
 )
 figure_option = click.option(
-    "--figure", type=click.Choice(["png", "svg", "pdf", "none"]), default="png", help="Format of the figure."
+    "--figure", type=click.Choice(get_args(FigureForm)), default="png", help="Format of the figure."
 )
 
 
 def table_option(default: TableForm) -> Decorator:
     """Return the option --table."""
-    choice = click.Choice(["csv", "npz", "none"])
+    choice = click.Choice(get_args(TableForm))
     return click.option("--table", type=choice, default=default, help="Format of the table.")
 
 
 format_option = click.option(
     "--format",
     "form",
-    type=click.Choice(["text", "json", "csv", "markdown"]),
+    type=click.Choice(get_args(Format)),
     default="text",
     help="What to print on standard output.",
 )

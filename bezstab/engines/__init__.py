@@ -3,16 +3,7 @@
     values in an engine's words -> what the engine makes of them -> (alpha_hat, beta_hat) and the method it steps with
     (alpha_hat, beta_hat) -> a line to paste
 
-From data upwards; a file imports only from those above it:
-
-    sweeping             how an engine that sweeps goes through a step
-    conversions          what an engine is: its words read and written, its clamps, its own integrator
-    acceleration_engines true Baumgarte feedback: the integrator decides
-    velocity_engines     impulse engines, whose velocity update feeds part of the error back
-    position_engines     engines that move positions and derive velocities from that
-    implicit_engines     springs and drives that are solved implicitly
-    drives               a joint's proportional and derivative gains
-    engine_list          all engines by name, and which of them a run has witnessed
+What an engine has no words for is refused, not guessed.
 """
 
 from bezstab.engines.conversions import Applied, Curve, Engine, Point

@@ -1,35 +1,6 @@
 """Whether the prediction holds: measured poles, outside witnesses, what accuracy costs.
 
-The only room in which stability and mechanism meet. A file imports only from those above it:
-
-    worker_pools        who does long work: processes, or a cluster's workers
-    chunk_stores        where finished chunks are kept, under a lock
-    chunks              long work in chunks, spread over workers, kept as they arrive
-    linear_prediction   the dominant pole in a sampled response, or why none can be told
-    noisy_prediction    the same beside white noise, and that there is nothing but noise
-    mixing_poles        two poles near each other, and how far a motion takes them
-    moving_mechanisms   what a mechanism's motion does to its poles, to first order
-    moving_regions      the region of a mechanism that moves
-    linearized_steps    a method's steps along a motion, linearised
-    floquet             the exact rates of a mechanism that moves
-    own_motions         the same along the motion that the method itself makes
-    kicked_revolutions  the rate of runs that are kicked from that motion
-    measured_poles      predicted against measured poles of a running mechanism
-    logs                logs of somebody else's simulator, as columns of numbers
-    probed_poles        the dominant pole in a log, and whose it is
-    kick_fates          whether the constraint error that a kick has made grows or dies
-    verdict_maps        simulated verdicts over the plane against |z_p| < 1
-    mujoco_models       a MuJoCo model's step, constraints, springs, drives and masses
-    mujoco_lint         what they mean in alpha_hat and beta_hat, and whether they are safe
-    mujoco_witness      an engine that is not ours must diverge where the map says
-    reference_motions   a motion known to some thirteen digits
-    forced_runs         the constraint error that a method forces on a mechanism, predicted and measured
-    pareto              which runs no other beats
-    accuracy_costs      what a method and a step cost in simulation, and what they buy
-    recorded_times      processor times that an earlier sweep measured
-    sweep_summaries     that in sentences
-    root_digits         how many digits of a pole are right, against a hundred
-    extremes            what holds where numbers are extreme
+The only room in which stability and mechanism meet.
 """
 
 from bezstab.evidence.accuracy_costs import (

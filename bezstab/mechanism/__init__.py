@@ -2,29 +2,7 @@
 
     scene (TOML data) -> equations_of_motion (sympy) -> compiled_mechanism -> initial_state -> simulate -> observe
 
-From data upwards; a file imports only from those above it:
-
-    scenes              bodies, joints, forces, springs and initial state as checked data
-    scene_files         their file format
-    equations           M, c, C_q, gamma and g by sympy
-    second_order_memory what a second-order scheme carries from step to step, and when it evaluates
-    second_order_turns  a step of a second-order scheme, and of all that are implicit, as a list of actions
-    generated_code      the one place that writes and compiles Python source: accelerations, steppers
-    newton_iterations   Newton's method for the accelerations of an implicit step
-    newton_side_by_side the same of many runs at a time, as machine code takes it
-    compiled            a scene with its compiled functions, made once
-    compiled_steps      steps as machine code, by numba, the same to the last bit
-    compiled_batches    the same of many runs at a time, of which only constraint errors matter
-    observation         what the constraints do along a history
-    energies            work of drivers and forces, and the drift that is left
-    start               consistent initial states, and perturbed ones
-    runner              runs of a method with feedback, and what ends one early
-    motions             the motion itself, as a function of time, and when it begins anew
-    linearized          how the acceleration changes with position and velocity
-    constraint_normals  how fast the directions of the constraints turn along a motion
-    constraint_motions  how a motion drives the constraints: its rate and amplitude
-    simulation          a run and its observation as one value
-    varying_runs        the same with steps that vary
+Units are SI and rad.
 """
 
 from bezstab.mechanism.compiled import (

@@ -1,33 +1,5 @@
 """Integration methods as exact data, and what follows from their coefficients.
 
-From exact numbers upwards; a file imports only from those above it:
-
-    polynomials         polynomials with rational coefficients as data
-    schur               where a polynomial's roots lie, proven in exact arithmetic
-    step_equations      the equations of a step, for x, v, a and helpers
-    determinants        these as a matrix over z, alpha_hat and beta_hat, and its determinants
-    second_order        schemes for x'' = a(x, x') as a list of such equations, in any order
-    algebraic_numbers   irrational coefficients as rationals good to 40 digits
-    square_roots        numbers with square roots, exactly, from text
-    recipes             equations of a step as text
-    schemes             the kinds of methods as frozen data that checks itself
-    scheme_motions      motions that every scheme follows exactly, and so when it evaluates
-    steady_errors       the error that a method makes anew in each step, as a function of the feedback
-    multistep_methods   Bezier, Adams, predictor-corrector pairs, backward differentiation, by number of steps
-    runge_kutta_methods  explicit and implicit Runge-Kutta methods
-    second_order_methods  symplectic Euler, Verlet, Newmark, symplectic compositions and such
-    method_files        a user's method, from TOML
-    aliases             what else they are called, and advice
-    registry            every built-in method by name
-    derivation          its polynomials pi(z, mu) and P(z; alpha_hat, beta_hat), and the s->z mapping
-    shared_factors      poles that no feedback moves
-    plane_edges         where the plane turns from stable to unstable, exactly
-    path_edges          where a path through the plane may turn so, exactly
-    orders              order of accuracy and error constant
-    step_matrices       one step of a one-step method as an exact matrix, for steps that differ in length
-    second_order_formulas  the equations of a step as text or LaTeX
-    formulas            all that as text or LaTeX
-
 What needs sympy is loaded when first used: naming a multistep or Runge-Kutta method does not.
 """
 

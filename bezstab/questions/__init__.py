@@ -2,14 +2,7 @@
 
     methods, a point or a goal, steps, an engine or a drive, a scene   →   Question   →   answers   →   row, table, text
 
-A file imports only from those above it:
-
-    points      how a point is given
-    motions     the motion that a question is about
-    chains      a chain of bodies in an engine that sweeps
-    question    what somebody asks, checked at birth
-    answering   what there is to answer
-    held_drives what there is to answer about a drive that is held or late
+`cli` and `api` make questions and hand on answers; neither computes.
 """
 
 from bezstab.questions.answering import SLOWER, Answer, Gains, LargestStep, answers, largest_step

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Literal
 
 from bezstab.engines import Engine, Point
 from bezstab.errors import InputError, NumericalError
+from bezstab.goals import Goal
 from bezstab.methods import Method
 from bezstab.questions.chains import ChainAnswer, chain_answer, strongest_setting
 from bezstab.questions.points import all_points
@@ -24,7 +25,6 @@ from bezstab.rationals import rational
 from bezstab.stability import (
     Choice,
     FeedbackCost,
-    Goal,
     Modulus,
     VaryingSteps,
     choose,

@@ -6,16 +6,15 @@ Messages name options as the command line has them (--h-max); `bezstab.api` turn
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import get_args
 
 from bezstab.engines import DRIVE_METHODS, Drive, Engine, Point
 from bezstab.errors import InputError
+from bezstab.goals import GOALS, Goal
 from bezstab.mechanism import Scene, TurningNormals
 from bezstab.methods import Method, check_one_step, lookup
 from bezstab.questions.chains import Chain, check_chain
 from bezstab.questions.motions import ReferenceMotion, motion_of, turning_of
 from bezstab.questions.points import GivenPoint, engine_holds, point_of_drive, point_of_engine
-from bezstab.stability import Goal
 from bezstab.units import check_step
 
 WHICH_METHOD = (
@@ -111,8 +110,8 @@ class Question:
 
     def _check_goal(self, goal: Goal) -> None:
         """Raise InputError for what does not go with a goal, and for a spread that is no share."""
-        if goal not in get_args(Goal):
-            raise InputError(f"goal {goal!r}: expected {', '.join(get_args(Goal))}")
+        if goal not in GOALS:
+            raise InputError(f"goal {goal!r}: expected {', '.join(GOALS)}")
         if not 0 <= self.spread < 1:
             raise InputError(f"--spread {self.spread:g}: expected a share from 0 to 1")
         if self.settle is None and goal == "gentle":

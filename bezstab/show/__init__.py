@@ -1,28 +1,6 @@
 """Results as rows and tables, and as figures; `plot` is the public module that draws on a user's own Axes.
 
-A file imports only from those above it; what draws is not loaded before it is used:
-
-    columns             typed columns, and rows as text, Markdown, CSV or JSON
-    blocks              rows as blocks of lines, and text that wraps
-    words               numbers as sentences have them
-    cells               what a cell of a table shows where it takes more than a format
-    fields              a field of a row, from which rows, tables and schemas derive
-    row_kinds           every field of every row, and which fields the rows of each command have
-    schemas             the rows that each command prints, as a JSON Schema
-    best_point_text     a best point in words
-    rows                results as rows
-    varying_rows        what steps that vary do, as keys of a row and in a sentence
-    answer_rows         answers to a question as rows, and in words
-    held_rows           drives that are held or late as rows, and in words
-    arrays              histories and maps as arrays for files
-    style               what all figures share
-    histories           a history as a line, or as its envelope
-    plot                one result on one Axes
-    plane_figures       figures of the alpha_hat-beta_hat plane
-    accuracy_figures    the error that feedback forces over the plane, and against decay
-    run_figures         figures of simulations
-    chain_figures       figures of chains in engines that sweep
-    explorer            the window
+What draws is not loaded before it is used.
 """
 
 from typing import TYPE_CHECKING

@@ -5,7 +5,9 @@ documentation of keys (`bezstab schema`) take it from there.
 """
 
 from collections.abc import Mapping, Sequence
+from typing import get_args
 
+from bezstab.methods import Verdict
 from bezstab.show.cells import (
     both_errors_text,
     both_times_text,
@@ -32,7 +34,7 @@ from bezstab.show.cells import (
 )
 from bezstab.show.fields import Field, RowKind
 
-VERDICTS = ("converges", "marginal", "diverges")
+VERDICTS = get_args(Verdict)
 MOVING_VERDICTS = ("converges", "diverges", "not settled for this mechanism")
 OUTCOMES = ("converges", "diverges", "neither", "too close to call")
 UNKNOWN_STEP = "where no step is given"

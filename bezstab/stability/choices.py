@@ -5,12 +5,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
-from typing import Literal, get_args
+from typing import get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.errors import InputError, NumericalError
+from bezstab.goals import Goal
 from bezstab.methods import Method, Verdict, steps
 from bezstab.rationals import exact
 from bezstab.stability.accurate_points import Decays, accurate_point, default_rate, worst_error
@@ -43,7 +44,6 @@ from bezstab.stability.regions import Region, pole_place, region
 from bezstab.stability.searches import first_where, zoom_on_minimum
 from bezstab.units import check_step
 
-Goal = Literal["accurate", "robust", "fastest", "critical", "gentle"]
 Within = Callable[[FloatArray, FloatArray, FloatArray], BoolArray]
 """Whether |z_p| is below a bound, over arrays of alpha_hat, beta_hat and bounds."""
 

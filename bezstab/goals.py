@@ -1,0 +1,13 @@
+"""The goals of a choice, each with what it asks for: the one place that names them."""
+
+from typing import Literal
+
+Goal = Literal["accurate", "robust", "fastest", "critical", "gentle"]
+
+GOALS: dict[Goal, str] = {
+    "accurate": "the least error forced on the motion, among what settles in time",
+    "robust": "the fastest at worst over smaller steps and the spread",
+    "fastest": "the least |z_p|",
+    "critical": "the fastest without oscillation",
+    "gentle": "the mildest α = β that settles in time",
+}
