@@ -1,38 +1,74 @@
 """The command that judges a MuJoCo model: lint."""
 
+from collections.abc import Sequence
+from fractions import Fraction
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
-from bezstab.cli.options import format_option
+from bezstab.cli.options import NUMBER, ParsedType, format_option
 from bezstab.cli.output import for_reading, progress, show_rows, show_text
+from bezstab.errors import InputError
+from bezstab.rationals import rational
 from bezstab.show import LINTED, Format
+
+if TYPE_CHECKING:
+    from bezstab.evidence import MotorGains
+
+
+def _gains(text: str) -> "MotorGains":
+    """Return the gains that hip.*=200,5 says."""
+    from bezstab.evidence import MotorGains
+
+    pattern, equals, numbers = text.rpartition("=")
+    gains = numbers.split(",")
+    if not (pattern and equals and len(gains) == 2):
+        raise InputError(f"{text!r}: expected NAME=KP,KD")
+    return MotorGains(pattern, *map(rational, gains))
 
 
 @click.command()
 @click.argument("model", type=click.Path(path_type=Path))
+@click.option(
+    "--pd",
+    "gains",
+    type=ParsedType("name=kp,kd", _gains),
+    multiple=True,
+    help="Judge the motors of that name with a controller's gains; the name may be a regular expression. Repeatable.",
+)
+@click.option("--every", type=int, default=1, show_default=True, help="With --pd: steps between two controls.")
+@click.option("--late", type=NUMBER, default="0", show_default=True, help="With --pd: so many steps late.")
 @format_option
 @click.pass_context
-def lint(context: click.Context, model: Path, form: Format) -> None:
+def lint(
+    context: click.Context, model: Path, gains: "Sequence[MotorGains]", every: int, late: Fraction, form: Format
+) -> None:
     """Judge a MuJoCo model: exit status 1 if anything is unsafe.
 
-    MODEL is MuJoCo's XML; MuJoCo also opens what it includes, its meshes, textures and height fields, and nothing is
-    simulated. A row for each equality, limit, friction loss, pair of contact parameters, spring, damper and drive: its
-    point, the method that MuJoCo's integrator is there, and the line to write where it is unsafe, relies on refsafe or
-    is needlessly soft; "not judged", and why, where no one point stands for an element. Of the points that solimp makes
-    of one setting the one with the largest |z| is judged; "judged" says which, and why. "stable for h times" is up to
-    which multiple of the time step it stays stable at the same physical parameters. The last row is of all equalities,
-    springs and drives together, and decides: they may be unsafe where each alone is not, or safe where one alone,
-    without its closed loop, is not. Needs mujoco 3.7 or later, since when connect and weld have the term of turning
-    normals.
+    MODEL is MuJoCo's XML or a URDF; MuJoCo also opens what it includes, its meshes, textures and height fields, and
+    nothing is simulated. A row for each equality, limit, friction loss, pair of contact parameters, spring, damper,
+    drive and motor: its point, the method that MuJoCo's integrator is there, and the line to write where it is unsafe,
+    relies on refsafe or is needlessly soft; "not judged", and why, where no one point stands for an element. Of the
+    points that solimp makes of one setting the one with the largest |z| is judged; "judged" says which, and why.
+    "stable for h times" is up to which multiple of the time step it stays stable at the same physical parameters. The
+    last row is of all equalities, springs and drives together, and decides: they may be unsafe where each alone is not,
+    or safe where one alone, without its closed loop, is not. Needs mujoco 3.7 or later, since when connect and weld
+    have the term of turning normals.
+
+    A <motor> is set from outside the model. With --pd it is judged with the gains of the controller that sets it, on
+    the model's own inertias, held and late as --every, --late and MuJoCo's own delay say: alone, and in the last row
+    with all the rest. A late target of a position drive takes no stability.
 
     Example: bezstab lint robot.xml
     """
     from bezstab.evidence import linted_model, read_mujoco_model
     from bezstab.show import linted_row
+    from bezstab.stability import Timing
 
+    timing = Timing(every, late)
     model_data = read_mujoco_model(model)
-    linted = list(progress(linted_model(model_data), "lint", model_data.size))
+    linted = list(progress(linted_model(model_data, gains, timing), "lint", model_data.size))
     heading = f"{model.name}: timestep {model_data.h:g} s, integrator {model_data.integrator}"
     if linted or not for_reading(form):
         rows = [linted_row(each) for each in linted]

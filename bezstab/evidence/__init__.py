@@ -41,6 +41,7 @@ from bezstab.evidence.moving_mechanisms import (
     tabulated_rates,
 )
 from bezstab.evidence.moving_regions import MovingRegion, moving_growth, moving_modulus, moving_region
+from bezstab.evidence.mujoco_controllers import MotorGains
 from bezstab.evidence.mujoco_lint import Linted, linted_model
 from bezstab.evidence.mujoco_models import ModelData, model_data, mujoco_module, read_mujoco_model
 from bezstab.evidence.mujoco_witness import TIMES, Witnessed, model_xml, mujoco_witnesses, witness_count
@@ -88,6 +89,7 @@ __all__ = [
     "MapRows",
     "Measurement",
     "ModelData",
+    "MotorGains",
     "MovingPole",
     "MovingRegion",
     "MovingVerdict",

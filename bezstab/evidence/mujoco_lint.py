@@ -24,13 +24,26 @@ from typing import TypeVar
 
 import numpy as np
 
-from bezstab.engines import ENGINES
+from bezstab.engines import ENGINES, Drive
 from bezstab.errors import NumericalError
-from bezstab.evidence.mujoco_models import Constraint, Feedback, ModelData
+from bezstab.evidence.mujoco_controllers import Controlled, MotorGains, controlled_motors, lifted_step
+from bezstab.evidence.mujoco_models import Constraint, Feedback, ModelData, Motor
 from bezstab.methods import Method, Verdict, closed_loop_at, lookup, recursion_verdict
 from bezstab.rationals import exact
-from bezstab.stability import BoolArray, FloatArray, first_where, poles, spectral_radius
+from bezstab.stability import (
+    BoolArray,
+    FloatArray,
+    Timing,
+    first_where,
+    held_spectral_radius,
+    held_verdict,
+    poles,
+    spectral_radius,
+)
 from bezstab.units import feedback_gains
+
+FRESH = Timing()
+"""A controller as fast as the physics."""
 
 Point = tuple[Fraction, Fraction]
 """alpha_hat and beta_hat."""
@@ -133,20 +146,33 @@ class Linted:
         return replace(self, safe_together=True, advice=SAFE_TOGETHER)
 
 
-def linted_model(model: ModelData) -> Iterator[Linted]:
+def linted_model(model: ModelData, gains: Sequence[MotorGains] = (), timing: Timing = FRESH) -> Iterator[Linted]:
     """Yield what every constraint, spring, damper and drive of a model means, then all that hold both ways together.
 
-    NumericalError where the mass matrix is singular, and where a pole leaves the range of float64.
+    `gains` and `timing` are those of a controller that sets the model's motors; a motor without is not judged.
+    InputError for gains of no motor, NumericalError where the mass matrix is singular,
+    and where a pole leaves the range of float64.
     """
     modes = _damping_modes(model)
     groups = _along_one_direction(model.feedbacks)
     bilateral = [constraint for constraint in model.constraints if _is_bilateral(constraint)]
-    together = _linted_together(model, modes, bilateral) if len(bilateral) + len(groups) > 1 else None
+    controlled = controlled_motors(model, gains, timing)
+    several = len(bilateral) + len(groups) + len(controlled) > 1
+    together = _linted_together(model, modes, bilateral, controlled) if several else None
     for constraint in model.constraints:
         alone = _linted_constraint(model, modes, constraint)
         yield alone.beside(together) if _is_bilateral(constraint) else alone
     for group in groups:
         yield _linted_drive(model, modes, group).beside(together)
+    for motor in model.motors:
+        judged = [each for each in controlled if each.motor == motor]
+        yield (
+            _linted_motor(model, modes, judged[0]).beside(together)
+            if judged
+            else _not_judged(
+                motor.element, "motor", f"its control comes from outside: --pd '{motor.name}=KP,KD' judges it"
+            )
+        )
     for each in model.unjudged:
         yield _not_judged(each.element, each.kind, each.reason)
     if together:
@@ -515,8 +541,14 @@ def _drive(model: ModelData, modes: _DampingModes, group: Sequence[Feedback]) ->
             implicit += arm_squared * feedback.damping
         else:
             damping += arm_squared * feedback.damping
-    inertia = 1 / float(np.sum((direction[moved] @ modes.basis[moved]) ** 2))  # 1 / (u M^-1 u')
-    return _Drive(exact(stiffness), exact(damping), exact(implicit), exact(float(f"{inertia:.{DIGITS}g}")))
+    return _Drive(exact(stiffness), exact(damping), exact(implicit), _inertia_along(modes, direction))
+
+
+def _inertia_along(modes: _DampingModes, direction: FloatArray) -> Fraction:
+    """Return the inertia along a direction u with all else free, 1 / (u M^-1 u'), to DIGITS."""
+    moved = np.flatnonzero(direction)
+    inertia = 1 / float(np.sum((direction[moved] @ modes.basis[moved]) ** 2))
+    return exact(float(f"{inertia:.{DIGITS}g}"))
 
 
 @dataclass(frozen=True)
@@ -593,10 +625,45 @@ def _smaller_step(end: float | None, h: Fraction) -> str:
     return f'write timestep="{0.9 * end * float(h):.2g}"'
 
 
+# Motors whose control comes from outside
+
+
+def _linted_motor(model: ModelData, modes: _DampingModes, controlled: Controlled) -> Linted:
+    """Judge a motor with its controller on the inertia along its direction: all other joints are free."""
+    motor, timing = controlled.motor, controlled.timing
+    inertia = _inertia_along(modes, motor.direction)
+    kp, kd = exact(motor.gain) * controlled.kp, exact(motor.gain) * controlled.kd
+    drive, method = Drive(kp, kd, inertia), _map(model)
+    point = drive.point(exact(model.h))
+
+    def unstable(factors: FloatArray) -> BoolArray:
+        steps = (exact(model.h * factor) for factor in factors.tolist())
+        return np.array([held_spectral_radius(method.name, *drive.point(h), timing) >= 1 for h in steps])
+
+    verdict = held_verdict(method.name, *point, timing)
+    end = _h_factor(unstable)
+    setting = f"kp {float(kp):.6g}, kd {float(kd):.6g}, every {timing.every}, late {float(timing.late):g}"
+    return Linted(
+        element=motor.element,
+        kind="motor",
+        setting=setting,
+        judged=f"{setting} on inertia {float(inertia):.6g} with all other joints free",
+        alpha_hat=float(point[0]),
+        beta_hat=float(point[1]),
+        map=method.name,
+        verdict=verdict,
+        z_abs=held_spectral_radius(method.name, *point, timing),
+        h_factor=end,
+        advice="" if verdict == "converges" else _smaller_step(end, exact(model.h)),
+    )
+
+
 # All together
 
 
-def _linted_together(model: ModelData, modes: _DampingModes, constraints: Sequence[Constraint]) -> Linted:
+def _linted_together(
+    model: ModelData, modes: _DampingModes, constraints: Sequence[Constraint], controlled: Sequence[Controlled]
+) -> Linted:
     """Judge what holds both ways, as one linear system at qpos0: what is safe alone need not be safe together.
 
     Nor is what is unsafe alone unsafe in a closed loop, where it has to move more. Without gravity, limits and
@@ -607,7 +674,7 @@ def _linted_together(model: ModelData, modes: _DampingModes, constraints: Sequen
 
     @cache
     def modulus(factor: float) -> float:
-        return _together_modulus(model, modes, constraints, factor)
+        return _together_modulus(model, modes, constraints, controlled, factor)
 
     def unstable(factors: FloatArray) -> BoolArray:
         return np.array([modulus(float(factor)) > 1 + UNDAMPED for factor in factors])
@@ -634,14 +701,20 @@ def _linted_together(model: ModelData, modes: _DampingModes, constraints: Sequen
 
 
 def _together_modulus(
-    model: ModelData, modes: _DampingModes, constraints: Sequence[Constraint], factor: float
+    model: ModelData,
+    modes: _DampingModes,
+    constraints: Sequence[Constraint],
+    controlled: Sequence[Controlled],
+    factor: float,
 ) -> float:
-    """Return the largest |z| of one step of all equalities, springs, dampers and drives; 0 where nothing is held.
+    """Return the largest |z| of a step of all equalities, springs, dampers, drives and motors; 0 where none holds.
 
     With the equalities' impedances at the constraint, or past solimp's width, whichever is worse.
     """
     choices = {tuple(_impedances(each)[which] for each in constraints) for which in (0, -1)}
-    return max(_modulus_with_impedances(model, modes, constraints, impedances, factor) for impedances in choices)
+    return max(
+        _modulus_with_impedances(model, modes, constraints, controlled, impedances, factor) for impedances in choices
+    )
 
 
 def _is_bilateral(constraint: Constraint) -> bool:
@@ -653,32 +726,56 @@ def _modulus_with_impedances(
     model: ModelData,
     modes: _DampingModes,
     constraints: Sequence[Constraint],
+    controlled: Sequence[Controlled],
     impedances: Sequence[float],
     factor: float,
 ) -> float:
+    h = factor * model.h
+    step, forces = _one_step(model, modes, constraints, [each.motor for each in controlled], impedances, factor)
+    every = controlled[0].timing.every if controlled else 1
+    z = np.linalg.eigvals(lifted_step(step, forces, controlled, h) if controlled else step)
+    held = np.abs(z[np.abs(z - 1) > FREE]) ** (1 / every)
+    return float(held.max(initial=0.0))
+
+
+def _one_step(
+    model: ModelData,
+    modes: _DampingModes,
+    constraints: Sequence[Constraint],
+    motors: Sequence[Motor],
+    impedances: Sequence[float],
+    factor: float,
+) -> tuple[FloatArray, FloatArray]:
+    """Return the matrices of one step: of (x, h v), shape (2 dofs, 2 dofs), and of motors' forces, (2 dofs, motors)."""
     stiffness, damping = _springs_and_dampers(model, model.feedbacks)
     h = factor * model.h
     inverse = modes.basis @ modes.basis.T  # of the mass
-    by_position, by_velocity = -inverse @ stiffness, -inverse @ damping  # of the acceleration
+    arms = np.array([motor.direction for motor in motors]).reshape(-1, len(inverse)).T
+    # of the acceleration: what positions, velocities and forces make of it
+    by_position, by_velocity, by_force = -inverse @ stiffness, -inverse @ damping, inverse @ arms
     if constraints:
         jacobian = np.vstack([each.jacobian for each in constraints if each.jacobian is not None])
         regularization, damper, spring = _regularized(model, constraints, impedances, factor)
-        forces = np.linalg.inv(jacobian @ inverse @ jacobian.T + np.diag(regularization))
-        to_acceleration = inverse @ jacobian.T @ forces
+        inverted = np.linalg.inv(jacobian @ inverse @ jacobian.T + np.diag(regularization))
+        to_acceleration = inverse @ jacobian.T @ inverted
         by_position = by_position - to_acceleration @ (spring[:, np.newaxis] * jacobian + jacobian @ by_position)
         by_velocity = by_velocity - to_acceleration @ (damper[:, np.newaxis] * jacobian + jacobian @ by_velocity)
+        by_force = by_force - to_acceleration @ jacobian @ by_force
     slower = (modes.basis / (1 + h * modes.rates)) @ modes.basis.T @ model.mass  # what implicit damping leaves of it
-    by_position, by_velocity = slower @ by_position, slower @ by_velocity
-    identity, zero = np.eye(len(model.mass)), np.zeros_like(model.mass)
+    # velocities in units of 1/h: (h v)' = h^2 by_position x + h by_velocity (h v) + h^2 by_force f
+    to_velocity = slower @ np.hstack([h * h * by_position, h * by_velocity, h * h * by_force])
+    dofs, columns = len(inverse), to_velocity.shape[1]
     if model.integrator == "RK4":
-        rates = np.linalg.eigvals(np.block([[zero, identity], [by_position, by_velocity]]))
-        mu = h * rates
-        z = 1 + mu * (1 + mu / 2 * (1 + mu / 3 * (1 + mu / 4)))
-    else:  # v' = v + h a(x, v), x' = x + h v'; velocities in units of 1/h
-        new_velocity = np.block([h * h * by_position, identity + h * by_velocity])
-        z = np.linalg.eigvals(np.vstack([new_velocity + np.block([identity, zero]), new_velocity]))
-    held = np.abs(z[np.abs(z - 1) > FREE])
-    return float(held.max(initial=0.0))
+        rates = np.zeros((columns, columns))
+        rates[:dofs, dofs : 2 * dofs] = np.eye(dofs)
+        rates[dofs : 2 * dofs] = to_velocity
+        identity = np.eye(columns)
+        whole = identity + rates @ (identity + rates / 2 @ (identity + rates / 3 @ (identity + rates / 4)))
+    else:  # the velocity first, then the position with it
+        whole = np.eye(columns)
+        whole[dofs : 2 * dofs] += to_velocity
+        whole[:dofs] += whole[dofs : 2 * dofs]
+    return whole[: 2 * dofs, : 2 * dofs], whole[: 2 * dofs, 2 * dofs :]
 
 
 def _regularized(

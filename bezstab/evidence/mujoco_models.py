@@ -77,6 +77,21 @@ class Feedback:
 
 
 @dataclass(frozen=True)
+class Motor:
+    """An actuator whose force is what a controller outside the model sets: `gain` times the control along `direction`.
+
+    `direction` (dofs,) is the moment arm, gear included, so that the actuator's length is direction . q. `delay` (s) is
+    MuJoCo's own, of the control.
+    """
+
+    element: str
+    name: str
+    direction: FloatArray
+    gain: float
+    delay: float
+
+
+@dataclass(frozen=True)
 class Unjudged:
     """An element whose feedback is no constant, and why."""
 
@@ -100,11 +115,12 @@ class ModelData:
     constraints: tuple[Constraint, ...]
     feedbacks: tuple[Feedback, ...]
     unjudged: tuple[Unjudged, ...]
+    motors: tuple[Motor, ...] = ()
 
     @property
     def size(self) -> int:
         """Return the number of elements."""
-        return len(self.constraints) + len(self.feedbacks) + len(self.unjudged)
+        return len(self.constraints) + len(self.feedbacks) + len(self.unjudged) + len(self.motors)
 
 
 def mujoco_module(wanted_by: str) -> types.ModuleType:
@@ -176,6 +192,7 @@ def model_data(mujoco: types.ModuleType, model: Any) -> ModelData:
         constraints=constraints,
         feedbacks=feedbacks,
         unjudged=(*(each for each in actuators if isinstance(each, Unjudged)), *_flexes(mujoco, model)),
+        motors=tuple(each for each in actuators if isinstance(each, Motor)),
     )
 
 
@@ -423,8 +440,11 @@ def _passive(mujoco: types.ModuleType, model: Any, data: Any) -> Iterator[Feedba
             yield Feedback(element, "tendon", directions[tendon], stiffness, damping, euler_implicit=False)
 
 
-def _actuators(mujoco: types.ModuleType, model: Any, data: Any) -> Iterator[Feedback | Unjudged]:
-    """Yield the position and velocity gains of actuators: those of an affine bias, and a damping of their own."""
+def _actuators(mujoco: types.ModuleType, model: Any, data: Any) -> Iterator[Feedback | Motor | Unjudged]:
+    """Yield the position and velocity gains of actuators, those of an affine bias, a damping of their own, and motors.
+
+    A motor has no gains of its own: whoever sets its control closes the loop.
+    """
     if _disabled(mujoco, model, "ACTUATION"):
         return
     directions = _rows(model, data.actuator_moment, data.moment_rownnz, data.moment_rowadr, data.moment_colind)
@@ -450,6 +470,17 @@ def _actuators(mujoco: types.ModuleType, model: Any, data: Any) -> Iterator[Feed
             stiffness, damping = (-model.actuator_biasprm[actuator, 1:3]).tolist()
             if stiffness or damping:
                 yield Feedback(element, "drive", direction, stiffness, damping, euler_implicit=False)
+        elif mujoco.mjtDyn(model.actuator_dyntype[actuator]) != mujoco.mjtDyn.mjDYN_NONE:
+            yield Unjudged(element, "motor", "its activation filters what a controller sets")
+        else:
+            delays = getattr(model, "actuator_delay", np.zeros(count))  # until 3.8 there were none
+            yield Motor(
+                element=element,
+                name=mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_ACTUATOR, actuator) or str(actuator),
+                direction=direction,
+                gain=float(model.actuator_gainprm[actuator, 0]),
+                delay=float(delays[actuator]),
+            )
         own_damping = getattr(model, "actuator_damping", np.zeros(count))[actuator]
         if own_damping and not _disabled(mujoco, model, "DAMPER"):  # added to that of its joint, if it has one
             at_joint = mujoco.mjtTrn(model.actuator_trntype[actuator]) in of_joints

@@ -66,7 +66,6 @@ if TYPE_CHECKING:
         PlaneStrips,
         Strip,
         plane_strips,
-        points_between_edges,
     )
     from bezstab.methods.shared_factors import fixed_poles, reduced_table, without_shared_factor
     from bezstab.methods.steady_errors import (
@@ -116,7 +115,6 @@ DERIVED = {
         "PlaneStrips",
         "Strip",
         "plane_strips",
-        "points_between_edges",
     ),
     "shared_factors": ("fixed_poles", "reduced_table", "without_shared_factor"),
     "steady_errors": (
@@ -211,7 +209,6 @@ __all__ = [
     "mapping_text",
     "matrix_product",
     "plane_strips",
-    "points_between_edges",
     "polynomial_determinant",
     "polynomial_product",
     "read_method",

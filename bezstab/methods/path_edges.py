@@ -21,7 +21,9 @@ import sympy as sp
 from sympy.polys.rings import PolyElement
 
 from bezstab.methods.derivation import coefficient_table
-from bezstab.methods.plane_edges import LEVEL_BITS, crossing_polynomials, refined_root, sign_at, whole_coefficients
+from bezstab.methods.determinants import as_fraction, in_field
+from bezstab.methods.plane_edges import crossing_polynomials
+from bezstab.methods.root_isolation import BITS, positive_roots, whole_coefficients
 from bezstab.methods.schemes import Method
 from bezstab.methods.shared_factors import reduced_table, without_shared_factor
 from bezstab.rationals import ZERO
@@ -30,14 +32,12 @@ VARIABLE = sp.Symbol("s")
 RING = sp.QQ[VARIABLE]
 S = RING.from_sympy(VARIABLE)
 
-SHORT = 2**24  # denominators up to it are tried for a root that is known to LEVEL_BITS: one that fits is no chance
-
 
 def turning_factors(method: Method, alpha_hat: Fraction, beta_hat: Fraction, powers: tuple[int, int]) -> list[Fraction]:
     """Return, ascending, every factor s > 0 at which a root may pass |z| = 1 on the path (s^i alpha_hat, s^j beta_hat).
 
     (i, j) are the powers, each 0, 1 or 2; everything is dimensionless. Rational places with a short denominator are
-    exact, others good to LEVEL_BITS bits. Poles that no parameters move are left out.
+    exact, others good to 70 bits bits. Poles that no parameters move are left out.
     """
     method = without_shared_factor(method)
     coefficients = _along_path(method, alpha_hat, beta_hat, powers)
@@ -68,7 +68,7 @@ def _along_path(method: Method, alpha_hat: Fraction, beta_hat: Fraction, powers:
 
 
 def _number(c: Fraction) -> PolyElement:
-    return RING.convert(sp.QQ(c.numerator, c.denominator))
+    return RING.convert(in_field(c))
 
 
 def _edge_of_pairs(coefficients: Sequence[PolyElement]) -> PolyElement:
@@ -89,70 +89,16 @@ def _edge_of_pairs(coefficients: Sequence[PolyElement]) -> PolyElement:
     return total
 
 
-# Roots may lie forty powers of ten apart, where feedback is weak. So they are isolated octave by octave: on each the
-# signs of the coefficients that Descartes' rule counts, of x = 0 .. infinity mapped to it, say whether there is no root
-# (no change of sign) or one (one change); else it is halved.
-
-
 def _positive_roots(polynomial: PolyElement) -> list[Fraction]:
-    """Return the different positive roots of a polynomial, ascending: none of zero, which vanishes everywhere.
-
-    Exact where they are rational with a short denominator, else to LEVEL_BITS bits.
-    """
+    """Return the different positive roots of a polynomial, ascending: none of zero, which vanishes everywhere."""
     if not polynomial or polynomial.is_ground:
         return []
     free = sp.Poly.from_dict(dict(polynomial), VARIABLE, domain=sp.QQ).sqf_part()
-    descending = whole_coefficients(free)
-    if descending[-1] == 0:  # a root at zero, which is simple
-        descending = descending[:-1]
-    first, last = -_octaves_above(descending), _octaves_above(descending[::-1])
-    octaves = [(Fraction(2) ** k, Fraction(2) ** (k + 1)) for k in range(first, last)]
-    ends = [end for octave in octaves for end in _isolated(descending, *octave)]
-    return [_exact_if_short(polynomial, refined_root(descending, *end)) for end in ends]
-
-
-def _octaves_above(ascending: Sequence[int]) -> int:
-    """Return k so that all roots have |x| < 2^k: by M. Fujiwara's bound, 2 max |c_j / c_n|^(1/(n - j))."""
-    *others, leading = (abs(c).bit_length() for c in ascending)
-    n = len(others)
-    return 2 + max((-((leading - 1 - bits) // (n - j)) for j, bits in enumerate(others) if bits), default=0)
-
-
-def _isolated(descending: Sequence[int], low: Fraction, high: Fraction) -> list[tuple[Fraction, Fraction]]:
-    """Return intervals from low to below high with one root each, ascending; of no width where low is a root.
-
-    x = low + (high - low) / (1 + y), y from zero to infinity, is x from high down to low.
-    """
-    scale = low.denominator * high.denominator
-    start, width = int(low * scale), int((high - low) * scale)
-    of_scaled = _shifted([c * scale**k for k, c in enumerate(descending)][::-1], start)  # ascending in scale x - start
-    in_y = _shifted([c * width**k for k, c in enumerate(of_scaled)][::-1], 1)
-    changes = sum(one != other for one, other in pairwise(c > 0 for c in in_y if c))
-    if changes > 1:
-        middle = (low + high) / 2
-        return _isolated(descending, low, middle) + _isolated(descending, middle, high)
-    at_low = [] if sign_at(descending, low) else [(low, low)]
-    return [*at_low, (low, high)] if changes else at_low
-
-
-def _shifted(ascending: Sequence[int], by: int) -> list[int]:
-    """Return the polynomial in x of p(x + by)."""
-    shifted = list(ascending)
-    for k in range(len(shifted) - 1):
-        for j in range(len(shifted) - 2, k - 1, -1):
-            shifted[j] += by * shifted[j + 1]
-    return shifted
-
-
-def _exact_if_short(polynomial: PolyElement, root: Fraction) -> Fraction:
-    """Return the root of a polynomial next to one that is known to LEVEL_BITS: exact where it is a short rational."""
-    short = root.limit_denominator(SHORT)
-    return short if short == root or not _value(polynomial, short) else root
+    return list(positive_roots(whole_coefficients(free)))
 
 
 def _value(polynomial: PolyElement, x: Fraction) -> Fraction:
-    value = polynomial.evaluate(0, sp.QQ(x.numerator, x.denominator))
-    return Fraction(int(value.numerator), int(value.denominator))
+    return as_fraction(polynomial.evaluate(0, in_field(x)))
 
 
 def _factors_on_the_circle(
@@ -189,10 +135,10 @@ def _factors_on_the_circle(
 
 
 def _square_root(x: Fraction) -> Fraction:
-    """Return the square root of a number >= 0: exact where it is rational, else to LEVEL_BITS bits."""
+    """Return the square root of a number >= 0: exact where it is rational, else to 70 bits bits."""
     if isqrt(x.numerator) ** 2 == x.numerator and isqrt(x.denominator) ** 2 == x.denominator:
         return Fraction(isqrt(x.numerator), isqrt(x.denominator))
-    bits = max(0, LEVEL_BITS + (x.denominator.bit_length() - x.numerator.bit_length()) // 2)
+    bits = max(0, BITS + (x.denominator.bit_length() - x.numerator.bit_length()) // 2)
     return Fraction(isqrt((x.numerator << 2 * bits) // x.denominator), 1 << bits)
 
 

@@ -26,7 +26,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 from itertools import combinations, pairwise
-from math import gcd, inf
+from math import inf
 from typing import Any
 
 import sympy as sp
@@ -34,17 +34,17 @@ from sympy.polys.matrices import DomainMatrix
 from sympy.polys.rings import PolyElement
 
 from bezstab.errors import NumericalError
+from bezstab.methods.root_isolation import WholePolynomial, real_roots, size_in_bits, whole_coefficients
 from bezstab.methods.schemes import Method
 from bezstab.methods.schur import is_schur
 from bezstab.methods.shared_factors import reduced_table
-from bezstab.rationals import ONE, ZERO, bisected_integers, whole_multiples
+from bezstab.rationals import ONE, ZERO
 
 A, B = sp.symbols("alpha_hat beta_hat")
 RING = sp.QQ[A, B]
 
 LONG = 700  # bits of a coefficient: factors are looked for modulo primes of a multiple of that
 HIGH = 8  # degree in alpha_hat: with coefficients so long, discriminants of such curves take minutes
-LEVEL_BITS = 70  # of a level, relative: float64 has 53
 
 CurveTable = tuple[tuple[Fraction, ...], ...]
 """A polynomial in alpha_hat and beta_hat: table[i][j] belongs to alpha_hat^i beta_hat^j."""
@@ -76,7 +76,7 @@ class Strip:
 class PlaneStrips:
     """The whole plane in strips, from below to above, and the curves whose crossings they count.
 
-    Levels are exact to LEVEL_BITS bits, everything else is exact. `lost[i]` has for curve number i the levels at which
+    Levels are exact to 70 bits, everything else is exact. `lost[i]` has for curve number i the levels at which
     crossings run to infinity, with their number, complex ones included.
     """
 
@@ -115,16 +115,6 @@ def plane_strips(method: Method, level: Fraction) -> PlaneStrips | None:
             limits = {crossing: (at_low[crossing], at_high[crossing]) for crossing in crossings}
         strips.append(Strip(low, high, crossings, stable, limits))
     return PlaneStrips(tables, tuple(strips), tuple(lost))
-
-
-def points_between_edges(strips: PlaneStrips, alpha_hat: Fraction) -> list[Fraction]:
-    """Return a beta_hat in each piece into which the edges and levels of a plane cut a line of constant alpha_hat."""
-    cuts = {strip.high for strip in strips.strips if strip.high is not None}
-    for curve in strips.curves:
-        on_line = [_value((column,), ZERO, alpha_hat) for column in zip(*curve, strict=True)]
-        if any(on_line):
-            cuts.update(_real_roots_of(_without_zeros(on_line)))
-    return _between(sorted(cuts))
 
 
 def _coefficients(table: Iterable[CurveTable], level: Fraction) -> list[sp.Poly]:
@@ -256,7 +246,7 @@ def _levels(factors: list[sp.Poly], curves: list[sp.Poly]) -> tuple[list[Fractio
         in_beta.append(sp.Poly(curve.discriminant().as_expr(), B))
     for first, second in combinations(curves, 2):
         in_beta.append(sp.Poly(first.resultant(second).as_expr(), B))
-    different: dict[tuple[int, ...], None] = {}
+    different: dict[WholePolynomial, None] = {}
     for polynomial in in_beta:
         for factor, _ in polynomial.factor_list()[1]:
             different[whole_coefficients(factor)] = None
@@ -279,73 +269,6 @@ def _leading(curve: sp.Poly) -> sp.Poly:
     return sp.Poly(sp.Poly(curve.as_expr(), A).LC(), B)
 
 
-def whole_coefficients(polynomial: sp.Poly) -> tuple[int, ...]:
-    """Return the coefficients, descending, as whole numbers without a common factor, the first positive."""
-    fractions = [Fraction(int(c.p), int(c.q)) for c in polynomial.set_domain(sp.QQ).all_coeffs()]
-    whole, _ = whole_multiples(fractions)
-    shared = gcd(*whole) * (1 if whole[0] > 0 else -1)
-    return tuple(c // shared for c in whole)
-
-
-@cache
-def real_roots(whole: tuple[int, ...]) -> tuple[Fraction, ...]:
-    """Return the real roots of an irreducible polynomial with whole coefficients, descending powers, ascending.
-
-    Exact where they are rational, else to LEVEL_BITS bits.
-    """
-    if len(whole) == 2:
-        return (Fraction(-whole[1], whole[0]),)
-    polynomial = sp.Poly(whole, B)
-    return tuple(
-        refined_root(whole, Fraction(int(low.p), int(low.q)), Fraction(int(high.p), int(high.q)))
-        for (low, high), _ in polynomial.intervals()
-    )
-
-
-def refined_root(whole: Sequence[int], low: Fraction, high: Fraction) -> Fraction:
-    """Return the one root between two numbers, by bisection on a grid of binary fractions."""
-    if low == high:
-        return low
-    bits = LEVEL_BITS
-    size = max(abs(low), abs(high))
-    bits += max(0, -_exponent(size)) + 4
-    while True:
-        below, above = int(low * (1 << bits)) - 1, int(high * (1 << bits)) + 1
-        below, above = _neighbours(
-            whole, bits, max(low, Fraction(below, 1 << bits)), min(high, Fraction(above, 1 << bits))
-        )
-        root = Fraction(below + above, 2 << bits)
-        if root and _exponent(abs(root)) + bits >= LEVEL_BITS:
-            return root
-        bits *= 2  # nearer to zero than the interval told
-
-
-def _neighbours(whole: Sequence[int], bits: int, low: Fraction, high: Fraction) -> tuple[int, int]:
-    """Return neighbours on the grid of 2^-bits that enclose the root."""
-    slope = tuple(c * (len(whole) - 1 - i) for i, c in enumerate(whole[:-1]))
-    rising = (sign_at(whole, low) or sign_at(slope, low)) < 0  # another root may lie at the end of the interval
-
-    def has_passed_the_root(number: int) -> bool:
-        place = Fraction(number, 1 << bits)
-        return place > low and (place >= high or (sign_at(whole, place) < 0) != rising)
-
-    return bisected_integers(has_passed_the_root, int(low * (1 << bits)) - 1, int(high * (1 << bits)) + 1)
-
-
-def sign_at(whole: Sequence[int], x: Fraction) -> int:
-    """Return a number with the sign of the polynomial at x: its value times a power of x's denominator."""
-    total, scale = 0, 1
-    for c in whole:
-        total = total * x.numerator + c * scale
-        scale *= x.denominator
-    return total
-
-
-def _exponent(x: Fraction) -> int:
-    """Return about log2 of a positive number, rounded down."""
-    return x.numerator.bit_length() - x.denominator.bit_length() - 1
-
-
 def _between(ascending: list[Fraction]) -> list[Fraction]:
     """Return a number below all, one between each two, and one above all, with short numerators."""
     if not ascending:
@@ -360,7 +283,7 @@ def _between(ascending: list[Fraction]) -> list[Fraction]:
 
 def _shortest_between(low: Fraction, high: Fraction) -> Fraction:
     """Return a binary fraction in the middle third between two numbers."""
-    bits = max(0, 2 - _exponent(high - low))
+    bits = max(0, 2 - size_in_bits(high - low))
     return Fraction(round((low + high) / 2 * (1 << bits)), 1 << bits)
 
 
@@ -373,23 +296,10 @@ def _crossings(curves: list[sp.Poly], beta_hat: Fraction) -> tuple[tuple[Crossin
         lines.append(sp.Poly([sp.Rational(v.numerator, v.denominator) for v in reversed(values)], A, domain=sp.QQ))
     found = []
     for number, line in enumerate(lines):
-        for k, root in enumerate(_line_roots(line)):
+        for k, root in enumerate(real_roots(whole_coefficients(line))):
             found.append((root, (number, k)))
     found.sort()
     return tuple(crossing for _, crossing in found), [root for root, _ in found]
-
-
-def _line_roots(line: sp.Poly) -> list[Fraction]:
-    """Return the simple real roots of a polynomial in alpha_hat, ascending, to LEVEL_BITS bits."""
-    whole = whole_coefficients(line)
-    if len(whole) < 2:
-        return []
-    if len(whole) == 2:
-        return [Fraction(-whole[1], whole[0])]
-    return [
-        refined_root(whole, Fraction(int(low.p), int(low.q)), Fraction(int(high.p), int(high.q)))
-        for (low, high), _ in sp.Poly(whole, A).intervals()
-    ]
 
 
 # Where crossings come to at a strip's end. There t = 0, where t > 0 is the distance in beta_hat to a level, or
@@ -467,14 +377,14 @@ def _without_zeros(ascending: list[Fraction]) -> list[Fraction]:
 def _real_roots_of(ascending: list[Fraction]) -> list[Fraction]:
     """Return the different real roots of a polynomial, ascending."""
     polynomial = sp.Poly([sp.Rational(c.numerator, c.denominator) for c in reversed(ascending)], A, domain=sp.QQ)
-    return _line_roots(polynomial.sqf_part())
+    return list(real_roots(whole_coefficients(polynomial.sqf_part())))
 
 
 def _free_of_crossings(in_t: list[list[Fraction]], alpha_hat: Fraction) -> Fraction:
     """Return a t > 0 up to which a curve does not pass this alpha_hat, by Cauchy's bound of the inverse roots."""
     first, *others = [_value((column,), ZERO, alpha_hat) for column in zip(*in_t, strict=True)]
     bound = abs(first) / (abs(first) + max(map(abs, others), default=ZERO))
-    return Fraction(2) ** (_exponent(bound) - 1)  # a short number
+    return Fraction(2) ** (size_in_bits(bound) - 1)  # a short number
 
 
 def _line_at(in_t: list[list[Fraction]], t: Fraction) -> sp.Poly:

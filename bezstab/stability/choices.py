@@ -27,7 +27,6 @@ from bezstab.stability.arrays import BoolArray, Extent, FloatArray
 from bezstab.stability.best_points import AS_SMALL, best_point
 from bezstab.stability.closed_loop import (
     AnyPencil,
-    all_within,
     any_pencil_of,
     free_pencil_of,
     largest_modulus,
@@ -147,7 +146,7 @@ def choose(
     at_rest = modulus is None
     if modulus is None:
         modulus = partial(largest_modulus, pencil)
-    within = partial(all_within, pencil) if at_rest and isinstance(pencil, Pencil) else None
+    within = pencil.all_within if at_rest else None
     if along:
         point, cut = _along_curve(method, along, goal, modulus, spread, rate, omega_h), False
     elif goal == "accurate":

@@ -23,19 +23,17 @@ from bezstab.methods import (
     recursion_verdict,
     without_shared_factor,
 )
-from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, FloatArray, real_array
+from bezstab.stability.arrays import EPS, ComplexArray, FloatArray, real_array
 from bezstab.stability.exact_sums import feedback_discriminant, feedback_roots
 from bezstab.stability.low_degrees import largest_quadratic_root, polynomial_of_pair
 from bezstab.stability.neighbourhoods import FEWEST, SIDE
-from bezstab.stability.pencils import Pencil, all_inside, largest_root_in_z, pencil_of, roots_in_z
+from bezstab.stability.pencils import Pencil, largest_root_in_z, pencil_of
 from bezstab.stability.plane_pencils import (
     PlanePencil,
-    coefficients_at,
     largest_plane_root,
     plane_pencil_of,
-    plane_roots,
 )
-from bezstab.stability.root_finding import CHUNK, inside_circle
+from bezstab.stability.root_finding import CHUNK
 
 BLOCK = 16 * CHUNK  # points whose poles are followed in one go: enough to outweigh the calls for their middles,
 POLES = 7  # each of so many poles; of more poles as many fewer points, so that work arrays stay below 50 MB
@@ -78,7 +76,7 @@ def poles(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexA
     where an implicit step has no solution.
     """
     alpha_hat, beta_hat = np.broadcast_arrays(real_array(alpha_hat, "alpha_hat"), real_array(beta_hat, "beta_hat"))
-    rows = _all_poles(any_pencil_of(method), alpha_hat.ravel(), beta_hat.ravel())
+    rows = any_pencil_of(method).poles(alpha_hat.ravel(), beta_hat.ravel())
     z = rows.T.reshape(*alpha_hat.shape, len(rows))
     order = np.lexsort((-z.imag, -np.abs(z)), axis=-1)
     return _without_rounding(np.take_along_axis(z, order, axis=-1))
@@ -92,16 +90,6 @@ def any_pencil_of(method: Method) -> AnyPencil:
 def free_pencil_of(method: Method) -> AnyPencil:
     """Return the pencil of a method of either kind without the poles that no parameters move."""
     return pencil_of(without_shared_factor(method)) if method.has_mu else plane_pencil_of(method, free=True)
-
-
-def _all_poles(pencil: AnyPencil, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
-    """Return all poles at a row of points; shape (poles, points)."""
-    if isinstance(pencil, PlanePencil):
-        return plane_roots(pencil, alpha_hat, beta_hat)
-    mu = np.stack(feedback_roots(pencil.feedback, alpha_hat, beta_hat))
-    z = roots_in_z(pencil, mu.ravel())
-    of_each_mu = z.reshape(len(z), *mu.shape).swapaxes(0, 1)
-    return of_each_mu.reshape(2 * len(z), alpha_hat.size)
 
 
 def dominant_pole(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexArray:
@@ -135,7 +123,7 @@ def largest_pole(pencil: AnyPencil, alpha_hat: ArrayLike, beta_hat: ArrayLike) -
     alphas, betas = (each if each.ndim == 2 else each.reshape(1, -1) for each in (alpha_hat, beta_hat))
     dominant = np.empty(alpha_hat.size, complex)
     columns = max(1, alphas.shape[1])  # of no points, too
-    most = BLOCK * POLES // max(POLES, pencil.degree if isinstance(pencil, PlanePencil) else 2 * pencil.steps)
+    most = BLOCK * POLES // max(POLES, pencil.degree)
     whole_rows = most // columns // SIDE * SIDE * columns
     block = whole_rows or most
     for start in range(0, alpha_hat.size, block):
@@ -159,21 +147,6 @@ def largest_modulus(pencil: AnyPencil, alpha_hat: ArrayLike, beta_hat: ArrayLike
     return np.abs(largest_pole(pencil, alpha_hat, beta_hat))
 
 
-def all_within(pencil: AnyPencil, alpha_hat: FloatArray, beta_hat: FloatArray, level: FloatArray) -> BoolArray:
-    """Return whether every pole has |z| < level at each point, by Schur's recursion; arrays of one shape.
-
-    False where an implicit step has no solution.
-    """
-    if isinstance(pencil, PlanePencil):
-        coefficients = coefficients_at(pencil, alpha_hat, beta_hat)
-        return inside_circle(np.stack([c * level**k for k, c in enumerate(coefficients)]))
-    first, second = feedback_roots(pencil.feedback, alpha_hat, beta_hat)
-    within = all_inside(pencil, first, level)
-    real = within & (first.imag == 0)  # of a conjugate pair both have the same moduli
-    within[real] = all_inside(pencil, second[real], level[real])
-    return within
-
-
 def _write_largest_poles(
     pencil: AnyPencil, alpha_hat: FloatArray, beta_hat: FloatArray, shape: tuple[int, int], poles: ComplexArray
 ) -> None:
@@ -182,7 +155,7 @@ def _write_largest_poles(
         largest_plane_root(pencil, alpha_hat, beta_hat, shape, into=poles)
     elif pencil.steps == 1 and not pencil.implicit and poles.size >= FEWEST and _ordinary(alpha_hat, beta_hat):
         _write_largest_of_one_step(pencil, alpha_hat, beta_hat, into=poles)
-    elif poles.size >= FEWEST and 2 * pencil.steps <= MOST_FOLLOWED and _ordinary(alpha_hat, beta_hat):
+    elif poles.size >= FEWEST and pencil.degree <= MOST_FOLLOWED and _ordinary(alpha_hat, beta_hat):
         largest_plane_root(plane_pencil_of(pencil.method), alpha_hat, beta_hat, shape, into=poles)
         p, q = (of_alpha * alpha_hat + of_beta * beta_hat for of_alpha, of_beta in pencil.to_feedback)
         square = p * p / 4

@@ -16,8 +16,6 @@ from math import ceil, floor
 from typing import TypeVar
 
 import numpy as np
-from sympy import QQ
-from sympy.polys.matrices import DomainMatrix
 
 from bezstab.errors import InputError
 from bezstab.methods import Verdict, recursion_verdict
@@ -61,11 +59,14 @@ class _Seen:
     """Which state a way of applying a drive evaluates: how much of the step's v and of its new torque x and v hold.
 
     x + x_by_velocity v + x_by_torque u,   v + v_by_torque u      (h = 1)
+
+    With `accelerates` the torque acts all through the step, x' = x + v + u / 2; else at its beginning, x' = x + v + u.
     """
 
     x_by_velocity: int
     x_by_torque: int
     v_by_torque: int
+    accelerates: bool = False
 
 
 SEEN = {
@@ -73,8 +74,12 @@ SEEN = {
     "imex-euler": _Seen(0, 0, 1),
     "stable-pd": _Seen(1, 0, 1),
     "implicit-euler": _Seen(1, 1, 1),
+    "RK4": _Seen(0, 0, 0, accelerates=True),
 }
-"""By the method that each way of applying a drive is (`bezstab.engines.drives`): the state in the step of computing."""
+"""By the method that each way of applying a drive is (`bezstab.engines.drives`): the state in the step of computing.
+
+RK4 is the explicit way in an engine whose steps move a mass under a constant force exactly.
+"""
 
 
 def held_polynomial(way: str, alpha_hat: Fraction, beta_hat: Fraction, timing: Timing) -> list[Fraction]:
@@ -82,6 +87,9 @@ def held_polynomial(way: str, alpha_hat: Fraction, beta_hat: Fraction, timing: T
 
     `way` is one of SEEN. KeyError for another.
     """
+    from sympy import QQ  # a fifth of a second, which a Timing alone need not wait for
+    from sympy.polys.matrices import DomainMatrix
+
     matrix = _steps_matrix(SEEN[way], alpha_hat, beta_hat, timing)
     size = len(matrix)
     elements = [[QQ(entry.numerator, entry.denominator) for entry in row] for row in matrix]
@@ -157,8 +165,9 @@ def _steps_matrix(seen: _Seen, alpha_hat: Number, beta_hat: Number, timing: Timi
     divisor = 1 + share * (beta_hat * seen.x_by_torque + alpha_hat * gain * seen.v_by_torque)
     torques[0] = _sum((-beta_hat / divisor, seen_x), (-alpha_hat / divisor, seen_w))
     for step in range(timing.every):
-        v = _sum((number(1), v), (number(1), _applied(step, timing.every, whole, left, torques)))
-        x = _sum((number(1), x), (number(1), v))
+        torque = _applied(step, timing.every, whole, left, torques)
+        v = _sum((number(1), v), (number(1), torque))
+        x = _sum((number(1), x), (number(1), v), (number(-1) / 2 if seen.accelerates else number(0), torque))
     w = _sum((number(1), seen_w), (gain * share * seen.v_by_torque, torques[0]))
     of_state: list[list[Number]] = [x, v, w] if filters else [x, v]
     return of_state + torques[:pending]

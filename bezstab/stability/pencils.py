@@ -15,7 +15,7 @@ from numpy.polynomial.polynomial import polyder, polymul, polyroots, polysub, po
 from bezstab.errors import NumericalError
 from bezstab.methods import Method, branch_polynomial, coefficient_table, feedback_matrix
 from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, FloatArray
-from bezstab.stability.exact_sums import ExactMatrix
+from bezstab.stability.exact_sums import ExactMatrix, feedback_roots
 from bezstab.stability.root_finding import horner, inside_circle, roots_of_table
 
 LEADING = 4 * EPS  # of the sum of its terms' sizes: a leading coefficient below it is rounding of zero
@@ -41,6 +41,29 @@ class Pencil:
 
     def __repr__(self) -> str:
         return f"Pencil({self.method.name})"
+
+    @property
+    def degree(self) -> int:
+        """How many poles there are, counted with their multiplicity."""
+        return 2 * self.steps
+
+    def poles(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
+        """Return all poles at a row of points; shape (degree, points). Errors as `roots_in_z`."""
+        mu = np.stack(feedback_roots(self.feedback, alpha_hat, beta_hat))
+        z = roots_in_z(self, mu.ravel())
+        of_each_mu = z.reshape(len(z), *mu.shape).swapaxes(0, 1)
+        return of_each_mu.reshape(self.degree, alpha_hat.size)
+
+    def all_within(self, alpha_hat: FloatArray, beta_hat: FloatArray, level: FloatArray) -> BoolArray:
+        """Return whether every pole has |z| < level at each point, by Schur's recursion; arrays of one shape.
+
+        False where an implicit step has no solution.
+        """
+        first, second = feedback_roots(self.feedback, alpha_hat, beta_hat)
+        within = all_inside(self, first, level)
+        real = within & (first.imag == 0)  # of a conjugate pair both have the same moduli
+        within[real] = all_inside(self, second[real], level[real])
+        return within
 
     @property
     def implicit(self) -> bool:

@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 
 from bezstab.errors import NumericalError
 from bezstab.methods import Method, closed_loop_table, reduced_table
-from bezstab.stability.arrays import ComplexArray, FloatArray
+from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
 from bezstab.stability.exact_sums import double_polynomial, double_product, double_sum, split
 from bezstab.stability.low_degrees import cubic_parts, largest_quadratic_root, quadratic_roots
 from bezstab.stability.neighbourhoods import FEWEST, blocks_of_neighbours
 from bezstab.stability.real_factors import largest_in_upper_half, largest_of_blocks
-from bezstab.stability.root_finding import CHUNK, roots_of_rows
+from bezstab.stability.root_finding import CHUNK, inside_circle, roots_of_rows
 
 CANCELS = 1e-5  # of (b/2)^2: where the discriminant is below it, its root would be good to 1e-13 or less
 
@@ -41,6 +41,18 @@ class PlanePencil:
 
     def __repr__(self) -> str:
         return f"PlanePencil({self.method.name})"
+
+    def poles(self, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
+        """Return all poles at a row of points; shape (degree, points). Errors as `plane_roots`."""
+        return plane_roots(self, alpha_hat, beta_hat)
+
+    def all_within(self, alpha_hat: FloatArray, beta_hat: FloatArray, level: FloatArray) -> BoolArray:
+        """Return whether every pole has |z| < level at each point, by Schur's recursion; arrays of one shape.
+
+        False where an implicit step has no solution.
+        """
+        coefficients = coefficients_at(self, alpha_hat, beta_hat)
+        return inside_circle(np.stack([c * level**k for k, c in enumerate(coefficients)]))
 
 
 @cache

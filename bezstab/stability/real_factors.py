@@ -11,10 +11,9 @@ That no other root is larger is not taken on trust: what is left, divided by the
 larger of the factor's, which Schur's recursion tells in few operations. From one middle in GROUP, where all roots are
 solved for, the others get their factors the same way.
 
-Where the largest root is not found so, three more ways are tried, each for what the one before it leaves. The largest
-real root at c is followed alone, by Newton's method: it may have no other real one beside it, and far out a polynomial
-is so much steeper than at the other root of the factor that Bairstow's method, which moves both at once, is led astray.
-Near kinks the factor with the largest root of the others is followed. And then all roots are solved for.
+Where the largest root is not found so, the largest real root at c is followed alone, by Newton's method: it may have no
+other real one beside it, and far out a polynomial is so much steeper than at the other root of the factor that
+Bairstow's method, which moves both at once, is led astray. For what that leaves, near kinks, all roots are solved for.
 """
 
 from collections.abc import Callable, Sequence
@@ -55,15 +54,11 @@ def largest_of_blocks(coefficients_at: Coefficients, alpha_hat: FloatArray, beta
     blocks, places = np.nonzero(np.isnan(found))
     if blocks.size:
         kinked, of_kinked = np.unique(blocks, return_inverse=True)
-        roots = _roots(_rows(coefficients_at, alpha_hat[kinked, 0], beta_hat[kinked, 0]))
-        p, q = _second_factors(roots)
-        planes = _touching_planes(coefficients_at, alpha_hat[kinked], beta_hat[kinked], p, q)
-        alpha_hat, beta_hat = alpha_hat[blocks, places], beta_hat[blocks, places]
-        z = _followed_alone(_rows(coefficients_at, alpha_hat, beta_hat), _real_leads(roots)[of_kinked])
+        leads = _real_leads(_roots(_rows(coefficients_at, alpha_hat[kinked, 0], beta_hat[kinked, 0])))
+        rows = _rows(coefficients_at, alpha_hat[blocks, places], beta_hat[blocks, places])
+        z = _followed_alone(rows, leads[of_kinked])
         left = np.flatnonzero(np.isnan(z))
-        z[left] = _followed(coefficients_at, alpha_hat[left], beta_hat[left], planes[..., of_kinked[left]])
-        left = np.flatnonzero(np.isnan(z))
-        z[left] = largest_in_upper_half(_roots(_rows(coefficients_at, alpha_hat[left], beta_hat[left])))
+        z[left] = largest_in_upper_half(_roots([row[left] for row in rows]))
         found[blocks, places] = z
     return found
 
@@ -96,34 +91,20 @@ def _factors_of_middles(rows: Rows) -> tuple[FloatArray, FloatArray]:
 
 
 def _first_factors(z: ComplexArray) -> tuple[FloatArray, FloatArray]:
-    """Return p and q of the factors with the largest of all roots z, shape (roots, points); nan without such a one."""
-    return _factor_without(z, np.zeros(z.shape, bool))[:2]
+    """Return p and q of the factors with the largest of all roots z, shape (roots, points).
 
-
-def _second_factors(z: ComplexArray) -> tuple[FloatArray, FloatArray]:
-    """Return the same with the largest of the roots that the first factors have not."""
-    *_, taken = _factor_without(z, np.zeros(z.shape, bool))
-    return _factor_without(z, taken)[:2]
-
-
-def _factor_without(z: ComplexArray, taken: BoolArray) -> tuple[FloatArray, FloatArray, BoolArray]:
-    """Return p and q of the factors with the largest root not taken, and which roots are taken now.
-
-    nan where it is real and has no other real one left beside it.
+    nan where it is real and has no other real one beside it.
     """
-    lead = np.argmax(np.where(taken, -1.0, np.abs(z)), axis=0)[np.newaxis]
+    lead = np.argmax(np.abs(z), axis=0)[np.newaxis]
     largest = np.take_along_axis(z, lead, axis=0)
     real = np.abs(z.imag) <= CONVERGED * np.abs(z)
     lead_is_real = np.take_along_axis(real, lead, axis=0)
     partner = np.where(lead_is_real, largest, largest.conj())
-    distance = np.where(taken | (lead_is_real & ~real), np.inf, np.abs(z - partner))
+    distance = np.where(lead_is_real & ~real, np.inf, np.abs(z - partner))
     np.put_along_axis(distance, lead, np.inf, axis=0)
     beside = np.argmin(distance, axis=0)[np.newaxis]
     other = np.where(np.isinf(distance.min(axis=0)), np.nan, np.take_along_axis(z, beside, axis=0))
-    taken = taken.copy()
-    for place in (lead, beside):
-        np.put_along_axis(taken, place, True, axis=0)
-    return -(largest + other).real[0], (largest * other).real[0], taken
+    return -(largest + other).real[0], (largest * other).real[0]
 
 
 def _touching_planes(

@@ -28,7 +28,7 @@ from bezstab.errors import NumericalError
 from bezstab.methods import Method
 from bezstab.rationals import exact
 from bezstab.stability.arrays import EPS, BoolArray, FloatArray, even_points
-from bezstab.stability.closed_loop import all_within, decays_faster, free_pencil_of
+from bezstab.stability.closed_loop import decays_faster, free_pencil_of
 from bezstab.stability.searches import bisected
 from bezstab.stability.shapes import Shape
 
@@ -62,7 +62,7 @@ def check_region(method: Method, level: float, shape: Shape | None) -> None:
     name = f"{method.name}, |z_p| < {level:g}"
 
     def inside(alpha_hat: FloatArray, beta_hat: FloatArray) -> BoolArray:
-        return all_within(pencil, alpha_hat, beta_hat, np.full(alpha_hat.shape, level))
+        return pencil.all_within(alpha_hat, beta_hat, np.full(alpha_hat.shape, level))
 
     proven = partial(_proven, method, exact(level))
     if shape is None:
@@ -103,7 +103,7 @@ def _check_points(name: str, method: Method, level: float, curve: FloatArray) ->
         suspicious = curve
         for rounding in ROUNDINGS:
             points = suspicious * (1 + EPS * rounding)
-            inside = all_within(pencil, points[:, 0], points[:, 1], np.full(len(points), near))
+            inside = pencil.all_within(points[:, 0], points[:, 1], np.full(len(points), near))
             suspicious = suspicious[inside != expected]
         if len(suspicious) <= allowed:
             continue

@@ -17,7 +17,6 @@ from dataclasses import dataclass, replace
 from functools import partial
 from itertools import islice
 from pathlib import Path
-from typing import TypeVar
 
 import mpmath as mp
 import numpy as np
@@ -63,6 +62,7 @@ HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent.parent))  # run as a script, the tests are no package yet
 
 from tests.bench.stable_mask import stable_mask  # noqa: E402
+from tests.bench.timing import interleaved  # noqa: E402
 from tests.reference.perturbed_revolutions import runner_motion  # noqa: E402
 from tests.reference.second_order_methods import RECIPES, second_order  # noqa: E402
 
@@ -70,7 +70,6 @@ BASELINE, REPORT = HERE / "bench.json", HERE.parent.parent / "figures" / "bench.
 FALLEN = 2 / 3  # of the ratio in BASELINE
 
 POINTS = 1000  # per axis
-REPEATS = 5  # the fastest of so many: what disturbs a run only ever slows it
 CLOSE = 1e-12  # the promised agreement with 50 digits at ordinary points
 OFF_AXIS = 1e-7  # companions of a step without solution, which lie on straight lines, have no eigenvalues
 MULTIPLE = 1e-3  # roots closer than this are no ordinary points
@@ -80,7 +79,6 @@ MEMORY = 50.0  # MB, the promise beyond the result
 
 STEP, GAINS = 1e-3, (500.0, 1e5)  # s; 2 alpha, beta^2 in 1/s, 1/s^2: alpha_hat = 0.5, beta_hat = 0.1
 STEPS = 200  # of a run
-RUNS = 10  # the fastest of so many: runs are short
 INSTANCES = 10_000
 SAME = 1e-12  # SI units: rounding; less, even 0, where h times a slope's rounding is under half a digit of the state
 FLOQUET_POINTS = (1000, 50)
@@ -91,9 +89,6 @@ COMPILED_CELLS = 44  # per axis of a map of verdicts: as many as one batch of nu
 MUJOCO = {"SYM": "Euler", "RK4": "RK4"}
 UPDATES = 60  # of the window, as the mouse moves
 ENGINE_STEPS = 20_000  # of a run of MuJoCo, of Exudyn and of ours beside them
-
-
-Measured = TypeVar("Measured")
 
 
 @dataclass(frozen=True)
@@ -139,16 +134,6 @@ def away_from_multiple_roots(method: Method, alpha_hat: FloatArray, beta_hat: Fl
     z = np.concatenate([roots_in_z(pencil_of(method), mu.ravel().astype(complex)) for mu in mus])
     gaps = [np.abs(z[i] - z[j]) for i in range(len(z)) for j in range(i)]
     return np.asarray(np.min(gaps, axis=0) > MULTIPLE).reshape(alpha_hat.shape)
-
-
-def fastest(call: Callable[[], Measured], repeats: int) -> tuple[float, Measured]:
-    """Return the shortest time of several calls (s) and the result."""
-    times = []
-    for _ in range(repeats):
-        start = time.perf_counter()
-        result = call()
-        times.append(time.perf_counter() - start)
-    return min(times), result
 
 
 def axes(method: Method, points: int = POINTS) -> tuple[FloatArray, FloatArray]:
@@ -204,8 +189,16 @@ def maps() -> Iterator[Line]:
     for name, promise in (("B4", 18.0), ("AB4", 18.0), ("B8", 18.0), ("AB8", 18.0)):
         method, (a, b) = lookup(name), axes(lookup(name))
         grid = np.meshgrid(a, b)
-        ours, z_abs = fastest(partial(rows_of, method, a, b), REPEATS)
-        theirs, _ = fastest(partial(by_eigenvalues, method, *grid), 1)
+        calls: list[Callable[[], NDArray[np.generic]]] = [
+            partial(rows_of, method, a, b),
+            partial(by_eigenvalues, method, *grid),
+        ]
+        if name in ("B4", "AB4"):
+            some = random.choice(POINTS**2, SAMPLED)
+            at_some = (part.ravel()[some] for part in grid)
+            calls += [partial(by_two_processes, method, a, b), partial(stable_mask, method, a, b)]
+            calls += [partial(by_nodepy, method, *at_some)]
+        (ours, z_abs), (theirs, _), *others = interleaved(*calls, rounds=2)  # the second takes long
         tracemalloc.start()
         spectral_radius(method, a, b[:, np.newaxis])
         memory = (tracemalloc.get_traced_memory()[1] - z_abs.nbytes) / 1e6
@@ -218,8 +211,8 @@ def maps() -> Iterator[Line]:
         note = f"{ours:.2f} s; error {error:.0e} at {REFERENCES} points; {memory:.0f} MB beyond the result"
         shown = note if kept else f"BROKEN: {CLOSE:g}, {MEMORY:g} MB: {note}"
         yield Line("map", f"{name}: batched eigenvalues, one core", theirs / ours, promise if kept else np.inf, shown)
-        if name in ("B4", "AB4"):
-            both, same = fastest(partial(by_two_processes, method, a, b), REPEATS)
+        if others:
+            (both, same), (mask, stable), (slow, _) = others
             assert np.allclose(same, z_abs, rtol=1e-12, atol=0)  # other neighbours are followed, so rounding differs
             yield Line(
                 "map",
@@ -228,15 +221,12 @@ def maps() -> Iterator[Line]:
                 30.0,
                 f"{both:.2f} s, their start included",
             )
-            some = random.choice(POINTS**2, SAMPLED)
-            slow, _ = fastest(partial(by_nodepy, method, grid[0].ravel()[some], grid[1].ravel()[some]), 1)
             ratio = slow / SAMPLED * POINTS**2 / ours
             yield Line("map", f"{name}: NodePy 1.1.1", ratio, 200.0, f"NodePy timed at {SAMPLED} of the points")
-            mask, stable = fastest(partial(stable_mask, method, a, b), REPEATS)
             clear = np.abs(z_abs - 1) > CLOSE
             assert np.array_equal(stable[clear], (z_abs < 1)[clear])
             region.cache_clear()
-            whole, _ = fastest(lambda: np.array(region(method).area), 1)  # noqa: B023
+            ((whole, _),) = interleaved(partial(region, method), rounds=1)
             total = mask + whole
             note = f"{1e3 * mask:.1f} ms; {theirs / total:.0f} times with what the boundary takes, {1e3 * total:.0f} ms"
             yield Line("map", f"{name}: batched eigenvalues, stable or not", theirs / mask, 500.0, note)
@@ -263,8 +253,9 @@ def maps_of_other_kinds() -> Iterator[Line]:
     for method, kind in kinds.items():
         name, (a, b) = method.name, axes(method)
         a, b = a + OFF_AXIS, b + OFF_AXIS
-        ours, z_abs = fastest(partial(rows_of, method, a, b), REPEATS)
-        theirs, by_companion = fastest(partial(by_eigenvalues, method, *np.meshgrid(a, b)), 1)
+        (ours, z_abs), (theirs, by_companion) = interleaved(
+            partial(rows_of, method, a, b), partial(by_eigenvalues, method, *np.meshgrid(a, b)), rounds=2
+        )
         off = float(
             np.quantile(np.abs(z_abs - by_companion), 0.99)
         )  # near double roots eigenvalues keep half the digits
@@ -287,11 +278,13 @@ def moving_mechanisms() -> Iterator[Line]:
         points = random.uniform(low, high, (100 * max(FLOQUET_POINTS), 2)).T
         stable = points[:, spectral_radius(method, *points) < 1]
         one = float(stable[0, 0]), float(stable[1, 0])
-        theirs, found = fastest(partial(runner_motion, mechanism, method, STEPS_A_TURN, *one), 2)
+        batches = [
+            partial(own_motion_rates, mechanism, method, h, stable[0, :count], stable[1, :count], 1.0)
+            for count in FLOQUET_POINTS
+        ]
+        (theirs, found), *times = interleaved(partial(runner_motion, mechanism, method, STEPS_A_TURN, *one), *batches)
         assert found
-        for count in FLOQUET_POINTS:
-            alpha_hat, beta_hat = stable[:, :count]
-            ours, _ = fastest(partial(own_motion_rates, mechanism, method, h, alpha_hat, beta_hat, 1.0), 3)
+        for count, (ours, _) in zip(FLOQUET_POINTS, times, strict=True):
             each = ours / count
             note = f"{1e3 * each:.2f} ms a point, {STEPS_A_TURN} steps a revolution"
             yield Line("moving", f"{name}: {count} own motions by the runner, complex", theirs / each, 15.0, note)
@@ -307,9 +300,8 @@ def self_checks() -> Iterator[Line]:
                 remembered.cache_clear()
             return region(pencil.method)
 
-        whole, _ = fastest(found, REPEATS)
         shape = shape_source(pencil.method, 1.0)(finer=1)
-        check, _ = fastest(partial(check_region, pencil.method, 1.0, shape), REPEATS)
+        (whole, _), (check, _) = interleaved(found, partial(check_region, pencil.method, 1.0, shape))
         note = f"{1e3 * check:.1f} ms of {1e3 * whole:.0f} ms"
         yield Line("check", f"{name}: a region and its check", (whole - check) / check, 3.0, note)
 
@@ -460,9 +452,12 @@ def runs() -> Iterator[Line]:
     state, literal, tuned = initial_state(moving), literal_slope(moving), tuned_slope(moving)
     for name in ("B4", "RK4"):
         method = lookup(name)
-        ours, end = fastest(partial(alone, moving, method, state), RUNS)
-        for kind, slope, promise in (("literal Eq. 9", literal, 8.0), ("Eq. 9 tuned by hand", tuned, None)):
-            theirs, other = fastest(partial(literal_run, method, slope, np.concatenate(state)), RUNS)
+        by_hand = [partial(literal_run, method, slope, np.concatenate(state)) for slope in (literal, tuned)]
+        (ours, end), *others, (together, ends) = interleaved(
+            partial(alone, moving, method, state), *by_hand, partial(batch_run, method, moving)
+        )
+        kinds = (("literal Eq. 9", 8.0), ("Eq. 9 tuned by hand", None))
+        for (kind, promise), (theirs, other) in zip(kinds, others, strict=True):
             assert np.abs(other - end).max() < SAME
             yield Line(
                 "run",
@@ -471,46 +466,49 @@ def runs() -> Iterator[Line]:
                 promise,
                 f"{STEPS / ours:.0f} steps/s against {STEPS / theirs:.0f}",
             )
-        together, ends = fastest(partial(batch_run, method, moving), 3)
         assert np.abs(ends[0] - end).max() < SAME
         each = together / INSTANCES
         note = f"{1e9 * each / STEPS:.0f} ns a step and instance"
         yield Line("run", f"{name}: one run alone, an instance of {INSTANCES}", ours / each, 10.0, note)
-        theirs, _ = fastest(partial(literal_run, method, literal, np.concatenate(state)), 1)
-        yield Line("run", f"{name}: literal Eq. 9, an instance of {INSTANCES}", theirs / each, None, "")
+        yield Line("run", f"{name}: literal Eq. 9, an instance of {INSTANCES}", others[0][0] / each, None, "")
 
 
 def engines() -> Iterator[Line]:
     """Yield the comparisons with other engines on the same slider-crank, all stepping inside one call."""
-    import mujoco
-
     moving = compiled_mechanism(load_scene("slider_crank"))
     state = initial_state(moving)
     for name, integrator in MUJOCO.items():
-        ours, end = fastest(partial(alone, moving, lookup(name), state, ENGINE_STEPS), 2)
-        model = mujoco.MjModel.from_xml_string(model_xml(moving.scene, integrator, STEP, 0.5, 0.1))
-
-        def stepped(model: object = model) -> FloatArray:
-            data = mujoco.MjData(model)
-            data.qpos[:], data.qvel[:] = state
-            mujoco.mj_step(model, data, nstep=ENGINE_STEPS)
-            return np.array(data.qpos)
-
-        theirs, angles = fastest(stepped, 2)
+        (ours, end), (theirs, angles) = interleaved(
+            partial(alone, moving, lookup(name), state, ENGINE_STEPS), mujocos_run(moving, integrator, state), rounds=2
+        )
         assert abs(angles[0] - end[0]) < 0.1  # rad, after 20 s: the same mechanism; MuJoCo's constraints are soft
         note = f"{ENGINE_STEPS / ours:.1e} steps/s against {ENGINE_STEPS / theirs:.1e}, in C"
         yield Line("engine", f"{name}: MuJoCo's {integrator}", theirs / ours, None, note)
-    ours, end = fastest(partial(alone, moving, lookup("B4"), state, ENGINE_STEPS), 2)
-    theirs, angles = fastest(by_exudyn, 2)
+    (ours, end), (theirs, angles) = interleaved(
+        partial(alone, moving, lookup("B4"), state, ENGINE_STEPS), by_exudyn, rounds=2
+    )
     assert abs(angles[2] - end[0]) < 1e-2
     note = f"{ENGINE_STEPS / ours:.1e} steps/s against {ENGINE_STEPS / theirs:.1e}, in C++"
     yield Line("engine", "B4: Exudyn's generalized-alpha (implicit)", theirs / ours, None, note)
 
 
-def compiled_runs() -> Iterator[Line]:
-    """Yield how much faster compiled runs are than Python's and MuJoCo's, and what compiling takes."""
+def mujocos_run(moving: Mechanism, integrator: str, state: tuple[FloatArray, FloatArray]) -> Callable[[], FloatArray]:
+    """Return what runs ENGINE_STEPS steps of MuJoCo in one call, and returns its angles."""
     import mujoco
 
+    model = mujoco.MjModel.from_xml_string(model_xml(moving.scene, integrator, STEP, 0.5, 0.1))
+
+    def stepped() -> FloatArray:
+        data = mujoco.MjData(model)
+        data.qpos[:], data.qvel[:] = state
+        mujoco.mj_step(model, data, nstep=ENGINE_STEPS)
+        return np.array(data.qpos)
+
+    return stepped
+
+
+def compiled_runs() -> Iterator[Line]:
+    """Yield how much faster compiled runs are than Python's and MuJoCo's, and what compiling takes."""
     moving = compiled_mechanism(load_scene("slider_crank"))
     state = initial_state(moving)
     for name in ("B4", "RK4", "SYM", "hht", "bdf4"):
@@ -522,34 +520,32 @@ def compiled_runs() -> Iterator[Line]:
         promise = None if implicit(method) else 1.0  # of the former Newton's method is compiled, too
         note = f"{compiling:.2f} s of processor time"
         yield Line("compiled", f"{name}: 3 s, compiling", 3 / compiling, promise, note)
-        slow, other = fastest(partial(compiled_alone, moving, method, state, False, count), 1)
-        ours, end = fastest(partial(compiled_alone, moving, method, state, True, count), REPEATS)
+        calls: list[Callable[[], FloatArray]] = [
+            partial(compiled_alone, moving, method, state, compiled, count) for compiled in (False, True)
+        ]
+        if name in MUJOCO:
+            calls += [mujocos_run(moving, MUJOCO[name], state)]
+        (slow, other), (ours, end), *others = interleaved(*calls, rounds=2)  # the first takes long
         assert end.tobytes() == other.tobytes()
         note = f"{count / ours:.1e} steps/s against {count / slow:.1e}"
         yield Line("compiled", f"{name}: the same run in Python", slow / ours, 20.0, note)
-        if name in MUJOCO:
-            model = mujoco.MjModel.from_xml_string(model_xml(moving.scene, MUJOCO[name], STEP, 0.5, 0.1))
-            data = mujoco.MjData(model)
-            data.qpos[:], data.qvel[:] = state
-            begin = time.perf_counter()
-            mujoco.mj_step(model, data, nstep=ENGINE_STEPS)
-            theirs = (time.perf_counter() - begin) * COMPILED_STEPS / ENGINE_STEPS
+        for of_engine, _ in others:
+            theirs = of_engine * COMPILED_STEPS / ENGINE_STEPS
             note = f"{COMPILED_STEPS / ours:.1e} steps/s against {COMPILED_STEPS / theirs:.1e}, in C"
             yield Line("compiled", f"{name}: MuJoCo's {MUJOCO[name]}", theirs / ours, 20.0, note)
     with ProcessPoolExecutor(2) as pool:
         for name in ("B4", "RK4", "hht", "bdf4"):
             rows = map_rows(moving.scene, lookup(name), STEP, COMPILED_CELLS)
             halves = [replace(rows[0], beta_hat=half) for half in np.array_split(rows[0].beta_hat, 2)]
-            times, verdicts = [], []
-            for compiled in (False, True):
-                chunks = [replace(half, compiled=compiled) for half in halves]
-                judged_by(pool, chunks)  # so that both processes have compiled
-                taken, found = fastest(partial(judged_by, pool, chunks), 2)
-                times.append(taken)
-                verdicts.append(found)
-            assert all(np.array_equal(a["diverges"], b["diverges"]) for a, b in zip(*verdicts, strict=True))
-            note = f"{COMPILED_CELLS**2} runs in {times[1]:.2f} s by two processes that have compiled"
-            yield Line("compiled", f"{name}: a map of verdicts by numpy", times[0] / times[1], 4.0, note)
+            maps_of_verdicts = [
+                partial(judged_by, pool, [replace(half, compiled=compiled) for half in halves])
+                for compiled in (False, True)
+            ]
+            maps_of_verdicts[1]()  # so that both processes have compiled
+            (slow, by_numpy), (ours, by_numba) = interleaved(*maps_of_verdicts, rounds=2)
+            assert all(np.array_equal(a["diverges"], b["diverges"]) for a, b in zip(by_numpy, by_numba, strict=True))
+            note = f"{COMPILED_CELLS**2} runs in {ours:.2f} s by two processes that have compiled"
+            yield Line("compiled", f"{name}: a map of verdicts by numpy", slow / ours, 4.0, note)
 
 
 def judged_by(pool: ProcessPoolExecutor, chunks: list[MapRows]) -> list[Mapping[str, NDArray[np.generic]]]:
@@ -611,11 +607,10 @@ def growth() -> Iterator[Growth]:
     """Yield how cost grows with the points per axis, the steps of a method, the batch, and the number of bodies."""
 
     def fitted(what: str, sizes: Sequence[int], cost: Callable[[int], Callable[[], object]], unit: str) -> Growth:
-        times = []
-        for size in sizes:
-            call = cost(size)
+        calls = [cost(size) for size in sizes]
+        for call in calls:
             call()
-            times.append(fastest(call, 3)[0])
+        times = [seconds for seconds, _ in interleaved(*calls)]
         exponent = float(np.polyfit(np.log(sizes), np.log(times), 1)[0])
         return Growth(what, exponent, f"{sizes[0]} to {sizes[-1]} {unit}")
 

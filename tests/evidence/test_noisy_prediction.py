@@ -7,6 +7,7 @@ from bezstab.evidence import probed_pole
 from bezstab.evidence.noisy_prediction import LARGEST_ERROR, fit_in_noise
 from bezstab.methods import REGISTRY, lookup
 from bezstab.stability import FloatArray, poles, region, window
+from tests.evidence.samples import of_campaign
 from tests.reference.sampled_responses import geometric, of_poles, two_poles
 
 ORDER = 8
@@ -59,7 +60,7 @@ def logs_in_noise(count: int, seed: int) -> tuple[int, list[float]]:
     return tried, off
 
 
-@pytest.mark.parametrize("count", [20, pytest.param(600, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [20, pytest.param(of_campaign(600, 100), marks=pytest.mark.slow)])
 def test_the_stated_error_covers_the_pole_of_random_logs_in_noise(count: int) -> None:
     """In 97 of 100 at least. The others have two poles closer together than the noise resolves: they look like one."""
     tried, off = logs_in_noise(count, seed=12)

@@ -9,6 +9,7 @@ from bezstab.evidence import VerdictMap, map_rows, simulated_verdicts, verdict_m
 from bezstab.mechanism import load_scene
 from bezstab.methods import lookup
 from bezstab.stability import region
+from tests.evidence.samples import of_campaign
 from tests.reference.verdict_counts import count_cell_by_cell
 
 H = 1e-3  # s
@@ -109,6 +110,8 @@ def test_compiled_verdicts_are_those_of_numpy() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("scene", "name"), [("slider_crank", "B4"), ("driven_four_bar", "verlet-kdk")])
+@pytest.mark.parametrize(
+    ("scene", "name"), [("slider_crank", "B4"), *of_campaign([("driven_four_bar", "verlet-kdk")], [])]
+)
 def test_compiled_verdicts_are_those_of_numpy_for_more(scene: str, name: str) -> None:
-    maps_both_ways(scene, name, 12)
+    maps_both_ways(scene, name, of_campaign(12, 8))

@@ -5,17 +5,10 @@ import pytest
 
 from bezstab.errors import NumericalError
 from bezstab.methods import Method, closed_loop_at, is_schur, lookup, plane_strips, second_order_form
-from bezstab.methods.plane_edges import CurveTable, Limit, _limits, real_roots
+from bezstab.methods.plane_edges import CurveTable, Limit, _limits
 from tests.reference.second_order_methods import RECIPES, second_order
 
 F = Fraction
-
-
-def test_real_roots_are_exact_or_to_seventy_bits() -> None:
-    assert real_roots((2, -3)) == (F(3, 2),)
-    low, high = real_roots((1, 0, -2))
-    assert abs(high**2 - 2) < F(1, 2**66)
-    assert low == pytest.approx(-(2**0.5), rel=1e-16)
 
 
 def test_the_levels_of_the_half_step_recipe() -> None:

@@ -159,7 +159,6 @@ IMPLICIT_SECOND_ORDER = {
 @pytest.mark.parametrize("name", kinds.SECOND_ORDER)
 def test_a_second_order_scheme_is_implicit_where_equations_wait_for_each_other(name: str) -> None:
     assert implicit(lookup(name)) == (name in IMPLICIT_SECOND_ORDER)
-    assert steps(lookup(name)) == 1
 
 
 def test_a_rational_stands_for_irrational_coefficients_where_digits_say_so() -> None:

@@ -1,0 +1,115 @@
+"""Controllers outside a MuJoCo model: what closes the loop of its motors, every few steps and late.
+
+    l = direction . q      control = -kp l - kd l'      force = gain * control, along direction
+
+One step of the model is linear at qpos0: (x, h v) -> S (x, h v) + T (forces of the motors). Over the steps from one
+computation of the controls to the next, that is one matrix over (x, h v) and the controls that are still to be applied.
+"""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import ceil, floor
+
+import numpy as np
+
+from bezstab.errors import InputError
+from bezstab.evidence.mujoco_models import ModelData, Motor
+from bezstab.rationals import exact
+from bezstab.stability import FloatArray, Timing
+
+
+@dataclass(frozen=True)
+class MotorGains:
+    """Gains (SI units) of all motors whose whole name matches `pattern`, a regular expression.
+
+    InputError for what is no regular expression.
+    """
+
+    pattern: str
+    kp: Fraction
+    kd: Fraction
+
+    def __post_init__(self) -> None:
+        try:
+            re.compile(self.pattern)
+        except re.error as error:
+            raise InputError(f"--pd {self.pattern!r}: no regular expression ({error})") from None
+
+
+@dataclass(frozen=True)
+class Controlled:
+    """A motor with its controller: gains, and when the control is computed and applied, MuJoCo's own delay included."""
+
+    motor: Motor
+    kp: Fraction
+    kd: Fraction
+    timing: Timing
+
+
+def controlled_motors(model: ModelData, gains: Sequence[MotorGains], timing: Timing) -> list[Controlled]:
+    """Return the motors that some gains are for, the last of several; InputError for gains that are for none.
+
+    The motors of a model share one clock: `every` and `late`; MuJoCo's own delay of a motor adds to the latter.
+    """
+    for each in gains:
+        if not any(re.fullmatch(each.pattern, motor.name) for motor in model.motors):
+            names = ", ".join(motor.name for motor in model.motors) or "none"
+            raise InputError(f"--pd {each.pattern}: matches no motor; the model's motors: {names}")
+    found = []
+    for motor in model.motors:
+        matching = [each for each in gains if re.fullmatch(each.pattern, motor.name)]
+        if matching:
+            late = timing.late + exact(motor.delay) / exact(model.h)
+            delayed = Timing(timing.every, late, timing.filter_steps)
+            found.append(Controlled(motor, matching[-1].kp, matching[-1].kd, delayed))
+    return found
+
+
+def lifted_step(step: FloatArray, forces: FloatArray, controlled: Sequence[Controlled], h: float) -> FloatArray:
+    """Return the matrix over `every` steps of a model with controllers.
+
+    `step` (2 n, 2 n) takes (x, h v) over a step without them, `forces` (2 n, motors) is what each motor's force adds
+    (SI). The state is (x, h v), the filtered velocities if there is a filter, then the controls still to be applied,
+    latest first. All controllers have the same `every` and filter.
+    """
+    dofs, motors = len(step) // 2, len(controlled)
+    arms = np.array([each.motor.direction for each in controlled])
+    kp, kd, force_gain = (
+        np.array([[float(number)] for number in numbers])
+        for numbers in (
+            [each.kp for each in controlled],
+            [each.kd for each in controlled],
+            [each.motor.gain for each in controlled],
+        )
+    )
+    timing = controlled[0].timing
+    pending = max(ceil(each.timing.late / timing.every) for each in controlled)
+    pending += any(each.timing.late % 1 for each in controlled)  # one more, of which a step keeps its share
+    filters = motors if timing.filter_steps else 0
+    size = 2 * dofs + filters + pending * motors
+    state = np.eye(size)
+    moving, rest = state[: 2 * dofs], state[2 * dofs :]
+
+    lengths, velocities = arms @ moving[:dofs], arms @ moving[dofs:] / h
+    if filters:
+        share = float(1 / (1 + timing.filter_steps / timing.every))
+        velocities = rest[:motors] + share * (velocities - rest[:motors])
+    controls = [-kp * lengths - kd * velocities, *rest[filters:].reshape(pending, motors, size)]
+    for number in range(timing.every):
+        applied = np.array(
+            [_applied(each.timing, number, [c[row] for c in controls]) for row, each in enumerate(controlled)]
+        )
+        moving = step @ moving + forces @ (force_gain * applied)
+    return np.vstack([moving, *([velocities] if filters else []), *controls[:pending]])
+
+
+def _applied(timing: Timing, number: int, controls: Sequence[FloatArray]) -> FloatArray:
+    """Return the control that a motor has in a step after the latest computation: a row of coefficients."""
+    whole = floor(timing.late)
+    left = float(timing.late - whole)  # of a step, which the control before keeps
+    begun = max(0, ceil(Fraction(whole - number, timing.every)))
+    if left and number == whole - begun * timing.every:
+        return (1 - left) * controls[begun] + left * controls[begun + 1]
+    return controls[begun]

@@ -1,0 +1,115 @@
+"""The real roots of a polynomial in one variable, by exact arithmetic: rational ones exact, others to 70 bits.
+
+Roots may lie forty powers of ten apart, where feedback is weak. So they are isolated octave by octave. The signs of the
+coefficients that Descartes' rule counts, of x = 0 .. infinity mapped to an octave, say whether it has no root (no
+change of sign) or one (one change); else it is halved.
+"""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from functools import cache
+from itertools import pairwise
+from math import ceil, floor, gcd
+
+import sympy as sp
+
+from bezstab.methods.determinants import as_fraction
+from bezstab.rationals import bisected_integers, whole_multiples
+
+BITS = 70  # of a root, relative: float64 has 53
+SHORT = 2**24  # denominators up to it are tried for a root that is known to 70 bits: one that fits is no chance
+
+WholePolynomial = tuple[int, ...]
+"""Whole coefficients without a common factor, descending powers, the first positive."""
+
+
+def whole_coefficients(polynomial: sp.Poly) -> WholePolynomial:
+    """Return the coefficients of a polynomial in one variable, as whole numbers; it is not zero."""
+    whole, _ = whole_multiples([as_fraction(c) for c in polynomial.set_domain(sp.QQ).rep.to_list()])
+    shared = gcd(*whole) * (1 if whole[0] > 0 else -1)
+    return tuple(c // shared for c in whole)
+
+
+@cache
+def real_roots(whole: WholePolynomial) -> tuple[Fraction, ...]:
+    """Return the real roots of a polynomial that has no multiple ones, ascending."""
+    mirrored = tuple(c * (-1) ** k for k, c in enumerate(whole))
+    at_zero = (Fraction(0),) if whole[-1] == 0 else ()
+    return (*(-root for root in reversed(positive_roots(mirrored))), *at_zero, *positive_roots(whole))
+
+
+@cache
+def positive_roots(whole: WholePolynomial) -> tuple[Fraction, ...]:
+    """Return the positive roots of a polynomial that has no multiple ones, ascending."""
+    if whole[-1] == 0:
+        whole = whole[:-1]
+    if len(whole) == 2:
+        return (Fraction(-whole[1], whole[0]),) if whole[0] * whole[1] < 0 else ()
+    first, last = -_octaves_above(whole), _octaves_above(whole[::-1])
+    octaves = [(Fraction(2) ** k, Fraction(2) ** (k + 1)) for k in range(first, last)]
+    return tuple(_refined(whole, *ends) for octave in octaves for ends in _isolated(whole, *octave))
+
+
+def value_sign(whole: WholePolynomial, x: Fraction) -> int:
+    """Return a number with the sign of the polynomial at x: its value times a power of x's denominator."""
+    total, scale = 0, 1
+    for c in whole:
+        total = total * x.numerator + c * scale
+        scale *= x.denominator
+    return total
+
+
+def size_in_bits(x: Fraction) -> int:
+    """Return about log2 of a positive number, rounded down."""
+    return x.numerator.bit_length() - x.denominator.bit_length() - 1
+
+
+def _octaves_above(ascending: Sequence[int]) -> int:
+    """Return k so that all roots have |x| < 2^k: by M. Fujiwara's bound, 2 max |c_j / c_n|^(1/(n - j))."""
+    *others, leading = (abs(c).bit_length() for c in ascending)
+    n = len(others)
+    return 2 + max((-((leading - 1 - bits) // (n - j)) for j, bits in enumerate(others) if bits), default=0)
+
+
+def _isolated(descending: Sequence[int], low: Fraction, high: Fraction) -> list[tuple[Fraction, Fraction]]:
+    """Return intervals from low to below high with one root each, ascending; of no width where low is a root.
+
+    x = low + (high - low) / (1 + y), y from zero to infinity, is x from high down to low.
+    """
+    scale = low.denominator * high.denominator
+    start, width = int(low * scale), int((high - low) * scale)
+    of_scaled = _shifted([c * scale**k for k, c in enumerate(descending)][::-1], start)  # ascending in scale x - start
+    in_y = _shifted([c * width**k for k, c in enumerate(of_scaled)][::-1], 1)
+    changes = sum(one != other for one, other in pairwise(c > 0 for c in in_y if c))
+    if changes > 1:
+        middle = (low + high) / 2
+        return _isolated(descending, low, middle) + _isolated(descending, middle, high)
+    at_low = [(low, low)] if of_scaled[0] == 0 else []
+    return [*at_low, (low, high)] if changes else at_low
+
+
+def _shifted(ascending: Sequence[int], by: int) -> list[int]:
+    """Return the polynomial in x of p(x + by)."""
+    shifted = list(ascending)
+    for k in range(len(shifted) - 1):
+        for j in range(len(shifted) - 2, k - 1, -1):
+            shifted[j] += by * shifted[j + 1]
+    return shifted
+
+
+def _refined(whole: WholePolynomial, low: Fraction, high: Fraction) -> Fraction:
+    """Return the one root between two positive numbers, by bisection on a grid of binary fractions."""
+    if low == high:
+        return low
+    slope = tuple(c * (len(whole) - 1 - k) for k, c in enumerate(whole[:-1]))
+    rising = (value_sign(whole, low) or value_sign(slope, low)) < 0  # low may be a root, too
+    bits = BITS + max(0, -size_in_bits(low))
+
+    def has_passed_the_root(number: int) -> bool:
+        place = Fraction(number, 1 << bits)
+        return place > low and (place >= high or (value_sign(whole, place) < 0) != rising)
+
+    below, above = bisected_integers(has_passed_the_root, floor(low * (1 << bits)), ceil(high * (1 << bits)))
+    root = Fraction(below + above, 2 << bits)
+    short = root.limit_denominator(SHORT)
+    return short if value_sign(whole, short) == 0 else root

@@ -1,0 +1,118 @@
+"""Motors with a controller outside the model: what lint says of them is what MuJoCo's own runs do."""
+
+from fractions import Fraction
+from math import ceil
+from typing import Any
+
+import numpy as np
+import pytest
+
+from bezstab.errors import InputError
+from bezstab.evidence import Linted, MotorGains, linted_model, model_data
+from bezstab.stability import Timing
+
+mujoco: Any = pytest.importorskip("mujoco")
+
+H = 0.002
+ARM = """<mujoco><option timestep="{h!r}" integrator="{integrator}" gravity="0 0 0"/><compiler angle="radian"/>
+<worldbody><body><joint name="hip" axis="0 1 0" damping="{damping}"/>
+  <geom type="capsule" fromto="0 0 0 .3 0 0" size=".03" contype="0" conaffinity="0"/>
+  <body pos=".3 0 0"><joint name="knee" axis="0 1 0"/>
+    <geom type="capsule" fromto="0 0 0 .3 0 0" size=".02" contype="0" conaffinity="0"/></body></body></worldbody>
+<actuator><motor name="hip_motor" joint="hip" gear="2"/><motor name="knee_motor" joint="knee" {delay}/></actuator>
+</mujoco>"""
+
+
+def arm(integrator: str = "Euler", h: float = H, damping: float = 0.0, delay: str = "") -> Any:
+    return mujoco.MjModel.from_xml_string(ARM.format(integrator=integrator, h=h, damping=damping, delay=delay))
+
+
+def lint(model: Any, *gains: tuple[str, str, str], timing: Timing = Timing()) -> list[Linted]:  # noqa: B008
+    typed = [MotorGains(pattern, Fraction(kp), Fraction(kd)) for pattern, kp, kd in gains]
+    return list(linted_model(model_data(mujoco, model), typed, timing))
+
+
+def modulus(model: Any, kp: float, kd: float, timing: Timing) -> float:
+    """Return |z| a step of MuJoCo's own steps under a controller written as one would write it, by differences.
+
+    From one computation of the controls to the next: of positions, velocities and the controls still to be applied.
+    """
+    data = mujoco.MjData(model)
+    late, every = int(timing.late), timing.every
+    pending = ceil(late / every)
+
+    def advanced(state: Any) -> Any:
+        mujoco.mj_resetData(model, data)
+        data.qpos[:], data.qvel[:] = state[: model.nv], state[model.nv : 2 * model.nv]
+        mujoco.mj_forward(model, data)
+        now = -kp * data.actuator_length - kd * data.actuator_velocity
+        computed = [now, *state[2 * model.nv :].reshape(pending, model.nu)]  # latest first
+        for step in range(every):
+            age = max(0, ceil((late - step) / every))  # how many computations ago
+            data.ctrl[:] = computed[age]
+            mujoco.mj_step(model, data)
+        return np.concatenate([data.qpos, data.qvel, *computed[:pending]])
+
+    size, small = 2 * model.nv + pending * model.nu, 1e-6
+    changes = [advanced(small * unit) - advanced(-small * unit) for unit in np.eye(size)]
+    z = np.linalg.eigvals(np.array(changes).T / (2 * small))
+    return float(np.abs(z[np.abs(z - 1) > 1e-4]).max() ** (1 / every))
+
+
+@pytest.mark.parametrize("integrator", ["Euler", "RK4", "implicitfast"])
+@pytest.mark.parametrize("timing", [Timing(), Timing(4), Timing(1, Fraction(1)), Timing(4, Fraction(2))], ids=str)
+def test_the_last_row_is_mujocos_own_step(integrator: str, timing: Timing) -> None:
+    gains = (".*", "10", "0.05")
+    *_, together = lint(arm(integrator, damping=0.02), gains, timing=timing)
+    assert together.kind == "together"
+    assert together.z_abs is not None
+    found = modulus(arm(integrator, damping=0.02), 10, 0.05, timing)
+    assert found == pytest.approx(together.z_abs, abs=1e-6)  # differences keep nine digits
+
+
+@pytest.mark.parametrize("integrator", ["Euler", "RK4"])
+def test_a_motor_alone_is_a_held_drive_on_its_own_inertia(integrator: str) -> None:
+    """A pendulum of one joint, inside and outside of the limit of its rate."""
+    one = """<mujoco><option timestep="0.002" integrator="{}" gravity="0 0 0"/><worldbody><body>
+      <joint name="swing" axis="0 1 0"/><geom size=".1" mass="1" pos=".3 0 0" contype="0" conaffinity="0"/></body>
+    </worldbody><actuator><motor name="m" joint="swing" gear="3"/></actuator></mujoco>"""
+    model = mujoco.MjModel.from_xml_string(one.format(integrator))
+    for kd, verdict in (("0.1", "converges"), ("0.01", "diverges")):
+        (row,) = lint(model, ("m", "2", kd), timing=Timing(10, Fraction(3)))
+        assert (row.kind, row.verdict) == ("motor", verdict)
+        assert row.z_abs is not None
+        assert modulus(model, 2, float(kd), Timing(10, Fraction(3))) == pytest.approx(row.z_abs, abs=1e-6)
+
+
+def test_a_motor_without_gains_is_named_and_not_judged() -> None:
+    rows = lint(arm())
+    assert [(row.element, row.kind, row.verdict) for row in rows] == [
+        ("actuator 'hip_motor'", "motor", None),
+        ("actuator 'knee_motor'", "motor", None),
+    ]
+    assert "--pd 'hip_motor=KP,KD' judges it" in rows[0].advice
+    assert not any(row.unsafe for row in rows)
+
+
+def test_gains_are_for_the_motors_whose_whole_name_matches_and_the_last_decide() -> None:
+    hip, knee, together = lint(arm(), (".*", "10", "0.2"), ("knee.*", "1", "0.02"))
+    assert "kp 20, kd 0.4" not in hip.setting  # gains are the actuator's own, its gear is in the inertia
+    assert hip.setting.startswith("kp 10, kd 0.2")
+    assert knee.setting.startswith("kp 1, kd 0.02")
+    assert together.verdict == "converges"
+
+
+def test_mujocos_own_delay_adds_to_what_is_late() -> None:
+    if not hasattr(arm(), "actuator_delay"):
+        pytest.skip("this version has no delays")
+    delayed = arm(delay=f'delay="{3 * H}" nsample="10"')
+    hip, knee, _ = lint(delayed, (".*", "10", "0.2"), timing=Timing(1, Fraction(1)))
+    assert hip.setting.endswith("late 1")
+    assert knee.setting.endswith("late 4")
+
+
+def test_gains_for_no_motor_are_refused_with_the_names_there_are() -> None:
+    with pytest.raises(InputError, match="--pd elbow: matches no motor; the model's motors: hip_motor, knee_motor"):
+        lint(arm(), ("elbow", "1", "1"))
+    with pytest.raises(InputError, match="no regular expression"):
+        MotorGains("hip[", Fraction(1), Fraction(1))
