@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from bezstab.api import (
         best_point,
         check,
+        check_drive,
         choose,
         dominant_pole,
         feedback_cost,
@@ -39,6 +40,7 @@ NAMES = {
     "bezstab.api": (
         "best_point",
         "check",
+        "check_drive",
         "choose",
         "dominant_pole",
         "feedback_cost",
@@ -64,6 +66,7 @@ __getattr__ = lazy_names(__name__, NAMES)
 __all__ = [
     "best_point",
     "check",
+    "check_drive",
     "choose",
     "dominant_pole",
     "feedback_cost",

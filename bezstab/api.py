@@ -262,6 +262,34 @@ def check(
     return next((answer for answer in given if not answer.safe), given[0])
 
 
+def check_drive(
+    pd: Sequence[Number],
+    *,
+    h: Number,
+    every: int = 1,
+    late: Number = 0,
+    filter_seconds: Number = 0,
+    method: str | Method | None = None,
+) -> questions.HeldAnswer:
+    """Return what a drive does whose torque is held or late: proven verdict, |z_p| a step, limits, what is used up.
+
+    `pd` is (kp, kd, inertia) in SI units, `h` (s) the step of the physics. The torque is computed every so many steps,
+    applied so many steps `late`, and sees the velocity through a first-order filter of `filter_seconds` (s). Without a
+    method all four ways of applying a drive are asked, and the answer is the first that is not safe. InputError for
+    numbers out of range and for a method that is no way of applying a drive. Gil et al. 2009.
+    """
+    step, drive = _exact(h, "h"), _drive(pd)
+    assert drive
+    with _in_keywords():
+        check_step(step, "h")
+        timing = stability.Timing(every, _exact(late, "late"), _exact(filter_seconds, "filter_seconds") / step)
+        question = questions.HeldQuestion(drive=drive, h=step, timing=timing)
+        if method is not None:
+            question = questions.HeldQuestion(drive=drive, h=step, timing=timing, methods=(_method(method),))
+        found = list(questions.held_answers(question))
+    return next((answer for answer in found if not answer.safe), found[0])
+
+
 def largest_step(method: str | Method, *, alpha: Number, beta: Number) -> float:
     """Return the step (s) up to which every one is stable with alpha and beta (1/s), proven where the verdict turns.
 

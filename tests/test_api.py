@@ -275,3 +275,16 @@ def test_results_have_short_names_for_themselves() -> None:
         assert repr(result).startswith(f"{type(result).__name__}(")
         assert len(repr(result)) < 160
         assert "array" not in repr(result)
+
+
+def test_a_held_drive_is_checked_as_on_the_command_line() -> None:
+    answer = bezstab.check_drive((200, 5, "0.1"), h=0.002, every=4, late=1, filter_seconds="0.01", method="SYM")
+    (row,) = rows(
+        *("check", "--pd", "200,5,0.1", "--h", "0.002", "--every", "4", "--late", "1", "--filter", "0.01"),
+        *("--method", "SYM"),
+    )
+    assert (answer.verdict, answer.z_abs, answer.used_up) == (row["verdict"], row["z_abs"], row["held_by"])
+    assert answer.limits.late == row["late_max"]
+    assert not bezstab.check_drive((200, 0.5, 0.1), h=0.002, every=4).safe
+    with pytest.raises(InputError, match="every 0: expected"):
+        bezstab.check_drive((200, 5, 0.1), h=0.002, every=0)

@@ -133,22 +133,24 @@ def choose(
 ) -> None:
     """Recommend α and β for an integrator and its step size.
 
-    The answer is proven stable, and the margins that remain are printed. Feedback forces errors of its own on a
-    mechanism that moves: accurate, the default, has the least of them among what settles while the motion turns by 14
-    rad, or within --settle. How fast the motion is --omega says, or --scene. Below, two lines tell what faster decay
-    would cost and what slower decay would gain. The fastest point is a kink: towards more damping |z_p| rises like a
-    square root, hence robust. "within the spread" is the largest |z_p| with α and β off by --spread. Where no feedback
-    is too strong, those up to αh, βh = 4 are searched, and "searched" says so.
+    The answer is proven stable, and its margins are printed. Exit status 1 if it is not proven safe: over the
+    motion of a --scene, for steps that vary, or in a chain, where you ask for that.
 
-    With --engine the method is the engine's own unless given, and only what the engine can express is searched: of
-    several that are best, as where it fixes α̂, the mildest is taken. With --pd each way of applying a joint drive is
-    shown, with the kp and kd to set. With --bandwidth or --settle, or a controller that is slower than the physics
-    (--every, --late, --filter), they are critically damped gains for the explicit way, with a margin.
+    On a mechanism that moves, feedback makes errors of its own. The default goal, accurate, has the least of them
+    among what settles within --settle, or while the motion turns by 14 rad. --omega or --scene say how fast the
+    motion is. Below the answer, two lines say what faster decay would cost and what slower decay would gain.
+    "within the spread" is the largest |z_p| with α and β off by --spread. At the fastest point |z_p| rises like a
+    square root as soon as damping grows; robust keeps away from it. Where arbitrarily strong feedback is stable,
+    only αh and βh up to 4 are searched, and "searched" says so.
 
-    With --h-min steps may vary from one to the next, and "varying steps" says whether every sequence of them up to
-    --h-max decays. With --chain the answer also says from how many sweeps it is stable in a straight chain of bodies,
-    and the strongest feedback that this chain allows with --spread to spare. Exit status 1 if the answer is not proven
-    safe, over the motion of a --scene, for steps that vary and in a chain as well.
+    --engine searches only what that engine can express, with its own method unless you name another. Where several
+    points are best, the mildest is taken. --pd shows each way of applying a joint drive, with the kp and kd to set.
+    With --bandwidth or --settle, or a controller that is slower than the physics (--every, --late, --filter), these
+    are critically damped gains for the explicit way, with a margin.
+
+    --h-min lets steps vary: "varying steps" says whether errors decay for every sequence of steps up to --h-max.
+    --chain also says from how many sweeps the answer is stable in a straight chain of bodies, and gives the
+    strongest feedback that this chain allows with --spread to spare.
 
     Example: bezstab choose --method B4 --h 0.001
     """
@@ -250,32 +252,33 @@ def check(
 ) -> None:
     """Tell whether a choice is safe: exit status 0 if so, 1 if not.
 
-    Safe is what is proven stable for every method. Prints the verdict, the margins and the largest stable step, and
-    what `choose` would give instead. All that is about constant steps, and steps that are each stable alone may grow
-    when they alternate: with --h-min and --h-max safe is what is proven for every sequence of steps in that range.
-    With α and β in 1/s (--physical) and no --h, the step up to which every one is safe is the answer.
+    Safe means proven stable, for every method named. Prints the verdict, the margins, the largest stable step, and
+    what `choose` gives instead. α and β in 1/s (--physical) without --h: prints the step up to which every step is
+    safe.
 
-    What is safe may still be inaccurate: on a mechanism that moves, feedback that is strong, or weak, forces errors of
-    its own. Where they are ten times the least or more, a sentence says so.
+    That is about constant steps. Steps that are each stable alone may still let errors grow when they alternate.
+    With --h-min and --h-max, safe means proven for every sequence of steps in that range.
 
-    With --engine the method is the engine's own unless given, and what the engine does to its values (clamps, scaling)
-    is applied first; what the conversion leaves out is said. How far the step may grow is asked of the engine's values,
-    and whether it is α and β or α̂ and β̂ that stay as steps vary. What is given instead is what the engine can express,
-    with the line to paste. An engine that solves its constraints one after another, in sweeps, is told about one
-    constraint alone: chains of them may diverge all the same. With --chain safe is what is stable for so many bodies in
-    a straight chain, the last one --mass-ratio times as heavy, with --iterations sweeps.
+    What is safe may still be inaccurate. On a mechanism that moves, feedback makes errors of its own if it is
+    strong, or if it is weak. A sentence says so where they are ten times the least or more.
 
-    --pd kp,kd,inertia asks about a joint's drive, applied in four ways: explicit (SYM), implicit in velocity
+    --engine judges an engine's own values, with its own method unless you name another. What the engine does to its
+    values (clamps, scaling) is applied first, and what the conversion does not cover is printed. The largest step
+    is that of the engine's values. What to take instead is what the engine can express, as a line to paste. Many
+    engines solve their constraints one after another, in sweeps. Their answer is about one constraint alone: chains
+    of them may diverge all the same. With --chain, safe means stable for so many bodies in a straight chain, the
+    last one --mass-ratio times as heavy, with --iterations sweeps.
+
+    --pd kp,kd,inertia judges a joint's drive, applied in four ways: explicit (SYM), implicit in velocity
     (imex-euler, as MuJoCo's implicitfast), as stable PD (stable-pd), fully implicit (implicit-euler, as PhysX). All
-    four count unless --method names yours. Gains that were stable in an implicit engine explode in an explicit one: is
-    it kp or kd? "used up" says which of the two is at its limit, or nearest to it, and "to" how far each may go alone.
+    four count unless --method names yours. Gains that were stable in an implicit engine explode in an explicit one:
+    is it kp or kd? "used up" names the one at its limit, or nearest to it, and "to" says how far each may go alone.
     Explicit needs 2 kd h + kp h² < 4 inertia. Mostly it is kd, which has no limit where the velocity is implicit.
 
-    --every, --late and --filter ask about a drive whose controller is slower than the physics: its torque is held for
-    several steps, comes late, or sees a filtered velocity. "used up" says whether gains, rate or delay are, and "to"
-    how far each may go alone.
-
-    A contact of stiffness k and damping c between bodies of reduced mass m is --pd k,c,m for as long as it is closed.
+    --every, --late and --filter are for a controller that is slower than the physics: its torque is held for
+    several steps, comes late, or uses a filtered velocity. "used up" then names gains, rate or delay, and "to" says
+    how far each may go alone. A contact of stiffness k and damping c between bodies of reduced mass m is --pd k,c,m
+    while it is closed.
 
     Example: bezstab check --method RK2 --h 0.002 --alpha 50 --beta 50 --physical
     """
@@ -373,9 +376,10 @@ def engine_sentence(row: Row) -> str:
 def engines(h: Fraction, alpha: Fraction | None, beta: Fraction | None, form: Format) -> None:
     """List what other engines call the feedback, and what to set.
 
-    acceleration: true Baumgarte feedback, where the integrator decides. velocity and position: what feeds the error
-    back into velocities or positions, which is the method named at an equivalent point. Each row says what the
-    conversion leaves out, and whether a run of the engine itself witnessed it or it rests on its source alone.
+    "level" is where an engine applies the feedback. acceleration: true Baumgarte feedback, and the integrator
+    decides. velocity or position: the engine feeds the error back into velocities or positions; each such step is a
+    step of the method named. "left out" is what the conversion does not cover. "rests on" says whether we ran the
+    engine itself or rely on its source.
 
     Example: bezstab engines --alpha 1 --beta 0.2 --h 0.002
     """

@@ -121,10 +121,12 @@ def simulate(
 ) -> None:
     """Run a mechanism and see what its constraint error does.
 
-    Prints largest |c| and |ċ|, energy drift and evaluations, and draws the first constraint and its derivative; with
-    --table csv it also writes the whole history. Exit status 3 if the run broke down; what came before is kept. With
-    --steps their lengths vary, for every one-step method, and work and drift of energy are integrated less exactly, by
-    the trapezoidal rule.
+    Prints the largest |c| and |ċ|, the energy drift and the number of evaluations, and draws the first constraint
+    and its rate. --table csv also writes the whole history. Exit status 3 if the run broke down; what came before
+    is kept.
+
+    --steps gives a sequence of step lengths, for any one-step method. Work and energy drift are then integrated by
+    the trapezoidal rule, which is less exact.
 
     Example: bezstab simulate --method AB4 --alpha 0.5 --beta 0.101 --time 2
     """
@@ -267,17 +269,18 @@ def tradeoff(
 ) -> None:
     """Measure what accuracy costs, by method and step.
 
-    Each run is held against a reference of known accuracy. Prints errors, evaluations, processor time (median and
-    range) and the order observed, and in words the cheapest run within --tolerance and where the Bézier methods win and
-    lose. Writes the table, without times, and two figures, of errors --against evaluations or time. A run that fails
-    is marked as diverged.
+    Each run is compared with a reference of known accuracy. Prints errors, evaluations, processor time (median and
+    range) and the order observed. Below, sentences name the cheapest run within --tolerance, and where the Bézier
+    methods win and lose. Writes the table, without times, and two figures of errors against evaluations or time. A
+    run that fails is marked as diverged.
 
-    Unless a point is given, each step has that of the goal accurate for the scene's own motion, or --omega. Where α̂ and
-    β̂ are held while h shrinks, methods with stages lose order. So does the start of a multistep method, which is RK4:
-    "in the later half" of a run it has died away, and there the feedback forces what is "predicted".
+    Without --alpha and --beta each step has its own point: that of the goal accurate for the scene's motion, or for
+    --omega. If α̂ and β̂ are held while h shrinks, methods with stages lose order. A multistep method starts with
+    RK4, which loses order too: "in the later half" of a run that error has died away, and what remains is what the
+    feedback forces, as "predicted".
 
-    With --predicted nothing is simulated: for each method and |z_p| the least error that can be forced on a motion, of
-    --omega or a --scene that is given with one --h, else at ωh = 0.01. Writes tradeoff_predicted.
+    --predicted simulates nothing: it prints the least error that a method can force on a motion, for each |z_p|.
+    The motion is --omega, or a --scene with one --h; else it turns by ωh = 0.01. Writes tradeoff_predicted.
 
     Example: bezstab tradeoff --method B4 --method AB4 --h 0.002 --h 0.004 --time 2
     """

@@ -128,9 +128,11 @@ def poles(
 ) -> None:
     """Print each method's dominant pole at one point, and the verdict.
 
-    converges: every |z| < 1. marginal: bounded without decay. diverges: a root outside the unit circle, or a repeated
-    one on it. Proven by a Schur-Cohn test in exact arithmetic on the numbers as typed. "error" is what the feedback
-    forces on a motion, as a share of its amplitude, and "× least" how many times that at the goal accurate of `choose`.
+    converges: every |z| < 1, so errors shrink. marginal: errors stay bounded but do not shrink. diverges: errors
+    grow. The verdict is proven in exact arithmetic on the numbers as typed (Schur-Cohn test).
+
+    Feedback also makes errors of its own on a mechanism that moves. "error" is that error as a share of the
+    motion's amplitude. "× least" compares it with the error at the goal accurate of `choose`.
 
     Example: bezstab poles --alpha 0.5 --beta 0.1
     """
@@ -231,10 +233,12 @@ def region(
 ) -> None:
     """Draw where each method is stable, and |z_p| there.
 
-    Writes region_METHOD.png and prints the axis limits of the exact region, its area, the smallest |z_p| and where.
-    With --table csv also region_METHOD.csv, which holds α̂, β̂, |z_p| and ∠z_p; with --compare, the boundary curves.
-    With --scene also the region of that mechanism as it moves, into region_METHOD_SCENE. With --accuracy, instead,
-    region_METHOD_accuracy: the error that the feedback forces, position and velocity together, as a share of a motion.
+    Prints the limits and the area of the exact region, the smallest |z_p| and where it is. Writes
+    region_METHOD.png. --table csv also writes α̂, β̂, |z_p| and ∠z_p, or with --compare the boundary curves.
+
+    --scene also draws the region of that mechanism as it moves, into region_METHOD_SCENE. --accuracy draws another
+    map, region_METHOD_accuracy: the error that the feedback forces on position and velocity, as a share of a
+    motion.
 
     Example: bezstab region --method B4
     """

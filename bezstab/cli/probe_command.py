@@ -101,11 +101,13 @@ def probe(
 ) -> None:
     """Tell from a simulator's log which integrator made it.
 
-    LOG is a CSV file, or - for standard input, with a row for each step from the kick on. Prints the pole with which
-    each column's error decays; with --alpha and --beta how far it is from every method's, the nearest first (of those
-    that do not fit a few; JSON and CSV have all); without them, the α and β that it means under --method. Where
-    noise covers the rows, the pole that stands out of it is told, or that none does. What cannot be told is said, with
-    exit status 3, which also means that nothing fits any column.
+    LOG is a CSV file, or - for standard input, with a row for each step from the kick on. Prints the pole with
+    which the error in each column decays.
+
+    With --alpha and --beta it compares that pole with every method's and prints the nearest first: all methods that
+    fit, and a few that do not (JSON and CSV have all). Without them it prints the α and β that the pole means under
+    --method. In a noisy log it uses the pole that rises above the noise, if there is one. Exit status 3 if no pole
+    can be told, or if nothing fits any column; a message says why.
 
     Example: bezstab probe log.csv --minus unkicked.csv --alpha 1 --beta 0.25
     """

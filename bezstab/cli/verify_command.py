@@ -148,16 +148,18 @@ def verify(
 ) -> None:
     """Compare predicted poles with poles measured in a simulation.
 
-    Two runs, one kicked up and one down, differ by what the linear recursion alone does; its dominant pole is fitted to
-    that difference. What cannot be measured is said so. On a mechanism that moves the prediction is that of the map (at
-    rest), of the first-order law of the motion, and with --floquet exact. --map draws simulated verdicts under the
-    exact boundary, by chunks that --workers or --scheduler share and a killed run keeps for --resume.
-    --witness mujoco runs the scene in MuJoCo, at 0.9 and 1.1 times the boundary of what its integrators are.
+    Two runs start with opposite kicks. Their difference follows the linear recursion, and its dominant pole is
+    fitted. Where no pole can be measured, a row says why. For a mechanism that moves there are further predictions:
+    the map's (at rest), that of the first-order law of the motion, and with --floquet the exact one.
 
-    --accuracy compares the constraint error that a method forces anew in each step, predicted in metres without any
-    run, with that of runs: at 0.2 to 1 times α and β of the point, or of what choose --goal robust finds, with steps of
-    --h and of half of it. Exit status 1 where measured over predicted is off one by more than a quarter, 3 where there
-    is nothing to compare: a run broke down, or rounding is as large.
+    --map runs a simulation at each of N×N points and draws the verdicts under the exact boundary. --workers or
+    --scheduler share the work; --resume goes on with what a killed run has left. --witness mujoco runs the scene in
+    MuJoCo, at 0.9 and 1.1 times the boundary of each of its integrators.
+
+    --accuracy compares errors that the feedback forces, predicted in metres and measured in runs: at 0.2 to 1 times
+    α and β of the point (or of choose --goal robust), with steps of --h and of half of it. Exit status 1 if
+    measured over predicted differs from one by more than a quarter; 3 if nothing can be compared, because a run
+    broke down or rounding is as large.
 
     Example: bezstab verify --method AB4 --points 20
     """

@@ -70,9 +70,9 @@ BETA = Field(
 H = Field("h", "number", "Step size", unit="s", null=UNKNOWN_STEP)
 Z_REAL = Field("z_real", "number", "Real part of the pole")
 Z_IMAG = Field("z_imag", "number", "Imaginary part of the pole, that of the upper one of a pair")
-Z_ABS = Field("z_abs", "number", "Modulus of the pole: by so much errors shrink or grow at a step", "|z_p|", ".4f")
+Z_ABS = Field("z_abs", "number", "Modulus of the pole: each step multiplies errors by it", "|z_p|", ".4f")
 Z_ANGLE_DEG = Field(
-    "z_angle_deg", "number", "Angle of the pole: so far errors turn at a step", "∠z (deg)", ".3f", unit="degrees"
+    "z_angle_deg", "number", "Angle of the pole: errors turn by it in each step", "∠z (deg)", ".3f", unit="degrees"
 )
 VERDICT = Field("verdict", "text", "What errors do, proven on the numbers as typed", "verdict", values=VERDICTS)
 SAFE = Field("safe", "truth", "Whether every error is proven to shrink; with --scene, on the moving mechanism as well")
@@ -211,7 +211,9 @@ IMPLICIT = Field(
 )
 DIGITS = Field("digits", "integer", "Digits to which rationals stand for irrational coefficients", null="where none do")
 GROUP = Field("group", "text", "Heading under which the row is listed", "group")
-OMEGA_H = Field("omega_h", "number", "How far the motion that errors are told of turns in a step, omega h", unit="rad")
+OMEGA_H = Field(
+    "omega_h", "number", "Angle by which the motion that errors are told on turns in a step, omega h", unit="rad"
+)
 FORCED_ERROR = Field(
     "forced_error",
     "number",
@@ -286,7 +288,7 @@ SETTLE_SECONDS = Field(
 H_FACTOR = Field(
     "h_factor",
     "number",
-    "Times h up to which alpha and beta stay stable",
+    "Factor on h up to which this alpha and beta are stable",
     "stable for h times",
     text=times_text,
     null="where the point is not stable, or any step is",
@@ -367,14 +369,14 @@ OBSERVED_ORDER = Field(
 PREDICTED_Z_ABS = Field(
     "predicted_z_abs",
     "number",
-    "Modulus of the pole predicted for the mechanism at rest: by so much errors shrink or grow at a step",
+    "Modulus of the pole predicted for the mechanism at rest: each step multiplies errors by it",
     "|z| there",
     ".7f",
 )
 PREDICTED_Z_ANGLE_DEG = Field(
     "predicted_z_angle_deg",
     "number",
-    "Angle of the pole predicted for the mechanism at rest: so far errors turn at a step",
+    "Angle of the pole predicted for the mechanism at rest: errors turn by it in each step",
     "∠z (deg)",
     ".4f",
     unit="degrees",
@@ -439,7 +441,7 @@ MOVING = (
     Field(
         "safe_speed",
         "number",
-        "Times the given speed up to which errors shrink, at most as far as the law holds, kappa h = 0.1",
+        "Factor on the given speed up to which errors shrink, at most as far as the law holds, kappa h = 0.1",
         "safe to speed",
         text=speed_text,
         null="where it diverges at rest, or where nothing turns",
@@ -577,14 +579,14 @@ VARYING = (
     Field(
         "sequence",
         "numbers",
-        "Steps that do not let errors decay when they are repeated",
+        "Steps of a sequence that lets errors not decay when it is repeated",
         unit="s",
         null="unless refuted",
     ),
     Field(
         "growth",
         "number",
-        "Times as large as before that errors are after each such repetition",
+        "Factor on errors after each repetition of that sequence",
         null="unless refuted, and where a step has no solution",
     ),
     Field("shown_by", "text", "The line with which simulate shows errors grow", null="where no run shows it"),
@@ -615,7 +617,7 @@ LIKE_POINT = (
     BETA.shown("β (1/s)", ".7g"),
 )
 MOVING_REGION = (
-    Field("speed", "number", "Times its own speed at which the scene moves", "speed", "g", null=LEVEL_ROW),
+    Field("speed", "number", "Factor on the scene's own speed at which it moves", "speed", "g", null=LEVEL_ROW),
     KAPPA,
     Field(
         "area_moving",
@@ -918,7 +920,7 @@ MEASUREMENTS = RowKind(
         Field(
             "measured_z_abs",
             "number",
-            "Modulus of the pole measured in the simulation: by so much errors shrink or grow at a step",
+            "Modulus of the pole measured in the simulation: each step multiplies errors by it",
             "measured |z|",
             ".6f",
             null=NOT_MEASURED,
@@ -943,7 +945,7 @@ MEASUREMENTS = RowKind(
         Field(
             "measured_z_angle_deg",
             "number",
-            "Angle of the pole measured in the simulation: so far errors turn at a step",
+            "Angle of the pole measured in the simulation: errors turn by it in each step",
             "measured ∠z (deg)",
             ".3f",
             unit="degrees",
@@ -1029,7 +1031,7 @@ FORCED = RowKind(
     fields=(
         SCENE.hidden,
         METHOD,
-        Field("gain_share", "number", "Times alpha and beta of the point that was chosen or given", "gains", "g"),
+        Field("gain_share", "number", "Factor on alpha and beta of the point that was chosen or given", "gains", "g"),
         ALPHA_HAT.shown("α̂", ".4g"),
         BETA_HAT.shown("β̂", ".4g"),
         H.shown("h (s)", "g"),
