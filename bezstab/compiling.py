@@ -2,8 +2,7 @@
 
 import importlib.util
 import os
-from collections.abc import Callable, Iterable
-from typing import Any, TypeVar
+from typing import Any
 
 from bezstab.errors import InputError
 
@@ -14,8 +13,6 @@ NEEDS_NUMBA = "compiled runs need an optional package: pip install 'bezstab[fast
 
 INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 """Options for functions that machine code alone calls: what Python needs to call one takes as long to compile again."""
-
-Function = TypeVar("Function", bound=Callable[..., object])
 
 
 def compiled_choice() -> str:
@@ -38,23 +35,12 @@ def numba_is_installed() -> bool:
 
 
 def compiler() -> Any:
-    """Return numba. InputError without it, or where it calls functions that round otherwise than the C library's."""
+    """Return numba. InputError without it."""
     try:
         import numba
     except ImportError:
         raise InputError(NEEDS_NUMBA) from None
-    if getattr(numba.config, "USING_SVML", False):
-        raise InputError(
-            "compiled runs need NUMBA_DISABLE_INTEL_SVML=1: Intel's functions round otherwise than Python's"
-        )
     return numba
-
-
-def shared_with_machine_code(functions: Iterable[Callable[..., object]]) -> None:
-    """Let machine code call these functions as machine code; Python goes on calling them as they are."""
-    extending = importlib.import_module("numba.extending")
-    for function in functions:
-        extending.register_jitable(**INNER)(function)
 
 
 def cores() -> int:

@@ -22,10 +22,7 @@ def solution(rows: Sequence[Sequence[Any]], right_sides: Sequence[Sequence[Any]]
 
 
 def eliminate(table: list[list[Any]], unknowns: int) -> None:
-    """Turn the first columns of a table, as many as there are unknowns, into those of the unit matrix, row by row.
-
-    The text serves machine code, too, which has no more of Python than this.
-    """
+    """Turn the first columns of a table, as many as there are unknowns, into those of the unit matrix, row by row."""
     for column in range(unknowns):
         largest = column
         for number in range(column + 1, len(table)):

@@ -10,7 +10,6 @@ from bezstab.compiling import (
     compiled_choice,
     compiler,
     cores,
-    shared_with_machine_code,
 )
 from bezstab.errors import InputError
 
@@ -37,14 +36,3 @@ def test_a_missing_compiler_is_refused_in_a_line(monkeypatch: pytest.MonkeyPatch
 
 def test_the_cores_are_those_that_this_process_may_use() -> None:
     assert 1 <= cores() <= (os.cpu_count() or 1)
-
-
-def test_a_shared_function_serves_python_and_machine_code() -> None:
-    def thirds(x: float) -> float:
-        return x / 3
-
-    def ninths(x: float) -> float:
-        return thirds(thirds(x))
-
-    shared_with_machine_code([thirds])
-    assert compiler().njit(ninths)(1.0) == ninths(1.0) == 1 / 3 / 3

@@ -82,6 +82,7 @@ def _with_the_files_of_the_pages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     np.savetxt("log.csv", response, "%.9g", header="c", comments="")
     shutil.copy(DATA / "two_joints.xml", "robot.xml")
     shutil.copy(DATA / "arm.urdf", "robot.urdf")
+    shutil.copy(DATA / "legs.xml", "legs.xml")
 
 
 @pytest.mark.usefixtures("_with_the_files_of_the_pages")

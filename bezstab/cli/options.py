@@ -205,7 +205,7 @@ compiled_option = click.option(
     default="auto",
     expose_value=False,
     callback=_choose_compiled,
-    help="Runs as machine code by numba, the same to the last bit: auto where it is installed and pays.",
+    help="Runs as machine code by numba: auto where it is installed and pays.",
 )
 
 

@@ -4,12 +4,11 @@ References have a hundred digits: roots by Newton's method (`root_digits`), mult
 arithmetic.
 """
 
-import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
-from itertools import islice, product
+from itertools import product
 
 import mpmath as mp
 import numpy as np
@@ -22,7 +21,6 @@ from bezstab.mechanism import (
     initial_state,
     load_scene,
     march,
-    march_in_blocks,
     multipliers_function,
     observe,
     perturbed_state,
@@ -224,12 +222,9 @@ def _largest_in_each_tenth(method: Method, count: int, gains: tuple[float, float
     mechanism = compiled_mechanism(load_scene("slider_crank"))
     q, v = initial_state(mechanism)
     largest = np.zeros(10)
-    first = (*q.tolist(), *v.tolist())
-    if runs_compiled(mechanism, method, count * evaluations(method)):
-        blocks = march_in_blocks(mechanism, method, H, gains, first, "rk4", count)
-        states = (state for block in blocks for state in block.states)
-    else:
-        states = (state for state, _, _ in islice(march(mechanism, method, H, gains, first, "rk4", math), count))
+    compiled = runs_compiled(mechanism, method, count * evaluations(method))
+    blocks = march(mechanism, method, H, gains, np.concatenate([q, v]), "rk4", count, compiled=compiled)
+    states = (state for block in blocks for state in block.states)
     for k, state in enumerate(states):
         if k % EVERY == 0:
             c = float(np.abs(constraint_errors(mechanism, 0.0, state[: mechanism.size])).max())

@@ -11,13 +11,14 @@ Differences that still are neither large nor lost in rounding go on for a few mo
 Runs that set out from the scene's initial state show another rate for as long as they drift to their own motion.
 """
 
+from collections.abc import Iterator
 from itertools import islice
 from typing import Any
 
 import numpy as np
 
 from bezstab.evidence.own_motions import OwnMotions
-from bezstab.mechanism import Mechanism, acceleration_function, resume, states_needed
+from bezstab.mechanism import Mechanism, resume, states_needed
 from bezstab.methods import Method, steps
 from bezstab.stability import BoolArray, FloatArray
 
@@ -68,30 +69,27 @@ def _largest_multiplier(before: FloatArray, after: FloatArray) -> float:
     return float(np.abs(np.linalg.eigvals(mapped)).max())
 
 
-def _differences(step: Any, h: float) -> FloatArray:
+def _differences(state: FloatArray, h: float) -> FloatArray:
     """Return the differences of runs kicked up and down, of q and h v; shape (points, 2 n, kicks)."""
-    state, _, _ = step
-    q_and_v = np.stack(np.broadcast_arrays(*state))
+    q_and_v = state.copy()
     q_and_v[len(q_and_v) // 2 :] *= h
     return np.asarray(np.moveaxis(q_and_v[:, 0] - q_and_v[:, 1], 2, 0))
 
 
-def _kicked_runs(mechanism: Mechanism, method: Method, motions: OwnMotions, there: Any, known: int) -> Any:
-    """Return the runs of some points as `resume` yields them, entries of shape (2, kicks, points).
+def _kicked_runs(
+    mechanism: Mechanism, method: Method, motions: OwnMotions, there: Any, known: int
+) -> Iterator[FloatArray]:
+    """Yield the states of the runs of some points, shape (2 n, 2, kicks, points), step by step.
 
     They begin with so many states of the own motion, of which the newest is kicked, q or h v, a coordinate each.
     """
     n = mechanism.size
     gains = motions.gains[0, there], motions.gains[1, there]
-    history = [tuple(state.T) for state in motions.states[:known, there]]
-    slopes = []
-    for k, state in enumerate(history[:-1]):
-        acceleration = acceleration_function(mechanism, np)(k * motions.step, *gains, state[:n], state[n:])
-        slopes.append((*state[n:], *acceleration))
+    history = [state.T for state in motions.states[:known, there]]
     undisturbed = history[-1]
     kick = np.where(motions.rates[there] > 1, KICK_OF_GROWTH, KICK_OF_DECAY) * np.array([[[1]], [[-1]]])
     directions = np.eye(2 * n) / np.repeat([1, motions.step], n)
-    history[-1] = tuple(
-        value + share[:, np.newaxis] * kick for value, share in zip(undisturbed, directions, strict=True)
-    )
-    return resume(mechanism, method, motions.step, gains, history, slopes, np, undisturbed=undisturbed)
+    history[-1] = undisturbed[:, np.newaxis, np.newaxis] + directions[:, np.newaxis, :, np.newaxis] * kick
+    count = REVOLUTIONS * motions.steps
+    blocks = resume(mechanism, method, motions.step, gains, history, count, undisturbed=undisturbed)
+    return (state for block in blocks for state in block.states)

@@ -25,6 +25,7 @@ from bezstab.evidence.moving_mechanisms import MovingPole, MovingVerdict, moving
 from bezstab.evidence.own_motions import find_own_motions
 from bezstab.mechanism import (
     CHEAPER_TOGETHER,
+    Block,
     Mechanism,
     constraint_errors,
     initial_state,
@@ -51,6 +52,9 @@ from bezstab.units import feedback_gains
 
 MeasuredVerdict = Literal["converges", "diverges", "too close to call"]
 Progress = Callable[[Sequence[int]], Iterable[int]]
+
+ENDLESS = 10**9
+"""Steps, of which whoever asks takes some."""
 
 RUN = 1000
 """Steps after the kick."""
@@ -345,16 +349,9 @@ def kicked_motions(
     kicks: Sequence[float],
 ) -> Iterator[tuple[FloatArray, FloatArray]]:
     """Yield c and q of the same runs, SI units; shape (constraints or coordinates, 2, kicks, points)."""
-    run_up = _run_up_to_the_kick(mechanism, method, h, alpha_hat, beta_hat, kicks)
-    h_step, history = run_up.h_step, run_up.history
-    run = resume(mechanism, method, h_step, run_up.gains, history, run_up.slopes, np, undisturbed=run_up.undisturbed)
-    state = history[-1]
-    k = len(history) - 1
-    while True:
-        q = state[: mechanism.size]
-        yield constraint_errors(mechanism, k * h_step, q), np.stack(q)
-        state, _, _ = next(run)
-        k += 1
+    ((_, blocks),) = _kicked_blocks(mechanism, method, h, alpha_hat, beta_hat, kicks, ENDLESS, compiled=False)
+    for c, q in blocks:
+        yield from zip(c, q, strict=True)
 
 
 def kicked_motions_in_groups(
@@ -371,16 +368,41 @@ def kicked_motions_in_groups(
     With each slice of the points come blocks of c and q, of shape (steps, constraints or coordinates, 2, kicks, points
     in the slice). InputError without numba.
     """
+    return _kicked_blocks(mechanism, method, h, alpha_hat, beta_hat, kicks, count, compiled=True)
+
+
+def _kicked_blocks(
+    mechanism: Mechanism,
+    method: Method,
+    h: float,
+    alpha_hat: FloatArray,
+    beta_hat: FloatArray,
+    kicks: Sequence[float],
+    count: int,
+    compiled: bool,
+) -> Iterator[tuple[slice, Iterator[tuple[FloatArray, FloatArray]]]]:
+    """Yield the same, compiled or not; in one group if not."""
     run_up = _run_up_to_the_kick(mechanism, method, h, alpha_hat, beta_hat, kicks)
-    h_step, history = run_up.h_step, run_up.history
-    q = history[-1][: mechanism.size]
-    at_the_kick = constraint_errors(mechanism, (len(history) - 1) * h_step, q), np.stack(q)
-    groups = resume_in_groups(
-        mechanism, method, h_step, run_up.gains, history, run_up.slopes, run_up.undisturbed, count
-    )
+    given = (mechanism, method, run_up.h_step, run_up.gains, run_up.history)
+    groups: Iterable[tuple[slice, Iterator[Block]]]
+    if compiled:
+        groups = resume_in_groups(*given, run_up.undisturbed, count)
+    else:
+        groups = [(slice(None), resume(*given, count, undisturbed=run_up.undisturbed))]
+    n = mechanism.size
+    kicked = run_up.history[-1]
+
+    def seen(blocks: Iterator[Block], at_the_kick: FloatArray) -> Iterator[tuple[FloatArray, FloatArray]]:
+        k = len(run_up.history) - 1
+        for states in chain([at_the_kick[np.newaxis]], (block.states for block in blocks)):
+            times = run_up.h_step * np.arange(k, k + len(states), dtype=np.float64)
+            q = np.moveaxis(states[:, :n], 1, 0)
+            c = constraint_errors(mechanism, times.reshape(-1, *(1,) * (q.ndim - 2)), q)
+            yield np.moveaxis(c, 0, 1), states[:, :n]
+            k += len(states)
+
     for some, blocks in groups:
-        c_then, q_then = (each[np.newaxis, ..., some] for each in at_the_kick)
-        yield some, chain([(c_then, q_then)], blocks)
+        yield some, seen(blocks, kicked[..., some])
 
 
 def nothing_happens_without_feedback(mechanism: Mechanism, method: Method, h: float) -> bool:
@@ -398,9 +420,8 @@ class _RunUp:
 
     h_step: float
     gains: tuple[FloatArray, FloatArray]
-    history: list[tuple[FloatArray, ...]]
-    slopes: list[tuple[FloatArray, ...]]
-    undisturbed: tuple[FloatArray, ...]
+    history: list[FloatArray]
+    undisturbed: FloatArray
 
 
 def _run_up_to_the_kick(
@@ -415,19 +436,14 @@ def _run_up_to_the_kick(
     gains = feedback_gains(alpha_hat, beta_hat, h)
     q, v = initial_state(mechanism)
     displaced = perturbed_state(mechanism, 1.0)[0] - q  # linear in the constraint error
-    direction = (*displaced, *np.zeros_like(v))
-    amounts = np.multiply.outer([1.0, -1.0], kicks)[..., np.newaxis]
-    start = tuple(np.full(alpha_hat.shape, value) for value in (*q, *v))
-    history = [start]
-    slopes = []
-    run = march(mechanism, method, h_step, gains, start, "rk4", np)
-    for state, slope, _ in islice(run, _steps_before_the_kick(method)):
-        history.append(state)
-        slopes.append(slope)
+    direction = np.concatenate([displaced, np.zeros_like(v)])
+    start = np.repeat(np.concatenate([q, v])[:, np.newaxis], alpha_hat.size, axis=1)
+    blocks = march(mechanism, method, h_step, gains, start, "rk4", _steps_before_the_kick(method))
+    history = [start, *(state for block in blocks for state in block.states)]
     undisturbed = history[-1]
-    state = tuple(value + amounts * change for value, change in zip(undisturbed, direction, strict=True))
-    history[-1] = state
-    return _RunUp(h_step, gains, history, slopes, undisturbed)
+    amounts = np.multiply.outer([1.0, -1.0], kicks)[..., np.newaxis]
+    history[-1] = undisturbed[:, np.newaxis, np.newaxis] + np.multiply.outer(direction, amounts)
+    return _RunUp(h_step, gains, history, undisturbed)
 
 
 def _steps_before_the_kick(method: Method) -> int:

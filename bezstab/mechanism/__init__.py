@@ -11,25 +11,20 @@ from bezstab.mechanism.compiled import (
     acceleration_function,
     compiled_mechanism,
     multipliers_function,
-    stepper_code,
 )
-from bezstab.mechanism.compiled_steps import (
-    CHEAPER_TOGETHER,
-    runs_compiled,
-)
+from bezstab.mechanism.compiled_stepping import CHEAPER_TOGETHER, runs_compiled
 from bezstab.mechanism.constraint_motions import ConstraintMotion, along_normals, constraint_motion
 from bezstab.mechanism.constraint_normals import TurningNormals, turned_across, turning_normals
 from bezstab.mechanism.energies import EnergyBalance, energy_balance
 from bezstab.mechanism.equations import Equations, T, equations_of_motion
-from bezstab.mechanism.generated_code import compiled_source
 from bezstab.mechanism.linearized import linearized_acceleration
 from bezstab.mechanism.motions import Motion, motion, regular_motion, revolution_period
 from bezstab.mechanism.observation import Observation, observe, singular_passages
 from bezstab.mechanism.runner import (
+    Block,
     Start,
     Trajectory,
     march,
-    march_in_blocks,
     resume,
     resume_in_groups,
     simulate,
@@ -63,6 +58,7 @@ __all__ = [
     "MOST_STEPS",
     "SINGULAR",
     "Assigned",
+    "Block",
     "Body",
     "ConstraintMotion",
     "Distance",
@@ -90,7 +86,6 @@ __all__ = [
     "along_normals",
     "at_speed",
     "compiled_mechanism",
-    "compiled_source",
     "constraint_errors",
     "constraint_jacobian",
     "constraint_motion",
@@ -100,7 +95,6 @@ __all__ = [
     "linearized_acceleration",
     "load_scene",
     "march",
-    "march_in_blocks",
     "memory",
     "motion",
     "multipliers_function",
@@ -119,7 +113,6 @@ __all__ = [
     "simulated_with_steps",
     "singular_passages",
     "states_needed",
-    "stepper_code",
     "turn",
     "turned_across",
     "turning_normals",

@@ -1,33 +1,41 @@
-"""Runs of a mechanism with Baumgarte feedback: a method's start, its steps, and what ends a run early."""
+"""Runs of a mechanism with Baumgarte feedback: a method's start, its steps in blocks, and what ends a run early."""
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
 from functools import cache
-from itertools import islice
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from bezstab.errors import InputError
-from bezstab.mechanism.compiled import (
-    BLOWN_UP,
-    SINGULAR,
-    Mechanism,
-    State,
-    Step,
-    acceleration_function,
-    compiled_stepper,
-    implicit_solver,
-    run_as_second_order,
-)
-from bezstab.mechanism.compiled_batches import ErrorsAndPositions, errors_and_positions_in_groups
-from bezstab.mechanism.compiled_steps import Block, blocks_of_steps, runs_compiled
-from bezstab.mechanism.newton_iterations import EVALUATIONS, NotConvergedError, Work
+from bezstab.mechanism.array_stepping import array_steps
+from bezstab.mechanism.compiled import SINGULAR, Mechanism, acceleration_function
+from bezstab.mechanism.compiled_stepping import LANES, machine_steps, runs_compiled
+from bezstab.mechanism.programs import program_of
 from bezstab.mechanism.second_order_memory import implicit_evaluations, memory
 from bezstab.mechanism.start import initial_state
-from bezstab.methods import Method, SecondOrder, adams_bashforth, bezier, evaluations, implicit, lookup, steps
+from bezstab.mechanism.stepping import (
+    BLOWN_UP,
+    EVALUATIONS,
+    ITERATIONS,
+    MOST_ITERATIONS,
+    IntArray,
+    Steps,
+    room_of,
+    rows_of,
+)
+from bezstab.methods import (
+    Method,
+    SecondOrder,
+    adams_bashforth,
+    bezier,
+    evaluations,
+    implicit,
+    lookup,
+    second_order_form,
+)
 from bezstab.read_only import ReadOnlyArrays
 
 Start = Literal["rk4", "ramp", "euler"]
@@ -36,9 +44,43 @@ Start = Literal["rk4", "ramp", "euler"]
 For an implicit method, which may bear stronger feedback than any of these: Gauss's method of order four, BDF methods of
 fewer steps, or implicit Euler.
 """
+FloatArray = NDArray[np.float64]
 Gains = tuple[Any, Any]
 """2 alpha (1/s) and beta^2 (1/s^2), as `units.feedback_gains` returns them: floats, or arrays over a batch."""
-FloatArray = NDArray[np.float64]
+
+NUMBERS_OF_A_BLOCK = 2**16
+"""Of all runs, between two looks at what the user wants (Ctrl-C): some tenths of a second in Python."""
+
+MOST_STEPS_OF_A_BLOCK = 4096
+
+
+@dataclass
+class Work:
+    """What implicit steps have taken: iterations, and evaluations of the acceleration, a slope counted as one."""
+
+    counts: IntArray = field(default_factory=lambda: np.zeros(2, np.int64))
+
+    @property
+    def iterations(self) -> int:
+        """The number of iterations."""
+        return int(self.counts[ITERATIONS])
+
+    @property
+    def evaluations(self) -> int:
+        """The number of evaluations."""
+        return int(self.counts[EVALUATIONS])
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """States after each of some steps, shape (steps, 2n, *batch), SI units, and the least relative pivots on the way.
+
+    Pivots are those of a run alone. `cause` says why it ends after these steps: with a step that is not among them.
+    """
+
+    states: FloatArray
+    pivots: FloatArray
+    cause: str | None = None
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -69,16 +111,6 @@ class Trajectory(ReadOnlyArrays):
         return f"Trajectory({run}, {len(self.t)} times, to t = {self.t[-1]:.6g} s{failed})"
 
 
-@dataclass(frozen=True)
-class History:
-    """The states of a run from the start on, shape (steps + 1, 2n), why it ended early, the step of the least pivot."""
-
-    states: FloatArray
-    cause: str | None
-    least_pivot: float
-    pivot_step: int
-
-
 def simulate(
     mechanism: Mechanism,
     method: Method,
@@ -94,43 +126,62 @@ def simulate(
     `gains` are 2 alpha and beta^2 (1/s, 1/s^2; paper Eq. 6). A step of the method lasts h (s) times its step multiple.
     The first values of a multistep method come from RK4, from its family's members of fewer steps ("ramp") or from
     explicit Euler. A blow-up, a singular S, a number that is not finite or an implicit step that Newton's method does
-    not solve ends the run, and `failure` says so. `compiled` says whether machine code takes the steps, the same to the
-    last bit (`compiled_steps`); by default that is as BEZSTAB_COMPILED says, or where it pays.
+    not solve ends the run, and `failure` says so. `compiled` says whether machine code takes the steps; by default that
+    is as BEZSTAB_COMPILED says, or where it pays.
     InputError for a start that has blown up before, or where numba is asked for and missing.
     """
     whole_step = h * float(method.step_multiple)
-    step_count = round(duration / whole_step)
-    q, v = initial_state(mechanism) if state is None else state
-    first: State = (*q.tolist(), *v.tolist())
-    blown_up = breakdown(first, pivot=1.0)
-    if blown_up:
-        raise InputError(f"the start: {blown_up}")
-    work = Work()
+    count = round(duration / whole_step)
+    first = checked_start(initial_state(mechanism) if state is None else state)
     if compiled is None:
-        compiled = runs_compiled(mechanism, method, step_count * evaluations(method))
-    if compiled:
-        blocks = march_in_blocks(mechanism, method, whole_step, gains, first, start, step_count, work)
-        history = recorded_in_blocks(first, blocks)
-    else:
-        run = march(mechanism, method, whole_step, gains, first, start, math, work)
-        history = recorded_history(first, islice(run, step_count))
+        compiled = runs_compiled(mechanism, method, count * evaluations(method))
+    work = Work()
+    blocks = march(mechanism, method, whole_step, gains, first, start, count, compiled=compiled, work=work, judged=True)
+    times = np.arange(count + 1, dtype=np.float64) * whole_step
+    return recorded(mechanism, method, first, times, blocks, start, work)
 
-    steps_taken = len(history.states) - 1
+
+def checked_start(state: tuple[FloatArray, FloatArray]) -> FloatArray:
+    """Return q and v as one state, shape (2n,). InputError where no run could go on from there."""
+    first = np.concatenate(state).astype(np.float64)
+    cause = breakdown(first, 1.0, 0.0)
+    if cause:
+        raise InputError(f"the start: {cause}")
+    return first
+
+
+def recorded(
+    mechanism: Mechanism,
+    method: Method,
+    first: FloatArray,
+    times: FloatArray,
+    blocks: Iterable[Block],
+    start: Start,
+    work: Work,
+) -> Trajectory:
+    """Return a run from its blocks, the times (s) of whose states are given, the first state's included."""
+    parts, pivots, cause = [first[np.newaxis]], [np.ones(0)], None
+    for block in blocks:
+        parts.append(block.states)
+        pivots.append(block.pivots)
+        cause = block.cause
+    states, least = np.concatenate(parts), np.concatenate(pivots)
+    steps_taken = len(states) - 1
     failure = None
-    if history.cause:
+    if cause:
         steps_taken += 1  # the step that failed is not in the history, but was computed
-        failure = f"at t = {steps_taken * whole_step:.6g} s: {history.cause}"
-    rows = history.states
+        failure = f"at t = {times[steps_taken]:.6g} s: {cause}"
+    lowest = int(least.argmin()) if least.min(initial=1.0) < 1.0 else None
     return Trajectory(
         mechanism=mechanism,
         method=method,
-        t=np.arange(len(rows), dtype=np.float64) * whole_step,
-        q=rows[:, : mechanism.size],
-        v=rows[:, mechanism.size :],
+        t=times[: len(states)],
+        q=states[:, : mechanism.size],
+        v=states[:, mechanism.size :],
         evaluations=evaluation_count(method, start, steps_taken) + work.evaluations,
         failure=failure,
-        least_pivot=history.least_pivot,
-        pivot_time=history.pivot_step * whole_step,
+        least_pivot=1.0 if lowest is None else float(least[lowest]),
+        pivot_time=0.0 if lowest is None else float(times[lowest]),
         iterations=work.iterations if implicit(method) else None,
     )
 
@@ -140,61 +191,31 @@ def march(
     method: Method,
     h: float,
     gains: Gains,
-    state: State,
-    start: Start,
-    library: Any,
-    work: Work | None = None,
-) -> Iterator[Step]:
-    """Yield step after step from `state` (q then v) at t = 0 on: new state, slope before it, least relative pivot.
-
-    h (s) is the whole step of the method, `gains` are 2 alpha and beta^2 (1/s, 1/s^2); the first values of a multistep
-    method come from `start`. With `library` math on floats; with numpy on arrays of any broadcastable shapes, gains
-    included. What goes wrong shows in the numbers, or raises an ArithmeticError or ValueError. The slope of a
-    second-order scheme is v and its own a, as far as it carries them; `work` counts what implicit steps take.
-    """
-    states = [state]
-    slopes: list[State] = []
-    for starter, step_count in _starters(method, start):
-        run = resume(mechanism, starter, h, gains, states, slopes, library, work)
-        for new_state, slope, pivot in islice(run, step_count):
-            states.append(new_state)
-            slopes.append(slope)
-            yield new_state, slope, pivot
-    yield from resume(mechanism, method, h, gains, states, slopes, library, work)
-
-
-def march_in_blocks(
-    mechanism: Mechanism,
-    method: Method,
-    h: float,
-    gains: tuple[float, float],
-    state: State,
+    state: ArrayLike,
     start: Start,
     count: int,
+    *,
+    compiled: bool = False,
     work: Work | None = None,
+    judged: bool = False,
 ) -> Iterator[Block]:
-    """Yield the first `count` steps of a method, on floats, as `march` takes them, compiled, in blocks.
+    """Yield `count` steps from a state (q then v, shape (2n, *batch)) at t = 0 on, in blocks.
 
-    A block ends at the latest where a run may break down: only its last state can be one to which no run gets. What
-    goes wrong else raises an ArithmeticError or ValueError, as there; InputError without numba.
+    h (s) is the whole step of the method, `gains` are 2 alpha and beta^2 (1/s, 1/s^2), which broadcast against the
+    batch; the first values of a multistep method come from `start`. A run that is `judged`, without a batch, ends where
+    it breaks down; else what goes wrong shows in the numbers. `work` counts what implicit steps take. InputError where
+    steps are to be `compiled` without numba.
     """
-    work = work or Work()
-    states = [state]
-    slopes: list[State] = []
-    starting = min(states_needed(method) - 1, count)
-    for new_state, slope, pivot in islice(march(mechanism, method, h, gains, state, start, math, work), starting):
-        states.append(new_state)
-        slopes.append(slope)
-        yield Block(np.array([new_state]), np.array([pivot]))
-    remaining = count - starting
-    if not remaining:
-        return
-    moment, remembered, repeated = first_turn(mechanism, method, h, gains, states, slopes, None, math, work)
-    for block in blocks_of_steps(mechanism, method, moment, h, gains, remembered, repeated + remaining, work):
-        new = Block(block.states[repeated:], block.pivots[repeated:])
-        repeated -= len(block.states) - len(new.states)
-        if len(new.states):
-            yield new
+    history = [np.asarray(state)]
+    for starter, step_count in _starters(method, start):
+        some = min(step_count, count - len(history) + 1)
+        for block in resume(mechanism, starter, h, gains, history, some, work=work, judged=judged):
+            yield block
+            if block.cause:
+                return
+            history += list(block.states)
+    remaining = count - len(history) + 1
+    yield from resume(mechanism, method, h, gains, history, remaining, compiled=compiled, work=work, judged=judged)
 
 
 def resume(
@@ -202,26 +223,48 @@ def resume(
     method: Method,
     h: float,
     gains: Gains,
-    history: Sequence[State],
-    slopes: Sequence[State],
-    library: Any,
+    history: Sequence[ArrayLike],
+    count: int,
+    *,
+    undisturbed: ArrayLike | None = None,
+    compiled: bool = False,
     work: Work | None = None,
-    undisturbed: State | None = None,
-) -> Iterator[Step]:
-    """Yield the steps after `history`, as `march` does; its last state may have been tampered with.
+    judged: bool = False,
+) -> Iterator[Block]:
+    """Yield `count` steps after `history`, as `march` does; its last state may have been tampered with: kicked.
 
-    `history` holds the states from t = 0 on, h (s) apart, and `slopes` those of all but the last, in the same order.
-    A second-order scheme starts from the states alone: the accelerations that it remembers are those of the states, at
-    the last one those of what it was before (`undisturbed`, by default itself).
+    `history` holds the states from t = 0 on, h (s) apart, (2n, *batch) each. What a method remembers of accelerations
+    is those of the states, at the last one those of what it was before (`undisturbed`, by default itself).
     """
+    if count <= 0:
+        return
     work = work or Work()
-    moment, remembered, repeated = first_turn(mechanism, method, h, gains, history, slopes, undisturbed, library, work)
-    run = compiled_stepper(mechanism, method, library)
-    if run_as_second_order(method):
-        turns = run(moment, h, *gains, remembered, implicit_solver(mechanism, method, library, work))
-        # of turns whose states are in the history already only what they give beyond them matters: the next needs it
-        return islice(turns, repeated, None)
-    return run(moment, h, *gains, *remembered)
+    given = [np.asarray(state) for state in (*history, history[-1] if undisturbed is None else undisturbed)]
+    batch = np.broadcast_shapes(*(state.shape[1:] for state in given), *map(np.shape, gains))
+    *states, calm = (_for_batch(state, batch) for state in given)
+    scheme = second_order_form(method.scheme)
+    carried, start, repeated = carried_quantities(mechanism, method, h, gains, states, calm, work)
+
+    def steps_between(first: int, last: int) -> Steps:
+        numbers = np.arange(first, last, dtype=np.float64)
+        return Steps(start + h * numbers, np.full(last - first, h), np.zeros(last - first, np.int64), spread_gains)
+
+    spread_gains = np.array([[np.broadcast_to(gain, batch).ravel() for gain in gains]], np.float64)
+    blocks = steps_in_blocks(
+        mechanism, scheme, steps_between, h, carried, batch, count + repeated, compiled, judged, work
+    )
+    # of turns whose states are in the history already only what they give beyond them matters: the next needs it
+    for block in blocks:
+        left_out = min(repeated, len(block.states))
+        repeated -= left_out
+        if len(block.states) > left_out or block.cause:
+            yield Block(block.states[left_out:], block.pivots[left_out:], block.cause)
+
+
+def _for_batch(state: FloatArray, batch: tuple[int, ...]) -> FloatArray:
+    """Return a state, shape (2n, *axes), for a batch that has these axes last."""
+    missing = len(batch) + 1 - state.ndim
+    return np.broadcast_to(state.reshape(len(state), *(1,) * missing, *state.shape[1:]), (len(state), *batch))
 
 
 def resume_in_groups(
@@ -229,155 +272,136 @@ def resume_in_groups(
     method: Method,
     h: float,
     gains: Gains,
-    history: Sequence[State],
-    slopes: Sequence[State],
-    undisturbed: State,
+    history: Sequence[FloatArray],
+    undisturbed: FloatArray,
     count: int,
-) -> Iterator[tuple[slice, Iterator[ErrorsAndPositions]]]:
-    """Yield c and q after each of `count` steps after `history`, as `resume` has them with numpy, compiled, by groups.
+) -> Iterator[tuple[slice, Iterator[Block]]]:
+    """Yield what `resume` does, compiled, by groups: slices of the batch's last axis that are fast side by side."""
+    batch = np.broadcast_shapes(history[-1].shape[1:], *map(np.shape, gains))
+    group = max(1, LANES // math.prod(batch[:-1]))
 
-    A group is a slice of the batch's last axis; its c comes in blocks of shape (steps, m, *batch, the last axis cut to
-    the group), its q in such of (steps, n, ...), SI units. InputError without numba.
-    """
-    moment, remembered, repeated = first_turn(mechanism, method, h, gains, history, slopes, undisturbed, np, Work())
-    index = len(history) - 1 - repeated
-    shape = np.broadcast_shapes(*(np.shape(entry) for entry in (*history[-1], *gains)))
+    def of_group(array: Any, some: slice) -> Any:
+        return array[..., some] if np.ndim(array) and np.shape(array)[-1] > 1 else array
 
-    def new(blocks: Iterator[ErrorsAndPositions]) -> Iterator[ErrorsAndPositions]:
-        left_out = repeated
-        for c, q in blocks:
-            kept = c[left_out:], q[left_out:]
-            left_out -= len(c) - len(kept[0])
-            if len(kept[0]):
-                yield kept
+    for first in range(0, batch[-1], group):
+        some = slice(first, first + group)
+        own_gains = (of_group(gains[0], some), of_group(gains[1], some))
+        own_history = [of_group(state, some) for state in history]
+        yield (
+            some,
+            resume(
+                mechanism,
+                method,
+                h,
+                own_gains,
+                own_history,
+                count,
+                undisturbed=of_group(undisturbed, some),
+                compiled=True,
+            ),
+        )
 
-    groups = errors_and_positions_in_groups(
-        mechanism, method, moment, h, gains, remembered, shape, index, repeated + count
-    )
-    for some, blocks in groups:
-        yield some, new(blocks)
 
-
-def first_turn(
+def steps_in_blocks(
     mechanism: Mechanism,
-    method: Method,
+    scheme: SecondOrder,
+    steps_between: Callable[[int, int], Steps],
     h: float,
-    gains: Gains,
-    history: Sequence[State],
-    slopes: Sequence[State],
-    undisturbed: State | None,
-    library: Any,
+    carried: FloatArray,
+    batch: tuple[int, ...],
+    count: int,
+    compiled: bool,
+    judged: bool,
     work: Work,
-) -> tuple[float, Sequence[Any], int]:
-    """Return when a stepper's first turn after a history begins (s), what it is given, and how many turns it repeats.
+    kinds: int = 1,
+) -> Iterator[Block]:
+    """Yield `count` steps in blocks, from what is carried into the first: shape (quantities, n lanes).
 
-    It is given the last state and the past before it; a second-order scheme what it carries.
+    `steps_between` has the times, lengths and gains of the steps from a number to before another; what is carried is in
+    units of h (s). There are so many `kinds` of steps. The lanes are those of the batch, one after the other.
     """
-    scheme = run_as_second_order(method)
-    if scheme is None:
-        past = [(history[-1 - back], slopes[-back]) for back in range(1, steps(method))]
-        return (len(history) - 1) * h, (history[-1], past), 0
-    carried = carried_quantities(mechanism, scheme, h, gains, history, undisturbed, library, work)
-    repeated = memory(scheme).newest
-    return (len(history) - 1 - repeated) * h, carried, repeated
+    program = program_of(scheme)
+    rows, n, lanes = rows_of(program), mechanism.size, math.prod(batch)
+    columns = len(program.powers) + len(program.evaluations)
+    registers = np.zeros((columns + len(program.combined), n * lanes), carried.dtype)
+    registers[: len(carried)] = carried
+    room = room_of(rows, n, lanes, carried.dtype)
+    inverses = np.full((kinds, len(program.groups), *room.jacobian.shape), np.nan)
+    before = np.array([h])
+    take_steps = machine_steps(mechanism, program.implicit) if compiled else array_steps(mechanism)
+    at_once = max(1, min(MOST_STEPS_OF_A_BLOCK, NUMBERS_OF_A_BLOCK // (2 * n * lanes)))
+    for first in range(0, count, at_once):
+        last = min(first + at_once, count)
+        states, pivots = np.empty((last - first, 2, n * lanes), carried.dtype), np.empty(last - first)
+        steps = steps_between(first, last)
+        with np.errstate(all="ignore"):  # what runs into infinity is judged by its numbers
+            taken, unsolved = take_steps(
+                rows, steps, registers, inverses, before, room, judged, states, pivots, work.counts
+            )
+        states = states.reshape(last - first, 2 * n, *batch)
+        cause = breakdown(states[taken - 1], pivots[taken - 1], unsolved) if judged else None
+        if cause:
+            taken -= 1
+        yield Block(states[:taken], pivots[:taken], cause)
+        if cause:
+            return
 
 
 def carried_quantities(
     mechanism: Mechanism,
-    scheme: SecondOrder,
+    method: Method,
     h: float,
     gains: Gains,
-    history: Sequence[State],
-    undisturbed: State | None,
-    library: Any,
+    history: Sequence[FloatArray],
+    undisturbed: FloatArray,
     work: Work,
-) -> list[State]:
-    """Return what a second-order scheme carries into its first turn after `history`, in units in which h = 1.
+) -> tuple[FloatArray, float, int]:
+    """Return what a method carries into its first turn after `history`, when that begins, and what it repeats.
 
-    It is as on a motion through the states of the history: helpers are what belongs to position, velocity and
-    acceleration, and accelerations those of the states.
+    That is a time in s, and a number of turns. It is as on a motion through the states of the history: helpers are
+    what belongs to position, velocity and acceleration, and accelerations those of the states. Shape
+    (quantities, n lanes), in units in which h = 1.
     """
+    scheme = second_order_form(method.scheme)
     remembered = memory(scheme)
-    size = mechanism.size
-    acceleration = acceleration_function(mechanism, library)
-    calm = [*history[:-1], history[-1] if undisturbed is None else undisturbed]
+    n = mechanism.size
+    acceleration = acceleration_function(mechanism, np)
     first = len(history) - 1 - remembered.newest
+    # those of a method with steps of its own have been evaluated by the steps before
+    counted = implicit(method) or isinstance(method.scheme, SecondOrder)
 
     @cache
-    def accelerations(place: int) -> State:
+    def accelerations(place: int) -> FloatArray:
         """Return qddot at a place of the history."""
-        work.counts[EVALUATIONS] += 1
-        return acceleration(place * h, *gains, calm[place][:size], calm[place][size:])
+        work.counts[EVALUATIONS] += counted
+        state = undisturbed if place == len(history) - 1 else history[place]
+        return np.stack(np.broadcast_arrays(*acceleration(place * h, *gains, state[:n], state[n:])))
 
     carried = []
     for shares, step in zip(remembered.shares, remembered.state_steps, strict=True):
         by_q, by_v, by_a = (float(share) * h**power for power, share in enumerate(shares))
         state = history[first + step]
-        entries = tuple(by_q * q + by_v * v for q, v in zip(state[:size], state[size:], strict=True))
+        entries = by_q * state[:n] + by_v * state[n:]
         if by_a:
-            entries = tuple(entry + by_a * a for entry, a in zip(entries, accelerations(first + step), strict=True))
-        carried.append(entries)
-    return carried
+            entries = entries + by_a * accelerations(first + step)
+        carried.append(np.broadcast_to(entries, (n, *history[-1].shape[1:])).reshape(-1))
+    return np.array(carried), first * h, remembered.newest
 
 
-def recorded_history(first: State, run: Iterator[Step]) -> History:
-    """Return the states of a run on floats, up to where it breaks down."""
-    states = [first]
-    cause = None
-    least_pivot = 1.0
-    pivot_step = 0
-    try:
-        for state, _, pivot in run:
-            cause = breakdown(state, pivot)
-            if cause:
-                break
-            if pivot < least_pivot:
-                least_pivot = pivot
-                pivot_step = len(states) - 1
-            states.append(state)
-    except NotConvergedError as error:
-        cause = str(error)
-    except (OverflowError, ValueError, ZeroDivisionError) as error:
-        cause = _refusal(error)
-    return History(np.array(states, dtype=np.float64), cause, least_pivot, pivot_step)
+def breakdown(state: FloatArray, pivot: float, unsolved: float) -> str | None:
+    """Return why a run cannot go on from a state that it reached with this least pivot; None if it can.
 
-
-def recorded_in_blocks(first: State, blocks: Iterator[Block]) -> History:
-    """Return the same from blocks of steps, of which only the last one can have led to a breakdown."""
-    parts = [np.array([first], dtype=np.float64)]
-    cause = None
-    least_pivot = 1.0
-    pivot_step = steps_taken = 0
-    try:
-        for block in blocks:
-            states, pivots = block.states, block.pivots
-            cause = breakdown(tuple(states[-1].tolist()), float(pivots[-1]))
-            if cause:
-                states, pivots = states[:-1], pivots[:-1]
-            if len(pivots) and pivots.min() < least_pivot:
-                least_pivot = float(pivots.min())
-                pivot_step = steps_taken + int(pivots.argmin())
-            parts.append(states)
-            steps_taken += len(states)
-            if cause:
-                break
-    except NotConvergedError as error:
-        cause = str(error)
-    except (OverflowError, ValueError, ZeroDivisionError) as error:
-        cause = _refusal(error)
-    return History(np.concatenate(parts), cause, least_pivot, pivot_step)
-
-
-def _refusal(error: Exception) -> str:
-    return f"arithmetic broke down ({error})"
-
-
-def breakdown(state: State, pivot: float) -> str | None:
-    """Return why a run on floats cannot go on from a state that it reached with this least pivot; None if it can."""
+    `unsolved` is the size of the last correction of equations that were not solved, 0 where all were.
+    """
+    if unsolved:
+        how = f"in {MOST_ITERATIONS} iterations (last correction {unsolved:.2g})"
+        return (
+            f"Newton's method did not converge{f' {how}' if unsolved < math.inf else ': its iterates are not finite'}"
+        )
     if pivot <= SINGULAR:
         return f"singular configuration: C_q M^-1 C_q^T has lost its rank (relative pivot {pivot:.2g})"
     # written so that what is not a number fails
-    if pivot > SINGULAR and sum(map(abs, state)) < BLOWN_UP:
+    if pivot > SINGULAR and np.abs(state).sum() < BLOWN_UP:
         return None
     return f"blow-up: the coordinates and velocities exceed {BLOWN_UP:g} in sum, or are not finite"
 
@@ -398,14 +422,13 @@ def evaluation_count(method: Method, start: Start, steps_taken: int) -> int:
 
 def _explicit_evaluations(method: Method) -> int:
     """Return the number of evaluations in a step of the method that are not Newton's."""
-    scheme = run_as_second_order(method)
-    return evaluations(method) if scheme is None else scheme.evaluations - len(implicit_evaluations(scheme))
+    scheme = second_order_form(method.scheme)
+    return scheme.evaluations - len(implicit_evaluations(scheme))
 
 
 def states_needed(method: Method) -> int:
     """Return the number of states that a run of the method starts from, the newest included."""
-    scheme = run_as_second_order(method)
-    return steps(method) if scheme is None else 1 + memory(scheme).past
+    return 1 + memory(second_order_form(method.scheme)).past
 
 
 def _starters(method: Method, start: Start) -> list[tuple[Method, int]]:

@@ -89,16 +89,6 @@ def turn(scheme: SecondOrder) -> list[Action]:
     return actions
 
 
-def solved_groups(scheme: SecondOrder) -> list[Solved]:
-    """Return the groups of equations of a turn that have to be solved for accelerations."""
-    return [action for action in turn(scheme) if isinstance(action, Solved)]
-
-
-def implicit_groups(scheme: SecondOrder) -> dict[int, int]:
-    """Return the number of evaluations in each group that has to be solved, by the group's number."""
-    return {solved.number: len(solved.evaluations) for solved in solved_groups(scheme)}
-
-
 def _group_actions(scheme: SecondOrder, number: int, group: Sequence[Assignment | Evaluation]) -> list[Action]:
     """Return what solves a group for its accelerations, if it has any, and takes its assignments after that."""
     known_as = eliminated(group)

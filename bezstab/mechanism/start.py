@@ -27,7 +27,7 @@ BESIDE = 1e-3  # m, rad: far enough from a singular start for singular values th
 class Geometry:
     """c (shape (m, 1)), C_q (m, n) and c_t (m, 1) as functions of q (n of them) and t (s); SI units."""
 
-    constraints: Callable[[Sequence[FloatArray] | FloatArray, float], FloatArray]
+    constraints: Callable[[Sequence[FloatArray] | FloatArray, float | FloatArray], FloatArray]
     jacobian: Callable[[Sequence[FloatArray] | FloatArray, float], FloatArray]
     constraints_t: Callable[[Sequence[FloatArray] | FloatArray, float], FloatArray]
 
@@ -44,7 +44,7 @@ def geometry(mechanism: Mechanism) -> Geometry:
     return Geometry(compiled(equations.constraints), compiled(equations.jacobian), compiled(equations.constraints_t))
 
 
-def constraint_errors(mechanism: Mechanism, t: float, q: Sequence[FloatArray]) -> FloatArray:
+def constraint_errors(mechanism: Mechanism, t: float | FloatArray, q: Sequence[FloatArray] | FloatArray) -> FloatArray:
     """Return c at time t (s) for a batch, one array of q per coordinate; shape (m, *shape of these), SI units."""
     return geometry(mechanism).constraints(q, t)[:, 0]
 

@@ -117,9 +117,12 @@ def _present(key: str, value: Value) -> Value:
 
 
 def write_arrays(arrays: Mapping[str, NDArray[np.generic]], form: Literal["csv", "npz"], file: BinaryIO) -> None:
-    """Write equally long arrays: CSV with every digit of float64, or NPZ with one array per name."""
+    """Write equally long arrays: CSV with every digit of float64, or NPZ with one array per name.
+
+    Nothing is compressed: that would take longer than a long run, and digits hardly shrink.
+    """
     if form == "npz":
-        np.savez_compressed(file, **arrays)  # type: ignore[arg-type]  # its options have other names
+        np.savez(file, **arrays)  # type: ignore[arg-type]  # its options have other names
         return
     header = ",".join(map(_csv_text, arrays))
     rows = map(",".join, zip(*map(_csv_cells, arrays.values()), strict=True))

@@ -15,7 +15,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import islice
 from pathlib import Path
 
 import mpmath as mp
@@ -436,8 +435,8 @@ def batch_run(method: Method, moving: Mechanism) -> FloatArray:
     spread = np.linspace(1, 0.5, INSTANCES)  # the first has GAINS themselves
     gains = (GAINS[0] * spread, GAINS[1] * spread)
     state = tuple(np.full(INSTANCES, x) for x in np.concatenate(initial_state(moving)))
-    *_, (end, _, _) = islice(march(moving, method, STEP, gains, state, "rk4", np), STEPS)
-    return np.stack(end, axis=-1)
+    *_, block = march(moving, method, STEP, gains, state, "rk4", STEPS)
+    return np.asarray(block.states[-1].T)
 
 
 def alone(moving: Mechanism, method: Method, state: tuple[FloatArray, FloatArray], count: int = STEPS) -> FloatArray:
@@ -624,7 +623,7 @@ def growth() -> Iterator[Growth]:
     def batch_of(size: int) -> Callable[[], object]:
         state = tuple(np.full(size, x) for x in np.concatenate(initial_state(moving)))
         two_alpha = np.full(size, GAINS[0])
-        return lambda: list(islice(march(moving, b4, STEP, (two_alpha, GAINS[1]), state, "rk4", np), 50))
+        return lambda: list(march(moving, b4, STEP, (two_alpha, GAINS[1]), state, "rk4", 50))
 
     def chain(count: int) -> Mechanism:
         table = {"count": count, "length": 1.0, "mass": 1.0}

@@ -1,7 +1,6 @@
 """Steps of second-order and implicit schemes, against equations iterated plainly and against P(z) itself."""
 
 from fractions import Fraction
-from itertools import islice
 
 import numpy as np
 import pytest
@@ -16,7 +15,7 @@ from bezstab.mechanism import (
     simulate,
     states_needed,
 )
-from bezstab.mechanism.second_order_turns import Assigned, Solved, Sum, implicit_groups, turn
+from bezstab.mechanism.second_order_turns import Assigned, Solved, Sum, turn
 from bezstab.methods import Method, Quantity, SecondOrder, closed_loop_at, lookup, second_order_form
 from bezstab.units import feedback_gains
 from tests.mechanism.test_scenes import pendulum
@@ -129,12 +128,13 @@ def test_a_batch_is_as_many_single_runs(name: str) -> None:
     mechanism, method = compiled_mechanism(load_scene("slider_crank")), lookup(name)
     q, v = perturbed_state(mechanism, 1e-3)
     two_alpha, beta_squared = np.array([100.0, 200.0, 300.0]), np.array([1e4, 2e4, 4e4])
-    state = tuple(np.full(3, x) for x in (*q, *v))
-    *_, (together, _, _) = islice(march(mechanism, method, H, (two_alpha, beta_squared), state, "rk4", np), 30)
+    state = np.concatenate([q, v])[:, np.newaxis]
+    *_, block = march(mechanism, method, H, (two_alpha, beta_squared), state, "rk4", 30)
+    together = block.states[-1]
     for k in range(3):
         alone = simulate(mechanism, method, H, 30 * H, (float(two_alpha[k]), float(beta_squared[k])), (q, v))
         # each iteration ends within 1e-13 of the sizes, and a velocity is that over h
-        assert [entry[k] for entry in together] == pytest.approx([*alone.q[-1], *alone.v[-1]], abs=1e-10)
+        assert together[:, k] == pytest.approx([*alone.q[-1], *alone.v[-1]], abs=1e-10)
 
 
 def test_the_trapezoidal_rule_is_solved_for_its_acceleration_and_then_assigned() -> None:
@@ -155,16 +155,6 @@ def test_the_trapezoidal_rule_is_solved_for_its_acceleration_and_then_assigned()
         Quantity("x", 1): {x: one, v: one, a: quarter, found: quarter},
         Quantity("v", 1): {v: one, a: half, found: half},
     }
-
-
-@pytest.mark.parametrize("name", ["verlet-half", "symplectic-euler", "yoshida4"])
-def test_what_is_explicit_waits_for_nothing(name: str) -> None:
-    assert implicit_groups(second_order_form(lookup(name).scheme)) == {}
-
-
-@pytest.mark.parametrize(("name", "together"), [("gauss4", [2]), ("sdirk2", [1, 1]), ("bdf3", [1])])
-def test_stages_that_wait_for_each_other_are_solved_together(name: str, together: list[int]) -> None:
-    assert list(implicit_groups(second_order_form(lookup(name).scheme)).values()) == together
 
 
 def nonzero(terms: Sum) -> Sum:

@@ -1,6 +1,6 @@
 """Floquet multipliers and periodic motions from the runner itself, by steps on complex numbers, and kicked runs."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from itertools import islice
 from typing import Any
 
@@ -15,6 +15,7 @@ from bezstab.units import feedback_gains
 AnyArray = NDArray[Any]  # of real or complex numbers
 
 EPSILON = 1e-30
+ENDLESS = 10**9  # steps, of which some are taken
 CORRECTIONS = 12  # of Newton's method
 PERIODIC = 1e-10  # m, rad: what a revolution may leave
 REVOLUTIONS, SETTLED = 30, 1e-9  # m, rad: what the last of so many may still change
@@ -37,15 +38,12 @@ def runner_motion(
 ) -> tuple[FloatArray, float] | None:
     """Return where a run of such a method comes back to itself after a revolution, and |z| per step there.
 
-    That is what the run carries: states, oldest first, then the slopes before the newest. None if Newton's method does
-    not find it.
+    That is the states from which the run goes on, oldest first. None if Newton's method does not find it.
     """
     start = _on_the_motion(mechanism, method, count)
     along = motion(mechanism, 1.0)
     still = np.zeros(mechanism.size)
-    whole_turn = np.zeros(start.size)
-    past = steps(method)
-    whole_turn[: 2 * mechanism.size * past] = np.tile(np.concatenate([along.q[-1] - along.q[0], still]), past)
+    whole_turn = np.tile(np.concatenate([along.q[-1] - along.q[0], still]), steps(method))
     with np.errstate(all="ignore"):  # of runs that run into infinity
         for _ in range(CORRECTIONS):
             after, linearized = _revolution(mechanism, method, count, alpha_hat, beta_hat, start)
@@ -94,7 +92,7 @@ def rates_after_kicks(
 ) -> FloatArray:
     """Return |z| per step of the difference of two runs, kicked up and down from what `runner_motion` found.
 
-    One for each of a row of points; `starts` has shape (points, numbers carried), `kicks` are in m, rad and their like.
+    One for each of a row of points; `starts` has shape (points, states 2 n), `kicks` are in m, rad and their like.
     Over the later half of the whole revolutions in which a difference is linear and above rounding; nan where these
     are fewer than three.
     """
@@ -103,7 +101,7 @@ def rates_after_kicks(
     run = _run(mechanism, method, count, alpha_hat, beta_hat, starts.T[:, np.newaxis] + amounts)
     squares = np.zeros((revolutions, kicks.size))
     with np.errstate(all="ignore"):  # of runs that run into infinity
-        for k, (state, _) in enumerate(islice(run, revolutions * count)):
+        for k, state in enumerate(islice(run, revolutions * count)):
             up, down = np.moveaxis(state[: mechanism.size], 1, 0)
             squares[k // count] += ((up - down) ** 2).sum(axis=0) / count
         sizes = np.sqrt(squares)
@@ -117,45 +115,32 @@ def rates_after_kicks(
 
 
 def _on_the_motion(mechanism: Mechanism, method: Method, count: int) -> FloatArray:
-    """Return what a run carries as it is on the motion of the mechanism."""
+    """Return the states from which a run goes on as they are on the motion of the mechanism."""
     along = motion(mechanism, 1.0)
     t = np.asarray(along.duration / count * np.arange(steps(method)), float)
-    q, v, a = along.at(t)
-    return np.concatenate([np.concatenate([q, v], axis=1).ravel(), np.concatenate([v, a], axis=1)[:-1].ravel()])
+    q, v, _ = along.at(t)
+    return np.concatenate([q, v], axis=1).ravel()
 
 
 def _revolution(
     mechanism: Mechanism, method: Method, count: int, alpha_hat: float, beta_hat: float, start: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return what is carried after a revolution, and its derivative by what was carried before."""
+    """Return the last states after a revolution, and their derivatives by those before it."""
     directions = start[:, np.newaxis] + 1j * EPSILON * np.eye(start.size)
-    states, slopes = _states_and_slopes(method, directions)
-    for state, slope in islice(_run(mechanism, method, count, alpha_hat, beta_hat, directions), count):
-        states.append(state)
-        slopes.append(slope)
     past = steps(method)
-    after = np.concatenate([*states[-past:], *slopes[len(slopes) - past + 1 :]])
+    states = [
+        *np.split(directions, past),
+        *islice(_run(mechanism, method, count, alpha_hat, beta_hat, directions), count),
+    ]
+    after = np.concatenate(states[-past:])
     return after.real[:, 0], after.imag / EPSILON
 
 
 def _run(
     mechanism: Mechanism, method: Method, count: int, alpha_hat: ArrayLike, beta_hat: ArrayLike, start: AnyArray
-) -> Iterator[tuple[AnyArray, AnyArray]]:
-    """Yield states and the slopes before them, (2 n, ...) each, of runs from what they carry, shape (carried, ...)."""
+) -> Iterator[AnyArray]:
+    """Yield states, (2 n, ...) each, of runs from those from which they go on, shape (states 2 n, ...)."""
     h = motion(mechanism, 1.0).duration / count
     gains = feedback_gains(np.asarray(alpha_hat), np.asarray(beta_hat), h / float(method.step_multiple))
-    states, slopes = _states_and_slopes(method, start)
-    history, before = [tuple(state) for state in states], [tuple(slope) for slope in slopes]
-    for state, slope, _ in resume(mechanism, method, h, gains, history, before, np):
-        yield _stacked(state, start), _stacked(slope, start)
-
-
-def _stacked(numbers: Sequence[Any], like: AnyArray) -> AnyArray:
-    """Return numbers, some of which all runs may share, as one array."""
-    return np.stack([np.broadcast_to(number, like.shape[1:]) for number in numbers])
-
-
-def _states_and_slopes(method: Method, carried: AnyArray) -> tuple[list[AnyArray], list[AnyArray]]:
-    """Return the states and the slopes, (2 n, ...) each, in what runs carry."""
-    parts = np.split(carried, 2 * steps(method) - 1)
-    return parts[: steps(method)], parts[steps(method) :]
+    history = np.split(start, steps(method))
+    return (state for block in resume(mechanism, method, h, gains, history, ENDLESS) for state in block.states)

@@ -1,105 +1,82 @@
-"""The generated stepper in thirty digits: what a formula does before rounding ends its descent.
+"""A method's program in thirty digits: what a formula does before rounding ends its descent.
 
-Not another route but the same source in another arithmetic, with each literal as the fraction that it stands for.
+Not another route but the same rows, exact as they are, without Newton's method: a group of evaluations is repeated
+until nothing changes.
 """
 
-import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
-from functools import cache
-from itertools import islice
 from typing import Any
 
 import mpmath as mp
 
-from bezstab.mechanism import Mechanism, compiled_source, stepper_code
-from bezstab.mechanism.compiled import run_as_second_order
-from bezstab.mechanism.generated_code import residual_slopes_source, residuals_source, slope_lines
-from bezstab.mechanism.newton_iterations import TOLERANCE, Residual, Work, newton_solution, no_inverse
-from bezstab.mechanism.runner import carried_quantities
-from bezstab.mechanism.second_order_turns import implicit_groups
-from bezstab.methods import Method, RungeKutta, lookup
+from bezstab.mechanism import Mechanism, acceleration_function, memory
+from bezstab.mechanism.programs import program_of
+from bezstab.methods import Method, second_order_form
 from tests.reference.one_coordinate_motion import DIGITS
 
-FLOAT_LITERAL = r"\d+\.\d+(e-?\d+)?"
+Vector = list[Any]
+MOST_SWEEPS = 100  # each takes off a factor of about alpha_hat and beta_hat, which are far below one here
 
 
 def precise_run(
     mechanism: Mechanism, method: Method, h: Any, gains: tuple[int, int], states: Sequence[Any], count: int
 ) -> list[Any]:
-    """Return `count` states after the given ones, which are as many as the method needs, h (s) apart."""
+    """Return `count` states (q then v) after the given ones, which are as many as the method needs, h (s) apart."""
     with mp.workdps(DIGITS):
-        if run_as_second_order(method):
-            run = _precise_second_order_run(mechanism, method, h, gains, states)
-        else:
-            euler = _precise_stepper(mechanism, lookup("RK1"))
-            past = []
-            for state in states[-2::-1]:
-                # the slope before a step does not depend on the method
-                _, slope, _ = next(euler(0, h, *gains, state, []))
-                past.append((state, slope))
-            run = _precise_stepper(mechanism, method)(0, h, *gains, states[-1], past)
-        return [state for state, _, _ in islice(run, count)]
+        return _run(mechanism, method, h, gains, states, count)
 
 
-def _precise_stepper(mechanism: Mechanism, method: Method) -> Callable[..., Iterator[Any]]:
-    run: Callable[..., Iterator[Any]] = _precisely(stepper_code(mechanism, method), method)["run"]
-    return run
+def _run(
+    mechanism: Mechanism, method: Method, h: Any, gains: tuple[int, int], states: Sequence[Any], count: int
+) -> list[Any]:
+    scheme = second_order_form(method.scheme)
+    program, remembered, n = program_of(scheme), memory(scheme), mechanism.size
+    acceleration = acceleration_function(mechanism, mp)
+    first = len(states) - 1 - remembered.newest
+
+    def found(t: Any, position: Vector, velocity: Vector) -> Vector:
+        """Return h^2 a for a position and h times a velocity."""
+        return [h * h * a for a in acceleration(t, *gains, position, [x / h for x in velocity])]
+
+    registers: list[Vector] = []
+    for shares, step in zip(remembered.shares, remembered.state_steps, strict=True):
+        q, v = list(states[first + step][:n]), [h * x for x in states[first + step][n:]]
+        registers.append(combined(shares, [q, v, found((first + step) * h, q, v)]))
+    carried = len(registers)
+    registers += [[mp.mpf(0)] * n for _ in program.evaluations]
+    later = []
+    for k in range(first, len(states) - 1 + count):
+        for start, end, waiting in program.groups:
+            numbers = range(start, end)
+            if waiting:
+                for number in numbers:
+                    registers[carried + number] = registers[program.evaluations[number].guess]
+            for _ in range(MOST_SWEEPS if waiting else 1):
+                before = [registers[carried + number] for number in numbers]
+                for number in numbers:
+                    each = program.evaluations[number]
+                    registers[carried + number] = found(
+                        (k + as_number(each.moment)) * h,
+                        combined(each.position, registers),
+                        combined(each.velocity, registers),
+                    )
+                if [registers[carried + number] for number in numbers] == before:
+                    break
+        all_registers = [*registers, *(combined(row, registers) for row in program.combined)]
+        position, velocity = (all_registers[register] for register in program.state)
+        later.append([*position, *(x / h for x in velocity)])
+        for source, target in program.moves:
+            all_registers[target] = all_registers[source]
+        registers = all_registers[: len(registers)]
+    return later[len(states) - 1 - first :]
 
 
-def _precise_second_order_run(
-    mechanism: Mechanism, method: Method, h: Any, gains: tuple[int, int], states: Sequence[Any]
-) -> Iterator[Any]:
-    """Return the steps of an implicit or second-order method, solved to the digits in force."""
-    scheme = run_as_second_order(method)
-    assert scheme
-    plain = _precisely(residuals_source(mechanism.acceleration_code, scheme), method)
-    slopes_of_acceleration = slope_lines(mechanism.equations)
-    slopes = _precisely(residual_slopes_source(mechanism.acceleration_code, slopes_of_acceleration, scheme), method)
-    residuals = {
-        number: Residual(plain[f"residual_{number}"], slopes[f"residual_slope_{number}"], evaluations)
-        for number, evaluations in implicit_groups(scheme).items()
-    }
-
-    def solver(residual: Residual) -> Callable[..., Any]:
-        """Return what solves a group anew in each step."""
-
-        def solve(situation: Sequence[Any], known: Sequence[Any], sought: list[Any]) -> Any:
-            inverse: list[Any] = no_inverse(len(sought))
-            return newton_solution(residual, situation, known, sought, inverse, TOLERANCE * mp.eps, [0, 0])
-
-        return solve
-
-    solve = {number: solver(residual) for number, residual in residuals.items()}
-    carried = carried_quantities(mechanism, scheme, h, gains, states, None, mp, Work())
-    return _precise_stepper(mechanism, method)((len(states) - 1) * h, h, *gains, carried, solve)
+def as_number(ratio: Fraction) -> Any:
+    return mp.mpf(ratio.numerator) / ratio.denominator
 
 
-def _precisely(source: str, method: Method) -> dict[str, Any]:
-    """Return what source defines, with each literal as the number that it stands for."""
-    exact = {float(abs(c)): abs(c) for c in _coefficients(method.scheme)}
-
-    def as_ratio(literal: re.Match[str]) -> str:
-        """Return the method's coefficient, or the simplest fraction that rounds to a literal, as 1/3 to 0.333."""
-        simplest = Fraction(literal[0]).limit_denominator(10**7)
-        fallback = simplest if float(simplest) == float(literal[0]) else Fraction(literal[0])
-        value = exact.get(float(literal[0]), fallback)
-        return f"ratio({value.numerator}, {value.denominator})"
-
-    namespace = compiled_source(re.sub(FLOAT_LITERAL, as_ratio, source), mp)
-    namespace["ratio"] = cache(lambda numerator, denominator: mp.mpf(numerator) / denominator)
-    return namespace
-
-
-def _coefficients(part: Any) -> Iterator[Fraction]:
-    """Yield every fraction in a scheme, and the times of a Runge-Kutta method's stages."""
-    if isinstance(part, Fraction):
-        yield part
-    elif isinstance(part, tuple):
-        for inner in part:
-            yield from _coefficients(inner)
-    elif hasattr(part, "__dataclass_fields__"):
-        for name in part.__dataclass_fields__:
-            yield from _coefficients(getattr(part, name))
-    if isinstance(part, RungeKutta):
-        yield from (sum(row, Fraction(0)) for row in part.tableau)
+def combined(row: Iterable[Fraction], registers: Sequence[Vector]) -> Vector:
+    """Return the sum of registers that a row says."""
+    terms = [(as_number(c), register) for c, register in zip(row, registers, strict=False) if c]
+    return [mp.fsum(c * register[i] for c, register in terms) for i in range(len(registers[0]))]

@@ -1,0 +1,133 @@
+"""A method as a program: exact rows of numbers over registers, which one loop takes again and again (`stepping`).
+
+A turn of any scheme, written as a second-order one, is linear but for its evaluations. So all it assigns on the way is
+eliminated here, and what is left are sums of what it carries and of the accelerations that it has found. A register
+holds one quantity, of all coordinates; inside h = 1, so that it is x, h v or h^2 a. Of velocity Verlet with the
+feedback at the half-step velocity:
+
+    registers       x0  v0  a0 | a1 | x1  v1          carried | found | combined
+
+    evaluation 0:   position   1   1  1/2   0          a1 = acceleration there, at moment 1
+                    velocity   0   1  1/2   0
+    combined:       x1         1   1  1/2   0
+                    v1         0   1  1/2  1/2
+    moved:          x0 <- x1,  v0 <- v1,  a0 <- a1     what the next turn begins with
+
+Where a row of an evaluation has an entry for what that evaluation finds, or for one after it, the equations wait for
+each other: a group of evaluations is solved together, each from the guess that it is what it was one step before.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache
+
+from bezstab.mechanism.second_order_memory import ACCELERATION, POSITION, VELOCITY, memory
+from bezstab.mechanism.second_order_turns import Assigned, Evaluated, Solved, Sum, turn
+from bezstab.methods import Quantity, SecondOrder
+
+Row = tuple[Fraction, ...]
+"""A coefficient for each register that is carried or found."""
+
+ZERO = Fraction(0)
+
+POWERS_OF_STEP = {POSITION: 0, VELOCITY: 1, ACCELERATION: 2}
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """Where and when an acceleration is found, `moment` in steps after step 0 of the turn; `guess` is a register."""
+
+    position: Row
+    velocity: Row
+    moment: Fraction
+    guess: int
+
+
+@dataclass(frozen=True)
+class Program:
+    """A turn of a scheme: registers are numbered through what is carried, found and combined.
+
+    `powers` are those of h in what is carried. `groups` has the evaluations that belong together, from the first to
+    before the last, and whether they wait for each other. `moves` lead, in this order, from a register to one that is
+    carried; `state` are the registers of position and velocity at the end of the turn, before the moves.
+    """
+
+    powers: tuple[int, ...]
+    evaluations: tuple[Evaluation, ...]
+    groups: tuple[tuple[int, int, bool], ...]
+    combined: tuple[Row, ...]
+    moves: tuple[tuple[int, int], ...]
+    state: tuple[int, int]
+
+    @property
+    def implicit(self) -> bool:
+        """Whether there are equations to solve."""
+        return any(waiting for _, _, waiting in self.groups)
+
+
+@cache
+def program_of(scheme: SecondOrder) -> Program:
+    """Return the program of a second-order scheme, exactly."""
+    carried = memory(scheme).carried
+    actions = turn(scheme)
+    found = [quantity for action in actions for quantity in _found(action)]
+    registers = [*carried, *found]
+    columns = {quantity: column for column, quantity in enumerate(registers)}
+    values: dict[Quantity, Row] = {
+        quantity: tuple(Fraction(int(column == own)) for column in range(len(registers)))
+        for quantity, own in columns.items()
+    }
+
+    def row(*parts: Sum) -> Row:
+        """Return a sum of sums as a row."""
+        terms = [(factor, values[quantity]) for part in parts for quantity, factor in part.items()]
+        return tuple(
+            sum((factor * value[column] for factor, value in terms), Fraction(0)) for column in columns.values()
+        )
+
+    evaluations: list[Evaluation] = []
+    groups = []
+    for action in actions:
+        first = len(evaluations)
+        match action:
+            case Assigned(result, value):
+                values[result] = row(value)
+            case Evaluated(_, position, velocity, moment):
+                evaluations.append(Evaluation(row(position), row(velocity), moment, guess=0))
+                groups.append((first, first + 1, False))
+            case Solved(_, together):
+                for each in together:
+                    evaluations.append(
+                        Evaluation(
+                            position=row(each.known_position, each.sought_position),
+                            velocity=row(each.known_velocity, each.sought_velocity),
+                            moment=each.moment,
+                            guess=columns[Quantity(each.result.name, each.result.step - 1)],
+                        )
+                    )
+                groups.append((first, len(evaluations), True))
+
+    state = (Quantity(POSITION, 1), Quantity(VELOCITY, 1))
+    newer = [Quantity(quantity.name, quantity.step + 1) for quantity in carried]
+    combined = [quantity for quantity in dict.fromkeys((*state, *newer)) if quantity not in columns]
+    register = {quantity: number for number, quantity in enumerate([*registers, *combined])}
+    return Program(
+        powers=tuple(POWERS_OF_STEP.get(quantity.name, 2) for quantity in carried),
+        evaluations=tuple(evaluations),
+        groups=tuple(groups),
+        combined=tuple(values[quantity] for quantity in combined),
+        moves=tuple((register[new], register[old]) for old, new in zip(carried, newer, strict=True)),
+        state=(register[state[0]], register[state[1]]),
+    )
+
+
+def _found(action: Assigned | Evaluated | Solved) -> Sequence[Quantity]:
+    """Return the accelerations that an action finds."""
+    match action:
+        case Assigned():
+            return ()
+        case Evaluated(result):
+            return (result,)
+        case Solved(_, together):
+            return tuple(each.result for each in together)

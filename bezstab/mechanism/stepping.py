@@ -1,0 +1,283 @@
+"""The one loop that takes steps: it interprets a method's program, for one run or for many that differ in their gains.
+
+This text is read twice: by Python with numpy (`array_stepping`), and by numba as machine code (`compiled_stepping`).
+What both do in their own ways, whole arrays or loops over their entries, comes as `Operations`; in which order it is
+done is said here once. Each register holds a quantity of all runs, coordinate after coordinate: it is as wide as n
+coordinates times the lanes, a lane for each run. A state is (2, width), position and velocity.
+
+The equations of an implicit step are solved by Newton's method, in all lanes at a time. The unknowns are accelerations,
+and the residual of each is r(A) = A - h^2 acceleration(X(A), V(A)). Its Jacobian is taken along one unknown after the
+other, exactly, and costs about two evaluations for each.
+
+Jacobians are kept, from one iteration to the next and from step to step, as long as each correction is at most a
+thirtieth of the one before; one that is more is not made, but computed anew with the Jacobian there. Where it was an
+earlier step's Jacobian that did not serve, all it did is undone: the lane starts again with its own. The iteration ends
+with one correction more after one within some hundred roundings of what it corrects: what is left then is far below
+rounding, and so does not add up over thousands of steps, to all of which it might have the same sign.
+"""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bezstab.mechanism.compiled import SINGULAR
+from bezstab.mechanism.programs import Program
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
+BLOWN_UP = 1e9  # SI units, sum of all coordinates and velocities: far beyond any mechanism, far below overflow
+
+MOST_ITERATIONS = 25  # three are usual; from far away Newton's method may first wander
+TOLERANCE = 500 * 2.0**-52  # of X, V and A together: what h^2 acceleration cannot be relied upon
+FALL = 1 / 30  # of a correction to the next, with a Jacobian good enough to keep: each gains a digit and a half
+
+ITERATIONS, EVALUATIONS = 0, 1  # places in what is counted
+
+
+class Rows(NamedTuple):
+    """A program in float64. `arguments` has for each evaluation the rows of its position and of its velocity."""
+
+    powers: IntArray
+    arguments: FloatArray
+    moments: FloatArray
+    guesses: IntArray
+    groups: IntArray
+    combined: FloatArray
+    moved_from: IntArray
+    moved_to: IntArray
+    state: IntArray
+
+
+class Room(NamedTuple):
+    """Arrays to compute in, made once: of an evaluation, then what Newton's method knows of each lane.
+
+    state and direction (2, width), found (width,); residuals, those at the guess, corrections and guess
+    (evaluations of a group, width); Jacobians like the inverses; of each lane the sizes of what it computes with, how
+    far this correction moves it and the one before did, and whether it is running, settled, solved, and to be renewed,
+    and has its inverse Jacobian from an earlier step.
+    """
+
+    state: FloatArray
+    direction: FloatArray
+    found: FloatArray
+    residuals: FloatArray
+    at_guess: FloatArray
+    corrections: FloatArray
+    guess: FloatArray
+    jacobian: FloatArray
+    sizes: FloatArray
+    moved: FloatArray
+    moved_before: FloatArray
+    running: BoolArray
+    settled: BoolArray
+    solved: BoolArray
+    renewed: BoolArray
+    inherited: BoolArray
+
+
+class Operations(NamedTuple):
+    """What numpy and machine code do in ways of their own, on registers and in a room.
+
+    change_step(rows, ratio, registers)             turns registers into units of a step longer by a ratio
+    evaluate(rows, number, time, h, gains, registers, room)         an explicit evaluation; the least relative pivot
+    finish(rows, h, registers, into)                combines, writes the new state and moves on; the size of the state
+    begin(rows, group, registers, room)             writes the guesses of a group
+    residual(rows, group, time, h, gains, registers, room)          writes residuals; the least relative pivot
+    remember(room)                                  keeps the residuals as those at the guess
+    correct(group, inverse, room)                   computes corrections; whether some lane's inverse does not serve
+    renew(rows, group, time, h, gains, registers, inverse, room)    computes those lanes' inverses anew
+    advance(rows, group, registers, room)           applies corrections; whether lanes are running still
+    end(rows, group, registers, room)               writes nan where nothing is solved; how far that was from it
+
+    Pivots and sizes are of use for one lane, and may be any with more.
+    """
+
+    change_step: Callable[..., None]
+    evaluate: Callable[..., float]
+    finish: Callable[..., float]
+    begin: Callable[..., None]
+    residual: Callable[..., float]
+    remember: Callable[..., None]
+    correct: Callable[..., bool]
+    renew: Callable[..., None]
+    advance: Callable[..., bool]
+    end: Callable[..., float]
+
+
+class Steps(NamedTuple):
+    """When steps begin (s), how long they are (s), and their gains, shape (steps or 1, 2, lanes), SI units.
+
+    `kinds` numbers their lengths: steps of a kind share inverse Jacobians.
+    """
+
+    times: FloatArray
+    lengths: FloatArray
+    kinds: IntArray
+    gains: FloatArray
+
+
+TakeSteps = Callable[..., tuple[int, float]]
+"""take_steps(rows, steps, registers, inverses, before, room, judged, states, pivots, counts).
+
+It takes steps until they are at their end or, if they are `judged`, a run breaks down, and returns how many, and the
+size of the last correction of equations that were not solved, 0 where all were.
+
+`registers` are in units of the step before[0] (s), the last one's; `inverses` (kinds of steps, groups, unknowns,
+unknowns, lanes) are the inverse Jacobians of the last of each kind, nan at first. `states` (steps, 2, width) get q and
+v after each step, `pivots` (steps,) the least relative pivots on the way, `counts` what implicit steps take.
+"""
+
+
+def rows_of(program: Program) -> Rows:
+    """Return a program in float64."""
+    columns = len(program.powers) + len(program.evaluations)
+    arguments = [[list(map(float, row)) for row in (each.position, each.velocity)] for each in program.evaluations]
+    return Rows(
+        powers=np.array(program.powers, np.int64),
+        arguments=np.array(arguments, np.float64).reshape(-1, 2, columns),
+        moments=np.array([float(each.moment) for each in program.evaluations]),
+        guesses=np.array([each.guess for each in program.evaluations], np.int64),
+        groups=np.array(program.groups, np.int64).reshape(-1, 3),
+        combined=np.array([list(map(float, row)) for row in program.combined]).reshape(-1, columns),
+        moved_from=np.array([start for start, _ in program.moves], np.int64),
+        moved_to=np.array([end for _, end in program.moves], np.int64),
+        state=np.array(program.state, np.int64),
+    )
+
+
+def room_of(rows: Rows, n: int, lanes: int, kind: Any = np.float64) -> Room:
+    """Return the room for a program's steps."""
+    most = int((rows.groups[:, 1] - rows.groups[:, 0]).max(initial=0))
+    unknowns = most * n if rows.groups[:, 2].any() else 0
+    width = n * lanes
+    of_state, of_group = (2, width), (most, width)
+    return Room(
+        state=np.zeros(of_state, kind),
+        direction=np.zeros(of_state),
+        found=np.zeros(width, kind),
+        residuals=np.zeros(of_group),
+        at_guess=np.zeros(of_group),
+        corrections=np.zeros(of_group),
+        guess=np.zeros(of_group),
+        jacobian=np.zeros((unknowns, unknowns, lanes)),
+        sizes=np.zeros(lanes),
+        moved=np.zeros(lanes),
+        moved_before=np.zeros(lanes),
+        running=np.zeros(lanes, np.bool_),
+        settled=np.zeros(lanes, np.bool_),
+        solved=np.zeros(lanes, np.bool_),
+        renewed=np.zeros(lanes, np.bool_),
+        inherited=np.zeros(lanes, np.bool_),
+    )
+
+
+def unchanged(function: Any) -> Any:
+    """Return a function as Python runs it."""
+    return function
+
+
+def stepper(operations: Operations, made: Callable[[Any], Any] = unchanged, solving: bool = True) -> TakeSteps:
+    """Return the function that takes steps by these operations; `made` makes machine code of it, or leaves it.
+
+    `solving`: whether programs have equations to solve, which is most of what there is to compile.
+    """
+    change_step, evaluate, finish, begin, residual, remember, correct, renew, advance, end = operations
+
+    @made
+    def solve_group(
+        rows: Rows,
+        group: IntArray,
+        time: float,
+        h: float,
+        gains: FloatArray,
+        registers: FloatArray,
+        inverse: FloatArray,
+        room: Room,
+        counts: IntArray,
+    ) -> tuple[float, float]:
+        """Find what makes the residuals of a group of evaluations zero, from its guesses on; nan where that fails.
+
+        Return the least pivot, and the size of the last correction where it failed, 0 where it did not.
+        """
+        evaluations = group[1] - group[0]
+        pivot = 1.0
+        begin(rows, group, registers, room)
+        for iteration in range(MOST_ITERATIONS):
+            pivot = residual(rows, group, time, h, gains, registers, room)
+            counts[ITERATIONS] += 1
+            counts[EVALUATIONS] += evaluations
+            if iteration == 0:
+                remember(room)
+            if correct(group, inverse, room):
+                renew(rows, group, time, h, gains, registers, inverse, room)
+                counts[EVALUATIONS] += evaluations * evaluations * len(room.found) // gains.shape[1]
+                correct(group, inverse, room)
+            if not advance(rows, group, registers, room):
+                break
+        return pivot, end(rows, group, registers, room)
+
+    @made
+    def nothing_solved(
+        rows: Rows,
+        group: IntArray,
+        time: float,
+        h: float,
+        gains: FloatArray,
+        registers: FloatArray,
+        inverse: FloatArray,
+        room: Room,
+        counts: IntArray,
+    ) -> tuple[float, float]:
+        """Stand for it where all is explicit."""
+        return 1.0, 0.0
+
+    solve = solve_group if solving else nothing_solved
+
+    @made
+    def take_steps(
+        rows: Rows,
+        steps: Steps,
+        registers: FloatArray,
+        inverses: FloatArray,
+        before: FloatArray,
+        room: Room,
+        judged: bool,
+        states: FloatArray,
+        pivots: FloatArray,
+        counts: IntArray,
+    ) -> tuple[int, float]:
+        # one by one: machine code counts the references to each array that it hands on
+        carried, arguments, moments, combined = len(rows.powers), rows.arguments, rows.moments, rows.combined
+        moved_from, moved_to, ends, state, found = rows.moved_from, rows.moved_to, rows.state, room.state, room.found
+        for k in range(len(steps.times)):
+            time, h = steps.times[k], steps.lengths[k]
+            gains = steps.gains[min(k, len(steps.gains) - 1)]
+            if h != before[0]:
+                change_step(rows, h / before[0], registers)
+                before[0] = h
+            pivot = 1.0
+            unsolved = 0.0
+            for number in range(len(rows.groups)):
+                group = rows.groups[number]
+                if group[2]:
+                    worst, left = solve(
+                        rows, group, time, h, gains, registers, inverses[steps.kinds[k], number], room, counts
+                    )
+                    unsolved = max(unsolved, left)
+                else:
+                    first = group[0]
+                    moment = time + moments[first] * h
+                    worst = evaluate(arguments[first], moment, h, gains, registers, carried + first, state, found)
+                pivot = min(pivot, worst)
+            size = finish(combined, moved_from, moved_to, ends, h, registers, states[k])
+            pivots[k] = pivot
+            if judged and (unsolved > 0 or not (pivot > SINGULAR and size < BLOWN_UP)):
+                return k + 1, unsolved
+        return len(steps.times), 0.0
+
+    taken: TakeSteps = take_steps
+    return taken

@@ -1,0 +1,105 @@
+"""Machine code: when it is made, what it is kept under, and that it serves every method of a scene."""
+
+import importlib.util
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from bezstab.compiling import COMPILED_CHOICE
+from bezstab.errors import InputError
+from bezstab.mechanism import Mechanism, compiled_mechanism, load_scene, parse_scene, runs_compiled
+from bezstab.mechanism import compiled_stepping as module
+from bezstab.methods import lookup
+from bezstab.units import feedback_gains
+from tests.mechanism.test_stepping import H, both
+
+
+def chain_of_twelve() -> Mechanism:
+    """Return a chain of so many four-bars that its accelerations are compiled in parts."""
+    upright = {"position": {"rod0.theta": math.pi / 2}, "velocity": {"rod0.theta": -1.0}}
+    links = {"count": 12, "length": 1.0, "mass": 1.0}
+    return compiled_mechanism(parse_scene({"name": "chain", "four_bar_chain": links, "initial": upright}))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["SYM", "implicit-euler"])
+def test_a_chain_compiled_in_parts_is_the_same(name: str) -> None:
+    assert len(both(chain_of_twelve(), name, 100, feedback_gains(0.3, 0.04, H)).t) == 101
+
+
+def test_runs_are_compiled_where_that_pays_or_is_asked_for(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    module._kept_file.cache_clear()
+    mechanism, method = compiled_mechanism(load_scene("four_bar")), lookup("AB2")
+    for choice, count, expected in (
+        ("auto", 10, False),
+        ("auto", 10**8, True),
+        ("no", 10**8, False),
+        ("yes", 10, True),
+    ):
+        monkeypatch.setenv(COMPILED_CHOICE, choice)
+        monkeypatch.setattr(module, "_compiled", set())
+        assert runs_compiled(mechanism, method, count) is expected
+        assert runs_compiled(mechanism, lookup("bdf2"), count) is expected
+    monkeypatch.setenv(COMPILED_CHOICE, "maybe")
+    with pytest.raises(InputError, match="BEZSTAB_COMPILED=maybe: expected auto, yes or no"):
+        runs_compiled(mechanism, method, 10)
+    module._kept_file.cache_clear()
+
+
+def test_an_acceleration_too_long_to_be_compiled_is_refused_where_it_is_asked_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    mechanism, method = compiled_mechanism(load_scene("four_bar")), lookup("bdf2")
+    monkeypatch.setenv(COMPILED_CHOICE, "yes")
+    assert runs_compiled(mechanism, method, 10)
+    monkeypatch.setattr(module, "MOST_LINES_ASKED_FOR", 50)
+    with pytest.raises(InputError, match=r"--compiled yes: the acceleration of .+ is \d+ lines of code"):
+        runs_compiled(mechanism, method, 10)
+
+
+def test_without_numba_runs_are_pythons_unless_it_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    mechanism, method = compiled_mechanism(load_scene("four_bar")), lookup("AB2")
+    monkeypatch.delenv(COMPILED_CHOICE, raising=False)
+    assert not runs_compiled(mechanism, method, 10**8)
+    monkeypatch.setenv(COMPILED_CHOICE, "yes")
+    with pytest.raises(InputError, match=r"pip install 'bezstab\[fast\]'"):
+        runs_compiled(mechanism, method, 10)
+
+
+A_COMPILED_RUN = """
+from bezstab.mechanism import compiled_mechanism, load_scene, simulate
+from bezstab.mechanism.compiled_stepping import machine_steps
+from bezstab.methods import lookup
+mechanism = compiled_mechanism(load_scene("pendulum"))
+assert simulate(mechanism, lookup("SYM"), 1e-3, 0.1, (20.0, 100.0), compiled=True).failure is None
+dispatcher = machine_steps(mechanism, False)
+print(sum(dispatcher.stats.cache_hits.values()))
+"""
+
+
+def hits(home: Path) -> int:
+    """Return how much a new process has found in a cache folder."""
+    environment = os.environ | {"XDG_CACHE_HOME": str(home)}
+    command = [sys.executable, "-c", A_COMPILED_RUN]
+    return int(subprocess.run(command, env=environment, check=True, capture_output=True, timeout=300).stdout)
+
+
+def test_code_is_kept_for_the_next_process_where_only_the_user_can_write(tmp_path: Path) -> None:
+    assert hits(tmp_path) == 0
+    assert hits(tmp_path) == 1
+    for folder in (tmp_path / "bezstab").iterdir():
+        folder.chmod(0o777)
+    assert hits(tmp_path) == 0
+
+
+def test_a_further_method_on_a_compiled_scene_compiles_nothing() -> None:
+    mechanism = compiled_mechanism(load_scene("pendulum"))
+    for name in ("B2", "dopri5"):
+        both(mechanism, name, 20, (20.0, 100.0))
+    assert len(module.machine_steps(mechanism, False).signatures) == 1  # type: ignore[attr-defined]

@@ -1,0 +1,55 @@
+"""Methods as programs: rows over registers, as one writes them by hand."""
+
+from fractions import Fraction
+
+import pytest
+
+from bezstab.mechanism.programs import Evaluation, Program, program_of
+from bezstab.methods import REGISTRY, lookup, second_order_form
+
+HALF, QUARTER, ONE, NONE = Fraction(1, 2), Fraction(1, 4), Fraction(1), Fraction(0)
+
+
+def program(name: str) -> Program:
+    """Return the program of a built-in method."""
+    return program_of(second_order_form(lookup(name).scheme))
+
+
+def test_velocity_verlet_is_the_program_of_the_books() -> None:
+    """Registers x0, v0, a0 | a1 | x1, v1; the velocity of the feedback is that at the half step."""
+    assert program("verlet-half") == Program(
+        powers=(0, 1, 2),
+        evaluations=(Evaluation((ONE, ONE, HALF, NONE), (NONE, ONE, HALF, NONE), ONE, guess=0),),
+        groups=((0, 1, False),),
+        combined=((ONE, ONE, HALF, NONE), (NONE, ONE, HALF, HALF)),
+        moves=((4, 0), (5, 1), (3, 2)),
+        state=(4, 5),
+    )
+
+
+def test_the_trapezoidal_rule_waits_for_its_acceleration() -> None:
+    """x1 = x0 + v0/2 + v1/2 and v1 = v0 + a0/2 + a1/2: a1 is sought from a0 on."""
+    found = program("trapezoid")
+    (evaluation,) = found.evaluations
+    assert found.groups == ((0, 1, True),)
+    names = {register: name for name, register in zip("xva", range(3), strict=True)}
+    assert sorted(names[register] for _, register in found.moves) == ["a", "v", "x"]
+    assert evaluation.position == (ONE, ONE, QUARTER, QUARTER)
+    assert evaluation.velocity == (NONE, ONE, HALF, HALF)
+    assert evaluation.guess == 2
+
+
+@pytest.mark.parametrize("name", REGISTRY)
+def test_no_row_asks_for_what_is_not_there_yet(name: str) -> None:
+    found = program(name)
+    carried = len(found.powers)
+    for first, last, waiting in found.groups:
+        there = carried + (last if waiting else first)
+        for evaluation in found.evaluations[first:last]:
+            assert not any(evaluation.position[there:])
+            assert not any(evaluation.velocity[there:])
+
+
+@pytest.mark.parametrize(("name", "together"), [("gauss4", [2]), ("sdirk2", [1, 1]), ("bdf3", [1]), ("yoshida4", [])])
+def test_stages_that_wait_for_each_other_are_solved_together(name: str, together: list[int]) -> None:
+    assert [last - first for first, last, waiting in program(name).groups if waiting] == together

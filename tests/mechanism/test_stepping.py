@@ -1,0 +1,134 @@
+"""The loop that takes steps, by numpy and as machine code: against plain steps, and how runs end."""
+
+import math
+
+import numpy as np
+import pytest
+
+from bezstab.mechanism import (
+    Mechanism,
+    Trajectory,
+    acceleration_function,
+    compiled_mechanism,
+    load_scene,
+    runner,
+    shipped_scenes,
+    simulate,
+    states_needed,
+)
+from bezstab.mechanism.stepping import MOST_ITERATIONS
+from bezstab.methods import REGISTRY, Method, SecondOrder, implicit, lookup, second_order_form, steps
+from bezstab.units import feedback_gains
+from tests.reference.plain_second_order import FloatArray, plain_second_order_run
+from tests.reference.plain_steps import plain_step
+
+H = 1e-3  # s
+KINDS = ("B4", "AB3", "ABM2", "RK4", "SYM", "verlet-half", "bdf2", "gauss4", "sdirk2", "hht")
+"""Of each kind of method one."""
+SCENES = [name for name in shipped_scenes() if name != "n_four_bar"]
+"""Besides the chain of 40 four-bars, for which one of twelve stands, compiled in parts, too."""
+
+
+def step_for(scene: str) -> float:
+    """Return a step (s) that the scene bears: Andrews' mechanism turns a hundred times as fast as the others."""
+    return 1e-5 if scene == "andrews" else H
+
+
+def assert_alike(one: Trajectory, other: Trajectory, tolerance: float = 1e-12) -> None:
+    """Check that two runs are the same but for rounding, and end alike; relative, of coordinates at least to 1."""
+    assert one.t == pytest.approx(other.t, abs=1e-14 * one.t[-1])
+    if one.failure and other.failure:  # on the way there rounding grows
+        assert one.failure[:40] == other.failure[:40]
+        return
+    for a, b in ((one.q, other.q), (one.v, other.v)):
+        assert a == pytest.approx(b, rel=tolerance, abs=tolerance * max(1, abs(a).max()))
+    for key in ("evaluations", "iterations", "failure"):
+        assert getattr(one, key) == getattr(other, key)
+
+
+def both(mechanism: Mechanism, name: str, count: int, gains: tuple[float, float], h: float = H) -> Trajectory:
+    """Return a run of so many steps of h (s), the same by numpy and compiled."""
+    method = lookup(name)
+    duration = count * h * float(method.step_multiple)
+    by_numpy, compiled = (simulate(mechanism, method, h, duration, gains, compiled=each) for each in (False, True))
+    assert_alike(by_numpy, compiled)
+    return compiled
+
+
+def plain_run(
+    mechanism: Mechanism, method: Method, gains: tuple[float, float], states: list[FloatArray], count: int
+) -> FloatArray:
+    """Return states after the given ones by nothing but the method's formula and the accelerations."""
+    n, acceleration = mechanism.size, acceleration_function(mechanism, math)
+
+    def accelerations(q: FloatArray, v: FloatArray) -> FloatArray:
+        return np.array(acceleration(0.0, *gains, q.tolist(), v.tolist()))
+
+    if implicit(method) or isinstance(method.scheme, SecondOrder):
+        scheme = second_order_form(method.scheme)
+        return np.array(plain_second_order_run(scheme, accelerations, H, states, count))
+
+    def slope(_: float, y: FloatArray) -> FloatArray:
+        return np.concatenate([y[n:], accelerations(y[:n], y[n:])])
+
+    history = list(states)
+    for _ in range(count):
+        history.append(plain_step(method, slope, 0.0, H, history[: -steps(method) - 1 : -1]))
+    return np.array(history[len(states) :])
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_many_steps_are_the_plain_ones(name: str) -> None:
+    """By numpy and compiled."""
+    mechanism, method = compiled_mechanism(load_scene("slider_crank")), lookup(name)
+    gains = feedback_gains(0.2, 0.02, H)
+    solving = implicit(method)
+    count = 100 if solving else 2000  # the plain steps of implicit methods take long
+    run = both(mechanism, name, count, gains)
+    states = np.concatenate([run.q, run.v], axis=1)
+    first = states_needed(method)
+    expected = plain_run(mechanism, method, gains, list(states[:first]), count + 1 - first)
+    n, tolerance = mechanism.size, 1e-10 if solving else 1e-12  # of velocities: rounding of positions over h
+    assert states[first:, :n] == pytest.approx(expected[:, :n], abs=1e-12 * abs(states).max())
+    assert states[first:, n:] == pytest.approx(expected[:, n:], abs=tolerance * abs(states).max())
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("scene", SCENES)
+def test_every_method_is_the_same_compiled_in_every_scene(scene: str) -> None:
+    """All but the Adams-Bashforth methods of most steps: these are unstable here, and rounding grows."""
+    mechanism, h = compiled_mechanism(load_scene(scene)), step_for(scene)
+    for name in REGISTRY:
+        if name not in ("AB6", "AB7", "AB8"):
+            run = both(mechanism, name, 200, feedback_gains(0.1, 0.01, h), h)
+            assert len(run.t) == 201 or run.failure
+
+
+def test_newtons_method_ends_runs_alike(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By its iterations, too, and across blocks, which keep the Jacobian from step to step."""
+    mechanism = compiled_mechanism(load_scene("pendulum"))
+    run = both(mechanism, "bdf2", 500, feedback_gains(0.3, 0.04, H))
+    assert run.failure is None
+    assert run.iterations is not None
+    assert run.iterations + 20 >= 3 * 500
+    assert run.evaluations < 1.2 * run.iterations  # Jacobians are kept as long as they serve
+    assert "blow-up" in str(both(mechanism, "bdf2", 100, feedback_gains(-1.0, 0.1, 0.3), 0.3).failure)
+    monkeypatch.setattr(runner, "MOST_STEPS_OF_A_BLOCK", 7)
+    assert_alike(both(mechanism, "bdf2", 500, feedback_gains(0.3, 0.04, H)), run, tolerance=0.0)
+    ended = both(mechanism, "bdf2", 400, (0.0, 0.0), 0.1)
+    assert len(ended.t) > 10
+    assert f"Newton's method did not converge in {MOST_ITERATIONS} iterations (last correction " in str(ended.failure)
+
+
+def test_a_blow_up_comes_at_the_same_step_in_the_same_words() -> None:
+    run = both(compiled_mechanism(load_scene("pendulum")), "AB3", 3000, feedback_gains(3.0, 3.0, H))
+    assert "blow-up" in str(run.failure)
+    assert 1 < len(run.t) < 3001
+
+
+@pytest.mark.parametrize("compiled", [False, True])
+def test_a_singular_configuration_ends_a_run(compiled: bool) -> None:
+    mechanism = compiled_mechanism(load_scene("pendulum"))
+    state = (np.array([1e-160, 0.0]), np.array([0.0, 0.0]))  # the square of its length is no normal number
+    run = simulate(mechanism, lookup("AB3"), H, 0.1, (0.0, 0.0), state, "euler", compiled=compiled)
+    assert run.failure
