@@ -27,7 +27,7 @@ from functools import cache
 from itertools import product
 
 import numpy as np
-from numpy.polynomial.polynomial import polyder, polymul, polyroots, polysub
+from numpy.polynomial.polynomial import polyroots
 
 from bezstab.errors import NumericalError
 from bezstab.methods import Method, fixed_poles, implicit, without_shared_factor
@@ -57,7 +57,6 @@ AS_SMALL = 1e-10  # relative: a value by so much above the least so far is looke
 SAME_MINIMUM = 1e-5  # of |mu|: minima that were narrowed to less than that and lie closer are one
 FINER = 4  # times as many samples of the plane along either axis, where the first sampling failed the check
 ZOOM_POINTS, ZOOM = 13, 0.45
-NEAR_REAL = 1e-2  # relative: a real zero that float64 makes complex is no further off the axis
 ON_EDGE = 1e-2  # of |mu|: from here on the least value may lie on the edge Re mu = 0
 FURTHEST = 200  # doublings of a parameter, on the way to a limit
 ARC_SAMPLES = 513  # of theta, where a curve of equal |z_p| is looked for, a tenth of them at least
@@ -164,11 +163,8 @@ def _best_or_limit(method: Method) -> BestPoint | FarLimit | None:
     return _one_step(pencil) if pencil.steps == 1 else _kink(pencil)
 
 
-def _one_step(pencil: Pencil) -> BestPoint | FarLimit:
-    """Return the zeros of R, as z = R(mu); without one where Re mu <= 0, where |R| is least on the edge, or its limit.
-
-    log|R| has no minimum inside but at the zeros, so without them it is least on the edge Re mu = 0, or far out.
-    """
+def _one_step(pencil: Pencil) -> BestPoint | FarLimit | None:
+    """Return the zeros of R, as z = R(mu); without one where Re mu <= 0, what is least on the edge, or far out."""
     zeros = _zeros(pencil)
     if implicit(pencil.method):
         zeros = [complex(min(mu.real, 0.0), mu.imag) for mu in zeros if mu.real <= ROUNDING * abs(mu)]
@@ -176,42 +172,7 @@ def _one_step(pencil: Pencil) -> BestPoint | FarLimit:
         deadbeat = _described(pencil, 0.0, zeros, arc=False)
         check_deadbeat(pencil, deadbeat.alpha_hat, deadbeat.beta_hat)
         return deadbeat
-    limit = _limit(pencil)
-    least = _least_on_edge(pencil)
-    if least is None or limit.z_abs <= least.z_abs * (1 + ROUNDING):
-        return limit
-    return _described(pencil, least.z_abs, [least.mu], arc=False)
-
-
-def _least_on_edge(pencil: Pencil) -> _Candidate | None:
-    """Return where |R(iy)| is least over y > 0; None if it has no minimum there.
-
-    |R(iy)|^2 is a ratio of polynomials in y^2, N and D, and flat where N' D = N D'.
-    """
-    numerator, denominator = (_squared_on_edge(row) for row in pencil.table)
-    slope = polysub(polymul(polyder(numerator), denominator), polymul(numerator, polyder(denominator)))
-    flat = np.roots(np.trim_zeros(slope, "b")[::-1])
-    near_real = (flat.real > 0) & (np.abs(flat.imag) <= NEAR_REAL * np.abs(flat))  # one too many does no harm
-    if not near_real.any():
-        return None
-    start = np.sqrt(flat[near_real].real)[:, np.newaxis]
-
-    def modulus(points: FloatArray) -> FloatArray:
-        return _largest_modulus(pencil, np.asarray(1j * points[..., 0], complex))
-
-    places, values = zoom_on_minimum(
-        modulus, start, NEAR_REAL * start, points=ARC_ZOOM_POINTS, shrink=2 / (ARC_ZOOM_POINTS - 1), rounds=ARC_ZOOMS
-    )
-    least = np.argmin(values)
-    return _Candidate(float(values[least]), complex(0, float(places[least, 0])))
-
-
-def _squared_on_edge(coefficients: FloatArray) -> FloatArray:
-    """Return |p(iy)|^2 as a polynomial in y^2, ascending, from p's coefficients."""
-    signs = (-1.0) ** np.arange(len(coefficients))
-    in_mu = polymul(coefficients, coefficients * signs)  # p(mu) p(-mu), in which mu^2 is -y^2
-    even = in_mu[::2]
-    return np.asarray(even * (-1.0) ** np.arange(len(even)), float)
+    return _kink(pencil)
 
 
 def _kink(pencil: Pencil) -> BestPoint | FarLimit | None:
@@ -230,8 +191,8 @@ def _checked_kink(pencil: Pencil, search: _Search) -> BestPoint | FarLimit | Non
     limit = _limit(pencil)
     if limit.z_abs == 0:
         return limit
-    least = _smallest(pencil, search)
-    if limit.z_abs < least.z_abs * (1 - ROUNDING):
+    least = _smallest(pencil, search, limit.z_abs)
+    if least is None or limit.z_abs < least.z_abs * (1 - ROUNDING):
         return limit
     end = _other_end(pencil, least)
     found = _described(pencil, least.z_abs, [least.mu] if end is None else [least.mu, end], arc=end is not None)
@@ -350,8 +311,8 @@ def _meeting_poles(pencil: Pencil, z_abs: float, mu: ComplexArray) -> tuple[comp
     return tuple(meeting)
 
 
-def _smallest(pencil: Pencil, search: _Search) -> _Candidate:
-    """Return min f and a mu that has it, a real one if there is one."""
+def _smallest(pencil: Pencil, search: _Search, limit: float) -> _Candidate | None:
+    """Return min f and a mu that has it, a real one if there is one; None if all that is sampled is above a limit."""
     sampled = _local_minima(pencil, search)
     lowest = min(candidate.z_abs for candidate in sampled)
     followed: list[_Candidate] = []
@@ -362,6 +323,8 @@ def _smallest(pencil: Pencil, search: _Search) -> _Candidate:
     solutions = [solution for candidate in followed for solution in _solutions(pencil, candidate.mu)]
     best = min((solution.z_abs for solution in solutions), default=np.inf)
     if not best <= lowest * (1 + ROUNDING):
+        if limit < lowest:
+            return None
         name = pencil.method.name
         raise NumericalError(f"{name}: |z_p| = {lowest:.6g} was sampled, but no kink as low could be solved for")
     as_low = [solution for solution in solutions if solution.z_abs <= best * (1 + ROUNDING)]
@@ -427,8 +390,9 @@ def _active_sets(pencil: Pencil, mu: complex) -> Iterator[tuple[list[Active], in
     first, *others = (Active(complex(z)) for z in roots[np.argsort(-np.abs(roots))][:3])
     pairs = [[first, other] for other in others]
     yield from ((pair, 1) for pair in pairs)  # on the real axis, where a curve of equal |z_p| ends
-    yield pairs[0], None
-    yield [Active((first.z + others[0].z) / 2, multiplicity=2)], None
+    if others:
+        yield pairs[0], None
+        yield [Active((first.z + others[0].z) / 2, multiplicity=2)], None
     if len(others) == 2:
         yield [first, *others], None
     if pencil.implicit and abs(mu.real) < ON_EDGE * abs(mu):
@@ -467,6 +431,7 @@ def _solutions(pencil: Pencil, start: complex) -> Iterator[_Candidate]:
         mu = _upper(mu)
         if pencil.implicit and mu.real > 0:
             matched &= mu.real <= ROUNDING * abs(mu)
+        if held == 0 or (pencil.implicit and mu.real > 0):
             mu = complex(0, mu.imag)
         if matched and np.all(np.abs(others) <= z_abs * (1 + ROUNDING)):
             yield _Candidate(z_abs, mu)

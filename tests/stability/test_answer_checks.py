@@ -53,8 +53,9 @@ def test_a_wrong_best_point_is_no_answer(name: str, factor: float, moved: float)
 def test_a_kink_that_is_not_the_least_is_no_answer(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     smallest = best_points._smallest
 
-    def another(pencil: Any, search: Any) -> Any:
-        least = smallest(pencil, best_points.SEARCHES[0])
+    def another(pencil: Any, search: Any, limit: float) -> Any:
+        least = smallest(pencil, best_points.SEARCHES[0], limit)
+        assert least
         mu = 0.9 * least.mu
         return replace(least, mu=mu, z_abs=float(best_points._largest_modulus(pencil, np.array([mu]))[0]))
 
@@ -102,8 +103,9 @@ def test_what_fails_at_first_is_searched_more_finely(monkeypatch: pytest.MonkeyP
     assert right_best
     smallest, least = best_points._smallest, choices._least
 
-    def another(pencil: Any, search: Any) -> Any:
-        found = smallest(pencil, search)
+    def another(pencil: Any, search: Any, limit: float) -> Any:
+        found = smallest(pencil, search, limit)
+        assert found
         return found if search is not best_points.SEARCHES[0] else replace(found, mu=0.9 * found.mu)
 
     def beside(extent: Any, objective: Any, equal: bool, cut: bool, finer: int) -> tuple[float, float]:
