@@ -73,12 +73,12 @@ APPOINTED = {
     },
     "matplotlib": {
         *("show/style.py", "show/histories.py", "show/plot.py", "show/plane_figures.py", "show/run_figures.py"),
-        *("show/accuracy_figures.py", "show/explorer.py"),
+        *("show/accuracy_figures.py", "show/chain_figures.py", "show/explorer.py"),
         *(f"paper/{name}.py" for name in ("regions", "slider_crank", "drift", "influence", "comparison")),
     },
     "click": {f"cli/{name}.py" for name in ("options", "output", "command_group")}
     | {f"cli/{name}_commands.py" for name in ("map", "choose", "evidence")}
-    | {f"cli/{name}_command.py" for name in ("verify", "schema", "lint", "probe")}
+    | {f"cli/{name}_command.py" for name in ("verify", "schema", "lint", "probe", "chains")}
     | {"cli/completion.py", "cli/asking.py", "cli/held_drives.py"}
     | {"paper/command.py"},
     "mujoco": {"evidence/mujoco_models.py"},

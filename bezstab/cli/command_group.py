@@ -10,6 +10,7 @@ from typing import Any, NoReturn
 import click
 
 from bezstab import __version__
+from bezstab.cli.chains_command import chains
 from bezstab.cli.choose_commands import check, choose, engines, explore
 from bezstab.cli.evidence_commands import extremes, simulate, tradeoff
 from bezstab.cli.lint_command import lint
@@ -22,7 +23,7 @@ from bezstab.errors import InputError, NumericalError
 
 SECTIONS: Mapping[str, Sequence[click.Command]] = {
     "Maps": (poles, region, methods, family),
-    "Choose": (choose, check, lint, engines, explore),
+    "Choose": (choose, check, lint, engines, chains, explore),
     "Evidence": (simulate, verify, probe, tradeoff, extremes),
     "Programs": (schema,),
 }

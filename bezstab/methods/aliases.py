@@ -229,13 +229,9 @@ def near_names(name: str, known: Sequence[str]) -> list[str]:
     by_word: dict[str, list[str]] = {}
     for other in names:
         by_word.setdefault(_word(other), []).append(other)
-    reordered = [other for other in by_word if other and sorted(other) == sorted(word)]
-    if word and word in by_word:
-        words = [word]
-    elif reordered or len(word) < LEAST_LETTERS:
-        words = reordered
-    else:
-        words = _closest(word, [other for other in by_word if len(other) >= LEAST_LETTERS])
+    likeness = {other: _likeness(word, other) for other in by_word if word and other}
+    most = max(likeness.values(), default=0)
+    words = [other for other in likeness if likeness[other] == most >= SIMILARITY]
     return [_nearest(name, by_word[each]) for each in words]
 
 
@@ -251,11 +247,13 @@ def _is_of_another_kind(name: str, other: str) -> bool:
     return bool(shared) and SequenceMatcher(None, word, other_word).ratio() < SIMILARITY
 
 
-def _closest(word: str, others: Sequence[str]) -> list[str]:
-    """Return the words most like this one, all those that are equally so, if they are like it at all."""
-    likeness = {other: SequenceMatcher(None, word, other).ratio() for other in others}
-    most = max(likeness.values())
-    return [other for other in others if likeness[other] == most] if most >= SIMILARITY else []
+def _likeness(word: str, other: str) -> float:
+    """Return how like words are: most if they are the same, then if their letters are, long ones by their letters."""
+    if word == other:
+        return 2
+    if sorted(word) == sorted(other):
+        return 1
+    return SequenceMatcher(None, word, other).ratio() if min(len(word), len(other)) >= LEAST_LETTERS else 0
 
 
 def _nearest(name: str, others: Sequence[str]) -> str:

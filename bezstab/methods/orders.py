@@ -138,11 +138,8 @@ def _rounding(method: Method) -> Fraction:
 
 def _leading_error(table: MuTable) -> tuple[int, Fraction]:
     """Return p and the first coefficient of the local error that is not zero, that of mu^(p+1)."""
-    for p in count():
-        error = _local_error(table, p + 1)
-        if error != 0:
-            return p, error
-    raise AssertionError("e^mu is no algebraic function of mu: some coefficient is not zero")
+    p = next(p for p in count() if _local_error(table, p + 1))  # e^mu is no algebraic function of mu: there is one
+    return p, _local_error(table, p + 1)
 
 
 def _local_error(table: MuTable, power: int) -> Fraction:
@@ -176,10 +173,7 @@ def _local_error(table: MuTable, power: int) -> Fraction:
 
 def _runge_kutta_order(scheme: RungeKutta, rounding: Fraction) -> int:
     """Return the largest p with sum_i b_i Phi_i(t) = 1 / gamma(t) for every rooted tree t of up to p vertices."""
-    for p in count(1):
-        if not all(_satisfied(scheme, tree, rounding) for tree in _trees(p + 1)):
-            return p
-    raise AssertionError("s stages have at most order 2 s")
+    return next(p for p in count(1) if not all(_satisfied(scheme, tree, rounding) for tree in _trees(p + 1)))
 
 
 def _satisfied(scheme: RungeKutta, tree: Tree, rounding: Fraction) -> bool:

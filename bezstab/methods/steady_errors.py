@@ -210,11 +210,12 @@ def turning_error(method: Method) -> TurningError | None:
 
 def _least_weight(errors: ForcedErrors, terms: ExponentialSum) -> int:
     """Return the lowest power of h in a sum where alpha and beta are held: alpha_hat counts one, beta_hat two."""
-    for weight in count():
-        for i, j in terms:
-            if i + 2 * j <= weight and errors.series_coefficient(terms[i, j], weight - i - 2 * j):
-                return weight
-    raise AssertionError("count() has no end")
+
+    def has_terms(weight: int) -> bool:
+        low = [(i, j) for i, j in terms if i + 2 * j <= weight]
+        return any(errors.series_coefficient(terms[i, j], weight - i - 2 * j) for i, j in low)
+
+    return next(weight for weight in count() if has_terms(weight))
 
 
 def _in_h(polynomial: PlanePolynomial, multiple: Fraction, power: int) -> PlanePolynomial:

@@ -6,7 +6,7 @@
 """
 
 from bezstab.questions.answering import SLOWER, Answer, Gains, LargestStep, answers, largest_step
-from bezstab.questions.chains import Chain, ChainAnswer
+from bezstab.questions.chains import Chain, ChainAnswer, ChainMap, chain_map
 from bezstab.questions.held_drives import HeldAnswer, HeldQuestion, UsedUp, held_answers, held_gains
 from bezstab.questions.motions import ReferenceMotion, motion_of, turning_of, turning_stages, turns_too_far
 from bezstab.questions.points import GivenPoint
@@ -18,6 +18,7 @@ __all__ = [
     "Answer",
     "Chain",
     "ChainAnswer",
+    "ChainMap",
     "Gains",
     "GivenPoint",
     "HeldAnswer",
@@ -28,6 +29,7 @@ __all__ = [
     "StepRange",
     "UsedUp",
     "answers",
+    "chain_map",
     "held_answers",
     "held_gains",
     "largest_step",

@@ -77,7 +77,7 @@ def chain_answer(engine: Engine, values: tuple[Fraction, ...], h: Fraction, aske
     iterations = asked.iterations or engine.sweeping.iterations
     masses = chain(asked.bodies, float(asked.mass_ratio))
     growth = swept_growth(masses, step(iterations))
-    _ = growth.decays
+    growth.check_settled()
     return ChainAnswer(
         chain=asked,
         iterations=iterations,
@@ -105,8 +105,7 @@ def strongest_setting(engine: Engine, h: Fraction, asked: Chain, spread: float) 
 
     def allowed(share: float) -> bool:
         stronger = min(share * (1 + spread), 1.0)
-        growth = swept_growth(masses, _steps(engine, values_of(stronger), h)(iterations))
-        return growth.factor + growth.accuracy < 1
+        return swept_growth(masses, _steps(engine, values_of(stronger), h)(iterations)).decays
 
     def refused(shares: FloatArray) -> BoolArray:
         return np.array([not allowed(float(share)) for share in shares])
@@ -124,3 +123,35 @@ def _steps(engine: Engine, values: tuple[Fraction, ...], h: Fraction) -> Callabl
     assert engine.sweeping
     step = engine.sweeping.step
     return lambda iterations: step(iterations, h, *values)
+
+
+@dataclass(frozen=True)
+class ChainMap:
+    """What an engine's sweeps make of chains of 1 to so many bodies, the last one `mass_ratio` times as heavy.
+
+    `z_abs` has shape (bodies, sweeps): the factor by which a step multiplies the error, in the row of n bodies with 1,
+    2, ... sweeps. `stable_iterations` are the fewest stable sweeps by bodies, None where none that is tried is.
+    """
+
+    mass_ratio: float
+    z_abs: FloatArray
+    stable_iterations: tuple[int | None, ...]
+
+
+def chain_map(
+    engine: Engine, values: tuple[Fraction, ...], h: Fraction, mass_ratio: Fraction, bodies: int, sweeps: int
+) -> ChainMap:
+    """Return the map of an engine with such values at a step of h (s); errors as `chain_answer`."""
+    check_chain(Chain(bodies, mass_ratio, sweeps), engine)
+    step = _steps(engine, values, h)
+    z_abs = np.empty((bodies, sweeps))
+    fewest = []
+    for row in range(bodies):
+        masses = chain(row + 1, float(mass_ratio))
+
+        def growth(iterations: int, masses: FloatArray = masses) -> Growth:
+            return swept_growth(masses, step(iterations))
+
+        z_abs[row] = [growth(iterations).factor for iterations in range(1, sweeps + 1)]
+        fewest.append(fewest_sweeps(growth))
+    return ChainMap(float(mass_ratio), z_abs, tuple(fewest))

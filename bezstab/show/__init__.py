@@ -36,6 +36,7 @@ from bezstab.show.columns import (
 from bezstab.show.fields import Field, RowKind, cells
 from bezstab.show.held_rows import LATE_COMMANDS, NOT_JUDGED, held_row, held_sentence, timing_words
 from bezstab.show.row_kinds import (
+    CHAINS,
     CHECKED,
     CHOICES,
     CLAIMS,
@@ -61,6 +62,7 @@ from bezstab.show.row_kinds import (
 )
 from bezstab.show.rows import (
     NOT_KNOWN,
+    chain_rows,
     complex_parts,
     engine_row,
     family_row,
@@ -85,7 +87,7 @@ from bezstab.show.rows import (
 )
 from bezstab.show.schemas import json_schema
 from bezstab.show.varying_rows import repeated, sequence_text, varying_row, varying_words
-from bezstab.show.words import change_words, growth_words, safety_words, seconds_words, times_words
+from bezstab.show.words import chain_sentence, change_words, growth_words, safety_words, seconds_words, times_words
 
 if TYPE_CHECKING:
     from bezstab.show import plot
@@ -98,6 +100,7 @@ if TYPE_CHECKING:
         verdict_arrays,
         write_arrays,
     )
+    from bezstab.show.chain_figures import chains_figure
     from bezstab.show.explorer import open_explorer
     from bezstab.show.histories import history_line
     from bezstab.show.plane_figures import comparison_figure, family_figure, region_figure, verdict_figure
@@ -114,6 +117,7 @@ LOADED_LATE = {
         "verdict_arrays",
         "write_arrays",
     ),
+    "chain_figures": ("chains_figure",),
     "explorer": ("open_explorer",),
     "histories": ("history_line",),
     "plane_figures": (
@@ -141,6 +145,7 @@ LOADED_LATE = {
 __getattr__ = lazy_names(__name__, LOADED_LATE, modules=("plot",))
 
 __all__ = [
+    "CHAINS",
     "CHECKED",
     "CHOICES",
     "CLAIMS",
@@ -182,6 +187,9 @@ __all__ = [
     "block",
     "boundary_arrays",
     "cells",
+    "chain_rows",
+    "chain_sentence",
+    "chains_figure",
     "change_words",
     "column",
     "column_figure",

@@ -13,7 +13,16 @@ from bezstab.rationals import exact
 from bezstab.show import plot
 from bezstab.show.rows import alpha_and_beta
 from bezstab.show.style import styled
-from bezstab.stability import FloatArray, dominant_pole, poles, region, spectral_radius, useful_window, verdict
+from bezstab.stability import (
+    FloatArray,
+    dominant_pole,
+    kick_response,
+    poles,
+    region,
+    spectral_radius,
+    useful_window,
+    verdict,
+)
 
 POINTS = 150  # per axis of the map: it appears at once
 STEPS = 100  # of the decay
@@ -76,7 +85,7 @@ class Explorer:
         alpha_hat, beta_hat = self.point
         z = poles(self.method, alpha_hat, beta_hat)
         self.poles.set_data(z.real, z.imag)
-        response = kick_response(np.poly(z).real.astype(float), STEPS)
+        response = kick_response(z, STEPS)
         self.decay.set_data(np.arange(STEPS + 1), np.abs(response))
         self.cross.set_data([alpha_hat], [beta_hat])
         self.text.set_text(self._numbers(prove))
@@ -134,22 +143,6 @@ def _cell_centres(interval: tuple[float, float]) -> FloatArray:
     low, high = interval
     centres: FloatArray = low + (high - low) * (np.arange(POINTS) + 0.5) / POINTS
     return centres
-
-
-def kick_response(polynomial: FloatArray, steps: int) -> FloatArray:
-    """Return c_0 = 1, c_1, ... of the linear recursion with this characteristic polynomial, shape (steps + 1,).
-
-    Coefficients in descending powers, the first of them 1; at rest before the kick. Not finite from where it leaves the
-    range of float64.
-    """
-    degree = len(polynomial) - 1
-    c = np.zeros(degree + steps + 1)  # with `degree` values of rest in front
-    c[degree] = 1
-    with np.errstate(over="ignore", invalid="ignore"):
-        for k in range(degree + 1, len(c)):
-            newest_first = c[k - 1 : k - degree - 1 : -1]
-            c[k] = -polynomial[1:] @ newest_first
-    return c[degree:]
 
 
 def open_explorer(methods: Sequence[Method], h: float, print_line: Callable[[str], None]) -> None:

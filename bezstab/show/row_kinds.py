@@ -493,28 +493,35 @@ ACCURACY = (
 APPLIED = Field(
     "applied", "text", "What the engine does to its values before it uses them", null="where nothing is known of it"
 )
+CHAIN_BODIES = Field("chain_bodies", "integer", "Bodies of the chain, the first held by the world", "bodies", "d")
+CHAIN_MASS_RATIO = Field(
+    "chain_mass_ratio", "number", "Mass of the last body of the chain over that of each other", "last mass", "g"
+)
+CHAIN_ITERATIONS = Field("chain_iterations", "integer", "Sweeps that the engine makes in a step", "sweeps", "d")
+CHAIN_Z_ABS = Field(
+    "chain_z_abs",
+    "number",
+    "Factor by which a step multiplies the error of the chain in the long run",
+    "|z| of the chain",
+    ".4f",
+)
+STABLE_ITERATIONS = Field(
+    "stable_iterations",
+    "integer",
+    "From how many sweeps the chain is stable",
+    "stable from sweeps",
+    "d",
+    null="where none tried is",
+)
 CHAIN = (
     Field("chain", "text", "The chain of bodies that is asked about"),
-    Field("chain_bodies", "integer", "Bodies of the chain, the first held by the world"),
-    Field("chain_mass_ratio", "number", "Mass of the last body of the chain over that of each other"),
-    Field("chain_iterations", "integer", "Sweeps that the engine makes in a step", "sweeps", "d"),
-    Field(
-        "chain_z_abs",
-        "number",
-        "Factor by which a step multiplies the error of the chain in the long run",
-        "|z| of the chain",
-        ".4f",
-    ),
+    CHAIN_BODIES.hidden,
+    CHAIN_MASS_RATIO.hidden,
+    CHAIN_ITERATIONS,
+    CHAIN_Z_ABS,
     Field("chain_accuracy", "number", "How far that factor may be off by rounding, to first order"),
     Field("alone_z_abs", "number", "The same factor for one constraint alone, with as many sweeps"),
-    Field(
-        "stable_iterations",
-        "integer",
-        "From how many sweeps the chain is stable",
-        "stable from sweeps",
-        "d",
-        null="where none tried is",
-    ),
+    STABLE_ITERATIONS,
     Field(
         "chain_setting",
         "text",
@@ -730,6 +737,10 @@ MEMBERS = RowKind(
         ORDER.shown("order of accuracy", "d"),
         ERROR_CONSTANT.shown("error constant", ".6f"),
     ),
+)
+CHAINS = RowKind(
+    "a chain of bodies in an engine that sweeps",
+    fields=(CHAIN_MASS_RATIO, CHAIN_BODIES, CHAIN_ITERATIONS, CHAIN_Z_ABS, STABLE_ITERATIONS),
 )
 CHOICES = RowKind(
     "a choice",
@@ -1274,6 +1285,7 @@ ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
     ),
     "lint": (LINTED,),
     "engines": (ENGINES_LISTED,),
+    "chains": (CHAINS,),
     "simulate": (SIMULATIONS,),
     "verify": (
         MEASUREMENTS,

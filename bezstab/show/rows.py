@@ -60,7 +60,7 @@ if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
         Witnessed,
     )
     from bezstab.mechanism import Simulation
-    from bezstab.questions import Answer
+    from bezstab.questions import Answer, ChainMap
     from bezstab.stability import BestPoint, Choice, FrontPoint, Limit, Member, Region
 
 
@@ -486,6 +486,22 @@ def _as_float(number: Fraction) -> float:
         return float(number)
     except OverflowError:
         return math.copysign(math.inf, number)
+
+
+def chain_rows(engine: Engine, found: ChainMap) -> list[Row]:
+    """Return a row for each number of bodies of a map, with the engine's own number of sweeps."""
+    assert engine.sweeping
+    own = engine.sweeping.iterations
+    return [
+        {
+            "chain_mass_ratio": found.mass_ratio,
+            "chain_bodies": bodies,
+            "chain_iterations": own,
+            "chain_z_abs": float(found.z_abs[bodies - 1, own - 1]),
+            "stable_iterations": fewest,
+        }
+        for bodies, fewest in enumerate(found.stable_iterations, start=1)
+    ]
 
 
 def engine_row(engine: Engine, point: tuple[Fraction, Fraction] | None, h: Fraction) -> Row:

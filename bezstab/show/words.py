@@ -95,3 +95,13 @@ def chain_words(row: Row) -> str:
 
 def _sweeps(count: Value) -> str:
     return "1 sweep" if count == 1 else f"{count} sweeps"
+
+
+def chain_sentence(row: Row) -> str:
+    """Return from how many sweeps a chain is stable, and what a step does with the engine's own number of them."""
+    z_abs, stable = row["chain_z_abs"], row["stable_iterations"]
+    enough = "with no number that was tried" if stable is None else f"from {_sweeps(stable)}"
+    count = "1 body" if row["chain_bodies"] == 1 else f"{row['chain_bodies']} bodies"
+    bodies = count if row["chain_mass_ratio"] == 1 else f"{count}, the last {row['chain_mass_ratio']:g} times as heavy"
+    own = _sweeps(row["chain_iterations"])
+    return f"{bodies}: stable {enough}. With {own} each step multiplies the error by {z_abs:.4f}."

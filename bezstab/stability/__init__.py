@@ -34,6 +34,7 @@ from bezstab.stability.forced_errors import (
 )
 from bezstab.stability.gain_margins import GainLimits, gain_limits
 from bezstab.stability.grid_maps import QUALITY, pole_map
+from bezstab.stability.kick_responses import kick_response
 from bezstab.stability.margins import Margins, largest_stable_step, stability_margins, stable_up_to
 from bezstab.stability.pencils import Pencil, pencil_of, roots_in_z
 from bezstab.stability.regions import Region, pole_place, region, useful_window, window
@@ -135,6 +136,7 @@ __all__ = [
     "held_spectral_radius",
     "held_verdict",
     "inverse_effective_masses",
+    "kick_response",
     "largest_stable_step",
     "own_feedback_root",
     "pencil_of",

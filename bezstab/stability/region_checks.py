@@ -43,12 +43,13 @@ EVEN = np.linspace(0, 1, 9)  # ends of panels, of an island's width: 64 lines to
 _TOWARDS_ZERO = np.geomspace(1e-12, 0.1, 12)
 GRADED = np.union1d(EVEN, [*_TOWARDS_ZERO, *(1 - _TOWARDS_ZERO)])
 ON_A_LINE = 256  # points on which |z_p| is looked at, besides those between the drawn curves
+AT_ONCE = 15  # of a bracket's places: to ask about one takes as long as about a dozen
 CURVE_ERROR = 2e-3  # of the longest line: chords between drawn points are off by 1e-4, near tangencies more
 TANGENT = 2  # lines that may disagree: those next to a tangency
 AREA_ERROR = 5e-3  # of the area: what 64 nodes leave across square roots and corners
 AT_THE_END = 1e-6  # of what is seen: so far beyond an end lines are looked at
 CHORD = 1e-3  # of what is seen: so near to an end a drawn point comes where the region does
-ALL_ALONG = np.geomspace(1e-6, 1e18, 2400)  # times what is seen: where such a line is looked at, to either side
+ALL_ALONG = np.geomspace(1e-6, 1e18, 800)  # times what is seen: where such a line is looked at, to either side
 SIZES = 4.0 * 10.0 ** np.arange(-3, 4)  # alpha_hat and sqrt(beta_hat) of boxes in which an empty region has no point
 POINTS = 600  # in each of them
 
@@ -237,7 +238,7 @@ def _lengths(
         line = np.broadcast_to(lines[which[turn]], place.shape)
         return np.asarray(verdicts(line, place) == entering)
 
-    place = bisected(arrived, beta_hat[turn], beta_hat[turn + 1])[1]
+    place = bisected(arrived, beta_hat[turn], beta_hat[turn + 1], at_once=AT_ONCE)[1]
     by_poles, by_curves = np.zeros(len(lines)), np.zeros(len(lines))
     for line, crossed in enumerate(crossings):
         begins = bool(stable[which == line][0])

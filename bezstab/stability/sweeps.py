@@ -40,12 +40,15 @@ class Growth:
 
     @property
     def decays(self) -> bool:
-        """Whether errors decay; NumericalError where the accuracy leaves that open."""
+        """Whether errors decay, by more than the factor may be off."""
+        return self.factor + self.accuracy < 1
+
+    def check_settled(self) -> None:
+        """Raise NumericalError where the accuracy leaves open whether errors decay or grow."""
         if abs(self.factor - 1) <= self.accuracy:
             raise NumericalError(
                 f"each step multiplies the error by {self.factor:.12g}, known to {self.accuracy:.1g} only: too near 1"
             )
-        return self.factor < 1
 
 
 def chain(bodies: int, mass_ratio: float = 1.0) -> FloatArray:

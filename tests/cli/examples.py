@@ -27,6 +27,7 @@ EXAMPLES: dict[str, list[str]] = {
         f"{LOG} --alpha 2/3 --beta 1/4 --method SYM --method RK4",
         f"{LOG} --method SYM --h 1/120",
     ],
+    "chains": ["chains --engine bullet=0.2 --h 1/60 --to 3 --figure none"],
     "engines": ["engines", "engines --alpha 1 --beta 0.2 --h 0.002"],
     "simulate": [f"simulate --scene pendulum --method SYM --time 0.02 {SMALL}"],
     "verify": [
@@ -50,6 +51,7 @@ LONG = {
         "check --method SYM --method RK2 --alpha 2 --beta 2",
         "check --method SYM --alpha 2 --beta 100 --physical --h-min 0.00917 --h-max 1/60",
         "check --engine mujoco=0.02,1 --h 0.002",
+        "check --engine bullet=0.2 --h 1/60 --chain 3 --mass-ratio 10",
         "check --pd 1000,80,0.1 --h 1/240",
         "check --pd 200,5,0.1 --h 0.002 --every 4 --late 1",
         "check --method SYM --alpha 1 --beta 0.5 --h 0.01 --scene driven_four_bar",

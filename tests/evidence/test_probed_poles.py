@@ -371,8 +371,9 @@ def test_the_true_method_is_named_whatever_made_the_log(seed: int) -> None:
         found = probed_pole(log.c, log.minus)
         counts.update(outcome(log, found, turned) for turned in (log.turning * H, None))
     assert set(counts) <= {"first", "among", "no pole"}
-    assert counts["first"] >= 1.4 * count  # of two for each log
-    assert counts["no pole"] <= 0.5 * count
+    told = counts["first"] + counts["among"]
+    assert told >= 0.65 * 2 * count  # of 60 logs four fifths, of twenty ones more or less
+    assert counts["first"] >= 0.8 * told  # nine tenths of 60
 
 
 @pytest.mark.slow

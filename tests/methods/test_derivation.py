@@ -13,7 +13,6 @@ from bezstab.methods import (
     BETA_HAT,
     MU,
     H,
-    LinearMultistep,
     Method,
     RungeKutta,
     S,
@@ -22,25 +21,19 @@ from bezstab.methods import (
     closed_loop_at,
     closed_loop_polynomial,
     coefficient_table,
-    feedback_matrix,
     lookup,
     mapping_equations,
     steps,
 )
 from tests.methods import kinds
 from tests.methods.kinds import EXPLICIT, FEW, SAMPLE, SOLVED, sampled
-from tests.reference.closed_loops import multistep_closed_loop, polynomial_in_z, runge_kutta_closed_loop, sympy_rational
+from tests.reference.closed_loops import polynomial_in_z, sympy_rational
 from tests.reference.steppers import State, one_step, trajectory
 
 METHODS = [pytest.param(lookup(name), id=name) for name in [*EXPLICIT, "B4@1/2", "RK4@5", "ABM3@2"]]
 SAMPLED = [
     pytest.param(*case.values, marks=[] if case.id in SAMPLE else [pytest.mark.slow], id=case.id) for case in METHODS
 ]
-MULTISTEP = [
-    pytest.param(lookup(case.values[0]), id=case.values[0], marks=case.marks)
-    for case in sampled(kinds.MULTISTEP, quick=[*SAMPLE, *SOLVED])
-]
-RUNGE_KUTTA = [pytest.param(lookup(name), id=name) for name in kinds.RUNGE_KUTTA if name in EXPLICIT]
 
 
 def same(left: sp.Expr, right: sp.Expr) -> bool:
@@ -146,15 +139,6 @@ def test_characteristic_polynomial_is_one_step_on_powers_of_z(method: Method) ->
     assert residual == sympy_rational(z**n - new)
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_coefficient_table_lists_the_characteristic_polynomial(method: Method) -> None:
-    table = coefficient_table(method)
-    assert len(table) == steps(method) + 1
-    total = sum(sympy_rational(c) * Z**k * MU**j for k, row in enumerate(table) for j, c in enumerate(row))
-    assert same(total, characteristic_polynomial(method).as_expr())
-    assert all(type(c) is Fraction for row in table for c in row)
-
-
 def test_a_method_of_sixteen_dense_stages_has_its_polynomials_at_once() -> None:
     """R = 1 + sum mu^(k+1) b A^k 1 of an explicit method; ten seconds by determinants and resultants."""
     stages = range(16)
@@ -193,18 +177,6 @@ def test_closed_loop_is_the_minimal_recursion_of_the_stabilised_constraint(metho
     assert DomainMatrix.from_Matrix(sp.Matrix(hankel)).to_field().rank() == n
 
 
-@pytest.mark.parametrize("method", MULTISTEP)
-def test_closed_loop_of_a_multistep_method_is_quadratic_in_rho_and_sigma(method: Method) -> None:
-    assert isinstance(method.scheme, LinearMultistep)
-    assert same(closed_loop_polynomial(method).as_expr(), multistep_closed_loop(method.scheme))
-
-
-@pytest.mark.parametrize("method", RUNGE_KUTTA)
-def test_closed_loop_of_a_one_step_method_is_symmetric_in_r_of_both_mu(method: Method) -> None:
-    assert isinstance(method.scheme, RungeKutta)
-    assert same(closed_loop_polynomial(method).as_expr(), runge_kutta_closed_loop(method.scheme))
-
-
 def test_closed_loop_of_symplectic_euler_is_that_of_theory() -> None:
     expected = (Z - 1) ** 2 + ALPHA_HAT * (Z - 1) + BETA_HAT * Z
     assert same(closed_loop_polynomial(lookup("SYM")).as_expr(), expected)
@@ -239,10 +211,3 @@ def test_closed_loop_at_a_point_is_the_closed_loop_there(method: Method) -> None
     a, b = Fraction(-3, 7), Fraction(10**20 + 1, 10**20)
     there = closed_loop_polynomial(method).as_expr().subs({ALPHA_HAT: sympy_rational(a), BETA_HAT: sympy_rational(b)})
     assert same(polynomial_in_z(closed_loop_at(method, a, b)), there)
-
-
-@pytest.mark.parametrize("method", METHODS)
-def test_effective_parameters_are_the_coefficients_of_the_feedback(method: Method) -> None:
-    m = method.step_multiple
-    zero = Fraction(0)
-    assert feedback_matrix(method) == ((m, zero), (zero, m * m))

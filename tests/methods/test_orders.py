@@ -166,11 +166,6 @@ def test_measured_orders_of_second_order_and_implicit_methods(name: str) -> None
         assert abs(measured_order(scheme, kind, count=128 if order <= 3 else 64) - order) < 0.3
 
 
-@pytest.mark.parametrize("method", [lookup("RK4@5"), lookup("bdf3"), JAMESON], ids=lambda method: method.name)
-def test_both_forces_see_one_order_where_position_and_velocity_are_stepped_alike(method: Method) -> None:
-    assert accuracy_by_force(method).position == accuracy_by_force(method).velocity == accuracy(method)
-
-
 def test_the_order_of_a_method_of_many_steps_or_stages_is_found() -> None:
     """Explicit Euler a hundred steps back, and forty stages of equal Euler steps: no second-order form is so long."""
     zeros = (Fraction(0),) * 99

@@ -35,14 +35,6 @@ def test_verdict_is_that_of_the_known_roots(factors: list[Factor]) -> None:
     assert recursion_verdict(product(factors)) == verdict_by_roots(factors)
 
 
-@special
-@given(several(inside), st.lists(on_circle, unique=True, max_size=4))
-def test_bounded_if_and_only_if_the_roots_on_the_circle_are_simple(inner: list[Factor], circle: list[Factor]) -> None:
-    assert recursion_verdict(product(inner + circle)) == ("marginal" if circle else "converges")
-    for repeated in circle:
-        assert recursion_verdict(product([*inner, *circle, repeated])) == "diverges"
-
-
 @exactly
 @given(several(inside | on_circle | outside))
 def test_schur_if_and_only_if_every_known_root_is_inside(factors: list[Factor]) -> None:
@@ -55,12 +47,6 @@ def test_schur_if_and_only_if_every_known_root_is_inside(factors: list[Factor]) 
 def test_one_part_in_ten_to_the_twenty_off_the_circle_decides(inner: list[Factor], circle: list[Factor]) -> None:
     p = product(inner + circle)
     assert [recursion_verdict(scaled(p, s)) for s in (1 - TINY, ONE, 1 + TINY)] == ["converges", "marginal", "diverges"]
-
-
-@special
-@given(several(inside | on_circle), several(outside, least=1))
-def test_one_root_outside_diverges_whatever_the_others_do(bounded: list[Factor], unbounded: list[Factor]) -> None:
-    assert recursion_verdict(product(bounded + unbounded[:1])) == "diverges"
 
 
 @special

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from bezstab.errors import InputError
 from bezstab.methods import lookup
-from bezstab.show.explorer import STEPS, Explorer, kick_response, open_explorer
+from bezstab.show.explorer import STEPS, Explorer, open_explorer
 from bezstab.stability import dominant_pole, poles
 
 
@@ -44,20 +44,6 @@ def test_moving_shows_poles_decay_and_numbers() -> None:
         assert slope == pytest.approx(abs(complex(dominant_pole(lookup("B4"), *explorer.point))), rel=0.01)
         assert f"{explorer.point[0]:.6f}" in explorer.text.get_text()
     assert "stable" in explorer.text.get_text()
-
-
-def test_the_decay_is_the_linear_recursion() -> None:
-    assert kick_response(np.array([1.0, -0.5]), STEPS) == pytest.approx(0.5 ** np.arange(STEPS + 1))
-    two = kick_response(np.array([1.0, -0.9, 0.2]), STEPS)  # roots 0.4 and 0.5
-    k = np.arange(STEPS + 1)
-    assert two == pytest.approx(5 * 0.5**k - 4 * 0.4**k)
-
-
-@pytest.mark.filterwarnings("error")
-def test_a_decay_that_grows_beyond_float64_ends_there_in_silence() -> None:
-    grown = kick_response(np.array([1.0, -1e5]), STEPS)
-    assert grown[:60] == pytest.approx(1e5 ** np.arange(60.0))
-    assert not np.isfinite(grown[-1])
 
 
 def test_what_is_printed_can_be_typed_into_a_shell() -> None:

@@ -146,7 +146,8 @@ def test_scaling_a_constraint_or_all_masses_changes_nothing() -> None:
 
 def test_what_rounding_leaves_open_is_refused() -> None:
     with pytest.raises(NumericalError, match="too near 1"):
-        _ = Growth(1.000001, 1e-5).decays
+        Growth(1.000001, 1e-5).check_settled()
+    assert not Growth(0.999999, 1e-5).decays
     assert Growth(0.99, 1e-3).decays
     assert not Growth(1.01, 1e-3).decays
 

@@ -1,0 +1,80 @@
+"""The command about chains of bodies in engines that sweep over their constraints: chains."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from bezstab.cli.asking import say_what_is_left_out
+from bezstab.cli.options import (
+    ENGINE_VALUES,
+    NUMBER,
+    SECONDS,
+    EngineValues,
+    FigureForm,
+    figure_option,
+    format_option,
+    output_option,
+)
+from bezstab.cli.output import for_reading, show_rows, write_figure
+from bezstab.files import output_directory
+from bezstab.show import CHAINS, Format, chain_rows, chain_sentence
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+SWEEPS_DRAWN = 50
+
+
+@click.command()
+@click.option("--engine", type=ENGINE_VALUES, required=True, help="An engine's own values, such as chipmunk=0.0018.")
+@click.option("--h", type=SECONDS, required=True, help="Step size in s.")
+@click.option(
+    "--mass-ratio",
+    "mass_ratios",
+    type=NUMBER,
+    multiple=True,
+    default=("1", "10"),
+    help="How many times as heavy as the others the last body is. Repeatable.",
+)
+@click.option("--to", "bodies", type=int, default=20, help="The longest chain, in bodies.")
+@output_option
+@figure_option
+@format_option
+def chains(
+    engine: EngineValues,
+    h: Fraction,
+    mass_ratios: Sequence[Fraction],
+    bodies: int,
+    output: Path,
+    figure: FigureForm,
+    form: Format,
+) -> None:
+    """Show how many sweeps an engine's chains need.
+
+    Game engines solve one constraint after another, in sweeps, and start from the last step's impulses. With few sweeps
+    a chain of bodies may diverge though each constraint alone is stable. For each chain the fewest stable sweeps are
+    printed, and what a step makes of the error with the engine's own number of them; the figure has all between.
+
+    Example: bezstab chains --engine bullet=0.2 --h 1/60 --to 5 --figure none
+    """
+    from bezstab.questions import chain_map
+
+    if figure != "none":
+        output_directory(output)
+    words, values = engine
+    maps = [chain_map(words, values, h, ratio, bodies, SWEEPS_DRAWN) for ratio in mass_ratios]
+    rows = [row for one in maps for row in chain_rows(words, one)]
+    show_rows(rows, CHAINS.columns(rows), form, sentence=chain_sentence)
+
+    def draw() -> "Figure":
+        from bezstab.show import chains_figure
+
+        typed = ", ".join(f"{name} = {float(value):.4g}" for name, value in zip(words.parameters, values, strict=False))
+        return chains_figure(words, f"{words.name}: {typed}, h = {float(h):.3g} s", maps)
+
+    write_figure(output / f"chains_{words.name}", draw, figure)
+    if for_reading(form):
+        say_what_is_left_out(words, chain=True)
