@@ -29,8 +29,9 @@ figures: .venv/installed  ## draw what the README shows, into figures/
 	$(BIN)/bezstab tradeoff --table none -o figures
 	$(BIN)/bezstab tradeoff $(ANDREWS) --repeats 1 --against time --recorded figures/andrews_times.json -o figures
 
-pages: .venv/installed  ## write anew what pages say that the code says already: tables of files, numbers
+pages: .venv/installed  ## write anew what pages say that the code says already: tables of files, numbers, promises
 	$(BIN)/python -m tests.pages
+	$(BIN)/python -m tests.promises
 
 times: .venv/installed  ## measure anew the processor times that figures and tables show: no two runs share them
 	$(BIN)/bezstab tradeoff $(ANDREWS) --repeats 9 --workers 1 --figure none --format json > figures/andrews_times.json

@@ -5,6 +5,7 @@ from bezstab.stability import QUALITY
 from tests.bench.map_costs import MAP_POINTS, map_cost
 
 
+@pytest.mark.promise("What `--quality` costs and buys", measured="B4's boundary off the grid to 1e-4, 5e-6, 2e-7")
 @pytest.mark.slow
 def test_more_points_read_the_boundary_better_and_cost_more() -> None:
     rough, middle, fine = (map_cost(lookup("B4"), count) for count in sorted(QUALITY.values()))

@@ -108,6 +108,7 @@ def test_what_choose_prints_for_mujoco_is_what_check_reads() -> None:
     assert (given["alpha_hat"], given["beta_hat"]) == pytest.approx((chosen["alpha_hat"], chosen["beta_hat"]), rel=1e-8)
 
 
+@pytest.mark.promise("What a drive's gains mean")
 def test_a_drive_is_shown_in_all_ways_of_applying_it() -> None:
     given = {str(row["method"]): row for row in rows("poles", "--pd", "1000,80,0.1", "--h", "1/240")}
     assert {name: row["drive"] for name, row in given.items()} == DRIVE_METHODS

@@ -26,6 +26,13 @@ def test_a_schema_is_printed_and_is_one(name: str) -> None:
     Draft202012Validator.check_schema(schema)
 
 
+@pytest.mark.promise(
+    "Keys of JSON and CSV",
+    computed=(
+        "one vocabulary for all commands; every example is valid under its schema, by a validator that is not "
+        "ours, every row with the same keys"
+    ),
+)
 @pytest.mark.usefixtures("_few_extremes")
 @pytest.mark.parametrize("example", each_example())
 def test_an_example_is_valid_and_every_row_has_the_same_keys(example: str) -> None:

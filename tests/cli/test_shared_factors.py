@@ -51,6 +51,7 @@ def test_the_choice_is_that_without_the_factor(goal: str, files: dict[str, str])
     )
 
 
+@pytest.mark.promise("Poles that no feedback moves, where ρ and σ share a factor")
 @pytest.mark.parametrize("root", ["±i", "-1"])
 def test_a_root_on_the_circle_leaves_nothing(root: str, files: dict[str, str]) -> None:
     row = region_row(files[root])

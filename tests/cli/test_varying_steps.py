@@ -38,6 +38,13 @@ def test_steps_that_are_stable_alone_are_refuted_together_and_simulate_shows_it(
     assert grown["c_max"] > 1e-2
 
 
+@pytest.mark.promise(
+    "Steps that vary, refuted",
+    proven=(
+        "what is said to be refuted comes with steps of the range whose product does not decay, exactly: spectral"
+        " radius at least one, by sympy; the line of `simulate` that is printed runs as typed, and errors grow"
+    ),
+)
 @pytest.mark.parametrize(
     "arguments",
     [
@@ -90,6 +97,7 @@ def test_on_a_narrow_terminal_the_line_goes_on_as_in_a_shell(monkeypatch: pytest
     assert shlex.split(command.replace("\\\n", "")) == shlex.split(given["shown_by"])
 
 
+@pytest.mark.promise("Steps that vary, proven (`check --h-min --h-max`)")
 def test_anyone_can_verify_the_certificate_that_is_printed() -> None:
     point = ("--alpha", "1", "--beta", "1/4", "--h", "0.001")
     given, _ = rows_of("check", "--method", "SYM", *point, "--h-min", "0.0001")

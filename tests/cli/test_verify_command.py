@@ -66,6 +66,7 @@ def test_verify_tells_what_the_motion_does_to_a_prediction() -> None:
     assert row["right"] == "law, exact"
 
 
+@pytest.mark.promise("Rates where drivers turn and oscillate")
 @pytest.mark.parametrize(
     ("scene", "method", "said"),
     [

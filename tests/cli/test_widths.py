@@ -24,6 +24,7 @@ def text_of(command: str, columns: str) -> str:
     return result.stdout
 
 
+@pytest.mark.promise("Text on a terminal", computed="no line is wider, at 80 and 120 columns, for every command")
 @pytest.mark.usefixtures("_few_extremes")
 @pytest.mark.parametrize("columns", [80, pytest.param(120, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("example", each_example())

@@ -21,6 +21,7 @@ STABLE = {
 """Points with |z| of 0.9 to 0.97, where the motion makes a difference."""
 
 
+@pytest.mark.promise("Rates over a motion")
 @pytest.mark.parametrize("name", STABLE)
 def test_the_runner_itself_shows_the_same_rate(name: str) -> None:
     """Its run and the motion differ by truncation errors, of (omega h)^2 = 1e-3 and less in the Jacobians."""
@@ -33,6 +34,7 @@ def test_the_runner_itself_shows_the_same_rate(name: str) -> None:
     assert abs(found[0] - expected) < abs(at_rest - expected)
 
 
+@pytest.mark.promise("Rates where drivers turn and oscillate")
 @pytest.mark.parametrize("name", ["AB4", "RK4"])
 def test_where_drivers_swing_the_rate_is_that_of_their_common_period(name: str) -> None:
     """A turn and two swings in a second: the runner's own steps over it, and nothing else, give the multiplier."""

@@ -71,6 +71,7 @@ def test_what_lives_to_the_end_is_judged_by_its_halves() -> None:
     assert fate(geometric(1.0005), 1.0 * STEPS) == "none"  # of the motion as likely
 
 
+@pytest.mark.promise("Runs that break down")
 def test_a_mechanism_that_breaks_down_gives_no_verdict_unless_feedback_throws_it_apart() -> None:
     """An error of 2 m at once is the feedback's doing if without feedback nothing happens; 2 mm may be forced."""
     assert fate(geometric(0.999), STILL, size=2e-3) == "none"
@@ -78,6 +79,7 @@ def test_a_mechanism_that_breaks_down_gives_no_verdict_unless_feedback_throws_it
     assert fate(geometric(0.999), STILL, size=2.0, calm=False) == "none"
 
 
+@pytest.mark.promise("Maps of simulated verdicts")
 @pytest.mark.parametrize("name", ["AB4", pytest.param("B4", marks=pytest.mark.slow)])
 def test_where_the_motion_turns_a_verdict_it_is_that_of_the_exact_rate(name: str) -> None:
     h = 1e-2
@@ -91,6 +93,7 @@ def test_where_the_motion_turns_a_verdict_it_is_that_of_the_exact_rate(name: str
     assert not ((verdicts.diverges != (exact > 1)) & ~verdicts.undecided).any()
 
 
+@pytest.mark.promise("Maps of simulated verdicts")
 @pytest.mark.parametrize(
     ("scene", "name", "h", "judged"),
     [

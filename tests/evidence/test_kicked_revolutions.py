@@ -18,6 +18,7 @@ def rates(name: str, count: int, points: tuple[FloatArray, FloatArray]) -> tuple
     return rates_of_kicked_revolutions(four_bar(), method, motions), motions.rates
 
 
+@pytest.mark.promise("Rates over the method's own motion")
 @pytest.mark.parametrize("count", [203, 60])
 @pytest.mark.parametrize("name", ["B4", "AB4", "AB2", "SYM", "RK4"])
 def test_runs_show_the_exact_rate_and_are_on_its_side_of_one(name: str, count: int) -> None:

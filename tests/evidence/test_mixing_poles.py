@@ -79,6 +79,7 @@ def near_a_double_pole(name: str, random: np.random.Generator, count: int) -> tu
     return alpha_hat, beta_hat * (1 + off)
 
 
+@pytest.mark.promise("Where the law of the motion fails")
 @pytest.mark.parametrize("count", [203, 60])
 @pytest.mark.parametrize("name", sampled(["B4", "AB2", "AB4", "RK2", "RK4", "SYM"], quick=["B4", "SYM"]))
 def test_exact_rates_are_within_reach_and_settled_verdicts_right(name: str, count: int) -> None:

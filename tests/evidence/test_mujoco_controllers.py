@@ -59,6 +59,10 @@ def modulus(model: Any, kp: float, kd: float, timing: Timing) -> float:
     return float(np.abs(z[np.abs(z - 1) > 1e-4]).max() ** (1 / every))
 
 
+@pytest.mark.promise(
+    "Motors with a controller outside the model (`lint --pd`)",
+    computed="|z| of MuJoCo's own steps with the controller to 1e-6, held and late, under three integrators",
+)
 @pytest.mark.parametrize("integrator", ["Euler", "RK4", "implicitfast"])
 @pytest.mark.parametrize("timing", [Timing(), Timing(4), Timing(1, Fraction(1)), Timing(4, Fraction(2))], ids=str)
 def test_the_last_row_is_mujocos_own_step(integrator: str, timing: Timing) -> None:

@@ -27,6 +27,12 @@ def model(scene: str, alpha_hat: float = 0.5, beta_hat: float = 0.1) -> Any:
     return mujoco.MjModel.from_xml_string(model_xml(small(scene), "Euler", H, alpha_hat, beta_hat))
 
 
+@pytest.mark.promise(
+    "MuJoCo, which is not ours",
+    measured=(
+        "all of its runs at 0.9 of the boundary settle, all at 1.1 diverge: five rays, two integrators, four mechanisms"
+    ),
+)
 @pytest.mark.parametrize("scene", SCENES)
 def test_mujoco_settles_and_diverges_where_the_map_says(scene: str) -> None:
     witnessed = list(mujoco_witnesses(compiled_mechanism(small(scene)), H))

@@ -66,6 +66,13 @@ def test_what_says_nothing_of_these_runs_is_refused(tmp_path: Path, text: str, s
         read_times(written(tmp_path, text), ["SYM"], [0.01])
 
 
+@pytest.mark.promise(
+    "Costs of runs",
+    measured=(
+        "evaluations counted exactly; processor time with its least and largest of the repeats, or as recorded in"
+        " an earlier run, and then never those of other runs"
+    ),
+)
 def test_times_of_longer_runs_are_refused(tmp_path: Path) -> None:
     """Eleven evaluations may be ten and another iteration of Newton's method; beside nine they are of another run."""
     recorded = read_times(written(tmp_path, json.dumps([{**ROW, "run_evaluations": 11}])), ["SYM"], [0.01])

@@ -13,6 +13,10 @@ from bezstab.methods import Method
 LIGHT = "slider_crank_light"
 
 
+@pytest.mark.promise(
+    "The reference of `tradeoff`",
+    computed="its own error estimate, against quadrature in thirty digits",
+)
 def test_the_reference_has_the_digits_it_claims() -> None:
     # one coordinate, by quadrature with 30 digits: see tests/mechanism/test_runner.py
     true = reference_motion(load_scene("slider_crank"), 1e-3, 2.0)

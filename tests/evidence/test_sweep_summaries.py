@@ -44,6 +44,7 @@ def test_an_order_lost_by_the_start_is_not_put_down_to_a_multistep_method(name: 
     assert not any("start" in sentence for sentence in sweep_sentences(lost, 1e-7, "alpha and beta"))
 
 
+@pytest.mark.promise("What methods cost against each other (`tradeoff`)")
 def test_evaluations_for_an_error_follow_the_power_law_within_the_runs_and_are_unknown_beyond() -> None:
     made_up = summary(
         [replace(run, trajectory_error=1e6 * float(run.evaluations) ** -3) for run in swept("B4", (2e-4, 4e-4), SOFT)]
@@ -88,6 +89,10 @@ def test_what_has_no_limit_is_said_to_have_none() -> None:
     assert "region" not in words
 
 
+@pytest.mark.promise(
+    "What methods cost against each other (`tradeoff`)",
+    measured="interpolated between runs, at the least error that runs of both have reached; never beyond",
+)
 def test_methods_are_compared_where_both_have_runs_and_nowhere_else() -> None:
     first = replace(summary(swept("B4", (2e-4, 4e-4), SOFT)), costs=[(100, 1e-3), (1000, 1e-5)])
     finer = replace(first, costs=[(50, 1e-4), (500, 1e-8)])

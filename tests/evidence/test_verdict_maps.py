@@ -28,6 +28,18 @@ def test_so_do_those_of_methods_that_solve_equations(name: str) -> None:
     assert 0 < verdicts.diverges.sum() < verdicts.diverges.size
 
 
+@pytest.mark.promise(
+    "Runs too short to tell",
+    unknown="Runs too short to tell: growth or decay nearer to one than 10 over their steps does not show",
+)
+@pytest.mark.promise(
+    "Maps of simulated verdicts",
+    measured=(
+        "all that are given agree where |z_p| is farther from one than 10 over the number of steps (0.005), and "
+        "than the motion moves any pole, |χ|κh; on free mechanisms, whose motions drift apart, and at coarse "
+        "steps too"
+    ),
+)
 @pytest.mark.parametrize("name", ["B4", "AB4", "SYM"])
 def test_simulated_verdicts_agree_outside_the_band(name: str) -> None:
     verdicts = whole_map("slider_crank", name, H, 16)
@@ -40,6 +52,12 @@ def test_simulated_verdicts_agree_outside_the_band(name: str) -> None:
     assert cell * (~verdicts.diverges).sum() == pytest.approx(region(lookup(name)).area, abs=crossed)
 
 
+@pytest.mark.promise(
+    "Runs that break down",
+    unknown=(
+        "Runs that break down for another reason (too coarse a step, a singular configuration) say nothing of stability"
+    ),
+)
 def test_runs_that_break_down_whatever_the_kick_give_no_verdict() -> None:
     # a hundredth of a second is too coarse for the four-bar: the truncation error alone leaves the linear range
     verdicts = whole_map("four_bar", "SYM", 1e-2, 6)

@@ -40,6 +40,7 @@ H = 1e-3  # s
 CALL = re.compile(r"(\w+)\(")
 
 
+@pytest.mark.promise("A step of a run", computed="the method's formula applied to Eq. 9, to 1e-12 (SI)")
 @pytest.mark.parametrize("scene", ["slider_crank", "four_bar"])
 @pytest.mark.parametrize("name", sampled(EXPLICIT))
 def test_each_step_is_the_formula_applied_to_equation_9(scene: str, name: str) -> None:
@@ -86,6 +87,7 @@ HIGH_ORDERS = [name for name in IMPLICIT if accuracy(lookup(name))[0] > 4]
 """Implicit methods whose order float64 and a start of order four do not show; Newton's method takes long here."""
 
 
+@pytest.mark.promise("Orders of runs with α and β fixed", measured="0.1")
 @pytest.mark.parametrize("name", sampled([*EXPLICIT, *HIGH_ORDERS], quick=[*FEW, "AB8"]))
 def test_with_alpha_and_beta_fixed_a_method_keeps_its_order(name: str) -> None:
     """All from exact first values and in 30 digits: float64 ends the descent of AB7 and AB8 before 0.1 is reached."""

@@ -27,6 +27,10 @@ def test_a_steady_driver_makes_a_revolution_whatever_the_duration() -> None:
     assert motion(MECHANISM, 0.3).duration == pytest.approx(1.0, rel=1e-15)
 
 
+@pytest.mark.promise(
+    "Rates where drivers turn and oscillate",
+    measured="exact over their common period: the runner's own, to 1e-4; without one nothing is called exact",
+)
 @pytest.mark.parametrize(
     ("rate", "frequency", "period"),
     [
@@ -89,6 +93,13 @@ def test_a_motion_that_misses_its_start_is_refused_with_the_coordinate() -> None
         motion(compiled_mechanism(drifting), 1.0)
 
 
+@pytest.mark.promise(
+    "Motions through a singular configuration",
+    unknown=(
+        "A motion that goes through a singular configuration has no law and no exact rate: `--scene` and "
+        "`--floquet` refuse it, with its time"
+    ),
+)
 @pytest.mark.parametrize("offset", [np.pi / 2, 1.5])
 def test_a_motion_through_a_singular_configuration_is_refused(offset: float) -> None:
     """A parallelogram's rods lie along the ground twice a turn: a step meets that, or two steps lie around it."""

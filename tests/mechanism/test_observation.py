@@ -16,6 +16,12 @@ from tests.reference.literal_equation_9 import literal_equation_9
 from tests.reference.one_coordinate_motion import slider_crank_joint_forces
 
 
+@pytest.mark.promise(
+    "Accelerations and multipliers",
+    computed=(
+        "those of the paper's Eq. 9 solved as it stands, to rounding times its condition; of Newton and Euler to 1e-9 N"
+    ),
+)
 @pytest.mark.parametrize("name", shipped_scenes())
 def test_the_generated_code_solves_the_literal_equation_9(name: str) -> None:
     mechanism, random = compiled_mechanism(small(name)), np.random.default_rng(2)
@@ -32,6 +38,7 @@ def test_the_generated_code_solves_the_literal_equation_9(name: str) -> None:
         assert seen.multipliers[k] == pytest.approx(expected.multipliers, abs=1e-14 * expected.condition * scale)
 
 
+@pytest.mark.promise("Accelerations and multipliers")
 def test_multipliers_are_the_joint_forces_of_newton_and_euler() -> None:
     mechanism, gains = compiled_mechanism(load_scene("slider_crank_light")), (20.0, 100.0)
     run = simulate(mechanism, lookup("RK4"), 2e-4, 2.0, gains)
@@ -59,6 +66,10 @@ def test_an_observation_prints_in_one_line() -> None:
     assert repr(seen) == "Observation(1 times, 4 constraints)"
 
 
+@pytest.mark.promise(
+    "Singular configurations gone through",
+    measured="each is counted, whatever the step, and none on mechanisms that have none",
+)
 @pytest.mark.parametrize("h", [1e-3, 7e-3, 2e-2])
 def test_every_passage_through_a_singular_configuration_is_seen_whatever_the_step(h: float) -> None:
     """The rods lie along the ground whenever their angle is a multiple of pi; found by the angles alone."""
@@ -71,6 +82,7 @@ def test_every_passage_through_a_singular_configuration_is_seen_whatever_the_ste
     assert found == pytest.approx(expected, abs=h)
 
 
+@pytest.mark.promise("Singular configurations gone through")
 @pytest.mark.parametrize("name", ["slider_crank", "slider_crank_300rpm", "four_bar", "driven_four_bar", "pendulum"])
 def test_where_nothing_is_singular_no_passage_is_seen(name: str) -> None:
     mechanism, gains = compiled_mechanism(load_scene(name)), (20.0, 100.0)

@@ -56,6 +56,7 @@ def measured_order(name: str, count: int, gains: Callable[[float], tuple[float, 
     return shown_order(errors)
 
 
+@pytest.mark.promise("Orders of runs with α and β fixed")
 @pytest.mark.parametrize("name", sampled([name for name in EXPLICIT if accuracy(lookup(name))[0] <= 4]))
 def test_a_run_keeps_its_methods_order_up_to_that_of_its_start(name: str) -> None:
     # RK4's first steps, each with an error of order 5, decide the rest. The next term moves the order by 0.05 at most
@@ -63,6 +64,7 @@ def test_a_run_keeps_its_methods_order_up_to_that_of_its_start(name: str) -> Non
     assert measured_order(name, 400, lambda _: (20.0, 100.0)) == pytest.approx(order, abs=0.1)
 
 
+@pytest.mark.promise("Orders kept and lost with α̂ and β̂ fixed", measured="0.1, one method of each kind and more")
 @pytest.mark.parametrize(
     ("name", "order"),
     [
@@ -112,6 +114,7 @@ SHOWN_ORDERS = {
 """With alpha_hat and beta_hat fixed. Slow to fall to 1: sdirk2, imex-euler, ralston: 1.19, 1.13, 1.05 at 3200 steps."""
 
 
+@pytest.mark.promise("Orders kept and lost with α̂ and β̂ fixed")
 @pytest.mark.parametrize("name", sampled([*SHOWN_ORDERS], quick=["verlet-half", "ssprk3", "stable-pd"]))
 def test_orders_of_other_kinds_with_alpha_hat_and_beta_hat_fixed(name: str) -> None:
     assert measured_order(name, 800, lambda h: feedback_gains(0.5, 0.1, h)) == pytest.approx(
@@ -119,6 +122,7 @@ def test_orders_of_other_kinds_with_alpha_hat_and_beta_hat_fixed(name: str) -> N
     )
 
 
+@pytest.mark.promise("Motion of pendulum, slider-crank, four-bars")
 @pytest.mark.parametrize("name", ["RK4", "AB4", "AB3", "B4", "SYM"])
 def test_the_parallel_four_bars_move_as_one_coordinate(name: str) -> None:
     mechanism, duration = compiled_mechanism(four_bars(3)), 0.5
@@ -156,6 +160,10 @@ def test_the_energy_drifts_like_a_power_of_the_step(scene: str, name: str) -> No
     assert shown_order(drifts) == pytest.approx(accuracy(lookup(name))[0], abs=0.1)
 
 
+@pytest.mark.promise(
+    "Motion of pendulum, slider-crank, four-bars",
+    measured="converges to quadrature of the one coordinate, with the method's order",
+)
 @pytest.mark.parametrize(
     "name",
     [
@@ -198,6 +206,7 @@ def test_a_start_that_has_blown_up_is_refused() -> None:
             simulate(mechanism, lookup("B4"), H, 1.0, (0.0, 0.0), state)
 
 
+@pytest.mark.promise("Runs that break down")
 def test_a_singular_configuration_is_named() -> None:
     mechanism = compiled_mechanism(load_scene("slider_crank_equal"))
     flat = (np.array([np.pi / 2, 0.175 * 0, 0.35 - 0.175, -np.pi / 2, 0.0]), np.zeros(5))
@@ -207,6 +216,7 @@ def test_a_singular_configuration_is_named() -> None:
     assert len(run.t) == 1
 
 
+@pytest.mark.promise("Costs of runs")
 @pytest.mark.parametrize("start", STARTS)
 def test_the_start_provides_the_first_values(start: Start) -> None:
     method = lookup("B4")
@@ -290,6 +300,10 @@ def andrews_angles(name: str, h: float) -> FloatArray:
     return np.array([k1, k2 - k1, k3, k4 - k5, k5, k6 - k7, k7])
 
 
+@pytest.mark.promise(
+    "Andrews' squeezing mechanism",
+    measured="its seven angles at 0.03 s are the published ones to 1e-9 (relative), with ABM4 at 2 µs",
+)
 @pytest.mark.parametrize(("name", "h"), [("ABM4", 2e-6), pytest.param("AB4", 5e-7, marks=pytest.mark.slow)])
 def test_andrews_squeezing_mechanism_ends_where_the_test_set_says(name: str, h: float) -> None:
     assert andrews_angles(name, h) == pytest.approx(ANDREWS, rel=ANDREWS_DIGITS, abs=0)
@@ -396,6 +410,14 @@ def test_the_exact_pendulum_is_that_of_the_benchmark() -> None:
     assert exact_pendulum(10.0) == pytest.approx(A01_AT_10_S, abs=1e-12)  # as printed
 
 
+@pytest.mark.promise(
+    "IFToMM's A01 and A02",
+    measured=(
+        "pendulum: after 2000 s its place to 1e-3 m, its energy to 1e-5 J; 40 four-bars: over 20 s and 20 "
+        "singular positions, all counted, their angle to 1e-6 rad, their energy to 1e-6 J (the benchmark asks for"
+        " 1e-3)"
+    ),
+)
 @pytest.mark.parametrize(
     ("name", "duration", "error", "energy"),
     [
@@ -425,6 +447,7 @@ energy is off by 2e-4 J on one processor and by half a joule on another. At 9e-4
 """
 
 
+@pytest.mark.promise("IFToMM's A01 and A02")
 @pytest.mark.parametrize(
     ("count", "duration", "passages"), [(5, 1.5, 2), pytest.param(40, 20.0, 20, marks=pytest.mark.slow)]
 )

@@ -60,6 +60,14 @@ def constant_run(h: float, duration: float, method: str = "SYM", mechanism: Mech
     )
 
 
+@pytest.mark.promise(
+    "Runs with steps that vary (`simulate --steps`), of every kind of one-step method",
+    measured=(
+        "equal steps are the run of constant steps, its coordinates to 1e-9 (m or rad), its evaluations the same "
+        "in number; at rest errors follow the product of the exact step matrices to 1e-7 of themselves, and grow "
+        "by its spectral radius; steps that are each stable, and refuted together, grow"
+    ),
+)
 @pytest.mark.parametrize("name", ONE_STEP)
 @pytest.mark.parametrize("hold", [False, True])
 @pytest.mark.parametrize("mechanism", [MECHANISM, DRIVEN], ids=["free", "driven"])
@@ -110,6 +118,7 @@ class Round:
         return run.c[:: len(self.steps), 0]
 
 
+@pytest.mark.promise("Runs with steps that vary (`simulate --steps`), of every kind of one-step method")
 @pytest.mark.parametrize("name", ONE_STEP)
 @pytest.mark.parametrize("hold", [False, True])
 def test_errors_follow_the_product_of_the_step_matrices(name: str, hold: bool) -> None:
@@ -123,6 +132,7 @@ def test_errors_follow_the_product_of_the_step_matrices(name: str, hold: bool) -
     assert abs(left_over).max() < 1e-7 * abs(errors).max()
 
 
+@pytest.mark.promise("Runs with steps that vary (`simulate --steps`), of every kind of one-step method")
 @pytest.mark.parametrize("name", ["verlet-half", "verlet-old", "verlet-implicit", "newmark(1/4,1/2)", "hht"])
 def test_errors_grow_by_the_spectral_radius_of_the_product(name: str) -> None:
     taken = Round(name, Fraction(1, 10), Fraction(1), (Fraction(1), Fraction(1, 4)), hold=True)
@@ -133,6 +143,7 @@ def test_errors_grow_by_the_spectral_radius_of_the_product(name: str) -> None:
     assert abs(errors[-1] / errors[-2]) == pytest.approx(first, rel=1e-12 + 10 * (second / first) ** 11)
 
 
+@pytest.mark.promise("Runs with steps that vary (`simulate --steps`), of every kind of one-step method")
 def test_steps_that_are_each_stable_grow_in_turn() -> None:
     # theory: 1e-6 grows to about 30 in 60 steps, until the linear range is left
     steps = [H, 9.17e-3]
@@ -186,6 +197,7 @@ def compiled_and_not(name: str, monkeypatch: pytest.MonkeyPatch, **point: Any) -
     return runs[1]
 
 
+@pytest.mark.promise("Compiled runs (`--compiled`)")
 @pytest.mark.parametrize("name", ["verlet-half", "sdirk2"])
 def test_compiled_runs_are_those_of_python(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Those that last, their gains held and not, and those that end."""

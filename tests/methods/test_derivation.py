@@ -156,6 +156,10 @@ def test_a_method_of_sixteen_dense_stages_has_its_polynomials_at_once() -> None:
     assert Fraction(at_point) == (1 - growths[0]) * (1 - growths[1])  # P(1), whose roots are z = R(mu)
 
 
+@pytest.mark.promise(
+    "P(z; α̂, β̂)",
+    proven="annihilates every exact trajectory of the stabilised constraint; nothing of lower degree does",
+)
 @pytest.mark.parametrize("method", SAMPLED)
 def test_closed_loop_is_the_minimal_recursion_of_the_stabilised_constraint(method: Method) -> None:
     """P annihilates every exact trajectory of c' = v, v' = -alpha_hat v - beta_hat c; nothing of lower degree does."""

@@ -48,7 +48,7 @@ def test_a_second_order_scheme_is_written_with_its_powers_of_h() -> None:
     assert recursion_text(lookup("verlet-half")) == (
         "x_{k+1} = x_k + h v_k + h^2/2 a_k; vh = v_k + h/2 a_k; a_{k+1} = a(x_{k+1}, vh); v_{k+1} = vh + h/2 a_{k+1}"
     )
-    assert mapping_text(lookup("verlet-half")) == "none: positions and velocities are stepped differently"
+    assert mapping_text(lookup("verlet-half")) == "none: positions and velocities have a formula each"
     assert characteristic_text(lookup("verlet-half")) == "z^2 + (α̂ + β̂ - 2) z + 1 - α̂ = 0"
     assert recursion_text(lookup("imex-euler@1/2"), latex=True) == (
         r"a_{k+1} = a(x_k, v_{k+1}); v_{k+1} = v_k + \frac{h}{2} a_{k+1}; x_{k+1} = x_k + \frac{h}{2} v_{k+1}"
@@ -112,6 +112,7 @@ def test_a_steady_error_is_written_as_by_hand(name: str) -> None:
         assert expected in (None, steady_error_text(lookup(name), part))
 
 
+@pytest.mark.promise("The error that a method forces on a constraint that moves (`methods`, `choose --goal accurate`)")
 @pytest.mark.parametrize(
     "name", sampled([name for name in NAMES if name != "tsit5"], quick=[*SAMPLE, *SOLVED, "gauss4"])
 )

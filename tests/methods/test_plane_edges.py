@@ -39,6 +39,7 @@ def table(*rows: str) -> CurveTable:
     return tuple(tuple(F(c) for c in row.split()) for row in rows)
 
 
+@pytest.mark.promise("Extent of a region without end")
 @pytest.mark.parametrize(
     ("curve", "upwards", "downwards"),
     [

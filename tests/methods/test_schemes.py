@@ -187,6 +187,7 @@ def test_family_takes_part_in_equality() -> None:
 # The same step as equations for x, v and a
 
 
+@pytest.mark.promise("Schemes written as second-order ones", proven="have the same P")
 @pytest.mark.parametrize("name", [*kinds.MU_METHODS, "bdf2@2"])
 def test_the_form_has_the_same_closed_loop(name: str) -> None:
     method = lookup(name)

@@ -29,6 +29,10 @@ exactly = settings(deadline=None, max_examples=60)  # exact arithmetic has no bo
 special = settings(deadline=None, max_examples=25)  # special cases of what is held for all known roots
 
 
+@pytest.mark.promise(
+    "The Schur–Cohn test",
+    proven="gives the verdict of polynomials whose roots are known, repeated ones on the circle included",
+)
 @exactly
 @given(several(inside | on_circle | outside))
 def test_verdict_is_that_of_the_known_roots(factors: list[Factor]) -> None:
@@ -41,6 +45,7 @@ def test_schur_if_and_only_if_every_known_root_is_inside(factors: list[Factor]) 
     assert is_schur(product(factors)) == all(squared_modulus(f) < 1 for f in factors)
 
 
+@pytest.mark.promise("A verdict")
 @pytest.mark.slow
 @settings(deadline=None, max_examples=30)  # numbers of 20 digits to the power of the degree take their time
 @given(several(inside), st.lists(on_circle, unique=True, min_size=1, max_size=4))

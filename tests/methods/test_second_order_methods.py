@@ -36,6 +36,7 @@ def same_up_to_a_number(name: str, coefficients: list[sp.Expr]) -> bool:
     return bool(ratio.free_symbols <= {z} and sp.Poly(sp.numer(ratio) * sp.denom(ratio), z).is_monomial)
 
 
+@pytest.mark.promise("P of a second-order scheme")
 @pytest.mark.parametrize(
     ("name", "coefficients"),
     [

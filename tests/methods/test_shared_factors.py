@@ -37,6 +37,10 @@ def test_no_method_of_the_registry_has_a_fixed_pole(name: str) -> None:
     assert without_shared_factor(lookup(name)) is lookup(name)
 
 
+@pytest.mark.promise(
+    "Poles that no feedback moves, where ρ and σ share a factor",
+    computed="named, cancelled in exact arithmetic",
+)
 @pytest.mark.parametrize(
     ("factor", "poles"),
     [((F(1), F(-9, 10)), [0.9]), ((F(1), F(0), F(1)), [1j, -1j]), ((F(1), F(1), F(1, 4)), [-0.5]), ((F(1), F(0)), [])],

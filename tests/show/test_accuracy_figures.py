@@ -79,6 +79,10 @@ def test_the_map_draws_what_it_is_given(h: float | None) -> None:
     assert ("1/s" in axes.get_xlabel()) == (h is not None)
 
 
+@pytest.mark.promise(
+    "The map of forced errors (`region --accuracy`)",
+    computed=("each contour is where the error is its power of ten; the boundary exact on its logarithmic axes, too"),
+)
 def test_each_contour_is_where_the_error_is_its_power_of_ten() -> None:
     method = lookup("RK4")
     axes = drawn_map()[0].axes[0]
@@ -94,6 +98,7 @@ def test_each_contour_is_where_the_error_is_its_power_of_ten() -> None:
     assert np.median(abs(spectral_radius(method, alpha_hat, beta_hat) - 0.99)) < 1e-3
 
 
+@pytest.mark.promise("The map of forced errors (`region --accuracy`)")
 def test_the_boundary_is_exact_down_to_the_last_decade() -> None:
     """Chords of a few points would be straight on other axes."""
     for name in ("SYM", "B4"):

@@ -2,11 +2,14 @@
 
 import re
 
+import pytest
+
 from bezstab.show import FIELDS, ROW_KINDS
 
 KINDS = [kind for kinds in ROW_KINDS.values() for kind in kinds]
 
 
+@pytest.mark.promise("Keys of JSON and CSV")
 def test_a_key_is_the_same_in_every_kind_of_row() -> None:
     for kind in KINDS:
         keys = [field.key for field in (*kind.fields, *kind.added)]

@@ -36,6 +36,7 @@ def nothing_remembered() -> Iterator[None]:
     best_points._best_or_limit.cache_clear()
 
 
+@pytest.mark.promise("Every region, best point, choice and margin")
 @pytest.mark.parametrize("name", ["B2", "B4", "AB4", "ABM2", "ABM3"])
 @pytest.mark.parametrize(("factor", "moved"), [(1.01, 1.0), (0.99, 1.0), (1.0, 1.02)])
 def test_a_wrong_best_point_is_no_answer(name: str, factor: float, moved: float) -> None:
@@ -72,6 +73,7 @@ def test_a_deadbeat_point_that_is_none_is_no_answer(name: str, monkeypatch: pyte
         best_point(lookup(name))
 
 
+@pytest.mark.promise("Every region, best point, choice and margin")
 @pytest.mark.parametrize(
     ("name", "goal", "equal"),
     [
@@ -170,6 +172,7 @@ def test_margins_of_a_fourfold_pole_are_where_the_verdict_turns(rate: float) -> 
 PATHS = [(1, 2), (1, 0), (0, 2)]
 
 
+@pytest.mark.promise("Every region, best point, choice and margin")
 @pytest.mark.parametrize("name", ["B4", "RK4", "SYM", "verlet-kdk"])
 @pytest.mark.parametrize("off", [1 - 1e-8, 1 + 1e-8])
 def test_a_margin_beside_its_place_is_no_answer(name: str, off: float) -> None:

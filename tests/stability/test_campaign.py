@@ -32,6 +32,22 @@ def test_no_random_implicit_or_second_order_method_has_a_silent_wrong_area(numbe
     assert [case for case in other_cases_of(number) if case.verdict == "silent"] == []
 
 
+@pytest.mark.promise(
+    "Regions of other methods than the built-in ones",
+    unknown=(
+        "Regions of methods other than the built-in ones. `make campaign`, whole, on the code of commit f7ab532: "
+        "of 40,000 regions (10,000 random methods, explicit and implicit multistep, Runge-Kutta, PECE, "
+        "second-order recipes, at levels 1, 0.93, 0.75, 0.5) 38,488 areas agree with an independent integral to "
+        "1e-6, mostly far better, 1,486 are unbounded, 24 are refused in a line (20 since the check slices each "
+        "part of a region; then all 2,664 regions of the campaign's Runge-Kutta methods of five and six stages "
+        "agree); none differs silently. Of two slivers (areas of 1e-14 and 5e-10) the integral says itself that "
+        "it is not as exact; four million proven verdicts counted in each have their areas right to 2e-6 and "
+        "2e-4, the counting's own error. A sliver that no line of the self-check meets would not show. That run "
+        "compared areas alone; since then the campaign compares extents, of regions without end too, and best "
+        "points as well, and asks in rationals where float64 is blind, as at the tip of a sliver: it has not been"
+        " run whole again"
+    ),
+)
 def test_the_first_of_each_kind_agree() -> None:
     for number in (1, 6, 11):
         assert [case.verdict for case in cases_of(number)] == ["agrees"] * 4

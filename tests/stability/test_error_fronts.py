@@ -24,6 +24,10 @@ PROMISED = 1e-3
 """Relative: what the front is checked to, as brute force meets its corners no more closely."""
 
 
+@pytest.mark.promise(
+    "The least error at each |z_p| (`tradeoff --predicted`)",
+    computed=("1e-3: no point of a grid over five decades is better, fifteen methods at two ωh; |z_p| at most as said"),
+)
 @pytest.mark.parametrize("name", [*QUICK, *(pytest.param(name, marks=pytest.mark.slow) for name in TRADED)])
 @pytest.mark.parametrize("omega_h", [OMEGA_H, pytest.param(Fraction(1, 3), marks=pytest.mark.slow)], ids=str)
 def test_brute_force_finds_nothing_better(name: str, omega_h: Fraction) -> None:
@@ -37,6 +41,7 @@ def test_brute_force_finds_nothing_better(name: str, omega_h: Fraction) -> None:
         assert point.combined_error <= found * (1 + PROMISED)
 
 
+@pytest.mark.promise("The least error at each |z_p| (`tradeoff --predicted`)")
 @pytest.mark.parametrize("name", [*QUICK, *(pytest.param(name, marks=pytest.mark.slow) for name in REGISTRY)])
 def test_each_point_decays_as_fast_as_is_said_and_forces_what_is_said(name: str) -> None:
     method = lookup(name)
@@ -81,6 +86,10 @@ def test_stronger_feedback_costs_methods_with_stages_a_hundred_thousandfold_and_
     assert of_b4[0.7] == pytest.approx(of_b4[0.999], rel=0.01)
 
 
+@pytest.mark.promise(
+    "What strong feedback forces, by kind of method",
+    computed="the table of `bezstab/stability/README.md`, twenty methods at ωh = 0.01",
+)
 @pytest.mark.parametrize(
     ("names", "falls", "constraint", "velocity"),
     [

@@ -48,6 +48,7 @@ def test_a_combination_with_thirds_keeps_twice_the_digits(x: float, y: float) ->
     )
 
 
+@pytest.mark.promise("Poles on α̂² = 4β̂, where both μ are one")
 @given(st.floats(1e-6, 1e6), st.floats(-1e-12, 1e-12))
 @settings(deadline=None)
 def test_next_to_the_parabola_both_mu_keep_their_digits(alpha_hat: float, off: float) -> None:

@@ -29,6 +29,7 @@ def value(terms: ExponentialSum, alpha_hat: float, beta_hat: float, omega: Fract
     )
 
 
+@pytest.mark.promise("The error that a method forces on a constraint that moves (`methods`, `choose --goal accurate`)")
 @pytest.mark.parametrize("omega", OMEGAS, ids=str)
 @pytest.mark.parametrize("name", METHODS)
 def test_it_has_ten_digits_of_the_exact_functions(name: str, omega: Fraction) -> None:

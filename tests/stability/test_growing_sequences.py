@@ -30,6 +30,7 @@ def test_there_is_none_where_steps_commute_and_decay() -> None:
     assert not list(islice(growing_words(step_matrix(lookup("RK4"), HALF, ONE), HALF), 1))
 
 
+@pytest.mark.promise("Steps that vary, refuted")
 def test_a_product_on_the_unit_circle_does_not_decay() -> None:
     # average acceleration without damping keeps the energy, whatever the step
     matrix = step_matrix(lookup("average-acceleration"), Fraction(0), ONE)

@@ -39,6 +39,13 @@ def test_one_step_late_is_the_recipe_with_the_state_before(a: Fraction, b: Fract
     assert found == [1, -2, 1 + a + b, -a]  # z (z - 1)^2 + b z + a (z - 1)
 
 
+@pytest.mark.promise(
+    "Drives that are held or late (`check --pd --every --late`)",
+    proven=(
+        "the verdict is that of the exact matrix from one computation of the torque to the next; the two laws in closed "
+        "form agree with it"
+    ),
+)
 @given(a=POSITIVE, b=POSITIVE, every=st.integers(1, 12))
 @settings(deadline=None, max_examples=60)
 def test_a_held_drive_converges_where_its_law_says(a: Fraction, b: Fraction, every: int) -> None:
@@ -46,6 +53,7 @@ def test_a_held_drive_converges_where_its_law_says(a: Fraction, b: Fraction, eve
     assert held_law(a, b, every) == (held_verdict("SYM", a, b, Timing(every)) == "converges")
 
 
+@pytest.mark.promise("Drives that are held or late (`check --pd --every --late`)")
 @given(a=st.fractions(0, 2, max_denominator=100), b=st.fractions(0, 1, max_denominator=100))
 @settings(deadline=None, max_examples=60)
 def test_a_drive_one_step_late_converges_where_its_law_says(a: Fraction, b: Fraction) -> None:

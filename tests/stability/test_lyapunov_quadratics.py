@@ -26,6 +26,7 @@ def test_a_form_that_all_matrices_make_smaller_is_found() -> None:
     assert np.linalg.eigvalsh(left).min() > 0
 
 
+@pytest.mark.promise("Steps that vary, proven (`check --h-min --h-max`)")
 def test_a_form_is_proven_exactly_as_far_as_it_holds() -> None:
     # the length |x| under one step of implicit Euler without damping: M^T M = 1 / (1 + b s^2) where b = 1
     matrix = step_matrix(lookup("implicit-euler"), Fraction(0), ONE)

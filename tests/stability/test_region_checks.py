@@ -75,6 +75,13 @@ def with_a_bulge(bounds: Bounds) -> Bounds:
     return replace(bounds, arcs=(Arc(first.pencil, first.level * 1.001, first.theta, first.mu * 1.001), *others))
 
 
+@pytest.mark.promise(
+    "Every region, best point, choice and margin",
+    computed=(
+        "held against a second route before it is given; what contradicts it ends with exit status 3, never with "
+        "a number: shown on answers made wrong on purpose"
+    ),
+)
 @pytest.mark.parametrize("wrong", [without_arc, without_interval, with_a_shorter_interval, with_a_bulge])
 @pytest.mark.parametrize(("method", "level"), REGIONS, ids=identify)
 def test_a_wrong_region_is_no_answer(
@@ -176,6 +183,7 @@ WRONG: dict[str, Any] = {
 }
 
 
+@pytest.mark.promise("Every region, best point, choice and margin")
 @pytest.mark.parametrize("change", WRONG)
 @pytest.mark.parametrize(("name", "level"), SHAPES[:-2])
 def test_a_wrong_size_of_right_curves_is_no_answer(name: str, level: float, change: str) -> None:

@@ -42,6 +42,7 @@ def test_euler_and_its_shear_have_area_4_r_cubed(name: str, level: float) -> Non
     assert region(lookup(name), level).area == pytest.approx(4 * level**3, rel=1e-12)  # rounding of 1 - level
 
 
+@pytest.mark.promise("Area of a region")
 @pytest.mark.parametrize("level", [1.0, 0.9, 0.6, 0.5, 0.3])
 def test_midpoint_has_the_area_of_a_disc_in_a_wedge(level: float) -> None:
     # z = (w^2 + 1) / 2, w = mu + 1: z1 z2 < r^2 is the disc s^2 + (p - 1)^2 < 4 r^2; z = r, with k = 2r - 1, the wedge
@@ -70,6 +71,7 @@ def test_a_step_of_m_h_divides_the_area_by_m_cubed(name: str, level: float, mult
 FAST = ["B4", "RK2", "SYM"]
 
 
+@pytest.mark.promise("Area of a region")
 @pytest.mark.parametrize(
     ("name", "level"),
     [
@@ -100,6 +102,7 @@ def test_counting_cells_converges_to_the_area(name: str, level: float) -> None:
         assert abs(counted - region(method, level).area) < full / size  # cells that the edge cuts: a few a row
 
 
+@pytest.mark.promise("Boundary")
 @pytest.mark.parametrize("name", sampled(NAMES))
 @pytest.mark.parametrize("level", LEVELS)
 def test_every_boundary_point_has_the_modulus_of_the_level(name: str, level: float) -> None:
@@ -126,6 +129,7 @@ def test_every_boundary_point_has_the_modulus_of_the_level(name: str, level: flo
             assert (error < 1e-10).mean() > 0.9  # all but corners and the points that crowd around them
 
 
+@pytest.mark.promise("Boundary", computed="|z_p| is the level to 1e-10, away from corners, in fifty digits")
 @pytest.mark.parametrize(("name", "level"), [("B4", 1.0), ("AB4", 0.95), ("RK4", 0.8), ("ABM3", 1.0), ("SYM", 0.95)])
 def test_boundary_points_in_fifty_digits(name: str, level: float) -> None:
     method = lookup(name)
@@ -162,6 +166,7 @@ def test_every_edge_separates_stable_from_unstable(name: str, level: float) -> N
         assert (left * right < 0).all()
 
 
+@pytest.mark.promise("Boundary, drawn")
 @pytest.mark.parametrize("name", sampled(NAMES))
 @pytest.mark.parametrize("level", [1.0, 0.9])
 def test_the_boundary_encloses_exactly_the_stable_points(name: str, level: float) -> None:
@@ -205,6 +210,10 @@ def test_a_region_is_empty_exactly_below_the_least_modulus(name: str) -> None:
     assert radius(method, np.array([(a_low + a_high) / 2]), np.array([(b_low + b_high) / 2])) < least + 1e-5
 
 
+@pytest.mark.promise(
+    "Boundary, drawn",
+    computed=("400 chords an arc: area by its corners to 1e-4, no point further than 1e-3 in |z| on the wrong side"),
+)
 @pytest.mark.parametrize("name", sampled(NAMES))
 @pytest.mark.parametrize("level", [1.0, 0.9])
 def test_the_curves_are_closed_and_enclose_the_area(name: str, level: float) -> None:
@@ -217,6 +226,7 @@ def test_the_curves_are_closed_and_enclose_the_area(name: str, level: float) -> 
     assert shoelace == pytest.approx(shape.area, rel=1e-4)  # 400 chords an arc: (pi / 400)^2
 
 
+@pytest.mark.promise("Extent of a region")
 @pytest.mark.parametrize("name", sampled(NAMES))
 @pytest.mark.parametrize("level", [1.0, 0.9])
 def test_extents_contain_the_curve_and_are_attained(name: str, level: float) -> None:
@@ -231,6 +241,10 @@ def test_extents_contain_the_curve_and_are_attained(name: str, level: float) -> 
         assert (attained < 1e-4).all()  # a chord's sagitta
 
 
+@pytest.mark.promise(
+    "Extent of a region",
+    computed="1e-11 where a closed form exists; attained, and nowhere exceeded",
+)
 @pytest.mark.parametrize(
     ("name", "extent"),
     [
@@ -318,6 +332,7 @@ USERS = [
 ]
 
 
+@pytest.mark.promise("Area of a user's method", computed="1e-9 against slices")
 @pytest.mark.slow
 @pytest.mark.parametrize("method", USERS, ids=lambda method: method.name)
 @pytest.mark.parametrize("level", [1.0, 0.8])
@@ -419,6 +434,10 @@ def test_contains_broadcasts_and_answers_with_booleans() -> None:
     assert not found.all()
 
 
+@pytest.mark.promise(
+    "Points next to the edge of a region",
+    unknown="A point nearer to the edge than about 1e-12 falls to either side in a map; only the verdict knows",
+)
 @pytest.mark.parametrize("name", ["B4", "RK4", "SYM"])
 def test_what_a_region_contains_converges(name: str) -> None:
     shape = region(lookup(name))
@@ -460,6 +479,14 @@ def test_a_theta_method_has_the_area_of_two_disc_halves(theta: str, level: float
 NEXT_TO_ONE = [0.999, 0.99995, 0.999999]
 
 
+@pytest.mark.promise(
+    "Area of a region",
+    computed=(
+        "1e-12 where a closed form exists; 1e-10 against slices, which share neither arcs nor intervals with it: "
+        "twelve methods, all of them at three levels in `make test-slow`. Next to level 1, where a region grows "
+        "without limit, 1e-15 / (1 - level)"
+    ),
+)
 @pytest.mark.parametrize(
     ("name", "level"),
     [
