@@ -98,6 +98,25 @@ def test_code_is_kept_for_the_next_process_where_only_the_user_can_write(tmp_pat
     assert hits(tmp_path) == 0
 
 
+TWO_KEPT_SCENES = """
+import sys
+from bezstab.mechanism import compiled_mechanism, load_scene, simulate
+from bezstab.methods import lookup
+for scene in sys.argv[1:]:
+    mechanism = compiled_mechanism(load_scene(scene))
+    runs = [simulate(mechanism, lookup("SYM"), 1e-3, 0.1, (20.0, 100.0), compiled=each) for each in (False, True)]
+    assert abs(runs[0].q - runs[1].q).max() < 1e-12
+"""
+
+
+def test_scenes_kept_by_different_processes_do_not_share_their_code(tmp_path: Path) -> None:
+    """Code from disk is linked by its names, and each process numbers its functions alike."""
+    environment = os.environ | {"XDG_CACHE_HOME": str(tmp_path)}
+    for scenes in (["pendulum"], ["driven_four_bar"], ["pendulum", "driven_four_bar"]):
+        command = [sys.executable, "-c", TWO_KEPT_SCENES, *scenes]
+        subprocess.run(command, env=environment, check=True, capture_output=True, timeout=300)
+
+
 def test_a_further_method_on_a_compiled_scene_compiles_nothing() -> None:
     mechanism = compiled_mechanism(load_scene("pendulum"))
     for name in ("B2", "dopri5"):
