@@ -42,8 +42,8 @@ def test_one_step_late_is_the_recipe_with_the_state_before(a: Fraction, b: Fract
 @pytest.mark.promise(
     "Drives that are held or late (`check --pd --every --late`)",
     proven=(
-        "the verdict is that of the exact matrix from one computation of the torque to the next; the two laws in closed "
-        "form agree with it"
+        "the verdict is that of the exact matrix from one computation of the torque to the next; the two laws in "
+        "closed form agree with it"
     ),
 )
 @given(a=POSITIVE, b=POSITIVE, every=st.integers(1, 12))
