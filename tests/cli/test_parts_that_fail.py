@@ -86,11 +86,11 @@ def test_a_method_whose_region_is_not_found_still_has_verdicts(tmp_path: Path) -
     for alpha, status, said in (("1/2", 0, "Safe. Each step multiplies the error by"), ("-1/100", 1, "Not safe.")):
         result = run("check", "--method", str(path), "--alpha", alpha, "--beta", "1/16")
         assert (result.exit_code, result.stdout.startswith(said)) == (status, True)
-        assert result.stderr.startswith("bezstab: nothing instead: mean: an edge of |z_p| < 1 was not found")
+        assert result.stderr.startswith("bezstab: nothing instead: mean, |z_p| < 1: an edge was not found")
     result = run("region", "--method", "B4", "--method", str(path), "--figure", "none", "--table", "none")
     assert result.exit_code == 3
     assert "0.8096847184" in result.stdout
-    assert result.stderr.startswith("bezstab: mean: an edge of |z_p| < 1 was not found")
+    assert result.stderr.startswith("bezstab: mean, |z_p| < 1: an edge was not found")
     assert len(result.stderr.splitlines()) == 1
 
 
