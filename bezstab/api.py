@@ -13,6 +13,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from fractions import Fraction
+from typing import get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -338,15 +339,27 @@ def simulate(
     beta: float | None = None,
     start: mechanism.Start = "rk4",
     perturb: float = 0.0,
+    stabilise: mechanism.Stabilise = "baumgarte",
+    iterations: int | None = None,
 ) -> Simulation:
     """Return a run of `duration` (s) with steps of h (s): t, q, v, c, cdot, multipliers and energy as arrays, SI units.
 
     t has shape (steps + 1,), the others a row for each time. The initial state is the scene's, its first constraint
-    off by `perturb`. A run that breaks down ends early and says when and why in `failure`. InputError for a scene
-    that cannot start, a duration below one step, and unless the point is given in one of the two ways; NumericalError
-    for one that cannot be perturbed. Paper Eqs. 6 to 9.
+    off by `perturb`. With `stabilise` "projection" each new state is projected onto the constraints, its position by
+    `iterations` of Newton's method at most, or until it is within 1e-12; with "none" nothing holds them. Neither has a
+    point. A run that breaks down ends early and says when and why in `failure`. InputError for a scene that cannot
+    start, a duration below one step, and unless the point is given in one of the two ways; NumericalError for one that
+    cannot be perturbed. Paper Eqs. 6 to 9.
     """
-    a, b = _plane_point(alpha_hat, beta_hat, alpha, beta, h)
+    if stabilise not in get_args(mechanism.Stabilise):
+        raise InputError(f"stabilise {stabilise!r}: expected {', '.join(get_args(mechanism.Stabilise))}")
+    if iterations is not None and stabilise != "projection":
+        raise InputError("iterations are those of stabilise='projection'")
+    a, b = Fraction(0), Fraction(0)
+    if stabilise == "baumgarte":
+        a, b = _plane_point(alpha_hat, beta_hat, alpha, beta, h)
+    elif any(each is not None for each in (alpha_hat, beta_hat, alpha, beta)):
+        raise InputError(f"stabilise={stabilise!r} has no feedback: expected neither alpha nor beta")
     return mechanism.simulated(
         mechanism.compiled_mechanism(_scene(scene)),
         _method(method),
@@ -356,6 +369,7 @@ def simulate(
         beta_hat=float(b),
         perturb=_real(perturb, "perturb"),
         start=start,
+        projection=mechanism.Projection(iterations) if stabilise == "projection" else None,
     )
 
 

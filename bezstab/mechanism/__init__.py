@@ -20,6 +20,7 @@ from bezstab.mechanism.equations import Equations, T, equations_of_motion
 from bezstab.mechanism.linearized import linearized_acceleration
 from bezstab.mechanism.motions import Motion, motion, regular_motion, revolution_period
 from bezstab.mechanism.observation import Observation, observe, singular_passages
+from bezstab.mechanism.projection import Projection, Stabilise, check_projected
 from bezstab.mechanism.runner import (
     Block,
     Start,
@@ -73,11 +74,13 @@ __all__ = [
     "Motion",
     "Observation",
     "PointOnLine",
+    "Projection",
     "Revolute",
     "Scene",
     "Simulation",
     "Solved",
     "Spring",
+    "Stabilise",
     "Start",
     "T",
     "Trajectory",
@@ -85,6 +88,7 @@ __all__ = [
     "acceleration_function",
     "along_normals",
     "at_speed",
+    "check_projected",
     "compiled_mechanism",
     "constraint_errors",
     "constraint_jacobian",
