@@ -73,7 +73,7 @@ APPOINTED = {
     },
     "matplotlib": {
         *("show/style.py", "show/histories.py", "show/plot.py", "show/plane_figures.py", "show/run_figures.py"),
-        *("show/accuracy_figures.py", "show/chain_figures.py", "show/explorer.py"),
+        *("show/accuracy_figures.py", "show/chain_figures.py", "show/held_figures.py", "show/explorer.py"),
         *(f"paper/{name}.py" for name in ("regions", "slider_crank", "drift", "influence", "comparison")),
     },
     "click": {f"cli/{name}.py" for name in ("options", "output", "command_group")}

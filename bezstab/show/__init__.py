@@ -102,6 +102,7 @@ if TYPE_CHECKING:
     )
     from bezstab.show.chain_figures import chains_figure
     from bezstab.show.explorer import open_explorer
+    from bezstab.show.held_figures import held_figure
     from bezstab.show.histories import history_line
     from bezstab.show.plane_figures import comparison_figure, family_figure, region_figure, verdict_figure
     from bezstab.show.run_figures import history_figure, scene_figure, work_precision_figure
@@ -118,6 +119,7 @@ LOADED_LATE = {
         "write_arrays",
     ),
     "chain_figures": ("chains_figure",),
+    "held_figures": ("held_figure",),
     "explorer": ("open_explorer",),
     "histories": ("history_line",),
     "plane_figures": (
@@ -210,6 +212,7 @@ __all__ = [
     "front_row",
     "growing_run",
     "growth_words",
+    "held_figure",
     "held_row",
     "held_sentence",
     "history_arrays",

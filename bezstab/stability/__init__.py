@@ -60,8 +60,10 @@ if TYPE_CHECKING:
     )
     from bezstab.stability.held_drives import (
         HeldLimits,
+        HeldMap,
         Timing,
         held_limits,
+        held_map,
         held_spectral_radius,
         held_verdict,
     )
@@ -69,7 +71,15 @@ if TYPE_CHECKING:
 
 PROVEN = {
     "damping_limits": ("critical_damping_limit", "exact_critical_damping_limit", "unconditional_damping_ratio"),
-    "held_drives": ("HeldLimits", "Timing", "held_limits", "held_spectral_radius", "held_verdict"),
+    "held_drives": (
+        "HeldLimits",
+        "HeldMap",
+        "Timing",
+        "held_limits",
+        "held_map",
+        "held_spectral_radius",
+        "held_verdict",
+    ),
     "quadrant_proofs": ("StableForAll", "stable_for_all"),
 }
 """What is loaded when first used, by module."""
@@ -100,6 +110,7 @@ __all__ = [
     "Goal",
     "Growth",
     "HeldLimits",
+    "HeldMap",
     "Limit",
     "Margins",
     "Member",
@@ -133,6 +144,7 @@ __all__ = [
     "forced_response",
     "gain_limits",
     "held_limits",
+    "held_map",
     "held_spectral_radius",
     "held_verdict",
     "inverse_effective_masses",
