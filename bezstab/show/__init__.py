@@ -30,6 +30,7 @@ from bezstab.show.columns import (
     render,
     shown_width,
     transposed,
+    visible,
 )
 from bezstab.show.fields import Field, RowKind, cells
 from bezstab.show.held_rows import LATE_COMMANDS, NOT_JUDGED, held_row, held_sentence, timing_words
