@@ -2,7 +2,7 @@
 
 import os
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar, get_args
@@ -270,6 +270,16 @@ def projection_asked_for(stabilise: "Stabilise", iterations: int | None, against
     from bezstab.mechanism import Projection
 
     return Projection(iterations)
+
+
+def typed_beside(allowed: Collection[str]) -> str | None:
+    """Return the first option that the user gave the running command beside some parameters; None if there is none."""
+    context = click.get_current_context()
+    for parameter in context.command.params:
+        name = str(parameter.name)
+        if name not in allowed and context.get_parameter_source(name) == click.core.ParameterSource.COMMANDLINE:
+            return parameter.opts[0]
+    return None
 
 
 def left_at_default(parameter: str) -> bool:

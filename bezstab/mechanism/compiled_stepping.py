@@ -389,7 +389,7 @@ def correction(t: float, gains: FloatArray, state: FloatArray, found: FloatArray
 
 
 @cache
-def machine_steps(mechanism: Mechanism, solving: bool, projecting: bool = False) -> TakeSteps:
+def machine_steps(mechanism: Mechanism, solving: bool, projecting: bool) -> TakeSteps:
     """Return the function that takes a mechanism's steps as machine code. InputError without numba.
 
     `solving`: whether programs have equations to solve; `projecting`: whether states are projected. What is compiled is

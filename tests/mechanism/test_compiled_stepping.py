@@ -78,7 +78,7 @@ from bezstab.mechanism.compiled_stepping import machine_steps
 from bezstab.methods import lookup
 mechanism = compiled_mechanism(load_scene("pendulum"))
 assert simulate(mechanism, lookup("SYM"), 1e-3, 0.1, (20.0, 100.0), compiled=True).failure is None
-dispatcher = machine_steps(mechanism, False)
+dispatcher = machine_steps(mechanism, False, False)
 print(sum(dispatcher.stats.cache_hits.values()))
 """
 
@@ -90,6 +90,7 @@ def hits(home: Path) -> int:
     return int(subprocess.run(command, env=environment, check=True, capture_output=True, timeout=300).stdout)
 
 
+@pytest.mark.slow
 def test_code_is_kept_for_the_next_process_where_only_the_user_can_write(tmp_path: Path) -> None:
     assert hits(tmp_path) == 0
     assert hits(tmp_path) == 1
@@ -109,6 +110,7 @@ for scene in sys.argv[1:]:
 """
 
 
+@pytest.mark.slow
 def test_scenes_kept_by_different_processes_do_not_share_their_code(tmp_path: Path) -> None:
     """Code from disk is linked by its names, and each process numbers its functions alike."""
     environment = os.environ | {"XDG_CACHE_HOME": str(tmp_path)}
@@ -121,4 +123,4 @@ def test_a_further_method_on_a_compiled_scene_compiles_nothing() -> None:
     mechanism = compiled_mechanism(load_scene("pendulum"))
     for name in ("B2", "dopri5"):
         both(mechanism, name, 20, (20.0, 100.0))
-    assert len(module.machine_steps(mechanism, False).signatures) == 1  # type: ignore[attr-defined]
+    assert len(module.machine_steps(mechanism, False, False).signatures) == 1  # type: ignore[attr-defined]
