@@ -60,6 +60,7 @@ def test_what_is_public_is_listed_once_and_found() -> None:
         _ = bezstab.pole
 
 
+@pytest.mark.slow
 def test_importing_everything_by_star_works() -> None:
     code = "from bezstab import *; print(method('B4').name)"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "B4\n"
@@ -258,6 +259,7 @@ def test_the_public_plots_are_those_that_dir_shows() -> None:
     assert dir(bezstab.plot) == sorted(bezstab.plot.__all__)
 
 
+@pytest.mark.slow
 def test_results_have_short_names_for_themselves() -> None:
     run = bezstab.simulate("pendulum", "SYM", alpha_hat=1.0, beta_hat=0.2, h=0.001, duration=0.1)
     error = np.round(1e-4 * (bezstab.dominant_pole("B4", alpha_hat=0.5, beta_hat=0.1) ** np.arange(150)).real, 13)

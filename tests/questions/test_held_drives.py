@@ -77,6 +77,7 @@ def test_a_time_to_settle_is_a_bandwidth() -> None:
     assert (1 + omega * 0.5) * 2.718281828459045 ** (-omega * 0.5) == pytest.approx(1e-3, rel=0.02)
 
 
+@pytest.mark.slow
 def test_what_cannot_be_reached_is_refused_with_what_can() -> None:
     timing = Timing(4, Fraction(1))
     with pytest.raises(InputError, match=r"--bandwidth 50 Hz: not safe .*; up to (\S+) Hz is") as refused:
