@@ -15,6 +15,7 @@ from bezstab.mechanism import Mechanism, compiled_mechanism, load_scene, parse_s
 from bezstab.mechanism import compiled_stepping as module
 from bezstab.methods import lookup
 from bezstab.units import feedback_gains
+from tests.evidence.samples import of_campaign
 from tests.mechanism.test_stepping import H, both
 
 
@@ -26,7 +27,7 @@ def chain_of_twelve() -> Mechanism:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["SYM", "implicit-euler"])
+@pytest.mark.parametrize("name", of_campaign(["SYM", "implicit-euler"], ["SYM"]))
 def test_a_chain_compiled_in_parts_is_the_same(name: str) -> None:
     assert len(both(chain_of_twelve(), name, 100, feedback_gains(0.3, 0.04, H)).t) == 101
 
