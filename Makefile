@@ -7,6 +7,10 @@ unexport PYTHONDONTWRITEBYTECODE
 ANDREWS := --scene andrews --time 0.01 --h 16e-6 --h 32e-6 --h 64e-6 --h 128e-6 \
     --method ABM4 --method AB4 --method RK4 --method dopri5 --method B4 --method trapezoid --table none
 
+# feedback and projection, of which no time is drawn
+HELD := tradeoff --against projection --method B4 --method AB4 --method RK4 --method SYM --repeats 1 --table none
+OF_MILLISECONDS := --h 0.0008 --h 0.0016 --h 0.0032 --h 0.005 --h 0.008 --h 0.0125
+
 # methods for strong feedback, and two that force much more with it
 BOTH_KINDS := --method B4 --method AB4 --method ABM4 --method SYM --method verlet-half --method bdf2 --method RK4 \
     --method dopri5
@@ -28,6 +32,9 @@ figures: .venv/installed  ## draw what the README shows, into figures/
 	$(BIN)/bezstab region --method RK4 --accuracy --table none -o figures
 	$(BIN)/bezstab tradeoff --predicted $(BOTH_KINDS) --table none -o figures
 	$(BIN)/bezstab tradeoff --table none -o figures
+	$(BIN)/bezstab $(HELD) $(OF_MILLISECONDS) -o figures
+	$(BIN)/bezstab $(HELD) --scene driven_four_bar $(OF_MILLISECONDS) -o figures
+	$(BIN)/bezstab $(HELD) --scene andrews --time 0.01 --h 8e-6 --h 16e-6 --h 32e-6 --h 64e-6 --h 128e-6 -o figures
 	$(BIN)/bezstab tradeoff $(ANDREWS) --repeats 1 --against time --recorded figures/andrews_times.json -o figures
 
 pages: .venv/installed  ## write anew what pages say that the code says already: tables of files, numbers, promises

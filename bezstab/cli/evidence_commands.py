@@ -56,8 +56,8 @@ from bezstab.units import to_dimensionless
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from bezstab.evidence import Cost, Held
-    from bezstab.mechanism import Stabilise, Start
+    from bezstab.evidence import Cost, Held, SweptRuns
+    from bezstab.mechanism import Projection, Stabilise, Start
 
 MOST_SWEPT = 10**6  # the reference takes up to 32 times as many
 MOST_LISTED = 20  # times in a message
@@ -225,6 +225,7 @@ def cost_sentence(row: Row) -> str:
 @click.option("--beta", type=NUMBER, help="β̂ of every run; β in 1/s with --physical.")
 @physical_option
 @omega_option
+@stabilise_options
 @click.option(
     "--predicted",
     is_flag=True,
@@ -241,9 +242,10 @@ def cost_sentence(row: Row) -> str:
 @click.option("--repeats", type=click.IntRange(1, 100), default=3, help="Of each timing.")
 @click.option(
     "--against",
-    type=click.Choice(["evaluations", "time"]),
+    type=click.Choice(["evaluations", "time", "projection"]),
     default="evaluations",
-    help="What figures and fronts hold errors against: evaluations of f, or processor time on this machine.",
+    help="What figures and fronts hold errors against: evaluations of f, or processor time on this machine. With "
+    "projection each run is made with feedback and with projection, and errors are held against factorizations.",
 )
 @click.option(
     "--recorded",
@@ -265,6 +267,8 @@ def tradeoff(
     beta: Fraction | None,
     physical: bool,
     omega: Fraction | None,
+    stabilise: "Stabilise",
+    iterations: int | None,
     predicted: bool,
     levels: Sequence[Fraction],
     tolerance: Fraction,
@@ -291,6 +295,11 @@ def tradeoff(
     RK4, which loses order too: "in the later half" of a run that error has died away, and what remains is what the
     feedback forces, as "predicted".
 
+    --stabilise projection replaces feedback by projection onto the constraints after each step. --against projection
+    makes both, feedback at the advised points and, with --alpha and --beta, at that one too. It draws the errors of
+    trajectory, constraints and energy at equal cost, in factorizations of C_q M⁻¹ C_qᵀ; below, a sentence for each
+    method says what projection costs for the same trajectory error.
+
     --predicted simulates nothing: it prints the least error that a method can force on a motion, for each |z_p|.
     The motion is --omega, or a --scene with one --h; else it turns by ωh = 0.01. Writes tradeoff_predicted.
 
@@ -305,20 +314,29 @@ def tradeoff(
         return
     point = both_or_none(alpha, beta)
     _check_simulated_options(point, physical, omega, levels, recorded, against)
+    given = None if point is None else (float(point[0]), float(point[1]))
+    treatments = _treatments(methods, given, stabilise, iterations, against)
     if point and steps and not physical:
         say_if_units_were_mistaken(methods, *point, max(steps))
     step_sizes = tuple(sorted({float(step) for step in steps or evidence.STEPS}))
     _check_swept_time(float(time), step_sizes, methods)
     times = recorded and evidence.read_times(recorded, [method.name for method in methods], step_sizes)
-    rate = None if point else _rate_of_motion(omega, scene, speed, time, step_sizes)
+    advised = any(point is None for point, _ in treatments)
+    rate = _rate_of_motion(omega, scene, speed, time, step_sizes) if advised else None
     loaded_scene = at_speed(load_scene(scene), float(speed))
     reference = evidence.reference_motion(loaded_scene, step_sizes[0], float(time))
-    given = None if point is None else (float(point[0]), float(point[1]))
-    compiled = evidence.sweep_compiled(loaded_scene, methods, step_sizes, float(time), repeats)
-    of_all = (loaded_scene, step_sizes, float(time), given, physical, repeats)
-    sweeps = [evidence.Sweep(method, *of_all, reference, rate, compiled) for method in dict.fromkeys(methods)]
+    of_all = (loaded_scene, step_sizes, float(time))
+    compiled = all(
+        evidence.sweep_compiled(loaded_scene, methods, step_sizes, float(time), repeats, projection is not None)
+        for _, projection in treatments
+    )
+    sweeps = [
+        evidence.Sweep(method, *of_all, each, physical, repeats, reference, rate, compiled, projection)
+        for method in dict.fromkeys(methods)
+        for each, projection in treatments
+    ]
     path = output / f"tradeoff_{file_name(Path(scene).stem)}"
-    job = f"{methods} {(*of_all, rate)}"
+    job = f"{methods} {(*of_all, treatments, physical, repeats, rate)}"
     with results_of_chunks(evidence.measured_runs, sweeps, path, job, workers, scheduler, resume) as results:
         per_method = (evidence.swept_runs(*each) for each in zip(sweeps, results, strict=True))
         runs = list(chain.from_iterable(per_method))
@@ -327,16 +345,12 @@ def tradeoff(
         swept = evidence.with_fronts(runs, reference.error, against, recorded=bool(times))
         rows = [run_row(run, front) for run, front in zip(swept.runs, swept.front_labels, strict=True)]
 
-        def draw(constraint: bool, floor: float) -> "Figure":
-            from bezstab.show import work_precision_figure
-
-            return work_precision_figure(swept, loaded_scene.name, constraint, floor)
-
         write_table(path, untimed_arrays(rows), table)
-        for_trajectory = partial(draw, constraint=False, floor=reference.error)
-        write_figure(path.with_name(f"{path.name}_trajectory"), for_trajectory, figure)
-        for_constraint = partial(draw, constraint=True, floor=0.0)
-        write_figure(path.with_name(f"{path.name}_constraint"), for_constraint, figure)
+        for errors in ("both",) if against == "projection" else ("trajectory", "constraint"):
+            name = "projection" if errors == "both" else errors
+            write_figure(
+                path.with_name(f"{path.name}_{name}"), partial(_sweep_figure, swept, loaded_scene.name, errors), figure
+            )
     show_rows(rows, SWEPT.columns(rows), form, sentence=cost_sentence)
     if for_reading(form):
         show_text(f"\nThe reference is known to {reference.error:.0e} (m, rad).")
@@ -344,9 +358,60 @@ def tradeoff(
             show_text(f"Processor times are not of this run: they are those in {recorded}.")
         if rate is not None:
             show_text(f"Each point is the choice of the goal accurate for a motion with ω = {float(rate):.3g} 1/s.")
-        held: Held = "own choice" if rate else "alpha and beta" if physical else "alpha_hat and beta_hat"
-        for sentence in evidence.sweep_sentences(swept.runs, float(tolerance), held):
+        for sentence in _sweep_sentences(swept, float(tolerance), given, physical):
             show_text(sentence)
+
+
+def _treatments(
+    methods: Sequence[Method],
+    given: tuple[float, float] | None,
+    stabilise: "Stabilise",
+    iterations: int | None,
+    against: "Cost",
+) -> list[tuple[tuple[float, float] | None, "Projection | None"]]:
+    """Return what is to hold the constraints: points of feedback, None for the advised one, and projections.
+
+    UsageError for options that do not go together, InputError for a method whose states cannot be projected.
+    """
+    from bezstab.evidence import NO_FEEDBACK
+    from bezstab.mechanism import check_projected
+
+    both = against == "projection"
+    if both and not left_at_default("stabilise"):
+        raise click.UsageError("--against projection has runs with and without feedback: not with --stabilise")
+    projection = projection_asked_for(stabilise, iterations, both)
+    if projection:
+        for method in methods:
+            check_projected(method)
+    if stabilise != "baumgarte":
+        return [(NO_FEEDBACK, projection)]
+    if not both:
+        return [(given, None)]
+    return [(None, None), *([(given, None)] if given else []), (NO_FEEDBACK, projection)]
+
+
+def _sweep_figure(swept: "SweptRuns", scene: str, errors: str) -> "Figure":
+    """Return the figure of the trajectory's errors, the constraints' ones, or both with the energy."""
+    from bezstab.show import projection_figure, work_precision_figure
+
+    if errors == "both":
+        return projection_figure(swept, scene, swept.reference_error)
+    constraint = errors == "constraint"
+    return work_precision_figure(swept, scene, constraint, 0.0 if constraint else swept.reference_error)
+
+
+def _sweep_sentences(
+    swept: "SweptRuns", tolerance: float, given: tuple[float, float] | None, physical: bool
+) -> Sequence[str]:
+    """Return what a sweep says in words; its point, if it was given, with alpha and beta in 1/s or without units."""
+    from bezstab import evidence
+
+    if swept.against == "projection":
+        return evidence.projection_sentences(swept.runs, swept.reference_error)
+    held: Held = "alpha and beta" if physical else "alpha_hat and beta_hat"
+    if given is None:
+        held = "own choice" if swept.runs[0].advised else "no feedback"
+    return evidence.sweep_sentences(swept.runs, tolerance, held)
 
 
 def _check_simulated_options(
@@ -362,7 +427,7 @@ def _check_simulated_options(
         raise click.UsageError("--level goes with --predicted: it is the |z_p| that is asked for")
     if physical and point is None:
         raise click.UsageError("--physical needs --alpha and --beta")
-    if omega is not None and point:
+    if omega is not None and point and against != "projection":
         raise click.UsageError("--omega is the motion for which points are chosen: not with --alpha and --beta")
     if recorded and against != "time":
         raise click.UsageError("--recorded goes with --against time")

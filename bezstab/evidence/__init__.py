@@ -5,6 +5,7 @@ The only room in which stability and mechanism meet.
 
 from bezstab.evidence.accuracy_costs import (
     METHODS,
+    NO_FEEDBACK,
     STEPS,
     Cost,
     Run,
@@ -50,6 +51,7 @@ from bezstab.evidence.probed_poles import (
     probed_pole,
     steps_between_rows,
 )
+from bezstab.evidence.projection_costs import projection_sentences
 from bezstab.evidence.recorded_times import read_times, with_recorded_times
 from bezstab.evidence.reference_motions import ReferenceMotion, reference_motion
 from bezstab.evidence.sweep_summaries import Held, summary, sweep_sentences

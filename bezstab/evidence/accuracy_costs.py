@@ -4,7 +4,7 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,9 @@ from bezstab.evidence.forced_runs import COMPARED, predicted_errors
 from bezstab.evidence.pareto import pareto_front
 from bezstab.evidence.reference_motions import ReferenceMotion
 from bezstab.mechanism import (
+    Projection,
     Scene,
+    Stabilise,
     Trajectory,
     compiled_mechanism,
     energy_balance,
@@ -37,8 +39,11 @@ ABOVE_REFERENCE = 30.0
 """Times the reference's own error: below, an observed order is noise."""
 
 
-Cost = Literal["evaluations", "time"]
-"""What errors are held against."""
+Cost = Literal["evaluations", "time", "projection"]
+"""What errors are held against: evaluations, processor time, or, of feedback against projection, factorizations."""
+
+NO_FEEDBACK = (0.0, 0.0)
+"""The point of runs with projection, or with nothing that holds the constraints."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +52,7 @@ class Sweep:
 
     `point` holds alpha_hat and beta_hat, or with `physical` alpha and beta in 1/s; without one the goal accurate of
     `choose` finds one at each step, for a motion of rate `omega` (1/s). `compiled` says whether machine code takes the
-    steps, which changes nothing but their time.
+    steps, which changes nothing but their time. With a `projection` there is no feedback.
     """
 
     method: Method = field(repr=False)
@@ -60,6 +65,14 @@ class Sweep:
     reference: ReferenceMotion
     omega: Fraction | None = None
     compiled: bool = False
+    projection: Projection | None = None
+
+    @property
+    def stabilise(self) -> Stabilise:
+        """What holds the constraints."""
+        if self.projection:
+            return "projection"
+        return "none" if self.point == NO_FEEDBACK else "baumgarte"
 
 
 @dataclass(frozen=True)
@@ -69,14 +82,16 @@ class Run:
     measured_error is the largest |c| in the later half, where the start has died away, None of a run that failed;
     predicted_error what the feedback forces there (forced_runs.py), None where errors do not decay, or the motion
     cannot be followed for longer than the run. Processor time in s: the median of the repeats, the least and the
-    largest.
+    largest. `stabilise` is what holds the constraints, `advised` whether the point is the choice of the goal accurate;
+    z_abs is None where there is no feedback. `factorizations` counts those of S = C_q M^-1 C_q^T, one for each
+    evaluation, and those of projections.
     """
 
     method: Method = field(repr=False)
     h: float
     alpha_hat: float = field(repr=False)
     beta_hat: float = field(repr=False)
-    z_abs: float
+    z_abs: float | None
     trajectory_error: float | None
     c_max: float
     measured_error: float | None
@@ -86,15 +101,18 @@ class Run:
     cdot_rms: float = field(repr=False)
     energy_drift: float = field(repr=False)
     evaluations: int
+    factorizations: int
     seconds: float
     seconds_min: float = field(repr=False)
     seconds_max: float = field(repr=False)
     failure: str | None
     order: float | None
+    stabilise: Stabilise = "baumgarte"
+    advised: bool = True
 
     def cost(self, against: Cost) -> float:
-        """Return its evaluations, or its processor time (s)."""
-        return self.evaluations if against == "evaluations" else self.seconds
+        """Return its evaluations, its processor time (s), or its factorizations."""
+        return {"evaluations": self.evaluations, "time": self.seconds, "projection": self.factorizations}[against]
 
 
 @dataclass(frozen=True)
@@ -128,17 +146,24 @@ class SweptRuns:
 
 
 def sweep_compiled(
-    scene: Scene, methods: Sequence[Method], step_sizes: Sequence[float], duration: float, repeats: int
+    scene: Scene,
+    methods: Sequence[Method],
+    step_sizes: Sequence[float],
+    duration: float,
+    repeats: int,
+    projecting: bool = False,
 ) -> bool:
     """Return whether the runs of a sweep are compiled: all or none, so that their times can be compared.
 
-    `runs_compiled` says so for each method's runs together, step sizes and duration in s. By default none are
-    where one is not. InputError as `runs_compiled`.
+    `runs_compiled` says so for each method's runs together, step sizes and duration in s, `projecting` or not. By
+    default none are where one is not. InputError as `runs_compiled`.
     """
     mechanism = compiled_mechanism(scene)
     user_steps = repeats * sum(duration / h for h in step_sizes)
     wanted = [
-        runs_compiled(mechanism, method, round(user_steps / float(method.step_multiple)) * evaluations(method))
+        runs_compiled(
+            mechanism, method, round(user_steps / float(method.step_multiple)) * evaluations(method), projecting
+        )
         for method in methods
     ]
     return all(wanted)
@@ -178,7 +203,7 @@ def _measured_run(sweep: Sweep, h: float, point: tuple[float, float]) -> dict[st
     run, seconds = _timed_run(sweep, h, gains)
     seen = observe(mechanism, run.t, run.q, run.v, *gains)
     trajectory_error = np.nan if run.failure else float(np.abs(run.q - sweep.reference.at(run.t)).max())
-    z_abs = float(spectral_radius(method, *point))
+    z_abs = float(spectral_radius(method, *point)) if sweep.stabilise == "baumgarte" else np.nan
     return {
         "alpha_hat": point[0],
         "beta_hat": point[1],
@@ -192,6 +217,7 @@ def _measured_run(sweep: Sweep, h: float, point: tuple[float, float]) -> dict[st
         "cdot_rms": float(np.sqrt((seen.cdot**2).mean())),
         "energy_drift": float(energy_balance(seen, h * float(method.step_multiple)).drift[-1]),
         "evaluations": run.evaluations,
+        "factorizations": run.factorizations,
         "seconds": float(np.median(seconds)),
         "seconds_min": min(seconds),
         "seconds_max": max(seconds),
@@ -212,13 +238,12 @@ def _timed_run(sweep: Sweep, h: float, gains: tuple[float, float]) -> tuple[Traj
     """Return a run and the processor time (s) of each of its repeats, without what has to be compiled first."""
     mechanism, method = compiled_mechanism(sweep.scene), sweep.method
     one_step_of_its_own = (steps(method) + 1) * h * float(method.step_multiple)
-    simulate(
-        mechanism, method, h, one_step_of_its_own, gains, compiled=sweep.compiled
-    )  # compiles the method and what starts it
+    how: dict[str, Any] = {"compiled": sweep.compiled, "projection": sweep.projection}
+    simulate(mechanism, method, h, one_step_of_its_own, gains, **how)  # compiles the method and what starts it
     seconds = []
     for _ in range(sweep.repeats):
         begin = time.process_time()
-        run = simulate(mechanism, method, h, sweep.duration, gains, compiled=sweep.compiled)
+        run = simulate(mechanism, method, h, sweep.duration, gains, **how)
         seconds.append(time.process_time() - begin)
     return run, seconds
 
@@ -231,12 +256,15 @@ def swept_runs(sweep: Sweep, measured: Mapping[str, NDArray[np.generic]]) -> lis
     runs: list[Run] = []
     for index in np.argsort(sweep.steps)[::-1].tolist():
         values = {key: column[index].item() for key, column in measured.items()}
-        for key in ("trajectory_error", "measured_error", "predicted_error"):
+        for key in ("z_abs", "trajectory_error", "measured_error", "predicted_error"):
             values[key] = None if np.isnan(values[key]) else values[key]
         values["failure"] = values["failure"] or None
         h = sweep.steps[index]
         order = _observed_order(runs[-1], h, values["trajectory_error"], sweep.reference.error) if runs else None
-        runs.append(Run(method=sweep.method, h=h, order=order, **values))
+        advised = sweep.point is None
+        runs.append(
+            Run(method=sweep.method, h=h, order=order, stabilise=sweep.stabilise, advised=advised, **values)
+        )
     return runs
 
 

@@ -12,13 +12,14 @@ from bezstab.evidence.forced_runs import HOLDS
 from bezstab.methods import Method, accuracy, evaluations, implicit, leading_error, steps
 from bezstab.stability import critical_damping_limit, region, spectral_radius
 
-Held = Literal["own choice", "alpha and beta", "alpha_hat and beta_hat"]
+Held = Literal["own choice", "alpha and beta", "alpha_hat and beta_hat", "no feedback"]
 """What stays while h shrinks: the goal of `choose`, by which each step has a point of its own, or these parameters."""
 
 HELD_WORDS: dict[Held, str] = {
     "own choice": "of each step's own choice",
     "alpha and beta": "with α and β held while h shrinks",
     "alpha_hat and beta_hat": "with α̂ and β̂ held while h shrinks",
+    "no feedback": "without feedback",
 }
 
 ORDER_LOST = 0.5
@@ -65,11 +66,19 @@ class Summary:
         Between two neighbouring runs log error falls linearly with log evaluations, a power law; the first two count
         between which the error lies.
         """
-        for (cheaper, larger), (dearer, smaller) in pairwise(self.costs):
-            if smaller <= error <= larger:
-                share = np.log(larger / error) / np.log(larger / smaller) if larger > smaller else 0.0
-                return float(cheaper * (dearer / cheaper) ** share)
-        return None
+        return cost_for(error, self.costs)
+
+
+def cost_for(error: float, costs: Sequence[tuple[float, float]]) -> float | None:
+    """Return the cost at which an error falls to `error`, from pairs of cost and error, the largest step's first.
+
+    None beyond them; else as `Summary.evaluations_for`.
+    """
+    for (cheaper, larger), (dearer, smaller) in pairwise(costs):
+        if smaller <= error <= larger:
+            share = np.log(larger / error) / np.log(larger / smaller) if larger > smaller else 0.0
+            return float(cheaper * (dearer / cheaper) ** share)
+    return None
 
 
 def summary(runs: Sequence[Run]) -> Summary:
@@ -117,7 +126,7 @@ def sweep_sentences(runs: Sequence[Run], tolerance: float, held: Held) -> list[s
     summaries = [summary([run for run in runs if run.method == method]) for method in methods]
     bezier = [one for one in summaries if _is_bezier(one.method)]
     sentences = [_cheapest_sentence(runs, tolerance), *_order_sentences(summaries, held), *_prediction_sentence(runs)]
-    if bezier:
+    if bezier and held != "no feedback":
         most_steps = max(bezier, key=lambda one: steps(one.method))
         sentences += [_comparison_sentence(most_steps, other) for other in summaries if other not in bezier]
     return sentences
@@ -156,7 +165,7 @@ def _order_sentences(summaries: Sequence[Summary], held: Held) -> Iterator[str]:
         if texts:
             yield f"Order of accuracy {HELD_WORDS[held]}, {verb}: {', '.join(texts)}."
     started = [one.method.name for one in summaries if _lost(one) and _has_start_of_stages(one.method)]
-    if started and held != "alpha and beta":
+    if started and held in ("own choice", "alpha_hat and beta_hat"):
         yield (
             f"{' and '.join(started)} would keep the order; the start by RK4 loses it, and in a short run its error is "
             "the largest."

@@ -102,7 +102,7 @@ if TYPE_CHECKING:
     from bezstab.show.held_figures import held_figure
     from bezstab.show.histories import history_line
     from bezstab.show.plane_figures import comparison_figure, family_figure, region_figure, verdict_figure
-    from bezstab.show.run_figures import history_figure, scene_figure, work_precision_figure
+    from bezstab.show.run_figures import history_figure, projection_figure, scene_figure, work_precision_figure
     from bezstab.show.style import DASHES, column_figure, legend_below, line_at, save, styled
 
 __getattr__ = lazy_names(__name__)

@@ -548,8 +548,8 @@ def error_label(constraint: bool) -> str:
 
 def cost_label(against: Cost, recorded: bool = False) -> str:
     """Return what the cost of a run is, for an axis; recorded: in an earlier sweep."""
-    if against == "evaluations":
-        return "evaluations of f"
+    if against != "time":
+        return "evaluations of f" if against == "evaluations" else r"factorizations of $C_q M^{-1} C_q^T$"
     return "processor time of a recorded run (s)" if recorded else "processor time (s)"
 
 

@@ -1123,6 +1123,8 @@ SWEPT = RowKind(
     "a run of a method with a step",
     fields=(
         METHOD,
+        STABILISE,
+        Field("advised", "truth", "Whether the point is the choice of the goal accurate for the scene's motion"),
         H.shown("h (s)", "g"),
         ALPHA_HAT.shown("α̂", ".4g"),
         BETA_HAT.shown("β̂", ".4g"),
@@ -1152,6 +1154,7 @@ SWEPT = RowKind(
         ),
         ENERGY_DRIFT.shown("energy drift (J)", ".1e"),
         RUN_EVALUATIONS,
+        FACTORIZATIONS,
         Field(
             "seconds",
             "number",
@@ -1170,6 +1173,7 @@ SWEPT = RowKind(
         ),
         FAILURE,
     ),
+    sometimes=("z_abs",),
 )
 FRONTS = RowKind(
     "the least error that a method can force with |z_p| at most so large",

@@ -1,12 +1,14 @@
 """Figures of simulations: a scene, the history of a run, and what accuracy costs."""
 
 from textwrap import fill
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from bezstab.evidence import SweptRuns
+from bezstab.evidence import Run, SweptRuns
 from bezstab.mechanism import Scene, Simulation
 from bezstab.show import plot
 from bezstab.show.style import TITLE_WIDTH, column_figure, legend_below, line_at, mark_powers, styled, title_lines
@@ -14,6 +16,13 @@ from bezstab.stability import FloatArray
 
 LARGEST_MARKER, MARKER_STEP, MARKER_SIZES = 7.0, 0.5, 10
 """Points: hollow markers of falling size, so that coinciding curves all show."""
+
+TREATMENTS: dict[tuple[str, bool], tuple[str, dict[str, Any]]] = {
+    ("baumgarte", True): ("feedback, advised", {"marker": "o", "markerfacecolor": "none"}),
+    ("baumgarte", False): ("feedback, given", {"marker": "x"}),
+    ("projection", False): ("projection", {"marker": "o"}),
+}
+"""What holds the constraints, and whether the point is advised: its name and its markers."""
 
 TIMES = 5  # intervals between the times that are written below a history: times of milliseconds have six digits
 
@@ -93,3 +102,54 @@ def work_precision_figure(swept: SweptRuns, scene: str, constraint: bool, floor:
             mark_powers(axis)
         legend_below(figure)
         return figure
+
+
+def projection_figure(swept: SweptRuns, scene: str, floor: float) -> Figure:
+    """Return errors of runs with feedback and with projection against their factorizations, in three axes.
+
+    They are the trajectory's, not drawn below `floor`, that of the reference (SI), the largest |c| and the energy's
+    drift. Colour and dashes are those of a method; its markers are hollow with feedback at the advised points, crosses
+    with feedback at a given one, and filled with projection. Runs that failed are left out.
+    """
+    methods = list(dict.fromkeys(run.method for run in swept.runs))
+    used = [key for key in TREATMENTS if any((run.stabilise, run.advised) == key for run in swept.runs)]
+    with styled():
+        figure = column_figure(1.9)
+        panels = figure.subplots(3, 1, sharex=True)
+        labels = (plot.error_label(constraint=False), plot.error_label(constraint=True), "energy drift (J)")
+        for axes, label, least, error in zip(panels, labels, (floor, 0.0, 0.0), _ERRORS, strict=True):
+            for place, method in enumerate(methods):
+                for key in used:
+                    own = [run for run in swept.runs if (run.method, run.stabilise, run.advised) == (method, *key)]
+                    shown = [(run.cost("projection"), value) for run in own if (value := error(run)) and value > least]
+                    x, y = [cost for cost, _ in shown], [value for _, value in shown]
+                    _, marker = TREATMENTS[key]
+                    axes.plot(x, y, linewidth=0.8, markersize=3.5, markeredgewidth=0.7, **line_at(place), **marker)
+            axes.set(xscale="log", yscale="log", ylabel=label)
+            mark_powers(axes.yaxis)
+        panels[-1].set_xlabel(plot.cost_label("projection"))
+        mark_powers(panels[-1].xaxis)
+        figure.suptitle(title_lines(scene))
+        of_methods = [Line2D([], [], label=method.name, **line_at(place)) for place, method in enumerate(methods)]
+        of_treatments = [
+            Line2D([], [], color="0.3", linestyle="none", markersize=3.5, label=name, **marker)
+            for name, marker in map(TREATMENTS.__getitem__, used)
+        ]
+        legend_below(figure, [*of_methods, *of_treatments])
+        return figure
+
+
+def _trajectory_error(run: Run) -> float | None:
+    return plot.run_error(run, constraint=False)
+
+
+def _constraint_error(run: Run) -> float | None:
+    return plot.run_error(run, constraint=True)
+
+
+def _energy_error(run: Run) -> float | None:
+    return None if run.failure else abs(run.energy_drift)
+
+
+_ERRORS = (_trajectory_error, _constraint_error, _energy_error)
+"""In the order of the axes; None of a run that failed."""

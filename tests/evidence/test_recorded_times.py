@@ -33,6 +33,7 @@ def run_of(evaluations: int) -> Run:
         cdot_rms=1e-5,
         energy_drift=0.0,
         evaluations=evaluations,
+        factorizations=evaluations,
         seconds=1.0,
         seconds_min=1.0,
         seconds_max=1.0,
