@@ -3,7 +3,9 @@
 import os
 import re
 from collections.abc import Callable, Iterable
+from dataclasses import fields
 from fractions import Fraction
+from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar, get_args
 
@@ -121,6 +123,7 @@ SECONDS = ParsedType("seconds", _seconds)
 SPEED = ParsedType("number", _speed)
 SEQUENCE = ParsedType("steps", _sequence)
 METHOD = ParsedType("method", lookup, (*REGISTRY, *WITH_PARAMETERS))
+SHARE = ParsedType("number", lambda text: float(rational(text)))
 ENGINE = ParsedType("NAME", engine_named, ENGINES)
 ENGINE_VALUES = ParsedType("name=values", engine_and_values, [f"{name}=" for name in ENGINES])
 
@@ -220,11 +223,18 @@ def together(*options: Decorator) -> Decorator:
     return with_options
 
 
-file_options = together(output_option, figure_option, table_option("csv"))
-figure_options = together(output_option, figure_option, table_option("none"))
-"""Of a command whose table is long and seldom wanted: it is written when asked for."""
+def gathered(kind: type, parameter: str, *options: Decorator) -> Decorator:
+    """Return one decorator that adds options and hands the command one value of a dataclass, whose fields they are."""
 
-work_options = together(workers_option, scheduler_option, resume_option)
+    def with_options(function: Function, /) -> Function:
+        @wraps(function)
+        def with_one_value(*arguments: Any, **typed: Any) -> Any:
+            own = {field.name: typed.pop(field.name) for field in fields(kind) if field.name in typed}
+            return function(*arguments, **{parameter: kind(**own)}, **typed)
+
+        return together(*options)(with_one_value)  # type: ignore[return-value]  # as wraps has it
+
+    return with_options
 
 
 def both_or_none(alpha: Fraction | None, beta: Fraction | None) -> tuple[Fraction, Fraction] | None:

@@ -23,6 +23,7 @@ from bezstab.evidence.forced_runs import SHARES, HalvedStep, halved_steps
 from bezstab.evidence.linear_prediction import SPREAD, Fit, Refusal, fit_dominant_pole
 from bezstab.evidence.logs import Log, error_columns, log_from, parse_log, read_log, row_step, time_column
 from bezstab.evidence.measured_poles import LINEAR, Measurement, kicked_constraint_errors, measure_poles, random_points
+from bezstab.evidence.measurement_summaries import measurement_summary
 from bezstab.evidence.moving_mechanisms import (
     LAW_HOLDS,
     MovingPole,

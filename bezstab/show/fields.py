@@ -12,6 +12,8 @@ from bezstab.show.columns import MISSING, Column, Row, Value, formatted
 Kind = Literal["number", "integer", "text", "truth", "numbers", "text rows"]
 """Of a value; numbers are a list, text rows a list of lists of texts."""
 
+Sentence = Callable[[Row], str]
+
 
 @dataclass(frozen=True)
 class Field:
@@ -58,13 +60,15 @@ class Field:
 class RowKind:
     """One kind of row that a command prints: what it is, the fields it always has, and those that options add.
 
-    `sometimes` are keys that are null in some rows of this kind, though elsewhere they never are.
+    `sometimes` are keys that are null in some rows of this kind, though elsewhere they never are. The `sentence` says
+    in words what a row says in numbers.
     """
 
     title: str
     fields: tuple[Field, ...]
     added: tuple[Field, ...] = ()
     sometimes: tuple[str, ...] = ()
+    sentence: Sentence | None = None
 
     def columns(self, rows: Sequence[Row], without: Collection[str] = ()) -> list[Column]:
         """Return the columns of a table of such rows: of every field with a heading that shows something in some row.

@@ -6,10 +6,9 @@ import math
 from typing import TYPE_CHECKING
 
 from bezstab.engines import DRIVE_METHODS
-from bezstab.show.columns import Row, Value, formatted
+from bezstab.show.columns import Row, Value
 from bezstab.show.fields import cells
 from bezstab.show.row_kinds import HELD
-from bezstab.show.words import change_words
 
 if TYPE_CHECKING:
     from bezstab.questions import HeldAnswer
@@ -19,14 +18,6 @@ LATE_COMMANDS = (
     "A target that comes late only delays the motion. A torque or a measurement that comes late takes stability."
 )
 NOT_JUDGED = "Not judged: a limit of the torque, friction, and what else the drive is connected to."
-
-CAUSES = {
-    "gains": "The gains are too large even if each step computes and applies its torque.",
-    "rate": "The torque is held too long: the same gains are stable if each step computes it.",
-    "delay": "The torque comes too late: the same gains and rate are stable without the delay.",
-    "rate and delay": "The torque is held too long and comes too late.",
-}
-"""Why a drive is unstable, by what is used up."""
 
 
 def held_row(answer: HeldAnswer) -> Row:
@@ -55,39 +46,6 @@ def held_row(answer: HeldAnswer) -> Row:
 
 def _times(gain: float, factor: float | None) -> float | None:
     return None if factor is None or math.isinf(factor) else gain * factor
-
-
-def held_sentence(row: Row) -> str:
-    """Return whether a held or late drive is safe, what a step of the physics does to the error, and why if not."""
-    z_abs, fresh = row["z_abs"], row["fresh_z_abs"]
-    assert isinstance(z_abs, float)
-    change = change_words(z_abs, row["verdict"])
-    sentence = f"{'Safe' if row['safe'] else 'Not safe'} ({row['drive']}). {change[0].upper()}{change[1:]}"
-    sentence += f", by {formatted(fresh, '.2g')} if the torque were fresh."
-    if row["safe"]:
-        return sentence
-    return f"{sentence} {CAUSES[str(row['held_by'])]}{_remedies(row)}"
-
-
-def _remedies(row: Row) -> str:
-    """Return which change of one number alone makes an unstable drive stable."""
-    kp_max, kd_min, kd_max = row["kp_max"], row["kd_min"], row["kd_max"]
-    remedies = []
-    if isinstance(kp_max, float):
-        remedies.append(f"kp up to {kp_max:.3g}")
-    if isinstance(kd_min, float):
-        remedies.append(f"kd from {kd_min:.3g}" + (f" to {kd_max:.3g}" if isinstance(kd_max, float) else ""))
-    if row["every_max"] is not None:
-        remedies.append(f"a torque every {_steps(row['every_max'])}")
-    if row["late_max"] is not None:
-        remedies.append(f"at most {_steps(row['late_max'])} late")
-    return (
-        f" Stable with one of these alone: {', '.join(remedies)}." if remedies else " No single change makes it stable."
-    )
-
-
-def _steps(number: Value) -> str:
-    return "step" if number == 1 else f"{number} steps"
 
 
 def timing_words(timing: Timing, h: float) -> str:

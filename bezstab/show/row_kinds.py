@@ -33,6 +33,28 @@ from bezstab.show.cells import (
     yes_no_text,
 )
 from bezstab.show.fields import Field, RowKind
+from bezstab.show.sentences import (
+    answer_sentence,
+    chain_sentence,
+    check_sentence,
+    cost_sentence,
+    engine_sentence,
+    finding_sentence,
+    forced_sentence,
+    front_sentence,
+    held_sentence,
+    measurement_sentence,
+    member_sentence,
+    method_sentence,
+    region_sentence,
+    run_sentence,
+    step_sentence,
+    summary_sentence,
+    verdict_map_sentence,
+    whole_method_sentence,
+    witness_sentence,
+)
+from bezstab.show.words import safety_words
 
 VERDICTS = get_args(Verdict)
 MOVING_VERDICTS = ("converges", "diverges", "not settled for this mechanism")
@@ -662,6 +684,7 @@ POLES = RowKind(
         SWEEPS,
         *DRIVE,
     ),
+    sentence=safety_words,
 )
 REGIONS = RowKind(
     "the region of a method",
@@ -689,6 +712,7 @@ REGIONS = RowKind(
         *ACCURACY,
         *MOVING_REGION,
     ),
+    sentence=region_sentence,
 )
 LISTED_METHODS = RowKind(
     "a method in the list",
@@ -706,6 +730,7 @@ LISTED_METHODS = RowKind(
         DIGITS,
         GROUP.hidden,
     ),
+    sentence=method_sentence,
 )
 NAMED_METHODS = RowKind(
     "a method that was named",
@@ -724,6 +749,7 @@ NAMED_METHODS = RowKind(
         ORDER_LEFT,
         *REGIONS.fields[1:],
     ),
+    sentence=whole_method_sentence,
 )
 MEMBERS = RowKind(
     "a member of a family, or its limit",
@@ -737,10 +763,12 @@ MEMBERS = RowKind(
         ORDER.shown("order of accuracy", "d"),
         ERROR_CONSTANT.shown("error constant", ".6f"),
     ),
+    sentence=member_sentence,
 )
 CHAINS = RowKind(
     "a chain of bodies in an engine that sweeps",
     fields=(CHAIN_MASS_RATIO, CHAIN_BODIES, CHAIN_ITERATIONS, CHAIN_Z_ABS, STABLE_ITERATIONS),
+    sentence=chain_sentence,
 )
 CHOICES = RowKind(
     "a choice",
@@ -778,12 +806,14 @@ CHOICES = RowKind(
         TIMES_LEAST_VELOCITY.shown("times the least error", text=both_times_text),
     ),
     added=(*MOVING, *VARYING, *CHAIN, *DRIVE, SWEEPS, ENGINE_H_LIMIT, SETTING.shown("to paste")),
+    sentence=answer_sentence,
 )
 CHECKED = RowKind(
     "a point, or what to take instead",
     fields=(ROLE, *CHOICES.fields),
     added=(*CHOICES.added, APPLIED, EXCLUDES.hidden),
     sometimes=("excludes",),
+    sentence=answer_sentence,
 )
 LARGEST_STEPS = RowKind(
     "the largest step of alpha and beta, without a step",
@@ -795,6 +825,7 @@ LARGEST_STEPS = RowKind(
         SAFE,
         H_LIMIT.shown("stable for constant h (s) to", text=safe_step_text),
     ),
+    sentence=step_sentence,
 )
 LINTED = RowKind(
     "an element of a model",
@@ -843,6 +874,7 @@ ENGINES_LISTED = RowKind(
         SWEEPS.shown("sweeps"),
     ),
     sometimes=("method",),
+    sentence=engine_sentence,
 )
 SIMULATIONS = RowKind(
     "a run",
@@ -884,6 +916,7 @@ SIMULATIONS = RowKind(
         ),
         FAILURE,
     ),
+    sentence=run_sentence,
 )
 MEASUREMENTS = RowKind(
     "a measured pole",
@@ -981,6 +1014,30 @@ MEASUREMENTS = RowKind(
         REASON,
         Field("measurable", "truth", "Whether the pole could be measured"),
     ),
+    sentence=measurement_sentence,
+)
+SUMMARIES = RowKind(
+    "how well the measured poles of a method agree with the predicted ones",
+    fields=(
+        METHOD,
+        Field("points", "integer", "Points that were tried", "points", "d"),
+        Field("measured", "integer", "Points at which a pole could be measured", "measured points", "d"),
+        Field("median_error", "number", "Median difference of the moduli", "median error of |z|", ".1e"),
+        Field("largest_error", "number", "Largest difference of the moduli", "largest error of |z|", ".1e"),
+        Field("called", "integer", "Points at which both verdicts are settled", "verdicts called", "d"),
+        Field("wrong", "integer", "Points of these whose verdicts disagree", "wrong verdicts", "d"),
+        Field("followed", "integer", "Points followed over a revolution", "followed over a revolution", "d"),
+        Field("map_error", "number", "Median error of the rate at rest", "median error at rest", ".1e"),
+        Field("law_error", "number", "Median error of the law's rate", "median error of the law", ".1e"),
+        Field("floquet_error", "number", "Median error of the exact rate", "median error of the exact rate", ".1e"),
+        Field(
+            "wrong_sides",
+            "text",
+            "Of how many points each rate is on the wrong side of one",
+            "on the wrong side of one: at rest, law, exact",
+        ),
+    ),
+    sentence=summary_sentence,
 )
 VERDICT_MAPS = RowKind(
     "a map of simulated verdicts",
@@ -1025,6 +1082,7 @@ VERDICT_MAPS = RowKind(
         ),
         Field("disagreeing", "integer", "Runs not too close to call that disagree", "disagreeing, not too close", "d"),
     ),
+    sentence=verdict_map_sentence,
 )
 FORCED = RowKind(
     "what a method forces on a mechanism",
@@ -1056,6 +1114,7 @@ FORCED = RowKind(
         OBSERVED_ORDER,
         REASON.shown("not compared"),
     ),
+    sentence=forced_sentence,
 )
 WITNESSED = RowKind(
     "a run of an engine that is not ours",
@@ -1085,6 +1144,7 @@ WITNESSED = RowKind(
         ),
         RUN_STEPS.shown("after steps", "d"),
     ),
+    sentence=witness_sentence,
 )
 PROBED = RowKind(
     "the pole in a column of a log, or a method beside it, or a point at which a method has it",
@@ -1158,6 +1218,7 @@ SWEPT = RowKind(
         ),
         FAILURE,
     ),
+    sentence=cost_sentence,
 )
 FRONTS = RowKind(
     "the least error that a method can force with |z_p| at most so large",
@@ -1181,6 +1242,7 @@ FRONTS = RowKind(
             ".2e",
         ),
     ),
+    sentence=front_sentence,
 )
 EXTREMES = RowKind(
     "a check",
@@ -1191,6 +1253,7 @@ EXTREMES = RowKind(
         Field("seen", "text", "What came out", "seen"),
         Field("held", "truth", "Whether what came out is what was expected", "held", text=yes_no_text("held")),
     ),
+    sentence=check_sentence,
 )
 CLAIMS = RowKind(
     "a claim of the paper",
@@ -1207,6 +1270,7 @@ CLAIMS = RowKind(
             values=("confirmed", "confirmed with a correction", "not confirmed", "cannot be tested"),
         ),
     ),
+    sentence=finding_sentence,
 )
 _BY_KEY = {field.key: field for field in DRIVE}
 HELD = RowKind(
@@ -1267,6 +1331,7 @@ HELD = RowKind(
             values=("gains", "rate", "delay", "rate and delay", "kp", "kd", "too little kd"),
         ),
     ),
+    sentence=held_sentence,
 )
 
 ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
