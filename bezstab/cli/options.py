@@ -7,7 +7,7 @@ from dataclasses import fields
 from fractions import Fraction
 from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar, get_args
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar, get_args
 
 import click
 
@@ -15,13 +15,11 @@ from bezstab.engines import ENGINES, Engine, engine_and_values, engine_named
 from bezstab.errors import InputError
 from bezstab.methods import REGISTRY, lookup
 from bezstab.rationals import rational
-from bezstab.show import Format
+from bezstab.show import FIGURE_FORMS, TABLE_FORMS, Format
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
-FigureForm = Literal["png", "svg", "pdf", "none"]
-TableForm = Literal["csv", "npz", "none"]
 EngineValues = tuple[Engine, tuple[Fraction, ...]]
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -156,13 +154,13 @@ output_option = click.option(
     "-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory for what is written."
 )
 figure_option = click.option(
-    "--figure", type=click.Choice(get_args(FigureForm)), default="png", help="Format of the figure."
+    "--figure", type=click.Choice([*FIGURE_FORMS, "none"]), default="png", help="Format of the figure."
 )
 
 
-def table_option(default: TableForm) -> Decorator:
+def table_option(default: str) -> Decorator:
     """Return the option --table."""
-    choice = click.Choice(get_args(TableForm))
+    choice = click.Choice([*TABLE_FORMS, "none"])
     return click.option("--table", type=choice, default=default, help="Format of the table.")
 
 

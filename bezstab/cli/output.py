@@ -12,8 +12,6 @@ from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 import click
 
 from bezstab.cli.options import (
-    FigureForm,
-    TableForm,
     figure_option,
     gathered,
     output_option,
@@ -130,8 +128,8 @@ class Files:
     """Where a command writes (--output), and in which forms (--figure, --table)."""
 
     output: Path
-    figure: FigureForm
-    table: TableForm = "none"
+    figure: str
+    table: str = "none"
 
     @property
     def wanted(self) -> bool:

@@ -33,6 +33,7 @@ from bezstab.show.columns import (
     visible,
 )
 from bezstab.show.fields import Field, RowKind, Sentence, cells
+from bezstab.show.file_forms import FIGURE_FORMS, TABLE_FORMS
 from bezstab.show.held_rows import LATE_COMMANDS, NOT_JUDGED, held_row, timing_words
 from bezstab.show.row_kinds import (
     CHAINS,

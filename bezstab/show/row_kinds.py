@@ -57,8 +57,8 @@ from bezstab.show.sentences import (
 from bezstab.show.words import safety_words
 
 VERDICTS = get_args(Verdict)
-MOVING_VERDICTS = ("converges", "diverges", "not settled for this mechanism")
-OUTCOMES = ("converges", "diverges", "neither", "too close to call")
+MOVING_VERDICTS = ("evidence.MovingVerdict",)
+OUTCOMES = ("evidence.MeasuredVerdict", "evidence.Outcome")
 UNKNOWN_STEP = "where no step is given"
 UNSTABLE = "where the point is not stable"
 NOT_MEASURED = "where nothing could be measured; `reason` says why"
@@ -182,7 +182,7 @@ STABLE_FOR_ALL = Field(
     "stable_for_all",
     "text",
     "Whether all alpha_hat, beta_hat > 0 are stable",
-    values=("proven", "no unstable point found", "no"),
+    values_of=("stability.StableForAll",),
 )
 UNCONDITIONAL_DAMPING_RATIO = Field(
     "unconditional_damping_ratio",
@@ -406,7 +406,13 @@ PREDICTED_Z_ANGLE_DEG = Field(
 PREDICTED_VERDICT = Field(
     "predicted_verdict", "text", "Verdict predicted for the mechanism at rest", "predicted verdict", values=VERDICTS
 )
-MEASURED_VERDICT = Field("measured_verdict", "text", "Verdict of the simulation", "measured verdict", values=OUTCOMES)
+MEASURED_VERDICT = Field(
+    "measured_verdict",
+    "text",
+    "Verdict of the simulation",
+    "measured verdict",
+    values_of=("evidence.MeasuredVerdict", "evidence.Outcome"),
+)
 REASON = Field(
     "reason",
     "text",
@@ -459,7 +465,9 @@ MOVING = (
         "double_pole", "truth", "Whether another pole is so near that the first-order law fails and a bound is shown"
     ),
     Field("settled", "truth", "Whether the terms left out cannot change the verdict on the moving mechanism"),
-    Field("moving_verdict", "text", "What errors do on the moving mechanism", "moving verdict", values=MOVING_VERDICTS),
+    Field(
+        "moving_verdict", "text", "What errors do on the moving mechanism", "moving verdict", values_of=MOVING_VERDICTS
+    ),
     Field(
         "safe_speed",
         "number",
@@ -591,7 +599,7 @@ VARYING = (
         "text",
         "Whether errors decay for every sequence of steps",
         "varying steps",
-        values=("proven", "refuted", "not known"),
+        values_of=("stability.Varying",),
     ),
     Field("varying_h_min", "number", "Smallest step of such a sequence", unit="s"),
     Field("varying_h_max", "number", "Largest step of such a sequence", unit="s"),
@@ -854,7 +862,7 @@ ENGINES_LISTED = RowKind(
             "text",
             "Where the engine's feedback acts",
             "level",
-            values=("acceleration", "velocity", "position"),
+            values_of=("engines.Level",),
         ),
         METHOD.shown("method", text=lambda row: str(row["method"] or "yours")),
         Field("parameters", "text", "What the engine calls the feedback's parameters", "parameters"),
@@ -933,7 +941,9 @@ MEASUREMENTS = RowKind(
         ),
         PREDICTED_Z_ABS.shown("predicted |z|", ".6f"),
         Field("law_z_abs", "number", "Modulus predicted by the first-order law of the motion", "|z| by the law", ".6f"),
-        Field("law_verdict", "text", "Verdict predicted by the first-order law of the motion", values=MOVING_VERDICTS),
+        Field(
+            "law_verdict", "text", "Verdict predicted by the first-order law of the motion", values_of=MOVING_VERDICTS
+        ),
         Field(
             "floquet_z_abs",
             "number",
@@ -1328,7 +1338,7 @@ HELD = RowKind(
             "What an unstable drive would be stable without, or which number of a stable one is nearest to its end",
             "used up",
             null="where none has an end",
-            values=("gains", "rate", "delay", "rate and delay", "kp", "kd", "too little kd"),
+            values_of=("questions.UsedUp",),
         ),
     ),
     sentence=held_sentence,
