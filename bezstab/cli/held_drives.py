@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from bezstab.cli.options import NUMBER, ParsedType, gathered
+from bezstab.cli.options import NUMBER, ParsedType, gathered, typed_beside
 from bezstab.cli.output import Files, for_reading, show_rows, show_text
 from bezstab.engines import Drive
 from bezstab.errors import InputError
@@ -38,6 +38,8 @@ class HeldTiming:
             return None
         if drive is None or h is None:
             raise InputError("--every, --late and --filter are about a drive: they need --pd and --h")
+        if self.filter_seconds is not None and self.filter_seconds < 0:
+            raise InputError(f"--filter {float(self.filter_seconds):g}: expected 0 s or more")
         every, filter_steps = 1 if self.every is None else self.every, (self.filter_seconds or Fraction(0)) / h
         return Timing(every=every, late=self.late or Fraction(0), filter_steps=filter_steps)
 
@@ -56,6 +58,16 @@ timing_options = gathered(
 )
 
 
+ABOUT_DRIVES = {"drive", "h", "every", "late", "filter_seconds", "methods", "form"}
+"""Parameters of commands that a question about a held or late drive has."""
+
+
+def refuse_others(asked: str, *allowed: str) -> None:
+    """Raise UsageError for an option of the running command that says nothing of a held or late drive."""
+    if other := typed_beside(ABOUT_DRIVES | set(allowed)):
+        raise click.UsageError(f"{other} does not go with {asked}: this answer is about the drive alone")
+
+
 def held_question(drive: Drive, h: Fraction, timing: "Timing", methods: Sequence[Method]) -> "HeldQuestion":
     """Return the question about a held or late drive: in some ways of applying it, without methods in all four."""
     from bezstab.questions import HeldQuestion
@@ -69,12 +81,19 @@ def check_held(drive: Drive, h: Fraction, timing: "Timing", methods: Sequence[Me
     """Print whether a held or late drive is safe, and what it is that is used up; return whether every way is safe."""
     from bezstab.questions import held_answers
 
+    refuse_others("--every, --late and --filter")
     found = list(held_answers(held_question(drive, h, timing, methods)))
-    rows = [held_row(answer) for answer in found]
-    show_rows(HELD, rows, form, heading=timing_words(timing, float(h)))
+    _show_held(found, form)
+    return all(answer.safe for answer in found)
+
+
+def _show_held(found: "Sequence[HeldAnswer]", form: Format) -> None:
+    """Print what each way of applying one drive does, and what is not judged."""
+    question = found[0].question
+    heading = timing_words(question.timing, float(question.h))
+    show_rows(HELD, [held_row(answer) for answer in found], form, heading=heading)
     if for_reading(form):
         show_text(f"\n{LATE_COMMANDS} {NOT_JUDGED}")
-    return all(answer.safe for answer in found)
 
 
 def region_held(
@@ -93,6 +112,7 @@ def region_held(
     from bezstab.questions import held_answers
     from bezstab.stability import Timing, held_map
 
+    refuse_others("--pd", "quality", "grid", "output", "figure")
     if h is None:
         raise click.UsageError("--pd needs --h: the step in s")
     question = held_question(drive, h, timing or Timing(), methods)
@@ -108,8 +128,7 @@ def region_held(
             return held_figure(answer, held_map(answer.method.name, question.timing, points, own))
 
         files.write_figure(files.path("region", answer.method.name, "held"), draw)
-    rows = [held_row(answer) for answer in found]
-    show_rows(HELD, rows, form, heading=timing_words(question.timing, float(h)))
+    _show_held(found, form)
 
 
 def choose_held(
@@ -123,15 +142,18 @@ def choose_held(
 ) -> bool:
     """Print gains for a bandwidth (Hz) or a time to settle (s) as `check` would; return whether every way is safe."""
     from bezstab.methods import lookup
-    from bezstab.questions import held_gains
+    from bezstab.questions import held_answers, held_gains
     from bezstab.stability import Timing
 
+    refuse_others("--bandwidth, --settle, --every, --late and --filter", "bandwidth", "settle")
     timing = timing or Timing()
     applied = list(methods) or [lookup("SYM")]
     drive = held_gains(inertia, h, timing, bandwidth=bandwidth, settle=settle, methods=applied)
     if for_reading(form):
         show_text(f"kp = {typed_number(drive.kp)}, kd = {typed_number(drive.kd)}\n")
-    return check_held(drive, h, timing, applied, form)
+    found = list(held_answers(held_question(drive, h, timing, applied)))
+    _show_held(found, form)
+    return all(answer.safe for answer in found)
 
 
 def _inertia_or_drive(text: str) -> Drive:

@@ -172,12 +172,6 @@ def region(
 
     held = timing.of(drive, plane.h)
     if drive:
-        others = (compare, accuracy, omega, plane.alpha_beta, engine, scene, speeds, levels, plane.windows)
-        if any(others) or files.table != "none":
-            raise click.UsageError(
-                "--pd draws kd and kp: of the other options only --every, --late, --filter, "
-                "--method, --quality, --grid and --figure go with it"
-            )
         region_held(drive, plane.h, held, methods_typed(methods, has_usual_ones=True), plane.points, files, form)
         return
     if any(level > 1 for level in levels):
