@@ -37,7 +37,7 @@ def engine_sentence(row: Row) -> str:
 
 
 CAUSES = {
-    "gains": "These gains are unstable even if each step computes and applies its torque.",
+    "gains": "These gains are not stable even if each step computes and applies its torque.",
     "rate": "The torque is held too long: the same gains are stable if each step computes it.",
     "delay": "The torque comes too late: the same gains are stable without the delay.",
     "rate and delay": "The torque is held too long and comes too late.",
