@@ -49,7 +49,7 @@ def show_rows(
     """
     if heading and for_reading(form):
         show_text(f"{heading}\n")
-    columns = kind.columns(rows, without)
+    columns = kind.columns(rows, without) if for_reading(form) else []
     answer = render(rows, columns, form)
     if form == "text" and rows and (len(rows) == 1 or not fits(answer, text_width())):
         show_blocks(rows, columns, kind.sentence)
