@@ -20,6 +20,8 @@ from bezstab.show import FIGURE_FORMS, TABLE_FORMS, Format
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
+    from bezstab.mechanism import Projection, Stabilise
+
 EngineValues = tuple[Engine, tuple[Fraction, ...]]
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -235,6 +237,22 @@ def gathered(kind: type, parameter: str, *options: Decorator) -> Decorator:
     return with_options
 
 
+stabilise_options = together(
+    click.option(
+        "--stabilise",
+        type=click.Choice(["baumgarte", "projection", "none"]),
+        default="baumgarte",
+        help="What holds the constraints: feedback with α and β; projection of each new state onto them, in the metric "
+        "of the masses; or nothing, α = β = 0.",
+    ),
+    click.option(
+        "--iterations",
+        type=click.IntRange(min=1),
+        help="With projection: Newton's iterations for the position in each step, at most [as many as reach 1e-12].",
+    ),
+)
+
+
 def both_or_none(alpha: Fraction | None, beta: Fraction | None) -> tuple[Fraction, Fraction] | None:
     """Return the point that --alpha and --beta are, None without them; UsageError if one is missing."""
     if alpha is None and beta is None:
@@ -242,6 +260,25 @@ def both_or_none(alpha: Fraction | None, beta: Fraction | None) -> tuple[Fractio
     if alpha is None or beta is None:
         raise click.UsageError("--alpha and --beta go together: they are one point")
     return alpha, beta
+
+
+def projection_asked_for(stabilise: "Stabilise", iterations: int | None, against: bool = False) -> "Projection | None":
+    """Return the projection that the running command is asked for; UsageError for options that do not go with it.
+
+    `against`: whether there are runs with projection beside those with feedback.
+    """
+    projected = stabilise == "projection" or against
+    if iterations is not None and not projected:
+        raise click.UsageError("--iterations are those of --stabilise projection")
+    if stabilise != "baumgarte":
+        for option in ("alpha", "beta", "physical", "hold", "omega"):
+            if option in click.get_current_context().params and not left_at_default(option):
+                raise click.UsageError(f"--stabilise {stabilise} has no feedback: not with --{option}")
+    if not projected:
+        return None
+    from bezstab.mechanism import Projection
+
+    return Projection(iterations)
 
 
 def typed_beside(allowed: Collection[str]) -> str | None:
