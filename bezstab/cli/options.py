@@ -3,9 +3,11 @@
 import os
 import re
 from collections.abc import Callable, Collection, Iterable
+from dataclasses import fields
 from fractions import Fraction
+from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar, get_args
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar, get_args
 
 import click
 
@@ -13,15 +15,13 @@ from bezstab.engines import ENGINES, Engine, engine_and_values, engine_named
 from bezstab.errors import InputError
 from bezstab.methods import REGISTRY, lookup
 from bezstab.rationals import rational
-from bezstab.show import Format
+from bezstab.show import FIGURE_FORMS, TABLE_FORMS, Format
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
     from bezstab.mechanism import Projection, Stabilise
 
-FigureForm = Literal["png", "svg", "pdf", "none"]
-TableForm = Literal["csv", "npz", "none"]
 EngineValues = tuple[Engine, tuple[Fraction, ...]]
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -123,6 +123,7 @@ SECONDS = ParsedType("seconds", _seconds)
 SPEED = ParsedType("number", _speed)
 SEQUENCE = ParsedType("steps", _sequence)
 METHOD = ParsedType("method", lookup, (*REGISTRY, *WITH_PARAMETERS))
+SHARE = ParsedType("number", lambda text: float(rational(text)))
 ENGINE = ParsedType("NAME", engine_named, ENGINES)
 ENGINE_VALUES = ParsedType("name=values", engine_and_values, [f"{name}=" for name in ENGINES])
 
@@ -155,13 +156,13 @@ output_option = click.option(
     "-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory for what is written."
 )
 figure_option = click.option(
-    "--figure", type=click.Choice(get_args(FigureForm)), default="png", help="Format of the figure."
+    "--figure", type=click.Choice([*FIGURE_FORMS, "none"]), default="png", help="Format of the figure."
 )
 
 
-def table_option(default: TableForm) -> Decorator:
+def table_option(default: str) -> Decorator:
     """Return the option --table."""
-    choice = click.Choice(get_args(TableForm))
+    choice = click.Choice([*TABLE_FORMS, "none"])
     return click.option("--table", type=choice, default=default, help="Format of the table.")
 
 
@@ -222,11 +223,19 @@ def together(*options: Decorator) -> Decorator:
     return with_options
 
 
-file_options = together(output_option, figure_option, table_option("csv"))
-figure_options = together(output_option, figure_option, table_option("none"))
-"""Of a command whose table is long and seldom wanted: it is written when asked for."""
+def gathered(kind: type, parameter: str, *options: Decorator) -> Decorator:
+    """Return one decorator that adds options and hands the command one value of a dataclass, whose fields they are."""
 
-work_options = together(workers_option, scheduler_option, resume_option)
+    def with_options(function: Function, /) -> Function:
+        @wraps(function)
+        def with_one_value(*arguments: Any, **typed: Any) -> Any:
+            own = {field.name: typed.pop(field.name) for field in fields(kind) if field.name in typed}
+            return function(*arguments, **{parameter: kind(**own)}, **typed)
+
+        return together(*options)(with_one_value)  # type: ignore[return-value]  # as wraps has it
+
+    return with_options
+
 
 stabilise_options = together(
     click.option(
