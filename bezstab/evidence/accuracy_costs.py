@@ -262,9 +262,7 @@ def swept_runs(sweep: Sweep, measured: Mapping[str, NDArray[np.generic]]) -> lis
         h = sweep.steps[index]
         order = _observed_order(runs[-1], h, values["trajectory_error"], sweep.reference.error) if runs else None
         advised = sweep.point is None
-        runs.append(
-            Run(method=sweep.method, h=h, order=order, stabilise=sweep.stabilise, advised=advised, **values)
-        )
+        runs.append(Run(method=sweep.method, h=h, order=order, stabilise=sweep.stabilise, advised=advised, **values))
     return runs
 
 

@@ -159,6 +159,44 @@ def test_tradeoff_writes_a_table_without_times_and_two_figures(tmp_path: Path) -
     assert (tmp_path / f"{name}.csv").read_bytes() == first
 
 
+def test_tradeoff_draws_feedback_and_projection_and_the_same_again(tmp_path: Path) -> None:
+    command = "--scene pendulum --method SYM --h 0.01 --h 0.02 --time 0.1 --repeats 1 --against projection"
+    options = [*command.split(), "--alpha", "0.5", "--beta", "0.1", "--workers", "1"]
+    found = rows("tradeoff", *options)
+    assert [(row["stabilise"], row["advised"]) for row in found] == [
+        *[("baumgarte", True)] * 2,
+        *[("baumgarte", False)] * 2,
+        *[("projection", False)] * 2,
+    ]
+    assert [(row["alpha_hat"], row["z_abs"]) for row in found[4:]] == [(0, None)] * 2
+    written = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    assert set(written) == {"tradeoff_pendulum.csv", "tradeoff_pendulum_projection.png"}
+    assert "SYM: for a trajectory error of" in run("tradeoff", *options).stdout
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == written
+
+
+def test_tradeoff_without_feedback_has_no_point() -> None:
+    command = "--scene pendulum --method SYM --h 0.01 --h 0.02 --time 0.1 --repeats 1 --figure none --table none"
+    for held in ("projection", "none"):
+        found = rows("tradeoff", *command.split(), "--stabilise", held, "--workers", "1")
+        assert {(row["stabilise"], row["alpha_hat"], row["z_abs"]) for row in found} == {(held, 0, None)}
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ("--stabilise projection --alpha 1 --beta 1", "--stabilise projection has no feedback: not with --alpha"),
+        ("--against projection --stabilise none", "--against projection has runs with and without feedback: not with"),
+        ("--iterations 1", "--iterations are those of --stabilise projection"),
+    ],
+)
+def test_tradeoff_refuses_what_does_not_go_with_projection_in_a_line(options: str, said: str) -> None:
+    result = run("tradeoff", *options.split())
+    assert result.exit_code == 2
+    assert result.stderr.startswith(f"bezstab: {said}")
+    assert len(result.stderr.splitlines()) == 1
+
+
 SWEEP = "tradeoff --scene pendulum --method SYM --h 0.01 --h 0.02 --time 0.1 --workers 1 --table none"
 
 

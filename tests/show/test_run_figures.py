@@ -1,4 +1,5 @@
 from collections.abc import Sequence
+from fractions import Fraction
 from io import BytesIO
 from itertools import pairwise
 
@@ -9,10 +10,20 @@ from matplotlib.backend_bases import RendererBase
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
 
-from bezstab.evidence import Cost, Run, Sweep, measured_runs, pareto_front, reference_motion, swept_runs, with_fronts
-from bezstab.mechanism import at_speed, compiled_mechanism, initial_state, load_scene, simulated
+from bezstab.evidence import (
+    NO_FEEDBACK,
+    Cost,
+    Run,
+    Sweep,
+    measured_runs,
+    pareto_front,
+    reference_motion,
+    swept_runs,
+    with_fronts,
+)
+from bezstab.mechanism import Projection, at_speed, compiled_mechanism, initial_state, load_scene, simulated
 from bezstab.methods import lookup
-from bezstab.show.run_figures import history_figure, scene_figure, work_precision_figure
+from bezstab.show.run_figures import history_figure, projection_figure, scene_figure, work_precision_figure
 from bezstab.show.style import save
 
 
@@ -70,6 +81,32 @@ def test_the_work_precision_figure_has_every_run_and_rings_the_front(
         name: (line.get_marker(), line.get_markersize()) for name in ("B2", "AB4") for line in [lines_of(axes)[name]]
     }
     assert len(set(shapes.values())) == len(shapes)  # coinciding curves are told apart
+
+
+def test_the_projection_figure_shows_all_three_errors_of_every_way_to_hold_the_constraints() -> None:
+    """A line for each method and way in each axes; filled markers are projection, crosses a point that was given."""
+    scene, steps = load_scene("slider_crank_light"), (0.008, 0.004)
+    true = reference_motion(scene, min(steps), 1.0)
+    ways: list[tuple[tuple[float, float] | None, Projection | None]]
+    ways = [(None, None), ((0.5, 0.1), None), (NO_FEEDBACK, Projection())]
+    sweeps = [
+        Sweep(lookup(name), scene, steps, 1.0, point, False, 1, true, Fraction(14), projection=projection)
+        for name in ("B2", "SYM")
+        for point, projection in ways
+    ]
+    swept = [run for sweep in sweeps for run in swept_runs(sweep, measured_runs(sweep))]
+    figure = projection_figure(with_fronts(swept, true.error, "projection"), scene.name, 0.0)
+    trajectory, constraint, energy = figure.axes
+    errors = ([run.trajectory_error, run.c_max, abs(run.energy_drift)] for run in swept)
+    for axes, of_runs in zip((trajectory, constraint, energy), zip(*errors, strict=True), strict=True):
+        assert [line.get_marker() for line in axes.lines] == ["o", "x", "o"] * 2
+        assert [line.get_markerfacecolor() == "none" for line in axes.lines] == [True, False, False] * 2
+        drawn = [point for line in axes.lines for point in np.array(line.get_xydata()).tolist()]
+        assert drawn == [[run.factorizations, error] for run, error in zip(swept, of_runs, strict=True)]
+        assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
+    (legend,) = figure.legends
+    labels = [text.get_text() for text in legend.get_texts()]
+    assert labels == ["B2", "SYM", "feedback, advised", "feedback, given", "projection"]
 
 
 def lines_of(axes: Axes) -> dict[str, Line2D]:
