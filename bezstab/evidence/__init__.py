@@ -26,7 +26,7 @@ from bezstab.evidence.measured_poles import (
     CLOSE,
     LINEAR,
     Measurement,
-    kicked_constraint_errors,
+    kicked_motions,
     measure_poles,
     random_points,
 )
@@ -112,7 +112,7 @@ __all__ = [
     "forced_motions",
     "growth_rates",
     "halved_steps",
-    "kicked_constraint_errors",
+    "kicked_motions",
     "kicked_responses",
     "likenesses",
     "linted_model",
