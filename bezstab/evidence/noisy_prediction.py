@@ -198,7 +198,7 @@ class _Sum:
             change = -np.linalg.lstsq(current.slopes, current.left_over.ravel(), rcond=None)[0]
             share = 1.0
             while share >= SHORTEST_STEP:
-                following = cls.of(samples, _moved(current.z, share * change.reshape(-1, 2)))
+                following = cls.of(samples, _moved(current.z, np.asarray(share * change).reshape(-1, 2)))
                 if following.squares < current.squares:
                     break
                 share /= 4
@@ -261,8 +261,8 @@ class _Sum:
 
     def errors(self) -> FloatArray:
         """Return the standard error of each pole in the plane, of a pair that of both parts together."""
-        scatter = np.linalg.pinv(self.slopes).reshape(len(self.z), -1)
-        return np.asarray(np.abs(self.z) * self.deviation * np.linalg.norm(scatter, axis=1))
+        of_unknowns = np.sum(np.linalg.pinv(self.slopes) ** 2, axis=1)
+        return np.asarray(np.abs(self.z) * self.deviation * np.sqrt(of_unknowns.reshape(-1, 2).sum(axis=1)))
 
     def visible(self) -> NDArray[np.intp]:
         """Return in how many samples each pole explains more than the noise."""

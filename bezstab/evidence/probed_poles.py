@@ -579,7 +579,8 @@ def _newton_step(equations: FloatArray, points: FloatArray) -> FloatArray:
     first, second = (polyval2d(points[:, 0], points[:, 1], equation) for equation in equations)
     (by_alpha, by_beta), (second_by_alpha, second_by_beta) = _jacobian(equations, points)
     changes = [first * second_by_beta - second * by_beta, second * by_alpha - first * second_by_alpha]
-    return np.stack(changes, axis=1) / (by_alpha * second_by_beta - by_beta * second_by_alpha)[:, np.newaxis]
+    determinant = by_alpha * second_by_beta - by_beta * second_by_alpha
+    return np.stack(changes / determinant, axis=1)
 
 
 def _jacobian(equations: FloatArray, points: FloatArray) -> FloatArray:

@@ -91,13 +91,6 @@ def test_what_a_worker_raises_is_raised_here(tmp_path: Path) -> None:
             list(arriving)
 
 
-def test_busy_workers_are_ended_at_once_where_nobody_waits_for_them() -> None:
-    with worker_pool(1) as workers:
-        busy = workers.start().submit(time.sleep, 1000)
-    with pytest.raises(workers.lost):
-        busy.result(timeout=60)
-
-
 @pytest.fixture
 def cluster() -> Iterator[str]:
     """Run a real scheduler and two workers, each a process of its own, on loopback."""
@@ -141,11 +134,6 @@ def test_a_cluster_does_the_same_work(cluster: str, tmp_path: Path) -> None:
     assert squares(arrived) == [number**2 for number in range(6)]
     assert (tmp_path / "died").exists()  # one worker was lost, and replaced, on the way
     assert os.getpid() not in {int(arrays["by"]) for arrays in arrived.values()}
-
-
-def test_a_scheduler_that_does_not_answer_is_one_line() -> None:
-    with pytest.raises(InputError, match="--scheduler nonsense"), worker_pool(scheduler="nonsense://x"):
-        pass
 
 
 @pytest.mark.slow
