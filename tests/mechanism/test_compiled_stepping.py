@@ -15,6 +15,7 @@ from bezstab.mechanism import Mechanism, compiled_mechanism, load_scene, parse_s
 from bezstab.mechanism import compiled_stepping as module
 from bezstab.methods import lookup
 from bezstab.units import feedback_gains
+from tests.evidence.samples import of_campaign
 from tests.mechanism.test_stepping import H, both
 
 
@@ -26,7 +27,7 @@ def chain_of_twelve() -> Mechanism:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["SYM", "implicit-euler"])
+@pytest.mark.parametrize("name", of_campaign(["SYM", "implicit-euler"], ["SYM"]))
 def test_a_chain_compiled_in_parts_is_the_same(name: str) -> None:
     assert len(both(chain_of_twelve(), name, 100, feedback_gains(0.3, 0.04, H)).t) == 101
 
@@ -90,6 +91,7 @@ def hits(home: Path) -> int:
     return int(subprocess.run(command, env=environment, check=True, capture_output=True, timeout=300).stdout)
 
 
+@pytest.mark.slow
 def test_code_is_kept_for_the_next_process_where_only_the_user_can_write(tmp_path: Path) -> None:
     assert hits(tmp_path) == 0
     assert hits(tmp_path) == 1
@@ -109,6 +111,7 @@ for scene in sys.argv[1:]:
 """
 
 
+@pytest.mark.slow
 def test_scenes_kept_by_different_processes_do_not_share_their_code(tmp_path: Path) -> None:
     """Code from disk is linked by its names, and each process numbers its functions alike."""
     environment = os.environ | {"XDG_CACHE_HOME": str(tmp_path)}
