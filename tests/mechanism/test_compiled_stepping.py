@@ -79,7 +79,7 @@ from bezstab.mechanism.compiled_stepping import machine_steps
 from bezstab.methods import lookup
 mechanism = compiled_mechanism(load_scene("pendulum"))
 assert simulate(mechanism, lookup("SYM"), 1e-3, 0.1, (20.0, 100.0), compiled=True).failure is None
-dispatcher = machine_steps(mechanism, False)
+dispatcher = machine_steps(mechanism, False, False)
 print(sum(dispatcher.stats.cache_hits.values()))
 """
 
@@ -124,4 +124,4 @@ def test_a_further_method_on_a_compiled_scene_compiles_nothing() -> None:
     mechanism = compiled_mechanism(load_scene("pendulum"))
     for name in ("B2", "dopri5"):
         both(mechanism, name, 20, (20.0, 100.0))
-    assert len(module.machine_steps(mechanism, False).signatures) == 1  # type: ignore[attr-defined]
+    assert len(module.machine_steps(mechanism, False, False).signatures) == 1  # type: ignore[attr-defined]
