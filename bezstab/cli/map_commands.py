@@ -108,9 +108,9 @@ def one_pole_sentence(row: Row) -> str:
 @engine_values_option
 @as_typed_option
 @drive_option
-@click.option("--all-poles", is_flag=True, help="Every root, not only the dominant one.")
+@click.option("--all-poles", is_flag=True, help="Print every pole, not only the dominant one.")
 @omega_option
-@moving_scene_option("Also what the motion of this mechanism does to the poles; needs --h.")
+@moving_scene_option("Also say what the motion of this mechanism does to the poles; needs --h.")
 @moving_speed_option
 @format_option
 def poles(
@@ -134,7 +134,7 @@ def poles(
     grow. The verdict is proven in exact arithmetic on the numbers as typed (Schur-Cohn test).
 
     Feedback also makes errors of its own on a mechanism that moves. "error" is that error as a share of the
-    motion's amplitude. "× least" compares it with the error at the goal accurate of `choose`.
+    motion's amplitude. "× least" is how many times as large it is as with `choose --goal accurate`.
 
     Example: bezstab poles --alpha 0.5 --beta 0.1
     """
@@ -187,37 +187,52 @@ def region_sentence(row: Row) -> str:
     default="balanced",
     help="Points per axis of the map: fast 50, balanced 200, fine 1000.",
 )
-@click.option("--grid", type=click.IntRange(2, 4000), help="Points per axis, instead.")
-@click.option("--alpha-range", type=NUMBER, nargs=2, help="α̂ from and to [the region, without islands below 0].")
-@click.option("--beta-range", type=NUMBER, nargs=2, help="β̂ from and to [the region, without islands below 0].")
+@click.option("--grid", type=click.IntRange(2, 4000), help="Points per axis, in place of --quality.")
+@click.option(
+    "--alpha-range", type=NUMBER, nargs=2, help="α̂ is drawn from the first value to the second [over the region]."
+)
+@click.option(
+    "--beta-range", type=NUMBER, nargs=2, help="β̂ is drawn from the first value to the second [over the region]."
+)
 @click.option(
     "--level",
     "levels",
     type=POSITIVE,
     multiple=True,
-    help="Draw |z_p| < LEVEL, below 1, and print its area too. Repeatable. Default: one is drawn, "
-    "a quarter of the way from the least |z_p| to 1.",
+    help="Also draw where |z_p| < LEVEL, below 1, and print the area. Repeatable [one level is drawn, a quarter of the "
+    "way from the least |z_p| to 1].",
 )
-@click.option("--compare", is_flag=True, help="One figure with the boundaries of all methods (default level 1).")
+@click.option("--compare", is_flag=True, help="Draw the boundaries of all methods in one figure, at --level [1].")
 @click.option(
     "--accuracy",
     is_flag=True,
-    help="Draw the error that the feedback forces on a motion over |z_p|, on logarithmic axes, with both best points.",
+    help="Draw the error that the feedback makes on a motion, together with |z_p|, on logarithmic axes.",
 )
 @omega_option
-@click.option("--h", type=SECONDS, help="Step size in s: axes become 2α (1/s) and β² (1/s²).")
-@click.option("--alpha-beta", is_flag=True, help="Mark the axes of the figure in α and β (1/s); needs --h.")
+@click.option("--h", type=SECONDS, help="Step size in s; the axes are then 2α (1/s) and β² (1/s²).")
+@click.option("--alpha-beta", is_flag=True, help="Write α and β (1/s) at the axes of the figure; needs --h.")
 @click.option(
     "--pd",
     "drive",
     type=DRIVE,
-    help="Draw a joint drive over kd and kp instead, and mark these gains (SI units); needs --h.",
+    help="Draw a joint drive in the plane of kd and kp, and mark these gains (SI units); needs --h.",
 )
 @timing_options
-@click.option("--engine", metavar="NAME", type=ENGINE, help="Mark that engine's defaults and rules; needs --h.")
-@moving_scene_option("Also the region of this mechanism as it moves, or with --accuracy its motion; needs --h.")
 @click.option(
-    "--speed", "speeds", type=SPEED, multiple=True, help="With --scene: times the scene's own. Repeatable [1]."
+    "--engine",
+    metavar="NAME",
+    type=ENGINE,
+    help="Mark what this engine's default values and rules of thumb are; needs --h.",
+)
+@moving_scene_option(
+    "Also draw the region of this mechanism as it moves; with --accuracy the motion is its own. Needs --h."
+)
+@click.option(
+    "--speed",
+    "speeds",
+    type=SPEED,
+    multiple=True,
+    help="With --scene: so many times as fast as given there. Repeatable [1].",
 )
 @format_option
 def region(
@@ -246,13 +261,13 @@ def region(
 ) -> None:
     """Draw where each method is stable, and |z_p| there.
 
-    Prints the limits and the area of the exact region, the smallest |z_p| and where it is. Writes
-    region_METHOD.png. --table csv also writes α̂, β̂, |z_p| and ∠z_p, or with --compare the boundary curves.
+    Prints how far the exact region reaches, its area, the smallest |z_p| and where that is. Writes region_METHOD.png.
+    --table csv also writes α̂, β̂, |z_p| and ∠z_p, or with --compare the boundary curves.
 
     --scene also draws the region of that mechanism as it moves, into region_METHOD_SCENE. --accuracy draws another
-    map, region_METHOD_accuracy: the error that the feedback forces on position and velocity, as a share of a
-    motion. --pd draws a map for each way of applying a joint drive, region_METHOD_held, over kd and kp; its torque
-    may be computed every few steps (--every) and come late (--late).
+    map, region_METHOD_accuracy: the error that the feedback makes in position and velocity, as a share of the motion.
+    --pd draws region_METHOD_held for each way of applying a joint drive. Its axes are kd and kp. The torque may be
+    computed every few steps (--every) and come late (--late).
 
     Example: bezstab region --method B4
     """
@@ -269,12 +284,14 @@ def region(
     if any(level > 1 for level in levels):
         raise InputError(f"--level {float(max(levels)):g}: must be at most 1, the stability boundary")
     if engine and (h is None or compare):
-        raise click.UsageError("--engine marks one map and needs --h: the step in s")
+        raise click.UsageError(
+            "--engine marks points of one map: it needs --h, the step in s, and does not go with --compare"
+        )
     if alpha_beta and h is None:
-        raise click.UsageError("--alpha-beta marks the axes in α and β and needs --h: the step in s")
+        raise click.UsageError("--alpha-beta writes α and β at the axes: it needs --h, the step in s")
     methods = methods_for(methods_typed(methods, engine is not None), engine, None)
     if scene and compare:
-        raise click.UsageError("--scene draws one map for each method: not with --compare")
+        raise click.UsageError("--compare does not go with --scene, which draws one map for each method")
     motion = _motion_asked(accuracy, omega, compare, alpha_beta, speeds, scene, h)
     turnings = {} if motion else _turnings(scene, speeds or [Fraction(1)], h)
     if compare and len(levels) > 1:
@@ -329,13 +346,13 @@ def _motion_asked(
     """Return the motion of --accuracy, None without it; UsageError for an option that does not go with it, h in s."""
     if not accuracy:
         if omega is not None:
-            raise click.UsageError("--omega goes with --accuracy: it is the motion on which errors are told")
+            raise click.UsageError("--omega needs --accuracy: it is the motion that the errors are about")
         return None
     if compare or alpha_beta or len(speeds) > 1:
         other = "--compare" if compare else "--alpha-beta" if alpha_beta else "several --speed"
-        raise click.UsageError(f"--accuracy draws one map for each method, on logarithmic axes: not with {other}")
+        raise click.UsageError(f"{other} does not go with --accuracy, which draws one map for each method")
     if speeds and scene is None:
-        raise click.UsageError("--speed goes with --scene: it is the mechanism that is so many times as fast")
+        raise click.UsageError("--speed needs --scene: it says how fast that mechanism moves")
     from bezstab.questions import motion_of
 
     return motion_of(omega, scene, speeds[0] if speeds else Fraction(1), h)
@@ -366,7 +383,7 @@ def _check_window(option: str, window: Window | None) -> None:
         return
     typed = f"{option} {float(window[0]):g} {float(window[1]):g}"
     if not float(window[0]) < float(window[1]):
-        raise InputError(f"{typed}: the first must be the smaller")
+        raise InputError(f"{typed}: the first value must be smaller than the second")
     if max(abs(window[0]), abs(window[1])) > MOST_DRAWN:
         raise InputError(f"{typed}: expected at most {MOST_DRAWN:g}")
 
@@ -631,14 +648,17 @@ def whole_method_sentence(row: Row) -> str:
 @click.option("--latex", is_flag=True, help="Formulas as LaTeX.")
 @format_option
 def methods(methods: Sequence[Method], latex: bool, form: Format) -> None:
-    """List the methods, or show those that are named whole.
+    """List the methods, or show all about those you name.
 
-    Steps, evaluations of f per step (of an implicit method: per iteration), order of accuracy and error constant,
-    computed from the coefficients; in parentheses the order where forces depend on positions alone. For one method also
-    its recursion, s→z mapping, characteristic polynomial and stability region (the paper's Tables 1, 2), its source,
-    and the error that it forces on a constraint that moves, as a share of that motion.
+    Prints the number of steps, the evaluations of f in a step (of an implicit method in an iteration), the order of
+    accuracy and the error constant. They are computed from the coefficients. In parentheses is the order if forces
+    depend on positions alone.
 
-    SIE, the paper's "Euler semi-implicit", is not what engines call semi-implicit Euler: that is SYM.
+    For a method that you name it also prints the recursion, s→z mapping, characteristic polynomial and stability region
+    (the paper's Tables 1 and 2), the source, and the error that the method makes on a constraint that moves, as a share
+    of that motion.
+
+    SIE is the paper's "Euler semi-implicit". It is not what engines call semi-implicit Euler: that is SYM.
 
     Example: bezstab methods B4
     """
@@ -696,10 +716,11 @@ def member_sentence(row: Row) -> str:
 @figure_option
 @format_option
 def family(name: str, first: int, last: int | None, output: Path, figure: FigureForm, form: Format) -> None:
-    """Show what becomes of a family as its number of steps n grows.
+    """Show how a family of methods changes with its number of steps n.
 
-    Its region, least |z_p| and error constant. The Bézier methods tend to a limit with a region of its own; the
-    regions of Adams and Bashforth shrink to nothing, but each step gains an order. The figure has both.
+    Prints the area of each region, the least |z_p| and the error constant. The Bézier methods tend to a limit, which
+    has a region of its own. The regions of the Adams-Bashforth methods shrink to nothing, but each step more gains an
+    order. The figure shows both.
 
     Example: bezstab family bezier --from 2 --to 5
     """
