@@ -144,6 +144,8 @@ def test_the_help_answers_whether_it_is_kp_or_kd() -> None:
     words = " ".join(run("check", "--help").stdout.split())
     assert "stable in an implicit engine may explode in an explicit one." in words
     assert "mostly it is kd that is too large" in words
+    assert "mostly it is kd that is too large" in words
+    assert "mostly it is kd that is too large" in words
 
 
 @pytest.mark.parametrize(
