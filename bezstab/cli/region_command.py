@@ -247,7 +247,7 @@ def _motion_asked(
             raise click.UsageError("--omega needs --accuracy: it is the motion that the errors are about")
         return None
     if compare or plane.alpha_beta or len(speeds) > 1:
-        other = "--compare" if compare else "--alpha-beta" if plane.alpha_beta else "several --speed"
+        other = "--compare" if compare else "--alpha-beta" if plane.alpha_beta else "more than one --speed"
         raise click.UsageError(f"{other} does not go with --accuracy, which draws one map for each method")
     if speeds and scene is None:
         raise click.UsageError("--speed needs --scene: it says how fast that mechanism moves")

@@ -145,8 +145,11 @@ def test_without_a_step_there_is_nothing_in_seconds_and_the_usual_rates() -> Non
     ("command", "said"),
     [
         ("region --accuracy --compare", "--compare does not go with --accuracy, which draws one map for each method"),
-        ("region --accuracy --alpha-beta --h 0.01", "not with --alpha-beta"),
-        ("region --accuracy --scene driven_four_bar --h 0.01 --speed 1 --speed 2", "not with several --speed"),
+        ("region --accuracy --alpha-beta --h 0.01", "--alpha-beta does not go with --accuracy"),
+        (
+            "region --accuracy --scene driven_four_bar --h 0.01 --speed 1 --speed 2",
+            "more than one --speed does not go with --accuracy",
+        ),
         ("region --accuracy --speed 2", "--speed needs --scene"),
         ("region --accuracy --scene driven_four_bar", "--scene needs --h"),
         ("region --accuracy --omega 3", "--omega needs --h"),
