@@ -5,7 +5,8 @@ import pytest
 
 from bezstab.methods import lookup
 from bezstab.stability import Region, region
-from bezstab.stability.plane_cells import _split, strips_shape, tanh_sinh
+from bezstab.stability.plane_cells import _split, strips_shape
+from bezstab.stability.quadratures import tanh_sinh
 from tests.reference.enclosed_points import enclosed
 from tests.reference.second_order_methods import as_second_order, companion_poles, newmark, second_order
 
