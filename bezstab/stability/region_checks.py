@@ -44,9 +44,10 @@ TURNED = 0.1  # rad, from one chord to the next: a corner
 MERGED = 1e-9  # of what is seen: ends of panels that lie closer are one
 PANEL_STEP = 1 / 4  # of tanh-sinh: 25 nodes, good to 1e-9 where every other one is good to 1e-5
 AREA_ERROR = 1e-6  # of the area: all but slivers agree to 1e-8, and those to what float64 knows of their edges
-CURVE_ERROR = 5e-3  # of the area: chords enclose less by 1e-5, but far out, where few are drawn, by a thousandth
-EFFORTS = ((1e-5, 128), (1e-6, 256), (1e-7, 512))  # of the area, half the nodes off by it: halve; points on a line
-HALVINGS = 9  # of a panel at most: towards a kink its error falls fourfold with each
+CURVE_ERROR = 2e-2  # of the area: chords enclose less by 1e-5, and of a region of 1e10, drawn by few, by a hundredth
+EFFORTS = ((1e-5, 128), (1e-6, 256))  # of the area, half the nodes off by it: halve; points on a line
+PROVEN_EFFORT = (1e-4, 8)  # the same, of verdicts in rationals: next to one float64 may tell no edge well enough
+HALVINGS = 8  # of a panel at most: towards a kink its error falls fourfold with each
 AT_ONCE = 15  # of a bracket's places: to ask about one takes as long as about a dozen
 CROSSING_HALVINGS = 36  # of a bracket of a hundredth of a line: its end is good to 1e-12 of the line
 AT_END = 1e-9  # of what is seen: a drawn point that is so near to an end has it, perhaps as the tip of a cusp
@@ -237,7 +238,7 @@ def _looked_at(shape: Shape, axis: int, place: float, outwards: int) -> FloatArr
         (crossed,) = _crossings(shape, np.array([place]), axis)
         bases.append((crossed[1:] + crossed[:-1]) / 2)
     away = np.ptp(shape.view[1 - axis]) * np.concatenate([-TOWARDS, [0.0], TOWARDS])
-    return (np.concatenate(bases)[:, np.newaxis] + away).ravel()
+    return np.asarray(np.add.outer(np.concatenate(bases), away).ravel(), float)
 
 
 def _least_along(modulus: Callable[[FloatArray], FloatArray], along: FloatArray) -> FloatArray:
@@ -267,8 +268,9 @@ def _least_along(modulus: Callable[[FloatArray], FloatArray], along: FloatArray)
 
 def _check_lines(name: str, shape: Shape, inside: Verdicts, proven: Verdicts) -> None:
     """Raise NumericalError unless lengths of lines add up to the area, and to what the curves enclose, within view."""
-    for rough, points in EFFORTS:
-        area, between = _area_by_lines(shape, inside, proven, rough, points)
+    efforts = [*((inside, AT_ONCE, *effort) for effort in EFFORTS), (proven, 1, *PROVEN_EFFORT)]
+    for verdicts, at_once, rough, points in efforts:
+        area, between = _area_by_lines(shape, verdicts, at_once, rough, points)
         size = area if shape.area is None else shape.area
         if abs(area - size) <= AREA_ERROR * size and between <= CURVE_ERROR * size:
             return
@@ -277,16 +279,18 @@ def _check_lines(name: str, shape: Shape, inside: Verdicts, proven: Verdicts) ->
     raise NumericalError(f"{name}: the area {shape.area:.9g} is {area:.9g} by slices")
 
 
-def _area_by_lines(shape: Shape, inside: Verdicts, proven: Verdicts, rough: float, points: int) -> tuple[float, float]:
+def _area_by_lines(shape: Shape, verdicts: Verdicts, at_once: int, rough: float, points: int) -> tuple[float, float]:
     """Return the area by the poles' verdicts, and how much of it is between the curves and the poles' own edges.
 
-    Panels are halved where half the nodes give another integral, by the share `rough` of the area. `points`: on a line.
+    Panels are halved where half the nodes give another integral, by the share `rough` of the area. `points`: on a line;
+    at_once: of a bracket.
     """
     panels = _panels(shape)
     area = between = 0.0
     for halving in range(HALVINGS + 1):
         lines, weights = tanh_sinh(panels[:, :1], panels[:, 1:], PANEL_STEP)
-        by_poles, by_curves = (each.reshape(lines.shape) for each in _lengths(shape, lines.ravel(), inside, points))
+        lengths = _lengths(shape, lines.ravel(), verdicts, at_once, points)
+        by_poles, by_curves = (each.reshape(lines.shape) for each in lengths)
         terms, off = weights * by_poles, (weights * np.abs(by_poles - by_curves)).sum(axis=1)
         whole, from_half = terms.sum(axis=1), 2 * terms[:, ::2].sum(axis=1)
         size = area + whole.sum() if shape.area is None else shape.area
@@ -328,7 +332,9 @@ def _panels(shape: Shape) -> FloatArray:
     return np.stack([places[:-1], places[1:]], axis=1)
 
 
-def _lengths(shape: Shape, lines: FloatArray, verdicts: Verdicts, points: int) -> tuple[FloatArray, FloatArray]:
+def _lengths(
+    shape: Shape, lines: FloatArray, verdicts: Verdicts, at_once: int, points: int
+) -> tuple[FloatArray, FloatArray]:
     """Return how much of each line of constant alpha_hat is stable within view: by the poles, and by the curves.
 
     Verdicts are asked for at so many points of the line, and between crossings of the curves; where they turn is found
@@ -349,7 +355,7 @@ def _lengths(shape: Shape, lines: FloatArray, verdicts: Verdicts, points: int) -
         line = np.broadcast_to(lines[which[turn]], place.shape)
         return np.asarray(verdicts(line, place) == entering)
 
-    place = bisected(arrived, beta_hat[turn], beta_hat[turn + 1], CROSSING_HALVINGS, AT_ONCE)[1]
+    place = bisected(arrived, beta_hat[turn], beta_hat[turn + 1], CROSSING_HALVINGS, at_once)[1]
     by_poles, by_curves = np.zeros(len(lines)), np.zeros(len(lines))
     starts = np.searchsorted(which, np.arange(len(lines)))
     for line, crossed in enumerate(crossings):

@@ -84,6 +84,7 @@ def with_a_bulge(bounds: Bounds) -> Bounds:
 )
 @pytest.mark.parametrize("wrong", [without_arc, without_interval, with_a_shorter_interval, with_a_bulge])
 @pytest.mark.parametrize(("method", "level"), REGIONS, ids=identify)
+@pytest.mark.slow_except("B4", "RK4")
 def test_a_wrong_region_is_no_answer(
     method: Method, level: float, wrong: Wrong, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -94,6 +95,7 @@ def test_a_wrong_region_is_no_answer(
 
 @pytest.mark.parametrize("wrong", [without_arc, without_interval])
 @pytest.mark.parametrize(("method", "level"), REGIONS, ids=identify)
+@pytest.mark.slow_except("B4")
 def test_a_finer_sampling_puts_it_right(
     method: Method, level: float, wrong: Wrong, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -185,6 +187,7 @@ WRONG: dict[str, Any] = {
 
 @pytest.mark.promise("Every region, best point, choice and margin")
 @pytest.mark.parametrize(("name", "level"), SHAPES[:-2])
+@pytest.mark.slow_except("B4", "half", "kdk", "RK4")
 def test_a_wrong_size_of_right_curves_is_no_answer(name: str, level: float) -> None:
     method, shape = found(name, level)
     for change, wrong in WRONG.items():
@@ -193,6 +196,7 @@ def test_a_wrong_size_of_right_curves_is_no_answer(name: str, level: float) -> N
 
 
 @pytest.mark.parametrize(("name", "level"), SHAPES)
+@pytest.mark.slow_except("half", "kdk", "RK4", "ruth3")
 def test_a_shape_of_another_level_or_none_is_no_answer(name: str, level: float) -> None:
     method, shape = found(name, level)
     with pytest.raises(NumericalError, match="where none is"):
@@ -202,6 +206,7 @@ def test_a_shape_of_another_level_or_none_is_no_answer(name: str, level: float) 
 
 
 @pytest.mark.parametrize(("name", "level"), SHAPES[-2:])
+@pytest.mark.slow_except("imex")
 def test_an_unbounded_shape_passes_but_not_with_a_wrong_edge_or_a_wrong_way_out(name: str, level: float) -> None:
     method, shape = found(name, level)
     check_region(method, level, shape)
