@@ -1,20 +1,25 @@
-"""Drives whose controller is slower than the physics: the options of check and choose, and what is printed."""
+"""Drives whose controller is slower than the physics: the options of check, choose and region, what is printed."""
 
 from collections.abc import Sequence
 from fractions import Fraction
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from bezstab.cli.options import NUMBER, Function, ParsedType
-from bezstab.cli.output import for_reading, show_rows, show_text
+from bezstab.cli.options import NUMBER, FigureForm, Function, ParsedType
+from bezstab.cli.output import file_name, for_reading, show_rows, show_text, write_figure
 from bezstab.engines import Drive
 from bezstab.errors import InputError
+from bezstab.files import output_directory
 from bezstab.methods import Method
 from bezstab.rationals import rational, typed_number
 from bezstab.show import HELD, LATE_COMMANDS, NOT_JUDGED, Format, held_row, held_sentence, timing_words
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from bezstab.questions import HeldAnswer, HeldQuestion
     from bezstab.stability import Timing
 
 
@@ -50,21 +55,62 @@ def timing_typed(
     )
 
 
+def held_question(drive: Drive, h: Fraction, timing: "Timing", methods: Sequence[Method]) -> "HeldQuestion":
+    """Return the question about a held or late drive: in some ways of applying it, without methods in all four."""
+    from bezstab.questions import HeldQuestion
+
+    if not methods:
+        return HeldQuestion(drive=drive, h=h, timing=timing)
+    return HeldQuestion(drive=drive, h=h, timing=timing, methods=tuple(methods))
+
+
 def check_held(drive: Drive, h: Fraction, timing: "Timing", methods: Sequence[Method], form: Format) -> bool:
     """Print whether a held or late drive is safe, and what it is that is used up; return whether every way is safe."""
-    from bezstab.questions import HeldQuestion, held_answers
+    from bezstab.questions import held_answers
 
-    question = (
-        HeldQuestion(drive=drive, h=h, timing=timing, methods=tuple(methods))
-        if methods
-        else HeldQuestion(drive=drive, h=h, timing=timing)
-    )
-    found = list(held_answers(question))
+    found = list(held_answers(held_question(drive, h, timing, methods)))
     rows = [held_row(answer) for answer in found]
     show_rows(rows, HELD.columns(rows), form, timing_words(timing, float(h)), held_sentence)
     if for_reading(form):
         show_text(f"\n{LATE_COMMANDS} {NOT_JUDGED}")
     return all(answer.safe for answer in found)
+
+
+def region_held(
+    drive: Drive,
+    h: Fraction | None,
+    timing: "Timing | None",
+    methods: Sequence[Method],
+    points: int,
+    output: Path,
+    figure: FigureForm,
+    form: Format,
+) -> None:
+    """Write the map of each way of applying a held or late drive over kd and kp; print what `check` prints.
+
+    UsageError without h (s). Without a timing each step computes its torque and applies it.
+    """
+    from bezstab.questions import held_answers
+    from bezstab.stability import Timing, held_map
+
+    if h is None:
+        raise click.UsageError("--pd needs --h: the step in s")
+    question = held_question(drive, h, timing or Timing(), methods)
+    if figure != "none":
+        output_directory(output)
+    found = list(held_answers(question))
+    alpha_hat, beta_hat = drive.point(h)
+    own = float(alpha_hat), float(beta_hat)
+    for answer in found:
+
+        def draw(answer: "HeldAnswer" = answer) -> "Figure":
+            from bezstab.show import held_figure
+
+            return held_figure(answer, held_map(answer.method.name, question.timing, points, own))
+
+        write_figure(output / f"region_{file_name(answer.method.name)}_held", draw, figure)
+    rows = [held_row(answer) for answer in found]
+    show_rows(rows, HELD.columns(rows), form, timing_words(question.timing, float(question.h)), held_sentence)
 
 
 def choose_held(

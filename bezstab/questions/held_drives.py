@@ -62,8 +62,7 @@ class HeldQuestion:
         for method in self.methods:
             if method.name not in DRIVE_METHODS:
                 raise InputError(
-                    f"--every, --late, --filter with --method {method.name}: expected a way of applying a drive, "
-                    f"{', '.join(DRIVE_METHODS)}"
+                    f"--method {method.name}: expected a way of applying a drive, {', '.join(DRIVE_METHODS)}"
                 )
 
 

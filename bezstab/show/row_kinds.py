@@ -1271,7 +1271,7 @@ HELD = RowKind(
 
 ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
     "poles": (POLES,),
-    "region": (REGIONS,),
+    "region": (REGIONS, HELD),
     "methods": (
         LISTED_METHODS,
         NAMED_METHODS,

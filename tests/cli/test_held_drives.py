@@ -1,6 +1,7 @@
 """Drives that are held or late, on the command line: what is printed, and what is refused."""
 
 import json
+from pathlib import Path
 
 import pytest
 
@@ -56,6 +57,47 @@ def test_gains_for_a_bandwidth_are_printed_and_safe() -> None:
 
 def test_an_inertia_is_enough_to_choose_a_drive() -> None:
     assert rows("choose", "--pd", "0.1", "--h", "0.002") == rows("choose", "--pd", "7,7,0.1", "--h", "0.002")
+
+
+def test_a_map_of_each_way_is_written_and_the_rows_are_those_of_check(tmp_path: Path) -> None:
+    late = ("--every", "4", "--late", "1")
+    files = ("--quality", "fast", "-o", str(tmp_path))
+    assert rows("region", *PD, *late, *files) == rows("check", *PD, *late)
+    ways = ("SYM", "imex-euler", "stable-pd", "implicit-euler")
+    assert sorted(file.name for file in tmp_path.iterdir()) == sorted(f"region_{way}_held.png" for way in ways)
+    before = (tmp_path / "region_SYM_held.png").read_bytes()
+    run("region", *PD, *late, "--method", "SYM", *files)
+    assert (tmp_path / "region_SYM_held.png").read_bytes() == before
+
+
+def test_without_timing_a_map_is_that_of_a_fresh_drive(tmp_path: Path) -> None:
+    (row,) = rows("region", *PD, "--method", "SYM", "--figure", "svg", "--grid", "9", "-o", str(tmp_path))
+    assert (row["every"], row["late"], row["kd_max"]) == (1, 0, pytest.approx(99.8))  # 2 a + b = 4
+    text = (tmp_path / "region_SYM_held.svg").read_text(encoding="utf-8")
+    for words in ("kd (N m s/rad)", "closed form", "kp = 200, kd = 5"):
+        assert words in text
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("--pd", "200,5,0.1", "--every", "4"), "--every, --late and --filter are about a drive: they need --pd and"),
+        (("--pd", "200,5,0.1"), "--pd needs --h"),
+        (("--h", "0.002", "--late", "1"), "they need --pd and --h"),
+        ((*PD, "--every", "101"), "--every 101: expected a whole number of steps from 1 to 100"),
+        ((*PD, "--compare"), "--pd draws kd and kp: of the other options only --every, --late, --filter, --method"),
+        ((*PD, "--level", "0.9"), "--pd draws kd and kp"),
+        ((*PD, "--table", "csv"), "--pd draws kd and kp"),
+        ((*PD, "--method", "RK4"), "--method RK4: expected a way of applying a drive"),
+        (("--pd", "200,5,0", "--h", "0.002"), "inertia 0: expected above 0"),
+    ],
+)
+def test_a_map_that_cannot_be_drawn_is_one_line(arguments: tuple[str, ...], words: str, tmp_path: Path) -> None:
+    result = run("region", *arguments, "-o", str(tmp_path / "new"))
+    assert result.exit_code == 2
+    assert words in " ".join(result.stderr.split())
+    assert result.stdout == ""
+    assert not (tmp_path / "new").exists()
 
 
 @pytest.mark.parametrize(
