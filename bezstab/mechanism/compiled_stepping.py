@@ -74,9 +74,7 @@ Machine code is compiled for its own numbers, so that it knows how long its loop
 """
 
 
-def combine(
-    rows: Rows, row: int, factor: float, registers: FloatArray, room: Room, into: FloatArray
-) -> None:
+def combine(rows: Rows, row: int, factor: float, registers: FloatArray, room: Room, into: FloatArray) -> None:
     """Write the sum that a row of a program stands for, times a factor."""
     for place in range(WIDTH):
         into[place] = 0.0
@@ -328,6 +326,13 @@ def slope(
     raise NotImplementedError
 
 
+GIVEN = "rows, steps, registers, inverses, before, room, judged, states, pivots, counts"
+TAKE = f"""
+def take({GIVEN}):
+ return take_steps({GIVEN})
+"""
+
+
 @cache
 def machine_steps(mechanism: Mechanism, solving: bool, stride: int) -> tuple[TakeSteps, int]:
     """Return the function that takes a mechanism's steps as machine code, and how large a room its variables need.
@@ -341,34 +346,35 @@ def machine_steps(mechanism: Mechanism, solving: bool, stride: int) -> tuple[Tak
     namespace = dict(vars(sys.modules[__name__])) | {"N": n, "STRIDE": stride, "WIDTH": n * stride}
     namespace["math"] = math
 
-    def made(function: Any, **options: Any) -> Any:
+    def made(function: Any, inline: str = "never") -> Any:
         """Return a function as machine code that other machine code calls, under a name of the scene's own.
 
         Code from disk is linked by its names: two scenes must not share any.
         """
         function.__name__ = function.__qualname__ = f"{function.__name__}_{file.parent.name}"
         # where nothing allocates, nothing need count references to arrays: that takes longer than most operations
-        return numba.njit(error_model="numpy", _nrt=False, **INNER, **options)(function)
+        return numba.njit(error_model="numpy", _nrt=False, inline=inline, **INNER)(function)
+
+    def made_a_part(function: Any) -> Any:
+        """Return a function that becomes a part of the one that calls it: what is called once is compiled once."""
+        return made(function, inline="always")
 
     def own(function: Any) -> Any:
         """Return a function of this file that calls what is in the namespace."""
         return FunctionType(function.__code__, namespace, function.__name__)
 
     generated = compiled_source(code.source, math, code.tables)
-    for name in ("take", "given", "accelerations", "slope"):
+    for name in ("take_lines", "given", "accelerations", "slope"):
         if name in generated:
             namespace[name] = generated[name] = made(generated[name])
     for function in (combine, arguments, place_of, invert):
         namespace[function.__name__] = made(own(function))
-    operations = Operations(*(made(own(function), inline="always" if function is not correct else "never") for function in OPERATIONS))
-
-    def kept(function: Any) -> Any:
-        """Return the outermost function as machine code, kept on disk: numba asks where its text stands."""
-        function.__code__ = function.__code__.replace(co_filename=str(file))
-        function.__name__ = function.__qualname__ = f"{function.__name__}_{file.parent.name}"
-        return numba.njit(error_model="numpy", _nrt=False, no_cfunc_wrapper=True, cache=_keep(file))(function)
-
-    steps = stepper(operations, made, kept, solving)
+    operations = [made(own(each)) if each is correct else made_a_part(own(each)) for each in OPERATIONS]
+    # numba keeps what is called from a text with a file, if it has nothing but that text from around it
+    called = {"take_steps": stepper(Operations(*operations), made_a_part, solving)}
+    take = compiled_source(TAKE, math, called, str(file))["take"]
+    take.__name__ = take.__qualname__ = f"take_{file.parent.name}"
+    steps = numba.njit(error_model="numpy", _nrt=False, no_cfunc_wrapper=True, cache=_keep(file))(take)
     _compiled.add((mechanism, solving))
     return steps, code.size
 

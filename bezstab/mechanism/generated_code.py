@@ -445,8 +445,8 @@ def _nonzero_differentials(equations: Equations) -> dict[str, sp.Expr]:
 
 # Machine code
 #
-# Machine code takes runs side by side, each in a lane: an array of n coordinates is `stride` lanes wide for each, and so
-# many of these are used. A run alone has a stride of one, and code without loops over lanes.
+# Machine code takes runs side by side, each in a lane: arrays have room for `stride` lanes of each coordinate, of which
+# as many are taken as there are runs. A run alone has a stride of one, and code without loops over lanes.
 #
 # What turning text into machine code costs grows faster than the text. But the thousands of lines of a long mechanism
 # have a few dozen shapes, as its bodies are alike. So only the shapes become machine code, each once; what a line is
@@ -456,7 +456,7 @@ def _nonzero_differentials(equations: Equations) -> dict[str, sp.Expr]:
 #     W9_7 = C9_47 * C7_47 * 3.0 - L9_5 * W7_5         the same, with other places
 
 LONG = 1000
-"""Lines of an acceleration that is taken by shapes; a shorter one becomes machine code as it is, and takes less time."""
+"""Lines of an acceleration above which it is taken by shapes; a shorter one runs faster as it is."""
 
 OPERAND = re.compile(r"\b(?!(?:sin|cos|sqrt)\b)[A-Za-z_]\w*|\b\d+(?:\.\d*)?(?:e[-+]?\d+)?")
 """A variable or a number in a line."""
@@ -494,7 +494,9 @@ def machine_code(acceleration: AccelerationCode, slopes: Sequence[str], stride: 
     ]
     if slopes:
         along = [
-            f"d{name}{i} = direction[{half}, {i * stride} + lane]" for half, name in enumerate("qv") for i in coordinates
+            f"d{name}{i} = direction[{half}, {i * stride} + lane]"
+            for half, name in enumerate("qv")
+            for i in coordinates
         ]
         changes = [f"found[{i * stride} + lane] = da{i}" for i in coordinates]
         source += [
@@ -538,7 +540,7 @@ def _code_by_shapes(acceleration: AccelerationCode, slopes: Sequence[str], strid
 
 
 ACCELERATIONS_BY_SHAPES = """
-def take(shapes, places, room):
+def take_lines(shapes, places, room):
  p = 0
  for number in range(len(shapes)):
   shape, count = shapes[number]
@@ -549,7 +551,7 @@ def given(t, gains, state, room, lane):
   room[number_places[k]] = numbers[k]
  for i in range({n}):
   room[{q0} + i], room[{q0} + {n} + i] = state[0, i * {stride} + lane], state[1, i * {stride} + lane]
- take(acceleration_shapes, acceleration_places, room)
+ take_lines(acceleration_shapes, acceleration_places, room)
 def accelerations(t, gains, state, found, room):
  for lane in range(gains.shape[1]):
   given(t, gains, state, room, lane)
@@ -567,7 +569,7 @@ def slope(t, gains, state, direction, found, room, lane):
  for i in range({n}):
   place = i * {stride} + lane
   room[{dq0} + i], room[{dq0} + {n} + i] = direction[0, place], direction[1, place]
- take(slope_shapes, slope_places, room)
+ take_lines(slope_shapes, slope_places, room)
  for i in range({n}):
   found[i * {stride} + lane] = room[{da0} + i]
 """

@@ -197,15 +197,9 @@ def unchanged(function: Any) -> Any:
     return function
 
 
-def stepper(
-    operations: Operations,
-    made: Callable[[Any], Any] = unchanged,
-    kept: Callable[[Any], Any] = unchanged,
-    solving: bool = True,
-) -> TakeSteps:
-    """Return the function that takes steps by these operations.
+def stepper(operations: Operations, made: Callable[[Any], Any] = unchanged, solving: bool = True) -> TakeSteps:
+    """Return the function that takes steps by these operations; `made` makes machine code of it, or leaves it.
 
-    `made` and `kept` make machine code of functions, or leave them; that which takes steps is `kept` for later.
     `solving`: whether programs have equations to solve, which is most of what there is to compile.
     """
     change_step, evaluate, finish, begin, residual, remember, correct, renew, advance, end = operations
@@ -259,7 +253,7 @@ def stepper(
 
     solve = solve_group if solving else nothing_solved
 
-    @kept
+    @made
     def take_steps(
         rows: Rows,
         steps: Steps,
