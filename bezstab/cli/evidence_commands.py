@@ -5,7 +5,7 @@ from fractions import Fraction
 from functools import partial
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -27,9 +27,12 @@ from bezstab.cli.options import (
     left_at_default,
     methods_option,
     physical_option,
+    projection_asked_for,
     scene_option,
     speed_option,
+    stabilise_options,
     step_option,
+    typed_beside,
     work_options,
 )
 from bezstab.cli.output import (
@@ -54,7 +57,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from bezstab.evidence import Cost, Held
-    from bezstab.mechanism import Start
+    from bezstab.mechanism import Stabilise, Start
 
 MOST_SWEPT = 10**6  # the reference takes up to 32 times as many
 MOST_LISTED = 20  # times in a message
@@ -78,7 +81,7 @@ def run_sentence(row: Row) -> str:
 @click.option("--alpha", type=NUMBER, default="0.5", help="α̂; α in 1/s with --physical.")
 @click.option("--beta", type=NUMBER, default="0.1", help="β̂; β in 1/s with --physical.")
 @physical_option
-@click.option("--no-stabilization", is_flag=True, help="No feedback: α = β = 0.")
+@stabilise_options
 @step_option
 @click.option(
     "--steps",
@@ -107,7 +110,8 @@ def simulate(
     alpha: Fraction,
     beta: Fraction,
     physical: bool,
-    no_stabilization: bool,
+    stabilise: "Stabilise",
+    iterations: int | None,
     h: Fraction,
     sequence: Sequence[Fraction] | None,
     hold: bool,
@@ -128,17 +132,22 @@ def simulate(
     --steps gives a sequence of step lengths, for any one-step method. Work and energy drift are then integrated by
     the trapezoidal rule, which is less exact.
 
+    --stabilise projection replaces the feedback: after each step positions, then velocities go back onto the
+    constraints, by the least change in the metric of the masses. S = C_q M⁻¹ C_qᵀ is factored once for each evaluation,
+    and once or more for each projection: "factorizations".
+
     Example: bezstab simulate --method AB4 --alpha 0.5 --beta 0.101 --time 2
     """
     from bezstab import mechanism
     from bezstab.show import history_arrays, simulation_row
 
-    if physical:
-        alpha, beta = to_dimensionless(alpha, beta, h)
-    elif not (no_stabilization or sequence or left_at_default("h")):
-        say_if_units_were_mistaken([method], alpha, beta, h)
-    if no_stabilization:
+    projection = projection_asked_for(stabilise, iterations)
+    if stabilise != "baumgarte":
         alpha = beta = Fraction(0)
+    elif physical:
+        alpha, beta = to_dimensionless(alpha, beta, h)
+    elif not (sequence or left_at_default("h")):
+        say_if_units_were_mistaken([method], alpha, beta, h)
     if hold and not sequence:
         raise click.UsageError("--hold goes with --steps: it is about steps that vary")
     _check_number_of_steps(time, min(sequence) if sequence else h, method)
@@ -147,7 +156,10 @@ def simulate(
     if figure != "none" or table != "none":
         output_directory(output)
     moving = mechanism.compiled_mechanism(mechanism.at_speed(mechanism.load_scene(scene), float(speed)))
-    run = {"duration": float(time), "alpha_hat": float(alpha), "beta_hat": float(beta), "perturb": float(perturb)}
+    if projection:
+        mechanism.check_projected(method)
+    point = {"alpha_hat": float(alpha), "beta_hat": float(beta)}
+    run: dict[str, Any] = {"duration": float(time), "perturb": float(perturb), "projection": projection, **point}
     if sequence:
         lengths = [float(step) for step in sequence]
         simulation = mechanism.simulated_with_steps(moving, method, sequence=lengths, h=float(h), hold=hold, **run)
@@ -392,11 +404,8 @@ def _predicted_trade(
 
 def _check_nothing_simulated(steps: Sequence[Fraction]) -> None:
     """Raise UsageError for an option of the running command that is about runs, beside --predicted."""
-    context = click.get_current_context()
-    for parameter in context.command.params:
-        typed = context.get_parameter_source(str(parameter.name)) == click.core.ParameterSource.COMMANDLINE
-        if typed and parameter.name not in PREDICTED:
-            raise click.UsageError(f"--predicted simulates nothing: not with {parameter.opts[0]}")
+    if other := typed_beside(PREDICTED):
+        raise click.UsageError(f"--predicted simulates nothing: not with {other}")
     if len(steps) > 1:
         raise click.UsageError(f"--predicted takes one --h, but {len(steps)} were given")
     if left_at_default("scene") and not left_at_default("speed"):

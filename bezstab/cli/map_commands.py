@@ -261,12 +261,6 @@ def region(
 
     timing = timing_typed(every, late, filter_seconds, drive, h)
     if drive:
-        others = (compare, accuracy, omega, alpha_beta, engine, scene, speeds, levels, alpha_range, beta_range)
-        if any(others) or table != "none":
-            raise click.UsageError(
-                "--pd draws kd and kp: of the other options only --every, --late, --filter, "
-                "--method, --quality, --grid and --figure go with it"
-            )
         ways = methods_typed(methods, has_usual_ones=True)
         region_held(drive, h, timing, ways, grid or QUALITY[quality], output, figure, form)
         return

@@ -2,7 +2,7 @@
 
 import os
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar, get_args
@@ -17,6 +17,8 @@ from bezstab.show import Format
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
+
+    from bezstab.mechanism import Projection, Stabilise
 
 FigureForm = Literal["png", "svg", "pdf", "none"]
 TableForm = Literal["csv", "npz", "none"]
@@ -226,6 +228,21 @@ figure_options = together(output_option, figure_option, table_option("none"))
 
 work_options = together(workers_option, scheduler_option, resume_option)
 
+stabilise_options = together(
+    click.option(
+        "--stabilise",
+        type=click.Choice(["baumgarte", "projection", "none"]),
+        default="baumgarte",
+        help="What holds the constraints: feedback with α and β; projection of each new state onto them, in the metric "
+        "of the masses; or nothing, α = β = 0.",
+    ),
+    click.option(
+        "--iterations",
+        type=click.IntRange(min=1),
+        help="With projection: Newton's iterations for the position in each step, at most [as many as reach 1e-12].",
+    ),
+)
+
 
 def both_or_none(alpha: Fraction | None, beta: Fraction | None) -> tuple[Fraction, Fraction] | None:
     """Return the point that --alpha and --beta are, None without them; UsageError if one is missing."""
@@ -234,6 +251,35 @@ def both_or_none(alpha: Fraction | None, beta: Fraction | None) -> tuple[Fractio
     if alpha is None or beta is None:
         raise click.UsageError("--alpha and --beta go together: they are one point")
     return alpha, beta
+
+
+def projection_asked_for(stabilise: "Stabilise", iterations: int | None, against: bool = False) -> "Projection | None":
+    """Return the projection that the running command is asked for; UsageError for options that do not go with it.
+
+    `against`: whether there are runs with projection beside those with feedback.
+    """
+    projected = stabilise == "projection" or against
+    if iterations is not None and not projected:
+        raise click.UsageError("--iterations are those of --stabilise projection")
+    if stabilise != "baumgarte":
+        for option in ("alpha", "beta", "physical", "hold", "omega"):
+            if option in click.get_current_context().params and not left_at_default(option):
+                raise click.UsageError(f"--stabilise {stabilise} has no feedback: not with --{option}")
+    if not projected:
+        return None
+    from bezstab.mechanism import Projection
+
+    return Projection(iterations)
+
+
+def typed_beside(allowed: Collection[str]) -> str | None:
+    """Return the first option that the user gave the running command beside some parameters; None if there is none."""
+    context = click.get_current_context()
+    for parameter in context.command.params:
+        name = str(parameter.name)
+        if name not in allowed and context.get_parameter_source(name) == click.core.ParameterSource.COMMANDLINE:
+            return parameter.opts[0]
+    return None
 
 
 def left_at_default(parameter: str) -> bool:

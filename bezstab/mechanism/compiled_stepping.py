@@ -16,8 +16,9 @@ from typing import Any
 
 from bezstab.compiling import INNER, check_numba, compiled_choice, compiler, numba_is_installed
 from bezstab.mechanism import stepping
-from bezstab.mechanism.compiled import Mechanism
+from bezstab.mechanism.compiled import Mechanism, corrections_of
 from bezstab.mechanism.generated_code import MachineCode, compiled_source, machine_code, slope_lines
+from bezstab.mechanism.start import CLOSED
 from bezstab.mechanism.stepping import FALL, TOLERANCE, FloatArray, IntArray, Operations, Room, Rows, TakeSteps, stepper
 from bezstab.methods import Method, implicit
 
@@ -38,16 +39,16 @@ CHEAPER_TOGETHER = 20
 LANES = 32
 """Runs side by side: what they remember stays in the fastest memory."""
 
-_compiled: set[tuple[Mechanism, bool]] = set()
-"""What this process has compiled or loaded, for implicit methods or explicit ones."""
+_compiled: set[tuple[Mechanism, bool, bool]] = set()
+"""What this process has compiled or loaded, for implicit methods or explicit ones, with projection or without."""
 
 
-def runs_compiled(mechanism: Mechanism, method: Method, evaluations: int) -> bool:
+def runs_compiled(mechanism: Mechanism, method: Method, evaluations: int, projecting: bool = False) -> bool:
     """Return whether a run of so many evaluations is to be compiled. InputError if it must be and cannot be.
 
     That is without numba. By default where numba is there and it pays: the run is long, or its scene has been compiled
-    before. `evaluations` do not include what iterations take. InputError, too, where BEZSTAB_COMPILED says neither auto
-    nor yes nor no.
+    before. `evaluations` do not include what iterations and projections take. InputError, too, where BEZSTAB_COMPILED
+    says neither auto nor yes nor no.
     """
     choice = compiled_choice()
     if choice == "no":
@@ -58,13 +59,13 @@ def runs_compiled(mechanism: Mechanism, method: Method, evaluations: int) -> boo
     if not numba_is_installed():
         return False
     solving = implicit(method)
-    if (mechanism, solving) in _compiled:
+    if (mechanism, solving, projecting) in _compiled:
         return True
     if solving:
         evaluations *= ITERATIONS_OF_A_SOLUTION
     if evaluations < WORTH_LOADING:
         return False
-    return evaluations >= WORTH_COMPILING or _is_kept(_kept_file(mechanism, solving, stride=1))
+    return evaluations >= WORTH_COMPILING or _is_kept(_kept_file(mechanism, solving, projecting, stride=1))
 
 
 N, STRIDE, WIDTH = 1, 1, 1
@@ -304,8 +305,48 @@ def end(rows: Rows, group: IntArray, registers: FloatArray, room: Room) -> float
     return left
 
 
-OPERATIONS = (change_step, evaluate, finish, begin, residual, remember, correct, renew, advance, end)
+def measure(time: float, gains: FloatArray, state: FloatArray, room: Room) -> float:
+    """Write how a state has to be corrected, for its constraints to hold."""
+    pivot: float = corrections(time, gains, state, room.off, room.variables)
+    return pivot
+
+
+def distance(state: FloatArray, room: Room) -> float:
+    """Return the largest correction of a position, summed over its coordinates; 0 where all are settled."""
+    largest = 0.0
+    for lane in range(len(room.moved)):
+        moved, size = 0.0, 0.0
+        for entry in range(lane, WIDTH, STRIDE):
+            moved += abs(room.off[entry])
+            size += abs(state[0, entry])
+        if moved > max(CLOSED, TOLERANCE * size):  # not so if it is no number
+            largest = max(largest, moved)
+    return largest
+
+
+def shift(rows: Rows, half: int, h: float, registers: FloatArray, state: FloatArray, room: Room) -> float:
+    """Correct the position (half 0) or the velocity (1) of a new state, and what is carried of it."""
+    size = 0.0
+    for place in range(WIDTH):
+        state[half, place] += room.off[half * WIDTH + place]
+        size += abs(state[0, place]) + abs(state[1, place])
+    for number in range(len(rows.powers)):
+        share = rows.corrected[number, half] if half == 0 else rows.corrected[number, half] * h
+        if share != 0:
+            register = registers[room.where[number]]
+            for place in range(WIDTH):
+                register[place] += share * room.off[half * WIDTH + place]
+    return size
+
+
+OPERATIONS = (
+    *(change_step, evaluate, finish, begin, residual, remember, correct, renew, advance, end),
+    *(measure, distance, shift),
+)
 """In the order of `Operations`."""
+
+CALLED_TWICE = (correct, shift)
+"""Which `stepping` calls from two places."""
 
 
 def accelerations(t: float, gains: FloatArray, state: FloatArray, found: FloatArray, room: FloatArray) -> float:
@@ -326,6 +367,11 @@ def slope(
     raise NotImplementedError
 
 
+def corrections(t: float, gains: FloatArray, state: FloatArray, found: FloatArray, room: FloatArray) -> float:
+    """Stand for the generated function that writes all corrections of states, and returns the least pivot as above."""
+    raise NotImplementedError
+
+
 GIVEN = "rows, steps, registers, inverses, before, room, judged, states, pivots, counts"
 TAKE = f"""
 def take({GIVEN}):
@@ -334,17 +380,17 @@ def take({GIVEN}):
 
 
 @cache
-def machine_steps(mechanism: Mechanism, solving: bool, stride: int) -> tuple[TakeSteps, int]:
+def machine_steps(mechanism: Mechanism, solving: bool, projecting: bool, stride: int) -> tuple[TakeSteps, int]:
     """Return the function that takes a mechanism's steps as machine code, and how large a room its variables need.
 
-    `solving`: whether programs have equations to solve; `stride`: for how many runs side by side. What is compiled is
-    kept for the next process. InputError without numba.
+    `solving`: whether programs have equations to solve; `projecting`: whether states are projected; `stride`: for how
+    many runs side by side. What is compiled is kept for the next process. InputError without numba.
     """
     numba = compiler()
-    code, file = _code(mechanism, solving, stride), _kept_file(mechanism, solving, stride)
+    code = _code(mechanism, solving, projecting, stride)
+    file = _kept_file(mechanism, solving, projecting, stride)
     n = mechanism.size
     namespace = dict(vars(sys.modules[__name__])) | {"N": n, "STRIDE": stride, "WIDTH": n * stride}
-    namespace["math"] = math
 
     def made(function: Any, inline: str = "never") -> Any:
         """Return a function as machine code that other machine code calls, under a name of the scene's own.
@@ -364,32 +410,34 @@ def machine_steps(mechanism: Mechanism, solving: bool, stride: int) -> tuple[Tak
         return FunctionType(function.__code__, namespace, function.__name__)
 
     generated = compiled_source(code.source, math, code.tables)
-    for name in ("take_lines", "given", "accelerations", "slope"):
+    for name in ("take_lines", "given", "accelerations", "corrections", "slope"):
         if name in generated:
             namespace[name] = generated[name] = made(generated[name])
     for function in (combine, arguments, place_of, invert):
         namespace[function.__name__] = made(own(function))
-    operations = [made(own(each)) if each is correct else made_a_part(own(each)) for each in OPERATIONS]
+    operations = [made(own(each)) if each in CALLED_TWICE else made_a_part(own(each)) for each in OPERATIONS]
     # numba keeps what is called from a text with a file, if it has nothing but that text from around it
-    called = {"take_steps": stepper(Operations(*operations), made_a_part, solving)}
+    called = {"take_steps": stepper(Operations(*operations), made_a_part, solving, projecting)}
     take = compiled_source(TAKE, math, called, str(file))["take"]
     take.__name__ = take.__qualname__ = f"take_{file.parent.name}"
     steps = numba.njit(error_model="numpy", _nrt=False, no_cfunc_wrapper=True, cache=_keep(file))(take)
-    _compiled.add((mechanism, solving))
+    _compiled.add((mechanism, solving, projecting))
     return steps, code.size
 
 
 @cache
-def _code(mechanism: Mechanism, solving: bool, stride: int) -> MachineCode:
+def _code(mechanism: Mechanism, solving: bool, projecting: bool, stride: int) -> MachineCode:
     """Return the text of a mechanism's own functions."""
-    slopes = slope_lines(mechanism.equations) if solving else ()
-    return machine_code(mechanism.acceleration_code, slopes, stride)
+    codes = {"accelerations": mechanism.acceleration_code}
+    if projecting:
+        codes["corrections"] = corrections_of(mechanism)
+    return machine_code(codes, slope_lines(mechanism.equations) if solving else (), stride)
 
 
 @cache
-def _kept_file(mechanism: Mechanism, solving: bool, stride: int) -> Path:
+def _kept_file(mechanism: Mechanism, solving: bool, projecting: bool, stride: int) -> Path:
     """Return the file beside which numba keeps a scene's code: its name stands for all that makes it."""
-    code = _code(mechanism, solving, stride)
+    code = _code(mechanism, solving, projecting, stride)
     made_from = [Path(file).read_bytes() for file in (stepping.__file__, __file__)]
     made_from += [code.source.encode(), *(table.tobytes() for table in code.tables.values())]
     made_from += [sys.version.encode(), version("numba").encode()]

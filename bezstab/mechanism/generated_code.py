@@ -5,6 +5,7 @@ does with them is no text: `programs` and `stepping` have it. From its top to it
 
     compiled_source                        text becomes functions
     accelerations and multipliers          the assignments that solve paper Eq. 9
+    corrections                            what brings a state back to its constraints, by the same factors
     functions of a state                   acceleration, multipliers, observation
     slopes of the acceleration             its derivatives by position and velocity, or along one direction
     machine code                           the same for lanes side by side, and by shapes where they are long
@@ -92,13 +93,15 @@ class AccelerationCode:
     """Assignments that compute a_i = qddot_i and l_j = lambda_j from t, q_i, v_i, two_alpha and beta_squared.
 
     On the way c_j and cdot_j get their values. `pivots` are the texts of 1 and of the pivots D_j relative to S_jj;
-    where the least of these is small, S is nearly singular.
+    where the least of these is small, S is nearly singular. `results` are the names of the a_i, or of what else it is
+    that is computed so: the corrections of a state.
     """
 
     coordinates: int
     constraints: int
     lines: tuple[str, ...]
     pivots: tuple[str, ...]
+    results: tuple[str, ...]
 
 
 def acceleration_code(equations: Equations) -> AccelerationCode:
@@ -116,8 +119,13 @@ def acceleration_code(equations: Equations) -> AccelerationCode:
         *_substitution_lines(constraints, factors),
         *_acceleration_lines(columns_of_row, inverse_masses, entries),
     ]
-    pivots = "1.0", *(f"D{j} / S{j}" for j in range(constraints))
-    return AccelerationCode(coordinates, constraints, tuple(lines), pivots)
+    results = tuple(variable_names("a", coordinates))
+    return AccelerationCode(coordinates, constraints, tuple(lines), _pivots(constraints), results)
+
+
+def _pivots(constraints: int) -> tuple[str, ...]:
+    """Return the texts of 1 and of the relative pivots."""
+    return "1.0", *(f"D{j} / S{j}" for j in range(constraints))
 
 
 def _columns_of_row(equations: Equations) -> list[list[int]]:
@@ -169,16 +177,21 @@ def _right_side_lines(
     """Return the assignments to cdot = C_q v + c_t and r = C_q M^-1 g - gamma + 2 alpha cdot + beta^2 c."""
     lines = []
     for i, columns in enumerate(columns_of_row):
-        cdot = [f"C{i}_{k} * v{k}" for k in columns]
-        if f"ct{i}" in entries:
-            cdot.append(f"ct{i}")
         right_side = [f"C{i}_{k} * {inverse_masses[k]} * g{k}" for k in columns if f"g{k}" in entries]
         if f"gamma{i}" in entries:
             right_side.append(f"(-gamma{i})")
         right_side += [f"two_alpha * cdot{i}", f"beta_squared * c{i}"]
-        lines.append(f"cdot{i} = {' + '.join(cdot)}")
+        lines.append(_rate_line(i, columns, entries))
         lines.append(f"r{i} = {' + '.join(right_side)}")
     return lines
+
+
+def _rate_line(i: int, columns: Sequence[int], entries: Iterable[str]) -> str:
+    """Return the assignment to cdot_i = (C_q v + c_t)_i."""
+    parts = [f"C{i}_{k} * v{k}" for k in columns]
+    if f"ct{i}" in entries:
+        parts.append(f"ct{i}")
+    return f"cdot{i} = {' + '.join(parts)}"
 
 
 def _nonzero_factors(columns_of_row: Sequence[Sequence[int]]) -> set[tuple[int, int]]:
@@ -247,6 +260,33 @@ def _acceleration_lines(
     return lines
 
 
+# Corrections
+#
+# What brings a state back to its constraints, in the metric of the masses (`projection`), takes the same S:
+#
+#     dq = -M^-1 C_q^T S^-1 c,      dv = -M^-1 C_q^T S^-1 cdot
+
+
+def correction_code(equations: Equations) -> AccelerationCode:
+    """Return the assignments that compute dq_i and dv_i from t, q_i and v_i; S is factored as for accelerations."""
+    coordinates, constraints = len(equations.q), len(equations.constraints)
+    entries = {name: entry for name, entry in _nonzero_entries(equations).items() if name.startswith(("C", "c"))}
+    columns_of_row, inverse_masses = _columns_of_row(equations), _inverse_masses(equations)
+    factors = _nonzero_factors(columns_of_row)
+    lines = [
+        *_entry_lines(entries),
+        *(_rate_line(i, columns, entries) for i, columns in enumerate(columns_of_row)),
+        *_factorization_lines(columns_of_row, inverse_masses, factors),
+    ]
+    for error, correction in (("c", "dq"), ("cdot", "dv")):
+        lines += [f"r{i} = {error}{i}" for i in range(constraints)]
+        lines += _substitution_lines(constraints, factors)
+        lines += _acceleration_lines(columns_of_row, inverse_masses, ())  # without forces, what l alone accelerates
+        lines += [f"{correction}{k} = a{k}" for k in range(coordinates)]
+    results = (*variable_names("dq", coordinates), *variable_names("dv", coordinates))
+    return AccelerationCode(coordinates, constraints, tuple(lines), _pivots(constraints), results)
+
+
 # Functions of a state
 
 
@@ -264,13 +304,12 @@ def multipliers_source(acceleration: AccelerationCode) -> str:
 
 def acceleration_source(acceleration: AccelerationCode) -> str:
     """Return the source of acceleration(t, two_alpha, beta_squared, q, v): all a."""
-    return _function_source("acceleration", acceleration, variable_names("a", acceleration.coordinates))
+    return _function_source("acceleration", acceleration, acceleration.results)
 
 
-def judged_acceleration_source(acceleration: AccelerationCode) -> str:
-    """Return the source of judged_acceleration(t, two_alpha, beta_squared, q, v): all a, then the least pivot."""
-    results = [*variable_names("a", acceleration.coordinates), _least_text(acceleration.pivots)]
-    return _function_source("judged_acceleration", acceleration, results)
+def judged_source(code: AccelerationCode) -> str:
+    """Return the source of judged(t, two_alpha, beta_squared, q, v): all results of the code, then the least pivot."""
+    return _function_source("judged", code, [*code.results, _least_text(code.pivots)])
 
 
 def slope_source(acceleration: AccelerationCode, equations: Equations) -> str:
@@ -467,8 +506,9 @@ class MachineCode:
     """The source of the functions of a mechanism that machine code calls, and the tables that they name.
 
     accelerations(t, gains, state, found, room) writes all a of all lanes and returns, for a stride of one, the least
-    relative pivot of S; slope(t, gains, state, direction, found, room, lane) writes all da of a lane. gains (2, lanes);
-    state and direction (2, n stride), found (n stride,), the room (size,): lane after lane of each coordinate.
+    relative pivot of S, and so does corrections(...) with all dq, then all dv; slope(t, gains, state, direction, found,
+    room, lane) writes all da of a lane. gains (2, lanes); state and direction (2, n stride), found (n stride,) or as
+    much for each of the results, lane after lane of each coordinate; the room (size,).
     """
 
     source: str
@@ -476,53 +516,52 @@ class MachineCode:
     size: int = 0
 
 
-def machine_code(acceleration: AccelerationCode, slopes: Sequence[str], stride: int) -> MachineCode:
-    """Return the machine code's source for a number of lanes; without slopes if there are no lines for them."""
+def machine_code(codes: Mapping[str, AccelerationCode], slopes: Sequence[str], stride: int) -> MachineCode:
+    """Return the machine code's source for so many lanes: a function of each of the codes, by its name, and the slope.
+
+    The first code is that of accelerations. Where there are no lines for slopes there is no function of them.
+    """
+    acceleration = next(iter(codes.values()))
     if len(acceleration.lines) > LONG:
-        return _code_by_shapes(acceleration, slopes, stride)
+        return _code_by_shapes(codes, slopes, stride)
     coordinates = range(acceleration.coordinates)
     given = ["two_alpha = gains[0, lane]", "beta_squared = gains[1, lane]"]
     given += [f"{name}{i} = state[{half}, {i * stride} + lane]" for half, name in enumerate("qv") for i in coordinates]
-    lines = [*given, *acceleration.lines, *(f"found[{i * stride} + lane] = a{i}" for i in coordinates)]
-    first, *others = acceleration.pivots
-    least = [f"pivot = {first}", *(f"pivot = min(pivot, {other})" for other in others), "return pivot"]
-    alone = ["lane = 0", *lines, *least]
-    together = ["for lane in range(gains.shape[1]):", *_indented(lines, 1), "return 1.0"]
-    source = [
-        "def accelerations(t, gains, state, found, room):",
-        *_indented(alone if stride == 1 else together, 1),
-    ]
+    source = []
+    for name, code in codes.items():
+        lines = [*given, *code.lines]
+        lines += [f"found[{place * stride} + lane] = {result}" for place, result in enumerate(code.results)]
+        first, *others = code.pivots
+        least = [f"pivot = {first}", *(f"pivot = min(pivot, {other})" for other in others), "return pivot"]
+        alone = ["lane = 0", *lines, *least]
+        together = ["for lane in range(gains.shape[1]):", *_indented(lines, 1), "return 1.0"]
+        source += [f"def {name}(t, gains, state, found, room):", *_indented(alone if stride == 1 else together, 1)]
     if slopes:
-        along = [
-            f"d{name}{i} = direction[{half}, {i * stride} + lane]"
-            for half, name in enumerate("qv")
-            for i in coordinates
-        ]
-        changes = [f"found[{i * stride} + lane] = da{i}" for i in coordinates]
-        source += [
-            "def slope(t, gains, state, direction, found, room, lane):",
-            *_indented([*given, *along, *acceleration.lines, *slopes, *changes], 1),
-        ]
+        lines = [*given, *acceleration.lines]
+        for half, name in enumerate("qv"):
+            lines += [f"d{name}{i} = direction[{half}, {i * stride} + lane]" for i in coordinates]
+        lines += [*slopes, *(f"found[{i * stride} + lane] = da{i}" for i in coordinates)]
+        source += ["def slope(t, gains, state, direction, found, room, lane):", *_indented(lines, 1)]
     return MachineCode("\n".join(source))
 
 
-def _code_by_shapes(acceleration: AccelerationCode, slopes: Sequence[str], stride: int) -> MachineCode:
+def _code_by_shapes(codes: Mapping[str, AccelerationCode], slopes: Sequence[str], stride: int) -> MachineCode:
     """Return the same where the lines are taken by their shapes, lane after lane."""
+    acceleration = next(iter(codes.values()))
     n, m = acceleration.coordinates, acceleration.constraints
     names = ["t", "two_alpha", "beta_squared"]
     for name, count in (("q", n), ("v", n), ("dq", n), ("dv", n), ("a", n), ("da", n), ("S", m), ("D", m)):
         names += variable_names(name, count)
     places = {name: place for place, name in enumerate(names)}
-    firsts = {f"{name}0": places[f"{name}0"] for name in ("q", "dq", "a", "da", "S", "D")}
+    firsts = {f"{name}0": places[f"{name}0"] for name in ("q", "dq", "da", "S", "D")}
     shapes: dict[str, int] = {}
     tables: dict[str, NDArray[Any]] = {}
-    for kind, lines in (("acceleration", acceleration.lines), ("slope", slopes)):
+    for name, lines in ({name: code.lines for name, code in codes.items()} | {"slope": tuple(slopes)}).items():
         of_lines = [shapes.setdefault(OPERAND.sub("#", line), len(shapes)) for line in lines]
         operands = [operand for line in lines for operand in OPERAND.findall(line)]
-        alike = [(shape, len(list(some))) for shape, some in groupby(of_lines)]
-        tables[f"{kind}_shapes"] = np.array(alike, np.int64)
+        tables[f"{name}_shapes"] = np.array([(shape, len(list(some))) for shape, some in groupby(of_lines)], np.int64)
         # without a sign: numba need not ask whether they count from the end
-        tables[f"{kind}_places"] = np.array([places.setdefault(each, len(places)) for each in operands], np.uint32)
+        tables[f"{name}_places"] = np.array([places.setdefault(each, len(places)) for each in operands], np.uint32)
     numbers = {place: float(name) for name, place in places.items() if name[0].isdigit()}
     tables |= {"number_places": np.array([*numbers], np.uint32), "numbers": np.array([*numbers.values()])}
     cases = []
@@ -534,12 +573,16 @@ def _code_by_shapes(acceleration: AccelerationCode, slopes: Sequence[str], strid
             f"  {shape.replace('#', '{}').format(*operands)}",
             f"  p += {len(operands)}",
         ]
-    source = ACCELERATIONS_BY_SHAPES + (SLOPE_BY_SHAPES if slopes else "")
-    text = source.format(cases="\n".join(_indented(cases, 2)), stride=stride, width=n * stride, n=n, m=m, **firsts)
-    return MachineCode(text, tables, len(places))
+    source = [SHAPES_TAKEN.format(cases="\n".join(_indented(cases, 2)), stride=stride, n=n, **firsts)]
+    for name, code in codes.items():
+        first, count = places[code.results[0]], len(code.results)
+        source.append(FOUND_BY_SHAPES.format(name=name, first=first, count=count, stride=stride, m=m, **firsts))
+    if slopes:
+        source.append(SLOPE_BY_SHAPES.format(name=next(iter(codes)), stride=stride, n=n, **firsts))
+    return MachineCode("".join(source), tables, len(places))
 
 
-ACCELERATIONS_BY_SHAPES = """
+SHAPES_TAKEN = """
 def take_lines(shapes, places, room):
  p = 0
  for number in range(len(shapes)):
@@ -551,21 +594,26 @@ def given(t, gains, state, room, lane):
   room[number_places[k]] = numbers[k]
  for i in range({n}):
   room[{q0} + i], room[{q0} + {n} + i] = state[0, i * {stride} + lane], state[1, i * {stride} + lane]
- take_lines(acceleration_shapes, acceleration_places, room)
-def accelerations(t, gains, state, found, room):
+"""
+
+FOUND_BY_SHAPES = """
+def {name}(t, gains, state, found, room):
  for lane in range(gains.shape[1]):
   given(t, gains, state, room, lane)
-  for i in range({n}):
-   found[i * {stride} + lane] = room[{a0} + i]
+  take_lines({name}_shapes, {name}_places, room)
+  for i in range({count}):
+   found[i * {stride} + lane] = room[{first} + i]
  pivot = 1.0
- for j in range({m}):
-  pivot = min(pivot, room[{D0} + j] / room[{S0} + j])
+ if {stride} == 1:
+  for j in range({m}):
+   pivot = min(pivot, room[{D0} + j] / room[{S0} + j])
  return pivot
 """
 
 SLOPE_BY_SHAPES = """
 def slope(t, gains, state, direction, found, room, lane):
  given(t, gains, state, room, lane)
+ take_lines({name}_shapes, {name}_places, room)
  for i in range({n}):
   place = i * {stride} + lane
   room[{dq0} + i], room[{dq0} + {n} + i] = direction[0, place], direction[1, place]

@@ -42,7 +42,8 @@ def held_figure(answer: HeldAnswer, found: HeldMap) -> Figure:
         own = float(question.drive.kd), float(question.drive.kp)
         star: dict[str, Any] = {"color": ACCENT, "markeredgecolor": "black", "markersize": 11, "linestyle": ""}
         handles += axes.plot(*own, marker="*", label=f"kp = {own[1]:g}, kd = {own[0]:g}", **star)
-        axes.set(xlim=(0, kd[-1]), ylim=(0, kp[-1]), facecolor="0.93", xlabel="kd (N m s/rad)", ylabel="kp (N m/rad)")
+        axes.set(xlabel="kd (N m s/rad)", ylabel="kp (N m/rad)", facecolor="0.93")
+        axes.set(xlim=(min(0.0, kd[0]), kd[-1]), ylim=(min(0.0, kp[0]), kp[-1]))
         across = axes.secondary_xaxis("top", functions=_in_units_of(kd_of_one))
         across.set_xlabel(r"$\hat\alpha = $ kd $h$ / inertia")
         up = axes.secondary_yaxis("right", functions=_in_units_of(kp_of_one))

@@ -345,6 +345,16 @@ RUN_STEPS = Field("run_steps", "integer", "Steps of the whole run", "steps of ea
 RUN_EVALUATIONS = Field(
     "run_evaluations", "integer", "Evaluations of the right-hand side in the whole run", "evaluations", "d"
 )
+FACTORIZATIONS = Field(
+    "factorizations",
+    "integer",
+    "Factorizations of C_q M^-1 C_q^T in the whole run: one for each evaluation, and those of projections",
+    "factorizations",
+    "d",
+)
+STABILISE = Field(
+    "stabilise", "text", "What holds the constraints", "held by", values=("baumgarte", "projection", "none")
+)
 C_MAX = Field("c_max", "number", "Largest constraint error", "largest |c| (m, rad)", ".3e", unit="m or rad")
 CDOT_MAX = Field(
     "cdot_max", "number", "Largest rate of the constraint error", "largest |ċ| (m/s, rad/s)", ".3e", unit="m/s or rad/s"
@@ -849,6 +859,7 @@ SIMULATIONS = RowKind(
     fields=(
         SCENE,
         METHOD,
+        STABILISE,
         ALPHA_HAT.shown("α̂", ".6g"),
         BETA_HAT.shown("β̂", ".6g"),
         H.shown("h (s)", "g"),
@@ -859,6 +870,7 @@ SIMULATIONS = RowKind(
         Field("driver_work", "number", "Work of the drivers", "work of drivers (J)", ".3e", unit="J"),
         Field("force_work", "number", "Work of the applied forces", "work of forces (J)", ".3e", unit="J"),
         RUN_EVALUATIONS,
+        FACTORIZATIONS,
         Field(
             "least_pivot",
             "number",

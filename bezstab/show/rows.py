@@ -250,7 +250,7 @@ def limit_row(limit: Limit) -> Row:
 
 
 def simulation_row(simulation: Simulation) -> Row:
-    """Return the summary of one run: largest |c| and |cdot| (SI), energy drift (J), evaluations, when and why it ended.
+    """Return the summary of one run: largest |c| and |cdot| (SI), energy drift (J), cost, when and why it ended.
 
     `time` is where it ended (s); h in s. The drift is what of the change of energy is not the work (J) of drivers and
     of applied forces, which are there as well. `singular_passages` counts the singular configurations met.
@@ -263,7 +263,8 @@ def simulation_row(simulation: Simulation) -> Row:
             "scene": trajectory.mechanism.scene.name,
             "method": trajectory.method.name,
             "run_evaluations": trajectory.evaluations,
-            **{key: getattr(trajectory, key) for key in ("failure", "least_pivot", "pivot_time", "iterations")},
+            **{key: getattr(trajectory, key) for key in ("failure", "factorizations", "least_pivot", "pivot_time")},
+            "iterations": trajectory.iterations,
             "time": float(simulation.t[-1]),
             "c_max": float(abs(simulation.c).max()),
             "cdot_max": float(abs(simulation.cdot).max()),

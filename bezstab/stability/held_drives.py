@@ -215,16 +215,16 @@ def _sum(*terms: tuple[Number, list[Number]]) -> list[Number]:
 
 
 Stretch = tuple[float, float]
-"""Factors from and to which a drive is stable: from 0 where there is no lower end, to infinity without an upper one."""
+"""From and to where a drive is stable: from 0 where there is no lower end, to infinity where there is no upper one."""
 
 
 @dataclass(frozen=True)
 class HeldLimits:
     """How far each of four numbers may go with the others as they are.
 
-    `kp` and `kd` are the factors on the gains between which the drive is stable: the stretch that holds 1, else the one
-    nearest to it, None where there is none within FURTHEST. `every` and `late` are the last whole numbers of steps up
-    to which all are proven stable; None where the least, 1 and 0, is not.
+    `kp` and `kd` are the gains, here beta_hat and alpha_hat, between which the drive is stable: the stretch that holds
+    its own, else the one nearest to it, None where there is none within a factor of FURTHEST. `every` and `late` are
+    the last whole numbers of steps up to which all are proven stable; None where the least, 1 and 0, is not.
     """
 
     kp: Stretch | None
@@ -239,9 +239,15 @@ FURTHEST = 1e4
 FACTORS = np.geomspace(1, FURTHEST, 185)
 """Where an end of stability is looked for first, 5 % apart; a stretch that is shorter is not seen."""
 
+SMALL_GAINS = 1e-8 * np.geomspace(1, 1e9, 425)
+"""alpha_hat or beta_hat: where a drive without a gain of its own is looked for first, 5 % apart."""
+
+DECAYS = 1 - 1e-12
+"""|z_p| below which an error decays: float64 leaves a pole of modulus one up to a thousand of its spacings off."""
+
 
 def held_limits(way: str, alpha_hat: Fraction, beta_hat: Fraction, timing: Timing) -> HeldLimits:
-    """Return how far gains, rate and delay may go each: factors by |z_p| in float64, whole steps by proven verdicts."""
+    """Return how far gains, rate and delay may go each: gains by |z_p| in float64, whole steps by proven verdicts."""
 
     def stable(every: int, late: Fraction) -> bool:
         changed = Timing(every, late, timing.filter_steps)
@@ -249,23 +255,25 @@ def held_limits(way: str, alpha_hat: Fraction, beta_hat: Fraction, timing: Timin
 
     a, b = float(alpha_hat), float(beta_hat)
     return HeldLimits(
-        kp=_stable_stretch(lambda factors: held_moduli(way, a + 0 * factors, b * factors, timing) < 1),
-        kd=_stable_stretch(lambda factors: held_moduli(way, a * factors, b + 0 * factors, timing) < 1),
+        kp=_stable_stretch(b, lambda gains: held_moduli(way, a + 0 * gains, gains, timing) < DECAYS),
+        kd=_stable_stretch(a, lambda gains: held_moduli(way, gains, b + 0 * gains, timing) < DECAYS),
         every=_last_stable(lambda every: stable(every, timing.late), least=1),
         late=_last_stable(lambda late: stable(timing.every, Fraction(late)), least=0),
     )
 
 
-def _stable_stretch(decays: Callable[[FloatArray], BoolArray]) -> Stretch | None:
-    """Return the stretch of factors that decay around 1, else that nearest to 1; None if there is none."""
-    start = 1.0
-    if not decays(np.ones(1))[0]:
-        found = [first_where(decays, factors) for factors in (FACTORS, 1 / FACTORS)]
-        ends = [each[1] for each in found if each]
+def _stable_stretch(own: float, decays: Callable[[FloatArray], BoolArray]) -> Stretch | None:
+    """Return the stretch of gains that decay around a drive's own, else that nearest to it; None if there is none."""
+    around = np.concatenate([own / FACTORS[:0:-1], own * FACTORS]) if own > 0 else SMALL_GAINS
+    start = own
+    if own <= 0 or not decays(np.array([own]))[0]:
+        ways = (around[around >= own], around[around <= own][::-1])
+        ends = [found[1] for each in ways if (found := first_where(decays, each))]
         if not ends:
             return None
-        start = min(ends, key=lambda factor: abs(np.log(factor)))
-    down, up = (first_where(lambda f: ~decays(f), factors) for factors in (start / FACTORS, start * FACTORS))
+        start = min(ends, key=lambda gain: abs(np.log(gain / own)) if own > 0 else gain)
+    ways = (around[around < start][::-1], around[around > start])
+    down, up = (first_where(lambda gains: ~decays(gains), np.append(start, each)) for each in ways)
     return (down[0] if down else 0.0, up[0] if up else np.inf)
 
 
@@ -317,14 +325,14 @@ def held_map(way: str, timing: Timing, points: int, own: tuple[float, float]) ->
     alpha_hat, beta_hat = LOOKED_AT
     for count in (FINER, points):
         rows, columns = np.nonzero(moduli(alpha_hat, beta_hat) < 1)
-        wide, high = _reach(alpha_hat, columns, own[0]), _reach(beta_hat, rows, own[1])
-        alpha_hat, beta_hat = (np.linspace(0, end, count + 1)[1:] for end in (wide, high))
+        alpha_hat = _axis(alpha_hat, columns, own[0], count)
+        beta_hat = _axis(beta_hat, rows, own[1], count)
     bounds = law_bounds(way, alpha_hat, timing)
     return HeldMap(alpha_hat, beta_hat, moduli(alpha_hat, beta_hat), np.minimum.reduce(bounds) if bounds else None)
 
 
-def _reach(samples: FloatArray, stable: NDArray[np.intp], own: float) -> float:
-    """Return how far an axis must go to show the last of the samples that are `stable`, and the drive's own value."""
+def _axis(samples: FloatArray, stable: NDArray[np.intp], own: float, count: int) -> FloatArray:
+    """Return even gains, from 0 on, up to the last of the samples that are `stable` and the drive's own one."""
     last = int(stable.max(initial=0))
-    beyond = float(samples[min(last + 1, len(samples) - 1)])
-    return max(BEYOND * own, min(STRONGEST, BEYOND * beyond))
+    beyond = min(STRONGEST, BEYOND * float(samples[min(last + 1, len(samples) - 1)]))
+    return np.linspace(min(0.0, BEYOND * own), max(beyond, BEYOND * own), count + 1)[1:]

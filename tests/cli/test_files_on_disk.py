@@ -202,8 +202,6 @@ def test_a_full_disk_leaves_no_part_of_a_result(command: str, tmp_path: Path) ->
     ("below", "becomes_a_file"),
     [
         pytest.param(f"out/{NAME}.chunks", True, marks=SLOW),
-        pytest.param(f"out/{NAME}.chunks", False, marks=SLOW),
-        pytest.param("out", True, marks=SLOW),
         pytest.param("out", False, marks=SLOW),
     ],
 )

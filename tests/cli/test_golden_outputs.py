@@ -121,11 +121,12 @@ ADDED = (
     *("role", "setting", "sweeps"),
     *("omega_h", "forced_error", "total_error", "velocity_error", "order_left", "times_least", "times_least_velocity"),
     *("steady_error", "steady_velocity_error", "measured_error", "predicted_error"),
+    *("stabilise", "factorizations"),
 )
 """Keys that rows have got since, in their place: more of what a region, a choice and a method is, work in a run,
 what the motion does to a measured pole, up to which step an engine's values are stable, whether the engine sweeps,
 which rows of check were given, what accuracy the feedback costs, and the error that a method forces on what moves, in
-a sweep too."""
+a sweep too; what holds the constraints of a run, and what it cost in factorizations."""
 
 
 def tolerance(command: str, key: str) -> Tolerance:
@@ -168,6 +169,7 @@ def _without_numbers(text: str) -> str:
         for golden in GOLDEN
     ],
 )
+@pytest.mark.slow_except("poles", "choose", "check", "engines", "region --method B4 --method AB4")
 def test_a_command_prints_what_it_printed_before(golden: dict[str, Any], tmp_path: Path) -> None:
     command = golden["command"]
     result = run(*shlex.split(command), "--format", "json")

@@ -40,7 +40,7 @@ def test_an_unsafe_drive_is_told_what_is_used_up_and_what_would_help() -> None:
     assert words.startswith("The torque is computed every 4 steps (8 ms). Not safe (explicit). Each step multiplies")
     assert "The torque is held too long: the same gains are stable if each step computes it." in words
     # held it needs a > b (N - 1) / 2: with b = 0.008 kd from 0.6, or with a = 0.01 kp up to 166.7
-    assert "Stable with one of these alone: kp up to 167, kd from 0.6 to 24.8, a torque every 3 steps." in words
+    assert "It is stable with one of these alone: kp up to 167, kd from 0.6 to 24.8, a torque every 3 steps." in words
     assert "A target that comes late only delays the motion." in words
     assert "Not judged: a limit of the torque" in words
 
@@ -85,9 +85,9 @@ def test_without_timing_a_map_is_that_of_a_fresh_drive(tmp_path: Path) -> None:
         (("--pd", "200,5,0.1"), "--pd needs --h"),
         (("--h", "0.002", "--late", "1"), "they need --pd and --h"),
         ((*PD, "--every", "101"), "--every 101: expected a whole number of steps from 1 to 100"),
-        ((*PD, "--compare"), "--pd draws kd and kp: of the other options only --every, --late, --filter, --method"),
-        ((*PD, "--level", "0.9"), "--pd draws kd and kp"),
-        ((*PD, "--table", "csv"), "--pd draws kd and kp"),
+        ((*PD, "--compare"), "--compare does not go with --pd: this answer is about the drive alone"),
+        ((*PD, "--level", "0.9"), "--level does not go with --pd"),
+        ((*PD, "--table", "csv"), "--table does not go with --pd"),
         ((*PD, "--method", "RK4"), "--method RK4: expected a way of applying a drive"),
         (("--pd", "200,5,0", "--h", "0.002"), "inertia 0: expected above 0"),
     ],
@@ -106,9 +106,12 @@ def test_a_map_that_cannot_be_drawn_is_one_line(arguments: tuple[str, ...], word
         ((*PD, "--every", "0"), "--every 0: expected a whole number of steps from 1 to 100"),
         ((*PD, "--late", "101"), "--late 101: expected from 0 to 100 steps"),
         ((*PD, "--late", "-1"), "--late -1: expected from 0 to 100 steps"),
-        ((*PD, "--filter", "-0.1"), "--filter -50 steps: expected 0 or more"),
+        ((*PD, "--filter", "-0.1"), "--filter -0.1: expected 0 s or more"),
         (("--pd", "200,5,0.1", "--every", "2"), "--every, --late and --filter are about a drive"),
         (("--method", "SYM", "--alpha", "1", "--beta", "1", "--late", "1"), "they need --pd and --h"),
+        ((*PD, "--late", "1", "--scene", "slider_crank"), "--scene does not go with --every, --late and --filter"),
+        ((*PD, "--late", "1", "--h-min", "0.001"), "--h-min does not go with"),
+        ((*PD, "--late", "1", "--alpha", "3"), "--alpha does not go with"),
         ((*PD, "--late", "1", "--method", "RK4"), "--method RK4: expected a way of applying a drive"),
     ],
 )
@@ -124,6 +127,10 @@ def test_bad_input_is_one_line(arguments: tuple[str, ...], words: str) -> None:
     [
         (("--method", "SYM", "--h", "0.002", "--bandwidth", "5"), "--bandwidth is that of a drive: it needs --pd"),
         (("--pd", "0.1", "--h", "0.002", "--every", "4"), "--bandwidth or --settle: give one of them"),
+        (
+            ("--pd", "0.1", "--h", "0.002", "--bandwidth", "5", "--spread", "0.2"),
+            "--spread does not go with",
+        ),
         (("--pd", "0.1", "--h", "0.002", "--every", "4", "--bandwidth", "50"), "up to 15.3 Hz is"),
         (("--pd", "0", "--h", "0.002", "--bandwidth", "5"), "inertia 0: expected above 0"),
     ],

@@ -19,8 +19,13 @@ from bezstab.mechanism import (
     perturbed_state,
     simulate,
 )
-from bezstab.mechanism.compiled import judged_acceleration_function, slope_function
-from bezstab.mechanism.generated_code import compiled_source, judged_acceleration_source, machine_code, slope_lines
+from bezstab.mechanism.compiled import (
+    correction_function,
+    corrections_of,
+    judged_acceleration_function,
+    slope_function,
+)
+from bezstab.mechanism.generated_code import compiled_source, judged_source, machine_code, slope_lines
 from bezstab.methods import accuracy, lookup, steps
 from tests.mechanism.test_scenes import pendulum
 from tests.methods.kinds import EXPLICIT, FEW, IMPLICIT, sampled
@@ -82,6 +87,7 @@ HIGH_ORDERS = [name for name in IMPLICIT if accuracy(lookup(name))[0] > 4]
 
 @pytest.mark.promise("Orders of runs with α and β fixed", measured="0.1")
 @pytest.mark.parametrize("name", sampled([*EXPLICIT, *HIGH_ORDERS], quick=[*FEW, "AB8"]))
+@pytest.mark.slow_except("AB4", "SIE")
 def test_with_alpha_and_beta_fixed_a_method_keeps_its_order(name: str) -> None:
     """All from exact first values and in 30 digits: float64 ends the descent of AB7 and AB8 before 0.1 is reached."""
     method, mechanism = lookup(name), compiled_mechanism(load_scene("slider_crank_300rpm"))
@@ -122,8 +128,8 @@ def test_entries_that_are_zero_are_not_computed() -> None:
 
 def test_generated_source_is_plain_assignments() -> None:
     """Arithmetic on named variables only: no calls but sin, cos and least, no containers but those handed out."""
-    source = judged_acceleration_source(compiled_mechanism(load_scene("slider_crank")).acceleration_code)
-    called = set(CALL.findall(source)) - {"judged_acceleration"}
+    source = judged_source(compiled_mechanism(load_scene("slider_crank")).acceleration_code)
+    called = set(CALL.findall(source)) - {"judged"}
     assert called <= {"sin", "cos", "least"}
 
 
@@ -147,25 +153,29 @@ def chain(count: int) -> Mechanism:
     return compiled_mechanism(parse_scene({"name": "chain", "four_bar_chain": links, "initial": upright}))
 
 
+@pytest.mark.slow
 def test_a_long_acceleration_by_its_shapes_is_the_same_to_the_last_bit() -> None:
-    """And so are its slopes; here as Python, two lanes side by side."""
+    """And so are its slopes and corrections; here as Python, two lanes side by side."""
     mechanism, lanes, gains = chain(12), 2, (3.0, 4.0)
     n = mechanism.size
-    code = machine_code(mechanism.acceleration_code, slope_lines(mechanism.equations), stride=lanes)
+    codes = {"accelerations": mechanism.acceleration_code, "corrections": corrections_of(mechanism)}
+    code = machine_code(codes, slope_lines(mechanism.equations), stride=lanes)
     functions = compiled_source(code.source, math, code.tables)
-    state, direction = (0.1 * np.sin(7.0 * np.arange(4 * n) + first).reshape(2, n * lanes) for first in (0, 1))
-    found, room = np.zeros(n * lanes), np.zeros(code.size)
-    functions["accelerations"](0.0, np.array([gains, gains]).T, state, found, room)
+    state, direction = (0.1 * np.sin(7.0 * np.arange(2 * n * lanes) + first).reshape(2, -1) for first in (0, 1))
+    found, off, changes, room = np.zeros(n * lanes), np.zeros(2 * n * lanes), np.zeros(n * lanes), np.zeros(code.size)
+    situation = (0.0, np.array([gains, gains]).T, state)
+    functions["accelerations"](*situation, found, room)
+    functions["corrections"](*situation, off, room)
     for lane in range(lanes):
         q, v, dq, dv = (part[lane::lanes].tolist() for part in (*state, *direction))
-        alone = acceleration_function(mechanism, math)(0.0, *gains, q, v)
-        assert tuple(found[lane::lanes]) == alone
-        changes = np.zeros(n * lanes)
-        functions["slope"](0.0, np.array([gains, gains]).T, state, direction, changes, room, lane)
+        assert tuple(found[lane::lanes]) == acceleration_function(mechanism, math)(0.0, *gains, q, v)
+        assert tuple(off[lane::lanes]) == correction_function(mechanism, math)(0.0, *gains, q, v)[:-1]
+        functions["slope"](*situation, direction, changes, room, lane)
         assert tuple(changes[lane::lanes]) == slope_function(mechanism, math)(0.0, *gains, q, v, dq, dv)
 
 
+@pytest.mark.slow
 def test_a_chain_twice_as_long_has_no_more_shapes() -> None:
-    short, long = (machine_code(chain(count).acceleration_code, (), stride=1) for count in (12, 24))
+    short, long = (machine_code({"accelerations": chain(count).acceleration_code}, (), 1) for count in (12, 24))
     assert len(long.source) <= 1.1 * len(short.source)
-    assert len(long.tables["acceleration_places"]) > 1.9 * len(short.tables["acceleration_places"])
+    assert len(long.tables["accelerations_places"]) > 1.9 * len(short.tables["accelerations_places"])

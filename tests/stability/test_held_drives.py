@@ -193,9 +193,9 @@ def test_limits_lie_where_the_verdict_turns() -> None:
     assert found.kd is not None
     assert found.kp[0] == 0
     less, more = Fraction(999_999, 10**6), Fraction(1_000_001, 10**6)
-    kp_max, kd_min, kd_max = (Fraction(factor) for factor in (found.kp[1], *found.kd))
-    inside = [(a, kp_max * less * b), (kd_min * more * a, b), (kd_max * less * a, b)]
-    outside = [(a, kp_max * more * b), (kd_min * less * a, b), (kd_max * more * a, b)]
+    kp_max, kd_min, kd_max = (Fraction(gain) for gain in (found.kp[1], *found.kd))
+    inside = [(a, kp_max * less), (kd_min * more, b), (kd_max * less, b)]
+    outside = [(a, kp_max * more), (kd_min * less, b), (kd_max * more, b)]
     for points, verdict in ((inside, "converges"), (outside, "diverges")):
         assert [held_verdict("SYM", *point, timing) for point in points] == [verdict] * 3
     assert found.every is not None
@@ -209,15 +209,30 @@ def test_limits_lie_where_the_verdict_turns() -> None:
 def test_an_unstable_drive_is_told_the_stretch_nearest_to_it() -> None:
     """One step late it is stable for b < a (1 - a): at b = 0.09 for a from 0.1 to 0.9."""
     found = held_limits("SYM", Fraction("0.05"), Fraction("0.09"), Timing(late=Fraction(1)))
-    assert found.kd == pytest.approx((0.1 / 0.05, 0.9 / 0.05), rel=1e-9)
-    assert found.kp == pytest.approx((0, 0.05 * 0.95 / 0.09), rel=1e-9)
+    assert found.kd == pytest.approx((0.1, 0.9), rel=1e-9)
+    assert found.kp == pytest.approx((0, 0.05 * 0.95), rel=1e-9)
     assert (found.every, found.late) == (None, 0)
 
 
-def test_where_nothing_helps_it_is_said() -> None:
-    found = held_limits("SYM", Fraction(0), Fraction("0.01"), Timing(every=2))
-    assert (found.kp, found.kd, found.late) == (None, None, None)
+@pytest.mark.parametrize("a", [Fraction(0), Fraction(-1, 10)])
+def test_a_drive_without_damping_is_told_how_much_it_needs(a: Fraction) -> None:
+    """Held for two steps it needs b < 2 a and b < 2 - 2 a."""
+    found = held_limits("SYM", a, Fraction("0.01"), Timing(every=2))
+    assert found.kd == pytest.approx((0.005, 0.995), rel=1e-9)
+    assert (found.kp, found.late) == (None, None)
     assert found.every is None  # without damping it is marginal even when it is fresh
+
+
+def test_a_marginal_drive_is_not_taken_for_a_stable_one() -> None:
+    """Fresh and undamped its poles have modulus one at any stiffness, which float64 takes for a little less."""
+    found = held_limits("SYM", Fraction(0), Fraction("0.01"), Timing())
+    assert found.kp is None
+    assert found.kd == pytest.approx((0, 1.995), rel=1e-9)
+
+
+def test_where_nothing_helps_there_are_no_limits() -> None:
+    found = held_limits("SYM", Fraction("1.8"), Fraction("0.8"), Timing(every=4))
+    assert (found.kp, found.kd, found.every, found.late) == (None, None, None, None)
 
 
 MAPPED = [
