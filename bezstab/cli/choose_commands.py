@@ -3,49 +3,41 @@
 from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from itertools import groupby
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from bezstab.cli.asking import (
-    as_typed_option,
     asked,
-    chain_option,
-    drive_option,
-    engine_values_option,
+    chain_options,
+    given_point_options,
     h_min_option,
     hold_option,
-    iterations_option,
-    mass_ratio_option,
     methods_typed,
-    moving_scene_option,
-    moving_speed_option,
+    moving_scene_options,
     omega_option,
-    prepare,
     say_unknown_costs,
     say_varying,
     say_what_is_left_out,
     say_what_was_made,
-    typed_chain,
 )
 from bezstab.cli.held_drives import (
+    HeldTiming,
     bandwidth_option,
     check_held,
     choose_held,
     inertia_option,
     timing_options,
-    timing_typed,
 )
 from bezstab.cli.options import (
     ENGINE,
     NUMBER,
     SECONDS,
+    SHARE,
     USUAL_METHODS,
-    EngineValues,
     both_or_none,
     format_option,
     methods_option,
-    physical_option,
     step_option,
 )
 from bezstab.cli.output import for_reading, progress, say, show_rows, show_text
@@ -59,19 +51,15 @@ from bezstab.show import (
     ENGINES_LISTED,
     LARGEST_STEPS,
     Format,
-    Row,
     answer_row,
-    answer_sentence,
     costs_words,
     largest_step_row,
     motion_words,
-    safe_step_text,
     trade_words,
 )
 
 if TYPE_CHECKING:
     from bezstab.questions import Answer
-
 
 WITHOUT_ACCURACY = ("total_error", "order_left", "times_least_velocity")
 """What tables of a drive leave out: nothing feeds its target's acceleration forward."""
@@ -84,108 +72,95 @@ WITHOUT_ACCURACY = ("total_error", "order_left", "times_least_velocity")
     "--goal",
     type=click.Choice(list(GOALS)),
     help="; ".join(f"{goal}: {meaning}" for goal, meaning in GOALS.items())
-    + " [accurate; robust with --pd and for an --engine that can express a curve alone].",
+    + " [accurate; robust with --pd, and with an --engine whose α and β depend on each other].",
 )
 @omega_option
 @click.option(
-    "--h-max", type=SECONDS, help="accurate, robust, or with --h-min: the largest step in s that may occur [--h]."
+    "--h-max",
+    type=SECONDS,
+    help="The largest step in s that may occur: for the goals accurate and robust, and with --h-min [--h].",
 )
 @h_min_option
 @hold_option
-@click.option("--spread", type=NUMBER, default="0.1", help="By what share α and β may be off.")
+@click.option("--spread", type=SHARE, default="0.1", help="α and β may be off by this share.")
 @click.option(
-    "--settle", type=SECONDS, help="gentle, accurate, or with --pd: the time in s in which c falls a thousandfold."
+    "--settle",
+    type=SECONDS,
+    help="The time in s in which errors fall a thousandfold: for the goals gentle and accurate, and with --pd.",
 )
-@click.option("--keep", type=click.Choice(["alpha=beta"]), help="Only points with α = β.")
-@click.option("--engine", metavar="NAME", type=ENGINE, help="Choose what that engine can express; print what to paste.")
-@chain_option
-@mass_ratio_option
-@iterations_option
+@click.option("--keep", "equal", type=click.Choice(["alpha=beta"]), help="Only points with α = β.")
+@click.option(
+    "--engine",
+    metavar="NAME",
+    type=ENGINE,
+    help="Choose only what this engine can express, and print the line to paste.",
+)
+@chain_options
 @inertia_option
 @bandwidth_option
 @timing_options
-@moving_scene_option("Choose for this mechanism as it moves.")
-@moving_speed_option
+@moving_scene_options("Choose for this mechanism as it moves.")
 @format_option
+@click.pass_context
 def choose(
+    context: click.Context,
+    /,
     methods: Sequence[Method],
-    h: Fraction,
     goal: Goal | None,
-    omega: Fraction | None,
-    h_max: Fraction | None,
-    h_min: Fraction | None,
-    hold: bool,
-    spread: Fraction,
     settle: Fraction | None,
-    keep: str | None,
+    equal: str | None,
     engine: Engine | None,
-    chain: int | None,
-    mass_ratio: Fraction | None,
-    iterations: int | None,
     drive: Drive | None,
     bandwidth: Fraction | None,
-    every: int | None,
-    late: Fraction | None,
-    filter_seconds: Fraction | None,
-    scene: str | None,
-    speed: Fraction,
+    timing: HeldTiming,
     form: Format,
+    **typed: Any,
 ) -> None:
     """Recommend α and β for an integrator and its step size.
 
-    The answer is proven stable, and its margins are printed. Exit status 1 if it is not proven safe: over the
-    motion of a --scene, for steps that vary, or in a chain, where you ask for that.
+    The answer is proven stable, and its margins are printed. You may ask for more: that it is safe as a mechanism
+    moves (--scene), for steps that vary (--h-min), or in a chain of bodies (--chain). Exit status 1 if that is not
+    proven.
 
-    On a mechanism that moves, feedback makes errors of its own. The default goal, accurate, has the least of them
-    among what settles within --settle, or while the motion turns by 14 rad. --omega or --scene say how fast the
-    motion is. Below the answer, two lines say what faster decay would cost and what slower decay would gain.
-    "within the spread" is the largest |z_p| with α and β off by --spread. At the fastest point |z_p| rises like a
-    square root as soon as damping grows; robust keeps away from it. Where arbitrarily strong feedback is stable,
-    only αh and βh up to 4 are searched, and "searched" says so.
+    On a mechanism that moves, feedback makes errors of its own. The default goal, accurate, makes them as small as it
+    can. It allows only points that settle within --settle, or while the motion turns by 14 rad. --omega or --scene say
+    how fast the motion is. Two lines below the answer say what faster decay would cost and what slower decay would
+    gain.
 
-    --engine searches only what that engine can express, with its own method unless you name another. Where several
-    points are best, the mildest is taken. --pd shows each way of applying a joint drive, with the kp and kd to set.
-    With --bandwidth or --settle, or a controller that is slower than the physics (--every, --late, --filter), these
-    are critically damped gains for the explicit way, with a margin.
+    "within the spread" is the largest |z_p| if α and β are off by --spread. At the goal fastest |z_p| rises steeply as
+    soon as α grows; the goal robust keeps away from such points. Some methods are stable however strong the feedback
+    is. For these only αh and βh up to 4 are searched, and "searched" says so.
 
-    --h-min lets steps vary: "varying steps" says whether errors decay for every sequence of steps up to --h-max.
-    --chain also says from how many sweeps the answer is stable in a straight chain of bodies, and gives the
-    strongest feedback that this chain allows with --spread to spare.
+    --engine searches only what that engine can express. Its own method is used unless you name another. Of several
+    points that are equally good the one with the least α̂ and β̂ is taken. --pd shows each way of applying a joint
+    drive, with the kp and kd to set. With --bandwidth or --settle the gains are critically damped and leave a margin.
+    They also allow for a controller that is slower than the physics (--every, --late, --filter).
+
+    With --h-min, "varying steps" says whether errors decay for every sequence of steps up to --h-max. --chain also
+    says how many sweeps the answer needs in a straight chain of bodies, and what the strongest feedback is that this
+    chain allows.
 
     Example: bezstab choose --method B4 --h 0.001
     """
-    from bezstab.questions import Question, answers, usual_goal
-    from bezstab.stability import Timing
+    from bezstab.questions import answers, usual_goal
 
-    timing = timing_typed(every, late, filter_seconds, drive, h)
     if bandwidth is not None and drive is None:
-        raise InputError("--bandwidth is that of a drive: it needs --pd")
-    if drive and (timing or bandwidth is not None or (settle is not None and goal is None)):
-        chosen_methods = methods_typed(methods, has_usual_ones=True)
-        safe = choose_held(drive.inertia, h, timing or Timing(), chosen_methods, bandwidth, settle, form)
-        click.get_current_context().exit(0 if safe else 1)
-    question = Question(
-        methods=methods_typed(methods, engine is not None or drive is not None),
+        raise InputError("--bandwidth is about a drive: it needs --pd")
+    held = timing.of(drive, typed["h"])
+    if drive and (held or bandwidth is not None or (settle is not None and goal is None)):
+        own = methods_typed(methods, has_usual_ones=True)
+        context.exit(0 if choose_held(drive.inertia, typed["h"], held, own, bandwidth, settle, form) else 1)
+    question = asked(
+        methods=methods,
         goal=goal or usual_goal(engine, drive),
-        h=h,
-        h_min=h_min,
-        h_max=h_max,
-        hold=hold,
-        engine=engine,
-        drive=drive,
-        omega=omega,
-        scene=scene,
-        speed=speed,
-        spread=float(spread),
         settle=settle,
-        equal=keep is not None,
-        chain=typed_chain(chain, mass_ratio, iterations),
+        equal=equal is not None,
+        engine=(engine, None) if engine else None,
+        drive=drive,
+        **typed,
     )
-    prepare(question)
     chosen = list(progress(answers(question), question.goal or "", len(question.methods)))
-    rows = [answer_row(answer) for answer in chosen]
-    columns = CHOICES.columns(rows, WITHOUT_ACCURACY if drive else ())
-    show_rows(rows, columns, form, sentence=answer_sentence)
+    show_rows(CHOICES, [answer_row(answer) for answer in chosen], form, WITHOUT_ACCURACY if drive else ())
     say_unknown_costs(chosen)
     if for_reading(form):
         say_varying(chosen)
@@ -201,133 +176,87 @@ def choose(
             )
         if engine:
             say_what_is_left_out(engine, chain=question.chain is not None)
-    if not all(answer.safe for answer in chosen):
-        click.get_current_context().exit(1)
+    context.exit(0 if all(answer.safe for answer in chosen) else 1)
 
 
 @click.command()
 @methods_option()
-@click.option("--alpha", type=NUMBER, help="α̂; α in 1/s with --physical.")
-@click.option("--beta", type=NUMBER, help="β̂; β in 1/s with --physical.")
-@click.option("--h", type=SECONDS, help="Step size in s; needed with --engine and --pd.")
-@physical_option
-@engine_values_option
-@as_typed_option
-@chain_option
-@mass_ratio_option
-@iterations_option
-@drive_option
+@given_point_options
+@chain_options
 @timing_options
 @omega_option
 @h_min_option
 @click.option("--h-max", type=SECONDS, help="With --h-min: the longest step in s [--h].")
 @hold_option
-@moving_scene_option("Safe for this mechanism as it moves? Needs --h.")
-@moving_speed_option
+@moving_scene_options("Is it safe for this mechanism as it moves? Needs --h.")
 @format_option
 @click.pass_context
-def check(
-    context: click.Context,
-    methods: Sequence[Method],
-    alpha: Fraction | None,
-    beta: Fraction | None,
-    h: Fraction | None,
-    physical: bool,
-    engine: EngineValues | None,
-    as_typed: bool,
-    chain: int | None,
-    mass_ratio: Fraction | None,
-    iterations: int | None,
-    drive: Drive | None,
-    every: int | None,
-    late: Fraction | None,
-    filter_seconds: Fraction | None,
-    omega: Fraction | None,
-    h_min: Fraction | None,
-    h_max: Fraction | None,
-    hold: bool,
-    scene: str | None,
-    speed: Fraction,
-    form: Format,
-) -> None:
+def check(context: click.Context, /, timing: HeldTiming, form: Format, **typed: Any) -> None:
     """Tell whether a choice is safe: exit status 0 if so, 1 if not.
 
-    Safe means proven stable, for every method named. Prints the verdict, the margins, the largest stable step, and
-    what `choose` gives instead. α and β in 1/s (--physical) without --h: prints the step up to which every step is
-    safe.
+    Safe means that errors are proven to shrink, with every method named. Prints the verdict, the margins, the largest
+    stable step, and what `choose` gives instead. With α and β in 1/s (--physical) but no --h, prints the step up to
+    which every step is safe.
 
-    That is about constant steps. Steps that are each stable alone may still let errors grow when they alternate.
-    With --h-min and --h-max, safe means proven for every sequence of steps in that range.
+    Without --h-min all steps are equally long. Steps that are each stable alone may still let errors grow when they
+    alternate. With --h-min and --h-max, safe means proven for every sequence of steps in that range.
 
-    What is safe may still be inaccurate. On a mechanism that moves, feedback makes errors of its own if it is
-    strong, or if it is weak. A sentence says so where they are ten times the least or more.
+    What is safe may still be inaccurate. On a mechanism that moves, feedback makes errors of its own if it is strong,
+    or if it is weak. A sentence says so if they are at least ten times the least.
 
     --engine judges an engine's own values, with its own method unless you name another. What the engine does to its
-    values (clamps, scaling) is applied first, and what the conversion does not cover is printed. The largest step
-    is that of the engine's values. What to take instead is what the engine can express, as a line to paste. Many
-    engines solve their constraints one after another, in sweeps. Their answer is about one constraint alone: chains
-    of them may diverge all the same. With --chain, safe means stable for so many bodies in a straight chain, the
-    last one --mass-ratio times as heavy, with --iterations sweeps.
+    values, such as clamps, is applied first. What the conversion leaves out is printed. The largest step is for the
+    engine's values as they are. What `choose` gives instead is a line to paste. Many engines solve their constraints
+    one after another, in sweeps. The answer is then about one constraint alone: a chain of them may diverge all the
+    same. With --chain, safe means stable for so many bodies in a straight chain. Its last body is --mass-ratio times
+    as heavy, and a step makes --iterations sweeps.
 
-    --pd kp,kd,inertia judges a joint's drive, applied in four ways: explicit (SYM), implicit in velocity
-    (imex-euler, as MuJoCo's implicitfast), as stable PD (stable-pd), fully implicit (implicit-euler, as PhysX). All
-    four count unless --method names yours. Gains that were stable in an implicit engine explode in an explicit one:
-    is it kp or kd? "used up" names the one at its limit, or nearest to it, and "to" says how far each may go alone.
-    Explicit needs 2 kd h + kp h² < 4 inertia. Mostly it is kd, which has no limit where the velocity is implicit.
+    --pd kp,kd,inertia judges a joint's drive, applied in four ways: explicit (SYM), implicit in velocity (imex-euler,
+    as MuJoCo's implicitfast), as stable PD (stable-pd), fully implicit (implicit-euler, as PhysX). All four must be
+    safe unless --method names yours. Gains that are stable in an implicit engine may explode in an explicit one.
+    "used up" names the gain that is at its limit, or nearest to it. "to" says how far each may go alone. An explicit
+    drive needs 2 kd h + kp h² < 4 inertia: mostly it is kd that is too large. An implicit velocity takes any kd.
 
-    --every, --late and --filter are for a controller that is slower than the physics: its torque is held for
-    several steps, comes late, or uses a filtered velocity. "used up" then names gains, rate or delay, and "to" says
-    how far each may go alone. A contact of stiffness k and damping c between bodies of reduced mass m is --pd k,c,m
-    while it is closed.
+    --every, --late and --filter are for a controller that is slower than the physics. Its torque is held for several
+    steps, comes late, or uses a filtered velocity. "used up" then names gains, rate or delay. A contact of stiffness k
+    and damping c between bodies of reduced mass m is --pd k,c,m while it is closed.
 
     Example: bezstab check --method RK2 --h 0.002 --alpha 50 --beta 50 --physical
     """
     from bezstab.questions import answers, turning_of
 
-    timing = timing_typed(every, late, filter_seconds, drive, h)
-    if timing and drive and h:
-        context.exit(0 if check_held(drive, h, timing, methods_typed(methods, has_usual_ones=True), form) else 1)
-    if physical and not (h or h_min or scene or engine or drive or as_typed or hold or omega):
-        turning_of(None, speed, None)  # no speed without a scene
-        context.exit(0 if _check_without_step(methods, both_or_none(alpha, beta), form) else 1)
-    question = asked(
-        methods,
-        alpha,
-        beta,
-        h,
-        physical,
-        engine,
-        drive,
-        as_typed=as_typed,
-        omega=omega,
-        scene=scene,
-        speed=speed,
-        h_min=h_min,
-        h_max=h_max,
-        hold=hold,
-        chain=typed_chain(chain, mass_ratio, iterations),
-    )
+    drive, methods = typed["drive"], typed["methods"]
+    if held := timing.of(drive, typed["h"]):
+        own = methods_typed(methods, has_usual_ones=True)
+        context.exit(0 if check_held(drive, typed["h"], held, own, form) else 1)
+    if typed["physical"] and not any(typed[name] for name in NEEDING_A_STEP):
+        turning_of(None, typed["speed"], None)  # no speed without a scene
+        point = both_or_none(typed["alpha"], typed["beta"])
+        context.exit(0 if _check_without_step(methods, point, form) else 1)
+    question = asked(**typed)
     found = list(_with_instead(answers(question)))
     given = [answer for answer in found if answer.role == "given"]
-    rows = [answer_row(answer) for answer in found]
-    given_rows, instead_rows = ([row for row in rows if row["role"] == role] for role in ("given", "instead"))
-    without = WITHOUT_ACCURACY if drive else ()
     if for_reading(form):
-        show_rows(given_rows, CHECKED.columns(given_rows, without), form, sentence=answer_sentence)
+        without = WITHOUT_ACCURACY if drive else ()
+        show_rows(CHECKED, [answer_row(answer) for answer in given], form, without)
         say_varying(given)
         for sentence in map(costs_words, given if not drive else ()):
             if sentence:
                 show_text(f"\n{sentence}")
-        if instead_rows:
+        if instead := [answer_row(answer) for answer in found if answer.role == "instead"]:
             show_text("\nWhat `choose` gives instead:\n")
-            show_rows(instead_rows, CHECKED.columns(instead_rows, without), form, sentence=answer_sentence)
+            show_rows(CHECKED, instead, form, without)
         if not drive:
             show_text(f"\n{motion_words(question.motion)}")
     else:
-        show_rows(rows, [], form)
+        show_rows(CHECKED, [answer_row(answer) for answer in found], form)
     say_unknown_costs(found)
     say_what_was_made(question, form)
     context.exit(0 if all(answer.safe for answer in given) else 1)
+
+
+NEEDING_A_STEP = ("h", "h_min", "scene", "engine", "drive", "as_typed", "hold", "omega")
+"""Without any of these, α and β in 1/s are asked about for every step."""
 
 
 def _with_instead(given: "Iterable[Answer]") -> "Iterator[Answer]":
@@ -346,26 +275,10 @@ def _check_without_step(methods: Sequence[Method], point: tuple[Fraction, Fracti
     from bezstab.questions import largest_step, methods_for
 
     if point is None:
-        raise click.UsageError("--alpha and --beta are needed, or --engine, or --pd")
+        raise click.UsageError("a point is needed: --alpha with --beta, --engine, or --pd")
     found = [largest_step(method, *point) for method in methods_for(tuple(methods), None, None)]
-    rows = [largest_step_row(each) for each in found]
-    show_rows(rows, LARGEST_STEPS.columns(rows), form, sentence=step_sentence)
+    show_rows(LARGEST_STEPS, [largest_step_row(each) for each in found], form)
     return all(each.safe for each in found)
-
-
-def step_sentence(row: Row) -> str:
-    """Return up to which step alpha and beta are safe."""
-    limit = safe_step_text(row)
-    if limit == "none":
-        return "Not safe at small steps."
-    return "Safe at any h." if limit == "unlimited" else f"Safe up to h = {limit} s."
-
-
-def engine_sentence(row: Row) -> str:
-    """Return what to write for the point, or what the engine calls the feedback where none is given."""
-    if row["setting"] is None:
-        return f"In {row['engine']} the feedback is set by {row['parameters']}."
-    return f"At this point: {row['setting']}."
 
 
 @click.command()
@@ -387,7 +300,7 @@ def engines(h: Fraction, alpha: Fraction | None, beta: Fraction | None, form: Fo
 
     point = both_or_none(alpha, beta)
     rows = [engine_row(engine, point, h) for engine in ENGINES.values()]
-    show_rows(rows, ENGINES_LISTED.columns(rows), form, sentence=engine_sentence)
+    show_rows(ENGINES_LISTED, rows, form)
     if for_reading(form):
         show_text("\nAnd others, by what they run underneath:\n")
         for name, underneath in RUN_UNDERNEATH.items():
@@ -398,7 +311,7 @@ def engines(h: Fraction, alpha: Fraction | None, beta: Fraction | None, form: Fo
 @methods_option(*USUAL_METHODS)
 @step_option
 def explore(methods: Sequence[Method], h: Fraction) -> None:
-    """Open a window: move over the region, see poles and decay.
+    """Open a window: point at the region, see poles and decay.
 
     A click proves the verdict; n shows the next method; p prints the point as options for the other commands.
 

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from bezstab.cli.accuracy_maps import show_predicted_trade
 from bezstab.cli.asking import omega_option, say_if_units_were_mistaken
 from bezstab.cli.options import (
     METHOD,
@@ -17,12 +16,8 @@ from bezstab.cli.options import (
     POSITIVE,
     SECONDS,
     SEQUENCE,
-    FigureForm,
-    TableForm,
     both_or_none,
     compiled_option,
-    figure_options,
-    file_options,
     format_option,
     left_at_default,
     methods_option,
@@ -33,24 +28,24 @@ from bezstab.cli.options import (
     stabilise_options,
     step_option,
     typed_beside,
-    work_options,
 )
 from bezstab.cli.output import (
-    file_name,
+    Files,
+    Work,
+    figure_options,
+    file_options,
     for_reading,
     progress,
     results_of_chunks,
     say,
     show_rows,
     show_text,
-    write_figure,
-    write_table,
+    work_options,
 )
 from bezstab.errors import InputError, NumericalError
-from bezstab.files import output_directory
 from bezstab.methods import Method, check_one_step
 from bezstab.rationals import exact
-from bezstab.show import EXTREMES, SIMULATIONS, SWEPT, Format, Row, cells, diverged_text, formatted, seconds_words
+from bezstab.show import EXTREMES, FRONTS, SIMULATIONS, SWEPT, Format, cells
 from bezstab.units import to_dimensionless
 
 if TYPE_CHECKING:
@@ -66,18 +61,15 @@ PREDICTED = ("scene", "speed", "methods", "steps", "omega", "predicted", "levels
 """Parameters of tradeoff that go with --predicted."""
 
 
-def run_sentence(row: Row) -> str:
-    """Return how long a run of a mechanism went well, and how far it stayed from its constraints."""
-    time = row["time"]
-    assert isinstance(time, float)
-    end = f"broke down after {seconds_words(time)}" if row["failure"] else f"went through to {seconds_words(time)}"
-    return f"{row['method']} {end}; the largest |c| is {formatted(row['c_max'], '.1e')}."
-
-
 @click.command()
 @scene_option("slider_crank")
 @speed_option
-@click.option("--method", type=METHOD, default="B4", help="As for the other commands.")
+@click.option(
+    "--method",
+    type=METHOD,
+    default="B4",
+    help="A method's name, as `bezstab methods` lists it, or a .toml file; NAME@m takes steps of m h.",
+)
 @click.option("--alpha", type=NUMBER, default="0.5", help="α̂; α in 1/s with --physical.")
 @click.option("--beta", type=NUMBER, default="0.1", help="β̂; β in 1/s with --physical.")
 @physical_option
@@ -87,18 +79,19 @@ def run_sentence(row: Row) -> str:
     "--steps",
     "sequence",
     type=SEQUENCE,
-    help="Steps in s that are taken in turn, over and over, such as 1/60,0.00917 or 3*0.01,0.02, or a file of them; "
-    "--h is then only what α̂ and β̂ belong to.",
+    help="Step sizes in s that are taken in turn, over and over, such as 1/60,0.00917 or 3*0.01,0.02, or a file of "
+    "them. α̂ and β̂ then belong to --h.",
 )
-@click.option("--hold", is_flag=True, help="With --steps: α̂ and β̂ stay as steps vary; not α and β.")
+@click.option("--hold", is_flag=True, help="With --steps: α̂ and β̂ stay the same as steps vary; else α and β do.")
 @click.option("--time", type=SECONDS, default="10", help="Duration in s.")
-@click.option("--perturb", type=NUMBER, default="0", help="Initial error of the first constraint.")
+@click.option("--perturb", type=NUMBER, default="0", help="Initial error of the first constraint, in its own unit.")
 @click.option(
     "--start",
     type=click.Choice(["rk4", "ramp", "euler"]),
     default="rk4",
-    help="What gives a multistep method's first values: RK4, its family's shorter members, or explicit Euler; "
-    "for an implicit method Gauss's of order four, shorter BDF methods, or implicit Euler.",
+    help="Where a multistep method takes its first values from: RK4, members of its family with fewer steps, or "
+    "explicit Euler. For an implicit method: Gauss's method of order four, BDF methods with fewer steps, or implicit "
+    "Euler.",
 )
 @compiled_option
 @figure_options
@@ -118,9 +111,7 @@ def simulate(
     time: Fraction,
     perturb: Fraction,
     start: "Start",
-    output: Path,
-    figure: FigureForm,
-    table: TableForm,
+    files: Files,
     form: Format,
 ) -> None:
     """Run a mechanism and see what its constraint error does.
@@ -149,12 +140,11 @@ def simulate(
     elif not (sequence or left_at_default("h")):
         say_if_units_were_mistaken([method], alpha, beta, h)
     if hold and not sequence:
-        raise click.UsageError("--hold goes with --steps: it is about steps that vary")
+        raise click.UsageError("--hold needs --steps: it is about steps that vary")
     _check_number_of_steps(time, min(sequence) if sequence else h, method)
     if sequence:
         check_one_step(method)
-    if figure != "none" or table != "none":
-        output_directory(output)
+    files.check_output()
     moving = mechanism.compiled_mechanism(mechanism.at_speed(mechanism.load_scene(scene), float(speed)))
     if projection:
         mechanism.check_projected(method)
@@ -171,11 +161,11 @@ def simulate(
 
         return history_figure(simulation)
 
-    path = output / f"simulate_{file_name(Path(scene).stem)}_{file_name(method.name)}"
-    write_table(path, history_arrays(simulation), table)
-    write_figure(path, draw, figure)
+    path = files.path("simulate", Path(scene).stem, method.name)
+    files.write_table(path, history_arrays(simulation))
+    files.write_figure(path, draw)
     rows = [simulation_row(simulation)]
-    show_rows(rows, SIMULATIONS.columns(rows), form, sentence=run_sentence)
+    show_rows(SIMULATIONS, rows, form)
     if len(simulation.singular_times):
         say(f"bezstab: {_passages_text(simulation.singular_times.tolist())}")
     if simulation.failure:
@@ -201,21 +191,11 @@ def _check_number_of_steps(time: Fraction, h: Fraction, method: Method) -> None:
         raise InputError(f"--time {float(time):g}: {taken}, expected 1 to {MOST_STEPS:g}")
 
 
-def cost_sentence(row: Row) -> str:
-    """Return what one run costs and what it buys."""
-    h = row["h"]
-    assert isinstance(h, float)
-    with_step = f"{row['method']} with h = {seconds_words(h)}"
-    if row["failure"]:
-        return f"{with_step} diverged."
-    return f"{with_step}: a trajectory error of {diverged_text(row)} for {row['run_evaluations']} evaluations."
-
-
 @click.command()
 @scene_option("slider_crank_light")
 @speed_option
 @methods_option("B2", "B3", "B4", "AB2", "AB4", "ABM4", "RK4", "SIE", "SYM")
-@click.option("--h", "steps", type=SECONDS, multiple=True, help="Step in s [ten from 0.0001 to 0.02].")
+@click.option("--h", "steps", type=SECONDS, multiple=True, help="Step size in s. Repeatable [ten from 0.0001 to 0.02].")
 @click.option("--time", type=SECONDS, default="2", help="Duration in s.")
 @click.option(
     "--alpha",
@@ -228,28 +208,28 @@ def cost_sentence(row: Row) -> str:
 @click.option(
     "--predicted",
     is_flag=True,
-    help="Nothing is simulated: the least error that each method can force on a motion while errors decay so fast.",
+    help="Simulate nothing; print the least error that each method's feedback makes, for each speed of decay.",
 )
 @click.option(
     "--level",
     "levels",
     type=POSITIVE,
     multiple=True,
-    help="With --predicted: |z_p| of LEVEL at most, below 1. Repeatable [fifteen from 0.1 to 0.999].",
+    help="With --predicted: decay with |z_p| of at most LEVEL, below 1. Repeatable [fifteen from 0.1 to 0.999].",
 )
-@click.option("--tolerance", type=POSITIVE, default="1e-6", help="In m and rad.")
-@click.option("--repeats", type=click.IntRange(1, 100), default=3, help="Of each timing.")
+@click.option("--tolerance", type=POSITIVE, default="1e-6", help="The error that is good enough, in m and rad.")
+@click.option("--repeats", type=click.IntRange(1, 100), default=3, help="How often each run is timed.")
 @click.option(
     "--against",
     type=click.Choice(["evaluations", "time"]),
     default="evaluations",
-    help="What figures and fronts hold errors against: evaluations of f, or processor time on this machine.",
+    help="What errors are compared with: evaluations of f, or processor time on this machine.",
 )
 @click.option(
     "--recorded",
     type=click.Path(path_type=Path),
-    help="Processor times from what an earlier run printed with --format json, not measured anew: a figure against "
-    "time then comes out the same again.",
+    help="Take processor times from a file that an earlier run printed with --format json, and measure none. The "
+    "figure is then the same again.",
 )
 @compiled_option
 @work_options
@@ -271,28 +251,24 @@ def tradeoff(
     repeats: int,
     against: "Cost",
     recorded: Path | None,
-    output: Path,
-    workers: int | None,
-    scheduler: str | None,
-    resume: bool,
-    figure: FigureForm,
-    table: TableForm,
+    work: Work,
+    files: Files,
     form: Format,
 ) -> None:
     """Measure what accuracy costs, by method and step.
 
     Each run is compared with a reference of known accuracy. Prints errors, evaluations, processor time (median and
-    range) and the order observed. Below, sentences name the cheapest run within --tolerance, and where the Bézier
+    range) and the order observed. Sentences below name the cheapest run within --tolerance, and say where the Bézier
     methods win and lose. Writes the table, without times, and two figures of errors against evaluations or time. A
     run that fails is marked as diverged.
 
-    Without --alpha and --beta each step has its own point: that of the goal accurate for the scene's motion, or for
-    --omega. If α̂ and β̂ are held while h shrinks, methods with stages lose order. A multistep method starts with
-    RK4, which loses order too: "in the later half" of a run that error has died away, and what remains is what the
-    feedback forces, as "predicted".
+    Without --alpha and --beta each step size has its own point: that of the goal accurate, for the scene's motion or
+    for --omega. If α̂ and β̂ stay the same while h shrinks, methods with stages lose order. A multistep method that
+    starts with RK4 loses order too. That error has died away "in the later half" of a run. What remains is the error
+    that the feedback makes; compare "predicted".
 
-    --predicted simulates nothing: it prints the least error that a method can force on a motion, for each |z_p|.
-    The motion is --omega, or a --scene with one --h; else it turns by ωh = 0.01. Writes tradeoff_predicted.
+    --predicted simulates nothing. It prints the least error that a method's feedback makes on a motion, for each
+    |z_p|. The motion is --omega, or a --scene with one --h; else it turns by ωh = 0.01. Writes tradeoff_predicted.
 
     Example: bezstab tradeoff --method B4 --method AB4 --h 0.002 --h 0.004 --time 2
     """
@@ -301,7 +277,7 @@ def tradeoff(
     from bezstab.show import run_row, untimed_arrays
 
     if predicted:
-        _predicted_trade(methods, omega, scene, speed, steps, levels, output, figure, table, form)
+        _predicted_trade(methods, omega, scene, speed, steps, levels, files, form)
         return
     point = both_or_none(alpha, beta)
     _check_simulated_options(point, physical, omega, levels, recorded, against)
@@ -317,9 +293,9 @@ def tradeoff(
     compiled = evidence.sweep_compiled(loaded_scene, methods, step_sizes, float(time), repeats)
     of_all = (loaded_scene, step_sizes, float(time), given, physical, repeats)
     sweeps = [evidence.Sweep(method, *of_all, reference, rate, compiled) for method in dict.fromkeys(methods)]
-    path = output / f"tradeoff_{file_name(Path(scene).stem)}"
+    path = files.path("tradeoff", Path(scene).stem)
     job = f"{methods} {(*of_all, rate)}"
-    with results_of_chunks(evidence.measured_runs, sweeps, path, job, workers, scheduler, resume) as results:
+    with results_of_chunks(evidence.measured_runs, sweeps, path, job, work) as results:
         per_method = (evidence.swept_runs(*each) for each in zip(sweeps, results, strict=True))
         runs = list(chain.from_iterable(per_method))
         if times:
@@ -332,12 +308,12 @@ def tradeoff(
 
             return work_precision_figure(swept, loaded_scene.name, constraint, floor)
 
-        write_table(path, untimed_arrays(rows), table)
+        files.write_table(path, untimed_arrays(rows))
         for_trajectory = partial(draw, constraint=False, floor=reference.error)
-        write_figure(path.with_name(f"{path.name}_trajectory"), for_trajectory, figure)
+        files.write_figure(path.with_name(f"{path.name}_trajectory"), for_trajectory)
         for_constraint = partial(draw, constraint=True, floor=0.0)
-        write_figure(path.with_name(f"{path.name}_constraint"), for_constraint, figure)
-    show_rows(rows, SWEPT.columns(rows), form, sentence=cost_sentence)
+        files.write_figure(path.with_name(f"{path.name}_constraint"), for_constraint)
+    show_rows(SWEPT, rows, form)
     if for_reading(form):
         show_text(f"\nThe reference is known to {reference.error:.0e} (m, rad).")
         if recorded:
@@ -359,13 +335,13 @@ def _check_simulated_options(
 ) -> None:
     """Raise UsageError for options of tradeoff that do not go together."""
     if levels:
-        raise click.UsageError("--level goes with --predicted: it is the |z_p| that is asked for")
+        raise click.UsageError("--level needs --predicted: it says how fast errors must decay")
     if physical and point is None:
         raise click.UsageError("--physical needs --alpha and --beta")
     if omega is not None and point:
-        raise click.UsageError("--omega is the motion for which points are chosen: not with --alpha and --beta")
+        raise click.UsageError("--omega does not go with --alpha and --beta: points are chosen for that motion")
     if recorded and against != "time":
-        raise click.UsageError("--recorded goes with --against time")
+        raise click.UsageError("--recorded needs --against time")
 
 
 def _predicted_trade(
@@ -375,9 +351,7 @@ def _predicted_trade(
     speed: Fraction,
     steps: Sequence[Fraction],
     levels: Sequence[Fraction],
-    output: Path,
-    figure: FigureForm,
-    table: TableForm,
+    files: Files,
     form: Format,
 ) -> None:
     """Show what tradeoff --predicted asks for; UsageError and InputError where that cannot be."""
@@ -388,30 +362,39 @@ def _predicted_trade(
     from bezstab.questions import motion_of
 
     motion = motion_of(omega, None if left_at_default("scene") else scene, speed, h)
-    if figure != "none" or table != "none":
-        output_directory(output)
-    show_predicted_trade(
-        methods,
-        motion,
-        [float(level) for level in levels],
-        h=None if h is None else float(h),
-        path=output / "tradeoff_predicted",
-        figure=figure,
-        table=table,
-        form=form,
-    )
+    files.check_output()
+    from bezstab.show import combined_words, front_row, untimed_arrays
+    from bezstab.stability import RATES, error_front
+
+    asked, rates = list(dict.fromkeys(methods)), [float(level) for level in levels] or RATES
+    fronts = [error_front(method, rates, motion.omega_h) for method in progress(asked, "fronts", len(asked))]
+    rows = [front_row(point, None if h is None else float(h)) for front in fronts for point in front]
+
+    def draw() -> "Figure":
+        from bezstab.show import error_front_figure
+
+        return error_front_figure([front for front in fronts if front])
+
+    path = files.path("tradeoff", "predicted")
+    files.write_table(path, untimed_arrays(rows))
+    files.write_figure(path, draw)
+    show_rows(FRONTS, rows, form)
+    if for_reading(form):
+        show_text(combined_words(motion))
 
 
 def _check_nothing_simulated(steps: Sequence[Fraction]) -> None:
     """Raise UsageError for an option of the running command that is about runs, beside --predicted."""
     if other := typed_beside(PREDICTED):
-        raise click.UsageError(f"--predicted simulates nothing: not with {other}")
+        raise click.UsageError(f"{other} does not go with --predicted, which simulates nothing")
     if len(steps) > 1:
         raise click.UsageError(f"--predicted takes one --h, but {len(steps)} were given")
     if left_at_default("scene") and not left_at_default("speed"):
-        raise click.UsageError("--speed goes with --scene: it is the mechanism that is so many times as fast")
+        raise click.UsageError("--speed needs --scene: it says how fast that mechanism moves")
     if steps and left_at_default("scene") and left_at_default("omega"):
-        raise click.UsageError("--predicted takes --h with --omega or --scene: what happens in a step depends on both")
+        raise click.UsageError(
+            "--predicted with --h needs --omega or --scene: they say how far the motion goes in a step"
+        )
 
 
 def _rate_of_motion(
@@ -435,11 +418,6 @@ def _check_swept_time(time: float, step_sizes: Sequence[float], methods: Sequenc
         raise InputError(f"--time {time:g}: expected one step ({longest:g} s) to {MOST_SWEPT:g} ({most:g} s)")
 
 
-def check_sentence(row: Row) -> str:
-    """Return whether what was expected came out."""
-    return "As expected." if row["held"] else "NOT as expected."
-
-
 @click.command()
 @click.option("--short", is_flag=True, help="Fewer methods and runs of 1e5 steps, in seconds instead of minutes.")
 @compiled_option
@@ -448,9 +426,9 @@ def check_sentence(row: Row) -> str:
 def extremes(context: click.Context, short: bool, form: Format) -> None:
     """Measure what holds at the extremes of sizes, steps and masses.
 
-    Each check states beforehand what must come out: poles from 1e-300 to 1e300 and at multiple roots against 50 digits
-    and more, runs of 1e7 steps, steps around the largest stable one, a singular configuration, crank speeds, mass
-    ratios. Exit status 1 if something does not hold.
+    Each check says beforehand what must come out. Poles from 1e-300 to 1e300, and multiple roots, are compared with 50
+    digits and more. There are runs of 1e7 steps, steps around the largest stable one, a singular configuration, fast
+    cranks, and large ratios of masses. Exit status 1 if something does not hold.
 
     Example: bezstab extremes --short
     """
@@ -459,5 +437,5 @@ def extremes(context: click.Context, short: bool, form: Format) -> None:
     checks = list(extreme_checks(not short))
     outcomes = [check() for check in progress(checks, "extremes")]
     rows = [cells(EXTREMES.fields, outcome) for outcome in outcomes]
-    show_rows(rows, EXTREMES.columns(rows), form, sentence=check_sentence)
+    show_rows(EXTREMES, rows, form)
     context.exit(0 if all(outcome.held for outcome in outcomes) else 1)

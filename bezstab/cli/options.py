@@ -3,9 +3,11 @@
 import os
 import re
 from collections.abc import Callable, Collection, Iterable
+from dataclasses import fields
 from fractions import Fraction
+from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar, get_args
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar, get_args
 
 import click
 
@@ -13,15 +15,13 @@ from bezstab.engines import ENGINES, Engine, engine_and_values, engine_named
 from bezstab.errors import InputError
 from bezstab.methods import REGISTRY, lookup
 from bezstab.rationals import rational
-from bezstab.show import Format
+from bezstab.show import FIGURE_FORMS, TABLE_FORMS, Format
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
     from bezstab.mechanism import Projection, Stabilise
 
-FigureForm = Literal["png", "svg", "pdf", "none"]
-TableForm = Literal["csv", "npz", "none"]
 EngineValues = tuple[Engine, tuple[Fraction, ...]]
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -123,6 +123,7 @@ SECONDS = ParsedType("seconds", _seconds)
 SPEED = ParsedType("number", _speed)
 SEQUENCE = ParsedType("steps", _sequence)
 METHOD = ParsedType("method", lookup, (*REGISTRY, *WITH_PARAMETERS))
+SHARE = ParsedType("number", lambda text: float(rational(text)))
 ENGINE = ParsedType("NAME", engine_named, ENGINES)
 ENGINE_VALUES = ParsedType("name=values", engine_and_values, [f"{name}=" for name in ENGINES])
 
@@ -135,7 +136,7 @@ def methods_option(*default: str) -> Decorator:
         type=METHOD,
         multiple=True,
         default=default,
-        help="A method, as listed by `bezstab methods`, or a .toml file; @m for a step of m h. Repeatable.",
+        help="A method's name, as `bezstab methods` lists it, or a .toml file; NAME@m takes steps of m h. Repeatable.",
     )
 
 
@@ -145,23 +146,21 @@ def scene_option(default: str | None, help_text: str = "A shipped scene's name, 
 
 
 speed_option = click.option(
-    "--speed", type=SPEED, default="1", help="Times the scene's own: its drivers' and its start's."
+    "--speed", type=SPEED, default="1", help="The scene's drivers and initial velocities are so many times as fast."
 )
 step_option = click.option("--h", type=SECONDS, default="0.001", help="Step size in s.")
-physical_option = click.option(
-    "--physical", is_flag=True, help="Take --alpha and --beta as α and β in 1/s; goes with --h."
-)
+physical_option = click.option("--physical", is_flag=True, help="--alpha and --beta are α and β in 1/s; needs --h.")
 output_option = click.option(
     "-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory for what is written."
 )
 figure_option = click.option(
-    "--figure", type=click.Choice(get_args(FigureForm)), default="png", help="Format of the figure."
+    "--figure", type=click.Choice([*FIGURE_FORMS, "none"]), default="png", help="Format of the figure."
 )
 
 
-def table_option(default: TableForm) -> Decorator:
+def table_option(default: str) -> Decorator:
     """Return the option --table."""
-    choice = click.Choice(get_args(TableForm))
+    choice = click.Choice([*TABLE_FORMS, "none"])
     return click.option("--table", type=choice, default=default, help="Format of the table.")
 
 
@@ -175,8 +174,10 @@ format_option = click.option(
 workers_option = click.option(
     "--workers", type=click.IntRange(1, 1000), help="Number of processes [one for each core]."
 )
-scheduler_option = click.option("--scheduler", help="Address of a Dask scheduler, tcp://host:port, instead.")
-resume_option = click.option("--resume", is_flag=True, help="Go on with what a killed run of the same job has left.")
+scheduler_option = click.option(
+    "--scheduler", help="Address of a Dask scheduler, tcp://host:port, in place of --workers."
+)
+resume_option = click.option("--resume", is_flag=True, help="Continue a run with the same options that was stopped.")
 
 
 def _choose_compiled(context: click.Context, parameter: click.Parameter, choice: str) -> None:
@@ -207,7 +208,7 @@ compiled_option = click.option(
     default="auto",
     expose_value=False,
     callback=_choose_compiled,
-    help="Runs as machine code by numba: auto where it is installed and pays.",
+    help="Whether numba compiles runs; auto: where it is installed and saves time.",
 )
 
 
@@ -222,11 +223,19 @@ def together(*options: Decorator) -> Decorator:
     return with_options
 
 
-file_options = together(output_option, figure_option, table_option("csv"))
-figure_options = together(output_option, figure_option, table_option("none"))
-"""Of a command whose table is long and seldom wanted: it is written when asked for."""
+def gathered(kind: type, parameter: str, *options: Decorator) -> Decorator:
+    """Return one decorator that adds options and hands the command one value of a dataclass, whose fields they are."""
 
-work_options = together(workers_option, scheduler_option, resume_option)
+    def with_options(function: Function, /) -> Function:
+        @wraps(function)
+        def with_one_value(*arguments: Any, **typed: Any) -> Any:
+            own = {field.name: typed.pop(field.name) for field in fields(kind) if field.name in typed}
+            return function(*arguments, **{parameter: kind(**own)}, **typed)
+
+        return together(*options)(with_one_value)  # type: ignore[return-value]  # as wraps has it
+
+    return with_options
+
 
 stabilise_options = together(
     click.option(
@@ -249,7 +258,7 @@ def both_or_none(alpha: Fraction | None, beta: Fraction | None) -> tuple[Fractio
     if alpha is None and beta is None:
         return None
     if alpha is None or beta is None:
-        raise click.UsageError("--alpha and --beta go together: they are one point")
+        raise click.UsageError("--alpha and --beta go together: they give one point")
     return alpha, beta
 
 

@@ -3,7 +3,7 @@
 import shlex
 import sys
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -63,10 +63,15 @@ def _turning(text: str) -> Fraction:
 @click.option(
     "--minus",
     type=click.Path(path_type=Path, allow_dash=True),
-    help="Another run's log to subtract: not kicked, or kicked the other way.",
+    help="The log of another run, to subtract: one without the kick, or with the opposite kick.",
 )
-@click.option("--jointly", is_flag=True, help="One fit for all columns: they show one and the same pole.")
-@click.option("--every", type=click.IntRange(1, 10000), default=1, help="Steps of the integrator from row to row.")
+@click.option("--jointly", is_flag=True, help="Fit one pole to all columns together.")
+@click.option(
+    "--every",
+    type=click.IntRange(1, 10000),
+    default=1,
+    help="The integrator takes so many steps from one row to the next.",
+)
 @click.option("--h", type=SECONDS, help="Step size of the integrator in s, for α and β in 1/s and a column of times.")
 @click.option("--alpha", type=NUMBER, help="α̂ that was set; α in 1/s with --physical.")
 @click.option("--beta", type=NUMBER, help="β̂ that was set; β in 1/s with --physical.")
@@ -76,12 +81,12 @@ def _turning(text: str) -> Fraction:
     "methods",
     type=METHOD,
     multiple=True,
-    help="A method to compare with [all built-in ones], or whose α and β to find. Repeatable.",
+    help="A method to compare with [all built-in ones]; without --alpha one whose α and β to find. Repeatable.",
 )
 @click.option(
     "--turning",
     type=ParsedType("number", _turning),
-    help="How fast the directions of the constraints turn, in 1/s: about the angular speed, 0 at rest.",
+    help="How fast the directions of the constraints turn, in 1/s: about the angular speed; 0 at rest.",
 )
 @format_option
 def probe(
@@ -132,11 +137,10 @@ def probe(
     row = _row_step(data, time)
     turned = _turned(turning, step, row, every)
 
-    def between(method: Method) -> int | None:
-        return steps_between_rows(method, step, row, every)
-
-    compared_methods = methods or ([lookup(name) for name in REGISTRY] if point else [])
-    _check_rows(compared_methods, between, step, row, every)
+    compared = methods or ([lookup(name) for name in REGISTRY] if point else [])
+    own_steps = {method: steps_between_rows(method, step, row, every) for method in compared}
+    logged = {method: between for method, between in own_steps.items() if between is not None}
+    _check_rows(bool(logged or not compared), step, row, every)
     answers = Answers([], [], [], [])
     untold: list[str] = []
     unfit: list[str] = []
@@ -147,11 +151,11 @@ def probe(
         found = probed_pole(data.values[:, group], subtracted)
         answers.fits.append(probed_pole_row(name, found))
         if found.pole is not None and point is None:
-            _invert(answers, name, found, compared_methods, between, step)
-            if compared_methods and not any(row["column"] == name for row in answers.points):
+            _invert(answers, name, found, own_steps, step)
+            if compared and not any(row["column"] == name for row in answers.points):
                 unfit.append(name)
             continue
-        like = likenesses(found, compared_methods, *point, between, turned) if point else []
+        like = likenesses(found, logged, *point, turned) if point else []
         if point and like:
             answers.likenesses.extend(likeness_row(name, one) for one in like)
             answers.sentences.append(f"{name}: {likeness_sentence(like, point)}")
@@ -180,18 +184,16 @@ def _invert(
     answers: Answers,
     column_name: str,
     found: "ProbedPole",
-    methods: Sequence[Method],
-    between: Callable[[Method], int | None],
+    own_steps: Mapping[Method, int | None],
     h: float | None,
 ) -> None:
     """Add the points at which each method has a column's pole, or why there is none; h in s."""
     from bezstab.evidence import points_like
     from bezstab.show import like_point_row
 
-    for method in methods:
-        steps = between(method)
+    for method, between in own_steps.items():
         try:
-            points = [] if steps is None else points_like(found, method, steps)
+            points = [] if between is None else points_like(found, method, between)
         except InputError as error:
             answers.sentences.append(f"{column_name}: {error}.")
             continue
@@ -203,13 +205,13 @@ def _invert(
 def _show(answers: Answers, form: Format) -> None:
     """Print all rows; for reading in a table of each kind, with the sentences below."""
     if not for_reading(form):
-        show_rows([*answers.fits, *answers.likenesses, *answers.points], [], form)
+        show_rows(PROBED, [*answers.fits, *answers.likenesses, *answers.points], form)
         return
-    show_rows(answers.fits, PROBED.columns(answers.fits), form)
+    show_rows(PROBED, answers.fits, form)
     for rows in (_nearest(answers.likenesses), answers.points):
         if rows:
             click.echo()
-            show_rows(rows, PROBED.columns(rows, ("reason",)), form)
+            show_rows(PROBED, rows, form, ("reason",))
     for sentence in answers.sentences:
         show_text(f"\n{sentence}")
 
@@ -328,17 +330,11 @@ def _turned(turning: Fraction | None, h: float | None, row: float | None, every:
     raise click.UsageError("--turning is a rate in 1/s: it needs --h, or a column of times in the log")
 
 
-def _check_rows(
-    methods: Sequence[Method],
-    between: Callable[[Method], int | None],
-    h: float | None,
-    row: float | None,
-    every: int,
-) -> None:
+def _check_rows(of_some_method: bool, h: float | None, row: float | None, every: int) -> None:
     """Raise InputError where the rows are no multiple of any method's step, or of another than --every says."""
     if h is None or row is None:
         return
-    if methods and all(between(method) is None for method in methods):
+    if not of_some_method:
         raise InputError(f"the log's times are {row:.6g} s apart: expected a multiple of the step, --h {h:g}")
     if not left_at_default("every") and round(row / h) != every:
         raise InputError(f"--every {every}: the log's times are {row:.6g} s apart, {row / h:.4g} times --h {h:g}")

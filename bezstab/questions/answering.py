@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING, Literal
 
 from bezstab.engines import Engine, Point
 from bezstab.errors import InputError, NumericalError
-from bezstab.goals import Goal
+from bezstab.goals import UP_TO_LONGEST, Goal
 from bezstab.methods import Method
 from bezstab.questions.chains import ChainAnswer, chain_answer, strongest_setting
 from bezstab.questions.points import all_points
-from bezstab.questions.question import UP_TO_LONGEST, Question, usual_goal
+from bezstab.questions.question import Question, usual_goal
 from bezstab.rationals import rational
 from bezstab.stability import (
     Choice,

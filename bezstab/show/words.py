@@ -86,22 +86,13 @@ def chain_words(row: Row) -> str:
     assert isinstance(z_abs, float)
     assert isinstance(alone, float)
     digits = next(digits for digits in range(4, MOST_DIGITS + 1) if float(f"{z_abs:.{digits}f}") != 1)
-    enough = "No number of sweeps that was tried is stable" if stable is None else f"Stable from {_sweeps(stable)}"
+    enough = "No number of sweeps that was tried is stable" if stable is None else f"Stable from {sweeps_words(stable)}"
     return (
         f"{'Safe' if row['safe'] else 'Not safe'} in {row['chain']}: each step "
         f"multiplies the error by {z_abs:.{digits}f} (one constraint alone: {alone:.2f}). {enough}."
     )
 
 
-def _sweeps(count: Value) -> str:
+def sweeps_words(count: Value) -> str:
+    """Return a number of sweeps: 1 sweep, 10 sweeps."""
     return "1 sweep" if count == 1 else f"{count} sweeps"
-
-
-def chain_sentence(row: Row) -> str:
-    """Return from how many sweeps a chain is stable, and what a step does with the engine's own number of them."""
-    z_abs, stable = row["chain_z_abs"], row["stable_iterations"]
-    enough = "with no number that was tried" if stable is None else f"from {_sweeps(stable)}"
-    count = "1 body" if row["chain_bodies"] == 1 else f"{row['chain_bodies']} bodies"
-    bodies = count if row["chain_mass_ratio"] == 1 else f"{count}, the last {row['chain_mass_ratio']:g} times as heavy"
-    own = _sweeps(row["chain_iterations"])
-    return f"{bodies}: stable {enough}. With {own} each step multiplies the error by {z_abs:.4f}."

@@ -162,6 +162,7 @@ def test_tradeoff_writes_a_table_without_times_and_two_figures(tmp_path: Path) -
 SWEEP = "tradeoff --scene pendulum --method SYM --h 0.01 --h 0.02 --time 0.1 --workers 1 --table none"
 
 
+@pytest.mark.slow
 def test_tradeoff_draws_recorded_times_the_same_again(tmp_path: Path) -> None:
     measured = rows(*SWEEP.split(), "--figure", "none")
     for row in measured:
@@ -188,6 +189,7 @@ def test_tradeoff_draws_recorded_times_the_same_again(tmp_path: Path) -> None:
         ),
     ],
 )
+@pytest.mark.slow_except("simulate")
 def test_compiled_runs_answer_the_same(command: str) -> None:
     """But for rounding: runs agree to 1e-12 of the coordinates' size, of which an error may be a small part."""
     timed = {"seconds", "seconds_min", "seconds_max"}

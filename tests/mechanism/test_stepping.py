@@ -87,6 +87,7 @@ def plain_run(
 
 @pytest.mark.promise("Compiled runs (`--compiled`)")
 @pytest.mark.parametrize("name", KINDS)
+@pytest.mark.slow_except("B4", "SYM", "bdf2")
 def test_many_steps_are_the_plain_ones(name: str) -> None:
     """By numpy and compiled."""
     mechanism, method = compiled_mechanism(load_scene("slider_crank")), lookup(name)

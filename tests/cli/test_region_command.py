@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bezstab import stability
 from bezstab.errors import InputError
 from bezstab.methods import lookup
 from bezstab.stability import RATES, choose, combined_error, error_front, spectral_radius
@@ -106,7 +105,7 @@ def test_a_method_without_an_accurate_point_has_its_map_nevertheless(monkeypatch
     def refused(*_: object, **__: object) -> None:
         raise InputError("RK4: no feedback decays so fast")
 
-    monkeypatch.setattr(stability, "choose", refused)
+    monkeypatch.setattr("bezstab.questions.regions.choose", refused)
     result = run(*MAP, "--format", "csv")
     assert result.exit_code == 0
     assert "no most accurate point: RK4: no feedback decays so fast" in result.stderr
@@ -145,29 +144,32 @@ def test_without_a_step_there_is_nothing_in_seconds_and_the_usual_rates() -> Non
 @pytest.mark.parametrize(
     ("command", "said"),
     [
-        ("region --accuracy --compare", "--accuracy draws one map for each method, on logarithmic axes: not with"),
-        ("region --accuracy --alpha-beta --h 0.01", "not with --alpha-beta"),
-        ("region --accuracy --scene driven_four_bar --h 0.01 --speed 1 --speed 2", "not with several --speed"),
-        ("region --accuracy --speed 2", "--speed goes with --scene"),
+        ("region --accuracy --compare", "--compare does not go with --accuracy, which draws one map for each method"),
+        ("region --accuracy --alpha-beta --h 0.01", "--alpha-beta does not go with --accuracy"),
+        (
+            "region --accuracy --scene driven_four_bar --h 0.01 --speed 1 --speed 2",
+            "more than one --speed does not go with --accuracy",
+        ),
+        ("region --accuracy --speed 2", "--speed needs --scene"),
         ("region --accuracy --scene driven_four_bar", "--scene needs --h"),
         ("region --accuracy --omega 3", "--omega needs --h"),
         ("region --accuracy --omega 0 --h 1", "'--omega': 0 is not positive"),
         ("region --accuracy --omega 10 --h 0.1", "--omega 10: omega h = 1 rad a step: expected 1e-06 to 1"),
         ("region --accuracy --alpha-range 0 1", "--alpha-range 0 1: the axes of --accuracy are logarithmic"),
         ("region --accuracy --beta-range -1 1", "--beta-range -1 1: the axes of --accuracy are logarithmic"),
-        ("region --omega 3 --h 0.01", "--omega goes with --accuracy"),
-        ("tradeoff --predicted --alpha 1 --beta 1", "--predicted simulates nothing: not with --alpha"),
-        ("tradeoff --predicted --time 3", "--predicted simulates nothing: not with --time"),
-        ("tradeoff --predicted --against time", "--predicted simulates nothing: not with --against"),
+        ("region --omega 3 --h 0.01", "--omega needs --accuracy"),
+        ("tradeoff --predicted --alpha 1 --beta 1", "--alpha does not go with --predicted, which simulates nothing"),
+        ("tradeoff --predicted --time 3", "--time does not go with --predicted, which simulates nothing"),
+        ("tradeoff --predicted --against time", "--against does not go with --predicted, which simulates nothing"),
         ("tradeoff --predicted --level 1", "--level 1: expected a |z_p| below 1"),
         ("tradeoff --predicted --level 0", "'--level': 0 is not positive"),
-        ("tradeoff --predicted --h 0.1", "--predicted takes --h with --omega or --scene"),
+        ("tradeoff --predicted --h 0.1", "--predicted with --h needs --omega or --scene"),
         ("tradeoff --predicted --h 0.1 --h 0.2 --omega 1", "--predicted takes one --h, but 2 were given"),
         ("tradeoff --predicted --omega 3", "--omega needs --h"),
-        ("tradeoff --predicted --speed 2", "--speed goes with --scene"),
+        ("tradeoff --predicted --speed 2", "--speed needs --scene"),
         ("tradeoff --predicted -o file/below", "file/below"),
-        ("tradeoff --level 0.9", "--level goes with --predicted"),
-        ("tradeoff --alpha 1 --beta 1 --omega 3", "--omega is the motion for which points are chosen"),
+        ("tradeoff --level 0.9", "--level needs --predicted"),
+        ("tradeoff --alpha 1 --beta 1 --omega 3", "--omega does not go with --alpha and --beta"),
         ("tradeoff --omega 100", "--omega 100: omega h = 2 rad a step: expected 1e-06 to 1"),
     ],
 )
