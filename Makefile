@@ -28,7 +28,7 @@ figures: .venv/installed  ## draw what the README shows, into figures/
 	$(BIN)/bezstab region --method RK4 --accuracy --table none -o figures
 	$(BIN)/bezstab tradeoff --predicted $(BOTH_KINDS) --table none -o figures
 	$(BIN)/bezstab tradeoff --table none -o figures
-	$(BIN)/bezstab tradeoff $(ANDREWS) --repeats 1 --against time --recorded figures/andrews_times.json -o figures
+	$(BIN)/python -m tests.show.draw_andrews figures
 
 pages: .venv/installed  ## write anew what pages say that the code says already: tables of files, numbers, promises
 	$(BIN)/python -m tests.pages
