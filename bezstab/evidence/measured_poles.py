@@ -212,7 +212,8 @@ def _kicked_responses(
                 steps_of_block = slice(k, k + len(c))
                 difference[steps_of_block, :, some] = (c[:, 0, 0] - c[:, 0, 1]) / 2
                 size[steps_of_block, :, some] = np.abs(c).max(axis=(1, 2))
-                k += len(list(islice(seen, len(c))))
+                k += len(c)
+                list(islice(seen, len(c)))  # of several groups the first shows how far it is
     size[~np.isfinite(size)] = np.inf
     return difference, size
 

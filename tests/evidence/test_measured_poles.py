@@ -266,6 +266,17 @@ def test_progress_sees_every_step(monkeypatch: pytest.MonkeyPatch) -> None:
     assert seen == list(range(1001))
 
 
+def test_compiled_responses_are_those_of_numpy_however_many_points(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Compiled, eight points run side by side, one group after the other."""
+    mechanism, points = compiled_mechanism(load_scene("pendulum")), np.linspace(0.2, 1.0, 20)
+    responses = []
+    for choice in ("no", "yes"):
+        monkeypatch.setenv(COMPILED_CHOICE, choice)
+        responses.append(_kicked_responses(mechanism, lookup("SYM"), H, points, points, iter))
+    for by_numpy, compiled in zip(*responses, strict=True):
+        assert compiled == pytest.approx(by_numpy, abs=1e-9)
+
+
 def test_half_the_difference_of_both_kicks_is_at_first_the_kick() -> None:
     mechanism, point = compiled_mechanism(load_scene("slider_crank")), np.array([0.5])
     difference, size = _kicked_responses(mechanism, lookup("SYM"), H, point, point, lambda _: range(1))
