@@ -164,6 +164,9 @@ def choose(
     pd: Sequence[Number] | None = None,
     scene: str | Scene | None = None,
     speed: Number = 1,
+    chain: int | None = None,
+    mass_ratio: Number | None = None,
+    iterations: int | None = None,
 ) -> questions.Answer:
     """Return the point that a goal asks for, dimensionless, proven stable, with the margins that remain.
 
@@ -174,9 +177,10 @@ def choose(
     fastest dominant pole that is double, real and positive. gentle: the mildest alpha = beta whose error falls a
     thousandfold within `settle` (s) at the step `h` (s). `equal` keeps alpha = beta. What else `check` says of a point
     this says of the choice: `engine` is a name, and `setting` the line to paste; with `pd` `gains` are those to set.
-    `from_dimensionless` turns the answer into 1/s. Without a method it is the engine's own. InputError if nothing
-    stable meets the goal, and for a goal, spread, time or motion that is none. The poles are those of paper Eq. 17, the
-    goals this package's.
+    With a `chain`, or a scene in an engine that sweeps, it is at most the strongest feedback that this allows with the
+    spread to spare. `from_dimensionless` turns the answer into 1/s. Without a method it is the engine's own. InputError
+    if nothing stable meets the goal, and for a goal, spread, time or motion that is none. The poles are those of paper
+    Eq. 17, the goals this package's.
     """
     named = None if engine is None else engine_named(engine)
     drive = _drive(pd)
@@ -199,6 +203,8 @@ def choose(
             spread=_real(spread, "spread"),
             settle=_exact_if_given(settle, "settle"),
             equal=equal,
+            chain=_chain(chain, mass_ratio),
+            iterations=_whole(iterations, "iterations"),
         )
         (chosen,) = questions.answers(question)
     return chosen
@@ -223,17 +229,22 @@ def check(
     pd: Sequence[Number] | None = None,
     scene: str | Scene | None = None,
     speed: Number = 1,
+    chain: int | None = None,
+    mass_ratio: Number | None = None,
+    iterations: int | None = None,
 ) -> questions.Answer:
     """Return what there is to say of a point of your own: proven verdict, dominant pole, margins; dimensionless.
 
     The point is also what an engine makes of its values (`engine="mujoco=0.02,1"`), or a drive of its gains
     (`pd=(kp, kd, inertia)`), each with the step `h` (s). `safe` is whether errors shrink: with a `scene`, as it moves
-    `speed` times as fast as given there; with `h_min` and `h_max` (s), for every sequence of such steps. `margins` has
+    `speed` times as fast as given there; with `h_min` and `h_max` (s), for every sequence of such steps. An engine that
+    solves one constraint after another is safe for `swept_over`: for one alone, for a `chain` of so many bodies, the
+    last `mass_ratio` times as heavy, or for those of a scene at its start, in `iterations` sweeps. `margins` has
     the factors by which h, alpha and beta may be scaled alone; None unless the point is stable. Found when asked for:
     `cost` (of accuracy, on a motion of `omega` in 1/s or `omega_h` in rad a step), `instead`, `moving`, `varying`,
-    `setting`, `gains`. Without a method it is the engine's own. Of several points that an engine takes, or ways of
-    applying a drive, the answer is the first that is not safe. Errors as for `verdict`, whose sources it shares;
-    InputError, too, for a `spread` outside 0 to 1, and NumericalError if a pole leaves the range of float64.
+    `swept`, `setting`, `gains`. Without a method it is the engine's own. Of several points that an engine takes, or
+    ways of applying a drive, the answer is the first that is not safe. Errors as for `verdict`, whose sources it
+    shares; InputError, too, for a `spread` outside 0 to 1, and NumericalError if a pole leaves the range of float64.
     """
     named, values = (None, None) if engine is None else engine_and_values(engine)
     drive = _drive(pd)
@@ -257,6 +268,8 @@ def check(
             scene=_scene_or_name(scene),
             speed=_exact(speed, "speed"),
             spread=_real(spread, "spread"),
+            chain=_chain(chain, mass_ratio),
+            iterations=_whole(iterations, "iterations"),
         )
         given = list(questions.answers(question))
     return next((answer for answer in given if not answer.safe), given[0])
@@ -492,6 +505,17 @@ def _drive(gains: Sequence[Number] | None) -> Drive | None:
     if isinstance(gains, str) or not isinstance(gains, Sequence) or len(gains) != 3:
         raise InputError(f"pd = {shown(gains)}: expected (kp, kd, inertia)")
     return Drive(*(_exact(gain, name) for gain, name in zip(gains, ("kp", "kd", "inertia"), strict=True)))
+
+
+def _chain(bodies: int | None, mass_ratio: Number | None) -> questions.Chain | None:
+    """Return the chain that is asked about, None without one; InputError as `typed_chain`."""
+    return questions.typed_chain(_whole(bodies, "chain"), _exact_if_given(mass_ratio, "mass_ratio"))
+
+
+def _whole(value: int | None, name: str) -> int | None:
+    if value is not None and (isinstance(value, bool) or not isinstance(value, int)):
+        raise InputError(f"{name} = {shown(value)}: expected a whole number")
+    return value
 
 
 def _scene_or_name(given: str | Scene | None) -> str | Scene | None:

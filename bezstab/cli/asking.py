@@ -28,7 +28,7 @@ from bezstab.units import to_dimensionless
 
 if TYPE_CHECKING:
     from bezstab.mechanism import TurningNormals
-    from bezstab.questions import Answer, Chain, Question
+    from bezstab.questions import Answer, Question
 
 GAINS = ("kp", "kd", "inertia")
 
@@ -62,7 +62,7 @@ mass_ratio_option = click.option(
     "--mass-ratio", type=NUMBER, help="With --chain: how many times as heavy as the others the last body is [1]."
 )
 iterations_option = click.option(
-    "--iterations", type=int, help="With --chain: sweeps over all constraints in a step [the engine's own]."
+    "--iterations", type=int, help="With --chain or --scene: sweeps over all constraints in a step [the engine's own]."
 )
 omega_option = click.option(
     "--omega",
@@ -86,19 +86,6 @@ def moving_scene_option(help_text: str) -> Decorator:
     return scene_option(None, help_text)
 
 
-def typed_chain(bodies: int | None, mass_ratio: Fraction | None, iterations: int | None) -> "Chain | None":
-    """Return the chain that was typed, None without one; InputError for what goes with it alone."""
-    from bezstab.questions import Chain
-
-    if bodies is not None:
-        return Chain(bodies, Fraction(1) if mass_ratio is None else mass_ratio, iterations)
-    if mass_ratio is not None:
-        raise InputError("--mass-ratio goes with --chain: it is the last body of a chain")
-    if iterations is not None:
-        raise InputError("--iterations goes with --chain: one constraint alone needs one sweep")
-    return None
-
-
 def asked(
     methods: Sequence[Method],
     alpha: Fraction | None,
@@ -115,10 +102,12 @@ def asked(
     h_min: Fraction | None = None,
     h_max: Fraction | None = None,
     hold: bool = False,
-    chain: "Chain | None" = None,
+    chain: int | None = None,
+    mass_ratio: Fraction | None = None,
+    iterations: int | None = None,
 ) -> "Question":
     """Return the question about a point as it was typed; what looks mistaken in it is said. InputError as Question."""
-    from bezstab.questions import Question
+    from bezstab.questions import Question, typed_chain
 
     longest = h or (h_max if h_min else None)
     if physical and longest is None:
@@ -142,7 +131,8 @@ def asked(
         omega=omega,
         scene=scene,
         speed=speed,
-        chain=chain,
+        chain=typed_chain(chain, mass_ratio),
+        iterations=iterations,
     )
     if alpha is not None and beta is not None and not physical:
         say_if_units_were_mistaken(question.methods, alpha, beta, question.h)
@@ -190,15 +180,15 @@ def say_what_was_made(question: "Question", form: Format) -> None:
     if question.engine and for_reading(form):
         for note in question.given.notes or ():
             say(f"{question.engine.name}: {note} (--as-typed leaves that out)")
-        say_what_is_left_out(question.engine, chain=question.chain is not None)
+        say_what_is_left_out(question.engine, many=question.swept is not None)
 
 
-def say_what_is_left_out(engine: Engine, *, chain: bool = False) -> None:
-    """Say on standard error what the conversion of an engine's values leaves out; of a chain, what its sweeps do."""
+def say_what_is_left_out(engine: Engine, *, many: bool = False) -> None:
+    """Say on standard error what the conversion of an engine's values leaves out; of many constraints, its sweeps."""
     swept = "; it solves each constraint by itself, in sweeps: chains of them may diverge all the same"
     ask = ": ask with --chain" if engine.sweeping else ""
-    say(f"{engine.name}: left out: {engine.excludes}{swept + ask if engine.sweeps and not chain else ''}")
-    if chain and engine.sweeping:
+    say(f"{engine.name}: left out: {engine.excludes}{swept + ask if engine.sweeps and not many else ''}")
+    if many and engine.sweeping:
         say(f"{engine.name}: sweeps are its {engine.sweeping.word}; of them left out: {engine.sweeping.excludes}")
 
 

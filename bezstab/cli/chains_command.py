@@ -77,4 +77,4 @@ def chains(
 
     write_figure(output / f"chains_{words.name}", draw, figure)
     if for_reading(form):
-        say_what_is_left_out(words, chain=True)
+        say_what_is_left_out(words, many=True)

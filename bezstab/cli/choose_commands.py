@@ -26,7 +26,6 @@ from bezstab.cli.asking import (
     say_varying,
     say_what_is_left_out,
     say_what_was_made,
-    typed_chain,
 )
 from bezstab.cli.held_drives import (
     bandwidth_option,
@@ -60,6 +59,7 @@ from bezstab.show import (
     LARGEST_STEPS,
     Format,
     Row,
+    alone_words,
     answer_row,
     answer_sentence,
     costs_words,
@@ -70,11 +70,16 @@ from bezstab.show import (
 )
 
 if TYPE_CHECKING:
-    from bezstab.questions import Answer
+    from bezstab.questions import Answer, Question
 
 
 WITHOUT_ACCURACY = ("total_error", "order_left", "times_least_velocity")
 """What tables of a drive leave out: nothing feeds its target's acceleration forward."""
+OF_ONE_ALONE = (
+    *("worst", "settle_steps", "settle_seconds", "h_limit"),
+    *("alpha_factor_min", "alpha_factor_max", "beta_factor_min", "beta_factor_max"),
+)
+"""What tables of constraints that an engine sweeps over leave out: it is told of one of them alone."""
 
 
 @click.command()
@@ -149,12 +154,13 @@ def choose(
     are critically damped gains for the explicit way, with a margin.
 
     --h-min lets steps vary: "varying steps" says whether errors decay for every sequence of steps up to --h-max.
-    --chain also says from how many sweeps the answer is stable in a straight chain of bodies, and gives the
-    strongest feedback that this chain allows with --spread to spare.
+    Many engines solve their constraints one after another, in sweeps. With --chain, a straight chain of bodies, or with
+    --scene the answer is at most the strongest feedback that these constraints allow with --spread to spare, at
+    --iterations sweeps. Below it is what one constraint alone would get, and how many sweeps that takes.
 
     Example: bezstab choose --method B4 --h 0.001
     """
-    from bezstab.questions import Question, answers, usual_goal
+    from bezstab.questions import Question, answers, typed_chain, usual_goal
     from bezstab.stability import Timing
 
     timing = timing_typed(every, late, filter_seconds, drive, h)
@@ -179,28 +185,28 @@ def choose(
         spread=float(spread),
         settle=settle,
         equal=keep is not None,
-        chain=typed_chain(chain, mass_ratio, iterations),
+        chain=typed_chain(chain, mass_ratio),
+        iterations=iterations,
     )
     prepare(question)
     chosen = list(progress(answers(question), question.goal or "", len(question.methods)))
     rows = [answer_row(answer) for answer in chosen]
-    columns = CHOICES.columns(rows, WITHOUT_ACCURACY if drive else ())
+    columns = CHOICES.columns(rows, _left_out(question))
     show_rows(rows, columns, form, sentence=answer_sentence)
     say_unknown_costs(chosen)
     if for_reading(form):
         say_varying(chosen)
-        for answer in chosen if not drive else ():
+        for answer in chosen if not (drive or question.swept) else ():
             if lines := trade_words(answer):
                 name = f"{answer.method.name}: " if len(chosen) > 1 else ""
                 show_text("\n" + "\n".join(f"{name}{line}" for line in lines))
         if not drive:
             show_text(f"\n{motion_words(question.motion)}")
-        for answer in chosen if question.chain else ():
-            show_text(
-                f"\nThe strongest that the chain allows with the spread to spare: {answer.chain_setting or 'none'}."
-            )
+        for line in map(alone_words, chosen):
+            if line:
+                show_text(f"\n{line}")
         if engine:
-            say_what_is_left_out(engine, chain=question.chain is not None)
+            say_what_is_left_out(engine, many=question.swept is not None)
     if not all(answer.safe for answer in chosen):
         click.get_current_context().exit(1)
 
@@ -267,7 +273,8 @@ def check(
     is that of the engine's values. What to take instead is what the engine can express, as a line to paste. Many
     engines solve their constraints one after another, in sweeps. Their answer is about one constraint alone: chains
     of them may diverge all the same. With --chain, safe means stable for so many bodies in a straight chain, the
-    last one --mass-ratio times as heavy, with --iterations sweeps.
+    last one --mass-ratio times as heavy, with --iterations sweeps. With --scene, it means so for the constraints of
+    that mechanism at its start, in the order of its file.
 
     --pd kp,kd,inertia judges a joint's drive, applied in four ways: explicit (SYM), implicit in velocity
     (imex-euler, as MuJoCo's implicitfast), as stable PD (stable-pd), fully implicit (implicit-euler, as PhysX). All
@@ -305,13 +312,15 @@ def check(
         h_min=h_min,
         h_max=h_max,
         hold=hold,
-        chain=typed_chain(chain, mass_ratio, iterations),
+        chain=chain,
+        mass_ratio=mass_ratio,
+        iterations=iterations,
     )
     found = list(_with_instead(answers(question)))
     given = [answer for answer in found if answer.role == "given"]
     rows = [answer_row(answer) for answer in found]
     given_rows, instead_rows = ([row for row in rows if row["role"] == role] for role in ("given", "instead"))
-    without = WITHOUT_ACCURACY if drive else ()
+    without = _left_out(question)
     if for_reading(form):
         show_rows(given_rows, CHECKED.columns(given_rows, without), form, sentence=answer_sentence)
         say_varying(given)
@@ -328,6 +337,11 @@ def check(
     say_unknown_costs(found)
     say_what_was_made(question, form)
     context.exit(0 if all(answer.safe for answer in given) else 1)
+
+
+def _left_out(question: "Question") -> tuple[str, ...]:
+    """Return the keys that tables of a question leave out."""
+    return (*(WITHOUT_ACCURACY if question.drive else ()), *(OF_ONE_ALONE if question.swept else ()))
 
 
 def _with_instead(given: "Iterable[Answer]") -> "Iterator[Answer]":

@@ -6,7 +6,7 @@
 """
 
 from bezstab.questions.answering import SLOWER, Answer, Gains, LargestStep, answers, largest_step
-from bezstab.questions.chains import Chain, ChainAnswer, ChainMap, chain_map
+from bezstab.questions.chains import Chain, ChainMap, Constraints, SweptAnswer, chain_map, typed_chain
 from bezstab.questions.held_drives import HeldAnswer, HeldQuestion, UsedUp, held_answers, held_gains
 from bezstab.questions.motions import ReferenceMotion, motion_of, turning_of, turning_stages, turns_too_far
 from bezstab.questions.points import GivenPoint
@@ -17,8 +17,8 @@ __all__ = [
     "WHICH_METHOD",
     "Answer",
     "Chain",
-    "ChainAnswer",
     "ChainMap",
+    "Constraints",
     "Gains",
     "GivenPoint",
     "HeldAnswer",
@@ -27,6 +27,7 @@ __all__ = [
     "Question",
     "ReferenceMotion",
     "StepRange",
+    "SweptAnswer",
     "UsedUp",
     "answers",
     "chain_map",
@@ -38,5 +39,6 @@ __all__ = [
     "turning_of",
     "turning_stages",
     "turns_too_far",
+    "typed_chain",
     "usual_goal",
 ]

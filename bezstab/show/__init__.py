@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from bezstab.lazy import lazy_names
 from bezstab.show.answer_rows import (
     added_cells,
+    alone_words,
     answer_row,
     answer_sentence,
     costs_words,
@@ -182,6 +183,7 @@ __all__ = [
     "Value",
     "accuracy_map_figure",
     "added_cells",
+    "alone_words",
     "answer_row",
     "answer_sentence",
     "block",

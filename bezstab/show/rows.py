@@ -496,8 +496,8 @@ def chain_rows(engine: Engine, found: ChainMap) -> list[Row]:
         {
             "chain_mass_ratio": found.mass_ratio,
             "chain_bodies": bodies,
-            "chain_iterations": own,
-            "chain_z_abs": float(found.z_abs[bodies - 1, own - 1]),
+            "swept_iterations": own,
+            "swept_z_abs": float(found.z_abs[bodies - 1, own - 1]),
             "stable_iterations": fewest,
         }
         for bodies, fewest in enumerate(found.stable_iterations, start=1)
