@@ -36,32 +36,7 @@ if TYPE_CHECKING:
 
 __version__ = "0.1.0"
 
-NAMES = {
-    "bezstab.api": (
-        "best_point",
-        "check",
-        "check_drive",
-        "choose",
-        "dominant_pole",
-        "feedback_cost",
-        "largest_step",
-        "method",
-        "poles",
-        "probe",
-        "probe_step",
-        "region",
-        "scene",
-        "simulate",
-        "spectral_radius",
-        "verdict",
-        "verify",
-    ),
-    "bezstab.show": ("plot",),
-    "bezstab.units": ("from_dimensionless", "to_dimensionless"),
-}
-"""The public names by the module that has them."""
-
-__getattr__ = lazy_names(__name__, NAMES)
+__getattr__ = lazy_names(__name__)
 
 __all__ = [
     "best_point",

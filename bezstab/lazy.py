@@ -1,30 +1,49 @@
-"""Names of a package that are loaded when first used (PEP 562), so that importing the package stays light."""
+"""Names of a package that are loaded when first used (PEP 562), so that importing the package stays light.
+
+A package names them once, in imports that only tools which read, instead of run, take at once:
+
+    if TYPE_CHECKING:
+        from bezstab.methods.orders import accuracy
+
+    __getattr__ = lazy_names(__name__)
+"""
 
 import importlib
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
+from functools import cache
 
 
-def lazy_names(
-    package: str, names_by_module: Mapping[str, Sequence[str]], modules: Sequence[str] = ()
-) -> Callable[[str], object]:
-    """Return a `__getattr__` for `package` that finds each name in the module that defines it, on first use.
+def lazy_names(package: str) -> Callable[[str], object]:
+    """Return a `__getattr__` for `package` that loads, on first use, what it imports under TYPE_CHECKING.
 
-    The keys are modules of that package, or dotted ones of another; `modules` are those of its own modules that are
-    public themselves. AttributeError for any other name, with the nearest. The package repeats the
-    imports under TYPE_CHECKING, for tools that read instead of run; a test holds the two together.
+    A name that it imports from itself is one of its modules. AttributeError for any other name, with the nearest.
     """
-    homes = {name: module for module, names in names_by_module.items() for name in names}
 
     def load(name: str) -> object:
-        if name in modules:
-            return importlib.import_module(f"{package}.{name}")
+        homes = imported_for_types(package)
         if name not in homes:
             # With its name given, Python adds no suggestion of its own, which only a traceback would show.
             raise AttributeError(f"module {package!r} has no attribute {name!r}{_suggestion(name, homes)}", name=name)
-        module = homes[name] if "." in homes[name] else f"{package}.{homes[name]}"
-        return getattr(importlib.import_module(module), name)
+        if homes[name] == package:
+            return importlib.import_module(f"{package}.{name}")
+        return getattr(importlib.import_module(homes[name]), name)
 
     return load
+
+
+@cache
+def imported_for_types(package: str) -> Mapping[str, str]:
+    """Return each name that a package imports under TYPE_CHECKING, with the module that has it."""
+    import ast  # which nobody needs who uses none of these names
+    import pkgutil
+
+    homes: dict[str, str] = {}
+    for node in ast.parse(pkgutil.get_data(package, "__init__.py") or b"").body:
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
+            for each in node.body:
+                if isinstance(each, ast.ImportFrom) and each.module:
+                    homes |= {alias.name: each.module for alias in each.names}
+    return homes
 
 
 def _suggestion(name: str, known: Iterable[str]) -> str:

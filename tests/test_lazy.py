@@ -1,24 +1,32 @@
+import importlib
+
 import pytest
 
-from bezstab.lazy import lazy_names
+from bezstab.lazy import imported_for_types, lazy_names
 
-load = lazy_names("bezstab", {"rationals": ("exact",), "bezstab.methods.schur": ("is_schur",)})
+load = lazy_names("bezstab.methods")
+PACKAGES = ("bezstab", "bezstab.methods", "bezstab.stability", "bezstab.show")
 
 
 def test_a_name_is_that_of_the_module_that_defines_it() -> None:
-    from bezstab.methods.schur import is_schur
-    from bezstab.rationals import exact
+    from bezstab.methods.orders import accuracy
 
-    assert load("exact") is exact
-    assert load("is_schur") is is_schur
+    assert load("accuracy") is accuracy
+
+
+def test_every_name_that_tools_are_told_of_is_there() -> None:
+    for package in PACKAGES:
+        assert imported_for_types(package), package
+        for name in imported_for_types(package):
+            assert getattr(importlib.import_module(package), name) is not None, (package, name)
 
 
 def test_any_other_name_is_an_attribute_error_that_names_both() -> None:
-    with pytest.raises(AttributeError, match="module 'bezstab' has no attribute 'rational'"):
+    with pytest.raises(AttributeError, match=r"module 'bezstab\.methods' has no attribute 'rational'"):
         load("rational")
 
 
 def test_a_misspelt_name_is_answered_with_the_nearest_once() -> None:
-    with pytest.raises(AttributeError, match=r"no attribute 'exakt': did you mean exact\?$") as caught:
-        load("exakt")
+    with pytest.raises(AttributeError, match=r"no attribute 'acuracy': did you mean accuracy\?$") as caught:
+        load("acuracy")
     assert caught.value.obj is None  # so that Python's traceback does not suggest a second time

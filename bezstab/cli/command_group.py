@@ -110,7 +110,7 @@ class BezstabGroup(click.Group):
             sys.exit(130)
         except OSError as error:
             _give_up_output()
-            _complain(f"{error.filename}: {error.strerror}" if error.filename else str(error))
+            _complain(f"{error.filename}: {error.strerror}" if error.filename else error.strerror or str(error))
             sys.exit(2)
         except Exception:  # a defect of this program: Python would exit with 1, "unsafe", though nothing was judged
             traceback.print_exc()

@@ -30,6 +30,7 @@ from bezstab.cli.options import (
     scene_option,
     speed_option,
     step_option,
+    typed_beside,
     work_options,
 )
 from bezstab.cli.output import (
@@ -392,11 +393,8 @@ def _predicted_trade(
 
 def _check_nothing_simulated(steps: Sequence[Fraction]) -> None:
     """Raise UsageError for an option of the running command that is about runs, beside --predicted."""
-    context = click.get_current_context()
-    for parameter in context.command.params:
-        typed = context.get_parameter_source(str(parameter.name)) == click.core.ParameterSource.COMMANDLINE
-        if typed and parameter.name not in PREDICTED:
-            raise click.UsageError(f"--predicted simulates nothing: not with {parameter.opts[0]}")
+    if other := typed_beside(PREDICTED):
+        raise click.UsageError(f"--predicted simulates nothing: not with {other}")
     if len(steps) > 1:
         raise click.UsageError(f"--predicted takes one --h, but {len(steps)} were given")
     if left_at_default("scene") and not left_at_default("speed"):

@@ -1,20 +1,25 @@
-"""Drives whose controller is slower than the physics: the options of check and choose, and what is printed."""
+"""Drives whose controller is slower than the physics: the options of check, choose and region, what is printed."""
 
 from collections.abc import Sequence
 from fractions import Fraction
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from bezstab.cli.options import NUMBER, Function, ParsedType
-from bezstab.cli.output import for_reading, show_rows, show_text
+from bezstab.cli.options import NUMBER, FigureForm, Function, ParsedType, typed_beside
+from bezstab.cli.output import file_name, for_reading, show_rows, show_text, write_figure
 from bezstab.engines import Drive
 from bezstab.errors import InputError
+from bezstab.files import output_directory
 from bezstab.methods import Method
 from bezstab.rationals import rational, typed_number
 from bezstab.show import HELD, LATE_COMMANDS, NOT_JUDGED, Format, held_row, held_sentence, timing_words
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from bezstab.questions import HeldAnswer, HeldQuestion
     from bezstab.stability import Timing
 
 
@@ -45,26 +50,86 @@ def timing_typed(
         return None
     if drive is None or h is None:
         raise InputError("--every, --late and --filter are about a drive: they need --pd and --h")
+    if filter_seconds is not None and filter_seconds < 0:
+        raise InputError(f"--filter {float(filter_seconds):g}: expected 0 s or more")
     return Timing(
         every=1 if every is None else every, late=late or Fraction(0), filter_steps=(filter_seconds or Fraction(0)) / h
     )
 
 
+ABOUT_DRIVES = {"drive", "h", "every", "late", "filter_seconds", "methods", "form"}
+"""Parameters of commands that a question about a held or late drive has."""
+
+
+def refuse_others(asked: str, *allowed: str) -> None:
+    """Raise UsageError for an option of the running command that says nothing of a held or late drive."""
+    if other := typed_beside(ABOUT_DRIVES | set(allowed)):
+        raise click.UsageError(f"{other} does not go with {asked}: this answer is about the drive alone")
+
+
+def held_question(drive: Drive, h: Fraction, timing: "Timing", methods: Sequence[Method]) -> "HeldQuestion":
+    """Return the question about a held or late drive: in some ways of applying it, without methods in all four."""
+    from bezstab.questions import HeldQuestion
+
+    if not methods:
+        return HeldQuestion(drive=drive, h=h, timing=timing)
+    return HeldQuestion(drive=drive, h=h, timing=timing, methods=tuple(methods))
+
+
 def check_held(drive: Drive, h: Fraction, timing: "Timing", methods: Sequence[Method], form: Format) -> bool:
     """Print whether a held or late drive is safe, and what it is that is used up; return whether every way is safe."""
-    from bezstab.questions import HeldQuestion, held_answers
+    from bezstab.questions import held_answers
 
-    question = (
-        HeldQuestion(drive=drive, h=h, timing=timing, methods=tuple(methods))
-        if methods
-        else HeldQuestion(drive=drive, h=h, timing=timing)
-    )
-    found = list(held_answers(question))
+    refuse_others("--every, --late and --filter")
+    found = list(held_answers(held_question(drive, h, timing, methods)))
+    _show_held(found, form)
+    return all(answer.safe for answer in found)
+
+
+def _show_held(found: "Sequence[HeldAnswer]", form: Format) -> None:
+    """Print what each way of applying one drive does, and what is not judged."""
+    question = found[0].question
     rows = [held_row(answer) for answer in found]
-    show_rows(rows, HELD.columns(rows), form, timing_words(timing, float(h)), held_sentence)
+    show_rows(rows, HELD.columns(rows), form, timing_words(question.timing, float(question.h)), held_sentence)
     if for_reading(form):
         show_text(f"\n{LATE_COMMANDS} {NOT_JUDGED}")
-    return all(answer.safe for answer in found)
+
+
+def region_held(
+    drive: Drive,
+    h: Fraction | None,
+    timing: "Timing | None",
+    methods: Sequence[Method],
+    points: int,
+    output: Path,
+    figure: FigureForm,
+    form: Format,
+) -> None:
+    """Write the map of each way of applying a held or late drive over kd and kp; print what `check` prints.
+
+    UsageError without h (s). Without a timing each step computes its torque and applies it.
+    """
+    from bezstab.questions import held_answers
+    from bezstab.stability import Timing, held_map
+
+    refuse_others("--pd", "quality", "grid", "output", "figure")
+    if h is None:
+        raise click.UsageError("--pd needs --h: the step in s")
+    question = held_question(drive, h, timing or Timing(), methods)
+    if figure != "none":
+        output_directory(output)
+    found = list(held_answers(question))
+    alpha_hat, beta_hat = drive.point(h)
+    own = float(alpha_hat), float(beta_hat)
+    for answer in found:
+
+        def draw(answer: "HeldAnswer" = answer) -> "Figure":
+            from bezstab.show import held_figure
+
+            return held_figure(answer, held_map(answer.method.name, question.timing, points, own))
+
+        write_figure(output / f"region_{file_name(answer.method.name)}_held", draw, figure)
+    _show_held(found, form)
 
 
 def choose_held(
@@ -78,13 +143,16 @@ def choose_held(
 ) -> bool:
     """Print gains for a bandwidth (Hz) or a time to settle (s) as `check` would; return whether every way is safe."""
     from bezstab.methods import lookup
-    from bezstab.questions import held_gains
+    from bezstab.questions import held_answers, held_gains
 
+    refuse_others("--bandwidth, --settle, --every, --late and --filter", "bandwidth", "settle")
     applied = list(methods) or [lookup("SYM")]
     drive = held_gains(inertia, h, timing, bandwidth=bandwidth, settle=settle, methods=applied)
     if for_reading(form):
         show_text(f"kp = {typed_number(drive.kp)}, kd = {typed_number(drive.kd)}\n")
-    return check_held(drive, h, timing, applied, form)
+    found = list(held_answers(held_question(drive, h, timing, applied)))
+    _show_held(found, form)
+    return all(answer.safe for answer in found)
 
 
 def _inertia_or_drive(text: str) -> Drive:

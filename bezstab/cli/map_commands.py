@@ -9,6 +9,7 @@ import click
 
 from bezstab.cli.accuracy_maps import Window, accuracy_keys, accurate_choice, say_combined, write_accuracy_map
 from bezstab.cli.asking import (
+    DRIVE,
     as_typed_option,
     asked,
     drive_option,
@@ -22,6 +23,7 @@ from bezstab.cli.asking import (
     say_what_was_made,
     turning_with_bar,
 )
+from bezstab.cli.held_drives import region_held, timing_options, timing_typed
 from bezstab.cli.options import (
     ENGINE,
     METHOD,
@@ -205,6 +207,13 @@ def region_sentence(row: Row) -> str:
 @omega_option
 @click.option("--h", type=SECONDS, help="Step size in s: axes become 2α (1/s) and β² (1/s²).")
 @click.option("--alpha-beta", is_flag=True, help="Mark the axes of the figure in α and β (1/s); needs --h.")
+@click.option(
+    "--pd",
+    "drive",
+    type=DRIVE,
+    help="Draw a joint drive over kd and kp instead, and mark these gains (SI units); needs --h.",
+)
+@timing_options
 @click.option("--engine", metavar="NAME", type=ENGINE, help="Mark that engine's defaults and rules; needs --h.")
 @moving_scene_option("Also the region of this mechanism as it moves, or with --accuracy its motion; needs --h.")
 @click.option(
@@ -226,6 +235,10 @@ def region(
     omega: Fraction | None,
     h: Fraction | None,
     alpha_beta: bool,
+    drive: Drive | None,
+    every: int | None,
+    late: Fraction | None,
+    filter_seconds: Fraction | None,
     engine: Engine | None,
     scene: str | None,
     speeds: Sequence[Fraction],
@@ -238,13 +251,19 @@ def region(
 
     --scene also draws the region of that mechanism as it moves, into region_METHOD_SCENE. --accuracy draws another
     map, region_METHOD_accuracy: the error that the feedback forces on position and velocity, as a share of a
-    motion.
+    motion. --pd draws a map for each way of applying a joint drive, region_METHOD_held, over kd and kp; its torque
+    may be computed every few steps (--every) and come late (--late).
 
     Example: bezstab region --method B4
     """
     from bezstab.questions import methods_for
     from bezstab.stability import QUALITY
 
+    timing = timing_typed(every, late, filter_seconds, drive, h)
+    if drive:
+        ways = methods_typed(methods, has_usual_ones=True)
+        region_held(drive, h, timing, ways, grid or QUALITY[quality], output, figure, form)
+        return
     _check_window("--alpha-range", alpha_range)
     _check_window("--beta-range", beta_range)
     if any(level > 1 for level in levels):

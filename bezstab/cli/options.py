@@ -2,7 +2,7 @@
 
 import os
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar, get_args
@@ -234,6 +234,16 @@ def both_or_none(alpha: Fraction | None, beta: Fraction | None) -> tuple[Fractio
     if alpha is None or beta is None:
         raise click.UsageError("--alpha and --beta go together: they are one point")
     return alpha, beta
+
+
+def typed_beside(allowed: Collection[str]) -> str | None:
+    """Return the first option that the user gave the running command beside some parameters; None if there is none."""
+    context = click.get_current_context()
+    for parameter in context.command.params:
+        name = str(parameter.name)
+        if name not in allowed and context.get_parameter_source(name) == click.core.ParameterSource.COMMANDLINE:
+            return parameter.opts[0]
+    return None
 
 
 def left_at_default(parameter: str) -> bool:

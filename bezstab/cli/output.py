@@ -1,6 +1,5 @@
 """How commands answer: rows on standard output, files, messages and progress on standard error."""
 
-import json
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -12,9 +11,9 @@ from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 import click
 
 from bezstab.cli.options import FigureForm, TableForm
-from bezstab.cli.terminal import output_encoding, spelled, text_width, visible
+from bezstab.cli.terminal import text_width
 from bezstab.files import write_whole
-from bezstab.show import Column, Format, Row, block, finite, fits, render, wrapped
+from bezstab.show import Column, Format, Row, block, finite, fits, render, visible, wrapped
 from bezstab.stopping import if_stopped
 
 if TYPE_CHECKING:
@@ -27,9 +26,6 @@ if TYPE_CHECKING:
 Item = TypeVar("Item")
 Sentence = Callable[[Row], str]
 """Says in words what a row does in numbers."""
-
-UNLIMITED = sys.maxsize
-"""Characters of a line of text where no terminal limits it, as on a pipe: there nothing wraps."""
 
 INDENT = " " * 4
 """Of a command line that is shown to be copied, and once more of its continued lines."""
@@ -45,26 +41,18 @@ def show_rows(
 
     As text, a single row is a block of lines below its sentence; so is each row of a table wider than the terminal.
     """
-    encoding = output_encoding()
     if heading and for_reading(form):
         show_text(f"{heading}\n")
-    answer = render(rows, [_presentable(column, encoding) for column in columns], form)
-    as_blocks = len(rows) == 1 or not fits(answer, text_width() or UNLIMITED)
-    if form == "text" and rows and as_blocks:
+    answer = render(rows, columns, form)
+    if form == "text" and rows and (len(rows) == 1 or not fits(answer, text_width())):
         show_blocks(rows, columns, sentence)
     else:
-        click.echo(_escaped_json(answer, encoding) if form == "json" else answer)
+        click.echo(answer)
 
 
 def show_blocks(rows: Sequence[Row], columns: Sequence[Column], sentence: Sentence | None = None) -> None:
     """Print a block of lines for each row, below its sentence, on standard output."""
-    encoding = output_encoding()
-    presentable = [_presentable(column, encoding) for column in columns]
-    width = text_width() or UNLIMITED
-    blocks = []
-    for row in map(finite, rows):
-        words = visible(spelled(sentence(row), encoding)) if sentence else ""
-        blocks.append(block(row, presentable, width, words))
+    blocks = [block(row, columns, text_width(), sentence(finite(row)) if sentence else "") for row in rows]
     click.echo("\n\n".join(blocks))
 
 
@@ -72,10 +60,8 @@ def show_groups(
     groups: Sequence[tuple[str, Sequence[Row]]], columns: Sequence[Column], sentence: Sentence | None = None
 ) -> None:
     """Print groups of rows for reading, each below its heading, all in one table's columns if that is not too wide."""
-    encoding = output_encoding()
-    rows = [row for _, rows in groups for row in rows]
-    table = render(rows, [_presentable(column, encoding) for column in columns], "text")
-    if not fits(table, text_width() or UNLIMITED):
+    table = render([row for _, rows in groups for row in rows], columns, "text")
+    if not fits(table, text_width()):
         for heading, of_group in groups:
             show_text(f"{heading}\n")
             show_blocks(of_group, columns, sentence)
@@ -92,41 +78,19 @@ def show_groups(
 
 def show_text(text: str) -> None:
     """Print a text on standard output, its lines no longer than the terminal's."""
-    click.echo(wrapped(spelled(text, output_encoding()), text_width() or UNLIMITED))
+    click.echo(wrapped(text, text_width()))
 
 
 def show_command(command: str) -> None:
     """Print a command line to be copied: in one line, or, where the terminal is narrower, continued as in sh."""
-    first, *options = visible(spelled(command, output_encoding())).split(" --")
-    width = text_width() or UNLIMITED
+    first, *options = visible(command).split(" --")
     lines = [INDENT + first]
     for option in options:
-        if len(lines[-1]) + len(f" --{option}{CONTINUED}") <= width:
+        if len(lines[-1]) + len(f" --{option}{CONTINUED}") <= text_width():
             lines[-1] += f" --{option}"
         else:
             lines.append(f"{2 * INDENT}--{option}")
     click.echo(f"{CONTINUED}\n".join(lines))
-
-
-def _presentable(column: Column, encoding: str) -> Column:
-    """Return the column with words for what the encoding lacks, and no cell that would command a terminal.
-
-    That is done here, before the widths of the columns are found.
-    """
-
-    def text(row: Row) -> str:
-        return visible(spelled(column.text(row), encoding))
-
-    return Column(spelled(column.heading, encoding), text)
-
-
-def _escaped_json(text: str, encoding: str) -> str:
-    """Return JSON that an encoding such as ascii has the characters for: all others escaped, as JSON has it."""
-    try:
-        text.encode(encoding)
-    except UnicodeEncodeError:
-        return re.sub(r"[^\x00-\x7f]", lambda found: json.dumps(found[0])[1:-1], text)
-    return text
 
 
 def say(message: str) -> None:
@@ -142,7 +106,8 @@ def for_reading(form: Format) -> bool:
 
 def file_name(name: str) -> str:
     """Return a method's or a scene's name with nothing that a file's name cannot have, whatever the system's names."""
-    return re.sub(r"[^\w@.+-]", "_", spelled(name, sys.getfilesystemencoding()))
+    encoding = sys.getfilesystemencoding()
+    return re.sub(r"[^\w@.+-]", "_", name.encode(encoding, "replace").decode(encoding))
 
 
 def write_file(path: Path, write: Callable[[BinaryIO], object]) -> None:

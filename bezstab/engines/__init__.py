@@ -6,7 +6,7 @@
 What an engine has no words for is refused, not guessed.
 """
 
-from bezstab.engines.conversions import Applied, Curve, Engine, Point
+from bezstab.engines.conversions import Curve, Engine, Point
 from bezstab.engines.drives import DRIVE_METHODS, Drive
 from bezstab.engines.engine_list import ENGINES, RUN_UNDERNEATH, WITNESSES, engine_and_values, engine_named, witness_of
 from bezstab.engines.sweeping import (
@@ -18,25 +18,3 @@ from bezstab.engines.sweeping import (
     check_iterations,
     hard_velocity_step,
 )
-
-__all__ = [
-    "DRIVE_METHODS",
-    "ENGINES",
-    "MOST_SWEEPS",
-    "RUN_UNDERNEATH",
-    "WITNESSES",
-    "Applied",
-    "Curve",
-    "Drive",
-    "Engine",
-    "Move",
-    "Pass",
-    "Point",
-    "SweptStep",
-    "VelocityOfMove",
-    "check_iterations",
-    "engine_and_values",
-    "engine_named",
-    "hard_velocity_step",
-    "witness_of",
-]

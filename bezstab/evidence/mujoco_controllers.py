@@ -35,7 +35,7 @@ class MotorGains:
         try:
             re.compile(self.pattern)
         except re.error as error:
-            raise InputError(f"--pd {self.pattern!r}: no regular expression ({error})") from None
+            raise InputError(f"{self.pattern!r} is no regular expression ({error})") from None
 
 
 @dataclass(frozen=True)

@@ -5,17 +5,11 @@
 Units are SI and rad.
 """
 
-from bezstab.mechanism.compiled import (
-    SINGULAR,
-    Mechanism,
-    acceleration_function,
-    compiled_mechanism,
-    multipliers_function,
-)
+from bezstab.mechanism.compiled import Mechanism, acceleration_function, compiled_mechanism, multipliers_function
 from bezstab.mechanism.compiled_stepping import CHEAPER_TOGETHER, runs_compiled
 from bezstab.mechanism.constraint_motions import ConstraintMotion, along_normals, constraint_motion
 from bezstab.mechanism.constraint_normals import TurningNormals, turned_across, turning_normals
-from bezstab.mechanism.energies import EnergyBalance, energy_balance
+from bezstab.mechanism.energies import energy_balance
 from bezstab.mechanism.equations import Equations, T, equations_of_motion
 from bezstab.mechanism.linearized import linearized_acceleration
 from bezstab.mechanism.motions import Motion, motion, regular_motion, revolution_period
@@ -31,89 +25,9 @@ from bezstab.mechanism.runner import (
     states_needed,
 )
 from bezstab.mechanism.scene_files import load_scene, parse_scene, read_scene, shipped_scenes
-from bezstab.mechanism.scenes import (
-    COORDINATES,
-    GROUND,
-    Body,
-    Distance,
-    Driver,
-    Force,
-    Joint,
-    PointOnLine,
-    Revolute,
-    Scene,
-    Spring,
-    at_speed,
-)
+from bezstab.mechanism.scenes import COORDINATES, GROUND, Body, Driver, Force, Revolute, Scene, at_speed
 from bezstab.mechanism.second_order_memory import Memory, memory
 from bezstab.mechanism.second_order_turns import Assigned, Evaluated, Solved, turn
 from bezstab.mechanism.simulation import MOST_STEPS, Simulation, simulated
 from bezstab.mechanism.start import constraint_errors, constraint_jacobian, initial_state, perturbed_state
 from bezstab.mechanism.varying_runs import simulated_with_steps
-
-__all__ = [
-    "CHEAPER_TOGETHER",
-    "COORDINATES",
-    "GROUND",
-    "MOST_STEPS",
-    "SINGULAR",
-    "Assigned",
-    "Block",
-    "Body",
-    "ConstraintMotion",
-    "Distance",
-    "Driver",
-    "EnergyBalance",
-    "Equations",
-    "Evaluated",
-    "Force",
-    "Joint",
-    "Mechanism",
-    "Memory",
-    "Motion",
-    "Observation",
-    "PointOnLine",
-    "Revolute",
-    "Scene",
-    "Simulation",
-    "Solved",
-    "Spring",
-    "Start",
-    "T",
-    "Trajectory",
-    "TurningNormals",
-    "acceleration_function",
-    "along_normals",
-    "at_speed",
-    "compiled_mechanism",
-    "constraint_errors",
-    "constraint_jacobian",
-    "constraint_motion",
-    "energy_balance",
-    "equations_of_motion",
-    "initial_state",
-    "linearized_acceleration",
-    "load_scene",
-    "march",
-    "memory",
-    "motion",
-    "multipliers_function",
-    "observe",
-    "parse_scene",
-    "perturbed_state",
-    "read_scene",
-    "regular_motion",
-    "resume",
-    "resume_in_groups",
-    "revolution_period",
-    "runs_compiled",
-    "shipped_scenes",
-    "simulate",
-    "simulated",
-    "simulated_with_steps",
-    "singular_passages",
-    "states_needed",
-    "turn",
-    "turned_across",
-    "turning_normals",
-]

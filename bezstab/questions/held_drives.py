@@ -62,8 +62,7 @@ class HeldQuestion:
         for method in self.methods:
             if method.name not in DRIVE_METHODS:
                 raise InputError(
-                    f"--every, --late, --filter with --method {method.name}: expected a way of applying a drive, "
-                    f"{', '.join(DRIVE_METHODS)}"
+                    f"--method {method.name}: expected a way of applying a drive, {', '.join(DRIVE_METHODS)}"
                 )
 
 
@@ -87,7 +86,7 @@ class HeldAnswer:
 
     @cached_property
     def limits(self) -> HeldLimits:
-        """How far gains, rate and delay may go, each alone: factors on the gains, whole steps."""
+        """How far gains, rate and delay may go, each alone: alpha_hat and beta_hat, whole steps."""
         return held_limits(self.method.name, *self.question.drive.point(self.question.h), self.question.timing)
 
     @cached_property
@@ -110,13 +109,15 @@ class HeldAnswer:
         return "rate" if stable(every=1) else "rate and delay"
 
     def _nearest_end(self) -> UsedUp | None:
+        """Return which number of a stable drive has the least factor left up to its end; None where none has one."""
         limits, timing = self.limits, self.question.timing
+        alpha_hat, beta_hat = map(float, self.question.drive.point(self.question.h))
         ratios: dict[UsedUp, float] = {}
-        if limits.kp:
-            ratios["kp"] = limits.kp[1]
-        if limits.kd:
-            ratios["kd"] = limits.kd[1]
-            ratios["too little kd"] = 1 / limits.kd[0] if limits.kd[0] else math.inf
+        if limits.kp and beta_hat > 0:
+            ratios["kp"] = limits.kp[1] / beta_hat
+        if limits.kd and alpha_hat > 0:
+            ratios["kd"] = limits.kd[1] / alpha_hat
+            ratios["too little kd"] = alpha_hat / limits.kd[0] if limits.kd[0] else math.inf
         if limits.every:
             ratios["rate"] = (limits.every + 1) / timing.every
         if limits.late is not None and timing.late:

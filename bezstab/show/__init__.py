@@ -19,20 +19,19 @@ from bezstab.show.answer_rows import (
     trade_words,
 )
 from bezstab.show.blocks import block, fits, wrapped
-from bezstab.show.cells import diverged_text, order_text, pole_text, safe_step_text, stable_steps_text, with_unbounded
+from bezstab.show.cells import diverged_text, order_text, pole_text, safe_step_text, with_unbounded
 from bezstab.show.columns import (
-    MISSING,
     PROPERTIES,
     Column,
     Format,
     Row,
-    Value,
     column,
     finite,
     formatted,
     render,
     shown_width,
     transposed,
+    visible,
 )
 from bezstab.show.fields import Field, RowKind, cells
 from bezstab.show.held_rows import LATE_COMMANDS, NOT_JUDGED, held_row, held_sentence, timing_words
@@ -64,11 +63,9 @@ from bezstab.show.row_kinds import (
 from bezstab.show.rows import (
     NOT_KNOWN,
     chain_rows,
-    complex_parts,
     engine_row,
     family_row,
     forced_rows,
-    formula_row,
     front_row,
     like_point_row,
     likeness_row,
@@ -87,8 +84,8 @@ from bezstab.show.rows import (
     witness_row,
 )
 from bezstab.show.schemas import json_schema
-from bezstab.show.varying_rows import repeated, sequence_text, varying_row, varying_words
-from bezstab.show.words import chain_sentence, change_words, growth_words, safety_words, seconds_words, times_words
+from bezstab.show.varying_rows import sequence_text, varying_row, varying_words
+from bezstab.show.words import chain_sentence, safety_words, seconds_words
 
 if TYPE_CHECKING:
     from bezstab.show import plot
@@ -103,168 +100,10 @@ if TYPE_CHECKING:
     )
     from bezstab.show.chain_figures import chains_figure
     from bezstab.show.explorer import open_explorer
+    from bezstab.show.held_figures import held_figure
     from bezstab.show.histories import history_line
     from bezstab.show.plane_figures import comparison_figure, family_figure, region_figure, verdict_figure
     from bezstab.show.run_figures import history_figure, scene_figure, work_precision_figure
     from bezstab.show.style import DASHES, column_figure, legend_below, line_at, save, styled
 
-LOADED_LATE = {
-    "accuracy_figures": ("accuracy_map_figure", "error_front_figure"),
-    "arrays": (
-        "boundary_arrays",
-        "history_arrays",
-        "map_arrays",
-        "untimed_arrays",
-        "verdict_arrays",
-        "write_arrays",
-    ),
-    "chain_figures": ("chains_figure",),
-    "explorer": ("open_explorer",),
-    "histories": ("history_line",),
-    "plane_figures": (
-        "comparison_figure",
-        "family_figure",
-        "region_figure",
-        "verdict_figure",
-    ),
-    "run_figures": (
-        "history_figure",
-        "scene_figure",
-        "work_precision_figure",
-    ),
-    "style": (
-        "DASHES",
-        "column_figure",
-        "legend_below",
-        "line_at",
-        "save",
-        "styled",
-    ),
-}
-"""What is loaded when first used, by module."""
-
-__getattr__ = lazy_names(__name__, LOADED_LATE, modules=("plot",))
-
-__all__ = [
-    "CHAINS",
-    "CHECKED",
-    "CHOICES",
-    "CLAIMS",
-    "DASHES",
-    "ENGINES_LISTED",
-    "EXTREMES",
-    "FIELDS",
-    "FORCED",
-    "FRONTS",
-    "HELD",
-    "LARGEST_STEPS",
-    "LATE_COMMANDS",
-    "LINTED",
-    "LISTED_METHODS",
-    "MEASUREMENTS",
-    "MEMBERS",
-    "MISSING",
-    "NOT_JUDGED",
-    "NOT_KNOWN",
-    "POLES",
-    "PROBED",
-    "PROPERTIES",
-    "REGIONS",
-    "ROW_KINDS",
-    "SIMULATIONS",
-    "SWEPT",
-    "VERDICT_MAPS",
-    "WITNESSED",
-    "Column",
-    "Field",
-    "Format",
-    "Row",
-    "RowKind",
-    "Value",
-    "accuracy_map_figure",
-    "added_cells",
-    "alone_words",
-    "answer_row",
-    "answer_sentence",
-    "block",
-    "boundary_arrays",
-    "cells",
-    "chain_rows",
-    "chain_sentence",
-    "chains_figure",
-    "change_words",
-    "column",
-    "column_figure",
-    "comparison_figure",
-    "complex_parts",
-    "costs_words",
-    "diverged_text",
-    "engine_cells",
-    "engine_row",
-    "error_front_figure",
-    "family_figure",
-    "family_row",
-    "finite",
-    "fits",
-    "forced_rows",
-    "formatted",
-    "formula_row",
-    "front_row",
-    "growing_run",
-    "growth_words",
-    "held_row",
-    "held_sentence",
-    "history_arrays",
-    "history_figure",
-    "history_line",
-    "json_schema",
-    "largest_step_row",
-    "legend_below",
-    "like_point_row",
-    "likeness_row",
-    "limit_row",
-    "line_at",
-    "linted_row",
-    "map_arrays",
-    "measurement_row",
-    "method_row",
-    "motion_words",
-    "open_explorer",
-    "order_text",
-    "plot",
-    "pole_rows",
-    "pole_text",
-    "probed_pole_row",
-    "region_figure",
-    "region_row",
-    "render",
-    "repeated",
-    "run_row",
-    "safe_step_text",
-    "safety_words",
-    "save",
-    "scene_figure",
-    "seconds_words",
-    "sequence_text",
-    "shown_width",
-    "simulation_row",
-    "stable_steps_text",
-    "styled",
-    "summary_row",
-    "times_words",
-    "timing_words",
-    "trade_words",
-    "transposed",
-    "untimed_arrays",
-    "varying_row",
-    "varying_words",
-    "verdict_arrays",
-    "verdict_figure",
-    "verdict_map_row",
-    "whole_row",
-    "with_unbounded",
-    "witness_row",
-    "work_precision_figure",
-    "wrapped",
-    "write_arrays",
-]
+__getattr__ = lazy_names(__name__)

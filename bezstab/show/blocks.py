@@ -3,7 +3,7 @@
 import textwrap
 from collections.abc import Sequence
 
-from bezstab.show.columns import MISSING, Column, Row, finite, shown_width
+from bezstab.show.columns import MISSING, Column, Row, shown_width, visible
 
 LEAST_ROOM = 20  # characters for a value, however narrow the terminal: below that every word stands alone
 GAP = "  "
@@ -28,8 +28,7 @@ def block(row: Row, columns: Sequence[Column], width: int, sentence: str = "") -
 
     A value that is longer than its line goes on below itself. KeyError if the row lacks the key of a column.
     """
-    finite_row = finite(row)
-    cells = [(column.heading, column.text(finite_row)) for column in columns]
+    cells = [(column.heading, column.cell(row)) for column in columns]
     present = [(heading, text) for heading, text in cells if text not in (MISSING, "")]
     longest = max((shown_width(heading) for heading, _ in present), default=0)
     room = max(width - longest - len(GAP), LEAST_ROOM)
@@ -38,4 +37,4 @@ def block(row: Row, columns: Sequence[Column], width: int, sentence: str = "") -
         first, *more = wrapped(text, room).split("\n")
         lines.append(heading + " " * (longest - shown_width(heading)) + GAP + first)
         lines += [" " * (longest + len(GAP)) + line for line in more]
-    return "\n".join([wrapped(sentence, width), "", *lines] if sentence else lines)
+    return "\n".join([wrapped(visible(sentence), width), "", *lines] if sentence else lines)

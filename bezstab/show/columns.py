@@ -23,6 +23,20 @@ class Column:
     heading: str
     text: Callable[[Row], str]
 
+    def cell(self, row: Row) -> str:
+        """Return the text on one line, infinite and missing numbers as a dash."""
+        return visible(self.text(finite(row)))
+
+
+def visible(text: str) -> str:
+    """Return the text on one line, without what would command a terminal: a line's end is \\n, the escape \\x1b."""
+    return "".join(
+        character.encode("unicode_escape").decode()
+        if unicodedata.category(character) in ("Cc", "Zl", "Zp")
+        else character
+        for character in text
+    )
+
 
 def column(heading: str, key: str, form: str = "") -> Column:
     """Return the column that shows row[key] in a format such as '.6f'; what is missing or empty is a dash."""
@@ -59,15 +73,15 @@ def render(rows: Sequence[Row], columns: Sequence[Column], form: Format) -> str:
     What is infinite or not a number is missing: null, an empty cell, a dash. So is, in json and csv, a key that only
     other rows have: every row has the same. KeyError if a row lacks the key of a chosen column.
     """
-    finite_rows = [finite(row) for row in rows]
     if form in ("json", "csv"):
+        finite_rows = [finite(row) for row in rows]
         nothing = dict.fromkeys(key for row in finite_rows for key in row)
         full_rows = [{**nothing, **row} for row in finite_rows]
         if form == "csv":
             return _comma_separated(full_rows, list(nothing))
-        return json.dumps(full_rows, indent=2, ensure_ascii=False, allow_nan=False)
+        return json.dumps(full_rows, indent=2, allow_nan=False)
     headings = [column.heading for column in columns]
-    lines = [headings, *([column.text(row) for column in columns] for row in finite_rows)]
+    lines = [headings, *([column.cell(row) for column in columns] for row in rows)]
     return _markdown(lines) if form == "markdown" else _aligned(lines)
 
 

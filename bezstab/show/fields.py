@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, Literal
 
-from bezstab.show.columns import MISSING, Column, Row, Value, finite, formatted
+from bezstab.show.columns import MISSING, Column, Row, Value, formatted
 
 Kind = Literal["number", "integer", "text", "truth", "numbers", "text rows"]
 """Of a value; numbers are a list, text rows a list of lists of texts."""
@@ -73,7 +73,7 @@ class RowKind:
         """
         keys = {key for row in rows for key in row} - set(without)
         columns = [field.column for field in (*self.fields, *self.added) if field.heading and field.key in keys]
-        return [column for column in columns if any(column.text(finite(row)) != MISSING for row in rows)]
+        return [column for column in columns if any(column.cell(row) != MISSING for row in rows)]
 
 
 def cells(fields: Sequence[Field], result: object, found: Mapping[str, Value] | None = None) -> dict[str, Value]:

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from bezstab.engines import DRIVE_METHODS
-from bezstab.show.columns import Row, Value, formatted
+from bezstab.show.columns import Row, Value
 from bezstab.show.fields import cells
 from bezstab.show.row_kinds import HELD
 from bezstab.show.words import change_words
@@ -21,12 +21,21 @@ LATE_COMMANDS = (
 NOT_JUDGED = "Not judged: a limit of the torque, friction, and what else the drive is connected to."
 
 CAUSES = {
-    "gains": "The gains are too large even if each step computes and applies its torque.",
+    "gains": "These gains are unstable even if each step computes and applies its torque.",
     "rate": "The torque is held too long: the same gains are stable if each step computes it.",
-    "delay": "The torque comes too late: the same gains and rate are stable without the delay.",
+    "delay": "The torque comes too late: the same gains are stable without the delay.",
     "rate and delay": "The torque is held too long and comes too late.",
 }
 """Why a drive is unstable, by what is used up."""
+
+NEAREST = {
+    "kp": "kp is nearest to its limit",
+    "kd": "kd is nearest to its limit",
+    "too little kd": "kd is nearest to its limit, the lower one",
+    "rate": "the time between two torques is nearest to its limit",
+    "delay": "the delay is nearest to its limit",
+}
+"""Which number of a stable drive may change least, by what is used up."""
 
 
 def held_row(answer: HeldAnswer) -> Row:
@@ -34,6 +43,7 @@ def held_row(answer: HeldAnswer) -> Row:
     question, limits = answer.question, answer.limits
     kp, kd = limits.kp or (None, None), limits.kd or (None, None)
     drive, timing = question.drive, question.timing
+    kp_of_one, kd_of_one = drive.gains(1.0, 1.0, float(question.h))
     found: dict[str, Value] = {
         "drive": DRIVE_METHODS[answer.method.name],
         "h": float(question.h),
@@ -43,9 +53,9 @@ def held_row(answer: HeldAnswer) -> Row:
         "inertia": float(drive.inertia),
         "kp": float(drive.kp),
         "kd": float(drive.kd),
-        "kp_max": _times(float(drive.kp), kp[1]),
-        "kd_min": _times(float(drive.kd), kd[0]),
-        "kd_max": _times(float(drive.kd), kd[1]),
+        "kp_max": _times(kp_of_one, kp[1]),
+        "kd_min": _times(kd_of_one, kd[0]),
+        "kd_max": _times(kd_of_one, kd[1]),
         "every_max": limits.every,
         "late_max": limits.late,
         "held_by": answer.used_up,
@@ -53,37 +63,44 @@ def held_row(answer: HeldAnswer) -> Row:
     return cells(HELD.fields, answer, found)
 
 
-def _times(gain: float, factor: float | None) -> float | None:
-    return None if factor is None or math.isinf(factor) else gain * factor
+def _times(gain_of_one: float, limit: float | None) -> float | None:
+    return None if limit is None or math.isinf(limit) else gain_of_one * limit
 
 
 def held_sentence(row: Row) -> str:
-    """Return whether a held or late drive is safe, what a step of the physics does to the error, and why if not."""
-    z_abs, fresh = row["z_abs"], row["fresh_z_abs"]
+    """Return whether a held or late drive is safe, what a step of the physics does to the error, why, what may change.
+
+    Safe (explicit). Each step multiplies the error by 0.95. It stays stable with one of these alone: kp up to 849, kd
+    from 1.03 to 48.4, a torque every 19 steps, at most 6 steps late; kp is nearest to its limit.
+    """
+    z_abs = row["z_abs"]
     assert isinstance(z_abs, float)
     change = change_words(z_abs, row["verdict"])
-    sentence = f"{'Safe' if row['safe'] else 'Not safe'} ({row['drive']}). {change[0].upper()}{change[1:]}"
-    sentence += f", by {formatted(fresh, '.2g')} if the torque were fresh."
-    if row["safe"]:
+    sentence = f"{'Safe' if row['safe'] else 'Not safe'} ({row['drive']}). {change[0].upper()}{change[1:]}."
+    changes = ", ".join(_changes(row))
+    if not row["safe"]:
+        remedy = f"It is stable with one of these alone: {changes}." if changes else "No single change makes it stable."
+        return f"{sentence} {CAUSES[str(row['held_by'])]} {remedy}"
+    if not changes:
         return sentence
-    return f"{sentence} {CAUSES[str(row['held_by'])]}{_remedies(row)}"
+    nearest = f"; {NEAREST[str(row['held_by'])]}" if row["held_by"] else ""
+    return f"{sentence} It stays stable with one of these alone: {changes}{nearest}."
 
 
-def _remedies(row: Row) -> str:
-    """Return which change of one number alone makes an unstable drive stable."""
+def _changes(row: Row) -> list[str]:
+    """Return how far each number alone may go with which a drive is stable."""
     kp_max, kd_min, kd_max = row["kp_max"], row["kd_min"], row["kd_max"]
-    remedies = []
+    changes = []
     if isinstance(kp_max, float):
-        remedies.append(f"kp up to {kp_max:.3g}")
+        changes.append(f"kp up to {kp_max:.3g}")
     if isinstance(kd_min, float):
-        remedies.append(f"kd from {kd_min:.3g}" + (f" to {kd_max:.3g}" if isinstance(kd_max, float) else ""))
+        end = f"to {kd_max:.3g}" if isinstance(kd_max, float) else "on"
+        changes.append(f"kd from {kd_min:.3g} {end}")
     if row["every_max"] is not None:
-        remedies.append(f"a torque every {_steps(row['every_max'])}")
+        changes.append(f"a torque every {_steps(row['every_max'])}")
     if row["late_max"] is not None:
-        remedies.append(f"at most {_steps(row['late_max'])} late")
-    return (
-        f" Stable with one of these alone: {', '.join(remedies)}." if remedies else " No single change makes it stable."
-    )
+        changes.append(f"at most {_steps(row['late_max'])} late")
+    return changes
 
 
 def _steps(number: Value) -> str:

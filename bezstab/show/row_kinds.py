@@ -44,6 +44,7 @@ LEVEL_ROW = "in the row of a level below 1, which is of the mechanism at rest"
 NO_ERROR = "where errors do not decay, or it is not known"
 NO_CHOICE = "where no feedback decays so fast"
 NO_BEST = "where there is no best point; `best_reason` says why"
+NO_SWEEPS = "where the engine does not sweep, or it is not known how"
 UNBOUNDED = "where the region has no end there, or is empty"
 
 METHOD = Field("method", "text", "Name of the integration method, with @m where its step is m times h", "method")
@@ -497,7 +498,9 @@ CHAIN_BODIES = Field("chain_bodies", "integer", "Bodies of the chain, the first 
 CHAIN_MASS_RATIO = Field(
     "chain_mass_ratio", "number", "Mass of the last body of the chain over that of each other", "last mass", "g"
 )
-SWEPT_ITERATIONS = Field("swept_iterations", "integer", "Sweeps that the engine makes in a step", "sweeps", "d")
+SWEPT_ITERATIONS = Field(
+    "swept_iterations", "integer", "Sweeps that the engine makes in a step", "sweeps", "d", null=NO_SWEEPS
+)
 SWEPT_Z_ABS = Field(
     "swept_z_abs",
     "number",
@@ -842,6 +845,10 @@ ENGINES_LISTED = RowKind(
         SOURCE,
         EXCLUDES,
         SWEEPS.shown("sweeps"),
+        SWEPT_ITERATIONS.hidden,
+        Field("swept_word", "text", "What the engine calls their number", null=NO_SWEEPS),
+        Field("swept_source", "text", "Where it is from how the engine sweeps", null=NO_SWEEPS),
+        Field("swept_excludes", "text", "What is left out of how it sweeps", null=NO_SWEEPS),
     ),
     sometimes=("method",),
 )
@@ -1272,7 +1279,7 @@ HELD = RowKind(
 
 ROW_KINDS: Mapping[str, Sequence[RowKind]] = {
     "poles": (POLES,),
-    "region": (REGIONS,),
+    "region": (REGIONS, HELD),
     "methods": (
         LISTED_METHODS,
         NAMED_METHODS,

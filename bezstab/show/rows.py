@@ -512,6 +512,7 @@ def engine_row(engine: Engine, point: tuple[Fraction, Fraction] | None, h: Fract
             setting = engine.setting(point, h)
         except InputError as error:
             setting = str(error)
+    sweeping = engine.sweeping
     found = {
         "engine": engine.name,
         "parameters": ", ".join(engine.parameters),
@@ -519,5 +520,9 @@ def engine_row(engine: Engine, point: tuple[Fraction, Fraction] | None, h: Fract
         "units": ", ".join(engine.units),
         "witness": witness_of(engine.name),
         "setting": setting,
+        "swept_iterations": sweeping and sweeping.iterations,
+        "swept_word": sweeping and sweeping.word,
+        "swept_source": sweeping and sweeping.source,
+        "swept_excludes": sweeping and sweeping.excludes,
     }
     return cells(ENGINES_LISTED.fields, engine, found)

@@ -11,13 +11,7 @@ from bezstab.stability.accurate_points import default_rate
 from bezstab.stability.answer_checks import Modulus
 from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, Extent, FloatArray, real_array
 from bezstab.stability.best_points import BestPoint, best_point, best_point_or_reason, falls_towards
-from bezstab.stability.choices import (
-    THOUSANDFOLD,
-    Choice,
-    choose,
-    choose_at_step,
-    describe_point,
-)
+from bezstab.stability.choices import Choice, choose, choose_at_step, describe_point
 from bezstab.stability.closed_loop import dominant_pole, poles, spectral_radius, verdict
 from bezstab.stability.error_fronts import RATES, FrontPoint, error_front
 from bezstab.stability.far_limits import FarLimit
@@ -25,7 +19,6 @@ from bezstab.stability.feedback_costs import FeedbackCost, feedback_cost
 from bezstab.stability.forced_errors import (
     LARGEST_OMEGA_H,
     OMEGA_H,
-    ForcedError,
     check_omega_h,
     combined_error,
     forced_error,
@@ -41,15 +34,7 @@ from bezstab.stability.regions import Region, pole_place, region, useful_window,
 from bezstab.stability.searches import bisected, first_where
 from bezstab.stability.step_families import FAMILIES, Limit, Member, bezier_limit, family_members
 from bezstab.stability.step_sequences import VaryingSteps, varying_steps
-from bezstab.stability.sweeps import (
-    LARGEST_RATIO,
-    MOST_BODIES,
-    Growth,
-    chain,
-    fewest_sweeps,
-    inverse_effective_masses,
-    swept_growth,
-)
+from bezstab.stability.sweeps import Growth, chain, fewest_sweeps, inverse_effective_masses, swept_growth
 from bezstab.stability.turning import own_feedback_root, turning_sensitivity, turning_shift
 
 if TYPE_CHECKING:
@@ -60,103 +45,13 @@ if TYPE_CHECKING:
     )
     from bezstab.stability.held_drives import (
         HeldLimits,
+        HeldMap,
         Timing,
         held_limits,
+        held_map,
         held_spectral_radius,
         held_verdict,
     )
-    from bezstab.stability.quadrant_proofs import StableForAll, stable_for_all
+    from bezstab.stability.quadrant_proofs import stable_for_all
 
-PROVEN = {
-    "damping_limits": ("critical_damping_limit", "exact_critical_damping_limit", "unconditional_damping_ratio"),
-    "held_drives": ("HeldLimits", "Timing", "held_limits", "held_spectral_radius", "held_verdict"),
-    "quadrant_proofs": ("StableForAll", "stable_for_all"),
-}
-"""What is loaded when first used, by module."""
-
-__getattr__ = lazy_names(__name__, PROVEN)
-
-__all__ = [
-    "EPS",
-    "FAMILIES",
-    "LARGEST_OMEGA_H",
-    "LARGEST_RATIO",
-    "MOST_BODIES",
-    "OMEGA_H",
-    "QUALITY",
-    "RATES",
-    "THOUSANDFOLD",
-    "BestPoint",
-    "BoolArray",
-    "Choice",
-    "ComplexArray",
-    "Extent",
-    "FarLimit",
-    "FeedbackCost",
-    "FloatArray",
-    "ForcedError",
-    "FrontPoint",
-    "GainLimits",
-    "Goal",
-    "Growth",
-    "HeldLimits",
-    "Limit",
-    "Margins",
-    "Member",
-    "Modulus",
-    "Pencil",
-    "Region",
-    "StableForAll",
-    "Timing",
-    "VaryingSteps",
-    "best_point",
-    "best_point_or_reason",
-    "bezier_limit",
-    "bisected",
-    "chain",
-    "check_omega_h",
-    "choose",
-    "choose_at_step",
-    "combined_error",
-    "critical_damping_limit",
-    "default_rate",
-    "describe_point",
-    "dominant_pole",
-    "error_front",
-    "exact_critical_damping_limit",
-    "falls_towards",
-    "family_members",
-    "feedback_cost",
-    "fewest_sweeps",
-    "first_where",
-    "forced_error",
-    "forced_response",
-    "gain_limits",
-    "held_limits",
-    "held_spectral_radius",
-    "held_verdict",
-    "inverse_effective_masses",
-    "kick_response",
-    "largest_stable_step",
-    "own_feedback_root",
-    "pencil_of",
-    "pole_map",
-    "pole_place",
-    "poles",
-    "real_array",
-    "region",
-    "roots_in_z",
-    "spectral_radius",
-    "stability_margins",
-    "stable_for_all",
-    "stable_up_to",
-    "swept_growth",
-    "turning_response",
-    "turning_sensitivity",
-    "turning_shift",
-    "unconditional_damping_ratio",
-    "useful_window",
-    "varying_steps",
-    "verdict",
-    "window",
-]
+__getattr__ = lazy_names(__name__)

@@ -16,6 +16,7 @@ from math import ceil, floor
 from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bezstab.errors import InputError
 from bezstab.methods import Verdict, recursion_verdict
@@ -25,8 +26,8 @@ from bezstab.stability.searches import first_where
 MOST_STEPS = 100
 """Of `every` and of `late`: the polynomial's degree is theirs, and nobody's controller is slower."""
 
-Number = TypeVar("Number", Fraction, float)
-"""Exact, or for |z_p| in float64."""
+Number = TypeVar("Number", Fraction, FloatArray)
+"""Exact, or for |z_p| in float64: as many as there are points."""
 
 
 @dataclass(frozen=True)
@@ -107,30 +108,36 @@ def held_spectral_radius(way: str, alpha_hat: Fraction, beta_hat: Fraction, timi
 
     In float64: of a pole near others as many digits are lost as its condition says.
     """
-    return _modulus(SEEN[way], float(alpha_hat), float(beta_hat), timing)
+    return float(held_moduli(way, np.array([float(alpha_hat)]), np.array([float(beta_hat)]), timing)[0])
 
 
-def held_law(alpha_hat: Fraction, beta_hat: Fraction, every: int) -> bool:
-    """Return whether a drive held for `every` steps, not late, converges in symplectic Euler: the closed form.
+def held_moduli(way: str, alpha_hat: FloatArray, beta_hat: FloatArray, timing: Timing) -> FloatArray:
+    """Return `held_spectral_radius` at many points, shape (points,)."""
+    rows = _steps_matrix(SEEN[way], alpha_hat, beta_hat, timing)
+    matrices = np.moveaxis(np.array(rows), -1, 0)  # (points, size, size)
+    moduli: FloatArray = np.abs(np.linalg.eigvals(matrices)).max(axis=-1) ** (1 / timing.every)
+    return moduli
 
-    With A = every alpha_hat and B = every^2 beta_hat: B > 0, 2 A + B / every < 4 and A > B (every - 1) / (2 every):
-    Jury's conditions for the polynomial of degree two.
+
+def law_bounds(way: str, alpha_hat: Number, timing: Timing) -> tuple[Number, ...]:
+    """Return what beta_hat must be below: with alpha_hat > 0 a drive converges if and only if 0 < beta_hat < each.
+
+    The closed forms, by Jury's conditions; an empty tuple where there is none. Held for N steps and not late, with
+    A = N alpha_hat and B = N^2 beta_hat: 2 A + B / N < 4 and B (N - 1) / (2 N) < A. One step late, computed in every
+    step: P = z (z - 1)^2 + b z + a (z - 1) has b < a (1 - a). Fresh, the limits of `bezstab.engines.drives`.
     """
-    a, b = every * alpha_hat, every**2 * beta_hat
-    return b > 0 and 2 * a + b / every < 4 and a > b * Fraction(every - 1, 2 * every)
-
-
-def late_law(alpha_hat: Fraction, beta_hat: Fraction) -> bool:
-    """Return whether a drive that is one step late, computed in every step, converges in symplectic Euler.
-
-    P = z (z - 1)^2 + b z + a (z - 1): by Jury's conditions 0 < b < a (1 - a).
-    """
-    return 0 < beta_hat < alpha_hat * (1 - alpha_hat)
-
-
-def _modulus(seen: _Seen, alpha_hat: float, beta_hat: float, timing: Timing) -> float:
-    matrix = np.array(_steps_matrix(seen, alpha_hat, beta_hat, timing), dtype=float)
-    return float(np.abs(np.linalg.eigvals(matrix)).max() ** (1 / timing.every))
+    a, every = alpha_hat, timing.every
+    if timing.filter_steps:
+        return ()
+    if way == "SYM" and timing.late == 0:
+        fast = (4 - 2 * every * a) / every
+        return (fast, 2 * a / (every - 1)) if every > 1 else (fast,)
+    if every > 1:
+        return ()
+    if way == "SYM" and timing.late == 1:
+        return (a * (1 - a),)
+    fresh = {"imex-euler": (4 + 2 * a,), "stable-pd": ((4 + 2 * a) / 3,)}
+    return fresh.get(way, ()) if timing.late == 0 else ()
 
 
 # The matrix of `every` steps
@@ -143,46 +150,59 @@ def _steps_matrix(seen: _Seen, alpha_hat: Number, beta_hat: Number, timing: Timi
     many as are still to be applied. h = 1, and torques are over the inertia. A row is a number that is linear in the
     state at the first step: its coefficients.
     """
-    number = type(alpha_hat)
+
+    def number(value: Fraction | int) -> Number:
+        return _as(value, alpha_hat)
+
     whole = floor(timing.late)
-    left = number(timing.late - whole)  # of a step, which the torque before keeps
+    left = timing.late - whole  # of a step, which the torque before keeps
     gain = number(1 / (1 + timing.filter_steps / timing.every))
+    one, nothing = number(1), [number(0)]
     filters = 1 if timing.filter_steps else 0
     pending: int = ceil(Fraction(whole, timing.every)) + (1 if left else 0)
     size = 2 + filters + pending
-    state: list[list[Number]] = [[number(row == column) for column in range(size)] for row in range(size)]
+    state: list[list[Number]] = [[number(int(row == column)) for column in range(size)] for row in range(size)]
     x, v, filtered = state[0], state[1], state[1 + filters]
-    torques = [[number(0)] * size]  # latest first; the new one's place is kept
+    torques = [nothing * size]  # latest first; the new one's place is kept
     torques.extend(state[2 + filters :])
 
     # u = -b (x + x_by_velocity v + x_by_torque p) - a w,   w = filtered + gain (v + v_by_torque p - filtered),
     # p = share u + rest, the torque applied in the step that computes u
-    share = 1 - left if whole == 0 else number(0)
-    rest = _applied(0, timing.every, whole, left, torques)
-    seen_x = _sum((number(1), x), (number(seen.x_by_velocity), v), (number(seen.x_by_torque), rest))
-    seen_v = _sum((number(1), v), (number(seen.v_by_torque), rest))
+    share = number(1 - left if whole == 0 else 0)
+    rest = _applied(0, timing, torques)
+    seen_x = _sum((one, x), (number(seen.x_by_velocity), v), (number(seen.x_by_torque), rest))
+    seen_v = _sum((one, v), (number(seen.v_by_torque), rest))
     seen_w = _sum((1 - gain, filtered), (gain, seen_v)) if filters else seen_v
     divisor = 1 + share * (beta_hat * seen.x_by_torque + alpha_hat * gain * seen.v_by_torque)
     torques[0] = _sum((-beta_hat / divisor, seen_x), (-alpha_hat / divisor, seen_w))
+
     for step in range(timing.every):
-        torque = _applied(step, timing.every, whole, left, torques)
-        v = _sum((number(1), v), (number(1), torque))
-        x = _sum((number(1), x), (number(1), v), (number(-1) / 2 if seen.accelerates else number(0), torque))
-    w = _sum((number(1), seen_w), (gain * share * seen.v_by_torque, torques[0]))
+        torque = _applied(step, timing, torques)
+        v = _sum((one, v), (one, torque))
+        x = _sum((one, x), (one, v), (number(Fraction(-1, 2) if seen.accelerates else 0), torque))
+    w = _sum((one, seen_w), (gain * share * seen.v_by_torque, torques[0]))
     of_state: list[list[Number]] = [x, v, w] if filters else [x, v]
     return of_state + torques[:pending]
 
 
-def _applied(step: int, every: int, whole: int, left: Number, torques: list[list[Number]]) -> list[Number]:
+def _applied(step: int, timing: Timing, torques: list[list[Number]]) -> list[Number]:
     """Return the torque applied in a step after the latest computation: `torques` begins with that one's, then back.
 
     The torque computed i times `every` steps ago is applied from the step whole - i every on; in that very step the
-    one before it keeps the share `left`.
+    one before it keeps the share of `late` beyond whole steps.
     """
-    begun = max(0, ceil(Fraction(whole - step, every)))
-    if left and step == whole - begun * every:
-        return _sum((1 - left, torques[begun]), (left, torques[begun + 1]))
+    whole = floor(timing.late)
+    left = timing.late - whole
+    begun = max(0, ceil(Fraction(whole - step, timing.every)))
+    if left and step == whole - begun * timing.every:
+        like = torques[0][0]
+        return _sum((_as(1 - left, like), torques[begun]), (_as(left, like), torques[begun + 1]))
     return torques[begun]
+
+
+def _as(value: Fraction | int, like: Number) -> Number:
+    """Return an exact number as what it is to be computed with: itself, or an array of the shape of others."""
+    return like * 0 + (value if isinstance(like, Fraction) else float(value))
 
 
 def _sum(*terms: tuple[Number, list[Number]]) -> list[Number]:
@@ -195,16 +215,16 @@ def _sum(*terms: tuple[Number, list[Number]]) -> list[Number]:
 
 
 Stretch = tuple[float, float]
-"""Factors from and to which a drive is stable: from 0 where there is no lower end, to infinity without an upper one."""
+"""From and to where a drive is stable: from 0 where there is no lower end, to infinity where there is no upper one."""
 
 
 @dataclass(frozen=True)
 class HeldLimits:
     """How far each of four numbers may go with the others as they are.
 
-    `kp` and `kd` are the factors on the gains between which the drive is stable: the stretch that holds 1, else the one
-    nearest to it, None where there is none within FURTHEST. `every` and `late` are the last whole numbers of steps up
-    to which all are proven stable; None where the least, 1 and 0, is not.
+    `kp` and `kd` are the gains, as beta_hat and alpha_hat, between which the drive is stable: the stretch that holds
+    its own, else the one nearest to it, None where there is none within a factor of FURTHEST. `every` and `late` are
+    the last whole numbers of steps up to which all are proven stable; None where the least, 1 and 0, is not.
     """
 
     kp: Stretch | None
@@ -219,39 +239,41 @@ FURTHEST = 1e4
 FACTORS = np.geomspace(1, FURTHEST, 185)
 """Where an end of stability is looked for first, 5 % apart; a stretch that is shorter is not seen."""
 
+SMALL_GAINS = 1e-8 * np.geomspace(1, 1e9, 425)
+"""alpha_hat or beta_hat: where a drive without a gain of its own is looked for first, 5 % apart."""
+
+DECAYS = 1 - 1e-12
+"""|z_p| below which an error decays: float64 leaves a pole of modulus one up to a thousand of its spacings off."""
+
 
 def held_limits(way: str, alpha_hat: Fraction, beta_hat: Fraction, timing: Timing) -> HeldLimits:
-    """Return how far gains, rate and delay may go each: factors by |z_p| in float64, whole steps by proven verdicts."""
+    """Return how far gains, rate and delay may go each: gains by |z_p| in float64, whole steps by proven verdicts."""
 
     def stable(every: int, late: Fraction) -> bool:
         changed = Timing(every, late, timing.filter_steps)
         return held_verdict(way, alpha_hat, beta_hat, changed) == "converges"
 
-    def decays(kp: float = 1.0, kd: float = 1.0) -> bool:
-        return _modulus(SEEN[way], kd * float(alpha_hat), kp * float(beta_hat), timing) < 1
-
+    a, b = float(alpha_hat), float(beta_hat)
     return HeldLimits(
-        kp=_stable_stretch(lambda factor: decays(kp=factor)),
-        kd=_stable_stretch(lambda factor: decays(kd=factor)),
+        kp=_stable_stretch(b, lambda gains: held_moduli(way, a + 0 * gains, gains, timing) < DECAYS),
+        kd=_stable_stretch(a, lambda gains: held_moduli(way, gains, b + 0 * gains, timing) < DECAYS),
         every=_last_stable(lambda every: stable(every, timing.late), least=1),
         late=_last_stable(lambda late: stable(timing.every, Fraction(late)), least=0),
     )
 
 
-def _stable_stretch(decays: Callable[[float], bool]) -> Stretch | None:
-    """Return the stretch of factors that decay around 1, else that nearest to 1; None if there is none."""
-
-    def is_(wanted: bool) -> Callable[[FloatArray], BoolArray]:
-        return lambda factors: np.array([decays(factor) == wanted for factor in factors.tolist()])
-
-    start = 1.0
-    if not decays(start):
-        found = [first_where(is_(True), factors) for factors in (FACTORS, 1 / FACTORS)]
-        ends = [each[1] for each in found if each]
+def _stable_stretch(own: float, decays: Callable[[FloatArray], BoolArray]) -> Stretch | None:
+    """Return the stretch of gains that decay around a drive's own, else that nearest to it; None if there is none."""
+    around = np.concatenate([own / FACTORS[:0:-1], own * FACTORS]) if own > 0 else SMALL_GAINS
+    start = own
+    if own <= 0 or not decays(np.array([own]))[0]:
+        ways = (around[around >= own], around[around <= own][::-1])
+        ends = [found[1] for each in ways if (found := first_where(decays, each))]
         if not ends:
             return None
-        start = min(ends, key=lambda factor: abs(np.log(factor)))
-    down, up = (first_where(is_(False), factors) for factors in (start / FACTORS, start * FACTORS))
+        start = min(ends, key=lambda gain: abs(np.log(gain / own)) if own > 0 else gain)
+    ways = (around[around < start][::-1], around[around > start])
+    down, up = (first_where(lambda gains: ~decays(gains), np.append(start, each)) for each in ways)
     return (down[0] if down else 0.0, up[0] if up else np.inf)
 
 
@@ -259,3 +281,58 @@ def _last_stable(stable: Callable[[int], bool], least: int) -> int | None:
     """Return the last whole number from the least on up to which all are stable, at most MOST_STEPS."""
     unstable = next((number for number in range(least, MOST_STEPS + 1) if not stable(number)), MOST_STEPS + 1)
     return unstable - 1 if unstable > least else None
+
+
+# The map
+
+
+@dataclass(frozen=True)
+class HeldMap:
+    """|z_p| over alpha_hat (columns,) and beta_hat (rows,), shape (rows, columns).
+
+    `law` is the edge of what is stable in closed form, as beta_hat over alpha_hat; None where no closed form is known.
+    """
+
+    alpha_hat: FloatArray
+    beta_hat: FloatArray
+    z_abs: FloatArray
+    law: FloatArray | None
+
+
+BEYOND = 1.1
+"""Of the largest stable gain: so far maps reach."""
+
+STRONGEST = 10.0
+"""alpha_hat and beta_hat: where a drive is stable beyond, as those that are implicit and fresh, maps end there."""
+
+LOOKED_AT = (np.geomspace(1e-5, STRONGEST, 30), np.geomspace(1e-9, STRONGEST, 30))
+"""alpha_hat and beta_hat at which the size of what is stable is found: the slowest controller has some of them."""
+
+FINER = 20
+"""Points along each axis at which it is found to a twentieth."""
+
+
+def held_map(way: str, timing: Timing, points: int, own: tuple[float, float]) -> HeldMap:
+    """Return |z_p| of a way of applying a drive over all gains that are stable, `points` along each axis.
+
+    The map also holds the drive's `own` point (alpha_hat, beta_hat).
+    """
+
+    def moduli(alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
+        """Row by row: a matrix of a hundred late torques takes 80 kB at each point."""
+        return np.array([held_moduli(way, alpha_hat, b + 0 * alpha_hat, timing) for b in beta_hat])
+
+    alpha_hat, beta_hat = LOOKED_AT
+    for count in (FINER, points):
+        rows, columns = np.nonzero(moduli(alpha_hat, beta_hat) < 1)
+        alpha_hat = _axis(alpha_hat, columns, own[0], count)
+        beta_hat = _axis(beta_hat, rows, own[1], count)
+    bounds = law_bounds(way, alpha_hat, timing)
+    return HeldMap(alpha_hat, beta_hat, moduli(alpha_hat, beta_hat), np.minimum.reduce(bounds) if bounds else None)
+
+
+def _axis(samples: FloatArray, stable: NDArray[np.intp], own: float, count: int) -> FloatArray:
+    """Return even gains, from 0 on, up to the last of the samples that are `stable` and the drive's own one."""
+    last = int(stable.max(initial=0))
+    beyond = min(STRONGEST, BEYOND * float(samples[min(last + 1, len(samples) - 1)]))
+    return np.linspace(min(0.0, BEYOND * own), max(beyond, BEYOND * own), count + 1)[1:]

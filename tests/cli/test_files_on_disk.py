@@ -240,7 +240,7 @@ def test_an_answer_for_which_there_is_no_space_takes_one_line(command: str, tmp_
     with Path("/dev/full").open("wb") as full:
         run = finished(*command.split(), cwd=tmp_path, stdout=full)
     assert run.returncode == 2
-    assert only_line(run.stderr) == "bezstab: standard output: No space left on device"
+    assert only_line(run.stderr) == "bezstab: No space left on device"
 
 
 @pytest.mark.parametrize("command", STREAMS)

@@ -118,14 +118,14 @@ ADDED = (
     *("law_z_abs", "law_verdict", "floquet_z_abs", "measured_rate", "right"),
     *("judged_runs", "judged", "agreeing", "too_close", "margins_reason"),
     *("safe", "error_constant", "engine_h_limit", "z_abs_below", "critical_damping_limit_exact", "approached"),
-    *("role", "setting", "sweeps"),
+    *("role", "setting", "sweeps", "swept", "swept_iterations", "swept_word", "swept_source", "swept_excludes"),
     *("omega_h", "forced_error", "total_error", "velocity_error", "order_left", "times_least", "times_least_velocity"),
     *("steady_error", "steady_velocity_error", "measured_error", "predicted_error"),
 )
 """Keys that rows have got since, in their place: more of what a region, a choice and a method is, work in a run,
-what the motion does to a measured pole, up to which step an engine's values are stable, whether the engine sweeps,
-which rows of check were given, what accuracy the feedback costs, and the error that a method forces on what moves, in
-a sweep too."""
+what the motion does to a measured pole, up to which step an engine's values are stable, whether and how the engine
+sweeps, which rows of check were given, what accuracy the feedback costs, and the error that a method forces on what
+moves, in a sweep too."""
 
 
 def tolerance(command: str, key: str) -> Tolerance:

@@ -76,8 +76,8 @@ def links(bodies: int, ratio: float) -> Scene:
 def test_a_chain_written_as_a_scene_is_the_chain() -> None:
     assert constraints_of(links(5, 7.0), Fraction(1)).inverse_masses == pytest.approx(chain(5, 7.0), abs=1e-12)
     by_scene, by_chain = (
-        next(answers(Question(engine=CHIPMUNK, values=DEFAULT, h=Fraction(1, 60), **asked)))  # type: ignore[arg-type]
-        for asked in ({"scene": links(10, 10.0)}, {"chain": Chain(10, Fraction(10))})
+        next(answers(Question(engine=CHIPMUNK, values=DEFAULT, h=Fraction(1, 60), scene=scene, chain=asked)))
+        for scene, asked in ((links(10, 10.0), None), (None, Chain(10, Fraction(10))))
     )
     assert by_scene.swept
     assert by_chain.swept

@@ -67,3 +67,9 @@ def test_a_transposed_row_reads_from_top_to_bottom() -> None:
         {"property": "reason", "value": "-"},
         {"property": "steps", "value": "4"},
     ]
+
+
+def test_a_cell_has_nothing_that_would_command_a_terminal() -> None:
+    texts = {"a\nb": "a\\nb", "\x1b[2J": "\\x1b[2J", "\u2028": "\\u2028", "a  é中": "a  é中", "\x7f\x9b": "\\x7f\\x9b"}
+    for text, shown in texts.items():
+        assert column("method", "method").cell({"method": text}) == shown

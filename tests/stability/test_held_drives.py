@@ -12,13 +12,14 @@ from bezstab.errors import InputError
 from bezstab.methods import closed_loop_at, lookup
 from bezstab.stability.held_drives import (
     SEEN,
+    STRONGEST,
     Timing,
-    held_law,
     held_limits,
+    held_map,
     held_polynomial,
     held_spectral_radius,
     held_verdict,
-    late_law,
+    law_bounds,
 )
 
 POSITIVE = st.fractions(Fraction(1, 100), 4, max_denominator=1000)
@@ -39,6 +40,12 @@ def test_one_step_late_is_the_recipe_with_the_state_before(a: Fraction, b: Fract
     assert found == [1, -2, 1 + a + b, -a]  # z (z - 1)^2 + b z + a (z - 1)
 
 
+def converges_by_law(way: str, a: Fraction, b: Fraction, timing: Timing) -> bool:
+    bounds = law_bounds(way, a, timing)
+    assert bounds
+    return b > 0 and all(b < bound for bound in bounds)
+
+
 @pytest.mark.promise(
     "Drives that are held or late (`check --pd --every --late`)",
     proven=(
@@ -50,14 +57,37 @@ def test_one_step_late_is_the_recipe_with_the_state_before(a: Fraction, b: Fract
 @settings(deadline=None, max_examples=60)
 def test_a_held_drive_converges_where_its_law_says(a: Fraction, b: Fraction, every: int) -> None:
     a, b = a / every, b / every**2  # most of the region lies there
-    assert held_law(a, b, every) == (held_verdict("SYM", a, b, Timing(every)) == "converges")
+    expected = held_verdict("SYM", a, b, Timing(every)) == "converges"
+    assert converges_by_law("SYM", a, b, Timing(every)) == expected
 
 
 @pytest.mark.promise("Drives that are held or late (`check --pd --every --late`)")
-@given(a=st.fractions(0, 2, max_denominator=100), b=st.fractions(0, 1, max_denominator=100))
+@given(a=st.fractions(Fraction(1, 100), 2, max_denominator=100), b=st.fractions(0, 1, max_denominator=100))
 @settings(deadline=None, max_examples=60)
 def test_a_drive_one_step_late_converges_where_its_law_says(a: Fraction, b: Fraction) -> None:
-    assert late_law(a, b) == (held_verdict("SYM", a, b, Timing(late=Fraction(1))) == "converges")
+    late = Timing(late=Fraction(1))
+    assert converges_by_law("SYM", a, b, late) == (held_verdict("SYM", a, b, late) == "converges")
+
+
+@pytest.mark.parametrize("way", ["imex-euler", "stable-pd"])
+@given(a=POSITIVE, b=st.fractions(0, 12, max_denominator=100))
+@settings(deadline=None, max_examples=30)
+def test_a_fresh_drive_converges_where_its_law_says(way: str, a: Fraction, b: Fraction) -> None:
+    assert converges_by_law(way, a, b, Timing()) == (held_verdict(way, a, b, Timing()) == "converges")
+
+
+@pytest.mark.parametrize(
+    ("way", "timing"),
+    [
+        ("SYM", Timing(every=2, late=Fraction(1))),
+        ("SYM", Timing(late=Fraction(1, 2))),
+        ("SYM", Timing(filter_steps=Fraction(1))),
+        ("stable-pd", Timing(every=2)),
+        ("implicit-euler", Timing()),
+    ],
+)
+def test_where_no_closed_form_is_known_there_is_no_law(way: str, timing: Timing) -> None:
+    assert law_bounds(way, Fraction(1), timing) == ()
 
 
 @pytest.mark.parametrize("every", [2, 3, 10])
@@ -163,9 +193,9 @@ def test_limits_lie_where_the_verdict_turns() -> None:
     assert found.kd is not None
     assert found.kp[0] == 0
     less, more = Fraction(999_999, 10**6), Fraction(1_000_001, 10**6)
-    kp_max, kd_min, kd_max = (Fraction(factor) for factor in (found.kp[1], *found.kd))
-    inside = [(a, kp_max * less * b), (kd_min * more * a, b), (kd_max * less * a, b)]
-    outside = [(a, kp_max * more * b), (kd_min * less * a, b), (kd_max * more * a, b)]
+    kp_max, kd_min, kd_max = (Fraction(gain) for gain in (found.kp[1], *found.kd))
+    inside = [(a, kp_max * less), (kd_min * more, b), (kd_max * less, b)]
+    outside = [(a, kp_max * more), (kd_min * less, b), (kd_max * more, b)]
     for points, verdict in ((inside, "converges"), (outside, "diverges")):
         assert [held_verdict("SYM", *point, timing) for point in points] == [verdict] * 3
     assert found.every is not None
@@ -179,15 +209,74 @@ def test_limits_lie_where_the_verdict_turns() -> None:
 def test_an_unstable_drive_is_told_the_stretch_nearest_to_it() -> None:
     """One step late it is stable for b < a (1 - a): at b = 0.09 for a from 0.1 to 0.9."""
     found = held_limits("SYM", Fraction("0.05"), Fraction("0.09"), Timing(late=Fraction(1)))
-    assert found.kd == pytest.approx((0.1 / 0.05, 0.9 / 0.05), rel=1e-9)
-    assert found.kp == pytest.approx((0, 0.05 * 0.95 / 0.09), rel=1e-9)
+    assert found.kd == pytest.approx((0.1, 0.9), rel=1e-9)
+    assert found.kp == pytest.approx((0, 0.05 * 0.95), rel=1e-9)
     assert (found.every, found.late) == (None, 0)
 
 
-def test_where_nothing_helps_it_is_said() -> None:
-    found = held_limits("SYM", Fraction(0), Fraction("0.01"), Timing(every=2))
-    assert (found.kp, found.kd, found.late) == (None, None, None)
+@pytest.mark.parametrize("a", [Fraction(0), Fraction(-1, 10)])
+def test_a_drive_without_damping_is_told_how_much_it_needs(a: Fraction) -> None:
+    """Held for two steps it needs b < 2 a and b < 2 - 2 a."""
+    found = held_limits("SYM", a, Fraction("0.01"), Timing(every=2))
+    assert found.kd == pytest.approx((0.005, 0.995), rel=1e-9)
+    assert (found.kp, found.late) == (None, None)
     assert found.every is None  # without damping it is marginal even when it is fresh
+
+
+def test_a_marginal_drive_is_not_taken_for_a_stable_one() -> None:
+    """Fresh and undamped its poles have modulus one at any stiffness, which float64 takes for a little less."""
+    found = held_limits("SYM", Fraction(0), Fraction("0.01"), Timing())
+    assert found.kp is None
+    assert found.kd == pytest.approx((0, 1.995), rel=1e-9)
+
+
+def test_where_nothing_helps_there_are_no_limits() -> None:
+    found = held_limits("SYM", Fraction("1.8"), Fraction("0.8"), Timing(every=4))
+    assert (found.kp, found.kd, found.every, found.late) == (None, None, None, None)
+
+
+MAPPED = [
+    ("SYM", Timing()),
+    ("SYM", Timing(every=4)),
+    ("SYM", Timing(every=4, late=Fraction(1))),
+    ("SYM", Timing(late=Fraction(7))),
+    ("SYM", Timing(every=10, late=Fraction(3, 2), filter_steps=Fraction(5))),
+    ("imex-euler", Timing(every=2)),
+    ("stable-pd", Timing(late=Fraction(1, 2))),
+    ("implicit-euler", Timing(late=Fraction(2))),
+]
+
+
+@pytest.mark.promise("Drives that are held or late (`check --pd --every --late`)")
+@pytest.mark.parametrize(("way", "timing"), MAPPED, ids=str)
+def test_the_cells_of_a_map_are_stable_where_the_verdict_is_proven(way: str, timing: Timing) -> None:
+    found = held_map(way, timing, 12, (0.01, 0.0001))
+    for row, b in enumerate(found.beta_hat):
+        for column, a in enumerate(found.alpha_hat):
+            z_abs = found.z_abs[row, column]
+            if abs(z_abs - 1) > 1e-9:  # float64's rounding of a pole
+                verdict = held_verdict(way, Fraction(a), Fraction(b), timing)
+                assert (z_abs < 1) == (verdict == "converges"), (a, b)
+
+
+@pytest.mark.parametrize(("way", "timing"), MAPPED, ids=str)
+def test_a_map_shows_all_that_is_stable_and_little_else(way: str, timing: Timing) -> None:
+    found = held_map(way, timing, 40, (0.0, 0.0))
+    stable = found.z_abs < 1
+    for edge, axis in ((stable.any(axis=0), found.alpha_hat), (stable.any(axis=1), found.beta_hat)):
+        reach = axis[edge].max() / axis[-1]
+        assert (0.7 < reach < 1) or axis[-1] == STRONGEST
+
+
+def test_a_map_holds_the_drives_own_gains_and_the_law() -> None:
+    found = held_map("SYM", Timing(every=4), 10, (3.0, 0.5))
+    assert found.alpha_hat[-1] > 3
+    assert found.beta_hat[-1] > 0.5
+    assert found.law == pytest.approx(
+        [min((4 - 8 * a) / 4, 2 * a / 3) for a in found.alpha_hat],
+        rel=1e-12,  # rounding
+    )
+    assert held_map("SYM", Timing(every=4, late=Fraction(1)), 10, (0.1, 0.1)).law is None
 
 
 @pytest.mark.parametrize(

@@ -42,7 +42,7 @@ def chained(bodies: int, ratio: float, gravity: float = 0.0) -> tuple[Any, list[
 
 def worst_link(links: list[Any]) -> float:
     places = [0.0, *(body.position[0] for body in links)]
-    return max(abs(abs(x - u) - 1) for u, x in pairwise(places))
+    return float(max(abs(abs(x - u) - 1) for u, x in pairwise(places)))
 
 
 def predicted(bodies: int, ratio: float, sweeps: int, position_sweeps: int) -> Growth:

@@ -142,7 +142,7 @@ def worst_link(world: int, links: list[Any]) -> float:
     """Return by how much some link is too long or too short, at most (m)."""
     found = (pybullet.getBasePositionAndOrientation(body, physicsClientId=world) for body in links)
     places = [0.0, *(position[0] for position, _ in found)]
-    return max(abs(x - u - 1) for u, x in pairwise(places))
+    return float(max(abs(x - u - 1) for u, x in pairwise(places)))
 
 
 def predicted(bodies: int, ratio: float, sweeps: int, erp: float) -> Growth:

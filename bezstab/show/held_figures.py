@@ -1,0 +1,70 @@
+"""Figures of drives that are held or late: |z_p| over kd and kp."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from bezstab.engines import DRIVE_METHODS
+from bezstab.show.style import ACCENT, cells, column_figure, keep_markers_whole, legend_below, styled, title_lines
+
+if TYPE_CHECKING:
+    from bezstab.questions import HeldAnswer
+    from bezstab.stability import HeldMap, Timing
+
+
+def held_figure(answer: HeldAnswer, found: HeldMap) -> Figure:
+    """Return |z_p| of one way of applying a drive over kd and kp (SI units), its edge, and the drive's own gains.
+
+    The axes opposite show alpha_hat and beta_hat. Where the edge has a closed form, that is drawn over it.
+    """
+    question = answer.question
+    h = float(question.h)
+    kp_of_one, kd_of_one = question.drive.gains(1.0, 1.0, h)
+    kd, kp = kd_of_one * found.alpha_hat, kp_of_one * found.beta_hat
+    with styled():
+        figure = column_figure(1.1)
+        axes = figure.add_subplot()
+        axes.set_title(title_lines(DRIVE_METHODS[answer.method.name], *_timing(question.timing, h), f"h = {h:g} s"))
+        stable = np.ma.masked_greater_equal(found.z_abs, 1.0)
+        image = cells(axes, kd, kp, stable, cmap="cividis", vmax=1.0)
+        figure.colorbar(image, label="$|z_p|$ a step", location="bottom", shrink=0.8)
+        handles = [Line2D([], [], color="black", label="$|z_p| = 1$")]
+        if found.z_abs.min() < 1 < found.z_abs.max():
+            axes.contour(kd, kp, found.z_abs, levels=[1.0], colors="black", linewidths=1.2)
+        if found.law is not None:
+            law: dict[str, Any] = {"color": "white", "linestyle": (0, (4, 4)), "linewidth": 1.0}
+            handles += axes.plot(kd, kp_of_one * found.law, label="closed form", **law)
+        own = float(question.drive.kd), float(question.drive.kp)
+        star: dict[str, Any] = {"color": ACCENT, "markeredgecolor": "black", "markersize": 11, "linestyle": ""}
+        handles += axes.plot(*own, marker="*", label=f"kp = {own[1]:g}, kd = {own[0]:g}", **star)
+        axes.set(xlabel="kd (N m s/rad)", ylabel="kp (N m/rad)", facecolor="0.93")
+        axes.set(xlim=(min(0.0, kd[0]), kd[-1]), ylim=(min(0.0, kp[0]), kp[-1]))
+        across = axes.secondary_xaxis("top", functions=_in_units_of(kd_of_one))
+        across.set_xlabel(r"$\hat\alpha = $ kd $h$ / inertia")
+        up = axes.secondary_yaxis("right", functions=_in_units_of(kp_of_one))
+        up.set_ylabel(r"$\hat\beta = $ kp $h^2$ / inertia")
+        for axis in (axes.xaxis, axes.yaxis, across.xaxis, up.yaxis):
+            axis.set_major_formatter("{x:g}")  # a common factor would stand beside it, on the axis opposite
+        keep_markers_whole(axes)
+        legend_below(figure, handles, facecolor="0.75")
+        return figure
+
+
+def _timing(timing: Timing, h: float) -> list[str]:
+    """Return when the torque is computed and applied, as parts of a title."""
+    parts = [f"held {timing.every} steps" if timing.every > 1 else "computed in every step"]
+    if timing.late:
+        parts.append(f"{float(timing.late):g} step{'s' * (timing.late > 1)} late")
+    if timing.filter_steps:
+        parts.append(f"velocity filtered over {float(timing.filter_steps) * h:g} s")
+    return parts
+
+
+def _in_units_of(unit: float) -> tuple[Callable[[Any], Any], Callable[[Any], Any]]:
+    """Return what takes a gain to its multiple of a unit, and back."""
+    return lambda gain: gain / unit, lambda multiple: multiple * unit
