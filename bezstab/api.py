@@ -1,9 +1,9 @@
 """What `import bezstab` offers: the rooms behind one door, with names for methods and scenes, and units said aloud.
 
-Wherever a point of the plane is asked for, keywords say which numbers it is: `alpha_hat=` and `beta_hat=`
-(dimensionless, alpha_hat = 2 alpha h and beta_hat = beta^2 h^2, paper Eq. 16), or `alpha=` and `beta=` in 1/s together
-with the step `h=` in s. A method is a name as on the command line ("B4", "RK4@5", "mine.toml") or what `method` made
-of one; a scene is a shipped scene's name, the path of a TOML file, or what `scene` made of one.
+A point is given in one of two ways: `alpha_hat=` and `beta_hat=` (dimensionless, alpha_hat = 2 alpha h and
+beta_hat = beta^2 h^2, paper Eq. 16), or `alpha=` and `beta=` in 1/s with the step `h=` in s. A method is a name as on
+the command line ("B4", "RK4@5", "mine.toml"), or what `method` returns. A scene is the name of a shipped one, the path
+of a TOML file, or what `scene` returns.
 """
 
 from __future__ import annotations  # so that help() shows annotations as they are written
@@ -33,10 +33,14 @@ Number = int | float | str | Fraction
 
 
 def method(name: str | Method) -> Method:
-    """Return the integration method of that name, or the one in a .toml file.
+    """Return the integration method of that name.
 
-    Its steps last h, the user's step (s), or m h with @m appended to the name: "RK4@5". InputError, with the nearest
-    name, if there is none. `Method.source` names the book or paper.
+    name: a name as `bezstab methods` lists it ("B4", "RK4"), the path of a .toml file, or a method that
+        is returned as it is. "RK4@5" is RK4 with steps of 5 h, where h is your step (s).
+
+    Returns a Method. Its `source` names the book or paper.
+
+    InputError if there is no such method; it suggests the nearest name.
     """
     if not isinstance(name, str | Method):
         raise InputError(f"method {shown(name)}: expected one name such as 'B4', or what bezstab.method makes of one")
@@ -44,11 +48,15 @@ def method(name: str | Method) -> Method:
 
 
 def scene(name: str | Scene, speed: float = 1.0) -> Scene:
-    """Return the shipped scene of that name, or the one in a .toml file; SI units and rad.
+    """Return the planar mechanism of that name, in SI units and rad.
 
-    Its drivers and initial velocities are `speed` times as fast as given there. InputError, naming the file and the
-    key, if it cannot be read, and where a speed has nothing to multiply. "slider_crank" is that of the paper's
-    section 5.2.
+    name: a name of a shipped scene ("pendulum", "slider_crank"), the path of a .toml file, or a scene.
+    speed: its drivers and initial velocities become so many times as fast.
+
+    Returns a Scene. "slider_crank" is that of the paper's section 5.2.
+
+    InputError if the file cannot be read; it names the file and the key. InputError, too, if a speed is
+    given and nothing in the scene moves by itself.
     """
     if not isinstance(name, str | Scene):
         raise InputError(
@@ -67,10 +75,16 @@ def poles(
     beta: ArrayLike | None = None,
     h: float | None = None,
 ) -> ComplexArray:
-    """Return all poles z of the constraint error, dimensionless, descending by modulus.
+    """Return all poles z of the constraint error: each step multiplies a part of the error by z.
 
-    Complex; shape of the two coordinates broadcast, plus one axis for the poles. InputError unless the point is given
-    in one of the two ways; NumericalError if a pole leaves the range of float64. The roots of paper Eq. 17.
+    The point is `alpha_hat` and `beta_hat`, or `alpha` and `beta` in 1/s with the step `h` in s.
+    Numbers or arrays.
+
+    Returns complex numbers, dimensionless, in order of falling |z|. The shape is that of the two
+    coordinates, broadcast, with one more axis at the end for the poles.
+
+    InputError unless the point is given in one of the two ways. NumericalError if a pole leaves the
+    range of float64. Source: the roots of paper Eq. 17.
     """
     a, b = _plane_arrays(alpha_hat, beta_hat, alpha, beta, h)
     return stability.poles(_method(method), a, b)
@@ -85,9 +99,15 @@ def dominant_pole(
     beta: ArrayLike | None = None,
     h: float | None = None,
 ) -> ComplexArray:
-    """Return z_p, the pole of largest modulus, dimensionless; of a conjugate pair the one with Im >= 0.
+    """Return z_p, the pole of largest modulus: in the long run each step multiplies the error by it.
 
-    Complex; shape of the two coordinates broadcast. Errors as for `poles`. The paper's dominant pole, section 4.
+    The point is `alpha_hat` and `beta_hat`, or `alpha` and `beta` in 1/s with the step `h` in s.
+    Numbers or arrays.
+
+    Returns complex numbers, dimensionless, in the shape of the two coordinates, broadcast. Of a
+    conjugate pair it is the one with Im z >= 0.
+
+    Errors as for `poles`. Source: the paper's section 4.
     """
     a, b = _plane_arrays(alpha_hat, beta_hat, alpha, beta, h)
     return stability.dominant_pole(_method(method), a, b)
@@ -102,9 +122,15 @@ def spectral_radius(
     beta: ArrayLike | None = None,
     h: float | None = None,
 ) -> FloatArray:
-    """Return |z_p|, by which the constraint error shrinks in a step, dimensionless; it decays where that is below 1.
+    """Return |z_p|, the factor by which each step multiplies the constraint error in the long run.
 
-    float64; shape of the two coordinates broadcast. Errors as for `poles`. The quantity of the paper's Figs. 1 to 3.
+    The error decays where it is below 1. The point is `alpha_hat` and `beta_hat`, or `alpha` and `beta`
+    in 1/s with the step `h` in s. Numbers or arrays.
+
+    Returns float64, dimensionless, in the shape of the two coordinates, broadcast.
+
+    Errors as for `poles`. Close to 1 rounding may decide: `verdict` is exact. Source: the paper's Figs.
+    1 to 3.
     """
     a, b = _plane_arrays(alpha_hat, beta_hat, alpha, beta, h)
     return stability.spectral_radius(_method(method), a, b)
@@ -119,30 +145,44 @@ def verdict(
     beta: Number | None = None,
     h: Number | None = None,
 ) -> Verdict:
-    """Return "converges", "marginal" or "diverges" for one point (dimensionless, or in 1/s with h), proven exactly.
+    """Return "converges", "marginal" or "diverges": what the error does at one point.
 
-    Numbers are read exactly: 0.1 is one tenth. InputError unless they are finite and the point is given in one of the
-    two ways. The Schur-Cohn test (I. Schur, J. reine angew. Math. 147, 1917) on the polynomial of paper Eq. 17.
+    The point is `alpha_hat` and `beta_hat`, or `alpha` and `beta` in 1/s with the step `h` in s. Each
+    number is read as it is written. 0.1 is one tenth, and "6/11" is a fraction.
+
+    Returns one of the three words. It is proven in exact arithmetic.
+
+    InputError unless the numbers are finite and the point is given in one of the two ways. Source: the
+    Schur-Cohn test (I. Schur, J. reine angew. Math. 147, 1917) on the polynomial of paper Eq. 17.
     """
     a, b = _plane_point(alpha_hat, beta_hat, alpha, beta, h)
     return stability.verdict(_method(method), a, b)
 
 
 def region(method: str | Method, level: float = 1.0) -> stability.Region:
-    """Return the exact region |z_p| < level, 0 < level <= 1, in the dimensionless plane.
+    """Return the exact region of the plane of alpha_hat and beta_hat in which |z_p| < level.
 
-    `boundary` has its closed curves as arrays of shape (points, 2), columns alpha_hat and beta_hat; `area`, `extent`,
-    and `contains(alpha_hat, beta_hat)`. InputError for another level; NumericalError if an edge cannot be found.
-    Boundary locus of paper Eq. 17.
+    level: above 0, at most 1. At 1 the region is where the method is stable.
+
+    Returns a Region, dimensionless. `boundary` is a list of closed curves, arrays of shape (points, 2)
+    with the columns alpha_hat and beta_hat. `area` and `extent` are its size. `contains(alpha_hat,
+    beta_hat)` tells which points lie inside. `bezstab.plot.region` draws it.
+
+    InputError for another level. NumericalError if an edge cannot be found. Source: boundary locus of
+    paper Eq. 17.
     """
     return stability.region(_method(method), _real(level, "level"))
 
 
 def best_point(method: str | Method) -> stability.BestPoint | None:
-    """Return the point with the smallest |z_p| and what meets there, dimensionless; None if no point is stable.
+    """Return the point of the plane with the smallest |z_p|, where the constraint error decays fastest.
 
-    None, too, where |z_p| falls on as the parameters grow, as for implicit Euler: then no point has the least.
-    NumericalError if no solution of the defining equations is as small as a sampled |z_p|. The paper's section 5.1.
+    Returns a BestPoint with `alpha_hat`, `beta_hat`, `z_abs` and which poles meet there, dimensionless.
+    Returns None if no point is stable, or if |z_p| keeps falling as the parameters grow, as for
+    implicit Euler.
+
+    NumericalError if the equations of such a point have no solution as good as a sampled one. Source:
+    the paper's section 5.1.
     """
     return stability.best_point(_method(method))
 
@@ -168,19 +208,44 @@ def choose(
     mass_ratio: Number | None = None,
     iterations: int | None = None,
 ) -> questions.Answer:
-    """Return the point that a goal asks for, dimensionless, proven stable, with the margins that remain.
+    """Return the alpha and beta to use: the point that a goal asks for, proven stable, with its margins.
 
-    accurate, the usual goal: the least error forced on a motion of `omega` (1/s, with the step `h` in s) or `omega_h`
-    (rad a step, 0.01 unless given), among what settles within `settle` (s), or while that motion turns by 14 rad.
-    robust: fastest at worst over smaller steps and over alpha, beta off by the share `spread`; both with `h`, `h_max`
-    (s) for the steps up to h_max, for use at h, and then omega_h is that of h_max. fastest: least |z_p|. critical: the
-    fastest dominant pole that is double, real and positive. gentle: the mildest alpha = beta whose error falls a
-    thousandfold within `settle` (s) at the step `h` (s). `equal` keeps alpha = beta. What else `check` says of a point
-    this says of the choice: `engine` is a name, and `setting` the line to paste; with `pd` `gains` are those to set.
-    With a `chain`, or a scene in an engine that sweeps, it is at most the strongest feedback that this allows with the
-    spread to spare. `from_dimensionless` turns the answer into 1/s. Without a method it is the engine's own. InputError
-    if nothing stable meets the goal, and for a goal, spread, time or motion that is none. The poles are those of paper
-    Eq. 17, the goals this package's.
+    method: what you integrate with. Without one it is the engine's own. With `pd` name one, such as
+        "SYM".
+
+    goal: what the point is for.
+      "accurate", the usual one: the least error that the feedback makes on a motion, among the points
+          that settle within `settle` (s). Without `settle` they may take as long as the motion needs to
+          turn by 14 rad. The motion turns by `omega` (1/s, with the step `h` in s), or by `omega_h` rad
+          a step (0.01 unless given).
+      "robust": the fastest decay in the worst case. alpha and beta may be off by the share `spread`,
+          and the step may be smaller. The usual goal with `pd`, and with an engine whose alpha and beta
+          depend on each other.
+      "fastest": the least |z_p|.
+      "critical": the fastest among the points whose dominant pole is double, real and positive.
+      "gentle": the mildest alpha = beta whose error falls a thousandfold within `settle` (s) at the
+          step `h` (s).
+
+    equal: only points with alpha = beta.
+    h, h_max: the step and the largest step in s. With both, accurate and robust allow for steps up to
+        h_max. The answer is for use at h. `omega_h` is then that of h_max.
+    h_min: steps vary from h_min to h_max (s). `hold`: alpha_hat and beta_hat stay the same, instead of
+        alpha and beta.
+    engine: a name, such as "mujoco"; only what that engine can express is searched, and `setting` is
+        the line to paste.
+    pd: (kp, kd, inertia) of a joint's drive in SI units; only the inertia counts, and `gains` has kp
+        and kd to set.
+    scene, speed: a mechanism that moves so many times as fast as given there; `moving` says what the
+        motion changes.
+    chain, mass_ratio, iterations: with an engine that solves its constraints one after another, in
+        sweeps: a straight chain of so many bodies, the last so many times as heavy, solved in so many
+        sweeps. The answer is at most what such a chain, or the scene, allows with the spread to spare.
+
+    Returns an Answer, dimensionless: `alpha_hat`, `beta_hat`, `pole`, `margins`, `safe` and all else
+    that `check` says. `from_dimensionless` turns it into alpha and beta in 1/s.
+
+    InputError if nothing stable meets the goal, or if an argument is out of range. Source: the poles of
+    paper Eq. 17; the goals are this package's.
     """
     named = None if engine is None else engine_named(engine)
     drive = _drive(pd)
@@ -233,18 +298,37 @@ def check(
     mass_ratio: Number | None = None,
     iterations: int | None = None,
 ) -> questions.Answer:
-    """Return what there is to say of a point of your own: proven verdict, dominant pole, margins; dimensionless.
+    """Return what there is to say of a point of your own: is it safe, how fast is it, how far may it go.
 
-    The point is also what an engine makes of its values (`engine="mujoco=0.02,1"`), or a drive of its gains
-    (`pd=(kp, kd, inertia)`), each with the step `h` (s). `safe` is whether errors shrink: with a `scene`, as it moves
-    `speed` times as fast as given there; with `h_min` and `h_max` (s), for every sequence of such steps. An engine that
-    solves one constraint after another is safe for `swept_over`: for one alone, for a `chain` of so many bodies, the
-    last `mass_ratio` times as heavy, or for those of a scene at its start, in `iterations` sweeps. `margins` has
-    the factors by which h, alpha and beta may be scaled alone; None unless the point is stable. Found when asked for:
-    `cost` (of accuracy, on a motion of `omega` in 1/s or `omega_h` in rad a step), `instead`, `moving`, `varying`,
-    `swept`, `setting`, `gains`. Without a method it is the engine's own. Of several points that an engine takes, or
-    ways of applying a drive, the answer is the first that is not safe. Errors as for `verdict`, whose sources it
-    shares; InputError, too, for a `spread` outside 0 to 1, and NumericalError if a pole leaves the range of float64.
+    The point is one of these:
+      `alpha_hat` and `beta_hat`, dimensionless;
+      `alpha` and `beta` in 1/s with the step `h` in s;
+      `engine`, an engine's own values, such as "mujoco=0.02,1", with `h`. `as_typed` leaves out the
+          engine's clamps;
+      `pd`, (kp, kd, inertia) of a joint's drive in SI units, with `h`.
+
+    method: what you integrate with. Without one it is the engine's own, and of a drive all four ways of
+        applying it.
+    h_min, h_max: steps vary from h_min to h_max (s). `hold`: alpha_hat and beta_hat stay the same,
+        instead of alpha, beta.
+    spread: the share by which alpha and beta may be off, for `worst`.
+    omega, omega_h: how fast the motion is, in 1/s or in rad a step, for `cost`.
+    scene, speed: a mechanism that moves so many times as fast as given there.
+    chain, mass_ratio, iterations: with an engine that solves its constraints one after another, in
+        sweeps: a straight chain of so many bodies, the last so many times as heavy, solved in so many
+        sweeps. Without a chain or a scene such an engine's answer is about one constraint alone;
+        `swept_over` says so.
+
+    Returns an Answer, dimensionless. If there are several, as of the ways of applying a drive, it is
+    the first that is not safe. `verdict` is proven. `pole` is the dominant one. `safe` is whether
+    errors shrink: with a scene also as it moves, with h_min for every sequence of such steps. `margins`
+    has the factors by which h, alpha and beta may each be scaled alone; None unless the point is
+    stable. These are computed when you first ask for them: `cost` (of accuracy), `instead` (what
+    `choose` gives), `moving`, `varying`, `swept` (many constraints), `setting` (the engine's line) and
+    `gains` (of the drive).
+
+    InputError unless the point is given in one of these ways and the numbers are in range.
+    NumericalError if a pole leaves the range of float64. Sources as for `verdict`.
     """
     named, values = (None, None) if engine is None else engine_and_values(engine)
     drive = _drive(pd)
@@ -284,12 +368,25 @@ def check_drive(
     filter_seconds: Number = 0,
     method: str | Method | None = None,
 ) -> questions.HeldAnswer:
-    """Return what a drive does whose torque is held or late: proven verdict, |z_p| a step, limits, what is used up.
+    """Return whether a joint's drive is safe whose controller is slower than the physics.
 
-    `pd` is (kp, kd, inertia) in SI units, `h` (s) the step of the physics. The torque is computed every so many steps,
-    applied so many steps `late`, and sees the velocity through a first-order filter of `filter_seconds` (s). Without a
-    method all four ways of applying a drive are asked, and the answer is the first that is not safe. InputError for
-    numbers out of range and for a method that is no way of applying a drive. Gil et al. 2009.
+    pd: (kp, kd, inertia) in SI units; the torque is -kp (q - target) - kd q'.
+    h: the step of the physics in s.
+    every: the torque is computed every so many steps, and held; 1 to 100.
+    late: it is applied so many steps late, or a fraction of them; 0 to 100.
+    filter_seconds: time constant in s of a first-order filter of the measured velocity; 0 for none.
+    method: the way of applying the drive: "SYM" (explicit), "imex-euler" (implicit in the velocity),
+        "stable-pd" or "implicit-euler" (fully implicit). Without one all four are asked, and the answer
+        is the first that is not safe.
+
+    Returns a HeldAnswer. `verdict` is proven, and `safe` is whether it is "converges". `z_abs` is the
+    factor by which each step multiplies the error, `fresh_z_abs` the same without hold, delay and
+    filter. `used_up` names what makes an unsafe drive so, or which number of a safe one is nearest to
+    its limit. `limits` has how far each number may go alone: `kp` (N m/rad) and `kd` (N m s/rad) from
+    and to, `every` and `late` in steps. A limit of the torque is not judged.
+
+    InputError for a number out of range, and for a method that is no way of applying a drive. Source:
+    Gil et al., J. Comput. Inf. Sci. Eng. 9, 011005, 2009.
     """
     step, drive = _exact(h, "h"), _drive(pd)
     assert drive
@@ -304,10 +401,13 @@ def check_drive(
 
 
 def largest_step(method: str | Method, *, alpha: Number, beta: Number) -> float:
-    """Return the step (s) up to which every one is stable with alpha and beta (1/s), proven where the verdict turns.
+    """Return the step in s up to which every step is stable with alpha and beta in 1/s.
 
-    Infinite where every step is, zero where small ones are not. InputError unless the numbers are finite. The path of
-    all steps through the plane of paper Eq. 17.
+    Returns a float: infinite if every step is stable, 0 if small ones are not. The verdict is proven on
+    both sides.
+
+    InputError unless the numbers are finite. Source: the path of all steps through the plane of paper
+    Eq. 17.
     """
     return questions.largest_step(_method(method), _exact(alpha, "alpha"), _exact(beta, "beta")).h_limit
 
@@ -323,13 +423,19 @@ def feedback_cost(
     omega: Number | None = None,
     omega_h: Number | None = None,
 ) -> stability.FeedbackCost:
-    """Return the error that a feedback forces on a motion, as a share of its amplitude; and which order it leaves.
+    """Return what accuracy a feedback costs: on a mechanism that moves it makes errors of its own.
 
-    The motion turns by `omega_h` (rad a step, 0.01 unless given), or by `omega` (1/s) at the step `h` (s).
-    `forced_error` is that of the constraint in the steady state, `total_error` what is left in a run, `times_least`
-    that over what the goal accurate of `choose` has; None where errors do not decay. `order_left` is the order in h
-    where alpha_hat and beta_hat are held, of `order`, the method's own. InputError unless the point is given in one of
-    the two ways, and omega h is 1e-6 to 1. The test equation of Prothero and Robinson (Math. Comp. 28, 1974).
+    The point is `alpha_hat` and `beta_hat`, or `alpha` and `beta` in 1/s with the step `h` in s. The
+    motion turns by `omega_h` rad a step (0.01 unless given), or by `omega` in 1/s at the step `h`.
+
+    Returns a FeedbackCost. Errors are shares of the motion's amplitude: `forced_error` is that of the
+    constraint in the steady state, `total_error` what is left in a run, `velocity_error` that of the
+    velocity. `times_least` is the total error over the least that can be had, by the goal accurate of
+    `choose`. `order_left` is the order in h that remains of the method's own `order` while alpha_hat
+    and beta_hat stay the same. What is not known, as where errors grow, is None.
+
+    InputError unless the point is given in one of the two ways and omega h is from 1e-6 to 1. Source:
+    the test equation of Prothero and Robinson (Math. Comp. 28, 1974).
     """
     a, b = _plane_point(alpha_hat, beta_hat, alpha, beta, h)
     with _in_keywords():
@@ -352,12 +458,21 @@ def simulate(
     start: mechanism.Start = "rk4",
     perturb: float = 0.0,
 ) -> Simulation:
-    """Return a run of `duration` (s) with steps of h (s): t, q, v, c, cdot, multipliers and energy as arrays, SI units.
+    """Return a run of a mechanism with a method and a feedback, as arrays in SI units.
 
-    t has shape (steps + 1,), the others a row for each time. The initial state is the scene's, its first constraint
-    off by `perturb`. A run that breaks down ends early and says when and why in `failure`. InputError for a scene
-    that cannot start, a duration below one step, and unless the point is given in one of the two ways; NumericalError
-    for one that cannot be perturbed. Paper Eqs. 6 to 9.
+    h: the step in s. duration: how long, in s.
+    The point is `alpha_hat` and `beta_hat`, or `alpha` and `beta` in 1/s.
+    start: where a multistep method has its first values from: steps of "rk4", its family's members of
+        fewer steps ("ramp"), or explicit "euler".
+    perturb: by how much the first constraint is off at the start, in its own unit.
+
+    Returns a Simulation. `t` has shape (steps + 1,). `q`, `v`, `c`, `cdot` and `multipliers` have a row
+    for each time; `energy` has a number for each time. A run that breaks down ends early, and `failure`
+    says when and why; else it is None.
+
+    InputError for a scene that cannot start, for a duration below one step, and unless the point is
+    given in one of the two ways. NumericalError if the start cannot be perturbed. Source: paper Eqs. 6
+    to 9.
     """
     a, b = _plane_point(alpha_hat, beta_hat, alpha, beta, h)
     return mechanism.simulated(
@@ -382,10 +497,17 @@ def verify(
     alpha: ArrayLike | None = None,
     beta: ArrayLike | None = None,
 ) -> list[evidence.Measurement]:
-    """Return predicted and measured dominant pole for each of a row of points, at steps of h (s); dimensionless.
+    """Return the dominant pole as predicted and as measured in a simulation, for each of a row of points.
 
-    `measured` is None, and `reason` says why, where no pole can be measured. InputError for a scene that cannot
-    start, or unless the points are given in one of the two ways. Method: opposite kicks and linear prediction (Prony).
+    scene: the mechanism to kick. h: the step in s.
+    The points are `alpha_hat` and `beta_hat`, or `alpha` and `beta` in 1/s: numbers, or arrays of one
+    shape.
+
+    Returns a list of Measurements, dimensionless. `measured` is None where no pole can be measured;
+    `reason` says why.
+
+    InputError for a scene that cannot start, and unless the points are given in one of the two ways.
+    Source: opposite kicks and linear prediction (Prony).
     """
     h = _real(h, "h")
     check_step(h)
@@ -408,14 +530,23 @@ def probe(
     every: int = 1,
     turning: float | None = None,
 ) -> evidence.Probe:
-    """Return the dominant pole in samples of a decaying error, and which integrator has it; poles are dimensionless.
+    """Return the dominant pole in samples of a decaying error, and which integrator could have made them.
 
-    `c` has shape (samples,), or (samples, responses) of one system, in any unit; `minus` is another run of that shape
-    to subtract, unless c is such a difference already (`differenced`). With a point, given in one of the two ways,
-    `likenesses` compares each of `methods` [all built-in ones], the nearest first; without one `points` are those at
-    which `methods` have the pole. `every` steps of h (s) lie between two samples. `turning` is how fast the directions
-    of the constraints turn, in 1/s, and needs h. Where no pole can be told `found.reason` says why, and
-    nothing is compared. InputError unless point, shapes and h fit together. Method: linear prediction (Prony).
+    c: samples of one constraint error in any unit, shape (samples,), or (samples, responses) of one
+        system.
+    minus: another run of that shape, to subtract. differenced: c is such a difference already.
+    methods: which integrators to compare; all built-in ones unless given.
+    With a point, `alpha_hat` and `beta_hat`, or `alpha` and `beta` in 1/s with `h` in s, the pole of
+    each method there is compared. Without a point the points are found at which each of `methods` has
+    that pole.
+    every: steps of h from one sample to the next.
+    turning: how fast the directions of the constraints turn, in 1/s; needs h.
+
+    Returns a Probe. `found.pole` is the pole a sample, dimensionless; `found.reason` says why where
+    there is none, and then nothing is compared. `likenesses` has the methods, the nearest first, and
+    `fitting` the names of those that fit. `points` has the points, where none was given.
+
+    InputError unless point, shapes and h fit together. Source: linear prediction (Prony).
     """
     has_point = not (alpha_hat is None and beta_hat is None and alpha is None and beta is None)
     point = _plane_point(alpha_hat, beta_hat, alpha, beta, h) if has_point else None
@@ -450,12 +581,17 @@ def probe_step(
     h: Number | None = None,
     turning: float | None = None,
 ) -> evidence.Probe:
-    """Return what `probe` does, of a simulator's own function from a state to the next.
+    """Return what `probe` does, for a simulator of your own: a function that takes a state to the next.
 
-    `constraint` is the error in a state, in any unit, and `kick` is added to `state`, an array of the same shape, and
-    subtracted from it; so are parts of it, to see growth as long as decay. `step` is called six times `steps` times.
-    The keywords are those of `probe`, dimensionless or 1/s and s, and so are the errors: InputError for shapes that
-    differ too.
+    step: a function of an array, the state, that returns the next one. It is called six times `steps`
+        times.
+    state: where to start, an array.
+    constraint: a function of a state that returns the constraint error, in any unit.
+    kick: an array of the shape of the state. It is added to the state and subtracted from it, whole and
+        in parts.
+    The other keywords are those of `probe`.
+
+    Returns a Probe, as `probe` does; poles are dimensionless. Errors as there; InputError, too, for shapes that differ.
     """
     return probe(
         evidence.kicked_responses(step, state, constraint, kick, steps),

@@ -49,10 +49,12 @@ def to_dimensionless(alpha: Fraction, beta: Fraction, h: Fraction) -> tuple[Frac
 @overload
 def to_dimensionless(alpha: FloatOrArray, beta: FloatOrArray, h: float) -> tuple[FloatOrArray, FloatOrArray]: ...
 def to_dimensionless(alpha: Any, beta: Any, h: Any) -> tuple[Any, Any]:
-    """Return (alpha_hat, beta_hat) = (2 alpha h, beta^2 h^2); alpha and beta in 1/s, h in s (paper Eq. 16).
+    """Return (alpha_hat, beta_hat) = (2 alpha h, beta^2 h^2), for alpha and beta in 1/s and a step of h seconds.
 
-    Dimensionless and of the shape of alpha and beta: exact numbers if all three are Fractions, else float64.
-    InputError for h outside 1e-100 to 1e100 s, and where they leave the range of float64.
+    Returns dimensionless numbers or arrays, as alpha and beta are. They are exact if all three are Fractions, else
+    float64.
+
+    InputError for h outside 1e-100 to 1e100 s, and if a result leaves the range of float64. Source: paper Eq. 16.
     """
     _check_real(alpha=alpha, beta=beta)
     check_step(h)
@@ -67,10 +69,12 @@ def to_dimensionless(alpha: Any, beta: Any, h: Any) -> tuple[Any, Any]:
 
 
 def from_dimensionless(alpha_hat: FloatOrArray, beta_hat: FloatOrArray, h: float) -> tuple[FloatOrArray, FloatOrArray]:
-    """Return (alpha, beta) = (alpha_hat / 2h, sqrt(beta_hat) / h) in 1/s, floats or arrays as given; h in s.
+    """Return (alpha, beta) = (alpha_hat / 2h, sqrt(beta_hat) / h) in 1/s, for a step of h seconds.
 
-    InputError where a beta_hat is negative: it is the beta^2 of no real beta, and only `feedback_gains` has a value
-    there. InputError, too, for h outside 1e-100 to 1e100 s and where a result leaves float64's range. Paper Eq. 16.
+    Returns floats or arrays, as alpha_hat and beta_hat are.
+
+    InputError for a negative beta_hat: it is the beta^2 of no real beta. InputError, too, for h outside 1e-100 to
+    1e100 s, and if a result leaves the range of float64. Source: paper Eq. 16.
     """
     import numpy as np
 

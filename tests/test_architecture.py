@@ -128,6 +128,7 @@ def behind_the_door(room: str) -> set[str]:
     return {name for _, names in imports(Path(room, "__init__.py")) for name in names}
 
 
+@pytest.mark.slow
 def test_no_files_of_a_room_import_each_other_in_a_circle() -> None:
     for room in ROOMS:
         files_in_order(room)
@@ -208,6 +209,7 @@ def dealings_with_source(path: Path) -> set[str]:
     return functions | used & {"exec", "eval", "compile", "ast", "inspect", "tokenize"}
 
 
+@pytest.mark.slow
 def test_one_file_writes_source_and_nobody_else_takes_it_apart_or_executes_it() -> None:
     assert {"exec", "def acceleration_of_lane(t, gains, state, found, lane):"} <= dealings_with_source(WRITES_SOURCE)
     for path in [path for path in FILES if path != WRITES_SOURCE]:

@@ -102,6 +102,7 @@ def test_a_session_prints_what_the_page_shows(session: str) -> None:
 
 @pytest.mark.usefixtures("_with_the_files_of_the_pages")
 @pytest.mark.parametrize("command", by_length(INLINE, str))
+@pytest.mark.slow_except("poles", "lint", "check --engine", "check --method rk45")
 def test_a_command_in_the_text_runs(command: str) -> None:
     if "own.toml" in command:
         shutil.copy(own_file(command), "own.toml")
@@ -143,6 +144,7 @@ def test_every_picture_and_link_is_there(page: str) -> None:
             assert ((ROOT / page).parent / target).exists(), target
 
 
+@pytest.mark.slow
 def test_the_generated_pages_are_fresh() -> None:
     """Else `make pages` writes them."""
     for path, fresh in pages.PAGES.items():

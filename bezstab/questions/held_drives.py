@@ -6,7 +6,7 @@ inertia, bandwidth, timing     →   held_gains     →   gains to write
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import Literal
@@ -66,11 +66,12 @@ class HeldQuestion:
                 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class HeldAnswer:
     """What one way of applying a held or late drive does; `z_abs` is what a step of the physics multiplies errors by.
 
     `verdict` is proven. `fresh_z_abs` is |z_p| of the same gains if each step computed its torque and applied it.
+    `limits` and `used_up` are found when first asked for.
     """
 
     question: HeldQuestion
@@ -79,6 +80,13 @@ class HeldAnswer:
     z_abs: float
     fresh_z_abs: float
 
+    def __repr__(self) -> str:
+        drive, timing = self.question.drive, self.question.timing
+        applied = f"{DRIVE_METHODS[self.method.name]}, every {timing.every}, late {float(timing.late):g}"
+        gains = f"kp = {float(drive.kp):g}, kd = {float(drive.kd):g}"
+        safe = "safe" if self.safe else "not safe"
+        return f"HeldAnswer({applied}: {gains}, |z_p| = {self.z_abs:.6g}, {safe})"
+
     @property
     def safe(self) -> bool:
         """Whether the error is proven to shrink."""
@@ -86,8 +94,11 @@ class HeldAnswer:
 
     @cached_property
     def limits(self) -> HeldLimits:
-        """How far gains, rate and delay may go, each alone: alpha_hat and beta_hat, whole steps."""
-        return held_limits(self.method.name, *self.question.drive.point(self.question.h), self.question.timing)
+        """How far gains (SI units), rate and delay (whole steps) may go, each alone."""
+        drive, h = self.question.drive, self.question.h
+        found = held_limits(self.method.name, *drive.point(h), self.question.timing)
+        kp_of_one, kd_of_one = drive.gains(1.0, 1.0, float(h))
+        return replace(found, kp=_times(kp_of_one, found.kp), kd=_times(kd_of_one, found.kd))
 
     @cached_property
     def used_up(self) -> UsedUp | None:
@@ -111,19 +122,23 @@ class HeldAnswer:
     def _nearest_end(self) -> UsedUp | None:
         """Return which number of a stable drive has the least factor left up to its end; None where none has one."""
         limits, timing = self.limits, self.question.timing
-        alpha_hat, beta_hat = map(float, self.question.drive.point(self.question.h))
+        kp, kd = float(self.question.drive.kp), float(self.question.drive.kd)
         ratios: dict[UsedUp, float] = {}
-        if limits.kp and beta_hat > 0:
-            ratios["kp"] = limits.kp[1] / beta_hat
-        if limits.kd and alpha_hat > 0:
-            ratios["kd"] = limits.kd[1] / alpha_hat
-            ratios["too little kd"] = alpha_hat / limits.kd[0] if limits.kd[0] else math.inf
+        if limits.kp and kp > 0:
+            ratios["kp"] = limits.kp[1] / kp
+        if limits.kd and kd > 0:
+            ratios["kd"] = limits.kd[1] / kd
+            ratios["too little kd"] = kd / limits.kd[0] if limits.kd[0] else math.inf
         if limits.every:
             ratios["rate"] = (limits.every + 1) / timing.every
         if limits.late is not None and timing.late:
             ratios["delay"] = (limits.late + 1) / float(timing.late)
         nearest = min(ratios, key=lambda name: ratios[name])
         return nearest if math.isfinite(ratios[nearest]) else None
+
+
+def _times(unit: float, stretch: tuple[float, float] | None) -> tuple[float, float] | None:
+    return None if stretch is None else (unit * stretch[0], unit * stretch[1])
 
 
 def held_answers(question: HeldQuestion) -> Iterator[HeldAnswer]:

@@ -21,7 +21,7 @@ LATE_COMMANDS = (
 NOT_JUDGED = "Not judged: a limit of the torque, friction, and what else the drive is connected to."
 
 CAUSES = {
-    "gains": "These gains are unstable even if each step computes and applies its torque.",
+    "gains": "These gains are not stable even if each step computes and applies its torque.",
     "rate": "The torque is held too long: the same gains are stable if each step computes it.",
     "delay": "The torque comes too late: the same gains are stable without the delay.",
     "rate and delay": "The torque is held too long and comes too late.",
@@ -43,7 +43,6 @@ def held_row(answer: HeldAnswer) -> Row:
     question, limits = answer.question, answer.limits
     kp, kd = limits.kp or (None, None), limits.kd or (None, None)
     drive, timing = question.drive, question.timing
-    kp_of_one, kd_of_one = drive.gains(1.0, 1.0, float(question.h))
     found: dict[str, Value] = {
         "drive": DRIVE_METHODS[answer.method.name],
         "h": float(question.h),
@@ -53,9 +52,9 @@ def held_row(answer: HeldAnswer) -> Row:
         "inertia": float(drive.inertia),
         "kp": float(drive.kp),
         "kd": float(drive.kd),
-        "kp_max": _times(kp_of_one, kp[1]),
-        "kd_min": _times(kd_of_one, kd[0]),
-        "kd_max": _times(kd_of_one, kd[1]),
+        "kp_max": _finite(kp[1]),
+        "kd_min": _finite(kd[0]),
+        "kd_max": _finite(kd[1]),
         "every_max": limits.every,
         "late_max": limits.late,
         "held_by": answer.used_up,
@@ -63,8 +62,8 @@ def held_row(answer: HeldAnswer) -> Row:
     return cells(HELD.fields, answer, found)
 
 
-def _times(gain_of_one: float, limit: float | None) -> float | None:
-    return None if limit is None or math.isinf(limit) else gain_of_one * limit
+def _finite(limit: float | None) -> float | None:
+    return None if limit is None or math.isinf(limit) else limit
 
 
 def held_sentence(row: Row) -> str:

@@ -15,7 +15,7 @@ from bezstab.stability.closed_loop import converges
 from bezstab.stability.forced_errors import OMEGA_H, check_omega_h, forced_error
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class FeedbackCost:
     """Errors as shares of the amplitude of a motion of omega_h rad a step; None where errors do not decay at all.
 
@@ -35,6 +35,11 @@ class FeedbackCost:
     times_least: float | None
     times_least_velocity: float | None
     least_at: tuple[float, float] | None
+
+    def __repr__(self) -> str:
+        errors = "error not known" if self.total_error is None else f"error {self.total_error:.3g} of the amplitude"
+        times = "" if self.times_least is None else f", {self.times_least:.3g} times the least"
+        return f"FeedbackCost({errors}{times}; order {self.order_left} of {self.order})"
 
 
 def feedback_cost(

@@ -222,7 +222,7 @@ Stretch = tuple[float, float]
 class HeldLimits:
     """How far each of four numbers may go with the others as they are.
 
-    `kp` and `kd` are the gains, as beta_hat and alpha_hat, between which the drive is stable: the stretch that holds
+    `kp` and `kd` are the gains, here beta_hat and alpha_hat, between which the drive is stable: the stretch that holds
     its own, else the one nearest to it, None where there is none within a factor of FURTHEST. `every` and `late` are
     the last whole numbers of steps up to which all are proven stable; None where the least, 1 and 0, is not.
     """

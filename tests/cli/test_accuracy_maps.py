@@ -43,6 +43,7 @@ def test_the_row_of_a_map_has_both_best_points_and_what_they_force() -> None:
     assert number(row, "best_error") > 1e6 * number(row, "accurate_error")
 
 
+@pytest.mark.slow
 def test_the_map_is_written_as_figure_and_table(tmp_path: Path) -> None:
     assert run(*MAP, "--table", "csv").exit_code == 0
     assert {path.name for path in tmp_path.iterdir()} == {"region_RK4_accuracy.png", "region_RK4_accuracy.csv"}
@@ -63,6 +64,7 @@ def test_the_map_is_written_as_figure_and_table(tmp_path: Path) -> None:
             assert points[:, column].min() < number(row, f"{point}_{key}") < points[:, column].max()
 
 
+@pytest.mark.slow
 def test_the_same_map_is_the_same_bytes(tmp_path: Path) -> None:
     written = []
     for _ in range(2):
@@ -91,6 +93,7 @@ def test_ranges_and_levels_are_those_asked_for(tmp_path: Path) -> None:
         ("--h 0.003 --scene driven_four_bar --speed 2", "that of driven_four_bar with ω = 15.7 1/s, ωh = 0.0472"),
     ],
 )
+@pytest.mark.slow_except("--h 0.002")
 def test_both_say_on_which_motion_errors_are_told(options: str, words: str) -> None:
     for command in (MAP, ("tradeoff", "--predicted", "--method", "RK4", "--level", "0.9")):
         result = run(*command, *NOTHING, *options.split())
@@ -98,6 +101,7 @@ def test_both_say_on_which_motion_errors_are_told(options: str, words: str) -> N
         assert words in result.stdout
 
 
+@pytest.mark.slow
 def test_a_method_without_an_accurate_point_has_its_map_nevertheless(monkeypatch: pytest.MonkeyPatch) -> None:
     def refused(*_: object, **__: object) -> None:
         raise InputError("RK4: no feedback decays so fast")
@@ -112,6 +116,7 @@ def test_a_method_without_an_accurate_point_has_its_map_nevertheless(monkeypatch
 TRADE = ("tradeoff", "--predicted", "--method", "RK4", "--method", "B4")
 
 
+@pytest.mark.slow
 def test_the_predicted_trade_is_the_front(tmp_path: Path) -> None:
     found = rows(*TRADE, "--level", "0.99", "--level", "0.7", "--h", "0.001", "--omega", "10")
     fronts = [point for name in ("RK4", "B4") for point in error_front(lookup(name), [0.99, 0.7])]
@@ -129,6 +134,7 @@ def test_the_predicted_trade_is_the_front(tmp_path: Path) -> None:
     assert [path.read_bytes() for path in sorted(tmp_path.iterdir())] == first
 
 
+@pytest.mark.slow
 def test_without_a_step_there_is_nothing_in_seconds_and_the_usual_rates() -> None:
     found = rows(*TRADE[:4], *NOTHING)
     assert [row["z_abs_below"] for row in found[:-1]] == list(RATES)

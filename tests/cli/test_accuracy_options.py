@@ -97,6 +97,7 @@ def test_omega_times_h_is_taken_exactly_as_typed() -> None:
 
 
 @pytest.mark.parametrize("command", ["choose --method RK4", "check --method RK4 --alpha 0.5 --beta 0.1"])
+@pytest.mark.slow
 def test_a_scenes_own_motion_is_taken_and_omega_instead_of_it(command: str) -> None:
     motion = constraint_motion(compiled_mechanism(load_scene("driven_four_bar")), 1.0)
     asked = (*command.split(), "--h", "0.002", "--scene", "driven_four_bar")
@@ -129,6 +130,7 @@ def test_what_costs_less_than_ten_times_the_least_is_not_worth_a_sentence(beta: 
     assert ("costs accuracy: SYM keeps its order 1" in said(*asked)) == costly
 
 
+@pytest.mark.slow
 def test_a_feedback_that_harms_velocities_alone_is_said_to() -> None:
     """Strong feedback leaves gauss4 its constraint error, and forces velocities 19,000 times as far off."""
     asked = ("check", "--method", "gauss4", "--alpha", "2", "--beta", "2")
@@ -150,6 +152,7 @@ def test_of_a_drive_no_forced_error_is_told() -> None:
     assert rows("choose", "--pd", "100,10,1", "--h", "1/240", "--method", "SYM")[0]["goal"] == "robust"
 
 
+@pytest.mark.slow
 def test_the_default_goal_is_accurate_and_along_an_engines_curve_robust() -> None:
     for name, engine in ENGINES.items():
         if engine.method != "SYM" or name not in ("mujoco", "bullet", "box2d"):
@@ -169,6 +172,7 @@ def test_the_choice_that_is_accurate_costs_once_the_least_and_settles_in_time() 
     assert slower["total_error"] < chosen["total_error"]
 
 
+@pytest.mark.slow
 def test_for_steps_up_to_a_longest_it_is_the_choice_of_that_step() -> None:
     (finer,) = rows("choose", "--method", "RK4", "--h", "0.001", "--h-max", "0.004", "--omega", "5")
     (coarse,) = rows("choose", "--method", "RK4", "--h", "0.004", "--omega", "5")
@@ -179,6 +183,7 @@ def test_for_steps_up_to_a_longest_it_is_the_choice_of_that_step() -> None:
     assert "ωh = 0.01 at --h-max" in said("choose", "--method", "RK4", "--h", "0.001", "--h-max", "0.004")
 
 
+@pytest.mark.slow
 def test_choose_prints_what_faster_decay_costs_and_slower_decay_gains_as_those_choices_have_it() -> None:
     asked = ("choose", "--method", "RK4", "--h", "0.002")
     text = said(*asked)
@@ -196,6 +201,7 @@ def test_choose_prints_what_faster_decay_costs_and_slower_decay_gains_as_those_c
     assert float(line[1]) == pytest.approx(2 * 0.002 * math.log(1e-3) / math.log(here["worst"]), rel=0.05)
 
 
+@pytest.mark.slow
 def test_of_several_methods_each_line_names_its_own_and_programs_get_none() -> None:
     asked = ("choose", "--method", "B4", "--method", "SYM", "--h", "0.001")
     text = run(*asked).stdout
@@ -243,6 +249,7 @@ def test_a_scene_at_rest_is_judged_on_a_motion_that_is_typed() -> None:
     assert (row["omega_h"], row["kappa"]) == (0.02, 0)
 
 
+@pytest.mark.slow
 def test_a_method_whose_errors_are_not_known_is_judged_all_the_same(tmp_path: Path) -> None:
     """Implicit Euler composed of forty steps: the determinant of its equations would take too long."""
     stages = 40

@@ -123,6 +123,7 @@ def test_a_drive_is_shown_in_all_ways_of_applying_it() -> None:
     assert given["implicit-euler"]["used_up"] is None
 
 
+@pytest.mark.slow
 def test_a_drives_table_says_which_gain_is_used_up_and_how_much() -> None:
     checked = run("check", "--pd", "1000,80,0.1", "--h", "1/240")
     assert checked.exit_code == 1
@@ -186,6 +187,7 @@ def test_other_numbers_are_taken_without_a_word(
 
 
 @pytest.mark.parametrize("typed", ["poles", "verify", "check --method SYM", f"probe {DATA}/pendulum.csv"])
+@pytest.mark.slow_except("check", "poles", "probe")
 def test_large_numbers_are_said_to_be_without_unit(typed: str) -> None:
     """alpha = 14217/s and beta = 16544/s, and no step to read them at."""
     said = run(*typed.split(), "--alpha", "14217", "--beta", "16544").stderr

@@ -30,6 +30,7 @@ def test_choose_prints_what_to_set() -> None:
     )
 
 
+@pytest.mark.slow
 def test_an_engines_own_words_are_read_and_printed(tmp_path: Path) -> None:
     (given, _) = rows("check", "--engine", "mujoco=0.004,1", "--h", "0.002", "--as-typed")
     assert (given["alpha_hat"], given["beta_hat"], given["z_abs"]) == (1, 0.25, 0.75)
@@ -131,6 +132,7 @@ def test_a_method_without_region_is_not_safe(tmp_path: Path) -> None:
     assert bezstab.check(str(leapfrog), alpha_hat=0.1, beta_hat=0.01).verdict == "diverges"
 
 
+@pytest.mark.slow
 def test_which_integrator_is_asked_in_one_line() -> None:
     for command in ("check --alpha 1 --beta 1", "choose --h 0.01"):
         result = run(*command.split())
@@ -173,6 +175,7 @@ def test_without_a_step_some_are_safe_at_any_and_some_at_none() -> None:
 CHIPMUNK = ("--engine", f"chipmunk={0.9**60!r}", "--h", "1/60")
 
 
+@pytest.mark.slow
 def test_chipmunks_defaults_come_apart_in_a_chain_of_ten() -> None:
     result = run("check", *CHIPMUNK, "--chain", "10", "--mass-ratio", "10")
     assert result.exit_code == 1
@@ -191,6 +194,7 @@ def test_chipmunks_defaults_come_apart_in_a_chain_of_ten() -> None:
     assert run("check", *CHIPMUNK).stdout.startswith("One constraint alone: safe.")
 
 
+@pytest.mark.slow
 def test_choose_gives_the_strongest_that_a_chain_allows() -> None:
     """What it prints is stable there, and nearly a tenth more is; more than that is not."""
     asked = ("--engine", "chipmunk", "--h", "1/60", "--chain", "10", "--mass-ratio", "10")

@@ -163,6 +163,7 @@ def test_an_extension_is_found_by_name_and_an_unknown_command_is_not() -> None:
         ("foo", "foo"),
     ],
 )
+@pytest.mark.slow_except("check", "choose", "poles", "verify --witness")
 def test_a_mistake_takes_one_line_status_two_and_no_file(command: str, named: str, tmp_path: Path) -> None:
     Path("file").touch()
     result = run(*shlex.split(command))
@@ -260,6 +261,7 @@ def in_every_format(commands: list[str]) -> list[Any]:
         ]
     ),
 )
+@pytest.mark.slow_except("poles", "methods B3", "choose", "engines", "check")
 def test_every_command_prints_in_every_format(command: str, form: str) -> None:
     result = run(*command.split(), "--format", form)
     assert result.exit_code == 0

@@ -168,6 +168,7 @@ def _without_numbers(text: str) -> str:
         for golden in GOLDEN
     ],
 )
+@pytest.mark.slow_except("poles", "choose", "check", "engines", "region --method B4 --method AB4")
 def test_a_command_prints_what_it_printed_before(golden: dict[str, Any], tmp_path: Path) -> None:
     command = golden["command"]
     result = run(*shlex.split(command), "--format", "json")

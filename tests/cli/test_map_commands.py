@@ -119,6 +119,7 @@ def test_an_ambiguous_method_is_answered_with_a_choice(name: str) -> None:
     assert "SIE" not in result.stderr
 
 
+@pytest.mark.slow
 def test_region_needs_no_option_and_writes_a_figure(tmp_path: Path) -> None:
     result = run("region", "--method", "B4")
     assert result.exit_code == 0
@@ -150,6 +151,7 @@ def test_region_prints_the_promised_keys(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_region_options(tmp_path: Path) -> None:
     options = (
         "-o out --figure svg --table npz --grid 11 --alpha-range -0.1 0.5 --beta-range 1/10 2/10 --level 0.8 --h 0.001"
@@ -174,6 +176,7 @@ def test_region_prints_the_area_of_each_level_asked_for(tmp_path: Path) -> None:
     assert run("region", "--compare", "--level", "0.9", *files).stdout.startswith("B4 has |z_p| < 0.9 in a region")
 
 
+@pytest.mark.slow
 def test_levels_are_of_the_mechanism_at_rest(tmp_path: Path) -> None:
     scene = ("--scene", "driven_four_bar", "--h", "0.005", "--figure", "none", "--table", "none")
     moving, at_rest = rows("region", "--method", "B4", "--level", "0.9", *scene)
@@ -205,6 +208,7 @@ def test_compare_overlays_boundaries(tmp_path: Path) -> None:
     assert {row["method"] for row in table} == {"B4", "RK4@5"}
 
 
+@pytest.mark.slow
 def test_a_users_method(tmp_path: Path) -> None:
     Path("mine.toml").write_text('name = "a/b"\nrho = ["1", "-1"]\nsigma = ["0", "1"]', encoding="utf-8")
     assert run("region", "--method", "mine.toml", "--grid", "5").exit_code == 0

@@ -59,6 +59,7 @@ def test_steps_that_are_stable_alone_are_refuted_together_and_simulate_shows_it(
         ("--method", "generalized-alpha", "--alpha", "0.02", "--beta", "40", "--h", "0.01", "--h-min", "0.0005"),
     ],
 )
+@pytest.mark.slow_except("arguments1", "arguments2")
 def test_the_line_that_shows_errors_grow_does_as_typed(arguments: tuple[str, ...]) -> None:
     given, _ = rows_of("check", *arguments, status=1)
     assert given["varying"] == "refuted"
@@ -115,6 +116,7 @@ def test_a_sentence_says_it_below_the_table() -> None:
     ) in result.stdout.splitlines()
 
 
+@pytest.mark.slow
 def test_held_parameters_are_another_question() -> None:
     # the same method and point: proven with alpha and beta fixed, refuted with alpha_hat and beta_hat held
     at = ("check", "--method", "verlet-implicit", "--alpha", "0.1", "--beta", "1", "--h", "0.01", "--h-min", "0.0025")

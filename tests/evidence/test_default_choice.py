@@ -27,6 +27,7 @@ CASES = [
     ),
 )
 @pytest.mark.parametrize(("name", "scene"), CASES)
+@pytest.mark.slow
 def test_no_stable_point_is_three_times_better_in_both_errors_at_once(name: str, scene: str) -> None:
     found = grid(scene, name, ("accurate",))
     assert len(found.points) >= 18  # of 24: what is left out is not stable

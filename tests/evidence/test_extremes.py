@@ -53,6 +53,7 @@ def takes_long(check: Callable[[], Check]) -> bool:
     "check",
     [pytest.param(check, id=name(check), marks=[pytest.mark.slow] if takes_long(check) else []) for check in SHORT],
 )
+@pytest.mark.slow_except("_edge", "_speed-10", "_step", "_double_mu", "_double_root-B4", "_boundary-B4")
 def test_what_was_stated_beforehand_holds(check: Callable[[], Check]) -> None:
     found = check()
     assert found.held, found

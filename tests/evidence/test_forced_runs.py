@@ -50,6 +50,7 @@ def robust_point(name: str) -> tuple[float, float]:
         if (name, scene) in of_campaign({(name, scene)}, QUICK | SLOW)
     ],
 )
+@pytest.mark.slow_except("B4")
 def test_measured_over_predicted_is_one_whatever_the_gains(name: str, scene: str) -> None:
     h, duration, allowed = SCENES[scene]
     alpha_hat, beta_hat = robust_point(name)
@@ -104,6 +105,7 @@ def left_over(name: str) -> float:
         quick=("RK4", "bs3"),
     ),
 )
+@pytest.mark.slow
 def test_a_free_motion_drifts_in_proportion_to_the_step_unless_velocities_and_positions_are_weighted_alike(
     name: str,
 ) -> None:
@@ -118,6 +120,7 @@ def test_a_free_motion_drifts_in_proportion_to_the_step_unless_velocities_and_po
     assert order == pytest.approx(1, abs=0.15) if left_over(name) > 1e-9 else order > 1.85
 
 
+@pytest.mark.slow
 def test_runs_at_shares_of_a_point_have_the_order_predicted() -> None:
     four_bar = compiled_mechanism(load_scene("driven_four_bar"))
     pairs = list(halved_steps(four_bar, lookup("RK4"), 0.004, robust_point("RK4"), 0.5))

@@ -81,6 +81,7 @@ def test_a_mechanism_that_breaks_down_gives_no_verdict_unless_feedback_throws_it
 
 @pytest.mark.promise("Maps of simulated verdicts")
 @pytest.mark.parametrize("name", ["AB4", pytest.param("B4", marks=pytest.mark.slow)])
+@pytest.mark.slow
 def test_where_the_motion_turns_a_verdict_it_is_that_of_the_exact_rate(name: str) -> None:
     h = 1e-2
     method = lookup(name)
@@ -104,6 +105,7 @@ def test_where_the_motion_turns_a_verdict_it_is_that_of_the_exact_rate(name: str
         pytest.param("slider_crank_300rpm", "RK4", 5e-3, 0.6, marks=pytest.mark.slow),  # forced by millimetres at once
     ],
 )
+@pytest.mark.slow
 def test_free_mechanisms_at_coarse_steps_give_no_wrong_verdict(scene: str, name: str, h: float, judged: float) -> None:
     chunks = map_rows(load_scene(scene), lookup(name), h, of_campaign(9, 7))
     verdicts = verdict_map(chunks, [simulated_verdicts(rows) for rows in chunks])

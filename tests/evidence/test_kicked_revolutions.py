@@ -21,6 +21,7 @@ def rates(name: str, count: int, points: tuple[FloatArray, FloatArray]) -> tuple
 @pytest.mark.promise("Rates over the method's own motion")
 @pytest.mark.parametrize("count", [203, 60])
 @pytest.mark.parametrize("name", ["B4", "AB4", "AB2", "SYM", "RK4"])
+@pytest.mark.slow_except("SYM-60")
 def test_runs_show_the_exact_rate_and_are_on_its_side_of_one(name: str, count: int) -> None:
     """At omega h = 0.031 and 0.105, at the random points of verify: ten times nearer than the poles at rest."""
     points = random_points(lookup(name), 60)
@@ -34,6 +35,7 @@ def test_runs_show_the_exact_rate_and_are_on_its_side_of_one(name: str, count: i
 
 
 @pytest.mark.parametrize("name", ["bdf2", "trapezoid"])
+@pytest.mark.slow
 def test_runs_of_methods_that_solve_equations_show_it_too(name: str) -> None:
     shown, exact = rates(name, 60, (np.array([0.03, 0.06]), np.array([0.03, 0.05])))
     assert shown == pytest.approx(exact, abs=1e-6)

@@ -81,6 +81,7 @@ def check(scene: str, name: str, count: int) -> None:
         *((name, "pendulum") for name in HANGING),
     ],
 )
+@pytest.mark.slow_except("B4", "RK1")
 def test_the_measured_pole_is_the_predicted_one(name: str, scene: str) -> None:
     check(scene, name, 16)
 
@@ -117,6 +118,7 @@ def slider_crank(rpm: float) -> Mechanism:
     ),
 )
 @pytest.mark.parametrize("name", sampled(of_campaign(AT_REST, AT_REST_EACH_TIME), quick=["SYM"]))
+@pytest.mark.slow
 def test_at_rest_nothing_is_left_between_the_measured_pole_and_the_predicted_one(name: str) -> None:
     method = lookup(name)
     found = measure_poles(slider_crank(rpm=0), method, H, *random_points(method, 30))
@@ -128,6 +130,7 @@ def test_at_rest_nothing_is_left_between_the_measured_pole_and_the_predicted_one
 
 @pytest.mark.promise("What is left of that error")
 @pytest.mark.parametrize("name", sampled(["SYM", "verlet-half"], quick=["verlet-half"]))
+@pytest.mark.slow
 def test_what_is_left_on_a_moving_mechanism_shrinks_with_its_speed_times_the_step(name: str) -> None:
     """So it is the motion's doing, not the fit's: what turns much with it is off by 2e-5 at 10 rpm and 1 ms."""
     method = lookup(name)
@@ -158,6 +161,7 @@ def test_weakly_stable_methods_run_and_have_the_predicted_pole(sigma: str) -> No
     assert exact == pytest.approx([abs(one.predicted) for one in found], rel=1e-2)
 
 
+@pytest.mark.slow
 def test_feedback_that_throws_the_mechanism_apart_diverges_unless_it_breaks_down_by_itself() -> None:
     """|z| of B4 is 2e4 and 66, of RK4 1.7e15 and 1e5: a few steps are left, and no pole can be fitted."""
     far = np.array([14217.0, 41.0]), np.array([16544.0, 2.9])

@@ -35,6 +35,7 @@ def test_the_motion_never_helps() -> None:
     assert growth_rates(turning(), 0.0) == pytest.approx(0, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_a_triangular_k_does_not_make_errors_grow() -> None:
     """On the driven slider-crank K is triangular in some basis: only its diagonal's mean, zero, would count."""
     turning = turning_normals(compiled_mechanism(load_scene("driven_slider_crank")), 1.0)
@@ -99,6 +100,7 @@ def test_no_entry_of_the_table_is_computed_that_nobody_asks_for(monkeypatch: pyt
         quick=["AB2", "SYM", "RK4", "newmark(1/4,1/2)"],
     ),
 )
+@pytest.mark.slow_except("SYM")
 def test_the_law_closes_most_of_the_gap_to_the_exact_rate(name: str) -> None:
     """At omega h = 0.031 the map is off by 3e-3 to 8e-3 in the median; the law leaves terms of (omega h)^2 = 1e-3."""
     method = lookup(name)
@@ -206,6 +208,7 @@ def test_where_two_poles_mix_their_reach_limits_the_speed(gap: float, splitting:
     ],
 )
 @pytest.mark.parametrize("step", [0.001, 0.005, 0.02])
+@pytest.mark.slow_except("0.02")
 def test_double_poles_stay_within_their_reach(name: str, alpha_hat: float, beta_hat: float, step: float) -> None:
     """Where the law itself has zero or no bound at all."""
     moving = moving_pole(lookup(name), turning(), step, alpha_hat, beta_hat)
@@ -216,6 +219,7 @@ def test_double_poles_stay_within_their_reach(name: str, alpha_hat: float, beta_
     assert not moving.settled or exact < 1
 
 
+@pytest.mark.slow
 def test_an_error_that_stays_as_it_is_does_not_surely_grow() -> None:
     """Over a run of the free four-bar what an error stands for grows by 0.79 a second; at chi = 0 no error does."""
     run = turning_normals(compiled_mechanism(load_scene("four_bar")), 1.0)

@@ -12,6 +12,7 @@ OMEGA = 2 * np.pi
 
 
 @pytest.mark.parametrize("name", ["B4", "SYM", "verlet-old"])
+@pytest.mark.slow_except("verlet-old")
 def test_it_shrinks_with_speed_from_the_region_at_rest(name: str) -> None:
     method = lookup(name)
     areas = [moving_region(method, turning(), turned / OMEGA, points=2).area for turned in (1e-4, 0.1, 0.3)]

@@ -34,6 +34,7 @@ def model(scene: str, alpha_hat: float = 0.5, beta_hat: float = 0.1) -> Any:
     ),
 )
 @pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.slow
 def test_mujoco_settles_and_diverges_where_the_map_says(scene: str) -> None:
     witnessed = list(mujoco_witnesses(compiled_mechanism(small(scene)), H))
     assert len(witnessed) == witness_count()

@@ -31,6 +31,7 @@ NEAR_ONE = {
     ),
 )
 @pytest.mark.parametrize("name", NEAR_ONE)
+@pytest.mark.slow_except("AB4")
 def test_the_runner_finds_the_same_motion_and_the_same_rate(name: str) -> None:
     """Both by Newton's method, to the square of 1e-8; the runner's by a revolution of its own steps, complex."""
     alpha_hat, beta_hat = NEAR_ONE[name]

@@ -267,6 +267,7 @@ def test_fine_rounding_is_no_hindrance_and_the_error_covers_it() -> None:
 
 
 @pytest.mark.parametrize("count", [10, pytest.param(of_campaign(60, 20), marks=pytest.mark.slow)])
+@pytest.mark.slow
 def test_noise_and_rounding_together_are_never_answered_wrongly(count: int) -> None:
     random = np.random.default_rng(4)
     answered = 0

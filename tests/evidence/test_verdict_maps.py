@@ -41,6 +41,7 @@ def test_so_do_those_of_methods_that_solve_equations(name: str) -> None:
     ),
 )
 @pytest.mark.parametrize("name", ["B4", "AB4", "SYM"])
+@pytest.mark.slow_except("SYM")
 def test_simulated_verdicts_agree_outside_the_band(name: str) -> None:
     verdicts = whole_map("slider_crank", name, H, 16)
     assert not verdicts.undecided.any()
@@ -58,6 +59,7 @@ def test_simulated_verdicts_agree_outside_the_band(name: str) -> None:
         "Runs that break down for another reason (too coarse a step, a singular configuration) say nothing of stability"
     ),
 )
+@pytest.mark.slow
 def test_runs_that_break_down_whatever_the_kick_give_no_verdict() -> None:
     # a hundredth of a second is too coarse for the four-bar: the truncation error alone leaves the linear range
     verdicts = whole_map("four_bar", "SYM", 1e-2, 6)
@@ -123,6 +125,7 @@ def maps_both_ways(scene: str, name: str, count: int) -> None:
             np.testing.assert_array_equal(compiled[key], by_numpy[key])
 
 
+@pytest.mark.slow
 def test_compiled_verdicts_are_those_of_numpy() -> None:
     maps_both_ways("pendulum", "SYM", 7)
 

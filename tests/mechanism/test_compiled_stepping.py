@@ -90,6 +90,7 @@ def hits(home: Path) -> int:
     return int(subprocess.run(command, env=environment, check=True, capture_output=True, timeout=300).stdout)
 
 
+@pytest.mark.slow
 def test_code_is_kept_for_the_next_process_where_only_the_user_can_write(tmp_path: Path) -> None:
     assert hits(tmp_path) == 0
     assert hits(tmp_path) == 1
@@ -109,6 +110,7 @@ for scene in sys.argv[1:]:
 """
 
 
+@pytest.mark.slow
 def test_scenes_kept_by_different_processes_do_not_share_their_code(tmp_path: Path) -> None:
     """Code from disk is linked by its names, and each process numbers its functions alike."""
     environment = os.environ | {"XDG_CACHE_HOME": str(tmp_path)}

@@ -23,6 +23,7 @@ def test_a_mass_on_a_circle_does_not_turn_its_only_constraint_against_itself() -
     assert turning.kappa < 1e-9
 
 
+@pytest.mark.slow
 def test_theory_gives_the_largest_rates() -> None:
     four_bar = turning_normals(compiled_mechanism(load_scene("driven_four_bar")), 1.0)
     assert four_bar.kappa / OMEGA == pytest.approx(0.5, abs=0.05)

@@ -89,6 +89,7 @@ HIGH_ORDERS = [name for name in IMPLICIT if accuracy(lookup(name))[0] > 4]
 
 @pytest.mark.promise("Orders of runs with α and β fixed", measured="0.1")
 @pytest.mark.parametrize("name", sampled([*EXPLICIT, *HIGH_ORDERS], quick=[*FEW, "AB8"]))
+@pytest.mark.slow_except("AB4", "SIE")
 def test_with_alpha_and_beta_fixed_a_method_keeps_its_order(name: str) -> None:
     """All from exact first values and in 30 digits: float64 ends the descent of AB7 and AB8 before 0.1 is reached."""
     method, mechanism = lookup(name), compiled_mechanism(load_scene("slider_crank_300rpm"))
@@ -147,6 +148,7 @@ def test_names_never_reach_the_generated_code() -> None:
     assert initial_state(mechanism)[0] == pytest.approx([0.6, 0.8])
 
 
+@pytest.mark.slow
 def test_a_long_acceleration_in_parts_is_the_same_to_the_last_bit() -> None:
     """And so are its slopes; here as Python, the room a list."""
     upright = {"position": {"rod0.theta": math.pi / 2}, "velocity": {"rod0.theta": -1.0}}

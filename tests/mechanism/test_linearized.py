@@ -17,6 +17,7 @@ from tests.mechanism.test_scenes import pendulum
 
 
 @pytest.mark.parametrize("name", ["slider_crank", "four_bar", "driven_four_bar", "pendulum", "andrews"])
+@pytest.mark.slow_except("slider_crank", "pendulum")
 def test_the_jacobians_are_the_slopes_of_the_acceleration(name: str) -> None:
     mechanism = compiled_mechanism(load_scene(name))
     t = np.array([0.0, 0.004, 0.01])
@@ -68,6 +69,7 @@ def complex_steps(mechanism: Mechanism, gains: tuple[float, float], q: FloatArra
 
 
 @pytest.mark.parametrize("name", ["slider_crank", "driven_slider_crank", "driven_four_bar", "andrews", "damped"])
+@pytest.mark.slow_except("slider_crank", "driven_four_bar")
 def test_the_jacobians_are_complex_steps_to_rounding(name: str) -> None:
     """Off the constraints, too, and of more states than are taken at a time; solving for lambda loses two digits."""
     mechanism = bob_on_a_spring_and_damper() if name == "damped" else compiled_mechanism(load_scene(name))

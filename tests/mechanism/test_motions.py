@@ -22,6 +22,7 @@ from tests.evidence.driven_four_bar import swinging_four_bar
 MECHANISM = compiled_mechanism(load_scene("driven_four_bar"))
 
 
+@pytest.mark.slow
 def test_a_steady_driver_makes_a_revolution_whatever_the_duration() -> None:
     assert motion(MECHANISM, 0.3).closed
     assert motion(MECHANISM, 0.3).duration == pytest.approx(1.0, rel=1e-15)
@@ -39,6 +40,7 @@ def test_a_steady_driver_makes_a_revolution_whatever_the_duration() -> None:
         (2 * np.pi, 2 * np.pi, 1.0),
     ],
 )
+@pytest.mark.slow_except("0.0")
 def test_drivers_that_turn_and_oscillate_begin_anew_after_their_common_period(
     rate: float, frequency: float, period: float
 ) -> None:
@@ -52,6 +54,7 @@ def test_drivers_that_turn_and_oscillate_begin_anew_after_their_common_period(
 
 
 @pytest.mark.parametrize("ratio", [np.sqrt(2), 1.0001, 1 / 997])
+@pytest.mark.slow_except("1.4142")
 def test_without_a_common_period_the_motion_is_a_run(ratio: float) -> None:
     mechanism = swinging_four_bar(2 * np.pi, 2 * np.pi * ratio)
     assert revolution_period(mechanism) is None

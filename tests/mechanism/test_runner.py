@@ -58,6 +58,7 @@ def measured_order(name: str, count: int, gains: Callable[[float], tuple[float, 
 
 @pytest.mark.promise("Orders of runs with α and β fixed")
 @pytest.mark.parametrize("name", sampled([name for name in EXPLICIT if accuracy(lookup(name))[0] <= 4]))
+@pytest.mark.slow_except("AB", "RK1", "B4")
 def test_a_run_keeps_its_methods_order_up_to_that_of_its_start(name: str) -> None:
     # RK4's first steps, each with an error of order 5, decide the rest. The next term moves the order by 0.05 at most
     order, _ = accuracy(lookup(name))
@@ -72,6 +73,7 @@ def test_a_run_keeps_its_methods_order_up_to_that_of_its_start(name: str) -> Non
         *(("RK2", 1), ("RK3", 2), ("RK4", 2), ("SIE", 1)),
     ],
 )
+@pytest.mark.slow_except("B4", "AB4", "RK4")
 def test_with_alpha_hat_and_beta_hat_fixed_runge_kutta_methods_lose_order(name: str, order: int) -> None:
     """The feedback grows as h shrinks, and with it the push that stages get which leave the constraints."""
     count = 3200 if name == "RK2" else 800  # the order of RK2 falls from 2 slowly: 1.27 at 400, 1.08 at 1600
@@ -116,6 +118,7 @@ SHOWN_ORDERS = {
 
 @pytest.mark.promise("Orders kept and lost with α̂ and β̂ fixed")
 @pytest.mark.parametrize("name", sampled([*SHOWN_ORDERS], quick=["verlet-half", "ssprk3", "stable-pd"]))
+@pytest.mark.slow_except("verlet-half", "ssprk3")
 def test_orders_of_other_kinds_with_alpha_hat_and_beta_hat_fixed(name: str) -> None:
     assert measured_order(name, 800, lambda h: feedback_gains(0.5, 0.1, h)) == pytest.approx(
         SHOWN_ORDERS[name], abs=0.1
@@ -124,6 +127,7 @@ def test_orders_of_other_kinds_with_alpha_hat_and_beta_hat_fixed(name: str) -> N
 
 @pytest.mark.promise("Motion of pendulum, slider-crank, four-bars")
 @pytest.mark.parametrize("name", ["RK4", "AB4", "AB3", "B4", "SYM"])
+@pytest.mark.slow_except("AB4", "SYM")
 def test_the_parallel_four_bars_move_as_one_coordinate(name: str) -> None:
     mechanism, duration = compiled_mechanism(four_bars(3)), 0.5
     reference = shared_angles(four_bar_chain_energies(3), np.pi / 2, -1.0, duration)
@@ -137,6 +141,7 @@ def test_the_parallel_four_bars_move_as_one_coordinate(name: str) -> None:
     assert shown_order(errors) == pytest.approx(accuracy(lookup(name))[0], abs=0.1)
 
 
+@pytest.mark.slow
 def test_table_5_case_3_diverges_for_adams_bashforth_only() -> None:
     mechanism, gains = compiled_mechanism(load_scene("slider_crank")), feedback_gains(0.5, 0.101, H)
     last = {}
@@ -305,6 +310,7 @@ def andrews_angles(name: str, h: float) -> FloatArray:
     measured="its seven angles at 0.03 s are the published ones to 1e-9 (relative), with ABM4 at 2 µs",
 )
 @pytest.mark.parametrize(("name", "h"), [("ABM4", 2e-6), pytest.param("AB4", 5e-7, marks=pytest.mark.slow)])
+@pytest.mark.slow
 def test_andrews_squeezing_mechanism_ends_where_the_test_set_says(name: str, h: float) -> None:
     assert andrews_angles(name, h) == pytest.approx(ANDREWS, rel=ANDREWS_DIGITS, abs=0)
 
@@ -320,6 +326,7 @@ def test_andrews_squeezing_mechanism_ends_where_the_test_set_says(name: str, h: 
         if accuracy(lookup(name))[0] <= 4
     ],
 )
+@pytest.mark.slow_except("verlet", "rkn4", "hht")
 def test_so_does_one_that_solves_equations_or_treats_velocities_differently(name: str) -> None:
     # dirk3 and the BDF methods come nearest to the bound, by 0.03
     order, _ = accuracy(lookup(name))
@@ -383,6 +390,7 @@ def test_one_position_ahead_is_the_same_motion_as_velocities_beside() -> None:
 
 
 @pytest.mark.parametrize("name", ["trapezoid", "bdf2"])
+@pytest.mark.slow_except("trapezoid")
 def test_a_coarse_step_does_not_fail_by_an_earlier_steps_jacobian(name: str) -> None:
     """Those of the step before lead astray here: runs that trust them end after a third of a second."""
     run = simulate(
@@ -451,6 +459,7 @@ energy is off by 2e-4 J on one processor and by half a joule on another. At 9e-4
 @pytest.mark.parametrize(
     ("count", "duration", "passages"), [(5, 1.5, 2), pytest.param(40, 20.0, 20, marks=pytest.mark.slow)]
 )
+@pytest.mark.slow
 def test_a02_the_four_bars_go_through_their_singular_positions(count: int, duration: float, passages: int) -> None:
     """The benchmark has N = 40, runs for 20 s and allows errors of 1e-3 at most; its exact motion by quadrature."""
     scene = load_scene("n_four_bar") if count == 40 else four_bars(count)

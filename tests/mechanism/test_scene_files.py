@@ -132,6 +132,7 @@ def refusal(path: Path) -> str:
 
 
 @pytest.mark.parametrize("content", HOSTILE.values(), ids=HOSTILE.keys())
+@pytest.mark.slow
 def test_a_hostile_file_is_refused_in_one_line_that_names_it(content: bytes, tmp_path: Path) -> None:
     (path := tmp_path / "scene.toml").write_bytes(content)
     message = refusal(path)

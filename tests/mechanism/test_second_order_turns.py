@@ -29,6 +29,7 @@ RUN_HERE = [*SECOND_ORDER, *IMPLICIT]
 
 
 @pytest.mark.parametrize("name", sampled(RUN_HERE, quick=SOLVED))
+@pytest.mark.slow_except("verlet", "rkn4", "SYM", "hht")
 def test_each_step_satisfies_the_equations(name: str) -> None:
     mechanism, method, gains = compiled_mechanism(load_scene("slider_crank_light")), lookup(name), (200.0, 2e4)
     slope = literal_slope(mechanism.equations, *gains)

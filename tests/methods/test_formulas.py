@@ -87,6 +87,7 @@ def steady_error_latex(method: Method, latex: bool) -> str:
 
 @pytest.mark.parametrize("name", sampled(NAMES, quick=[*FEW, *SOLVED]))
 @pytest.mark.parametrize("write", [recursion_text, mapping_text, characteristic_text, steady_error_latex])
+@pytest.mark.slow_except("mapping", "recursion_text-SIE", "steady_error_latex-am3")
 def test_latex_can_be_typeset(name: str, write: object) -> None:
     assert callable(write)
     for part in re.split(r"; |: ", write(lookup(name), True)):

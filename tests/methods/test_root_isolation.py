@@ -14,6 +14,7 @@ x = sp.Symbol("x")
 
 
 @given(st.sets(st.fractions(-20, 20, max_denominator=50), min_size=1, max_size=6))
+@pytest.mark.slow
 def test_rational_roots_are_found_exactly(roots: set[Fraction]) -> None:
     polynomial = sp.Poly(sp.prod(root.denominator * x - root.numerator for root in roots) * (x**2 + 1), x)
     assert real_roots(whole_coefficients(polynomial)) == tuple(sorted(roots))

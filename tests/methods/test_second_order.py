@@ -75,6 +75,7 @@ def has_a_circle(scheme: SecondOrder) -> bool:
 @pytest.mark.promise("P of a second-order scheme")
 @settings(deadline=None, max_examples=60)  # the determinant's time is not bounded by its input's length
 @given(recipes(), st.sampled_from(POINTS))
+@pytest.mark.slow
 def test_p_of_a_random_recipe_is_that_of_its_own_step(
     equations: dict[str, str], point: tuple[Fraction, Fraction]
 ) -> None:

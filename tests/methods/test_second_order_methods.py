@@ -147,6 +147,7 @@ POSITIVE = st.fractions(min_value=F(1, 100), max_value=10**6, max_denominator=10
         *("gauss4", "bdf2"),
     ],
 )
+@pytest.mark.slow_except("implicit", "trapezoid", "hht(-1/3)")
 def test_what_theory_calls_stable_for_all_is_at_any_point(name: str, alpha_hat: Fraction, beta_hat: Fraction) -> None:
     assert is_schur(closed_loop_at(lookup(name), alpha_hat, beta_hat))
 

@@ -101,6 +101,7 @@ DECAYED = 1e-48
 
 @pytest.mark.promise("The error that a method forces on a constraint that moves (`methods`, `choose --goal accurate`)")
 @pytest.mark.parametrize("name", sampled(list(REGISTRY), ("B4", "AB4", "ABM3", "RK4", "SYM", "verlet-half", "gauss4")))
+@pytest.mark.slow_except("SYM", "AB4")
 def test_it_is_what_the_methods_own_recursion_ends_on_to_forty_digits(name: str) -> None:
     method = replace(lookup(name), step_multiple=Fraction(1))
     errors, point = forced_errors(method), NEARER.get(name, POINT)
@@ -270,6 +271,7 @@ def position_error_by_stages(scheme: RungeKutta, a: Fraction, b: Fraction) -> Fr
 @pytest.mark.promise("The error that a method forces on a constraint that moves (`methods`, `choose --goal accurate`)")
 @given(runge_kutta_methods(), st.integers(1, 40), st.integers(1, 40))
 @settings(deadline=None, max_examples=60)
+@pytest.mark.slow
 def test_of_any_runge_kutta_method_it_is_what_its_stages_miss(method: Method, tenths_a: int, tenths_b: int) -> None:
     a, b = Fraction(tenths_a, 10), Fraction(tenths_b, 10)
     errors = forced_errors(method)

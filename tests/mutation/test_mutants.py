@@ -18,6 +18,7 @@ def every() -> list[Mutant]:
     return every_mutant()
 
 
+@pytest.mark.slow
 def test_every_mutant_is_a_python_file_that_differs_from_the_original_in_one_place(every: list[Mutant]) -> None:
     for mutant in sampled(every, 40, seed=3):
         original = (ROOT / mutant.path).read_text(encoding="utf-8")

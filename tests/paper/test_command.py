@@ -27,6 +27,7 @@ def test_one_part_alone_is_written_without_a_ledger(tmp_path: Path) -> None:
     assert {row["where"] for row in json.loads(result.stdout)} == {"Table 6"}
 
 
+@pytest.mark.slow
 def test_a_figure_is_written_with_its_panels(tmp_path: Path) -> None:
     assert CliRunner().invoke(main, ["paper", "--only", "fig1", "-o", str(tmp_path)]).exit_code == 0
     assert sorted(path.name for path in tmp_path.iterdir()) == [f"paper_fig1{panel}.png" for panel in "abc"]

@@ -1,5 +1,7 @@
 from typing import get_args
 
+import pytest
+
 from bezstab.paper import lost, methods, regions, slider_crank
 from bezstab.paper.findings import Agreement, finding
 from bezstab.paper.ledger import SUBJECTS, finding_rows, finding_sentence, ledger_text
@@ -10,6 +12,7 @@ def test_every_part_is_made_by_one_subject() -> None:
     assert sorted(part for subject in SUBJECTS for part in subject.parts) == sorted(PARTS)
 
 
+@pytest.mark.slow
 def test_every_row_says_what_the_paper_says_and_what_came_out() -> None:
     found = [*methods.findings(), *regions.findings(), *slider_crank.findings(), *lost.findings()]
     assert all(f.where and f.claim and f.paper and f.here and f.agreement in get_args(Agreement) for f in found)

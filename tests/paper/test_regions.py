@@ -26,6 +26,7 @@ def found() -> list[Finding]:
         ("depends on the integrator", "confirmed", "AB4 diverges (1.456)"),
     ],
 )
+@pytest.mark.slow
 def test_the_questions_to_settle(found: list[Finding], words: str, agreement: Agreement, number: str) -> None:
     (finding,) = (finding for finding in found if words in finding.claim)
     assert finding.agreement == agreement

@@ -29,6 +29,7 @@ def test_a_motion_out_of_range_is_refused_by_what_gave_it() -> None:
         motion_of(Fraction(200), None, ONE, None)
 
 
+@pytest.mark.slow
 def test_a_scene_turns_so_much_faster_as_it_moves_faster() -> None:
     once, twice = (turning_of("driven_four_bar", Fraction(speed), H) for speed in (1, 2))
     assert once

@@ -138,6 +138,7 @@ def test_moduli_are_drawn_evenly_in_how_fast_errors_fall() -> None:
     assert np.isnan(decay_scale(np.ma.masked_greater(z_abs, 0.95))[3:]).all()
 
 
+@pytest.mark.slow
 def test_the_front_figure_has_every_point_of_every_front() -> None:
     fronts = [error_front(lookup(name), [0.999, 0.9, 0.5, 0.2]) for name in ("RK4", "B4", "AB4")]
     (axes,) = error_front_figure(fronts).axes

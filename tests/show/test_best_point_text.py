@@ -11,6 +11,7 @@ def words(name: str) -> str:
     return best_point_words(best)
 
 
+@pytest.mark.slow
 def test_words_for_the_best_point() -> None:
     assert words("B4") == "z = +0.625884 and -0.625884 meet, each double, on β̂ = α̂²/4"
     assert words("B2").endswith("the same |z_p| on a whole arc, to (0.444444, 0.444444)")

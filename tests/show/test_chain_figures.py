@@ -13,6 +13,7 @@ CHIPMUNK = ENGINES["chipmunk"]
 VALUES, H = (Fraction("0.9") ** 60,), Fraction(1, 60)
 
 
+@pytest.mark.slow
 def test_the_line_parts_what_decays_from_what_grows_and_equal_figures_are_equal_bytes() -> None:
     one = chain_map(CHIPMUNK, VALUES, H, Fraction(10), bodies=7, sweeps=12)
     files = []

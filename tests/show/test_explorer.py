@@ -52,6 +52,7 @@ def test_what_is_printed_can_be_typed_into_a_shell() -> None:
     assert printed[0].startswith("--method 'newmark(beta=1/4,gamma=1/2)' --alpha ")
 
 
+@pytest.mark.slow
 def test_a_click_proves() -> None:
     explorer, canvas, _ = window("SYM")
     mouse(explorer, canvas, "motion_notify_event", 1.0, 0.5)
@@ -69,6 +70,7 @@ def test_outside_the_map_nothing_changes() -> None:
     assert explorer.point == before
 
 
+@pytest.mark.slow
 def test_keys_switch_the_method_and_print_the_point() -> None:
     explorer, canvas, printed = window("B4", "AB4")
     mouse(explorer, canvas, "motion_notify_event", 0.25, 0.05)
@@ -84,6 +86,7 @@ def test_keys_switch_the_method_and_print_the_point() -> None:
     key(canvas, "x")
 
 
+@pytest.mark.slow
 def test_only_what_moves_is_drawn_again() -> None:
     explorer, canvas, _ = window("B4")
     drawn: list[Any] = []

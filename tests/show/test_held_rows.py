@@ -60,7 +60,7 @@ def test_what_is_nearest_to_its_limit_is_named(kp: str, kd: str, timing: Timing,
 @pytest.mark.parametrize(
     ("kp", "kd", "timing", "cause"),
     [
-        ("200", "120", Timing(2), "These gains are unstable even if each step computes and applies its torque."),
+        ("200", "120", Timing(2), "These gains are not stable even if each step computes and applies its torque."),
         ("200", "0.5", Timing(4), "The torque is held too long"),
         ("200", "0.3", Timing(late=Fraction(2)), "The torque comes too late"),
     ],
@@ -77,5 +77,5 @@ def test_where_no_single_change_helps_that_is_said() -> None:
 
 def test_a_drive_without_damping_is_told_how_much_it_needs() -> None:
     found = sentence("200", "0", Timing(4))
-    assert "These gains are unstable even if each step" in found
+    assert "These gains are not stable even if each step" in found
     assert found.endswith("It is stable with one of these alone: kd from 0.6 to 24.8.")

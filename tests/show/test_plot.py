@@ -70,6 +70,7 @@ def test_a_history_shows_one_constraint_or_its_derivative() -> None:
     assert np.array(slope.get_ydata()).tolist() == run.cdot[:, 0].tolist()
 
 
+@pytest.mark.slow
 def test_a_family_is_drawn_against_n() -> None:
     members = family_members("bezier", 2, 4)
     assert np.array(plot.family(members).get_xydata()).tolist() == [[m.n, m.region.area] for m in members]
@@ -130,6 +131,7 @@ def test_a_body_on_a_pivot_is_drawn_from_it_and_only_what_slides_is_a_square(
     assert lengths == pytest.approx({name: lengths_in_files[name] for name in pivots})
 
 
+@pytest.mark.slow
 def test_a_mechanism_of_many_bodies_can_be_drawn() -> None:
     scene = load_scene("n_four_bar")
     lines = plot.mechanism(scene, initial_state(compiled_mechanism(scene))[0])

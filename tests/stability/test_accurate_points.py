@@ -15,6 +15,7 @@ OMEGA_H = Fraction(1, 50)
 
 
 @pytest.mark.parametrize("name", ["RK4", "B4", "SYM", "gauss4", "verlet-half"])
+@pytest.mark.slow_except("verlet-half", "SYM", "RK4")
 def test_it_decays_as_asked_within_the_spread_and_no_sampled_point_forces_less(name: str) -> None:
     method = lookup(name)
     chosen = choose(method, "accurate", omega_h=OMEGA_H, margins=False)
@@ -62,6 +63,7 @@ def test_of_methods_with_stages_it_is_a_multiple_of_the_motions_own_rate_whateve
     assert multiples[1] == pytest.approx(multiples[2], rel=0.006)
 
 
+@pytest.mark.slow
 def test_where_nothing_decays_so_fast_it_is_half_as_fast_as_robust() -> None:
     method = lookup("AB8")
     with pytest.raises(InputError, match="no feedback decays so fast"):
@@ -83,6 +85,7 @@ OF_ORDER_THREE_AND_MORE = ("RK3", "bs3", "ssprk3", "dirk3", "RK4", "gauss4", "do
 )
 @pytest.mark.parametrize("name", OF_ORDER_THREE_AND_MORE)
 @pytest.mark.parametrize("omega_h", [Fraction(1, 1000), Fraction(1, 20)], ids=str)
+@pytest.mark.slow_except("1/1000-RK", "1/20-RK", "1/20-gauss4")
 def test_the_law_of_runge_kutta_methods_from_order_three_on(name: str, omega_h: Fraction) -> None:
     """Alpha of 0.55 omega: errors fall by e^(-1/2) for each rad even with 10 % less; and beta near 0.8 omega."""
     method = lookup(name)

@@ -39,6 +39,7 @@ def nothing_remembered() -> Iterator[None]:
 @pytest.mark.promise("Every region, best point, choice and margin")
 @pytest.mark.parametrize("name", ["B2", "B4", "AB4", "ABM2", "ABM3"])
 @pytest.mark.parametrize(("factor", "moved"), [(1.01, 1.0), (0.99, 1.0), (1.0, 1.02)])
+@pytest.mark.slow_except("1.01-1.0-B", "1.0-1.02-B")
 def test_a_wrong_best_point_is_no_answer(name: str, factor: float, moved: float) -> None:
     right = best_point(lookup(name))
     extent = region(lookup(name)).extent
@@ -51,6 +52,7 @@ def test_a_wrong_best_point_is_no_answer(name: str, factor: float, moved: float)
 
 
 @pytest.mark.parametrize("name", ["B4", "AB4", "ABM3"])
+@pytest.mark.slow_except("AB4")
 def test_a_kink_that_is_not_the_least_is_no_answer(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     smallest = best_points._smallest
 
@@ -132,6 +134,7 @@ def test_what_fails_at_first_is_searched_more_finely(monkeypatch: pytest.MonkeyP
         ("generalized-alpha", 1 - 1e-4),  # on a slope; the others' |z_p| is flat about their point
     ],
 )
+@pytest.mark.slow_except("RK4")
 def test_a_critical_point_beside_its_place_is_no_answer(name: str, off: float, monkeypatch: pytest.MonkeyPatch) -> None:
     critical_point = choices._critical_point
 
@@ -159,6 +162,7 @@ def test_a_gentle_point_beside_its_place_is_no_answer(name: str, off: float, mon
 
 
 @pytest.mark.parametrize("rate", [0.99, 0.9, 0.7])
+@pytest.mark.slow_except("0.7")
 def test_margins_of_a_fourfold_pole_are_where_the_verdict_turns(rate: float) -> None:
     """On alpha = beta four poles of ABM2 meet, and float64 alone is off by more than the check allows."""
     gentle = choose(lookup("ABM2"), "gentle", rate=rate)

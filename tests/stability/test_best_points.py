@@ -69,6 +69,7 @@ def test_the_values_beside_the_papers() -> None:
 
 
 @pytest.mark.parametrize("name", ["B2", "ABM3", "AB3@2"])
+@pytest.mark.slow
 def test_a_recipe_that_spells_out_a_method_has_its_best_point(name: str) -> None:
     of_recipe, of_method = best_point(as_second_order(name)), best(name)
     assert of_recipe
@@ -115,6 +116,7 @@ def test_a_double_root_of_pi_at_one_third() -> None:
 
 @pytest.mark.promise("Least |z_p|")
 @pytest.mark.parametrize("name", sampled([*EXPLICIT, "B4@2"]))
+@pytest.mark.slow_except("RK4", "B1", "AB2", "B2", "AB4")
 def test_nothing_in_the_plane_is_faster(name: str) -> None:
     method, found, random = lookup(name), best(name), np.random.default_rng(5)
     (a_low, a_high), (b_low, b_high) = window(region(method))
@@ -134,6 +136,7 @@ def test_without_a_stable_region_there_is_no_best_point() -> None:
 
 @given(rationals(-F(9, 10), F(9, 10), max_denominator=20), rationals(-1, 2, max_denominator=20))
 @settings(max_examples=8, deadline=None)
+@pytest.mark.slow
 def test_random_two_step_methods(root: Fraction, b: Fraction) -> None:
     scheme = LinearMultistep((F(1), -1 - root, root), (F(0), 1 - root - b, b))
     method = Method("random", scheme, "")
@@ -164,6 +167,7 @@ def test_the_repr_of_a_best_point_is_one_line() -> None:
     assert repr(best("RK2")) == "BestPoint(RK2: |z_p| = 0 at alpha_hat = 2, beta_hat = 2)"
 
 
+@pytest.mark.slow
 def test_a_solved_kink_above_a_sampled_modulus_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     """What is returned is never worse than what was sampled: 1 % above, it is no answer."""
     solutions = best_points._solutions

@@ -69,6 +69,7 @@ def test_the_fastest_point_is_a_kink_with_a_square_root_on_its_overdamped_side(n
 
 
 @pytest.mark.parametrize("name", ["B3", "B4", "B8", "AB3", "AB4"])
+@pytest.mark.slow_except("B3", "AB3")
 def test_the_critical_choice_is_where_a_parasitic_root_catches_up(name: str) -> None:
     chosen = choose(lookup(name), "critical")
     assert chosen.pole.real > 0
@@ -101,6 +102,7 @@ def test_the_critical_choice_of_bdf2_is_where_four_poles_meet() -> None:
 
 @pytest.mark.parametrize("name", ["B4", "AB4", "RK4", "SIE"])
 @pytest.mark.parametrize("rate", [0.999, 0.95, 0.85])
+@pytest.mark.slow_except("0.95")
 def test_the_gentle_choice_solves_for_mu(name: str, rate: float) -> None:
     chosen = choose(lookup(name), "gentle", rate=rate)
     pencil = pencil_of(lookup(name))
@@ -123,6 +125,7 @@ def test_a_step_of_five_h_scales_the_choice(goal: Goal) -> None:
     assert abs(fivefold.pole) == pytest.approx(abs(plain.pole), abs=1e-6)
 
 
+@pytest.mark.slow
 def test_a_goal_out_of_reach_is_refused() -> None:
     with pytest.raises(InputError, match="--keep"):
         choose(lookup("SYM"), "critical", equal=True)
@@ -141,6 +144,7 @@ def test_alpha_and_beta_can_be_kept_equal(goal: Goal) -> None:
 
 
 @pytest.mark.promise("What `choose` returns", proven="converges")
+@pytest.mark.slow
 def test_a_choice_is_proven_and_described() -> None:
     for name in METHODS:
         assert choose(lookup(name), "fastest").verdict == "converges"
@@ -227,6 +231,7 @@ UNBOUNDED = ["trapezoid", "implicit-euler", "bdf2", "imex-euler", "average-accel
 
 @pytest.mark.parametrize("goal", ["robust", "fastest", "critical"])
 @pytest.mark.parametrize("name", sampled(UNBOUNDED, quick=["trapezoid", "imex-euler", "verlet-implicit"]))
+@pytest.mark.slow_except("trapezoid", "verlet-implicit-f")
 def test_where_the_region_goes_on_a_choice_says_how_far_it_looked(name: str, goal: Goal) -> None:
     choice = choose(lookup(name), goal)
     assert choice.verdict == "converges"
@@ -264,6 +269,7 @@ def test_the_half_step_recipe_is_chosen_as_symplectic_euler(goal: Goal) -> None:
 
 
 @pytest.mark.parametrize("goal", ["fastest", "robust", "critical"])
+@pytest.mark.slow_except("critical")
 def test_a_recipe_that_spells_out_a_method_is_given_its_choice(goal: Goal) -> None:
     of_recipe, of_method = choose(as_second_order("AB3"), goal), choose(lookup("AB3"), goal)
     assert (of_recipe.alpha_hat, of_recipe.beta_hat) == pytest.approx(

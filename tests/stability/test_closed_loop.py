@@ -90,6 +90,7 @@ POINTS = [
     computed="50 roundings times their condition, against fifty digits; of 2 n poles none missing",
 )
 @pytest.mark.parametrize("name", sampled(NAMES, quick=[*FEW, "AB8", "dopri5"]))
+@pytest.mark.slow_except("RK4", "dopri5", "SIE", "ABM3", "B4")
 def test_poles_agree_with_fifty_digits(name: str) -> None:
     method = lookup(name)
     with mpmath.workdps(50):

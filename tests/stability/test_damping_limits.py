@@ -81,6 +81,7 @@ def test_a_limit_at_which_a_root_only_touches_the_circle_is_exact(stages: str, l
     assert critical_damping_limit(chebyshev) == limit
 
 
+@pytest.mark.slow
 def test_ten_stages_of_runge_kutta_chebyshev_have_one_region_up_to_their_exact_limit() -> None:
     """R = T_10(w + u mu) / T_10(w), w a little above 1: |R| < 1 from mu = 0 down to w + u mu = -w, without a touch."""
     stages, w = 10, 1 + sp.Rational(1, 2000)
@@ -120,6 +121,7 @@ def test_a_method_that_is_stable_nowhere_has_limit_zero_and_no_ratio() -> None:
 
 
 @pytest.mark.parametrize("name", RATIOS)
+@pytest.mark.slow_except("bdf3")
 def test_bdf_methods_need_a_damping_ratio(name: str) -> None:
     assert unconditional_damping_ratio(lookup(name)) == pytest.approx(RATIOS[name], abs=5e-7)
 

@@ -32,6 +32,7 @@ def value(terms: ExponentialSum, alpha_hat: float, beta_hat: float, omega: Fract
 @pytest.mark.promise("The error that a method forces on a constraint that moves (`methods`, `choose --goal accurate`)")
 @pytest.mark.parametrize("omega", OMEGAS, ids=str)
 @pytest.mark.parametrize("name", METHODS)
+@pytest.mark.slow_except("SYM", "verlet-half", "hht", "AB4", "RK4")
 def test_it_has_ten_digits_of_the_exact_functions(name: str, omega: Fraction) -> None:
     errors = forced_errors(lookup(name))
     for point in POINTS:
@@ -57,6 +58,7 @@ def test_points_of_a_map_have_the_errors_that_they_have_alone() -> None:
 
 
 @pytest.mark.parametrize("name", METHODS)
+@pytest.mark.slow_except("SYM", "verlet", "AB4", "hht", "B4", "RK4")
 def test_a_response_is_the_error_over_the_power_of_theta_that_it_begins_with(name: str) -> None:
     omega = Fraction(1, 10)
     response = forced_response(lookup(name), 0.02, 3e-4, np.array([0.1, -0.1, 0.7]))

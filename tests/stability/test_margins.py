@@ -123,6 +123,7 @@ def test_at_critical_damping_both_mu_cross_together(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["ABM3", "ABM4"])
+@pytest.mark.slow
 def test_next_to_critical_damping_the_first_of_both_mu_that_crosses_is_the_end(name: str) -> None:
     """What `choose --equal` finds is rounded to float64, where the two mu of alpha = beta are no longer one.
 

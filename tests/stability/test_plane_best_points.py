@@ -122,6 +122,7 @@ def test_no_point_of_a_fine_grid_is_better(name: str) -> None:
     assert z_abs.min() >= best.z_abs
 
 
+@pytest.mark.slow
 def test_the_least_value_along_a_curve_of_double_poles_is_found() -> None:
     """Of Yoshida's composition: both poles are real and equal, and P's gradients in the plane are parallel there."""
     best = best_point(lookup("yoshida4"))
@@ -134,6 +135,7 @@ def test_the_least_value_along_a_curve_of_double_poles_is_found() -> None:
     assert len(best.meeting) == 1
 
 
+@pytest.mark.slow
 def test_three_poles_of_one_modulus_are_solved_for_as_far_as_their_moduli_are_known() -> None:
     """Of this recipe more than 1e-13 is left of the equations, by rounding: a bound as tight would find nothing."""
     method = other_random_method(277)

@@ -84,6 +84,7 @@ def with_a_bulge(bounds: Bounds) -> Bounds:
 )
 @pytest.mark.parametrize("wrong", [without_arc, without_interval, with_a_shorter_interval, with_a_bulge])
 @pytest.mark.parametrize(("method", "level"), REGIONS, ids=identify)
+@pytest.mark.slow_except("B4", "RK4")
 def test_a_wrong_region_is_no_answer(
     method: Method, level: float, wrong: Wrong, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -96,6 +97,7 @@ def test_a_wrong_region_is_no_answer(
 
 @pytest.mark.parametrize("wrong", [without_arc, without_interval])
 @pytest.mark.parametrize(("method", "level"), REGIONS, ids=identify)
+@pytest.mark.slow_except("B4")
 def test_a_finer_sampling_puts_it_right(
     method: Method, level: float, wrong: Wrong, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -186,6 +188,7 @@ WRONG: dict[str, Any] = {
 @pytest.mark.promise("Every region, best point, choice and margin")
 @pytest.mark.parametrize("change", WRONG)
 @pytest.mark.parametrize(("name", "level"), SHAPES[:-2])
+@pytest.mark.slow_except("B4", "half", "kdk", "RK4")
 def test_a_wrong_size_of_right_curves_is_no_answer(name: str, level: float, change: str) -> None:
     method, shape = found(name, level)
     with pytest.raises(NumericalError, match="by slices" if "area" in change else "the extent"):
@@ -193,6 +196,7 @@ def test_a_wrong_size_of_right_curves_is_no_answer(name: str, level: float, chan
 
 
 @pytest.mark.parametrize(("name", "level"), SHAPES)
+@pytest.mark.slow_except("half", "kdk", "RK4", "ruth3")
 def test_a_shape_of_another_level_or_none_is_no_answer(name: str, level: float) -> None:
     method, shape = found(name, level)
     with pytest.raises(NumericalError, match="is another"):
@@ -202,6 +206,7 @@ def test_a_shape_of_another_level_or_none_is_no_answer(name: str, level: float) 
 
 
 @pytest.mark.parametrize(("name", "level"), SHAPES[-2:])
+@pytest.mark.slow
 def test_an_unbounded_shape_passes_but_not_without_the_curves_in_view(name: str, level: float) -> None:
     method, shape = found(name, level)
     check_region(method, level, shape)

@@ -292,6 +292,7 @@ def test_the_window_shows_the_region_the_origin_and_a_margin(level: float) -> No
 
 
 @pytest.mark.parametrize("name", sampled(["ABM3", "ABM4"], quick=["ABM3"]))
+@pytest.mark.slow
 def test_pece_as_a_recipe_has_its_region_at_a_level_of_two_digits(name: str) -> None:
     """By strips of the plane, and by the locus in mu: ABM4's curves at 0.61 have coefficients of 384 bits."""
     by_strips = strips_shape(as_second_order(name), 0.61)

@@ -11,6 +11,7 @@ from bezstab.stability.searches import bisected, first_where, zoom_on_minimum
 
 @given(st.lists(st.floats(-1, 1), min_size=1, max_size=5), st.integers(1, 20))
 @settings(deadline=None)
+@pytest.mark.slow
 def test_bisecting_ends_at_neighbours_on_both_sides(thresholds: list[float], at_once: int) -> None:
     found = np.array(thresholds)
     ends = np.full(found.shape, -1.5), np.full(found.shape, 1.5)
@@ -46,6 +47,7 @@ def test_a_zoom_finds_a_kink_to_the_last_grid(least: float) -> None:
 
 @given(st.lists(st.floats(-0.9, 0.9), min_size=1, max_size=6))
 @settings(deadline=None)
+@pytest.mark.slow
 def test_searches_side_by_side_find_what_each_finds_alone(minima: list[float]) -> None:
     least = np.array(minima)
 

@@ -53,6 +53,7 @@ def test_the_weights_tend_to_those_of_the_limits_mapping() -> None:
     "Limit of the Bézier family",
     computed="area 1e-12, least |z_p| and largest α̂ 1e-14, against thirty digits",
 )
+@pytest.mark.slow
 def test_the_limits_numbers_to_thirty_digits() -> None:
     limit = bezier_limit()
     with mp.workdps(30):
