@@ -513,16 +513,16 @@ def engine_row(engine: Engine, point: tuple[Fraction, Fraction] | None, h: Fract
         except InputError as error:
             setting = str(error)
     sweeping = engine.sweeping
-    found = {
+    found: dict[str, Value] = {
         "engine": engine.name,
         "parameters": ", ".join(engine.parameters),
         "optional": ", ".join(engine.optional),
         "units": ", ".join(engine.units),
         "witness": witness_of(engine.name),
         "setting": setting,
-        "swept_iterations": sweeping and sweeping.iterations,
-        "swept_word": sweeping and sweeping.word,
-        "swept_source": sweeping and sweeping.source,
-        "swept_excludes": sweeping and sweeping.excludes,
+        "swept_iterations": sweeping.iterations if sweeping else None,
+        "swept_word": sweeping.word if sweeping else None,
+        "swept_source": sweeping.source if sweeping else None,
+        "swept_excludes": sweeping.excludes if sweeping else None,
     }
     return cells(ENGINES_LISTED.fields, engine, found)
