@@ -13,6 +13,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from fractions import Fraction
+from typing import get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -457,6 +458,8 @@ def simulate(
     beta: float | None = None,
     start: mechanism.Start = "rk4",
     perturb: float = 0.0,
+    stabilise: mechanism.Stabilise = "baumgarte",
+    iterations: int | None = None,
 ) -> Simulation:
     """Return a run of a mechanism with a method and a feedback, as arrays in SI units.
 
@@ -465,16 +468,28 @@ def simulate(
     start: where a multistep method has its first values from: steps of "rk4", its family's members of
         fewer steps ("ramp"), or explicit "euler".
     perturb: by how much the first constraint is off at the start, in its own unit.
+    stabilise: what holds the constraints: feedback ("baumgarte"), "projection" of each new state onto
+        them, or "none". Only feedback has a point.
+    iterations: with projection, Newton's iterations for a position at most; by default as many as it
+        takes to be within 1e-12.
 
     Returns a Simulation. `t` has shape (steps + 1,). `q`, `v`, `c`, `cdot` and `multipliers` have a row
     for each time; `energy` has a number for each time. A run that breaks down ends early, and `failure`
     says when and why; else it is None.
 
-    InputError for a scene that cannot start, for a duration below one step, and unless the point is
-    given in one of the two ways. NumericalError if the start cannot be perturbed. Source: paper Eqs. 6
-    to 9.
+    InputError for a scene that cannot start, for a duration below one step, and unless the point of a
+    feedback is given in one of the two ways. NumericalError if the start cannot be perturbed. Source:
+    paper Eqs. 6 to 9.
     """
-    a, b = _plane_point(alpha_hat, beta_hat, alpha, beta, h)
+    if stabilise not in get_args(mechanism.Stabilise):
+        raise InputError(f"stabilise {stabilise!r}: expected {', '.join(get_args(mechanism.Stabilise))}")
+    if iterations is not None and stabilise != "projection":
+        raise InputError("iterations are those of stabilise='projection'")
+    a, b = Fraction(0), Fraction(0)
+    if stabilise == "baumgarte":
+        a, b = _plane_point(alpha_hat, beta_hat, alpha, beta, h)
+    elif any(each is not None for each in (alpha_hat, beta_hat, alpha, beta)):
+        raise InputError(f"stabilise={stabilise!r} has no feedback: expected neither alpha nor beta")
     return mechanism.simulated(
         mechanism.compiled_mechanism(_scene(scene)),
         _method(method),
@@ -484,6 +499,7 @@ def simulate(
         beta_hat=float(b),
         perturb=_real(perturb, "perturb"),
         start=start,
+        projection=mechanism.Projection(iterations) if stabilise == "projection" else None,
     )
 
 

@@ -11,3 +11,9 @@ GOALS: dict[Goal, str] = {
     "critical": "the fastest without oscillation",
     "gentle": "the mildest α = β that settles in time",
 }
+
+UP_TO_LONGEST: tuple[Goal, ...] = ("accurate", "robust")
+"""The goals that are for all steps up to --h-max."""
+
+SETTLING: tuple[Goal, ...] = ("gentle", "accurate")
+"""The goals that may be given a time to settle."""

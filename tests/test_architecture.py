@@ -75,11 +75,7 @@ APPOINTED = {
         *("show/accuracy_figures.py", "show/chain_figures.py", "show/held_figures.py", "show/explorer.py"),
         *(f"paper/{name}.py" for name in ("regions", "slider_crank", "drift", "influence", "comparison")),
     },
-    "click": {f"cli/{name}.py" for name in ("options", "output", "command_group")}
-    | {f"cli/{name}_commands.py" for name in ("map", "choose", "evidence")}
-    | {f"cli/{name}_command.py" for name in ("verify", "schema", "lint", "probe", "chains")}
-    | {"cli/completion.py", "cli/asking.py", "cli/held_drives.py"}
-    | {"paper/command.py"},
+    "click": {path.relative_to(PACKAGE).as_posix() for path in (PACKAGE / "cli").glob("*.py")} | {"paper/command.py"},
     "mujoco": {"evidence/mujoco_models.py"},
     "distributed": {"evidence/worker_pools.py"},
     "numba": {"compiling.py"},

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -13,10 +13,12 @@ from bezstab.cli.options import (
     SECONDS,
     SPEED,
     Decorator,
-    EngineValues,
     ParsedType,
+    both_or_none,
     left_at_default,
+    physical_option,
     scene_option,
+    together,
 )
 from bezstab.cli.output import for_reading, progress, say, show_command, show_text
 from bezstab.engines import Drive, Engine
@@ -46,23 +48,35 @@ def drive_of(text: str) -> Drive:
 
 DRIVE = ParsedType(",".join(GAINS), drive_of)
 
-engine_values_option = click.option(
-    "--engine", type=ENGINE_VALUES, help="An engine's own values, such as mujoco=0.02,1, instead; needs --h."
+given_point_options = together(
+    click.option("--alpha", type=NUMBER, help="α̂, a decimal or fraction, read exactly; α in 1/s with --physical."),
+    click.option("--beta", type=NUMBER, help="β̂, a decimal or fraction, read exactly; β in 1/s with --physical."),
+    click.option("--h", type=SECONDS, help="Step size in s, for --physical, --engine, --pd, --scene and --omega."),
+    physical_option,
+    click.option(
+        "--engine", type=ENGINE_VALUES, help="An engine's own values, such as mujoco=0.02,1, instead; needs --h."
+    ),
+    click.option(
+        "--as-typed", is_flag=True, help="With --engine: take the values as they are, without the engine's clamps."
+    ),
+    click.option(
+        "--pd", "drive", type=DRIVE, help="A joint drive's gains and its inertia (SI units), instead; needs --h."
+    ),
 )
-drive_option = click.option(
-    "--pd", "drive", type=DRIVE, help="A joint drive's gains and its inertia (SI units), instead; needs --h."
-)
-as_typed_option = click.option(
-    "--as-typed", is_flag=True, help="With --engine: take the values as they are, without the engine's clamps."
-)
-chain_option = click.option(
-    "--chain", type=int, help="With --engine: safe for so many bodies in a straight chain, as the engine sweeps?"
-)
-mass_ratio_option = click.option(
-    "--mass-ratio", type=NUMBER, help="With --chain: how many times as heavy as the others the last body is [1]."
-)
-iterations_option = click.option(
-    "--iterations", type=int, help="With --chain or --scene: sweeps over all constraints in a step [the engine's own]."
+"""How a point is given: in the plane, by an engine's own values, or by a drive's gains."""
+
+chain_options = together(
+    click.option(
+        "--chain", type=int, help="With --engine: safe for so many bodies in a straight chain, as the engine sweeps?"
+    ),
+    click.option(
+        "--mass-ratio", type=NUMBER, help="With --chain: how many times as heavy as the others the last body is [1]."
+    ),
+    click.option(
+        "--iterations",
+        type=int,
+        help="With --chain or --scene: sweeps over all constraints in a step [the engine's own].",
+    ),
 )
 omega_option = click.option(
     "--omega",
@@ -76,68 +90,82 @@ h_min_option = click.option(
 hold_option = click.option(
     "--hold", is_flag=True, help="With --h-min: α̂ and β̂ stay as steps vary, as in engines with ERP; not α and β."
 )
-moving_speed_option = click.option(
-    "--speed", type=SPEED, default="1", help="With --scene: times the scene's own, its drivers' and its start's."
-)
 
 
-def moving_scene_option(help_text: str) -> Decorator:
-    """Return the option --scene of a command that also works without one."""
-    return scene_option(None, help_text)
+def moving_scene_options(help_text: str) -> Decorator:
+    """Return the options --scene and --speed of a command that also works without a scene."""
+    speed = click.option(
+        "--speed", type=SPEED, default="1", help="With --scene: times the scene's own, its drivers' and its start's."
+    )
+    return together(scene_option(None, help_text), speed)
 
 
 def asked(
+    *,
+    methods: Sequence[Method],
+    alpha: Fraction | None = None,
+    beta: Fraction | None = None,
+    physical: bool = False,
+    engine: tuple[Engine, tuple[Fraction, ...] | None] | None = None,
+    drive: Drive | None = None,
+    chain: int | None = None,
+    mass_ratio: Fraction | None = None,
+    iterations: int | None = None,
+    **typed: Any,
+) -> "Question":
+    """Return the question that was typed; other options than these are called like its fields.
+
+    What looks mistaken in it is said, and how its scene moves is found. InputError as Question.
+    """
+    from bezstab.questions import Question, typed_chain
+
+    h, h_min, h_max = (typed.get(name) for name in ("h", "h_min", "h_max"))
+    longest = h or (h_max if h_min else None)
+    if physical and longest is None:
+        raise InputError("--physical, --engine and --pd need --h: the step in s")
+    if (engine or drive) and (alpha is not None or beta is not None or physical):
+        raise InputError(f"{'--engine' if engine else '--pd'} takes the place of --alpha, --beta and --physical")
+    point = None if alpha is None or beta is None else (alpha, beta)
+    if point and physical and longest is not None:
+        point = to_dimensionless(*point, longest)
+    named, values = engine or (None, None)
+    question = Question(
+        methods=methods_typed(methods, engine is not None or drive is not None),
+        point=point,
+        engine=named,
+        values=values,
+        drive=drive,
+        chain=typed_chain(chain, mass_ratio),
+        iterations=iterations,
+        **typed,
+    )
+    if point and not physical:
+        say_if_units_were_mistaken(question.methods, *point, question.h)
+    prepare(question)
+    return question
+
+
+def point_typed(
     methods: Sequence[Method],
     alpha: Fraction | None,
     beta: Fraction | None,
     h: Fraction | None,
     physical: bool,
-    engine: EngineValues | None,
-    drive: Drive | None,
-    *,
-    as_typed: bool,
-    omega: Fraction | None,
-    scene: str | None,
-    speed: Fraction,
-    h_min: Fraction | None = None,
-    h_max: Fraction | None = None,
-    hold: bool = False,
-    chain: int | None = None,
-    mass_ratio: Fraction | None = None,
-    iterations: int | None = None,
-) -> "Question":
-    """Return the question about a point as it was typed; what looks mistaken in it is said. InputError as Question."""
-    from bezstab.questions import Question, typed_chain
+    of_what: str = "",
+) -> tuple[Fraction, Fraction] | None:
+    """Return the point (alpha_hat, beta_hat) that was typed, None if none was; h in s, `of_what` as below.
 
-    longest = h or (h_max if h_min else None)
-    if physical and longest is None:
-        raise InputError("--physical, --engine and --pd need --h: the step in s")
-    point = None if alpha is None or beta is None else (alpha, beta)
-    if (engine or drive) and (alpha is not None or beta is not None or physical):
-        raise InputError(f"{'--engine' if engine else '--pd'} takes the place of --alpha, --beta and --physical")
-    if point and physical and longest is not None:
-        point = to_dimensionless(*point, longest)
-    question = Question(
-        methods=methods_typed(methods, engine is not None or drive is not None),
-        point=point,
-        h=h,
-        h_min=h_min,
-        h_max=h_max,
-        hold=hold,
-        engine=engine[0] if engine else None,
-        values=engine[1] if engine else None,
-        as_typed=as_typed,
-        drive=drive,
-        omega=omega,
-        scene=scene,
-        speed=speed,
-        chain=typed_chain(chain, mass_ratio),
-        iterations=iterations,
-    )
-    if alpha is not None and beta is not None and not physical:
-        say_if_units_were_mistaken(question.methods, alpha, beta, question.h)
-    prepare(question)
-    return question
+    UsageError for half a point, and for 1/s without a point or a step.
+    """
+    point = both_or_none(alpha, beta)
+    if physical and (point is None or h is None):
+        raise click.UsageError("--physical goes with --alpha, --beta and --h: α and β in 1/s need the step in s")
+    if point is None:
+        return None
+    if physical and h is not None:
+        return to_dimensionless(*point, h)
+    say_if_units_were_mistaken(methods, *point, h, of_what)
+    return point
 
 
 def methods_typed(methods: Sequence[Method], has_usual_ones: bool) -> tuple[Method, ...]:

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from fractions import Fraction
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
@@ -13,14 +12,10 @@ from bezstab.cli.options import (
     NUMBER,
     SECONDS,
     EngineValues,
-    FigureForm,
-    figure_option,
     format_option,
-    output_option,
 )
-from bezstab.cli.output import for_reading, show_rows, write_figure
-from bezstab.files import output_directory
-from bezstab.show import CHAINS, Format, chain_rows, chain_sentence
+from bezstab.cli.output import Files, for_reading, picture_options, show_rows
+from bezstab.show import CHAINS, Format, chain_rows
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -40,16 +35,14 @@ SWEEPS_DRAWN = 50
     help="How many times as heavy as the others the last body is. Repeatable.",
 )
 @click.option("--to", "bodies", type=int, default=20, help="The longest chain, in bodies.")
-@output_option
-@figure_option
+@picture_options
 @format_option
 def chains(
     engine: EngineValues,
     h: Fraction,
     mass_ratios: Sequence[Fraction],
     bodies: int,
-    output: Path,
-    figure: FigureForm,
+    files: Files,
     form: Format,
 ) -> None:
     """Show how many sweeps an engine's chains need.
@@ -62,12 +55,11 @@ def chains(
     """
     from bezstab.questions import chain_map
 
-    if figure != "none":
-        output_directory(output)
+    files.check_output()
     words, values = engine
     maps = [chain_map(words, values, h, ratio, bodies, SWEEPS_DRAWN) for ratio in mass_ratios]
     rows = [row for one in maps for row in chain_rows(words, one)]
-    show_rows(rows, CHAINS.columns(rows), form, sentence=chain_sentence)
+    show_rows(CHAINS, rows, form)
 
     def draw() -> "Figure":
         from bezstab.show import chains_figure
@@ -75,6 +67,6 @@ def chains(
         typed = ", ".join(f"{name} = {float(value):.4g}" for name, value in zip(words.parameters, values, strict=False))
         return chains_figure(words, f"{words.name}: {typed}, h = {float(h):.3g} s", maps)
 
-    write_figure(output / f"chains_{words.name}", draw, figure)
+    files.write_figure(files.path("chains", words.name), draw)
     if for_reading(form):
         say_what_is_left_out(words, many=True)

@@ -3,48 +3,41 @@
 from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from itertools import groupby
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from bezstab.cli.asking import (
-    as_typed_option,
     asked,
-    chain_option,
-    drive_option,
-    engine_values_option,
+    chain_options,
+    given_point_options,
     h_min_option,
     hold_option,
-    iterations_option,
-    mass_ratio_option,
     methods_typed,
-    moving_scene_option,
-    moving_speed_option,
+    moving_scene_options,
     omega_option,
-    prepare,
     say_unknown_costs,
     say_varying,
     say_what_is_left_out,
     say_what_was_made,
 )
 from bezstab.cli.held_drives import (
+    HeldTiming,
     bandwidth_option,
     check_held,
     choose_held,
     inertia_option,
     timing_options,
-    timing_typed,
 )
 from bezstab.cli.options import (
     ENGINE,
     NUMBER,
     SECONDS,
+    SHARE,
     USUAL_METHODS,
-    EngineValues,
     both_or_none,
     format_option,
     methods_option,
-    physical_option,
     step_option,
 )
 from bezstab.cli.output import for_reading, progress, say, show_rows, show_text
@@ -58,20 +51,16 @@ from bezstab.show import (
     ENGINES_LISTED,
     LARGEST_STEPS,
     Format,
-    Row,
     alone_words,
     answer_row,
-    answer_sentence,
     costs_words,
     largest_step_row,
     motion_words,
-    safe_step_text,
     trade_words,
 )
 
 if TYPE_CHECKING:
     from bezstab.questions import Answer, Question
-
 
 WITHOUT_ACCURACY = ("total_error", "order_left", "times_least_velocity")
 """What tables of a drive leave out: nothing feeds its target's acceleration forward."""
@@ -97,44 +86,32 @@ OF_ONE_ALONE = (
 )
 @h_min_option
 @hold_option
-@click.option("--spread", type=NUMBER, default="0.1", help="By what share α and β may be off.")
+@click.option("--spread", type=SHARE, default="0.1", help="By what share α and β may be off.")
 @click.option(
     "--settle", type=SECONDS, help="gentle, accurate, or with --pd: the time in s in which c falls a thousandfold."
 )
-@click.option("--keep", type=click.Choice(["alpha=beta"]), help="Only points with α = β.")
+@click.option("--keep", "equal", type=click.Choice(["alpha=beta"]), help="Only points with α = β.")
 @click.option("--engine", metavar="NAME", type=ENGINE, help="Choose what that engine can express; print what to paste.")
-@chain_option
-@mass_ratio_option
-@iterations_option
+@chain_options
 @inertia_option
 @bandwidth_option
 @timing_options
-@moving_scene_option("Choose for this mechanism as it moves.")
-@moving_speed_option
+@moving_scene_options("Choose for this mechanism as it moves.")
 @format_option
+@click.pass_context
 def choose(
+    context: click.Context,
+    /,
     methods: Sequence[Method],
-    h: Fraction,
     goal: Goal | None,
-    omega: Fraction | None,
-    h_max: Fraction | None,
-    h_min: Fraction | None,
-    hold: bool,
-    spread: Fraction,
     settle: Fraction | None,
-    keep: str | None,
+    equal: str | None,
     engine: Engine | None,
-    chain: int | None,
-    mass_ratio: Fraction | None,
-    iterations: int | None,
     drive: Drive | None,
     bandwidth: Fraction | None,
-    every: int | None,
-    late: Fraction | None,
-    filter_seconds: Fraction | None,
-    scene: str | None,
-    speed: Fraction,
+    timing: HeldTiming,
     form: Format,
+    **typed: Any,
 ) -> None:
     """Recommend α and β for an integrator and its step size.
 
@@ -160,39 +137,25 @@ def choose(
 
     Example: bezstab choose --method B4 --h 0.001
     """
-    from bezstab.questions import Question, answers, typed_chain, usual_goal
-    from bezstab.stability import Timing
+    from bezstab.questions import answers, usual_goal
 
-    timing = timing_typed(every, late, filter_seconds, drive, h)
     if bandwidth is not None and drive is None:
         raise InputError("--bandwidth is that of a drive: it needs --pd")
-    if drive and (timing or bandwidth is not None or (settle is not None and goal is None)):
-        chosen_methods = methods_typed(methods, has_usual_ones=True)
-        safe = choose_held(drive.inertia, h, timing or Timing(), chosen_methods, bandwidth, settle, form)
-        click.get_current_context().exit(0 if safe else 1)
-    question = Question(
-        methods=methods_typed(methods, engine is not None or drive is not None),
+    held = timing.of(drive, typed["h"])
+    if drive and (held or bandwidth is not None or (settle is not None and goal is None)):
+        own = methods_typed(methods, has_usual_ones=True)
+        context.exit(0 if choose_held(drive.inertia, typed["h"], held, own, bandwidth, settle, form) else 1)
+    question = asked(
+        methods=methods,
         goal=goal or usual_goal(engine, drive),
-        h=h,
-        h_min=h_min,
-        h_max=h_max,
-        hold=hold,
-        engine=engine,
-        drive=drive,
-        omega=omega,
-        scene=scene,
-        speed=speed,
-        spread=float(spread),
         settle=settle,
-        equal=keep is not None,
-        chain=typed_chain(chain, mass_ratio),
-        iterations=iterations,
+        equal=equal is not None,
+        engine=(engine, None) if engine else None,
+        drive=drive,
+        **typed,
     )
-    prepare(question)
     chosen = list(progress(answers(question), question.goal or "", len(question.methods)))
-    rows = [answer_row(answer) for answer in chosen]
-    columns = CHOICES.columns(rows, _left_out(question))
-    show_rows(rows, columns, form, sentence=answer_sentence)
+    show_rows(CHOICES, [answer_row(answer) for answer in chosen], form, _left_out(question))
     say_unknown_costs(chosen)
     if for_reading(form):
         say_varying(chosen)
@@ -207,55 +170,22 @@ def choose(
                 show_text(f"\n{line}")
         if engine:
             say_what_is_left_out(engine, many=question.swept is not None)
-    if not all(answer.safe for answer in chosen):
-        click.get_current_context().exit(1)
+    context.exit(0 if all(answer.safe for answer in chosen) else 1)
 
 
 @click.command()
 @methods_option()
-@click.option("--alpha", type=NUMBER, help="α̂; α in 1/s with --physical.")
-@click.option("--beta", type=NUMBER, help="β̂; β in 1/s with --physical.")
-@click.option("--h", type=SECONDS, help="Step size in s; needed with --engine and --pd.")
-@physical_option
-@engine_values_option
-@as_typed_option
-@chain_option
-@mass_ratio_option
-@iterations_option
-@drive_option
+@given_point_options
+@chain_options
 @timing_options
 @omega_option
 @h_min_option
 @click.option("--h-max", type=SECONDS, help="With --h-min: the longest step in s [--h].")
 @hold_option
-@moving_scene_option("Safe for this mechanism as it moves? Needs --h.")
-@moving_speed_option
+@moving_scene_options("Safe for this mechanism as it moves? Needs --h.")
 @format_option
 @click.pass_context
-def check(
-    context: click.Context,
-    methods: Sequence[Method],
-    alpha: Fraction | None,
-    beta: Fraction | None,
-    h: Fraction | None,
-    physical: bool,
-    engine: EngineValues | None,
-    as_typed: bool,
-    chain: int | None,
-    mass_ratio: Fraction | None,
-    iterations: int | None,
-    drive: Drive | None,
-    every: int | None,
-    late: Fraction | None,
-    filter_seconds: Fraction | None,
-    omega: Fraction | None,
-    h_min: Fraction | None,
-    h_max: Fraction | None,
-    hold: bool,
-    scene: str | None,
-    speed: Fraction,
-    form: Format,
-) -> None:
+def check(context: click.Context, /, timing: HeldTiming, form: Format, **typed: Any) -> None:
     """Tell whether a choice is safe: exit status 0 if so, 1 if not.
 
     Safe means proven stable, for every method named. Prints the verdict, the margins, the largest stable step, and
@@ -291,52 +221,38 @@ def check(
     """
     from bezstab.questions import answers, turning_of
 
-    timing = timing_typed(every, late, filter_seconds, drive, h)
-    if timing and drive and h:
-        context.exit(0 if check_held(drive, h, timing, methods_typed(methods, has_usual_ones=True), form) else 1)
-    if physical and not (h or h_min or scene or engine or drive or as_typed or hold or omega):
-        turning_of(None, speed, None)  # no speed without a scene
-        context.exit(0 if _check_without_step(methods, both_or_none(alpha, beta), form) else 1)
-    question = asked(
-        methods,
-        alpha,
-        beta,
-        h,
-        physical,
-        engine,
-        drive,
-        as_typed=as_typed,
-        omega=omega,
-        scene=scene,
-        speed=speed,
-        h_min=h_min,
-        h_max=h_max,
-        hold=hold,
-        chain=chain,
-        mass_ratio=mass_ratio,
-        iterations=iterations,
-    )
+    drive, methods = typed["drive"], typed["methods"]
+    if held := timing.of(drive, typed["h"]):
+        own = methods_typed(methods, has_usual_ones=True)
+        context.exit(0 if check_held(drive, typed["h"], held, own, form) else 1)
+    if typed["physical"] and not any(typed[name] for name in NEEDING_A_STEP):
+        turning_of(None, typed["speed"], None)  # no speed without a scene
+        point = both_or_none(typed["alpha"], typed["beta"])
+        context.exit(0 if _check_without_step(methods, point, form) else 1)
+    question = asked(**typed)
     found = list(_with_instead(answers(question)))
     given = [answer for answer in found if answer.role == "given"]
-    rows = [answer_row(answer) for answer in found]
-    given_rows, instead_rows = ([row for row in rows if row["role"] == role] for role in ("given", "instead"))
-    without = _left_out(question)
     if for_reading(form):
-        show_rows(given_rows, CHECKED.columns(given_rows, without), form, sentence=answer_sentence)
+        without = _left_out(question)
+        show_rows(CHECKED, [answer_row(answer) for answer in given], form, without)
         say_varying(given)
         for sentence in map(costs_words, given if not drive else ()):
             if sentence:
                 show_text(f"\n{sentence}")
-        if instead_rows:
+        if instead := [answer_row(answer) for answer in found if answer.role == "instead"]:
             show_text("\nWhat `choose` gives instead:\n")
-            show_rows(instead_rows, CHECKED.columns(instead_rows, without), form, sentence=answer_sentence)
+            show_rows(CHECKED, instead, form, without)
         if not drive:
             show_text(f"\n{motion_words(question.motion)}")
     else:
-        show_rows(rows, [], form)
+        show_rows(CHECKED, [answer_row(answer) for answer in found], form)
     say_unknown_costs(found)
     say_what_was_made(question, form)
     context.exit(0 if all(answer.safe for answer in given) else 1)
+
+
+NEEDING_A_STEP = ("h", "h_min", "scene", "engine", "drive", "as_typed", "hold", "omega")
+"""Without any of these, α and β in 1/s are asked about for every step."""
 
 
 def _left_out(question: "Question") -> tuple[str, ...]:
@@ -362,24 +278,8 @@ def _check_without_step(methods: Sequence[Method], point: tuple[Fraction, Fracti
     if point is None:
         raise click.UsageError("--alpha and --beta are needed, or --engine, or --pd")
     found = [largest_step(method, *point) for method in methods_for(tuple(methods), None, None)]
-    rows = [largest_step_row(each) for each in found]
-    show_rows(rows, LARGEST_STEPS.columns(rows), form, sentence=step_sentence)
+    show_rows(LARGEST_STEPS, [largest_step_row(each) for each in found], form)
     return all(each.safe for each in found)
-
-
-def step_sentence(row: Row) -> str:
-    """Return up to which step alpha and beta are safe."""
-    limit = safe_step_text(row)
-    if limit == "none":
-        return "Not safe at small steps."
-    return "Safe at any h." if limit == "unlimited" else f"Safe up to h = {limit} s."
-
-
-def engine_sentence(row: Row) -> str:
-    """Return what to write for the point, or what the engine calls the feedback where none is given."""
-    if row["setting"] is None:
-        return f"In {row['engine']} the feedback is set by {row['parameters']}."
-    return f"At this point: {row['setting']}."
 
 
 @click.command()
@@ -401,7 +301,7 @@ def engines(h: Fraction, alpha: Fraction | None, beta: Fraction | None, form: Fo
 
     point = both_or_none(alpha, beta)
     rows = [engine_row(engine, point, h) for engine in ENGINES.values()]
-    show_rows(rows, ENGINES_LISTED.columns(rows), form, sentence=engine_sentence)
+    show_rows(ENGINES_LISTED, rows, form)
     if for_reading(form):
         show_text("\nAnd others, by what they run underneath:\n")
         for name, underneath in RUN_UNDERNEATH.items():

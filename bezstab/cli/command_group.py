@@ -14,9 +14,10 @@ from bezstab.cli.chains_command import chains
 from bezstab.cli.choose_commands import check, choose, engines, explore
 from bezstab.cli.evidence_commands import extremes, simulate, tradeoff
 from bezstab.cli.lint_command import lint
-from bezstab.cli.map_commands import family, methods, poles, region
+from bezstab.cli.map_commands import family, methods, poles
 from bezstab.cli.output import say
 from bezstab.cli.probe_command import probe
+from bezstab.cli.region_command import region
 from bezstab.cli.schema_command import schema
 from bezstab.cli.verify_command import verify
 from bezstab.errors import InputError, NumericalError

@@ -5,11 +5,10 @@ from fractions import Fraction
 from functools import partial
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from bezstab.cli.accuracy_maps import show_predicted_trade
 from bezstab.cli.asking import omega_option, say_if_units_were_mistaken
 from bezstab.cli.options import (
     METHOD,
@@ -17,59 +16,49 @@ from bezstab.cli.options import (
     POSITIVE,
     SECONDS,
     SEQUENCE,
-    FigureForm,
-    TableForm,
     both_or_none,
     compiled_option,
-    figure_options,
-    file_options,
     format_option,
     left_at_default,
     methods_option,
     physical_option,
+    projection_asked_for,
     scene_option,
     speed_option,
+    stabilise_options,
     step_option,
     typed_beside,
-    work_options,
 )
 from bezstab.cli.output import (
-    file_name,
+    Files,
+    Work,
+    figure_options,
+    file_options,
     for_reading,
     progress,
     results_of_chunks,
     say,
     show_rows,
     show_text,
-    write_figure,
-    write_table,
+    work_options,
 )
 from bezstab.errors import InputError, NumericalError
-from bezstab.files import output_directory
 from bezstab.methods import Method, check_one_step
 from bezstab.rationals import exact
-from bezstab.show import EXTREMES, SIMULATIONS, SWEPT, Format, Row, cells, diverged_text, formatted, seconds_words
+from bezstab.show import EXTREMES, FRONTS, SIMULATIONS, SWEPT, Format, cells
 from bezstab.units import to_dimensionless
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from bezstab.evidence import Cost, Held
-    from bezstab.mechanism import Start
+    from bezstab.mechanism import Stabilise, Start
 
 MOST_SWEPT = 10**6  # the reference takes up to 32 times as many
 MOST_LISTED = 20  # times in a message
 
 PREDICTED = ("scene", "speed", "methods", "steps", "omega", "predicted", "levels", "output", "figure", "table", "form")
 """Parameters of tradeoff that go with --predicted."""
-
-
-def run_sentence(row: Row) -> str:
-    """Return how long a run of a mechanism went well, and how far it stayed from its constraints."""
-    time = row["time"]
-    assert isinstance(time, float)
-    end = f"broke down after {seconds_words(time)}" if row["failure"] else f"went through to {seconds_words(time)}"
-    return f"{row['method']} {end}; the largest |c| is {formatted(row['c_max'], '.1e')}."
 
 
 @click.command()
@@ -79,7 +68,7 @@ def run_sentence(row: Row) -> str:
 @click.option("--alpha", type=NUMBER, default="0.5", help="α̂; α in 1/s with --physical.")
 @click.option("--beta", type=NUMBER, default="0.1", help="β̂; β in 1/s with --physical.")
 @physical_option
-@click.option("--no-stabilization", is_flag=True, help="No feedback: α = β = 0.")
+@stabilise_options
 @step_option
 @click.option(
     "--steps",
@@ -108,16 +97,15 @@ def simulate(
     alpha: Fraction,
     beta: Fraction,
     physical: bool,
-    no_stabilization: bool,
+    stabilise: "Stabilise",
+    iterations: int | None,
     h: Fraction,
     sequence: Sequence[Fraction] | None,
     hold: bool,
     time: Fraction,
     perturb: Fraction,
     start: "Start",
-    output: Path,
-    figure: FigureForm,
-    table: TableForm,
+    files: Files,
     form: Format,
 ) -> None:
     """Run a mechanism and see what its constraint error does.
@@ -129,26 +117,33 @@ def simulate(
     --steps gives a sequence of step lengths, for any one-step method. Work and energy drift are then integrated by
     the trapezoidal rule, which is less exact.
 
+    --stabilise projection replaces the feedback: after each step positions, then velocities go back onto the
+    constraints, by the least change in the metric of the masses. S = C_q M⁻¹ C_qᵀ is factored once for each evaluation,
+    and once or more for each projection: "factorizations".
+
     Example: bezstab simulate --method AB4 --alpha 0.5 --beta 0.101 --time 2
     """
     from bezstab import mechanism
     from bezstab.show import history_arrays, simulation_row
 
-    if physical:
-        alpha, beta = to_dimensionless(alpha, beta, h)
-    elif not (no_stabilization or sequence or left_at_default("h")):
-        say_if_units_were_mistaken([method], alpha, beta, h)
-    if no_stabilization:
+    projection = projection_asked_for(stabilise, iterations)
+    if stabilise != "baumgarte":
         alpha = beta = Fraction(0)
+    elif physical:
+        alpha, beta = to_dimensionless(alpha, beta, h)
+    elif not (sequence or left_at_default("h")):
+        say_if_units_were_mistaken([method], alpha, beta, h)
     if hold and not sequence:
         raise click.UsageError("--hold goes with --steps: it is about steps that vary")
     _check_number_of_steps(time, min(sequence) if sequence else h, method)
     if sequence:
         check_one_step(method)
-    if figure != "none" or table != "none":
-        output_directory(output)
+    files.check_output()
     moving = mechanism.compiled_mechanism(mechanism.at_speed(mechanism.load_scene(scene), float(speed)))
-    run = {"duration": float(time), "alpha_hat": float(alpha), "beta_hat": float(beta), "perturb": float(perturb)}
+    if projection:
+        mechanism.check_projected(method)
+    point = {"alpha_hat": float(alpha), "beta_hat": float(beta)}
+    run: dict[str, Any] = {"duration": float(time), "perturb": float(perturb), "projection": projection, **point}
     if sequence:
         lengths = [float(step) for step in sequence]
         simulation = mechanism.simulated_with_steps(moving, method, sequence=lengths, h=float(h), hold=hold, **run)
@@ -160,11 +155,11 @@ def simulate(
 
         return history_figure(simulation)
 
-    path = output / f"simulate_{file_name(Path(scene).stem)}_{file_name(method.name)}"
-    write_table(path, history_arrays(simulation), table)
-    write_figure(path, draw, figure)
+    path = files.path("simulate", Path(scene).stem, method.name)
+    files.write_table(path, history_arrays(simulation))
+    files.write_figure(path, draw)
     rows = [simulation_row(simulation)]
-    show_rows(rows, SIMULATIONS.columns(rows), form, sentence=run_sentence)
+    show_rows(SIMULATIONS, rows, form)
     if len(simulation.singular_times):
         say(f"bezstab: {_passages_text(simulation.singular_times.tolist())}")
     if simulation.failure:
@@ -188,16 +183,6 @@ def _check_number_of_steps(time: Fraction, h: Fraction, method: Method) -> None:
     if not 1 <= steps <= MOST_STEPS:
         taken = f"{float(steps):g} steps of {method.name}"
         raise InputError(f"--time {float(time):g}: {taken}, expected 1 to {MOST_STEPS:g}")
-
-
-def cost_sentence(row: Row) -> str:
-    """Return what one run costs and what it buys."""
-    h = row["h"]
-    assert isinstance(h, float)
-    with_step = f"{row['method']} with h = {seconds_words(h)}"
-    if row["failure"]:
-        return f"{with_step} diverged."
-    return f"{with_step}: a trajectory error of {diverged_text(row)} for {row['run_evaluations']} evaluations."
 
 
 @click.command()
@@ -260,12 +245,8 @@ def tradeoff(
     repeats: int,
     against: "Cost",
     recorded: Path | None,
-    output: Path,
-    workers: int | None,
-    scheduler: str | None,
-    resume: bool,
-    figure: FigureForm,
-    table: TableForm,
+    work: Work,
+    files: Files,
     form: Format,
 ) -> None:
     """Measure what accuracy costs, by method and step.
@@ -290,7 +271,7 @@ def tradeoff(
     from bezstab.show import run_row, untimed_arrays
 
     if predicted:
-        _predicted_trade(methods, omega, scene, speed, steps, levels, output, figure, table, form)
+        _predicted_trade(methods, omega, scene, speed, steps, levels, files, form)
         return
     point = both_or_none(alpha, beta)
     _check_simulated_options(point, physical, omega, levels, recorded, against)
@@ -306,9 +287,9 @@ def tradeoff(
     compiled = evidence.sweep_compiled(loaded_scene, methods, step_sizes, float(time), repeats)
     of_all = (loaded_scene, step_sizes, float(time), given, physical, repeats)
     sweeps = [evidence.Sweep(method, *of_all, reference, rate, compiled) for method in dict.fromkeys(methods)]
-    path = output / f"tradeoff_{file_name(Path(scene).stem)}"
+    path = files.path("tradeoff", Path(scene).stem)
     job = f"{methods} {(*of_all, rate)}"
-    with results_of_chunks(evidence.measured_runs, sweeps, path, job, workers, scheduler, resume) as results:
+    with results_of_chunks(evidence.measured_runs, sweeps, path, job, work) as results:
         per_method = (evidence.swept_runs(*each) for each in zip(sweeps, results, strict=True))
         runs = list(chain.from_iterable(per_method))
         if times:
@@ -321,12 +302,12 @@ def tradeoff(
 
             return work_precision_figure(swept, loaded_scene.name, constraint, floor)
 
-        write_table(path, untimed_arrays(rows), table)
+        files.write_table(path, untimed_arrays(rows))
         for_trajectory = partial(draw, constraint=False, floor=reference.error)
-        write_figure(path.with_name(f"{path.name}_trajectory"), for_trajectory, figure)
+        files.write_figure(path.with_name(f"{path.name}_trajectory"), for_trajectory)
         for_constraint = partial(draw, constraint=True, floor=0.0)
-        write_figure(path.with_name(f"{path.name}_constraint"), for_constraint, figure)
-    show_rows(rows, SWEPT.columns(rows), form, sentence=cost_sentence)
+        files.write_figure(path.with_name(f"{path.name}_constraint"), for_constraint)
+    show_rows(SWEPT, rows, form)
     if for_reading(form):
         show_text(f"\nThe reference is known to {reference.error:.0e} (m, rad).")
         if recorded:
@@ -364,9 +345,7 @@ def _predicted_trade(
     speed: Fraction,
     steps: Sequence[Fraction],
     levels: Sequence[Fraction],
-    output: Path,
-    figure: FigureForm,
-    table: TableForm,
+    files: Files,
     form: Format,
 ) -> None:
     """Show what tradeoff --predicted asks for; UsageError and InputError where that cannot be."""
@@ -377,18 +356,25 @@ def _predicted_trade(
     from bezstab.questions import motion_of
 
     motion = motion_of(omega, None if left_at_default("scene") else scene, speed, h)
-    if figure != "none" or table != "none":
-        output_directory(output)
-    show_predicted_trade(
-        methods,
-        motion,
-        [float(level) for level in levels],
-        h=None if h is None else float(h),
-        path=output / "tradeoff_predicted",
-        figure=figure,
-        table=table,
-        form=form,
-    )
+    files.check_output()
+    from bezstab.show import combined_words, front_row, untimed_arrays
+    from bezstab.stability import RATES, error_front
+
+    asked, rates = list(dict.fromkeys(methods)), [float(level) for level in levels] or RATES
+    fronts = [error_front(method, rates, motion.omega_h) for method in progress(asked, "fronts", len(asked))]
+    rows = [front_row(point, None if h is None else float(h)) for front in fronts for point in front]
+
+    def draw() -> "Figure":
+        from bezstab.show import error_front_figure
+
+        return error_front_figure([front for front in fronts if front])
+
+    path = files.path("tradeoff", "predicted")
+    files.write_table(path, untimed_arrays(rows))
+    files.write_figure(path, draw)
+    show_rows(FRONTS, rows, form)
+    if for_reading(form):
+        show_text(combined_words(motion))
 
 
 def _check_nothing_simulated(steps: Sequence[Fraction]) -> None:
@@ -424,11 +410,6 @@ def _check_swept_time(time: float, step_sizes: Sequence[float], methods: Sequenc
         raise InputError(f"--time {time:g}: expected one step ({longest:g} s) to {MOST_SWEPT:g} ({most:g} s)")
 
 
-def check_sentence(row: Row) -> str:
-    """Return whether what was expected came out."""
-    return "As expected." if row["held"] else "NOT as expected."
-
-
 @click.command()
 @click.option("--short", is_flag=True, help="Fewer methods and runs of 1e5 steps, in seconds instead of minutes.")
 @compiled_option
@@ -448,5 +429,5 @@ def extremes(context: click.Context, short: bool, form: Format) -> None:
     checks = list(extreme_checks(not short))
     outcomes = [check() for check in progress(checks, "extremes")]
     rows = [cells(EXTREMES.fields, outcome) for outcome in outcomes]
-    show_rows(rows, EXTREMES.columns(rows), form, sentence=check_sentence)
+    show_rows(EXTREMES, rows, form)
     context.exit(0 if all(outcome.held for outcome in outcomes) else 1)

@@ -1,20 +1,19 @@
 """Drives whose controller is slower than the physics: the options of check, choose and region, what is printed."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from fractions import Fraction
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from bezstab.cli.options import NUMBER, FigureForm, Function, ParsedType, typed_beside
-from bezstab.cli.output import file_name, for_reading, show_rows, show_text, write_figure
+from bezstab.cli.options import NUMBER, ParsedType, gathered, typed_beside
+from bezstab.cli.output import Files, for_reading, show_rows, show_text
 from bezstab.engines import Drive
 from bezstab.errors import InputError
-from bezstab.files import output_directory
 from bezstab.methods import Method
 from bezstab.rationals import rational, typed_number
-from bezstab.show import HELD, LATE_COMMANDS, NOT_JUDGED, Format, held_row, held_sentence, timing_words
+from bezstab.show import HELD, LATE_COMMANDS, NOT_JUDGED, Format, held_row, timing_words
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -23,38 +22,40 @@ if TYPE_CHECKING:
     from bezstab.stability import Timing
 
 
-def timing_options(command: Function) -> Function:
-    """Add the options that say when a drive's torque is computed and applied."""
-    options = (
-        click.option("--every", type=int, help="With --pd: the torque is computed every so many steps, and held [1]."),
-        click.option("--late", type=NUMBER, help="With --pd: the torque is applied so many steps late [0]."),
-        click.option(
-            "--filter",
-            "filter_seconds",
-            type=NUMBER,
-            help="With --pd: the time constant in s of a first-order filter of the measured velocity [none].",
-        ),
-    )
-    for option in reversed(options):
-        command = option(command)
-    return command
+@dataclass(frozen=True)
+class HeldTiming:
+    """When a drive's torque is computed and applied, as typed; None where an option was not given."""
+
+    every: int | None
+    late: Fraction | None
+    filter_seconds: Fraction | None
+
+    def of(self, drive: Drive | None, h: Fraction | None) -> "Timing | None":
+        """Return the timing of a drive at a step of h (s), None where no option says one; InputError without both."""
+        from bezstab.stability import Timing
+
+        if self.every is None and self.late is None and self.filter_seconds is None:
+            return None
+        if drive is None or h is None:
+            raise InputError("--every, --late and --filter are about a drive: they need --pd and --h")
+        if self.filter_seconds is not None and self.filter_seconds < 0:
+            raise InputError(f"--filter {float(self.filter_seconds):g}: expected 0 s or more")
+        every, filter_steps = 1 if self.every is None else self.every, (self.filter_seconds or Fraction(0)) / h
+        return Timing(every=every, late=self.late or Fraction(0), filter_steps=filter_steps)
 
 
-def timing_typed(
-    every: int | None, late: Fraction | None, filter_seconds: Fraction | None, drive: Drive | None, h: Fraction | None
-) -> "Timing | None":
-    """Return when the torque is computed and applied, None where no option says so; InputError without --pd and --h."""
-    from bezstab.stability import Timing
-
-    if every is None and late is None and filter_seconds is None:
-        return None
-    if drive is None or h is None:
-        raise InputError("--every, --late and --filter are about a drive: they need --pd and --h")
-    if filter_seconds is not None and filter_seconds < 0:
-        raise InputError(f"--filter {float(filter_seconds):g}: expected 0 s or more")
-    return Timing(
-        every=1 if every is None else every, late=late or Fraction(0), filter_steps=(filter_seconds or Fraction(0)) / h
-    )
+timing_options = gathered(
+    HeldTiming,
+    "timing",
+    click.option("--every", type=int, help="With --pd: the torque is computed every so many steps, and held [1]."),
+    click.option("--late", type=NUMBER, help="With --pd: the torque is applied so many steps late [0]."),
+    click.option(
+        "--filter",
+        "filter_seconds",
+        type=NUMBER,
+        help="With --pd: the time constant in s of a first-order filter of the measured velocity [none].",
+    ),
+)
 
 
 ABOUT_DRIVES = {"drive", "h", "every", "late", "filter_seconds", "methods", "form"}
@@ -89,8 +90,8 @@ def check_held(drive: Drive, h: Fraction, timing: "Timing", methods: Sequence[Me
 def _show_held(found: "Sequence[HeldAnswer]", form: Format) -> None:
     """Print what each way of applying one drive does, and what is not judged."""
     question = found[0].question
-    rows = [held_row(answer) for answer in found]
-    show_rows(rows, HELD.columns(rows), form, timing_words(question.timing, float(question.h)), held_sentence)
+    heading = timing_words(question.timing, float(question.h))
+    show_rows(HELD, [held_row(answer) for answer in found], form, heading=heading)
     if for_reading(form):
         show_text(f"\n{LATE_COMMANDS} {NOT_JUDGED}")
 
@@ -101,8 +102,7 @@ def region_held(
     timing: "Timing | None",
     methods: Sequence[Method],
     points: int,
-    output: Path,
-    figure: FigureForm,
+    files: Files,
     form: Format,
 ) -> None:
     """Write the map of each way of applying a held or late drive over kd and kp; print what `check` prints.
@@ -116,8 +116,7 @@ def region_held(
     if h is None:
         raise click.UsageError("--pd needs --h: the step in s")
     question = held_question(drive, h, timing or Timing(), methods)
-    if figure != "none":
-        output_directory(output)
+    files.check_output()
     found = list(held_answers(question))
     alpha_hat, beta_hat = drive.point(h)
     own = float(alpha_hat), float(beta_hat)
@@ -128,14 +127,14 @@ def region_held(
 
             return held_figure(answer, held_map(answer.method.name, question.timing, points, own))
 
-        write_figure(output / f"region_{file_name(answer.method.name)}_held", draw, figure)
+        files.write_figure(files.path("region", answer.method.name, "held"), draw)
     _show_held(found, form)
 
 
 def choose_held(
     inertia: Fraction,
     h: Fraction,
-    timing: "Timing",
+    timing: "Timing | None",
     methods: Sequence[Method],
     bandwidth: Fraction | None,
     settle: Fraction | None,
@@ -144,8 +143,10 @@ def choose_held(
     """Print gains for a bandwidth (Hz) or a time to settle (s) as `check` would; return whether every way is safe."""
     from bezstab.methods import lookup
     from bezstab.questions import held_answers, held_gains
+    from bezstab.stability import Timing
 
     refuse_others("--bandwidth, --settle, --every, --late and --filter", "bandwidth", "settle")
+    timing = timing or Timing()
     applied = list(methods) or [lookup("SYM")]
     drive = held_gains(inertia, h, timing, bandwidth=bandwidth, settle=settle, methods=applied)
     if for_reading(form):

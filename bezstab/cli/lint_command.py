@@ -74,7 +74,7 @@ def lint(
     heading = f"{model.name}: timestep {model_data.h:g} s, integrator {model_data.integrator}"
     if linted or not for_reading(form):
         rows = [linted_row(each) for each in linted]
-        show_rows(rows, LINTED.columns(rows), form, heading)
+        show_rows(LINTED, rows, form, heading=heading)
     else:
         show_text(
             f"{heading}\n\nNothing to judge: no equality, limit, friction loss, contact, spring, damper or drive."

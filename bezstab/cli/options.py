@@ -3,9 +3,11 @@
 import os
 import re
 from collections.abc import Callable, Collection, Iterable
+from dataclasses import fields
 from fractions import Fraction
+from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar, get_args
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar, get_args
 
 import click
 
@@ -13,13 +15,13 @@ from bezstab.engines import ENGINES, Engine, engine_and_values, engine_named
 from bezstab.errors import InputError
 from bezstab.methods import REGISTRY, lookup
 from bezstab.rationals import rational
-from bezstab.show import Format
+from bezstab.show import FIGURE_FORMS, TABLE_FORMS, Format
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
-FigureForm = Literal["png", "svg", "pdf", "none"]
-TableForm = Literal["csv", "npz", "none"]
+    from bezstab.mechanism import Projection, Stabilise
+
 EngineValues = tuple[Engine, tuple[Fraction, ...]]
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -121,6 +123,7 @@ SECONDS = ParsedType("seconds", _seconds)
 SPEED = ParsedType("number", _speed)
 SEQUENCE = ParsedType("steps", _sequence)
 METHOD = ParsedType("method", lookup, (*REGISTRY, *WITH_PARAMETERS))
+SHARE = ParsedType("number", lambda text: float(rational(text)))
 ENGINE = ParsedType("NAME", engine_named, ENGINES)
 ENGINE_VALUES = ParsedType("name=values", engine_and_values, [f"{name}=" for name in ENGINES])
 
@@ -153,13 +156,13 @@ output_option = click.option(
     "-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory for what is written."
 )
 figure_option = click.option(
-    "--figure", type=click.Choice(get_args(FigureForm)), default="png", help="Format of the figure."
+    "--figure", type=click.Choice([*FIGURE_FORMS, "none"]), default="png", help="Format of the figure."
 )
 
 
-def table_option(default: TableForm) -> Decorator:
+def table_option(default: str) -> Decorator:
     """Return the option --table."""
-    choice = click.Choice(get_args(TableForm))
+    choice = click.Choice([*TABLE_FORMS, "none"])
     return click.option("--table", type=choice, default=default, help="Format of the table.")
 
 
@@ -220,11 +223,34 @@ def together(*options: Decorator) -> Decorator:
     return with_options
 
 
-file_options = together(output_option, figure_option, table_option("csv"))
-figure_options = together(output_option, figure_option, table_option("none"))
-"""Of a command whose table is long and seldom wanted: it is written when asked for."""
+def gathered(kind: type, parameter: str, *options: Decorator) -> Decorator:
+    """Return one decorator that adds options and hands the command one value of a dataclass, whose fields they are."""
 
-work_options = together(workers_option, scheduler_option, resume_option)
+    def with_options(function: Function, /) -> Function:
+        @wraps(function)
+        def with_one_value(*arguments: Any, **typed: Any) -> Any:
+            own = {field.name: typed.pop(field.name) for field in fields(kind) if field.name in typed}
+            return function(*arguments, **{parameter: kind(**own)}, **typed)
+
+        return together(*options)(with_one_value)  # type: ignore[return-value]  # as wraps has it
+
+    return with_options
+
+
+stabilise_options = together(
+    click.option(
+        "--stabilise",
+        type=click.Choice(["baumgarte", "projection", "none"]),
+        default="baumgarte",
+        help="What holds the constraints: feedback with α and β; projection of each new state onto them, in the metric "
+        "of the masses; or nothing, α = β = 0.",
+    ),
+    click.option(
+        "--iterations",
+        type=click.IntRange(min=1),
+        help="With projection: Newton's iterations for the position in each step, at most [as many as reach 1e-12].",
+    ),
+)
 
 
 def both_or_none(alpha: Fraction | None, beta: Fraction | None) -> tuple[Fraction, Fraction] | None:
@@ -234,6 +260,25 @@ def both_or_none(alpha: Fraction | None, beta: Fraction | None) -> tuple[Fractio
     if alpha is None or beta is None:
         raise click.UsageError("--alpha and --beta go together: they are one point")
     return alpha, beta
+
+
+def projection_asked_for(stabilise: "Stabilise", iterations: int | None, against: bool = False) -> "Projection | None":
+    """Return the projection that the running command is asked for; UsageError for options that do not go with it.
+
+    `against`: whether there are runs with projection beside those with feedback.
+    """
+    projected = stabilise == "projection" or against
+    if iterations is not None and not projected:
+        raise click.UsageError("--iterations are those of --stabilise projection")
+    if stabilise != "baumgarte":
+        for option in ("alpha", "beta", "physical", "hold", "omega"):
+            if option in click.get_current_context().params and not left_at_default(option):
+                raise click.UsageError(f"--stabilise {stabilise} has no feedback: not with --{option}")
+    if not projected:
+        return None
+    from bezstab.mechanism import Projection
+
+    return Projection(iterations)
 
 
 def typed_beside(allowed: Collection[str]) -> str | None:

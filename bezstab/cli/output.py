@@ -2,18 +2,27 @@
 
 import re
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from operator import length_hint
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 
 import click
 
-from bezstab.cli.options import FigureForm, TableForm
+from bezstab.cli.options import (
+    figure_option,
+    gathered,
+    output_option,
+    resume_option,
+    scheduler_option,
+    table_option,
+    workers_option,
+)
 from bezstab.cli.terminal import text_width
-from bezstab.files import write_whole
-from bezstab.show import Column, Format, Row, block, finite, fits, render, visible, wrapped
+from bezstab.files import output_directory, write_whole
+from bezstab.show import Column, Format, Row, RowKind, Sentence, block, finite, fits, render, visible, wrapped
 from bezstab.stopping import if_stopped
 
 if TYPE_CHECKING:
@@ -24,9 +33,6 @@ if TYPE_CHECKING:
     from bezstab.evidence import Arrays
 
 Item = TypeVar("Item")
-Sentence = Callable[[Row], str]
-"""Says in words what a row does in numbers."""
-
 INDENT = " " * 4
 """Of a command line that is shown to be copied, and once more of its continued lines."""
 
@@ -35,17 +41,18 @@ CONTINUED = " \\"
 
 
 def show_rows(
-    rows: Sequence[Row], columns: Sequence[Column], form: Format, heading: str = "", sentence: Sentence | None = None
+    kind: RowKind, rows: Sequence[Row], form: Format, without: Collection[str] = (), heading: str = ""
 ) -> None:
-    """Print rows on standard output, below a heading where people read them.
+    """Print rows of a kind on standard output, below a heading where people read them; `without` as RowKind.columns.
 
     As text, a single row is a block of lines below its sentence; so is each row of a table wider than the terminal.
     """
     if heading and for_reading(form):
         show_text(f"{heading}\n")
+    columns = kind.columns(rows, without) if for_reading(form) else []
     answer = render(rows, columns, form)
     if form == "text" and rows and (len(rows) == 1 or not fits(answer, text_width())):
-        show_blocks(rows, columns, sentence)
+        show_blocks(rows, columns, kind.sentence)
     else:
         click.echo(answer)
 
@@ -116,23 +123,66 @@ def write_file(path: Path, write: Callable[[BinaryIO], object]) -> None:
     say(f"wrote {path}")
 
 
-def write_table(path: Path, columns: "Mapping[str, NDArray[np.generic]]", form: TableForm) -> None:
-    """Write equally long arrays by name into `path` + .csv or .npz, or nothing if the form is none."""
-    if form == "none":
-        return
-    from bezstab.show import write_arrays
+@dataclass(frozen=True)
+class Files:
+    """Where a command writes (--output), and in which forms (--figure, --table)."""
 
-    write_file(path.with_name(f"{path.name}.{form}"), lambda file: write_arrays(columns, form, file))
+    output: Path
+    figure: str
+    table: str = "none"
+
+    @property
+    def wanted(self) -> bool:
+        """Whether anything is to be written."""
+        return self.figure != "none" or self.table != "none"
+
+    def check_output(self) -> None:
+        """Make the directory if something is to be written; InputError where that cannot be, before anything runs."""
+        if self.wanted:
+            output_directory(self.output)
+
+    def path(self, *names: str) -> Path:
+        """Return the path, without an ending, of what is called like names of methods and scenes."""
+        return self.output / "_".join(file_name(name) for name in names)
+
+    def write_table(self, path: Path, columns: "Mapping[str, NDArray[np.generic]]") -> None:
+        """Write equally long arrays by name into `path` + .csv or .npz, or nothing if the form is none."""
+        form = self.table
+        if form == "none":
+            return
+        from bezstab.show import write_arrays
+
+        write_file(path.with_name(f"{path.name}.{form}"), lambda file: write_arrays(columns, form, file))
+
+    def write_figure(self, path: Path, draw: "Callable[[], Figure]") -> None:
+        """Write the figure that `draw` makes into `path` + its form; if that is none, nothing is drawn or loaded."""
+        form = self.figure
+        if form == "none":
+            return
+        figure = draw()
+        from bezstab.show import save
+
+        write_file(path.with_name(f"{path.name}.{form}"), lambda file: save(figure, form, file))
 
 
-def write_figure(path: Path, draw: "Callable[[], Figure]", form: FigureForm) -> None:
-    """Write the figure that `draw` makes into `path` + its form; if that is none, nothing is drawn or loaded."""
-    if form == "none":
-        return
-    figure = draw()
-    from bezstab.show import save
+file_options = gathered(Files, "files", output_option, figure_option, table_option("csv"))
+figure_options = gathered(Files, "files", output_option, figure_option, table_option("none"))
+"""Of a command whose table is long and seldom wanted: it is written when asked for."""
 
-    write_file(path.with_name(f"{path.name}.{form}"), lambda file: save(figure, form, file))
+picture_options = gathered(Files, "files", output_option, figure_option)
+"""Of a command that has no table beside what it prints."""
+
+
+@dataclass(frozen=True)
+class Work:
+    """Who computes what takes long: so many processes, or a cluster's; `resume` goes on with what is left."""
+
+    workers: int | None
+    scheduler: str | None
+    resume: bool
+
+
+work_options = gathered(Work, "work", workers_option, scheduler_option, resume_option)
 
 
 def progress(
@@ -154,17 +204,11 @@ def progress(
 
 @contextmanager
 def results_of_chunks(
-    work: "Callable[[Any], Arrays]",
-    chunks: Sequence[Any],
-    path: Path,
-    job: str,
-    workers: int | None,
-    scheduler: str | None,
-    resume: bool,
+    compute: "Callable[[Any], Arrays]", chunks: Sequence[Any], path: Path, job: str, work: Work
 ) -> "Iterator[list[Arrays]]":
     """Give the results of independent chunks, in their order, from processes or a cluster's workers.
 
-    What is finished is kept in `path` + .chunks, for `resume` by the same `job`, and goes once the caller has used it.
+    What is finished is kept in `path` + .chunks for a run of the same `job` that resumes, and goes once it was used.
     What is damaged there is computed again, and said so. InputError while another run is at work there.
     """
     from bezstab.evidence import chunk_store, completed_chunks, worker_pool
@@ -176,9 +220,9 @@ def results_of_chunks(
         say(f"bezstab: what is finished lies in {store.path}: --resume goes on from there")
 
     kept_in = path.with_name(f"{path.name}.chunks")
-    with worker_pool(workers, scheduler) as pool, chunk_store(kept_in, job, resume) as store:
+    with worker_pool(work.workers, work.scheduler) as pool, chunk_store(kept_in, job, work.resume) as store:
         with if_stopped(say_how_to_go_on):
-            arriving = completed_chunks(work, chunks, pool, store, say_damaged)
+            arriving = completed_chunks(compute, chunks, pool, store, say_damaged)
             results = dict(progress(arriving, path.name, len(chunks)))
         yield [results[number] for number in range(len(chunks))]
         store.discard()

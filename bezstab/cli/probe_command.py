@@ -203,13 +203,13 @@ def _invert(
 def _show(answers: Answers, form: Format) -> None:
     """Print all rows; for reading in a table of each kind, with the sentences below."""
     if not for_reading(form):
-        show_rows([*answers.fits, *answers.likenesses, *answers.points], [], form)
+        show_rows(PROBED, [*answers.fits, *answers.likenesses, *answers.points], form)
         return
-    show_rows(answers.fits, PROBED.columns(answers.fits), form)
+    show_rows(PROBED, answers.fits, form)
     for rows in (_nearest(answers.likenesses), answers.points):
         if rows:
             click.echo()
-            show_rows(rows, PROBED.columns(rows, ("reason",)), form)
+            show_rows(PROBED, rows, form, ("reason",))
     for sentence in answers.sentences:
         show_text(f"\n{sentence}")
 

@@ -8,102 +8,43 @@ from typing import TYPE_CHECKING
 
 import click
 
-from bezstab.cli.asking import say_if_units_were_mistaken
+from bezstab.cli.asking import point_typed
 from bezstab.cli.options import (
     NUMBER,
-    FigureForm,
-    TableForm,
-    both_or_none,
     compiled_option,
-    file_options,
     format_option,
     methods_option,
     physical_option,
     scene_option,
     speed_option,
     step_option,
-    work_options,
 )
 from bezstab.cli.output import (
-    file_name,
+    Files,
+    Work,
+    file_options,
     for_reading,
     progress,
     results_of_chunks,
     show_rows,
     show_text,
-    write_figure,
-    write_table,
+    work_options,
 )
 from bezstab.methods import Method
-from bezstab.show import FORCED, MEASUREMENTS, VERDICT_MAPS, WITNESSED, Format, Row, column, formatted
-from bezstab.units import to_dimensionless
+from bezstab.show import FORCED, MEASUREMENTS, SUMMARIES, VERDICT_MAPS, WITNESSED, Format, cells
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from bezstab.evidence import HalvedStep, VerdictMap
+    from bezstab.evidence import VerdictMap
     from bezstab.mechanism import Mechanism
 
 RANDOM_POINTS = 20  # unless told otherwise
 NUMERICAL_TROUBLE = 3
 """Exit status where runs break down, or show nothing but rounding."""
 
-
-def measurement_sentence(row: Row) -> str:
-    """Return the predicted and the measured modulus, and whether the verdicts agree."""
-    ends = {True: "the verdicts agree", False: "the verdicts DISAGREE", None: "too close to call"}
-    agree = row["verdicts_agree"]
-    assert agree is None or isinstance(agree, bool)
-    if not row["measurable"]:
-        verdict = "" if agree is None else f" The run {row['measured_verdict']}: {ends[agree]}."
-        return f"Not measurable: {row['reason']}.{verdict}"
-    predicted, measured = formatted(row["predicted_z_abs"], ".6f"), formatted(row["measured_z_abs"], ".6f")
-    return f"Predicted |z| {predicted}, measured {measured}: {ends[agree]}."
-
-
-SUMMARIES = [
-    column("method", "method"),
-    column("points", "points", "d"),
-    column("measured points", "measured", "d"),
-    column("median error of |z|", "median_error", ".1e"),
-    column("largest error of |z|", "largest_error", ".1e"),
-    column("verdicts called", "called", "d"),
-    column("wrong verdicts", "wrong", "d"),
-]
-MOTION_SUMMARIES = [
-    column("followed over a revolution", "revolutions_measured", "d"),
-    column("median error at rest", "map_error", ".1e"),
-    column("median error of the law", "law_error", ".1e"),
-    column("median error of the exact rate", "floquet_error", ".1e"),  # of a motion that begins anew, else of none
-    column("on the wrong side of one: at rest, law, exact", "wrong_sides"),
-]
-
-
-def summary_sentence(row: Row) -> str:
-    """Return at how many points the poles could be measured, and how many verdicts were wrong."""
-    return f"{row['method']}: {row['measured']} of {row['points']} points measured, {row['wrong']} wrong verdicts."
-
-
-def verdict_map_sentence(row: Row) -> str:
-    """Return how many runs gave a verdict, how many of these are as predicted, and how many others must not differ."""
-    if not row["judged_runs"]:
-        return f"{row['method']}: none of {row['runs']} runs gave a verdict."
-    given = f"{row['judged_runs']} of {row['runs']} runs gave a verdict, {row['agreeing']} as predicted"
-    return f"{row['method']}: {given}; {row['disagreeing']} that are not too close to call differ."
-
-
-def forced_sentence(row: Row) -> str:
-    """Return what was measured of a run, over what was predicted."""
-    at = f"{row['method']} at {row['gain_share']:g} of the gains, steps of {row['h']:g} s"
-    if row["reason"]:
-        return f"{at}: not compared: {row['reason']}."
-    return f"{at}: |c| is {formatted(row['quotient'], '.3f')} times what was predicted."
-
-
-def witness_sentence(row: Row) -> str:
-    """Return what the other engine did against what was predicted."""
-    as_predicted = "as" if row["measured_verdict"] == row["predicted_verdict"] else "NOT as"
-    return f"MuJoCo's {row['integrator']}: {row['measured_verdict']}, {as_predicted} predicted."
+OVER_THE_MOTION = ("followed", "map_error", "law_error", "floquet_error", "wrong_sides")
+"""What a summary leaves out without --floquet."""
 
 
 @click.command()
@@ -114,7 +55,7 @@ def witness_sentence(row: Row) -> str:
 @click.option("--beta", type=NUMBER, help="β̂ of one point; β in 1/s with --physical.")
 @physical_option
 @click.option("--points", type=click.IntRange(1, 1000), help="So many, over region and surroundings [20].")
-@click.option("--map", "cells", type=click.IntRange(2, 10000), help="Simulated verdicts of N×N points.")
+@click.option("--map", "cells_across", type=click.IntRange(2, 10000), help="Simulated verdicts of N×N points.")
 @click.option(
     "--floquet", is_flag=True, help="Also exact rates, of a motion that begins anew, by its linearised steps."
 )
@@ -125,7 +66,9 @@ def witness_sentence(row: Row) -> str:
 @work_options
 @file_options
 @format_option
+@click.pass_context
 def verify(
+    context: click.Context,
     scene: str,
     speed: Fraction,
     methods: Sequence[Method],
@@ -133,17 +76,13 @@ def verify(
     beta: Fraction | None,
     physical: bool,
     points: int | None,
-    cells: int | None,
+    cells_across: int | None,
     floquet: bool,
     accuracy: bool,
     witness: str | None,
     h: Fraction,
-    output: Path,
-    workers: int | None,
-    scheduler: str | None,
-    resume: bool,
-    figure: FigureForm,
-    table: TableForm,
+    work: Work,
+    files: Files,
     form: Format,
 ) -> None:
     """Compare predicted poles with poles measured in a simulation.
@@ -164,47 +103,29 @@ def verify(
     Example: bezstab verify --method AB4 --points 20
     """
     from bezstab.mechanism import at_speed, compiled_mechanism, load_scene
-    from bezstab.show import verdict_map_row
 
-    point = both_or_none(alpha, beta)
-    if accuracy and any((points, cells, witness, floquet)):
+    if accuracy and any((points, cells_across, witness, floquet)):
         raise click.UsageError("--accuracy goes with --alpha and --beta or alone, not with --points, --map, ...")
-    if sum(choice is not None for choice in (point, points, cells, witness)) > 1:
+    if sum(choice is not None for choice in (alpha, points, cells_across, witness)) > 1:
         raise click.UsageError("choose one of --alpha with --beta, --points, --map and --witness")
-    if physical and point is None:
-        raise click.UsageError("--physical needs --alpha and --beta")
-    if point:
-        if physical:
-            point = to_dimensionless(*point, h)
-        else:
-            say_if_units_were_mistaken(methods, *point, h)
+    point = point_typed(methods, alpha, beta, h, physical)
     mechanism = compiled_mechanism(at_speed(load_scene(scene), float(speed)))
     if accuracy:
-        click.get_current_context().exit(_show_forced_errors(mechanism, methods, float(h), point, form))
-    if witness:
-        rows = _witness_rows(mechanism, float(h))
-        show_rows(rows, WITNESSED.columns(rows), form, sentence=witness_sentence)
-    elif cells is None:
-        _show_measurements(mechanism, methods, float(h), point, points or RANDOM_POINTS, floquet, form)
+        context.exit(_show_forced_errors(mechanism, methods, float(h), point, form))
+    elif witness:
+        _show_witnesses(mechanism, float(h), form)
+    elif cells_across:
+        _show_map(mechanism, methods, float(h), cells_across, Path(scene).stem, work, files, form)
     else:
-        rows = []
-        for method in methods:
-            path = output / f"verify_{file_name(Path(scene).stem)}_{file_name(method.name)}"
-            job = f"--map {cells} --h {h} {method} {mechanism.scene}"
-            verdicts = _map_verdicts(
-                mechanism, method, float(h), cells, path, job, workers, scheduler, resume, figure, table
-            )
-            rows.append(verdict_map_row(verdicts))
-        show_rows(rows, VERDICT_MAPS.columns(rows), form, sentence=verdict_map_sentence)
+        _show_measurements(mechanism, methods, float(h), point, points or RANDOM_POINTS, floquet, form)
 
 
-def _witness_rows(mechanism: "Mechanism", h: float) -> list[Row]:
-    """Return a row for each run of MuJoCo's integrators; h in s."""
+def _show_witnesses(mechanism: "Mechanism", h: float, form: Format) -> None:
+    """Print a row for each run of MuJoCo's integrators; h in s."""
     from bezstab.evidence import mujoco_witnesses, witness_count
-    from bezstab.show import witness_row
 
     witnesses = progress(mujoco_witnesses(mechanism, h), "MuJoCo", witness_count())
-    return [witness_row(mechanism.scene.name, witnessed) for witnessed in witnesses]
+    show_rows(WITNESSED, [cells(WITNESSED.fields, each, {"scene": mechanism.scene.name}) for each in witnesses], form)
 
 
 def _show_forced_errors(
@@ -212,48 +133,28 @@ def _show_forced_errors(
 ) -> int:
     """Print predicted and measured errors at shares of a point's gains, and return the exit status; h in s."""
     from bezstab.evidence import SHARES, halved_steps
-    from bezstab.show import forced_rows
+    from bezstab.show import forced_rows, forced_words
     from bezstab.stability import choose
 
-    rows: list[Row] = []
-    conclusions: list[str] = []
-    outcomes: set[bool | None] = set()
+    pairs_by_method = {}
     for method in methods:
         if point:
             at = float(point[0]), float(point[1])
         else:
             chosen = choose(method, "robust", margins=False)
             at = chosen.alpha_hat, chosen.beta_hat
-        pairs = list(
-            progress(halved_steps(mechanism, method, h, at, mechanism.scene.duration), method.name, len(SHARES))
-        )
-        rows += [row for pair in pairs for row in forced_rows(mechanism.scene.name, pair)]
-        conclusions.append(_conclusion(method, pairs))
-        outcomes |= {pair.holds for pair in pairs}
-    show_rows(rows, FORCED.columns(rows), form, sentence=forced_sentence)
+        found = halved_steps(mechanism, method, h, at, mechanism.scene.duration)
+        pairs_by_method[method.name] = list(progress(found, method.name, len(SHARES)))
+    every_pair = [pair for pairs in pairs_by_method.values() for pair in pairs]
+    show_rows(FORCED, [row for pair in every_pair for row in forced_rows(mechanism.scene.name, pair)], form)
     if for_reading(form):
         click.echo()
-        for conclusion in conclusions:
-            show_text(conclusion)
+        for name, pairs in pairs_by_method.items():
+            show_text(forced_words(name, pairs))
+    outcomes = {pair.holds for pair in every_pair}
     if None in outcomes:
         return NUMERICAL_TROUBLE
     return 0 if outcomes == {True} else 1
-
-
-def _conclusion(method: Method, pairs: "Sequence[HalvedStep]") -> str:
-    """Return in words whether one method forces what was predicted, and how that shrinks with the step."""
-    kept = [pair for pair in pairs if pair.holds is not None]
-    if not kept:
-        return f"{method.name}: nothing could be compared."
-    quotients = [run.quotient for pair in kept for run in (pair.whole, pair.half)]
-    holds = "the prediction holds" if all(pair.holds for pair in kept) else "the prediction does NOT hold"
-    predicted, seen = ([getattr(pair, name) for pair in kept] for name in ("predicted_order", "observed_order"))
-    left_out = len(pairs) - len(kept)
-    without = f" {left_out} of {len(pairs)} points could not be compared." if left_out else ""
-    return (
-        f"{method.name}: measured over predicted is {min(quotients):.3f} to {max(quotients):.3f}: {holds}. The order "
-        f"in h is {min(seen):.2f} to {max(seen):.2f}, predicted {min(predicted):.2f} to {max(predicted):.2f}.{without}"
-    )
 
 
 def _show_measurements(
@@ -268,78 +169,58 @@ def _show_measurements(
     """Print the poles measured at one point, else at random ones, and where there are several how well they agree."""
     import numpy as np
 
-    from bezstab.evidence import measure_poles, random_points
-    from bezstab.show import measurement_row, summary_row
+    from bezstab.evidence import measure_poles, measurement_summary, random_points
+    from bezstab.show import exact_rate_words, measurement_row
 
-    rows: list[Row] = []
-    summaries: list[Row] = []
-    periodic = False
+    measured = []
     for method in methods:
         if point:
             alpha_hat, beta_hat = np.array([float(point[0])]), np.array([float(point[1])])
         else:
             alpha_hat, beta_hat = random_points(method, points)
         bar = partial(progress, label=method.name)
-        measurements = measure_poles(mechanism, method, h, alpha_hat, beta_hat, bar, floquet)
-        periodic = all(measurement.periodic for measurement in measurements)
-        own_rows = [measurement_row(mechanism.scene.name, measurement) for measurement in measurements]
-        rows += own_rows
-        summaries.append(summary_row(own_rows))
-    columns = MEASUREMENTS.columns(rows, () if floquet else ("right",))
-    show_rows(rows, columns, form, sentence=measurement_sentence)
-    if floquet and for_reading(form):
-        for method in methods:
-            if not periodic:
-                show_text(
-                    f"No rate of {method.name} is exact: the motion does not begin anew{_why_not(mechanism)}. What is "
-                    "shown is how errors grow over the run."
-                )
-                continue
-            show_text(
-                f"Exact rates of {method.name}: along the method's own motion, where there is none along the "
-                "mechanism's motion."
-            )
-    if for_reading(form) and len(rows) > len(methods):  # of one point each there is nothing to sum up
+        measured.append(measure_poles(mechanism, method, h, alpha_hat, beta_hat, bar, floquet))
+    rows = [measurement_row(mechanism.scene.name, each) for of_method in measured for each in of_method]
+    show_rows(MEASUREMENTS, rows, form, () if floquet else ("right",))
+    if not for_reading(form):
+        return
+    for of_method in measured if floquet else ():
+        show_text(exact_rate_words(mechanism, of_method))
+    if len(rows) > len(methods):  # of one point each there is nothing to sum up
         click.echo()
-        show_rows(summaries, SUMMARIES + (MOTION_SUMMARIES if floquet else []), form, sentence=summary_sentence)
+        summaries = [cells(SUMMARIES.fields, measurement_summary(of_method)) for of_method in measured]
+        show_rows(SUMMARIES, summaries, form, () if floquet else OVER_THE_MOTION)
 
 
-def _why_not(mechanism: "Mechanism") -> str:
-    """Return why a motion does not begin anew, as far as its drivers say."""
-    from bezstab.mechanism import Driver, revolution_period
-
-    if not any(isinstance(joint, Driver) for joint in mechanism.scene.joints):
-        return ", as nothing drives it"
-    return ", as its drivers have no common period" if revolution_period(mechanism) is None else ""
-
-
-def _map_verdicts(
+def _show_map(
     mechanism: "Mechanism",
-    method: Method,
+    methods: Sequence[Method],
     h: float,
-    cells: int,
-    path: Path,
-    job: str,
-    workers: int | None,
-    scheduler: str | None,
-    resume: bool,
-    figure: FigureForm,
-    table: TableForm,
-) -> "VerdictMap":
-    """Simulate cells x cells runs, write their verdicts as table and figure, and return them; h in s."""
+    across: int,
+    scene_name: str,
+    work: Work,
+    files: Files,
+    form: Format,
+) -> None:
+    """Simulate across x across runs of each method, write their verdicts as table and figure, print how many agree."""
     from bezstab.evidence import map_rows, simulated_verdicts, verdict_map
-    from bezstab.show import verdict_arrays
+    from bezstab.show import verdict_arrays, verdict_map_row
     from bezstab.stability import region
 
-    chunks = map_rows(mechanism.scene, method, h, cells)
-    with results_of_chunks(simulated_verdicts, chunks, path, job, workers, scheduler, resume) as results:
-        verdicts = verdict_map(chunks, results)
+    rows = []
+    for method in methods:
+        path = files.path("verify", scene_name, method.name)
+        job = f"--map {across} --h {h} {method} {mechanism.scene}"
+        chunks = map_rows(mechanism.scene, method, h, across)
+        with results_of_chunks(simulated_verdicts, chunks, path, job, work) as results:
+            verdicts = verdict_map(chunks, results)
 
-        def draw() -> "Figure":
-            from bezstab.show import verdict_figure
+            def draw(verdicts: "VerdictMap" = verdicts) -> "Figure":
+                from bezstab.show import verdict_figure
 
-            return verdict_figure(verdicts, region(method))
+                return verdict_figure(verdicts, region(verdicts.method))
 
-        write_table(path, verdict_arrays(verdicts), table)
-        write_figure(path, draw, figure)
-    return verdicts
+            files.write_table(path, verdict_arrays(verdicts))
+            files.write_figure(path, draw)
+        rows.append(verdict_map_row(verdicts))
+    show_rows(VERDICT_MAPS, rows, form)

@@ -22,10 +22,19 @@ from bezstab.evidence.floquet import floquet_rates
 from bezstab.evidence.forced_runs import SHARES, HalvedStep, halved_steps
 from bezstab.evidence.linear_prediction import SPREAD, Fit, Refusal, fit_dominant_pole
 from bezstab.evidence.logs import Log, error_columns, log_from, parse_log, read_log, row_step, time_column
-from bezstab.evidence.measured_poles import LINEAR, Measurement, kicked_constraint_errors, measure_poles, random_points
+from bezstab.evidence.measured_poles import (
+    LINEAR,
+    MeasuredVerdict,
+    Measurement,
+    kicked_constraint_errors,
+    measure_poles,
+    random_points,
+)
+from bezstab.evidence.measurement_summaries import measurement_summary
 from bezstab.evidence.moving_mechanisms import (
     LAW_HOLDS,
     MovingPole,
+    MovingVerdict,
     growth_rates,
     momentary_rates,
     moving_pole,
@@ -36,7 +45,7 @@ from bezstab.evidence.moving_regions import MovingRegion, moving_growth, moving_
 from bezstab.evidence.mujoco_controllers import MotorGains
 from bezstab.evidence.mujoco_lint import Linted, linted_model
 from bezstab.evidence.mujoco_models import ModelData, model_data, mujoco_module, read_mujoco_model
-from bezstab.evidence.mujoco_witness import TIMES, Witnessed, model_xml, mujoco_witnesses, witness_count
+from bezstab.evidence.mujoco_witness import TIMES, Outcome, Witnessed, model_xml, mujoco_witnesses, witness_count
 from bezstab.evidence.own_motions import own_motion_rates
 from bezstab.evidence.pareto import pareto_front
 from bezstab.evidence.probed_poles import (

@@ -62,11 +62,11 @@ class Witnessed:
     alpha_hat: float
     beta_hat: float
     times_boundary: float
-    predicted_abs: float
+    predicted_z_abs: float
     predicted_verdict: Outcome
     measured_verdict: Outcome
     remaining: float
-    steps: int
+    run_steps: int
 
 
 def mujoco_witnesses(mechanism: Mechanism, h: float) -> Iterator[Witnessed]:
@@ -109,11 +109,11 @@ def _witnessed(
         alpha_hat=point[0],
         beta_hat=point[1],
         times_boundary=times,
-        predicted_abs=z_abs,
+        predicted_z_abs=z_abs,
         predicted_verdict="converges" if z_abs < 1 else "diverges",
         measured_verdict=measured,
         remaining=remaining,
-        steps=len(c),
+        run_steps=len(c),
     )
 
 

@@ -14,6 +14,7 @@ from bezstab.mechanism.equations import Equations, T, equations_of_motion
 from bezstab.mechanism.linearized import linearized_acceleration
 from bezstab.mechanism.motions import Motion, motion, regular_motion, revolution_period
 from bezstab.mechanism.observation import Observation, observe, singular_passages
+from bezstab.mechanism.projection import Projection, Stabilise, check_projected
 from bezstab.mechanism.runner import (
     Block,
     Start,

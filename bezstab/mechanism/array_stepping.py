@@ -11,9 +11,11 @@ from bezstab.mechanism.compiled import (
     Mechanism,
     StateFunction,
     acceleration_function,
+    correction_function,
     judged_acceleration_function,
     slope_function,
 )
+from bezstab.mechanism.start import CLOSED
 from bezstab.mechanism.stepping import (
     FALL,
     TOLERANCE,
@@ -27,13 +29,20 @@ from bezstab.mechanism.stepping import (
 )
 
 Accelerate = Callable[[float, FloatArray, FloatArray, FloatArray], float]
-"""accelerate(t, gains, state, found) writes accelerations (n, lanes) of a state (2, n, lanes); the least pivot."""
+"""accelerate(t, gains, state, found) writes accelerations (n, lanes) of a state (2, n, lanes); the least pivot.
+
+So do corrections of position and velocity, (2n, lanes)."""
 
 
 @cache
 def array_steps(mechanism: Mechanism) -> TakeSteps:
     """Return the function that takes a mechanism's steps with numpy."""
-    given = _accelerations(mechanism)
+    given = _written(
+        acceleration_function(mechanism, np),
+        judged_acceleration_function(mechanism, np),
+        judged_acceleration_function(mechanism, math),
+    )
+    of_arrays, of_floats = (correction_function(mechanism, library) for library in (np, math))
     slope = slope_function(mechanism, np)
     return stepper(
         Operations(
@@ -47,19 +56,19 @@ def array_steps(mechanism: Mechanism) -> TakeSteps:
             renew=partial(renew, slope),
             advance=advance,
             end=end,
+            measure=partial(measure, _written(of_arrays, of_arrays, of_floats)),
+            distance=distance,
+            shift=shift,
         )
     )
 
 
-def _accelerations(mechanism: Mechanism) -> Accelerate:
-    """Return accelerations on numpy's arrays; those of a lane alone on floats, which is ten times as fast."""
-    of_arrays: StateFunction = acceleration_function(mechanism, np)
-    judged_arrays: StateFunction = judged_acceleration_function(mechanism, np)
-    judged_floats: StateFunction = judged_acceleration_function(mechanism, math)
+def _written(of_arrays: StateFunction, judged_arrays: StateFunction, judged_floats: StateFunction) -> Accelerate:
+    """Return a function on numpy's arrays; of a lane alone it is that on floats, which is ten times as fast."""
 
     def accelerate(time: float, gains: FloatArray, state: FloatArray, found: FloatArray) -> float:
         if found.shape[1] > 1 or found.dtype != np.float64:
-            for place, each in enumerate(of_arrays(time, *gains, *state)):
+            for place, each in zip(range(len(found)), of_arrays(time, *gains, *state), strict=False):  # less a pivot
                 found[place] = each
             return 1.0
         two_alpha, beta_squared = gains[:, 0].tolist()
@@ -257,3 +266,24 @@ def end(rows: Rows, group: IntArray, registers: FloatArray, room: Room) -> float
         return 0.0
     by_lane(unknowns(rows, group, registers), room)[..., failed] = np.nan
     return float(np.where(np.isfinite(room.moved), room.moved, np.inf)[failed].max())
+
+
+def measure(correct: Accelerate, time: float, gains: FloatArray, state: FloatArray, room: Room) -> float:
+    """Write how a state has to be corrected, for its constraints to hold."""
+    return correct(time, gains, by_lane(state, room), room.off.reshape(-1, gains.shape[1]))
+
+
+def distance(state: FloatArray, room: Room) -> float:
+    """Return the largest correction of a position, summed over its coordinates; 0 where all are settled."""
+    corrections, _ = np.abs(by_lane(room.off.reshape(2, -1), room)).sum(axis=1)
+    sizes = np.abs(by_lane(state[0], room)).sum(axis=0)
+    unsettled = corrections > np.maximum(CLOSED, TOLERANCE * sizes)  # not so if it is no number
+    return float(corrections[unsettled].max(initial=0.0))
+
+
+def shift(rows: Rows, half: int, h: float, registers: FloatArray, state: FloatArray, room: Room) -> float:
+    """Correct the position (half 0) or the velocity (1) of a new state, and what is carried of it."""
+    correction = room.off.reshape(2, -1)[half]
+    state[half] += correction
+    registers[: len(rows.powers)] += np.outer(rows.corrected[:, half] * h**half, correction)
+    return float(np.abs(state).sum())

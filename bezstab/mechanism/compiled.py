@@ -13,7 +13,8 @@ from bezstab.mechanism.generated_code import (
     acceleration_code,
     acceleration_source,
     compiled_source,
-    judged_acceleration_source,
+    correction_code,
+    judged_source,
     multipliers_source,
     observation_source,
     slope_source,
@@ -70,9 +71,25 @@ def acceleration_function(mechanism: Mechanism, library: Any) -> StateFunction:
 @cache
 def judged_acceleration_function(mechanism: Mechanism, library: Any) -> StateFunction:
     """Return the same function with one result more: the least relative pivot of S = C_q M^-1 C_q^T."""
-    source = judged_acceleration_source(mechanism.acceleration_code)
-    acceleration: StateFunction = compiled_source(source, library)["judged_acceleration"]
+    acceleration: StateFunction = compiled_source(judged_source(mechanism.acceleration_code), library)["judged"]
     return acceleration
+
+
+@cache
+def corrections_of(mechanism: Mechanism) -> AccelerationCode:
+    """Return the code of what brings a state back to its constraints."""
+    return correction_code(mechanism.equations)
+
+
+@cache
+def correction_function(mechanism: Mechanism, library: Any) -> StateFunction:
+    """Return the function of (t, two_alpha, beta_squared, q, v) that gives all dq, all dv and the least relative pivot.
+
+    They are M^-1 C_q^T S^-1 times -c and -cdot, SI units, whatever the gains are. Arguments as for
+    multipliers_function.
+    """
+    correction: StateFunction = compiled_source(judged_source(corrections_of(mechanism)), library)["judged"]
+    return correction
 
 
 @cache

@@ -19,8 +19,9 @@ import numpy as np
 from bezstab.compiling import INNER, check_numba, compiled_choice, compiler, numba_is_installed
 from bezstab.errors import InputError
 from bezstab.mechanism import stepping
-from bezstab.mechanism.compiled import Mechanism
+from bezstab.mechanism.compiled import Mechanism, corrections_of
 from bezstab.mechanism.generated_code import compiled_source, machine_source
+from bezstab.mechanism.start import CLOSED
 from bezstab.mechanism.stepping import FALL, TOLERANCE, FloatArray, IntArray, Operations, Room, Rows, TakeSteps, stepper
 from bezstab.methods import Method, implicit
 
@@ -47,15 +48,16 @@ MOST_LINES_ASKED_FOR = 8000
 LANES = 64
 """Runs side by side: what they remember stays in the fastest memory."""
 
-_compiled: set[tuple[Mechanism, bool]] = set()
-"""What this process has compiled or loaded, for implicit methods or explicit ones."""
+_compiled: set[tuple[Mechanism, bool, bool]] = set()
+"""What this process has compiled or loaded, for implicit methods or explicit ones, with projection or without."""
 
 
-def runs_compiled(mechanism: Mechanism, method: Method, evaluations: int) -> bool:
+def runs_compiled(mechanism: Mechanism, method: Method, evaluations: int, projecting: bool = False) -> bool:
     """Return whether a run of so many evaluations is to be compiled. InputError if it must be and cannot be.
 
     That is without numba, or where the acceleration is too long a text. By default where numba is there and it pays:
-    the run is long, or its scene has been compiled before. `evaluations` do not include what iterations take.
+    the run is long, or its scene has been compiled before. `evaluations` do not include what iterations and projections
+    take.
     InputError, too, where BEZSTAB_COMPILED says neither auto nor yes nor no.
     """
     choice = compiled_choice()
@@ -73,13 +75,13 @@ def runs_compiled(mechanism: Mechanism, method: Method, evaluations: int) -> boo
     if not numba_is_installed():
         return False
     solving = implicit(method)
-    if (mechanism, solving) in _compiled:
+    if (mechanism, solving, projecting) in _compiled:
         return True
     if solving:
         evaluations *= ITERATIONS_OF_A_SOLUTION
     if lines > MOST_LINES or evaluations < WORTH_LOADING:
         return False
-    return evaluations >= WORTH_COMPILING or _is_kept(_kept_file(mechanism, solving))
+    return evaluations >= WORTH_COMPILING or _is_kept(_kept_file(mechanism, solving, projecting))
 
 
 def change_step(rows: Rows, ratio: float, registers: FloatArray) -> None:
@@ -329,8 +331,46 @@ def end(rows: Rows, group: IntArray, registers: FloatArray, room: Room) -> float
     return left
 
 
+def measure(time: float, gains: FloatArray, state: FloatArray, room: Room) -> float:
+    """Write how a state has to be corrected, for its constraints to hold."""
+    pivot = 1.0
+    for lane in range(len(room.moved)):
+        pivot = correction(time, gains, state, room.off, lane)
+    return pivot
+
+
+def distance(state: FloatArray, room: Room) -> float:
+    """Return the largest correction of a position, summed over its coordinates; 0 where all are settled."""
+    width, lanes = state.shape[1], len(room.moved)
+    largest = 0.0
+    for lane in range(lanes):
+        moved, size = 0.0, 0.0
+        for entry in range(lane, width, lanes):
+            moved += abs(room.off[entry])
+            size += abs(state[0, entry])
+        if moved > max(CLOSED, TOLERANCE * size):  # not so if it is no number
+            largest = max(largest, moved)
+    return largest
+
+
+def shift(rows: Rows, half: int, h: float, registers: FloatArray, state: FloatArray, room: Room) -> float:
+    """Correct the position (half 0) or the velocity (1) of a new state, and what is carried of it."""
+    width = state.shape[1]
+    size = 0.0
+    for place in range(width):
+        state[half, place] += room.off[half * width + place]
+        size += abs(state[0, place]) + abs(state[1, place])
+    for register in range(len(rows.powers)):
+        share = rows.corrected[register, half] if half == 0 else rows.corrected[register, half] * h
+        if share != 0:
+            for place in range(width):
+                registers[register, place] += share * room.off[half * width + place]
+    return size
+
+
 OPERATIONS = (change_step, evaluate, finish, begin, residual, remember, correct, renew, advance, end)
-"""In the order of `Operations`."""
+PROJECTING = (measure, distance, shift)
+"""In the order of `Operations`, both."""
 
 
 def acceleration(t: float, gains: FloatArray, state: FloatArray, found: FloatArray, lane: int) -> float:
@@ -343,18 +383,22 @@ def slope(t: float, gains: FloatArray, state: FloatArray, direction: FloatArray,
     raise NotImplementedError
 
 
+def correction(t: float, gains: FloatArray, state: FloatArray, found: FloatArray, lane: int) -> float:
+    """Stand for the generated function of a lane: it writes corrections of its state, and returns the least pivot."""
+    raise NotImplementedError
+
+
 @cache
-def machine_steps(mechanism: Mechanism, solving: bool) -> TakeSteps:
+def machine_steps(mechanism: Mechanism, solving: bool, projecting: bool) -> TakeSteps:
     """Return the function that takes a mechanism's steps as machine code. InputError without numba.
 
-    `solving`: whether programs have equations to solve. What is compiled is kept for the next process.
+    `solving`: whether programs have equations to solve; `projecting`: whether states are projected. What is compiled is
+    kept for the next process.
     """
     numba = compiler()
-    file = _kept_file(mechanism, solving)
+    file = _kept_file(mechanism, solving, projecting)
     namespace = dict(vars(sys.modules[__name__]))
-    generated = compiled_source(
-        machine_source(mechanism.acceleration_code, mechanism.equations), math, {"empty": np.empty}, str(file)
-    )
+    generated = compiled_source(_source(mechanism, projecting), math, {"empty": np.empty}, str(file))
     # where nothing allocates, nothing need count references to arrays: that takes longer than most operations
     allocating = "part_0" in generated
 
@@ -375,22 +419,34 @@ def machine_steps(mechanism: Mechanism, solving: bool) -> TakeSteps:
             generated[name] = made(function)
     namespace["acceleration"] = made(generated["acceleration_of_lane"], inline="never" if allocating else "always")
     namespace["slope"] = made(generated["slope_of_lane"])
+    if projecting:
+        namespace["correction"] = made(generated["correction_of_lane"])
     for function in (arguments, invert):
         namespace[function.__name__] = made(own(function))
-    generated["take_steps"] = stepper(Operations(*(made(own(function)) for function in OPERATIONS)), made, solving)
+    operations = Operations(*(made(own(function)) for function in (*OPERATIONS, *PROJECTING)))
+    generated["take_steps"] = stepper(operations, made, solving, projecting)
     take = generated["take"]
     take.__name__ = take.__qualname__ = f"take_{file.parent.name}"
     steps: TakeSteps = numba.njit(_nrt=allocating, no_cfunc_wrapper=True, cache=_keep(file))(take)
-    _compiled.add((mechanism, solving))
+    _compiled.add((mechanism, solving, projecting))
     return steps
 
 
+def _source(mechanism: Mechanism, projecting: bool) -> str:
+    """Return the text of the functions of a lane."""
+    return machine_source(
+        mechanism.acceleration_code, mechanism.equations, corrections_of(mechanism) if projecting else None
+    )
+
+
 @cache
-def _kept_file(mechanism: Mechanism, solving: bool) -> Path:
+def _kept_file(mechanism: Mechanism, solving: bool, projecting: bool) -> Path:
     """Return the file beside which numba keeps a scene's code: its name stands for all that makes it."""
     texts = [Path(file).read_text(encoding="utf-8") for file in (stepping.__file__, __file__)]
-    texts.append(machine_source(mechanism.acceleration_code, mechanism.equations))
-    name = hashlib.sha256("\0".join([*texts, str(solving), sys.version, version("numba")]).encode()).hexdigest()
+    texts.append(_source(mechanism, projecting))
+    name = hashlib.sha256(
+        "\0".join([*texts, str(solving), str(projecting), sys.version, version("numba")]).encode()
+    ).hexdigest()
     home = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA") or Path.home() / ".cache"
     return Path(home) / "bezstab" / name / "steps.py"
 

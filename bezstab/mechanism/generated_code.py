@@ -5,6 +5,7 @@ does with them is no text: `programs` and `stepping` have it. From its top to it
 
     compiled_source                        text becomes functions
     accelerations and multipliers          the assignments that solve paper Eq. 9
+    corrections                            what brings a state back to its constraints, by the same factors
     functions of a state                   acceleration, multipliers, observation
     slopes of the acceleration             its derivatives by position and velocity, or along one direction
     accelerations in parts                 the same for machine code, where they are long
@@ -91,13 +92,15 @@ class AccelerationCode:
     """Assignments that compute a_i = qddot_i and l_j = lambda_j from t, q_i, v_i, two_alpha and beta_squared.
 
     On the way c_j and cdot_j get their values. `pivots` are the texts of 1 and of the pivots D_j relative to S_jj;
-    where the least of these is small, S is nearly singular.
+    where the least of these is small, S is nearly singular. `results` are the names of the a_i, or of what else it is
+    that is computed so: the corrections of a state.
     """
 
     coordinates: int
     constraints: int
     lines: tuple[str, ...]
     pivots: tuple[str, ...]
+    results: tuple[str, ...]
 
 
 def acceleration_code(equations: Equations) -> AccelerationCode:
@@ -115,8 +118,13 @@ def acceleration_code(equations: Equations) -> AccelerationCode:
         *_substitution_lines(constraints, factors),
         *_acceleration_lines(columns_of_row, inverse_masses, entries),
     ]
-    pivots = "1.0", *(f"D{j} / S{j}" for j in range(constraints))
-    return AccelerationCode(coordinates, constraints, tuple(lines), pivots)
+    results = tuple(variable_names("a", coordinates))
+    return AccelerationCode(coordinates, constraints, tuple(lines), _pivots(constraints), results)
+
+
+def _pivots(constraints: int) -> tuple[str, ...]:
+    """Return the texts of 1 and of the relative pivots."""
+    return "1.0", *(f"D{j} / S{j}" for j in range(constraints))
 
 
 def _columns_of_row(equations: Equations) -> list[list[int]]:
@@ -168,16 +176,21 @@ def _right_side_lines(
     """Return the assignments to cdot = C_q v + c_t and r = C_q M^-1 g - gamma + 2 alpha cdot + beta^2 c."""
     lines = []
     for i, columns in enumerate(columns_of_row):
-        cdot = [f"C{i}_{k} * v{k}" for k in columns]
-        if f"ct{i}" in entries:
-            cdot.append(f"ct{i}")
         right_side = [f"C{i}_{k} * {inverse_masses[k]} * g{k}" for k in columns if f"g{k}" in entries]
         if f"gamma{i}" in entries:
             right_side.append(f"(-gamma{i})")
         right_side += [f"two_alpha * cdot{i}", f"beta_squared * c{i}"]
-        lines.append(f"cdot{i} = {' + '.join(cdot)}")
+        lines.append(_rate_line(i, columns, entries))
         lines.append(f"r{i} = {' + '.join(right_side)}")
     return lines
+
+
+def _rate_line(i: int, columns: Sequence[int], entries: Iterable[str]) -> str:
+    """Return the assignment to cdot_i = (C_q v + c_t)_i."""
+    parts = [f"C{i}_{k} * v{k}" for k in columns]
+    if f"ct{i}" in entries:
+        parts.append(f"ct{i}")
+    return f"cdot{i} = {' + '.join(parts)}"
 
 
 def _nonzero_factors(columns_of_row: Sequence[Sequence[int]]) -> set[tuple[int, int]]:
@@ -246,6 +259,33 @@ def _acceleration_lines(
     return lines
 
 
+# Corrections
+#
+# What brings a state back to its constraints, in the metric of the masses (`projection`), takes the same S:
+#
+#     dq = -M^-1 C_q^T S^-1 c,      dv = -M^-1 C_q^T S^-1 cdot
+
+
+def correction_code(equations: Equations) -> AccelerationCode:
+    """Return the assignments that compute dq_i and dv_i from t, q_i and v_i; S is factored as for accelerations."""
+    coordinates, constraints = len(equations.q), len(equations.constraints)
+    entries = {name: entry for name, entry in _nonzero_entries(equations).items() if name.startswith(("C", "c"))}
+    columns_of_row, inverse_masses = _columns_of_row(equations), _inverse_masses(equations)
+    factors = _nonzero_factors(columns_of_row)
+    lines = [
+        *_entry_lines(entries),
+        *(_rate_line(i, columns, entries) for i, columns in enumerate(columns_of_row)),
+        *_factorization_lines(columns_of_row, inverse_masses, factors),
+    ]
+    for error, correction in (("c", "dq"), ("cdot", "dv")):
+        lines += [f"r{i} = {error}{i}" for i in range(constraints)]
+        lines += _substitution_lines(constraints, factors)
+        lines += _acceleration_lines(columns_of_row, inverse_masses, ())  # without forces, what l alone accelerates
+        lines += [f"{correction}{k} = a{k}" for k in range(coordinates)]
+    results = (*variable_names("dq", coordinates), *variable_names("dv", coordinates))
+    return AccelerationCode(coordinates, constraints, tuple(lines), _pivots(constraints), results)
+
+
 # Functions of a state
 
 
@@ -263,13 +303,12 @@ def multipliers_source(acceleration: AccelerationCode) -> str:
 
 def acceleration_source(acceleration: AccelerationCode) -> str:
     """Return the source of acceleration(t, two_alpha, beta_squared, q, v): all a."""
-    return _function_source("acceleration", acceleration, variable_names("a", acceleration.coordinates))
+    return _function_source("acceleration", acceleration, acceleration.results)
 
 
-def judged_acceleration_source(acceleration: AccelerationCode) -> str:
-    """Return the source of judged_acceleration(t, two_alpha, beta_squared, q, v): all a, then the least pivot."""
-    results = [*variable_names("a", acceleration.coordinates), _least_text(acceleration.pivots)]
-    return _function_source("judged_acceleration", acceleration, results)
+def judged_source(code: AccelerationCode) -> str:
+    """Return the source of judged(t, two_alpha, beta_squared, q, v): all results of the code, then the least pivot."""
+    return _function_source("judged", code, [*code.results, _least_text(code.pivots)])
 
 
 def slope_source(acceleration: AccelerationCode, equations: Equations) -> str:
@@ -488,13 +527,13 @@ class _Part:
     assigned: tuple[str, ...]
 
 
-def machine_code(acceleration: AccelerationCode, slopes: Sequence[str]) -> MachineCode:
-    """Return the code in parts, or as it is where it is not long."""
+def machine_code(acceleration: AccelerationCode, slopes: Sequence[str], first_part: int = 0) -> MachineCode:
+    """Return the code in parts, numbered from `first_part` on, or as it is where it is not long."""
     if len(acceleration.lines) <= LONG:
         return MachineCode(acceleration, tuple(slopes))
     of_acceleration, of_slopes = _parts(acceleration.lines), _parts(slopes)
     parts = [*of_acceleration, *of_slopes]
-    results = [*variable_names("a", acceleration.coordinates), *NAME.findall(" ".join(acceleration.pivots))]
+    results = [*acceleration.results, *NAME.findall(" ".join(acceleration.pivots))]
     changes = variable_names("da", acceleration.coordinates)
     kept = {*results, *changes, *(name for part in parts for name in part.needed)}
     places = {name: place for place, name in enumerate(sorted(kept))}
@@ -514,7 +553,7 @@ def machine_code(acceleration: AccelerationCode, slopes: Sequence[str]) -> Machi
         return [stored(name) for name in names]
 
     def calls(first: int, some: Sequence[_Part]) -> list[str]:
-        return [f"part_{first + number}(room)" for number in range(len(some))]
+        return [f"part_{first_part + first + number}(room)" for number in range(len(some))]
 
     known_by_then = {name for part in of_acceleration for name in (*part.needed, *part.assigned)}
     lines = [f"room = empty({len(places)})", *given(of_acceleration, ()), *calls(0, of_acceleration)]
@@ -525,7 +564,7 @@ def machine_code(acceleration: AccelerationCode, slopes: Sequence[str]) -> Machi
     for number, part in enumerate(parts):
         inside = [loaded(name) for name in part.needed]
         inside += [*part.lines, *(stored(name) for name in part.assigned if name in kept)]
-        functions.append("\n".join([f"def part_{number}(room):", *_indented(inside, 1)]))
+        functions.append("\n".join([f"def part_{first_part + number}(room):", *_indented(inside, 1)]))
     return MachineCode(replace(acceleration, lines=tuple(lines)), tuple(slope_calls), tuple(functions))
 
 
@@ -553,13 +592,16 @@ FUNCTIONS = ("sin", "cos", "sqrt")
 TAKEN = "rows, steps, registers, inverses, before, room, judged, states, pivots, counts"
 
 
-def machine_source(acceleration: AccelerationCode, equations: Equations) -> str:
+def machine_source(
+    acceleration: AccelerationCode, equations: Equations, correction: AccelerationCode | None = None
+) -> str:
     """Return the source of the functions of one lane that machine code calls, and of their parts.
 
     take(...) calls `stepping.TakeSteps`, which numba keeps on disk where it is called from text that has a file.
     acceleration_of_lane(t, gains, state, found, lane) writes all a and returns the least relative pivot of S;
     slope_of_lane(t, gains, state, direction, found, lane) writes all da. `gains` has the shape (2, lanes), state and
-    direction (2, n lanes), found (n lanes,): coordinate after coordinate.
+    direction (2, n lanes), found (n lanes,): coordinate after coordinate. With the code of a `correction`
+    correction_of_lane(t, gains, state, off, lane) writes all dq, then all dv, and returns the least relative pivot.
     """
     code = machine_code(acceleration, slope_lines(equations))
     coordinates = range(acceleration.coordinates)
@@ -568,14 +610,24 @@ def machine_source(acceleration: AccelerationCode, equations: Equations) -> str:
     given += [f"v{i} = state[1, {i} * lanes + lane]" for i in coordinates]
     along = [f"dq{i} = direction[0, {i} * lanes + lane]" for i in coordinates]
     along += [f"dv{i} = direction[1, {i} * lanes + lane]" for i in coordinates]
-    first, *others = code.acceleration.pivots
-    least = [f"pivot = {first}", *(f"pivot = min(pivot, {other})" for other in others)]
-    accelerations = [f"found[{i} * lanes + lane] = a{i}" for i in coordinates]
     changes = [f"found[{i} * lanes + lane] = da{i}" for i in coordinates]
+
+    def judged(some: AccelerationCode) -> list[str]:
+        first, *others = some.pivots
+        least = [f"pivot = {first}", *(f"pivot = min(pivot, {other})" for other in others)]
+        results = [f"found[{place} * lanes + lane] = {name}" for place, name in enumerate(some.results)]
+        return _indented([*given, *some.lines, *results, *least, "return pivot"], 1)
+
+    corrections = []
+    if correction:
+        of_corrections = machine_code(correction, (), first_part=len(code.parts))
+        corrections = [*of_corrections.parts, "def correction_of_lane(t, gains, state, found, lane):"]
+        corrections += judged(of_corrections.acceleration)
     return "\n".join([
         *code.parts,
         "def acceleration_of_lane(t, gains, state, found, lane):",
-        *_indented([*given, *code.acceleration.lines, *accelerations, *least, "return pivot"], 1),
+        *judged(code.acceleration),
+        *corrections,
         "def slope_of_lane(t, gains, state, direction, found, lane):",
         *_indented([*given, *along, *code.acceleration.lines, *code.slopes, *changes], 1),
         f"def take({TAKEN}):",

@@ -13,6 +13,8 @@ feedback at the half-step velocity:
                     v1         0   1  1/2  1/2
     moved:          x0 <- x1,  v0 <- v1,  a0 <- a1     what the next turn begins with
 
+    corrected:      x0  1 0,  v0  0 1,  a0  0 0        of changes of the new position and velocity, by a projection
+
 Where a row of an evaluation has an entry for what that evaluation finds, or for one after it, the equations wait for
 each other: a group of evaluations is solved together, each from the guess that it is what it was one step before.
 """
@@ -50,7 +52,9 @@ class Program:
 
     `powers` are those of h in what is carried. `groups` has the evaluations that belong together, from the first to
     before the last, and whether they wait for each other. `moves` lead, in this order, from a register to one that is
-    carried; `state` are the registers of position and velocity at the end of the turn, before the moves.
+    carried; `state` are the registers of position and velocity at the end of the turn, before the moves. `corrected`
+    says for each that is carried what share it has, after the moves, in a change of that position, and of that
+    velocity: none for what is older than they are.
     """
 
     powers: tuple[int, ...]
@@ -59,6 +63,7 @@ class Program:
     combined: tuple[Row, ...]
     moves: tuple[tuple[int, int], ...]
     state: tuple[int, int]
+    corrected: tuple[tuple[Fraction, Fraction], ...]
 
     @property
     def implicit(self) -> bool:
@@ -69,7 +74,8 @@ class Program:
 @cache
 def program_of(scheme: SecondOrder) -> Program:
     """Return the program of a second-order scheme, exactly."""
-    carried = memory(scheme).carried
+    remembered = memory(scheme)
+    carried = remembered.carried
     actions = turn(scheme)
     found = [quantity for action in actions for quantity in _found(action)]
     registers = [*carried, *found]
@@ -119,6 +125,10 @@ def program_of(scheme: SecondOrder) -> Program:
         combined=tuple(values[quantity] for quantity in combined),
         moves=tuple((register[new], register[old]) for old, new in zip(carried, newer, strict=True)),
         state=(register[state[0]], register[state[1]]),
+        corrected=tuple(
+            shares[:2] if step == remembered.newest else (ZERO, ZERO)
+            for shares, step in zip(remembered.shares, remembered.state_steps, strict=True)
+        ),
     )
 
 

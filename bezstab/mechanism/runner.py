@@ -1,4 +1,4 @@
-"""Runs of a mechanism with Baumgarte feedback: a method's start, its steps in blocks, and what ends a run early."""
+"""Runs of a mechanism with feedback or projection: a method's start, its steps in blocks, and what ends a run early."""
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -14,6 +14,7 @@ from bezstab.mechanism.array_stepping import array_steps
 from bezstab.mechanism.compiled import SINGULAR, Mechanism, acceleration_function
 from bezstab.mechanism.compiled_stepping import LANES, machine_steps, runs_compiled
 from bezstab.mechanism.programs import program_of
+from bezstab.mechanism.projection import Projection, check_projected
 from bezstab.mechanism.second_order_memory import implicit_evaluations, memory
 from bezstab.mechanism.start import initial_state
 from bezstab.mechanism.stepping import (
@@ -21,6 +22,7 @@ from bezstab.mechanism.stepping import (
     EVALUATIONS,
     ITERATIONS,
     MOST_ITERATIONS,
+    PROJECTIONS,
     IntArray,
     Steps,
     room_of,
@@ -56,9 +58,12 @@ MOST_STEPS_OF_A_BLOCK = 4096
 
 @dataclass
 class Work:
-    """What implicit steps have taken: iterations, and evaluations of the acceleration, a slope counted as one."""
+    """What implicit steps have taken: iterations, and evaluations of the acceleration, a slope counted as one.
 
-    counts: IntArray = field(default_factory=lambda: np.zeros(2, np.int64))
+    And how often projections have computed how a state has to be corrected.
+    """
+
+    counts: IntArray = field(default_factory=lambda: np.zeros(3, np.int64))
 
     @property
     def iterations(self) -> int:
@@ -69,6 +74,11 @@ class Work:
     def evaluations(self) -> int:
         """The number of evaluations."""
         return int(self.counts[EVALUATIONS])
+
+    @property
+    def projections(self) -> int:
+        """The number of corrections that projections have computed."""
+        return int(self.counts[PROJECTIONS])
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +98,8 @@ class Trajectory(ReadOnlyArrays):
     """A run: t (s, shape (steps + 1,)), q and v (shape (steps + 1, n), SI), and why it ended early, if it did.
 
     `evaluations` counts right-hand sides, and `iterations` those of Newton's method, None for an explicit method; each
-    iteration evaluates once, and a Jacobian once for each unknown, a slope.
+    iteration evaluates once, and a Jacobian once for each unknown, a slope. `projections` counts how often a projection
+    has computed corrections of a state, which costs about as much as an evaluation; None without projection.
     `failure` says when and why in one line; the history ends before it.
     `least_pivot` is the least relative pivot of S = C_q M^-1 C_q^T that was met, in the step from `pivot_time` (s):
     where it is small a singular configuration is near, and multipliers have lost about that factor of their digits.
@@ -104,6 +115,12 @@ class Trajectory(ReadOnlyArrays):
     least_pivot: float
     pivot_time: float
     iterations: int | None = None
+    projections: int | None = None
+
+    @property
+    def factorizations(self) -> int:
+        """How often S = C_q M^-1 C_q^T was factored: once for each evaluation, and once for each of `projections`."""
+        return self.evaluations + (self.projections or 0)
 
     def __repr__(self) -> str:
         failed = ", failed" if self.failure else ""
@@ -120,6 +137,7 @@ def simulate(
     state: tuple[FloatArray, FloatArray] | None = None,
     start: Start = "rk4",
     compiled: bool | None = None,
+    projection: Projection | None = None,
 ) -> Trajectory:
     """Return the run over `duration` (s) from `state` (q, v, shape (n,) each; default the scene's initial one).
 
@@ -127,18 +145,34 @@ def simulate(
     The first values of a multistep method come from RK4, from its family's members of fewer steps ("ramp") or from
     explicit Euler. A blow-up, a singular S, a number that is not finite or an implicit step that Newton's method does
     not solve ends the run, and `failure` says so. `compiled` says whether machine code takes the steps; by default that
-    is as BEZSTAB_COMPILED says, or where it pays.
-    InputError for a start that has blown up before, or where numba is asked for and missing.
+    is as BEZSTAB_COMPILED says, or where it pays. With a `projection` each new state, those of the start too, is
+    brought back to the constraints.
+    InputError for a start that has blown up before, where numba is asked for and missing, and for a method whose states
+    cannot be projected.
     """
+    if projection:
+        check_projected(method)
     whole_step = h * float(method.step_multiple)
     count = round(duration / whole_step)
     first = checked_start(initial_state(mechanism) if state is None else state)
     if compiled is None:
-        compiled = runs_compiled(mechanism, method, count * evaluations(method))
+        compiled = runs_compiled(mechanism, method, count * evaluations(method), projection is not None)
     work = Work()
-    blocks = march(mechanism, method, whole_step, gains, first, start, count, compiled=compiled, work=work, judged=True)
+    blocks = march(
+        mechanism,
+        method,
+        whole_step,
+        gains,
+        first,
+        start,
+        count,
+        compiled=compiled,
+        work=work,
+        judged=True,
+        projection=projection,
+    )
     times = np.arange(count + 1, dtype=np.float64) * whole_step
-    return recorded(mechanism, method, first, times, blocks, start, work)
+    return recorded(mechanism, method, first, times, blocks, start, work, projection)
 
 
 def checked_start(state: tuple[FloatArray, FloatArray]) -> FloatArray:
@@ -158,6 +192,7 @@ def recorded(
     blocks: Iterable[Block],
     start: Start,
     work: Work,
+    projection: Projection | None = None,
 ) -> Trajectory:
     """Return a run from its blocks, the times (s) of whose states are given, the first state's included."""
     parts, pivots, cause = [first[np.newaxis]], [np.ones(0)], None
@@ -183,6 +218,7 @@ def recorded(
         least_pivot=1.0 if lowest is None else float(least[lowest]),
         pivot_time=0.0 if lowest is None else float(times[lowest]),
         iterations=work.iterations if implicit(method) else None,
+        projections=work.projections if projection else None,
     )
 
 
@@ -198,24 +234,26 @@ def march(
     compiled: bool = False,
     work: Work | None = None,
     judged: bool = False,
+    projection: Projection | None = None,
 ) -> Iterator[Block]:
     """Yield `count` steps from a state (q then v, shape (2n, *batch)) at t = 0 on, in blocks.
 
     h (s) is the whole step of the method, `gains` are 2 alpha and beta^2 (1/s, 1/s^2), which broadcast against the
     batch; the first values of a multistep method come from `start`. A run that is `judged`, without a batch, ends where
-    it breaks down; else what goes wrong shows in the numbers. `work` counts what implicit steps take. InputError where
-    steps are to be `compiled` without numba.
+    it breaks down; else what goes wrong shows in the numbers. `work` counts what implicit steps and projections take.
+    InputError where steps are to be `compiled` without numba.
     """
+    options: dict[str, Any] = {"work": work, "judged": judged, "projection": projection}
     history = [np.asarray(state)]
     for starter, step_count in _starters(method, start):
         some = min(step_count, count - len(history) + 1)
-        for block in resume(mechanism, starter, h, gains, history, some, work=work, judged=judged):
+        for block in resume(mechanism, starter, h, gains, history, some, **options):
             yield block
             if block.cause:
                 return
             history += list(block.states)
     remaining = count - len(history) + 1
-    yield from resume(mechanism, method, h, gains, history, remaining, compiled=compiled, work=work, judged=judged)
+    yield from resume(mechanism, method, h, gains, history, remaining, compiled=compiled, **options)
 
 
 def resume(
@@ -230,6 +268,7 @@ def resume(
     compiled: bool = False,
     work: Work | None = None,
     judged: bool = False,
+    projection: Projection | None = None,
 ) -> Iterator[Block]:
     """Yield `count` steps after `history`, as `march` does; its last state may have been tampered with: kicked.
 
@@ -251,7 +290,17 @@ def resume(
 
     spread_gains = np.array([[np.broadcast_to(gain, batch).ravel() for gain in gains]], np.float64)
     blocks = steps_in_blocks(
-        mechanism, scheme, steps_between, h, carried, batch, count + repeated, compiled, judged, work
+        mechanism,
+        scheme,
+        steps_between,
+        h,
+        carried,
+        batch,
+        count + repeated,
+        compiled,
+        judged,
+        work,
+        projection=projection,
     )
     # of turns whose states are in the history already only what they give beyond them matters: the next needs it
     for block in blocks:
@@ -314,6 +363,7 @@ def steps_in_blocks(
     judged: bool,
     work: Work,
     kinds: int = 1,
+    projection: Projection | None = None,
 ) -> Iterator[Block]:
     """Yield `count` steps in blocks, from what is carried into the first: shape (quantities, n lanes).
 
@@ -321,14 +371,15 @@ def steps_in_blocks(
     units of h (s). There are so many `kinds` of steps. The lanes are those of the batch, one after the other.
     """
     program = program_of(scheme)
-    rows, n, lanes = rows_of(program), mechanism.size, math.prod(batch)
+    rows, n, lanes = rows_of(program, projection), mechanism.size, math.prod(batch)
     columns = len(program.powers) + len(program.evaluations)
     registers = np.zeros((columns + len(program.combined), n * lanes), carried.dtype)
     registers[: len(carried)] = carried
     room = room_of(rows, n, lanes, carried.dtype)
     inverses = np.full((kinds, len(program.groups), *room.jacobian.shape), np.nan)
     before = np.array([h])
-    take_steps = machine_steps(mechanism, program.implicit) if compiled else array_steps(mechanism)
+    projecting = projection is not None
+    take_steps = machine_steps(mechanism, program.implicit, projecting) if compiled else array_steps(mechanism)
     at_once = max(1, min(MOST_STEPS_OF_A_BLOCK, NUMBERS_OF_A_BLOCK // (2 * n * lanes)))
     for first in range(0, count, at_once):
         last = min(first + at_once, count)

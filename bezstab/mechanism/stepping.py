@@ -14,6 +14,8 @@ thirtieth of the one before; one that is more is not made, but computed anew wit
 earlier step's Jacobian that did not serve, all it did is undone: the lane starts again with its own. The iteration ends
 with one correction more after one within some hundred roundings of what it corrects: what is left then is far below
 rounding, and so does not add up over thousands of steps, to all of which it might have the same sign.
+
+A projection (`projection`) is one action more, at the end of a step: the new state moves, and with it what is carried.
 """
 
 from collections.abc import Callable
@@ -24,6 +26,7 @@ from numpy.typing import NDArray
 
 from bezstab.mechanism.compiled import SINGULAR
 from bezstab.mechanism.programs import Program
+from bezstab.mechanism.projection import Projection
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -35,11 +38,15 @@ MOST_ITERATIONS = 25  # three are usual; from far away Newton's method may first
 TOLERANCE = 500 * 2.0**-52  # of X, V and A together: what h^2 acceleration cannot be relied upon
 FALL = 1 / 30  # of a correction to the next, with a Jacobian good enough to keep: each gains a digit and a half
 
-ITERATIONS, EVALUATIONS = 0, 1  # places in what is counted
+ITERATIONS, EVALUATIONS, PROJECTIONS = 0, 1, 2  # places in what is counted
 
 
 class Rows(NamedTuple):
-    """A program in float64. `arguments` has for each evaluation the rows of its position and of its velocity."""
+    """A program in float64. `arguments` has for each evaluation the rows of its position and of its velocity.
+
+    `projected` is how many iterations a projection may take, 0 where there is none, and `settles` whether a run ends
+    where they do not settle.
+    """
 
     powers: IntArray
     arguments: FloatArray
@@ -50,20 +57,25 @@ class Rows(NamedTuple):
     moved_from: IntArray
     moved_to: IntArray
     state: IntArray
+    corrected: FloatArray
+    projected: int
+    settles: bool
 
 
 class Room(NamedTuple):
     """Arrays to compute in, made once: of an evaluation, then what Newton's method knows of each lane.
 
-    state and direction (2, width), found (width,); residuals, those at the guess, corrections and guess
-    (evaluations of a group, width); Jacobians like the inverses; of each lane the sizes of what it computes with, how
-    far this correction moves it and the one before did, and whether it is running, settled, solved, and to be renewed,
-    and has its inverse Jacobian from an earlier step.
+    state and direction (2, width), found (width,), and off, by which a projection corrects position and velocity,
+    (2 width,); residuals, those at the guess, corrections and guess (evaluations of a group, width); Jacobians like
+    the inverses; of each lane the sizes of what it computes with, how far this correction moves it and the one before
+    did, and whether it is running, settled, solved, and to be renewed, and has its inverse Jacobian from an earlier
+    step.
     """
 
     state: FloatArray
     direction: FloatArray
     found: FloatArray
+    off: FloatArray
     residuals: FloatArray
     at_guess: FloatArray
     corrections: FloatArray
@@ -92,6 +104,9 @@ class Operations(NamedTuple):
     renew(rows, group, time, h, gains, registers, inverse, room)    computes those lanes' inverses anew
     advance(rows, group, registers, room)           applies corrections; whether lanes are running still
     end(rows, group, registers, room)               writes nan where nothing is solved; how far that was from it
+    measure(time, gains, state, room)               writes corrections of a state; the least relative pivot
+    distance(state, room)                           the largest correction of a position, 0 where all are settled
+    shift(rows, half, h, registers, state, room)    corrects position or velocity, and what is carried; the state's size
 
     Pivots and sizes are of use for one lane, and may be any with more.
     """
@@ -106,6 +121,9 @@ class Operations(NamedTuple):
     renew: Callable[..., None]
     advance: Callable[..., bool]
     end: Callable[..., float]
+    measure: Callable[..., float]
+    distance: Callable[..., float]
+    shift: Callable[..., float]
 
 
 class Steps(NamedTuple):
@@ -124,16 +142,18 @@ TakeSteps = Callable[..., tuple[int, float]]
 """take_steps(rows, steps, registers, inverses, before, room, judged, states, pivots, counts).
 
 It takes steps until they are at their end or, if they are `judged`, a run breaks down, and returns how many, and the
-size of the last correction of equations that were not solved, 0 where all were.
+size of the last correction of equations that were not solved, a projection's included, 0 where all were.
 
 `registers` are in units of the step before[0] (s), the last one's; `inverses` (kinds of steps, groups, unknowns,
 unknowns, lanes) are the inverse Jacobians of the last of each kind, nan at first. `states` (steps, 2, width) get q and
-v after each step, `pivots` (steps,) the least relative pivots on the way, `counts` what implicit steps take.
+v after each step, `pivots` (steps,) the least relative pivots on the way, `counts` what implicit steps and projections
+take.
 """
 
 
-def rows_of(program: Program) -> Rows:
+def rows_of(program: Program, projection: Projection | None = None) -> Rows:
     """Return a program in float64."""
+    most_projected = (projection.iterations or MOST_ITERATIONS) if projection else 0
     columns = len(program.powers) + len(program.evaluations)
     arguments = [[list(map(float, row)) for row in (each.position, each.velocity)] for each in program.evaluations]
     return Rows(
@@ -146,6 +166,9 @@ def rows_of(program: Program) -> Rows:
         moved_from=np.array([start for start, _ in program.moves], np.int64),
         moved_to=np.array([end for _, end in program.moves], np.int64),
         state=np.array(program.state, np.int64),
+        corrected=np.array([list(map(float, shares)) for shares in program.corrected]),
+        projected=most_projected,
+        settles=projection is not None and projection.iterations is None,
     )
 
 
@@ -159,6 +182,7 @@ def room_of(rows: Rows, n: int, lanes: int, kind: Any = np.float64) -> Room:
         state=np.zeros(of_state, kind),
         direction=np.zeros(of_state),
         found=np.zeros(width, kind),
+        off=np.zeros(2 * width),
         residuals=np.zeros(of_group),
         at_guess=np.zeros(of_group),
         corrections=np.zeros(of_group),
@@ -180,12 +204,63 @@ def unchanged(function: Any) -> Any:
     return function
 
 
-def stepper(operations: Operations, made: Callable[[Any], Any] = unchanged, solving: bool = True) -> TakeSteps:
+def projector(operations: Operations, made: Callable[[Any], Any], projecting: bool) -> Callable[..., Any]:
+    """Return the action that brings a new state back to the constraints, first its position, then its velocity.
+
+    It returns the least pivot, the size of the last correction where it should have settled and did not, and the size
+    of the state. Without `projecting` it is one that nobody calls.
+    """
+    measure, distance, shift = operations.measure, operations.distance, operations.shift
+
+    @made
+    def project_state(
+        rows: Rows,
+        time: float,
+        h: float,
+        gains: FloatArray,
+        registers: FloatArray,
+        room: Room,
+        state: FloatArray,
+        counts: IntArray,
+    ) -> tuple[float, float, float]:
+        pivot, left = 1.0, 0.0
+        for iteration in range(rows.projected + 1):
+            pivot = min(pivot, measure(time, gains, state, room))
+            counts[PROJECTIONS] += 1
+            left = distance(state, room)
+            # the velocity takes what was found last: at a position that needs no correction, or gets none any more
+            if iteration == rows.projected or left == 0 or pivot <= SINGULAR:
+                break
+            shift(rows, 0, h, registers, state, room)
+        size = shift(rows, 1, h, registers, state, room)
+        return pivot, left if rows.settles and pivot > SINGULAR else 0.0, size
+
+    @made
+    def nothing_projected(
+        rows: Rows,
+        time: float,
+        h: float,
+        gains: FloatArray,
+        registers: FloatArray,
+        room: Room,
+        state: FloatArray,
+        counts: IntArray,
+    ) -> tuple[float, float, float]:
+        return 1.0, 0.0, 0.0
+
+    project: Callable[..., Any] = project_state if projecting else nothing_projected
+    return project
+
+
+def stepper(
+    operations: Operations, made: Callable[[Any], Any] = unchanged, solving: bool = True, projecting: bool = True
+) -> TakeSteps:
     """Return the function that takes steps by these operations; `made` makes machine code of it, or leaves it.
 
-    `solving`: whether programs have equations to solve, which is most of what there is to compile.
+    `solving`: whether programs have equations to solve, which is most of what there is to compile; `projecting`:
+    whether states are projected.
     """
-    change_step, evaluate, finish, begin, residual, remember, correct, renew, advance, end = operations
+    change_step, evaluate, finish, begin, residual, remember, correct, renew, advance, end, *_ = operations
 
     @made
     def solve_group(
@@ -237,6 +312,8 @@ def stepper(operations: Operations, made: Callable[[Any], Any] = unchanged, solv
 
     solve = solve_group if solving else nothing_solved
 
+    project = projector(operations, made, projecting)
+
     @made
     def take_steps(
         rows: Rows,
@@ -274,6 +351,9 @@ def stepper(operations: Operations, made: Callable[[Any], Any] = unchanged, solv
                     worst = evaluate(arguments[first], moment, h, gains, registers, carried + first, state, found)
                 pivot = min(pivot, worst)
             size = finish(combined, moved_from, moved_to, ends, h, registers, states[k])
+            if rows.projected > 0 and size < BLOWN_UP:
+                worst, left, size = project(rows, time + h, h, gains, registers, room, states[k], counts)
+                pivot, unsolved = min(pivot, worst), max(unsolved, left)
             pivots[k] = pivot
             if judged and (unsolved > 0 or not (pivot > SINGULAR and size < BLOWN_UP)):
                 return k + 1, unsolved

@@ -16,6 +16,7 @@ from bezstab.mechanism.compiled import Mechanism
 from bezstab.mechanism.compiled_stepping import runs_compiled
 from bezstab.mechanism.energies import EnergyBalance
 from bezstab.mechanism.observation import observe
+from bezstab.mechanism.projection import Projection
 from bezstab.mechanism.runner import Work, carried_quantities, checked_start, recorded, steps_in_blocks
 from bezstab.mechanism.simulation import Simulation, check_duration
 from bezstab.mechanism.start import perturbed_state
@@ -39,13 +40,14 @@ def simulated_with_steps(
     beta_hat: float,
     hold: bool = False,
     perturb: float = 0.0,
+    projection: Projection | None = None,
 ) -> Simulation:
     """Return a run over `duration` (s) or a little more, by steps of the lengths in `sequence` (s), over and over.
 
     alpha_hat and beta_hat belong to a step of h (s), and the alpha and beta that they are stay as they are; with `hold`
     alpha_hat and beta_hat stay, and alpha and beta follow the steps. The first constraint is off by `perturb` (m) at
-    the start. Work and drift of energy are integrated by the trapezoidal rule. InputError for a method of several
-    steps, and as `simulated`.
+    the start. With a `projection` each state is brought back to the constraints. Work and drift of energy are
+    integrated by the trapezoidal rule. InputError for a method of several steps, and as `simulated`.
     """
     check_one_step(method)
     check_duration(duration, min(sequence) * float(method.step_multiple))
@@ -71,12 +73,13 @@ def simulated_with_steps(
         carried,
         batch=(),
         count=len(steps.lengths),
-        compiled=runs_compiled(mechanism, method, len(steps.lengths) * evaluations(method)),
+        compiled=runs_compiled(mechanism, method, len(steps.lengths) * evaluations(method), projection is not None),
         judged=True,
         work=work,
         kinds=len(lengths),
+        projection=projection,
     )
-    trajectory = recorded(mechanism, method, first, steps.times, blocks, "rk4", work)
+    trajectory = recorded(mechanism, method, first, steps.times, blocks, "rk4", work, projection)
     times = trajectory.t
     # at each time the gains of the step that begins there; at the last, those of the step that led to it
     at_times = np.minimum(np.arange(len(times)), len(steps.lengths) - 1)

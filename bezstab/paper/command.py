@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from bezstab.cli.options import FigureForm, compiled_option, figure_option, format_option, output_option
-from bezstab.cli.output import progress, show_blocks, show_rows, write_figure, write_file
+from bezstab.cli.options import compiled_option, format_option
+from bezstab.cli.output import Files, picture_options, progress, show_blocks, show_rows, write_file
 from bezstab.files import output_directory
 from bezstab.paper.printed import PARTS
 
@@ -25,10 +25,9 @@ if TYPE_CHECKING:  # so that `bezstab --help`, which lists this command, loads n
     help="One of table1 to table6 and fig1 to fig9. Repeatable.",
 )
 @compiled_option
-@output_option
-@figure_option
+@picture_options
 @format_option
-def paper(only: tuple[str, ...], output: Path, figure: FigureForm, form: "Format") -> None:
+def paper(only: tuple[str, ...], files: Files, form: "Format") -> None:
     """Regenerate the paper's tables and figures, and test its claims.
 
     Writes Tables 1 to 6 as paper_table1.md and so on, Figures 1 to 9 as paper_fig1a.png and so on, and, unless --only
@@ -39,29 +38,29 @@ def paper(only: tuple[str, ...], output: Path, figure: FigureForm, form: "Format
     from bezstab.paper.ledger import SUBJECTS, ledger_text
 
     wanted = set(only or PARTS)
-    output_directory(output)
+    output_directory(files.output)
     findings: list[Finding] = []
     for subject in SUBJECTS:
         if wanted.isdisjoint(subject.parts):
             continue
         report = subject.report(progress)
-        write_parts(report, wanted, output, figure)
+        write_parts(report, wanted, files)
         if report.aside and form in ("text", "markdown"):
             click.echo(f"{report.aside}\n")
         findings += report.findings
     if not only:
-        write_text(output / "LEDGER.md", ledger_text(findings))
+        write_text(files.output / "LEDGER.md", ledger_text(findings))
     show_findings(findings, form)
 
 
-def write_parts(report: "Report", wanted: set[str], output: Path, figure: FigureForm) -> None:
+def write_parts(report: "Report", wanted: set[str], files: Files) -> None:
     """Write the tables and figures of a report that are asked for; a figure's panels, fig1a, go with it."""
     for name, table in report.tables.items():
         if name in wanted:
-            write_text(output / f"paper_{name}.md", table)
+            write_text(files.output / f"paper_{name}.md", table)
     for name, draw in report.figures.items():
         if name.rstrip("abc") in wanted:
-            write_figure(output / f"paper_{name}", draw, figure)
+            files.write_figure(files.path("paper", name), draw)
 
 
 def write_text(path: Path, text: str) -> None:
@@ -71,9 +70,11 @@ def write_text(path: Path, text: str) -> None:
 
 def show_findings(findings: "list[Finding]", form: "Format") -> None:
     """Print what came out; as text one claim below the other, as a table of them is too wide for any terminal."""
-    from bezstab.paper.ledger import FINDINGS, finding_rows, finding_sentence
+    from bezstab.paper.ledger import finding_rows
+    from bezstab.show import CLAIMS
 
+    rows = finding_rows(findings)
     if form == "text":
-        show_blocks(finding_rows(findings), FINDINGS, finding_sentence)
+        show_blocks(rows, CLAIMS.columns(rows), CLAIMS.sentence)
     else:
-        show_rows(finding_rows(findings), FINDINGS, form)
+        show_rows(CLAIMS, rows, form)

@@ -132,10 +132,15 @@ def growth_findings(runs: Sequence[Experiment]) -> list[Finding]:
 
 
 def growth_is_linear(runs: Sequence[Experiment]) -> Finding:
-    """Return to which power of time the largest |c_1| so far grows, over the last nine tenths of each run."""
+    """Return to which power of time the largest |c_1| so far grows, over the last nine tenths of each run.
+
+    Runs whose |c_1| stays so small that rounding has its part in it are left out.
+    """
     times = np.linspace(GROWTH_DURATION / 10, GROWTH_DURATION, 40)
     powers = []
     for run in runs:
+        if run.largest(0, GROWTH_DURATION) < ROUNDING:
+            continue
         largest_so_far = np.array([run.largest(0, time) for time in times.tolist()])
         powers.append(_power(times, largest_so_far))
     return finding(
@@ -200,10 +205,14 @@ def errors_are_of_one_order(runs: Sequence[Experiment]) -> Finding:
 
 
 def b4_errs_less(runs: Sequence[Experiment]) -> Finding:
-    """Return how the final |c_1| of B4 compares with AB4's at the same step, from either start."""
+    """Return how the final |c_1| of B4 compares with AB4's at the same step, from either start.
+
+    Steps at which AB4's is so small that rounding has its part in it are left out.
+    """
     texts, less = {}, []
     for start in START_NAMES:
-        ratios = _final_errors(runs, start, "B4") / _final_errors(runs, start, "AB4")
+        of_b4, of_ab4 = _final_errors(runs, start, "B4"), _final_errors(runs, start, "AB4")
+        ratios = (of_b4 / of_ab4)[of_ab4 > ROUNDING]
         texts[start] = f"B4 / AB4 = {_ratio(ratios.min())} to {_ratio(ratios.max())}"
         less.append(bool(ratios.max() < 1))
     return finding(

@@ -31,8 +31,6 @@ SUBJECTS = (
 )
 """In the order of the ledger."""
 
-FINDINGS = [field.column for field in CLAIMS.fields]
-
 
 def finding_rows(findings: Sequence[Finding]) -> list[Row]:
     """Return the findings as rows."""
@@ -43,10 +41,6 @@ def ledger_text(findings: Sequence[Finding]) -> str:
     """Return every claim with what came out, as Markdown."""
     counts = Counter(finding.agreement for finding in findings)
     total = ", ".join(f"{counts[agreement]} {agreement}" for agreement in get_args(Agreement))
-    rows = render(finding_rows(findings), FINDINGS, "markdown")
-    return f"# What the paper claims, and what came out\n\nWritten by `bezstab paper`: {total}.\n\n{rows}\n"
-
-
-def finding_sentence(row: Row) -> str:
-    """Return whether a claim is confirmed."""
-    return f"{str(row['agreement']).capitalize()}."
+    rows = finding_rows(findings)
+    table = render(rows, CLAIMS.columns(rows), "markdown")
+    return f"# What the paper claims, and what came out\n\nWritten by `bezstab paper`: {total}.\n\n{table}\n"

@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING, Literal, cast
 
 from bezstab.engines import Curve, Engine, Point
 from bezstab.errors import InputError, NumericalError
-from bezstab.goals import Goal
+from bezstab.goals import UP_TO_LONGEST, Goal
 from bezstab.methods import Method
 from bezstab.questions.chains import ALONE, SweptAnswer, strongest_point, sweeps_to_spare, swept_answer
 from bezstab.questions.points import all_points
-from bezstab.questions.question import UP_TO_LONGEST, Question, usual_goal
+from bezstab.questions.question import Question, usual_goal
 from bezstab.rationals import rational
 from bezstab.stability import (
     Choice,

@@ -9,7 +9,7 @@ from functools import cached_property
 
 from bezstab.engines import DRIVE_METHODS, Drive, Engine, Point
 from bezstab.errors import InputError
-from bezstab.goals import GOALS, Goal
+from bezstab.goals import GOALS, SETTLING, UP_TO_LONGEST, Goal
 from bezstab.mechanism import Scene, TurningNormals
 from bezstab.methods import Method, check_one_step, lookup
 from bezstab.questions.chains import Chain, Constraints, check_sweeps, constraints_of
@@ -21,11 +21,6 @@ WHICH_METHOD = (
     "which integrator? --method SYM (semi-implicit Euler, as most engines have), RK4, rk45 (solve_ivp's), AB4, "
     "B4 or another of `bezstab methods`; or an --engine; or --pd"
 )
-UP_TO_LONGEST = ("accurate", "robust")
-"""The goals that are for all steps up to --h-max."""
-
-SETTLING = ("gentle", "accurate")
-"""The goals that may be given a time to settle."""
 
 
 @dataclass(frozen=True)

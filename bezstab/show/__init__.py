@@ -10,7 +10,7 @@ from bezstab.show.answer_rows import (
     added_cells,
     alone_words,
     answer_row,
-    answer_sentence,
+    combined_words,
     costs_words,
     engine_cells,
     growing_run,
@@ -33,8 +33,9 @@ from bezstab.show.columns import (
     transposed,
     visible,
 )
-from bezstab.show.fields import Field, RowKind, cells
-from bezstab.show.held_rows import LATE_COMMANDS, NOT_JUDGED, held_row, held_sentence, timing_words
+from bezstab.show.fields import Field, RowKind, Sentence, cells
+from bezstab.show.file_forms import FIGURE_FORMS, TABLE_FORMS
+from bezstab.show.held_rows import LATE_COMMANDS, NOT_JUDGED, held_row, timing_words
 from bezstab.show.row_kinds import (
     CHAINS,
     CHECKED,
@@ -51,21 +52,26 @@ from bezstab.show.row_kinds import (
     LISTED_METHODS,
     MEASUREMENTS,
     MEMBERS,
+    NAMED_METHODS,
     POLES,
     PROBED,
     REGIONS,
     ROW_KINDS,
     SIMULATIONS,
+    SUMMARIES,
     SWEPT,
     VERDICT_MAPS,
     WITNESSED,
 )
 from bezstab.show.rows import (
     NOT_KNOWN,
+    accuracy_cells,
     chain_rows,
     engine_row,
+    exact_rate_words,
     family_row,
     forced_rows,
+    forced_words,
     front_row,
     like_point_row,
     likeness_row,
@@ -78,14 +84,13 @@ from bezstab.show.rows import (
     region_row,
     run_row,
     simulation_row,
-    summary_row,
     verdict_map_row,
     whole_row,
-    witness_row,
 )
 from bezstab.show.schemas import json_schema
+from bezstab.show.sentences import one_pole_sentence
 from bezstab.show.varying_rows import sequence_text, varying_row, varying_words
-from bezstab.show.words import chain_sentence, safety_words, seconds_words
+from bezstab.show.words import seconds_words
 
 if TYPE_CHECKING:
     from bezstab.show import plot

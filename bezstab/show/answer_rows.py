@@ -12,13 +12,12 @@ from bezstab.engines import DRIVE_METHODS
 from bezstab.errors import InputError
 from bezstab.methods import lookup
 from bezstab.rationals import typed_number
-from bezstab.show.cells import step_limit
 from bezstab.show.columns import Row, Value
 from bezstab.show.fields import cells
 from bezstab.show.row_kinds import CHECKED, CHOICES, LARGEST_STEPS
 from bezstab.show.rows import choice_cells, cost_cells, moving_row
 from bezstab.show.varying_rows import repeated, varying_row
-from bezstab.show.words import growth_words, safety_words, seconds_words, sweeps_words, times_words
+from bezstab.show.words import sweeps_words, times_words
 from bezstab.units import from_dimensionless
 
 if TYPE_CHECKING:
@@ -122,22 +121,6 @@ def largest_step_row(found: LargestStep) -> Row:
     return cells(LARGEST_STEPS.fields, found, {"role": "given", "h_limit": found.h_limit if found.safe else None})
 
 
-def answer_sentence(row: Row) -> str:
-    """Return whether a point is safe, what a step does to the error, and how far step, α and β may grow, at rest."""
-    if not row["safe"] or "swept_z_abs" in row:
-        return safety_words(row)
-    if row["margins_reason"]:
-        return f"{safety_words(row)} How far the step, α and β may grow is not known: {row['margins_reason']}."
-    limit = step_limit(row)
-    factor = row["h_factor"] if row["h"] is None else None
-    step = f"to {seconds_words(limit)}" if isinstance(limit, float) else growth_words(factor)
-    alpha, beta = growth_words(row["alpha_factor_max"]), growth_words(row["beta_factor_max"])
-    begin = "At rest the" if "z_abs_moving" in row else "The"
-    if {step, alpha, beta} == {growth_words(None)}:
-        return f"{safety_words(row)} {begin} step, α and β may grow {step}."
-    return f"{safety_words(row)} {begin} step may grow {step}, α {alpha}, β {beta}."
-
-
 def costs_words(answer: Answer) -> str | None:
     """Return that the feedback of an answer costs accuracy, and how much; None where that is little, or not known.
 
@@ -223,6 +206,14 @@ def motion_words(motion: ReferenceMotion) -> str:
     """Return what errors are shares of, and what is called the least."""
     shares = f"Errors are shares of the amplitude of a motion, here {motion.words}."
     return f"{shares} The least are those of --goal accurate."
+
+
+def combined_words(motion: ReferenceMotion) -> str:
+    """Return what combined errors are shares of."""
+    return (
+        "\nErrors of position and velocity are shares of the amplitudes of a motion's own position and velocity, here "
+        f"{motion.words}."
+    )
 
 
 def growing_run(answer: Answer) -> str | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from itertools import chain
-from typing import TYPE_CHECKING, BinaryIO, Literal
+from typing import TYPE_CHECKING, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -116,8 +116,8 @@ def _present(key: str, value: Value) -> Value:
     return "" if key in TEXTS else math.nan
 
 
-def write_arrays(arrays: Mapping[str, NDArray[np.generic]], form: Literal["csv", "npz"], file: BinaryIO) -> None:
-    """Write equally long arrays: CSV with every digit of float64, or NPZ with one array per name.
+def write_arrays(arrays: Mapping[str, NDArray[np.generic]], form: str, file: BinaryIO) -> None:
+    """Write equally long arrays in one of TABLE_FORMS: CSV with every digit of float64, or NPZ with one array per name.
 
     Nothing is compressed: that would take longer than a long run, and digits hardly shrink.
     """

@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any, Literal
+from importlib import import_module
+from typing import Any, Literal, get_args
 
 from bezstab.show.columns import MISSING, Column, Row, Value, formatted
 
 Kind = Literal["number", "integer", "text", "truth", "numbers", "text rows"]
 """Of a value; numbers are a list, text rows a list of lists of texts."""
+
+Sentence = Callable[[Row], str]
 
 
 @dataclass(frozen=True)
@@ -19,7 +22,8 @@ class Field:
 
     A table shows it below `heading`, unless that is empty, in the format `form`, or as the `text` made of the row.
     `unit` is "" where it has none; `null` says when there is no value, "" for never; `values` are all that a text can
-    be, where there are few. The value is `value` of the result, by default its attribute of the name of the key.
+    be, where there are few; `values_of` names types that list them, such as "evidence.MovingVerdict". The value is
+    `value` of the result, by default its attribute of the name of the key.
     """
 
     key: str
@@ -31,6 +35,7 @@ class Field:
     unit: str = ""
     null: str = ""
     values: tuple[str, ...] = ()
+    values_of: tuple[str, ...] = ()
     value: Callable[[Any], object] | None = None
 
     @property
@@ -38,6 +43,12 @@ class Field:
         """The meaning with the unit, and when there is no value, as one text."""
         unit = f", in {self.unit}" if self.unit else ""
         return f"{self.meaning}{unit}{f'; null {self.null}' if self.null else ''}."
+
+    @property
+    def all_values(self) -> tuple[str, ...]:
+        """All that a text can be, where there are few, those of named types included; loads what has the types."""
+        types = [getattr(import_module(f"bezstab.{room}"), name) for room, name in map(_parted, self.values_of)]
+        return tuple(dict.fromkeys([*self.values, *(value for each in types for value in get_args(each))]))
 
     @property
     def column(self) -> Column:
@@ -54,17 +65,24 @@ class Field:
         return self.shown("")
 
 
+def _parted(name: str) -> tuple[str, str]:
+    room, _, last = name.partition(".")
+    return room, last
+
+
 @dataclass(frozen=True)
 class RowKind:
     """One kind of row that a command prints: what it is, the fields it always has, and those that options add.
 
-    `sometimes` are keys that are null in some rows of this kind, though elsewhere they never are.
+    `sometimes` are keys that are null in some rows of this kind, though elsewhere they never are. The `sentence` says
+    in words what a row says in numbers.
     """
 
     title: str
     fields: tuple[Field, ...]
     added: tuple[Field, ...] = ()
     sometimes: tuple[str, ...] = ()
+    sentence: Sentence | None = None
 
     def columns(self, rows: Sequence[Row], without: Collection[str] = ()) -> list[Column]:
         """Return the columns of a table of such rows: of every field with a heading that shows something in some row.

@@ -33,10 +33,32 @@ from bezstab.show.cells import (
     yes_no_text,
 )
 from bezstab.show.fields import Field, RowKind
+from bezstab.show.sentences import (
+    answer_sentence,
+    chain_sentence,
+    check_sentence,
+    cost_sentence,
+    engine_sentence,
+    finding_sentence,
+    forced_sentence,
+    front_sentence,
+    held_sentence,
+    measurement_sentence,
+    member_sentence,
+    method_sentence,
+    region_sentence,
+    run_sentence,
+    step_sentence,
+    summary_sentence,
+    verdict_map_sentence,
+    whole_method_sentence,
+    witness_sentence,
+)
+from bezstab.show.words import safety_words
 
 VERDICTS = get_args(Verdict)
-MOVING_VERDICTS = ("converges", "diverges", "not settled for this mechanism")
-OUTCOMES = ("converges", "diverges", "neither", "too close to call")
+MOVING_VERDICTS = ("evidence.MovingVerdict",)
+OUTCOMES = ("evidence.MeasuredVerdict", "evidence.Outcome")
 UNKNOWN_STEP = "where no step is given"
 UNSTABLE = "where the point is not stable"
 NOT_MEASURED = "where nothing could be measured; `reason` says why"
@@ -161,7 +183,7 @@ STABLE_FOR_ALL = Field(
     "stable_for_all",
     "text",
     "Whether all alpha_hat, beta_hat > 0 are stable",
-    values=("proven", "no unstable point found", "no"),
+    values_of=("stability.StableForAll",),
 )
 UNCONDITIONAL_DAMPING_RATIO = Field(
     "unconditional_damping_ratio",
@@ -346,6 +368,16 @@ RUN_STEPS = Field("run_steps", "integer", "Steps of the whole run", "steps of ea
 RUN_EVALUATIONS = Field(
     "run_evaluations", "integer", "Evaluations of the right-hand side in the whole run", "evaluations", "d"
 )
+FACTORIZATIONS = Field(
+    "factorizations",
+    "integer",
+    "Factorizations of C_q M^-1 C_q^T in the whole run: one for each evaluation, and those of projections",
+    "factorizations",
+    "d",
+)
+STABILISE = Field(
+    "stabilise", "text", "What holds the constraints", "held by", values=("baumgarte", "projection", "none")
+)
 C_MAX = Field("c_max", "number", "Largest constraint error", "largest |c| (m, rad)", ".3e", unit="m or rad")
 CDOT_MAX = Field(
     "cdot_max", "number", "Largest rate of the constraint error", "largest |ċ| (m/s, rad/s)", ".3e", unit="m/s or rad/s"
@@ -385,7 +417,13 @@ PREDICTED_Z_ANGLE_DEG = Field(
 PREDICTED_VERDICT = Field(
     "predicted_verdict", "text", "Verdict predicted for the mechanism at rest", "predicted verdict", values=VERDICTS
 )
-MEASURED_VERDICT = Field("measured_verdict", "text", "Verdict of the simulation", "measured verdict", values=OUTCOMES)
+MEASURED_VERDICT = Field(
+    "measured_verdict",
+    "text",
+    "Verdict of the simulation",
+    "measured verdict",
+    values_of=("evidence.MeasuredVerdict", "evidence.Outcome"),
+)
 REASON = Field(
     "reason",
     "text",
@@ -438,7 +476,9 @@ MOVING = (
         "double_pole", "truth", "Whether another pole is so near that the first-order law fails and a bound is shown"
     ),
     Field("settled", "truth", "Whether the terms left out cannot change the verdict on the moving mechanism"),
-    Field("moving_verdict", "text", "What errors do on the moving mechanism", "moving verdict", values=MOVING_VERDICTS),
+    Field(
+        "moving_verdict", "text", "What errors do on the moving mechanism", "moving verdict", values_of=MOVING_VERDICTS
+    ),
     Field(
         "safe_speed",
         "number",
@@ -572,7 +612,7 @@ VARYING = (
         "text",
         "Whether errors decay for every sequence of steps",
         "varying steps",
-        values=("proven", "refuted", "not known"),
+        values_of=("stability.Varying",),
     ),
     Field("varying_h_min", "number", "Smallest step of such a sequence", unit="s"),
     Field("varying_h_max", "number", "Largest step of such a sequence", unit="s"),
@@ -666,6 +706,7 @@ POLES = RowKind(
         *SWEPT_OVER,
         *DRIVE,
     ),
+    sentence=safety_words,
 )
 REGIONS = RowKind(
     "the region of a method",
@@ -693,6 +734,7 @@ REGIONS = RowKind(
         *ACCURACY,
         *MOVING_REGION,
     ),
+    sentence=region_sentence,
 )
 LISTED_METHODS = RowKind(
     "a method in the list",
@@ -710,6 +752,7 @@ LISTED_METHODS = RowKind(
         DIGITS,
         GROUP.hidden,
     ),
+    sentence=method_sentence,
 )
 NAMED_METHODS = RowKind(
     "a method that was named",
@@ -728,6 +771,7 @@ NAMED_METHODS = RowKind(
         ORDER_LEFT,
         *REGIONS.fields[1:],
     ),
+    sentence=whole_method_sentence,
 )
 MEMBERS = RowKind(
     "a member of a family, or its limit",
@@ -741,10 +785,12 @@ MEMBERS = RowKind(
         ORDER.shown("order of accuracy", "d"),
         ERROR_CONSTANT.shown("error constant", ".6f"),
     ),
+    sentence=member_sentence,
 )
 CHAINS = RowKind(
     "a chain of bodies in an engine that sweeps",
     fields=(CHAIN_MASS_RATIO, CHAIN_BODIES, SWEPT_ITERATIONS, SWEPT_Z_ABS, STABLE_ITERATIONS),
+    sentence=chain_sentence,
 )
 CHOICES = RowKind(
     "a choice",
@@ -782,12 +828,14 @@ CHOICES = RowKind(
         TIMES_LEAST_VELOCITY.shown("times the least error", text=both_times_text),
     ),
     added=(*MOVING, *VARYING, SWEEPS, *SWEPT_OVER, *DRIVE, ENGINE_H_LIMIT, SETTING.shown("to paste")),
+    sentence=answer_sentence,
 )
 CHECKED = RowKind(
     "a point, or what to take instead",
     fields=(ROLE, *CHOICES.fields),
     added=(*CHOICES.added, APPLIED, EXCLUDES.hidden),
     sometimes=("excludes",),
+    sentence=answer_sentence,
 )
 LARGEST_STEPS = RowKind(
     "the largest step of alpha and beta, without a step",
@@ -799,6 +847,7 @@ LARGEST_STEPS = RowKind(
         SAFE,
         H_LIMIT.shown("stable for constant h (s) to", text=safe_step_text),
     ),
+    sentence=step_sentence,
 )
 LINTED = RowKind(
     "an element of a model",
@@ -827,7 +876,7 @@ ENGINES_LISTED = RowKind(
             "text",
             "Where the engine's feedback acts",
             "level",
-            values=("acceleration", "velocity", "position"),
+            values_of=("engines.Level",),
         ),
         METHOD.shown("method", text=lambda row: str(row["method"] or "yours")),
         Field("parameters", "text", "What the engine calls the feedback's parameters", "parameters"),
@@ -851,12 +900,14 @@ ENGINES_LISTED = RowKind(
         Field("swept_excludes", "text", "What is left out of how it sweeps", null=NO_SWEEPS),
     ),
     sometimes=("method",),
+    sentence=engine_sentence,
 )
 SIMULATIONS = RowKind(
     "a run",
     fields=(
         SCENE,
         METHOD,
+        STABILISE,
         ALPHA_HAT.shown("α̂", ".6g"),
         BETA_HAT.shown("β̂", ".6g"),
         H.shown("h (s)", "g"),
@@ -867,6 +918,7 @@ SIMULATIONS = RowKind(
         Field("driver_work", "number", "Work of the drivers", "work of drivers (J)", ".3e", unit="J"),
         Field("force_work", "number", "Work of the applied forces", "work of forces (J)", ".3e", unit="J"),
         RUN_EVALUATIONS,
+        FACTORIZATIONS,
         Field(
             "least_pivot",
             "number",
@@ -892,6 +944,7 @@ SIMULATIONS = RowKind(
         ),
         FAILURE,
     ),
+    sentence=run_sentence,
 )
 MEASUREMENTS = RowKind(
     "a measured pole",
@@ -908,7 +961,9 @@ MEASUREMENTS = RowKind(
         ),
         PREDICTED_Z_ABS.shown("predicted |z|", ".6f"),
         Field("law_z_abs", "number", "Modulus predicted by the first-order law of the motion", "|z| by the law", ".6f"),
-        Field("law_verdict", "text", "Verdict predicted by the first-order law of the motion", values=MOVING_VERDICTS),
+        Field(
+            "law_verdict", "text", "Verdict predicted by the first-order law of the motion", values_of=MOVING_VERDICTS
+        ),
         Field(
             "floquet_z_abs",
             "number",
@@ -989,6 +1044,30 @@ MEASUREMENTS = RowKind(
         REASON,
         Field("measurable", "truth", "Whether the pole could be measured"),
     ),
+    sentence=measurement_sentence,
+)
+SUMMARIES = RowKind(
+    "how well the measured poles of a method agree with the predicted ones",
+    fields=(
+        METHOD,
+        Field("points", "integer", "Points that were tried", "points", "d"),
+        Field("measured", "integer", "Points at which a pole could be measured", "measured points", "d"),
+        Field("median_error", "number", "Median difference of the moduli", "median error of |z|", ".1e"),
+        Field("largest_error", "number", "Largest difference of the moduli", "largest error of |z|", ".1e"),
+        Field("called", "integer", "Points at which both verdicts are settled", "verdicts called", "d"),
+        Field("wrong", "integer", "Points of these whose verdicts disagree", "wrong verdicts", "d"),
+        Field("followed", "integer", "Points followed over a revolution", "followed over a revolution", "d"),
+        Field("map_error", "number", "Median error of the rate at rest", "median error at rest", ".1e"),
+        Field("law_error", "number", "Median error of the law's rate", "median error of the law", ".1e"),
+        Field("floquet_error", "number", "Median error of the exact rate", "median error of the exact rate", ".1e"),
+        Field(
+            "wrong_sides",
+            "text",
+            "Of how many points each rate is on the wrong side of one",
+            "on the wrong side of one: at rest, law, exact",
+        ),
+    ),
+    sentence=summary_sentence,
 )
 VERDICT_MAPS = RowKind(
     "a map of simulated verdicts",
@@ -1033,6 +1112,7 @@ VERDICT_MAPS = RowKind(
         ),
         Field("disagreeing", "integer", "Runs not too close to call that disagree", "disagreeing, not too close", "d"),
     ),
+    sentence=verdict_map_sentence,
 )
 FORCED = RowKind(
     "what a method forces on a mechanism",
@@ -1064,6 +1144,7 @@ FORCED = RowKind(
         OBSERVED_ORDER,
         REASON.shown("not compared"),
     ),
+    sentence=forced_sentence,
 )
 WITNESSED = RowKind(
     "a run of an engine that is not ours",
@@ -1093,6 +1174,7 @@ WITNESSED = RowKind(
         ),
         RUN_STEPS.shown("after steps", "d"),
     ),
+    sentence=witness_sentence,
 )
 PROBED = RowKind(
     "the pole in a column of a log, or a method beside it, or a point at which a method has it",
@@ -1166,6 +1248,7 @@ SWEPT = RowKind(
         ),
         FAILURE,
     ),
+    sentence=cost_sentence,
 )
 FRONTS = RowKind(
     "the least error that a method can force with |z_p| at most so large",
@@ -1189,6 +1272,7 @@ FRONTS = RowKind(
             ".2e",
         ),
     ),
+    sentence=front_sentence,
 )
 EXTREMES = RowKind(
     "a check",
@@ -1199,6 +1283,7 @@ EXTREMES = RowKind(
         Field("seen", "text", "What came out", "seen"),
         Field("held", "truth", "Whether what came out is what was expected", "held", text=yes_no_text("held")),
     ),
+    sentence=check_sentence,
 )
 CLAIMS = RowKind(
     "a claim of the paper",
@@ -1215,6 +1300,7 @@ CLAIMS = RowKind(
             values=("confirmed", "confirmed with a correction", "not confirmed", "cannot be tested"),
         ),
     ),
+    sentence=finding_sentence,
 )
 _BY_KEY = {field.key: field for field in DRIVE}
 HELD = RowKind(
@@ -1272,9 +1358,10 @@ HELD = RowKind(
             "What an unstable drive would be stable without, or which number of a stable one is nearest to its end",
             "used up",
             null="where none has an end",
-            values=("gains", "rate", "delay", "rate and delay", "kp", "kd", "too little kd"),
+            values_of=("questions.UsedUp",),
         ),
     ),
+    sentence=held_sentence,
 )
 
 ROW_KINDS: Mapping[str, Sequence[RowKind]] = {

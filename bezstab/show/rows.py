@@ -6,7 +6,6 @@ import cmath
 import math
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
-from statistics import median
 from typing import TYPE_CHECKING
 
 from bezstab.engines import witness_of
@@ -16,6 +15,7 @@ from bezstab.show.cells import LIMITS
 from bezstab.show.columns import Row, Value
 from bezstab.show.fields import cells
 from bezstab.show.row_kinds import (
+    ACCURACY,
     ENGINES_LISTED,
     FORCED,
     FRONTS,
@@ -32,7 +32,6 @@ from bezstab.show.row_kinds import (
     SIMULATIONS,
     SWEPT,
     VERDICT_MAPS,
-    WITNESSED,
 )
 from bezstab.units import feedback_gains
 
@@ -57,11 +56,10 @@ if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
         ProbedPole,
         Run,
         VerdictMap,
-        Witnessed,
     )
-    from bezstab.mechanism import Simulation
-    from bezstab.questions import Answer, ChainMap
-    from bezstab.stability import BestPoint, Choice, FrontPoint, Limit, Member, Region
+    from bezstab.mechanism import Mechanism, Simulation
+    from bezstab.questions import Answer, ChainMap, ForcedErrors, RegionAnswer
+    from bezstab.stability import Choice, FrontPoint, Limit, Member, Region
 
 
 def complex_parts(prefix: str, z: complex) -> dict[str, float]:
@@ -152,40 +150,30 @@ def formula_row(method: Method, latex: bool = False) -> Row:
     }
 
 
-def whole_row(
-    method: Method, region: Region, best: BestPoint | None, trouble: str | None = None, *, latex: bool
-) -> Row:
+def whole_row(answer: RegionAnswer, *, latex: bool) -> Row:
     """Return all that is known of one method: method_row, formula_row (as text or LaTeX) and region_row.
 
     NumericalError as `region_row`.
     """
-    return {**method_row(method), **formula_row(method, latex), **region_row(region, best, trouble)}
+    method = answer.region.method
+    return {**method_row(method), **formula_row(method, latex), **region_row(answer)}
 
 
-def region_row(region: Region, best: BestPoint | None, trouble: str | None = None) -> Row:
+def region_row(answer: RegionAnswer) -> Row:
     """Return area, axis limits, best point of the method and which steps are stable; all dimensionless.
 
     Area and limits are of |z_p| < level, None where that region is empty, or has none; `approached` names those that
-    no edge attains, only comes near far out; it has no best point if |z_p| is
-    nowhere that small. The last four are about stability, at any level: stable_for_all about every alpha_hat,
-    beta_hat > 0; unconditional_damping_ratio is the alpha / beta above which every step is stable (None if there is
-    none); critical_damping_limit the largest beta h on alpha = beta up to which all are (None if there is none), also
-    as a rational number, if it is known to be one. `trouble` says why the best point is not known, where it is not.
-    NumericalError where a pole leaves the range of float64.
+    no edge attains, only comes near far out. NumericalError where a pole leaves the range of float64.
     """
     from bezstab.show.best_point_text import best_point_words
-    from bezstab.stability import (
-        critical_damping_limit,
-        exact_critical_damping_limit,
-        stable_for_all,
-        unconditional_damping_ratio,
-    )
 
-    exact_limit = exact_critical_damping_limit(region.method)
-    inside = best if best and best.z_abs < region.level else None
-    reason = None if inside else f"{NOT_KNOWN}: {trouble}" if trouble else _nowhere(region, best)
+    region, inside, exact_limit = answer.region, answer.inside, answer.critical_damping_limit_exact
+    reason = None if inside else f"{NOT_KNOWN}: {answer.trouble}" if answer.trouble else _nowhere(answer)
     found = {
+        "method": region.method.name,
         "z_abs_below": region.level,
+        "area": region.area,
+        "bounded": region.bounded,
         **_limits(region),
         "approached": _approached(region),
         "best_z_abs": inside.z_abs if inside else None,
@@ -193,12 +181,21 @@ def region_row(region: Region, best: BestPoint | None, trouble: str | None = Non
         "best_beta_hat": inside.beta_hat if inside else None,
         "best_where": best_point_words(inside) if inside else reason,
         "best_reason": reason,
-        "stable_for_all": stable_for_all(region.method),
-        "unconditional_damping_ratio": unconditional_damping_ratio(region.method),
-        "critical_damping_limit": critical_damping_limit(region.method),
         "critical_damping_limit_exact": None if exact_limit is None else str(exact_limit),
     }
-    return cells(REGIONS.fields, region, found)
+    return cells(REGIONS.fields, answer, found)
+
+
+def accuracy_cells(forced: ForcedErrors) -> dict[str, Value]:
+    """Return what the best points of both maps force, the fastest and the most accurate."""
+    chosen = forced.chosen
+    found = {
+        "omega_h": float(forced.motion.omega_h),
+        "accurate_alpha_hat": chosen.alpha_hat if chosen else None,
+        "accurate_beta_hat": chosen.beta_hat if chosen else None,
+        "accurate_z_abs": abs(chosen.pole) if chosen else None,
+    }
+    return cells(ACCURACY, forced, found)
 
 
 def _limits(region: Region) -> dict[str, float | None]:
@@ -214,19 +211,18 @@ def _approached(region: Region) -> str | None:
     return ", ".join(key for key, near in zip(LIMITS, only_near, strict=True) if near) or None
 
 
-def _nowhere(region: Region, best: BestPoint | None) -> str | None:
+def _nowhere(answer: RegionAnswer) -> str | None:
     """Return why there is no best point in a region: |z_p| is not that small, falls on, or a pole cannot be moved."""
     from bezstab.show.best_point_text import falling_words
-    from bezstab.stability import falls_towards, pole_place
+    from bezstab.stability import pole_place
 
-    if best:
-        return f"none: |z_p| is {best.z_abs:.6g} at least"
-    limit = falls_towards(region.method)
-    if limit is not None:
-        return f"none: {falling_words(limit)}"
-    if not region.fixed_poles:
+    if answer.best:
+        return f"none: |z_p| is {answer.best.z_abs:.6g} at least"
+    if answer.falls_towards is not None:
+        return f"none: {falling_words(answer.falls_towards)}"
+    if not answer.region.fixed_poles:
         return None
-    return f"stable nowhere: a pole stays at {pole_place(region.fixed_poles[0])} whatever α̂ and β̂"
+    return f"stable nowhere: a pole stays at {pole_place(answer.region.fixed_poles[0])} whatever α̂ and β̂"
 
 
 def family_row(member: Member) -> Row:
@@ -250,7 +246,7 @@ def limit_row(limit: Limit) -> Row:
 
 
 def simulation_row(simulation: Simulation) -> Row:
-    """Return the summary of one run: largest |c| and |cdot| (SI), energy drift (J), evaluations, when and why it ended.
+    """Return the summary of one run: largest |c| and |cdot| (SI), energy drift (J), cost, when and why it ended.
 
     `time` is where it ended (s); h in s. The drift is what of the change of energy is not the work (J) of drivers and
     of applied forces, which are there as well. `singular_passages` counts the singular configurations met.
@@ -263,7 +259,8 @@ def simulation_row(simulation: Simulation) -> Row:
             "scene": trajectory.mechanism.scene.name,
             "method": trajectory.method.name,
             "run_evaluations": trajectory.evaluations,
-            **{key: getattr(trajectory, key) for key in ("failure", "least_pivot", "pivot_time", "iterations")},
+            **{key: getattr(trajectory, key) for key in ("failure", "factorizations", "least_pivot", "pivot_time")},
+            "iterations": trajectory.iterations,
             "time": float(simulation.t[-1]),
             "c_max": float(abs(simulation.c).max()),
             "cdot_max": float(abs(simulation.cdot).max()),
@@ -323,39 +320,38 @@ def forced_rows(scene: str, pair: HalvedStep) -> list[Row]:
     ]
 
 
-def summary_row(measurements: Sequence[Row]) -> Row:
-    """Return how well the measured poles of one method agree: errors of |z|, and verdicts that contradict theory.
-
-    From its rows by measurement_row, at least one. Of the points that were followed over a revolution also the median
-    errors of the rate at rest, of the law's and of the exact one, and how many of each are on the wrong side of one.
-    """
-    errors = [abs(each["difference_z_abs"]) for each in measurements if isinstance(each["difference_z_abs"], float)]
-
-    followed = [each for each in measurements if each["measured_rate"] is not None]
-    measured, *predicted = (
-        [rate for each in followed if isinstance(rate := each[key], float)]
-        for key in ("measured_rate", "predicted_z_abs", "law_z_abs", "floquet_z_abs")
+def forced_words(name: str, pairs: Sequence[HalvedStep]) -> str:
+    """Return in words whether the method of that name forces what was predicted, and how that shrinks with the step."""
+    kept = [pair for pair in pairs if pair.holds is not None]
+    if not kept:
+        return f"{name}: nothing could be compared."
+    quotients = [run.quotient for pair in kept for run in (pair.whole, pair.half)]
+    holds = "the prediction holds" if all(pair.holds for pair in kept) else "the prediction does NOT hold"
+    predicted, seen = ([getattr(pair, name) for pair in kept] for name in ("predicted_order", "observed_order"))
+    left_out = len(pairs) - len(kept)
+    without = f" {left_out} of {len(pairs)} points could not be compared." if left_out else ""
+    return (
+        f"{name}: measured over predicted is {min(quotients):.3f} to {max(quotients):.3f}: {holds}. The order "
+        f"in h is {min(seen):.2f} to {max(seen):.2f}, predicted {min(predicted):.2f} to {max(predicted):.2f}.{without}"
     )
-    pairs = [list(zip(rates, measured, strict=True)) for rates in predicted]
-    map_error, law_error, floquet_error = (
-        float(median(abs(a - b) for a, b in of_one)) if followed else None for of_one in pairs
-    )
-    wrong_sides = [str(sum((a > 1) != (b > 1) for a, b in of_one)) for of_one in pairs]
 
-    return {
-        "method": measurements[0]["method"],
-        "points": len(measurements),
-        "measured": len(errors),
-        "median_error": float(median(errors)) if errors else None,
-        "largest_error": max(errors, default=None),
-        "called": sum(each["verdicts_agree"] is not None for each in measurements),
-        "wrong": sum(each["verdicts_agree"] is False for each in measurements),
-        "revolutions_measured": len(followed),
-        "map_error": map_error,
-        "law_error": law_error,
-        "floquet_error": floquet_error,
-        "wrong_sides": ", ".join(wrong_sides) if followed else "",
-    }
+
+def exact_rate_words(mechanism: Mechanism, measurements: Sequence[Measurement]) -> str:
+    """Return along which motion the exact rates of one method are; why there are none, where the motion ends."""
+    from bezstab.mechanism import Driver, revolution_period
+
+    name = measurements[0].method.name
+    if all(measurement.periodic for measurement in measurements):
+        return (
+            f"Exact rates of {name}: along the method's own motion, where there is none along the mechanism's motion."
+        )
+    why = ""
+    if not any(isinstance(joint, Driver) for joint in mechanism.scene.joints):
+        why = ", as nothing drives it"
+    elif revolution_period(mechanism) is None:
+        why = ", as its drivers have no common period"
+    shown = "What is shown is how errors grow over the run."
+    return f"No rate of {name} is exact: the motion does not begin anew{why}. {shown}"
 
 
 def probed_pole_row(column: str, found: ProbedPole) -> Row:
@@ -407,12 +403,6 @@ def verdict_map_row(verdicts: VerdictMap) -> Row:
             "disagreeing": verdicts.disagreements_beyond_band,
         },
     )
-
-
-def witness_row(scene: str, witnessed: Witnessed) -> Row:
-    """Return what another engine's integrator did in one run, and the method's pole that foretells it."""
-    found: Row = {"scene": scene, "predicted_z_abs": witnessed.predicted_abs, "run_steps": witnessed.steps}
-    return cells(WITNESSED.fields, witnessed, found)
 
 
 def run_row(run: Run, front: str) -> Row:

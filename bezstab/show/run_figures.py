@@ -40,9 +40,10 @@ def history_figure(simulation: Simulation) -> Figure:
     stand scene, method, point and step and, in as many lines as it takes, why a run ended early.
     """
     trajectory = simulation.trajectory
+    point = rf"$\hat\alpha$ = {simulation.alpha_hat:g}, $\hat\beta$ = {simulation.beta_hat:g}"
     title = [
         title_lines(trajectory.mechanism.scene.name, trajectory.method.name, f"h = {simulation.h:g} s"),
-        rf"$\hat\alpha$ = {simulation.alpha_hat:g}, $\hat\beta$ = {simulation.beta_hat:g}",
+        "with projection" if simulation.stabilise == "projection" else point,
     ]
     if simulation.failure:
         title.append(fill(simulation.failure, TITLE_WIDTH))

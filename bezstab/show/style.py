@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from math import ceil, floor, log10
 from textwrap import fill, wrap
-from typing import Any, BinaryIO, Literal, TypeVar
+from typing import Any, BinaryIO, TypeVar
 from zlib import crc32
 
 import numpy as np
@@ -19,6 +19,7 @@ from matplotlib.ticker import MaxNLocator, NullFormatter
 from numpy.typing import NDArray
 
 from bezstab.methods import REGISTRY, Method
+from bezstab.show.file_forms import FIGURE_FORMS
 from bezstab.stability import FloatArray, Region, useful_window, window
 from bezstab.units import feedback_gains
 
@@ -65,11 +66,10 @@ TITLE_WIDTH = 44  # characters of a line above axes, which need not stand in the
 MOST_POWERS = 6  # labels of a logarithmic axis
 
 
-def save(figure: Figure, form: Literal["png", "svg", "pdf"], file: BinaryIO) -> None:
-    """Write the figure without dates, versions or random names, so that equal figures are equal bytes."""
-    metadata = {"png": {"Software": None}, "svg": {"Date": None}, "pdf": {"CreationDate": None, "Producer": None}}
+def save(figure: Figure, form: str, file: BinaryIO) -> None:
+    """Write the figure in one of FIGURE_FORMS without dates, versions or random names: equal figures, equal bytes."""
     with styled():
-        figure.savefig(file, format=form, metadata=metadata[form])
+        figure.savefig(file, format=form, metadata=FIGURE_FORMS[form])
 
 
 def styled() -> AbstractContextManager[None]:

@@ -103,15 +103,5 @@ def swept_words(row: Row) -> str:
 
 
 def sweeps_words(count: Value) -> str:
-    """Return a number of sweeps."""
+    """Return a number of sweeps: 1 sweep, 10 sweeps."""
     return "1 sweep" if count == 1 else f"{count} sweeps"
-
-
-def chain_sentence(row: Row) -> str:
-    """Return from how many sweeps a chain is stable, and what a step does with the engine's own number of them."""
-    z_abs, stable = row["swept_z_abs"], row["stable_iterations"]
-    enough = "with no number that was tried" if stable is None else f"from {sweeps_words(stable)}"
-    count = "1 body" if row["chain_bodies"] == 1 else f"{row['chain_bodies']} bodies"
-    bodies = count if row["chain_mass_ratio"] == 1 else f"{count}, the last {row['chain_mass_ratio']:g} times as heavy"
-    own = sweeps_words(row["swept_iterations"])
-    return f"{bodies}: stable {enough}. With {own} each step multiplies the error by {z_abs:.4f}."

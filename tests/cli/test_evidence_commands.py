@@ -25,9 +25,37 @@ def test_simulate_writes_history_and_figure(tmp_path: Path) -> None:
     assert {"crank.theta", "d/dt slider.x", "cdot_4", "lambda_1", "energy"} <= set(history)
 
 
-def test_without_stabilisation_the_parameters_do_not_count() -> None:
-    plain = rows("simulate", "--time", "0.02", "--no-stabilization", "--figure", "none", "--table", "none")
+def test_without_stabilisation_there_is_no_feedback() -> None:
+    plain = rows("simulate", "--time", "0.02", "--stabilise", "none", "--figure", "none", "--table", "none")
     assert (plain[0]["alpha_hat"], plain[0]["beta_hat"]) == (0, 0)
+
+
+def test_a_projected_run_keeps_its_constraints_and_says_what_that_costs() -> None:
+    common = ("simulate", "--method", "AB4", "--time", "0.05", "--figure", "none")
+    (held,) = rows(*common, "--stabilise", "projection", "--perturb", "1e-4", "--iterations", "2")
+    (fed_back,) = rows(*common)
+    assert (held["stabilise"], held["alpha_hat"], held["beta_hat"]) == ("projection", 0, 0)
+    assert fed_back["stabilise"] == "baumgarte"
+    assert fed_back["factorizations"] == fed_back["run_evaluations"] == held["run_evaluations"]
+    total, evaluated = held["factorizations"], held["run_evaluations"]
+    assert isinstance(total, int)
+    assert isinstance(evaluated, int)
+    assert 50 <= total - evaluated <= 150
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ("--stabilise projection --alpha 1", "--stabilise projection has no feedback: not with --alpha"),
+        ("--stabilise none --physical", "--stabilise none has no feedback: not with --physical"),
+        ("--stabilise projection --iterations 0", "Invalid value for '--iterations': 0 is not in the range x>=1."),
+        ("--iterations 2", "--iterations are those of --stabilise projection"),
+    ],
+)
+def test_options_that_do_not_go_with_a_projection_are_refused_in_a_line(options: str, said: str) -> None:
+    result = run("simulate", *options.split())
+    assert result.exit_code == 2
+    assert result.stderr == f"bezstab: {said}\n"
 
 
 def test_physical_parameters_are_the_same_run() -> None:
@@ -134,6 +162,7 @@ def test_tradeoff_writes_a_table_without_times_and_two_figures(tmp_path: Path) -
 SWEEP = "tradeoff --scene pendulum --method SYM --h 0.01 --h 0.02 --time 0.1 --workers 1 --table none"
 
 
+@pytest.mark.slow
 def test_tradeoff_draws_recorded_times_the_same_again(tmp_path: Path) -> None:
     measured = rows(*SWEEP.split(), "--figure", "none")
     for row in measured:
@@ -160,14 +189,20 @@ def test_tradeoff_draws_recorded_times_the_same_again(tmp_path: Path) -> None:
         ),
     ],
 )
+@pytest.mark.slow_except("simulate")
 def test_compiled_runs_answer_the_same(command: str) -> None:
+    """But for rounding: runs agree to 1e-12 of the coordinates' size, of which an error may be a small part."""
     timed = {"seconds", "seconds_min", "seconds_max"}
     answers = []
     for choice in ("no", "yes"):
         unwritten = () if command.startswith("verify") else ("--figure", "none", "--table", "none")
         found = rows(*command.split(), *unwritten, "--compiled", choice)
         answers.append([{key: value for key, value in row.items() if key not in timed} for row in found])
-    assert answers[0] == answers[1]
+    for by_numpy, compiled in zip(*answers, strict=True):
+        assert compiled.keys() == by_numpy.keys()
+        for key, value in by_numpy.items():
+            alike = pytest.approx(value, rel=1e-6, abs=1e-12) if isinstance(value, float) else value
+            assert compiled[key] == alike, key
     assert "BEZSTAB_COMPILED" not in os.environ
 
 

@@ -202,8 +202,6 @@ def test_a_full_disk_leaves_no_part_of_a_result(command: str, tmp_path: Path) ->
     ("below", "becomes_a_file"),
     [
         pytest.param(f"out/{NAME}.chunks", True, marks=SLOW),
-        pytest.param(f"out/{NAME}.chunks", False, marks=SLOW),
-        pytest.param("out", True, marks=SLOW),
         pytest.param("out", False, marks=SLOW),
     ],
 )
@@ -308,6 +306,7 @@ def check_stopped(number: signal.Signals, running: "subprocess.Popen[bytes]", pa
         pytest.param("SIGHUP", False, MOMENTS, marks=SLOW),
     ],
 )
+@pytest.mark.slow
 def test_a_signal_ends_a_run_at_any_moment_and_resume_goes_on(
     name: str, to_all: bool, latest: Sequence[float], whole: bytes, tmp_path: Path
 ) -> None:
@@ -348,6 +347,7 @@ def test_a_signal_ends_every_command_at_any_moment(command: str, tmp_path: Path)
             check_stopped(number, running, tmp_path)
 
 
+@pytest.mark.slow
 def test_a_signal_that_was_ignored_stays_so(tmp_path: Path) -> None:
     def ignore_hangup() -> None:
         signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as nohup does

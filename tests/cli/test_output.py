@@ -4,9 +4,12 @@ import subprocess
 import time
 from pathlib import Path
 
+import pytest
+
 from tests.cli.running import interruptible
 
 
+@pytest.mark.slow
 def test_an_interrupted_map_says_how_to_go_on(tmp_path: Path) -> None:
     command = interruptible("verify", "--map", "300", "--workers", "1")
     running = subprocess.Popen(command, stderr=subprocess.PIPE, cwd=tmp_path, start_new_session=True)

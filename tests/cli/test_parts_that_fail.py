@@ -8,7 +8,7 @@ import pytest
 
 from bezstab import stability
 from bezstab.errors import NumericalError
-from bezstab.questions import answering
+from bezstab.questions import answering, regions
 from bezstab.stability import best_points, choices
 from tests.cli.running import rows, run
 
@@ -51,9 +51,7 @@ def test_without_a_best_point_region_still_prints_the_area(monkeypatch: pytest.M
 
 def test_a_method_without_a_region_withholds_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
     of_any = stability.region
-    monkeypatch.setattr(
-        stability, "region", lambda method, *level: (of_any if method.name == "B4" else failing)(method)
-    )
+    monkeypatch.setattr(regions, "region", lambda method, *level: (of_any if method.name == "B4" else failing)(method))
     result = run("region", "--method", "AB4", "--method", "B4", "--figure", "none", "--table", "none")
     assert result.exit_code == 3
     assert "0.8096847184" in result.stdout

@@ -21,6 +21,7 @@ def own_method(path: Path, name: str) -> str:
     return str(file)
 
 
+@pytest.mark.slow
 def test_what_an_encoding_lacks_is_a_question_mark_and_columns_stand(tmp_path: Path) -> None:
     run = finished("poles", "--alpha", "0.5", "--beta", "0.1", cwd=tmp_path, environment=LATIN)
     assert run.returncode == 0
@@ -76,6 +77,7 @@ def test_no_home_and_no_place_for_matplotlib(tmp_path: Path) -> None:
     "command",
     ["--help", "poles --help", "poles --alpha 1 --beta 1", pytest.param("poles --alpha 1", marks=SLOW)],
 )
+@pytest.mark.slow
 def test_a_narrow_terminal(columns: str, command: str, tmp_path: Path) -> None:
     run = finished(*command.split(), cwd=tmp_path, environment={"COLUMNS": columns})
     complains = command == "poles --alpha 1"

@@ -75,6 +75,7 @@ def test_verify_tells_what_the_motion_does_to_a_prediction() -> None:
         ("four_bar", "B4", "No rate of B4 is exact: the motion does not begin anew, as nothing drives it."),
     ],
 )
+@pytest.mark.slow
 def test_exact_rates_are_said_to_be_along_which_motion(scene: str, method: str, said: str) -> None:
     point = ("--alpha", "0.5", "--beta", "0.1", "--h", "0.01")
     assert said in run("verify", "--scene", scene, "--method", method, *point, "--floquet").stdout.replace("\n", " ")

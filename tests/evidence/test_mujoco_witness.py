@@ -43,7 +43,7 @@ def test_mujoco_settles_and_diverges_where_the_map_says(scene: str) -> None:
         assert one.measured_verdict == ("converges" if one.times_boundary < 1 else "diverges")
         boundary = np.array([one.alpha_hat, one.beta_hat]) / one.times_boundary
         assert spectral_radius(one.method, *boundary) == pytest.approx(1, abs=1e-9)
-        assert (one.predicted_abs < 1) == (one.times_boundary == TIMES[0])
+        assert (one.predicted_z_abs < 1) == (one.times_boundary == TIMES[0])
 
 
 @pytest.mark.slow

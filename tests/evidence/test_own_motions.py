@@ -43,6 +43,7 @@ def test_the_runner_finds_the_same_motion_and_the_same_rate(name: str) -> None:
 
 @pytest.mark.promise("Rates over the method's own motion")
 @pytest.mark.parametrize("name", ["trapezoid", "implicit-midpoint", "sdirk2", "implicit-euler"])
+@pytest.mark.slow
 def test_methods_that_solve_equations_have_the_rate_of_the_motion_to_which_they_settle(name: str) -> None:
     """By differences of whole runs: 1e-8 of a multiplier of 0.4, and 60 steps; the mechanism's motion is another."""
     own, on_the_motion = both_rates(name, 1 / 60, 0.03, 0.03)

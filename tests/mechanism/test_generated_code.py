@@ -24,7 +24,7 @@ from bezstab.mechanism.generated_code import (
     AccelerationCode,
     MachineCode,
     compiled_source,
-    judged_acceleration_source,
+    judged_source,
     machine_code,
     slope_lines,
 )
@@ -130,8 +130,8 @@ def test_entries_that_are_zero_are_not_computed() -> None:
 
 def test_generated_source_is_plain_assignments() -> None:
     """Arithmetic on named variables only: no calls but sin, cos and least, no containers but those handed out."""
-    source = judged_acceleration_source(compiled_mechanism(load_scene("slider_crank")).acceleration_code)
-    called = set(CALL.findall(source)) - {"judged_acceleration"}
+    source = judged_source(compiled_mechanism(load_scene("slider_crank")).acceleration_code)
+    called = set(CALL.findall(source)) - {"judged"}
     assert called <= {"sin", "cos", "least"}
 
 

@@ -5,7 +5,9 @@ from fractions import Fraction
 import pytest
 
 from bezstab.mechanism.programs import Evaluation, Program, program_of
+from bezstab.mechanism.second_order_memory import memory
 from bezstab.methods import REGISTRY, lookup, second_order_form
+from tests.mechanism.test_second_order_memory import LEAPFROG
 
 HALF, QUARTER, ONE, NONE = Fraction(1, 2), Fraction(1, 4), Fraction(1), Fraction(0)
 
@@ -24,7 +26,20 @@ def test_velocity_verlet_is_the_program_of_the_books() -> None:
         combined=((ONE, ONE, HALF, NONE), (NONE, ONE, HALF, HALF)),
         moves=((4, 0), (5, 1), (3, 2)),
         state=(4, 5),
+        corrected=((ONE, NONE), (NONE, ONE), (NONE, NONE)),
     )
+
+
+def test_a_projection_changes_what_is_carried_of_the_newest_state_and_nothing_older() -> None:
+    """Two states of bdf2; of a scheme that carries the velocity half a step back, that."""
+    found = program("bdf2")
+    names = [str(quantity) for quantity in memory(second_order_form(lookup("bdf2").scheme)).carried]
+    shares = dict(zip(names, found.corrected, strict=True))
+    assert {name for name, of_it in shares.items() if any(of_it)} == {"x0", "v0"}
+    assert {"x[-1]", "v[-1]"} <= set(shares)
+    names = [str(quantity) for quantity in memory(LEAPFROG).carried]
+    shares = dict(zip(names, program_of(LEAPFROG).corrected, strict=True))
+    assert shares == {"x0": (ONE, NONE), "w[0]": (NONE, ONE), "a0": (NONE, NONE)}
 
 
 def test_the_trapezoidal_rule_waits_for_its_acceleration() -> None:

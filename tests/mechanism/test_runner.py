@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from bezstab.errors import InputError
 from bezstab.mechanism import (
+    Projection,
     Start,
     compiled_mechanism,
     initial_state,
@@ -42,7 +43,9 @@ QUICK = {"verlet-half", "verlet-predicted", "hht", "rkn4", "bdf2", "am3", "sdirk
 STARTS: tuple[Start, ...] = ("rk4", "ramp", "euler")
 
 
-def measured_order(name: str, count: int, gains: Callable[[float], tuple[float, float]]) -> float:
+def measured_order(
+    name: str, count: int, gains: Callable[[float], tuple[float, float]], projection: Projection | None = None
+) -> float:
     """Return the order that `simulate` shows from count to 2 count steps over 0.2 s, the light crank at 60 rpm."""
     scene, rate, duration = load_scene("slider_crank_light"), 2 * np.pi, 0.2
     mechanism = compiled_mechanism(replace(scene, velocity={"crank.theta": rate}))
@@ -50,7 +53,7 @@ def measured_order(name: str, count: int, gains: Callable[[float], tuple[float, 
     errors = []
     for step_count in (count, 2 * count):
         h = duration / step_count
-        run = simulate(mechanism, lookup(name), h, duration, gains(h))
+        run = simulate(mechanism, lookup(name), h, duration, gains(h), projection=projection)
         assert not run.failure
         errors.append(distance(run.q[:, 0].tolist(), reference))
     return shown_order(errors)

@@ -19,10 +19,12 @@ from bezstab.mechanism import (
 from bezstab.mechanism.stepping import MOST_ITERATIONS
 from bezstab.methods import REGISTRY, Method, SecondOrder, implicit, lookup, second_order_form, steps
 from bezstab.units import feedback_gains
+from tests.evidence.samples import of_campaign
 from tests.reference.plain_second_order import FloatArray, plain_second_order_run
 from tests.reference.plain_steps import plain_step
 
 H = 1e-3  # s
+EPS = np.finfo(float).eps
 KINDS = ("B4", "AB3", "ABM2", "RK4", "SYM", "verlet-half", "bdf2", "gauss4", "sdirk2", "hht")
 """Of each kind of method one."""
 SCENES = [name for name in shipped_scenes() if name != "n_four_bar"]
@@ -34,14 +36,19 @@ def step_for(scene: str) -> float:
     return 1e-5 if scene == "andrews" else H
 
 
-def assert_alike(one: Trajectory, other: Trajectory, tolerance: float = 1e-12) -> None:
-    """Check that two runs are the same but for rounding, and end alike; relative, of coordinates at least to 1."""
+def assert_alike(one: Trajectory, other: Trajectory, tolerance: float = 1e-12, of_velocities: float = 0.0) -> None:
+    """Check that two runs are the same but for rounding, and end alike; relative, of coordinates at least to 1.
+
+    `of_velocities` (1/s) is what a unit of positions may add to the difference of velocities.
+    """
     assert one.t == pytest.approx(other.t, abs=1e-14 * one.t[-1])
     if one.failure and other.failure:  # on the way there rounding grows
         assert one.failure[:40] == other.failure[:40]
         return
-    for a, b in ((one.q, other.q), (one.v, other.v)):
-        assert a == pytest.approx(b, rel=tolerance, abs=tolerance * max(1, abs(a).max()))
+    of_size = max(1, abs(one.q).max())
+    assert one.q == pytest.approx(other.q, rel=tolerance, abs=tolerance * of_size)
+    close = tolerance * max(1, abs(one.v).max()) + of_velocities * of_size
+    assert one.v == pytest.approx(other.v, rel=tolerance, abs=close)
     for key in ("evaluations", "iterations", "failure"):
         assert getattr(one, key) == getattr(other, key)
 
@@ -51,7 +58,8 @@ def both(mechanism: Mechanism, name: str, count: int, gains: tuple[float, float]
     method = lookup(name)
     duration = count * h * float(method.step_multiple)
     by_numpy, compiled = (simulate(mechanism, method, h, duration, gains, compiled=each) for each in (False, True))
-    assert_alike(by_numpy, compiled)
+    # BDF methods have velocities from differences of positions, each rounded some times: over h
+    assert_alike(by_numpy, compiled, of_velocities=8 * EPS / h if name.startswith("bdf") else 0.0)
     return compiled
 
 
@@ -79,6 +87,7 @@ def plain_run(
 
 @pytest.mark.promise("Compiled runs (`--compiled`)")
 @pytest.mark.parametrize("name", KINDS)
+@pytest.mark.slow_except("B4", "SYM", "bdf2")
 def test_many_steps_are_the_plain_ones(name: str) -> None:
     """By numpy and compiled."""
     mechanism, method = compiled_mechanism(load_scene("slider_crank")), lookup(name)
@@ -104,7 +113,7 @@ def test_many_steps_are_the_plain_ones(name: str) -> None:
     ),
 )
 @pytest.mark.slow
-@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("scene", of_campaign(SCENES, ["pendulum", "driven_slider_crank", "andrews"]))
 def test_every_method_is_the_same_compiled_in_every_scene(scene: str) -> None:
     """All but the Adams-Bashforth methods of most steps: these are unstable here, and rounding grows."""
     mechanism, h = compiled_mechanism(load_scene(scene)), step_for(scene)

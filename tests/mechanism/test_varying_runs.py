@@ -199,7 +199,7 @@ def compiled_and_not(name: str, monkeypatch: pytest.MonkeyPatch, **point: Any) -
 
 @pytest.mark.promise("Compiled runs (`--compiled`)")
 @pytest.mark.parametrize("name", ["verlet-half", "sdirk2"])
-@pytest.mark.slow_except("verlet-half")
+@pytest.mark.slow
 def test_compiled_runs_are_those_of_python(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Those that last, their gains held and not, and those that end."""
     sequence, h = [1e-3, 2.5e-3, 1e-3, 2e-3], 1e-3

@@ -44,6 +44,7 @@ def table_5_with(name: str) -> list[PrintedCase]:
     return cases
 
 
+@pytest.mark.slow
 def test_the_poles_of_table_5_are_as_printed_but_for_one() -> None:
     finding = found("dominant poles")
     assert finding.agreement == "confirmed with a correction"
@@ -102,6 +103,7 @@ def test_had_it_been_neither_or_not_everywhere_it_would_not() -> None:
     assert what_semi_implicit_euler_is(once_symplectic).agreement == "not confirmed"
 
 
+@pytest.mark.slow
 def test_what_fig_9_shows() -> None:
     for words in ("case 2", "case 3: AB4 diverges", "case 3: AB4's derivative", "all points lie"):
         assert found(words).agreement == "confirmed"
@@ -131,6 +133,7 @@ def test_what_is_no_single_wave_is_called_irregular() -> None:
     assert "but irregular" in ab4_oscillates_fast(noisy).here
 
 
+@pytest.mark.slow
 def test_the_crank_is_as_wrong_as_an_independent_angle_says() -> None:
     """Angle after 10 s by two high-precision routes: 11.735910737052 rad."""
     last = {run.method.name: abs(run.trajectory.q[-1, 0] - 11.735910737052) for run in compared()[: len(COMPARED)]}

@@ -8,6 +8,7 @@ from bezstab.paper.cost import Cost, costs, findings, one_step_methods_take_long
 from bezstab.paper.printed import COMPARED, TABLE_6
 
 
+@pytest.mark.slow
 def test_the_four_methods_do_not_cost_the_same() -> None:
     rows = costs()
     assert [row.method for row in rows] == list(COMPARED)
@@ -19,12 +20,14 @@ def test_the_four_methods_do_not_cost_the_same() -> None:
     assert agreements == ["not confirmed", "not confirmed", "confirmed with a correction"]
 
 
+@pytest.mark.slow
 def test_the_recorded_times_are_of_these_runs() -> None:
     assert [(row.method, row.evaluations) for row in recorded_costs()] == [
         (row.method, row.evaluations) for row in costs()
     ]
 
 
+@pytest.mark.slow
 def test_the_table_holds_recorded_times_and_no_others(monkeypatch: pytest.MonkeyPatch) -> None:
     made = report(lambda runs, label, length: runs)
     slower = [replace(row, seconds=2 * row.seconds) for row in costs()]

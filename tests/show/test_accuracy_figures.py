@@ -168,7 +168,7 @@ def test_the_marks_below_the_front_are_apart() -> None:
 def test_the_same_figure_is_the_same_bytes(form: str) -> None:
     def saved(figure: Figure) -> bytes:
         file = io.BytesIO()
-        save(figure, form, file)  # type: ignore[arg-type]
+        save(figure, form, file)
         return file.getvalue()
 
     assert saved(drawn_map()[0]) == saved(drawn_map()[0])

@@ -2,7 +2,7 @@ from fractions import Fraction
 
 from bezstab.methods import lookup
 from bezstab.questions import Question, answers
-from bezstab.show import answer_row, answer_sentence, costs_words, motion_words, trade_words
+from bezstab.show import answer_row, costs_words, motion_words, trade_words
 from bezstab.show.rows import COST
 
 SYM = (lookup("SYM"),)
@@ -18,18 +18,6 @@ def test_rows_of_safe_and_unsafe_points_have_the_same_keys() -> None:
     assert (stable["safe"], unstable["safe"]) == (True, False)
     assert stable["omega_h"] == unstable["omega_h"] == 0.01
     assert [unstable[key] for key in COST if key not in ("omega_h", "order_left")] == [None] * 5
-
-
-def test_the_sentence_says_whether_it_is_safe_what_a_step_does_and_how_far_it_may_go() -> None:
-    point = (Fraction(1), Fraction(1, 4))
-    asked = Question(methods=SYM, point=point, h=H)
-    assert answer_sentence(answer_row(next(answers(asked)))) == (
-        "Safe. Each step multiplies the error by 0.75. The step may grow to 6.9 ms, α 1.88-fold, β 2.83-fold."
-    )
-    without_a_step = answer_row(next(answers(Question(methods=SYM, point=point))))
-    assert "The step may grow 1.66-fold, α 1.88-fold" in answer_sentence(without_a_step)
-    unknown = answer_sentence({**without_a_step, "margins_reason": "rounding"})
-    assert unknown.endswith("How far the step, α and β may grow is not known: rounding.")
 
 
 def test_only_what_costs_much_is_said_to() -> None:

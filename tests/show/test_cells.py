@@ -3,6 +3,7 @@
 import pytest
 
 from bezstab.methods import lookup
+from bezstab.questions import region_answer
 from bezstab.show import Row
 from bezstab.show.cells import (
     LIMITS,
@@ -45,11 +46,11 @@ def test_a_gain_without_a_limit_has_no_share_of_it() -> None:
 
 
 def region_words(name: str) -> Row:
-    return with_unbounded(region_row(region(lookup(name)), None))
+    return with_unbounded(region_row(region_answer(lookup(name))))
 
 
 def test_a_region_without_limits_says_so_in_words_and_has_no_numbers() -> None:
-    row = region_row(region(lookup("bdf3")), None)
+    row = region_row(region_answer(lookup("bdf3")))
     assert row["bounded"] is False
     assert [row[key] for key in ("area", *LIMITS)] == [None] * 5
     words = with_unbounded(row)
@@ -70,11 +71,11 @@ def test_a_region_without_limits_says_so_in_words_and_has_no_numbers() -> None:
     ],
 )
 def test_which_steps_are_stable_is_said_in_a_few_words(name: str, words: str) -> None:
-    assert stable_steps_text(region_row(region(lookup(name)), None)) == words
+    assert stable_steps_text(region_row(region_answer(lookup(name)))) == words
 
 
 def test_other_words_for_stable_steps() -> None:
-    row = region_row(region(lookup("B2")), None)
+    row = region_row(region_answer(lookup("B2")))
     assert stable_steps_text({**row, "critical_damping_limit": 0.0}) == "0"
     unsure: Row = {**row, "critical_damping_limit": None}
     assert stable_steps_text(unsure) == "all"

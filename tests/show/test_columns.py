@@ -7,10 +7,9 @@ from fractions import Fraction
 import pytest
 
 from bezstab.methods import lookup
-from bezstab.questions import Question, answers
+from bezstab.questions import Question, answers, region_answer
 from bezstab.show import POLES, REGIONS, Column, Row, column, formatted, render, transposed
 from bezstab.show.rows import pole_rows, region_row
-from bezstab.stability import best_point, region
 
 ANSWER = next(answers(Question(methods=(lookup("B4"),), point=(Fraction(1, 2), Fraction(1, 10)))))
 ROWS = pole_rows(ANSWER, [0.75 + 0.125j, -0.5 + 0j])
@@ -43,7 +42,7 @@ def test_what_is_not_finite_is_missing(value: float) -> None:
 
 
 def test_columns_line_up_under_hats() -> None:
-    rows = [region_row(region(lookup(name)), best_point(lookup(name))) for name in ("B4", "AB4")]
+    rows = [region_row(region_answer(lookup(name))) for name in ("B4", "AB4")]
     for form in ("text", "markdown"):
         header, *lines = render(rows, REGIONS.columns(rows), form).replace("\u0302", "").splitlines()
         column = header.index("least")

@@ -7,7 +7,8 @@ import pytest
 from bezstab.engines import Drive
 from bezstab.methods import lookup
 from bezstab.questions import HeldQuestion, held_answers
-from bezstab.show import held_row, held_sentence, timing_words
+from bezstab.show import held_row, timing_words
+from bezstab.show.sentences import held_sentence
 from bezstab.stability import Timing
 
 H = Fraction("0.002")

@@ -16,7 +16,7 @@ def test_a_key_is_the_same_in_every_kind_of_row() -> None:
         assert len(set(keys)) == len(keys), kind.title
         for field in (*kind.fields, *kind.added):
             first = FIELDS[field.key]
-            for name in ("kind", "meaning", "unit", "null", "values"):
+            for name in ("kind", "meaning", "unit", "null", "values", "values_of"):
                 assert getattr(field, name) == getattr(first, name), field.key
 
 

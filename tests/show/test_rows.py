@@ -4,13 +4,13 @@ import pytest
 
 from bezstab.engines import ENGINES
 from bezstab.methods import lookup
+from bezstab.questions import region_answer
 from bezstab.show.rows import alpha_and_beta, engine_row, whole_row
-from bezstab.stability import best_point, region
 from bezstab.units import to_dimensionless
 
 
 def test_a_whole_row_says_that_b4_is_of_order_two() -> None:
-    whole = whole_row(lookup("B4"), region(lookup("B4")), best_point(lookup("B4")), latex=False)
+    whole = whole_row(region_answer(lookup("B4")), latex=False)
     assert (whole["order"], whole["error_constant_exact"], whole["steps"], whole["evaluations"]) == (2, "11/36", 4, 1)
     assert whole["error_constant"] == 11 / 36
 

@@ -4,9 +4,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from itertools import pairwise
-from typing import Any
 
-import matplotlib as mpl
 import pytest
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
@@ -26,7 +24,6 @@ from bezstab.show.style import (
     styled,
 )
 from bezstab.stability import region
-from tests.show.test_plane_figures import drawn_map
 
 NAMES = ["rk45", "hht", "generalized-alpha", "newmark", "radau3", "B3", "B4", "AB4", "RK4@5", "SYM", "SIE", "ABM4"]
 
@@ -107,17 +104,6 @@ def test_labels_of_a_logarithmic_axis_are_apart(limits: tuple[float, float]) -> 
 def test_text_in_svg_is_text() -> None:
     save(comparison_figure([region(lookup("B4"))]), "svg", file := io.BytesIO())
     assert b">B4</text>" in file.getvalue()
-
-
-@pytest.mark.parametrize("form", ["png", "svg", "pdf"])
-def test_equal_figures_are_equal_bytes_whatever_the_users_settings(form: str) -> None:
-    outputs = []
-    own: dict[str, Any] = {"font.size": 20, "lines.linewidth": 9, "savefig.dpi": 10, "svg.hashsalt": "x"}
-    for settings in ({}, own):
-        with mpl.rc_context(settings):  # type: ignore[arg-type,unused-ignore]
-            save(drawn_map()[0], form, file := io.BytesIO())  # type: ignore[arg-type]
-        outputs.append(file.getvalue())
-    assert outputs[0] == outputs[1]
 
 
 @pytest.mark.slow

@@ -74,8 +74,9 @@ def test_a_sliver_where_poles_nearly_meet_agrees(monkeypatch: pytest.MonkeyPatch
     assert case.admitted < DIFFERENT * case.integral / 10  # so that a wrong area is told
 
 
-@pytest.mark.parametrize("number", [pytest.param(SLIVER, marks=pytest.mark.slow), 1])
+@pytest.mark.parametrize("number", [SLIVER, 1])
 @pytest.mark.parametrize("wrong_by", [-3e-6, 3e-6])
+@pytest.mark.slow
 def test_a_wrong_area_is_told(number: int, wrong_by: float, monkeypatch: pytest.MonkeyPatch) -> None:
     def wrong(method: Method, level: float) -> Region:
         right = region(method, level)

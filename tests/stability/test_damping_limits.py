@@ -127,6 +127,7 @@ def test_bdf_methods_need_a_damping_ratio(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", RATIOS)
+@pytest.mark.slow
 def test_above_the_ratio_every_step_is_stable_and_just_below_some_is_not(name: str) -> None:
     ratio = unconditional_damping_ratio(lookup(name))
     assert ratio

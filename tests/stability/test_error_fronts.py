@@ -28,8 +28,9 @@ PROMISED = 1e-3
     "The least error at each |z_p| (`tradeoff --predicted`)",
     computed=("1e-3: no point of a grid over five decades is better, fifteen methods at two ωh; |z_p| at most as said"),
 )
-@pytest.mark.parametrize("name", [*QUICK, *(pytest.param(name, marks=pytest.mark.slow) for name in TRADED)])
-@pytest.mark.parametrize("omega_h", [OMEGA_H, pytest.param(Fraction(1, 3), marks=pytest.mark.slow)], ids=str)
+@pytest.mark.parametrize("name", [*QUICK, *TRADED])
+@pytest.mark.parametrize("omega_h", [OMEGA_H, Fraction(1, 3)], ids=str)
+@pytest.mark.slow
 def test_brute_force_finds_nothing_better(name: str, omega_h: Fraction) -> None:
     method = lookup(name)
     front = error_front(method, omega_h=omega_h)
@@ -70,6 +71,7 @@ def test_it_ends_at_the_least_modulus_and_at_no_rate_that_is_not_reached() -> No
     assert [point.z_abs_below for point in error_front(lookup("B4"), [0.5])] == [best.z_abs]
 
 
+@pytest.mark.slow
 def test_where_modulus_falls_on_without_end_rates_beyond_what_is_looked_at_have_no_point() -> None:
     front = error_front(lookup("bdf3"))
     assert best_point(lookup("bdf3")) is None

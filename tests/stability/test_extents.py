@@ -8,6 +8,7 @@ import pytest
 
 from bezstab.errors import NumericalError
 from bezstab.methods import Method, PlaneStrips, Strip, lookup, recipe
+from bezstab.questions import RegionAnswer
 from bezstab.show import region_row, with_unbounded
 from bezstab.stability import region, verdict
 from bezstab.stability.plane_cells import shape_of_strips, strips_shape
@@ -107,6 +108,6 @@ def test_beta_hat_may_come_near_its_limit_as_alpha_hat_grows() -> None:
     assert found.extent == ((0.0, np.inf), (0.0, 4.0))
     assert found.approached == ((False, False), (False, True))
     assert contradictions(found.method, 1.0, found.extent) == []
-    row = region_row(found, None)
+    row = region_row(RegionAnswer(found, None, None))
     assert row["approached"] == "beta_hat_max"
     assert with_unbounded(row)["beta_hat_max"] == "4 (approached)"

@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bezstab import stability
 from bezstab.errors import InputError
 from bezstab.methods import lookup
 from bezstab.stability import RATES, choose, combined_error, error_front, spectral_radius
@@ -106,7 +105,7 @@ def test_a_method_without_an_accurate_point_has_its_map_nevertheless(monkeypatch
     def refused(*_: object, **__: object) -> None:
         raise InputError("RK4: no feedback decays so fast")
 
-    monkeypatch.setattr(stability, "choose", refused)
+    monkeypatch.setattr("bezstab.questions.regions.choose", refused)
     result = run(*MAP, "--format", "csv")
     assert result.exit_code == 0
     assert "no most accurate point: RK4: no feedback decays so fast" in result.stderr

@@ -1,0 +1,216 @@
+"""What rows say, in words: for each kind of row the sentence above its block of lines."""
+
+from bezstab.show.cells import diverged_text, order_text, safe_step_text, step_limit
+from bezstab.show.columns import Row, Value, formatted
+from bezstab.show.words import change_words, growth_words, safety_words, seconds_words, sweeps_words
+
+
+def answer_sentence(row: Row) -> str:
+    """Return whether a point is safe, what a step does to the error, and how far step, α and β may grow, at rest."""
+    if not row["safe"] or "swept_z_abs" in row:
+        return safety_words(row)
+    if row["margins_reason"]:
+        return f"{safety_words(row)} How far the step, α and β may grow is not known: {row['margins_reason']}."
+    limit = step_limit(row)
+    factor = row["h_factor"] if row["h"] is None else None
+    step = f"to {seconds_words(limit)}" if isinstance(limit, float) else growth_words(factor)
+    alpha, beta = growth_words(row["alpha_factor_max"]), growth_words(row["beta_factor_max"])
+    begin = "At rest the" if "z_abs_moving" in row else "The"
+    if {step, alpha, beta} == {growth_words(None)}:
+        return f"{safety_words(row)} {begin} step, α and β may grow {step}."
+    return f"{safety_words(row)} {begin} step may grow {step}, α {alpha}, β {beta}."
+
+
+def step_sentence(row: Row) -> str:
+    """Return up to which step alpha and beta are safe."""
+    limit = safe_step_text(row)
+    if limit == "none":
+        return "Not safe at small steps."
+    return "Safe at any h." if limit == "unlimited" else f"Safe up to h = {limit} s."
+
+
+def engine_sentence(row: Row) -> str:
+    """Return what to write for the point, or what the engine calls the feedback where none is given."""
+    if row["setting"] is None:
+        return f"In {row['engine']} the feedback is set by {row['parameters']}."
+    return f"At this point: {row['setting']}."
+
+
+CAUSES = {
+    "gains": "These gains are not stable even if each step computes and applies its torque.",
+    "rate": "The torque is held too long: the same gains are stable if each step computes it.",
+    "delay": "The torque comes too late: the same gains are stable without the delay.",
+    "rate and delay": "The torque is held too long and comes too late.",
+}
+"""Why a drive is unstable, by what is used up."""
+
+
+NEAREST = {
+    "kp": "kp is nearest to its limit",
+    "kd": "kd is nearest to its limit",
+    "too little kd": "kd is nearest to its limit, the lower one",
+    "rate": "the time between two torques is nearest to its limit",
+    "delay": "the delay is nearest to its limit",
+}
+"""Which number of a stable drive may change least, by what is used up."""
+
+
+def held_sentence(row: Row) -> str:
+    """Return whether a held or late drive is safe, what a step of the physics does to the error, why, what may change.
+
+    Safe (explicit). Each step multiplies the error by 0.95. It stays stable with one of these alone: kp up to 849, kd
+    from 1.03 to 48.4, a torque every 19 steps, at most 6 steps late; kp is nearest to its limit.
+    """
+    z_abs = row["z_abs"]
+    assert isinstance(z_abs, float)
+    change = change_words(z_abs, row["verdict"])
+    sentence = f"{'Safe' if row['safe'] else 'Not safe'} ({row['drive']}). {change[0].upper()}{change[1:]}."
+    changes = ", ".join(_changes(row))
+    if not row["safe"]:
+        remedy = f"It is stable with one of these alone: {changes}." if changes else "No single change makes it stable."
+        return f"{sentence} {CAUSES[str(row['held_by'])]} {remedy}"
+    if not changes:
+        return sentence
+    nearest = f"; {NEAREST[str(row['held_by'])]}" if row["held_by"] else ""
+    return f"{sentence} It stays stable with one of these alone: {changes}{nearest}."
+
+
+def _changes(row: Row) -> list[str]:
+    """Return how far each number alone may go with which a drive is stable."""
+    kp_max, kd_min, kd_max = row["kp_max"], row["kd_min"], row["kd_max"]
+    changes = []
+    if isinstance(kp_max, float):
+        changes.append(f"kp up to {kp_max:.3g}")
+    if isinstance(kd_min, float):
+        end = f"to {kd_max:.3g}" if isinstance(kd_max, float) else "on"
+        changes.append(f"kd from {kd_min:.3g} {end}")
+    if row["every_max"] is not None:
+        changes.append(f"a torque every {_steps(row['every_max'])}")
+    if row["late_max"] is not None:
+        changes.append(f"at most {_steps(row['late_max'])} late")
+    return changes
+
+
+def _steps(number: Value) -> str:
+    return "step" if number == 1 else f"{number} steps"
+
+
+def one_pole_sentence(row: Row) -> str:
+    """Return what the part of the error does that belongs to one pole of several."""
+    return f"{row['method']} {row['verdict']}. The part of the error with this pole is |z| times as large each step."
+
+
+def region_sentence(row: Row) -> str:
+    """Return how large the region of a method is, and where in it errors shrink fastest."""
+    what = "is stable" if row["z_abs_below"] == 1 else f"has |z_p| < {row['z_abs_below']:g}"
+    if row["alpha_hat_max"] is None and row["bounded"]:
+        return f"{row['method']} {what} nowhere."
+    size = "in a region without end" if row["area"] is None else f"in a region of area {row['area']:.3g}"
+    if row["best_z_abs"] is None:
+        return f"{row['method']} {what} {size}."
+    best = f"({row['best_alpha_hat']:.4g}, {row['best_beta_hat']:.4g})"
+    return f"{row['method']} {what} {size}; the least |z_p| is {row['best_z_abs']:.3g}, at α̂, β̂ = {best}."
+
+
+def method_sentence(row: Row) -> str:
+    """Return what a method is: explicit or not, its order, what a step of it costs."""
+    kind = "implicit" if row["implicit"] else "explicit"
+    count = "1 evaluation" if row["evaluations"] == 1 else f"{row['evaluations']} evaluations"
+    each = "iteration" if row["implicit"] else "step"
+    return f"{row['method']} is {kind}, of order {order_text(row)}, with {count} in each {each}."
+
+
+def whole_method_sentence(row: Row) -> str:
+    """Return that, and the order that strong feedback leaves it, for a method that is shown whole."""
+    left = "keep that order" if row["order_left"] == row["order"] else f"are of order {row['order_left']}"
+    return f"{method_sentence(row)} With α̂ and β̂ held as h shrinks, constraint errors {left}."
+
+
+def member_sentence(row: Row) -> str:
+    """Return how large a member's region is, and how fast errors can shrink in it."""
+    if row["area"] is None or row["best_z_abs"] is None:
+        return f"{row['method']} is stable nowhere."
+    return f"{row['method']} has a region of area {row['area']:.3g} and a least |z_p| of {row['best_z_abs']:.3g}."
+
+
+def run_sentence(row: Row) -> str:
+    """Return how long a run of a mechanism went well, and how far it stayed from its constraints."""
+    time = row["time"]
+    assert isinstance(time, float)
+    end = f"broke down after {seconds_words(time)}" if row["failure"] else f"went through to {seconds_words(time)}"
+    return f"{row['method']} {end}; the largest |c| is {formatted(row['c_max'], '.1e')}."
+
+
+def cost_sentence(row: Row) -> str:
+    """Return what one run costs and what it buys."""
+    h = row["h"]
+    assert isinstance(h, float)
+    with_step = f"{row['method']} with h = {seconds_words(h)}"
+    if row["failure"]:
+        return f"{with_step} diverged."
+    return f"{with_step}: a trajectory error of {diverged_text(row)} for {row['run_evaluations']} evaluations."
+
+
+def check_sentence(row: Row) -> str:
+    """Return whether what was expected came out."""
+    return "As expected." if row["held"] else "NOT as expected."
+
+
+def measurement_sentence(row: Row) -> str:
+    """Return the predicted and the measured modulus, and whether the verdicts agree."""
+    ends = {True: "the verdicts agree", False: "the verdicts DISAGREE", None: "too close to call"}
+    agree = row["verdicts_agree"]
+    assert agree is None or isinstance(agree, bool)
+    if not row["measurable"]:
+        verdict = "" if agree is None else f" The run {row['measured_verdict']}: {ends[agree]}."
+        return f"Not measurable: {row['reason']}.{verdict}"
+    predicted, measured = formatted(row["predicted_z_abs"], ".6f"), formatted(row["measured_z_abs"], ".6f")
+    return f"Predicted |z| {predicted}, measured {measured}: {ends[agree]}."
+
+
+def summary_sentence(row: Row) -> str:
+    """Return at how many points the poles could be measured, and how many verdicts were wrong."""
+    return f"{row['method']}: {row['measured']} of {row['points']} points measured, {row['wrong']} wrong verdicts."
+
+
+def verdict_map_sentence(row: Row) -> str:
+    """Return how many runs gave a verdict, how many of these are as predicted, and how many others must not differ."""
+    if not row["judged_runs"]:
+        return f"{row['method']}: none of {row['runs']} runs gave a verdict."
+    given = f"{row['judged_runs']} of {row['runs']} runs gave a verdict, {row['agreeing']} as predicted"
+    return f"{row['method']}: {given}; {row['disagreeing']} that are not too close to call differ."
+
+
+def forced_sentence(row: Row) -> str:
+    """Return what was measured of a run, over what was predicted."""
+    at = f"{row['method']} at {row['gain_share']:g} of the gains, steps of {row['h']:g} s"
+    if row["reason"]:
+        return f"{at}: not compared: {row['reason']}."
+    return f"{at}: |c| is {formatted(row['quotient'], '.3f')} times what was predicted."
+
+
+def witness_sentence(row: Row) -> str:
+    """Return what the other engine did against what was predicted."""
+    as_predicted = "as" if row["measured_verdict"] == row["predicted_verdict"] else "NOT as"
+    return f"MuJoCo's {row['integrator']}: {row['measured_verdict']}, {as_predicted} predicted."
+
+
+def front_sentence(row: Row) -> str:
+    """Return how little a method can force while errors decay so fast."""
+    error, z_abs = formatted(row["combined_error"], ".1e"), formatted(row["z_abs_below"], ".4g")
+    return f"With |z_p| of {z_abs} at most {row['method']} forces {error} of the motion at least."
+
+
+def finding_sentence(row: Row) -> str:
+    """Return whether a claim is confirmed."""
+    return f"{str(row['agreement']).capitalize()}."
+
+
+def chain_sentence(row: Row) -> str:
+    """Return from how many sweeps a chain is stable, and what a step does with the engine's own number of them."""
+    z_abs, stable = row["swept_z_abs"], row["stable_iterations"]
+    enough = "with no number that was tried" if stable is None else f"from {sweeps_words(stable)}"
+    count = "1 body" if row["chain_bodies"] == 1 else f"{row['chain_bodies']} bodies"
+    bodies = count if row["chain_mass_ratio"] == 1 else f"{count}, the last {row['chain_mass_ratio']:g} times as heavy"
+    own = sweeps_words(row["swept_iterations"])
+    return f"{bodies}: stable {enough}. With {own} each step multiplies the error by {z_abs:.4f}."

@@ -1,0 +1,257 @@
+"""Projection: what holds after each step, what it costs, and that the order of accuracy stays."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from bezstab.errors import InputError
+from bezstab.mechanism import (
+    Mechanism,
+    Projection,
+    acceleration_function,
+    compiled_mechanism,
+    constraint_jacobian,
+    initial_state,
+    load_scene,
+    observe,
+    perturbed_state,
+    simulate,
+    simulated,
+    simulated_with_steps,
+)
+from bezstab.mechanism.compiled import correction_function
+from bezstab.mechanism.projection import check_projected
+from bezstab.methods import Method, SecondOrder, evaluations, implicit, lookup, second_order_form, steps
+from tests.mechanism.test_runner import measured_order
+from tests.mechanism.test_second_order_memory import LEAPFROG, STOERMER
+from tests.mechanism.test_stepping import KINDS, SCENES, assert_alike, step_for
+from tests.reference.one_coordinate_motion import shown_order
+from tests.reference.plain_projection import FloatArray, projected, saddle_solution
+from tests.reference.plain_second_order import plain_second_order_run
+from tests.reference.plain_steps import plain_step
+
+H = 1e-3  # s
+WITHIN = 4e-12  # m, m/s: corrections of up to 1e-12 in sum are left, and constraints weigh a coordinate by some units
+
+
+def scene(name: str) -> Mechanism:
+    return compiled_mechanism(load_scene(name))
+
+
+@pytest.mark.promise("Projection (`--stabilise projection`)")
+@pytest.mark.parametrize("name", ["slider_crank", "driven_four_bar", "andrews"])
+@pytest.mark.parametrize("method", KINDS)
+def test_after_each_step_the_constraints_hold(name: str, method: str) -> None:
+    mechanism, h = scene(name), step_for(name)
+    run = simulate(mechanism, lookup(method), h, 50 * h, (0.0, 0.0), projection=Projection())
+    seen = observe(mechanism, run.t, run.q, run.v, 0.0, 0.0)
+    assert run.failure is None
+    assert abs(seen.c).max() <= WITHIN
+    assert abs(seen.cdot).max() <= WITHIN * max(1, abs(run.v).max())
+
+
+def test_an_error_of_the_start_is_gone_after_a_step() -> None:
+    mechanism = scene("slider_crank")
+    state = perturbed_state(mechanism, 1e-3)
+    for method in ("AB4", "SYM", "hht"):
+        run = simulate(mechanism, lookup(method), H, 20 * H, (0.0, 0.0), state, projection=Projection())
+        seen = observe(mechanism, run.t, run.q, run.v, 0.0, 0.0)
+        assert abs(seen.c[0]).max() > 9e-4
+        assert abs(seen.c[1:]).max() <= WITHIN
+
+
+@pytest.mark.promise(
+    "Projection (`--stabilise projection`)",
+    measured=(
+        "|c| and the rate of c at most 4e-12 after each step, and the orders of ten methods against a motion by "
+        "quadrature within 0.1; plain formulas with numpy's solution of the saddle-point equations, numpy and compiled "
+        "code agree to 1e-12 of the coordinates' size after 100 steps"
+    ),
+)
+@pytest.mark.parametrize(
+    ("name", "order"),
+    [
+        *(("B4", 2), ("AB4", 4), ("ABM3", 3), ("RK4", 4), ("SYM", 1), ("verlet-half", 2)),
+        *(("implicit-euler", 1), ("trapezoid", 2), ("bdf2", 2), ("hht", 2)),
+    ],
+)
+def test_the_order_of_accuracy_stays(name: str, order: int) -> None:
+    """Against the motion in the crank's angle alone, by quadrature; RK4 loses half of its order by strong feedback."""
+    count = 400 if not implicit(lookup(name)) else 200
+    assert measured_order(name, count, lambda _: (0.0, 0.0), Projection()) == pytest.approx(order, abs=0.1)
+    assert measured_order(name, count, lambda _: (0.0, 0.0), Projection(1)) == pytest.approx(order, abs=0.1)
+
+
+def test_what_is_carried_of_a_velocity_is_projected_with_it() -> None:
+    """The leapfrog scheme carries the velocity half a step back, and that only; its order is two."""
+    method = Method("leapfrog", LEAPFROG, source="")
+    mechanism, errors = scene("slider_crank_light"), []
+    fine = simulate(mechanism, lookup("RK4"), 1e-4, 0.2, (0.0, 0.0))
+    for h in (2e-3, 1e-3):
+        run = simulate(mechanism, method, h, 0.2, (0.0, 0.0), projection=Projection())
+        seen = observe(mechanism, run.t, run.q, run.v, 0.0, 0.0)
+        assert max(abs(seen.c).max(), abs(seen.cdot).max()) <= 1e-11
+        errors.append(abs(run.q[-1] - fine.q[-1]).max())
+    assert shown_order(errors) == pytest.approx(2, abs=0.1)
+
+
+def plain_run(
+    mechanism: Mechanism, method: Method, h: float, states: list[FloatArray], count: int, iterations: int
+) -> FloatArray:
+    """Return `count` states after the given ones by the method's formula, each projected by numpy; no driver."""
+    n, acceleration = mechanism.size, acceleration_function(mechanism, math)
+
+    def accelerations(q: FloatArray, v: FloatArray) -> FloatArray:
+        return np.array(acceleration(0.0, 0.0, 0.0, q.tolist(), v.tolist()))
+
+    def slope(_: float, y: FloatArray) -> FloatArray:
+        return np.concatenate([y[n:], accelerations(y[:n], y[n:])])
+
+    history = list(states)
+    for _ in range(count):
+        if implicit(method) or isinstance(method.scheme, SecondOrder):  # of those that remember nothing but their state
+            (new,) = plain_second_order_run(second_order_form(method.scheme), accelerations, h, history[-1:], 1)
+        else:
+            new = plain_step(method, slope, 0.0, h, history[: -steps(method) - 1 : -1])
+        history.append(projected(mechanism, 0.0, new, iterations))
+    return np.array(history[len(states) :])
+
+
+@pytest.mark.promise("Projection (`--stabilise projection`)")
+@pytest.mark.parametrize("name", ["B4", "AB4", "RK4", "SYM", "implicit-euler", "trapezoid"])
+def test_steps_are_the_plain_ones_by_numpy_and_compiled(name: str) -> None:
+    mechanism, method, count = scene("slider_crank"), lookup(name), 100
+    by_numpy, compiled = (
+        simulate(mechanism, method, H, count * H, (0.0, 0.0), projection=Projection(1), compiled=each)
+        for each in (False, True)
+    )
+    assert_alike(by_numpy, compiled)
+    assert by_numpy.projections == compiled.projections
+    if name == "trapezoid":  # it remembers an acceleration of a state before that was projected
+        return
+    states = np.concatenate([by_numpy.q, by_numpy.v], axis=1)
+    first = steps(method)
+    expected = plain_run(mechanism, method, H, list(states[:first]), count + 1 - first, iterations=1)
+    assert states[first:] == pytest.approx(expected, rel=1e-12, abs=1e-12 * abs(states).max())
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [name for name in SCENES if name != "slider_crank"])
+def test_compiled_projection_is_the_same_in_every_scene(name: str) -> None:
+    mechanism, h = scene(name), step_for(name)
+    for method in KINDS:
+        by_numpy, compiled = (
+            simulate(mechanism, lookup(method), h, 100 * h, (0.0, 0.0), projection=Projection(2), compiled=each)
+            for each in (False, True)
+        )
+        assert_alike(by_numpy, compiled)
+
+
+@pytest.mark.promise("Projection (`--stabilise projection`)")
+@pytest.mark.parametrize("name", ["slider_crank", "driven_four_bar", "andrews", "driven_slider_crank"])
+def test_corrections_are_the_least_ones_in_the_metric_of_the_masses(name: str) -> None:
+    """M dq and M dv are orthogonal to all that the constraints let move, and solve the saddle-point equations."""
+    mechanism = scene(name)
+    n, t = mechanism.size, 0.3
+    generator = np.random.default_rng(1)
+    q, v = initial_state(mechanism)
+    q = q + 1e-3 * generator.standard_normal(n)
+    v = v + generator.standard_normal(n)
+    *found, _ = correction_function(mechanism, math)(t, 0.0, 0.0, q.tolist(), v.tolist())
+    seen = observe(mechanism, np.array([t]), q[np.newaxis], v[np.newaxis], 0.0, 0.0)
+    jacobian = constraint_jacobian(mechanism, t, q)
+    _, _, directions = np.linalg.svd(jacobian)
+    free = directions[mechanism.constraints :]
+    masses = np.array(mechanism.equations.mass, float)
+    for correction, error in ((np.array(found[:n]), seen.c[0]), (np.array(found[n:]), seen.cdot[0])):
+        expected = saddle_solution(mechanism, jacobian, error)
+        assert correction == pytest.approx(expected, rel=1e-9, abs=1e-11 * abs(expected).max())
+        assert free @ (masses * correction) == pytest.approx(0, abs=1e-11 * abs(masses * correction).max())
+        assert jacobian @ correction == pytest.approx(-error, abs=1e-11 * abs(jacobian).max() * abs(correction).max())
+
+
+def test_the_cost_is_counted() -> None:
+    """A projection that moves the state computes a correction twice: the second says that it is enough."""
+    mechanism, count = scene("driven_four_bar"), 40
+    for name in ("SYM", "RK2", "hht"):
+        held, plain = (
+            simulate(mechanism, lookup(name), H, count * H, (0.0, 0.0), projection=each)
+            for each in (Projection(1), None)
+        )
+        assert (held.projections, plain.projections) == (2 * count, None)
+        assert held.factorizations == held.evaluations + 2 * count
+        assert plain.factorizations == plain.evaluations
+        if not implicit(lookup(name)):
+            assert held.evaluations == plain.evaluations == count * evaluations(lookup(name))
+    ab4 = simulate(mechanism, lookup("AB4"), H, count * H, (0.0, 0.0), projection=Projection())
+    assert ab4.projections is not None
+    assert ab4.projections <= 2 * count  # those of its start are counted, too
+
+
+def test_more_iterations_come_closer() -> None:
+    """Each iteration of Newton's method squares what is left."""
+    mechanism, errors = scene("driven_four_bar"), []
+    for iterations in (1, 2, 3):
+        run = simulate(mechanism, lookup("SYM"), 0.02, 1.0, (0.0, 0.0), projection=Projection(iterations))
+        errors.append(abs(observe(mechanism, run.t, run.q, run.v, 0.0, 0.0).c).max())
+    assert errors[0] > 1e-7
+    assert errors[1] < errors[0] ** 1.5
+    assert errors[2] <= WITHIN
+
+
+def test_steps_of_different_lengths_are_projected_too() -> None:
+    run = simulated_with_steps(
+        scene("driven_four_bar"),
+        lookup("hht"),
+        sequence=(1e-3, 3e-3),
+        h=1e-3,
+        duration=0.2,
+        alpha_hat=0.0,
+        beta_hat=0.0,
+        projection=Projection(),
+    )
+    assert run.stabilise == "projection"
+    assert max(abs(run.c).max(), abs(run.cdot).max() / 10) <= WITHIN
+
+
+@pytest.mark.promise("Projection (`--stabilise projection`)")
+@pytest.mark.parametrize("compiled", [False, True])
+def test_a_singular_configuration_ends_a_run_and_says_when(compiled: bool) -> None:
+    """The first step of explicit Euler ends where crank and rod of one length stand upright: S has no inverse there."""
+    shipped, before, rate = load_scene("slider_crank_equal"), 1e-4, 2.0
+    turned = {"crank.theta": math.pi / 2 - before}
+    mechanism = compiled_mechanism(replace(shipped, position=turned, velocity={"crank.theta": rate}))
+    h = before / rate
+    run = simulate(mechanism, lookup("RK1"), h, 10 * h, (0.0, 0.0), projection=Projection(), compiled=compiled)
+    assert len(run.t) == 1
+    assert "at t = 5e-05 s: singular configuration: C_q M^-1 C_q^T has lost its rank" in str(run.failure)
+    assert simulate(mechanism, lookup("RK1"), h, h, (0.0, 0.0), compiled=compiled).failure is None
+
+
+def test_a_position_from_which_newtons_method_finds_none_ends_a_run() -> None:
+    """The crank is driven half a revolution on in a step; so many iterations as are asked for are no promise."""
+    mechanism = scene("driven_four_bar")
+    run = simulate(mechanism, lookup("RK1"), 0.5, 20.0, (0.0, 0.0), projection=Projection())
+    assert "at t = 1.5 s: Newton's method did not converge in 25 iterations (last correction " in str(run.failure)
+    given_up = simulate(mechanism, lookup("RK1"), 0.5, 1.5, (0.0, 0.0), projection=Projection(2))
+    assert given_up.failure is None
+    assert abs(observe(mechanism, given_up.t, given_up.q, given_up.v, 0.0, 0.0).c).max() > 1e-3
+
+
+@pytest.mark.parametrize(
+    ("gain", "projection", "held"),
+    [(0.1, None, "baumgarte"), (0.0, None, "none"), (0.0, Projection(), "projection")],
+)
+def test_a_run_says_what_held_its_constraints(gain: float, projection: Projection | None, held: str) -> None:
+    mechanism, method = scene("pendulum"), lookup("SYM")
+    run = simulated(mechanism, method, h=H, duration=5 * H, alpha_hat=gain, beta_hat=gain, projection=projection)
+    assert run.stabilise == held
+
+
+def test_bad_input_is_refused() -> None:
+    with pytest.raises(InputError, match="iterations 0: expected at least 1"):
+        Projection(0)
+    with pytest.raises(InputError, match="stoermer has its position a step ahead of its velocity"):
+        check_projected(Method("stoermer", STOERMER, source=""))
