@@ -578,8 +578,8 @@ def probe(
         named = [_method(name) for name in methods or ()]
         points = [one for own in named for one in evidence.points_like(found, own, every)]
         return evidence.Probe(found, (), tuple(points))
-    compared = [_method(name) for name in (REGISTRY if methods is None else methods)]
-    return evidence.Probe(found, tuple(evidence.likenesses(found, compared, *point, every, turned)), ())
+    compared = {_method(name): every for name in (REGISTRY if methods is None else methods)}
+    return evidence.Probe(found, tuple(evidence.likenesses(found, compared, *point, turned)), ())
 
 
 def probe_step(

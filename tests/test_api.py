@@ -32,25 +32,27 @@ def test_the_page_of_examples_is_true() -> None:
     assert found.failed == 0
 
 
-@pytest.mark.parametrize("name", FUNCTIONS)
-def test_a_public_name_says_what_it_returns_in_which_unit_and_what_it_raises(name: str) -> None:
-    function = getattr(bezstab, name)
-    text = inspect.getdoc(function) or ""
-    first, _, rest = text.partition("\n")
-    assert (first[:7], first[-1:]) == ("Return ", ".")  # in a list of names the first line stands alone
-    assert "Return" in rest
-    assert any(unit in text for unit in UNITS)
-    assert "Error" in text
-    signature = inspect.signature(function)
-    assert signature.return_annotation is not inspect.Signature.empty
-    assert all(parameter.annotation is not inspect.Parameter.empty for parameter in signature.parameters.values())
+def test_a_public_name_says_what_it_returns_in_which_unit_and_what_it_raises() -> None:
+    for name in FUNCTIONS:
+        function = getattr(bezstab, name)
+        text = inspect.getdoc(function) or ""
+        first, _, rest = text.partition("\n")
+        assert (first[:7], first[-1:]) == ("Return ", "."), name  # in a list of names the first line stands alone
+        assert "Return" in rest, name
+        assert any(unit in text for unit in UNITS), name
+        assert "Error" in text, name
+        signature = inspect.signature(function)
+        assert signature.return_annotation is not inspect.Signature.empty, name
+        for parameter in signature.parameters.values():
+            assert parameter.annotation is not inspect.Parameter.empty, name
+            assert len(str(parameter)) < 60, name  # an alias such as ArrayLike, not the page of types it stands for
 
 
-@pytest.mark.parametrize("name", PLOTS)
-def test_a_plot_takes_an_axes_and_says_what_it_draws(name: str) -> None:
-    function = getattr(bezstab.plot, name)
-    assert "axes" in inspect.signature(function).parameters
-    assert (inspect.getdoc(function) or "").startswith(("Draw", "Cross", "Ring"))
+def test_a_plot_takes_an_axes_and_says_what_it_draws() -> None:
+    for name in PLOTS:
+        function = getattr(bezstab.plot, name)
+        assert "axes" in inspect.signature(function).parameters, name
+        assert (inspect.getdoc(function) or "").startswith(("Draw", "Cross", "Ring")), name
 
 
 def test_what_is_public_is_listed_once_and_found() -> None:
@@ -246,13 +248,6 @@ def test_lists_arrays_and_wrong_types_are_refused_in_the_callers_words(
     with pytest.raises(InputError, match=re.escape(message)) as caught:
         wrong()
     assert len(str(caught.value).splitlines()) == 1
-
-
-@pytest.mark.parametrize("name", FUNCTIONS)
-def test_help_shows_annotations_as_they_are_written(name: str) -> None:
-    """An alias such as ArrayLike, not the page of types that it stands for."""
-    for parameter in inspect.signature(getattr(bezstab, name)).parameters.values():
-        assert len(str(parameter)) < 60
 
 
 def test_the_public_plots_are_those_that_dir_shows() -> None:

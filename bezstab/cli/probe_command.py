@@ -3,7 +3,7 @@
 import shlex
 import sys
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -132,11 +132,10 @@ def probe(
     row = _row_step(data, time)
     turned = _turned(turning, step, row, every)
 
-    def between(method: Method) -> int | None:
-        return steps_between_rows(method, step, row, every)
-
-    compared_methods = methods or ([lookup(name) for name in REGISTRY] if point else [])
-    _check_rows(compared_methods, between, step, row, every)
+    compared = methods or ([lookup(name) for name in REGISTRY] if point else [])
+    own_steps = {method: steps_between_rows(method, step, row, every) for method in compared}
+    logged = {method: between for method, between in own_steps.items() if between is not None}
+    _check_rows(bool(logged or not compared), step, row, every)
     answers = Answers([], [], [], [])
     untold: list[str] = []
     unfit: list[str] = []
@@ -147,11 +146,11 @@ def probe(
         found = probed_pole(data.values[:, group], subtracted)
         answers.fits.append(probed_pole_row(name, found))
         if found.pole is not None and point is None:
-            _invert(answers, name, found, compared_methods, between, step)
-            if compared_methods and not any(row["column"] == name for row in answers.points):
+            _invert(answers, name, found, own_steps, step)
+            if compared and not any(row["column"] == name for row in answers.points):
                 unfit.append(name)
             continue
-        like = likenesses(found, compared_methods, *point, between, turned) if point else []
+        like = likenesses(found, logged, *point, turned) if point else []
         if point and like:
             answers.likenesses.extend(likeness_row(name, one) for one in like)
             answers.sentences.append(f"{name}: {likeness_sentence(like, point)}")
@@ -180,18 +179,16 @@ def _invert(
     answers: Answers,
     column_name: str,
     found: "ProbedPole",
-    methods: Sequence[Method],
-    between: Callable[[Method], int | None],
+    own_steps: Mapping[Method, int | None],
     h: float | None,
 ) -> None:
     """Add the points at which each method has a column's pole, or why there is none; h in s."""
     from bezstab.evidence import points_like
     from bezstab.show import like_point_row
 
-    for method in methods:
-        steps = between(method)
+    for method, between in own_steps.items():
         try:
-            points = [] if steps is None else points_like(found, method, steps)
+            points = [] if between is None else points_like(found, method, between)
         except InputError as error:
             answers.sentences.append(f"{column_name}: {error}.")
             continue
@@ -328,17 +325,11 @@ def _turned(turning: Fraction | None, h: float | None, row: float | None, every:
     raise click.UsageError("--turning is a rate in 1/s: it needs --h, or a column of times in the log")
 
 
-def _check_rows(
-    methods: Sequence[Method],
-    between: Callable[[Method], int | None],
-    h: float | None,
-    row: float | None,
-    every: int,
-) -> None:
+def _check_rows(of_some_method: bool, h: float | None, row: float | None, every: int) -> None:
     """Raise InputError where the rows are no multiple of any method's step, or of another than --every says."""
     if h is None or row is None:
         return
-    if methods and all(between(method) is None for method in methods):
+    if not of_some_method:
         raise InputError(f"the log's times are {row:.6g} s apart: expected a multiple of the step, --h {h:g}")
     if not left_at_default("every") and round(row / h) != every:
         raise InputError(f"--every {every}: the log's times are {row:.6g} s apart, {row / h:.4g} times --h {h:g}")

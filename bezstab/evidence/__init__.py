@@ -26,7 +26,7 @@ from bezstab.evidence.measured_poles import (
     LINEAR,
     MeasuredVerdict,
     Measurement,
-    kicked_constraint_errors,
+    kicked_motions,
     measure_poles,
     random_points,
 )

@@ -4,7 +4,7 @@ import hashlib
 import os
 import sys
 from collections.abc import Iterator, Mapping
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
@@ -35,13 +35,13 @@ class ChunkStore:
     path: Path
     job: str
 
-    def finished(self) -> list[int]:
-        """Return the numbers of the chunks that have a file, ascending."""
-        return sorted(int(file.stem) for file in self.path.glob("*.npz") if file.stem.isdecimal() and file.is_file())
-
     def file(self, number: int) -> Path:
         """Return where a chunk is kept."""
         return self.path / f"{number}.npz"
+
+    def has(self, number: int) -> bool:
+        """Return whether a chunk has a file, damaged or not."""
+        return self.file(number).is_file()
 
     def load(self, number: int) -> Arrays | None:
         """Return a finished chunk; None if its file is damaged, or of another chunk or job.
@@ -84,7 +84,7 @@ def chunk_store(path: Path, job: str, resume: bool) -> Iterator[ChunkStore]:
     """
     with _locked(path):
         description = path / JOB
-        described = _content(description)
+        described = description.read_bytes() if description.is_file() else None
         if resume and described is not None and described != job.encode():
             raise InputError(
                 f"--resume: {path} was left by a run with other options; without --resume it is overwritten"
@@ -93,16 +93,6 @@ def chunk_store(path: Path, job: str, resume: bool) -> Iterator[ChunkStore]:
             _empty(path)
         write_whole(description, lambda file: file.write(job.encode()))
         yield ChunkStore(path, job)
-
-
-def _content(path: Path) -> bytes | None:
-    """Return what a file holds, None if there is none; InputError if it cannot be read."""
-    try:
-        return path.read_bytes()
-    except FileNotFoundError:
-        return None
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror}") from None
 
 
 def _empty(directory: Path) -> None:
@@ -117,15 +107,6 @@ def _empty(directory: Path) -> None:
 @contextmanager
 def _locked(directory: Path) -> Iterator[None]:
     """Hold the lock of a directory, made if need be; InputError that names the holder where that is another process."""
-    file = _opened_and_locked(directory)
-    with file:  # and with it goes the lock
-        with suppress(OSError):  # on a full disk: then the holder has no name
-            file.truncate(0)
-            file.write(f"process {os.getpid()}".encode())
-        yield
-
-
-def _opened_and_locked(directory: Path) -> BinaryIO:
     path = directory / LOCK
     while True:
         output_directory(directory)
@@ -135,29 +116,20 @@ def _opened_and_locked(directory: Path) -> BinaryIO:
             continue  # the run that had the directory has just removed it
         except OSError as error:
             raise InputError(f"cannot write {path}: {error.strerror}") from None
-        with ExitStack() as closing:
-            closing.enter_context(file)
+        with file:  # and with it goes the lock
             if not _try_to_lock(file):
-                raise _in_use(directory, file)
-            if _is_at(path, file):
-                closing.pop_all()
-                return file
-            # else the run that had the lock removed the file between opening and locking
-
-
-def _in_use(directory: Path, file: BinaryIO) -> InputError:
-    """Return the error that names who holds a lock file, by the words it has left there."""
-    file.seek(0)
-    holder = file.read(100).decode(errors="replace") or "another process"
-    return InputError(f"{directory} is in use by another run ({holder}): wait for it, or choose another --output")
-
-
-def _is_at(path: Path, file: BinaryIO) -> bool:
-    """Return whether an open file is still what lies at a path."""
-    try:
-        return os.path.samestat(os.fstat(file.fileno()), path.stat())
-    except FileNotFoundError:
-        return False
+                file.seek(0)
+                holder = file.read(100).decode(errors="replace") or "another process"
+                raise InputError(
+                    f"{directory} is in use by another run ({holder}): wait for it, or choose another --output"
+                )
+            if not os.fstat(file.fileno()).st_nlink:
+                continue  # the run that had the lock removed the file between opening and locking
+            with suppress(OSError):  # on a full disk: then the holder has no name
+                file.truncate(0)
+                file.write(f"process {os.getpid()}".encode())
+            yield
+            return
 
 
 def _try_to_lock(file: BinaryIO) -> bool:

@@ -9,6 +9,7 @@ from typing import TypeVar
 from bezstab.errors import NumericalError
 from bezstab.evidence.chunk_stores import Arrays, ChunkStore
 from bezstab.evidence.worker_pools import WorkerPool
+from bezstab.stopping import signals_deferred
 
 Chunk = TypeVar("Chunk")
 
@@ -41,7 +42,8 @@ def completed_chunks(
         while waiting or busy:
             while waiting and idle:
                 executor, number = idle.pop(), waiting.popleft()
-                future = executor.submit(work, chunks[number])
+                with signals_deferred():  # the first chunk of an executor starts its process
+                    future = executor.submit(work, chunks[number])
                 busy[future] = executor, number
             for future in wait(busy, return_when=FIRST_COMPLETED).done:
                 executor, number = busy.pop(future)
@@ -61,8 +63,7 @@ def completed_chunks(
     finally:
         for future in busy:
             future.cancel()
-        still_busy = [executor for executor, _ in busy.values()]
-        for executor in (*idle, *still_busy):
+        for executor in (*idle, *(executor for executor, _ in busy.values())):
             executor.shutdown(wait=False)
 
 
@@ -70,10 +71,9 @@ def _intact_chunks(
     store: ChunkStore, count: int, report_damaged: Callable[[Path], object]
 ) -> Iterator[tuple[int, Arrays]]:
     """Yield those of `count` chunks that the store has, and report each whose file is damaged."""
-    for number in store.finished():
-        if number < count:
-            arrays = store.load(number)
-            if arrays is None:
-                report_damaged(store.file(number))
-            else:
-                yield number, arrays
+    for number in filter(store.has, range(count)):
+        arrays = store.load(number)
+        if arrays is None:
+            report_damaged(store.file(number))
+        else:
+            yield number, arrays

@@ -53,9 +53,6 @@ from bezstab.units import feedback_gains
 MeasuredVerdict = Literal["converges", "diverges", "too close to call"]
 Progress = Callable[[Sequence[int]], Iterable[int]]
 
-ENDLESS = 10**9
-"""Steps, of which whoever asks takes some."""
-
 RUN = 1000
 """Steps after the kick."""
 
@@ -205,23 +202,17 @@ def _kicked_responses(
 ) -> tuple[FloatArray, FloatArray]:
     """Return half the difference of c_1 after kicks up and down, and the largest |c|; shape (steps, kicks, points)."""
     shape = (RUN + 1, len(KICKS), alpha_hat.size)
-    difference = np.zeros(shape)
-    size = np.full(shape, np.inf)
-    kicked: Iterator[FloatArray] = iter(())
+    difference, size = np.empty(shape), np.empty(shape)
+    seen = iter(progress(range(RUN + 1)))
     compiled = runs_compiled(mechanism, method, size.size * 2 * evaluations(method) // CHEAPER_TOGETHER)
     with np.errstate(all="ignore"):  # what diverges runs into infinity, and is cut off there
-        if compiled:
-            groups = kicked_motions_in_groups(mechanism, method, h, alpha_hat, beta_hat, KICKS, RUN)
-            for some, blocks in groups:
-                responses = np.concatenate([c for c, _ in blocks])
-                difference[:, :, some] = (responses[:, 0, 0] - responses[:, 0, 1]) / 2
-                size[:, :, some] = np.abs(responses).max(axis=(1, 2))
-        else:
-            kicked = kicked_constraint_errors(mechanism, method, h, alpha_hat, beta_hat, KICKS)
-        for k, c in zip(progress(range(RUN + 1)), kicked, strict=False):
-            up, down = c[0]
-            difference[k] = (up - down) / 2
-            size[k] = np.abs(c).max(axis=(0, 1))
+        for some, blocks in kicked_motions(mechanism, method, h, alpha_hat, beta_hat, KICKS, RUN, compiled):
+            k = 0
+            for c, _ in blocks:
+                steps_of_block = slice(k, k + len(c))
+                difference[steps_of_block, :, some] = (c[:, 0, 0] - c[:, 0, 1]) / 2
+                size[steps_of_block, :, some] = np.abs(c).max(axis=(1, 2))
+                k += len(list(islice(seen, len(c))))
     size[~np.isfinite(size)] = np.inf
     return difference, size
 
@@ -322,24 +313,6 @@ def _measured_verdict(
     return "converges" if settled else "too close to call"
 
 
-def kicked_constraint_errors(
-    mechanism: Mechanism,
-    method: Method,
-    h: float,
-    alpha_hat: FloatArray,
-    beta_hat: FloatArray,
-    kicks: Sequence[float],
-) -> Iterator[FloatArray]:
-    """Yield c at each step from the kick on, without end; shape (constraints, 2 for up and down, kicks, points).
-
-    The kick of the first constraint (SI units) comes after as many steps as the method has; what a multistep method
-    remembers of before is left alone, and so is what a second-order scheme remembers of accelerations: its recursion is
-    linear, and its poles are the same from any first values. h in s, alpha_hat and beta_hat of shape (points,).
-    InputError for a scene that cannot start.
-    """
-    return (c for c, _ in kicked_motions(mechanism, method, h, alpha_hat, beta_hat, kicks))
-
-
 def kicked_motions(
     mechanism: Mechanism,
     method: Method,
@@ -347,103 +320,56 @@ def kicked_motions(
     alpha_hat: FloatArray,
     beta_hat: FloatArray,
     kicks: Sequence[float],
-) -> Iterator[tuple[FloatArray, FloatArray]]:
-    """Yield c and q of the same runs, SI units; shape (constraints or coordinates, 2, kicks, points)."""
-    ((_, blocks),) = _kicked_blocks(mechanism, method, h, alpha_hat, beta_hat, kicks, ENDLESS, compiled=False)
-    for c, q in blocks:
-        yield from zip(c, q, strict=True)
-
-
-def kicked_motions_in_groups(
-    mechanism: Mechanism,
-    method: Method,
-    h: float,
-    alpha_hat: FloatArray,
-    beta_hat: FloatArray,
-    kicks: Sequence[float],
     count: int,
+    compiled: bool = False,
 ) -> Iterator[tuple[slice, Iterator[tuple[FloatArray, FloatArray]]]]:
-    """Yield the same of the kick and the `count` steps after it by groups of points, compiled.
+    """Yield c and q (SI units) of kicked runs, from the kick on over `count` steps, by groups of points.
 
-    With each slice of the points come blocks of c and q, of shape (steps, constraints or coordinates, 2, kicks, points
-    in the slice). InputError without numba.
+    With each slice of the points come blocks of c and q, of shape (steps, constraints or coordinates, 2 for up and
+    down, kicks, points in the slice); the first block is the kick itself. The kick of the first constraint (SI units)
+    comes after as many steps as the method has; what a multistep method remembers of before is left alone, and so is
+    what a second-order scheme remembers of accelerations: its recursion is linear, and its poles are the same from any
+    first values. h in s, alpha_hat and beta_hat of shape (points,). InputError for a scene that cannot start, and
+    where runs are to be `compiled` without numba.
     """
-    return _kicked_blocks(mechanism, method, h, alpha_hat, beta_hat, kicks, count, compiled=True)
-
-
-def _kicked_blocks(
-    mechanism: Mechanism,
-    method: Method,
-    h: float,
-    alpha_hat: FloatArray,
-    beta_hat: FloatArray,
-    kicks: Sequence[float],
-    count: int,
-    compiled: bool,
-) -> Iterator[tuple[slice, Iterator[tuple[FloatArray, FloatArray]]]]:
-    """Yield the same, compiled or not; in one group if not."""
-    run_up = _run_up_to_the_kick(mechanism, method, h, alpha_hat, beta_hat, kicks)
-    given = (mechanism, method, run_up.h_step, run_up.gains, run_up.history)
+    h_step = h * float(method.step_multiple)
+    gains = feedback_gains(alpha_hat, beta_hat, h)
+    q, v = initial_state(mechanism)
+    start = np.repeat(np.concatenate([q, v])[:, np.newaxis], alpha_hat.size, axis=1)
+    before = march(mechanism, method, h_step, gains, start, "rk4", _steps_before_the_kick(method))
+    history = [start, *(state for block in before for state in block.states)]
+    undisturbed = history[-1]
+    displaced = perturbed_state(mechanism, 1.0)[0] - q  # linear in the constraint error
+    direction = np.concatenate([displaced, np.zeros_like(v)])
+    amounts = np.multiply.outer([1.0, -1.0], kicks)[..., np.newaxis]
+    kicked = history[-1] = undisturbed[:, np.newaxis, np.newaxis] + np.multiply.outer(direction, amounts)
+    given = (mechanism, method, h_step, gains, history)
     groups: Iterable[tuple[slice, Iterator[Block]]]
     if compiled:
-        groups = resume_in_groups(*given, run_up.undisturbed, count)
+        groups = resume_in_groups(*given, undisturbed, count)
     else:
-        groups = [(slice(None), resume(*given, count, undisturbed=run_up.undisturbed))]
-    n = mechanism.size
-    kicked = run_up.history[-1]
+        groups = [(slice(None), resume(*given, count, undisturbed=undisturbed))]
 
-    def seen(blocks: Iterator[Block], at_the_kick: FloatArray) -> Iterator[tuple[FloatArray, FloatArray]]:
-        k = len(run_up.history) - 1
-        for states in chain([at_the_kick[np.newaxis]], (block.states for block in blocks)):
-            times = run_up.h_step * np.arange(k, k + len(states), dtype=np.float64)
-            q = np.moveaxis(states[:, :n], 1, 0)
-            c = constraint_errors(mechanism, times.reshape(-1, *(1,) * (q.ndim - 2)), q)
-            yield np.moveaxis(c, 0, 1), states[:, :n]
+    def seen(states_in_blocks: Iterable[FloatArray]) -> Iterator[tuple[FloatArray, FloatArray]]:
+        k = len(history) - 1
+        for states in states_in_blocks:
+            times = h_step * np.arange(k, k + len(states), dtype=np.float64)
+            q = states[:, : mechanism.size]
+            c = constraint_errors(mechanism, times.reshape(-1, 1, 1, 1), np.moveaxis(q, 1, 0))
+            yield np.moveaxis(c, 0, 1), q
             k += len(states)
 
     for some, blocks in groups:
-        yield some, seen(blocks, kicked[..., some])
+        yield some, seen(chain([kicked[np.newaxis, ..., some]], (block.states for block in blocks)))
 
 
 def nothing_happens_without_feedback(mechanism: Mechanism, method: Method, h: float) -> bool:
     """Return whether without feedback c stays well within the linear range for the first few steps; h in s."""
     none = np.zeros(1)
     with np.errstate(all="ignore"):
-        drifting = kicked_constraint_errors(mechanism, method, h, none, none, [0.0])
-        largest = max(float(np.abs(c).max()) for c in islice(drifting, AT_ONCE + 1))
+        ((_, drifting),) = kicked_motions(mechanism, method, h, none, none, [0.0], AT_ONCE)
+        largest = max(float(np.abs(c).max()) for c, _ in drifting)
     return largest < CALM  # not so where it is not a number
-
-
-@dataclass(frozen=True)
-class _RunUp:
-    """A batch of runs up to the kick, which the last state of the history has had; h_step in s."""
-
-    h_step: float
-    gains: tuple[FloatArray, FloatArray]
-    history: list[FloatArray]
-    undisturbed: FloatArray
-
-
-def _run_up_to_the_kick(
-    mechanism: Mechanism,
-    method: Method,
-    h: float,
-    alpha_hat: FloatArray,
-    beta_hat: FloatArray,
-    kicks: Sequence[float],
-) -> _RunUp:
-    h_step = h * float(method.step_multiple)
-    gains = feedback_gains(alpha_hat, beta_hat, h)
-    q, v = initial_state(mechanism)
-    displaced = perturbed_state(mechanism, 1.0)[0] - q  # linear in the constraint error
-    direction = np.concatenate([displaced, np.zeros_like(v)])
-    start = np.repeat(np.concatenate([q, v])[:, np.newaxis], alpha_hat.size, axis=1)
-    blocks = march(mechanism, method, h_step, gains, start, "rk4", _steps_before_the_kick(method))
-    history = [start, *(state for block in blocks for state in block.states)]
-    undisturbed = history[-1]
-    amounts = np.multiply.outer([1.0, -1.0], kicks)[..., np.newaxis]
-    history[-1] = undisturbed[:, np.newaxis, np.newaxis] + np.multiply.outer(direction, amounts)
-    return _RunUp(h_step, gains, history, undisturbed)
 
 
 def _steps_before_the_kick(method: Method) -> int:

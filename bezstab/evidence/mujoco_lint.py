@@ -15,19 +15,18 @@ A spring, damper or drive with stiffness kp and damping kv on inertia I is alpha
 IMEX-Euler where all damping is implicit, RK4 under RK4, else symplectic Euler, of a point that is divided likewise.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cache
+from functools import cache, cached_property
 from itertools import accumulate
-from typing import TypeVar
 
 import numpy as np
 
 from bezstab.engines import ENGINES, Drive
 from bezstab.errors import NumericalError
 from bezstab.evidence.mujoco_controllers import Controlled, MotorGains, controlled_motors, lifted_step
-from bezstab.evidence.mujoco_models import Constraint, Feedback, ModelData, Motor
+from bezstab.evidence.mujoco_models import Constraint, Feedback, ModelData
 from bezstab.methods import Method, Verdict, closed_loop_at, lookup, recursion_verdict
 from bezstab.rationals import exact
 from bezstab.stability import (
@@ -40,16 +39,12 @@ from bezstab.stability import (
     poles,
     spectral_radius,
 )
-from bezstab.units import feedback_gains
 
 FRESH = Timing()
 """A controller as fast as the physics."""
 
 Point = tuple[Fraction, Fraction]
 """alpha_hat and beta_hat."""
-
-Number = TypeVar("Number", Fraction, FloatArray)
-"""An exact one, or as many as there are steps that are looked at."""
 
 Points = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 """Of factors on the step, shape (factors,): alpha_hat and beta_hat of each point, shape (factors, points)."""
@@ -115,15 +110,15 @@ class Linted:
 
     element: str
     kind: str
-    setting: str
-    judged: str
-    alpha_hat: float | None
-    beta_hat: float | None
-    map: str | None
-    verdict: Verdict | None
-    z_abs: float | None
-    h_factor: float | None
     advice: str
+    setting: str = ""
+    judged: str = ""
+    alpha_hat: float | None = None
+    beta_hat: float | None = None
+    map: str | None = None
+    verdict: Verdict | None = None
+    z_abs: float | None = None
+    h_factor: float | None = None
     safe_together: bool = False
 
     @property
@@ -153,21 +148,21 @@ def linted_model(model: ModelData, gains: Sequence[MotorGains] = (), timing: Tim
     InputError for gains of no motor, NumericalError where the mass matrix is singular,
     and where a pole leaves the range of float64.
     """
-    modes = _damping_modes(model)
+    plant = _Plant(model)
     groups = _along_one_direction(model.feedbacks)
     bilateral = [constraint for constraint in model.constraints if _is_bilateral(constraint)]
     controlled = controlled_motors(model, gains, timing)
     several = len(bilateral) + len(groups) + len(controlled) > 1
-    together = _linted_together(model, modes, bilateral, controlled) if several else None
+    together = _linted_together(plant, bilateral, controlled) if several else None
     for constraint in model.constraints:
-        alone = _linted_constraint(model, modes, constraint)
+        alone = _linted_constraint(plant, constraint)
         yield alone.beside(together) if _is_bilateral(constraint) else alone
     for group in groups:
-        yield _linted_drive(model, modes, group).beside(together)
+        yield _linted_drive(plant, group).beside(together)
     for motor in model.motors:
-        judged = [each for each in controlled if each.motor == motor]
+        judged = [each for each in controlled if each.motor is motor]
         yield (
-            _linted_motor(model, modes, judged[0]).beside(together)
+            _linted_motor(plant, judged[0]).beside(together)
             if judged
             else _not_judged(
                 motor.element, "motor", f"its control comes from outside: --pd '{motor.name}=KP,KD' judges it"
@@ -180,24 +175,68 @@ def linted_model(model: ModelData, gains: Sequence[MotorGains] = (), timing: Tim
 
 
 def _not_judged(element: str, kind: str, reason: str) -> Linted:
-    return Linted(
-        element=element,
-        kind=kind,
-        setting="",
-        judged="",
-        alpha_hat=None,
-        beta_hat=None,
-        map=None,
-        verdict=None,
-        z_abs=None,
-        h_factor=None,
-        advice=f"not judged: {reason}",
-    )
+    return Linted(element, kind, advice=f"not judged: {reason}")
 
 
-def _map(model: ModelData) -> Method:
-    """Return the method that the model's integrator is for constraints."""
-    return lookup("RK4" if model.integrator == "RK4" else "SYM")
+def _is_bilateral(constraint: Constraint) -> bool:
+    """Return whether a constraint holds both ways from the start, by rows that are known."""
+    return constraint.active and constraint.positional and constraint.jacobian is not None
+
+
+@dataclass(frozen=True)
+class _Plant:
+    """A model, with what its integrator is for constraints and what that makes of its masses."""
+
+    model: ModelData
+
+    @property
+    def h(self) -> Fraction:
+        """The step in s."""
+        return exact(self.model.h)
+
+    @property
+    def method(self) -> Method:
+        """The method that the integrator is for constraints."""
+        return lookup("RK4" if self.model.integrator == "RK4" else "SYM")
+
+    @cached_property
+    def damping_modes(self) -> tuple[FloatArray, FloatArray]:
+        """(M + h D)^-1 for every h at once, D what is treated implicitly: basis diag(1 / (1 + h rates)) basis'.
+
+        The basis B and the rates (1/s) solve D B = M B diag(rates), B' M B = 1.
+        """
+        model = self.model
+        _, damping = _springs_and_dampers(model, [each for each in model.feedbacks if self.is_implicit(each)])
+        try:
+            root = np.linalg.inv(np.linalg.cholesky(model.mass))
+        except np.linalg.LinAlgError:
+            raise NumericalError("the mass matrix at qpos0 is singular to rounding") from None
+        rates, turned = np.linalg.eigh(root @ damping @ root.T)
+        return root.T @ turned, rates
+
+    def is_implicit(self, feedback: Feedback) -> bool:
+        """Return whether the integrator treats a damping implicitly."""
+        if self.model.integrator == "Euler":
+            return self.model.euler_damping and feedback.euler_implicit
+        return self.model.integrator != "RK4"
+
+    def inertia_along(self, direction: FloatArray) -> Fraction:
+        """Return the inertia along a direction u with all else free, 1 / (u M^-1 u'), to DIGITS."""
+        basis, _ = self.damping_modes
+        moved = np.flatnonzero(direction)  # one or a few of thousands
+        inertia = 1 / float(np.sum((direction[moved] @ basis[moved]) ** 2))
+        return exact(float(f"{inertia:.{DIGITS}g}"))
+
+
+def _springs_and_dampers(model: ModelData, feedbacks: Sequence[Feedback]) -> tuple[FloatArray, FloatArray]:
+    """Return the stiffness and the damping matrix of feedbacks; shape (dofs, dofs) each, SI."""
+    stiffness, damping = np.zeros_like(model.mass), np.zeros_like(model.mass)
+    for each in feedbacks:
+        moved = np.flatnonzero(each.direction)
+        squared = np.outer(each.direction[moved], each.direction[moved])
+        stiffness[np.ix_(moved, moved)] += each.stiffness * squared
+        damping[np.ix_(moved, moved)] += each.damping * squared
+    return stiffness, damping
 
 
 # One point
@@ -241,73 +280,108 @@ def _end_of(points: Points, method: Method) -> float | None:
     return _h_factor(unstable)
 
 
-def _worst(method: Method, points: Sequence[Point]) -> tuple[Point, Verdict, float]:
+def _worst(method: Method, points: Iterable[Point]) -> tuple[Point, Verdict, float]:
     """Return the point with the largest |z|, its verdict, and |z|."""
-    alpha_hat, beta_hat = np.array([[float(x) for x in point] for point in points]).T
+    candidates = list(points)
+    alpha_hat, beta_hat = np.array(candidates, float).T
     moduli = _moduli(method, alpha_hat, beta_hat)
     worst = int(np.argmax(moduli))
-    return points[worst], _verdict(method, points[worst]), float(moduli[worst])
+    return candidates[worst], _verdict(method, candidates[worst]), float(moduli[worst])
 
 
 # Constraints
 
 
 @dataclass(frozen=True)
-class _DampingModes:
-    """(M + h D)^-1 for every h at once: `basis` diag(1 / (1 + h rates)) `basis`'; the rates are in 1/s."""
+class _Pull:
+    """What a constraint does with one impedance, if it gets all of its reference: its point at the model's step.
 
-    basis: FloatArray
-    rates: FloatArray
+    At a factor f on the step it is (alpha_hat r, beta_hat r^2), r = f but for refsafe: from f = `held_from` on
+    timeconst is 2h, and the point no longer moves.
+    """
 
+    impedance: float
+    where: str
+    alpha_hat: Fraction
+    beta_hat: Fraction
+    held_from: Fraction
 
-def _damping_modes(model: ModelData) -> _DampingModes:
-    """Return the modes of the damping D that the integrator treats implicitly: D B = M B diag(rates), B' M B = 1."""
-    _, damping = _springs_and_dampers(model, [each for each in model.feedbacks if _implicit(model, each)])
-    try:
-        root = np.linalg.inv(np.linalg.cholesky(model.mass))
-    except np.linalg.LinAlgError:
-        raise NumericalError("the mass matrix at qpos0 is singular to rounding") from None
-    rates, turned = np.linalg.eigh(root @ damping @ root.T)
-    return _DampingModes(basis=root.T @ turned, rates=rates)
+    @property
+    def point(self) -> Point:
+        """The point at the model's step."""
+        reached = min(Fraction(1), self.held_from)
+        return self.alpha_hat * reached, self.beta_hat * reached**2
 
-
-def _springs_and_dampers(model: ModelData, feedbacks: Sequence[Feedback]) -> tuple[FloatArray, FloatArray]:
-    """Return the stiffness and the damping matrix of feedbacks; shape (dofs, dofs) each, SI."""
-    stiffness, damping = np.zeros_like(model.mass), np.zeros_like(model.mass)
-    for each in feedbacks:
-        moved = np.flatnonzero(each.direction)  # one or a few of thousands
-        squared = np.outer(each.direction[moved], each.direction[moved])
-        stiffness[np.ix_(moved, moved)] += each.stiffness * squared
-        damping[np.ix_(moved, moved)] += each.damping * squared
-    return stiffness, damping
+    def at(self, factors: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the point at factors on the step, in float64."""
+        reached = np.minimum(factors, float(self.held_from))
+        return float(self.alpha_hat) * reached, float(self.beta_hat) * reached**2
 
 
-def _implicit(model: ModelData, feedback: Feedback) -> bool:
-    """Return whether the integrator treats a damping implicitly."""
-    if model.integrator == "Euler":
-        return model.euler_damping and feedback.euler_implicit
-    return model.integrator != "RK4"
+def _pulls(plant: _Plant, constraint: Constraint, solref: tuple[float, float]) -> list[_Pull]:
+    """Return what a constraint does with that solref at the constraint, and past solimp's width."""
+    first, second = (exact(value) for value in (solref if _of_one_sign(solref) else DEFAULT_SOLREF))
+    alpha_hat, beta_hat = ENGINES["mujoco"].read(plant.h, first, second)
+    held_from = first / (2 * plant.h) if plant.model.refsafe and first > 0 else exact(FURTHEST)
+    at_rest, largest, width = constraint.solimp
+    impedances = [at_rest, largest] if width > 0 else [(at_rest + largest) / 2]
+    if not constraint.positional:  # friction has no position to be off
+        impedances, beta_hat = impedances[:1], Fraction(0)
+    share = 1 / exact(largest)
+    return [
+        _Pull(impedance, where, alpha_hat * share, beta_hat * exact(impedance) * share**2, held_from)
+        for impedance, where in zip(impedances, ("at the constraint", "past solimp's width"), strict=False)
+    ]
 
 
-def _linted_constraint(model: ModelData, modes: _DampingModes, constraint: Constraint) -> Linted:
-    method = _map(model)
-    shares = _shares(modes, constraint)
-    taken = _constraint_points(model, constraint, shares, constraint.solref)
-    point, verdict, z_abs = _worst(method, [each.point for each in taken])
-    (why, *_) = [each.why for each in taken if each.point == point]
+def _linted_constraint(plant: _Plant, constraint: Constraint) -> Linted:
+    method = plant.method
+    shares = _shares(plant, constraint)
+    pulls = _pulls(plant, constraint, constraint.solref)
+    points = _constraint_points(plant, constraint, shares, constraint.solref)
+    point, verdict, z_abs = _worst(method, points)
+
+    def points_at(factors: FloatArray) -> tuple[FloatArray, FloatArray]:
+        taken = [shares(pull.impedance, plant.model.h * factors) for pull in pulls]
+        whole = [pull.at(factors[:, np.newaxis]) for pull in pulls]
+        alpha_hats = [alpha_hat * share for (alpha_hat, _), share in zip(whole, taken, strict=True)]
+        beta_hats = [beta_hat * share for (_, beta_hat), share in zip(whole, taken, strict=True)]
+        return np.hstack(alpha_hats), np.hstack(beta_hats)
+
     return Linted(
         element=constraint.element,
         kind=constraint.kind,
         setting=f'solref="{_numbers(constraint.solref)}" solimp="{_numbers(constraint.solimp)}"',
-        judged=f"{_solref_in_force(model, constraint)}, {why}",
+        judged=f"{_solref_in_force(plant.model, constraint)}, {points[point]}",
         alpha_hat=float(point[0]),
         beta_hat=float(point[1]),
         map=method.name,
         verdict=verdict,
         z_abs=z_abs,
-        h_factor=_end_of(_constraint_points_at(model, constraint, shares), method),
-        advice=_constraint_advice(model, constraint, shares, verdict, z_abs),
+        h_factor=_end_of(points_at, method),
+        advice=_constraint_advice(plant, constraint, shares, verdict, z_abs),
     )
+
+
+def _constraint_points(
+    plant: _Plant, constraint: Constraint, shares: Shares, solref: tuple[float, float]
+) -> dict[Point, str]:
+    """Return the points that a constraint takes with that solref, exactly, and what makes each of it."""
+    found: dict[Point, str] = {}
+    for pull in _pulls(plant, constraint, solref):
+        (of_directions,) = shares(pull.impedance, np.array([plant.model.h])).tolist()
+        for share in of_directions:
+            rounded = exact(round(share, DIGITS))
+            why = f"d = {pull.impedance:g} {pull.where}{_share_text(constraint, share, pull.impedance)}"
+            found.setdefault((pull.point[0] * rounded, pull.point[1] * rounded), why)
+    return found
+
+
+def _share_text(constraint: Constraint, share: float, impedance: float) -> str:
+    """Return the share of its reference that a direction gets, where that is not the impedance."""
+    if constraint.jacobian is None and share == 1:
+        return ", all of it where several contacts share it"
+    return "" if abs(share - impedance) < SEEN * impedance else f", {share:.3g} by masses and damping"
 
 
 def _solref_in_force(model: ModelData, constraint: Constraint) -> str:
@@ -320,121 +394,34 @@ def _solref_in_force(model: ModelData, constraint: Constraint) -> str:
     return f'solref="{_numbers(constraint.solref)}"'
 
 
-@dataclass(frozen=True)
-class _Taken:
-    """A point that a constraint takes, and what makes that of its solref."""
-
-    point: Point
-    why: str
-
-
-def _constraint_points(
-    model: ModelData, constraint: Constraint, shares: Shares, solref: tuple[float, float]
-) -> list[_Taken]:
-    """Return the points that a constraint takes with that solref, at the constraint and past solimp's width, exactly.
-
-    Where rows that nobody knows share out a reference, also with all of it, which is the most.
-    """
-    reference, held_from = _reference(model, constraint, solref)
-    reached = Fraction(1) if held_from is None else min(Fraction(1), held_from)
-    largest = exact(constraint.solimp[1])
-    found: list[_Taken] = []
-    for impedance, where in zip(_impedances(constraint), ("at the constraint", "past solimp's width"), strict=False):
-        of_directions = shares(impedance, np.array([model.h]))[0].tolist()
-        taken = [(share, _share_text(share, impedance)) for share in of_directions]
-        if _is_shared_out(constraint):
-            taken.append((1.0, ", all of it where several contacts share it"))
-        for share, text in taken:
-            point = _taken(reference, reached, exact(impedance), exact(round(share, DIGITS)), largest)
-            found.append(_Taken(point, f"d = {impedance:g} {where}{text}"))
-    return found
-
-
-def _share_text(share: float, impedance: float) -> str:
-    """Return the share of its reference that a direction gets, where that is not the impedance."""
-    return "" if abs(share - impedance) < SEEN * impedance else f", {share:.3g} by masses and damping"
-
-
-def _constraint_points_at(model: ModelData, constraint: Constraint, shares: Shares) -> Points:
-    """Return a function of factors on the step: what `_constraint_points` returns there, in float64."""
-    reference, held_from = _reference(model, constraint, constraint.solref)
-    at_one = np.array([float(reference[0])]), np.array([float(reference[1])])
-    largest = np.array([constraint.solimp[1]])
-
-    def points(factors: FloatArray) -> tuple[FloatArray, FloatArray]:
-        reached = factors if held_from is None else np.minimum(factors, float(held_from))
-        alpha_hats: list[FloatArray] = []
-        beta_hats: list[FloatArray] = []
-        for impedance in _impedances(constraint):
-            taken = list(shares(impedance, model.h * factors).T)
-            if _is_shared_out(constraint):
-                taken.append(np.ones_like(factors))
-            for share in taken:
-                alpha_hat, beta_hat = _taken(at_one, reached, np.array([impedance]), share, largest)
-                alpha_hats.append(alpha_hat)
-                beta_hats.append(beta_hat)
-        return np.stack(alpha_hats, axis=-1), np.stack(beta_hats, axis=-1)
-
-    return points
-
-
-def _reference(model: ModelData, constraint: Constraint, solref: tuple[float, float]) -> tuple[Point, Fraction | None]:
-    """Return the point of a solref at the model's step if nothing changed it, and from which factor refsafe holds it.
-
-    As timeconst is 2h from there on, alpha_hat and beta_hat no longer grow with h.
-    """
-    first, second = (exact(value) for value in (solref if _of_one_sign(solref) else DEFAULT_SOLREF))
-    h = exact(model.h)
-    alpha_hat, beta_hat = ENGINES["mujoco"].read(h, first, second)
-    if not constraint.positional:  # friction has no position to be off
-        beta_hat = Fraction(0)
-    return (alpha_hat, beta_hat), first / (2 * h) if model.refsafe and first > 0 else None
-
-
-def _impedances(constraint: Constraint) -> tuple[float, ...]:
-    """Return d at the constraint and past solimp's width; friction, which has no position to be off, stays at rest."""
-    at_rest, largest, width = constraint.solimp
-    impedances = (at_rest, largest) if width > 0 else ((at_rest + largest) / 2,)
-    return impedances if constraint.positional else impedances[:1]
-
-
-def _is_shared_out(constraint: Constraint) -> bool:
-    """Return whether an unknown number of rows share a reference: contacts do, and a flex of very many edges."""
-    return constraint.jacobian is None and constraint.kind != "joint limit"
-
-
-def _taken(
-    reference: tuple[Number, Number], reached: Number, impedance: Number, share: Number, largest: Number
-) -> tuple[Number, Number]:
-    """Return the point that is left of a reference at `reached` times the step, by impedance, share and dmax."""
-    alpha_hat, beta_hat = reference
-    return alpha_hat * reached * share / largest, beta_hat * reached**2 * impedance * share / largest**2
-
-
-def _shares(modes: _DampingModes, constraint: Constraint) -> Shares:
+def _shares(plant: _Plant, constraint: Constraint) -> Shares:
     """Return a function of impedance and steps: the least and largest share of the reference that directions get.
 
-    They are the impedance, but for MuJoCo's estimate of masses and for implicit damping.
+    They are the impedance, but for MuJoCo's estimate of masses and for implicit damping. Rows that nobody knows may
+    share a reference out, those of contacts and of a flex of very many edges: then the largest is all of it.
     """
     jacobian, diagonal = constraint.jacobian, constraint.diagonal
     if jacobian is None or diagonal is None:
-        return lambda impedance, h: np.full((len(h), 2), impedance)
+        alone = constraint.kind == "joint limit"
+        return lambda impedance, h: np.tile([impedance, impedance if alone else 1.0], (len(h), 1))
+    basis, all_rates = plant.damping_modes
     touched = np.flatnonzero(jacobian.any(axis=0))
-    moved = jacobian[:, touched] @ modes.basis[touched]
+    moved = jacobian[:, touched] @ basis[touched]
     moving = moved.any(axis=0)
-    moved, rates = moved[:, moving], modes.rates[moving]
+    moved, rates = moved[:, moving], all_rates[moving]
 
     def shares(impedance: float, h: FloatArray) -> FloatArray:
-        softening = np.maximum(LEAST_SOFTENING, diagonal * (1 - impedance) / impedance)
-        regularized = moved @ moved.T + np.diag(softening)
-        if len(moved) == 1 and moved[0] @ moved[0] > MOVING * regularized[0, 0]:
-            share = (1 / (1 + h[:, np.newaxis] * rates)) @ moved[0] ** 2 / regularized[0, 0]
-            return np.stack([share, share], axis=-1)
-        if not rates.any():
-            return np.tile(_extremes(regularized, moved @ moved.T, impedance), (len(h), 1))
-        return np.array([_extremes(regularized, (moved / (1 + step * rates)) @ moved.T, impedance) for step in h])
+        regularized = moved @ moved.T + np.diag(_softening(diagonal, impedance))
+        steps = h if rates.any() else h[:1]  # without implicit damping all are alike
+        found = [_extremes(regularized, (moved / (1 + step * rates)) @ moved.T, impedance) for step in steps]
+        return np.broadcast_to(np.array(found), (len(h), 2))
 
     return shares
+
+
+def _softening(diagonal: FloatArray, impedance: float) -> FloatArray:
+    """Return MuJoCo's R of rows, from its estimate of the diagonal of J M^-1 J'."""
+    return np.maximum(LEAST_SOFTENING, diagonal * (1 - impedance) / impedance)
 
 
 def _extremes(regularized: FloatArray, damped: FloatArray, impedance: float) -> tuple[float, float]:
@@ -444,30 +431,29 @@ def _extremes(regularized: FloatArray, damped: FloatArray, impedance: float) -> 
     return (float(moving.min()), float(moving.max())) if moving.size else (impedance, impedance)
 
 
-def _constraint_advice(model: ModelData, constraint: Constraint, shares: Shares, verdict: Verdict, z_abs: float) -> str:
+def _constraint_advice(plant: _Plant, constraint: Constraint, shares: Shares, verdict: Verdict, z_abs: float) -> str:
     """Return what to write instead, and why; nothing where all is well."""
     first, second = constraint.solref
-    least = 2 * model.h
-    firm = (least, 1.0)
+    least = 2 * plant.model.h
+    firm = _numbers((least, 1.0))
     if not _of_one_sign(constraint.solref):
         taken = _numbers(DEFAULT_SOLREF)
         return f'MuJoCo takes {taken}, as the signs differ: write solref="{taken}"'
     if constraint.positional and not first:
-        return f'no stiffness: errors stay; write solref="{_numbers(firm)}"'
+        return f'no stiffness: errors stay; write solref="{firm}"'
     if verdict != "converges":
-        return f'write solref="{_numbers(firm)}"'
-    if model.refsafe and 0 < first < least:
+        return f'write solref="{firm}"'
+    if plant.model.refsafe and 0 < first < least:
         return f'relies on refsafe, which raises its timeconst to 2h: write solref="{_numbers((least, second))}"'
-    return "" if constraint.kind in HARD else _softness(model, constraint, shares, z_abs)
+    return "" if constraint.kind in HARD else _softness(plant, constraint, shares, z_abs)
 
 
-def _softness(model: ModelData, constraint: Constraint, shares: Shares, z_abs: float) -> str:
+def _softness(plant: _Plant, constraint: Constraint, shares: Shares, z_abs: float) -> str:
     """Return whether a safe equality or limit is needlessly soft, and what would be firm."""
     if constraint.solimp[0] < LEAST_HOLD and constraint.solimp[2] > 0:
         return f"solimp leaves small errors alone: d = {constraint.solimp[0]:g} at the constraint itself"
-    firm = (2 * model.h, 1.0)
-    taken = _constraint_points(model, constraint, shares, firm)
-    faster = _worst(_map(model), [each.point for each in taken])[2]
+    firm = (2 * plant.model.h, 1.0)
+    faster = _worst(plant.method, _constraint_points(plant, constraint, shares, firm))[2]
     times = float(np.log(max(DEADBEAT, faster)) / np.log(max(DEADBEAT, z_abs)))
     return f'needlessly soft: solref="{_numbers(firm)}" settles {times:.0f} times as fast' if times > SOFT else ""
 
@@ -503,15 +489,18 @@ class _Drive:
     implicit_damping: Fraction
     inertia: Fraction
 
+    @property
+    def damping(self) -> Fraction:
+        """All of it."""
+        return self.explicit_damping + self.implicit_damping
 
-def _linted_drive(model: ModelData, modes: _DampingModes, group: Sequence[Feedback]) -> Linted:
-    drive = _drive(model, modes, group)
-    h = exact(model.h)
-    own = _drive_map(model, drive)
+
+def _linted_drive(plant: _Plant, group: Sequence[Feedback]) -> Linted:
+    drive = _drive(plant, group)
+    own = _drive_map(plant, drive)
     point, verdict, z_abs = _worst(own.method, [own.point])
     end = _end_of(own.points, own.method)
-    damping = drive.explicit_damping + drive.implicit_damping
-    setting = f"kp {float(drive.stiffness):.6g}, kv {float(damping):.6g}, inertia {float(drive.inertia):.6g}"
+    setting = f"kp {float(drive.stiffness):.6g}, kv {float(drive.damping):.6g}, inertia {float(drive.inertia):.6g}"
     return Linted(
         element=", ".join(dict.fromkeys(feedback.element for feedback in group)),
         kind=_drive_kind(group, drive),
@@ -523,32 +512,22 @@ def _linted_drive(model: ModelData, modes: _DampingModes, group: Sequence[Feedba
         verdict=verdict,
         z_abs=z_abs,
         h_factor=end,
-        advice=_drive_advice(model, drive, verdict, end, h),
+        advice=_drive_advice(plant, drive, verdict, end),
     )
 
 
-def _drive(model: ModelData, modes: _DampingModes, group: Sequence[Feedback]) -> _Drive:
+def _drive(plant: _Plant, group: Sequence[Feedback]) -> _Drive:
     """Return what acts along the direction of a group, per unit of its one joint, else of its first element."""
     direction = group[0].direction
     moved = np.flatnonzero(direction)
     if moved.size == 1:
         direction = direction / direction[moved[0]]
-    stiffness = damping = implicit = 0.0
+    stiffness, damping = 0.0, {True: 0.0, False: 0.0}
     for feedback in group:
         arm_squared = float(feedback.direction[moved[0]] / direction[moved[0]]) ** 2
         stiffness += arm_squared * feedback.stiffness
-        if _implicit(model, feedback):
-            implicit += arm_squared * feedback.damping
-        else:
-            damping += arm_squared * feedback.damping
-    return _Drive(exact(stiffness), exact(damping), exact(implicit), _inertia_along(modes, direction))
-
-
-def _inertia_along(modes: _DampingModes, direction: FloatArray) -> Fraction:
-    """Return the inertia along a direction u with all else free, 1 / (u M^-1 u'), to DIGITS."""
-    moved = np.flatnonzero(direction)
-    inertia = 1 / float(np.sum((direction[moved] @ modes.basis[moved]) ** 2))
-    return exact(float(f"{inertia:.{DIGITS}g}"))
+        damping[plant.is_implicit(feedback)] += arm_squared * feedback.damping
+    return _Drive(exact(stiffness), exact(damping[False]), exact(damping[True]), plant.inertia_along(direction))
 
 
 @dataclass(frozen=True)
@@ -575,14 +554,13 @@ class _DriveMap:
         return float(self.alpha_hat) * divided, float(self.beta_hat) * f * divided
 
 
-def _drive_map(model: ModelData, drive: _Drive) -> _DriveMap:
+def _drive_map(plant: _Plant, drive: _Drive) -> _DriveMap:
     """Return the method that the integrator is for a drive, and its point."""
-    h = exact(model.h)
-    alpha_hat = (drive.explicit_damping + drive.implicit_damping) * h / drive.inertia
-    beta_hat = drive.stiffness * h**2 / drive.inertia
+    h = plant.h
+    alpha_hat, beta_hat = drive.damping * h / drive.inertia, drive.stiffness * h**2 / drive.inertia
     if drive.implicit_damping and not drive.explicit_damping:
         return _DriveMap(lookup("imex-euler"), alpha_hat, beta_hat, divisor=Fraction(0))
-    return _DriveMap(_map(model), alpha_hat, beta_hat, divisor=drive.implicit_damping * h / drive.inertia)
+    return _DriveMap(plant.method, alpha_hat, beta_hat, divisor=drive.implicit_damping * h / drive.inertia)
 
 
 def _drive_kind(group: Sequence[Feedback], drive: _Drive) -> str:
@@ -591,56 +569,53 @@ def _drive_kind(group: Sequence[Feedback], drive: _Drive) -> str:
     return f"{group[0].kind} {'spring' if drive.stiffness else 'damping'}"
 
 
-def _drive_advice(model: ModelData, drive: _Drive, verdict: Verdict, end: float | None, h: Fraction) -> str:
+def _drive_advice(plant: _Plant, drive: _Drive, verdict: Verdict, end: float | None) -> str:
     """Return what to write instead where a drive is unsafe, and which gain uses up the limit of its map."""
-    damping = drive.explicit_damping + drive.implicit_damping
-    if drive.stiffness < 0 or damping < 0:
+    if drive.stiffness < 0 or drive.damping < 0:
         return "pushes away at any step: a gain has the wrong sign"
-    if not damping:
-        return "undamped" if verdict != "diverges" else f"undamped; {_smaller_step(end, h)}"
+    if not drive.damping:
+        return "undamped" if verdict != "diverges" else f"undamped; {_smaller_step(plant, end)}"
     if verdict == "converges":
         return ""
-    used = _used_up(model, drive, h)
-    all_implicit = _Drive(drive.stiffness, Fraction(0), damping, drive.inertia)
-    imex = lookup("imex-euler")
-    if drive.explicit_damping and _verdict(imex, _drive_map(model, all_implicit).point) == "converges":
+    used = _used_up(plant, drive)
+    all_implicit = _drive_map(plant, replace(drive, explicit_damping=Fraction(0), implicit_damping=drive.damping))
+    if drive.explicit_damping and _verdict(all_implicit.method, all_implicit.point) == "converges":
         return f'{used}write integrator="implicitfast"'
-    return f"{used}{_smaller_step(end, h)}"
+    return f"{used}{_smaller_step(plant, end)}"
 
 
-def _used_up(model: ModelData, drive: _Drive, h: Fraction) -> str:
+def _used_up(plant: _Plant, drive: _Drive) -> str:
     """Return which share of symplectic Euler's limit, 2 alpha_hat + beta_hat < 4, damping and stiffness take."""
-    if model.integrator == "RK4":
+    if plant.model.integrator == "RK4":
         return ""
-    divisor = 4 * (drive.inertia + drive.implicit_damping * h)
-    damping = 2 * (drive.explicit_damping + drive.implicit_damping) * h / divisor
-    stiffness = drive.stiffness * h**2 / divisor
+    limit = 4 * (drive.inertia + drive.implicit_damping * plant.h)
+    damping, stiffness = 2 * drive.damping * plant.h / limit, drive.stiffness * plant.h**2 / limit
     return f"kv takes {float(damping):.0%} of the limit, kp {float(stiffness):.0%}; "
 
 
-def _smaller_step(end: float | None, h: Fraction) -> str:
+def _smaller_step(plant: _Plant, end: float | None) -> str:
     """Return the line with a step that leaves a tenth to the limit."""
     if end is None:
         return "no step is small enough"
-    return f'write timestep="{0.9 * end * float(h):.2g}"'
+    return f'write timestep="{0.9 * end * plant.model.h:.2g}"'
 
 
 # Motors whose control comes from outside
 
 
-def _linted_motor(model: ModelData, modes: _DampingModes, controlled: Controlled) -> Linted:
+def _linted_motor(plant: _Plant, controlled: Controlled) -> Linted:
     """Judge a motor with its controller on the inertia along its direction: all other joints are free."""
     motor, timing = controlled.motor, controlled.timing
-    inertia = _inertia_along(modes, motor.direction)
+    inertia = plant.inertia_along(motor.direction)
     kp, kd = exact(motor.gain) * controlled.kp, exact(motor.gain) * controlled.kd
-    drive, method = Drive(kp, kd, inertia), _map(model)
-    point = drive.point(exact(model.h))
+    drive, name = Drive(kp, kd, inertia), plant.method.name
+    point = drive.point(plant.h)
 
     def unstable(factors: FloatArray) -> BoolArray:
-        steps = (exact(model.h * factor) for factor in factors.tolist())
-        return np.array([held_spectral_radius(method.name, *drive.point(h), timing) >= 1 for h in steps])
+        steps = (exact(plant.model.h * factor) for factor in factors.tolist())
+        return np.array([held_spectral_radius(name, *drive.point(h), timing) >= 1 for h in steps])
 
-    verdict = held_verdict(method.name, *point, timing)
+    verdict = held_verdict(name, *point, timing)
     end = _h_factor(unstable)
     setting = f"kp {float(kp):.6g}, kd {float(kd):.6g}, every {timing.every}, late {float(timing.late):g}"
     return Linted(
@@ -650,151 +625,113 @@ def _linted_motor(model: ModelData, modes: _DampingModes, controlled: Controlled
         judged=f"{setting} on inertia {float(inertia):.6g} with all other joints free",
         alpha_hat=float(point[0]),
         beta_hat=float(point[1]),
-        map=method.name,
+        map=name,
         verdict=verdict,
-        z_abs=held_spectral_radius(method.name, *point, timing),
+        z_abs=held_spectral_radius(name, *point, timing),
         h_factor=end,
-        advice="" if verdict == "converges" else _smaller_step(end, exact(model.h)),
+        advice="" if verdict == "converges" else _smaller_step(plant, end),
     )
 
 
 # All together
 
 
-def _linted_together(
-    model: ModelData, modes: _DampingModes, constraints: Sequence[Constraint], controlled: Sequence[Controlled]
-) -> Linted:
+def _linted_together(plant: _Plant, constraints: Sequence[Constraint], controlled: Sequence[Controlled]) -> Linted:
     """Judge what holds both ways, as one linear system at qpos0: what is safe alone need not be safe together.
 
     Nor is what is unsafe alone unsafe in a closed loop, where it has to move more. Without gravity, limits and
     contacts; in float64, so nothing is proven.
     """
-    if len(model.mass) > MOST_DOFS:
-        return _not_judged("all at qpos0", "together", f"{len(model.mass)} degrees of freedom, at most {MOST_DOFS}")
-
-    @cache
-    def modulus(factor: float) -> float:
-        return _together_modulus(model, modes, constraints, controlled, factor)
+    dofs = len(plant.model.mass)
+    if dofs > MOST_DOFS:
+        return _not_judged("all at qpos0", "together", f"{dofs} degrees of freedom, at most {MOST_DOFS}")
+    together = _Together(plant, constraints, controlled)
+    modulus = cache(together.modulus)
 
     def unstable(factors: FloatArray) -> BoolArray:
-        return np.array([modulus(float(factor)) > 1 + UNDAMPED for factor in factors])
+        return np.array([modulus(factor) > 1 + UNDAMPED for factor in factors.tolist()])
 
     z_abs = modulus(1.0)
-    if z_abs > 1 + UNDAMPED:
-        verdict: Verdict = "diverges"
-    else:
-        verdict = "converges" if z_abs < 1 - UNDAMPED else "marginal"
+    verdict: Verdict = "marginal"
+    if abs(z_abs - 1) > UNDAMPED:
+        verdict = "diverges" if z_abs > 1 else "converges"
     end = _h_factor(unstable)
     return Linted(
         element="all at qpos0",
         kind="together",
-        setting="",
         judged="all that hold both ways, as they are connected",
-        alpha_hat=None,
-        beta_hat=None,
-        map=_map(model).name,
+        map=plant.method.name,
         verdict=verdict,
         z_abs=z_abs,
         h_factor=end,
-        advice=_smaller_step(end, exact(model.h)) if verdict == "diverges" else "",
+        advice=_smaller_step(plant, end) if verdict == "diverges" else "",
     )
 
 
-def _together_modulus(
-    model: ModelData,
-    modes: _DampingModes,
-    constraints: Sequence[Constraint],
-    controlled: Sequence[Controlled],
-    factor: float,
-) -> float:
-    """Return the largest |z| of a step of all equalities, springs, dampers, drives and motors; 0 where none holds.
+@dataclass(frozen=True)
+class _Together:
+    """All equalities, springs, dampers, drives and motors of a model, as they are connected."""
 
-    With the equalities' impedances at the constraint, or past solimp's width, whichever is worse.
-    """
-    choices = {tuple(_impedances(each)[which] for each in constraints) for which in (0, -1)}
-    return max(
-        _modulus_with_impedances(model, modes, constraints, controlled, impedances, factor) for impedances in choices
-    )
+    plant: _Plant
+    constraints: Sequence[Constraint]
+    controlled: Sequence[Controlled]
 
+    def modulus(self, factor: float) -> float:
+        """Return the largest |z| of a step, so many times the model's; 0 where nothing holds.
 
-def _is_bilateral(constraint: Constraint) -> bool:
-    """Return whether a constraint holds both ways from the start, by rows that are known."""
-    return constraint.active and constraint.positional and constraint.jacobian is not None
+        With the equalities' impedances at the constraint, or past solimp's width, whichever is worse.
+        """
+        pulls = [_pulls(self.plant, each, each.solref) for each in self.constraints]
+        choices = {tuple(of_each[which] for of_each in pulls) for which in (0, -1)}
+        return max(self._modulus_with(choice, factor) for choice in choices)
 
+    def _modulus_with(self, pulls: Sequence[_Pull], factor: float) -> float:
+        step, forces = self._step(pulls, factor)
+        every = 1
+        if self.controlled:
+            every = self.controlled[0].timing.every
+            step = lifted_step(step, forces, self.controlled, factor * self.plant.model.h)
+        z = np.linalg.eigvals(step)
+        held = np.abs(z[np.abs(z - 1) > FREE]) ** (1 / every)
+        return float(held.max(initial=0.0))
 
-def _modulus_with_impedances(
-    model: ModelData,
-    modes: _DampingModes,
-    constraints: Sequence[Constraint],
-    controlled: Sequence[Controlled],
-    impedances: Sequence[float],
-    factor: float,
-) -> float:
-    h = factor * model.h
-    step, forces = _one_step(model, modes, constraints, [each.motor for each in controlled], impedances, factor)
-    every = controlled[0].timing.every if controlled else 1
-    z = np.linalg.eigvals(lifted_step(step, forces, controlled, h) if controlled else step)
-    held = np.abs(z[np.abs(z - 1) > FREE]) ** (1 / every)
-    return float(held.max(initial=0.0))
+    def _step(self, pulls: Sequence[_Pull], factor: float) -> tuple[FloatArray, FloatArray]:
+        """Return the matrices of one step: of (x, h v), shape (2 dofs, 2 dofs), and of motors' forces."""
+        model = self.plant.model
+        basis, rates = self.plant.damping_modes
+        h, dofs, motors = factor * model.h, len(model.mass), len(self.controlled)
+        inverse = basis @ basis.T  # of the mass
+        arms = np.array([each.motor.direction for each in self.controlled]).reshape(motors, dofs)
+        stiffness, damping = _springs_and_dampers(model, model.feedbacks)
+        acceleration = inverse @ np.hstack([-stiffness, -damping, arms.T])  # by positions, velocities and forces
+        if self.constraints:
+            jacobian, softening, wanted = self._constrained(pulls, factor)
+            missing = np.hstack([wanted, np.zeros((len(jacobian), motors))]) - jacobian @ acceleration
+            forces = np.linalg.solve(jacobian @ inverse @ jacobian.T + np.diag(softening), missing)
+            acceleration = acceleration + inverse @ jacobian.T @ forces
+        slower = (basis / (1 + h * rates)) @ basis.T @ model.mass  # what implicit damping leaves of it
+        in_steps = np.repeat([h * h, h, h * h], [dofs, dofs, motors])  # velocities are in units of 1/h
+        whole = np.eye(2 * dofs + motors)
+        change = np.zeros_like(whole)
+        change[dofs : 2 * dofs] = slower @ acceleration * in_steps
+        if model.integrator == "RK4":
+            change[:dofs, dofs : 2 * dofs] = np.eye(dofs)
+            for part in (4, 3, 2, 1):
+                whole = np.eye(len(whole)) + change / part @ whole
+        else:  # the velocity first, then the position with it
+            whole += change
+            whole[:dofs] += whole[dofs : 2 * dofs]
+        return whole[: 2 * dofs, : 2 * dofs], whole[: 2 * dofs, 2 * dofs :]
 
-
-def _one_step(
-    model: ModelData,
-    modes: _DampingModes,
-    constraints: Sequence[Constraint],
-    motors: Sequence[Motor],
-    impedances: Sequence[float],
-    factor: float,
-) -> tuple[FloatArray, FloatArray]:
-    """Return the matrices of one step: of (x, h v), shape (2 dofs, 2 dofs), and of motors' forces, (2 dofs, motors)."""
-    stiffness, damping = _springs_and_dampers(model, model.feedbacks)
-    h = factor * model.h
-    inverse = modes.basis @ modes.basis.T  # of the mass
-    arms = np.array([motor.direction for motor in motors]).reshape(-1, len(inverse)).T
-    # of the acceleration: what positions, velocities and forces make of it
-    by_position, by_velocity, by_force = -inverse @ stiffness, -inverse @ damping, inverse @ arms
-    if constraints:
-        jacobian = np.vstack([each.jacobian for each in constraints if each.jacobian is not None])
-        regularization, damper, spring = _regularized(model, constraints, impedances, factor)
-        inverted = np.linalg.inv(jacobian @ inverse @ jacobian.T + np.diag(regularization))
-        to_acceleration = inverse @ jacobian.T @ inverted
-        by_position = by_position - to_acceleration @ (spring[:, np.newaxis] * jacobian + jacobian @ by_position)
-        by_velocity = by_velocity - to_acceleration @ (damper[:, np.newaxis] * jacobian + jacobian @ by_velocity)
-        by_force = by_force - to_acceleration @ jacobian @ by_force
-    slower = (modes.basis / (1 + h * modes.rates)) @ modes.basis.T @ model.mass  # what implicit damping leaves of it
-    # velocities in units of 1/h: (h v)' = h^2 by_position x + h by_velocity (h v) + h^2 by_force f
-    to_velocity = slower @ np.hstack([h * h * by_position, h * by_velocity, h * h * by_force])
-    dofs, columns = len(inverse), to_velocity.shape[1]
-    if model.integrator == "RK4":
-        rates = np.zeros((columns, columns))
-        rates[:dofs, dofs : 2 * dofs] = np.eye(dofs)
-        rates[dofs : 2 * dofs] = to_velocity
-        identity = np.eye(columns)
-        whole = identity + rates @ (identity + rates / 2 @ (identity + rates / 3 @ (identity + rates / 4)))
-    else:  # the velocity first, then the position with it
-        whole = np.eye(columns)
-        whole[dofs : 2 * dofs] += to_velocity
-        whole[:dofs] += whole[dofs : 2 * dofs]
-    return whole[: 2 * dofs, : 2 * dofs], whole[: 2 * dofs, 2 * dofs :]
-
-
-def _regularized(
-    model: ModelData, constraints: Sequence[Constraint], impedances: Sequence[float], factor: float
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return R, b and k d of the constraints' rows: what softens them, their damping (1/s) and stiffness (1/s^2)."""
-    softening: list[float] = []
-    damper: list[float] = []
-    spring: list[float] = []
-    h = model.h * factor
-    for constraint, d in zip(constraints, impedances, strict=True):
-        assert constraint.diagonal is not None
-        first, second = constraint.solref if _of_one_sign(constraint.solref) else DEFAULT_SOLREF
-        if model.refsafe and first > 0:
-            first = max(first, 2 * h)
-        alpha_hat, beta_hat = ENGINES["mujoco"].read(exact(h), exact(first), exact(second))
-        largest = constraint.solimp[1]
-        softening += np.maximum(LEAST_SOFTENING, constraint.diagonal * (1 - d) / d).tolist()
-        two_alpha, beta_squared = feedback_gains(float(alpha_hat), float(beta_hat), h)
-        damper += [two_alpha / largest] * len(constraint.diagonal)
-        spring += [beta_squared * d / largest**2] * len(constraint.diagonal)
-    return np.array(softening), np.array(damper), np.array(spring)
+    def _constrained(self, pulls: Sequence[_Pull], factor: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return J and R of the constraints' rows, and the acceleration that positions and velocities ask of them."""
+        h = factor * self.plant.model.h
+        jacobians, softenings, wanted = [], [], []
+        for constraint, pull in zip(self.constraints, pulls, strict=True):
+            assert constraint.jacobian is not None
+            assert constraint.diagonal is not None
+            alpha_hat, beta_hat = pull.at(np.array(factor))
+            jacobians.append(constraint.jacobian)
+            softenings.append(_softening(constraint.diagonal, pull.impedance))
+            wanted.append(-np.hstack([beta_hat / h**2 * constraint.jacobian, alpha_hat / h * constraint.jacobian]))
+        return np.vstack(jacobians), np.concatenate(softenings), np.vstack(wanted)

@@ -9,6 +9,7 @@ import types
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import combinations_with_replacement, islice
 from pathlib import Path
 from typing import Any, Literal
 
@@ -169,12 +170,14 @@ def model_data(mujoco: types.ModuleType, model: Any) -> ModelData:
     data = mujoco.MjData(model)
     data.eq_active[:] = 1  # to have the rows of all of them
     mujoco.mj_forward(model, data)
-    mass = np.zeros((model.nv, model.nv))
-    for dof, column in enumerate(mass):  # symmetric: rows are columns
-        mujoco.mj_mulM(model, data, column, _unit(model, dof))
-    actuators = list(_actuators(mujoco, model, data))
-    constraints = tuple(_constraints(mujoco, model, data))
-    feedbacks = (*_passive(mujoco, model, data), *(each for each in actuators if isinstance(each, Feedback)))
+    units = np.eye(model.nv)
+    mass = np.zeros_like(units)
+    for unit, column in zip(units, mass, strict=True):  # symmetric: rows are columns
+        mujoco.mj_mulM(model, data, column, unit)
+    loaded = _Loaded(mujoco, model, data, units, _tendon_directions(model, data))
+    actuators = list(_actuators(loaded))
+    constraints = tuple(_constraints(loaded))
+    feedbacks = (*_passive(loaded), *(each for each in actuators if isinstance(each, Feedback)))
     _require_sizes("timestep", (model.opt.timestep,))
     if model.opt.timestep <= 0:
         raise InputError(f"timestep = {model.opt.timestep:g}: expected a positive number")
@@ -186,12 +189,12 @@ def model_data(mujoco: types.ModuleType, model: Any) -> ModelData:
     return ModelData(
         h=model.opt.timestep,
         integrator=INTEGRATORS[model.opt.integrator],
-        refsafe=not _disabled(mujoco, model, "REFSAFE"),
-        euler_damping=not _disabled(mujoco, model, "EULERDAMP"),
+        refsafe=loaded.has("REFSAFE"),
+        euler_damping=loaded.has("EULERDAMP"),
         mass=mass,
         constraints=constraints,
         feedbacks=feedbacks,
-        unjudged=(*(each for each in actuators if isinstance(each, Unjudged)), *_flexes(mujoco, model)),
+        unjudged=(*(each for each in actuators if isinstance(each, Unjudged)), *_flexes(loaded)),
         motors=tuple(each for each in actuators if isinstance(each, Motor)),
     )
 
@@ -203,44 +206,44 @@ def _require_sizes(name: str, values: Sequence[float]) -> None:
         raise InputError(f"{name} = {listed}: expected 0, or sizes from {LEAST_SIZE:g} to {LARGEST_SIZE:g}")
 
 
-def _unit(model: Any, dof: int) -> FloatArray:
-    """Return one degree of freedom's direction; shape (dofs,)."""
-    direction = np.zeros(model.nv)
-    direction[dof] = 1.0
-    return direction
+@dataclass(frozen=True)
+class _Loaded:
+    """A model as MuJoCo has loaded it, with its data at qpos0, and the directions of its joints and tendons.
 
+    `joints` (dofs, dofs) and `tendons` (tendons, dofs) are how their lengths change with the joints, m or rad each.
+    """
 
-def _disabled(mujoco: types.ModuleType, model: Any, flag: str) -> bool:
-    return bool(model.opt.disableflags & getattr(mujoco.mjtDisableBit, f"mjDSBL_{flag}"))
+    mujoco: types.ModuleType
+    model: Any
+    data: Any
+    joints: FloatArray
+    tendons: FloatArray
 
+    def has(self, flag: str) -> bool:
+        """Return whether what the flag is called by is not switched off."""
+        return not self.model.opt.disableflags & getattr(self.mujoco.mjtDisableBit, f"mjDSBL_{flag}")
 
-def _enabled(mujoco: types.ModuleType, model: Any, flag: str) -> bool:
-    return bool(model.opt.enableflags & getattr(mujoco.mjtEnableBit, f"mjENBL_{flag}"))
-
-
-def _named(mujoco: types.ModuleType, model: Any, kind: str, number: int) -> str:
-    """Return what an element is called: joint 'elbow', and joint 3 (from zero) where it has no name."""
-    name = mujoco.mj_id2name(model, getattr(mujoco.mjtObj, f"mjOBJ_{kind.upper()}"), number)
-    return f"{kind} {name!r}" if name else f"{kind} {number}"
+    def named(self, kind: str, number: int) -> str:
+        """Return what an element is called: joint 'elbow', and joint 3 (from zero) where it has no name."""
+        name = self.mujoco.mj_id2name(self.model, getattr(self.mujoco.mjtObj, f"mjOBJ_{kind.upper()}"), number)
+        return f"{kind} {name!r}" if name else f"{kind} {number}"
 
 
 # Constraints
 
 
-def _constraints(mujoco: types.ModuleType, model: Any, data: Any) -> Iterator[Constraint]:
+def _constraints(loaded: _Loaded) -> Iterator[Constraint]:
     """Yield every constraint that the model can have, those whose kind is switched off left out."""
-    if _disabled(mujoco, model, "CONSTRAINT"):
+    if not loaded.has("CONSTRAINT"):
         return
-    if not _disabled(mujoco, model, "EQUALITY"):
-        yield from _equalities(mujoco, model, data)
-    if not _disabled(mujoco, model, "LIMIT"):
-        yield from _joint_limits(mujoco, model)
-        yield from _tendon_limits(mujoco, model, data)
-    if not _disabled(mujoco, model, "FRICTIONLOSS"):
-        yield from _friction_losses(mujoco, model, data)
-    if not _disabled(mujoco, model, "CONTACT"):
-        yield from _contact_pairs(mujoco, model)
-        yield from _geom_contacts(mujoco, model)
+    if loaded.has("EQUALITY"):
+        yield from _equalities(loaded)
+    if loaded.has("LIMIT"):
+        yield from _limits(loaded)
+    if loaded.has("FRICTIONLOSS"):
+        yield from _friction_losses(loaded)
+    if loaded.has("CONTACT"):
+        yield from _contacts(loaded)
 
 
 def _solref(values: FloatArray) -> tuple[float, float]:
@@ -252,7 +255,8 @@ def _solimp(values: FloatArray) -> tuple[float, float, float]:
     return first, last, max(0.0, float(values[2]))
 
 
-def _equalities(mujoco: types.ModuleType, model: Any, data: Any) -> Iterator[Constraint]:
+def _equalities(loaded: _Loaded) -> Iterator[Constraint]:
+    mujoco, model, data = loaded.mujoco, loaded.model, loaded.data
     kinds = {value: name.removeprefix("mjEQ_").lower() for name, value in mujoco.mjtEq.__members__.items()}
     jacobian = data.efc_J.reshape(-1, model.nv) if data.nefc else np.zeros((0, model.nv))
     for number in range(model.neq):
@@ -261,7 +265,7 @@ def _equalities(mujoco: types.ModuleType, model: Any, data: Any) -> Iterator[Con
         impedance = data.efc_KBIP[own, 2]
         diagonal = data.efc_R[own] * impedance / (1 - impedance)  # as R = (1 - d) / d times the diagonal
         yield Constraint(
-            element=_named(mujoco, model, "equality", number),
+            element=loaded.named("equality", number),
             kind=f"{kinds[mujoco.mjtEq(model.eq_type[number])]} equality",
             solref=_solref(model.eq_solref[number]),
             solimp=_solimp(model.eq_solimp[number]),
@@ -271,125 +275,101 @@ def _equalities(mujoco: types.ModuleType, model: Any, data: Any) -> Iterator[Con
         )
 
 
-def _joint_limits(mujoco: types.ModuleType, model: Any) -> Iterator[Constraint]:
+def _limits(loaded: _Loaded) -> Iterator[Constraint]:
+    model = loaded.model
     for joint in np.flatnonzero(model.jnt_limited).tolist():
         dof = model.jnt_dofadr[joint]
-        ball = (
-            mujoco.mjtJoint(model.jnt_type[joint]) == mujoco.mjtJoint.mjJNT_BALL
-        )  # whose axis depends on the configuration
+        kind = loaded.mujoco.mjtJoint(model.jnt_type[joint])
+        ball = kind == loaded.mujoco.mjtJoint.mjJNT_BALL  # whose axis depends on the configuration
         yield Constraint(
-            element=_named(mujoco, model, "joint", joint),
+            element=loaded.named("joint", joint),
             kind="joint limit",
             solref=_solref(model.jnt_solref[joint]),
             solimp=_solimp(model.jnt_solimp[joint]),
-            jacobian=None if ball else _unit(model, dof)[np.newaxis],
+            jacobian=None if ball else loaded.joints[[dof]],
             diagonal=None if ball else model.dof_invweight0[[dof]].copy(),
         )
-
-
-def _tendon_limits(mujoco: types.ModuleType, model: Any, data: Any) -> Iterator[Constraint]:
-    directions = _tendon_directions(model, data)
     for tendon in np.flatnonzero(model.tendon_limited).tolist():
         yield Constraint(
-            element=_named(mujoco, model, "tendon", tendon),
+            element=loaded.named("tendon", tendon),
             kind="tendon limit",
             solref=_solref(model.tendon_solref_lim[tendon]),
             solimp=_solimp(model.tendon_solimp_lim[tendon]),
-            jacobian=directions[[tendon]],
+            jacobian=loaded.tendons[[tendon]],
             diagonal=model.tendon_invweight0[[tendon]].copy(),
         )
 
 
-def _friction_losses(mujoco: types.ModuleType, model: Any, data: Any) -> Iterator[Constraint]:
+def _friction_losses(loaded: _Loaded) -> Iterator[Constraint]:
+    model = loaded.model
     for dof in np.flatnonzero(model.dof_frictionloss > 0).tolist():
         yield Constraint(
-            element=_named(mujoco, model, "joint", model.dof_jntid[dof]),
+            element=loaded.named("joint", model.dof_jntid[dof]),
             kind="joint friction",
             solref=_solref(model.dof_solref[dof]),
             solimp=_solimp(model.dof_solimp[dof]),
-            jacobian=_unit(model, dof)[np.newaxis],
+            jacobian=loaded.joints[[dof]],
             diagonal=model.dof_invweight0[[dof]].copy(),
             positional=False,
         )
-    directions = _tendon_directions(model, data)
     for tendon in np.flatnonzero(model.tendon_frictionloss > 0).tolist():
         yield Constraint(
-            element=_named(mujoco, model, "tendon", tendon),
+            element=loaded.named("tendon", tendon),
             kind="tendon friction",
             solref=_solref(model.tendon_solref_fri[tendon]),
             solimp=_solimp(model.tendon_solimp_fri[tendon]),
-            jacobian=directions[[tendon]],
+            jacobian=loaded.tendons[[tendon]],
             diagonal=model.tendon_invweight0[[tendon]].copy(),
             positional=False,
         )
 
 
-def _contact_pairs(mujoco: types.ModuleType, model: Any) -> Iterator[Constraint]:
-    """Yield the contacts of pairs that the model lists, which have a solref of their own."""
+def _contacts(loaded: _Loaded) -> Iterator[Constraint]:
+    """Yield the contacts of pairs that the model lists, then one for each mixture that two geoms can meet with.
+
+    The flag `override` puts the same parameters in place of every contact's.
+    """
+    model = loaded.model
+    overridden = model.opt.enableflags & loaded.mujoco.mjtEnableBit.mjENBL_OVERRIDE
+
+    def contact(kind: str, geoms: tuple[int, int], solref: FloatArray, solimp: FloatArray) -> Constraint:
+        return Constraint(
+            element=" and ".join(loaded.named("geom", geom) for geom in geoms),
+            kind=kind,
+            solref=_solref(model.opt.o_solref if overridden else solref),
+            solimp=_solimp(model.opt.o_solimp if overridden else solimp),
+        )
+
     for pair in range(model.npair):
         geoms = (model.pair_geom1[pair], model.pair_geom2[pair])
-        yield Constraint(
-            element=" and ".join(_named(mujoco, model, "geom", geom) for geom in geoms),
-            kind="contact pair",
-            solref=_solref(_or_override(mujoco, model, "o_solref", model.pair_solref[pair])),
-            solimp=_solimp(_or_override(mujoco, model, "o_solimp", model.pair_solimp[pair])),
-        )
+        yield contact("contact pair", geoms, model.pair_solref[pair], model.pair_solimp[pair])
+    seen: dict[tuple[float, ...], Constraint] = {}
+    for geoms in _geoms_that_meet(loaded):
+        mixed = contact("contact", geoms, *_mixed(model, *geoms))
+        seen.setdefault((*mixed.solref, *mixed.solimp), mixed)
+    yield from seen.values()
 
 
-def _or_override(mujoco: types.ModuleType, model: Any, name: str, own: FloatArray) -> FloatArray:
-    """Return what takes the place of every contact's parameters where the flag `override` says so."""
-    values: FloatArray = getattr(model.opt, name) if _enabled(mujoco, model, "OVERRIDE") else own
-    return values
-
-
-def _geom_contacts(mujoco: types.ModuleType, model: Any) -> Iterator[Constraint]:
-    """Yield a contact for each mixture of parameters that two geoms can meet with: for the first two that can.
-
-    Geoms of equal parameters are looked at as one class, as a model has thousands of geoms and few parameters.
-    """
-    classes: dict[tuple[object, ...], list[int]] = {}
+def _geoms_that_meet(loaded: _Loaded) -> Iterator[tuple[int, int]]:
+    """Yield the first two geoms that can meet of each two classes: a model has many geoms and few parameters."""
+    model = loaded.model
+    classes: dict[tuple[float, ...], list[int]] = {}
     for geom in range(model.ngeom):
-        key = (
-            *(int(values[geom]) for values in (model.geom_contype, model.geom_conaffinity, model.geom_priority)),
-            *(float(model.geom_solmix[geom]), *model.geom_solref[geom].tolist(), *model.geom_solimp[geom].tolist()),
-        )
-        classes.setdefault(key, []).append(geom)
+        filters = model.geom_contype[geom], model.geom_conaffinity[geom], model.geom_priority[geom]
+        mixing = model.geom_solmix[geom], *model.geom_solref[geom].tolist(), *model.geom_solimp[geom].tolist()
+        classes.setdefault((*filters, *mixing), []).append(geom)
     excluded = set(model.exclude_signature.tolist())
-    parents = not _disabled(mujoco, model, "FILTERPARENT")
-    members = list(classes.values())
-    seen: dict[tuple[tuple[float, float], tuple[float, float, float]], tuple[int, int]] = {}
-    for index, ones in enumerate(members):
-        for others in members[index:]:
-            met = _first_that_meet(model, ones, others, excluded, parents)
-            if met:
-                solref, solimp = _mixed(model, *met)
-                solref = _or_override(mujoco, model, "o_solref", solref)
-                solimp = _or_override(mujoco, model, "o_solimp", solimp)
-                seen.setdefault((_solref(solref), _solimp(solimp)), met)
-    for (settled_solref, settled_solimp), met in seen.items():
-        yield Constraint(
-            element=" and ".join(_named(mujoco, model, "geom", geom) for geom in met),
-            kind="contact",
-            solref=settled_solref,
-            solimp=settled_solimp,
-        )
+    parents = loaded.has("FILTERPARENT")
+    for ones, others in combinations_with_replacement(classes.values(), 2):
+        pairs = ((one, other) for one in ones for other in others if one != other)
+        if _classes_meet(model, ones[0], others[0]):
+            yield from islice((pair for pair in pairs if _bodies_meet(model, *pair, excluded, parents)), 1)
 
 
-def _first_that_meet(
-    model: Any, ones: Sequence[int], others: Sequence[int], excluded: set[int], parents: bool
-) -> tuple[int, int] | None:
-    """Return the first two geoms of two classes that MuJoCo would test for contact, if any (its Collision filters)."""
-    first, second = ones[0], others[0]
-    if not (
-        model.geom_contype[first] & model.geom_conaffinity[second]
-        or model.geom_contype[second] & model.geom_conaffinity[first]
-    ):
-        return None
-    for one in ones:
-        for other in others:
-            if one != other and _bodies_meet(model, one, other, excluded, parents):
-                return one, other
-    return None
+def _classes_meet(model: Any, one: int, other: int) -> bool:
+    """Return whether MuJoCo would look for contacts of two geoms at all (its Collision filters)."""
+    types, affinities = model.geom_contype, model.geom_conaffinity
+    return bool(types[one] & affinities[other] or types[other] & affinities[one])
 
 
 def _bodies_meet(model: Any, one: int, other: int, excluded: set[int], parents: bool) -> bool:
@@ -421,92 +401,100 @@ def _mixed(model: Any, one: int, other: int) -> tuple[FloatArray, FloatArray]:
 # Springs, dampers and drives
 
 
-def _passive(mujoco: types.ModuleType, model: Any, data: Any) -> Iterator[Feedback]:
+def _passive(loaded: _Loaded) -> Iterator[Feedback]:
     """Yield the springs and dampers of joints and tendons."""
-    springs, dampers = not _disabled(mujoco, model, "SPRING"), not _disabled(mujoco, model, "DAMPER")
+    model = loaded.model
+    springs, dampers = loaded.has("SPRING"), loaded.has("DAMPER")
     for dof in range(model.nv):
         joint = model.dof_jntid[dof]
-        stiffness = springs * float(model.jnt_stiffness[joint])
-        damping = dampers * float(model.dof_damping[dof])
+        stiffness, damping = springs * float(model.jnt_stiffness[joint]), dampers * float(model.dof_damping[dof])
         if stiffness or damping:
-            element = _named(mujoco, model, "joint", joint)
-            yield Feedback(element, "joint", _unit(model, dof), stiffness, damping, euler_implicit=True)
-    directions = _tendon_directions(model, data)
-    for tendon in range(model.ntendon):
-        stiffness = springs * float(model.tendon_stiffness[tendon])
-        damping = dampers * float(model.tendon_damping[tendon])
+            element = loaded.named("joint", joint)
+            yield Feedback(element, "joint", loaded.joints[dof], stiffness, damping, euler_implicit=True)
+    for tendon, direction in enumerate(loaded.tendons):
+        stiffness, damping = (
+            springs * float(model.tendon_stiffness[tendon]),
+            dampers * float(model.tendon_damping[tendon]),
+        )
         if stiffness or damping:
-            element = _named(mujoco, model, "tendon", tendon)
-            yield Feedback(element, "tendon", directions[tendon], stiffness, damping, euler_implicit=False)
+            element = loaded.named("tendon", tendon)
+            yield Feedback(element, "tendon", direction, stiffness, damping, euler_implicit=False)
 
 
-def _actuators(mujoco: types.ModuleType, model: Any, data: Any) -> Iterator[Feedback | Motor | Unjudged]:
-    """Yield the position and velocity gains of actuators, those of an affine bias, a damping of their own, and motors.
-
-    A motor has no gains of its own: whoever sets its control closes the loop.
-    """
-    if _disabled(mujoco, model, "ACTUATION"):
+def _actuators(loaded: _Loaded) -> Iterator[Feedback | Motor | Unjudged]:
+    """Yield the gains of actuators with an affine bias, dampings of their own, and motors."""
+    mujoco, model, data = loaded.mujoco, loaded.model, loaded.data
+    if not loaded.has("ACTUATION"):
         return
     directions = _rows(model, data.actuator_moment, data.moment_rownnz, data.moment_rowadr, data.moment_colind)
     of_joints = (mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtTrn.mjTRN_JOINTINPARENT)
     count = getattr(model, "nactuator", model.nu)  # later versions have actuators of several controls and outputs
     outputs = getattr(model, "actuator_outadr", np.arange(count))
+    own_damping = getattr(model, "actuator_damping", np.zeros(count)) * loaded.has("DAMPER")
     for actuator in range(count):
         if model.opt.disableactuator >> max(0, int(model.actuator_group[actuator])) & 1:
             continue  # its group is switched off
-        element = _named(mujoco, model, "actuator", actuator)
-        bias = mujoco.mjtBias(model.actuator_biastype[actuator])
-        gain = mujoco.mjtGain(model.actuator_gaintype[actuator])
-        if bias not in (mujoco.mjtBias.mjBIAS_NONE, mujoco.mjtBias.mjBIAS_AFFINE) or (
-            gain not in (mujoco.mjtGain.mjGAIN_FIXED, mujoco.mjtGain.mjGAIN_AFFINE)
-        ):
-            yield Unjudged(element, "drive", "its force is no constant stiffness and damping")
-            continue
-        if gain == mujoco.mjtGain.mjGAIN_AFFINE and model.actuator_gainprm[actuator, 1:3].any():
-            yield Unjudged(element, "drive", "its gain depends on the control")
-            continue
         direction = directions[outputs[actuator]]
-        if bias == mujoco.mjtBias.mjBIAS_AFFINE:
-            stiffness, damping = (-model.actuator_biasprm[actuator, 1:3]).tolist()
-            if stiffness or damping:
-                yield Feedback(element, "drive", direction, stiffness, damping, euler_implicit=False)
-        elif mujoco.mjtDyn(model.actuator_dyntype[actuator]) != mujoco.mjtDyn.mjDYN_NONE:
-            yield Unjudged(element, "motor", "its activation filters what a controller sets")
-        else:
-            delays = getattr(model, "actuator_delay", np.zeros(count))  # until 3.8 there were none
-            yield Motor(
-                element=element,
-                name=mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_ACTUATOR, actuator) or str(actuator),
-                direction=direction,
-                gain=float(model.actuator_gainprm[actuator, 0]),
-                delay=float(delays[actuator]),
-            )
-        own_damping = getattr(model, "actuator_damping", np.zeros(count))[actuator]
-        if own_damping and not _disabled(mujoco, model, "DAMPER"):  # added to that of its joint, if it has one
+        found = _force(loaded, actuator, direction)
+        if found:
+            yield found
+        judged = not (isinstance(found, Unjudged) and found.kind == "drive")
+        if judged and own_damping[actuator]:  # added to that of its joint, if it has one
             at_joint = mujoco.mjtTrn(model.actuator_trntype[actuator]) in of_joints
-            yield Feedback(element, "drive", direction, 0.0, float(own_damping), euler_implicit=at_joint)
+            element, damping = loaded.named("actuator", actuator), float(own_damping[actuator])
+            yield Feedback(element, "drive", direction, 0.0, damping, euler_implicit=at_joint)
 
 
-def _flexes(mujoco: types.ModuleType, model: Any) -> Iterator[Unjudged]:
+def _force(loaded: _Loaded, actuator: int, direction: FloatArray) -> Feedback | Motor | Unjudged | None:
+    """Return what an actuator does along a direction; None for a bias without gains.
+
+    A motor has no gains of its own: whoever sets its control closes the loop.
+    """
+    mujoco, model = loaded.mujoco, loaded.model
+    element = loaded.named("actuator", actuator)
+    bias = mujoco.mjtBias(model.actuator_biastype[actuator])
+    gain = mujoco.mjtGain(model.actuator_gaintype[actuator])
+    affine = bias == mujoco.mjtBias.mjBIAS_AFFINE
+    gain_affine = gain == mujoco.mjtGain.mjGAIN_AFFINE
+    if not (affine or bias == mujoco.mjtBias.mjBIAS_NONE) or not (gain_affine or gain == mujoco.mjtGain.mjGAIN_FIXED):
+        return Unjudged(element, "drive", "its force is no constant stiffness and damping")
+    if gain_affine and model.actuator_gainprm[actuator, 1:3].any():
+        return Unjudged(element, "drive", "its gain depends on the control")
+    if affine:
+        stiffness, damping = (-model.actuator_biasprm[actuator, 1:3]).tolist()
+        own = Feedback(element, "drive", direction, stiffness, damping, euler_implicit=False)
+        return own if stiffness or damping else None
+    if mujoco.mjtDyn(model.actuator_dyntype[actuator]) != mujoco.mjtDyn.mjDYN_NONE:
+        return Unjudged(element, "motor", "its activation filters what a controller sets")
+    delays = getattr(model, "actuator_delay", np.zeros(actuator + 1))  # until 3.8 there were none
+    return Motor(
+        element=element,
+        name=mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_ACTUATOR, actuator) or str(actuator),
+        direction=direction,
+        gain=float(model.actuator_gainprm[actuator, 0]),
+        delay=float(delays[actuator]),
+    )
+
+
+def _flexes(loaded: _Loaded) -> Iterator[Unjudged]:
     """Yield what acts on a flex besides its equalities: the springs of its elements, and its contacts."""
+    model = loaded.model
     for flex in range(model.nflex):
-        element = _named(mujoco, model, "flex", flex)
+        element = loaded.named("flex", flex)
         if model.flex_edgestiffness[flex] or model.flex_edgedamping[flex] or _is_elastic(model, flex):
             yield Unjudged(element, "flex spring", "its springs are of all its elements together")
         touches = model.flex_contype[flex] or model.flex_conaffinity[flex] or model.flex_selfcollide[flex]
-        if touches and not (_disabled(mujoco, model, "CONSTRAINT") or _disabled(mujoco, model, "CONTACT")):
+        if touches and loaded.has("CONSTRAINT") and loaded.has("CONTACT"):
             yield Unjudged(element, "flex contact", "it depends on what it touches")
 
 
 def _is_elastic(model: Any, flex: int) -> bool:
     """Return whether a flex resists being strained or bent."""
-    if model.flex_rigid[flex]:
-        return False
     entries = (
         (model.flex_stiffness, getattr(model, "flex_stiffnessadr", None)),
         (model.flex_bending, getattr(model, "flex_bendingadr", None)),
     )
-    return any(_part(np.ravel(values), starts, flex).any() for values, starts in entries)
+    return not model.flex_rigid[flex] and any(_part(np.ravel(*each[:1]), each[1], flex).any() for each in entries)
 
 
 def _part(values: FloatArray, starts: Any, flex: int) -> FloatArray:

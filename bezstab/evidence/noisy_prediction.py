@@ -23,7 +23,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from bezstab.evidence.linear_prediction import SAMPLES, TIMES_FARTHEST, FloatArray
-from bezstab.stability import ComplexArray
+from bezstab.stability import EPS, ComplexArray
 
 STANDARD_ERRORS = 3.0
 """That are stated: 99.7 % of normal errors are less, and by Cornish and Fisher's expansion as many of fewer samples."""
@@ -180,8 +180,9 @@ def _visible_poles(chosen: "_Sum", richer: "Sequence[_Sum]") -> tuple[NoisyPole,
 class _Sum:
     """A sum of powers of the poles z, those of the closed upper half plane, and what it leaves over of a stretch.
 
-    `slopes` (samples * responses, unknowns) are those of what is left over by ln|z| of each pole and by the angle of
-    those that are not real, the amplitudes eliminated; `explained` (poles, samples, responses) what each explains.
+    `slopes` (samples * responses, 2 poles) are those of what is left over by ln|z| and by the angle of each pole, the
+    amplitudes eliminated; those by the angle of a real pole are zero. `explained` (poles, samples, responses) is what
+    each explains.
     """
 
     z: ComplexArray
@@ -197,7 +198,7 @@ class _Sum:
             change = -np.linalg.lstsq(current.slopes, current.left_over.ravel(), rcond=None)[0]
             share = 1.0
             while share >= SHORTEST_STEP:
-                following = cls.of(samples, _moved(current.z, np.asarray(share * change, np.float64)))
+                following = cls.of(samples, _moved(current.z, np.asarray(share * change).reshape(-1, 2)))
                 if following.squares < current.squares:
                     break
                 share /= 4
@@ -212,25 +213,19 @@ class _Sum:
     @classmethod
     def of(cls, samples: FloatArray, z: ComplexArray) -> "_Sum":
         """Return the sum of powers of given poles that leaves least over."""
-        columns, owners = _powers(z, len(samples))
-        if not len(z):
-            return cls(z, samples, np.zeros((samples.size, 0)), np.zeros((0, *samples.shape)))
-        amplitudes = np.linalg.lstsq(columns, samples, rcond=None)[0]
-        left_over = samples - columns @ amplitudes
-        explained = np.stack([columns[:, owners == pole] @ amplitudes[owners == pole] for pole in range(len(z))])
-        orthonormal = np.linalg.qr(columns)[0]
         k = np.arange(len(samples))[:, np.newaxis]
-        slopes = []
-        for pole in range(len(z)):
-            own = owners == pole
-            by_log = -k * explained[pole]
-            slopes.append(by_log)
-            if z[pole].imag:  # Re z^k turns into -Im z^k, and Im z^k into Re z^k
-                real, imaginary = columns[:, own].T
-                turned = np.stack([-imaginary, real], axis=1)
-                slopes.append(-k * (turned @ amplitudes[own]))
-        projected = [(slope - orthonormal @ (orthonormal.T @ slope)).ravel() for slope in slopes]
-        return cls(z, left_over, np.stack(projected, axis=1), explained)
+        growth = (len(samples) - 1) * np.maximum(np.log(np.abs(z)), 0.0)  # so that what grows ends at one
+        powers = np.exp(k * np.log(z) - growth)
+        imaginary = np.where(z.imag != 0, powers.imag, 0.0)
+        columns = np.stack([powers.real, imaginary], axis=-1)
+        turned = np.stack([-imaginary, powers.real], axis=-1)  # by the angle of a pole: Re z^k becomes -Im z^k
+        basis = columns.reshape(len(samples), 2 * len(z))
+        inverse = np.linalg.pinv(basis, rcond=EPS * len(samples))
+        amplitudes = (inverse @ samples).reshape(len(z), 2, samples.shape[1])
+        explained, by_angle = (np.einsum("kpi,pir->pkr", each, amplitudes) for each in (columns, turned))
+        slopes = -k * np.stack([explained, by_angle], axis=1).reshape(2 * len(z), *samples.shape)
+        slopes = slopes - basis @ (inverse @ slopes)
+        return cls(z, samples - explained.sum(axis=0), slopes.reshape(2 * len(z), samples.size).T, explained)
 
     @property
     def squares(self) -> float:
@@ -266,10 +261,8 @@ class _Sum:
 
     def errors(self) -> FloatArray:
         """Return the standard error of each pole in the plane, of a pair that of both parts together."""
-        scatter = np.linalg.pinv(self.slopes)
-        of_unknowns = self.deviation**2 * np.sum(scatter**2, axis=1)
-        owners = np.repeat(np.arange(len(self.z)), np.where(self.z.imag != 0, 2, 1))
-        return np.asarray(np.abs(self.z) * np.sqrt(np.bincount(owners, of_unknowns, minlength=len(self.z))))
+        of_unknowns = np.sum(np.linalg.pinv(self.slopes) ** 2, axis=1)
+        return np.asarray(np.abs(self.z) * self.deviation * np.sqrt(of_unknowns.reshape(-1, 2).sum(axis=1)))
 
     def visible(self) -> NDArray[np.intp]:
         """Return in how many samples each pole explains more than the noise."""
@@ -291,30 +284,12 @@ def _shifting_poles(vectors: FloatArray) -> ComplexArray:
 
 
 def _moved(z: ComplexArray, change: FloatArray) -> ComplexArray:
-    """Return poles whose ln|z|, and of those that are not real the angle, are changed, in the upper half plane."""
-    logarithms = np.zeros(len(z), complex)
-    owners = np.repeat(np.arange(len(z)), np.where(z.imag != 0, 2, 1))
-    first = np.append(True, owners[1:] != owners[:-1])
-    logarithms[owners[first]] += np.clip(change[first], -1, 1)
-    logarithms[owners[~first]] += 1j * np.clip(change[~first], -1, 1)
-    moved = z * np.exp(logarithms)
-    kept = np.where(z.imag != 0, moved.real + 1j * np.maximum(np.abs(moved.imag), 1e-12 * np.abs(moved)), moved.real)
+    """Return poles whose ln|z| and angle are changed, (poles, 2), in the upper half plane; those that are real stay."""
+    by_log, by_angle = np.clip(change, -1, 1).T
+    moved = z * np.exp(by_log + 1j * by_angle)
+    above = moved.real + 1j * np.maximum(np.abs(moved.imag), 1e-12 * np.abs(moved))
+    kept = np.where(z.imag != 0, above, moved.real)
     return np.asarray(np.where(np.abs(kept) < LEAST_MODULUS, LEAST_MODULUS * kept / np.abs(kept), kept))
-
-
-def _powers(z: ComplexArray, count: int) -> tuple[FloatArray, FloatArray]:
-    """Return real columns of powers of each pole, Re z^k and Im z^k of those that are not real, and whose they are."""
-    k = np.arange(count)
-    columns, owners = [], []
-    for number, pole in enumerate(z.tolist()):
-        scale = (count - 1) * max(np.log(abs(pole)), 0.0)  # so that what grows ends at one
-        powers = np.exp(k * np.log(pole) - scale)
-        columns.append(powers.real)
-        owners.append(number)
-        if pole.imag:
-            columns.append(powers.imag)
-            owners.append(number)
-    return np.array(columns).T.reshape(count, len(columns)), np.array(owners, int)
 
 
 def _is_white(fitted: _Sum) -> bool:

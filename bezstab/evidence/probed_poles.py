@@ -16,7 +16,7 @@ log is short, and where kappa is zero, as that of a pendulum, or chi is, the nex
 by about the square of that angle.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -40,16 +40,7 @@ FEWEST = 12
 """Samples: two windows that differ, each with more equations than a pair of poles has unknowns."""
 
 GROWS = 100.0
-"""Times the start: what ends up so much larger is taken to grow, and to leave the linear range on its way."""
-
-FIRST = 3
-"""Rows that count as the start: one of them may be next to zero in an oscillation."""
-
-LAST_SHARE = 0.8
-"""Of the rows: what grows is largest after these, or nearly so if it saturates."""
-
-SATURATED = 0.1
-"""Of the largest sample: what was that large once and still is, in the end, has grown to where it saturates."""
+"""Times the start: what ends up so much larger has grown, and has left the linear range on its way."""
 
 LINEAR_SHARES = (np.inf, 1e-1, 1e-2, 1e-3, 1e-4)
 """Of the largest sample of a response that grows, up to which it is tried as linear."""
@@ -375,71 +366,38 @@ def _quantum(column: FloatArray) -> float:
 def _linear_limits(samples: FloatArray) -> Sequence[float]:
     """Return the sizes up to which the samples are tried as linear: those of a response that grows may leave it."""
     sizes = np.nanmax(np.abs(samples), axis=1)
-    largest = float(sizes.max())
-    at_the_end = float(np.nanmax(sizes[int(LAST_SHARE * len(sizes)) :]))
-    if at_the_end > SATURATED * largest and largest > GROWS * sizes[:FIRST].max():
-        return [share * largest for share in LINEAR_SHARES]
-    return (np.inf,)
+    start = sizes[:3].max()  # of an oscillation one row may be next to zero
+    end = sizes[4 * len(sizes) // 5 :].max()
+    return [share * float(sizes.max()) for share in LINEAR_SHARES] if end > GROWS * start else (np.inf,)
 
 
 def likenesses(
     probed: ProbedPole,
-    methods: Sequence[Method],
+    own_steps: Mapping[Method, int],
     alpha_hat: Fraction,
     beta_hat: Fraction,
-    between: Callable[[Method], int | None] | int = 1,
     turned: float | None = None,
 ) -> list[Likeness]:
     """Return how far a probed pole is from that of each method at a point (dimensionless), the nearest first.
 
-    `between` of a method's own steps lie between two rows of the log; a method for which that is None has longer steps
-    than the log and is left out, and so is one whose poles are infinite at the point: it has made no log. `turned` is
-    the angle (rad) by which the directions of the constraints turn in a step of the user's, at most; None takes TURNED.
-    No likenesses without a pole. Roots of paper Eq. 17; the motion by the first-order law.
+    So many of a method's `own_steps` lie between two rows of the log. A method whose poles are infinite at the point is
+    left out: it has made no log. `turned` is the angle (rad) by which the directions of the constraints turn in a step
+    of the user's, at most; None takes TURNED. No likenesses without a pole. Roots of paper Eq. 17; the motion by the
+    first-order law.
     """
-    if probed.pole is None or probed.uncertainty is None:
+    if probed.pole is None:
         return []
+    recursions = {
+        method: (between, _polynomial_without_zeros(method, alpha_hat, beta_hat))
+        for method, between in own_steps.items()
+    }
     found = []
-    for one in _comparisons(methods, alpha_hat, beta_hat, between):
+    for method, recursion in recursions.items():
+        alike = [other.name for other, its in recursions.items() if its == recursion and other is not method]
         with suppress(NumericalError):
-            found.append(_likeness(probed, one, alpha_hat, beta_hat, turned))
+            one = _likeness(probed, method, own_steps[method], (float(alpha_hat), float(beta_hat)), turned)
+            found.append(replace(one, same_as=", ".join(alike)))
     return sorted(found, key=lambda one: one.distance)
-
-
-@dataclass(frozen=True)
-class _Comparison:
-    """A method that may have made a log: `between` of its steps lie between two rows.
-
-    `same_as` names the others whose P at the point is the same but for roots at zero.
-    """
-
-    method: Method
-    between: int
-    same_as: str
-
-
-def _comparisons(
-    methods: Sequence[Method],
-    alpha_hat: Fraction,
-    beta_hat: Fraction,
-    between: Callable[[Method], int | None] | int,
-) -> list[_Comparison]:
-    """Return what to compare a log with at a point; without methods whose steps are longer than its rows are apart."""
-    compared: list[tuple[Method, int]] = []
-    for method in methods:
-        own_steps = between if isinstance(between, int) else between(method)
-        if own_steps is not None:
-            compared.append((method, own_steps))
-    polynomials = [_polynomial_without_zeros(method, alpha_hat, beta_hat) for method, _ in compared]
-    answers = []
-    for (method, own_steps), own in zip(compared, polynomials, strict=True):
-        equal = [
-            other.name
-            for (other, others_steps), others in zip(compared, polynomials, strict=True)
-            if (others, others_steps) == (own, own_steps) and other is not method
-        ]
-        answers.append(_Comparison(method, own_steps, ", ".join(equal)))
-    return answers
 
 
 def steps_between_rows(method: Method, h: float | None, row: float | None, every: int = 1) -> int | None:
@@ -494,14 +452,13 @@ def _polynomial_without_zeros(method: Method, alpha_hat: Fraction, beta_hat: Fra
 
 
 def _likeness(
-    probed: ProbedPole, compared: _Comparison, alpha_hat: Fraction, beta_hat: Fraction, turned: float | None
+    probed: ProbedPole, method: Method, between: int, point: tuple[float, float], turned: float | None
 ) -> Likeness:
     assert probed.pole is not None
     assert probed.uncertainty is not None
-    a, b = float(alpha_hat), float(beta_hat)
-    z = poles(compared.method, a, b)
+    z = poles(method, *point)
     with np.errstate(over="ignore", invalid="ignore"):  # a pole far outside the circle, over many steps
-        per_row = z**compared.between
+        per_row = z**between
     per_row = per_row.real + 1j * np.abs(per_row.imag)
     leading = np.abs(z) > (1 - 1 / SAMPLES) * np.abs(z[0])
     # Another pole answers only if the kick has hardly excited the dominant one, and that has not grown out of rounding.
@@ -509,26 +466,24 @@ def _likeness(
     if probed.rows * np.log(max(np.abs(per_row[0]), 1.0)) > np.log(UNSEEN_GROWTH):
         distances[~leading] = np.inf
     nearest = int(np.argmin(distances))
-    moved = (
-        compared.between * _motion_shift(compared.method, a, b, z, nearest, turned) * float(np.abs(per_row[nearest]))
-    )
+    moved = between * _motion_shift(method, point, z, nearest, turned) * float(np.abs(per_row[nearest]))
     return Likeness(
-        method=compared.method,
+        method=method,
         predicted=complex(per_row[0]),
         distance=float(distances[nearest]),
         error=probed.uncertainty,
         allowed=probed.uncertainty + moved,
         dominant=bool(leading[nearest]),
-        same_as=compared.same_as,
+        same_as="",
     )
 
 
 def _motion_shift(
-    method: Method, alpha_hat: float, beta_hat: float, z: ComplexArray, which: int, turned: float | None
+    method: Method, point: tuple[float, float], z: ComplexArray, which: int, turned: float | None
 ) -> float:
     """Return by which share of itself, a step, the motion may shift one of a method's poles z; `turned` as above."""
     angle = (TURNED if turned is None else turned) * float(method.step_multiple)
-    chi = float(np.abs(turning_sensitivity(method, alpha_hat, beta_hat, z[which])))
+    chi = float(np.abs(turning_sensitivity(method, *point, z[which])))
     apart = np.abs(z - z[which])
     apart[which] = np.inf
     apart[np.abs(z - z[which].conj()) == 0] = np.inf
@@ -569,7 +524,8 @@ def _solutions(method: Method, z: ComplexArray, error: float) -> tuple[list[Like
 
     And whether there are others which are no points but a curve.
     """
-    equations = _equations(closed_loop_array(method), z)
+    table = np.array(closed_loop_table(method), float)  # by powers of z, alpha_hat and beta_hat
+    equations = _equations(table, z)
     points = _starting_points(method, z)
     with np.errstate(all="ignore"):  # what leaves the range is left out below
         for _ in range(ITERATIONS):
@@ -583,17 +539,13 @@ def _solutions(method: Method, z: ComplexArray, error: float) -> tuple[list[Like
         known = any(abs(a - one.alpha_hat) + abs(b - one.beta_hat) < SAME * (1 + abs(a) + abs(b)) for one in found)
         if known or abs(poles(method, a, b)[0]) > abs(z[0]) + 10 * error + SAME:
             continue
-        if np.linalg.cond(_jacobian(equations, np.array([[a, b]]))[:, :, 0]) > 1 / SAME:
+        jacobian = _jacobian(equations, np.array([[a, b]]))[:, :, 0]
+        if np.linalg.cond(jacobian) > 1 / SAME:
             singular = True
             continue
-        alpha_hat_error, beta_hat_error = _point_errors(method, z, error, a, b)
-        found.append(LikePoint(method, a, b, alpha_hat_error, beta_hat_error))
+        slopes = np.abs([polyval3d(pole, a, b, polyder(table)) for pole in z])  # by each pole, which may be off
+        found.append(LikePoint(method, a, b, *(np.abs(np.linalg.inv(jacobian)) @ (slopes * error)).tolist()))
     return found, singular
-
-
-def closed_loop_array(method: Method) -> FloatArray:
-    """Return P's coefficients by powers of z, alpha_hat and beta_hat, in float64."""
-    return np.array(closed_loop_table(method), float)
 
 
 def _equations(table: FloatArray, z: ComplexArray) -> FloatArray:
@@ -625,12 +577,10 @@ def _exact_integrators_point(z: ComplexArray) -> tuple[float, float]:
 def _newton_step(equations: FloatArray, points: FloatArray) -> FloatArray:
     """Return Newton's change of each of a row of points, shape (points, 2); not finite where there is none."""
     first, second = (polyval2d(points[:, 0], points[:, 1], equation) for equation in equations)
-    jacobian = _jacobian(equations, points)
-    (by_alpha, by_beta), (second_by_alpha, second_by_beta) = jacobian
+    (by_alpha, by_beta), (second_by_alpha, second_by_beta) = _jacobian(equations, points)
+    changes = [first * second_by_beta - second * by_beta, second * by_alpha - first * second_by_alpha]
     determinant = by_alpha * second_by_beta - by_beta * second_by_alpha
-    alpha_change = (first * second_by_beta - second * by_beta) / determinant
-    beta_change = (second * by_alpha - first * second_by_alpha) / determinant
-    return np.stack([alpha_change, beta_change], axis=1)
+    return np.stack(changes / determinant, axis=1)
 
 
 def _jacobian(equations: FloatArray, points: FloatArray) -> FloatArray:
@@ -641,14 +591,3 @@ def _jacobian(equations: FloatArray, points: FloatArray) -> FloatArray:
             for equation in equations
         ]
     )
-
-
-def _point_errors(
-    method: Method, z: ComplexArray, error: float, alpha_hat: float, beta_hat: float
-) -> tuple[float, float]:
-    """Return by what alpha_hat and beta_hat may be off if each pole is by `error`."""
-    table = closed_loop_array(method)
-    jacobian = _jacobian(_equations(table, z), np.array([[alpha_hat, beta_hat]]))[:, :, 0]
-    slopes = np.abs([polyval3d(pole, alpha_hat, beta_hat, polyder(table)) for pole in z])
-    alpha_hat_error, beta_hat_error = np.abs(np.linalg.inv(jacobian)) @ (slopes * error)
-    return float(alpha_hat_error), float(beta_hat_error)

@@ -1,6 +1,6 @@
 """Maps of simulated verdicts: a run at every cell of the plane, diverging or not, against |z_p| from the polynomial."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from bezstab.errors import InputError, NumericalError
 from bezstab.evidence.kick_fates import fates, follow
-from bezstab.evidence.measured_poles import kicked_motions, kicked_motions_in_groups, nothing_happens_without_feedback
+from bezstab.evidence.measured_poles import kicked_motions, nothing_happens_without_feedback
 from bezstab.mechanism import CHEAPER_TOGETHER, Scene, compiled_mechanism, runs_compiled, turning_normals
 from bezstab.methods import Method, evaluations
 from bezstab.read_only import ReadOnlyArrays
@@ -149,12 +149,7 @@ def simulated_verdicts(rows: MapRows) -> dict[str, BoolArray]:
     calm = nothing_happens_without_feedback(mechanism, method, h)
     diverges, undecided = np.zeros((2, alpha_hat.size), bool)
     with np.errstate(all="ignore"):  # what diverges runs into infinity, and is cut off there
-        groups: Iterable[tuple[slice, Iterator[tuple[FloatArray, FloatArray]]]]
-        if rows.compiled:
-            groups = kicked_motions_in_groups(mechanism, method, h, alpha_hat, beta_hat, [MAP_KICK], MAP_RUN)
-        else:
-            steps = kicked_motions(mechanism, method, h, alpha_hat, beta_hat, [MAP_KICK])
-            groups = [(slice(None), ((c[np.newaxis], q[np.newaxis]) for c, q in steps))]
+        groups = kicked_motions(mechanism, method, h, alpha_hat, beta_hat, [MAP_KICK], MAP_RUN, rows.compiled)
         for some, blocks in groups:
             followed = follow(blocks, masses, MAP_KICK, MAP_RUN)
             diverges[some], undecided[some] = fates(followed, thrown_apart_is_growth=calm)

@@ -19,7 +19,7 @@ from bezstab.show.answer_rows import (
     trade_words,
 )
 from bezstab.show.blocks import block, fits, wrapped
-from bezstab.show.cells import diverged_text, order_text, pole_text, safe_step_text, with_unbounded
+from bezstab.show.cells import pole_text, with_unbounded
 from bezstab.show.columns import (
     PROPERTIES,
     Column,
@@ -90,7 +90,6 @@ from bezstab.show.rows import (
 from bezstab.show.schemas import json_schema
 from bezstab.show.sentences import one_pole_sentence
 from bezstab.show.varying_rows import sequence_text, varying_row, varying_words
-from bezstab.show.words import seconds_words
 
 if TYPE_CHECKING:
     from bezstab.show import plot

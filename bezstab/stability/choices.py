@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.goals import Goal
+from bezstab.goals import SETTLING, UP_TO_LONGEST, Goal
 from bezstab.methods import Method, Verdict, steps
 from bezstab.rationals import exact
 from bezstab.stability.accurate_points import Decays, accurate_point, default_rate, worst_error
@@ -295,13 +295,13 @@ def choose_at_step(
     settle that is not positive, missing with gentle, or with another goal than gentle and accurate.
     """
     check_step(h)
-    if h_max is not None and (goal not in ("robust", "accurate") or h_max < h):
+    if h_max is not None and (goal not in UP_TO_LONGEST or h_max < h):
         raise InputError(
             f"h_max = {float(h_max):g} s: only for the goals robust and accurate, and at least h = {float(h):g} s"
         )
     if settle is None and goal == "gentle":
         raise InputError("the goal gentle asks for settle: a time in s")
-    if settle is not None and goal not in ("gentle", "accurate"):
+    if settle is not None and goal not in SETTLING:
         raise InputError(f"settle, a time in s, goes with the goals gentle and accurate, not {goal}")
     if settle is not None and settle <= 0:
         raise InputError(f"settle = {float(settle):g} s: expected a positive time")

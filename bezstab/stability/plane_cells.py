@@ -10,7 +10,7 @@ edges: real roots alpha_hat of a polynomial whose coefficients depend on beta_ha
                +-------------------------- alpha_hat
 
 The area is the integral of the cells' width over beta_hat. At a level a width may begin like any root of the distance:
-tanh-sinh quadrature does not mind (H. Takahasi & M. Mori, Publ. RIMS 9, 1974).
+tanh-sinh quadrature does not mind.
 """
 
 import math
@@ -25,6 +25,7 @@ from bezstab.methods import Crossing, CurveTable, Limit, Method, PlaneStrips, St
 from bezstab.rationals import exact
 from bezstab.stability.arrays import ComplexArray, Extent, FloatArray
 from bezstab.stability.exact_sums import double_polynomial, split
+from bezstab.stability.quadratures import tanh_sinh
 from bezstab.stability.root_finding import newton_correction
 from bezstab.stability.searches import zoom_on_minimum
 from bezstab.stability.shapes import ROUNDING, USUAL_SIZE, Approached, Shape, joined
@@ -33,8 +34,6 @@ POLISH = 3  # steps of Newton's method on a root that companion eigenvalues have
 SETTLED = 1e-4  # of a root: a larger step does not polish but leads away
 EIGENVALUE_ERROR = 1e-13  # of the largest root: beyond what eigenvalues leave of a small one
 REFINED = 1e-6  # of a root: what float64 may be off by, unless two roots meet
-QUADRATURE_STEP = 1 / 16  # of tanh-sinh, in whose plane integrands with roots at their ends are analytic
-QUADRATURE_END = 3.2  # beyond it the weights are below 1e-16
 AGREEING = 1e-9  # of an integral: half the nodes so near to all say that all are good to rounding
 NEGLIGIBLE = 1e-14  # of the area: a part that is off by less need not be halved
 MOST_HALVINGS = 12  # of a strip in which a singularity lies close
@@ -335,18 +334,6 @@ def _area(edges: Edges, cells: tuple[Cell, ...], name: str) -> float:
 
     whole = sum(float(terms(cell, cell.low, cell.high).sum()) for cell in cells)
     return sum(integral(cell, cell.low, cell.high, MOST_HALVINGS) for cell in cells)
-
-
-def tanh_sinh(low: float, high: float) -> tuple[FloatArray, FloatArray]:
-    """Return nodes and weights over an interval, for integrands that are analytic but at its ends."""
-    number = round(QUADRATURE_END / QUADRATURE_STEP / 2) * 2
-    t = QUADRATURE_STEP * np.arange(-number, number + 1)
-    share = 1 / (1 + np.exp(np.pi * np.sinh(-t)))  # of the way from low to high
-    other = 1 / (1 + np.exp(np.pi * np.sinh(t)))
-    width = high - low
-    nodes = np.where(share < other, low + width * share, high - width * other)
-    weights = QUADRATURE_STEP * width * np.pi * np.cosh(t) * share * other
-    return nodes, weights
 
 
 # The boundary: each wall of a cell, and along a level what is stable on one side only.

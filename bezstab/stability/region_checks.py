@@ -1,55 +1,60 @@
 r"""Every region held against the poles before it is given: what contradicts them is a NumericalError, never an area.
 
-Nothing is asked of where its edges come from:
+Nothing is asked of where its edges come from, and four things must be true:
 
-      beta_hat |       . - - .             points   of the drawn curves: |z_p| is the level, to a millionth; the
-               |                           curves are closed, or go on
-               |     /|   |   |\           lines    of constant alpha_hat: where |z_p| passes the level, found by
-               |    (-|---|---|-) ----     bisection, are the crossings of the curves, and by the nodes' weights the
-               |     \|   |   |/           lengths between add up to the area
-               |       ' - - '             ends     just beyond an end of the extent lines are unstable all along, and
-               +---------------- alpha_hat drawn points come as far as it
-                                           known    points that lie inside whatever the edges are: every part of a
-                                           one-step method's region has one, where every pole is zero
+      beta_hat |       . - - .             edges   just to either side of a drawn point: all poles are within
+               |    in/ out                        the level on one side, and not on the other
+               |     /|   |   |\           lines   of constant alpha_hat are stable as far as the poles say: that adds
+               |    (-|---|---|-) ----             up to the area, and to what the curves enclose
+               |     \|   |   |/           ends    just within an end of the extent something is stable, just beyond it
+               |       ' - - '                     nothing; where there is no end, something is stable far out
+               +---------------- alpha_hat known   points that lie inside whatever the edges are: every part of a
+                                                   one-step method's region has one, where every pole is zero
 
-What float64 contradicts is decided in rationals, by Schur's recursion: rounding of a double root does not pass there.
+Where float64 contradicts a region, Schur's recursion in rationals decides: rounding of a double root is no error. And
+some points of every edge, and what is stable within an end and far out, are proven so in any case.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from fractions import Fraction
 from functools import partial
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
 from bezstab.errors import NumericalError
 from bezstab.methods import Method
 from bezstab.rationals import exact
-from bezstab.stability.arrays import EPS, BoolArray, FloatArray, even_points
-from bezstab.stability.closed_loop import decays_faster, free_pencil_of
-from bezstab.stability.searches import bisected
+from bezstab.stability.arrays import BoolArray, FloatArray, even_points
+from bezstab.stability.closed_loop import AnyPencil, decays_faster, free_pencil_of, largest_modulus
+from bezstab.stability.quadratures import tanh_sinh
+from bezstab.stability.searches import bisected, zoom_on_minimum
 from bezstab.stability.shapes import Shape
 
-ON_THE_LEVEL = 1e-6  # of the level: a drawn point is good to 1e-12, or to its rounding
-CORNERS, CROWDING = 12, 0.1  # points of a curve, and a share of them, that may be further off: where poles meet
-ROUNDINGS = 4 * np.array([(0, 0), (1, -1), (-1, 1), (1, 1), (-1, -1)])  # of a drawn point: what they do is no error
+ASIDE = 1e-10  # of a curve's size: so far to either side of its points verdicts are asked for
+BY_ROUNDING = 1e-12  # of a point's coordinates: at least so far, as drawn ones may be known no better
 THIN = 1e-4  # of its distance: around a double mu a curve of that size is known to less, as rounding parts the two
-PROVEN = 20  # of points that float64 takes to be so: to prove all would take seconds
+STRAIGHT = 1e6  # times as long as the gaps beside it: an edge of two points, which is straight
+ALONG: FloatArray = (1 - np.cos(np.linspace(0, np.pi, 34)[1:-1])) / 2  # of it, the places that are asked about
+STRETCH, CORNER = 1e-3, 3  # of a curve's length, and points: around corners, where poles meet, more may contradict
+PROVEN, DOUBTED = 8, 32  # points of each curve, and of a stretch that contradicts: to prove all would take seconds
 SEEN = 1.5  # times what is seen: nearer an end of a curve is where an edge is missing
-NODES = 8  # of Gauss and Legendre on a panel
-EVEN = np.linspace(0, 1, 9)  # ends of panels, of an island's width: 64 lines to each island, 8 to each gap
-_TOWARDS_ZERO = np.geomspace(1e-12, 0.1, 12)
-GRADED = np.union1d(EVEN, [*_TOWARDS_ZERO, *(1 - _TOWARDS_ZERO)])
-ON_A_LINE = 256  # points on which |z_p| is looked at, besides those between the drawn curves
+TURNED = 0.1  # rad, from one chord to the next: a corner
+MERGED = 1e-9  # of what is seen: ends of panels that lie closer are one
+PANEL_STEP = 1 / 4  # of tanh-sinh: 25 nodes, good to 1e-9 where every other one is good to 1e-5
+AREA_ERROR = 1e-6  # of the area: all but slivers agree to 1e-8, and those to what float64 knows of their edges
+CURVE_ERROR = 2e-2  # of the area: chords enclose less by 1e-5, and of a region of 1e10, drawn by few, by a hundredth
+EFFORTS = ((1e-5, 128), (1e-6, 256))  # of the area, half the nodes off by it: halve; points on a line
+PROVEN_EFFORT = (1e-4, 8)  # the same, of verdicts in rationals: next to one float64 may tell no edge well enough
+HALVINGS = 8  # of a panel at most: towards a kink its error falls fourfold with each
 AT_ONCE = 15  # of a bracket's places: to ask about one takes as long as about a dozen
-CURVE_ERROR = 2e-3  # of the longest line: chords between drawn points are off by 1e-4, near tangencies more
-TANGENT = 2  # lines that may disagree: those next to a tangency
-AREA_ERROR = 5e-3  # of the area: what 64 nodes leave across square roots and corners
-AT_THE_END = 1e-6  # of what is seen: so far beyond an end lines are looked at
-CHORD = 1e-3  # of what is seen: so near to an end a drawn point comes where the region does
-ALL_ALONG = np.geomspace(1e-6, 1e18, 800)  # times what is seen: where such a line is looked at, to either side
+CROSSING_HALVINGS = 36  # of a bracket of a hundredth of a line: its end is good to 1e-12 of the line
+AT_END = 1e-9  # of what is seen: a drawn point that is so near to an end has it, perhaps as the tip of a cusp
+BESIDE_END = 1e-6  # of what is seen: so far within and beyond an end of the extent lines are looked at
+TOWARDS = np.geomspace(1e-9, 1e18, 217)  # times what is seen: where a line is looked at, from what is known there
+FAR_OUT = (1e4, 1e6)  # times what is seen: something is stable there where there is no end
+LEAST, ZOOM_POINTS, ZOOMS = 16, 33, 9  # lowest of the samples there, and grids, each by 1/16, towards a thin strip
 SIZES = 4.0 * 10.0 ** np.arange(-3, 4)  # alpha_hat and sqrt(beta_hat) of boxes in which an empty region has no point
 POINTS = 600  # in each of them
 
@@ -69,12 +74,11 @@ def check_region(method: Method, level: float, shape: Shape | None) -> None:
     if shape is None:
         _check_nothing(name, inside, proven)
         return
-    _check_closed(name, shape)
     for curve in shape.curves:
-        if (np.ptp(curve, axis=0) > THIN * np.abs(curve).max(axis=0)).any():
-            _check_points(name, method, level, curve)
+        _check_closed(name, shape, curve)
+        _check_edge(name, shape, curve, inside, proven)
     _check_known(name, shape)
-    _check_ends(name, shape, inside, proven)
+    _check_ends(name, shape, pencil, inside, proven)
     _check_lines(name, shape, inside, proven)
 
 
@@ -95,34 +99,75 @@ def _check_nothing(name: str, inside: Verdicts, proven: Verdicts) -> None:
         raise NumericalError(f"{name}: a part of the region was not found, near alpha_hat = {alpha_hat[stable[0]]:.6g}")
 
 
-def _check_points(name: str, method: Method, level: float, curve: FloatArray) -> None:
-    """Raise NumericalError unless |z_p| is the level on a curve's points, or within their rounding, but for a few."""
-    pencil = free_pencil_of(method)
-    allowed = min(CORNERS, len(curve) / 4) + CROWDING * len(curve)
-    for side, expected in ((-1, False), (1, True)):
-        near = level * (1 + side * ON_THE_LEVEL)
-        suspicious = curve
-        for rounding in ROUNDINGS:
-            points = suspicious * (1 + EPS * rounding)
-            inside = pencil.all_within(points[:, 0], points[:, 1], np.full(len(points), near))
-            suspicious = suspicious[inside != expected]
-        if len(suspicious) <= allowed:
-            continue
-        alpha_hat, beta_hat = suspicious[:: 1 + len(suspicious) // PROVEN].T
-        wrong = _proven(method, exact(near), alpha_hat, beta_hat) != expected
-        if wrong.mean() * len(suspicious) > allowed:
-            place = f"({alpha_hat[wrong][0]:.6g}, {beta_hat[wrong][0]:.6g})"
-            raise NumericalError(f"{name}: an edge was drawn through {place}, where |z_p| is another")
+def _check_closed(name: str, shape: Shape, curve: FloatArray) -> None:
+    """Raise NumericalError unless a curve is closed, or of a region that goes on has its ends out of view."""
+    ends = curve[[0, -1]]
+    is_open = (ends[0] != ends[1]).any()
+    if is_open and (shape.area is not None or _seen(shape, ends).any()):
+        raise NumericalError(f"{name}: an edge was not found: it is very short, or several roots share it")
 
 
-def _check_closed(name: str, shape: Shape) -> None:
-    """Raise NumericalError unless each curve is closed, or of a region that goes on has its ends out of view."""
-    for curve in shape.curves:
-        ends = curve[[0, -1]]
-        is_open = (ends[0] != ends[1]).any()
-        seen = (np.abs(ends) <= SEEN * np.abs(shape.view).max(axis=1)).all(axis=1)
-        if is_open and (shape.area is not None or seen.any()):
-            raise NumericalError(f"{name}: an edge was not found: it is very short, or several roots share it")
+def _seen(shape: Shape, points: FloatArray) -> BoolArray:
+    """Return which points lie where a region that goes on is looked at."""
+    return np.asarray((np.abs(points) <= SEEN * np.abs(shape.view).max(axis=1)).all(axis=1))
+
+
+def _check_edge(name: str, shape: Shape, curve: FloatArray, inside: Verdicts, proven: Verdicts) -> None:
+    """Raise NumericalError unless a curve parts what is stable from what is not, but for its corners."""
+    size, away = np.ptp(curve, axis=0), np.abs(curve).max(axis=0)
+    if (size <= THIN * away).all():
+        return
+    if shape.area is None:  # what lies out of view may be a thousandfold larger, and is drawn by few points
+        size, away = (np.minimum(each, np.abs(shape.view).max(axis=1)) for each in (size, away))
+    points = _with_points_between(curve, size)
+    along = (points[2:] - points[:-2]) / size
+    length = np.hypot(*along.T)
+    kept = (length > MERGED) & (_seen(shape, points[1:-1]) | (shape.area is not None))
+    points, along = points[1:-1][kept], along[kept] / length[kept, np.newaxis]
+    if len(points) <= CORNER:
+        return
+    offset = np.maximum(ASIDE * size, BY_ROUNDING * away) * np.stack([-along[:, 1], along[:, 0]], axis=1)
+
+    def parted(verdicts: Verdicts, some: NDArray[np.intp]) -> BoolArray:
+        """Return at which points one side is stable alone, or both are, and not what is between."""
+        middle, aside = points[some], offset[some]
+        left, right = (verdicts(*(middle + sign * aside).T) for sign in (1, -1))
+        both = left & right
+        both[both] = ~verdicts(*middle[both].T)
+        return np.asarray((left != right) | both)
+
+    good = parted(inside, np.arange(len(points)))
+    way = np.append(0, np.cumsum(np.hypot(*(np.diff(points, axis=0) / size).T)))
+    for first, last in _stretches(~good, way):
+        some = np.arange(first, last + 1)[:: 1 + (last - first) // DOUBTED]
+        for k, _ in _stretches(~parted(proven, some), way[some]):
+            _refuse_edge(name, points[some[k]])
+    some = np.arange(len(points))[:: 1 + len(points) // PROVEN]
+    wrong = some[~parted(proven, some)]
+    if len(wrong) > len(some) / 2:
+        _refuse_edge(name, points[wrong[0]])
+
+
+def _refuse_edge(name: str, point: FloatArray) -> None:
+    raise NumericalError(f"{name}: an edge was drawn through ({point[0]:.6g}, {point[1]:.6g}), where none is")
+
+
+def _with_points_between(curve: FloatArray, size: FloatArray) -> FloatArray:
+    """Return a curve with points on its straight edges, of which it has but the ends."""
+    chords = np.diff(curve, axis=0)
+    length = np.hypot(*(chords / size).T)
+    beside = np.concatenate([[0.0], length, [0.0]])
+    straight = np.flatnonzero(length > STRAIGHT * np.maximum(beside[:-2], beside[2:]))
+    between = curve[straight][:, np.newaxis] + np.multiply.outer(ALONG, chords[straight]).swapaxes(0, 1)
+    return np.insert(curve, np.repeat(straight + 1, len(ALONG)), between.reshape(-1, 2), axis=0)
+
+
+def _stretches(wrong: BoolArray, way: FloatArray) -> Iterator[tuple[int, int]]:
+    """Yield the first and last number of what is wrong in a row of points, but for corners and what is short."""
+    turns = np.flatnonzero(np.diff(np.concatenate([[False], wrong, [False]]).astype(int)))
+    for first, beyond in zip(turns[::2].tolist(), turns[1::2].tolist(), strict=True):
+        if beyond - first > CORNER and way[beyond - 1] - way[first] > STRETCH * (way[-1] - way[0]):
+            yield first, beyond - 1
 
 
 def _check_known(name: str, shape: Shape) -> None:
@@ -132,104 +177,176 @@ def _check_known(name: str, shape: Shape) -> None:
             raise NumericalError(f"{name}: a part of the region was not found, near beta_hat = {beta_hat:.6g}")
 
 
-def _check_ends(name: str, shape: Shape, inside: Verdicts, proven: Verdicts) -> None:
-    """Raise NumericalError unless the region comes to the ends of the extent, and no further."""
+def _check_ends(name: str, shape: Shape, pencil: AnyPencil, inside: Verdicts, proven: Verdicts) -> None:
+    """Raise NumericalError unless the region comes to the ends of the extent, and no further, or goes on far out."""
     sizes = np.ptp(shape.view, axis=1)
+    drawn = np.concatenate([np.zeros((0, 2)), *shape.curves])
+    goes_on = shape.area is None
     for axis in (0, 1):
-        far = sizes[1 - axis] * ALL_ALONG
-        along = np.concatenate([-far[::-1], far])
-        if np.isfinite(shape.extent[1 - axis]).all():
-            low, high = shape.extent[1 - axis]
-            along = np.sort(np.append(along, np.linspace(low, high, ON_A_LINE)))
-
-        def stable_at(place: float, along: FloatArray, axis: int = axis) -> bool:
-            points = (np.full(along.shape, place), along)
-            alpha_hat, beta_hat = points[axis], points[1 - axis]
-            some = np.flatnonzero(inside(alpha_hat, beta_hat))
-            return any(proven(alpha_hat[[k]], beta_hat[[k]])[0] for k in some.tolist())
-
         for end, outwards in zip(shape.extent[axis], (-1, 1), strict=True):
+            stable_at = partial(_stable_on_line, shape, pencil, inside, proven, axis, outwards)
             if math.isinf(end):
-                continue
-            beyond = end + outwards * AT_THE_END * sizes[axis]
-            furthest = max((float((outwards * curve[:, axis]).max()) for curve in shape.curves), default=-math.inf)
-            short = (outwards * end - furthest) / sizes[axis]
-            if stable_at(beyond, along) or short < -CHORD or (shape.area is not None and short > CHORD):
-                raise NumericalError(
-                    f"{name}: the extent contradicts the poles at {('alpha', 'beta')[axis]}_hat = {end:.6g}"
-                )
+                right = all(stable_at(outwards * far * sizes[axis], thin=True) for far in FAR_OUT)
+            else:
+                beside = outwards * BESIDE_END * sizes[axis]
+                attained = bool((np.abs(drawn[:, axis] - end) <= AT_END * sizes[axis]).any())
+                right = attained or stable_at(end - beside, thin=goes_on)
+                right = right and not stable_at(end + beside, thin=False)
+            if not right:
+                parameter = ("alpha_hat", "beta_hat")[axis]
+                raise NumericalError(f"{name}: the extent contradicts the poles at {parameter} = {end:.6g}")
+
+
+def _stable_on_line(
+    shape: Shape,
+    pencil: AnyPencil,
+    inside: Verdicts,
+    proven: Verdicts,
+    axis: int,
+    outwards: int,
+    place: float,
+    thin: bool,
+) -> bool:
+    """Return whether a line of constant alpha_hat (axis 0) or beta_hat is stable anywhere, proven.
+
+    thin: also where |z_p| is least between the points that are looked at.
+    """
+
+    def on_line(along: FloatArray) -> tuple[FloatArray, FloatArray]:
+        points = np.full(along.shape, place), along
+        return points[axis], points[1 - axis]
+
+    along = _looked_at(shape, axis, place, outwards)
+    some = along[inside(*on_line(along))]
+    if any(proven(*on_line(each)).any() for each in some[:, np.newaxis]):
+        return True
+    if not thin:
+        return False
+    least = _least_along(lambda along: largest_modulus(pencil, *on_line(along)), along)
+    return bool(proven(*on_line(least)).any())
+
+
+def _looked_at(shape: Shape, axis: int, place: float, outwards: int) -> FloatArray:
+    """Return where a line of constant alpha_hat (axis 0) or beta_hat is looked at: near and far from all that is known.
+
+    That is zero, the finite ends of the other parameter, where the curves are furthest, and between their crossings.
+    """
+    bases = [np.array([0.0, *(each for each in shape.extent[1 - axis] if math.isfinite(each))])]
+    if shape.curves:
+        drawn = np.concatenate(shape.curves)
+        bases.append(drawn[[np.argmax(outwards * drawn[:, axis])], 1 - axis])
+        (crossed,) = _crossings(shape, np.array([place]), axis)
+        bases.append((crossed[1:] + crossed[:-1]) / 2)
+    away = np.ptp(shape.view[1 - axis]) * np.concatenate([-TOWARDS, [0.0], TOWARDS])
+    return np.asarray(np.add.outer(np.concatenate(bases), away).ravel(), float)
+
+
+def _least_along(modulus: Callable[[FloatArray], FloatArray], along: FloatArray) -> FloatArray:
+    """Return where |z_p| is least between samples of a line, next to the lowest of them: a strip may be that thin."""
+    samples = np.unique(along)
+    values = modulus(samples)
+    least = 1 + np.flatnonzero((values[1:-1] <= values[:-2]) & (values[1:-1] <= values[2:]))
+    lowest = least[np.argsort(values[least], kind="stable")[:LEAST]]
+    found, _ = zoom_on_minimum(
+        lambda points: modulus(points[..., 0].ravel()).reshape(points.shape[:-1]),
+        samples[lowest, np.newaxis],
+        np.maximum(samples[lowest] - samples[lowest - 1], samples[lowest + 1] - samples[lowest])[:, np.newaxis],
+        points=ZOOM_POINTS,
+        shrink=2 / (ZOOM_POINTS - 1),
+        rounds=ZOOMS,
+    )
+    return found[:, 0]
+
+
+# The area once more, by the lengths of lines, with nothing in it but verdicts:
+#
+#      |  .-|-.-|--|-.        the length is an analytic function of alpha_hat between two corners or turns of the
+#      | (  |  \|  |  )       curves, where it may begin like any root: tanh-sinh quadrature does not mind. If a corner
+#      |  '-|---|--|-'        is not where the curves have it, halving panels only makes up for it slowly
+#      +----corner-turn
 
 
 def _check_lines(name: str, shape: Shape, inside: Verdicts, proven: Verdicts) -> None:
-    """Raise NumericalError unless lines of constant alpha_hat are stable as far as the curves say, and add up.
-
-    If they do not, lines closer together towards the ends are asked: a spike there may have much of the area.
-    """
-    nodes, weights = leggauss(NODES)
-    for shares in (EVEN, GRADED):
-        panels = _panels(shape, shares)
-        middles, half = (panels[1:] + panels[:-1]) / 2, np.diff(panels) / 2
-        lines = (middles[:, np.newaxis] + half[:, np.newaxis] * nodes).ravel()
-        lengths = _checked_lengths(name, shape, lines, inside, proven)
-        if shape.area is None:
+    """Raise NumericalError unless lengths of lines add up to the area, and to what the curves enclose, within view."""
+    efforts = [*((inside, AT_ONCE, *effort) for effort in EFFORTS), (proven, 1, *PROVEN_EFFORT)]
+    for verdicts, at_once, rough, points in efforts:
+        area, between = _area_by_lines(shape, verdicts, at_once, rough, points)
+        size = area if shape.area is None else shape.area
+        if abs(area - size) <= AREA_ERROR * size and between <= CURVE_ERROR * size:
             return
-        terms = np.multiply.outer(half, weights).ravel() * lengths
-        if abs(terms.sum() - shape.area) <= AREA_ERROR * shape.area + terms.max(initial=0.0):
-            return
-    raise NumericalError(f"{name}: the area {shape.area:.6g} is about {terms.sum():.6g} by slices")
+    if between > CURVE_ERROR * size:
+        raise NumericalError(f"{name}: the curves contradict the poles, on {between / size:.1%} of the area")
+    raise NumericalError(f"{name}: the area {shape.area:.9g} is {area:.9g} by slices")
 
 
-def _panels(shape: Shape, shares: FloatArray) -> FloatArray:
-    """Return the ascending ends of panels of alpha_hat: by shares of each island of curves, one to each gap.
+def _area_by_lines(shape: Shape, verdicts: Verdicts, at_once: int, rough: float, points: int) -> tuple[float, float]:
+    """Return the area by the poles' verdicts, and how much of it is between the curves and the poles' own edges.
 
-    An island may be a hundred times smaller than the way to the next. Curves that overlap in alpha_hat are one island;
-    of a region that goes on all that is seen is one.
+    Panels are halved where half the nodes give another integral, by the share `rough` of the area. `points`: on a line;
+    at_once: of a bracket.
     """
-    curves = shape.curves if shape.area is not None else (np.array(shape.view).T,)
-    islands: list[list[float]] = []
-    for first, last in sorted((float(curve[:, 0].min()), float(curve[:, 0].max())) for curve in curves):
-        if islands and first <= islands[-1][1]:
-            islands[-1][1] = max(last, islands[-1][1])
-        else:
-            islands.append([first, last])
-    return np.unique([first + (last - first) * shares for first, last in islands])
+    panels = _panels(shape)
+    area = between = 0.0
+    for halving in range(HALVINGS + 1):
+        lines, weights = tanh_sinh(panels[:, :1], panels[:, 1:], PANEL_STEP)
+        lengths = _lengths(shape, lines.ravel(), verdicts, at_once, points)
+        by_poles, by_curves = (each.reshape(lines.shape) for each in lengths)
+        terms, off = weights * by_poles, (weights * np.abs(by_poles - by_curves)).sum(axis=1)
+        whole, from_half = terms.sum(axis=1), 2 * terms[:, ::2].sum(axis=1)
+        size = area + whole.sum() if shape.area is None else shape.area
+        halved = (np.abs(whole - from_half) > rough * size) & (halving < HALVINGS)
+        area, between = area + float(whole[~halved].sum()), between + float(off[~halved].sum())
+        if not halved.any():
+            break
+        low, high = panels[halved].T
+        panels = np.stack([low, (low + high) / 2, (low + high) / 2, high], axis=1).reshape(-1, 2)
+    return area, between
 
 
-def _checked_lengths(name: str, shape: Shape, lines: FloatArray, inside: Verdicts, proven: Verdicts) -> FloatArray:
-    """Return how much of each line of constant alpha_hat is stable; NumericalError unless the curves say the same.
-
-    Lines on which float64 contradicts the curves are decided in rationals.
-    """
-    crossings = _crossings(shape, lines)
-    lengths, by_curves = _lengths(shape, lines, crossings, inside)
-    allowed = CURVE_ERROR * float(by_curves.max(initial=0.0))
-    for line in np.flatnonzero(np.abs(by_curves - lengths) > allowed):
-        some = slice(line, line + 1)
-        lengths[some], by_curves[some] = _lengths(shape, lines[some], crossings[some], proven)
-    off = np.abs(by_curves - lengths)
-    if (off > allowed).sum() > TANGENT:
-        worst = int(np.argmax(off))
-        raise NumericalError(
-            f"{name}: the curves contradict the poles at alpha_hat = {lines[worst]:.6g}: "
-            f"length {by_curves[worst]:.6g}, not {lengths[worst]:.6g}"
-        )
-    return lengths
+def _panels(shape: Shape) -> FloatArray:
+    """Return the ends of panels of alpha_hat between the corners and turns of all curves; shape (panels, 2)."""
+    first, last = shape.view[0]
+    ends = [np.array([first, last])]
+    for curve in shape.curves:
+        size = np.ptp(curve, axis=0)
+        apart = np.append(True, (np.abs(np.diff(curve, axis=0)) > MERGED * size).any(axis=1))
+        points = curve[apart]
+        if (curve[0] == curve[-1]).all():
+            points = np.concatenate([points, points[1:2]])
+        chords = np.diff(points, axis=0)
+        before, after = chords[:-1], chords[1:]
+        angle = np.arctan2(*(chords / size).T[::-1])
+        turned = np.abs((np.diff(angle) + np.pi) % (2 * np.pi) - np.pi) > TURNED
+        turning = before[:, 0] * after[:, 0] <= 0
+        middle = points[1:-1]
+        with np.errstate(all="ignore"):  # the parabola through three points, as alpha_hat over beta_hat
+            slopes = before[:, 0] / before[:, 1], after[:, 0] / after[:, 1]
+            curvature = (slopes[1] - slopes[0]) / (before[:, 1] + after[:, 1])
+            slope = slopes[0] + curvature * before[:, 1]
+            summit = middle[:, 0] - slope**2 / (4 * curvature)
+        within = np.abs(summit - middle[:, 0]) <= np.maximum(*np.abs([before[:, 0], after[:, 0]]))
+        ends += [points[[0, -1], 0], middle[turned, 0], np.where(within, summit, middle[:, 0])[turning]]
+    places = np.unique(np.concatenate(ends))
+    places = places[(places >= first) & (places <= last)]
+    places = places[np.append(True, np.diff(places) > MERGED * (last - first))]
+    return np.stack([places[:-1], places[1:]], axis=1)
 
 
 def _lengths(
-    shape: Shape, lines: FloatArray, crossings: list[FloatArray], verdicts: Verdicts
+    shape: Shape, lines: FloatArray, verdicts: Verdicts, at_once: int, points: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Return how much of each line is stable within view by the poles, and by the curves' crossings.
+    """Return how much of each line of constant alpha_hat is stable within view: by the poles, and by the curves.
 
-    Verdicts are asked for all along, and between the crossings; where they turn is found by bisection. A region that
-    goes on may be stable where a line begins to be looked at.
+    Verdicts are asked for at so many points of the line, and between crossings of the curves; where they turn is found
+    by bisection. A region that goes on may be stable where a line begins to be looked at.
     """
+    crossings = _crossings(shape, lines)
     low, high = shape.view[1]
-    margin = (high - low) / ON_A_LINE
-    grid = np.linspace(low - margin, high + margin, ON_A_LINE)
+    margin = (high - low) / points
+    grid = np.linspace(low - margin, high + margin, points)
     samples = [_with_middles(grid, places) for places in crossings]
     which = np.repeat(np.arange(len(lines)), [len(each) for each in samples])
-    beta_hat = np.concatenate([*samples, np.zeros(0)])
+    beta_hat = np.concatenate(samples)
     stable = verdicts(lines[which], beta_hat)
     turn = np.flatnonzero((np.diff(which) == 0) & (stable[1:] != stable[:-1]))
     entering = stable[turn + 1]
@@ -238,10 +355,11 @@ def _lengths(
         line = np.broadcast_to(lines[which[turn]], place.shape)
         return np.asarray(verdicts(line, place) == entering)
 
-    place = bisected(arrived, beta_hat[turn], beta_hat[turn + 1], at_once=AT_ONCE)[1]
+    place = bisected(arrived, beta_hat[turn], beta_hat[turn + 1], CROSSING_HALVINGS, at_once)[1]
     by_poles, by_curves = np.zeros(len(lines)), np.zeros(len(lines))
+    starts = np.searchsorted(which, np.arange(len(lines)))
     for line, crossed in enumerate(crossings):
-        begins = bool(stable[which == line][0])
+        begins = bool(stable[starts[line]])
         below = (crossed < grid[0]).sum() % 2 == 1
         by_poles[line] = _inside(place[which[turn] == line], begins, grid)
         by_curves[line] = _inside(crossed, begins if shape.area is None else below, grid)

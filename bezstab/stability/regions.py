@@ -68,10 +68,10 @@ def region(method: Method, level: float = 1.0) -> Region:
 
     Where it grows without limit as the level goes to one, next to one they are good to about 1e-15 / (1 - level).
     Dimensionless; from the boundary locus of paper Eq. 17, or from the exact strips of the plane of a method that has
-    no mu, held against poles along lines (region_checks). InputError for another level; NumericalError if they
-    disagree, or its edges leave a gap, on a finer sampling of the locus as well: not found is an edge on which several
-    roots have |z| = level, or one so short, where the level is hardly above the least |z_p|, that it lies between two
-    samples.
+    no mu, held against the poles beside its edges and along lines (region_checks). InputError for another level;
+    NumericalError if they disagree, or its edges leave a gap, on a finer sampling of the locus as well: not found is an
+    edge on which several roots have |z| = level, or one so short, where the level is hardly above the least |z_p|, that
+    it lies between two samples.
     """
     if not 0 < level <= 1:
         raise InputError(f"level {level:g}: expected above 0 and at most 1, the stability boundary")

@@ -70,14 +70,15 @@ WITHOUT_ROWS = {"explore", "schema"}
 """Commands that open a window, or print a schema."""
 
 
-def each_example() -> list[Any]:
-    """Return every example as a parameter of a test, long ones marked as slow."""
+def each_example(long: bool = True) -> list[Any]:
+    """Return every example as a parameter of a test, those that take long marked as slow; or none of LONG."""
     quick = [
         pytest.param(text, marks=[pytest.mark.slow] if name in SLOW_COMMANDS else [], id=text)
         for name, texts in EXAMPLES.items()
         for text in texts
     ]
-    return quick + [pytest.param(text, marks=pytest.mark.slow, id=text) for texts in LONG.values() for text in texts]
+    of_long = [text for texts in LONG.values() for text in texts] if long else []
+    return quick + [pytest.param(text, marks=pytest.mark.slow, id=text) for text in of_long]
 
 
 def printed_rows(text: str) -> list[dict[str, Any]]:

@@ -199,15 +199,15 @@ def test_what_is_given_in_one_over_seconds_is_taken_without_a_word() -> None:
     assert run(*typed.split()).stderr == ""
 
 
-@pytest.mark.parametrize("name", main.list_commands(CONTEXT))
-def test_the_help_of_a_point_begins_with_what_it_is(name: str) -> None:
-    command = main.get_command(CONTEXT, name)
-    assert command
-    for option in command.params:
-        if isinstance(option, click.Option) and set(option.opts) & set(WITH_POINT):
-            assert re.match("α̂|β̂|α in 1/s|β in 1/s", option.help or ""), f"{name} {option.opts}"
-            physical = any("--physical" in other.opts for other in command.params)
-            assert ("in 1/s with --physical" in (option.help or "")) == physical
+def test_the_help_of_a_point_begins_with_what_it_is() -> None:
+    for name in main.list_commands(CONTEXT):
+        command = main.get_command(CONTEXT, name)
+        assert command
+        for option in command.params:
+            if isinstance(option, click.Option) and set(option.opts) & set(WITH_POINT):
+                assert re.match("α̂|β̂|α in 1/s|β in 1/s", option.help or ""), (name, option.opts)
+                physical = any("--physical" in other.opts for other in command.params)
+                assert ("in 1/s with --physical" in (option.help or "")) == physical, (name, option.opts)
 
 
 @pytest.mark.parametrize("name", ["B4", "SYM", "verlet", "mujoco", "choose", "robust"])

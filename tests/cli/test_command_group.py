@@ -1,6 +1,5 @@
 import csv
 import io
-import json
 import os
 import re
 import shlex
@@ -8,7 +7,6 @@ import signal
 import subprocess
 import time
 from pathlib import Path
-from typing import Any
 
 import click
 import pytest
@@ -17,6 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bezstab.cli import main
+from tests.cli.examples import each_example
 from tests.cli.running import interruptible, run
 
 CONTEXT = click.Context(main)
@@ -225,51 +224,13 @@ def test_numerical_trouble_is_status_three(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
-ANY_FORM = ("text", "json", "csv", "markdown")
-LONG_ANSWERS = ("verify", "tradeoff")
-"""Commands whose answers take long: as CSV they are made each time, in the other formats by `make test-slow`."""
-
-
-def in_every_format(commands: list[str]) -> list[Any]:
-    """Return each command with each format as parameters, those that take long marked as slow."""
-    return [
-        pytest.param(
-            command, form, marks=[pytest.mark.slow] if command.startswith(LONG_ANSWERS) and form != "csv" else []
-        )
-        for command in commands
-        for form in ANY_FORM
-    ]
-
-
-@pytest.mark.parametrize(
-    ("command", "form"),
-    in_every_format(
-        [
-            "poles --alpha 1 --beta 1",
-            "methods",
-            "methods B3 SYM",
-            "region --method B3 --figure none --table none",
-            "simulate --time 0.01 --figure none --table none",
-            "verify --points 2",
-            "paper --only fig7 --figure none",
-            "choose --method SYM --h 0.01",
-            "engines --alpha 0.5 --beta 0.25",
-            "family bezier --from 3 --to 4 --figure none",
-            "check --method RK1 --alpha 1 --beta 0.25",
-            "verify --map 3 --workers 1 --figure none --table none",
-            "tradeoff --method SYM --h 0.01 --h 0.02 --time 0.1 --figure none --table none",
-        ]
-    ),
-)
-@pytest.mark.slow_except("poles", "methods B3", "choose", "engines", "check")
-def test_every_command_prints_in_every_format(command: str, form: str) -> None:
-    result = run(*command.split(), "--format", form)
-    assert result.exit_code == 0
-    assert result.stderr == ""
-    if form == "csv":
-        assert len(list(csv.DictReader(io.StringIO(result.stdout)))) >= 1
-    if form == "json":
-        assert isinstance(json.loads(result.stdout), list)
+@pytest.mark.usefixtures("_few_extremes")
+@pytest.mark.parametrize("example", each_example(long=False))
+def test_every_command_prints_a_table_for_programs_and_one_for_people(example: str) -> None:
+    table, page = (run(*shlex.split(example), "--format", form) for form in ("csv", "markdown"))
+    assert table.exit_code == page.exit_code
+    assert len(list(csv.DictReader(io.StringIO(table.stdout)))) >= 1
+    assert re.search(r"^\|[-| ]+\|$", page.stdout, re.MULTILINE)
 
 
 LONG_EXAMPLES = {"tradeoff", "family", "choose", "verify", "region"}
@@ -294,11 +255,12 @@ def test_the_example_in_the_help_runs(name: str) -> None:
     assert run(*shlex.split(example[1])).exit_code == (2 if needs_more else 0)
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_every_option_explains_itself(name: str) -> None:
-    command = main.get_command(CONTEXT, name)
-    assert command
-    assert all(option.help for option in command.params if isinstance(option, click.Option))
+def test_every_option_explains_itself() -> None:
+    for name in NAMES:
+        command = main.get_command(CONTEXT, name)
+        assert command
+        for option in command.params:
+            assert not isinstance(option, click.Option) or option.help, (name, option.opts)
 
 
 @pytest.mark.parametrize("command", ["engines", "check --method SYM --alpha 3 --beta 3"])

@@ -1,11 +1,13 @@
 """What is typed becomes what is meant, or one line that names the option."""
 
+from dataclasses import dataclass
 from fractions import Fraction
 
 import click
 import pytest
+from click.testing import CliRunner
 
-from bezstab.cli.options import ENGINE_VALUES, METHOD, NUMBER, POSITIVE, SECONDS, ParsedType, both_or_none
+from bezstab.cli.options import NUMBER, POSITIVE, SECONDS, ParsedType, gathered
 
 
 @pytest.mark.parametrize(
@@ -21,32 +23,21 @@ def test_numbers_are_read_exactly(kind: ParsedType, text: str, meant: Fraction) 
     assert kind.convert(text, None, None) == meant
 
 
-@pytest.mark.parametrize(
-    ("kind", "text"),
-    [(NUMBER, "pi"), (NUMBER, "nan"), (POSITIVE, "0"), (POSITIVE, "-1"), (SECONDS, "1e-200"), (SECONDS, "1e200")],
-)
-def test_what_is_no_such_number_is_refused(kind: ParsedType, text: str) -> None:
-    with pytest.raises(click.BadParameter):
-        kind.convert(text, None, None)
+@dataclass(frozen=True)
+class Place:
+    """Two options that belong together."""
+
+    across: Fraction
+    up: Fraction
 
 
-def test_a_method_is_found_by_its_name() -> None:
-    assert METHOD.convert("RK4@5", None, None).step_multiple == 5
-    with pytest.raises(click.BadParameter, match="unknown method"):
-        METHOD.convert("RK44", None, None)
+def test_options_that_belong_together_arrive_as_one_value() -> None:
+    options = [click.option(name, type=NUMBER, default="1") for name in ("--across", "--up")]
 
+    @click.command()
+    @gathered(Place, "place", *options)
+    @click.option("--other", default="no")
+    def move(place: Place, other: str) -> None:
+        click.echo(f"{place.across} {place.up} {other}")
 
-def test_an_engine_comes_with_values_of_its_parameters() -> None:
-    engine, values = ENGINE_VALUES.convert("mujoco=0.02,1", None, None)
-    assert (engine.name, values) == ("mujoco", (Fraction(1, 50), Fraction(1)))
-    for text in ("mujoco", "mujoco=a,b", "unity=1"):
-        with pytest.raises(click.BadParameter):
-            ENGINE_VALUES.convert(text, None, None)
-
-
-def test_a_point_is_two_numbers_or_none() -> None:
-    assert both_or_none(None, None) is None
-    assert both_or_none(Fraction(1), Fraction(2)) == (Fraction(1), Fraction(2))
-    for alpha, beta in ((Fraction(1), None), (None, Fraction(1))):
-        with pytest.raises(click.UsageError, match="go together"):
-            both_or_none(alpha, beta)
+    assert CliRunner().invoke(move, ["--up", "1/2", "--other", "yes"]).stdout == "1 1/2 yes\n"

@@ -4,12 +4,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
-from itertools import islice
+from itertools import chain
 from typing import Any
 
 import numpy as np
 
-from bezstab.evidence import kicked_constraint_errors
+from bezstab.evidence import kicked_motions
 from bezstab.evidence.measured_poles import SURROUNDINGS
 from bezstab.mechanism import Mechanism, compiled_mechanism, load_scene, shipped_scenes, turning_normals
 from bezstab.mechanism.motions import motion
@@ -68,10 +68,10 @@ def _written(method: Method, scene: str, alpha_hat: float, beta_hat: float, rows
     kicks = (KICK if stable else SMALL_KICK, 0.0)
     written: list[list[float]] = []
     with np.errstate(all="ignore"):
-        errors = kicked_constraint_errors(
-            _mechanism(scene), method, H, np.array([alpha_hat]), np.array([beta_hat]), kicks
+        ((_, blocks),) = kicked_motions(
+            _mechanism(scene), method, H, np.array([alpha_hat]), np.array([beta_hat]), kicks, rows - 1
         )
-        for c in islice(errors, rows):
+        for c in chain.from_iterable(c for c, _ in blocks):
             row = [float(c[0, 0, 0, 0]), float(c[0, 1, 0, 0]), float(c[0, 0, 1, 0])]
             if not np.abs(row).max() < LARGEST:
                 break

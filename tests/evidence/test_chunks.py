@@ -39,7 +39,7 @@ def squares(found: dict[int, Arrays]) -> list[int]:
 def test_every_chunk_is_done_once_and_stored(tmp_path: Path) -> None:
     with worker_pool(2) as workers, chunk_store(tmp_path / "job", "squares", resume=False) as store:
         arrived = list(completed_chunks(square, [Job(number) for number in range(7)], workers, store))
-        assert list(store.finished()) == list(range(7))
+        assert all(store.has(number) for number in range(7))
         store.discard()
         assert not store.path.exists()
     assert sorted(number for number, _ in arrived) == list(range(7))
@@ -61,7 +61,7 @@ def test_a_resumed_job_does_only_what_is_missing(tmp_path: Path) -> None:
     ):
         pass
     with chunk_store(tmp_path / "job", "cubes", resume=False) as store:
-        assert not store.finished()
+        assert not store.has(1)
 
 
 def test_a_lost_worker_costs_its_chunk_alone(tmp_path: Path) -> None:
@@ -77,7 +77,18 @@ def test_a_chunk_that_kills_every_worker_is_reported(tmp_path: Path) -> None:
     with worker_pool(1) as workers, chunk_store(tmp_path / "job", "squares", resume=False) as store:
         with pytest.raises(NumericalError, match="chunk 1 lost its worker 3 times"):
             list(completed_chunks(square, [Job(0), Job(1, deaths)], workers, store))
-        assert 0 in store.finished()
+        assert store.has(0)
+
+
+def refuse(job: Job) -> Arrays:
+    raise InputError(f"at {job.number}")
+
+
+def test_what_a_worker_raises_is_raised_here(tmp_path: Path) -> None:
+    with worker_pool(1) as workers, chunk_store(tmp_path / "job", "refused", resume=False) as store:
+        arriving = completed_chunks(refuse, [Job(0)], workers, store)
+        with pytest.raises(InputError, match="at 0"):
+            list(arriving)
 
 
 @pytest.fixture
@@ -123,11 +134,6 @@ def test_a_cluster_does_the_same_work(cluster: str, tmp_path: Path) -> None:
     assert squares(arrived) == [number**2 for number in range(6)]
     assert (tmp_path / "died").exists()  # one worker was lost, and replaced, on the way
     assert os.getpid() not in {int(arrays["by"]) for arrays in arrived.values()}
-
-
-def test_a_scheduler_that_does_not_answer_is_one_line() -> None:
-    with pytest.raises(InputError, match="--scheduler nonsense"), worker_pool(scheduler="nonsense://x"):
-        pass
 
 
 @pytest.mark.slow

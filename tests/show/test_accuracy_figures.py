@@ -14,7 +14,6 @@ from matplotlib.text import Text
 
 from bezstab.methods import lookup
 from bezstab.show.accuracy_figures import accuracy_map_figure, decay_scale, error_front_figure, from_decay_scale
-from bezstab.show.style import save
 from bezstab.stability import (
     FloatArray,
     best_point,
@@ -162,15 +161,3 @@ def test_the_marks_below_the_front_are_apart() -> None:
     boxes = [Text.get_window_extent(label) for label in axes.get_xticklabels()]
     assert len(boxes) >= 5
     assert all(left.x1 < right.x0 for left, right in pairwise(boxes))
-
-
-@pytest.mark.parametrize("form", ["png", *(pytest.param(form, marks=pytest.mark.slow) for form in ("svg", "pdf"))])
-def test_the_same_figure_is_the_same_bytes(form: str) -> None:
-    def saved(figure: Figure) -> bytes:
-        file = io.BytesIO()
-        save(figure, form, file)
-        return file.getvalue()
-
-    assert saved(drawn_map()[0]) == saved(drawn_map()[0])
-    front = [error_front(lookup("SYM"), [0.9, 0.5])]
-    assert saved(error_front_figure(front)) == saved(error_front_figure(front))

@@ -7,7 +7,7 @@ from bezstab.evidence import map_rows, simulated_verdicts, verdict_map
 from bezstab.mechanism import compiled_mechanism, initial_state, load_scene, simulated
 from bezstab.methods import lookup
 from bezstab.show import plot
-from bezstab.stability import best_point, family_members, region, spectral_radius, window
+from bezstab.stability import best_point, family_members, region, window
 
 B4 = lookup("B4")
 
@@ -29,20 +29,6 @@ def test_two_regions_share_given_axes_and_take_the_callers_style() -> None:
     assert (first.get_color(), first.get_linewidth()) == ("red", 3)
 
 
-def test_with_a_step_the_plane_is_two_alpha_and_beta_squared() -> None:
-    curve = np.array(plot.region(region(B4), h=0.001).get_xydata())[:-1]
-    assert curve == pytest.approx(region(B4).boundary[0] * [1e3, 1e6])
-
-
-def test_the_map_is_blank_where_the_method_is_unstable() -> None:
-    image = plot.spectral_radius(B4, (0, 2), (0, 1), points=20)
-    shown = image.get_array()
-    assert shown is not None
-    z_abs = spectral_radius(B4, np.linspace(0, 2, 20), np.linspace(0, 1, 20)[:, np.newaxis])
-    assert (np.ma.getmaskarray(shown) == (z_abs >= 1)).all()
-    assert np.asarray(shown)[z_abs < 1].tolist() == z_abs[z_abs < 1].tolist()
-
-
 def test_the_best_point_and_marks_lie_where_they_are() -> None:
     best = best_point(B4)
     assert best
@@ -51,11 +37,6 @@ def test_the_best_point_and_marks_lie_where_they_are() -> None:
     assert [np.array(line.get_xydata()).tolist() for line in lines] == [[[1.0, 0.25]], [[0.5, 0.1]]]
     assert [line.get_label() for line in lines] == ["one", "two"]
     assert lines[0].axes is lines[1].axes
-
-
-def test_critical_damping_is_the_parabola() -> None:
-    alpha_hat, beta_hat = np.array(plot.critical_damping((0, 2)).get_xydata()).T
-    assert beta_hat == pytest.approx(alpha_hat**2 / 4)
 
 
 def test_a_history_shows_one_constraint_or_its_derivative() -> None:
@@ -129,13 +110,6 @@ def test_a_body_on_a_pivot_is_drawn_from_it_and_only_what_slides_is_a_square(
     lengths_in_files = {"crank": {"slider_crank": 0.2, "four_bar": 0.1}.get(scene_name), "rocker": 0.25}
     lengths_in_files |= {"K1": 0.007, "K3": 0.035, "K5": 0.04, "K7": 0.04}
     assert lengths == pytest.approx({name: lengths_in_files[name] for name in pivots})
-
-
-@pytest.mark.slow
-def test_a_mechanism_of_many_bodies_can_be_drawn() -> None:
-    scene = load_scene("n_four_bar")
-    lines = plot.mechanism(scene, initial_state(compiled_mechanism(scene))[0])
-    assert len(lines) >= len(scene.bodies)
 
 
 def test_an_unbounded_region_makes_room_for_its_window_and_points_to_where_it_goes_on() -> None:
