@@ -226,7 +226,7 @@ def test_engines_say_what_rests_on_a_run() -> None:
     listed = {str(row["engine"]): row for row in rows("engines")}
     assert {name for name, row in listed.items() if row["witness"]} == {"mujoco", "bullet", "chipmunk", "box2d-v2"}
     table = run("engines").stdout
-    assert len(re.findall(r" a run ", table)) == 3
+    assert len(re.findall(r" a run ", table)) == 4
     assert len(re.findall(r" its source ", table)) == len(ENGINES) - 3
 
 
