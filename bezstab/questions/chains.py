@@ -72,7 +72,7 @@ def typed_chain(bodies: int | None, mass_ratio: Fraction | None) -> Chain | None
     if bodies is not None:
         return Chain(bodies, Fraction(1) if mass_ratio is None else mass_ratio)
     if mass_ratio is not None:
-        raise InputError("--mass-ratio goes with --chain: it is the last body of a chain")
+        raise InputError("--mass-ratio needs --chain: it says how heavy the last body of the chain is")
     return None
 
 
@@ -125,15 +125,15 @@ def check_sweeps(
     if question_chain and scene:
         raise InputError("--chain and --scene are two mechanisms: give one")
     if iterations is not None and not (question_chain or scene):
-        raise InputError("--iterations goes with --chain or --scene: it is many constraints that take many sweeps")
+        raise InputError("--iterations needs --chain or --scene: one constraint alone needs one sweep only")
     if question_chain is None and iterations is None:
         return
     option = "--chain" if question_chain else "--iterations"
     if engine is None:
-        raise InputError(f"{option} goes with --engine: it is the engine's sweeps that it asks about")
+        raise InputError(f"{option} needs --engine: it asks how that engine sweeps over its constraints")
     if not engine.sweeps:
         raise InputError(
-            f"{option}: {engine.name} solves all constraints together, so that one constraint tells about all"
+            f"{option}: {engine.name} solves all constraints together: many are as stable as one, so ask without it"
         )
     if engine.sweeping is None:
         raise InputError(f"{option}: how {engine.name} sweeps over its constraints is not known here")

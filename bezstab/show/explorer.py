@@ -153,7 +153,7 @@ def open_explorer(methods: Sequence[Method], h: float, print_line: Callable[[str
         try:
             figure = pyplot.figure("bezstab explore", figsize=(9, 5))
         except ImportError as error:
-            raise InputError(f"explore: no window: {error}") from None
+            raise InputError(f"explore cannot open a window: {error}") from None
         if figure.canvas.required_interactive_framework is None:
             pyplot.close(figure)
             raise InputError("explore: matplotlib found no window system here (try another MPLBACKEND, or a screen)")
