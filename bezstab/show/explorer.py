@@ -11,7 +11,6 @@ from bezstab.errors import InputError
 from bezstab.methods import Method
 from bezstab.rationals import exact
 from bezstab.show import plot
-from bezstab.show.rows import alpha_and_beta
 from bezstab.show.style import styled
 from bezstab.stability import (
     FloatArray,
@@ -23,6 +22,7 @@ from bezstab.stability import (
     useful_window,
     verdict,
 )
+from bezstab.units import alpha_and_beta
 
 POINTS = 150  # per axis of the map: it appears at once
 STEPS = 100  # of the decay
