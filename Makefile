@@ -57,7 +57,7 @@ test-oldest:  ## the same tests with the oldest versions that pyproject.toml all
 	.venv-oldest/bin/pip install --quiet --editable '.[test]' --constraint .venv-oldest/oldest.txt
 	.venv-oldest/bin/python -m pytest -m "not slow" -n 2 --dist loadfile
 
-witnesses: .venv/tested  ## engines that are not ours, run: PyBullet, pymunk, Exudyn, MuJoCo
+witnesses: .venv/tested  ## engines that are not ours, run: PyBullet, pymunk, Box2D, Exudyn, MuJoCo
 	$(BIN)/pip install --quiet --editable '.[witnesses]'
 	$(BIN)/python -m pytest tests/witnesses tests/evidence/test_mujoco_witness.py
 
