@@ -35,7 +35,7 @@ figures: .venv/installed  ## draw what the README shows, into figures/
 	$(BIN)/bezstab $(HELD) $(OF_MILLISECONDS) -o figures
 	$(BIN)/bezstab $(HELD) --scene driven_four_bar $(OF_MILLISECONDS) -o figures
 	$(BIN)/bezstab $(HELD) --scene andrews --time 0.01 --h 8e-6 --h 16e-6 --h 32e-6 --h 64e-6 --h 128e-6 -o figures
-	$(BIN)/bezstab tradeoff $(ANDREWS) --repeats 1 --against time --recorded figures/andrews_times.json -o figures
+	$(BIN)/python -m tests.show.draw_andrews figures
 
 pages: .venv/installed  ## write anew what pages say that the code says already: tables of files, numbers, promises
 	$(BIN)/python -m tests.pages
@@ -64,7 +64,7 @@ test-oldest:  ## the same tests with the oldest versions that pyproject.toml all
 	.venv-oldest/bin/pip install --quiet --editable '.[test]' --constraint .venv-oldest/oldest.txt
 	.venv-oldest/bin/python -m pytest -m "not slow" -n 2 --dist loadfile
 
-witnesses: .venv/tested  ## engines that are not ours, run: PyBullet, pymunk, Exudyn, MuJoCo
+witnesses: .venv/tested  ## engines that are not ours, run: PyBullet, pymunk, Box2D, Exudyn, MuJoCo
 	$(BIN)/pip install --quiet --editable '.[witnesses]'
 	$(BIN)/python -m pytest tests/witnesses tests/evidence/test_mujoco_witness.py
 

@@ -61,7 +61,6 @@ from bezstab.evidence.probed_poles import (
     steps_between_rows,
 )
 from bezstab.evidence.projection_costs import projection_sentences
-from bezstab.evidence.recorded_times import read_times, with_recorded_times
 from bezstab.evidence.reference_motions import ReferenceMotion, reference_motion
 from bezstab.evidence.sweep_summaries import Held, summary, sweep_sentences
 from bezstab.evidence.verdict_maps import MapRows, VerdictMap, map_rows, simulated_verdicts, verdict_map

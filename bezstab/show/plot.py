@@ -546,11 +546,10 @@ def error_label(constraint: bool) -> str:
     return "largest $|c|$ (SI)" if constraint else "trajectory error (m, rad)"
 
 
-def cost_label(against: Cost, recorded: bool = False) -> str:
-    """Return what the cost of a run is, for an axis; recorded: in an earlier sweep."""
-    if against != "time":
-        return "evaluations of f" if against == "evaluations" else r"factorizations of $C_q M^{-1} C_q^T$"
-    return "processor time of a recorded run (s)" if recorded else "processor time (s)"
+def cost_label(against: Cost) -> str:
+    """Return what the cost of a run is, for an axis."""
+    labels = {"evaluations": "evaluations of f", "time": "processor time (s)"}
+    return labels.get(against, r"factorizations of $C_q M^{-1} C_q^T$")
 
 
 def _work_and_error(
