@@ -5,8 +5,8 @@ from typing import Literal
 Goal = Literal["accurate", "robust", "fastest", "critical", "gentle"]
 
 GOALS: dict[Goal, str] = {
-    "accurate": "the least error forced on the motion, among what settles in time",
-    "robust": "the fastest at worst over smaller steps and the spread",
+    "accurate": "the least error that the feedback makes on the motion, among points that settle in time",
+    "robust": "the fastest decay in the worst case, with smaller steps and within the spread",
     "fastest": "the least |z_p|",
     "critical": "the fastest without oscillation",
     "gentle": "the mildest α = β that settles in time",

@@ -8,6 +8,7 @@ This is the only place where the two meet. What is exact on the way in stays exa
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, TypeVar, overload
 
@@ -102,6 +103,28 @@ def feedback_gains(alpha_hat: Any, beta_hat: Any, h: Any) -> tuple[Any, Any]:
     Floats or arrays as given, or exact numbers if all three are; beta^2 is negative where beta_hat is.
     """
     return alpha_hat / h, beta_hat / h**2
+
+
+def alpha_and_beta(
+    alpha_hat: Fraction | float, beta_hat: Fraction | float, h: Fraction | float
+) -> tuple[float, float | None]:
+    """Return (alpha, beta) in 1/s of one point for a step of h seconds, rounded once, to be shown.
+
+    beta is None where beta_hat is negative; what is beyond float64 is infinite.
+    """
+    two_alpha, beta_squared = feedback_gains(Fraction(alpha_hat), Fraction(beta_hat), Fraction(h))
+    if beta_squared < 0:
+        return _as_float(two_alpha / 2), None
+    root = Fraction(math.isqrt(beta_squared.numerator), math.isqrt(beta_squared.denominator))
+    return _as_float(two_alpha / 2), _as_float(root) if root**2 == beta_squared else math.sqrt(_as_float(beta_squared))
+
+
+def _as_float(number: Fraction) -> float:
+    """Return the nearest float64, infinity where it is too large."""
+    try:
+        return float(number)
+    except OverflowError:
+        return math.inf if number > 0 else -math.inf
 
 
 def from_feedback_gains(two_alpha: Fraction, beta_squared: Fraction, h: Fraction) -> tuple[Fraction, Fraction]:

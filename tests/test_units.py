@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bezstab.errors import InputError
-from bezstab.units import feedback_gains, from_dimensionless, from_feedback_gains, to_dimensionless
+from bezstab.units import alpha_and_beta, feedback_gains, from_dimensionless, from_feedback_gains, to_dimensionless
 
 positive = st.builds(Fraction, st.integers(1, 10**6), st.integers(1, 10**6))
 anything = st.builds(Fraction, st.integers(-(10**6), 10**6), st.integers(1, 10**6))
@@ -94,3 +94,11 @@ def test_no_result_is_infinite_or_not_a_number(point: tuple[float, float]) -> No
         from_dimensionless(*point, 1e-100)
     with pytest.raises(InputError, match="outside the range of float64"):
         from_dimensionless(np.array([point[0]]), np.array([point[1]]), 1e-100)
+
+
+def test_alpha_and_beta_of_one_point_are_what_was_typed() -> None:
+    exactly = to_dimensionless(Fraction(60), Fraction(30), Fraction(1, 240))
+    assert alpha_and_beta(*exactly, Fraction(1, 240)) == (60, 30)
+    assert alpha_and_beta(float(exactly[0]), float(exactly[1]), 1 / 240) == pytest.approx((60, 30), rel=1e-15)
+    assert alpha_and_beta(0.1, -0.1, 0.002)[1] is None
+    assert alpha_and_beta(1.0, 1.0, 1e-310)[1] == math.inf

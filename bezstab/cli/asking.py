@@ -54,46 +54,58 @@ given_point_options = together(
     click.option("--h", type=SECONDS, help="Step size in s, for --physical, --engine, --pd, --scene and --omega."),
     physical_option,
     click.option(
-        "--engine", type=ENGINE_VALUES, help="An engine's own values, such as mujoco=0.02,1, instead; needs --h."
+        "--engine",
+        type=ENGINE_VALUES,
+        help="An engine's own values, such as mujoco=0.02,1, in place of --alpha and --beta; needs --h.",
     ),
     click.option(
-        "--as-typed", is_flag=True, help="With --engine: take the values as they are, without the engine's clamps."
+        "--as-typed",
+        is_flag=True,
+        help="With --engine: leave out what the engine does to its values first, such as clamps.",
     ),
     click.option(
-        "--pd", "drive", type=DRIVE, help="A joint drive's gains and its inertia (SI units), instead; needs --h."
+        "--pd",
+        "drive",
+        type=DRIVE,
+        help="A joint drive's gains and inertia (SI units), in place of --alpha and --beta; needs --h.",
     ),
 )
 """How a point is given: in the plane, by an engine's own values, or by a drive's gains."""
 
 chain_options = together(
+    click.option("--chain", type=int, help="With --engine: is it safe for so many bodies in a straight chain?"),
     click.option(
-        "--chain", type=int, help="With --engine: safe for so many bodies in a straight chain, as the engine sweeps?"
+        "--mass-ratio", type=NUMBER, help="With --chain: the last body is so many times as heavy as each other one [1]."
     ),
     click.option(
-        "--mass-ratio", type=NUMBER, help="With --chain: how many times as heavy as the others the last body is [1]."
-    ),
-    click.option(
-        "--iterations", type=int, help="With --chain: sweeps over all constraints in a step [the engine's own]."
+        "--iterations",
+        type=int,
+        help="With --chain: how often a step goes through all constraints [the engine's own number].",
     ),
 )
 omega_option = click.option(
     "--omega",
     type=POSITIVE,
-    help="How fast the motion is, in 1/s, for the errors that the feedback forces on it; needs --h [the scene's, else "
-    "ωh = 0.01].",
+    help="How fast the mechanism moves, in 1/s: the errors that the feedback makes depend on it. Needs --h [that of "
+    "--scene, else ωh = 0.01].",
 )
 h_min_option = click.option(
-    "--h-min", type=SECONDS, help="The shortest step in s of a range: is every sequence of steps up to --h-max safe?"
+    "--h-min", type=SECONDS, help="Steps vary from this one (s) up to --h-max: is every sequence of them safe?"
 )
 hold_option = click.option(
-    "--hold", is_flag=True, help="With --h-min: α̂ and β̂ stay as steps vary, as in engines with ERP; not α and β."
+    "--hold",
+    is_flag=True,
+    help="With --h-min: α̂ and β̂ stay the same as steps vary, as in engines with an ERP; else α and β do.",
 )
 
 
 def moving_scene_options(help_text: str) -> Decorator:
     """Return the options --scene and --speed of a command that also works without a scene."""
     speed = click.option(
-        "--speed", type=SPEED, default="1", help="With --scene: times the scene's own, its drivers' and its start's."
+        "--speed",
+        type=SPEED,
+        default="1",
+        help="With --scene: its drivers and initial velocities are so many times as fast.",
     )
     return together(scene_option(None, help_text), speed)
 
@@ -105,9 +117,9 @@ def typed_chain(bodies: int | None, mass_ratio: Fraction | None, iterations: int
     if bodies is not None:
         return Chain(bodies, Fraction(1) if mass_ratio is None else mass_ratio, iterations)
     if mass_ratio is not None:
-        raise InputError("--mass-ratio goes with --chain: it is the last body of a chain")
+        raise InputError("--mass-ratio needs --chain: it says how heavy the last body of the chain is")
     if iterations is not None:
-        raise InputError("--iterations goes with --chain: one constraint alone needs one sweep")
+        raise InputError("--iterations needs --chain: one constraint alone needs one sweep only")
     return None
 
 

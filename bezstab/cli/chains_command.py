@@ -32,9 +32,9 @@ SWEEPS_DRAWN = 50
     type=NUMBER,
     multiple=True,
     default=("1", "10"),
-    help="How many times as heavy as the others the last body is. Repeatable.",
+    help="The last body is so many times as heavy as each other one. Repeatable.",
 )
-@click.option("--to", "bodies", type=int, default=20, help="The longest chain, in bodies.")
+@click.option("--to", "bodies", type=int, default=20, help="Bodies in the longest chain.")
 @picture_options
 @format_option
 def chains(
@@ -47,9 +47,10 @@ def chains(
 ) -> None:
     """Show how many sweeps an engine's chains need.
 
-    Game engines solve one constraint after another, in sweeps, and start from the last step's impulses. With few sweeps
-    a chain of bodies may diverge though each constraint alone is stable. For each chain the fewest stable sweeps are
-    printed, and what a step makes of the error with the engine's own number of them; the figure has all between.
+    Game engines solve one constraint after another. Each pass over all of them is a sweep. Many engines begin a step
+    with the impulses of the last one. With few sweeps a chain of bodies may diverge although each constraint alone is
+    stable. Printed are, for each chain, the fewest sweeps that are stable, and the factor by which a step multiplies
+    the error with the engine's own number of sweeps. The figure shows all numbers of sweeps.
 
     Example: bezstab chains --engine bullet=0.2 --h 1/60 --to 5 --figure none
     """

@@ -72,20 +72,29 @@ WITHOUT_ACCURACY = ("total_error", "order_left", "times_least_velocity")
     "--goal",
     type=click.Choice(list(GOALS)),
     help="; ".join(f"{goal}: {meaning}" for goal, meaning in GOALS.items())
-    + " [accurate; robust with --pd and for an --engine that can express a curve alone].",
+    + " [accurate; robust with --pd, and with an --engine whose α and β depend on each other].",
 )
 @omega_option
 @click.option(
-    "--h-max", type=SECONDS, help="accurate, robust, or with --h-min: the largest step in s that may occur [--h]."
+    "--h-max",
+    type=SECONDS,
+    help="The largest step in s that may occur: for the goals accurate and robust, and with --h-min [--h].",
 )
 @h_min_option
 @hold_option
-@click.option("--spread", type=SHARE, default="0.1", help="By what share α and β may be off.")
+@click.option("--spread", type=SHARE, default="0.1", help="α and β may be off by this share.")
 @click.option(
-    "--settle", type=SECONDS, help="gentle, accurate, or with --pd: the time in s in which c falls a thousandfold."
+    "--settle",
+    type=SECONDS,
+    help="The time in s in which errors fall a thousandfold: for the goals gentle and accurate, and with --pd.",
 )
 @click.option("--keep", "equal", type=click.Choice(["alpha=beta"]), help="Only points with α = β.")
-@click.option("--engine", metavar="NAME", type=ENGINE, help="Choose what that engine can express; print what to paste.")
+@click.option(
+    "--engine",
+    metavar="NAME",
+    type=ENGINE,
+    help="Choose only what this engine can express, and print the line to paste.",
+)
 @chain_options
 @inertia_option
 @bandwidth_option
@@ -109,31 +118,34 @@ def choose(
 ) -> None:
     """Recommend α and β for an integrator and its step size.
 
-    The answer is proven stable, and its margins are printed. Exit status 1 if it is not proven safe: over the
-    motion of a --scene, for steps that vary, or in a chain, where you ask for that.
+    The answer is proven stable, and its margins are printed. You may ask for more: that it is safe as a mechanism
+    moves (--scene), for steps that vary (--h-min), or in a chain of bodies (--chain). Exit status 1 if that is not
+    proven.
 
-    On a mechanism that moves, feedback makes errors of its own. The default goal, accurate, has the least of them
-    among what settles within --settle, or while the motion turns by 14 rad. --omega or --scene say how fast the
-    motion is. Below the answer, two lines say what faster decay would cost and what slower decay would gain.
-    "within the spread" is the largest |z_p| with α and β off by --spread. At the fastest point |z_p| rises like a
-    square root as soon as damping grows; robust keeps away from it. Where arbitrarily strong feedback is stable,
-    only αh and βh up to 4 are searched, and "searched" says so.
+    On a mechanism that moves, feedback makes errors of its own. The default goal, accurate, makes them as small as it
+    can. It allows only points that settle within --settle, or while the motion turns by 14 rad. --omega or --scene say
+    how fast the motion is. Two lines below the answer say what faster decay would cost and what slower decay would
+    gain.
 
-    --engine searches only what that engine can express, with its own method unless you name another. Where several
-    points are best, the mildest is taken. --pd shows each way of applying a joint drive, with the kp and kd to set.
-    With --bandwidth or --settle, or a controller that is slower than the physics (--every, --late, --filter), these
-    are critically damped gains for the explicit way, with a margin.
+    "within the spread" is the largest |z_p| if α and β are off by --spread. At the goal fastest |z_p| rises steeply as
+    soon as α grows; the goal robust keeps away from such points. Some methods are stable however strong the feedback
+    is. For these only αh and βh up to 4 are searched, and "searched" says so.
 
-    --h-min lets steps vary: "varying steps" says whether errors decay for every sequence of steps up to --h-max.
-    --chain also says from how many sweeps the answer is stable in a straight chain of bodies, and gives the
-    strongest feedback that this chain allows with --spread to spare.
+    --engine searches only what that engine can express. Its own method is used unless you name another. Of several
+    points that are equally good the one with the least α̂ and β̂ is taken. --pd shows each way of applying a joint
+    drive, with the kp and kd to set. With --bandwidth or --settle the gains are critically damped and leave a margin.
+    They also allow for a controller that is slower than the physics (--every, --late, --filter).
+
+    With --h-min, "varying steps" says whether errors decay for every sequence of steps up to --h-max. --chain also
+    says how many sweeps the answer needs in a straight chain of bodies, and what the strongest feedback is that this
+    chain allows.
 
     Example: bezstab choose --method B4 --h 0.001
     """
     from bezstab.questions import answers, usual_goal
 
     if bandwidth is not None and drive is None:
-        raise InputError("--bandwidth is that of a drive: it needs --pd")
+        raise InputError("--bandwidth is about a drive: it needs --pd")
     held = timing.of(drive, typed["h"])
     if drive and (held or bandwidth is not None or (settle is not None and goal is None)):
         own = methods_typed(methods, has_usual_ones=True)
@@ -176,39 +188,38 @@ def choose(
 @h_min_option
 @click.option("--h-max", type=SECONDS, help="With --h-min: the longest step in s [--h].")
 @hold_option
-@moving_scene_options("Safe for this mechanism as it moves? Needs --h.")
+@moving_scene_options("Is it safe for this mechanism as it moves? Needs --h.")
 @format_option
 @click.pass_context
 def check(context: click.Context, /, timing: HeldTiming, form: Format, **typed: Any) -> None:
     """Tell whether a choice is safe: exit status 0 if so, 1 if not.
 
-    Safe means proven stable, for every method named. Prints the verdict, the margins, the largest stable step, and
-    what `choose` gives instead. α and β in 1/s (--physical) without --h: prints the step up to which every step is
-    safe.
+    Safe means that errors are proven to shrink, with every method named. Prints the verdict, the margins, the largest
+    stable step, and what `choose` gives instead. With α and β in 1/s (--physical) but no --h, prints the step up to
+    which every step is safe.
 
-    That is about constant steps. Steps that are each stable alone may still let errors grow when they alternate.
-    With --h-min and --h-max, safe means proven for every sequence of steps in that range.
+    Without --h-min all steps are equally long. Steps that are each stable alone may still let errors grow when they
+    alternate. With --h-min and --h-max, safe means proven for every sequence of steps in that range.
 
-    What is safe may still be inaccurate. On a mechanism that moves, feedback makes errors of its own if it is
-    strong, or if it is weak. A sentence says so where they are ten times the least or more.
+    What is safe may still be inaccurate. On a mechanism that moves, feedback makes errors of its own if it is strong,
+    or if it is weak. A sentence says so if they are at least ten times the least.
 
     --engine judges an engine's own values, with its own method unless you name another. What the engine does to its
-    values (clamps, scaling) is applied first, and what the conversion does not cover is printed. The largest step
-    is that of the engine's values. What to take instead is what the engine can express, as a line to paste. Many
-    engines solve their constraints one after another, in sweeps. Their answer is about one constraint alone: chains
-    of them may diverge all the same. With --chain, safe means stable for so many bodies in a straight chain, the
-    last one --mass-ratio times as heavy, with --iterations sweeps.
+    values, such as clamps, is applied first. What the conversion leaves out is printed. The largest step is for the
+    engine's values as they are. What `choose` gives instead is a line to paste. Many engines solve their constraints
+    one after another, in sweeps. The answer is then about one constraint alone: a chain of them may diverge all the
+    same. With --chain, safe means stable for so many bodies in a straight chain. Its last body is --mass-ratio times
+    as heavy, and a step makes --iterations sweeps.
 
-    --pd kp,kd,inertia judges a joint's drive, applied in four ways: explicit (SYM), implicit in velocity
-    (imex-euler, as MuJoCo's implicitfast), as stable PD (stable-pd), fully implicit (implicit-euler, as PhysX). All
-    four count unless --method names yours. Gains that were stable in an implicit engine explode in an explicit one:
-    is it kp or kd? "used up" names the one at its limit, or nearest to it, and "to" says how far each may go alone.
-    Explicit needs 2 kd h + kp h² < 4 inertia. Mostly it is kd, which has no limit where the velocity is implicit.
+    --pd kp,kd,inertia judges a joint's drive, applied in four ways: explicit (SYM), implicit in velocity (imex-euler,
+    as MuJoCo's implicitfast), as stable PD (stable-pd), fully implicit (implicit-euler, as PhysX). All four must be
+    safe unless --method names yours. Gains that are stable in an implicit engine may explode in an explicit one.
+    "used up" names the gain that is at its limit, or nearest to it. "to" says how far each may go alone. An explicit
+    drive needs 2 kd h + kp h² < 4 inertia: mostly it is kd that is too large. An implicit velocity takes any kd.
 
-    --every, --late and --filter are for a controller that is slower than the physics: its torque is held for
-    several steps, comes late, or uses a filtered velocity. "used up" then names gains, rate or delay, and "to" says
-    how far each may go alone. A contact of stiffness k and damping c between bodies of reduced mass m is --pd k,c,m
-    while it is closed.
+    --every, --late and --filter are for a controller that is slower than the physics. Its torque is held for several
+    steps, comes late, or uses a filtered velocity. "used up" then names gains, rate or delay. A contact of stiffness k
+    and damping c between bodies of reduced mass m is --pd k,c,m while it is closed.
 
     Example: bezstab check --method RK2 --h 0.002 --alpha 50 --beta 50 --physical
     """
@@ -264,7 +275,7 @@ def _check_without_step(methods: Sequence[Method], point: tuple[Fraction, Fracti
     from bezstab.questions import largest_step, methods_for
 
     if point is None:
-        raise click.UsageError("--alpha and --beta are needed, or --engine, or --pd")
+        raise click.UsageError("a point is needed: --alpha with --beta, --engine, or --pd")
     found = [largest_step(method, *point) for method in methods_for(tuple(methods), None, None)]
     show_rows(LARGEST_STEPS, [largest_step_row(each) for each in found], form)
     return all(each.safe for each in found)
@@ -300,7 +311,7 @@ def engines(h: Fraction, alpha: Fraction | None, beta: Fraction | None, form: Fo
 @methods_option(*USUAL_METHODS)
 @step_option
 def explore(methods: Sequence[Method], h: Fraction) -> None:
-    """Open a window: move over the region, see poles and decay.
+    """Open a window: point at the region, see poles and decay.
 
     A click proves the verdict; n shows the next method; p prints the point as options for the other commands.
 

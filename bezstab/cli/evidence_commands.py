@@ -64,7 +64,12 @@ PREDICTED = ("scene", "speed", "methods", "steps", "omega", "predicted", "levels
 @click.command()
 @scene_option("slider_crank")
 @speed_option
-@click.option("--method", type=METHOD, default="B4", help="As for the other commands.")
+@click.option(
+    "--method",
+    type=METHOD,
+    default="B4",
+    help="A method's name, as `bezstab methods` lists it, or a .toml file; NAME@m takes steps of m h.",
+)
 @click.option("--alpha", type=NUMBER, default="0.5", help="α̂; α in 1/s with --physical.")
 @click.option("--beta", type=NUMBER, default="0.1", help="β̂; β in 1/s with --physical.")
 @physical_option
@@ -74,18 +79,19 @@ PREDICTED = ("scene", "speed", "methods", "steps", "omega", "predicted", "levels
     "--steps",
     "sequence",
     type=SEQUENCE,
-    help="Steps in s that are taken in turn, over and over, such as 1/60,0.00917 or 3*0.01,0.02, or a file of them; "
-    "--h is then only what α̂ and β̂ belong to.",
+    help="Step sizes in s that are taken in turn, over and over, such as 1/60,0.00917 or 3*0.01,0.02, or a file of "
+    "them. α̂ and β̂ then belong to --h.",
 )
-@click.option("--hold", is_flag=True, help="With --steps: α̂ and β̂ stay as steps vary; not α and β.")
+@click.option("--hold", is_flag=True, help="With --steps: α̂ and β̂ stay the same as steps vary; else α and β do.")
 @click.option("--time", type=SECONDS, default="10", help="Duration in s.")
-@click.option("--perturb", type=NUMBER, default="0", help="Initial error of the first constraint.")
+@click.option("--perturb", type=NUMBER, default="0", help="Initial error of the first constraint, in its own unit.")
 @click.option(
     "--start",
     type=click.Choice(["rk4", "ramp", "euler"]),
     default="rk4",
-    help="What gives a multistep method's first values: RK4, its family's shorter members, or explicit Euler; "
-    "for an implicit method Gauss's of order four, shorter BDF methods, or implicit Euler.",
+    help="Where a multistep method takes its first values from: RK4, members of its family with fewer steps, or "
+    "explicit Euler. For an implicit method: Gauss's method of order four, BDF methods with fewer steps, or implicit "
+    "Euler.",
 )
 @compiled_option
 @figure_options
@@ -134,7 +140,7 @@ def simulate(
     elif not (sequence or left_at_default("h")):
         say_if_units_were_mistaken([method], alpha, beta, h)
     if hold and not sequence:
-        raise click.UsageError("--hold goes with --steps: it is about steps that vary")
+        raise click.UsageError("--hold needs --steps: it is about steps that vary")
     _check_number_of_steps(time, min(sequence) if sequence else h, method)
     if sequence:
         check_one_step(method)
@@ -189,7 +195,7 @@ def _check_number_of_steps(time: Fraction, h: Fraction, method: Method) -> None:
 @scene_option("slider_crank_light")
 @speed_option
 @methods_option("B2", "B3", "B4", "AB2", "AB4", "ABM4", "RK4", "SIE", "SYM")
-@click.option("--h", "steps", type=SECONDS, multiple=True, help="Step in s [ten from 0.0001 to 0.02].")
+@click.option("--h", "steps", type=SECONDS, multiple=True, help="Step size in s. Repeatable [ten from 0.0001 to 0.02].")
 @click.option("--time", type=SECONDS, default="2", help="Duration in s.")
 @click.option(
     "--alpha",
@@ -202,28 +208,28 @@ def _check_number_of_steps(time: Fraction, h: Fraction, method: Method) -> None:
 @click.option(
     "--predicted",
     is_flag=True,
-    help="Nothing is simulated: the least error that each method can force on a motion while errors decay so fast.",
+    help="Simulate nothing; print the least error that each method's feedback makes, for each speed of decay.",
 )
 @click.option(
     "--level",
     "levels",
     type=POSITIVE,
     multiple=True,
-    help="With --predicted: |z_p| of LEVEL at most, below 1. Repeatable [fifteen from 0.1 to 0.999].",
+    help="With --predicted: decay with |z_p| of at most LEVEL, below 1. Repeatable [fifteen from 0.1 to 0.999].",
 )
-@click.option("--tolerance", type=POSITIVE, default="1e-6", help="In m and rad.")
-@click.option("--repeats", type=click.IntRange(1, 100), default=3, help="Of each timing.")
+@click.option("--tolerance", type=POSITIVE, default="1e-6", help="The error that is good enough, in m and rad.")
+@click.option("--repeats", type=click.IntRange(1, 100), default=3, help="How often each run is timed.")
 @click.option(
     "--against",
     type=click.Choice(["evaluations", "time"]),
     default="evaluations",
-    help="What figures and fronts hold errors against: evaluations of f, or processor time on this machine.",
+    help="What errors are compared with: evaluations of f, or processor time on this machine.",
 )
 @click.option(
     "--recorded",
     type=click.Path(path_type=Path),
-    help="Processor times from what an earlier run printed with --format json, not measured anew: a figure against "
-    "time then comes out the same again.",
+    help="Take processor times from a file that an earlier run printed with --format json, and measure none. The "
+    "figure is then the same again.",
 )
 @compiled_option
 @work_options
@@ -252,17 +258,17 @@ def tradeoff(
     """Measure what accuracy costs, by method and step.
 
     Each run is compared with a reference of known accuracy. Prints errors, evaluations, processor time (median and
-    range) and the order observed. Below, sentences name the cheapest run within --tolerance, and where the Bézier
+    range) and the order observed. Sentences below name the cheapest run within --tolerance, and say where the Bézier
     methods win and lose. Writes the table, without times, and two figures of errors against evaluations or time. A
     run that fails is marked as diverged.
 
-    Without --alpha and --beta each step has its own point: that of the goal accurate for the scene's motion, or for
-    --omega. If α̂ and β̂ are held while h shrinks, methods with stages lose order. A multistep method starts with
-    RK4, which loses order too: "in the later half" of a run that error has died away, and what remains is what the
-    feedback forces, as "predicted".
+    Without --alpha and --beta each step size has its own point: that of the goal accurate, for the scene's motion or
+    for --omega. If α̂ and β̂ stay the same while h shrinks, methods with stages lose order. A multistep method that
+    starts with RK4 loses order too. That error has died away "in the later half" of a run. What remains is the error
+    that the feedback makes; compare "predicted".
 
-    --predicted simulates nothing: it prints the least error that a method can force on a motion, for each |z_p|.
-    The motion is --omega, or a --scene with one --h; else it turns by ωh = 0.01. Writes tradeoff_predicted.
+    --predicted simulates nothing. It prints the least error that a method's feedback makes on a motion, for each
+    |z_p|. The motion is --omega, or a --scene with one --h; else it turns by ωh = 0.01. Writes tradeoff_predicted.
 
     Example: bezstab tradeoff --method B4 --method AB4 --h 0.002 --h 0.004 --time 2
     """
@@ -329,13 +335,13 @@ def _check_simulated_options(
 ) -> None:
     """Raise UsageError for options of tradeoff that do not go together."""
     if levels:
-        raise click.UsageError("--level goes with --predicted: it is the |z_p| that is asked for")
+        raise click.UsageError("--level needs --predicted: it says how fast errors must decay")
     if physical and point is None:
         raise click.UsageError("--physical needs --alpha and --beta")
     if omega is not None and point:
-        raise click.UsageError("--omega is the motion for which points are chosen: not with --alpha and --beta")
+        raise click.UsageError("--omega does not go with --alpha and --beta: points are chosen for that motion")
     if recorded and against != "time":
-        raise click.UsageError("--recorded goes with --against time")
+        raise click.UsageError("--recorded needs --against time")
 
 
 def _predicted_trade(
@@ -380,13 +386,15 @@ def _predicted_trade(
 def _check_nothing_simulated(steps: Sequence[Fraction]) -> None:
     """Raise UsageError for an option of the running command that is about runs, beside --predicted."""
     if other := typed_beside(PREDICTED):
-        raise click.UsageError(f"--predicted simulates nothing: not with {other}")
+        raise click.UsageError(f"{other} does not go with --predicted, which simulates nothing")
     if len(steps) > 1:
         raise click.UsageError(f"--predicted takes one --h, but {len(steps)} were given")
     if left_at_default("scene") and not left_at_default("speed"):
-        raise click.UsageError("--speed goes with --scene: it is the mechanism that is so many times as fast")
+        raise click.UsageError("--speed needs --scene: it says how fast that mechanism moves")
     if steps and left_at_default("scene") and left_at_default("omega"):
-        raise click.UsageError("--predicted takes --h with --omega or --scene: what happens in a step depends on both")
+        raise click.UsageError(
+            "--predicted with --h needs --omega or --scene: they say how far the motion goes in a step"
+        )
 
 
 def _rate_of_motion(
@@ -418,9 +426,9 @@ def _check_swept_time(time: float, step_sizes: Sequence[float], methods: Sequenc
 def extremes(context: click.Context, short: bool, form: Format) -> None:
     """Measure what holds at the extremes of sizes, steps and masses.
 
-    Each check states beforehand what must come out: poles from 1e-300 to 1e300 and at multiple roots against 50 digits
-    and more, runs of 1e7 steps, steps around the largest stable one, a singular configuration, crank speeds, mass
-    ratios. Exit status 1 if something does not hold.
+    Each check says beforehand what must come out. Poles from 1e-300 to 1e300, and multiple roots, are compared with 50
+    digits and more. There are runs of 1e7 steps, steps around the largest stable one, a singular configuration, fast
+    cranks, and large ratios of masses. Exit status 1 if something does not hold.
 
     Example: bezstab extremes --short
     """

@@ -47,13 +47,17 @@ class HeldTiming:
 timing_options = gathered(
     HeldTiming,
     "timing",
-    click.option("--every", type=int, help="With --pd: the torque is computed every so many steps, and held [1]."),
-    click.option("--late", type=NUMBER, help="With --pd: the torque is applied so many steps late [0]."),
+    click.option(
+        "--every", type=int, help="With --pd: the torque is computed every so many steps, and held in between [1]."
+    ),
+    click.option(
+        "--late", type=NUMBER, help="With --pd: the torque is applied so many steps late, or a fraction of them [0]."
+    ),
     click.option(
         "--filter",
         "filter_seconds",
         type=NUMBER,
-        help="With --pd: the time constant in s of a first-order filter of the measured velocity [none].",
+        help="With --pd: the measured velocity goes through a first-order filter with this time constant in s [0].",
     ),
 )
 
@@ -167,11 +171,10 @@ inertia_option = click.option(
     "--pd",
     "drive",
     type=ParsedType("inertia", _inertia_or_drive),
-    help="Choose gains for a joint drive on this inertia (SI units); of kp,kd,inertia only the inertia counts.",
+    help="Choose gains for a joint drive on this inertia (SI units); of KP,KD,INERTIA only the inertia counts.",
 )
 bandwidth_option = click.option(
     "--bandwidth",
     type=NUMBER,
-    help="With --pd: critically damped gains of this natural frequency in Hz, for a controller as --every, --late and "
-    "--filter say.",
+    help="With --pd: choose critically damped gains with this natural frequency in Hz.",
 )

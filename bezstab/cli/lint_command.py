@@ -35,10 +35,14 @@ def _gains(text: str) -> "MotorGains":
     "gains",
     type=ParsedType("name=kp,kd", _gains),
     multiple=True,
-    help="Judge the motors of that name with a controller's gains; the name may be a regular expression. Repeatable.",
+    help="Judge the motors of that name, or regular expression, with a controller's gains. Repeatable.",
 )
-@click.option("--every", type=int, default=1, show_default=True, help="With --pd: steps between two controls.")
-@click.option("--late", type=NUMBER, default="0", show_default=True, help="With --pd: so many steps late.")
+@click.option(
+    "--every", type=int, default=1, show_default=True, help="With --pd: the torque is computed every so many steps."
+)
+@click.option(
+    "--late", type=NUMBER, default="0", show_default=True, help="With --pd: the torque is applied so many steps late."
+)
 @format_option
 @click.pass_context
 def lint(
@@ -46,19 +50,23 @@ def lint(
 ) -> None:
     """Judge a MuJoCo model: exit status 1 if anything is unsafe.
 
-    MODEL is MuJoCo's XML or a URDF; MuJoCo also opens what it includes, its meshes, textures and height fields, and
-    nothing is simulated. A row for each equality, limit, friction loss, pair of contact parameters, spring, damper,
-    drive and motor: its point, the method that MuJoCo's integrator is there, and the line to write where it is unsafe,
-    relies on refsafe or is needlessly soft; "not judged", and why, where no one point stands for an element. Of the
-    points that solimp makes of one setting the one with the largest |z| is judged; "judged" says which, and why.
-    "stable for h times" is up to which multiple of the time step it stays stable at the same physical parameters. The
-    last row is of all equalities, springs and drives together, and decides: they may be unsafe where each alone is not,
-    or safe where one alone, without its closed loop, is not. Needs mujoco 3.7 or later, since when connect and weld
-    have the term of turning normals.
+    MODEL is MuJoCo's XML or a URDF. MuJoCo also opens the files that it includes: meshes, textures, height fields.
+    Nothing is simulated.
 
-    A <motor> is set from outside the model. With --pd it is judged with the gains of the controller that sets it, on
-    the model's own inertias, held and late as --every, --late and MuJoCo's own delay say: alone, and in the last row
-    with all the rest. A late target of a position drive takes no stability.
+    There is a row for each equality, limit, friction loss, pair of contact parameters, spring, damper, drive and
+    motor. It shows the element's point (α̂, β̂), the method that MuJoCo's integrator is there, and the verdict. If the
+    element is unsafe, relies on refsafe or is needlessly soft, "advice" has the line to write. If no single point
+    stands for an element, it is "not judged", and the row says why. solimp can make several points of one setting: the
+    one with the largest |z| is judged, and "judged" says which. "stable for h times" is how many times as long the time
+    step may be at the same physical parameters.
+
+    The last row judges all equalities, springs and drives together, and decides. Elements may be unsafe together
+    although each is safe alone. One that is unsafe alone may be safe in its closed loop. Needs mujoco 3.7 or later:
+    from there on connect and weld have the term of turning normals.
+
+    A <motor> is controlled from outside the model. With --pd it is judged with its controller's gains, on the model's
+    own inertias: alone, and in the last row with all the rest. --every, --late and MuJoCo's own delay say when its
+    torque is computed and applied. A late target of a position drive takes no stability.
 
     Example: bezstab lint robot.xml
     """

@@ -41,9 +41,9 @@ if TYPE_CHECKING:
 @click.command()
 @methods_option(*USUAL_METHODS)
 @given_point_options
-@click.option("--all-poles", is_flag=True, help="Every root, not only the dominant one.")
+@click.option("--all-poles", is_flag=True, help="Print every pole, not only the dominant one.")
 @omega_option
-@moving_scene_options("Also what the motion of this mechanism does to the poles; needs --h.")
+@moving_scene_options("Also say what the motion of this mechanism does to the poles; needs --h.")
 @format_option
 def poles(all_poles: bool, form: Format, **typed: Any) -> None:
     """Print each method's dominant pole at one point, and the verdict.
@@ -52,7 +52,7 @@ def poles(all_poles: bool, form: Format, **typed: Any) -> None:
     grow. The verdict is proven in exact arithmetic on the numbers as typed (Schur-Cohn test).
 
     Feedback also makes errors of its own on a mechanism that moves. "error" is that error as a share of the
-    motion's amplitude. "× least" compares it with the error at the goal accurate of `choose`.
+    motion's amplitude. "× least" is how many times as large it is as with `choose --goal accurate`.
 
     Example: bezstab poles --alpha 0.5 --beta 0.1
     """
@@ -87,14 +87,17 @@ def poles(all_poles: bool, form: Format, **typed: Any) -> None:
 @click.option("--latex", is_flag=True, help="Formulas as LaTeX.")
 @format_option
 def methods(methods: Sequence[Method], latex: bool, form: Format) -> None:
-    """List the methods, or show those that are named whole.
+    """List the methods, or show all about those you name.
 
-    Steps, evaluations of f per step (of an implicit method: per iteration), order of accuracy and error constant,
-    computed from the coefficients; in parentheses the order where forces depend on positions alone. For one method also
-    its recursion, s→z mapping, characteristic polynomial and stability region (the paper's Tables 1, 2), its source,
-    and the error that it forces on a constraint that moves, as a share of that motion.
+    Prints the number of steps, the evaluations of f in a step (of an implicit method in an iteration), the order of
+    accuracy and the error constant. They are computed from the coefficients. In parentheses is the order if forces
+    depend on positions alone.
 
-    SIE, the paper's "Euler semi-implicit", is not what engines call semi-implicit Euler: that is SYM.
+    For a method that you name it also prints the recursion, s→z mapping, characteristic polynomial and stability region
+    (the paper's Tables 1 and 2), the source, and the error that the method makes on a constraint that moves, as a share
+    of that motion.
+
+    SIE is the paper's "Euler semi-implicit". It is not what engines call semi-implicit Euler: that is SYM.
 
     Example: bezstab methods B4
     """
@@ -143,10 +146,11 @@ def property_column(key: str, row: Row) -> Column:
 @picture_options
 @format_option
 def family(name: str, first: int, last: int | None, files: Files, form: Format) -> None:
-    """Show what becomes of a family as its number of steps n grows.
+    """Show how a family of methods changes with its number of steps n.
 
-    Its region, least |z_p| and error constant. The Bézier methods tend to a limit with a region of its own; the
-    regions of Adams and Bashforth shrink to nothing, but each step gains an order. The figure has both.
+    Prints the area of each region, the least |z_p| and the error constant. The Bézier methods tend to a limit, which
+    has a region of its own. The regions of the Adams-Bashforth methods shrink to nothing, but each step more gains an
+    order. The figure shows both.
 
     Example: bezstab family bezier --from 2 --to 5
     """

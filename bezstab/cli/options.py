@@ -136,7 +136,7 @@ def methods_option(*default: str) -> Decorator:
         type=METHOD,
         multiple=True,
         default=default,
-        help="A method, as listed by `bezstab methods`, or a .toml file; @m for a step of m h. Repeatable.",
+        help="A method's name, as `bezstab methods` lists it, or a .toml file; NAME@m takes steps of m h. Repeatable.",
     )
 
 
@@ -146,12 +146,10 @@ def scene_option(default: str | None, help_text: str = "A shipped scene's name, 
 
 
 speed_option = click.option(
-    "--speed", type=SPEED, default="1", help="Times the scene's own: its drivers' and its start's."
+    "--speed", type=SPEED, default="1", help="The scene's drivers and initial velocities are so many times as fast."
 )
 step_option = click.option("--h", type=SECONDS, default="0.001", help="Step size in s.")
-physical_option = click.option(
-    "--physical", is_flag=True, help="Take --alpha and --beta as α and β in 1/s; goes with --h."
-)
+physical_option = click.option("--physical", is_flag=True, help="--alpha and --beta are α and β in 1/s; needs --h.")
 output_option = click.option(
     "-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory for what is written."
 )
@@ -176,8 +174,10 @@ format_option = click.option(
 workers_option = click.option(
     "--workers", type=click.IntRange(1, 1000), help="Number of processes [one for each core]."
 )
-scheduler_option = click.option("--scheduler", help="Address of a Dask scheduler, tcp://host:port, instead.")
-resume_option = click.option("--resume", is_flag=True, help="Go on with what a killed run of the same job has left.")
+scheduler_option = click.option(
+    "--scheduler", help="Address of a Dask scheduler, tcp://host:port, in place of --workers."
+)
+resume_option = click.option("--resume", is_flag=True, help="Continue a run with the same options that was stopped.")
 
 
 def _choose_compiled(context: click.Context, parameter: click.Parameter, choice: str) -> None:
@@ -208,7 +208,7 @@ compiled_option = click.option(
     default="auto",
     expose_value=False,
     callback=_choose_compiled,
-    help="Runs as machine code by numba: auto where it is installed and pays.",
+    help="Whether numba compiles runs; auto: where it is installed and saves time.",
 )
 
 
@@ -258,7 +258,7 @@ def both_or_none(alpha: Fraction | None, beta: Fraction | None) -> tuple[Fractio
     if alpha is None and beta is None:
         return None
     if alpha is None or beta is None:
-        raise click.UsageError("--alpha and --beta go together: they are one point")
+        raise click.UsageError("--alpha and --beta go together: they give one point")
     return alpha, beta
 
 

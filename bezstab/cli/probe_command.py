@@ -63,10 +63,15 @@ def _turning(text: str) -> Fraction:
 @click.option(
     "--minus",
     type=click.Path(path_type=Path, allow_dash=True),
-    help="Another run's log to subtract: not kicked, or kicked the other way.",
+    help="The log of another run, to subtract: one without the kick, or with the opposite kick.",
 )
-@click.option("--jointly", is_flag=True, help="One fit for all columns: they show one and the same pole.")
-@click.option("--every", type=click.IntRange(1, 10000), default=1, help="Steps of the integrator from row to row.")
+@click.option("--jointly", is_flag=True, help="Fit one pole to all columns together.")
+@click.option(
+    "--every",
+    type=click.IntRange(1, 10000),
+    default=1,
+    help="The integrator takes so many steps from one row to the next.",
+)
 @click.option("--h", type=SECONDS, help="Step size of the integrator in s, for α and β in 1/s and a column of times.")
 @click.option("--alpha", type=NUMBER, help="α̂ that was set; α in 1/s with --physical.")
 @click.option("--beta", type=NUMBER, help="β̂ that was set; β in 1/s with --physical.")
@@ -76,12 +81,12 @@ def _turning(text: str) -> Fraction:
     "methods",
     type=METHOD,
     multiple=True,
-    help="A method to compare with [all built-in ones], or whose α and β to find. Repeatable.",
+    help="A method to compare with [all built-in ones]; without --alpha one whose α and β to find. Repeatable.",
 )
 @click.option(
     "--turning",
     type=ParsedType("number", _turning),
-    help="How fast the directions of the constraints turn, in 1/s: about the angular speed, 0 at rest.",
+    help="How fast the directions of the constraints turn, in 1/s: about the angular speed; 0 at rest.",
 )
 @format_option
 def probe(

@@ -63,11 +63,11 @@ class Plane:
         for option, window in self.windows:
             typed = f"{option} {float(window[0]):g} {float(window[1]):g}"
             if not float(window[0]) < float(window[1]):
-                raise InputError(f"{typed}: the first must be the smaller")
+                raise InputError(f"{typed}: the first value must be smaller than the second")
             if max(abs(window[0]), abs(window[1])) > MOST_DRAWN:
                 raise InputError(f"{typed}: expected at most {MOST_DRAWN:g}")
         if self.alpha_beta and self.h is None:
-            raise click.UsageError("--alpha-beta marks the axes in α and β and needs --h: the step in s")
+            raise click.UsageError("--alpha-beta writes α and β at the axes: it needs --h, the step in s")
 
     @property
     def windows(self) -> list[tuple[str, Window]]:
@@ -105,38 +105,53 @@ class Plane:
         default="balanced",
         help="Points per axis of the map: fast 50, balanced 200, fine 1000.",
     ),
-    click.option("--grid", type=click.IntRange(2, 4000), help="Points per axis, instead."),
-    click.option("--alpha-range", type=NUMBER, nargs=2, help="α̂ from and to [the region, without islands below 0]."),
-    click.option("--beta-range", type=NUMBER, nargs=2, help="β̂ from and to [the region, without islands below 0]."),
-    click.option("--h", type=SECONDS, help="Step size in s: axes become 2α (1/s) and β² (1/s²)."),
-    click.option("--alpha-beta", is_flag=True, help="Mark the axes of the figure in α and β (1/s); needs --h."),
+    click.option("--grid", type=click.IntRange(2, 4000), help="Points per axis, in place of --quality."),
+    click.option(
+        "--alpha-range", type=NUMBER, nargs=2, help="α̂ is drawn from the first value to the second [over the region]."
+    ),
+    click.option(
+        "--beta-range", type=NUMBER, nargs=2, help="β̂ is drawn from the first value to the second [over the region]."
+    ),
+    click.option("--h", type=SECONDS, help="Step size in s; the axes are then 2α (1/s) and β² (1/s²)."),
+    click.option("--alpha-beta", is_flag=True, help="Write α and β (1/s) at the axes of the figure; needs --h."),
 )
 @click.option(
     "--level",
     "levels",
     type=POSITIVE,
     multiple=True,
-    help="Draw |z_p| < LEVEL, below 1, and print its area too. Repeatable. Default: one is drawn, "
-    "a quarter of the way from the least |z_p| to 1.",
+    help="Also draw where |z_p| < LEVEL, below 1, and print the area. Repeatable [one level is drawn, a quarter of the "
+    "way from the least |z_p| to 1].",
 )
-@click.option("--compare", is_flag=True, help="One figure with the boundaries of all methods (default level 1).")
+@click.option("--compare", is_flag=True, help="Draw the boundaries of all methods in one figure, at --level [1].")
 @click.option(
     "--accuracy",
     is_flag=True,
-    help="Draw the error that the feedback forces on a motion over |z_p|, on logarithmic axes, with both best points.",
+    help="Draw the error that the feedback makes on a motion, together with |z_p|, on logarithmic axes.",
 )
 @omega_option
 @click.option(
     "--pd",
     "drive",
     type=DRIVE,
-    help="Draw a joint drive over kd and kp instead, and mark these gains (SI units); needs --h.",
+    help="Draw a joint drive in the plane of kd and kp, and mark these gains (SI units); needs --h.",
 )
 @timing_options
-@click.option("--engine", metavar="NAME", type=ENGINE, help="Mark that engine's defaults and rules; needs --h.")
-@scene_option(None, "Also the region of this mechanism as it moves, or with --accuracy its motion; needs --h.")
 @click.option(
-    "--speed", "speeds", type=SPEED, multiple=True, help="With --scene: times the scene's own. Repeatable [1]."
+    "--engine",
+    metavar="NAME",
+    type=ENGINE,
+    help="Mark what this engine's default values and rules of thumb are; needs --h.",
+)
+@scene_option(
+    None, "Also draw the region of this mechanism as it moves; with --accuracy the motion is its own. Needs --h."
+)
+@click.option(
+    "--speed",
+    "speeds",
+    type=SPEED,
+    multiple=True,
+    help="With --scene: so many times as fast as given there. Repeatable [1].",
 )
 @format_option
 @click.pass_context
@@ -158,13 +173,13 @@ def region(
 ) -> None:
     """Draw where each method is stable, and |z_p| there.
 
-    Prints the limits and the area of the exact region, the smallest |z_p| and where it is. Writes
-    region_METHOD.png. --table csv also writes α̂, β̂, |z_p| and ∠z_p, or with --compare the boundary curves.
+    Prints how far the exact region reaches, its area, the smallest |z_p| and where that is. Writes region_METHOD.png.
+    --table csv also writes α̂, β̂, |z_p| and ∠z_p, or with --compare the boundary curves.
 
     --scene also draws the region of that mechanism as it moves, into region_METHOD_SCENE. --accuracy draws another
-    map, region_METHOD_accuracy: the error that the feedback forces on position and velocity, as a share of a
-    motion. --pd draws a map for each way of applying a joint drive, region_METHOD_held, over kd and kp; its torque
-    may be computed every few steps (--every) and come late (--late).
+    map, region_METHOD_accuracy: the error that the feedback makes in position and velocity, as a share of the motion.
+    --pd draws region_METHOD_held for each way of applying a joint drive. Its axes are kd and kp. The torque may be
+    computed every few steps (--every) and come late (--late).
 
     Example: bezstab region --method B4
     """
@@ -179,9 +194,11 @@ def region(
     if compare and len(levels) > 1:
         raise InputError(f"--compare takes one --level, but {len(levels)} were given")
     if engine and (plane.h is None or compare):
-        raise click.UsageError("--engine marks one map and needs --h: the step in s")
+        raise click.UsageError(
+            "--engine marks points of one map: it needs --h, the step in s, and does not go with --compare"
+        )
     if scene and compare:
-        raise click.UsageError("--scene draws one map for each method: not with --compare")
+        raise click.UsageError("--compare does not go with --scene, which draws one map for each method")
     methods = methods_for(methods_typed(methods, engine is not None), engine, None)
     motion = _motion_asked(accuracy, omega, compare, speeds, scene, plane)
     turnings = {} if motion else _turnings(scene, speeds or [Fraction(1)], plane.h)
@@ -227,13 +244,13 @@ def _motion_asked(
     """Return the motion of --accuracy, None without it; UsageError and InputError for what does not go with it."""
     if not accuracy:
         if omega is not None:
-            raise click.UsageError("--omega goes with --accuracy: it is the motion on which errors are told")
+            raise click.UsageError("--omega needs --accuracy: it is the motion that the errors are about")
         return None
     if compare or plane.alpha_beta or len(speeds) > 1:
-        other = "--compare" if compare else "--alpha-beta" if plane.alpha_beta else "several --speed"
-        raise click.UsageError(f"--accuracy draws one map for each method, on logarithmic axes: not with {other}")
+        other = "--compare" if compare else "--alpha-beta" if plane.alpha_beta else "more than one --speed"
+        raise click.UsageError(f"{other} does not go with --accuracy, which draws one map for each method")
     if speeds and scene is None:
-        raise click.UsageError("--speed goes with --scene: it is the mechanism that is so many times as fast")
+        raise click.UsageError("--speed needs --scene: it says how fast that mechanism moves")
     for option, window in plane.windows:
         if window[0] <= 0:
             typed = f"{option} {float(window[0]):g} {float(window[1]):g}"

@@ -54,13 +54,19 @@ OVER_THE_MOTION = ("followed", "map_error", "law_error", "floquet_error", "wrong
 @click.option("--alpha", type=NUMBER, help="α̂ of one point, instead of --points; α in 1/s with --physical.")
 @click.option("--beta", type=NUMBER, help="β̂ of one point; β in 1/s with --physical.")
 @physical_option
-@click.option("--points", type=click.IntRange(1, 1000), help="So many, over region and surroundings [20].")
-@click.option("--map", "cells_across", type=click.IntRange(2, 10000), help="Simulated verdicts of N×N points.")
 @click.option(
-    "--floquet", is_flag=True, help="Also exact rates, of a motion that begins anew, by its linearised steps."
+    "--points", type=click.IntRange(1, 1000), help="Verify so many points, spread over the region and around it [20]."
 )
-@click.option("--accuracy", is_flag=True, help="Predicted and measured errors at shares of a point's gains.")
-@click.option("--witness", type=click.Choice(["mujoco"]), help="Its own integrators.")
+@click.option(
+    "--map", "cells_across", type=click.IntRange(2, 10000), help="Simulate N×N points, and draw their verdicts."
+)
+@click.option(
+    "--floquet", is_flag=True, help="Also predict exactly, for a motion that repeats itself, by linearising its steps."
+)
+@click.option("--accuracy", is_flag=True, help="Compare predicted and measured errors that the feedback makes.")
+@click.option(
+    "--witness", type=click.Choice(["mujoco"]), help="Run the scene in this engine, with its own integrators."
+)
 @step_option
 @compiled_option
 @work_options
@@ -87,18 +93,18 @@ def verify(
 ) -> None:
     """Compare predicted poles with poles measured in a simulation.
 
-    Two runs start with opposite kicks. Their difference follows the linear recursion, and its dominant pole is
-    fitted. Where no pole can be measured, a row says why. For a mechanism that moves there are further predictions:
-    the map's (at rest), that of the first-order law of the motion, and with --floquet the exact one.
+    Two runs start with opposite kicks. The dominant pole is fitted to their difference. If no pole can be measured, the
+    row says why. For a mechanism that moves there are several predictions: that of the map, for a mechanism at rest;
+    that of the first-order law of the motion; and with --floquet the exact one.
 
     --map runs a simulation at each of N×N points and draws the verdicts under the exact boundary. --workers or
-    --scheduler share the work; --resume goes on with what a killed run has left. --witness mujoco runs the scene in
-    MuJoCo, at 0.9 and 1.1 times the boundary of each of its integrators.
+    --scheduler share the work. --resume continues a run that was stopped. --witness mujoco runs the scene in MuJoCo, at
+    0.9 and 1.1 times the boundary of each of its integrators.
 
-    --accuracy compares errors that the feedback forces, predicted in metres and measured in runs: at 0.2 to 1 times
-    α and β of the point (or of choose --goal robust), with steps of --h and of half of it. Exit status 1 if
-    measured over predicted differs from one by more than a quarter; 3 if nothing can be compared, because a run
-    broke down or rounding is as large.
+    --accuracy compares the errors that the feedback makes, in m or rad, as predicted and as measured in runs. It takes
+    0.2 to 1 times α and β of the point (or of choose --goal robust), with steps of --h and of half of it. Exit status 1
+    if measured over predicted differs from one by more than a quarter. Exit status 3 if nothing can be compared,
+    because a run broke down or rounding is as large.
 
     Example: bezstab verify --method AB4 --points 20
     """

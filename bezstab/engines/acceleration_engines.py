@@ -205,7 +205,9 @@ def _read_solref(
         return from_feedback_gains(2 * alpha, beta**2, h)
     if first <= 0 and second <= 0:
         return _read_gains(h, stiffness=-first, damping=-second)
-    raise InputError(f"--engine mujoco: solref = {float(first):g} {float(second):g}: expected two of one sign")
+    raise InputError(
+        f"--engine mujoco: solref = {float(first):g} {float(second):g}: expected two numbers of the same sign"
+    )
 
 
 def _apply_mujoco(

@@ -93,7 +93,7 @@ class Engine:
         alpha_hat, beta_hat = point
         if alpha_hat < 0 or beta_hat < 0:
             raise InputError(
-                f"{self.name}: negative feedback ({float(alpha_hat):g}, {float(beta_hat):g}) is not to be had"
+                f"{self.name}: negative feedback ({float(alpha_hat):g}, {float(beta_hat):g}) cannot be set"
             )
         try:
             return self.write(point, h)
@@ -180,7 +180,7 @@ def refuse_below_zero(option: str, **values: Fraction) -> None:
     """Raise InputError, naming the engine and the values, unless none is below zero."""
     if min(values.values()) < 0:
         typed = ", ".join(f"{name} = {float(value):g}" for name, value in values.items())
-        raise InputError(f"--engine {option}: {typed}: expected none below 0")
+        raise InputError(f"--engine {option}: {typed}: expected 0 or more")
 
 
 def refuse_unless_positive(option: str, **values: Fraction) -> None:

@@ -110,7 +110,7 @@ def engine_and_values(text: str) -> tuple[Engine, tuple[Fraction, ...]]:
     if not numbers and not engine.parameters:  # it has none, or none that it needs
         return engine, ()
     if not numbers:
-        raise InputError(f"{name!r} has no values: expected {name}={engine.words()}")
+        raise InputError(f"{name!r} comes without values: expected {name}={engine.words()}")
     try:
         return engine, tuple(rational(number) for number in numbers.split(","))
     except InputError as error:

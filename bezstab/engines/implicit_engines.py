@@ -26,7 +26,7 @@ def _read_jolt_spring(h: Fraction, frequency: Fraction, damping: Fraction) -> Po
 def _write_jolt_spring(point: Point, h: Fraction) -> tuple[str, ...]:
     alpha_hat, beta_hat = map(float, point)
     if not beta_hat > 0:
-        raise InputError("jolt-spring with a frequency of 0 is hard: see jolt")
+        raise InputError("jolt-spring with a frequency of 0 is a hard constraint: use jolt")
     turn = math.sqrt(beta_hat)
     frequency, damping = turn / (2 * math.pi * float(h)), alpha_hat / (2 * turn)
     return in_words(frequency), in_words(damping)

@@ -112,7 +112,7 @@ def _read_jolt(h: Fraction, baumgarte: Fraction, position_steps: Fraction = Frac
 def _write_jolt(point: Point, h: Fraction) -> tuple[str, ...]:
     alpha_hat, beta_hat = map(float, point)
     if alpha_hat != 1 or beta_hat > 1:
-        raise InputError(f"jolt is α̂ = 1 and β̂ <= 1, not ({alpha_hat:g}, {beta_hat:g})")
+        raise InputError(f"jolt can express only α̂ = 1 with β̂ <= 1, not ({alpha_hat:g}, {beta_hat:g})")
     return f"{1 - (1 - beta_hat) ** 0.5:.17g}", "2"  # all digits: it may be small
 
 

@@ -12,6 +12,7 @@ histories of c_1 is followed:
 Linear prediction finds the poles of that recursion.
 """
 
+from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain, islice
@@ -202,7 +203,7 @@ def _kicked_responses(
 ) -> tuple[FloatArray, FloatArray]:
     """Return half the difference of c_1 after kicks up and down, and the largest |c|; shape (steps, kicks, points)."""
     shape = (RUN + 1, len(KICKS), alpha_hat.size)
-    difference, size = np.empty(shape), np.empty(shape)
+    difference, size = np.zeros(shape), np.full(shape, np.inf)
     seen = iter(progress(range(RUN + 1)))
     compiled = runs_compiled(mechanism, method, size.size * 2 * evaluations(method) // CHEAPER_TOGETHER)
     with np.errstate(all="ignore"):  # what diverges runs into infinity, and is cut off there
@@ -212,7 +213,8 @@ def _kicked_responses(
                 steps_of_block = slice(k, k + len(c))
                 difference[steps_of_block, :, some] = (c[:, 0, 0] - c[:, 0, 1]) / 2
                 size[steps_of_block, :, some] = np.abs(c).max(axis=(1, 2))
-                k += len(list(islice(seen, len(c))))
+                k += len(c)
+                deque(islice(seen, len(c)), maxlen=0)  # the first group's steps are those that progress is told of
     size[~np.isfinite(size)] = np.inf
     return difference, size
 

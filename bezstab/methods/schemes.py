@@ -368,7 +368,7 @@ def check_one_step(method: Method) -> None:
     if steps(method) > 1 or latest[POSITION] != 1 or latest[VELOCITY] != 1:
         raise InputError(
             f"{method.name} uses values of several steps, and its coefficients assume that these are of equal length: "
-            "nothing can be said of steps that vary"
+            "steps that vary cannot be judged"
         )
     results = {equation.result for equation in scheme.equations}
     for equation in scheme.equations:

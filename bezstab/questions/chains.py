@@ -58,10 +58,11 @@ def check_chain(question_chain: Chain | None, engine: Engine | None) -> None:
     if question_chain is None:
         return
     if engine is None:
-        raise InputError("--chain goes with --engine: it is the engine's sweeps that a chain asks about")
+        raise InputError("--chain needs --engine: it asks how that engine sweeps over its constraints")
     if not engine.sweeps:
         raise InputError(
-            f"--chain: {engine.name} solves all constraints together, so that one constraint tells about a chain"
+            f"--chain: {engine.name} solves all constraints together: a chain is as stable as one constraint, so ask "
+            "without --chain"
         )
     if engine.sweeping is None:
         raise InputError(f"--chain: how {engine.name} sweeps over its constraints is not known here")

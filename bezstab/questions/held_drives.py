@@ -171,7 +171,7 @@ def held_gains(
     not, with the largest bandwidth, or the shortest time, for which they are.
     """
     if (bandwidth is None) == (settle is None):
-        raise InputError("--bandwidth or --settle: give one of them")
+        raise InputError("give --bandwidth or --settle, and only one of them")
     wanted = 2 * math.pi * float(bandwidth) if bandwidth is not None else SETTLED / float(settle or 1)
     if not wanted > 0:
         raise InputError(f"{_option(bandwidth, settle)}: expected a positive number")

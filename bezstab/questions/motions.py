@@ -105,7 +105,7 @@ def turning_of(scene: str | Scene | None, speed: Fraction, h: Fraction | None) -
     """
     if scene is None:
         if speed != 1:
-            raise InputError("--speed goes with --scene: it is the mechanism that is so many times as fast")
+            raise InputError("--speed needs --scene: it says how fast that mechanism moves")
         return None
     if h is None:
         raise InputError("--scene needs --h: how far the mechanism moves in a step depends on it")

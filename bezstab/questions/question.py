@@ -77,7 +77,7 @@ class Question:
         else:
             self._check_goal(self.goal)
         if self.scene is None and self.speed != 1:
-            raise InputError("--speed goes with --scene: it is the mechanism that is so many times as fast")
+            raise InputError("--speed needs --scene: it says how fast that mechanism moves")
         check_chain(self.chain, self.engine)
         object.__setattr__(self, "methods", methods_for(self.methods, self.engine, self.drive))
         if self.steps:
@@ -88,18 +88,18 @@ class Question:
         """Raise InputError unless a point is given in one of its ways, with the step that this way needs."""
         ways = [self.point is not None, self.values is not None, self.drive is not None]
         if self.h_max is not None and self.h_min is None:
-            raise InputError("--h-max goes with --h-min: the range of steps that vary")
+            raise InputError("--h-max needs --h-min: together they are the range of steps")
         if (self.values is not None or self.drive) and self.h is None and self.h_max is None:
             raise InputError("--physical, --engine and --pd need --h: the step in s")
         if self.as_typed and self.values is None:
-            raise InputError("--as-typed goes with --engine: it is the engine's clamps that are left out")
+            raise InputError("--as-typed needs --engine: it leaves out what that engine does to its values")
         if self.values is not None and self.drive:
-            raise InputError("--engine and --pd are two points: give one")
+            raise InputError("--engine and --pd each give a point: use one of them")
         if sum(ways) > 1:
             option = "--engine" if self.engine else "--pd"
             raise InputError(f"{option} takes the place of --alpha, --beta and --physical")
         if not any(ways):
-            raise InputError("--alpha and --beta are needed, or --engine, or --pd")
+            raise InputError("a point is needed: --alpha with --beta, --engine, or --pd")
         if self.h is None and self.h_min is not None:
             object.__setattr__(self, "h", self.h_max)
 
@@ -126,7 +126,7 @@ class Question:
                 f"{float(self.h):g}"
             )
         if self.engine and self.drive:
-            raise InputError("--engine and --pd print two kinds of words: give one")
+            raise InputError("--engine and --pd each print what to set: use one of them")
         if self.engine and self.engine.level != "acceleration" and (self.h_max or self.h_min):
             raise InputError(
                 f"--h-max and --h-min: what {self.engine.name} makes of its values at other steps is told by "
@@ -148,7 +148,7 @@ class Question:
         """The range that h_min begins, up to h_max, by default h; None without h_min. InputError unless it is one."""
         if self.h_min is None:
             if self.hold:
-                raise InputError("--hold goes with --h-min: it is about steps that vary")
+                raise InputError("--hold needs --h-min: it is about steps that vary")
             return None
         highest = self.h_max or self.h
         if highest is None:

@@ -11,7 +11,6 @@ from bezstab.errors import InputError
 from bezstab.methods import Method
 from bezstab.rationals import exact
 from bezstab.show import plot
-from bezstab.show.rows import alpha_and_beta
 from bezstab.show.style import styled
 from bezstab.stability import (
     FloatArray,
@@ -23,6 +22,7 @@ from bezstab.stability import (
     useful_window,
     verdict,
 )
+from bezstab.units import alpha_and_beta
 
 POINTS = 150  # per axis of the map: it appears at once
 STEPS = 100  # of the decay
@@ -153,7 +153,7 @@ def open_explorer(methods: Sequence[Method], h: float, print_line: Callable[[str
         try:
             figure = pyplot.figure("bezstab explore", figsize=(9, 5))
         except ImportError as error:
-            raise InputError(f"explore: no window: {error}") from None
+            raise InputError(f"explore cannot open a window: {error}") from None
         if figure.canvas.required_interactive_framework is None:
             pyplot.close(figure)
             raise InputError("explore: matplotlib found no window system here (try another MPLBACKEND, or a screen)")

@@ -33,7 +33,7 @@ from bezstab.show.row_kinds import (
     SWEPT,
     VERDICT_MAPS,
 )
-from bezstab.units import feedback_gains
+from bezstab.units import alpha_and_beta
 
 COST = (
     *("omega_h", "forced_error", "total_error", "velocity_error", "order_left"),
@@ -425,57 +425,28 @@ def choice_cells(
     `typed` is the point (alpha_hat, beta_hat) before it was rounded: what was typed in 1/s is shown so again.
     """
     alpha = beta = settle_seconds = h_limit = None
+    margins = choice.margins
     if h is not None:
-        if typed:
-            alpha, beta = exact_alpha_and_beta(*typed, Fraction(h))
-        h = float(h)
-        if not typed:
-            alpha, beta = alpha_and_beta(choice.alpha_hat, choice.beta_hat, h)
+        alpha_hat, beta_hat = typed or (choice.alpha_hat, choice.beta_hat)
+        alpha, beta = alpha_and_beta(alpha_hat, beta_hat, h)
         if choice.settle_steps is not None:
-            settle_seconds = choice.settle_steps * h * float(choice.method.step_multiple)
-        if choice.margins:
-            h_limit = choice.margins.h * h
-    h_factor = alpha_min = alpha_max = beta_min = beta_max = None
-    if choice.margins:
-        h_factor = choice.margins.h
-        alpha_min, alpha_max = choice.margins.alpha
-        beta_min, beta_max = choice.margins.beta
+            settle_seconds = choice.settle_steps * float(h) * float(choice.method.step_multiple)
+        h_limit = margins.h * float(h) if margins else None
+    alpha_min, alpha_max = margins.alpha if margins else (None, None)
+    beta_min, beta_max = margins.beta if margins else (None, None)
     return {
         **complex_parts("z_", choice.pole),
-        "h": h,
+        "h": None if h is None else float(h),
         "alpha": alpha,
         "beta": beta,
         "settle_seconds": settle_seconds,
-        "h_factor": h_factor,
+        "h_factor": margins.h if margins else None,
         "h_limit": h_limit,
         "alpha_factor_min": alpha_min,
         "alpha_factor_max": alpha_max,
         "beta_factor_min": beta_min,
         "beta_factor_max": beta_max,
     }
-
-
-def alpha_and_beta(alpha_hat: float, beta_hat: float, h: float) -> tuple[float, float | None]:
-    """Return alpha and beta (1/s) for a step of h (s); beta None where beta_hat < 0 has no root."""
-    two_alpha, beta_squared = feedback_gains(alpha_hat, beta_hat, h)
-    return two_alpha / 2, math.sqrt(beta_squared) if beta_squared >= 0 else None
-
-
-def exact_alpha_and_beta(alpha_hat: Fraction, beta_hat: Fraction, h: Fraction) -> tuple[float, float | None]:
-    """Return alpha and beta (1/s), rounded once, of exact numbers; beta None as in `alpha_and_beta`."""
-    two_alpha, beta_squared = feedback_gains(alpha_hat, beta_hat, h)
-    if beta_squared < 0:
-        return _as_float(two_alpha / 2), None
-    root = Fraction(math.isqrt(beta_squared.numerator), math.isqrt(beta_squared.denominator))
-    return _as_float(two_alpha / 2), _as_float(root) if root**2 == beta_squared else math.sqrt(_as_float(beta_squared))
-
-
-def _as_float(number: Fraction) -> float:
-    """Return the nearest float64, infinity where it is too large."""
-    try:
-        return float(number)
-    except OverflowError:
-        return math.copysign(math.inf, number)
 
 
 def chain_rows(engine: Engine, found: ChainMap) -> list[Row]:

@@ -78,7 +78,7 @@ def accurate_point(
         fold=lambda points: np.clip(points, low, high),
     )
     if np.isinf(least):
-        raise InputError(f"{method.name}: no feedback decays so fast with α and β off by {spread:g} of themselves")
+        raise InputError(f"{method.name}: no feedback settles so fast if α and β are off by a share of {spread:g}")
     axes = np.meshgrid(*(np.linspace(first, last, SAMPLES) for first, last in zip(low, high, strict=True)))
     sampled = errors(np.stack([axis.ravel() for axis in axes], axis=-1)).min()
     if sampled < least * (1 - BETTER):

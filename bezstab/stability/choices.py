@@ -161,7 +161,7 @@ def choose(
         check_critical(pencil, point[0], point[1], box, cut)
         if equal and not math.isclose(point[1], point[0] ** 2 / 4):
             raise InputError(
-                f"--keep alpha=beta: the double mu of {method.name} is not at alpha = beta; no --goal critical"
+                f"--goal critical --keep alpha=beta: the double pole of {method.name} is not at alpha = beta"
             )
     elif goal == "robust":
         point = _checked_least(pencil, box, _slowest(method, modulus, within, spread), equal, cut)
@@ -224,13 +224,13 @@ def _along_curve(
         point = least_along(curve, objective)
         if np.isinf(objective(np.array([point[0]]), np.array([point[1]]), np.inf)).any():
             raise InputError(
-                f"{method.name}: no setting of the engine has |z_p| <= {rate:.6g} with α and β off by {spread:g} of "
-                "themselves"
+                f"{method.name}: no setting of the engine has |z_p| <= {rate:.6g} if α and β are off by a share of "
+                f"{spread:g}"
             )
         return point
     rate = 0.0 if rate is None else rate
     if goal == "critical":
-        raise InputError("the goal critical asks for a double pole, and a curve of points has none to choose")
+        raise InputError("the goal critical needs a double pole, and this engine can express only a curve of points")
     if goal == "gentle":
         found = mildest_along(curve, modulus, rate)
         if found is None:
@@ -262,7 +262,7 @@ def search_box(stable: Region) -> tuple[Extent, bool]:
         reason = ""
         if stable.fixed_poles and abs(stable.fixed_poles[0]) > 1 - SLOW:
             reason = f": a pole stays at {pole_place(stable.fixed_poles[0])} on the unit circle"
-        raise InputError(f"{stable.method.name} is stable for no parameters at all{reason}")
+        raise InputError(f"{stable.method.name} is not stable with any α and β{reason}")
     multiple = float(stable.method.step_multiple)
     strongest = (2 * SEARCHED / multiple, (SEARCHED / multiple) ** 2)
     ranges = [
@@ -300,7 +300,7 @@ def choose_at_step(
             f"h_max = {float(h_max):g} s: only for the goals robust and accurate, and at least h = {float(h):g} s"
         )
     if settle is None and goal == "gentle":
-        raise InputError("the goal gentle asks for settle: a time in s")
+        raise InputError("the goal gentle needs settle, a time in s")
     if settle is not None and goal not in SETTLING:
         raise InputError(f"settle, a time in s, goes with the goals gentle and accurate, not {goal}")
     if settle is not None and settle <= 0:
@@ -500,7 +500,7 @@ def _critical_point(pencil: AnyPencil, box: Extent, cut: bool) -> tuple[float, f
     if isinstance(pencil, PlanePencil):
         found = critical_point(pencil, (alpha_hat_max, beta_hat_max))
         if found is None:
-            raise InputError(f"{pencil.method.name}: no double pole is dominant; no --goal critical")
+            raise InputError(f"{pencil.method.name}: no double pole is dominant: --goal critical has no answer")
         best = best_point(pencil.method)
         if best and not best.z_abs and math.dist(found, (best.alpha_hat, best.beta_hat)) < AT_DEADBEAT:
             return best.alpha_hat, best.beta_hat

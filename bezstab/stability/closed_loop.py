@@ -104,7 +104,9 @@ def dominant_pole(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> 
     if infinite.any():
         alpha_hat, beta_hat = np.broadcast_arrays(real_array(alpha_hat, "alpha_hat"), real_array(beta_hat, "beta_hat"))
         worst = f"({alpha_hat[infinite][0]:.6g}, {beta_hat[infinite][0]:.6g})"
-        raise NumericalError(f"{method.name}: a pole is infinite at {worst}: the implicit step has no solution there")
+        raise NumericalError(
+            f"{method.name}: a pole is infinite at {worst}: the equations of an implicit step have no solution there"
+        )
     return found
 
 

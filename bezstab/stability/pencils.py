@@ -184,7 +184,9 @@ def raise_not_finite(pencil: Pencil, mu: ComplexArray) -> None:
     """Raise NumericalError for a row of mu (one at least) at which a root is not finite."""
     name, worst = pencil.method.name, mu[0]
     if has_infinite_root(pencil, mu[:1])[0]:
-        raise NumericalError(f"{name}: at mu = {worst:.6g} a pole is infinite: the implicit step has no solution there")
+        raise NumericalError(
+            f"{name}: at mu = {worst:.6g} a pole is infinite: the equations of an implicit step have no solution there"
+        )
     raise NumericalError(f"{name}: at mu = {worst:.6g} a pole leaves the range of float64")
 
 

@@ -47,7 +47,8 @@ class Growth:
         """Raise NumericalError where the accuracy leaves open whether errors decay or grow."""
         if abs(self.factor - 1) <= self.accuracy:
             raise NumericalError(
-                f"each step multiplies the error by {self.factor:.12g}, known to {self.accuracy:.1g} only: too near 1"
+                f"each step multiplies the error by {self.factor:.12g}, which rounding moves by {self.accuracy:.1g}: "
+                "too near 1 to tell"
             )
 
 

@@ -229,7 +229,7 @@ def test_nothing_is_faster_than_the_fastest() -> None:
         ("poles --alpha 1 --beta 1 --h 0.01 --scene plumb.toml", "there is no omega; --omega gives one"),
         ("choose --method RK4 --h 0.01 --goal robust --settle 1", "--settle goes with --goal gentle or accurate"),
         ("choose --method RK4 --h 0.01 --goal gentle", "--goal gentle needs --settle"),
-        ("choose --method RK4 --h 0.01 --settle 0.001", "no feedback decays so fast"),
+        ("choose --method RK4 --h 0.01 --settle 0.001", "no feedback settles so fast"),
         ("choose --engine bullet --h 0.01 --goal accurate --settle 0.001", "no setting of the engine"),
         ("choose --method RK4 --h 0.01 --goal fastest --h-max 0.02", "--h-max 0.02: only for --goal accurate, robust"),
     ],

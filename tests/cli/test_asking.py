@@ -142,7 +142,10 @@ def test_one_way_of_applying_a_drive_can_be_asked_about() -> None:
 
 def test_the_help_answers_whether_it_is_kp_or_kd() -> None:
     words = " ".join(run("check", "--help").stdout.split())
-    assert "stable in an implicit engine explode in an explicit one: is it kp or kd?" in words
+    assert "stable in an implicit engine may explode in an explicit one." in words
+    assert "mostly it is kd that is too large" in words
+    assert "mostly it is kd that is too large" in words
+    assert "mostly it is kd that is too large" in words
 
 
 @pytest.mark.parametrize(
@@ -248,7 +251,7 @@ def test_a_drive_without_one_of_its_gains_is_shown_too(gains: str) -> None:
     [
         (("check", "--engine", "bulet=0.2", "--h", "0.01"), "unknown engine 'bulet': did you mean bullet?"),
         (("check", "--engine", "SYM=0.2", "--h", "0.01"), "unknown engine 'SYM' (names: mujoco,"),
-        (("check", "--engine", "bullet", "--h", "0.01"), "'bullet' has no values: expected bullet=ERP"),
+        (("check", "--engine", "bullet", "--h", "0.01"), "'bullet' comes without values: expected bullet=ERP"),
         (("check", "--pd", "1,2,0", "--h", "0.01"), "'--pd': inertia 0: expected above 0"),
         (
             ("choose", "--engine", "box2d", "--h", "0.01", "--goal", "critical"),

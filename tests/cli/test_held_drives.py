@@ -125,8 +125,8 @@ def test_bad_input_is_one_line(arguments: tuple[str, ...], words: str) -> None:
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (("--method", "SYM", "--h", "0.002", "--bandwidth", "5"), "--bandwidth is that of a drive: it needs --pd"),
-        (("--pd", "0.1", "--h", "0.002", "--every", "4"), "--bandwidth or --settle: give one of them"),
+        (("--method", "SYM", "--h", "0.002", "--bandwidth", "5"), "--bandwidth is about a drive: it needs --pd"),
+        (("--pd", "0.1", "--h", "0.002", "--every", "4"), "give --bandwidth or --settle, and only one of them"),
         (
             ("--pd", "0.1", "--h", "0.002", "--bandwidth", "5", "--spread", "0.2"),
             "--spread does not go with",

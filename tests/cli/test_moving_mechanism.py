@@ -130,7 +130,7 @@ def test_region_prints_the_area_that_is_left_at_each_speed() -> None:
     ("options", "said"),
     [
         (("--scene", "driven_four_bar"), "--scene needs --h"),
-        (("--speed", "2"), "--speed goes with --scene"),
+        (("--speed", "2"), "--speed needs --scene"),
         (("--scene", "nowhere", "--h", "0.01"), "nowhere"),
     ],
 )

@@ -59,4 +59,4 @@ def test_a_root_on_the_circle_leaves_nothing(root: str, files: dict[str, str]) -
     assert row["best_where"] == f"stable nowhere: a pole stays at {root} whatever α̂ and β̂"
     result = run("choose", "--method", files[root], "--h", "0.001")
     assert result.exit_code == 2
-    assert f"is stable for no parameters at all: a pole stays at {root} on the unit circle" in result.stderr
+    assert f"is not stable with any α and β: a pole stays at {root} on the unit circle" in result.stderr

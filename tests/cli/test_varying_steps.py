@@ -173,15 +173,15 @@ def test_a_sequence_is_read_from_a_file(tmp_path: Path) -> None:
     [
         (("check", *EXAMPLE, "--h-min", "0.1", "--h-max", "0.01"), "--h-min 0.1: expected at most the longest step"),
         (("check", "--method", "SYM", "--alpha", "1", "--beta", "1", "--h-min", "0.1"), "--h-min needs --h-max or --h"),
-        (("check", *EXAMPLE, "--h", "0.1", "--h-max", "0.2"), "--h-max goes with --h-min"),
-        (("check", *EXAMPLE, "--h", "0.1", "--hold"), "--hold goes with --h-min"),
+        (("check", *EXAMPLE, "--h", "0.1", "--h-max", "0.2"), "--h-max needs --h-min"),
+        (("check", *EXAMPLE, "--h", "0.1", "--hold"), "--hold needs --h-min"),
         (
             ("check", "--method", "B4", "--alpha", "1", "--beta", "1", "--h", "1", "--h-min", "0.5"),
             "B4 uses values of several steps",
         ),
         (("choose", "--method", "B4", "--h", "0.1", "--h-min", "0.05"), "B4 uses values of several steps"),
         (("simulate", "--steps", "0.1"), "B4 uses values of several steps"),
-        (("simulate", "--hold"), "--hold goes with --steps"),
+        (("simulate", "--hold"), "--hold needs --steps"),
         (("simulate", "--method", "SYM", "--steps", "0.1,no"), "'no' is not a finite decimal or fraction"),
         (("simulate", "--method", "SYM", "--steps", "0.5*0.1"), "expected a number of steps from 1"),
         (("simulate", "--method", "bdf2", "--steps", "0.1"), "bdf2 uses values of several steps"),

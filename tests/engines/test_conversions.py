@@ -12,11 +12,11 @@ H = Fraction(1, 100)
 @pytest.mark.parametrize(
     ("name", "typed", "said"),
     [
-        ("mujoco", (1, -1), "one sign"),
+        ("mujoco", (1, -1), "of the same sign"),
         ("mujoco", (1,), "solimp"),
         ("bullet", (1, 2), "expected ERP"),
         ("box2d", (), "hertz, dampingRatio"),
-        ("box2d", (-1, 1), "none below 0"),
+        ("box2d", (-1, 1), "expected 0 or more"),
         ("chrono-explicit", (1,), "expected none"),
         ("rapier", (30, 0), "above 0"),
         ("drake-sap", (1, 1), "go together"),

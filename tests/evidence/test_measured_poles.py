@@ -302,3 +302,15 @@ def test_two_poles_are_told_apart_if_in_400_samples_the_lesser_falls_to_1_over_e
     found = _measurement(method, 2 * place, place**2, at_rest, None, None, H, False, *responses)
     assert (found.measured is not None) == told
     assert ("too near" in found.reason) != told
+
+
+@pytest.mark.slow
+def test_compiled_runs_in_groups_have_the_poles_of_numpys(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of 16 points, which are several groups."""
+    found = []
+    for choice in ("no", "yes"):
+        monkeypatch.setenv("BEZSTAB_COMPILED", choice)
+        found.append(measurements("pendulum", "RK1", 16))
+    for by_numpy, compiled in zip(*found, strict=True):
+        assert compiled.measured_verdict == by_numpy.measured_verdict
+        assert compiled.measured == pytest.approx(by_numpy.measured, abs=1e-7)  # a fit of differences of 1e-6 and less

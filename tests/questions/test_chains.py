@@ -40,7 +40,7 @@ def test_the_strongest_feedback_that_a_chain_allows() -> None:
 
 
 def test_a_chain_needs_an_engine_that_sweeps() -> None:
-    with pytest.raises(InputError, match="--chain goes with --engine"):
+    with pytest.raises(InputError, match="--chain needs --engine"):
         Question(point=(Fraction(1), Fraction(1)), chain=Chain(2), methods=())
     with pytest.raises(InputError, match="mujoco solves all constraints together"):
         Question(engine=ENGINES["mujoco"], values=(Fraction("0.02"), Fraction(1)), h=Fraction(1, 60), chain=Chain(2))

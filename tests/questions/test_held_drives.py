@@ -93,7 +93,7 @@ def test_what_cannot_be_reached_is_refused_with_what_can() -> None:
 def test_bad_input_is_refused_in_a_line() -> None:
     with pytest.raises(InputError, match="--method RK4: expected a way of applying a drive"):
         HeldQuestion(drive=Drive(Fraction(1), Fraction(1), INERTIA), h=H, timing=Timing(2), methods=(lookup("RK4"),))
-    with pytest.raises(InputError, match="--bandwidth or --settle: give one"):
+    with pytest.raises(InputError, match="give --bandwidth or --settle"):
         held_gains(INERTIA, H, Timing())
     with pytest.raises(InputError, match="--bandwidth 0 Hz: expected a positive number"):
         held_gains(INERTIA, H, Timing(), bandwidth=Fraction(0))

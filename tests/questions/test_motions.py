@@ -41,7 +41,7 @@ def test_a_scene_turns_so_much_faster_as_it_moves_faster() -> None:
 
 
 def test_a_speed_goes_with_a_scene_and_a_scene_with_a_step() -> None:
-    with pytest.raises(InputError, match="--speed goes with --scene"):
+    with pytest.raises(InputError, match="--speed needs --scene"):
         turning_of(None, Fraction(2), H)
     with pytest.raises(InputError, match="--scene needs --h"):
         turning_of("pendulum", ONE, None)

@@ -1,24 +1,15 @@
 from fractions import Fraction
 
-import pytest
-
 from bezstab.engines import ENGINES
 from bezstab.methods import lookup
 from bezstab.questions import region_answer
-from bezstab.show.rows import alpha_and_beta, engine_row, whole_row
-from bezstab.units import to_dimensionless
+from bezstab.show.rows import engine_row, whole_row
 
 
 def test_a_whole_row_says_that_b4_is_of_order_two() -> None:
     whole = whole_row(region_answer(lookup("B4")), latex=False)
     assert (whole["order"], whole["error_constant_exact"], whole["steps"], whole["evaluations"]) == (2, "11/36", 4, 1)
     assert whole["error_constant"] == 11 / 36
-
-
-def test_alpha_and_beta_come_back() -> None:
-    alpha_hat, beta_hat = to_dimensionless(Fraction(50), Fraction(30), Fraction(1, 500))
-    assert alpha_and_beta(float(alpha_hat), float(beta_hat), 0.002) == pytest.approx((50, 30))
-    assert alpha_and_beta(0.1, -0.1, 0.002)[1] is None
 
 
 def test_an_engine_without_a_setting_says_why() -> None:

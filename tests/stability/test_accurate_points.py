@@ -66,7 +66,7 @@ def test_of_methods_with_stages_it_is_a_multiple_of_the_motions_own_rate_whateve
 @pytest.mark.slow
 def test_where_nothing_decays_so_fast_it_is_half_as_fast_as_robust() -> None:
     method = lookup("AB8")
-    with pytest.raises(InputError, match="no feedback decays so fast"):
+    with pytest.raises(InputError, match="no feedback settles so fast"):
         choose(method, "accurate", omega_h=Fraction(6, 100), rate=default_rate(method, Fraction(6, 100)))
     chosen = choose(method, "accurate", omega_h=Fraction(6, 100), margins=False)
     assert chosen.worst <= choose(method, "robust", margins=False).worst ** 0.5 * (1 + 1e-9)
