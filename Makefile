@@ -28,7 +28,7 @@ figures: .venv/installed  ## draw what the README shows, into figures/
 	$(BIN)/bezstab region --method RK4 --accuracy --table none -o figures
 	$(BIN)/bezstab tradeoff --predicted $(BOTH_KINDS) --table none -o figures
 	$(BIN)/bezstab tradeoff --table none -o figures
-	$(BIN)/bezstab tradeoff $(ANDREWS) --repeats 1 --against time --recorded figures/andrews_times.json -o figures
+	$(BIN)/python -m tests.show.draw_andrews figures
 
 pages: .venv/installed  ## write anew what pages say that the code says already: tables of files, numbers, promises
 	$(BIN)/python -m tests.pages
@@ -57,7 +57,7 @@ test-oldest:  ## the same tests with the oldest versions that pyproject.toml all
 	.venv-oldest/bin/pip install --quiet --editable '.[test]' --constraint .venv-oldest/oldest.txt
 	.venv-oldest/bin/python -m pytest -m "not slow" -n 2 --dist loadfile
 
-witnesses: .venv/tested  ## engines that are not ours, run: PyBullet, pymunk, Exudyn, MuJoCo
+witnesses: .venv/tested  ## engines that are not ours, run: PyBullet, pymunk, Box2D, Exudyn, MuJoCo
 	$(BIN)/pip install --quiet --editable '.[witnesses]'
 	$(BIN)/python -m pytest tests/witnesses tests/evidence/test_mujoco_witness.py
 

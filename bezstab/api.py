@@ -205,6 +205,9 @@ def choose(
     pd: Sequence[Number] | None = None,
     scene: str | Scene | None = None,
     speed: Number = 1,
+    chain: int | None = None,
+    mass_ratio: Number | None = None,
+    iterations: int | None = None,
 ) -> questions.Answer:
     """Return the alpha and beta to use: the point that a goal asks for, proven stable, with its margins.
 
@@ -235,6 +238,9 @@ def choose(
         and kd to set.
     scene, speed: a mechanism that moves so many times as fast as given there; `moving` says what the
         motion changes.
+    chain, mass_ratio, iterations: with an engine that solves its constraints one after another, in
+        sweeps: a straight chain of so many bodies, the last so many times as heavy, solved in so many
+        sweeps. The answer is at most what such a chain, or the scene, allows with the spread to spare.
 
     Returns an Answer, dimensionless: `alpha_hat`, `beta_hat`, `pole`, `margins`, `safe` and all else
     that `check` says. `from_dimensionless` turns it into alpha and beta in 1/s.
@@ -263,6 +269,8 @@ def choose(
             spread=_real(spread, "spread"),
             settle=_exact_if_given(settle, "settle"),
             equal=equal,
+            chain=_chain(chain, mass_ratio),
+            iterations=_whole(iterations, "iterations"),
         )
         (chosen,) = questions.answers(question)
     return chosen
@@ -287,6 +295,9 @@ def check(
     pd: Sequence[Number] | None = None,
     scene: str | Scene | None = None,
     speed: Number = 1,
+    chain: int | None = None,
+    mass_ratio: Number | None = None,
+    iterations: int | None = None,
 ) -> questions.Answer:
     """Return what there is to say of a point of your own: is it safe, how fast is it, how far may it go.
 
@@ -304,13 +315,18 @@ def check(
     spread: the share by which alpha and beta may be off, for `worst`.
     omega, omega_h: how fast the motion is, in 1/s or in rad a step, for `cost`.
     scene, speed: a mechanism that moves so many times as fast as given there.
+    chain, mass_ratio, iterations: with an engine that solves its constraints one after another, in
+        sweeps: a straight chain of so many bodies, the last so many times as heavy, solved in so many
+        sweeps. Without a chain or a scene such an engine's answer is about one constraint alone;
+        `swept_over` says so.
 
     Returns an Answer, dimensionless. If there are several, as of the ways of applying a drive, it is
     the first that is not safe. `verdict` is proven. `pole` is the dominant one. `safe` is whether
     errors shrink: with a scene also as it moves, with h_min for every sequence of such steps. `margins`
     has the factors by which h, alpha and beta may each be scaled alone; None unless the point is
     stable. These are computed when you first ask for them: `cost` (of accuracy), `instead` (what
-    `choose` gives), `moving`, `varying`, `setting` (the engine's line) and `gains` (of the drive).
+    `choose` gives), `moving`, `varying`, `swept` (many constraints), `setting` (the engine's line) and
+    `gains` (of the drive).
 
     InputError unless the point is given in one of these ways and the numbers are in range.
     NumericalError if a pole leaves the range of float64. Sources as for `verdict`.
@@ -337,6 +353,8 @@ def check(
             scene=_scene_or_name(scene),
             speed=_exact(speed, "speed"),
             spread=_real(spread, "spread"),
+            chain=_chain(chain, mass_ratio),
+            iterations=_whole(iterations, "iterations"),
         )
         given = list(questions.answers(question))
     return next((answer for answer in given if not answer.safe), given[0])
@@ -639,6 +657,17 @@ def _drive(gains: Sequence[Number] | None) -> Drive | None:
     if isinstance(gains, str) or not isinstance(gains, Sequence) or len(gains) != 3:
         raise InputError(f"pd = {shown(gains)}: expected (kp, kd, inertia)")
     return Drive(*(_exact(gain, name) for gain, name in zip(gains, ("kp", "kd", "inertia"), strict=True)))
+
+
+def _chain(bodies: int | None, mass_ratio: Number | None) -> questions.Chain | None:
+    """Return the chain that is asked about, None without one; InputError as `typed_chain`."""
+    return questions.typed_chain(_whole(bodies, "chain"), _exact_if_given(mass_ratio, "mass_ratio"))
+
+
+def _whole(value: int | None, name: str) -> int | None:
+    if value is not None and (isinstance(value, bool) or not isinstance(value, int)):
+        raise InputError(f"{name} = {shown(value)}: expected a whole number")
+    return value
 
 
 def _scene_or_name(given: str | Scene | None) -> str | Scene | None:

@@ -1,7 +1,6 @@
 """Input files that are read or refused in one line; output files that are written whole or not at all."""
 
 import io
-import json
 import secrets
 import tempfile
 import tomllib
@@ -21,20 +20,11 @@ def read_toml(kind: str, path: Path, parse: Callable[[dict[str, Any]], Parsed]) 
 
     InputError, in one line with the kind and the path in front, for whatever the system, TOML or `parse` refuses.
     """
-    return _read(kind, path, lambda text: parse(tomllib.loads(text)))
-
-
-def read_json(kind: str, path: Path, parse: Callable[[Any], Parsed]) -> Parsed:
-    """Return the same of a JSON file's data."""
-    return _read(kind, path, lambda text: parse(json.loads(text)))
-
-
-def _read(kind: str, path: Path, parse: Callable[[str], Parsed]) -> Parsed:
     try:
-        return parse(path.read_bytes().decode("utf-8-sig"))  # some editors begin with a mark of UTF-8
+        return parse(tomllib.loads(path.read_bytes().decode("utf-8-sig")))  # some editors begin with a mark of UTF-8
     except RecursionError:
         raise InputError(f"{kind} {path}: brackets nested too deeply") from None
-    except (OSError, ValueError) as error:  # InputError and what tomllib and json raise are ValueErrors
+    except (OSError, ValueError) as error:  # InputError and what tomllib raises are ValueErrors
         reason = error.strerror if isinstance(error, OSError) else error
         raise InputError(" ".join(f"{kind} {path}: {reason}".split())) from None
 

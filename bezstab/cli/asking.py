@@ -30,7 +30,7 @@ from bezstab.units import to_dimensionless
 
 if TYPE_CHECKING:
     from bezstab.mechanism import TurningNormals
-    from bezstab.questions import Answer, Chain, Question
+    from bezstab.questions import Answer, Question
 
 GAINS = ("kp", "kd", "inertia")
 
@@ -80,7 +80,7 @@ chain_options = together(
     click.option(
         "--iterations",
         type=int,
-        help="With --chain: how often a step goes through all constraints [the engine's own number].",
+        help="With --chain or --scene: how often a step goes through all constraints [the engine's own number].",
     ),
 )
 omega_option = click.option(
@@ -110,19 +110,6 @@ def moving_scene_options(help_text: str) -> Decorator:
     return together(scene_option(None, help_text), speed)
 
 
-def typed_chain(bodies: int | None, mass_ratio: Fraction | None, iterations: int | None) -> "Chain | None":
-    """Return the chain that was typed, None without one; InputError for what goes with it alone."""
-    from bezstab.questions import Chain
-
-    if bodies is not None:
-        return Chain(bodies, Fraction(1) if mass_ratio is None else mass_ratio, iterations)
-    if mass_ratio is not None:
-        raise InputError("--mass-ratio needs --chain: it says how heavy the last body of the chain is")
-    if iterations is not None:
-        raise InputError("--iterations needs --chain: one constraint alone needs one sweep only")
-    return None
-
-
 def asked(
     *,
     methods: Sequence[Method],
@@ -140,7 +127,7 @@ def asked(
 
     What looks mistaken in it is said, and how its scene moves is found. InputError as Question.
     """
-    from bezstab.questions import Question
+    from bezstab.questions import Question, typed_chain
 
     h, h_min, h_max = (typed.get(name) for name in ("h", "h_min", "h_max"))
     longest = h or (h_max if h_min else None)
@@ -158,7 +145,8 @@ def asked(
         engine=named,
         values=values,
         drive=drive,
-        chain=typed_chain(chain, mass_ratio, iterations),
+        chain=typed_chain(chain, mass_ratio),
+        iterations=iterations,
         **typed,
     )
     if point and not physical:
@@ -230,15 +218,15 @@ def say_what_was_made(question: "Question", form: Format) -> None:
     if question.engine and for_reading(form):
         for note in question.given.notes or ():
             say(f"{question.engine.name}: {note} (--as-typed leaves that out)")
-        say_what_is_left_out(question.engine, chain=question.chain is not None)
+        say_what_is_left_out(question.engine, many=question.swept is not None)
 
 
-def say_what_is_left_out(engine: Engine, *, chain: bool = False) -> None:
-    """Say on standard error what the conversion of an engine's values leaves out; of a chain, what its sweeps do."""
+def say_what_is_left_out(engine: Engine, *, many: bool = False) -> None:
+    """Say on standard error what the conversion of an engine's values leaves out; of many constraints, its sweeps."""
     swept = "; it solves each constraint by itself, in sweeps: chains of them may diverge all the same"
     ask = ": ask with --chain" if engine.sweeping else ""
-    say(f"{engine.name}: left out: {engine.excludes}{swept + ask if engine.sweeps and not chain else ''}")
-    if chain and engine.sweeping:
+    say(f"{engine.name}: left out: {engine.excludes}{swept + ask if engine.sweeps and not many else ''}")
+    if many and engine.sweeping:
         say(f"{engine.name}: sweeps are its {engine.sweeping.word}; of them left out: {engine.sweeping.excludes}")
 
 

@@ -70,4 +70,4 @@ def chains(
 
     files.write_figure(files.path("chains", words.name), draw)
     if for_reading(form):
-        say_what_is_left_out(words, chain=True)
+        say_what_is_left_out(words, many=True)

@@ -51,6 +51,7 @@ from bezstab.show import (
     ENGINES_LISTED,
     LARGEST_STEPS,
     Format,
+    alone_words,
     answer_row,
     costs_words,
     largest_step_row,
@@ -59,10 +60,15 @@ from bezstab.show import (
 )
 
 if TYPE_CHECKING:
-    from bezstab.questions import Answer
+    from bezstab.questions import Answer, Question
 
 WITHOUT_ACCURACY = ("total_error", "order_left", "times_least_velocity")
 """What tables of a drive leave out: nothing feeds its target's acceleration forward."""
+OF_ONE_ALONE = (
+    *("worst", "settle_steps", "settle_seconds", "h_limit"),
+    *("alpha_factor_min", "alpha_factor_max", "beta_factor_min", "beta_factor_max"),
+)
+"""What tables of constraints that an engine sweeps over leave out: it is told of one of them alone."""
 
 
 @click.command()
@@ -136,9 +142,10 @@ def choose(
     drive, with the kp and kd to set. With --bandwidth or --settle the gains are critically damped and leave a margin.
     They also allow for a controller that is slower than the physics (--every, --late, --filter).
 
-    With --h-min, "varying steps" says whether errors decay for every sequence of steps up to --h-max. --chain also
-    says how many sweeps the answer needs in a straight chain of bodies, and what the strongest feedback is that this
-    chain allows.
+    With --h-min, "varying steps" says whether errors decay for every sequence of steps up to --h-max. Many engines
+    solve their constraints one after another, in sweeps. With --chain or --scene their answer is at most the strongest
+    feedback that these constraints allow with --spread to spare, at --iterations sweeps. Below it is what one
+    constraint alone would get, and how many sweeps that takes.
 
     Example: bezstab choose --method B4 --h 0.001
     """
@@ -160,22 +167,21 @@ def choose(
         **typed,
     )
     chosen = list(progress(answers(question), question.goal or "", len(question.methods)))
-    show_rows(CHOICES, [answer_row(answer) for answer in chosen], form, WITHOUT_ACCURACY if drive else ())
+    show_rows(CHOICES, [answer_row(answer) for answer in chosen], form, _left_out(question))
     say_unknown_costs(chosen)
     if for_reading(form):
         say_varying(chosen)
-        for answer in chosen if not drive else ():
+        for answer in chosen if not (drive or question.swept) else ():
             if lines := trade_words(answer):
                 name = f"{answer.method.name}: " if len(chosen) > 1 else ""
                 show_text("\n" + "\n".join(f"{name}{line}" for line in lines))
         if not drive:
             show_text(f"\n{motion_words(question.motion)}")
-        for answer in chosen if question.chain else ():
-            show_text(
-                f"\nThe strongest that the chain allows with the spread to spare: {answer.chain_setting or 'none'}."
-            )
+        for line in map(alone_words, chosen):
+            if line:
+                show_text(f"\n{line}")
         if engine:
-            say_what_is_left_out(engine, chain=question.chain is not None)
+            say_what_is_left_out(engine, many=question.swept is not None)
     context.exit(0 if all(answer.safe for answer in chosen) else 1)
 
 
@@ -209,7 +215,8 @@ def check(context: click.Context, /, timing: HeldTiming, form: Format, **typed: 
     engine's values as they are. What `choose` gives instead is a line to paste. Many engines solve their constraints
     one after another, in sweeps. The answer is then about one constraint alone: a chain of them may diverge all the
     same. With --chain, safe means stable for so many bodies in a straight chain. Its last body is --mass-ratio times
-    as heavy, and a step makes --iterations sweeps.
+    as heavy, and a step makes --iterations sweeps. With --scene, safe means so for the constraints of that mechanism at
+    its start, in the order of its file.
 
     --pd kp,kd,inertia judges a joint's drive, applied in four ways: explicit (SYM), implicit in velocity (imex-euler,
     as MuJoCo's implicitfast), as stable PD (stable-pd), fully implicit (implicit-euler, as PhysX). All four must be
@@ -237,7 +244,7 @@ def check(context: click.Context, /, timing: HeldTiming, form: Format, **typed: 
     found = list(_with_instead(answers(question)))
     given = [answer for answer in found if answer.role == "given"]
     if for_reading(form):
-        without = WITHOUT_ACCURACY if drive else ()
+        without = _left_out(question)
         show_rows(CHECKED, [answer_row(answer) for answer in given], form, without)
         say_varying(given)
         for sentence in map(costs_words, given if not drive else ()):
@@ -257,6 +264,11 @@ def check(context: click.Context, /, timing: HeldTiming, form: Format, **typed: 
 
 NEEDING_A_STEP = ("h", "h_min", "scene", "engine", "drive", "as_typed", "hold", "omega")
 """Without any of these, α and β in 1/s are asked about for every step."""
+
+
+def _left_out(question: "Question") -> tuple[str, ...]:
+    """Return the keys that tables of a question leave out."""
+    return (*(WITHOUT_ACCURACY if question.drive else ()), *(OF_ONE_ALONE if question.swept else ()))
 
 
 def _with_instead(given: "Iterable[Answer]") -> "Iterator[Answer]":

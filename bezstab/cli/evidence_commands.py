@@ -225,12 +225,6 @@ def _check_number_of_steps(time: Fraction, h: Fraction, method: Method) -> None:
     default="evaluations",
     help="What errors are compared with: evaluations of f, or processor time on this machine.",
 )
-@click.option(
-    "--recorded",
-    type=click.Path(path_type=Path),
-    help="Take processor times from a file that an earlier run printed with --format json, and measure none. The "
-    "figure is then the same again.",
-)
 @compiled_option
 @work_options
 @file_options
@@ -250,7 +244,6 @@ def tradeoff(
     tolerance: Fraction,
     repeats: int,
     against: "Cost",
-    recorded: Path | None,
     work: Work,
     files: Files,
     form: Format,
@@ -280,12 +273,11 @@ def tradeoff(
         _predicted_trade(methods, omega, scene, speed, steps, levels, files, form)
         return
     point = both_or_none(alpha, beta)
-    _check_simulated_options(point, physical, omega, levels, recorded, against)
+    _check_simulated_options(point, physical, omega, levels)
     if point and steps and not physical:
         say_if_units_were_mistaken(methods, *point, max(steps))
     step_sizes = tuple(sorted({float(step) for step in steps or evidence.STEPS}))
     _check_swept_time(float(time), step_sizes, methods)
-    times = recorded and evidence.read_times(recorded, [method.name for method in methods], step_sizes)
     rate = None if point else _rate_of_motion(omega, scene, speed, time, step_sizes)
     loaded_scene = at_speed(load_scene(scene), float(speed))
     reference = evidence.reference_motion(loaded_scene, step_sizes[0], float(time))
@@ -298,9 +290,7 @@ def tradeoff(
     with results_of_chunks(evidence.measured_runs, sweeps, path, job, work) as results:
         per_method = (evidence.swept_runs(*each) for each in zip(sweeps, results, strict=True))
         runs = list(chain.from_iterable(per_method))
-        if times:
-            runs = evidence.with_recorded_times(runs, times)
-        swept = evidence.with_fronts(runs, reference.error, against, recorded=bool(times))
+        swept = evidence.with_fronts(runs, reference.error, against)
         rows = [run_row(run, front) for run, front in zip(swept.runs, swept.front_labels, strict=True)]
 
         def draw(constraint: bool, floor: float) -> "Figure":
@@ -316,8 +306,6 @@ def tradeoff(
     show_rows(SWEPT, rows, form)
     if for_reading(form):
         show_text(f"\nThe reference is known to {reference.error:.0e} (m, rad).")
-        if recorded:
-            show_text(f"Processor times are not of this run: they are those in {recorded}.")
         if rate is not None:
             show_text(f"Each point is the choice of the goal accurate for a motion with ω = {float(rate):.3g} 1/s.")
         held: Held = "own choice" if rate else "alpha and beta" if physical else "alpha_hat and beta_hat"
@@ -330,8 +318,6 @@ def _check_simulated_options(
     physical: bool,
     omega: Fraction | None,
     levels: Sequence[Fraction],
-    recorded: Path | None,
-    against: "Cost",
 ) -> None:
     """Raise UsageError for options of tradeoff that do not go together."""
     if levels:
@@ -340,8 +326,6 @@ def _check_simulated_options(
         raise click.UsageError("--physical needs --alpha and --beta")
     if omega is not None and point:
         raise click.UsageError("--omega does not go with --alpha and --beta: points are chosen for that motion")
-    if recorded and against != "time":
-        raise click.UsageError("--recorded needs --against time")
 
 
 def _predicted_trade(

@@ -148,7 +148,8 @@ JOLT = Engine(
         iterations=10,
         word="mNumVelocitySteps",
         source="Jolt source, PhysicsSystem.cpp (JobSolveVelocityConstraints), PhysicsSettings.h, AxisConstraintPart.h",
-        excludes="constraints of several dimensions, which it solves together; large islands, which it splits",
+        excludes="large islands, which it splits",
+        together=True,
     ),
 )
 
@@ -175,7 +176,7 @@ BOX2D_V2 = engine_without_parameters(
         iterations=8,
         word="velocityIterations",
         source="Box2D 2.4 source, b2_island.cpp, b2_revolute_joint.cpp; its testbed's 8 velocity and 3 position sweeps",
-        excludes="position sweeps other than 3, and those that the slop of 5 mm ends; the two dimensions of a joint, "
-        "which it solves together",
+        excludes="position sweeps other than 3, and those that the slop of 5 mm ends",
+        together=True,
     ),
 )

@@ -5,8 +5,10 @@
 A pass has an unknown impulse for each constraint. With the inverse effective masses A = J M^-1 J', the errors c and
 their rates of change h c' = v, it sweeps towards the impulses p with
 
-    velocity pass   (A + softness diag A) p = A p0 - v - share c      p0: the impulses that v has in it already
-    position pass   (A + softness diag A) p = -share c                from p = 0; it moves c by A p and leaves v alone
+    velocity pass   (A + softness D) p = A p0 - v - share c      p0: the impulses that v has in it already
+    position pass   (A + softness D) p = -share c                from p = 0; it moves c by A p and leaves v alone
+
+with D the part of A that a constraint, or a joint whose constraints are solved together, has with itself.
 """
 
 from collections.abc import Callable
@@ -67,7 +69,8 @@ class Sweeping:
 
     `step(iterations, h, *values)` is its step with so many sweeps, for its values as `Engine.read` takes them, h in s.
     `iterations` is its own number and `word` its name for that. `source` is where this is from, `excludes` what it
-    leaves out.
+    leaves out. `together` is whether it solves the constraints of one joint, such as the two of a pin, exactly and
+    together, and sweeps over joints; otherwise it sweeps over constraints.
     """
 
     step: Callable[..., SweptStep]
@@ -75,6 +78,7 @@ class Sweeping:
     word: str
     source: str
     excludes: str
+    together: bool = False
 
 
 def check_iterations(iterations: int) -> int:

@@ -149,7 +149,8 @@ GODOT_2D = _engine_with_erp(
         word="physics/2d/solver/solver_iterations",
         source="Godot source, godot_joints_2d.cpp (pre_solve applies P, solve has its own bias impulse), "
         "godot_step_2d.cpp, physics_server_2d.cpp",
-        excludes="the two dimensions of a pin, which it solves together; contacts",
+        excludes="contacts",
+        together=True,
     ),
 )
 KAMINO = _engine_with_erp(
@@ -274,7 +275,8 @@ CHIPMUNK = Engine(
         iterations=10,
         word="iterations",
         source="Chipmunk source, cpSpaceStep.c (cached impulses, then sweeps), cpSpace.c, cpPivotJoint.c",
-        excludes="the two dimensions of a pivot, which it solves together; contacts; steps that vary",
+        excludes="contacts; steps that vary",
+        together=True,
     ),
 )
 
@@ -365,8 +367,8 @@ BOX2D = Engine(
         iterations=1,
         word="ITERATIONS",
         source="Box2D v3 source, solver.c (ITERATIONS, RELAX_ITERATIONS), revolute_joint.c, joint.c",
-        excludes="h is the substep's; its order by colours of a graph; the two dimensions of a joint, which it solves "
-        "together; ITERATIONS is set when it is compiled",
+        excludes="h is the substep's; its order by colours of a graph; ITERATIONS is set when it is compiled",
+        together=True,
     ),
 )
 

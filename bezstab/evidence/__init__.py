@@ -59,7 +59,6 @@ from bezstab.evidence.probed_poles import (
     probed_pole,
     steps_between_rows,
 )
-from bezstab.evidence.recorded_times import read_times, with_recorded_times
 from bezstab.evidence.reference_motions import ReferenceMotion, reference_motion
 from bezstab.evidence.sweep_summaries import Held, summary, sweep_sentences
 from bezstab.evidence.verdict_maps import MapRows, VerdictMap, map_rows, simulated_verdicts, verdict_map

@@ -103,7 +103,7 @@ class SweptRuns:
 
     The fronts are indices of runs, ascending in cost, that no other run beats: by the trajectory's error, and by the
     largest |c|. A run that failed is on neither. `reference_error` (SI) is how well the true motion is known. Costs are
-    `against` what they are counted in, processor times perhaps those `recorded` in an earlier sweep.
+    `against` what they are counted in.
     """
 
     runs: tuple[Run, ...] = field(repr=False)
@@ -111,7 +111,6 @@ class SweptRuns:
     constraint_front: tuple[int, ...]
     reference_error: float
     against: Cost = "evaluations"
-    recorded: bool = False
 
     @property
     def front_labels(self) -> list[str]:
@@ -247,9 +246,7 @@ def _observed_order(larger: Run, h: float, error: float | None, reference_error:
     return float(np.log(larger.trajectory_error / error) / np.log(larger.h / h))
 
 
-def with_fronts(
-    runs: Sequence[Run], reference_error: float, against: Cost = "evaluations", recorded: bool = False
-) -> SweptRuns:
+def with_fronts(runs: Sequence[Run], reference_error: float, against: Cost = "evaluations") -> SweptRuns:
     """Return the runs of several methods, whose sweeps share a reference, with the Pareto fronts they make up.
 
     The reference's error in SI; the others as in `SweptRuns`.
@@ -262,5 +259,4 @@ def with_fronts(
         constraint_front=tuple(pareto_front(constraint)),
         reference_error=reference_error,
         against=against,
-        recorded=recorded,
     )

@@ -83,7 +83,7 @@ def _written(of_arrays: StateFunction, judged_arrays: StateFunction, judged_floa
     return accelerate
 
 
-def change_step(rows: Rows, ratio: float, registers: FloatArray) -> None:
+def change_step(rows: Rows, ratio: float, registers: FloatArray, room: Room) -> None:
     """Turn registers into units of another step."""
     for register, power in enumerate(rows.powers):
         registers[register] *= ratio**power
@@ -97,38 +97,30 @@ def arguments(row: FloatArray, h: float, registers: FloatArray, state: FloatArra
 
 def evaluate(
     accelerate: Accelerate,
-    row: FloatArray,
+    rows: Rows,
+    number: int,
     time: float,
     h: float,
     gains: FloatArray,
     registers: FloatArray,
-    target: int,
-    state: FloatArray,
-    found: FloatArray,
+    room: Room,
 ) -> float:
     """Take an explicit evaluation."""
-    arguments(row, h, registers, state)
+    arguments(rows.arguments[number], h, registers, room.state)
     lanes = gains.shape[1]
-    pivot = accelerate(time, gains, state.reshape(2, -1, lanes), found.reshape(-1, lanes))
-    np.multiply(found, h * h, out=registers[target])
+    moment = time + rows.moments[number] * h
+    pivot = accelerate(moment, gains, room.state.reshape(2, -1, lanes), room.found.reshape(-1, lanes))
+    np.multiply(room.found, h * h, out=registers[len(rows.powers) + number])
     return pivot
 
 
-def finish(
-    combined: FloatArray,
-    moved_from: IntArray,
-    moved_to: IntArray,
-    ends: IntArray,
-    h: float,
-    registers: FloatArray,
-    into: FloatArray,
-) -> float:
+def finish(rows: Rows, h: float, registers: FloatArray, room: Room, into: FloatArray) -> float:
     """Combine, write the new state, and move on."""
-    columns = combined.shape[1]
-    np.dot(combined, registers[:columns], out=registers[columns:])
-    into[:] = registers[ends]
+    columns = rows.combined.shape[1]
+    np.dot(rows.combined, registers[:columns], out=registers[columns:])
+    into[:] = registers[rows.state]
     into[1] /= h
-    registers[moved_to] = registers[moved_from]
+    registers[rows.moved_to] = registers[rows.moved_from]
     return float(np.abs(into).sum())
 
 
@@ -216,7 +208,7 @@ def renew(
     registers: FloatArray,
     inverse: FloatArray,
     room: Room,
-) -> None:
+) -> int:
     """Compute those lanes' inverse Jacobians anew; lanes that inherited theirs start again."""
     sought = unknowns(rows, group, registers)
     count, lanes = len(sought), room.renewed
@@ -240,6 +232,7 @@ def renew(
                 jacobian[place * n + i, column] = -h * h * change
     jacobian += np.eye(size)[:, :, np.newaxis]
     inverse[:size, :size, lanes] = inverses(jacobian)
+    return count * size
 
 
 def advance(rows: Rows, group: IntArray, registers: FloatArray, room: Room) -> bool:

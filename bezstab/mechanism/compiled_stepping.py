@@ -14,13 +14,10 @@ from pathlib import Path
 from types import FunctionType
 from typing import Any
 
-import numpy as np
-
 from bezstab.compiling import INNER, check_numba, compiled_choice, compiler, numba_is_installed
-from bezstab.errors import InputError
 from bezstab.mechanism import stepping
 from bezstab.mechanism.compiled import Mechanism, corrections_of
-from bezstab.mechanism.generated_code import compiled_source, machine_source
+from bezstab.mechanism.generated_code import MachineCode, compiled_source, machine_code, slope_lines
 from bezstab.mechanism.start import CLOSED
 from bezstab.mechanism.stepping import FALL, TOLERANCE, FloatArray, IntArray, Operations, Room, Rows, TakeSteps, stepper
 from bezstab.methods import Method, implicit
@@ -39,13 +36,7 @@ ITERATIONS_OF_A_SOLUTION = 4
 CHEAPER_TOGETHER = 20
 """Times: what an evaluation costs in a batch of numpy, against one of a run alone in Python."""
 
-MOST_LINES = 3000
-"""Of an acceleration that is compiled without being asked for: what numba takes grows faster than the text."""
-
-MOST_LINES_ASKED_FOR = 8000
-"""Of one that is asked for: numba takes a minute for 2,000 lines, and between two and three for 6,000."""
-
-LANES = 64
+LANES = 32
 """Runs side by side: what they remember stays in the fastest memory."""
 
 _compiled: set[tuple[Mechanism, bool, bool]] = set()
@@ -55,22 +46,15 @@ _compiled: set[tuple[Mechanism, bool, bool]] = set()
 def runs_compiled(mechanism: Mechanism, method: Method, evaluations: int, projecting: bool = False) -> bool:
     """Return whether a run of so many evaluations is to be compiled. InputError if it must be and cannot be.
 
-    That is without numba, or where the acceleration is too long a text. By default where numba is there and it pays:
-    the run is long, or its scene has been compiled before. `evaluations` do not include what iterations and projections
-    take.
-    InputError, too, where BEZSTAB_COMPILED says neither auto nor yes nor no.
+    That is without numba. By default where numba is there and it pays: the run is long, or its scene has been compiled
+    before. `evaluations` do not include what iterations and projections take. InputError, too, where BEZSTAB_COMPILED
+    says neither auto nor yes nor no.
     """
     choice = compiled_choice()
     if choice == "no":
         return False
-    lines = len(mechanism.acceleration_code.lines)
     if choice == "yes":
         check_numba()
-        if lines > MOST_LINES_ASKED_FOR:
-            raise InputError(
-                f"--compiled yes: the acceleration of {mechanism.scene.name} is {lines} lines of code, of which at "
-                f"most {MOST_LINES_ASKED_FOR} are compiled in minutes: expected auto or no"
-            )
         return True
     if not numba_is_installed():
         return False
@@ -79,123 +63,114 @@ def runs_compiled(mechanism: Mechanism, method: Method, evaluations: int, projec
         return True
     if solving:
         evaluations *= ITERATIONS_OF_A_SOLUTION
-    if lines > MOST_LINES or evaluations < WORTH_LOADING:
+    if evaluations < WORTH_LOADING:
         return False
-    return evaluations >= WORTH_COMPILING or _is_kept(_kept_file(mechanism, solving, projecting))
+    return evaluations >= WORTH_COMPILING or _is_kept(_kept_file(mechanism, solving, projecting, stride=1))
 
 
-def change_step(rows: Rows, ratio: float, registers: FloatArray) -> None:
+N, STRIDE, WIDTH = 1, 1, 1
+"""Of a scene's registers: coordinates, the lanes that each has room for, and what that makes.
+
+Machine code is compiled for its own numbers, so that it knows how long its loops are.
+"""
+
+
+def combine(rows: Rows, row: int, factor: float, registers: FloatArray, room: Room, into: FloatArray) -> None:
+    """Write the sum that a row of a program stands for, times a factor."""
+    for place in range(WIDTH):
+        into[place] = 0.0
+    for term in range(rows.starts[row], rows.starts[row + 1]):
+        share, source = factor * rows.shares[term], registers[room.where[rows.sources[term]]]
+        for place in range(WIDTH):
+            into[place] += share * source[place]
+
+
+def arguments(rows: Rows, number: int, h: float, registers: FloatArray, room: Room) -> None:
+    """Write position and velocity of an evaluation."""
+    combine(rows, 2 * number, 1.0, registers, room, room.state[0])
+    combine(rows, 2 * number + 1, 1 / h, registers, room, room.state[1])
+
+
+def change_step(rows: Rows, ratio: float, registers: FloatArray, room: Room) -> None:
     """Turn registers into units of another step."""
-    for register in range(len(rows.powers)):
-        for _ in range(rows.powers[register]):
-            for place in range(registers.shape[1]):
-                registers[register, place] *= ratio
+    for number in range(len(rows.powers)):
+        register = registers[room.where[number]]
+        for _ in range(rows.powers[number]):
+            for place in range(WIDTH):
+                register[place] *= ratio
 
 
 def evaluate(
-    row: FloatArray,
-    time: float,
-    h: float,
-    gains: FloatArray,
-    registers: FloatArray,
-    target: int,
-    state: FloatArray,
-    found: FloatArray,
+    rows: Rows, number: int, time: float, h: float, gains: FloatArray, registers: FloatArray, room: Room
 ) -> float:
     """Take an explicit evaluation."""
-    arguments(row, h, registers, state)
-    pivot = 1.0
-    if gains.shape[1] == 1:
-        pivot = acceleration(time, gains, state, found, 0)
-    else:
-        for lane in range(gains.shape[1]):  # no pivot is asked for, and so none is computed
-            acceleration(time, gains, state, found, lane)
-    for place in range(len(found)):
-        registers[target, place] = h * h * found[place]
+    arguments(rows, number, h, registers, room)
+    pivot = accelerations(time + rows.moments[number] * h, gains, room.state, room.found, room.variables)
+    register = registers[place_of(rows, number, room)]
+    for place in range(WIDTH):
+        register[place] = h * h * room.found[place]
     return pivot
 
 
-def arguments(row: FloatArray, h: float, registers: FloatArray, state: FloatArray) -> None:
-    """Write position and velocity of an evaluation."""
-    for half in range(2):
-        for place in range(state.shape[1]):
-            state[half, place] = 0.0
-        for register in range(row.shape[1]):
-            share = row[half, register] if half == 0 else row[half, register] / h
-            if share != 0:
-                for place in range(state.shape[1]):
-                    state[half, place] += share * registers[register, place]
-
-
-def finish(
-    combined: FloatArray,
-    moved_from: IntArray,
-    moved_to: IntArray,
-    ends: IntArray,
-    h: float,
-    registers: FloatArray,
-    into: FloatArray,
-) -> float:
+def finish(rows: Rows, h: float, registers: FloatArray, room: Room, into: FloatArray) -> float:
     """Combine, write the new state, and move on."""
-    rows, columns = combined.shape
-    width = registers.shape[1]
-    for row in range(rows):
-        for place in range(width):
-            registers[columns + row, place] = 0.0
-        for register in range(columns):
-            share = combined[row, register]
-            if share != 0:
-                for place in range(width):
-                    registers[columns + row, place] += share * registers[register, place]
+    count, columns = rows.combined.shape
+    for number in range(count):
+        row = 2 * len(rows.moments) + number
+        combine(rows, row, 1.0, registers, room, registers[room.where[columns + number]])
+    position, velocity = registers[room.where[rows.state[0]]], registers[room.where[rows.state[1]]]
+    per_step = 1 / h
+    for place in range(WIDTH):
+        into[0, place] = position[place]
+        into[1, place] = per_step * velocity[place]
     size = 0.0
-    for place in range(width):
-        q, v = registers[ends[0], place], registers[ends[1], place] / h
-        into[0, place] = q
-        into[1, place] = v
-        size += abs(q) + abs(v)
-    for move in range(len(moved_to)):
-        start, end = moved_from[move], moved_to[move]
-        for place in range(width):
-            registers[end, place] = registers[start, place]
+    if STRIDE == 1:
+        for place in range(WIDTH):
+            size += abs(into[0, place]) + abs(into[1, place])
+    for move in range(len(rows.moved_to)):  # the new where the old was, and the old to be written over
+        start, end = rows.moved_from[move], rows.moved_to[move]
+        room.where[start], room.where[end] = room.where[end], room.where[start]
     return size
 
 
 def begin(rows: Rows, group: IntArray, registers: FloatArray, room: Room) -> None:
     """Begin a group with its guesses."""
-    carried = len(rows.powers)
     for number in range(group[0], group[1]):
-        for place in range(registers.shape[1]):
-            guess = registers[rows.guesses[number], place]
-            registers[carried + number, place] = guess
-            room.guess[number - group[0], place] = guess
+        guess, register = registers[room.where[rows.guesses[number]]], registers[place_of(rows, number, room)]
+        for place in range(WIDTH):
+            register[place] = guess[place]
+            room.guess[number - group[0], place] = guess[place]
     for lane in range(len(room.running)):
         room.running[lane], room.inherited[lane] = True, True
         room.settled[lane], room.solved[lane] = False, False
         room.moved_before[lane] = math.inf
 
 
+def place_of(rows: Rows, number: int, room: Room) -> int:
+    """Return where the register stands of what an evaluation finds."""
+    place: int = room.where[len(rows.powers) + number]
+    return place
+
+
 def residual(
     rows: Rows, group: IntArray, time: float, h: float, gains: FloatArray, registers: FloatArray, room: Room
 ) -> float:
     """Write the residuals of a group, and the sizes of what they are computed from."""
-    width, lanes = registers.shape[1], len(room.running)
+    lanes = len(room.running)
     least = 1.0
     for lane in range(lanes):
         room.sizes[lane] = 0.0
     for number in range(group[0], group[1]):
-        arguments(rows.arguments[number], h, registers, room.state)
-        sought = registers[len(rows.powers) + number]
-        for first in range(0, width, lanes):
+        arguments(rows, number, h, registers, room)
+        register = registers[place_of(rows, number, room)]
+        for first in range(0, WIDTH, STRIDE):
             for lane in range(lanes):
                 q, v = room.state[0, first + lane], room.state[1, first + lane]
-                room.sizes[lane] += abs(q) + h * abs(v) + abs(sought[first + lane])
+                room.sizes[lane] += abs(q) + h * abs(v) + abs(register[first + lane])
         moment = time + rows.moments[number] * h
-        pivot = 1.0
-        for lane in range(lanes):
-            pivot = acceleration(moment, gains, room.state, room.found, lane)
-        least = min(least, pivot)
-        for place in range(width):
-            room.residuals[number - group[0], place] = sought[place] - h * h * room.found[place]
+        least = min(least, accelerations(moment, gains, room.state, room.found, room.variables))
+        for place in range(WIDTH):
+            room.residuals[number - group[0], place] = register[place] - h * h * room.found[place]
     return least
 
 
@@ -209,16 +184,15 @@ def remember(room: Room) -> None:
 def correct(group: IntArray, inverse: FloatArray, room: Room) -> bool:
     """Compute corrections; find lanes whose inverse Jacobian does not serve."""
     lanes = len(room.moved)
-    n = len(room.found) // lanes
-    size = (group[1] - group[0]) * n
+    size = (group[1] - group[0]) * N
     for lane in range(lanes):
         room.moved[lane] = 0.0
     for i in range(size):
-        corrections = room.corrections[i // n, i % n * lanes : (i % n + 1) * lanes]
+        corrections = room.corrections[i // N, i % N * STRIDE : (i % N + 1) * STRIDE]
         for lane in range(lanes):
             corrections[lane] = 0.0
         for j in range(size):
-            residuals = room.residuals[j // n, j % n * lanes : (j % n + 1) * lanes]
+            residuals = room.residuals[j // N, j % N * STRIDE : (j % N + 1) * STRIDE]
             for lane in range(lanes):
                 corrections[lane] += inverse[i, j, lane] * residuals[lane]
         for lane in range(lanes):
@@ -240,38 +214,39 @@ def renew(
     registers: FloatArray,
     inverse: FloatArray,
     room: Room,
-) -> None:
+) -> int:
     """Compute those lanes' inverse Jacobians anew; lanes that inherited theirs start again."""
     carried, lanes = len(rows.powers), len(room.moved)
-    n = len(room.found) // lanes
-    size = (group[1] - group[0]) * n
+    count = group[1] - group[0]
+    size = count * N
     for lane in range(lanes):
         if room.renewed[lane] and room.inherited[lane]:
             room.inherited[lane] = False
-            for place in range(group[1] - group[0]):
-                for entry in range(lane, len(room.found), lanes):
-                    registers[carried + group[0] + place, entry] = room.guess[place, entry]
+            for place in range(count):
+                register = registers[place_of(rows, group[0] + place, room)]
+                for entry in range(lane, WIDTH, STRIDE):
+                    register[entry] = room.guess[place, entry]
                     room.residuals[place, entry] = room.at_guess[place, entry]
     room.direction[:] = 0.0
-    for place in range(group[1] - group[0]):
+    for place in range(count):
         number = group[0] + place
-        arguments(rows.arguments[number], h, registers, room.state)
+        arguments(rows, number, h, registers, room)
         moment = time + rows.moments[number] * h
         for column in range(size):
-            source, entry = carried + group[0] + column // n, column % n * lanes
+            by_position, by_velocity = rows.arguments[number, :, carried + group[0] + column // N]
+            entry = column % N * STRIDE
             for lane in range(lanes):
                 if room.renewed[lane]:
-                    room.direction[0, entry + lane] = rows.arguments[number, 0, source]
-                    room.direction[1, entry + lane] = rows.arguments[number, 1, source] / h
-                    slope(moment, gains, room.state, room.direction, room.found, lane)
-                    room.direction[0, entry + lane] = 0.0
-                    room.direction[1, entry + lane] = 0.0
-                    for i in range(n):
-                        unit = 1.0 if place * n + i == column else 0.0
-                        room.jacobian[place * n + i, column, lane] = unit - h * h * room.found[i * lanes + lane]
+                    room.direction[0, entry + lane], room.direction[1, entry + lane] = by_position, by_velocity / h
+                    slope(moment, gains, room.state, room.direction, room.found, room.variables, lane)
+                    room.direction[0, entry + lane], room.direction[1, entry + lane] = 0.0, 0.0
+                    for i in range(N):
+                        unit = 1.0 if place * N + i == column else 0.0
+                        room.jacobian[place * N + i, column, lane] = unit - h * h * room.found[i * STRIDE + lane]
     for lane in range(lanes):
         if room.renewed[lane]:
             invert(room.jacobian, size, lane, inverse)
+    return int(count * size)
 
 
 def invert(matrices: FloatArray, size: int, lane: int, found: FloatArray) -> None:
@@ -300,16 +275,16 @@ def invert(matrices: FloatArray, size: int, lane: int, found: FloatArray) -> Non
 
 def advance(rows: Rows, group: IntArray, registers: FloatArray, room: Room) -> bool:
     """Apply the corrections."""
-    carried, lanes = len(rows.powers), len(room.moved)
+    lanes = len(room.moved)
     some = False
     for lane in range(lanes):
         room.running[lane] = room.running[lane] and room.moved[lane] < math.inf
-    for place in range(group[1] - group[0]):
-        sought = registers[carried + group[0] + place]
-        for first in range(0, len(sought), lanes):
+    for number in range(group[0], group[1]):
+        register = registers[place_of(rows, number, room)]
+        for first in range(0, WIDTH, STRIDE):
             for lane in range(lanes):
                 if room.running[lane]:
-                    sought[first + lane] -= room.corrections[place, first + lane]
+                    register[first + lane] -= room.corrections[number - group[0], first + lane]
     for lane in range(lanes):
         room.solved[lane] = room.solved[lane] or (room.running[lane] and room.settled[lane])
         room.running[lane] = room.running[lane] and not room.settled[lane]
@@ -326,26 +301,22 @@ def end(rows: Rows, group: IntArray, registers: FloatArray, room: Room) -> float
         if not room.solved[lane]:
             left = max(left, room.moved[lane] if room.moved[lane] < math.inf else math.inf)
             for number in range(group[0], group[1]):
-                for entry in range(lane, registers.shape[1], len(room.solved)):
-                    registers[len(rows.powers) + number, entry] = math.nan
+                registers[place_of(rows, number, room)][lane:WIDTH:STRIDE] = math.nan
     return left
 
 
 def measure(time: float, gains: FloatArray, state: FloatArray, room: Room) -> float:
     """Write how a state has to be corrected, for its constraints to hold."""
-    pivot = 1.0
-    for lane in range(len(room.moved)):
-        pivot = correction(time, gains, state, room.off, lane)
+    pivot: float = corrections(time, gains, state, room.off, room.variables)
     return pivot
 
 
 def distance(state: FloatArray, room: Room) -> float:
     """Return the largest correction of a position, summed over its coordinates; 0 where all are settled."""
-    width, lanes = state.shape[1], len(room.moved)
     largest = 0.0
-    for lane in range(lanes):
+    for lane in range(len(room.moved)):
         moved, size = 0.0, 0.0
-        for entry in range(lane, width, lanes):
+        for entry in range(lane, WIDTH, STRIDE):
             moved += abs(room.off[entry])
             size += abs(state[0, entry])
         if moved > max(CLOSED, TOLERANCE * size):  # not so if it is no number
@@ -355,98 +326,122 @@ def distance(state: FloatArray, room: Room) -> float:
 
 def shift(rows: Rows, half: int, h: float, registers: FloatArray, state: FloatArray, room: Room) -> float:
     """Correct the position (half 0) or the velocity (1) of a new state, and what is carried of it."""
-    width = state.shape[1]
     size = 0.0
-    for place in range(width):
-        state[half, place] += room.off[half * width + place]
+    for place in range(WIDTH):
+        state[half, place] += room.off[half * WIDTH + place]
         size += abs(state[0, place]) + abs(state[1, place])
-    for register in range(len(rows.powers)):
-        share = rows.corrected[register, half] if half == 0 else rows.corrected[register, half] * h
+    for number in range(len(rows.powers)):
+        share = rows.corrected[number, half] if half == 0 else rows.corrected[number, half] * h
         if share != 0:
-            for place in range(width):
-                registers[register, place] += share * room.off[half * width + place]
+            register = registers[room.where[number]]
+            for place in range(WIDTH):
+                register[place] += share * room.off[half * WIDTH + place]
     return size
 
 
-OPERATIONS = (change_step, evaluate, finish, begin, residual, remember, correct, renew, advance, end)
-PROJECTING = (measure, distance, shift)
-"""In the order of `Operations`, both."""
+OPERATIONS = (
+    *(change_step, evaluate, finish, begin, residual, remember, correct, renew, advance, end),
+    *(measure, distance, shift),
+)
+"""In the order of `Operations`."""
+
+CALLED_TWICE = (correct, shift)
+"""Which `stepping` calls from two places."""
 
 
-def acceleration(t: float, gains: FloatArray, state: FloatArray, found: FloatArray, lane: int) -> float:
-    """Stand for the generated function of a lane: it writes its accelerations, and returns the least pivot."""
+def accelerations(t: float, gains: FloatArray, state: FloatArray, found: FloatArray, room: FloatArray) -> float:
+    """Stand for the generated function that writes all accelerations, and returns the least pivot of a run alone."""
     raise NotImplementedError
 
 
-def slope(t: float, gains: FloatArray, state: FloatArray, direction: FloatArray, found: FloatArray, lane: int) -> None:
+def slope(
+    t: float,
+    gains: FloatArray,
+    state: FloatArray,
+    direction: FloatArray,
+    found: FloatArray,
+    room: FloatArray,
+    lane: int,
+) -> None:
     """Stand for the generated function of a lane: it writes how its accelerations change along a direction."""
     raise NotImplementedError
 
 
-def correction(t: float, gains: FloatArray, state: FloatArray, found: FloatArray, lane: int) -> float:
-    """Stand for the generated function of a lane: it writes corrections of its state, and returns the least pivot."""
+def corrections(t: float, gains: FloatArray, state: FloatArray, found: FloatArray, room: FloatArray) -> float:
+    """Stand for the generated function that writes all corrections of states, and returns the least pivot as above."""
     raise NotImplementedError
 
 
-@cache
-def machine_steps(mechanism: Mechanism, solving: bool, projecting: bool) -> TakeSteps:
-    """Return the function that takes a mechanism's steps as machine code. InputError without numba.
+GIVEN = "rows, steps, registers, inverses, before, room, judged, states, pivots, counts"
+TAKE = f"""
+def take({GIVEN}):
+ return take_steps({GIVEN})
+"""
 
-    `solving`: whether programs have equations to solve; `projecting`: whether states are projected. What is compiled is
-    kept for the next process.
+
+@cache
+def machine_steps(mechanism: Mechanism, solving: bool, projecting: bool, stride: int) -> tuple[TakeSteps, int]:
+    """Return the function that takes a mechanism's steps as machine code, and how large a room its variables need.
+
+    `solving`: whether programs have equations to solve; `projecting`: whether states are projected; `stride`: for how
+    many runs side by side. What is compiled is kept for the next process. InputError without numba.
     """
     numba = compiler()
-    file = _kept_file(mechanism, solving, projecting)
-    namespace = dict(vars(sys.modules[__name__]))
-    generated = compiled_source(_source(mechanism, projecting), math, {"empty": np.empty}, str(file))
-    # where nothing allocates, nothing need count references to arrays: that takes longer than most operations
-    allocating = "part_0" in generated
+    code = _code(mechanism, solving, projecting, stride)
+    file = _kept_file(mechanism, solving, projecting, stride)
+    n = mechanism.size
+    namespace = dict(vars(sys.modules[__name__])) | {"N": n, "STRIDE": stride, "WIDTH": n * stride}
 
-    def made(function: Any, **options: str) -> Any:
+    def made(function: Any, inline: str = "never") -> Any:
         """Return a function as machine code that other machine code calls, under a name of the scene's own.
 
         Code from disk is linked by its names: two scenes must not share any.
         """
         function.__name__ = function.__qualname__ = f"{function.__name__}_{file.parent.name}"
-        return numba.njit(error_model="numpy", _nrt=allocating, **INNER, **options)(function)
+        # where nothing allocates, nothing need count references to arrays: that takes longer than most operations
+        return numba.njit(error_model="numpy", _nrt=False, inline=inline, **INNER)(function)
+
+    def made_a_part(function: Any) -> Any:
+        """Return a function that becomes a part of the one that calls it: what is called once is compiled once."""
+        return made(function, inline="always")
 
     def own(function: Any) -> Any:
         """Return a function of this file that calls what is in the namespace."""
         return FunctionType(function.__code__, namespace, function.__name__)
 
-    for name, function in generated.items():
-        if name.startswith("part_"):
-            generated[name] = made(function)
-    namespace["acceleration"] = made(generated["acceleration_of_lane"], inline="never" if allocating else "always")
-    namespace["slope"] = made(generated["slope_of_lane"])
-    if projecting:
-        namespace["correction"] = made(generated["correction_of_lane"])
-    for function in (arguments, invert):
+    generated = compiled_source(code.source, math, code.tables)
+    for name in ("take_lines", "given", "accelerations", "corrections", "slope"):
+        if name in generated:
+            namespace[name] = generated[name] = made(generated[name])
+    for function in (combine, arguments, place_of, invert):
         namespace[function.__name__] = made(own(function))
-    operations = Operations(*(made(own(function)) for function in (*OPERATIONS, *PROJECTING)))
-    generated["take_steps"] = stepper(operations, made, solving, projecting)
-    take = generated["take"]
+    operations = [made(own(each)) if each in CALLED_TWICE else made_a_part(own(each)) for each in OPERATIONS]
+    # numba keeps what is called from a text with a file, if it has nothing but that text from around it
+    called = {"take_steps": stepper(Operations(*operations), made_a_part, solving, projecting)}
+    take = compiled_source(TAKE, math, called, str(file))["take"]
     take.__name__ = take.__qualname__ = f"take_{file.parent.name}"
-    steps: TakeSteps = numba.njit(_nrt=allocating, no_cfunc_wrapper=True, cache=_keep(file))(take)
+    steps = numba.njit(error_model="numpy", _nrt=False, no_cfunc_wrapper=True, cache=_keep(file))(take)
     _compiled.add((mechanism, solving, projecting))
-    return steps
-
-
-def _source(mechanism: Mechanism, projecting: bool) -> str:
-    """Return the text of the functions of a lane."""
-    return machine_source(
-        mechanism.acceleration_code, mechanism.equations, corrections_of(mechanism) if projecting else None
-    )
+    return steps, code.size
 
 
 @cache
-def _kept_file(mechanism: Mechanism, solving: bool, projecting: bool) -> Path:
+def _code(mechanism: Mechanism, solving: bool, projecting: bool, stride: int) -> MachineCode:
+    """Return the text of a mechanism's own functions."""
+    codes = {"accelerations": mechanism.acceleration_code}
+    if projecting:
+        codes["corrections"] = corrections_of(mechanism)
+    return machine_code(codes, slope_lines(mechanism.equations) if solving else (), stride)
+
+
+@cache
+def _kept_file(mechanism: Mechanism, solving: bool, projecting: bool, stride: int) -> Path:
     """Return the file beside which numba keeps a scene's code: its name stands for all that makes it."""
-    texts = [Path(file).read_text(encoding="utf-8") for file in (stepping.__file__, __file__)]
-    texts.append(_source(mechanism, projecting))
-    name = hashlib.sha256(
-        "\0".join([*texts, str(solving), str(projecting), sys.version, version("numba")]).encode()
-    ).hexdigest()
+    code = _code(mechanism, solving, projecting, stride)
+    made_from = [Path(file).read_bytes() for file in (stepping.__file__, __file__)]
+    made_from += [code.source.encode(), *(table.tobytes() for table in code.tables.values())]
+    made_from += [sys.version.encode(), version("numba").encode()]
+    name = hashlib.sha256(b"\0".join(made_from)).hexdigest()
     home = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA") or Path.home() / ".cache"
     return Path(home) / "bezstab" / name / "steps.py"
 

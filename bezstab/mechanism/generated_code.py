@@ -8,8 +8,7 @@ does with them is no text: `programs` and `stepping` have it. From its top to it
     corrections                            what brings a state back to its constraints, by the same factors
     functions of a state                   acceleration, multipliers, observation
     slopes of the acceleration             its derivatives by position and velocity, or along one direction
-    accelerations in parts                 the same for machine code, where they are long
-    functions of a lane                    the same as machine code calls them
+    machine code                           the same for lanes side by side, and by shapes where they are long
 
 All of it is plain arithmetic on numbered variables, one assignment a line, with `sin`, `cos`, `sqrt` and `least` as the
 only functions, and `row` where there are slopes. What they are is decided when the text is compiled, so one source
@@ -26,12 +25,14 @@ and these names; least of all the names that a user gave to bodies.
 
 import math
 import re
-from collections.abc import Collection, Container, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Container, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import groupby
 from typing import Any
 
 import numpy as np
 import sympy as sp
+from numpy.typing import NDArray
 from sympy.printing.precedence import PRECEDENCE
 from sympy.printing.pycode import PythonCodePrinter
 
@@ -481,155 +482,142 @@ def _nonzero_differentials(equations: Equations) -> dict[str, sp.Expr]:
     }
 
 
-# Accelerations in parts
+# Machine code
 #
-# What turning text into machine code costs grows faster than the text. So the thousands of assignments of a long
-# mechanism become functions of PART lines each, which leave their results to one another in an array, the room:
+# Machine code takes runs side by side, each in a lane: arrays have room for `stride` lanes of each coordinate, of which
+# as many are taken as there are runs. A run alone has a stride of one, and code without loops over lanes.
 #
-#     room = empty(2770)
-#     room[0] = q0                            what they are given
-#     ...
-#     part_0(room)                            def part_0(room):
-#     part_1(room)                             q0 = room[0]
-#     ...                                      x0 = sin(q0)
-#     a0 = room[1510]                          ...
-#     D0 = room[640]                           room[17] = x0
+# What turning text into machine code costs grows faster than the text. But the thousands of lines of a long mechanism
+# have a few dozen shapes, as its bodies are alike. So only the shapes become machine code, each once; what a line is
+# about stands in a table, as places in an array of all variables and numbers, the room:
 #
-# Those of the slopes follow in the same room. No operation changes, and no bit of any result.
-
-PART = 150
-"""Lines of a part; with twice as many compiling takes a third longer, with eight times as many two and a half times."""
+#     W6_5 = C6_46 * C5_46 * 12.0 - L6_4 * W5_4        room[a] = room[b] * room[c] * room[d] - room[e] * room[f]
+#     W9_7 = C9_47 * C7_47 * 3.0 - L9_5 * W7_5         the same, with other places
 
 LONG = 1000
-"""Lines from which on an acceleration is cut: where machine code gains nothing any more from seeing it as one."""
+"""Lines of an acceleration above which it is taken by shapes; a shorter one runs faster as it is."""
 
-NAME = re.compile(r"\b[A-Za-z_]\w*")
+OPERAND = re.compile(r"\b(?!(?:sin|cos|sqrt)\b)[A-Za-z_]\w*|\b\d+(?:\.\d*)?(?:e[-+]?\d+)?")
+"""A variable or a number in a line."""
 
 
 @dataclass(frozen=True)
 class MachineCode:
-    """The acceleration code and the lines of `slope_lines` as machine code takes them, and the sources of their parts.
+    """The source of the functions of a mechanism that machine code calls, and the tables that they name.
 
-    Each part is a function part_0(room), part_1(room), ...; `room` is allocated by empty(size).
+    accelerations(t, gains, state, found, room) writes all a of all lanes and returns, for a stride of one, the least
+    relative pivot of S, and so does corrections(...) with all dq, then all dv; slope(t, gains, state, direction, found,
+    room, lane) writes all da of a lane. gains (2, lanes); state and direction (2, n stride), found (n stride,) or as
+    much for each of the results, lane after lane of each coordinate; the room (size,).
     """
 
-    acceleration: AccelerationCode
-    slopes: tuple[str, ...]
-    parts: tuple[str, ...] = ()
+    source: str
+    tables: dict[str, NDArray[Any]] = field(default_factory=dict)
+    size: int = 0
 
 
-@dataclass(frozen=True)
-class _Part:
-    """Lines of a part, the variables whose values it needs from before, and those that it assigns."""
+def machine_code(codes: Mapping[str, AccelerationCode], slopes: Sequence[str], stride: int) -> MachineCode:
+    """Return the machine code's source for so many lanes: a function of each of the codes, by its name, and the slope.
 
-    lines: tuple[str, ...]
-    needed: tuple[str, ...]
-    assigned: tuple[str, ...]
-
-
-def machine_code(acceleration: AccelerationCode, slopes: Sequence[str], first_part: int = 0) -> MachineCode:
-    """Return the code in parts, numbered from `first_part` on, or as it is where it is not long."""
-    if len(acceleration.lines) <= LONG:
-        return MachineCode(acceleration, tuple(slopes))
-    of_acceleration, of_slopes = _parts(acceleration.lines), _parts(slopes)
-    parts = [*of_acceleration, *of_slopes]
-    results = [*acceleration.results, *NAME.findall(" ".join(acceleration.pivots))]
-    changes = variable_names("da", acceleration.coordinates)
-    kept = {*results, *changes, *(name for part in parts for name in part.needed)}
-    places = {name: place for place, name in enumerate(sorted(kept))}
-
-    def stored(name: str) -> str:
-        return f"room[{places[name]}] = {name}"
-
-    def loaded(name: str) -> str:
-        return f"{name} = room[{places[name]}]"
-
-    def given(some: Sequence[_Part], before: Collection[str]) -> list[str]:
-        """Return what stores the variables that some parts need and none has assigned by then."""
-        known, names = set(before), []
-        for part in some:
-            names += [name for name in part.needed if name not in known]
-            known |= {*part.needed, *part.assigned}
-        return [stored(name) for name in names]
-
-    def calls(first: int, some: Sequence[_Part]) -> list[str]:
-        return [f"part_{first_part + first + number}(room)" for number in range(len(some))]
-
-    known_by_then = {name for part in of_acceleration for name in (*part.needed, *part.assigned)}
-    lines = [f"room = empty({len(places)})", *given(of_acceleration, ()), *calls(0, of_acceleration)]
-    lines += [loaded(name) for name in results]
-    slope_calls = [*given(of_slopes, known_by_then), *calls(len(of_acceleration), of_slopes)]
-    slope_calls += [loaded(name) for name in changes]
-    functions = []
-    for number, part in enumerate(parts):
-        inside = [loaded(name) for name in part.needed]
-        inside += [*part.lines, *(stored(name) for name in part.assigned if name in kept)]
-        functions.append("\n".join([f"def part_{first_part + number}(room):", *_indented(inside, 1)]))
-    return MachineCode(replace(acceleration, lines=tuple(lines)), tuple(slope_calls), tuple(functions))
-
-
-def _parts(lines: Sequence[str]) -> list[_Part]:
-    """Return some lines cut into parts."""
-    parts = []
-    for first in range(0, len(lines), PART):
-        some = tuple(lines[first : first + PART])
-        needed: dict[str, None] = {}  # in the order in which they are met
-        assigned: dict[str, None] = {}
-        for line in some:
-            result, *used = NAME.findall(line)
-            needed |= {name: None for name in used if name not in assigned and name not in FUNCTIONS}
-            assigned[result] = None
-        parts.append(_Part(some, tuple(needed), tuple(assigned)))
-    return parts
-
-
-FUNCTIONS = ("sin", "cos", "sqrt")
-"""That the acceleration calls."""
-
-
-# Functions of a lane
-
-TAKEN = "rows, steps, registers, inverses, before, room, judged, states, pivots, counts"
-
-
-def machine_source(
-    acceleration: AccelerationCode, equations: Equations, correction: AccelerationCode | None = None
-) -> str:
-    """Return the source of the functions of one lane that machine code calls, and of their parts.
-
-    take(...) calls `stepping.TakeSteps`, which numba keeps on disk where it is called from text that has a file.
-    acceleration_of_lane(t, gains, state, found, lane) writes all a and returns the least relative pivot of S;
-    slope_of_lane(t, gains, state, direction, found, lane) writes all da. `gains` has the shape (2, lanes), state and
-    direction (2, n lanes), found (n lanes,): coordinate after coordinate. With the code of a `correction`
-    correction_of_lane(t, gains, state, off, lane) writes all dq, then all dv, and returns the least relative pivot.
+    The first code is that of accelerations. Where there are no lines for slopes there is no function of them.
     """
-    code = machine_code(acceleration, slope_lines(equations))
+    acceleration = next(iter(codes.values()))
+    if len(acceleration.lines) > LONG:
+        return _code_by_shapes(codes, slopes, stride)
     coordinates = range(acceleration.coordinates)
-    given = ["lanes = gains.shape[1]", "two_alpha = gains[0, lane]", "beta_squared = gains[1, lane]"]
-    given += [f"q{i} = state[0, {i} * lanes + lane]" for i in coordinates]
-    given += [f"v{i} = state[1, {i} * lanes + lane]" for i in coordinates]
-    along = [f"dq{i} = direction[0, {i} * lanes + lane]" for i in coordinates]
-    along += [f"dv{i} = direction[1, {i} * lanes + lane]" for i in coordinates]
-    changes = [f"found[{i} * lanes + lane] = da{i}" for i in coordinates]
+    given = ["two_alpha = gains[0, lane]", "beta_squared = gains[1, lane]"]
+    given += [f"{name}{i} = state[{half}, {i * stride} + lane]" for half, name in enumerate("qv") for i in coordinates]
+    source = []
+    for name, code in codes.items():
+        lines = [*given, *code.lines]
+        lines += [f"found[{place * stride} + lane] = {result}" for place, result in enumerate(code.results)]
+        first, *others = code.pivots
+        least = [f"pivot = {first}", *(f"pivot = min(pivot, {other})" for other in others), "return pivot"]
+        alone = ["lane = 0", *lines, *least]
+        together = ["for lane in range(gains.shape[1]):", *_indented(lines, 1), "return 1.0"]
+        source += [f"def {name}(t, gains, state, found, room):", *_indented(alone if stride == 1 else together, 1)]
+    if slopes:
+        lines = [*given, *acceleration.lines]
+        for half, name in enumerate("qv"):
+            lines += [f"d{name}{i} = direction[{half}, {i * stride} + lane]" for i in coordinates]
+        lines += [*slopes, *(f"found[{i * stride} + lane] = da{i}" for i in coordinates)]
+        source += ["def slope(t, gains, state, direction, found, room, lane):", *_indented(lines, 1)]
+    return MachineCode("\n".join(source))
 
-    def judged(some: AccelerationCode) -> list[str]:
-        first, *others = some.pivots
-        least = [f"pivot = {first}", *(f"pivot = min(pivot, {other})" for other in others)]
-        results = [f"found[{place} * lanes + lane] = {name}" for place, name in enumerate(some.results)]
-        return _indented([*given, *some.lines, *results, *least, "return pivot"], 1)
 
-    corrections = []
-    if correction:
-        of_corrections = machine_code(correction, (), first_part=len(code.parts))
-        corrections = [*of_corrections.parts, "def correction_of_lane(t, gains, state, found, lane):"]
-        corrections += judged(of_corrections.acceleration)
-    return "\n".join([
-        *code.parts,
-        "def acceleration_of_lane(t, gains, state, found, lane):",
-        *judged(code.acceleration),
-        *corrections,
-        "def slope_of_lane(t, gains, state, direction, found, lane):",
-        *_indented([*given, *along, *code.acceleration.lines, *code.slopes, *changes], 1),
-        f"def take({TAKEN}):",
-        f" return take_steps({TAKEN})",
-    ])  # fmt: skip
+def _code_by_shapes(codes: Mapping[str, AccelerationCode], slopes: Sequence[str], stride: int) -> MachineCode:
+    """Return the same where the lines are taken by their shapes, lane after lane."""
+    acceleration = next(iter(codes.values()))
+    n, m = acceleration.coordinates, acceleration.constraints
+    names = ["t", "two_alpha", "beta_squared"]
+    for name, count in (("q", n), ("v", n), ("dq", n), ("dv", n), ("a", n), ("da", n), ("S", m), ("D", m)):
+        names += variable_names(name, count)
+    places = {name: place for place, name in enumerate(names)}
+    firsts = {f"{name}0": places[f"{name}0"] for name in ("q", "dq", "da", "S", "D")}
+    shapes: dict[str, int] = {}
+    tables: dict[str, NDArray[Any]] = {}
+    for name, lines in ({name: code.lines for name, code in codes.items()} | {"slope": tuple(slopes)}).items():
+        of_lines = [shapes.setdefault(OPERAND.sub("#", line), len(shapes)) for line in lines]
+        operands = [operand for line in lines for operand in OPERAND.findall(line)]
+        tables[f"{name}_shapes"] = np.array([(shape, len(list(some))) for shape, some in groupby(of_lines)], np.int64)
+        # without a sign: numba need not ask whether they count from the end
+        tables[f"{name}_places"] = np.array([places.setdefault(each, len(places)) for each in operands], np.uint32)
+    numbers = {place: float(name) for name, place in places.items() if name[0].isdigit()}
+    tables |= {"number_places": np.array([*numbers], np.uint32), "numbers": np.array([*numbers.values()])}
+    cases = []
+    for shape, number in shapes.items():
+        operands = [f"room[places[p + {operand}]]" for operand in range(shape.count("#"))]
+        cases += [
+            f"{'elif' if number else 'if'} shape == {number}:",
+            " for _ in range(count):",
+            f"  {shape.replace('#', '{}').format(*operands)}",
+            f"  p += {len(operands)}",
+        ]
+    source = [SHAPES_TAKEN.format(cases="\n".join(_indented(cases, 2)), stride=stride, n=n, **firsts)]
+    for name, code in codes.items():
+        first, count = places[code.results[0]], len(code.results)
+        source.append(FOUND_BY_SHAPES.format(name=name, first=first, count=count, stride=stride, m=m, **firsts))
+    if slopes:
+        source.append(SLOPE_BY_SHAPES.format(name=next(iter(codes)), stride=stride, n=n, **firsts))
+    return MachineCode("".join(source), tables, len(places))
+
+
+SHAPES_TAKEN = """
+def take_lines(shapes, places, room):
+ p = 0
+ for number in range(len(shapes)):
+  shape, count = shapes[number]
+{cases}
+def given(t, gains, state, room, lane):
+ room[0], room[1], room[2] = t, gains[0, lane], gains[1, lane]
+ for k in range(len(numbers)):
+  room[number_places[k]] = numbers[k]
+ for i in range({n}):
+  room[{q0} + i], room[{q0} + {n} + i] = state[0, i * {stride} + lane], state[1, i * {stride} + lane]
+"""
+
+FOUND_BY_SHAPES = """
+def {name}(t, gains, state, found, room):
+ for lane in range(gains.shape[1]):
+  given(t, gains, state, room, lane)
+  take_lines({name}_shapes, {name}_places, room)
+  for i in range({count}):
+   found[i * {stride} + lane] = room[{first} + i]
+ pivot = 1.0
+ if {stride} == 1:
+  for j in range({m}):
+   pivot = min(pivot, room[{D0} + j] / room[{S0} + j])
+ return pivot
+"""
+
+SLOPE_BY_SHAPES = """
+def slope(t, gains, state, direction, found, room, lane):
+ given(t, gains, state, room, lane)
+ take_lines({name}_shapes, {name}_places, room)
+ for i in range({n}):
+  place = i * {stride} + lane
+  room[{dq0} + i], room[{dq0} + {n} + i] = direction[0, place], direction[1, place]
+ take_lines(slope_shapes, slope_places, room)
+ for i in range({n}):
+  found[i * {stride} + lane] = room[{da0} + i]
+"""

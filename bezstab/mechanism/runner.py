@@ -372,24 +372,27 @@ def steps_in_blocks(
     """
     program = program_of(scheme)
     rows, n, lanes = rows_of(program, projection), mechanism.size, math.prod(batch)
-    columns = len(program.powers) + len(program.evaluations)
-    registers = np.zeros((columns + len(program.combined), n * lanes), carried.dtype)
-    registers[: len(carried)] = carried
-    room = room_of(rows, n, lanes, carried.dtype)
+    stride, variables = lanes, 0
+    if compiled:
+        stride = 1 if lanes == 1 else max(LANES, lanes)
+        take_steps, variables = machine_steps(mechanism, program.implicit, projection is not None, stride)
+    else:
+        take_steps = array_steps(mechanism)
+    room = room_of(rows, n, lanes, stride, variables, carried.dtype)
+    registers = np.zeros((len(room.where), n * stride), carried.dtype)
+    registers.reshape(-1, n, stride)[: len(carried), :, :lanes] = carried.reshape(-1, n, lanes)
     inverses = np.full((kinds, len(program.groups), *room.jacobian.shape), np.nan)
     before = np.array([h])
-    projecting = projection is not None
-    take_steps = machine_steps(mechanism, program.implicit, projecting) if compiled else array_steps(mechanism)
-    at_once = max(1, min(MOST_STEPS_OF_A_BLOCK, NUMBERS_OF_A_BLOCK // (2 * n * lanes)))
+    at_once = max(1, min(MOST_STEPS_OF_A_BLOCK, NUMBERS_OF_A_BLOCK // (2 * n * stride)))
     for first in range(0, count, at_once):
         last = min(first + at_once, count)
-        states, pivots = np.empty((last - first, 2, n * lanes), carried.dtype), np.empty(last - first)
+        states, pivots = np.empty((last - first, 2, n * stride), carried.dtype), np.empty(last - first)
         steps = steps_between(first, last)
         with np.errstate(all="ignore"):  # what runs into infinity is judged by its numbers
             taken, unsolved = take_steps(
                 rows, steps, registers, inverses, before, room, judged, states, pivots, work.counts
             )
-        states = states.reshape(last - first, 2 * n, *batch)
+        states = states.reshape(last - first, 2 * n, stride)[..., :lanes].reshape(last - first, 2 * n, *batch)
         cause = breakdown(states[taken - 1], pivots[taken - 1], unsolved) if judged else None
         if cause:
             taken -= 1

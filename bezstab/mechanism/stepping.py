@@ -3,7 +3,7 @@
 This text is read twice: by Python with numpy (`array_stepping`), and by numba as machine code (`compiled_stepping`).
 What both do in their own ways, whole arrays or loops over their entries, comes as `Operations`; in which order it is
 done is said here once. Each register holds a quantity of all runs, coordinate after coordinate: it is as wide as n
-coordinates times the lanes, a lane for each run. A state is (2, width), position and velocity.
+coordinates times a stride, of which each run has a lane. A state is (2, width), position and velocity.
 
 The equations of an implicit step are solved by Newton's method, in all lanes at a time. The unknowns are accelerations,
 and the residual of each is r(A) = A - h^2 acceleration(X(A), V(A)). Its Jacobian is taken along one unknown after the
@@ -44,8 +44,9 @@ ITERATIONS, EVALUATIONS, PROJECTIONS = 0, 1, 2  # places in what is counted
 class Rows(NamedTuple):
     """A program in float64. `arguments` has for each evaluation the rows of its position and of its velocity.
 
-    `projected` is how many iterations a projection may take, 0 where there is none, and `settles` whether a run ends
-    where they do not settle.
+    What is not zero in these and then in `combined`, row after row: `starts` says where each row begins among the
+    `shares` and the registers, `sources`, that they are of. `projected` is how many iterations a projection may take, 0
+    where there is none, and `settles` whether a run ends where they do not settle.
     """
 
     powers: IntArray
@@ -54,6 +55,9 @@ class Rows(NamedTuple):
     guesses: IntArray
     groups: IntArray
     combined: FloatArray
+    starts: IntArray
+    sources: IntArray
+    shares: FloatArray
     moved_from: IntArray
     moved_to: IntArray
     state: IntArray
@@ -66,16 +70,19 @@ class Room(NamedTuple):
     """Arrays to compute in, made once: of an evaluation, then what Newton's method knows of each lane.
 
     state and direction (2, width), found (width,), and off, by which a projection corrects position and velocity,
-    (2 width,); residuals, those at the guess, corrections and guess (evaluations of a group, width); Jacobians like
-    the inverses; of each lane the sizes of what it computes with, how far this correction moves it and the one before
-    did, and whether it is running, settled, solved, and to be renewed, and has its inverse Jacobian from an earlier
-    step.
+    (2 width,); variables, of machine code that needs them; where each register stands, which machine code moves instead
+    of what is in them; residuals, those at the guess, corrections and guess (evaluations of a group, width); Jacobians
+    like the inverses; of each lane the sizes of what it computes with, how far this correction moves it and the one
+    before did, and whether it is running, settled, solved, and to be renewed, and has its inverse Jacobian from an
+    earlier step.
     """
 
     state: FloatArray
     direction: FloatArray
     found: FloatArray
     off: FloatArray
+    variables: FloatArray
+    where: IntArray
     residuals: FloatArray
     at_guess: FloatArray
     corrections: FloatArray
@@ -94,14 +101,14 @@ class Room(NamedTuple):
 class Operations(NamedTuple):
     """What numpy and machine code do in ways of their own, on registers and in a room.
 
-    change_step(rows, ratio, registers)             turns registers into units of a step longer by a ratio
+    change_step(rows, ratio, registers, room)       turns registers into units of a step longer by a ratio
     evaluate(rows, number, time, h, gains, registers, room)         an explicit evaluation; the least relative pivot
-    finish(rows, h, registers, into)                combines, writes the new state and moves on; the size of the state
+    finish(rows, h, registers, room, into)          combines, writes the new state and moves on; the size of the state
     begin(rows, group, registers, room)             writes the guesses of a group
     residual(rows, group, time, h, gains, registers, room)          writes residuals; the least relative pivot
     remember(room)                                  keeps the residuals as those at the guess
     correct(group, inverse, room)                   computes corrections; whether some lane's inverse does not serve
-    renew(rows, group, time, h, gains, registers, inverse, room)    computes those lanes' inverses anew
+    renew(rows, group, time, h, gains, registers, inverse, room)    computes those lanes' inverses anew; how many slopes
     advance(rows, group, registers, room)           applies corrections; whether lanes are running still
     end(rows, group, registers, room)               writes nan where nothing is solved; how far that was from it
     measure(time, gains, state, room)               writes corrections of a state; the least relative pivot
@@ -118,7 +125,7 @@ class Operations(NamedTuple):
     residual: Callable[..., float]
     remember: Callable[..., None]
     correct: Callable[..., bool]
-    renew: Callable[..., None]
+    renew: Callable[..., int]
     advance: Callable[..., bool]
     end: Callable[..., float]
     measure: Callable[..., float]
@@ -155,14 +162,19 @@ def rows_of(program: Program, projection: Projection | None = None) -> Rows:
     """Return a program in float64."""
     most_projected = (projection.iterations or MOST_ITERATIONS) if projection else 0
     columns = len(program.powers) + len(program.evaluations)
-    arguments = [[list(map(float, row)) for row in (each.position, each.velocity)] for each in program.evaluations]
+    arguments = [row for each in program.evaluations for row in (each.position, each.velocity)]
+    every_row = np.array([*arguments, *program.combined], np.float64).reshape(-1, columns)
+    of_rows, sources = every_row.nonzero()
     return Rows(
         powers=np.array(program.powers, np.int64),
-        arguments=np.array(arguments, np.float64).reshape(-1, 2, columns),
+        arguments=every_row[: len(arguments)].reshape(-1, 2, columns),
         moments=np.array([float(each.moment) for each in program.evaluations]),
         guesses=np.array([each.guess for each in program.evaluations], np.int64),
         groups=np.array(program.groups, np.int64).reshape(-1, 3),
-        combined=np.array([list(map(float, row)) for row in program.combined]).reshape(-1, columns),
+        combined=every_row[len(arguments) :],
+        starts=np.searchsorted(of_rows, np.arange(len(every_row) + 1)),
+        sources=np.ascontiguousarray(sources),
+        shares=every_row[of_rows, sources],
         moved_from=np.array([start for start, _ in program.moves], np.int64),
         moved_to=np.array([end for _, end in program.moves], np.int64),
         state=np.array(program.state, np.int64),
@@ -172,17 +184,19 @@ def rows_of(program: Program, projection: Projection | None = None) -> Rows:
     )
 
 
-def room_of(rows: Rows, n: int, lanes: int, kind: Any = np.float64) -> Room:
-    """Return the room for a program's steps."""
+def room_of(rows: Rows, n: int, lanes: int, stride: int, variables: int = 0, kind: Any = np.float64) -> Room:
+    """Return the room for a program's steps; for each coordinate there is a stride, at least as wide as the lanes."""
     most = int((rows.groups[:, 1] - rows.groups[:, 0]).max(initial=0))
     unknowns = most * n if rows.groups[:, 2].any() else 0
-    width = n * lanes
+    width = n * stride
     of_state, of_group = (2, width), (most, width)
     return Room(
         state=np.zeros(of_state, kind),
         direction=np.zeros(of_state),
         found=np.zeros(width, kind),
         off=np.zeros(2 * width),
+        variables=np.zeros(variables),
+        where=np.arange(rows.combined.shape[1] + len(rows.combined)),
         residuals=np.zeros(of_group),
         at_guess=np.zeros(of_group),
         corrections=np.zeros(of_group),
@@ -288,8 +302,7 @@ def stepper(
             if iteration == 0:
                 remember(room)
             if correct(group, inverse, room):
-                renew(rows, group, time, h, gains, registers, inverse, room)
-                counts[EVALUATIONS] += evaluations * evaluations * len(room.found) // gains.shape[1]
+                counts[EVALUATIONS] += renew(rows, group, time, h, gains, registers, inverse, room)
                 correct(group, inverse, room)
             if not advance(rows, group, registers, room):
                 break
@@ -327,14 +340,11 @@ def stepper(
         pivots: FloatArray,
         counts: IntArray,
     ) -> tuple[int, float]:
-        # one by one: machine code counts the references to each array that it hands on
-        carried, arguments, moments, combined = len(rows.powers), rows.arguments, rows.moments, rows.combined
-        moved_from, moved_to, ends, state, found = rows.moved_from, rows.moved_to, rows.state, room.state, room.found
         for k in range(len(steps.times)):
             time, h = steps.times[k], steps.lengths[k]
             gains = steps.gains[min(k, len(steps.gains) - 1)]
             if h != before[0]:
-                change_step(rows, h / before[0], registers)
+                change_step(rows, h / before[0], registers, room)
                 before[0] = h
             pivot = 1.0
             unsolved = 0.0
@@ -346,11 +356,9 @@ def stepper(
                     )
                     unsolved = max(unsolved, left)
                 else:
-                    first = group[0]
-                    moment = time + moments[first] * h
-                    worst = evaluate(arguments[first], moment, h, gains, registers, carried + first, state, found)
+                    worst = evaluate(rows, group[0], time, h, gains, registers, room)
                 pivot = min(pivot, worst)
-            size = finish(combined, moved_from, moved_to, ends, h, registers, states[k])
+            size = finish(rows, h, registers, room, states[k])
             if rows.projected > 0 and size < BLOWN_UP:
                 worst, left, size = project(rows, time + h, h, gains, registers, room, states[k], counts)
                 pivot, unsolved = min(pivot, worst), max(unsolved, left)

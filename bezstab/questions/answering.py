@@ -12,13 +12,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, fields
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, cast
 
-from bezstab.engines import Engine, Point
+from bezstab.engines import Curve, Engine, Point
 from bezstab.errors import InputError, NumericalError
 from bezstab.goals import UP_TO_LONGEST, Goal
 from bezstab.methods import Method
-from bezstab.questions.chains import ChainAnswer, chain_answer, strongest_setting
+from bezstab.questions.chains import ALONE, SweptAnswer, strongest_point, sweeps_to_spare, swept_answer
 from bezstab.questions.points import all_points
 from bezstab.questions.question import Question, usual_goal
 from bezstab.rationals import rational
@@ -67,7 +67,7 @@ class Answer(Choice):
     """A point, what `Choice` says of it, and what it means for the question; `point` is the point exactly.
 
     What is None was not asked about: `moving` without a scene, `varying` without h_min, `setting` without an engine,
-    `gains` without a drive, `chain` without one.
+    `gains` without a drive, `swept` without a chain or a scene in an engine that sweeps.
     """
 
     question: Question = field(compare=False)
@@ -77,15 +77,18 @@ class Answer(Choice):
     def __repr__(self) -> str:
         place = f"alpha_hat = {self.alpha_hat:.6g}, beta_hat = {self.beta_hat:.6g}"
         safe = "safe" if self.safe else "not safe"
+        if self.swept_over:
+            safe = f"{self.swept_over}: {safe}"
         return f"Answer({self.method.name}, {self.goal}: {place}, |z_p| = {abs(self.pole):.6g}, {safe})"
 
     @property
     def safe(self) -> bool:
         """Whether every error is proven to shrink; of a scene as it moves, and for steps that vary, where asked.
 
-        In a chain, where asked, it is computed: more than its accuracy below one.
+        Of constraints that an engine sweeps over it is computed: more than its accuracy below one. Where nothing was
+        asked of an engine that sweeps but one point, it is safe for one constraint alone.
         """
-        if self.chain and not self.chain.growth.decays:
+        if self.swept and not self.swept.growth.decays:
             return False
         as_it_moves = self.moving is None or self.moving.verdict == "converges"
         as_steps_vary = self.varying is None or self.varying.varying == "proven"
@@ -153,20 +156,36 @@ class Answer(Choice):
         return tuple(rational(value) for value in engine.values(self.point, h))
 
     @cached_property
-    def chain(self) -> ChainAnswer | None:
-        """What the engine's sweeps make of the errors of a chain."""
-        engine, h, asked = self.question.engine, self.question.h, self.question.chain
-        if engine is None or h is None or asked is None:
+    def swept(self) -> SweptAnswer | None:
+        """What the engine's sweeps make of the errors of a chain or of the scene's constraints."""
+        engine, h, constraints = self.question.engine, self.question.h, self.question.swept
+        if engine is None or h is None or constraints is None:
             return None
-        return chain_answer(engine, self._engine_values(engine, h), h, asked)
+        return swept_answer(engine, self._engine_values(engine, h), h, constraints, self.question.iterations)
+
+    @property
+    def swept_over(self) -> str | None:
+        """For which constraints an answer holds of an engine that sweeps; None where all are solved together."""
+        if self.question.engine is None or not self.question.engine.sweeps:
+            return None
+        return (self.question.swept or ALONE).words
 
     @cached_property
-    def chain_setting(self) -> str | None:
-        """What to paste for the strongest feedback that the chain allows, with the question's spread to spare."""
-        engine, h, asked = self.question.engine, self.question.h, self.question.chain
-        if engine is None or h is None or asked is None:
+    def alone(self) -> "Answer | None":
+        """What the goal of this choice asks for with one constraint alone; None where it is this choice."""
+        if self.question.swept is None or self.role == "given":
             return None
-        return strongest_setting(engine, h, asked, self.question.spread)
+        found = _choice_alone(self.question, self.method, cast(Goal, self.goal), self.question.settle, margins=False)
+        alone = _answer(self.question, self.role, found)
+        return None if alone.point == self.point else alone
+
+    @cached_property
+    def sweeps_to_spare(self) -> int | None:
+        """From how many sweeps a choice along the engine's curve is stable even if it were stronger by the spread."""
+        engine, h, constraints = self.question.engine, self.question.h, self.question.swept
+        if engine is None or engine.curve is None or h is None or constraints is None:
+            return None
+        return sweeps_to_spare(engine, self.point, h, constraints, self.question.spread)
 
     @cached_property
     def gains(self) -> Gains | None:
@@ -266,9 +285,25 @@ def _answer(question: Question, role: Role, choice: Choice, point: Point | None 
 def _choice(
     question: Question, method: Method, goal: Goal, settle: Fraction | None = None, *, margins: bool = True
 ) -> Choice:
+    """Return what a goal asks for; where an engine sweeps over constraints, at most the strongest that they allow."""
+    found = _choice_alone(question, method, goal, settle, margins=margins)
+    engine, h, constraints = question.engine, question.h, question.swept
+    if engine is None or h is None or constraints is None or not (engine.parameters and _curve(question, goal)):
+        return found
+    strongest = strongest_point(engine, h, constraints, question.iterations, question.spread)
+    if strongest is None:
+        raise InputError(f"{engine.name}: no feedback is stable in {constraints.words}: ask with more --iterations")
+    if found.beta_hat <= strongest[1]:
+        return found
+    return describe_point(method, goal, *strongest, question.spread, margins)
+
+
+def _choice_alone(
+    question: Question, method: Method, goal: Goal, settle: Fraction | None = None, *, margins: bool = True
+) -> Choice:
     """Return what a goal asks for: of a question that has a goal, for all steps up to h_max where this goal has one."""
-    engine, motion = question.engine, question.motion
-    along = engine.curve if engine and goal != "critical" and not question.equal else None
+    motion = question.motion
+    along = _curve(question, goal)
     longest = question.h_max if question.goal else None
     modulus = _modulus_as_it_moves(question, method, longest or question.h)
     if question.h is None:
@@ -295,6 +330,11 @@ def _choice(
         omega_h=motion.omega_h_max,
         margins=margins,
     )
+
+
+def _curve(question: Question, goal: Goal) -> Curve | None:
+    """Return the engine's curve of points where a goal is sought along it."""
+    return question.engine.curve if question.engine and goal != "critical" and not question.equal else None
 
 
 def _modulus_as_it_moves(question: Question, method: Method, h: Fraction | None) -> Modulus | None:

@@ -1,122 +1,215 @@
-"""A chain of bodies in an engine that sweeps over its constraints: is it stable, from how many sweeps, how strongly."""
+"""Many constraints, of a chain of bodies or a scene, in an engine that sweeps: stable, and from how many sweeps?"""
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 
 import numpy as np
 
-from bezstab.engines import Engine, SweptStep, check_iterations
+from bezstab.engines import Curve, Engine, Point, SweptStep, check_iterations
 from bezstab.errors import InputError
+from bezstab.mechanism import Revolute, Scene, compiled_mechanism, constraint_jacobian, initial_state
+from bezstab.questions.motions import name_of, scene_at_speed
 from bezstab.rationals import rational
-from bezstab.stability import BoolArray, FloatArray, Growth, chain, fewest_sweeps, first_where, swept_growth
+from bezstab.stability import (
+    BoolArray,
+    FloatArray,
+    Growth,
+    chain,
+    fewest_sweeps,
+    first_where,
+    inverse_effective_masses,
+    swept_growth,
+)
 
-SHARES_TRIED = 64
-"""Of the strongest feedback: the largest share that a chain allows is sought between two of these neighbours."""
+SHARES = np.geomspace(1e-6, 1 - 1e-9, 50)
+"""Of the strongest feedback: the largest that constraints allow is sought between two of these neighbours. The
+strongest itself may not be expressible."""
+
+
+@dataclass(frozen=True, eq=False)
+class Constraints:
+    """Constraints in the order in which an engine sweeps over them, and the bodies that they tie.
+
+    `words` say where: in ... `inverse_masses` is J M^-1 J', shape (m, m); `joints` the number of each constraint's
+    joint, rising.
+    """
+
+    words: str
+    inverse_masses: FloatArray
+    joints: tuple[int, ...]
+
+    def growth(self, engine: Engine, step: SweptStep) -> Growth:
+        """Return by what factor a step of an engine multiplies their errors."""
+        together = engine.sweeping is not None and engine.sweeping.together
+        return swept_growth(self.inverse_masses, step, self.joints if together else None)
+
+
+ALONE = Constraints("one constraint alone", np.ones((1, 1)), (0,))
 
 
 @dataclass(frozen=True)
 class Chain:
-    """A straight chain of bodies, the last `mass_ratio` times as heavy; `iterations` sweeps, None: the engine's own.
-
-    InputError for numbers that are no chain.
-    """
+    """A straight chain of bodies, the last `mass_ratio` times as heavy; InputError for numbers that are no chain."""
 
     bodies: int
     mass_ratio: Fraction = Fraction(1)
-    iterations: int | None = None
 
     def __post_init__(self) -> None:
-        chain(self.bodies, float(self.mass_ratio))
-        if self.iterations is not None:
-            check_iterations(self.iterations)
+        _ = self.constraints
 
-    @property
-    def words(self) -> str:
-        """A chain of 10 with the last body 10 times as heavy."""
+    @cached_property
+    def constraints(self) -> Constraints:
+        """Its links, from the world on."""
         last = "" if self.mass_ratio == 1 else f" with the last body {float(self.mass_ratio):g} times as heavy"
-        return f"a chain of {self.bodies}{last}"
+        masses = chain(self.bodies, float(self.mass_ratio))
+        return Constraints(f"a chain of {self.bodies}{last}", masses, tuple(range(self.bodies)))
+
+
+def typed_chain(bodies: int | None, mass_ratio: Fraction | None) -> Chain | None:
+    """Return the chain that was typed, None without one; InputError for a last body without a chain."""
+    if bodies is not None:
+        return Chain(bodies, Fraction(1) if mass_ratio is None else mass_ratio)
+    if mass_ratio is not None:
+        raise InputError("--mass-ratio needs --chain: it says how heavy the last body of the chain is")
+    return None
+
+
+def constraints_of(scene: str | Scene, speed: Fraction) -> Constraints:
+    """Return the constraints of a scene at its start, in the order of the file, as if it were at rest there.
+
+    A driver is one of them. InputError as `load_scene` and `initial_state`.
+    """
+    moving = scene_at_speed(scene, speed)
+    mechanism = compiled_mechanism(moving)
+    q, _ = initial_state(mechanism)
+    joints = [
+        number for number, joint in enumerate(moving.joints) for _ in range(2 if isinstance(joint, Revolute) else 1)
+    ]
+    masses = inverse_effective_masses(
+        np.diag(np.array(mechanism.equations.mass, float)), constraint_jacobian(mechanism, 0.0, q)
+    )
+    words = f"{name_of(scene)} at its start, with its {len(joints)} constraints"
+    return Constraints(words, masses, tuple(joints))
 
 
 @dataclass(frozen=True)
-class ChainAnswer:
-    """What a step of an engine does to the errors of a chain.
+class SweptAnswer:
+    """What a step of an engine does to the errors of many constraints.
 
     `iterations` are the sweeps that were asked about, `alone` the factor by which a step multiplies the error of one
-    constraint alone, `stable_iterations` from how many sweeps the chain is stable, None if from none that is tried.
+    constraint alone, `stable_iterations` from how many sweeps they are stable, None if from none that is tried.
     """
 
-    chain: Chain
+    constraints: Constraints
     iterations: int
     growth: Growth
     alone: float
     stable_iterations: int | None
 
 
-def check_chain(question_chain: Chain | None, engine: Engine | None) -> None:
-    """Raise InputError where a chain is asked about without an engine that is known to sweep."""
-    if question_chain is None:
+def check_sweeps(
+    question_chain: Chain | None,
+    iterations: int | None,
+    engine: Engine | None,
+    scene: str | Scene | None = None,
+    speed: Fraction = Fraction(1),
+) -> None:
+    """Raise InputError where a chain or a number of sweeps is asked about without an engine that is known to sweep.
+
+    Also where there is nothing to sweep over. Errors as `load_scene`.
+    """
+    if iterations is not None:
+        check_iterations(iterations)
+    if question_chain and scene:
+        raise InputError("--chain and --scene are two mechanisms: give one")
+    if iterations is not None and not (question_chain or scene):
+        raise InputError("--iterations needs --chain or --scene: one constraint alone needs one sweep only")
+    if question_chain is None and iterations is None:
         return
+    option = "--chain" if question_chain else "--iterations"
     if engine is None:
-        raise InputError("--chain needs --engine: it asks how that engine sweeps over its constraints")
+        raise InputError(f"{option} needs --engine: it asks how that engine sweeps over its constraints")
     if not engine.sweeps:
         raise InputError(
-            f"--chain: {engine.name} solves all constraints together: a chain is as stable as one constraint, so ask "
-            "without --chain"
+            f"{option}: {engine.name} solves all constraints together: many are as stable as one, so ask without it"
         )
     if engine.sweeping is None:
-        raise InputError(f"--chain: how {engine.name} sweeps over its constraints is not known here")
+        raise InputError(f"{option}: how {engine.name} sweeps over its constraints is not known here")
+    if scene and len(scene_at_speed(scene, speed).constraint_names) == 1:
+        raise InputError(f"--iterations: {name_of(scene)} has one constraint alone: there is nothing to sweep over")
 
 
-def chain_answer(engine: Engine, values: tuple[Fraction, ...], h: Fraction, asked: Chain) -> ChainAnswer:
-    """Return what becomes of a chain with an engine's values at a step of h (s); the engine says how it sweeps.
+def swept_answer(
+    engine: Engine, values: tuple[Fraction, ...], h: Fraction, constraints: Constraints, iterations: int | None
+) -> SweptAnswer:
+    """Return what becomes of constraints with an engine's values at a step of h (s); the engine says how it sweeps.
 
-    NumericalError where rounding leaves open whether errors decay.
+    `iterations` None: the engine's own. NumericalError where rounding leaves open whether errors decay.
     """
     assert engine.sweeping
     step = _steps(engine, values, h)
-    iterations = asked.iterations or engine.sweeping.iterations
-    masses = chain(asked.bodies, float(asked.mass_ratio))
-    growth = swept_growth(masses, step(iterations))
+    asked = iterations or engine.sweeping.iterations
+    growth = constraints.growth(engine, step(asked))
     growth.check_settled()
-    return ChainAnswer(
-        chain=asked,
-        iterations=iterations,
+    return SweptAnswer(
+        constraints=constraints,
+        iterations=asked,
         growth=growth,
-        alone=swept_growth(chain(1), step(iterations)).factor,
-        stable_iterations=fewest_sweeps(lambda sweeps: swept_growth(masses, step(sweeps))),
+        alone=ALONE.growth(engine, step(asked)).factor,
+        stable_iterations=fewest_sweeps(lambda sweeps: constraints.growth(engine, step(sweeps))),
     )
 
 
-def strongest_setting(engine: Engine, h: Fraction, asked: Chain, spread: float) -> str | None:
-    """Return the line to paste for the strongest feedback that the chain allows, even if it were `spread` stronger.
+def strongest_point(
+    engine: Engine, h: Fraction, constraints: Constraints, iterations: int | None, spread: float
+) -> Point | None:
+    """Return the strongest feedback on the engine's curve that constraints allow, even if it were `spread` stronger.
 
-    None where no feedback on the engine's curve is stable, or the engine has none to set.
+    A point (alpha_hat, beta_hat), h in s. None where no feedback on the curve is stable, or there is none to set.
     """
+    assert engine.sweeping
+    asked = iterations or engine.sweeping.iterations
     curve = engine.curve
-    if curve is None or engine.sweeping is None or not engine.parameters:
+    if curve is None or not engine.parameters:
         return None
-    masses = chain(asked.bodies, float(asked.mass_ratio))
-    iterations = asked.iterations or engine.sweeping.iterations
-
-    def values_of(share: float) -> tuple[Fraction, ...]:
-        alpha_hat, beta_hat = curve(share)
-        point = Fraction(alpha_hat), Fraction(beta_hat)
-        return tuple(rational(value) for value in engine.values(point, h))
 
     def allowed(share: float) -> bool:
-        stronger = min(share * (1 + spread), 1.0)
-        return swept_growth(masses, _steps(engine, values_of(stronger), h)(iterations)).decays
+        try:
+            values = _values_at(engine, curve, share, h, spread)
+        except InputError:  # the engine cannot express it
+            return False
+        return constraints.growth(engine, _steps(engine, values, h)(asked)).decays
 
     def refused(shares: FloatArray) -> BoolArray:
         return np.array([not allowed(float(share)) for share in shares])
 
-    shares = np.linspace(0, 1 - 1e-9, SHARES_TRIED + 1)[1:]  # the strongest itself may not be expressible
-    turn = first_where(refused, shares)
+    turn = first_where(refused, SHARES)
     if turn and turn[0] == turn[1]:  # already the weakest
         return None
-    alpha_hat, beta_hat = curve(turn[0] if turn else shares[-1])
-    return engine.setting((Fraction(alpha_hat), Fraction(beta_hat)), h)
+    alpha_hat, beta_hat = curve(turn[0] if turn else SHARES[-1])
+    return Fraction(alpha_hat), Fraction(beta_hat)
+
+
+def sweeps_to_spare(engine: Engine, point: Point, h: Fraction, constraints: Constraints, spread: float) -> int | None:
+    """Return from how many sweeps a point on the engine's curve is stable even if it were `spread` stronger."""
+    curve = engine.curve
+    assert curve
+
+    def as_strong(shares: FloatArray) -> BoolArray:
+        return np.array([float(curve(float(share))[1]) >= float(point[1]) for share in shares])
+
+    turn = first_where(as_strong, SHARES)
+    share = float(turn[1] if turn else SHARES[-1])
+    step = _steps(engine, _values_at(engine, curve, share, h, spread), h)
+    return fewest_sweeps(lambda sweeps: constraints.growth(engine, step(sweeps)))
+
+
+def _values_at(engine: Engine, curve: Curve, share: float, h: Fraction, spread: float) -> tuple[Fraction, ...]:
+    """Return the engine's values for a share of its strongest feedback that is `spread` stronger, at most all of it."""
+    alpha_hat, beta_hat = curve(min(share * (1 + spread), 1.0))
+    return tuple(rational(value) for value in engine.values((Fraction(alpha_hat), Fraction(beta_hat)), h))
 
 
 def _steps(engine: Engine, values: tuple[Fraction, ...], h: Fraction) -> Callable[[int], SweptStep]:
@@ -142,16 +235,16 @@ class ChainMap:
 def chain_map(
     engine: Engine, values: tuple[Fraction, ...], h: Fraction, mass_ratio: Fraction, bodies: int, sweeps: int
 ) -> ChainMap:
-    """Return the map of an engine with such values at a step of h (s); errors as `chain_answer`."""
-    check_chain(Chain(bodies, mass_ratio, sweeps), engine)
+    """Return the map of an engine with such values at a step of h (s); errors as `check_sweeps`."""
+    check_sweeps(Chain(bodies, mass_ratio), sweeps, engine)
     step = _steps(engine, values, h)
     z_abs = np.empty((bodies, sweeps))
     fewest = []
     for row in range(bodies):
-        masses = chain(row + 1, float(mass_ratio))
+        links = Chain(row + 1, mass_ratio).constraints
 
-        def growth(iterations: int, masses: FloatArray = masses) -> Growth:
-            return swept_growth(masses, step(iterations))
+        def growth(iterations: int, links: Constraints = links) -> Growth:
+            return links.growth(engine, step(iterations))
 
         z_abs[row] = [growth(iterations).factor for iterations in range(1, sweeps + 1)]
         fewest.append(fewest_sweeps(growth))

@@ -12,7 +12,7 @@ from bezstab.errors import InputError
 from bezstab.goals import GOALS, SETTLING, UP_TO_LONGEST, Goal
 from bezstab.mechanism import Scene, TurningNormals
 from bezstab.methods import Method, check_one_step, lookup
-from bezstab.questions.chains import Chain, check_chain
+from bezstab.questions.chains import Chain, Constraints, check_sweeps, constraints_of
 from bezstab.questions.motions import ReferenceMotion, motion_of, turning_of
 from bezstab.questions.points import GivenPoint, engine_holds, point_of_drive, point_of_engine
 from bezstab.units import check_step
@@ -44,7 +44,8 @@ class Question:
     rate `omega` (1/s) or `omega_h` (rad a step), or on that of a `scene`, `speed` times as fast as given there; with a
     scene safe is what is safe as it moves. `spread` is the share by which alpha and beta may be off, `settle` (s) the
     time in which errors fall a thousandfold, `equal` keeps alpha = beta, `as_typed` leaves out an engine's clamps.
-    With a `chain` safe is what is also stable there in the engine's sweeps.
+    With a `chain`, or a scene of several constraints, safe is what is also stable there as an engine sweeps over them,
+    `iterations` times in a step (None: the engine's own number).
     InputError for what does not go together.
     """
 
@@ -67,6 +68,7 @@ class Question:
     settle: Fraction | None = None
     equal: bool = False
     chain: Chain | None = None
+    iterations: int | None = None
 
     def __post_init__(self) -> None:
         for name in ("h", "h_min", "h_max"):
@@ -78,7 +80,7 @@ class Question:
             self._check_goal(self.goal)
         if self.scene is None and self.speed != 1:
             raise InputError("--speed needs --scene: it says how fast that mechanism moves")
-        check_chain(self.chain, self.engine)
+        check_sweeps(self.chain, self.iterations, self.engine, self.scene, self.speed)
         object.__setattr__(self, "methods", methods_for(self.methods, self.engine, self.drive))
         if self.steps:
             for method in self.methods:
@@ -164,7 +166,25 @@ class Question:
     def motion(self) -> ReferenceMotion:
         """The motion on which errors are told; errors as `motion_of`."""
         longest = self.h_max if self.goal else None
-        return motion_of(self.omega, self.scene, self.speed, self.h, longest, omega_h=self.omega_h)
+        try:
+            return motion_of(self.omega, self.scene, self.speed, self.h, longest, omega_h=self.omega_h)
+        except InputError:
+            at_rest = self.swept is not None and self.turning is not None and self.turning.kappa == 0
+            if self.omega is not None or not at_rest:
+                raise
+            return motion_of(None, None, self.speed, self.h, longest)  # the sweeps are what is asked about
+
+    @cached_property
+    def swept(self) -> Constraints | None:
+        """The constraints that the engine sweeps over; None for one alone, and where it is not known how it sweeps."""
+        if self.engine is None or self.engine.sweeping is None:
+            return None
+        if self.chain:
+            return self.chain.constraints
+        if self.scene is None:
+            return None
+        found = constraints_of(self.scene, self.speed)
+        return found if len(found.joints) > 1 else None
 
     @cached_property
     def turning(self) -> TurningNormals | None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from bezstab.lazy import lazy_names
 from bezstab.show.answer_rows import (
     added_cells,
+    alone_words,
     answer_row,
     combined_words,
     costs_words,

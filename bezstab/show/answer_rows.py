@@ -17,12 +17,13 @@ from bezstab.show.fields import cells
 from bezstab.show.row_kinds import CHECKED, CHOICES, LARGEST_STEPS
 from bezstab.show.rows import choice_cells, cost_cells, moving_row
 from bezstab.show.varying_rows import repeated, varying_row
-from bezstab.show.words import times_words
+from bezstab.show.words import sweeps_words, times_words
 from bezstab.units import from_dimensionless
 
 if TYPE_CHECKING:
     from fractions import Fraction
 
+    from bezstab.engines import Engine
     from bezstab.questions import Answer, LargestStep, ReferenceMotion
     from bezstab.stability import FeedbackCost
 
@@ -69,26 +70,35 @@ def _engine_cells(answer: Answer) -> dict[str, Value]:
     engine = answer.question.engine
     if not engine:
         return {}
-    of_engine = engine_cells(answer) if answer.role != "chosen" else {"sweeps": engine.sweeps}
-    return {**of_engine, **_chain_cells(answer), "engine_h_limit": answer.engine_h_limit, "setting": answer.setting}
+    of_engine = engine_cells(answer) if answer.role != "chosen" else _swept_cells(answer, engine)
+    return {**of_engine, "engine_h_limit": answer.engine_h_limit, "setting": answer.setting}
 
 
-def _chain_cells(answer: Answer) -> dict[str, Value]:
-    """Return what the engine's sweeps make of a chain; nothing where none is asked about."""
-    found = answer.chain
+def _swept_cells(answer: Answer, engine: Engine) -> dict[str, Value]:
+    """Return whether an engine sweeps, over what, and what its sweeps make of many constraints where they are asked."""
+    found = answer.swept
     if found is None:
-        return {}
+        return {"sweeps": engine.sweeps, "swept": answer.swept_over}
     return {
-        "chain": found.chain.words,
-        "chain_bodies": found.chain.bodies,
-        "chain_mass_ratio": float(found.chain.mass_ratio),
-        "chain_iterations": found.iterations,
-        "chain_z_abs": found.growth.factor,
-        "chain_accuracy": found.growth.accuracy,
+        "sweeps": engine.sweeps,
+        "swept": answer.swept_over,
+        "swept_constraints": len(found.constraints.joints),
+        "swept_iterations": found.iterations,
+        "swept_z_abs": found.growth.factor,
+        "swept_accuracy": found.growth.accuracy,
         "alone_z_abs": found.alone,
         "stable_iterations": found.stable_iterations,
-        "chain_setting": answer.chain_setting,
     }
+
+
+def alone_words(answer: Answer) -> str | None:
+    """Return what a choice would be for one constraint alone, and how many sweeps it takes; None where it is this."""
+    alone = answer.alone
+    if alone is None:
+        return None
+    needed = alone.sweeps_to_spare
+    takes = "no number of sweeps that was tried" if needed is None else sweeps_words(needed)
+    return f"One constraint alone would get {alone.setting}: with the spread to spare that takes {takes}."
 
 
 def engine_cells(answer: Answer) -> dict[str, Value]:
@@ -97,12 +107,12 @@ def engine_cells(answer: Answer) -> dict[str, Value]:
     if not engine:
         return {}
     if answer.role != "given" or answer.goal != "as given":
-        return {"applied": None, "excludes": None, "sweeps": engine.sweeps}
+        return {"applied": None, "excludes": None, **_swept_cells(answer, engine)}
     notes = answer.question.given.notes
     return {
         "applied": "as typed" if notes is None else "; ".join(notes),
         "excludes": engine.excludes,
-        "sweeps": engine.sweeps,
+        **_swept_cells(answer, engine),
     }
 
 

@@ -546,11 +546,9 @@ def error_label(constraint: bool) -> str:
     return "largest $|c|$ (SI)" if constraint else "trajectory error (m, rad)"
 
 
-def cost_label(against: Cost, recorded: bool = False) -> str:
-    """Return what the cost of a run is, for an axis; recorded: in an earlier sweep."""
-    if against == "evaluations":
-        return "evaluations of f"
-    return "processor time of a recorded run (s)" if recorded else "processor time (s)"
+def cost_label(against: Cost) -> str:
+    """Return what the cost of a run is, for an axis."""
+    return "evaluations of f" if against == "evaluations" else "processor time (s)"
 
 
 def _work_and_error(

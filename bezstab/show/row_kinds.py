@@ -66,6 +66,7 @@ LEVEL_ROW = "in the row of a level below 1, which is of the mechanism at rest"
 NO_ERROR = "where errors do not decay, or it is not known"
 NO_CHOICE = "where no feedback decays so fast"
 NO_BEST = "where there is no best point; `best_reason` says why"
+NO_SWEEPS = "where the engine does not sweep, or it is not known how"
 UNBOUNDED = "where the region has no end there, or is empty"
 
 METHOD = Field("method", "text", "Name of the integration method, with @m where its step is m times h", "method")
@@ -537,39 +538,41 @@ CHAIN_BODIES = Field("chain_bodies", "integer", "Bodies of the chain, the first 
 CHAIN_MASS_RATIO = Field(
     "chain_mass_ratio", "number", "Mass of the last body of the chain over that of each other", "last mass", "g"
 )
-CHAIN_ITERATIONS = Field("chain_iterations", "integer", "Sweeps that the engine makes in a step", "sweeps", "d")
-CHAIN_Z_ABS = Field(
-    "chain_z_abs",
+SWEPT_ITERATIONS = Field(
+    "swept_iterations", "integer", "Sweeps that the engine makes in a step", "sweeps", "d", null=NO_SWEEPS
+)
+SWEPT_Z_ABS = Field(
+    "swept_z_abs",
     "number",
-    "Factor by which a step multiplies the error of the chain in the long run",
-    "|z| of the chain",
+    "Factor by which a step multiplies the errors of the constraints that are swept over, in the long run",
+    "|z| swept",
     ".4f",
 )
 STABLE_ITERATIONS = Field(
     "stable_iterations",
     "integer",
-    "From how many sweeps the chain is stable",
+    "From how many sweeps the constraints are stable",
     "stable from sweeps",
     "d",
     null="where none tried is",
 )
-CHAIN = (
-    Field("chain", "text", "The chain of bodies that is asked about"),
-    CHAIN_BODIES.hidden,
-    CHAIN_MASS_RATIO.hidden,
-    CHAIN_ITERATIONS,
-    CHAIN_Z_ABS,
-    Field("chain_accuracy", "number", "How far that factor may be off by rounding, to first order"),
+SWEPT_OVER = (
+    Field(
+        "swept",
+        "text",
+        "For which constraints `safe` holds of an engine that sweeps: one alone, a chain of bodies, those of a scene; "
+        "poles, margins and times are those of one alone",
+        "holds for",
+        null="where the engine solves all constraints together",
+    ),
+    Field("swept_constraints", "integer", "How many constraints the engine sweeps over"),
+    SWEPT_ITERATIONS,
+    SWEPT_Z_ABS,
+    Field("swept_accuracy", "number", "How far that factor may be off by rounding, to first order"),
     Field("alone_z_abs", "number", "The same factor for one constraint alone, with as many sweeps"),
     STABLE_ITERATIONS,
-    Field(
-        "chain_setting",
-        "text",
-        "What to paste for the strongest feedback that the chain allows, even if it were stronger by the spread",
-        null="where there is none, or nothing to set",
-    ),
 )
-"""What --chain adds."""
+"""What an engine that sweeps adds: the first to all, the others to --chain and --scene."""
 DRIVE = (
     Field("drive", "text", "How the drive is applied", "applied", null="where the method is no drive's"),
     Field("kp", "number", "Stiffness of the drive", "kp", ".4g", unit="N m/rad or N/m"),
@@ -700,6 +703,7 @@ POLES = RowKind(
         APPLIED,
         EXCLUDES.hidden,
         SWEEPS,
+        *SWEPT_OVER,
         *DRIVE,
     ),
     sentence=safety_words,
@@ -785,7 +789,7 @@ MEMBERS = RowKind(
 )
 CHAINS = RowKind(
     "a chain of bodies in an engine that sweeps",
-    fields=(CHAIN_MASS_RATIO, CHAIN_BODIES, CHAIN_ITERATIONS, CHAIN_Z_ABS, STABLE_ITERATIONS),
+    fields=(CHAIN_MASS_RATIO, CHAIN_BODIES, SWEPT_ITERATIONS, SWEPT_Z_ABS, STABLE_ITERATIONS),
     sentence=chain_sentence,
 )
 CHOICES = RowKind(
@@ -823,7 +827,7 @@ CHOICES = RowKind(
         TIMES_LEAST,
         TIMES_LEAST_VELOCITY.shown("times the least error", text=both_times_text),
     ),
-    added=(*MOVING, *VARYING, *CHAIN, *DRIVE, SWEEPS, ENGINE_H_LIMIT, SETTING.shown("to paste")),
+    added=(*MOVING, *VARYING, SWEEPS, *SWEPT_OVER, *DRIVE, ENGINE_H_LIMIT, SETTING.shown("to paste")),
     sentence=answer_sentence,
 )
 CHECKED = RowKind(
@@ -890,6 +894,10 @@ ENGINES_LISTED = RowKind(
         SOURCE,
         EXCLUDES,
         SWEEPS.shown("sweeps"),
+        SWEPT_ITERATIONS.hidden,
+        Field("swept_word", "text", "What the engine calls their number", null=NO_SWEEPS),
+        Field("swept_source", "text", "Where it is from how the engine sweeps", null=NO_SWEEPS),
+        Field("swept_excludes", "text", "What is left out of how it sweeps", null=NO_SWEEPS),
     ),
     sometimes=("method",),
     sentence=engine_sentence,

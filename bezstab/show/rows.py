@@ -457,8 +457,8 @@ def chain_rows(engine: Engine, found: ChainMap) -> list[Row]:
         {
             "chain_mass_ratio": found.mass_ratio,
             "chain_bodies": bodies,
-            "chain_iterations": own,
-            "chain_z_abs": float(found.z_abs[bodies - 1, own - 1]),
+            "swept_iterations": own,
+            "swept_z_abs": float(found.z_abs[bodies - 1, own - 1]),
             "stable_iterations": fewest,
         }
         for bodies, fewest in enumerate(found.stable_iterations, start=1)
@@ -473,12 +473,17 @@ def engine_row(engine: Engine, point: tuple[Fraction, Fraction] | None, h: Fract
             setting = engine.setting(point, h)
         except InputError as error:
             setting = str(error)
-    found = {
+    sweeping = engine.sweeping
+    found: dict[str, Value] = {
         "engine": engine.name,
         "parameters": ", ".join(engine.parameters),
         "optional": ", ".join(engine.optional),
         "units": ", ".join(engine.units),
         "witness": witness_of(engine.name),
         "setting": setting,
+        "swept_iterations": sweeping.iterations if sweeping else None,
+        "swept_word": sweeping.word if sweeping else None,
+        "swept_source": sweeping.source if sweeping else None,
+        "swept_excludes": sweeping.excludes if sweeping else None,
     }
     return cells(ENGINES_LISTED.fields, engine, found)

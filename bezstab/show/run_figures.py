@@ -85,9 +85,7 @@ def work_precision_figure(swept: SweptRuns, scene: str, constraint: bool, floor:
         plot.pareto_front([runs[number] for number in front], constraint, floor, axes, swept.against)
         if any(run.failure for run in runs):
             axes.plot([], [], "x", color="0.4", label="diverged")
-        axes.set(
-            xscale="log", yscale="log", title=title_lines(scene), xlabel=plot.cost_label(swept.against, swept.recorded)
-        )
+        axes.set(xscale="log", yscale="log", title=title_lines(scene), xlabel=plot.cost_label(swept.against))
         axes.set_ylabel(plot.error_label(constraint))
         for axis in (axes.xaxis, axes.yaxis):
             mark_powers(axis)

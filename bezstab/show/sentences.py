@@ -7,7 +7,7 @@ from bezstab.show.words import change_words, growth_words, safety_words, seconds
 
 def answer_sentence(row: Row) -> str:
     """Return whether a point is safe, what a step does to the error, and how far step, α and β may grow, at rest."""
-    if not row["safe"] or "chain" in row:
+    if not row["safe"] or "swept_z_abs" in row:
         return safety_words(row)
     if row["margins_reason"]:
         return f"{safety_words(row)} How far the step, α and β may grow is not known: {row['margins_reason']}."
@@ -208,9 +208,9 @@ def finding_sentence(row: Row) -> str:
 
 def chain_sentence(row: Row) -> str:
     """Return from how many sweeps a chain is stable, and what a step does with the engine's own number of them."""
-    z_abs, stable = row["chain_z_abs"], row["stable_iterations"]
+    z_abs, stable = row["swept_z_abs"], row["stable_iterations"]
     enough = "with no number that was tried" if stable is None else f"from {sweeps_words(stable)}"
     count = "1 body" if row["chain_bodies"] == 1 else f"{row['chain_bodies']} bodies"
     bodies = count if row["chain_mass_ratio"] == 1 else f"{count}, the last {row['chain_mass_ratio']:g} times as heavy"
-    own = sweeps_words(row["chain_iterations"])
+    own = sweeps_words(row["swept_iterations"])
     return f"{bodies}: stable {enough}. With {own} each step multiplies the error by {z_abs:.4f}."

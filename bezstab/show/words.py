@@ -50,10 +50,10 @@ def safety_words(row: Row) -> str:
     """Return in a sentence or two whether a point is safe and what a step does to errors.
 
     From a row with `safe`, `verdict` and `z_abs`. With --scene also what happens over the motion, with --h-min what
-    steps that vary do; of an engine that solves its constraints one after another, that one of them alone is meant.
+    steps that vary do; of an engine that solves its constraints one after another, for how many that is.
     """
-    if "chain" in row:
-        return chain_words(row)
+    if "swept_z_abs" in row:
+        return swept_words(row)
     safe = "Safe" if row["safe"] else "Not safe"
     if row.get("sweeps"):
         safe = f"One constraint alone: {safe.lower()}"
@@ -77,20 +77,29 @@ def safety_words(row: Row) -> str:
     return f"{unsettled}."
 
 
-def chain_words(row: Row) -> str:
-    """Return whether a chain is safe in an engine that sweeps, what a step does to its error, and how many sweeps do.
+def swept_words(row: Row) -> str:
+    """Return whether many constraints are safe in an engine that sweeps, what a step does to errors, how many sweeps.
 
-    Not safe in a chain of 10: each step multiplies the error by 1.0338 (one constraint alone: 0.80).
+    Not safe in a chain of 10: each step multiplies the error by 1.0338 (one constraint alone: 0.80). What else was
+    asked, of a scene that moves and of steps that vary, is said of constraints that are solved exactly.
     """
-    z_abs, alone, stable = row["chain_z_abs"], row["alone_z_abs"], row["stable_iterations"]
+    z_abs, alone, stable = row["swept_z_abs"], row["alone_z_abs"], row["stable_iterations"]
     assert isinstance(z_abs, float)
     assert isinstance(alone, float)
     digits = next(digits for digits in range(4, MOST_DIGITS + 1) if float(f"{z_abs:.{digits}f}") != 1)
     enough = "No number of sweeps that was tried is stable" if stable is None else f"Stable from {sweeps_words(stable)}"
-    return (
-        f"{'Safe' if row['safe'] else 'Not safe'} in {row['chain']}: each step "
-        f"multiplies the error by {z_abs:.{digits}f} (one constraint alone: {alone:.2f}). {enough}."
-    )
+    safe = "Safe" if row["safe"] else "Not safe"
+    begin = f"{safe} in {row['swept']}: each" if bool(row["safe"]) == (z_abs < 1) else f"{safe}. In {row['swept']} each"
+    sentences = [f"{begin} step multiplies the error by {z_abs:.{digits}f} (one constraint alone: {alone:.2f})", enough]
+    if "moving_verdict" in row:
+        moving = row["z_abs_moving"]
+        over = f"it is {row['moving_verdict']}"
+        if isinstance(moving, float) and row["moving_verdict"] in ("converges", "diverges"):
+            over = change_words(moving, row["moving_verdict"])
+        sentences.append(f"Solved exactly, over the motion {over}")
+    if "varying" in row:
+        sentences.append(f"That is with constant steps. Solved exactly, when steps vary: {row['varying']}")
+    return f"{'. '.join(sentences)}."
 
 
 def sweeps_words(count: Value) -> str:

@@ -2,21 +2,23 @@
 
 Sequential impulses solve one constraint after another (Gauss-Seidel) and start from the impulses of the last step. Then
 the poles of one constraint say little about a chain. With A = J M^-1 J', the errors y = J x and u = h J v, one sweep
-towards B p = b with B = A + softness diag A is
+towards B p = b is, with D the diagonal of A and B = A + softness D,
 
-    p <- S p + P b            P = (diag B / relaxation + strictly lower part of B)^-1,  S = 1 - P B
+    p <- S p + P b       P = ((1 + softness) D / relaxation + strictly lower part of A)^-1,  S = 1 - P B
 
 so that k sweeps are p <- T p + G b with T = S^k and G = P + S P + ... + S^(k-1) P. Every stage of a step is linear in
 (y, u, p), so a step is one matrix. It is exact where J is constant, as for a straight chain along its own line.
+Where the constraints of a joint are solved together, D and what is below it are those of A in blocks, one a joint.
 
 Free motions are not in it, because y and u are errors, not coordinates. Of constraints that repeat others only the
 independent combinations are kept.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bezstab.engines import MOST_SWEEPS, Move, Pass, SweptStep, VelocityOfMove
 from bezstab.errors import InputError, NumericalError
@@ -73,10 +75,11 @@ def inverse_effective_masses(mass: FloatArray, jacobian: FloatArray) -> FloatArr
     return np.asarray(jacobian @ np.linalg.solve(mass, jacobian.T))
 
 
-def swept_growth(inverse_masses: FloatArray, step: SweptStep) -> Growth:
+def swept_growth(inverse_masses: FloatArray, step: SweptStep, joints: Sequence[int] | None = None) -> Growth:
     """Return by what factor a step multiplies the errors of constraints with such inverse effective masses.
 
     `inverse_masses` is A = J M^-1 J', shape (m, m), symmetric, its diagonal above zero; constraints in their order.
+    `joints` are the numbers of their joints, rising: those of one joint are solved together; None: each by itself.
     NumericalError where a number leaves float64's range.
     """
     scale = 1 / np.sqrt(np.diag(inverse_masses))
@@ -84,13 +87,14 @@ def swept_growth(inverse_masses: FloatArray, step: SweptStep) -> Growth:
     values, vectors = np.linalg.eigh(scaled)
     independent = values > len(scaled) * EPS * values[-1]  # LAPACK's error of an eigenvalue
     root = np.sqrt(values[independent])[:, None] * vectors[:, independent].T  # root' root = A
-    matrix = _step_matrix(scaled, root, step)
+    number = np.arange(len(scaled)) if joints is None else np.array(joints)
+    matrix = _step_matrix(scaled, root, number, step)
     if not np.isfinite(matrix).all():
         raise NumericalError("the matrix of a step with such sweeps leaves the range of float64")
     return _spectral_radius(matrix)
 
 
-def _step_matrix(inverse_masses: FloatArray, root: FloatArray, step: SweptStep) -> FloatArray:
+def _step_matrix(inverse_masses: FloatArray, root: FloatArray, joints: NDArray[np.intp], step: SweptStep) -> FloatArray:
     """Return the matrix of a step over errors, rates and impulses, shape (3 r, 3 r), for a root with root' root = A.
 
     Errors and rates are root' of its first two thirds, impulses p with root p the last: there A is the identity.
@@ -107,28 +111,31 @@ def _step_matrix(inverse_masses: FloatArray, root: FloatArray, step: SweptStep) 
             case VelocityOfMove():
                 rates = errors - before
             case Pass("velocity"):
-                of_old, of_wanted = _sweeps(inverse_masses, root, stage)
+                of_old, of_wanted = _sweeps(inverse_masses, root, joints, stage)
                 new = of_old @ impulses + of_wanted @ (impulses - rates - stage.share * errors)
                 rates, impulses = rates + new - impulses, new
             case Pass("position"):
-                _, of_wanted = _sweeps(inverse_masses, root, stage)
+                _, of_wanted = _sweeps(inverse_masses, root, joints, stage)
                 errors = errors - stage.share * of_wanted @ errors
     return np.vstack([errors, rates, impulses])
 
 
-def _sweeps(inverse_masses: FloatArray, root: FloatArray, one_pass: Pass) -> tuple[FloatArray, FloatArray]:
+def _sweeps(
+    inverse_masses: FloatArray, root: FloatArray, joints: NDArray[np.intp], one_pass: Pass
+) -> tuple[FloatArray, FloatArray]:
     """Return T and G in the coordinates of root: k sweeps make T p + G b of p.
 
     By doubling: T of 2 k sweeps is T T, and G is G + T G.
     """
-    diagonal = np.diag(inverse_masses)
-    triangle = np.diag(diagonal * (1 + one_pass.softness) / one_pass.relaxation) + np.tril(inverse_masses, -1)
+    diagonal = np.where(joints[:, None] == joints, inverse_masses, 0.0)  # D, in blocks
+    below = np.where(joints[:, None] > joints, inverse_masses, 0.0)
+    triangle = diagonal * (1 + one_pass.softness) / one_pass.relaxation + below
     added = root @ np.linalg.solve(triangle, root.T)  # G of one sweep
     identity = np.eye(len(root))
     softened = identity
     if one_pass.softness:  # the inverse of root on the independent combinations
         inverse = np.linalg.pinv(root)
-        softened = identity + one_pass.softness * inverse.T @ (diagonal[:, None] * inverse)
+        softened = identity + one_pass.softness * inverse.T @ diagonal @ inverse
     power = identity - added @ softened  # T of one sweep
     of_old, of_wanted = identity, np.zeros_like(identity)  # of none, so far
     remaining = one_pass.sweeps

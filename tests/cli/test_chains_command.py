@@ -11,7 +11,7 @@ def test_chains_prints_the_fewest_stable_sweeps_and_draws(tmp_path: Path) -> Non
     assert [row["chain_bodies"] for row in found] == [1, 2, 3, 4, 5]
     assert [row["stable_iterations"] for row in found[2:]] == [3, 4, 5]  # two bodies are marginal with one sweep
     assert {row["chain_mass_ratio"] for row in found} == {10}
-    assert found[0]["chain_z_abs"] == pytest.approx(0.9)
+    assert found[0]["swept_z_abs"] == pytest.approx(0.9)
     assert (tmp_path / "there" / "chains_chipmunk.png").read_bytes().startswith(b"\x89PNG")
 
 

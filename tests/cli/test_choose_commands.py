@@ -185,27 +185,65 @@ def test_chipmunks_defaults_come_apart_in_a_chain_of_ten() -> None:
     )
     in_json = run("check", *CHIPMUNK, "--chain", "10", "--mass-ratio", "10", "--format", "json")
     given, instead = json.loads(in_json.stdout)
-    assert (given["safe"], given["verdict"], given["chain_iterations"]) == (False, "converges", 10)
-    assert given["chain_z_abs"] == pytest.approx(1.0049430, abs=1e-7)
-    assert instead["safe"] is False  # what is best for one constraint is worse for a chain
+    assert (given["safe"], given["verdict"], given["swept_iterations"]) == (False, "converges", 10)
+    assert given["swept_z_abs"] == pytest.approx(1.0049430, abs=1e-7)
+    assert given["swept"] == instead["swept"] == "a chain of 10 with the last body 10 times as heavy"
+    assert instead["safe"] is True  # weaker than what is best for one constraint, which is worse for a chain
+    assert instead["beta_hat"] < given["beta_hat"]
     assert run("check", *CHIPMUNK, "--chain", "10", "--mass-ratio", "10", "--iterations", "12").exit_code == 0
     assert run("check", *CHIPMUNK).stdout.startswith("One constraint alone: safe.")
 
 
 @pytest.mark.slow
-def test_choose_says_what_a_chain_allows() -> None:
+def test_choose_gives_the_strongest_that_a_chain_allows() -> None:
     """What it prints is stable there, and nearly a tenth more is; more than that is not."""
-    (row,) = rows("choose", *("--engine", "bullet", "--h", "1/60", "--chain", "3"))
-    assert row["safe"]
     asked = ("--engine", "chipmunk", "--h", "1/60", "--chain", "10", "--mass-ratio", "10")
-    (row,) = json.loads(run("choose", *asked, "--format", "json").stdout)
-    assert not row["safe"]
-    left = float(str(row["chain_setting"]).removeprefix("errorBias = ")) ** (1 / 60)
+    (row,) = rows("choose", *asked)
+    assert row["safe"]
+    assert row["stable_iterations"] == 10
+    left = float(str(row["setting"]).removeprefix("errorBias = ")) ** (1 / 60)
     for share, status in ((1 - left, 0), (1.09 * (1 - left), 0), (1.11 * (1 - left), 1)):
         values = f"chipmunk={(1 - share) ** 60!r}"
         assert (
             run("check", "--engine", values, *CHIPMUNK[2:], "--chain", "10", "--mass-ratio", "10").exit_code == status
         )
+
+
+def test_choose_says_how_many_sweeps_the_goals_own_answer_would_take() -> None:
+    """With a tenth to spare: so many sweeps are stable at 1.1 times its share, one fewer is not."""
+    chain = ("--chain", "10", "--mass-ratio", "10")
+    result = run("choose", "--engine", "chipmunk", "--h", "1/60", *chain)
+    (line,) = (line for line in result.stdout.splitlines() if line.startswith("One constraint alone would get"))
+    error_bias, sweeps = re.fullmatch(r".* errorBias = (\S+): .* that takes (\d+) sweeps\.", line).groups()  # type: ignore[union-attr]
+    share = 1.1 * (1 - float(error_bias) ** (1 / 60))
+    values = f"chipmunk={(1 - share) ** 60!r}"
+    for count, status in ((int(sweeps), 0), (int(sweeps) - 1, 1)):
+        asked = ("check", "--engine", values, "--h", "1/60", *chain, "--iterations", str(count))
+        assert run(*asked).exit_code == status
+
+
+def test_choose_keeps_the_goals_own_answer_where_a_chain_allows_it() -> None:
+    alone, chained = (
+        rows("choose", "--engine", "bullet", "--h", "1/60", *chain)[0] for chain in ((), ("--chain", "3"))
+    )
+    assert chained["setting"] == alone["setting"]
+    assert (alone["swept"], chained["swept"]) == ("one constraint alone", "a chain of 3")
+
+
+def test_the_constraints_of_a_scene_are_swept_in_an_engine_that_sweeps() -> None:
+    """The sentence says which constraints; at rest at the start they are those of a run; mujoco has no such keys."""
+    asked = ("--engine", "chipmunk=0.5", "--h", "1/240", "--scene", "driven_four_bar", "--speed", "0.1")
+    result = run("check", *asked)
+    assert result.stdout.startswith(
+        "Safe in driven_four_bar at its start, with its 5 constraints: each step multiplies"
+    )
+    assert "Solved exactly, over the motion each step multiplies the error by" in result.stdout
+    assert "chipmunk: sweeps are its iterations" in result.stderr
+    one_sweep = rows("check", *asked, "--iterations", "1")[0]
+    assert (one_sweep["swept_constraints"], one_sweep["swept_iterations"]) == (5, 1)
+    exactly = rows("check", "--engine", "mujoco=0.02,1", *asked[2:])[0]
+    assert exactly["swept"] is None
+    assert "swept_z_abs" not in exactly
 
 
 @pytest.mark.parametrize(
@@ -218,7 +256,16 @@ def test_choose_says_what_a_chain_allows() -> None:
         (("--engine", "mujoco=0.02,1", "--chain", "3"), "--chain: mujoco solves all constraints together"),
         (("--engine", "brax-contact=0.1", "--chain", "3"), "--chain: how brax-contact sweeps"),
         (("--engine", "chipmunk=0.1", "--mass-ratio", "3"), "--mass-ratio needs --chain"),
-        (("--engine", "chipmunk=0.1", "--iterations", "3"), "--iterations needs --chain"),
+        (("--engine", "chipmunk=0.1", "--iterations", "3"), "--iterations needs --chain or --scene"),
+        (
+            ("--engine", "chipmunk=0.1", "--scene", "four_bar", "--iterations", "0"),
+            "--iterations 0: expected 1 to 10000",
+        ),
+        (("--engine", "chipmunk=0.1", "--scene", "pendulum", "--iterations", "3"), "pendulum has one constraint alone"),
+        (("--engine", "chipmunk=0.1", "--scene", "four_bar", "--chain", "3"), "--chain and --scene are two mechanisms"),
+        (("--engine", "mujoco=0.02,1", "--scene", "four_bar", "--iterations", "3"), "--iterations: mujoco solves all"),
+        (("--pd", "1,1,1", "--scene", "four_bar", "--iterations", "3"), "--iterations needs --engine"),
+        (("--engine", "chipmunk=0.1", "--scene", "humanoid"), "unknown scene 'humanoid'"),
         (("--pd", "1,1,1", "--chain", "3"), "--chain needs --engine"),
     ],
 )

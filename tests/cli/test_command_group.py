@@ -121,8 +121,6 @@ def test_an_extension_is_found_by_name_and_an_unknown_command_is_not() -> None:
         ("tradeoff --time 1e9", "--time"),
         ("tradeoff --h 0", "--h"),
         ("tradeoff --tolerance 0", "--tolerance"),
-        ("tradeoff --recorded times.json", "--against time"),
-        ("tradeoff --against time --recorded absent.json", "absent.json: No such file"),
         ("tradeoff --repeats 0", "--repeats"),
         ("tradeoff --time 0.1 -o file/below", "file/below"),
         ("region --quality best", "--quality"),

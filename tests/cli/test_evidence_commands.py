@@ -162,21 +162,6 @@ def test_tradeoff_writes_a_table_without_times_and_two_figures(tmp_path: Path) -
 SWEEP = "tradeoff --scene pendulum --method SYM --h 0.01 --h 0.02 --time 0.1 --workers 1 --table none"
 
 
-@pytest.mark.slow
-def test_tradeoff_draws_recorded_times_the_same_again(tmp_path: Path) -> None:
-    measured = rows(*SWEEP.split(), "--figure", "none")
-    for row in measured:
-        row["seconds"] = row["h"]
-    (tmp_path / "times.json").write_text(json.dumps(measured), encoding="utf-8")
-    against_recorded = (*SWEEP.split(), "--against", "time", "--recorded", "times.json")
-    figures = []
-    for _ in range(2):
-        assert [row["seconds"] for row in rows(*against_recorded)] == [0.02, 0.01]
-        figures.append((tmp_path / "tradeoff_pendulum_trajectory.png").read_bytes())
-    assert figures[0] == figures[1]
-    assert "those in times.json" in run(*against_recorded, "--figure", "none").stdout
-
-
 @pytest.mark.parametrize(
     "command",
     [

@@ -1,7 +1,6 @@
 """Machine code: when it is made, what it is kept under, and that it serves every method of a scene."""
 
 import importlib.util
-import math
 import os
 import subprocess
 import sys
@@ -11,25 +10,19 @@ import pytest
 
 from bezstab.compiling import COMPILED_CHOICE
 from bezstab.errors import InputError
-from bezstab.mechanism import Mechanism, compiled_mechanism, load_scene, parse_scene, runs_compiled
+from bezstab.mechanism import compiled_mechanism, load_scene, runs_compiled
 from bezstab.mechanism import compiled_stepping as module
 from bezstab.methods import lookup
 from bezstab.units import feedback_gains
 from tests.evidence.samples import of_campaign
+from tests.mechanism.test_generated_code import chain
 from tests.mechanism.test_stepping import H, both
-
-
-def chain_of_twelve() -> Mechanism:
-    """Return a chain of so many four-bars that its accelerations are compiled in parts."""
-    upright = {"position": {"rod0.theta": math.pi / 2}, "velocity": {"rod0.theta": -1.0}}
-    links = {"count": 12, "length": 1.0, "mass": 1.0}
-    return compiled_mechanism(parse_scene({"name": "chain", "four_bar_chain": links, "initial": upright}))
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", of_campaign(["SYM", "implicit-euler"], ["SYM"]))
-def test_a_chain_compiled_in_parts_is_the_same(name: str) -> None:
-    assert len(both(chain_of_twelve(), name, 100, feedback_gains(0.3, 0.04, H)).t) == 101
+def test_a_chain_compiled_by_its_shapes_is_the_same(name: str) -> None:
+    assert len(both(chain(12), name, 100, feedback_gains(0.3, 0.04, H)).t) == 101
 
 
 def test_runs_are_compiled_where_that_pays_or_is_asked_for(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -52,17 +45,6 @@ def test_runs_are_compiled_where_that_pays_or_is_asked_for(monkeypatch: pytest.M
     module._kept_file.cache_clear()
 
 
-def test_an_acceleration_too_long_to_be_compiled_is_refused_where_it_is_asked_for(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    mechanism, method = compiled_mechanism(load_scene("four_bar")), lookup("bdf2")
-    monkeypatch.setenv(COMPILED_CHOICE, "yes")
-    assert runs_compiled(mechanism, method, 10)
-    monkeypatch.setattr(module, "MOST_LINES_ASKED_FOR", 50)
-    with pytest.raises(InputError, match=r"--compiled yes: the acceleration of .+ is \d+ lines of code"):
-        runs_compiled(mechanism, method, 10)
-
-
 def test_without_numba_runs_are_pythons_unless_it_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     mechanism, method = compiled_mechanism(load_scene("four_bar")), lookup("AB2")
@@ -79,7 +61,7 @@ from bezstab.mechanism.compiled_stepping import machine_steps
 from bezstab.methods import lookup
 mechanism = compiled_mechanism(load_scene("pendulum"))
 assert simulate(mechanism, lookup("SYM"), 1e-3, 0.1, (20.0, 100.0), compiled=True).failure is None
-dispatcher = machine_steps(mechanism, False, False)
+dispatcher, _ = machine_steps(mechanism, False, False, 1)
 print(sum(dispatcher.stats.cache_hits.values()))
 """
 
@@ -124,4 +106,5 @@ def test_a_further_method_on_a_compiled_scene_compiles_nothing() -> None:
     mechanism = compiled_mechanism(load_scene("pendulum"))
     for name in ("B2", "dopri5"):
         both(mechanism, name, 20, (20.0, 100.0))
-    assert len(module.machine_steps(mechanism, False, False).signatures) == 1  # type: ignore[attr-defined]
+    steps, _ = module.machine_steps(mechanism, False, False, 1)
+    assert len(steps.signatures) == 1  # type: ignore[attr-defined]

@@ -2,7 +2,6 @@
 
 import math
 import re
-from collections.abc import Sequence
 from functools import cache
 from typing import Any
 
@@ -11,6 +10,8 @@ import numpy as np
 import pytest
 
 from bezstab.mechanism import (
+    Mechanism,
+    acceleration_function,
     compiled_mechanism,
     initial_state,
     load_scene,
@@ -18,16 +19,13 @@ from bezstab.mechanism import (
     perturbed_state,
     simulate,
 )
-from bezstab.mechanism.compiled import judged_acceleration_function
-from bezstab.mechanism.generated_code import (
-    PART,
-    AccelerationCode,
-    MachineCode,
-    compiled_source,
-    judged_source,
-    machine_code,
-    slope_lines,
+from bezstab.mechanism.compiled import (
+    correction_function,
+    corrections_of,
+    judged_acceleration_function,
+    slope_function,
 )
+from bezstab.mechanism.generated_code import compiled_source, judged_source, machine_code, slope_lines
 from bezstab.methods import accuracy, lookup, steps
 from tests.mechanism.test_scenes import pendulum
 from tests.methods.kinds import EXPLICIT, FEW, IMPLICIT, sampled
@@ -148,32 +146,36 @@ def test_names_never_reach_the_generated_code() -> None:
     assert initial_state(mechanism)[0] == pytest.approx([0.6, 0.8])
 
 
-@pytest.mark.slow
-def test_a_long_acceleration_in_parts_is_the_same_to_the_last_bit() -> None:
-    """And so are its slopes; here as Python, the room a list."""
+def chain(count: int) -> Mechanism:
+    """Return a chain of so many four-bars."""
     upright = {"position": {"rod0.theta": math.pi / 2}, "velocity": {"rod0.theta": -1.0}}
-    links = {"count": 12, "length": 1.0, "mass": 1.0}
-    mechanism = compiled_mechanism(parse_scene({"name": "chain", "four_bar_chain": links, "initial": upright}))
-    whole, slopes = mechanism.acceleration_code, slope_lines(mechanism.equations)
-    cut = machine_code(whole, slopes)
-    assert len(cut.parts) == math.ceil(len(whole.lines) / PART) + math.ceil(len(slopes) / PART)
-    others: dict[str, Any] = {"empty": lambda size: [math.nan] * size}
-    for number, part in enumerate(cut.parts):
-        others[f"part_{number}"] = compiled_source(part, math)[f"part_{number}"]
-    size = mechanism.size
-    state = [[0.1 * math.sin(7.0 * i + j) for i in range(size)] for j in range(4)]  # q, v, dq, dv
-
-    def evaluated(acceleration: AccelerationCode, of_slopes: Sequence[str]) -> tuple[float, ...]:
-        results = [f"{name}{i}" for name in ("a", "da") for i in range(size)]
-        lines = [f"{name}{i} = {name}[{i}]" for name in ("q", "v", "dq", "dv") for i in range(size)]
-        lines += [*acceleration.lines, *of_slopes, f"return ({', '.join([*results, *acceleration.pivots])})"]
-        source = "\n ".join(["def evaluated(t, two_alpha, beta_squared, q, v, dq, dv):", *lines])
-        found: tuple[float, ...] = compiled_source(source, math, others)["evaluated"](0.0, 3.0, 4.0, *state)
-        return found
-
-    assert evaluated(cut.acceleration, cut.slopes) == evaluated(whole, slopes)
+    links = {"count": count, "length": 1.0, "mass": 1.0}
+    return compiled_mechanism(parse_scene({"name": "chain", "four_bar_chain": links, "initial": upright}))
 
 
-def test_a_short_acceleration_is_left_as_it_is() -> None:
-    code = compiled_mechanism(load_scene("slider_crank")).acceleration_code
-    assert machine_code(code, ["da0 = 0.0"]) == MachineCode(code, ("da0 = 0.0",))
+@pytest.mark.slow
+def test_a_long_acceleration_by_its_shapes_is_the_same_to_the_last_bit() -> None:
+    """And so are its slopes and corrections; here as Python, two lanes side by side."""
+    mechanism, lanes, gains = chain(12), 2, (3.0, 4.0)
+    n = mechanism.size
+    codes = {"accelerations": mechanism.acceleration_code, "corrections": corrections_of(mechanism)}
+    code = machine_code(codes, slope_lines(mechanism.equations), stride=lanes)
+    functions = compiled_source(code.source, math, code.tables)
+    state, direction = (0.1 * np.sin(7.0 * np.arange(2 * n * lanes) + first).reshape(2, -1) for first in (0, 1))
+    found, off, changes, room = np.zeros(n * lanes), np.zeros(2 * n * lanes), np.zeros(n * lanes), np.zeros(code.size)
+    situation = (0.0, np.array([gains, gains]).T, state)
+    functions["accelerations"](*situation, found, room)
+    functions["corrections"](*situation, off, room)
+    for lane in range(lanes):
+        q, v, dq, dv = (part[lane::lanes].tolist() for part in (*state, *direction))
+        assert tuple(found[lane::lanes]) == acceleration_function(mechanism, math)(0.0, *gains, q, v)
+        assert tuple(off[lane::lanes]) == correction_function(mechanism, math)(0.0, *gains, q, v)[:-1]
+        functions["slope"](*situation, direction, changes, room, lane)
+        assert tuple(changes[lane::lanes]) == slope_function(mechanism, math)(0.0, *gains, q, v, dq, dv)
+
+
+@pytest.mark.slow
+def test_a_chain_twice_as_long_has_no_more_shapes() -> None:
+    short, long = (machine_code({"accelerations": chain(count).acceleration_code}, (), 1) for count in (12, 24))
+    assert len(long.source) <= 1.1 * len(short.source)
+    assert len(long.tables["accelerations_places"]) > 1.9 * len(short.tables["accelerations_places"])

@@ -28,7 +28,7 @@ EPS = np.finfo(float).eps
 KINDS = ("B4", "AB3", "ABM2", "RK4", "SYM", "verlet-half", "bdf2", "gauss4", "sdirk2", "hht")
 """Of each kind of method one."""
 SCENES = [name for name in shipped_scenes() if name != "n_four_bar"]
-"""Besides the chain of 40 four-bars, for which one of twelve stands, compiled in parts, too."""
+"""Besides the chain of 40 four-bars, for which one of twelve stands, compiled by its shapes, too."""
 
 
 def step_for(scene: str) -> float:

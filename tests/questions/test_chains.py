@@ -1,10 +1,14 @@
 from fractions import Fraction
+from itertools import pairwise
 
 import pytest
 
-from bezstab.engines import ENGINES
+from bezstab.engines import ENGINES, hard_velocity_step
 from bezstab.errors import InputError
+from bezstab.mechanism import Scene, parse_scene
 from bezstab.questions import Chain, Question, answers
+from bezstab.questions.chains import constraints_of
+from bezstab.stability import chain, swept_growth
 
 CHIPMUNK = ENGINES["chipmunk"]
 DEFAULT = (Fraction("0.9") ** 60,)
@@ -15,28 +19,100 @@ def test_a_chain_decides_whether_an_answer_is_safe() -> None:
     (unsafe,) = answers(Question(engine=CHIPMUNK, values=DEFAULT, h=Fraction(1, 60), chain=asked))
     assert unsafe.verdict == "converges"
     assert not unsafe.safe
-    assert unsafe.chain
-    assert unsafe.chain.stable_iterations == 12
-    enough = Chain(10, Fraction(10), iterations=12)
-    (safe,) = answers(Question(engine=CHIPMUNK, values=DEFAULT, h=Fraction(1, 60), chain=enough))
+    assert unsafe.swept
+    assert unsafe.swept.stable_iterations == 12
+    (safe,) = answers(Question(engine=CHIPMUNK, values=DEFAULT, h=Fraction(1, 60), chain=asked, iterations=12))
     assert safe.safe
-    assert enough.words == "a chain of 10 with the last body 10 times as heavy"
-    assert Chain(3).words == "a chain of 3"
+    assert safe.swept_over == "a chain of 10 with the last body 10 times as heavy"
+    assert Chain(3).constraints.words == "a chain of 3"
+    assert "one constraint alone: safe" in repr(next(answers(Question(engine=CHIPMUNK, values=DEFAULT, h=Fraction(1)))))
 
 
 def test_the_engines_own_sweeps_are_taken_unless_others_are_asked_about() -> None:
     (answer,) = answers(Question(engine=ENGINES["ode"], values=(Fraction("0.2"),), h=Fraction(1, 60), chain=Chain(2)))
-    assert answer.chain
-    assert answer.chain.iterations == 20
-    assert answer.chain.alone == pytest.approx(0.8, abs=1e-9)
+    assert answer.swept
+    assert answer.swept.iterations == 20
+    assert answer.swept.alone == pytest.approx(0.8, abs=1e-9)
 
 
-def test_the_strongest_feedback_that_a_chain_allows() -> None:
-    """A share of all of the error is stable in short chains, and there is nothing to set in an engine without words."""
-    for name, setting in (("bullet", "ERP = 0.999999999"), ("physx", None)):
-        chosen = Question(engine=ENGINES[name], goal="robust", h=Fraction(1, 60), chain=Chain(3))
-        (answer,) = answers(chosen)
-        assert answer.chain_setting == setting
+@pytest.mark.parametrize("name", [name for name, engine in ENGINES.items() if engine.sweeping])
+def test_what_is_chosen_for_a_chain_is_safe_there(name: str) -> None:
+    """The fastest for one constraint alone, where the chain allows it; else weaker, and with the spread to spare."""
+    engine, h = ENGINES[name], Fraction(1, 240)
+    alone, chained = (
+        next(answers(Question(engine=engine, goal="fastest", h=h, chain=asked)))
+        for asked in (None, Chain(6, Fraction(20)))
+    )
+    assert chained.safe
+    assert chained.beta_hat <= alone.beta_hat
+    assert (chained.alone is None) is (chained.point == alone.point)
+    if chained.alone:
+        assert chained.alone.point == alone.point
+        assert chained.sweeps_to_spare
+        assert chained.swept
+        assert chained.swept.iterations >= chained.sweeps_to_spare
+
+
+def links(bodies: int, ratio: float) -> Scene:
+    """Return a chain of bodies along a line, tied by distances, as a scene file has it."""
+    names = ["ground", *(f"body{number}" for number in range(bodies))]
+    masses = [1.0] * (bodies - 1) + [ratio]
+    return parse_scene(
+        {
+            "name": "chain",
+            "body": [
+                {"name": name, "mass": mass, "free": ["x"], "locked": {"y": 0.0, "theta": 0.0}}
+                for name, mass in zip(names[1:], masses, strict=True)
+            ],
+            "joint": [
+                {"type": "distance", "bodies": list(pair), "points": [[0.0, 0.0], [0.0, 0.0]], "length": 0.5}
+                for pair in pairwise(names)
+            ],
+            "initial": {"guess": {f"{name}.x": 0.5 * number for number, name in enumerate(names) if number}},
+        }
+    )
+
+
+def test_a_chain_written_as_a_scene_is_the_chain() -> None:
+    assert constraints_of(links(5, 7.0), Fraction(1)).inverse_masses == pytest.approx(chain(5, 7.0), abs=1e-12)
+    by_scene, by_chain = (
+        next(answers(Question(engine=CHIPMUNK, values=DEFAULT, h=Fraction(1, 60), scene=scene, chain=asked)))
+        for scene, asked in ((links(10, 10.0), None), (None, Chain(10, Fraction(10))))
+    )
+    assert by_scene.swept
+    assert by_chain.swept
+    assert by_scene.swept.growth.factor == pytest.approx(by_chain.swept.growth.factor, abs=1e-9)
+    assert by_scene.swept.stable_iterations == by_chain.swept.stable_iterations == 12
+    assert (by_scene.safe, by_scene.swept_over) == (False, "chain at its start, with its 10 constraints")
+
+
+@pytest.mark.parametrize("name", ["four_bar", "slider_crank", "andrews"])
+def test_many_sweeps_over_a_scene_solve_it_exactly(name: str) -> None:
+    """Then every one of its constraints has the pole of one alone, whatever the free motion, which has no error."""
+    half = (Fraction("0.5") ** 240,)  # of the error is left after a step
+    many, few = (
+        next(answers(Question(engine=CHIPMUNK, values=half, h=Fraction(1, 240), scene=name, iterations=iterations)))
+        for iterations in (10_000, 1)
+    )
+    assert many.swept
+    assert few.swept
+    assert many.swept.growth.factor == pytest.approx(0.5, abs=1e-9)
+    assert few.swept.growth.factor > 0.5 + 1e-3
+
+
+def test_pins_are_swept_at_once_or_in_rows_as_the_engine_does() -> None:
+    """Chipmunk solves the two constraints of a pin together, Bullet one after the other."""
+    pins = constraints_of("four_bar", Fraction(1))
+    assert pins.joints == (0, 0, 1, 1)
+    step = hard_velocity_step(0.5, 1, kept=1.0)
+    for name, joints in (("chipmunk", pins.joints), ("bullet", None)):
+        assert pins.growth(ENGINES[name], step) == swept_growth(pins.inverse_masses, step, joints)
+
+
+def test_one_constraint_of_a_scene_is_one_alone() -> None:
+    (answer,) = answers(Question(engine=CHIPMUNK, values=DEFAULT, h=Fraction(1, 240), scene="pendulum"))
+    assert answer.swept is None
+    assert answer.swept_over == "one constraint alone"
 
 
 def test_a_chain_needs_an_engine_that_sweeps() -> None:

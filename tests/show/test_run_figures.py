@@ -29,16 +29,15 @@ def test_the_scene_figure_joins_the_bodies_where_their_joints_are() -> None:
 
 
 @pytest.mark.parametrize(
-    ("constraint", "against", "recorded", "label"),
+    ("constraint", "against", "label"),
     [
-        (False, "evaluations", False, "evaluations of f"),
-        (True, "evaluations", False, "evaluations of f"),
-        (False, "time", False, "processor time (s)"),
-        (True, "time", True, "processor time of a recorded run (s)"),
+        (False, "evaluations", "evaluations of f"),
+        (True, "evaluations", "evaluations of f"),
+        (False, "time", "processor time (s)"),
     ],
 )
 def test_the_work_precision_figure_has_every_run_and_rings_the_front(
-    constraint: bool, against: Cost, recorded: bool, label: str
+    constraint: bool, against: Cost, label: str
 ) -> None:
     scene, steps, point = load_scene("slider_crank_light"), (0.004, 0.008, 0.0125), (50.0, 50.0)
     true = reference_motion(scene, min(steps), 1.0)
@@ -46,7 +45,7 @@ def test_the_work_precision_figure_has_every_run_and_rings_the_front(
     swept = [run for sweep in sweeps for run in swept_runs(sweep, measured_runs(sweep))]
     failed = [run for run in swept if run.failure]
     assert failed  # AB4 at the largest step
-    figure = work_precision_figure(with_fronts(swept, 0.0, against, recorded), scene.name, constraint)
+    figure = work_precision_figure(with_fronts(swept, 0.0, against), scene.name, constraint)
     (axes,) = figure.axes
     assert axes.get_xlabel() == label
     lines = {str(line.get_label()): np.array(line.get_xydata()) for line in axes.lines}

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from bezstab.engines import ENGINES, Move, Pass, SweptStep, hard_velocity_step
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods.schur import recursion_verdict
-from bezstab.stability import Growth, chain, fewest_sweeps, inverse_effective_masses, swept_growth
+from bezstab.stability import FloatArray, Growth, chain, fewest_sweeps, inverse_effective_masses, swept_growth
 from tests.reference.swept_chains import columns, hard_step, position_step, soft_step
 
 
@@ -135,6 +135,38 @@ def test_free_motions_and_repeated_constraints_change_nothing() -> None:
     assert free.factor == pytest.approx(alone, abs=1e-10)
     twice = swept_growth(inverse_effective_masses(np.eye(8), np.repeat(jacobian, 2, axis=0)), step)
     assert twice.factor == pytest.approx(alone, abs=1e-10)  # the second of two solved in turn has nothing left to do
+
+
+def joints_step(inverse_masses: FloatArray, joints: tuple[int, ...], sweeps: int, share: float) -> FloatArray:
+    """Return the matrix of a step whose joints are solved one after another, each exactly: errors, rates, impulses."""
+    count = len(joints)
+
+    def step(state: FloatArray) -> FloatArray:
+        errors, rates, impulses = np.split(state, 3)
+        rates = rates + inverse_masses @ impulses
+        for _ in range(sweeps):
+            for joint in dict.fromkeys(joints):
+                own = [index for index in range(count) if joints[index] == joint]
+                added = -np.linalg.solve(inverse_masses[np.ix_(own, own)], (rates + share * errors)[own])
+                impulses[own] += added
+                rates = rates + inverse_masses[:, own] @ added
+        return np.concatenate([errors + rates, rates, impulses])
+
+    return np.stack([step(unit) for unit in np.eye(3 * count)], axis=1)
+
+
+@pytest.mark.parametrize("joints", [(0, 0, 1, 1, 2), (0, 1, 1, 1, 2), (0, 0, 0, 0, 0)])
+def test_constraints_of_a_joint_are_solved_together(joints: tuple[int, ...]) -> None:
+    jacobian = np.random.default_rng(5).standard_normal((5, 7))
+    masses = inverse_effective_masses(np.eye(7), jacobian)
+    for sweeps in (1, 3):
+        of_loops = float(np.abs(np.linalg.eigvals(joints_step(masses, joints, sweeps, 0.6))).max())
+        found = swept_growth(masses, hard_velocity_step(0.6, sweeps, kept=1.0), joints).factor
+        assert found == pytest.approx(of_loops, abs=1e-6)
+    apart = swept_growth(masses, hard_velocity_step(0.6, 3, kept=1.0)).factor
+    assert abs(found - apart) > 1e-3
+    if set(joints) == {0}:
+        assert found == pytest.approx(0.4, abs=1e-9)
 
 
 def test_scaling_a_constraint_or_all_masses_changes_nothing() -> None:

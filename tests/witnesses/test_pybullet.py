@@ -1,10 +1,14 @@
 """PyBullet: constraints with ERP are SYM at (1, ERP), position motors SYM at (velocityGain, positionGain).
 
 So a constraint leaves the share 1 - ERP of an error each step, and its limit is ERP < 2, not 1.
+
+Chains are of rigid bodies (useMaximalCoordinates), whose constraints btSequentialImpulseConstraintSolver sweeps in
+order. PyBullet's bodies are else multibodies of one link each: their constraints are swept in another order.
 """
 
 from collections.abc import Iterator
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -13,7 +17,8 @@ from numpy.typing import NDArray
 
 from bezstab.engines import ENGINES
 from bezstab.methods import closed_loop_at, lookup
-from bezstab.stability import dominant_pole, verdict
+from bezstab.stability import Growth, chain, dominant_pole, swept_growth, verdict
+from tests.witnesses.growths import growth
 
 pybullet: Any = pytest.importorskip("pybullet")
 
@@ -48,7 +53,7 @@ def errors(world: int, kind: int, erp: float) -> NDArray[np.float64]:
 
 
 @pytest.mark.promise(
-    "PyBullet, pymunk and Exudyn, which are not ours",
+    "PyBullet, pymunk, Box2D and Exudyn, which are not ours",
     measured="poles to 1e-9, pymunk's to 1e-6; at 0.9 and 1.1 of a limit errors fall and grow",
 )
 @pytest.mark.parametrize("kind", ["JOINT_POINT2POINT", "JOINT_FIXED"])
@@ -94,7 +99,7 @@ def motor_positions(world: int, position_gain: float, velocity_gain: float) -> N
     return np.array(positions)
 
 
-@pytest.mark.promise("PyBullet, pymunk and Exudyn, which are not ours")
+@pytest.mark.promise("PyBullet, pymunk, Box2D and Exudyn, which are not ours")
 @pytest.mark.parametrize("velocity_gain", ["1", "1/2", "6/5"])
 @pytest.mark.parametrize("of_limit", ["1/10", "9/10", "11/10"])
 def test_a_position_motor_is_symplectic_euler(world: int, velocity_gain: str, of_limit: str) -> None:
@@ -107,3 +112,95 @@ def test_a_position_motor_is_symplectic_euler(world: int, velocity_gain: str, of
     grows = bool(np.abs(found[-2:]).max() > ERROR)
     assert grows is (Fraction(of_limit) > 1)
     assert verdict(lookup("SYM"), alpha_hat, beta_hat) == ("diverges" if grows else "converges")
+
+
+def chained(world: int, bodies: int, ratio: float, sweeps: int, erp: float, gravity: float = 0.0) -> list[Any]:
+    """Return the bodies of a straight chain, a metre apart, from the world on, the last one heavier."""
+    settings = {"erp": erp, "numSolverIterations": sweeps, "solverResidualThreshold": 0}
+    pybullet.setTimeStep(H, physicsClientId=world)
+    pybullet.setGravity(gravity, 0, 0, physicsClientId=world)
+    pybullet.setPhysicsEngineParameter(**settings, physicsClientId=world)
+    shape = pybullet.createCollisionShape(pybullet.GEOM_SPHERE, radius=0.1, physicsClientId=world)
+    rigid = {"useMaximalCoordinates": 1, "physicsClientId": world}
+    before = pybullet.createMultiBody(0, -1, -1, [0, 0, 0], **rigid)
+    links = []
+    for number in range(1, bodies + 1):
+        body = pybullet.createMultiBody(ratio if number == bodies else 1, shape, -1, [number, 0, 0], **rigid)
+        pybullet.changeDynamics(body, -1, linearDamping=0, angularDamping=0, physicsClientId=world)
+        pybullet.setCollisionFilterGroupMask(body, -1, 0, 0, physicsClientId=world)
+        ends = ([0, 0, 0], [1, 0, 0], [0, 0, 0])
+        joint = pybullet.createConstraint(
+            before, -1, body, -1, pybullet.JOINT_POINT2POINT, *ends, physicsClientId=world
+        )
+        pybullet.changeConstraint(joint, maxForce=1e12, physicsClientId=world)
+        links.append(body)
+        before = body
+    return links
+
+
+def worst_link(world: int, links: list[Any]) -> float:
+    """Return by how much some link is too long or too short, at most (m)."""
+    found = (pybullet.getBasePositionAndOrientation(body, physicsClientId=world) for body in links)
+    places = [0.0, *(position[0] for position, _ in found)]
+    return float(max(abs(x - u - 1) for u, x in pairwise(places)))
+
+
+def predicted(bodies: int, ratio: float, sweeps: int, erp: float) -> Growth:
+    sweeping = ENGINES["bullet"].sweeping
+    assert sweeping
+    return swept_growth(chain(bodies, ratio), sweeping.step(sweeps, Fraction(1, 240), Fraction(erp)))
+
+
+@pytest.mark.promise("PyBullet, pymunk, Box2D and Exudyn, which are not ours")
+@pytest.mark.parametrize(
+    ("bodies", "ratio", "sweeps", "erp"),
+    [
+        (5, 1, 1, 0.2),
+        (10, 1, 4, 0.2),
+        (10, 1, 4, 1.9),
+        (10, 1, 10, 0.2),
+        (10, 10, 10, 0.2),
+        (10, 10, 10, 1.0),
+        (10, 100, 10, 0.2),
+        (20, 1, 10, 0.5),
+    ],
+)
+def test_a_kicked_chain_shrinks_as_predicted(world: int, bodies: int, ratio: float, sweeps: int, erp: float) -> None:
+    """To 2e-3 of the factor a step, while errors are above rounding: what few sweeps leave is slower than the ERP."""
+    links = chained(world, bodies, ratio, sweeps, erp)
+    assert predicted(bodies, ratio, sweeps, erp).factor > abs(1 - erp) + 1e-3
+    rng = np.random.default_rng(1)
+    for body in links:
+        kick = float(rng.standard_normal())
+        pybullet.resetBaseVelocity(body, [kick, 0, 0], [0, 0, 0], physicsClientId=world)
+    errors: list[float] = []
+    while len(errors) < 20 or (len(errors) < 1500 and max(errors[-10:]) > 1e-12):
+        pybullet.stepSimulation(physicsClientId=world)
+        errors.append(worst_link(world, links))
+    assert growth(errors, 10) == pytest.approx(predicted(bodies, ratio, sweeps, erp).factor, abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("bodies", "ratio", "sweeps", "erp", "decays"),
+    [
+        (5, 10, 10, 0.2, True),
+        (10, 1, 4, 0.2, True),
+        (10, 10, 10, 0.2, True),
+        (10, 10, 10, 1.9, True),
+        (10, 10, 10, 2.1, False),
+        (10, 100, 50, 0.2, True),
+        (10, 100, 50, 2.1, False),
+        (20, 1, 10, 0.2, True),
+    ],
+)
+def test_hanging_chains_come_apart_where_predicted(
+    world: int, bodies: int, ratio: float, sweeps: int, erp: float, decays: bool
+) -> None:
+    """Ten seconds under gravity along the chain: links of 1 m stay long as they are, or are off by more than that."""
+    assert predicted(bodies, ratio, sweeps, erp).decays is decays
+    links = chained(world, bodies, ratio, sweeps, erp, gravity=9.81)
+    worst = []
+    for _ in range(2400):
+        pybullet.stepSimulation(physicsClientId=world)
+        worst.append(worst_link(world, links))
+    assert (max(worst[1800:]) < 1) is decays

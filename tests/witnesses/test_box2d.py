@@ -1,0 +1,104 @@
+"""Box2D 2.3 (the package box2d): velocities without error are swept first, then positions, with the impulses kept.
+
+A straight chain of distance joints, folded so that all places are between 0 and 1: its numbers have seven digits.
+Position sweeps end as soon as no error is above the slop of 5 mm: so with one of them they are always one, and with
+three they are three only while errors are larger.
+"""
+
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+
+from bezstab.engines import ENGINES, Move, Pass, SweptStep
+from bezstab.stability import Growth, chain, swept_growth
+from tests.witnesses.growths import growth
+
+box2d: Any = pytest.importorskip("Box2D")
+
+H = 1 / 60
+SLOP = 0.005
+NO_MORE = 3e-6
+"""Of errors: below, seven digits are used up."""
+
+
+def chained(bodies: int, ratio: float, gravity: float = 0.0) -> tuple[Any, list[Any]]:
+    """Return a world and the bodies of a folded chain in it, from the ground on, the last one heavier."""
+    world = box2d.b2World(gravity=(gravity, 0))
+    world.allowSleeping = False
+    links: list[Any] = []
+    before = world.CreateStaticBody(position=(0, 0))
+    for number in range(1, bodies + 1):
+        body = world.CreateDynamicBody(position=(number % 2, 0), allowSleep=False)
+        mass = ratio if number == bodies else 1.0
+        body.massData = box2d.b2MassData(mass=mass, I=mass, center=(0, 0))
+        ends = {"anchorA": before.position, "anchorB": body.position}
+        world.CreateDistanceJoint(bodyA=before, bodyB=body, length=1, **ends)
+        links.append(body)
+        before = body
+    return world, links
+
+
+def worst_link(links: list[Any]) -> float:
+    places = [0.0, *(body.position[0] for body in links)]
+    return float(max(abs(abs(x - u) - 1) for u, x in pairwise(places)))
+
+
+def predicted(bodies: int, ratio: float, sweeps: int, position_sweeps: int) -> Growth:
+    positions = Pass("position", position_sweeps, 1.0)
+    return swept_growth(chain(bodies, ratio), SweptStep(1.0, (Pass("velocity", sweeps), Move(), positions)))
+
+
+def test_three_position_sweeps_are_the_engines_row() -> None:
+    sweeping = ENGINES["box2d-v2"].sweeping
+    assert sweeping
+    of_row = swept_growth(chain(10, 10), sweeping.step(8, H))
+    assert of_row == predicted(10, 10, 8, 3)
+
+
+@pytest.mark.promise("PyBullet, pymunk, Box2D and Exudyn, which are not ours")
+@pytest.mark.parametrize(
+    ("bodies", "ratio", "sweeps"), [(5, 1, 4), (10, 1, 4), (10, 1, 8), (10, 10, 8), (10, 100, 8), (20, 1, 8), (5, 1, 1)]
+)
+def test_errors_of_a_chain_shrink_as_predicted(bodies: int, ratio: float, sweeps: int) -> None:
+    """To 2e-3 of the factor a step, with one position sweep."""
+    world, links = chained(bodies, ratio)
+    rng = np.random.default_rng(1)
+    for body in links:
+        body.position = (body.position[0] + float(rng.uniform(-0.1, 0.1)), 0)
+        body.linearVelocity = (float(rng.uniform(-1, 1)), 0)
+    errors = [worst_link(links)]
+    while len(errors) < 2000 and (len(errors) < 30 or max(errors[-10:]) > NO_MORE):
+        world.Step(H, sweeps, 1)
+        errors.append(worst_link(links))
+    assert growth(errors, 10) == pytest.approx(predicted(bodies, ratio, sweeps, 1).factor, abs=2e-3)
+
+
+@pytest.mark.promise("PyBullet, pymunk, Box2D and Exudyn, which are not ours")
+@pytest.mark.parametrize(("bodies", "ratio"), [(20, 10), (20, 30), (10, 100)])
+def test_so_they_do_with_three_position_sweeps_while_they_are_above_the_slop(bodies: int, ratio: float) -> None:
+    """Links are too long and too short in turn, as if a straight chain was stretched: the slowest error of all."""
+    world, links = chained(bodies, ratio)
+    for number, body in enumerate(links, start=1):
+        body.position = (body.position[0] + 0.1 * number, 0)
+    errors = [worst_link(links)]
+    while errors[-1] > 2 * SLOP:
+        world.Step(H, 8, 3)
+        errors.append(worst_link(links))
+    assert growth(errors, 10) == pytest.approx(predicted(bodies, ratio, 8, 3).factor, abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("bodies", "ratio", "sweeps"),
+    [(5, 1, 4), (5, 10, 8), (10, 1, 4), (10, 1, 8), (10, 10, 8), (10, 100, 8), (20, 1, 8), (20, 10, 8)],
+)
+def test_hanging_chains_hold_as_predicted(bodies: int, ratio: float, sweeps: int) -> None:
+    """Half a minute under gravity along the chain: links of 1 m stay within a tenth of it, or do not grow any more."""
+    assert predicted(bodies, ratio, sweeps, 3).decays
+    world, links = chained(bodies, ratio, gravity=9.81)
+    worst = []
+    for _ in range(1800):
+        world.Step(H, sweeps, 3)
+        worst.append(worst_link(links))
+    assert max(worst[1500:]) < max(0.1, 1.001 * max(worst[600:1500]))
