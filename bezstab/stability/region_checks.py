@@ -45,9 +45,9 @@ MERGED = 1e-9  # of what is seen: ends of panels that lie closer are one
 PANEL_STEP = 1 / 4  # of tanh-sinh: 25 nodes, good to 1e-9 where every other one is good to 1e-5
 AREA_ERROR = 1e-6  # of the area: all but slivers agree to 1e-8, and those to what float64 knows of their edges
 CURVE_ERROR = 2e-2  # of the area: chords enclose less by 1e-5, and of a region of 1e10, drawn by few, by a hundredth
-EFFORTS = ((1e-5, 128), (1e-6, 256))  # of the area, half the nodes off by it: halve; points on a line
+EFFORTS = ((1e-5, 128), (1e-6, 256), (1e-7, 256))  # of the area, half the nodes off by it: halve; points on a line
 PROVEN_EFFORT = (1e-4, 8)  # the same, of verdicts in rationals: next to one float64 may tell no edge well enough
-HALVINGS = 8  # of a panel at most: towards a kink its error falls fourfold with each
+HALVINGS, MOST_PANELS = 10, 96  # towards a kink two panels are left after each; where rounding decides, all are
 AT_ONCE = 15  # of a bracket's places: to ask about one takes as long as about a dozen
 CROSSING_HALVINGS = 36  # of a bracket of a hundredth of a line: its end is good to 1e-12 of the line
 AT_END = 1e-9  # of what is seen: a drawn point that is so near to an end has it, perhaps as the tip of a cusp
@@ -294,7 +294,7 @@ def _area_by_lines(shape: Shape, verdicts: Verdicts, at_once: int, rough: float,
         terms, off = weights * by_poles, (weights * np.abs(by_poles - by_curves)).sum(axis=1)
         whole, from_half = terms.sum(axis=1), 2 * terms[:, ::2].sum(axis=1)
         size = area + whole.sum() if shape.area is None else shape.area
-        halved = (np.abs(whole - from_half) > rough * size) & (halving < HALVINGS)
+        halved = (np.abs(whole - from_half) > rough * size) & (halving < HALVINGS) & (len(panels) < MOST_PANELS)
         area, between = area + float(whole[~halved].sum()), between + float(off[~halved].sum())
         if not halved.any():
             break
