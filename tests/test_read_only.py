@@ -53,6 +53,7 @@ def arrays_in(value: object) -> Iterator[np.ndarray[Any, Any]]:
 
 @pytest.mark.promise("Arrays of results", computed="cannot be written, so that no answer changes a later one")
 @pytest.mark.parametrize("name", RESULTS)
+@pytest.mark.slow_except("region")
 def test_every_array_of_a_result_is_read_only(name: str) -> None:
     found = list(arrays_in(RESULTS[name]()))
     assert bool(found) == (name not in WITHOUT_ARRAYS)

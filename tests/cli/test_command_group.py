@@ -224,6 +224,7 @@ def test_numerical_trouble_is_status_three(tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("_few_extremes")
 @pytest.mark.parametrize("example", each_example(long=False))
+@pytest.mark.slow
 def test_every_command_prints_a_table_for_programs_and_one_for_people(example: str) -> None:
     table, page = (run(*shlex.split(example), "--format", form) for form in ("csv", "markdown"))
     assert table.exit_code == page.exit_code
@@ -262,6 +263,7 @@ def test_every_option_explains_itself() -> None:
 
 
 @pytest.mark.parametrize("command", ["engines", "check --method SYM --alpha 3 --beta 3"])
+@pytest.mark.slow_except("engines")
 def test_a_closed_pipe_is_no_error_to_read_and_no_verdict(command: str) -> None:
     """1 would say that fault was found, as it is here by `check`; 141 is what a shell says of SIGPIPE."""
     with subprocess.Popen(interruptible(*command.split()), stdout=subprocess.PIPE, stderr=subprocess.PIPE) as source:

@@ -212,7 +212,7 @@ SWEEP = "tradeoff --scene pendulum --method SYM --h 0.01 --h 0.02 --time 0.1 --w
         ),
     ],
 )
-@pytest.mark.slow_except("simulate")
+@pytest.mark.slow
 def test_compiled_runs_answer_the_same(command: str) -> None:
     """But for rounding: runs agree to 1e-12 of the coordinates' size, of which an error may be a small part."""
     timed = {"seconds", "seconds_min", "seconds_max"}

@@ -191,6 +191,7 @@ def test_a_full_disk_takes_one_line_and_resume_goes_on(size: int, whole: bytes, 
         pytest.param("family bezier --from 2 --to 3", marks=SLOW),
     ],
 )
+@pytest.mark.slow
 def test_a_full_disk_leaves_no_part_of_a_result(command: str, tmp_path: Path) -> None:
     full = finished(*command.split(), cwd=tmp_path, prepare=limit_of(1000))
     assert full.returncode == 2

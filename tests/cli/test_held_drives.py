@@ -59,6 +59,7 @@ def test_an_inertia_is_enough_to_choose_a_drive() -> None:
     assert rows("choose", "--pd", "0.1", "--h", "0.002") == rows("choose", "--pd", "7,7,0.1", "--h", "0.002")
 
 
+@pytest.mark.slow
 def test_a_map_of_each_way_is_written_and_the_rows_are_those_of_check(tmp_path: Path) -> None:
     late = ("--every", "4", "--late", "1")
     files = ("--quality", "fast", "-o", str(tmp_path))

@@ -36,6 +36,7 @@ def test_poles_print_what_the_motion_does() -> None:
     assert [row["safe"] for row in moving] == [True, False]
 
 
+@pytest.mark.slow
 def test_check_is_status_one_where_the_motion_undoes_what_is_stable_at_rest() -> None:
     point = ("check", "--alpha", "0.2", "--beta", "1.8", "--method", "SYM")
     assert run(*point).exit_code == 0

@@ -61,6 +61,7 @@ def test_a_method_without_a_region_withholds_no_other(monkeypatch: pytest.Monkey
 STEPS = 40  # implicit Euler steps composed, z = (1 - mu / 40)^-40: as many stages as a file may have
 
 
+@pytest.mark.slow
 def test_of_any_stages_the_verdict_is_given(tmp_path: Path) -> None:
     rows_of_a = ", ".join(str(["1/40"] * (k + 1) + ["0"] * (STEPS - k - 1)) for k in range(STEPS))
     path = tmp_path / "composed.toml"

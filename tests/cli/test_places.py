@@ -35,6 +35,7 @@ def test_what_an_encoding_lacks_is_a_question_mark_and_columns_stand(tmp_path: P
     assert "é" in complaint.stderr.decode("latin-1")
 
 
+@pytest.mark.slow
 def test_json_holds_the_same_values_in_any_encoding(tmp_path: Path) -> None:
     method = own_method(tmp_path, "naïve α̂ 中 \N{GRINNING FACE}")
     poles = ("poles", "--alpha", "1", "--beta", "1", "--method", method, "--format", "json")
@@ -95,6 +96,7 @@ def test_a_narrow_terminal(columns: str, command: str, tmp_path: Path) -> None:
         ),
     ],
 )
+@pytest.mark.slow
 def test_a_directory_of_any_name(name: str, tmp_path: Path) -> None:
     run = finished(
         "region", "--method", "B2", "--grid", "9", "--figure", "none", "--table", "csv", "-o", name, cwd=tmp_path
@@ -144,6 +146,7 @@ def test_a_method_of_any_name(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["\x1b[2J\x07", "line\nline", "\N{LINE SEPARATOR}", "\udcff"])
+@pytest.mark.slow
 def test_a_method_that_is_called_like_its_file(name: str, tmp_path: Path) -> None:
     (tmp_path / f"{name}.toml").write_text(EULER, encoding="utf-8")
     run = finished("poles", "--alpha", "1", "--beta", "1", "--method", f"{name}.toml", cwd=tmp_path)

@@ -14,6 +14,7 @@ def test_verify_takes_implicit_and_second_order_methods() -> None:
         assert row["verdicts_agree"] is True
 
 
+@pytest.mark.slow
 def test_verify_prints_predicted_and_measured_pole(tmp_path: Path) -> None:
     (row,) = rows("verify", "--alpha", "0.5", "--beta", "0.1", "--method", "AB4")
     assert row["scene"] == "slider-crank"
@@ -31,6 +32,7 @@ def test_verify_prints_predicted_and_measured_pole(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_verify_map_writes_verdicts_and_figure(tmp_path: Path) -> None:
     (row,) = rows("verify", "--map", "5", "--scene", "pendulum", "--method", "SYM", "--table", "npz")
     assert (row["runs"], row["judged_runs"], row["agreeing"], row["disagreeing"]) == (25, 25, 25, 0)
@@ -52,6 +54,7 @@ def test_what_is_thrown_apart_at_once_diverges_and_seconds_are_understood() -> N
     assert "add --physical: bezstab verify --method RK4 --alpha 400 --beta 500 --h 0.001 --physical" in mistaken.stderr
 
 
+@pytest.mark.slow
 def test_verify_tells_what_the_motion_does_to_a_prediction() -> None:
     """The driven four-bar at omega h = 0.063: AB4 converges by the map, diverges by the law and by exact rates."""
     point = ("--method", "AB4", "--alpha", "0.5", "--beta", "0.1", "--h", "0.01")
@@ -95,6 +98,7 @@ def test_on_fast_scenes_hardly_a_verdict_that_is_not_flagged_is_wrong(scene: str
     assert sum(row["verdicts_agree"] is False for row in measured) <= 2
 
 
+@pytest.mark.slow
 def test_predicted_and_measured_errors_are_compared_at_shares_of_the_gains() -> None:
     command = ("verify", "--accuracy", "--scene", "driven_four_bar", "--h", "0.004", "--method", "SYM")
     found = rows(*command)
@@ -110,6 +114,7 @@ def test_predicted_and_measured_errors_are_compared_at_shares_of_the_gains() -> 
     assert "the prediction holds" in text.stdout
 
 
+@pytest.mark.slow
 def test_where_the_prediction_does_not_hold_the_exit_status_says_so() -> None:
     # 40 steps a turn of the crank: AB4's fifth derivative needs the tenfold
     command = ("verify", "--accuracy", "--scene", "driven_four_bar", "--h", "0.025", "--method", "AB4")
@@ -118,6 +123,7 @@ def test_where_the_prediction_does_not_hold_the_exit_status_says_so() -> None:
     assert "the prediction does NOT hold" in result.stdout
 
 
+@pytest.mark.slow
 def test_what_is_as_small_as_rounding_is_not_compared() -> None:
     result = run("verify", "--accuracy", "--method", "ABM4")  # 4e-16 m on the slider-crank with the flywheel
     assert result.exit_code == 3

@@ -47,6 +47,7 @@ def test_a_run_knows_its_error_its_cost_and_its_order(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["trapezoid", "verlet-predicted"])
+@pytest.mark.slow_except("verlet-predicted")
 def test_so_does_one_that_solves_equations_or_treats_velocities_differently(name: str) -> None:
     coarse, fine = swept(name, (8e-4, 1.6e-3), SOFT)
     assert fine.order == pytest.approx(accuracy(lookup(name))[0], abs=0.2)

@@ -36,6 +36,7 @@ def squares(found: dict[int, Arrays]) -> list[int]:
     return [int(found[number]["square"]) for number in sorted(found)]
 
 
+@pytest.mark.slow
 def test_every_chunk_is_done_once_and_stored(tmp_path: Path) -> None:
     with worker_pool(2) as workers, chunk_store(tmp_path / "job", "squares", resume=False) as store:
         arrived = list(completed_chunks(square, [Job(number) for number in range(7)], workers, store))
@@ -64,6 +65,7 @@ def test_a_resumed_job_does_only_what_is_missing(tmp_path: Path) -> None:
         assert not store.has(1)
 
 
+@pytest.mark.slow
 def test_a_lost_worker_costs_its_chunk_alone(tmp_path: Path) -> None:
     jobs = [Job(number, (tmp_path / "died",) if number == 2 else ()) for number in range(5)]
     with worker_pool(2) as workers, chunk_store(tmp_path / "job", "squares", resume=False) as store:
@@ -72,6 +74,7 @@ def test_a_lost_worker_costs_its_chunk_alone(tmp_path: Path) -> None:
     assert (tmp_path / "died").exists()
 
 
+@pytest.mark.slow
 def test_a_chunk_that_kills_every_worker_is_reported(tmp_path: Path) -> None:
     deaths = tuple(tmp_path / f"death {number}" for number in range(ATTEMPTS))
     with worker_pool(1) as workers, chunk_store(tmp_path / "job", "squares", resume=False) as store:

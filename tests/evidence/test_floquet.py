@@ -23,6 +23,7 @@ STABLE = {
 
 @pytest.mark.promise("Rates over a motion")
 @pytest.mark.parametrize("name", STABLE)
+@pytest.mark.slow_except("AB2")
 def test_the_runner_itself_shows_the_same_rate(name: str) -> None:
     """Its run and the motion differ by truncation errors, of (omega h)^2 = 1e-3 and less in the Jacobians."""
     count = 200
@@ -36,6 +37,7 @@ def test_the_runner_itself_shows_the_same_rate(name: str) -> None:
 
 @pytest.mark.promise("Rates where drivers turn and oscillate")
 @pytest.mark.parametrize("name", ["AB4", "RK4"])
+@pytest.mark.slow
 def test_where_drivers_swing_the_rate_is_that_of_their_common_period(name: str) -> None:
     """A turn and two swings in a second: the runner's own steps over it, and nothing else, give the multiplier."""
     mechanism = swinging_four_bar(2 * np.pi, 4 * np.pi)

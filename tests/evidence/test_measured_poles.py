@@ -144,11 +144,13 @@ def test_what_is_left_on_a_moving_mechanism_shrinks_with_its_speed_times_the_ste
 
 
 @pytest.mark.parametrize("name", ["verlet-predicted", "bdf2"])
+@pytest.mark.slow_except("verlet-predicted")
 def test_methods_that_solve_equations_have_the_predicted_pole(name: str) -> None:
     check_promise("pendulum", name, 8)
 
 
 @pytest.mark.parametrize("sigma", ["0 2 0", "1/3 4/3 1/3"])  # leapfrog, Milne and Simpson
+@pytest.mark.slow_except("0 2 0")
 def test_weakly_stable_methods_run_and_have_the_predicted_pole(sigma: str) -> None:
     """No feedback is stable with them, but they are zero-stable."""
     scheme = LinearMultistep((Fraction(1), Fraction(0), Fraction(-1)), tuple(map(Fraction, sigma.split())))

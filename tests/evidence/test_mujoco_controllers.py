@@ -65,6 +65,7 @@ def modulus(model: Any, kp: float, kd: float, timing: Timing) -> float:
 )
 @pytest.mark.parametrize("integrator", ["Euler", "RK4", "implicitfast"])
 @pytest.mark.parametrize("timing", [Timing(), Timing(4), Timing(1, Fraction(1)), Timing(4, Fraction(2))], ids=str)
+@pytest.mark.slow
 def test_the_last_row_is_mujocos_own_step(integrator: str, timing: Timing) -> None:
     gains = (".*", "10", "0.05")
     *_, together = lint(arm(integrator, damping=0.02), gains, timing=timing)

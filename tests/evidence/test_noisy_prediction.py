@@ -77,6 +77,7 @@ def test_the_stated_error_covers_the_pole_of_random_logs_in_noise(count: int) ->
 
 
 @pytest.mark.promise("`probe`: 600 random logs of all methods in white noise, from a millionth to a third of the kick")
+@pytest.mark.slow
 def test_where_there_is_nothing_but_noise_that_is_said() -> None:
     random = np.random.default_rng(2)
     for _ in range(25):
@@ -91,6 +92,7 @@ def test_where_there_is_nothing_but_noise_that_is_said() -> None:
             assert found.reason.startswith("noise of")
 
 
+@pytest.mark.slow
 def test_what_is_no_white_noise_is_not_taken_for_it() -> None:
     """Neither what is related from sample to sample, nor what grows, nor what a motion forces without any noise."""
     random = np.random.default_rng(3)
@@ -133,6 +135,7 @@ def test_the_unit_of_the_samples_does_not_matter() -> None:
     assert first.poles == plain.poles == last.poles
 
 
+@pytest.mark.slow
 def test_a_pole_that_noise_hides_is_said_to_be_hidden() -> None:
     """Between what is told and nothing to be seen there are poles that are there, but may be anywhere near."""
     random = np.random.default_rng(6)

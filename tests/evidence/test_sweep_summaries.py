@@ -12,6 +12,7 @@ from tests.evidence.small_sweeps import SOFT, swept
 from tests.reference.region_areas import region_area
 
 
+@pytest.mark.slow
 def test_the_sentences_name_the_cheapest_run_and_the_numbers() -> None:
     steps = (2e-4, 4e-4, 2e-3)
     both = [*swept("B4", steps, SOFT), *swept("AB4", (*steps, 4e-3), SOFT)]
@@ -34,6 +35,7 @@ def test_the_sentences_name_the_cheapest_run_and_the_numbers() -> None:
 
 
 @pytest.mark.parametrize(("name", "own"), [("AB4", True), ("ABM4", True), ("RK2", False), ("bdf2", False)])
+@pytest.mark.slow
 def test_an_order_lost_by_the_start_is_not_put_down_to_a_multistep_method(name: str, own: bool) -> None:
     run = swept("B4", (2e-4, 4e-4), SOFT)[-1]
     lost = [replace(run, method=lookup(name), order=1.0)]
@@ -81,6 +83,7 @@ def test_it_is_found_to_a_thousandth(name: str) -> None:
     assert 0 <= limit - _largest_stable_alpha_step(lookup(name)) < 1.001e-3
 
 
+@pytest.mark.slow
 def test_what_has_no_limit_is_said_to_have_none() -> None:
     bezier, other = (summary(swept(name, (8e-4, 1.6e-3), SOFT)) for name in ("B4", "trapezoid"))
     assert (bezier.unlimited, other.unlimited, other.area, other.alpha_step) == (False, True, None, None)

@@ -39,6 +39,7 @@ def test_the_generated_code_solves_the_literal_equation_9(name: str) -> None:
 
 
 @pytest.mark.promise("Accelerations and multipliers")
+@pytest.mark.slow
 def test_multipliers_are_the_joint_forces_of_newton_and_euler() -> None:
     mechanism, gains = compiled_mechanism(load_scene("slider_crank_light")), (20.0, 100.0)
     run = simulate(mechanism, lookup("RK4"), 2e-4, 2.0, gains)

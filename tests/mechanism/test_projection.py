@@ -44,6 +44,7 @@ def scene(name: str) -> Mechanism:
 @pytest.mark.promise("Projection (`--stabilise projection`)")
 @pytest.mark.parametrize("name", ["slider_crank", "driven_four_bar", "andrews"])
 @pytest.mark.parametrize("method", KINDS)
+@pytest.mark.slow_except("ABM2-slider_crank")
 def test_after_each_step_the_constraints_hold(name: str, method: str) -> None:
     mechanism, h = scene(name), step_for(name)
     run = simulate(mechanism, lookup(method), h, 50 * h, (0.0, 0.0), projection=Projection())
@@ -78,6 +79,7 @@ def test_an_error_of_the_start_is_gone_after_a_step() -> None:
         *(("implicit-euler", 1), ("trapezoid", 2), ("bdf2", 2), ("hht", 2)),
     ],
 )
+@pytest.mark.slow_except("RK4-4")
 def test_the_order_of_accuracy_stays(name: str, order: int) -> None:
     """Against the motion in the crank's angle alone, by quadrature; RK4 loses half of its order by strong feedback."""
     count = 400 if not implicit(lookup(name)) else 200

@@ -189,6 +189,7 @@ def test_the_energy_drifts_like_a_power_of_the_step(scene: str, name: str) -> No
         "sdirk2@2",
     ],
 )
+@pytest.mark.slow_except("RK4@5")
 def test_the_pendulum_keeps_time(name: str) -> None:
     order, _ = accuracy(lookup(name))
     run = simulate(compiled_mechanism(load_scene("pendulum")), lookup(name), 1e-3, 1.5, (20.0, 100.0))

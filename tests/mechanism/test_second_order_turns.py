@@ -58,6 +58,7 @@ def straight_line() -> Mechanism:
 
 @pytest.mark.parametrize(("alpha_hat", "beta_hat"), [("1/2", "3/10"), ("1/5", "1/10")])
 @pytest.mark.parametrize("name", RUN_HERE)
+@pytest.mark.slow_except("rkn4-1/5-1/10")
 def test_a_linear_constraint_follows_the_recursion_of_the_characteristic_polynomial(
     name: str, alpha_hat: str, beta_hat: str
 ) -> None:

@@ -87,7 +87,7 @@ def plain_run(
 
 @pytest.mark.promise("Compiled runs (`--compiled`)")
 @pytest.mark.parametrize("name", KINDS)
-@pytest.mark.slow_except("B4", "SYM", "bdf2")
+@pytest.mark.slow_except("SYM")
 def test_many_steps_are_the_plain_ones(name: str) -> None:
     """By numpy and compiled."""
     mechanism, method = compiled_mechanism(load_scene("slider_crank")), lookup(name)
@@ -124,6 +124,7 @@ def test_every_method_is_the_same_compiled_in_every_scene(scene: str) -> None:
 
 
 @pytest.mark.promise("Compiled runs (`--compiled`)")
+@pytest.mark.slow
 def test_newtons_method_ends_runs_alike(monkeypatch: pytest.MonkeyPatch) -> None:
     """By its iterations, too, and across blocks, which keep the Jacobian from step to step."""
     mechanism = compiled_mechanism(load_scene("pendulum"))

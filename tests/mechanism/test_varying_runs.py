@@ -71,6 +71,7 @@ def constant_run(h: float, duration: float, method: str = "SYM", mechanism: Mech
 @pytest.mark.parametrize("name", ONE_STEP)
 @pytest.mark.parametrize("hold", [False, True])
 @pytest.mark.parametrize("mechanism", [MECHANISM, DRIVEN], ids=["free", "driven"])
+@pytest.mark.slow_except("free-True-rkn4")
 def test_equal_steps_are_the_run_of_constant_steps(name: str, hold: bool, mechanism: Mechanism) -> None:
     constant = constant_run(H, 0.2, name, mechanism)
     run = run_with([H], 0.2, name, hold, mechanism)

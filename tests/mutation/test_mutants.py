@@ -28,6 +28,7 @@ def test_every_mutant_is_a_python_file_that_differs_from_the_original_in_one_pla
         assert changed[1] + 1 == mutant.line
 
 
+@pytest.mark.slow
 def test_keys_tell_mutants_apart(every: list[Mutant]) -> None:
     assert len({mutant.key for mutant in every}) == len(every)
 

@@ -54,6 +54,7 @@ def test_the_poles_of_table_5_are_as_printed_but_for_one() -> None:
     )
 
 
+@pytest.mark.slow
 def test_the_sentence_before_table_5_and_the_marks_in_it_count_the_same() -> None:
     made = report(lambda runs, label, length: compared())
     right, numbers = re.match(r"(\d+) of (\d+) numbers match; ", made.aside).groups()  # type: ignore[union-attr]
@@ -74,6 +75,7 @@ def test_a_misprint_is_noticed_and_a_half_digit_is_not() -> None:
     assert (cut_off, rest) == ("-0.12 should be -0.13 (cut off, not rounded)", [None] * 3)
 
 
+@pytest.mark.slow
 def test_the_oscillation_of_rk4_is_that_of_feedback_chosen_for_stability() -> None:
     finding = found("constant oscillation about zero is a disadvantage")
     assert finding.agreement == "not confirmed"
@@ -116,11 +118,13 @@ def test_what_fig_9_shows() -> None:
     assert max(value for key, value in last.items() if key != (0.5, 0.101, "AB4")) < 1e-6
 
 
+@pytest.mark.slow
 def test_the_edge_of_ab4_lies_between_the_second_and_the_third_point() -> None:
     edge = float(re.search(r"β̂ = ([.\d]+)", found("all points lie").here).group(1))  # type: ignore[union-attr]
     assert spectral_radius(lookup("AB4"), 0.5, edge) == pytest.approx(1, abs=2e-5)  # 1e-5 of β̂, and 2.6 a unit of it
 
 
+@pytest.mark.slow
 def test_ab4_makes_one_regular_wave_of_its_poles_angle() -> None:
     turns = abs(np.angle(dominant_pole(lookup("AB4"), 0.5, 0.101))) / (2 * np.pi)  # a step of 1 ms
     assert f"{1000 * turns:.0f} turns a second, each of {1 / turns:.2f} steps; but regular" in found("irregularly").here

@@ -18,6 +18,7 @@ from bezstab.paper.drift import (
 )
 
 
+@pytest.mark.slow
 def test_without_stabilisation_the_start_decides_who_wins() -> None:
     steps = (0.005, 0.01)
     runs = list(unstabilized(steps, GROWTH_DURATION))
@@ -65,6 +66,7 @@ def test_the_first_constraint_is_the_largest_and_its_derivative_is_followed() ->
 
 
 @pytest.mark.parametrize(("factor", "agreement"), [(1.0, "not confirmed"), (1e-6, "confirmed with a correction")])
+@pytest.mark.slow
 def test_that_b4_is_better_for_large_steps_would_be_noticed(factor: float, agreement: str) -> None:
     runs = list(unstabilized((0.005, 0.01), GROWTH_DURATION))
     scaled = [

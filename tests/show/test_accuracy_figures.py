@@ -111,6 +111,7 @@ def test_the_boundary_is_exact_down_to_the_last_decade() -> None:
 
 
 @pytest.mark.parametrize("name", ["RK4", "B4", "SYM"])
+@pytest.mark.slow
 def test_labels_lie_within_the_axes_and_hide_neither_one_another_nor_a_point(name: str) -> None:
     figure, *_ = drawn_map(name)
     (axes, _) = figure.axes

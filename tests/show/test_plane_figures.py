@@ -212,6 +212,7 @@ def test_arrows_along_the_edges_are_where_an_unbounded_region_goes_on(h: float |
     assert {">", "^"} <= {marker for marker, _ in places}
 
 
+@pytest.mark.slow
 def test_a_moving_mechanism_is_named_and_so_is_what_its_speed_is_a_multiple_of() -> None:
     method, scene = lookup("SYM"), load_scene("driven_four_bar")
     moving = {}

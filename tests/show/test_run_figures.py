@@ -47,6 +47,7 @@ def test_the_scene_figure_joins_the_bodies_where_their_joints_are() -> None:
         (False, "time", "processor time (s)"),
     ],
 )
+@pytest.mark.slow
 def test_the_work_precision_figure_has_every_run_and_rings_the_front(
     constraint: bool, against: Cost, label: str
 ) -> None:
@@ -172,6 +173,7 @@ def test_names_in_a_scene_cut_no_body_and_lie_within_the_axes(name: str) -> None
 
 
 @pytest.mark.parametrize(("h", "duration"), [(1e-3, 0.018), (1e-5, 1.3e-4), (1e-3, 2.0), (0.01, 170.0)])
+@pytest.mark.slow_except("0.01-170.0")
 def test_times_below_a_history_are_apart(h: float, duration: float, monkeypatch: pytest.MonkeyPatch) -> None:
     """As they are drawn: where they stand is decided by the size at which a file is written."""
     drawn: dict[Text, tuple[float, float]] = {}

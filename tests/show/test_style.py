@@ -64,6 +64,7 @@ def test_a_method_has_one_marker_and_the_usual_ones_differ() -> None:
 
 @pytest.mark.parametrize("names", [NAMES, NAMES[:5], ["B4"]])
 @pytest.mark.parametrize("own_name", ["short", "a method of mine with a long name " * 3, "x" * 90])
+@pytest.mark.slow_except("short-names2")
 def test_the_legend_lies_within_the_figure(names: list[str], own_name: str) -> None:
     regions = [region(lookup(name)) for name in names]
     regions.append(region(replace(lookup("RK2"), name=own_name)))

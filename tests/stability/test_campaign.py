@@ -48,6 +48,7 @@ def test_no_random_implicit_or_second_order_method_has_a_silent_wrong_area(numbe
         " run whole again"
     ),
 )
+@pytest.mark.slow
 def test_the_first_of_each_kind_agree() -> None:
     for number in (1, 6, 11):
         assert [case.verdict for case in cases_of(number)] == ["agrees"] * 4
@@ -59,6 +60,7 @@ def test_a_region_of_fifteen_parts_passes_its_own_check() -> None:
     assert case.verdict == "agrees"
 
 
+@pytest.mark.slow
 def test_so_does_the_first_recipe() -> None:
     assert other_compared(other_random_method(1), 1.0).verdict == "agrees"
 
@@ -114,6 +116,7 @@ WIDER = 1e-5  # of an end: the lines on which a contradiction is looked for are 
 
 @pytest.mark.parametrize("axis", [0, 1])
 @pytest.mark.parametrize(("wrong_by", "contradicted"), [(0.0, False), (WIDER, True), (-WIDER, True)])
+@pytest.mark.slow_except("0.0-False-1")
 def test_a_wrong_extent_of_a_sliver_is_told(axis: int, wrong_by: float, contradicted: bool) -> None:
     """It ends in a tip so thin that float64 sees nothing stable there."""
     method = other_random_method(SLIVER)

@@ -23,6 +23,7 @@ def test_the_map_is_the_dominant_pole_on_the_mesh(name: str, columns: int, rows:
     computed="1e-12 of what all poles give; 1e-4 for PECE, whose four roots meet at z = 1",
 )
 @pytest.mark.parametrize("name", sampled(EXPLICIT))
+@pytest.mark.slow_except("B2")
 def test_a_map_follows_the_pole_that_is_largest_everywhere(name: str) -> None:
     method = lookup(name)
     for low, high in (((-3, -2), (5, 6)), ((0, 0), (40, 900))):  # kinks and branch points; far outside

@@ -15,6 +15,7 @@ LEVELS = [1.0, 0.93, 0.75, 0.5]
 
 @pytest.mark.parametrize("level", [*LEVELS, 0.925, 0.935])
 @pytest.mark.parametrize("method", [CLOSE_BRANCHES, FAR_INTERVAL], ids=["close", "far"])
+@pytest.mark.slow_except("far-0.93")
 def test_the_area_is_that_of_the_slices(method: Method, level: float) -> None:
     assert region(method, level).area == pytest.approx(slice_area(method, level).area, rel=1e-8)
 

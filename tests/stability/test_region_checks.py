@@ -159,6 +159,7 @@ def stretched(shape: Shape, number: int) -> Shape:
 
 
 @pytest.mark.parametrize(("name", "level"), SHAPES[:-2])
+@pytest.mark.slow_except("half-0.9")
 def test_a_right_shape_passes_and_one_with_a_curve_missing_or_off_does_not(name: str, level: float) -> None:
     method, shape = found(name, level)
     check_region(method, level, shape)

@@ -105,6 +105,7 @@ def test_counting_cells_converges_to_the_area(name: str, level: float) -> None:
 @pytest.mark.promise("Boundary")
 @pytest.mark.parametrize("name", sampled(NAMES))
 @pytest.mark.parametrize("level", LEVELS)
+@pytest.mark.slow_except("0.95-RK1")
 def test_every_boundary_point_has_the_modulus_of_the_level(name: str, level: float) -> None:
     method = lookup(name)
     for curve in region(method, level).boundary:
@@ -169,6 +170,7 @@ def test_every_edge_separates_stable_from_unstable(name: str, level: float) -> N
 @pytest.mark.promise("Boundary, drawn")
 @pytest.mark.parametrize("name", sampled(NAMES))
 @pytest.mark.parametrize("level", [1.0, 0.9])
+@pytest.mark.slow_except("1.0-RK1")
 def test_the_boundary_encloses_exactly_the_stable_points(name: str, level: float) -> None:
     method, random = lookup(name), np.random.default_rng(3)
     low, high = np.transpose(window(region(method)))
