@@ -17,7 +17,7 @@ from typing import Any
 from bezstab.compiling import INNER, check_numba, compiled_choice, compiler, numba_is_installed
 from bezstab.mechanism import stepping
 from bezstab.mechanism.compiled import Mechanism, corrections_of
-from bezstab.mechanism.generated_code import MachineCode, compiled_source, machine_code, slope_lines
+from bezstab.mechanism.generated_code import TAKE, MachineCode, compiled_source, machine_code, slope_lines
 from bezstab.mechanism.start import CLOSED
 from bezstab.mechanism.stepping import FALL, TOLERANCE, FloatArray, IntArray, Operations, Room, Rows, TakeSteps, stepper
 from bezstab.methods import Method, implicit
@@ -370,13 +370,6 @@ def slope(
 def corrections(t: float, gains: FloatArray, state: FloatArray, found: FloatArray, room: FloatArray) -> float:
     """Stand for the generated function that writes all corrections of states, and returns the least pivot as above."""
     raise NotImplementedError
-
-
-GIVEN = "rows, steps, registers, inverses, before, room, judged, states, pivots, counts"
-TAKE = f"""
-def take({GIVEN}):
- return take_steps({GIVEN})
-"""
 
 
 @cache

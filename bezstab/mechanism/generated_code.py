@@ -38,6 +38,13 @@ from sympy.printing.pycode import PythonCodePrinter
 
 from bezstab.mechanism.equations import Equations, variable_names
 
+GIVEN = "rows, steps, registers, inverses, before, room, judged, states, pivots, counts"
+TAKE = f"""
+def take({GIVEN}):
+ return take_steps({GIVEN})
+"""
+"""A function of the scene's own name in front of the loop that takes steps: what numba keeps on disk goes by it."""
+
 
 def compiled_source(
     source: str, library: Any, others: Mapping[str, Any] | None = None, file: str = "<generated>"
