@@ -58,7 +58,6 @@ from bezstab.show.words import safety_words
 
 VERDICTS = get_args(Verdict)
 MOVING_VERDICTS = ("evidence.MovingVerdict",)
-OUTCOMES = ("evidence.MeasuredVerdict", "evidence.Outcome")
 UNKNOWN_STEP = "where no step is given"
 UNSTABLE = "where the point is not stable"
 NOT_MEASURED = "where nothing could be measured; `reason` says why"
