@@ -163,15 +163,24 @@ def test_the_workers_of_a_killed_run_are_gone_and_nothing_is_said(tmp_path: Path
         assert time.monotonic() < deadline
 
 
-def limit_of(size: int) -> Callable[[], None]:
-    """Return what limits the files of a process to so many bytes: to it, the disk is full there."""
-    return lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+# a process whose files are limited must not keep compiled modules: Python leaves them cut short, for all others to read
+COMPILES_FOR_ITSELF = {"PYTHONDONTWRITEBYTECODE": "1"}
+
+
+def finished_on_a_full_disk(*arguments: str, size: int, cwd: Path) -> subprocess.CompletedProcess[bytes]:
+    """Return what a command printed whose files may have so many bytes each: to it, the disk is full there."""
+    return finished(
+        *arguments,
+        cwd=cwd,
+        environment=COMPILES_FOR_ITSELF,
+        prepare=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size)),
+    )
 
 
 @SLOW
 @pytest.mark.parametrize("size", [0, 100, 700])
 def test_a_full_disk_takes_one_line_and_resume_goes_on(size: int, whole: bytes, tmp_path: Path) -> None:
-    full = finished(*SMALL, cwd=tmp_path, prepare=limit_of(size))
+    full = finished_on_a_full_disk(*SMALL, size=size, cwd=tmp_path)
     assert full.returncode == 2
     assert only_line(full.stderr).startswith("bezstab: cannot write")
     assert not [name for name in files_below(tmp_path) if "/." in name or name.endswith(".csv")]
@@ -193,7 +202,7 @@ def test_a_full_disk_takes_one_line_and_resume_goes_on(size: int, whole: bytes, 
 )
 @pytest.mark.slow
 def test_a_full_disk_leaves_no_part_of_a_result(command: str, tmp_path: Path) -> None:
-    full = finished(*command.split(), cwd=tmp_path, prepare=limit_of(1000))
+    full = finished_on_a_full_disk(*command.split(), size=1000, cwd=tmp_path)
     assert full.returncode == 2
     assert only_line(full.stderr).startswith("bezstab: cannot write")
     assert files_below(tmp_path) == []
