@@ -11,23 +11,19 @@ from typing import TYPE_CHECKING
 
 import click
 
-from bezstab.cli.asking import say_if_units_were_mistaken
+from bezstab.cli.asking import TypedPoint, point_options
 from bezstab.cli.options import (
     METHOD,
-    NUMBER,
     SECONDS,
     ParsedType,
-    both_or_none,
     format_option,
     left_at_default,
-    physical_option,
 )
 from bezstab.cli.output import for_reading, show_rows, show_text
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import REGISTRY, Method, lookup
 from bezstab.rationals import rational
 from bezstab.show import PROBED, Format, Row
-from bezstab.units import to_dimensionless
 
 if TYPE_CHECKING:
     from bezstab.evidence import Likeness, Log, ProbedPole
@@ -73,9 +69,7 @@ def _turning(text: str) -> Fraction:
     help="The integrator takes so many steps from one row to the next.",
 )
 @click.option("--h", type=SECONDS, help="Step size of the integrator in s, for α and β in 1/s and a column of times.")
-@click.option("--alpha", type=NUMBER, help="α̂ that was set; α in 1/s with --physical.")
-@click.option("--beta", type=NUMBER, help="β̂ that was set; β in 1/s with --physical.")
-@physical_option
+@point_options("α̂ that was set; α in 1/s with --physical.", "β̂ that was set; β in 1/s with --physical.")
 @click.option(
     "--method",
     "methods",
@@ -97,9 +91,7 @@ def probe(
     jointly: bool,
     every: int,
     h: Fraction | None,
-    alpha: Fraction | None,
-    beta: Fraction | None,
-    physical: bool,
+    point: TypedPoint,
     methods: Sequence[Method],
     turning: Fraction | None,
     form: Format,
@@ -125,10 +117,8 @@ def probe(
     )
     from bezstab.show import likeness_row, probed_pole_row
 
-    point = _point(alpha, beta, h, physical)
-    if alpha is not None and beta is not None and not physical:
-        files = " ".join(shlex.quote(str(file)) for file in (log, *([] if minus is None else ["--minus", minus])))
-        say_if_units_were_mistaken(methods or [lookup(USUAL)], alpha, beta, h, files)
+    files = " ".join(shlex.quote(str(file)) for file in (log, *([] if minus is None else ["--minus", minus])))
+    at = point.at(methods or [lookup(USUAL)], h, files)
     data = _read(log)
     time = time_column(data, time_name)
     places = error_columns(data, columns, time)
@@ -137,7 +127,7 @@ def probe(
     row = _row_step(data, time)
     turned = _turned(turning, step, row, every)
 
-    compared = methods or ([lookup(name) for name in REGISTRY] if point else [])
+    compared = methods or ([lookup(name) for name in REGISTRY] if at else [])
     own_steps = {method: steps_between_rows(method, step, row, every) for method in compared}
     logged = {method: between for method, between in own_steps.items() if between is not None}
     _check_rows(bool(logged or not compared), step, row, every)
@@ -150,15 +140,15 @@ def probe(
         subtracted = None if other is None else other[:, [places.index(place) for place in group]]
         found = probed_pole(data.values[:, group], subtracted)
         answers.fits.append(probed_pole_row(name, found))
-        if found.pole is not None and point is None:
+        if found.pole is not None and at is None:
             _invert(answers, name, found, own_steps, step)
             if compared and not any(row["column"] == name for row in answers.points):
                 unfit.append(name)
             continue
-        like = likenesses(found, logged, *point, turned) if point else []
-        if point and like:
+        like = likenesses(found, logged, *at, turned) if at else []
+        if at and like:
             answers.likenesses.extend(likeness_row(name, one) for one in like)
-            answers.sentences.append(f"{name}: {likeness_sentence(like, point)}")
+            answers.sentences.append(f"{name}: {likeness_sentence(like, at)}")
             if not any(one.fits for one in like):
                 unfit.append(name)
         else:
@@ -270,18 +260,6 @@ def _nothing_fits(nearest: "Likeness", at: str) -> str:
 def _listed(names: Sequence[str]) -> str:
     """Return names as 'A', 'A and B' or 'A, B and C'."""
     return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
-
-
-def _point(
-    alpha: Fraction | None, beta: Fraction | None, h: Fraction | None, physical: bool
-) -> tuple[Fraction, Fraction] | None:
-    """Return (alpha_hat, beta_hat) as given, None if not; UsageError for half a point or units without a step."""
-    point = both_or_none(alpha, beta)
-    if not physical:
-        return point
-    if point is None or h is None:
-        raise click.UsageError("--physical goes with --alpha, --beta and --h: α and β in 1/s need the step in s")
-    return to_dimensionless(*point, h)
 
 
 def _read(path: Path) -> "Log":
