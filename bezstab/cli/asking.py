@@ -22,6 +22,7 @@ from bezstab.cli.options import (
     ruled,
     scene_option,
     together,
+    typed_options,
 )
 from bezstab.cli.output import for_reading, progress, say, show_command, show_text
 from bezstab.engines import Drive, Engine
@@ -292,7 +293,7 @@ def say_if_units_were_mistaken(
     taken = "note: --alpha and --beta were taken as α̂ and β̂, without unit; if they are in 1/s, add --physical"
     if h is not None and _all_stable(methods, alpha, beta, h):
         command = f"bezstab {click.get_current_context().info_name}{of_what and ' '}{of_what}"
-        given = "" if left_at_default("methods") else "".join(f" --method {method.name}" for method in methods)
+        given = "".join(f" --method {method.name}" for method in methods if "--method" in typed_options())
         numbers = f"--alpha {typed_number(alpha)} --beta {typed_number(beta)} --h {typed_number(h)}"
         say(f"{taken}: {command}{given} {numbers} --physical")
     elif max(alpha, beta) > LARGE:

@@ -247,7 +247,7 @@ def region(
     show_rows(REGIONS, rows, form, () if levels else ("z_abs_below",))
     if motion and for_reading(form):
         show_text(combined_words(motion))
-    if failed or any(str(row["best_reason"]).startswith(NOT_KNOWN) for row in rows):
+    if failed or any((row["best_reason"] or "").startswith(NOT_KNOWN) for row in rows):
         context.exit(NUMERICAL_TROUBLE)
 
 
