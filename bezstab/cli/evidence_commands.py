@@ -129,7 +129,7 @@ def simulate(
     from bezstab import mechanism, show
 
     projection = projection_asked_for(stabilise, iterations)
-    at = point.at([method], h) if stabilise == "baumgarte" else None
+    at = point.at([] if sequence else [method], h) if stabilise == "baumgarte" else None
     alpha_hat, beta_hat = map(float, at or (0, 0))
     _check_number_of_steps(time, min(sequence) if sequence else h, method)
     if sequence:

@@ -94,7 +94,7 @@ def _within_squares(unit: str) -> Callable[[str], Fraction]:
     def read(text: str) -> Fraction:
         number = _positive(text)
         if not SHORTEST <= number <= 1 / SHORTEST:
-            raise InputError(f"{text} {unit}: expected {float(SHORTEST):g} to {float(1 / SHORTEST):g} {unit}")
+            raise InputError(f"{text}: expected {float(SHORTEST):g} to {float(1 / SHORTEST):g} {unit}")
         return number
 
     return read

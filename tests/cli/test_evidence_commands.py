@@ -46,10 +46,10 @@ def test_a_projected_run_keeps_its_constraints_and_says_what_that_costs() -> Non
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        ("--stabilise projection --alpha 1", "--alpha does not go with --stabilise projection"),
-        ("--stabilise none --physical", "--physical does not go with --stabilise none"),
+        ("--stabilise projection --alpha 1", "--alpha does not go with --stabilise projection: it has no feedback"),
+        ("--stabilise none --physical", "--physical does not go with --stabilise none: it has no feedback"),
         ("--stabilise projection --iterations 0", "Invalid value for '--iterations': 0 is not in the range x>=1."),
-        ("--iterations 2", "--iterations needs --stabilise projection"),
+        ("--iterations 2", "--iterations needs --stabilise projection: they are its iterations"),
     ],
 )
 def test_options_that_do_not_go_with_a_projection_are_refused_in_a_line(options: str, said: str) -> None:

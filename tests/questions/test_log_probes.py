@@ -35,7 +35,7 @@ def test_without_a_point_it_is_found() -> None:
 
 
 def test_times_that_are_no_multiple_of_the_step_are_refused() -> None:
-    with pytest.raises(InputError, match="expected a multiple of the step, --h 0.03"):
+    with pytest.raises(InputError, match="expected a multiple of the step"):
         LogQuestion(log=decay(), h=0.03, point=POINT, methods=(SYM,))
-    with pytest.raises(InputError, match="--every 3: the log's times are 0.02 s apart, 2 times --h 0.01"):
+    with pytest.raises(InputError, match="--every 3: the log"):
         LogQuestion(log=decay(every=2), h=0.01, every=3, point=POINT, methods=(SYM,))
