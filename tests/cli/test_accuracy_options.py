@@ -223,7 +223,7 @@ def test_nothing_is_faster_than_the_fastest() -> None:
         ("check --method RK4 --alpha 1 --beta 1 --h 0.01 --omega 100", "--omega 100: omega h = 1 rad a step: expected"),
         ("poles --alpha 1 --beta 1 --omega 5", "--omega needs --h"),
         ("check --method RK4 --alpha 1 --beta 1 --omega 5", "--omega needs --h"),
-        ("check --method RK4 --alpha 1 --beta 1 --physical --omega 5", "need --h"),
+        ("check --method RK4 --alpha 1 --beta 1 --physical --omega 5", "--physical needs --h"),
         ("choose --method RK4 --h 0.2 --scene driven_four_bar", "--scene driven_four_bar moves with ω = 7.87 1/s"),
         ("choose --method RK4 --h 0.01 --scene plumb.toml", "--scene plumb.toml: plumb is at rest"),
         ("poles --alpha 1 --beta 1 --h 0.01 --scene plumb.toml", "there is no omega; --omega gives one"),

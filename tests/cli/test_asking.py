@@ -162,7 +162,7 @@ def test_the_help_answers_whether_it_is_kp_or_kd() -> None:
         ),
         pytest.param(
             "simulate --alpha 20 --beta 20 --h 0.002 --time 0.01 --figure none --table none",
-            "bezstab simulate --method B4 --alpha 20 --beta 20 --h 0.002 --physical",
+            "bezstab simulate --alpha 20 --beta 20 --h 0.002 --physical",
             marks=pytest.mark.slow,  # a mechanism's equations
         ),
     ],

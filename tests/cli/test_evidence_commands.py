@@ -46,10 +46,10 @@ def test_a_projected_run_keeps_its_constraints_and_says_what_that_costs() -> Non
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        ("--stabilise projection --alpha 1", "--stabilise projection has no feedback: not with --alpha"),
-        ("--stabilise none --physical", "--stabilise none has no feedback: not with --physical"),
+        ("--stabilise projection --alpha 1", "--alpha does not go with --stabilise projection: it has no feedback"),
+        ("--stabilise none --physical", "--physical does not go with --stabilise none: it has no feedback"),
         ("--stabilise projection --iterations 0", "Invalid value for '--iterations': 0 is not in the range x>=1."),
-        ("--iterations 2", "--iterations are those of --stabilise projection"),
+        ("--iterations 2", "--iterations needs --stabilise projection: they are its iterations"),
     ],
 )
 def test_options_that_do_not_go_with_a_projection_are_refused_in_a_line(options: str, said: str) -> None:
@@ -185,9 +185,9 @@ def test_tradeoff_without_feedback_has_no_point() -> None:
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        ("--stabilise projection --alpha 1 --beta 1", "--stabilise projection has no feedback: not with --alpha"),
-        ("--against projection --stabilise none", "--against projection has runs with and without feedback: not with"),
-        ("--iterations 1", "--iterations are those of --stabilise projection"),
+        ("--stabilise projection --alpha 1 --beta 1", "--alpha does not go with --stabilise projection"),
+        ("--against projection --stabilise none", "--stabilise does not go with --against projection"),
+        ("--iterations 1", "--iterations needs --stabilise projection"),
     ],
 )
 def test_tradeoff_refuses_what_does_not_go_with_projection_in_a_line(options: str, said: str) -> None:

@@ -82,7 +82,7 @@ def test_without_timing_a_map_is_that_of_a_fresh_drive(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (("--pd", "200,5,0.1", "--every", "4"), "--every, --late and --filter are about a drive: they need --pd and"),
+        (("--h", "0.002", "--every", "4"), "--every, --late and --filter are about a drive: they need --pd and"),
         (("--pd", "200,5,0.1"), "--pd needs --h"),
         (("--h", "0.002", "--late", "1"), "they need --pd and --h"),
         ((*PD, "--every", "101"), "--every 101: expected a whole number of steps from 1 to 100"),
@@ -126,7 +126,7 @@ def test_bad_input_is_one_line(arguments: tuple[str, ...], words: str) -> None:
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (("--method", "SYM", "--h", "0.002", "--bandwidth", "5"), "--bandwidth is about a drive: it needs --pd"),
+        (("--method", "SYM", "--h", "0.002", "--bandwidth", "5"), "--bandwidth needs --pd"),
         (("--pd", "0.1", "--h", "0.002", "--every", "4"), "give --bandwidth or --settle, and only one of them"),
         (
             ("--pd", "0.1", "--h", "0.002", "--bandwidth", "5", "--spread", "0.2"),

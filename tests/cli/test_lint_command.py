@@ -133,7 +133,7 @@ def test_a_motor_is_judged_with_its_controllers_gains(tmp_path: Path) -> None:
         (("--pd", "knee=1,1"), "--pd knee: matches no motor; the model's motors: hip_left"),
         (("--pd", "hip=1"), "'hip=1': expected NAME=KP,KD"),
         (("--pd", "hip[=1,1"), "no regular expression"),
-        (("--late", "1"), "--every and --late are about a controller: they need --pd NAME=KP,KD"),
+        (("--late", "1"), "--late needs --pd: it is about a motor's controller"),
         (("--pd", "hip.*=1,1", "--every", "0"), "--every 0: expected a whole number of steps"),
     ],
 )

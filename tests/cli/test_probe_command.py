@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 
 import bezstab
 from bezstab.cli import main
-from bezstab.cli.probe_command import likeness_sentence
 from bezstab.errors import InputError
 from bezstab.evidence import Likeness, model_xml
 from bezstab.mechanism import compiled_mechanism, constraint_errors, load_scene, perturbed_state
 from bezstab.methods import REGISTRY, lookup
+from bezstab.show import likeness_sentence
 from bezstab.stability import FloatArray, poles
 from tests.cli.running import rows, run
 from tests.reference.sampled_responses import of_poles

@@ -144,11 +144,11 @@ def test_without_a_step_there_is_nothing_in_seconds_and_the_usual_rates() -> Non
 @pytest.mark.parametrize(
     ("command", "said"),
     [
-        ("region --accuracy --compare", "--compare does not go with --accuracy, which draws one map for each method"),
+        ("region --accuracy --compare", "--compare does not go with --accuracy: it draws one map for each method"),
         ("region --accuracy --alpha-beta --h 0.01", "--alpha-beta does not go with --accuracy"),
         (
             "region --accuracy --scene driven_four_bar --h 0.01 --speed 1 --speed 2",
-            "more than one --speed does not go with --accuracy",
+            "--accuracy takes one --speed, but 2 were given",
         ),
         ("region --accuracy --speed 2", "--speed needs --scene"),
         ("region --accuracy --scene driven_four_bar", "--scene needs --h"),
@@ -158,9 +158,9 @@ def test_without_a_step_there_is_nothing_in_seconds_and_the_usual_rates() -> Non
         ("region --accuracy --alpha-range 0 1", "--alpha-range 0 1: the axes of --accuracy are logarithmic"),
         ("region --accuracy --beta-range -1 1", "--beta-range -1 1: the axes of --accuracy are logarithmic"),
         ("region --omega 3 --h 0.01", "--omega needs --accuracy"),
-        ("tradeoff --predicted --alpha 1 --beta 1", "--alpha does not go with --predicted, which simulates nothing"),
-        ("tradeoff --predicted --time 3", "--time does not go with --predicted, which simulates nothing"),
-        ("tradeoff --predicted --against time", "--against does not go with --predicted, which simulates nothing"),
+        ("tradeoff --predicted --alpha 1 --beta 1", "--alpha does not go with --predicted: it simulates nothing"),
+        ("tradeoff --predicted --time 3", "--time does not go with --predicted: it simulates nothing"),
+        ("tradeoff --predicted --against time", "--against does not go with --predicted: it simulates nothing"),
         ("tradeoff --predicted --level 1", "--level 1: expected a |z_p| below 1"),
         ("tradeoff --predicted --level 0", "'--level': 0 is not positive"),
         ("tradeoff --predicted --h 0.1", "--predicted with --h needs --omega or --scene"),

@@ -137,5 +137,5 @@ def test_accuracy_goes_with_one_point_or_none() -> None:
         run("verify", "--accuracy", "--scene", "driven_four_bar", "--alpha", "0.5", "--beta", "1"),
     )
     assert (mistaken.exit_code, unstable.exit_code) == (2, 2)
-    assert "--accuracy goes with --alpha and --beta or alone" in mistaken.stderr
+    assert "--points does not go with --accuracy" in mistaken.stderr
     assert "B4 is not stable at 1 times the gains of α̂ = 0.5, β̂ = 1" in unstable.stderr

@@ -17,7 +17,7 @@ COLUMNS = POLES.columns(ROWS)
 
 
 def shown(column: Column, **row: object) -> str:
-    return column.text(row)  # type: ignore[arg-type]
+    return column.text(row)
 
 
 def test_json_and_csv_keep_every_digit() -> None:

@@ -1,9 +1,14 @@
 from fractions import Fraction
 
-from bezstab.show import sequence_text, varying_row, varying_words
+from bezstab.show import Row, cells, sequence_text, varying_words
+from bezstab.show.row_kinds import VARYING
 from bezstab.stability import VaryingSteps
 
 SHORT, LONG = Fraction("0.01"), Fraction("0.02")
+
+
+def varying_row(varying: VaryingSteps) -> Row:
+    return cells(VARYING, varying, {"shown_by": None})
 
 
 def test_a_refutation_lists_its_steps() -> None:
