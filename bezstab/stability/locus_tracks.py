@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from bezstab.errors import NumericalError
 from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
 from bezstab.stability.pencils import Pencil, roots_in_mu
-from bezstab.stability.root_finding import newton_correction
+from bezstab.stability.root_finding import horner_with_slope
 
 SAMPLES = 1024  # of theta over half the circle: what is shorter is looked for by itself
 STEP_SHARE = 0.12  # of the distance to the nearest branch point; the proof above allows 0.17
@@ -66,7 +66,8 @@ class Track:
         in_mu = polyval(z, table)  # coefficients of pi(z, .), ascending; shape (powers, theta.size)
         with np.errstate(all="ignore"):  # what is not finite has not settled
             for _ in range(NEWTON_STEPS):
-                step = newton_correction(in_mu, mu)
+                value, slope = horner_with_slope(in_mu, mu)
+                step = value / slope
                 mu = mu - step
                 settled = np.abs(step) <= SETTLED * np.abs(mu)
                 if settled.all():

@@ -26,7 +26,7 @@ from bezstab.rationals import exact
 from bezstab.stability.arrays import ComplexArray, Extent, FloatArray
 from bezstab.stability.exact_sums import double_polynomial, split
 from bezstab.stability.quadratures import tanh_sinh
-from bezstab.stability.root_finding import newton_correction
+from bezstab.stability.root_finding import horner_with_slope
 from bezstab.stability.searches import zoom_on_minimum
 from bezstab.stability.shapes import ROUNDING, USUAL_SIZE, Approached, Shape, joined
 
@@ -141,7 +141,8 @@ def _real_roots(coefficients: FloatArray, count: int) -> FloatArray:
         x = np.sort(_most_real(roots, count), axis=1).T
         allowed = np.maximum(SETTLED * np.abs(x), EIGENVALUE_ERROR * np.abs(roots).max(axis=1))
         for _ in range(POLISH):
-            step = newton_correction(coefficients, x)
+            value, slope = horner_with_slope(coefficients, x)
+            step = value / slope
             x = x - np.where(np.abs(step) < allowed, step, 0)
         return np.where(lost, np.inf, x)
 

@@ -4,7 +4,6 @@ Such a scheme has no pi(z, mu), and its P is not a product over two mu. Its pole
 most of these schemes, which a formula gives, or three, or as many as it looks back.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache, partial
 
@@ -18,7 +17,7 @@ from bezstab.stability.exact_sums import double_polynomial, double_product, doub
 from bezstab.stability.low_degrees import cubic_parts, largest_quadratic_root, quadratic_roots
 from bezstab.stability.neighbourhoods import FEWEST, blocks_of_neighbours
 from bezstab.stability.real_factors import largest_in_upper_half, largest_of_blocks
-from bezstab.stability.root_finding import CHUNK, inside_circle, roots_of_rows
+from bezstab.stability.root_finding import CHUNK, horner, inside_circle, roots_of_rows
 
 CANCELS = 1e-5  # of (b/2)^2: where the discriminant is below it, its root would be good to 1e-13 or less
 
@@ -75,20 +74,9 @@ def plane_pencil_of(method: Method, free: bool = False) -> PlanePencil:
 def coefficients_at(pencil: PlanePencil, alpha_hat: FloatArray, beta_hat: FloatArray) -> list[FloatArray]:
     """Return P's coefficients in z, ascending, each with the shape of a row of points."""
     values = (
-        _horner([_horner([c for c, _ in row], beta_hat) for row in in_plane], alpha_hat) for in_plane in pencil.split
+        horner([horner([c for c, _ in row], beta_hat) for row in in_plane], alpha_hat) for in_plane in pencil.split
     )
     return [np.full_like(alpha_hat, value) if isinstance(value, float) else value for value in values]
-
-
-def _horner(ascending: Sequence[float | FloatArray], x: FloatArray) -> float | FloatArray:
-    """Return a polynomial's values; no pass over the points for what is zero or constant."""
-    total: float | FloatArray = 0.0
-    for coefficient in reversed(ascending):
-        if not isinstance(total, float) or total:
-            total = total * x
-        if not isinstance(coefficient, float) or coefficient:
-            total = total + coefficient
-    return total
 
 
 def discriminants(

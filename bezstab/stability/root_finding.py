@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
 
 Number = TypeVar("Number", FloatArray, ComplexArray)
+Coefficients = Sequence[Any] | NDArray[np.inexact]
 
 CHUNK = 16384  # points at a time: all the work arrays of one chunk stay in a core's cache
 STRIDE = 16  # of a row of points one in so many has all its roots solved for, the others start from them
@@ -54,7 +55,7 @@ def _roots_of_chunk(table: FloatArray, x: ComplexArray) -> ComplexArray:
     """Return the roots as roots_of_table does, the polynomials scaled by x^-d where |x| > 1."""
     linear = len(table) == 2
     if linear and table[1, 0] == 1 and not table[1, 1:].any():  # y = R(x)
-        return -horner(table[0], x)[np.newaxis]
+        return -np.full((1, x.size), horner(table[0], x), complex)
     coefficients = _coefficients(table, x)
     if linear:
         single: ComplexArray = -coefficients[:1] / coefficients[1]
@@ -91,16 +92,37 @@ def _coefficients(table: FloatArray, x: ComplexArray) -> ComplexArray:
     return np.stack([np.where(large, horner(row[::-1], inverse), horner(row, small_x)) for row in table])
 
 
-def horner(ascending: FloatArray, x: ComplexArray) -> ComplexArray:
-    """Return the polynomial with these coefficients, in ascending powers, at each x."""
-    if len(ascending) == 1:
-        return np.full_like(x, ascending[0])
-    total: ComplexArray = ascending[-1] * x
-    total += ascending[-2]
-    for coefficient in ascending[-3::-1]:
-        total *= x
-        total += coefficient
+def horner(ascending: Coefficients, x: Number) -> Any:
+    """Return the polynomial with these coefficients, in ascending powers, at each x; a number where it is constant.
+
+    Coefficients are numbers or arrays of the shape of x. No pass over the points is made for what is zero or constant.
+    """
+    total: Any = 0.0
+    own = False  # an array of its own may be changed
+    for coefficient in reversed(ascending):
+        if own:
+            total *= x
+        elif not isinstance(total, float) or total:
+            total, own = total * x, True
+        if not own:
+            total = coefficient
+        elif not isinstance(coefficient, float) or coefficient:
+            total += coefficient
     return total
+
+
+def horner_with_slope(ascending: Coefficients, x: Number) -> tuple[Number, Number]:
+    """Return the same, of two coefficients at least, and its derivative; the shape of x."""
+    slope = np.empty_like(x)
+    slope[:] = ascending[-1]
+    value = ascending[-1] * x
+    value += ascending[-2]
+    for coefficient in ascending[-3::-1]:
+        slope *= x
+        slope += value
+        value *= x
+        value += coefficient
+    return value, slope
 
 
 def _spread_directions(n: int) -> ComplexArray:
@@ -194,15 +216,7 @@ def _aberth(coefficients: ComplexArray, starts: ComplexArray) -> ComplexArray:
 
 def _aberth_step(coefficients: ComplexArray, z: ComplexArray) -> ComplexArray:
     """Return Newton's correction N = p/p' repelled by the other roots: N / (1 - N sum 1/(z_i - z_j))."""
-    slope = np.empty_like(z)
-    slope[:] = coefficients[-1]
-    value = coefficients[-1] * z
-    value += coefficients[-2]
-    for coefficient in coefficients[-3::-1]:
-        slope *= z
-        slope += value
-        value *= z
-        value += coefficient
+    value, slope = horner_with_slope(coefficients, z)
     return _quotient(value, slope - value * _repulsion(z))
 
 
@@ -254,20 +268,6 @@ def _repulsion_of_others(z: ComplexArray) -> ComplexArray:
     differences = z[:, np.newaxis] - z
     reciprocals = np.divide(1, differences, out=np.zeros_like(differences), where=differences != 0)
     return np.asarray(reciprocals.sum(axis=1))
-
-
-def newton_correction(coefficients: Sequence[Any] | FloatArray, y: Number) -> Number:
-    """Return Newton's correction p(y) / p'(y), of the shape of y, by Horner's rule.
-
-    The coefficients, two at least, are ascending: numbers, or arrays of the shape of y.
-    """
-    value = coefficients[-1] * y + coefficients[-2]
-    slope = coefficients[-1]
-    for coefficient in coefficients[-3::-1]:
-        slope = slope * y + value
-        value = value * y + coefficient
-    correction: Number = value / slope
-    return correction
 
 
 def inside_circle(ascending: NDArray[np.inexact]) -> BoolArray:

@@ -232,9 +232,12 @@ def maps() -> Iterator[Line]:
 
 
 def maps_of_other_kinds() -> Iterator[Line]:
-    """Yield the comparison of the |z_p| map for one method of each kind that is no explicit multistep method."""
+    """Yield the comparison of the |z_p| map for one method of each other kind."""
     kinds = {
         lookup("heun"): "explicit Runge-Kutta",
+        lookup("dopri5"): "explicit Runge-Kutta, seven stages",
+        lookup("tsit5"): "explicit Runge-Kutta, seven stages",
+        lookup("B12"): "twelve steps",
         lookup("bdf2"): "implicit multistep, two steps",
         lookup("bdf3"): "implicit multistep, three steps",
         lookup("am4"): "implicit multistep, three steps",

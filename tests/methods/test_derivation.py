@@ -14,6 +14,7 @@ from bezstab.methods import (
     MU,
     H,
     Method,
+    PredictorCorrector,
     RungeKutta,
     S,
     Z,
@@ -30,29 +31,17 @@ from tests.methods.kinds import EXPLICIT, FEW, SAMPLE, SOLVED, sampled
 from tests.reference.closed_loops import polynomial_in_z, sympy_rational
 from tests.reference.steppers import State, one_step, trajectory
 
-METHODS = [pytest.param(lookup(name), id=name) for name in [*EXPLICIT, "B4@1/2", "RK4@5", "ABM3@2"]]
-SAMPLED = [
-    pytest.param(*case.values, marks=[] if case.id in SAMPLE else [pytest.mark.slow], id=case.id) for case in METHODS
-]
+NAMES = [*EXPLICIT, "B4@1/2", "RK4@5", "ABM3@2"]
 
 
 def same(left: sp.Expr, right: sp.Expr) -> bool:
     return bool(sp.cancel(sp.sympify(left) - right) == 0)
 
 
-# The paper's equations
-
-
-def test_paper_equation_12_is_b2() -> None:
-    y = trajectory(lookup("B2"), lambda y: y * y, [np.array([2]), np.array([Fraction(3)])], Fraction(1, 7), 3, Fraction)
-    assert y[2] == 3 + Fraction(1, 7) / 2 * (3 * 3**2 - 2**2)
-
-
 def test_paper_equations_13_and_14_map_s_to_z() -> None:
     (equation,) = mapping_equations(lookup("B2"))
     assert equation.lhs == S
     assert same(equation.rhs, 2 / H * Z * (Z - 1) / (3 * Z - 1))
-    assert same(equation.rhs, (Z - 1) / (H / 2 * (3 - 1 / Z)))  # Eq. 13a: z Y = Y + h/2 (3 F - F/z)
 
 
 def test_paper_equation_15_is_the_closed_loop_of_b2_in_alpha_beta_and_h() -> None:
@@ -68,70 +57,23 @@ def test_paper_equation_15_is_the_closed_loop_of_b2_in_alpha_beta_and_h() -> Non
     assert same(4 * closed, printed)
 
 
-def test_paper_equation_17_is_the_closed_loop_of_b2() -> None:
-    a, b = ALPHA_HAT, BETA_HAT
-    printed = [4, -8 + 6 * a, 4 - 8 * a + 9 * b, 2 * a - 6 * b, b]
-    coefficients = closed_loop_polynomial(lookup("B2")).all_coeffs()
-    assert [same(4 * c, p) for c, p in zip(coefficients, printed, strict=True)] == [True] * 5
-
-
-def test_paper_equation_7_becomes_17_by_equation_14() -> None:
-    (equation,) = mapping_equations(lookup("B2"))
-    alpha, beta = ALPHA_HAT / (2 * H), sp.sqrt(BETA_HAT) / H  # Eq. 16
-    characteristic = (S**2 + 2 * alpha * S + beta**2).subs(S, equation.rhs)  # Eq. 7
-    numerator = sp.Poly(sp.numer(sp.cancel(characteristic)), Z)
-    assert same(numerator.monic().as_expr(), closed_loop_polynomial(lookup("B2")).as_expr())
-
-
-@pytest.mark.parametrize(
-    ("name", "mapped"),
-    [
-        ("B1", (Z - 1) / H),
-        ("B2", 2 / H * Z * (Z - 1) / (3 * Z - 1)),
-        ("B3", 12 / H * Z**2 * (Z - 1) / (19 * Z**2 - 8 * Z + 1)),
-        ("B4", 108 / H * Z**3 * (Z - 1) / (175 * Z**3 - 81 * Z**2 + 15 * Z - 1)),
-        ("AB4", 24 / H * Z**3 * (Z - 1) / (55 * Z**3 - 59 * Z**2 + 37 * Z - 9)),
-        ("B4@1/2", 216 / H * Z**3 * (Z - 1) / (175 * Z**3 - 81 * Z**2 + 15 * Z - 1)),
-    ],
-)
-def test_multistep_mappings_are_those_of_theory(name: str, mapped: sp.Expr) -> None:
-    (equation,) = mapping_equations(lookup(name))
-    assert equation.lhs == S
-    assert same(equation.rhs, mapped)
-
-
-@pytest.mark.parametrize(
-    ("name", "mapped"),
-    [
-        ("RK1", 1 + H * S),
-        ("SIE", 1 + H * S + (H * S) ** 2),
-        ("RK4", 1 + H * S + (H * S) ** 2 / 2 + (H * S) ** 3 / 6 + (H * S) ** 4 / 24),
-        ("RK2@5", 1 + 5 * H * S + (5 * H * S) ** 2 / 2),
-    ],
-)
-def test_runge_kutta_mappings_are_solved_for_z(name: str, mapped: sp.Expr) -> None:
-    (equation,) = mapping_equations(lookup(name))
-    assert equation.lhs == Z
-    assert same(equation.rhs, mapped)
-
-
-@pytest.mark.parametrize("method", METHODS)
-def test_the_mapping_is_the_characteristic_polynomial_solved(method: Method) -> None:
-    """With s = mu/(m h) both vanish together."""
+@pytest.mark.parametrize("name", NAMES)
+def test_the_mapping_is_the_characteristic_polynomial_solved(name: str) -> None:
+    """With s = mu/(m h) both vanish together: solved for s, of Runge-Kutta methods for z."""
+    method = lookup(name)
     (equation,) = mapping_equations(method)
+    if not isinstance(method.scheme, PredictorCorrector):
+        assert equation.lhs == (Z if isinstance(method.scheme, RungeKutta) else S)
     difference = (equation.lhs - equation.rhs).subs(S, MU / (H * sympy_rational(method.step_multiple)))
     numerator = sp.Poly(sp.numer(sp.together(sp.expand(difference))), Z, MU, domain="QQ")
     pi = characteristic_polynomial(method)
     assert numerator * pi.LC() == pi * numerator.LC()
 
 
-# pi(z, mu) and P(z)
-
-
-@pytest.mark.parametrize("method", METHODS)
-def test_characteristic_polynomial_is_one_step_on_powers_of_z(method: Method) -> None:
+@pytest.mark.parametrize("name", NAMES)
+def test_characteristic_polynomial_is_one_step_on_powers_of_z(name: str) -> None:
     """On y' = lambda y the stepper takes z^0, ..., z^(n-1) to z^n - pi(z, mu)."""
-    z, mu = Fraction(5, 7), Fraction(-2, 3)
+    method, z, mu = lookup(name), Fraction(5, 7), Fraction(-2, 3)
     n = steps(method)
     past = [np.array([Fraction(0), z**k]) for k in range(n)]  # a partitioned method: the velocity of v' = lambda v
     new = one_step(method, lambda y: mu * y, past, Fraction(1), Fraction)[-1]
@@ -139,7 +81,7 @@ def test_characteristic_polynomial_is_one_step_on_powers_of_z(method: Method) ->
     assert residual == sympy_rational(z**n - new)
 
 
-def test_a_method_of_sixteen_dense_stages_has_its_polynomials_at_once() -> None:
+def test_a_method_of_sixteen_dense_stages_has_its_stability_function_at_once() -> None:
     """R = 1 + sum mu^(k+1) b A^k 1 of an explicit method; ten seconds by determinants and resultants."""
     stages = range(16)
     A = [[Fraction(3 * i + j - 20, 7 + i + 2 * j) if j < i else Fraction(0) for j in stages] for i in stages]
@@ -151,19 +93,16 @@ def test_a_method_of_sixteen_dense_stages_has_its_polynomials_at_once() -> None:
     growth, unit = coefficient_table(method)
     assert growth == tuple(-moment for moment in moments)
     assert unit == (Fraction(1), *[Fraction(0)] * 16)
-    at_point = closed_loop_polynomial(method).eval(1).subs({ALPHA_HAT: sp.Rational(5, 6), BETA_HAT: sp.Rational(1, 6)})
-    growths = [sum(c * mu**k for k, c in enumerate(moments)) for mu in (Fraction(-1, 2), Fraction(-1, 3))]
-    assert Fraction(at_point) == (1 - growths[0]) * (1 - growths[1])  # P(1), whose roots are z = R(mu)
 
 
 @pytest.mark.promise(
     "P(z; α̂, β̂)",
     proven="annihilates every exact trajectory of the stabilised constraint; nothing of lower degree does",
 )
-@pytest.mark.parametrize("method", SAMPLED)
-def test_closed_loop_is_the_minimal_recursion_of_the_stabilised_constraint(method: Method) -> None:
+@pytest.mark.parametrize("name", sampled(NAMES))
+def test_closed_loop_is_the_minimal_recursion_of_the_stabilised_constraint(name: str) -> None:
     """P annihilates every exact trajectory of c' = v, v' = -alpha_hat v - beta_hat c; nothing of lower degree does."""
-    a, b = Fraction(3, 7), Fraction(2, 11)
+    method, a, b = lookup(name), Fraction(3, 7), Fraction(2, 11)
 
     def stabilised(y: State) -> State:
         return np.array([y[1], -a * y[1] - b * y[0]])
@@ -181,11 +120,6 @@ def test_closed_loop_is_the_minimal_recursion_of_the_stabilised_constraint(metho
     assert DomainMatrix.from_Matrix(sp.Matrix(hankel)).to_field().rank() == n
 
 
-def test_closed_loop_of_symplectic_euler_is_that_of_theory() -> None:
-    expected = (Z - 1) ** 2 + ALPHA_HAT * (Z - 1) + BETA_HAT * Z
-    assert same(closed_loop_polynomial(lookup("SYM")).as_expr(), expected)
-
-
 @pytest.mark.parametrize("name", sampled(kinds.MU_METHODS, quick=[*SAMPLE, *SOLVED]))
 def test_closed_loop_is_the_product_of_pi_over_both_mu(name: str) -> None:
     method, first, second = lookup(name), Fraction(-2, 3), Fraction(-1, 5)
@@ -194,24 +128,11 @@ def test_closed_loop_is_the_product_of_pi_over_both_mu(name: str) -> None:
     assert same(polynomial_in_z(p), sp.prod(factor.as_expr() for factor in factors))
 
 
-@pytest.mark.parametrize(
-    "name",
-    sampled([*EXPLICIT, "bdf2", "sdirk2", "verlet-kdk", "newmark(1/6,1/2)"], quick=[*FEW, "bdf2", "verlet-kdk"]),
-)
+@pytest.mark.parametrize("name", [*FEW, "bdf2", "sdirk2", "verlet-kdk", "newmark(1/6,1/2)"])
 @pytest.mark.parametrize("m", [Fraction(5), Fraction(1, 3)], ids=str)
 def test_a_step_of_m_h_is_p_at_m_alpha_hat_and_m_squared_beta_hat(name: str, m: Fraction) -> None:
-    method, a, b = lookup(name), Fraction(3, 7), Fraction(2, 11)
+    method, a, b = lookup(name), Fraction(3, 7), Fraction(-2, 11)
     multiple = replace(method, step_multiple=m)
     assert closed_loop_at(multiple, a, b) == closed_loop_at(method, m * a, m * m * b)
-    factor = sympy_rational(m)
-    scaled = (
-        closed_loop_polynomial(method).as_expr().subs({ALPHA_HAT: factor * ALPHA_HAT, BETA_HAT: factor**2 * BETA_HAT})
-    )
-    assert same(closed_loop_polynomial(multiple).as_expr(), scaled)
-
-
-@pytest.mark.parametrize("method", METHODS)
-def test_closed_loop_at_a_point_is_the_closed_loop_there(method: Method) -> None:
-    a, b = Fraction(-3, 7), Fraction(10**20 + 1, 10**20)
-    there = closed_loop_polynomial(method).as_expr().subs({ALPHA_HAT: sympy_rational(a), BETA_HAT: sympy_rational(b)})
-    assert same(polynomial_in_z(closed_loop_at(method, a, b)), there)
+    there = closed_loop_polynomial(multiple).as_expr().subs({ALPHA_HAT: sympy_rational(a), BETA_HAT: sympy_rational(b)})
+    assert same(polynomial_in_z(closed_loop_at(multiple, a, b)), there)

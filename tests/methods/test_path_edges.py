@@ -2,41 +2,17 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from bezstab.methods import closed_loop_at, lookup
 from bezstab.methods.path_edges import (
-    S,
     _along_path,
     _edge_of_pairs,
     _factors_on_the_circle,
     _positive_roots,
-    _square_root,
     turning_factors,
 )
 
 F = Fraction
-
-
-@given(roots=st.sets(st.fractions(-20, 20, max_denominator=50), max_size=6), double=st.booleans())
-def test_positive_roots_are_found_exactly_whatever_their_multiplicity(roots: set[Fraction], double: bool) -> None:
-    polynomial = S**0
-    for root in roots:
-        polynomial *= (root.denominator * S - root.numerator) ** (2 if double else 1)
-    assert _positive_roots(polynomial) == sorted(root for root in roots if root > 0)
-
-
-@given(st.fractions(0, 10**6, max_denominator=10**6))
-def test_a_square_root_is_exact_or_to_seventy_bits(x: Fraction) -> None:
-    assert _square_root(x**2) == x
-    assert x == 0 or abs(_square_root(x) ** 2 / x - 1) < F(1, 2**68)
-
-
-@pytest.mark.parametrize("powers", [(1, 2), (1, 0), (0, 2)])
-def test_the_edges_of_a_triangle(powers: tuple[int, int]) -> None:
-    """SYM is stable for 0 < alpha_hat < 2, 0 < beta_hat < 4 - 2 alpha_hat: from (1/2, 3) on P(-1) vanishes at once."""
-    assert F(1) in turning_factors(lookup("SYM"), F(1, 2), F(3), powers)
 
 
 @pytest.mark.parametrize("name", ["B3", "AB4", "bdf3", "am4", "B2@3"])

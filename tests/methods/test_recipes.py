@@ -8,49 +8,33 @@ from hypothesis import strategies as st
 
 from bezstab.errors import InputError
 from bezstab.methods import Assignment, Evaluation, Quantity, recipe
+from tests.methods.random_recipes import VERLET
 
 F = Fraction
-VERLET = {
-    "x1": "x0 + v0 + 1/2 a0",
-    "vh": "v0 + 1/2 a0",
-    "a1": "acceleration(x1, vh)",
-    "v1": "vh + 1/2 a1",
-}  # fmt: skip
-
-
-def combination(text: str) -> dict[str, Fraction]:
-    """Return what a helper that nobody needs is equal to."""
-    equation = recipe(VERLET | {"w": text}).equations[-1]
-    assert isinstance(equation, Assignment)
-    return {str(quantity): coefficient for coefficient, quantity in equation.value}
 
 
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        ("x0", {"x0": 1}),
         ("-x0", {"x0": -1}),
         ("+ x0 - v0", {"x0": 1, "v0": -1}),
-        ("1/2 a0", {"a0": F(1, 2)}),
         ("1/2*a0", {"a0": F(1, 2)}),
         ("0.1a0", {"a0": F(1, 10)}),
         ("2. a0", {"a0": 2}),
-        ("a0/2", {"a0": F(1, 2)}),
         ("3 a0 / 2 / 5", {"a0": F(3, 10)}),
-        ("2 (x1 - x0)", {"x1": 2, "x0": -2}),
         ("(x1 - x0)/2", {"x1": F(1, 2), "x0": F(-1, 2)}),
         ("1/2 (x0 - 1/3 (v0 + a0))", {"x0": F(1, 2), "v0": F(-1, 6), "a0": F(-1, 6)}),
-        ("x0 + x0", {"x0": 2}),
-        ("x0 - x0 + v0", {"v0": 1}),
+        ("x0 - x0 + v0 + v0", {"v0": 2}),
         ("0 x0", {}),
         ("x[-1] + v[ 0 ] + a[1]", {"x[-1]": 1, "v0": 1, "a1": 1}),
         ("vh + vh[0] + vh[-1]", {"vh": 1, "vh[0]": 1, "vh[-1]": 1}),
-        ("  x0+v0  ", {"x0": 1, "v0": 1}),
         ("0.3333333333333333333333333333333333333333 a0", {"a0": F(int("3" * 40), 10**40)}),
     ],
 )
 def test_sums_are_read_exactly(text: str, expected: dict[str, Fraction]) -> None:
-    assert combination(text) == expected
+    equation = recipe(VERLET | {"w": text}).equations[-1]
+    assert isinstance(equation, Assignment)
+    assert {str(quantity): coefficient for coefficient, quantity in equation.value} == expected
 
 
 def test_an_evaluation_has_a_position_and_a_velocity() -> None:
@@ -67,43 +51,42 @@ def test_a_result_may_be_written_with_brackets() -> None:
     assert recipe(bracketed) == recipe(VERLET)
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("", "w = ...: found the end, expected a quantity such as x0, v1 or a helper's name"),
-        ("1", "w = ...: found the end, expected a quantity such as x0, v1 or a helper's name"),
-        ("x0 +", "w = ...: found the end, expected a quantity such as x0, v1 or a helper's name"),
-        ("x0 v0", "w = ...: found 'v0', expected +, - or the end"),
-        ("x0 * v0", "w = ...: found '*', expected +, - or the end"),
-        ("x0 - - v0", "w = ...: found '-', expected a quantity such as x0, v1 or a helper's name"),
-        ("2 3 x0", "w = ...: found '3', expected a quantity such as x0, v1 or a helper's name"),
-        ("x0 / v0", "w = ...: found 'v0', expected a number other than 0 to divide by"),
-        ("x0 / 0", "w = ...: found '0', expected a number other than 0 to divide by"),
-        ("x0 / 0.0", "w = ...: found '0.0', expected a number other than 0 to divide by"),
-        ("1/0 x0", "w = ...: found '1/0', expected a number like 1/2 or 0.5"),
-        ("(x0", "w = ...: found the end, expected ')'"),
-        ("x0)", "w = ...: found ')', expected +, - or the end"),
-        ("x", "w = ...: found 'x', expected a step with it, such as x0, x1 or x[-1]"),
-        ("x0[1]", "w = ...: found 'x0[1]', expected x[1]"),
-        ("x0; v0", "w = ...: found ';', expected a sum of numbers times quantities"),
-        ("x0 = v0", "w = ...: found '=', expected a sum of numbers times quantities"),
-        ("sin(x0)", "w = ...: found '(', expected +, - or the end"),
-        ("x0.real", "w = ...: found '.', expected a sum of numbers times quantities"),
-        ("x0\nv0", "w = ...: found 'v0', expected +, - or the end"),
-        ("lambda: 0", "w = ...: found ':', expected a sum of numbers times quantities"),
-        ("acceleration(x0)", "w = ...: found ')', expected ','"),
-        ("acceleration(x0, v0", "w = ...: found the end, expected ')'"),
-        ("acceleration(x0, v0) + x0", "w = ...: found '+', expected +, - or the end"),
-        (
-            "2 acceleration(x0, v0)",
-            "w = ...: found 'acceleration', expected a sum: acceleration(position, velocity) stands alone on the right",
-        ),
-    ],
-)
-def test_what_is_not_a_sum_is_refused_with_equation_and_word(text: str, message: str) -> None:
+END = "found the end, expected a quantity such as x0, v1 or a helper's name"
+REFUSED = {
+    "": END,
+    "1": END,
+    "x0 +": END,
+    "x0 v0": "found 'v0', expected +, - or the end",
+    "x0 * v0": "found '*', expected +, - or the end",
+    "x0**2": "found '*', expected +, - or the end",
+    "x0 - - v0": "found '-', expected a quantity such as x0, v1 or a helper's name",
+    "2 3 x0": "found '3', expected a quantity such as x0, v1 or a helper's name",
+    "1e-3 v0": "found '1e-3', expected a number like 1/2 or 0.5, without exponent",
+    "x0 / v0": "found 'v0', expected a number other than 0 to divide by",
+    "x0 / 0.0": "found '0.0', expected a number other than 0 to divide by",
+    "1/0 x0": "found '1/0', expected a number like 1/2 or 0.5",
+    "(x0": "found the end, expected ')'",
+    "x0)": "found ')', expected +, - or the end",
+    "x": "found 'x', expected a step with it, such as x0, x1 or x[-1]",
+    "x0[1]": "found 'x0[1]', expected x[1]",
+    "x0 − v0": "found '−', expected a sum of numbers times quantities",
+    "x0.real": "found '.', expected a sum of numbers times quantities",
+    "sin(x0)": "found '(', expected +, - or the end",
+    "lambda: 0": "found ':', expected a sum of numbers times quantities",
+    "acceleration(x0)": "found ')', expected ','",
+    "acceleration(x0, v0, v0)": "found ',', expected ')'",
+    "acceleration(x0, v0) + x0": "found '+', expected +, - or the end",
+    "2 acceleration(x0, v0)": (
+        "found 'acceleration', expected a sum: acceleration(position, velocity) stands alone on the right"
+    ),
+}
+
+
+@pytest.mark.parametrize("text", REFUSED)
+def test_what_is_not_a_sum_is_refused_with_equation_and_word(text: str) -> None:
     with pytest.raises(InputError) as caught:
         recipe(VERLET | {"w": text})
-    assert str(caught.value) == message
+    assert str(caught.value) == f"w = ...: {REFUSED[text]}"
 
 
 @pytest.mark.parametrize("result", ["", "2", "x", "w v", "acceleration", "w +", "x0[0]", "a\nb", "é", "w" * 31, "(w)"])
@@ -117,7 +100,7 @@ def test_what_is_no_quantity_is_no_result(result: str) -> None:
 ANYTHING = st.text(max_size=60) | st.text(alphabet="xva01[]-+*/(). ,acceleration", max_size=80)
 
 
-@settings(deadline=None, max_examples=80)
+@settings(deadline=None, max_examples=40)
 @given(ANYTHING, ANYTHING)
 def test_any_text_is_a_scheme_or_one_short_line(result: str, text: str) -> None:
     try:

@@ -4,28 +4,23 @@ from fractions import Fraction
 
 import pytest
 
-from bezstab.methods import (
-    Family,
-    Method,
-    RungeKutta,
-    accuracy,
-    coefficient_table,
-    evaluations,
-    lookup,
-)
+from bezstab.methods import Method, RungeKutta, accuracy, coefficient_table, evaluations, lookup
 from tests.methods.exact_lists import fractions
 from tests.reference.orders import DORMAND_PRINCE
 
 F = Fraction
-FORTY_DIGITS = F(
-    1, 10**39
-)  # each coefficient is within 1e-40 of the irrational one, sums of a few within ten times that
+FORTY_DIGITS = F(1, 10**39)
+"""Each coefficient is within 1e-40 of the irrational one, sums of a few within ten times that."""
 
 
 def runge_kutta(name: str) -> RungeKutta:
     scheme = lookup(name).scheme
     assert isinstance(scheme, RungeKutta)
     return scheme
+
+
+def nodes(name: str) -> list[Fraction]:
+    return [sum(row, F(0)) for row in runge_kutta(name).tableau]
 
 
 @pytest.mark.parametrize(
@@ -36,21 +31,20 @@ def runge_kutta(name: str) -> RungeKutta:
         ("RK3", ["0 0 0", "1/2 0 0", "-1 2 0"], "1/6 2/3 1/6"),
         ("RK4", ["0 0 0 0", "1/2 0 0 0", "0 1/2 0 0", "0 0 1 0"], "1/6 1/3 1/3 1/6"),
         ("SIE", ["0 0", "1 0"], "0 1"),
+        ("radau3", ["5/12 -1/12", "3/4 1/4"], "3/4 1/4"),
     ],
 )
 def test_butcher_tableaux_are_classical(name: str, tableau: list[str], b: str) -> None:
     assert lookup(name).scheme == RungeKutta(tuple(map(fractions, tableau)), fractions(b))
 
 
-def test_members_carry_their_family() -> None:
-    for stages in (1, 2, 3, 4):
-        assert lookup(f"RK{stages}").family == Family("Runge-Kutta", stages)
-    assert lookup("SIE").family == Family("SIE", 0)
-    assert lookup("heun").family is None
+def test_dormand_prince_is_the_formula_of_dopri5() -> None:
+    assert lookup("dopri5").scheme == DORMAND_PRINCE.scheme
 
 
+@pytest.mark.promise("Coefficients of the built-in methods")
 @pytest.mark.parametrize(
-    ("name", "order", "calls", "nodes"),
+    ("name", "order", "calls", "expected"),
     [
         ("heun", 2, 2, "0 1"),
         ("ralston", 2, 2, "0 2/3"),
@@ -61,40 +55,28 @@ def test_members_carry_their_family() -> None:
         ("cash-karp", 5, 6, "0 1/5 3/10 3/5 1 7/8"),
     ],
 )
-def test_order_evaluations_and_nodes_are_those_of_the_literature(name: str, order: int, calls: int, nodes: str) -> None:
+def test_order_evaluations_and_nodes_are_those_of_the_literature(
+    name: str, order: int, calls: int, expected: str
+) -> None:
+    """And no stage serves the error estimate alone: each is weighted, or used by a later one."""
     scheme = runge_kutta(name)
-    assert tuple(sum(row) for row in scheme.tableau) == fractions(nodes)
+    assert tuple(nodes(name)) == fractions(expected)
     assert sum(scheme.weights) == 1
     assert accuracy(lookup(name))[0] == order
     assert evaluations(lookup(name)) == calls
-
-
-def test_dormand_prince_is_the_formula_of_dopri5() -> None:
-    assert lookup("dopri5").scheme == DORMAND_PRINCE.scheme
-
-
-@pytest.mark.parametrize("name", ["heun", "ralston", "ssprk3", "bs3", "dopri5", "tsit5", "cash-karp"])
-def test_no_stage_serves_the_error_estimate_alone(name: str) -> None:
-    """Every stage is weighted, or used by a later one."""
-    scheme = runge_kutta(name)
     for stage, weight in enumerate(scheme.weights):
         assert weight != 0 or any(row[stage] for row in scheme.tableau)
 
 
-def test_tsitouras_decimals_are_the_published_ones_to_their_last_digit() -> None:
+def test_tsitouras_decimals_are_the_published_ones_and_satisfy_his_order_conditions_to_their_digits() -> None:
     """Those that follow from the sums here agree with what is printed: a_i1 for i = 2 to 6, and b_6."""
     scheme = runge_kutta("tsit5")
     derived = [row[0] for row in scheme.tableau[1:]] + [scheme.weights[-1]]
     printed = "0.161 -0.008480655492356989 2.8971530571054935 5.325864828439257 5.86145544294642 2.324710524099774"
     for value, decimal in zip(derived, fractions(printed), strict=True):
         assert abs(value - decimal) < F(5, 10**15)  # half a unit of fifteen decimals, ten times over: sums of six
-
-
-def test_tsitouras_satisfies_his_order_conditions_to_his_digits() -> None:
-    scheme = runge_kutta("tsit5")
-    nodes = [sum(row) for row in scheme.tableau]
     for power in range(5):
-        quadrature = sum(b * c**power for b, c in zip(scheme.weights, nodes, strict=True))
+        quadrature = sum(b * c**power for b, c in zip(scheme.weights, nodes("tsit5"), strict=True))
         assert abs(quadrature - F(1, power + 1)) < F(1, 10**14)
 
 
@@ -115,16 +97,10 @@ def test_the_growth_of_gauss_is_the_diagonal_pade_approximant() -> None:
     numerator, denominator = growth(lookup("gauss4"))
     assert all(abs(c - e) < FORTY_DIGITS for c, e in zip(numerator, (F(1), F(1, 2), F(1, 12)), strict=True))
     assert [(-1) ** j * c for j, c in enumerate(denominator)] == numerator  # so |R| = 1 on the axis, exactly: A-stable
+    assert abs(12 * (nodes("gauss4")[1] - F(1, 2)) ** 2 - 1) < 10 * FORTY_DIGITS
 
 
-def test_the_growth_of_radau_is_the_subdiagonal_pade_approximant() -> None:
-    numerator, denominator = growth(lookup("radau3"))
-    assert numerator[:2] == [1, F(1, 3)]
-    assert not any(numerator[2:])
-    assert denominator == [1, F(-2, 3), F(1, 6)]
-
-
-@pytest.mark.parametrize("name", ["sdirk2", "dirk3", "radau3"])
+@pytest.mark.parametrize("name", ["sdirk2", "dirk3", "radau3", "radau5"])
 def test_stiffly_accurate_methods_end_with_their_last_stage_and_forget_what_is_infinitely_stiff(name: str) -> None:
     scheme = runge_kutta(name)
     assert scheme.tableau[-1] == scheme.weights
@@ -133,51 +109,12 @@ def test_stiffly_accurate_methods_end_with_their_last_stage_and_forget_what_is_i
     assert highest < max(j for j, c in enumerate(denominator) if c)
 
 
-@pytest.mark.parametrize("name", ["sdirk2", "dirk3"])
-def test_singly_diagonal_methods_have_one_gamma_on_the_diagonal_and_none_above(name: str) -> None:
+@pytest.mark.parametrize(("name", "gamma"), [("sdirk2", 0.2928932188), ("dirk3", 0.4358665215)])
+def test_singly_diagonal_methods_have_one_gamma_on_the_diagonal_and_none_above(name: str, gamma: float) -> None:
+    """Alexander's are roots of 2 g^2 - 4 g + 1 and of his cubic: of the two or three the one that is A-stable."""
     tableau = runge_kutta(name).tableau
-    assert len({row[i] for i, row in enumerate(tableau)}) == 1
+    assert {round(float(row[i]), 10) for i, row in enumerate(tableau)} == {gamma}
     assert not any(any(row[i + 1 :]) for i, row in enumerate(tableau))
-
-
-def test_sdirk2_is_a_stable_as_rounded() -> None:
-    """|R(iy)| <= 1 if and only if (1 - 2 g)^2 <= 2 g^2 (|Q|^2 - |P|^2 in powers of y)."""
-    gamma = runge_kutta("sdirk2").tableau[0][0]
-    assert (1 - 2 * gamma) ** 2 <= 2 * gamma**2
-    assert abs(2 * gamma**2 - 4 * gamma + 1) < 10 * FORTY_DIGITS
-
-
-def test_alexanders_gamma_is_the_root_of_his_cubic() -> None:
-    scheme = runge_kutta("dirk3")
-    gamma = scheme.tableau[0][0]
-    assert abs(gamma**3 - 3 * gamma**2 + F(3, 2) * gamma - F(1, 6)) < FORTY_DIGITS
-    assert round(float(gamma), 10) == 0.4358665215
-    nodes = [sum(row) for row in scheme.tableau]
-    assert sum(b * c for b, c in zip(scheme.weights, nodes, strict=True)) == F(1, 2)
-    assert abs(sum((b * c**2 for b, c in zip(scheme.weights, nodes, strict=True)), F(0)) - F(1, 3)) < FORTY_DIGITS
-
-
-def test_gauss_nodes_are_half_minus_and_plus_root_three_sixths() -> None:
-    nodes = [sum(row, F(0)) for row in runge_kutta("gauss4").tableau]
-    assert sum(nodes) == 1
-    assert abs(12 * (nodes[1] - F(1, 2)) ** 2 - 1) < 10 * FORTY_DIGITS
-
-
-def test_radau_coefficients_are_classical() -> None:
-    assert runge_kutta("radau3") == RungeKutta((fractions("5/12 -1/12"), fractions("3/4 1/4")), fractions("3/4 1/4"))
-
-
-def test_radau5_is_scipys() -> None:
-    """Hairer & Wanner II, Table IV.5.6: the nodes, and the weights (16 -+ sqrt 6)/36 and 1/9."""
-    scheme = runge_kutta("radau5")
-    first, second, third = (sum(row, F(0)) for row in scheme.tableau)
-    assert third == 1
-    for node in (first, second):
-        assert abs(10 * node**2 - 8 * node + 1) < 100 * FORTY_DIGITS
-    for weight in scheme.weights[:2]:
-        assert abs((36 * weight - 16) ** 2 - 6) < 1000 * FORTY_DIGITS  # 36 * 2 sqrt 6 times what the weight is off
-    assert abs(scheme.weights[2] - F(1, 9)) < FORTY_DIGITS
-    assert scheme.tableau[-1] == scheme.weights
 
 
 def test_radau5_is_a_stable_as_rounded() -> None:

@@ -58,11 +58,3 @@ def test_stages_are_off_by_what_their_rows_leave_over(name: str) -> None:
         ):
             expected = position - time**power / factorial(power), velocity - time ** (power - 1) / factorial(power - 1)
             assert max(abs(a - b) for a, b in zip(found, expected, strict=True)) <= ROUNDED.get(name, 0)
-
-
-@pytest.mark.parametrize("name", sampled(list(REGISTRY), quick=("B4", "AB4", "RK4", "SYM", "hht")))
-def test_an_accelerated_motion_is_that_of_three_powers(name: str) -> None:
-    scheme = second_order_form(lookup(name).scheme)
-    longer = exact_motions(scheme, 3)
-    for quantity, of_power in exact_motions(scheme).items():
-        assert [values[:3] for values in longer[quantity][:3]] == of_power

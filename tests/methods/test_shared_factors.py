@@ -13,6 +13,7 @@ from bezstab.methods import (
     reduced_table,
     without_shared_factor,
 )
+from tests.methods.random_recipes import VERLET
 
 F = Fraction
 
@@ -35,6 +36,7 @@ def with_factor(*factor: Fraction) -> Method:
 def test_no_method_of_the_registry_has_a_fixed_pole(name: str) -> None:
     assert fixed_poles(lookup(name)) == ()
     assert without_shared_factor(lookup(name)) is lookup(name)
+    assert reduced_table(lookup(name)) == closed_loop_table(lookup(name))
 
 
 @pytest.mark.promise(
@@ -52,19 +54,6 @@ def test_what_rho_and_sigma_share_is_found_and_cancelled(factor: tuple[Fraction,
         assert without_shared_factor(method).scheme == lookup("AB2").scheme
 
 
-VERLET = {
-    "x1": "x0 + v0 + 1/2 a0",
-    "vh": "v0 + 1/2 a0",
-    "a1": "acceleration(x1, vh)",
-    "v1": "vh + 1/2 a1",
-}  # fmt: skip
-
-
-def with_helper(text: str) -> Method:
-    """Velocity Verlet with a helper w that nobody needs."""
-    return Method("helped", recipe(VERLET | {"w": text}), "")
-
-
 @pytest.mark.parametrize(
     ("text", "poles"),
     [("9/10 w[0]", [0.9]), ("0 x0 - w[0]", [-1.0]), ("x0", []), ("w[0] - 1/2 w[-1]", [0.5 + 0.5j, 0.5 - 0.5j])],
@@ -72,12 +61,8 @@ def with_helper(text: str) -> Method:
 def test_what_no_feedback_moves_in_a_second_order_scheme_is_found_and_cancelled(
     text: str, poles: list[complex]
 ) -> None:
-    method = with_helper(text)
+    """Velocity Verlet with a helper w that nobody needs."""
+    method = Method("helped", recipe(VERLET | {"w": text}), "")
     assert fixed_poles(method) == pytest.approx(tuple(poles))
     assert reduced_table(method) == closed_loop_table(lookup("verlet-half"))
     assert without_shared_factor(method) == method  # whose equations stay as they are
-
-
-@pytest.mark.parametrize("name", ["B4", "verlet-kdk", "hht@2"])
-def test_without_a_shared_factor_nothing_is_cancelled(name: str) -> None:
-    assert reduced_table(lookup(name)) == closed_loop_table(lookup(name))

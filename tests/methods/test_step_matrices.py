@@ -5,7 +5,7 @@ from hypothesis import given
 
 from bezstab.errors import InputError
 from bezstab.methods import characteristic, closed_loop_at, lookup, step_matrix
-from bezstab.methods.step_matrices import matrix_product, polynomial_determinant, polynomial_product
+from bezstab.methods.step_matrices import matrix_product
 from tests.reference.rationals import rationals
 
 ONE_STEP = (
@@ -48,13 +48,6 @@ def test_symplectic_euler_as_it_is_written(alpha_hat: Fraction, beta_hat: Fracti
     ]
 
 
-def test_held_gains_follow_the_step() -> None:
-    # with alpha_hat and beta_hat held alpha is alpha_hat / 2s and beta^2 is beta_hat / s^2
-    held = step_matrix(lookup("SYM"), Fraction(1, 2), Fraction(1, 3), hold=True).at(Fraction(1, 4))
-    fixed = step_matrix(lookup("SYM"), Fraction(1, 2) * 4, Fraction(1, 3) * 16).at(Fraction(1, 4))
-    assert held == fixed
-
-
 @pytest.mark.parametrize(("name", "commutes"), [("RK4", True), ("gauss4", True), ("trapezoid", True), ("SYM", False)])
 def test_which_steps_commute(name: str, commutes: bool) -> None:
     matrix = step_matrix(lookup(name), Fraction(1), Fraction(1, 2))
@@ -75,11 +68,3 @@ def test_a_stored_acceleration_belongs_to_the_state_only_where_it_says_something
 def test_methods_of_several_steps_are_refused(name: str) -> None:
     with pytest.raises(InputError, match=f"{name} uses values of several steps, and its coefficients assume"):
         step_matrix(lookup(name), Fraction(1), Fraction(1))
-
-
-def test_polynomials() -> None:
-    one, s = (Fraction(1),), (Fraction(0), Fraction(1))
-    assert polynomial_product((Fraction(1), Fraction(2)), (Fraction(1), Fraction(-2))) == tuple(
-        map(Fraction, (1, 0, -4))
-    )
-    assert polynomial_determinant([[one, s], [s, one]]) == tuple(map(Fraction, (1, 0, -1)))

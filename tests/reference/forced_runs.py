@@ -9,9 +9,21 @@ from typing import Any
 
 import mpmath
 
-from bezstab.methods import Evaluation, Method, Quantity, second_order_form
+from bezstab.methods import Evaluation, ExponentialSum, Method, Quantity, second_order_form
 
 DIGITS = 60
+
+
+def exact_value(
+    terms: ExponentialSum, alpha_hat: Fraction | float, beta_hat: Fraction | float, omega: Fraction
+) -> mpmath.mpc:
+    """Return what exact terms are at a point, for theta = i omega, in the digits that mpmath works with."""
+    a, b, theta = _number(Fraction(alpha_hat)), _number(Fraction(beta_hat)), 1j * _number(omega)
+    return mpmath.fsum(
+        _number(c) * a**i * b**j * theta**m * mpmath.exp(_number(k) * theta)
+        for (i, j), of_powers in terms.items()
+        for (k, m), c in of_powers.items()
+    )
 
 
 def steady_errors(

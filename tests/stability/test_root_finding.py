@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from bezstab.stability.root_finding import (
     STRIDE,
     horner,
+    horner_with_slope,
     newton_polygon_starts,
     roots_of_table,
 )
@@ -16,7 +17,14 @@ from bezstab.stability.root_finding import (
 @given(st.lists(st.integers(-9, 9), min_size=2, max_size=6))
 def test_horner_is_the_polynomial(coefficients: list[int]) -> None:
     x = np.array([0.5 + 1j, -2.0, 0.0])
-    assert horner(np.array(coefficients, float), x) == pytest.approx(np.polyval(coefficients[::-1], x))
+    expected = pytest.approx(np.polyval(coefficients[::-1], x))
+    as_arrays = [np.full(x.shape, float(c)) for c in coefficients]
+    assert horner(np.array(coefficients, float), x) == expected
+    assert horner([float(coefficients[0]), *as_arrays[1:]], x) == expected
+    value, slope = horner_with_slope(as_arrays, x)
+    assert value == expected
+    assert slope == pytest.approx(np.polyval(np.polyder(coefficients[::-1]), x))
+    assert all((c == c[0]).all() for c in as_arrays)  # what is given stays
 
 
 @given(st.sets(st.integers(-20, 20), min_size=2, max_size=5))
