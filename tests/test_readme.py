@@ -1,9 +1,7 @@
 import re
 import shlex
 import shutil
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -31,13 +29,6 @@ PAGES = (
 )
 """The pages whose commands are run; that about logs has a test of its own, next to those of `probe`."""
 
-LONG = (
-    *("paper", "tradeoff", "verify --map", "verify --witness", "verify --scene", "extremes", "simulate --method RK4"),
-    *("choose --method AB4 --h 0.01", "region --method B4 --scene", "choose --method ABM2", "choose --method B5"),
-    *("check --method B4 --alpha 0.5 --beta 0.1 --scene", "check --pd", "simulate --method AB4"),
-    *("check --engine chipmunk=0.5", "region --method RK4 --accuracy", "poles --alpha 0.15", "check --method gauss4"),
-)
-"""Beginnings of commands that take more than a few seconds; `make test-slow` runs these."""
 ON_A_PIPE = {"COLUMNS": None}
 """Environment in which nothing says how wide a line may be."""
 UNSAFE = ("check", "choose", "lint")
@@ -59,12 +50,6 @@ def commands(page: str) -> list[str]:
     return [found.strip() for found in (*inline, *indented) if " " in found.strip() and not PLACEHOLDER.search(found)]
 
 
-def by_length(texts: list[str], command_of: Callable[[str], str]) -> list[Any]:
-    """Return the texts as parameters, those of long commands marked as slow."""
-    slow = pytest.mark.slow
-    return [pytest.param(text, marks=[slow] if command_of(text).startswith(LONG) else []) for text in texts]
-
-
 def prompted(session: str) -> str:
     """Return the command that a session begins with."""
     return session.partition("\n")[0].removeprefix("$ bezstab ")
@@ -73,6 +58,7 @@ def prompted(session: str) -> str:
 SESSIONS = [session for page in PAGES for session in sessions(page)]
 GOLDEN = ("extremes --short", "paper -o figures")
 """Commands of pages that are among the golden outputs."""
+
 INLINE = sorted({command for page in PAGES for command in commands(page)} - {*GOLDEN})
 
 
@@ -88,7 +74,8 @@ def _with_the_files_of_the_pages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 
 
 @pytest.mark.usefixtures("_with_the_files_of_the_pages")
-@pytest.mark.parametrize("session", by_length(SESSIONS, prompted))
+@pytest.mark.parametrize("session", SESSIONS, ids=prompted)
+@pytest.mark.slow_except("check --method SYM", "check --engine bullet", "choose --method SYM", "chains", "methods")
 def test_a_session_prints_what_the_page_shows(session: str) -> None:
     """Three dots stand for whatever is printed there."""
     command, shown = prompted(session), session.partition("\n")[2]
@@ -100,7 +87,7 @@ def test_a_session_prints_what_the_page_shows(session: str) -> None:
 
 
 @pytest.mark.usefixtures("_with_the_files_of_the_pages")
-@pytest.mark.parametrize("command", by_length(INLINE, str))
+@pytest.mark.parametrize("command", INLINE)
 @pytest.mark.slow_except("poles", "lint", "check --engine", "check --method rk45")
 def test_a_command_in_the_text_runs(command: str) -> None:
     if "own.toml" in command:

@@ -79,7 +79,7 @@ def test_numerical_trouble_is_status_three_and_no_file(tmp_path: Path) -> None:
 
 
 EULER = 'A = [["0"]]\nb = ["1"]\n'
-ODD = ("../../x", "a|b", "/etc/x", "..", ".", "CON:", "a\\b", "-o", "x" * 200, "é中")
+ODD = ("../../x", "a|b", "/etc/x", "..", ".", "CON:", "c\\d", "-o", "x" * 200, "é中")
 
 
 @pytest.mark.slow

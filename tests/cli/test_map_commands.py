@@ -9,7 +9,7 @@ import pytest
 
 from bezstab.errors import InputError
 from bezstab.methods import GROUPS, lookup
-from bezstab.stability import RATES, choose, combined_error, error_front, spectral_radius
+from bezstab.stability import RATES, combined_error, error_front, spectral_radius
 from bezstab.units import from_dimensionless
 from tests.cli.running import arrays, rows, run
 
@@ -64,16 +64,6 @@ def test_region_prints_the_area_of_each_level_asked_for() -> None:
     assert (none["area"], none["best_z_abs"], none["best_reason"]) == (0, None, "none: |z_p| is 0.625884 at least")
 
 
-@pytest.mark.parametrize("name", ["radau3", "hht"])
-def test_the_map_of_an_unbounded_region_holds_its_best_point(name: str, tmp_path: Path) -> None:
-    """Radau's is the corner of the map's window; that of HHT lies beyond everything else that there is to see."""
-    (row,) = rows("region", "--method", name, "--figure", "none", "--table", "npz", "--quality", "fast")
-    (path,) = tmp_path.iterdir()
-    shown = arrays(path)
-    for key in ("alpha_hat", "beta_hat"):
-        assert shown[key].min() < float(str(row[f"best_{key}"])) < shown[key].max()
-
-
 @pytest.mark.slow
 def test_a_users_method_has_maps_and_steps_of_several_h(tmp_path: Path) -> None:
     Path("mine.toml").write_text('name = "a/b"\nrho = ["1", "-1"]\nsigma = ["0", "1"]', encoding="utf-8")
@@ -88,16 +78,6 @@ def test_a_map_of_each_way_of_applying_a_drive_is_written_and_the_rows_are_those
     assert rows("region", *late, "--quality", "fast") == rows("check", *late)
     ways = ("SYM", "imex-euler", "stable-pd", "implicit-euler")
     assert {path.name for path in tmp_path.iterdir()} == {f"region_{way}_held.png" for way in ways}
-
-
-def test_the_row_of_a_map_of_errors_has_both_best_points_and_what_they_force() -> None:
-    (row,) = rows(*ACCURACY, *NOTHING)
-    chosen = choose(lookup("RK4"), "accurate", margins=False)
-    assert (row["omega_h"], row["accurate_z_abs"]) == (0.01, abs(chosen.pole))
-    assert (row["accurate_alpha_hat"], row["accurate_beta_hat"]) == (chosen.alpha_hat, chosen.beta_hat)
-    for point in ("accurate", "best"):
-        alpha_hat, beta_hat = (float(str(row[f"{point}_{key}"])) for key in ("alpha_hat", "beta_hat"))
-        assert row[f"{point}_error"] == float(combined_error(lookup("RK4"), alpha_hat, beta_hat, Fraction(1, 100)))
 
 
 @pytest.mark.slow

@@ -131,14 +131,6 @@ def test_standard_input_is_read_for_a_dash_and_columns_are_fitted_jointly_if_ask
     assert rows("probe", "log.csv", "--jointly")[0]["column"] == "c_1, c_2"
 
 
-def test_rows_several_steps_apart_by_the_times_and_by_the_option() -> None:
-    write("log.csv", t=np.arange(300) * 3e-3, c=response("SYM", 0.1, 0.02, 900)[::3])
-    common = "probe log.csv --column c --method SYM --method B4 --alpha 0.1 --beta 0.02 --turning 1"
-    for options in ("--h 0.001", "--h 0.001 --every 3", "--every 3"):
-        nearest = rows(*shlex.split(f"{common} {options}"))[1]
-        assert (nearest["method"], nearest["fits"]) == ("SYM", True)
-
-
 def test_what_tells_no_pole_or_fits_nothing_is_status_three_with_its_reason() -> None:
     """One column that fits is a success."""
     clean = response("B4", 0.5, 0.1)
@@ -157,19 +149,6 @@ def test_what_tells_no_pole_or_fits_nothing_is_status_three_with_its_reason() ->
     assert (wrong.exit_code, wrong.stderr) == (3, "bezstab: nothing fits clean\n")
     assert "nothing fits at (0.3, 0.1)" in wrong.stdout
     assert run("probe", "log.csv", *point).exit_code == 0
-
-
-def test_noise_is_told_and_the_pole_in_it_names_the_method() -> None:
-    noise = 1e-9 * np.random.default_rng(0).normal(size=(2, 120))
-    write("noise.csv", c=noise[0])
-    write("log.csv", c=0.1 * response("B4", 0.5, 0.1, 120) + noise[1])
-    at_rest = ("--alpha", "0.5", "--beta", "0.1", "--h", "0.001", "--turning", "0")
-    fitting = [row["method"] for row in rows("probe", "log.csv", "--minus", "noise.csv", *at_rest) if row["fits"]]
-    assert fitting[0] == "B4"
-    assert set(fitting) <= {"B3", "B4", "B5", "B6", "B7"}  # whose poles are within 1e-3 of B4's there
-    alone = run("probe", "noise.csv", *at_rest)
-    assert alone.exit_code == 3
-    assert re.search("noise of [19]", alone.stderr)
 
 
 def test_a_log_that_mujoco_made_behaves_like_symplectic_euler() -> None:

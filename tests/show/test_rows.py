@@ -182,6 +182,7 @@ def test_text_is_wrapped_to_a_width_without_losing_a_word(text: str, width: int)
     assert fits("\n".join(lines), width) == all(shown_width(line) <= width for line in lines)
 
 
+@pytest.mark.slow
 def test_limits_are_rounded_to_the_safe_side_or_said_in_words() -> None:
     assert safe_step_text({"safe": True, "h_limit": 0.0123456}) == "0.01234"
     assert safe_step_text({"safe": True, "h_limit": None}) == "unlimited"

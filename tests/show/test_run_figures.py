@@ -78,6 +78,7 @@ def test_the_work_precision_figure_has_every_run_and_rings_the_front(
     assert len(set(shapes.values())) == len(shapes)  # coinciding curves are told apart
 
 
+@pytest.mark.slow
 def test_the_projection_figure_shows_all_three_errors_of_every_way_to_hold_the_constraints() -> None:
     """A line for each method and way in each axes; filled markers are projection, crosses a point that was given."""
     scene, steps = load_scene("slider_crank_light"), (0.008, 0.004)

@@ -31,6 +31,7 @@ def dashes_of(line: Line2D) -> str:
     return str(line._unscaled_dash_pattern)  # type: ignore[attr-defined]
 
 
+@pytest.mark.slow
 def test_methods_in_a_figure_differ_in_colour_dashes_and_marker() -> None:
     axes = comparison_figure([region(lookup(name)) for name in NAMES]).axes[0]
     looks = {(str(line.get_color()), dashes_of(line)) for line in axes.lines[: len(NAMES)]}
