@@ -1,6 +1,7 @@
 """What poles, check and choose share: the options of a question, and what is said below its answers."""
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -14,11 +15,14 @@ from bezstab.cli.options import (
     SPEED,
     Decorator,
     ParsedType,
-    both_or_none,
+    Rule,
+    gathered,
     left_at_default,
     physical_option,
+    ruled,
     scene_option,
     together,
+    typed_options,
 )
 from bezstab.cli.output import for_reading, progress, say, show_command, show_text
 from bezstab.engines import Drive, Engine
@@ -48,11 +52,60 @@ def drive_of(text: str) -> Drive:
 
 DRIVE = ParsedType(",".join(GAINS), drive_of)
 
+
+@dataclass(frozen=True)
+class TypedPoint:
+    """A point as it was typed, if it was: without unit, or with `physical` alpha and beta in 1/s."""
+
+    alpha: Fraction | None
+    beta: Fraction | None
+    physical: bool
+
+    @property
+    def numbers(self) -> tuple[Fraction, Fraction] | None:
+        """The two numbers, None without them; UsageError if one is missing."""
+        if self.alpha is None and self.beta is None:
+            return None
+        if self.alpha is None or self.beta is None:
+            raise click.UsageError("--alpha and --beta go together: they give one point")
+        return self.alpha, self.beta
+
+    def at(self, methods: Sequence[Method], h: Fraction | None, of_what: str = "") -> tuple[Fraction, Fraction] | None:
+        """Return (alpha_hat, beta_hat) for a step of h (s), None if none was typed.
+
+        Where they look like numbers in 1/s that is said, as below. UsageError for half a point, and for 1/s without a
+        point or a step.
+        """
+        numbers = self.numbers
+        if not self.physical:
+            if numbers:
+                say_if_units_were_mistaken(methods, *numbers, h, of_what)
+            return numbers
+        if numbers is None:
+            raise click.UsageError("--physical needs --alpha and --beta: it says that they are in 1/s")
+        if h is None:
+            raise click.UsageError("--physical needs --h: α and β in 1/s need the step in s")
+        return to_dimensionless(*numbers, h)
+
+
+def point_options(alpha_help: str, beta_help: str, *default: str) -> Decorator:
+    """Return the options --alpha, --beta and --physical, as the parameter `point`; without a default none is typed."""
+    usual = dict(zip(("alpha", "beta"), default, strict=False))
+    return gathered(
+        TypedPoint,
+        "point",
+        click.option("--alpha", type=NUMBER, default=usual.get("alpha"), help=alpha_help),
+        click.option("--beta", type=NUMBER, default=usual.get("beta"), help=beta_help),
+        physical_option,
+    )
+
+
 given_point_options = together(
-    click.option("--alpha", type=NUMBER, help="α̂, a decimal or fraction, read exactly; α in 1/s with --physical."),
-    click.option("--beta", type=NUMBER, help="β̂, a decimal or fraction, read exactly; β in 1/s with --physical."),
+    point_options(
+        "α̂, a decimal or fraction, read exactly; α in 1/s with --physical.",
+        "β̂, a decimal or fraction, read exactly; β in 1/s with --physical.",
+    ),
     click.option("--h", type=SECONDS, help="Step size in s, for --physical, --engine, --pd, --scene and --omega."),
-    physical_option,
     click.option(
         "--engine",
         type=ENGINE_VALUES,
@@ -68,6 +121,10 @@ given_point_options = together(
         "drive",
         type=DRIVE,
         help="A joint drive's gains and inertia (SI units), in place of --alpha and --beta; needs --h.",
+    ),
+    ruled(
+        Rule("--engine", "it gives the point itself", excludes=("--alpha", "--beta", "--physical")),
+        Rule("--pd", "it gives the point itself", excludes=("--alpha", "--beta", "--physical")),
     ),
 )
 """How a point is given: in the plane, by an engine's own values, or by a drive's gains."""
@@ -113,9 +170,7 @@ def moving_scene_options(help_text: str) -> Decorator:
 def asked(
     *,
     methods: Sequence[Method],
-    alpha: Fraction | None = None,
-    beta: Fraction | None = None,
-    physical: bool = False,
+    point: TypedPoint | None = None,
     engine: tuple[Engine, tuple[Fraction, ...] | None] | None = None,
     drive: Drive | None = None,
     chain: int | None = None,
@@ -129,19 +184,12 @@ def asked(
     """
     from bezstab.questions import Question, typed_chain
 
-    h, h_min, h_max = (typed.get(name) for name in ("h", "h_min", "h_max"))
-    longest = h or (h_max if h_min else None)
-    if physical and longest is None:
-        raise InputError("--physical, --engine and --pd need --h: the step in s")
-    if (engine or drive) and (alpha is not None or beta is not None or physical):
-        raise InputError(f"{'--engine' if engine else '--pd'} takes the place of --alpha, --beta and --physical")
-    point = None if alpha is None or beta is None else (alpha, beta)
-    if point and physical and longest is not None:
-        point = to_dimensionless(*point, longest)
+    longest = typed["h"] or (typed["h_max"] if typed.get("h_min") else None)
+    methods = methods_typed(methods, engine is not None or drive is not None)
     named, values = engine or (None, None)
     question = Question(
-        methods=methods_typed(methods, engine is not None or drive is not None),
-        point=point,
+        methods=methods,
+        point=point.at(methods, longest) if point else None,
         engine=named,
         values=values,
         drive=drive,
@@ -149,33 +197,8 @@ def asked(
         iterations=iterations,
         **typed,
     )
-    if point and not physical:
-        say_if_units_were_mistaken(question.methods, *point, question.h)
     prepare(question)
     return question
-
-
-def point_typed(
-    methods: Sequence[Method],
-    alpha: Fraction | None,
-    beta: Fraction | None,
-    h: Fraction | None,
-    physical: bool,
-    of_what: str = "",
-) -> tuple[Fraction, Fraction] | None:
-    """Return the point (alpha_hat, beta_hat) that was typed, None if none was; h in s, `of_what` as below.
-
-    UsageError for half a point, and for 1/s without a point or a step.
-    """
-    point = both_or_none(alpha, beta)
-    if physical and (point is None or h is None):
-        raise click.UsageError("--physical goes with --alpha, --beta and --h: α and β in 1/s need the step in s")
-    if point is None:
-        return None
-    if physical and h is not None:
-        return to_dimensionless(*point, h)
-    say_if_units_were_mistaken(methods, *point, h, of_what)
-    return point
 
 
 def methods_typed(methods: Sequence[Method], has_usual_ones: bool) -> tuple[Method, ...]:
@@ -263,12 +286,14 @@ def say_if_units_were_mistaken(
     """
     from bezstab.stability import verdict
 
-    if max(alpha, beta) < 1 or any(verdict(method, alpha, beta) == "converges" for method in methods):
+    if not methods or max(alpha, beta) < 1:
+        return
+    if any(verdict(method, alpha, beta) == "converges" for method in methods):
         return
     taken = "note: --alpha and --beta were taken as α̂ and β̂, without unit; if they are in 1/s, add --physical"
     if h is not None and _all_stable(methods, alpha, beta, h):
         command = f"bezstab {click.get_current_context().info_name}{of_what and ' '}{of_what}"
-        given = "" if left_at_default("methods") else "".join(f" --method {method.name}" for method in methods)
+        given = "".join(f" --method {method.name}" for method in methods if "--method" in typed_options())
         numbers = f"--alpha {typed_number(alpha)} --beta {typed_number(beta)} --h {typed_number(h)}"
         say(f"{taken}: {command}{given} {numbers} --physical")
     elif max(alpha, beta) > LARGE:

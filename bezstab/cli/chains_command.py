@@ -2,23 +2,13 @@
 
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 import click
 
 from bezstab.cli.asking import say_what_is_left_out
-from bezstab.cli.options import (
-    ENGINE_VALUES,
-    NUMBER,
-    SECONDS,
-    EngineValues,
-    format_option,
-)
+from bezstab.cli.options import ENGINE_VALUES, NUMBER, SECONDS, EngineValues, format_option
 from bezstab.cli.output import Files, for_reading, picture_options, show_rows
 from bezstab.show import CHAINS, Format, chain_rows
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 SWEEPS_DRAWN = 50
 
@@ -54,6 +44,7 @@ def chains(
 
     Example: bezstab chains --engine bullet=0.2 --h 1/60 --to 5 --figure none
     """
+    from bezstab import show
     from bezstab.questions import chain_map
 
     files.check_output()
@@ -62,12 +53,8 @@ def chains(
     rows = [row for one in maps for row in chain_rows(words, one)]
     show_rows(CHAINS, rows, form)
 
-    def draw() -> "Figure":
-        from bezstab.show import chains_figure
-
-        typed = ", ".join(f"{name} = {float(value):.4g}" for name, value in zip(words.parameters, values, strict=False))
-        return chains_figure(words, f"{words.name}: {typed}, h = {float(h):.3g} s", maps)
-
-    files.write_figure(files.path("chains", words.name), draw)
+    typed = ", ".join(f"{name} = {float(value):.4g}" for name, value in zip(words.parameters, values, strict=False))
+    title = f"{words.name}: {typed}, h = {float(h):.3g} s"
+    files.write(files.path("chains", words.name), lambda: show.chains_figure(words, title, maps))
     if for_reading(form):
         say_what_is_left_out(words, many=True)

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from bezstab.cli.asking import (
+    TypedPoint,
     asked,
     chain_options,
     given_point_options,
     h_min_option,
     hold_option,
-    methods_typed,
     moving_scene_options,
     omega_option,
     say_unknown_costs,
@@ -35,9 +35,10 @@ from bezstab.cli.options import (
     SECONDS,
     SHARE,
     USUAL_METHODS,
-    both_or_none,
+    Rule,
     format_option,
     methods_option,
+    ruled,
     step_option,
 )
 from bezstab.cli.output import for_reading, progress, say, show_rows, show_text
@@ -107,6 +108,7 @@ OF_ONE_ALONE = (
 @timing_options
 @moving_scene_options("Choose for this mechanism as it moves.")
 @format_option
+@ruled(Rule("--bandwidth", "it is that of a drive", needs=("--pd",)))
 @click.pass_context
 def choose(
     context: click.Context,
@@ -151,12 +153,9 @@ def choose(
     """
     from bezstab.questions import answers, usual_goal
 
-    if bandwidth is not None and drive is None:
-        raise InputError("--bandwidth is about a drive: it needs --pd")
-    held = timing.of(drive, typed["h"])
-    if drive and (held or bandwidth is not None or (settle is not None and goal is None)):
-        own = methods_typed(methods, has_usual_ones=True)
-        context.exit(0 if choose_held(drive.inertia, typed["h"], held, own, bandwidth, settle, form) else 1)
+    gains_asked = bandwidth is not None or (drive is not None and settle is not None and goal is None)
+    if held := timing.question(drive, typed["h"], methods, always=gains_asked):
+        context.exit(0 if choose_held(held, bandwidth, settle, form) else 1)
     question = asked(
         methods=methods,
         goal=goal or usual_goal(engine, drive),
@@ -197,7 +196,15 @@ def choose(
 @moving_scene_options("Is it safe for this mechanism as it moves? Needs --h.")
 @format_option
 @click.pass_context
-def check(context: click.Context, /, timing: HeldTiming, form: Format, **typed: Any) -> None:
+def check(
+    context: click.Context,
+    /,
+    methods: Sequence[Method],
+    point: TypedPoint,
+    timing: HeldTiming,
+    form: Format,
+    **typed: Any,
+) -> None:
     """Tell whether a choice is safe: exit status 0 if so, 1 if not.
 
     Safe means that errors are proven to shrink, with every method named. Prints the verdict, the margins, the largest
@@ -230,17 +237,15 @@ def check(context: click.Context, /, timing: HeldTiming, form: Format, **typed: 
 
     Example: bezstab check --method RK2 --h 0.002 --alpha 50 --beta 50 --physical
     """
-    from bezstab.questions import answers, turning_of
+    from bezstab.questions import answers, check_speed
 
-    drive, methods = typed["drive"], typed["methods"]
-    if held := timing.of(drive, typed["h"]):
-        own = methods_typed(methods, has_usual_ones=True)
-        context.exit(0 if check_held(drive, typed["h"], held, own, form) else 1)
-    if typed["physical"] and not any(typed[name] for name in NEEDING_A_STEP):
-        turning_of(None, typed["speed"], None)  # no speed without a scene
-        point = both_or_none(typed["alpha"], typed["beta"])
+    drive = typed["drive"]
+    if held := timing.question(drive, typed["h"], methods):
+        context.exit(0 if check_held(held, form) else 1)
+    if point.physical and not any(typed[name] for name in NEEDING_A_STEP):
+        check_speed(None, typed["speed"])
         context.exit(0 if _check_without_step(methods, point, form) else 1)
-    question = asked(**typed)
+    question = asked(methods=methods, point=point, **typed)
     found = list(_with_instead(answers(question)))
     given = [answer for answer in found if answer.role == "given"]
     if for_reading(form):
@@ -282,13 +287,13 @@ def _with_instead(given: "Iterable[Answer]") -> "Iterator[Answer]":
             say(f"bezstab: nothing instead: {error}")
 
 
-def _check_without_step(methods: Sequence[Method], point: tuple[Fraction, Fraction] | None, form: Format) -> bool:
+def _check_without_step(methods: Sequence[Method], point: TypedPoint, form: Format) -> bool:
     """Print up to which step alpha and beta (1/s) are safe with each method; return whether each has such a step."""
     from bezstab.questions import largest_step, methods_for
 
-    if point is None:
+    if point.numbers is None:
         raise click.UsageError("a point is needed: --alpha with --beta, --engine, or --pd")
-    found = [largest_step(method, *point) for method in methods_for(tuple(methods), None, None)]
+    found = [largest_step(method, *point.numbers) for method in methods_for(tuple(methods), None, None)]
     show_rows(LARGEST_STEPS, [largest_step_row(each) for each in found], form)
     return all(each.safe for each in found)
 
@@ -310,7 +315,7 @@ def engines(h: Fraction, alpha: Fraction | None, beta: Fraction | None, form: Fo
     """
     from bezstab.show import engine_row
 
-    point = both_or_none(alpha, beta)
+    point = TypedPoint(alpha, beta, physical=False).numbers
     rows = [engine_row(engine, point, h) for engine in ENGINES.values()]
     show_rows(ENGINES_LISTED, rows, form)
     if for_reading(form):

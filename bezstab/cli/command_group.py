@@ -15,7 +15,7 @@ from bezstab.cli.choose_commands import check, choose, engines, explore
 from bezstab.cli.evidence_commands import extremes, simulate, tradeoff
 from bezstab.cli.lint_command import lint
 from bezstab.cli.map_commands import family, methods, poles
-from bezstab.cli.output import say
+from bezstab.cli.output import NUMERICAL_TROUBLE, say
 from bezstab.cli.probe_command import probe
 from bezstab.cli.region_command import region
 from bezstab.cli.schema_command import schema
@@ -105,7 +105,7 @@ class BezstabGroup(click.Group):
             sys.exit(2)
         except NumericalError as error:
             _complain(str(error))
-            sys.exit(3)
+            sys.exit(NUMERICAL_TROUBLE)
         except click.Abort:
             _complain("interrupted")
             sys.exit(130)

@@ -2,32 +2,32 @@
 
 from collections.abc import Sequence
 from fractions import Fraction
-from functools import partial
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from bezstab.cli.asking import omega_option, say_if_units_were_mistaken
+from bezstab.cli.asking import TypedPoint, omega_option, point_options, say_if_units_were_mistaken
 from bezstab.cli.options import (
     METHOD,
     NUMBER,
     POSITIVE,
     SECONDS,
     SEQUENCE,
-    both_or_none,
+    Rule,
     compiled_option,
     format_option,
     left_at_default,
     methods_option,
-    physical_option,
     projection_asked_for,
+    refuse_beside,
+    ruled,
     scene_option,
     speed_option,
     stabilise_options,
     step_option,
-    typed_beside,
+    typed_options,
 )
 from bezstab.cli.output import (
     Files,
@@ -46,19 +46,19 @@ from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method, check_one_step
 from bezstab.rationals import exact
 from bezstab.show import EXTREMES, FRONTS, SIMULATIONS, SWEPT, Format, cells
-from bezstab.units import to_dimensionless
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from bezstab.evidence import Cost, Held, SweptRuns
     from bezstab.mechanism import Projection, Stabilise, Start
 
 MOST_SWEPT = 10**6  # the reference takes up to 32 times as many
 MOST_LISTED = 20  # times in a message
 
-PREDICTED = ("scene", "speed", "methods", "steps", "omega", "predicted", "levels", "output", "figure", "table", "form")
-"""Parameters of tradeoff that go with --predicted."""
+PREDICTED = {
+    *("--predicted", "--scene", "--speed", "--method", "--h", "--omega", "--level"),
+    *("--output", "--figure", "--table", "--format"),
+}
+"""Options of tradeoff that go with --predicted."""
 
 
 @click.command()
@@ -70,9 +70,7 @@ PREDICTED = ("scene", "speed", "methods", "steps", "omega", "predicted", "levels
     default="B4",
     help="A method's name, as `bezstab methods` lists it, or a .toml file; NAME@m takes steps of m h.",
 )
-@click.option("--alpha", type=NUMBER, default="0.5", help="α̂; α in 1/s with --physical.")
-@click.option("--beta", type=NUMBER, default="0.1", help="β̂; β in 1/s with --physical.")
-@physical_option
+@point_options("α̂; α in 1/s with --physical.", "β̂; β in 1/s with --physical.", "0.5", "0.1")
 @stabilise_options
 @step_option
 @click.option(
@@ -96,13 +94,12 @@ PREDICTED = ("scene", "speed", "methods", "steps", "omega", "predicted", "levels
 @compiled_option
 @figure_options
 @format_option
+@ruled(Rule("--hold", "it is about steps that vary", needs=("--steps",)))
 def simulate(
     scene: str,
     speed: Fraction,
     method: Method,
-    alpha: Fraction,
-    beta: Fraction,
-    physical: bool,
+    point: TypedPoint,
     stabilise: "Stabilise",
     iterations: int | None,
     h: Fraction,
@@ -129,18 +126,11 @@ def simulate(
 
     Example: bezstab simulate --method AB4 --alpha 0.5 --beta 0.101 --time 2
     """
-    from bezstab import mechanism
-    from bezstab.show import history_arrays, simulation_row
+    from bezstab import mechanism, show
 
     projection = projection_asked_for(stabilise, iterations)
-    if stabilise != "baumgarte":
-        alpha = beta = Fraction(0)
-    elif physical:
-        alpha, beta = to_dimensionless(alpha, beta, h)
-    elif not (sequence or left_at_default("h")):
-        say_if_units_were_mistaken([method], alpha, beta, h)
-    if hold and not sequence:
-        raise click.UsageError("--hold needs --steps: it is about steps that vary")
+    at = point.at([] if sequence else [method], h) if stabilise == "baumgarte" else None
+    alpha_hat, beta_hat = map(float, at or (0, 0))
     _check_number_of_steps(time, min(sequence) if sequence else h, method)
     if sequence:
         check_one_step(method)
@@ -148,24 +138,25 @@ def simulate(
     moving = mechanism.compiled_mechanism(mechanism.at_speed(mechanism.load_scene(scene), float(speed)))
     if projection:
         mechanism.check_projected(method)
-    point = {"alpha_hat": float(alpha), "beta_hat": float(beta)}
-    run: dict[str, Any] = {"duration": float(time), "perturb": float(perturb), "projection": projection, **point}
+    run: dict[str, Any] = {
+        "alpha_hat": alpha_hat,
+        "beta_hat": beta_hat,
+        "h": float(h),
+        "duration": float(time),
+        "perturb": float(perturb),
+        "projection": projection,
+    }
     if sequence:
         lengths = [float(step) for step in sequence]
-        simulation = mechanism.simulated_with_steps(moving, method, sequence=lengths, h=float(h), hold=hold, **run)
+        simulation = mechanism.simulated_with_steps(moving, method, sequence=lengths, hold=hold, **run)
     else:
-        simulation = mechanism.simulated(moving, method, h=float(h), start=start, **run)
-
-    def draw() -> "Figure":
-        from bezstab.show import history_figure
-
-        return history_figure(simulation)
-
-    path = files.path("simulate", Path(scene).stem, method.name)
-    files.write_table(path, history_arrays(simulation))
-    files.write_figure(path, draw)
-    rows = [simulation_row(simulation)]
-    show_rows(SIMULATIONS, rows, form)
+        simulation = mechanism.simulated(moving, method, start=start, **run)
+    files.write(
+        files.path("simulate", Path(scene).stem, method.name),
+        lambda: show.history_figure(simulation),
+        lambda: show.history_arrays(simulation),
+    )
+    show_rows(SIMULATIONS, [show.simulation_row(simulation)], form)
     if len(simulation.singular_times):
         say(f"bezstab: {_passages_text(simulation.singular_times.tolist())}")
     if simulation.failure:
@@ -197,13 +188,10 @@ def _check_number_of_steps(time: Fraction, h: Fraction, method: Method) -> None:
 @methods_option("B2", "B3", "B4", "AB2", "AB4", "ABM4", "RK4", "SIE", "SYM")
 @click.option("--h", "steps", type=SECONDS, multiple=True, help="Step size in s. Repeatable [ten from 0.0001 to 0.02].")
 @click.option("--time", type=SECONDS, default="2", help="Duration in s.")
-@click.option(
-    "--alpha",
-    type=NUMBER,
-    help="α̂ of every run; α in 1/s with --physical [the goal accurate for the scene's motion, at each step].",
+@point_options(
+    "α̂ of every run; α in 1/s with --physical [the goal accurate for the scene's motion, at each step].",
+    "β̂ of every run; β in 1/s with --physical.",
 )
-@click.option("--beta", type=NUMBER, help="β̂ of every run; β in 1/s with --physical.")
-@physical_option
 @omega_option
 @stabilise_options
 @click.option(
@@ -231,15 +219,17 @@ def _check_number_of_steps(time: Fraction, h: Fraction, method: Method) -> None:
 @work_options
 @file_options
 @format_option
+@ruled(
+    Rule("--level", "it says how fast errors must decay", needs=("--predicted",)),
+    Rule("--physical", "it says that they are in 1/s", needs=("--alpha",)),
+)
 def tradeoff(
     scene: str,
     speed: Fraction,
     methods: Sequence[Method],
     steps: Sequence[Fraction],
     time: Fraction,
-    alpha: Fraction | None,
-    beta: Fraction | None,
-    physical: bool,
+    point: TypedPoint,
     omega: Fraction | None,
     stabilise: "Stabilise",
     iterations: int | None,
@@ -274,22 +264,21 @@ def tradeoff(
 
     Example: bezstab tradeoff --method B4 --method AB4 --h 0.002 --h 0.004 --time 2
     """
-    from bezstab import evidence
+    from bezstab import evidence, show
     from bezstab.mechanism import at_speed, load_scene
-    from bezstab.show import run_row, untimed_arrays
 
     if predicted:
         _predicted_trade(methods, omega, scene, speed, steps, levels, files, form)
         return
-    point = both_or_none(alpha, beta)
-    _check_simulated_options(point, physical, omega, levels, against)
-    given = None if point is None else (float(point[0]), float(point[1]))
+    given, physical = point.numbers, point.physical
+    if omega is not None and given and against != "projection":
+        raise click.UsageError("--omega does not go with --alpha and --beta: points are chosen for that motion")
     treatments = _treatments(methods, given, stabilise, iterations, against)
-    if point and steps and not physical:
-        say_if_units_were_mistaken(methods, *point, max(steps))
+    if given and steps and not physical:
+        say_if_units_were_mistaken(methods, *given, max(steps))
     step_sizes = tuple(sorted({float(step) for step in steps or evidence.STEPS}))
     _check_swept_time(float(time), step_sizes, methods)
-    advised = any(point is None for point, _ in treatments)
+    advised = any(each is None for each, _ in treatments)
     rate = _rate_of_motion(omega, scene, speed, time, step_sizes) if advised else None
     loaded_scene = at_speed(load_scene(scene), float(speed))
     reference = evidence.reference_motion(loaded_scene, step_sizes[0], float(time))
@@ -307,27 +296,28 @@ def tradeoff(
     job = f"{methods} {(*of_all, treatments, physical, repeats, rate)}"
     with results_of_chunks(evidence.measured_runs, sweeps, path, job, work) as results:
         per_method = (evidence.swept_runs(*each) for each in zip(sweeps, results, strict=True))
-        runs = list(chain.from_iterable(per_method))
-        swept = evidence.with_fronts(runs, reference.error, against)
-        rows = [run_row(run, front) for run, front in zip(swept.runs, swept.front_labels, strict=True)]
-
-        files.write_table(path, untimed_arrays(rows))
-        for errors in ("both",) if against == "projection" else ("trajectory", "constraint"):
-            name = "projection" if errors == "both" else errors
-            draw = partial(_sweep_figure, swept, loaded_scene.name, errors)
-            files.write_figure(path.with_name(f"{path.name}_{name}"), draw)
+        swept = evidence.with_fronts(list(chain.from_iterable(per_method)), reference.error, against)
+        rows = [show.run_row(run, front) for run, front in zip(swept.runs, swept.front_labels, strict=True)]
+        files.write(path, None, lambda: show.untimed_arrays(rows))
+        figures = {
+            "projection": lambda: show.projection_figure(swept, loaded_scene.name, reference.error),
+            "trajectory": lambda: show.work_precision_figure(swept, loaded_scene.name, False, reference.error),
+            "constraint": lambda: show.work_precision_figure(swept, loaded_scene.name, True),
+        }
+        for name in ("projection",) if against == "projection" else ("trajectory", "constraint"):
+            files.write(path.with_name(f"{path.name}_{name}"), figures[name])
     show_rows(SWEPT, rows, form)
     if for_reading(form):
         show_text(f"\nThe reference is known to {reference.error:.0e} (m, rad).")
         if rate is not None:
             show_text(f"Each point is the choice of the goal accurate for a motion with ω = {float(rate):.3g} 1/s.")
-        for sentence in _sweep_sentences(swept, float(tolerance), given, physical):
+        for sentence in _sweep_sentences(swept, float(tolerance), given is not None, physical):
             show_text(sentence)
 
 
 def _treatments(
     methods: Sequence[Method],
-    given: tuple[float, float] | None,
+    given: tuple[Fraction, Fraction] | None,
     stabilise: "Stabilise",
     iterations: int | None,
     against: "Cost",
@@ -340,57 +330,30 @@ def _treatments(
     from bezstab.mechanism import check_projected
 
     both = against == "projection"
-    if both and not left_at_default("stabilise"):
-        raise click.UsageError("--against projection has runs with and without feedback: not with --stabilise")
+    if both:
+        refuse_beside("--against projection", ["--stabilise"], "it has runs with and without feedback")
     projection = projection_asked_for(stabilise, iterations, both)
     if projection:
         for method in methods:
             check_projected(method)
     if stabilise != "baumgarte":
         return [(NO_FEEDBACK, projection)]
+    point = None if given is None else (float(given[0]), float(given[1]))
     if not both:
-        return [(given, None)]
-    return [(None, None), *([(given, None)] if given else []), (NO_FEEDBACK, projection)]
+        return [(point, None)]
+    return [(None, None), *([(point, None)] if point else []), (NO_FEEDBACK, projection)]
 
 
-def _sweep_figure(swept: "SweptRuns", scene: str, errors: str) -> "Figure":
-    """Return the figure of the trajectory's errors, the constraints' ones, or both with the energy."""
-    from bezstab.show import projection_figure, work_precision_figure
-
-    if errors == "both":
-        return projection_figure(swept, scene, swept.reference_error)
-    constraint = errors == "constraint"
-    return work_precision_figure(swept, scene, constraint, 0.0 if constraint else swept.reference_error)
-
-
-def _sweep_sentences(
-    swept: "SweptRuns", tolerance: float, given: tuple[float, float] | None, physical: bool
-) -> Sequence[str]:
-    """Return what a sweep says in words; its point, if it was given, with alpha and beta in 1/s or without units."""
+def _sweep_sentences(swept: "SweptRuns", tolerance: float, given: bool, physical: bool) -> Sequence[str]:
+    """Return what a sweep says in words; whether its point was given, and that with alpha and beta in 1/s."""
     from bezstab import evidence
 
     if swept.against == "projection":
         return evidence.projection_sentences(swept.runs, swept.reference_error)
     held: Held = "alpha and beta" if physical else "alpha_hat and beta_hat"
-    if given is None:
+    if not given:
         held = "own choice" if swept.runs[0].advised else "no feedback"
     return evidence.sweep_sentences(swept.runs, tolerance, held)
-
-
-def _check_simulated_options(
-    point: tuple[Fraction, Fraction] | None,
-    physical: bool,
-    omega: Fraction | None,
-    levels: Sequence[Fraction],
-    against: "Cost",
-) -> None:
-    """Raise UsageError for options of tradeoff that do not go together."""
-    if levels:
-        raise click.UsageError("--level needs --predicted: it says how fast errors must decay")
-    if physical and point is None:
-        raise click.UsageError("--physical needs --alpha and --beta")
-    if omega is not None and point and against != "projection":
-        raise click.UsageError("--omega does not go with --alpha and --beta: points are chosen for that motion")
 
 
 def _predicted_trade(
@@ -404,46 +367,33 @@ def _predicted_trade(
     form: Format,
 ) -> None:
     """Show what tradeoff --predicted asks for; UsageError and InputError where that cannot be."""
-    _check_nothing_simulated(steps)
-    if wrong := [float(level) for level in levels if float(level) >= 1]:
-        raise InputError(f"--level {wrong[0]:g}: expected a |z_p| below 1, where errors decay")
-    h = steps[0] if steps else None
+    from bezstab import show
     from bezstab.questions import motion_of
-
-    motion = motion_of(omega, None if left_at_default("scene") else scene, speed, h)
-    files.check_output()
-    from bezstab.show import combined_words, front_row, untimed_arrays
     from bezstab.stability import RATES, error_front
 
-    asked, rates = list(dict.fromkeys(methods)), [float(level) for level in levels] or RATES
-    fronts = [error_front(method, rates, motion.omega_h) for method in progress(asked, "fronts", len(asked))]
-    rows = [front_row(point, None if h is None else float(h)) for front in fronts for point in front]
-
-    def draw() -> "Figure":
-        from bezstab.show import error_front_figure
-
-        return error_front_figure([front for front in fronts if front])
-
-    path = files.path("tradeoff", "predicted")
-    files.write_table(path, untimed_arrays(rows))
-    files.write_figure(path, draw)
-    show_rows(FRONTS, rows, form)
-    if for_reading(form):
-        show_text(combined_words(motion))
-
-
-def _check_nothing_simulated(steps: Sequence[Fraction]) -> None:
-    """Raise UsageError for an option of the running command that is about runs, beside --predicted."""
-    if other := typed_beside(PREDICTED):
-        raise click.UsageError(f"{other} does not go with --predicted, which simulates nothing")
+    refuse_beside("--predicted", typed_options() - PREDICTED, "it simulates nothing")
     if len(steps) > 1:
         raise click.UsageError(f"--predicted takes one --h, but {len(steps)} were given")
-    if left_at_default("scene") and not left_at_default("speed"):
-        raise click.UsageError("--speed needs --scene: it says how fast that mechanism moves")
-    if steps and left_at_default("scene") and left_at_default("omega"):
+    if wrong := [float(level) for level in levels if float(level) >= 1]:
+        raise InputError(f"--level {wrong[0]:g}: expected a |z_p| below 1, where errors decay")
+    h, asked_scene = next(iter(steps), None), None if left_at_default("scene") else scene
+    if h and asked_scene is None and omega is None:
         raise click.UsageError(
             "--predicted with --h needs --omega or --scene: they say how far the motion goes in a step"
         )
+    motion = motion_of(omega, asked_scene, speed, h)
+    files.check_output()
+    asked, rates = list(dict.fromkeys(methods)), [float(level) for level in levels] or RATES
+    fronts = [error_front(method, rates, motion.omega_h) for method in progress(asked, "fronts", len(asked))]
+    rows = [show.front_row(point, None if h is None else float(h)) for front in fronts for point in front]
+    files.write(
+        files.path("tradeoff", "predicted"),
+        lambda: show.error_front_figure([front for front in fronts if front]),
+        lambda: show.untimed_arrays(rows),
+    )
+    show_rows(FRONTS, rows, form)
+    if for_reading(form):
+        show_text(show.combined_words(motion))
 
 
 def _rate_of_motion(

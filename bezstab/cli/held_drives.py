@@ -1,17 +1,17 @@
 """Drives whose controller is slower than the physics: the options of check, choose and region, what is printed."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import click
 
-from bezstab.cli.options import NUMBER, ParsedType, gathered, typed_beside
+from bezstab.cli.options import NUMBER, ParsedType, gathered, left_at_default, refuse_beside, typed_options
 from bezstab.cli.output import Files, for_reading, show_rows, show_text
 from bezstab.engines import Drive
 from bezstab.errors import InputError
-from bezstab.methods import Method
+from bezstab.methods import Method, lookup
 from bezstab.rationals import rational, typed_number
 from bezstab.show import HELD, LATE_COMMANDS, NOT_JUDGED, Format, held_row, timing_words
 
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from bezstab.questions import HeldAnswer, HeldQuestion
-    from bezstab.stability import Timing
 
 
 @dataclass(frozen=True)
@@ -30,18 +29,28 @@ class HeldTiming:
     late: Fraction | None
     filter_seconds: Fraction | None
 
-    def of(self, drive: Drive | None, h: Fraction | None) -> "Timing | None":
-        """Return the timing of a drive at a step of h (s), None where no option says one; InputError without both."""
+    def question(
+        self, drive: Drive | None, h: Fraction | None, methods: Sequence[Method], *, always: bool = False
+    ) -> "HeldQuestion | None":
+        """Return the question about such a drive at a step of h (s), None where no option says a timing.
+
+        With `always` each step then computes its torque and applies it. Without typed methods it is about all four ways
+        of applying a drive. InputError without a drive or a step.
+        """
+        from bezstab.questions import HeldQuestion
         from bezstab.stability import Timing
 
-        if self.every is None and self.late is None and self.filter_seconds is None:
+        if not always and self.every is None and self.late is None and self.filter_seconds is None:
             return None
         if drive is None or h is None:
             raise InputError("--every, --late and --filter are about a drive: they need --pd and --h")
         if self.filter_seconds is not None and self.filter_seconds < 0:
             raise InputError(f"--filter {float(self.filter_seconds):g}: expected 0 s or more")
         every, filter_steps = 1 if self.every is None else self.every, (self.filter_seconds or Fraction(0)) / h
-        return Timing(every=every, late=self.late or Fraction(0), filter_steps=filter_steps)
+        timing = Timing(every=every, late=self.late or Fraction(0), filter_steps=filter_steps)
+        if left_at_default("methods"):
+            return HeldQuestion(drive=drive, h=h, timing=timing)
+        return HeldQuestion(drive=drive, h=h, timing=timing, methods=tuple(methods))
 
 
 timing_options = gathered(
@@ -62,102 +71,64 @@ timing_options = gathered(
 )
 
 
-ABOUT_DRIVES = {"drive", "h", "every", "late", "filter_seconds", "methods", "form"}
-"""Parameters of commands that a question about a held or late drive has."""
+ABOUT_DRIVES = {"--pd", "--h", "--every", "--late", "--filter", "--method", "--format"}
+"""Options of commands that a question about a held or late drive has."""
 
 
 def refuse_others(asked: str, *allowed: str) -> None:
     """Raise UsageError for an option of the running command that says nothing of a held or late drive."""
-    if other := typed_beside(ABOUT_DRIVES | set(allowed)):
-        raise click.UsageError(f"{other} does not go with {asked}: this answer is about the drive alone")
+    refuse_beside(asked, typed_options() - {*ABOUT_DRIVES, *allowed}, "this answer is about the drive alone")
 
 
-def held_question(drive: Drive, h: Fraction, timing: "Timing", methods: Sequence[Method]) -> "HeldQuestion":
-    """Return the question about a held or late drive: in some ways of applying it, without methods in all four."""
-    from bezstab.questions import HeldQuestion
-
-    if not methods:
-        return HeldQuestion(drive=drive, h=h, timing=timing)
-    return HeldQuestion(drive=drive, h=h, timing=timing, methods=tuple(methods))
-
-
-def check_held(drive: Drive, h: Fraction, timing: "Timing", methods: Sequence[Method], form: Format) -> bool:
-    """Print whether a held or late drive is safe, and what it is that is used up; return whether every way is safe."""
+def show_held(question: "HeldQuestion", form: Format) -> "list[HeldAnswer]":
+    """Print what each way of applying a held or late drive does, and what is not judged; return these answers."""
     from bezstab.questions import held_answers
 
-    refuse_others("--every, --late and --filter")
-    found = list(held_answers(held_question(drive, h, timing, methods)))
-    _show_held(found, form)
-    return all(answer.safe for answer in found)
-
-
-def _show_held(found: "Sequence[HeldAnswer]", form: Format) -> None:
-    """Print what each way of applying one drive does, and what is not judged."""
-    question = found[0].question
+    found = list(held_answers(question))
     heading = timing_words(question.timing, float(question.h))
     show_rows(HELD, [held_row(answer) for answer in found], form, heading=heading)
     if for_reading(form):
         show_text(f"\n{LATE_COMMANDS} {NOT_JUDGED}")
+    return found
 
 
-def region_held(
-    drive: Drive,
-    h: Fraction | None,
-    timing: "Timing | None",
-    methods: Sequence[Method],
-    points: int,
-    files: Files,
-    form: Format,
-) -> None:
-    """Write the map of each way of applying a held or late drive over kd and kp; print what `check` prints.
+def check_held(question: "HeldQuestion", form: Format) -> bool:
+    """Print whether a held or late drive is safe, and what it is that is used up; return whether every way is safe."""
+    refuse_others("--every, --late and --filter")
+    return all(answer.safe for answer in show_held(question, form))
 
-    UsageError without h (s). Without a timing each step computes its torque and applies it.
-    """
-    from bezstab.questions import held_answers
-    from bezstab.stability import Timing, held_map
 
-    refuse_others("--pd", "quality", "grid", "output", "figure")
-    if h is None:
-        raise click.UsageError("--pd needs --h: the step in s")
-    question = held_question(drive, h, timing or Timing(), methods)
+def region_held(question: "HeldQuestion", points: int, files: Files, form: Format) -> None:
+    """Print what `check` prints, and write the map of each way of applying the drive over kd and kp."""
+    from bezstab import show, stability
+
+    refuse_others("--pd", "--quality", "--grid", "--output", "--figure")
     files.check_output()
-    found = list(held_answers(question))
-    alpha_hat, beta_hat = drive.point(h)
+    alpha_hat, beta_hat = question.drive.point(question.h)
     own = float(alpha_hat), float(beta_hat)
-    for answer in found:
+    for answer in show_held(question, form):
 
         def draw(answer: "HeldAnswer" = answer) -> "Figure":
-            from bezstab.show import held_figure
+            return show.held_figure(answer, stability.held_map(answer.method.name, question.timing, points, own))
 
-            return held_figure(answer, held_map(answer.method.name, question.timing, points, own))
-
-        files.write_figure(files.path("region", answer.method.name, "held"), draw)
-    _show_held(found, form)
+        files.write(files.path("region", answer.method.name, "held"), draw)
 
 
-def choose_held(
-    inertia: Fraction,
-    h: Fraction,
-    timing: "Timing | None",
-    methods: Sequence[Method],
-    bandwidth: Fraction | None,
-    settle: Fraction | None,
-    form: Format,
-) -> bool:
-    """Print gains for a bandwidth (Hz) or a time to settle (s) as `check` would; return whether every way is safe."""
-    from bezstab.methods import lookup
-    from bezstab.questions import held_answers, held_gains
-    from bezstab.stability import Timing
+def choose_held(question: "HeldQuestion", bandwidth: Fraction | None, settle: Fraction | None, form: Format) -> bool:
+    """Print gains for a bandwidth (Hz) or a time to settle (s) as `check` would; return whether every way is safe.
 
-    refuse_others("--bandwidth, --settle, --every, --late and --filter", "bandwidth", "settle")
-    timing = timing or Timing()
-    applied = list(methods) or [lookup("SYM")]
-    drive = held_gains(inertia, h, timing, bandwidth=bandwidth, settle=settle, methods=applied)
+    Of the question's drive only the inertia counts.
+    """
+    from bezstab.questions import held_gains
+
+    refuse_others("--bandwidth, --settle, --every, --late and --filter", "--bandwidth", "--settle")
+    methods = (lookup("SYM"),) if left_at_default("methods") else question.methods
+    drive = held_gains(
+        question.drive.inertia, question.h, question.timing, bandwidth=bandwidth, settle=settle, methods=methods
+    )
     if for_reading(form):
         show_text(f"kp = {typed_number(drive.kp)}, kd = {typed_number(drive.kd)}\n")
-    found = list(held_answers(held_question(drive, h, timing, applied)))
-    _show_held(found, form)
-    return all(answer.safe for answer in found)
+    return all(answer.safe for answer in show_held(replace(question, drive=drive, methods=methods), form))
 
 
 def _inertia_or_drive(text: str) -> Drive:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from bezstab.cli.options import NUMBER, ParsedType, format_option, left_at_default
+from bezstab.cli.options import NUMBER, ParsedType, Rule, format_option, ruled
 from bezstab.cli.output import for_reading, progress, show_rows, show_text
 from bezstab.errors import InputError
 from bezstab.rationals import rational
@@ -44,6 +44,10 @@ def _gains(text: str) -> "MotorGains":
     "--late", type=NUMBER, default="0", show_default=True, help="With --pd: the torque is applied so many steps late."
 )
 @format_option
+@ruled(
+    Rule("--every", "it is about a motor's controller", needs=("--pd",)),
+    Rule("--late", "it is about a motor's controller", needs=("--pd",)),
+)
 @click.pass_context
 def lint(
     context: click.Context, model: Path, gains: "Sequence[MotorGains]", every: int, late: Fraction, form: Format
@@ -74,8 +78,6 @@ def lint(
     from bezstab.show import linted_row
     from bezstab.stability import Timing
 
-    if not gains and not (left_at_default("every") and left_at_default("late")):
-        raise click.UsageError("--every and --late are about a controller: they need --pd NAME=KP,KD")
     timing = Timing(every, late)
     model_data = read_mujoco_model(model)
     linted = list(progress(linted_model(model_data, gains, timing), "lint", model_data.size))

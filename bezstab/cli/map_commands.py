@@ -14,7 +14,7 @@ from bezstab.cli.asking import (
     say_unknown_costs,
     say_what_was_made,
 )
-from bezstab.cli.options import METHOD, USUAL_METHODS, format_option, methods_option
+from bezstab.cli.options import METHOD, USUAL_METHODS, Rule, format_option, methods_option, ruled
 from bezstab.cli.output import Files, for_reading, picture_options, show_blocks, show_groups, show_rows, show_text
 from bezstab.errors import InputError
 from bezstab.methods import GROUPS, Method, lookup
@@ -45,6 +45,7 @@ if TYPE_CHECKING:
 @omega_option
 @moving_scene_options("Also say what the motion of this mechanism does to the poles; needs --h.")
 @format_option
+@ruled(Rule("--h", "α̂ and β̂ have no unit", needs=("--physical", "--engine", "--pd", "--scene", "--omega")))
 def poles(all_poles: bool, form: Format, **typed: Any) -> None:
     """Print each method's dominant pole at one point, and the verdict.
 
@@ -60,8 +61,6 @@ def poles(all_poles: bool, form: Format, **typed: Any) -> None:
     from bezstab.questions import answers
     from bezstab.show import added_cells, engine_cells, motion_words, pole_rows
 
-    if typed["h"] and not any(typed[name] for name in ("physical", "engine", "drive", "scene", "omega")):
-        raise click.UsageError("--physical and --h go together: α and β in 1/s need the step in s")
     question = asked(**typed)
     poles_of = stability.poles if all_poles else stability.dominant_pole
     margins = question.drive is not None
@@ -154,7 +153,7 @@ def family(name: str, first: int, last: int | None, files: Files, form: Format) 
 
     Example: bezstab family bezier --from 2 --to 5
     """
-    from bezstab.show import family_row, limit_row
+    from bezstab import show
     from bezstab.stability import FAMILIES, bezier_limit, family_members
 
     largest = {family_name: most for family_name, (_, most) in FAMILIES.items()}
@@ -163,18 +162,15 @@ def family(name: str, first: int, last: int | None, files: Files, form: Format) 
         raise InputError(f"--from {first} --to {last}: expected 1 <= from <= to <= {largest[name]} for {name}")
     files.check_output()
     members = family_members(name, first, last)
-    limit = bezier_limit()
-    rows = [family_row(member) for member in members]
-    if name == "bezier":
-        rows.append(limit_row(limit))
+    limit = bezier_limit() if name == "bezier" else None
+    rows = [show.family_row(member) for member in members]
+    if limit:
+        rows.append(show.limit_row(limit))
+    show_rows(MEMBERS, rows, form)
 
     def draw() -> "Figure":
-        from bezstab.show import family_figure
+        others = {other: family_members(other, 2, most) for other, most in largest.items() if other != name}
+        families = {each: members if each == name else others[each] for each in largest}
+        return show.family_figure(families, name, limit)
 
-        families = {}
-        for other, most in largest.items():
-            families[other] = members if other == name else family_members(other, 2, most)
-        return family_figure(families, name, limit if name == "bezier" else None)
-
-    show_rows(MEMBERS, rows, form)
-    files.write_figure(files.path("family", name), draw)
+    files.write(files.path("family", name), draw)

@@ -3,7 +3,7 @@
 import os
 import re
 from collections.abc import Callable, Collection, Iterable
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from fractions import Fraction
 from functools import wraps
 from pathlib import Path
@@ -38,6 +38,9 @@ SHORTEST = Fraction("1e-100")  # s, and the longest time's inverse: their square
 USUAL_METHODS = ("B2", "B3", "B4", "AB2", "AB3", "AB4", "RK4@5", "SIE")
 """What poles and explore show unless told otherwise: the Bezier methods and what one would take instead."""
 
+
+OF_FEEDBACK = ("--alpha", "--beta", "--physical", "--hold", "--omega")
+"""What says something of a feedback alone."""
 
 WITH_PARAMETERS = ("newmark(1/4,1/2)", "hht(-1/20)", "generalized-alpha(4/5)")
 """Names that the shell offers of methods whose name has parameters, with their usual values."""
@@ -85,18 +88,16 @@ def _positive(text: str) -> Fraction:
     return number
 
 
-def _seconds(text: str) -> Fraction:
-    number = _positive(text)
-    if not SHORTEST <= number <= 1 / SHORTEST:
-        raise InputError(f"{text} s: expected {float(SHORTEST):g} to {float(1 / SHORTEST):g} s")
-    return number
+def _within_squares(unit: str) -> Callable[[str], Fraction]:
+    """Return what reads a positive number of a unit whose square is within float64."""
 
+    def read(text: str) -> Fraction:
+        number = _positive(text)
+        if not SHORTEST <= number <= 1 / SHORTEST:
+            raise InputError(f"{text}: expected {float(SHORTEST):g} to {float(1 / SHORTEST):g} {unit}")
+        return number
 
-def _speed(text: str) -> Fraction:
-    number = _positive(text)
-    if not SHORTEST <= number <= 1 / SHORTEST:
-        raise InputError(f"{text}: expected {float(SHORTEST):g} to {float(1 / SHORTEST):g} times the scene's own speed")
-    return number
+    return read
 
 
 def _sequence(text: str) -> list[Fraction]:
@@ -113,14 +114,14 @@ def _sequence(text: str) -> list[Fraction]:
         times = rational(count) if star else Fraction(1)
         if times.denominator != 1 or not 1 <= times <= MOST_IN_SEQUENCE - len(sequence):
             raise InputError(f"{part[:50]!r}: expected a number of steps from 1, and {MOST_IN_SEQUENCE} in all")
-        sequence += [_seconds(step)] * int(times)
+        sequence += [_within_squares("s")(step)] * int(times)
     return sequence
 
 
 NUMBER = ParsedType("number", rational)
 POSITIVE = ParsedType("number", _positive)
-SECONDS = ParsedType("seconds", _seconds)
-SPEED = ParsedType("number", _speed)
+SECONDS = ParsedType("seconds", _within_squares("s"))
+SPEED = ParsedType("number", _within_squares("times the scene's own speed"))
 SEQUENCE = ParsedType("steps", _sequence)
 METHOD = ParsedType("method", lookup, (*REGISTRY, *WITH_PARAMETERS))
 SHARE = ParsedType("number", lambda text: float(rational(text)))
@@ -185,7 +186,7 @@ def _choose_compiled(context: click.Context, parameter: click.Parameter, choice:
 
     InputError where numba is asked for and missing.
     """
-    if context.get_parameter_source(str(parameter.name)) != click.core.ParameterSource.COMMANDLINE:
+    if left_at_default(str(parameter.name)):
         return
     from bezstab.compiling import COMPILED_CHOICE, check_numba
 
@@ -253,13 +254,55 @@ stabilise_options = together(
 )
 
 
-def both_or_none(alpha: Fraction | None, beta: Fraction | None) -> tuple[Fraction, Fraction] | None:
-    """Return the point that --alpha and --beta are, None without them; UsageError if one is missing."""
-    if alpha is None and beta is None:
-        return None
-    if alpha is None or beta is None:
-        raise click.UsageError("--alpha and --beta go together: they give one point")
-    return alpha, beta
+@dataclass(frozen=True)
+class Rule:
+    """What an option needs (one of several) and what it does not go with; `why` ends the message that says so."""
+
+    option: str
+    why: str
+    needs: tuple[str, ...] = ()
+    excludes: tuple[str, ...] = ()
+
+    def check(self) -> None:
+        """Raise UsageError where what was typed in the running command breaks this rule."""
+        typed = typed_options()
+        if self.option not in typed:
+            return
+        if self.needs and not typed & set(self.needs):
+            raise click.UsageError(f"{self.option} needs {' or '.join(self.needs)}: {self.why}")
+        refuse_beside(self.option, self.excludes, self.why)
+
+
+def ruled(*rules: Rule) -> Decorator:
+    """Return a decorator that checks, before a command begins, which of its options were typed together."""
+
+    def with_rules(function: Function, /) -> Function:
+        @wraps(function)
+        def checked(*arguments: Any, **typed: Any) -> Any:
+            for rule in rules:
+                rule.check()
+            return function(*arguments, **typed)
+
+        return checked  # type: ignore[return-value]  # as wraps has it
+
+    return with_rules
+
+
+def typed_options() -> set[str]:
+    """Return the options that the user gave the running command, each by its long name."""
+    context = click.get_current_context()
+    return {parameter.opts[-1] for parameter in context.command.params if not left_at_default(str(parameter.name))}
+
+
+def refuse_beside(option: str, others: Collection[str], why: str) -> None:
+    """Raise UsageError where one of the others was typed in the running command, which has that option."""
+    for other in sorted(typed_options() & set(others)):
+        raise click.UsageError(f"{other} does not go with {option}: {why}")
+
+
+def left_at_default(parameter: str) -> bool:
+    """Return whether the user has not given that parameter of the running command."""
+    return click.get_current_context().get_parameter_source(parameter) != click.core.ParameterSource.COMMANDLINE
 
 
 def projection_asked_for(stabilise: "Stabilise", iterations: int | None, against: bool = False) -> "Projection | None":
@@ -269,28 +312,11 @@ def projection_asked_for(stabilise: "Stabilise", iterations: int | None, against
     """
     projected = stabilise == "projection" or against
     if iterations is not None and not projected:
-        raise click.UsageError("--iterations are those of --stabilise projection")
+        raise click.UsageError("--iterations needs --stabilise projection: they are its iterations")
     if stabilise != "baumgarte":
-        for option in ("alpha", "beta", "physical", "hold", "omega"):
-            if option in click.get_current_context().params and not left_at_default(option):
-                raise click.UsageError(f"--stabilise {stabilise} has no feedback: not with --{option}")
+        refuse_beside(f"--stabilise {stabilise}", OF_FEEDBACK, "it has no feedback")
     if not projected:
         return None
     from bezstab.mechanism import Projection
 
     return Projection(iterations)
-
-
-def typed_beside(allowed: Collection[str]) -> str | None:
-    """Return the first option that the user gave the running command beside some parameters; None if there is none."""
-    context = click.get_current_context()
-    for parameter in context.command.params:
-        name = str(parameter.name)
-        if name not in allowed and context.get_parameter_source(name) == click.core.ParameterSource.COMMANDLINE:
-            return parameter.opts[0]
-    return None
-
-
-def left_at_default(parameter: str) -> bool:
-    """Return whether the user has not given that parameter of the running command."""
-    return click.get_current_context().get_parameter_source(parameter) == click.core.ParameterSource.DEFAULT

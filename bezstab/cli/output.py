@@ -2,9 +2,10 @@
 
 import re
 import sys
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from functools import partial
 from operator import length_hint
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
@@ -26,13 +27,14 @@ from bezstab.show import Column, Format, Row, RowKind, Sentence, block, finite, 
 from bezstab.stopping import if_stopped
 
 if TYPE_CHECKING:
-    import numpy as np
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
 
     from bezstab.evidence import Arrays
 
 Item = TypeVar("Item")
+NUMERICAL_TROUBLE = 3
+"""Exit status where an answer, or a part of it, could not be found, or runs break down; a message says why."""
+
 INDENT = " " * 4
 """Of a command line that is shown to be copied, and once more of its continued lines."""
 
@@ -145,24 +147,23 @@ class Files:
         """Return the path, without an ending, of what is called like names of methods and scenes."""
         return self.output / "_".join(file_name(name) for name in names)
 
-    def write_table(self, path: Path, columns: "Mapping[str, NDArray[np.generic]]") -> None:
-        """Write equally long arrays by name into `path` + .csv or .npz, or nothing if the form is none."""
-        form = self.table
-        if form == "none":
-            return
-        from bezstab.show import write_arrays
+    def write(
+        self, path: Path, figure: "Callable[[], Figure] | None", table: "Callable[[], Arrays] | None" = None
+    ) -> None:
+        """Write what these make, a table of equally long arrays and a figure, into `path` + .csv, .png, ...
 
-        write_file(path.with_name(f"{path.name}.{form}"), lambda file: write_arrays(columns, form, file))
+        What is not asked for is neither made nor loaded.
+        """
+        if table and self.table != "none":
+            columns = table()
+            from bezstab.show import write_arrays
 
-    def write_figure(self, path: Path, draw: "Callable[[], Figure]") -> None:
-        """Write the figure that `draw` makes into `path` + its form; if that is none, nothing is drawn or loaded."""
-        form = self.figure
-        if form == "none":
-            return
-        figure = draw()
-        from bezstab.show import save
+            write_file(path.with_name(f"{path.name}.{self.table}"), partial(write_arrays, columns, self.table))
+        if figure and self.figure != "none":
+            drawn = figure()
+            from bezstab.show import save
 
-        write_file(path.with_name(f"{path.name}.{form}"), lambda file: save(figure, form, file))
+            write_file(path.with_name(f"{path.name}.{self.figure}"), partial(save, drawn, self.figure))
 
 
 file_options = gathered(Files, "files", output_option, figure_option, table_option("csv"))

@@ -1,12 +1,13 @@
 """The command that draws where a method is stable: region."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+import numpy as np
 
 from bezstab.cli.asking import (
     DRIVE,
@@ -22,27 +23,34 @@ from bezstab.cli.options import (
     POSITIVE,
     SECONDS,
     SPEED,
+    Rule,
     format_option,
     gathered,
     methods_option,
+    ruled,
     scene_option,
 )
-from bezstab.cli.output import Files, figure_options, for_reading, progress, say, show_rows, show_text
+from bezstab.cli.output import (
+    NUMERICAL_TROUBLE,
+    Files,
+    figure_options,
+    for_reading,
+    progress,
+    say,
+    show_rows,
+    show_text,
+)
 from bezstab.engines import Drive, Engine
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method
 from bezstab.show import NOT_KNOWN, REGIONS, Format, Row, combined_words
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from collections.abc import Callable
 
-    from bezstab.evidence import MovingRegion
     from bezstab.mechanism import TurningNormals
     from bezstab.questions import ReferenceMotion
     from bezstab.stability import ComplexArray, Extent, FloatArray
-
-NUMERICAL_TROUBLE = 3
-"""Exit status where a part of an answer could not be found: the rest is printed, with the reason."""
 
 MOST_DRAWN = 1e100  # of a window's ends: their squares are drawn as well
 Window = tuple[Fraction, Fraction]
@@ -60,20 +68,17 @@ class Plane:
     alpha_beta: bool
 
     def __post_init__(self) -> None:
-        for option, window in self.windows:
-            typed = f"{option} {float(window[0]):g} {float(window[1]):g}"
-            if not float(window[0]) < float(window[1]):
+        for typed, (low, high) in self.windows.items():
+            if not float(low) < float(high):
                 raise InputError(f"{typed}: the first value must be smaller than the second")
-            if max(abs(window[0]), abs(window[1])) > MOST_DRAWN:
+            if max(abs(low), abs(high)) > MOST_DRAWN:
                 raise InputError(f"{typed}: expected at most {MOST_DRAWN:g}")
-        if self.alpha_beta and self.h is None:
-            raise click.UsageError("--alpha-beta writes α and β at the axes: it needs --h, the step in s")
 
     @property
-    def windows(self) -> list[tuple[str, Window]]:
-        """The ranges that were typed, each with its option."""
-        typed = (("--alpha-range", self.alpha_range), ("--beta-range", self.beta_range))
-        return [(option, window) for option, window in typed if window]
+    def windows(self) -> dict[str, Window]:
+        """The ranges that were given, each with its option as typed."""
+        given = {"--alpha-range": self.alpha_range, "--beta-range": self.beta_range}
+        return {f"{option} {float(ends[0]):g} {float(ends[1]):g}": ends for option, ends in given.items() if ends}
 
     @property
     def step(self) -> float | None:
@@ -87,10 +92,30 @@ class Plane:
 
         return self.grid or QUALITY[self.quality]
 
-    def axes(self, fitting: "Extent", spaced: "Callable[[float, float, int], FloatArray]") -> "list[FloatArray]":
-        """Return the points on both axes, of shape (points,): over the ranges that were typed, else over `fitting`."""
+    def poles(
+        self, method: Method, fitting: "Extent", spaced: "Callable[[float, float, int], FloatArray]"
+    ) -> "tuple[FloatArray, FloatArray, ComplexArray]":
+        """Return the points on both axes, and the dominant poles there, of shape (beta_hat.size, alpha_hat.size).
+
+        Over the ranges that were given, else over `fitting`. A bar on a terminal shows that it is worked on.
+        """
+        from bezstab.stability import pole_map
+
         ends = (self.alpha_range or fitting[0], self.beta_range or fitting[1])
-        return [spaced(float(low), float(high), self.points) for low, high in ends]
+        alpha_hat, beta_hat = (spaced(float(low), float(high), self.points) for low, high in ends)
+        blocks = pole_map(method, alpha_hat, beta_hat)
+        z = np.concatenate(list(progress(blocks, method.name, len(beta_hat), len)))
+        return alpha_hat, beta_hat, z
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """What all maps of a command have: the plane, levels of |z_p|, points that are marked, where files go."""
+
+    plane: Plane
+    levels: Sequence[float]
+    marks: Mapping[str, tuple[float, float]]
+    files: Files
 
 
 @click.command()
@@ -154,6 +179,14 @@ class Plane:
     help="With --scene: so many times as fast as given there. Repeatable [1].",
 )
 @format_option
+@ruled(
+    Rule("--pd", "the step in s", needs=("--h",)),
+    Rule("--alpha-beta", "α and β at the axes depend on the step in s", needs=("--h",)),
+    Rule("--engine", "it marks points of one map, which depend on the step", needs=("--h",), excludes=("--compare",)),
+    Rule("--compare", "it draws one map for each method", excludes=("--scene",)),
+    Rule("--accuracy", "it draws one map for each method", excludes=("--compare", "--alpha-beta")),
+    Rule("--omega", "it is the motion that the errors are about", needs=("--accuracy",)),
+)
 @click.pass_context
 def region(
     context: click.Context,
@@ -183,88 +216,45 @@ def region(
 
     Example: bezstab region --method B4
     """
-    from bezstab.questions import engine_marks, methods_for
+    from bezstab.questions import engine_marks, methods_for, motion_of
 
-    held = timing.of(drive, plane.h)
-    if drive:
-        region_held(drive, plane.h, held, methods_typed(methods, has_usual_ones=True), plane.points, files, form)
+    if held := timing.question(drive, plane.h, methods, always=drive is not None):
+        region_held(held, plane.points, files, form)
         return
     if any(level > 1 for level in levels):
         raise InputError(f"--level {float(max(levels)):g}: must be at most 1, the stability boundary")
     if compare and len(levels) > 1:
         raise InputError(f"--compare takes one --level, but {len(levels)} were given")
-    if engine and (plane.h is None or compare):
-        raise click.UsageError(
-            "--engine marks points of one map: it needs --h, the step in s, and does not go with --compare"
-        )
-    if scene and compare:
-        raise click.UsageError("--compare does not go with --scene, which draws one map for each method")
+    if accuracy and len(speeds) > 1:
+        raise InputError(f"--accuracy takes one --speed, but {len(speeds)} were given")
     methods = methods_for(methods_typed(methods, engine is not None), engine, None)
-    motion = _motion_asked(accuracy, omega, compare, speeds, scene, plane)
-    turnings = {} if motion else _turnings(scene, speeds or [Fraction(1)], plane.h)
+    speeds = speeds or [Fraction(1)]
+    motion = motion_of(omega, scene, speeds[0], plane.h) if accuracy else None
+    turnings = {} if motion else {speed: turning_with_bar(scene, speed, plane.h) for speed in speeds}
+    for speed in turnings:
+        say_if_it_turns_too_far(scene, speed, plane.h)
     files.check_output()
-    shown = [float(level) for level in levels]
     marks = engine_marks(engine, plane.h) if engine and plane.h else {}
+    drawing = Drawing(plane, [float(level) for level in levels], marks, files)
     if compare:
-        rows, complete = _compare_regions(methods, shown[0] if shown else 1.0, plane, files), True
+        rows, failed = _compared_rows(methods, drawing), list[NumericalError]()
     elif motion:
-        rows, complete = _each_for_itself(
-            methods, lambda method: _accuracy_rows(method, motion, shown, plane, marks, files)
-        )
+        rows, failed = _each_for_itself(methods, lambda method: _accuracy_rows(method, motion, drawing))
     else:
-        rows, complete = _each_for_itself(
-            methods, lambda method: _region_rows(method, shown, plane, marks, files, turnings, scene)
-        )
+        rows, failed = _each_for_itself(methods, lambda method: _region_rows(method, drawing, turnings, scene))
+    for each in failed:
+        say(f"bezstab: {each}")
     show_rows(REGIONS, rows, form, () if levels else ("z_abs_below",))
     if motion and for_reading(form):
         show_text(combined_words(motion))
-    if not complete or any(str(row["best_reason"]).startswith(NOT_KNOWN) for row in rows):
+    if failed or any((row["best_reason"] or "").startswith(NOT_KNOWN) for row in rows):
         context.exit(NUMERICAL_TROUBLE)
 
 
-def _turnings(
-    scene: str | None, speeds: Sequence[Fraction], h: Fraction | None
-) -> "dict[float, TurningNormals | None]":
-    """Return by speed how the normals of a scene's constraints turn; where they turn too far, that is said."""
-    turnings = {}
-    for speed in speeds:
-        turnings[float(speed)] = turning_with_bar(scene, speed, h)
-        say_if_it_turns_too_far(scene, speed, h)
-    return turnings
-
-
-def _motion_asked(
-    accuracy: bool,
-    omega: Fraction | None,
-    compare: bool,
-    speeds: Sequence[Fraction],
-    scene: str | None,
-    plane: Plane,
-) -> "ReferenceMotion | None":
-    """Return the motion of --accuracy, None without it; UsageError and InputError for what does not go with it."""
-    if not accuracy:
-        if omega is not None:
-            raise click.UsageError("--omega needs --accuracy: it is the motion that the errors are about")
-        return None
-    if compare or plane.alpha_beta or len(speeds) > 1:
-        other = "--compare" if compare else "--alpha-beta" if plane.alpha_beta else "more than one --speed"
-        raise click.UsageError(f"{other} does not go with --accuracy, which draws one map for each method")
-    if speeds and scene is None:
-        raise click.UsageError("--speed needs --scene: it says how fast that mechanism moves")
-    for option, window in plane.windows:
-        if window[0] <= 0:
-            typed = f"{option} {float(window[0]):g} {float(window[1]):g}"
-            raise InputError(f"{typed}: the axes of --accuracy are logarithmic, and begin above 0")
-    from bezstab.questions import motion_of
-
-    return motion_of(omega, scene, speeds[0] if speeds else Fraction(1), plane.h)
-
-
-def _each_for_itself(methods: Sequence[Method], rows_of: Callable[[Method], list[Row]]) -> tuple[list[Row], bool]:
-    """Return the rows of all methods that have some, and whether that is all of them; what failed is said.
-
-    NumericalError if nothing is left.
-    """
+def _each_for_itself(
+    methods: Sequence[Method], rows_of: "Callable[[Method], list[Row]]"
+) -> tuple[list[Row], list[NumericalError]]:
+    """Return the rows of all methods that have some, and why others have none; NumericalError if nothing is left."""
     rows: list[Row] = []
     failed: list[NumericalError] = []
     for method in methods:
@@ -272,160 +262,105 @@ def _each_for_itself(methods: Sequence[Method], rows_of: Callable[[Method], list
             rows += rows_of(method)
         except NumericalError as error:
             failed.append(error)
-    if failed and not rows:
+    if not rows:
         raise failed[0]
-    for each in failed:
-        say(f"bezstab: {each}")
-    return rows, not failed
+    return rows, failed
 
 
-def _compare_regions(methods: Sequence[Method], level: float, plane: Plane, files: Files) -> list[Row]:
+def _compared_rows(methods: Sequence[Method], drawing: Drawing) -> list[Row]:
     """Write the boundaries of all methods into one table and one figure; return a row for each."""
-    from bezstab.questions import region_answer
-    from bezstab.show import boundary_arrays, region_row
+    from bezstab import questions, show
 
-    answers = [region_answer(method, level) for method in methods]
+    plane, files = drawing.plane, drawing.files
+    answers = [questions.region_answer(method, *drawing.levels) for method in methods]
     regions = [answer.region for answer in answers]
-
-    def draw() -> "Figure":
-        from bezstab.show import comparison_figure
-
-        return comparison_figure(
+    files.write(
+        files.path("compare", *(method.name for method in methods)),
+        lambda: show.comparison_figure(
             regions, plane.alpha_range, plane.beta_range, plane.step, alpha_and_beta=plane.alpha_beta
-        )
-
-    path = files.path("compare", *(method.name for method in methods))
-    files.write_table(path, boundary_arrays(regions, plane.step))
-    files.write_figure(path, draw)
-    return [region_row(answer) for answer in answers]
+        ),
+        lambda: show.boundary_arrays(regions, plane.step),
+    )
+    return [show.region_row(answer) for answer in answers]
 
 
 def _region_rows(
-    method: Method,
-    levels: Sequence[float],
-    plane: Plane,
-    marks: Mapping[str, tuple[float, float]],
-    files: Files,
-    turnings: "Mapping[float, TurningNormals | None]",
-    scene: str | None,
+    method: Method, drawing: Drawing, turnings: "Mapping[Fraction, TurningNormals | None]", scene: str | None
 ) -> list[Row]:
     """Write the |z_p| map of one method; return the rows of its region, of each speed of a scene, and of each level."""
-    from bezstab import stability
-    from bezstab.questions import region_answers
-    from bezstab.show import map_arrays, region_row
+    from bezstab import evidence, questions, show, stability
+    from bezstab.mechanism import load_scene
 
-    answer, *of_levels = region_answers(method, levels)
-    moving = _moving_regions(method, turnings, plane.step)
+    plane, files = drawing.plane, drawing.files
+    answer, *of_levels = questions.region_answers(method, drawing.levels)
+    moving = {
+        float(speed): evidence.moving_region(method, turning, plane.step)
+        for speed, turning in turnings.items()
+        if turning and plane.step
+    }
     if files.wanted:
-        import numpy as np
-
-        alpha_hat, beta_hat = plane.axes(answer.window, np.linspace)
-        z = _poles(method, alpha_hat, beta_hat)
-
-        def draw() -> "Figure":
-            from bezstab.show import region_figure
-
-            return region_figure(
+        alpha_hat, beta_hat, z = plane.poles(method, answer.window, np.linspace)
+        files.write(
+            files.path("region", method.name, *([Path(scene).stem] if scene else [])),
+            lambda: show.region_figure(
                 answer.region,
-                [stability.region(method, level) for level in levels or answer.faster_levels],
+                [stability.region(method, level) for level in drawing.levels or answer.faster_levels],
                 answer.best,
                 alpha_hat,
                 beta_hat,
                 np.abs(z),
                 plane.step,
-                marks,
-                {speed: each for (speed, _), each in moving.items()},
+                drawing.marks,
+                moving,
                 chosen=stability.choose(method, "robust", margins=False) if answer.best else None,
                 alpha_and_beta=plane.alpha_beta,
-                scene=_scene_name(scene),
-            )
-
-        path = files.path("region", method.name, *([Path(scene).stem] if scene else []))
-        files.write_table(path, map_arrays(alpha_hat, beta_hat, z, plane.step))
-        files.write_figure(path, draw)
-    row = region_row(answer)
+                scene=load_scene(scene).name if scene else "",
+            ),
+            lambda: show.map_arrays(alpha_hat, beta_hat, z, plane.step),
+        )
+    row = show.region_row(answer)
     of_speeds: list[Row] = [
-        {**row, "speed": speed, "kappa": kappa, "area_moving": of_speed.area}
-        for (speed, kappa), of_speed in moving.items()
+        {**row, "speed": float(speed), "kappa": turning.kappa, "area_moving": moving[float(speed)].area}
+        for speed, turning in turnings.items()
+        if turning
     ]
-    no_motion: Row = {"speed": None, "kappa": None, "area_moving": None} if scene else {}
-    return [*(of_speeds or [row]), *({**region_row(each), **no_motion} for each in of_levels)]
+    at_rest: Row = {"speed": None, "kappa": None, "area_moving": None} if scene else {}
+    return [*(of_speeds or [row]), *({**show.region_row(each), **at_rest} for each in of_levels)]
 
 
-def _accuracy_rows(
-    method: Method,
-    motion: "ReferenceMotion",
-    levels: Sequence[float],
-    plane: Plane,
-    marks: Mapping[str, tuple[float, float]],
-    files: Files,
-) -> list[Row]:
+def _accuracy_rows(method: Method, motion: "ReferenceMotion", drawing: Drawing) -> list[Row]:
     """Write the map of the error that one method forces over |z_p|; return the row of its region and of each level."""
-    from bezstab import stability
-    from bezstab.questions import forced_errors_of, region_answers
-    from bezstab.show import accuracy_cells, map_arrays, region_row
+    from bezstab import questions, show, stability
 
-    answers = region_answers(method, levels)
-    forced = forced_errors_of(method, motion)
+    plane, files = drawing.plane, drawing.files
+    for typed, (low, _) in plane.windows.items():
+        if low <= 0:
+            raise InputError(f"{typed}: the axes of --accuracy are logarithmic, and begin above 0")
+    answers = questions.region_answers(method, drawing.levels)
+    forced = questions.forced_errors_of(method, motion)
     if forced.reason:
         say(f"bezstab: {forced.reason}")
     if files.wanted:
-        import numpy as np
-
-        alpha_hat, beta_hat = plane.axes(forced.window, np.geomspace)
-        z = _poles(method, alpha_hat, beta_hat)
+        alpha_hat, beta_hat, z = plane.poles(method, forced.window, np.geomspace)
         error = stability.combined_error(method, alpha_hat, beta_hat[:, np.newaxis], motion.omega_h)
         decaying = np.where(np.abs(z) < 1, error, np.nan)
-
-        def draw() -> "Figure":
-            from bezstab.show import accuracy_map_figure
-
-            return accuracy_map_figure(
+        below = [level for level in drawing.levels if level < 1]
+        files.write(
+            files.path("region", method.name, "accuracy"),
+            lambda: show.accuracy_map_figure(
                 answers[0].region,
                 float(motion.omega_h),
                 alpha_hat,
                 beta_hat,
                 np.abs(z),
                 decaying,
-                levels=[level for level in levels if level < 1] or [stability.default_rate(method, motion.omega_h)],
+                levels=below or [stability.default_rate(method, motion.omega_h)],
                 best=forced.best,
                 chosen=forced.chosen,
                 h=plane.step,
-                marks=marks,
-            )
-
-        path = files.path("region", method.name, "accuracy")
-        files.write_table(path, {**map_arrays(alpha_hat, beta_hat, z, plane.step), "combined_error": decaying.ravel()})
-        files.write_figure(path, draw)
-    added = accuracy_cells(forced)
-    return [{**region_row(answer), **added} for answer in answers]
-
-
-def _poles(method: Method, alpha_hat: "FloatArray", beta_hat: "FloatArray") -> "ComplexArray":
-    """Return the dominant poles on a grid, of shape (beta_hat.size, alpha_hat.size), with a bar on a terminal."""
-    import numpy as np
-
-    from bezstab.stability import pole_map
-
-    blocks = pole_map(method, alpha_hat, beta_hat)
-    return np.concatenate(list(progress(blocks, method.name, len(beta_hat), len)))
-
-
-def _scene_name(scene: str | None) -> str:
-    """Return what a scene is called, given where it is; "" without one."""
-    from bezstab.mechanism import load_scene
-
-    return load_scene(scene).name if scene else ""
-
-
-def _moving_regions(
-    method: Method, turnings: "Mapping[float, TurningNormals | None]", h: float | None
-) -> "dict[tuple[float, float], MovingRegion]":
-    """Return the region as a scene moves by speed and kappa (1/s); none without a scene. h in s."""
-    from bezstab.evidence import moving_region
-
-    return {
-        (speed, turning.kappa): moving_region(method, turning, h)
-        for speed, turning in turnings.items()
-        if turning is not None and h is not None
-    }
+                marks=drawing.marks,
+            ),
+            lambda: {**show.map_arrays(alpha_hat, beta_hat, z, plane.step), "combined_error": decaying.ravel()},
+        )
+    added = show.accuracy_cells(forced)
+    return [{**show.region_row(answer), **added} for answer in answers]

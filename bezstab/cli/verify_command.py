@@ -7,19 +7,21 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+import numpy as np
 
-from bezstab.cli.asking import point_typed
+from bezstab.cli.asking import TypedPoint, point_options
 from bezstab.cli.options import (
-    NUMBER,
+    Rule,
     compiled_option,
     format_option,
     methods_option,
-    physical_option,
+    ruled,
     scene_option,
     speed_option,
     step_option,
 )
 from bezstab.cli.output import (
+    NUMERICAL_TROUBLE,
     Files,
     Work,
     file_options,
@@ -34,14 +36,10 @@ from bezstab.methods import Method
 from bezstab.show import FORCED, MEASUREMENTS, SUMMARIES, VERDICT_MAPS, WITNESSED, Format, cells
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from bezstab.evidence import VerdictMap
     from bezstab.mechanism import Mechanism
 
 RANDOM_POINTS = 20  # unless told otherwise
-NUMERICAL_TROUBLE = 3
-"""Exit status where runs break down, or show nothing but rounding."""
+ONE_CHOICE = "each says which points are verified"
 
 OVER_THE_MOTION = ("followed", "map_error", "law_error", "floquet_error", "wrong_sides")
 """What a summary leaves out without --floquet."""
@@ -51,9 +49,9 @@ OVER_THE_MOTION = ("followed", "map_error", "law_error", "floquet_error", "wrong
 @scene_option("slider_crank")
 @speed_option
 @methods_option("B4")
-@click.option("--alpha", type=NUMBER, help="α̂ of one point, instead of --points; α in 1/s with --physical.")
-@click.option("--beta", type=NUMBER, help="β̂ of one point; β in 1/s with --physical.")
-@physical_option
+@point_options(
+    "α̂ of one point, instead of --points; α in 1/s with --physical.", "β̂ of one point; β in 1/s with --physical."
+)
 @click.option(
     "--points", type=click.IntRange(1, 1000), help="Verify so many points, spread over the region and around it [20]."
 )
@@ -72,15 +70,19 @@ OVER_THE_MOTION = ("followed", "map_error", "law_error", "floquet_error", "wrong
 @work_options
 @file_options
 @format_option
+@ruled(
+    Rule("--accuracy", "it compares one point", excludes=("--points", "--map", "--witness", "--floquet")),
+    Rule("--alpha", ONE_CHOICE, excludes=("--points", "--map", "--witness")),
+    Rule("--points", ONE_CHOICE, excludes=("--map", "--witness")),
+    Rule("--map", ONE_CHOICE, excludes=("--witness",)),
+)
 @click.pass_context
 def verify(
     context: click.Context,
     scene: str,
     speed: Fraction,
     methods: Sequence[Method],
-    alpha: Fraction | None,
-    beta: Fraction | None,
-    physical: bool,
+    point: TypedPoint,
     points: int | None,
     cells_across: int | None,
     floquet: bool,
@@ -110,20 +112,16 @@ def verify(
     """
     from bezstab.mechanism import at_speed, compiled_mechanism, load_scene
 
-    if accuracy and any((points, cells_across, witness, floquet)):
-        raise click.UsageError("--accuracy goes with --alpha and --beta or alone, not with --points, --map, ...")
-    if sum(choice is not None for choice in (alpha, points, cells_across, witness)) > 1:
-        raise click.UsageError("choose one of --alpha with --beta, --points, --map and --witness")
-    point = point_typed(methods, alpha, beta, h, physical)
+    at = point.at(methods, h)
     mechanism = compiled_mechanism(at_speed(load_scene(scene), float(speed)))
     if accuracy:
-        context.exit(_show_forced_errors(mechanism, methods, float(h), point, form))
+        context.exit(_show_forced_errors(mechanism, methods, float(h), at, form))
     elif witness:
         _show_witnesses(mechanism, float(h), form)
     elif cells_across:
         _show_map(mechanism, methods, float(h), cells_across, Path(scene).stem, work, files, form)
     else:
-        _show_measurements(mechanism, methods, float(h), point, points or RANDOM_POINTS, floquet, form)
+        _show_measurements(mechanism, methods, float(h), at, points or RANDOM_POINTS, floquet, form)
 
 
 def _show_witnesses(mechanism: "Mechanism", h: float, form: Format) -> None:
@@ -138,8 +136,7 @@ def _show_forced_errors(
     mechanism: "Mechanism", methods: Sequence[Method], h: float, point: tuple[Fraction, Fraction] | None, form: Format
 ) -> int:
     """Print predicted and measured errors at shares of a point's gains, and return the exit status; h in s."""
-    from bezstab.evidence import SHARES, halved_steps
-    from bezstab.show import forced_rows, forced_words
+    from bezstab import evidence, show
     from bezstab.stability import choose
 
     pairs_by_method = {}
@@ -149,14 +146,14 @@ def _show_forced_errors(
         else:
             chosen = choose(method, "robust", margins=False)
             at = chosen.alpha_hat, chosen.beta_hat
-        found = halved_steps(mechanism, method, h, at, mechanism.scene.duration)
-        pairs_by_method[method.name] = list(progress(found, method.name, len(SHARES)))
+        found = evidence.halved_steps(mechanism, method, h, at, mechanism.scene.duration)
+        pairs_by_method[method.name] = list(progress(found, method.name, len(evidence.SHARES)))
     every_pair = [pair for pairs in pairs_by_method.values() for pair in pairs]
-    show_rows(FORCED, [row for pair in every_pair for row in forced_rows(mechanism.scene.name, pair)], form)
+    show_rows(FORCED, [row for pair in every_pair for row in show.forced_rows(mechanism.scene.name, pair)], form)
     if for_reading(form):
         click.echo()
         for name, pairs in pairs_by_method.items():
-            show_text(forced_words(name, pairs))
+            show_text(show.forced_words(name, pairs))
     outcomes = {pair.holds for pair in every_pair}
     if None in outcomes:
         return NUMERICAL_TROUBLE
@@ -173,28 +170,23 @@ def _show_measurements(
     form: Format,
 ) -> None:
     """Print the poles measured at one point, else at random ones, and where there are several how well they agree."""
-    import numpy as np
-
-    from bezstab.evidence import measure_poles, measurement_summary, random_points
-    from bezstab.show import exact_rate_words, measurement_row
+    from bezstab import evidence, show
 
     measured = []
     for method in methods:
-        if point:
-            alpha_hat, beta_hat = np.array([float(point[0])]), np.array([float(point[1])])
-        else:
-            alpha_hat, beta_hat = random_points(method, points)
+        given = None if point is None else np.array(point, float)[:, np.newaxis]
+        alpha_hat, beta_hat = evidence.random_points(method, points) if given is None else given
         bar = partial(progress, label=method.name)
-        measured.append(measure_poles(mechanism, method, h, alpha_hat, beta_hat, bar, floquet))
-    rows = [measurement_row(mechanism.scene.name, each) for of_method in measured for each in of_method]
+        measured.append(evidence.measure_poles(mechanism, method, h, alpha_hat, beta_hat, bar, floquet))
+    rows = [show.measurement_row(mechanism.scene.name, each) for of_method in measured for each in of_method]
     show_rows(MEASUREMENTS, rows, form, () if floquet else ("right",))
     if not for_reading(form):
         return
     for of_method in measured if floquet else ():
-        show_text(exact_rate_words(mechanism, of_method))
+        show_text(show.exact_rate_words(mechanism, of_method))
     if len(rows) > len(methods):  # of one point each there is nothing to sum up
         click.echo()
-        summaries = [cells(SUMMARIES.fields, measurement_summary(of_method)) for of_method in measured]
+        summaries = [cells(SUMMARIES.fields, evidence.measurement_summary(of_method)) for of_method in measured]
         show_rows(SUMMARIES, summaries, form, () if floquet else OVER_THE_MOTION)
 
 
@@ -209,24 +201,20 @@ def _show_map(
     form: Format,
 ) -> None:
     """Simulate across x across runs of each method, write their verdicts as table and figure, print how many agree."""
-    from bezstab.evidence import map_rows, simulated_verdicts, verdict_map
-    from bezstab.show import verdict_arrays, verdict_map_row
+    from bezstab import evidence, show
     from bezstab.stability import region
 
     rows = []
     for method in methods:
         path = files.path("verify", scene_name, method.name)
         job = f"--map {across} --h {h} {method} {mechanism.scene}"
-        chunks = map_rows(mechanism.scene, method, h, across)
-        with results_of_chunks(simulated_verdicts, chunks, path, job, work) as results:
-            verdicts = verdict_map(chunks, results)
-
-            def draw(verdicts: "VerdictMap" = verdicts) -> "Figure":
-                from bezstab.show import verdict_figure
-
-                return verdict_figure(verdicts, region(verdicts.method))
-
-            files.write_table(path, verdict_arrays(verdicts))
-            files.write_figure(path, draw)
-        rows.append(verdict_map_row(verdicts))
+        chunks = evidence.map_rows(mechanism.scene, method, h, across)
+        with results_of_chunks(evidence.simulated_verdicts, chunks, path, job, work) as results:
+            verdicts = evidence.verdict_map(chunks, results)
+            draw, arrays = (
+                partial(show.verdict_figure, verdicts, region(method)),
+                partial(show.verdict_arrays, verdicts),
+            )
+            files.write(path, draw, arrays)
+        rows.append(show.verdict_map_row(verdicts))
     show_rows(VERDICT_MAPS, rows, form)

@@ -60,7 +60,7 @@ def write_parts(report: "Report", wanted: set[str], files: Files) -> None:
             write_text(files.output / f"paper_{name}.md", table)
     for name, draw in report.figures.items():
         if name.rstrip("abc") in wanted:
-            files.write_figure(files.path("paper", name), draw)
+            files.write(files.path("paper", name), draw)
 
 
 def write_text(path: Path, text: str) -> None:

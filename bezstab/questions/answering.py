@@ -36,15 +36,20 @@ from bezstab.stability import (
     stable_up_to,
     varying_steps,
 )
+from bezstab.units import alpha_and_beta
 
 if TYPE_CHECKING:
     from bezstab.evidence import MovingPole
 
-Role = Literal["given", "instead", "chosen"]
+CheckedRole = Literal["given", "instead"]
+Role = Literal[CheckedRole, "chosen"]
 """Whether a point was given, is what to take instead of one that was, or is what a goal asks for."""
 
 SLOWER = 2
 """Times as long to settle, of what slower decay would gain."""
+
+
+Gain = Literal["kp", "kd"]
 
 
 @dataclass(frozen=True)
@@ -59,7 +64,7 @@ class Gains:
     kd: float
     kp_max: float | None
     kd_max: float | None
-    used_up: Literal["kp", "kd"] | None
+    used_up: Gain | None
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)
@@ -93,6 +98,32 @@ class Answer(Choice):
         as_it_moves = self.moving is None or self.moving.verdict == "converges"
         as_steps_vary = self.varying is None or self.varying.varying == "proven"
         return self.verdict == "converges" and as_it_moves and as_steps_vary
+
+    @property
+    def h(self) -> float | None:
+        """The step (s) that was asked about."""
+        return None if self.question.h is None else float(self.question.h)
+
+    @property
+    def alpha(self) -> float | None:
+        """Damping of the feedback (1/s); None without a step."""
+        return None if self.question.h is None else alpha_and_beta(*self.point, self.question.h)[0]
+
+    @property
+    def beta(self) -> float | None:
+        """Stiffness of the feedback as a rate (1/s); None without a step, and for a negative beta_hat."""
+        return None if self.question.h is None else alpha_and_beta(*self.point, self.question.h)[1]
+
+    @property
+    def settle_seconds(self) -> float | None:
+        """Time (s) in which the error falls a thousandfold; None without a step, and where it does not."""
+        steps, h = self.settle_steps, self.h
+        return None if steps is None or h is None else steps * h * float(self.method.step_multiple)
+
+    @property
+    def h_limit(self) -> float | None:
+        """The largest step (s) that is stable at this alpha and beta: infinite where any is; None where not known."""
+        return None if self.margins is None or self.h is None else self.margins.h * self.h
 
     @cached_property
     def moving(self) -> "MovingPole | None":

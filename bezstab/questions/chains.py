@@ -40,6 +40,11 @@ class Constraints:
     inverse_masses: FloatArray
     joints: tuple[int, ...]
 
+    @property
+    def count(self) -> int:
+        """How many they are."""
+        return len(self.joints)
+
     def growth(self, engine: Engine, step: SweptStep) -> Growth:
         """Return by what factor a step of an engine multiplies their errors."""
         together = engine.sweeping is not None and engine.sweeping.together

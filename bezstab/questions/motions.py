@@ -45,9 +45,10 @@ def motion_of(
     """Return the motion of rate omega (1/s) or omega_h (rad a step of h_max), else a scene's, else one that is usual.
 
     h and h_max in s; without h_max every step is h. A scene's motion that does not repeat itself is followed for a
-    `duration` (s), by default the scene's own. InputError for omega or a scene without h, for both omega and omega_h,
-    for a scene at rest, and unless 1e-6 <= omega h < 1.
+    `duration` (s), by default the scene's own. InputError for a speed without a scene, omega or a scene without h, both
+    omega and omega_h, a scene at rest, and unless 1e-6 <= omega h < 1.
     """
+    check_speed(scene, speed)
     if omega is not None and omega_h is not None:
         raise InputError("the motion is given as omega= in 1/s with h= in s, or as omega_h= in rad a step, not as both")
     longer = h_max / h if h and h_max else Fraction(1)
@@ -74,6 +75,12 @@ def motion_of(
     turned = omega * h
     words = f"{whose} with ω = {float(omega):.3g} 1/s, ωh = {float(turned):.3g}"
     return _within_range(ReferenceMotion(turned, turned * longer, words, amplitude), given)
+
+
+def check_speed(scene: str | Scene | None, speed: Fraction) -> None:
+    """Raise InputError for a speed without a scene."""
+    if scene is None and speed != 1:
+        raise InputError("--speed needs --scene: it says how fast that mechanism moves")
 
 
 def name_of(scene: str | Scene) -> str:
@@ -103,9 +110,8 @@ def turning_of(scene: str | Scene | None, speed: Fraction, h: Fraction | None) -
     InputError for a scene without a step (h in s), or a speed without a scene; else errors as `load_scene` and
     `regular_motion`.
     """
+    check_speed(scene, speed)
     if scene is None:
-        if speed != 1:
-            raise InputError("--speed needs --scene: it says how fast that mechanism moves")
         return None
     if h is None:
         raise InputError("--scene needs --h: how far the mechanism moves in a step depends on it")

@@ -13,7 +13,7 @@ from bezstab.goals import GOALS, SETTLING, UP_TO_LONGEST, Goal
 from bezstab.mechanism import Scene, TurningNormals
 from bezstab.methods import Method, check_one_step, lookup
 from bezstab.questions.chains import Chain, Constraints, check_sweeps, constraints_of
-from bezstab.questions.motions import ReferenceMotion, motion_of, turning_of
+from bezstab.questions.motions import ReferenceMotion, check_speed, motion_of, turning_of
 from bezstab.questions.points import GivenPoint, engine_holds, point_of_drive, point_of_engine
 from bezstab.units import check_step
 
@@ -78,8 +78,7 @@ class Question:
             self._check_given()
         else:
             self._check_goal(self.goal)
-        if self.scene is None and self.speed != 1:
-            raise InputError("--speed needs --scene: it says how fast that mechanism moves")
+        check_speed(self.scene, self.speed)
         check_sweeps(self.chain, self.iterations, self.engine, self.scene, self.speed)
         object.__setattr__(self, "methods", methods_for(self.methods, self.engine, self.drive))
         if self.steps:
@@ -172,7 +171,7 @@ class Question:
             at_rest = self.swept is not None and self.turning is not None and self.turning.kappa == 0
             if self.omega is not None or not at_rest:
                 raise
-            return motion_of(None, None, self.speed, self.h, longest)  # the sweeps are what is asked about
+            return motion_of(None, None, Fraction(1), self.h, longest)  # the sweeps are what is asked about
 
     @cached_property
     def swept(self) -> Constraints | None:

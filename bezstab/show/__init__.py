@@ -88,8 +88,8 @@ from bezstab.show.rows import (
     whole_row,
 )
 from bezstab.show.schemas import json_schema
-from bezstab.show.sentences import one_pole_sentence
-from bezstab.show.varying_rows import sequence_text, varying_row, varying_words
+from bezstab.show.sentences import likeness_sentence, one_pole_sentence
+from bezstab.show.varying_rows import sequence_text, varying_words
 
 if TYPE_CHECKING:
     from bezstab.show import plot

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import shlex
 from collections.abc import Sequence
-from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from bezstab.engines import DRIVE_METHODS
@@ -14,16 +13,27 @@ from bezstab.methods import lookup
 from bezstab.rationals import typed_number
 from bezstab.show.columns import Row, Value
 from bezstab.show.fields import cells
-from bezstab.show.row_kinds import CHECKED, CHOICES, LARGEST_STEPS
-from bezstab.show.rows import choice_cells, cost_cells, moving_row
-from bezstab.show.varying_rows import repeated, varying_row
+from bezstab.show.row_kinds import (
+    APPLIED,
+    CHECKED,
+    CHOICES,
+    DRIVE,
+    ENGINE_H_LIMIT,
+    EXCLUDES,
+    LARGEST_STEPS,
+    MOVING,
+    SETTING,
+    SWEEPS,
+    SWEPT_OVER,
+    VARYING,
+)
+from bezstab.show.varying_rows import repeated
 from bezstab.show.words import sweeps_words, times_words
 from bezstab.units import from_dimensionless
 
 if TYPE_CHECKING:
     from fractions import Fraction
 
-    from bezstab.engines import Engine
     from bezstab.questions import Answer, LargestStep, ReferenceMotion
     from bezstab.stability import FeedbackCost
 
@@ -43,52 +53,33 @@ MOST_STEPS = 10**5  # of a run: some seconds
 
 def answer_row(answer: Answer) -> Row:
     """Return all that an answer has as a row; keys of an engine, a drive, a scene, a range of steps where asked for."""
-    given, h = answer.role == "given", answer.question.h
-    found = {**choice_cells(answer, h, answer.point if given else None), **cost_cells(answer)}
     fields = CHOICES.fields if answer.role == "chosen" else CHECKED.fields
-    return {**cells(fields, answer, found), **_engine_cells(answer), **added_cells(answer)}
+    return {**cells(fields, answer), **_engine_cells(answer), **added_cells(answer)}
 
 
 def added_cells(answer: Answer) -> dict[str, Value]:
     """Return what a drive, a scene and a range of steps add to a row of an answer's point."""
     added: dict[str, Value] = {}
-    if answer.gains and answer.question.drive:
-        added |= {
-            "drive": DRIVE_METHODS.get(answer.method.name),
-            "inertia": float(answer.question.drive.inertia),
-            **asdict(answer.gains),
-        }
+    if answer.gains:
+        added |= cells(DRIVE, answer, {"drive": DRIVE_METHODS.get(answer.method.name)})
     if answer.moving:
-        added |= moving_row(answer.moving)
+        added |= cells(MOVING, answer.moving)
     if answer.varying:
-        added |= {**varying_row(answer.varying), "shown_by": growing_run(answer)}
+        added |= cells(VARYING, answer.varying, {"shown_by": growing_run(answer)})
     return added
 
 
 def _engine_cells(answer: Answer) -> dict[str, Value]:
     """Return what an engine makes of its values, or the line to paste for a point that it was not given."""
-    engine = answer.question.engine
-    if not engine:
+    if not answer.question.engine:
         return {}
-    of_engine = engine_cells(answer) if answer.role != "chosen" else _swept_cells(answer, engine)
-    return {**of_engine, "engine_h_limit": answer.engine_h_limit, "setting": answer.setting}
+    of_engine = engine_cells(answer) if answer.role != "chosen" else _swept_cells(answer)
+    return {**of_engine, **cells((ENGINE_H_LIMIT, SETTING), answer)}
 
 
-def _swept_cells(answer: Answer, engine: Engine) -> dict[str, Value]:
+def _swept_cells(answer: Answer) -> dict[str, Value]:
     """Return whether an engine sweeps, over what, and what its sweeps make of many constraints where they are asked."""
-    found = answer.swept
-    if found is None:
-        return {"sweeps": engine.sweeps, "swept": answer.swept_over}
-    return {
-        "sweeps": engine.sweeps,
-        "swept": answer.swept_over,
-        "swept_constraints": len(found.constraints.joints),
-        "swept_iterations": found.iterations,
-        "swept_z_abs": found.growth.factor,
-        "swept_accuracy": found.growth.accuracy,
-        "alone_z_abs": found.alone,
-        "stable_iterations": found.stable_iterations,
-    }
+    return cells((SWEEPS, *SWEPT_OVER) if answer.swept else (SWEEPS, SWEPT_OVER[0]), answer)
 
 
 def alone_words(answer: Answer) -> str | None:
@@ -103,17 +94,13 @@ def alone_words(answer: Answer) -> str | None:
 
 def engine_cells(answer: Answer) -> dict[str, Value]:
     """Return what an engine does to its values, and what is left out; None for values that were not given."""
-    engine = answer.question.engine
-    if not engine:
+    if not answer.question.engine:
         return {}
-    if answer.role != "given" or answer.goal != "as given":
-        return {"applied": None, "excludes": None, **_swept_cells(answer, engine)}
     notes = answer.question.given.notes
-    return {
-        "applied": "as typed" if notes is None else "; ".join(notes),
-        "excludes": engine.excludes,
-        **_swept_cells(answer, engine),
-    }
+    applied = "as typed" if notes is None else "; ".join(notes)
+    untyped = answer.role != "given" or answer.goal != "as given"
+    found = dict.fromkeys(("applied", "excludes")) if untyped else {"applied": applied}
+    return {**cells((APPLIED, EXCLUDES), answer, found), **_swept_cells(answer)}
 
 
 def largest_step_row(found: LargestStep) -> Row:

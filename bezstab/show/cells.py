@@ -17,8 +17,6 @@ LIMITS = ("alpha_hat_min", "alpha_hat_max", "beta_hat_min", "beta_hat_max")
 def pole_text(row: Row) -> str:
     """Return a complex pole, from z_real and z_imag: 0.762694 ± 0.142074i."""
     real, imaginary = row["z_real"], row["z_imag"]
-    assert isinstance(real, float)
-    assert isinstance(imaginary, float)
     form = ".6f" if max(abs(real), imaginary) < MOST_FIXED else ".6e"
     visible = round(imaginary / max(1, abs(real)), 6) != 0
     return f"{real:{form}} ± {imaginary:{form}}i" if visible else f"{real:{form}}"
@@ -27,7 +25,7 @@ def pole_text(row: Row) -> str:
 def fitted_pole_text(row: Row) -> str:
     """Return a pole that was fitted to a log; a dash where none was."""
     real, imaginary = row["z_real"], row["z_imag"]
-    if not isinstance(real, float) or not isinstance(imaginary, float):
+    if real is None:
         return MISSING
     return f"{real:.7f} ± {imaginary:.7f}i" if imaginary else f"{real:.7f}"
 
@@ -35,7 +33,7 @@ def fitted_pole_text(row: Row) -> str:
 def modulus_text(row: Row) -> str:
     """Return |z|: six decimals, or an exponent where it is huge."""
     modulus = row["z_abs"]
-    huge = isinstance(modulus, float) and modulus >= MOST_FIXED
+    huge = modulus is not None and modulus >= MOST_FIXED
     return formatted(modulus, ".6e" if huge else ".6f")
 
 
@@ -57,9 +55,10 @@ def range_text(gain: str) -> Text:
     return text
 
 
-def step_limit(row: Row) -> Value:
+def step_limit(row: Row) -> float | None:
     """Return the largest stable step (s): of an engine's values where those were given, else of alpha and beta."""
-    return row["engine_h_limit" if "engine_h_limit" in row else "h_limit"]
+    limit: float | None = row["engine_h_limit" if "engine_h_limit" in row else "h_limit"]
+    return limit
 
 
 def step_text(row: Row) -> str:
@@ -80,13 +79,13 @@ def searched_text(row: Row) -> str:
 def times_least_text(row: Row) -> str:
     """Return how many times the least the error is that feedback forces on a constraint."""
     times = row["times_least"]
-    return times_words(times) if isinstance(times, float) else MISSING
+    return MISSING if times is None else times_words(times)
 
 
 def both_times_text(row: Row) -> str:
     """Return the same of the constraint and of its velocity."""
     velocity = row["times_least_velocity"]
-    return f"{times_least_text(row)}; velocity: {times_words(velocity)}" if isinstance(velocity, float) else MISSING
+    return MISSING if velocity is None else f"{times_least_text(row)}; velocity: {times_words(velocity)}"
 
 
 def both_errors_text(row: Row) -> str:
@@ -118,8 +117,8 @@ def used_up_text(row: Row) -> str:
     gain = row["used_up"]
     if gain is None:
         return MISSING
-    value, limit = row[f"{gain}"], row[f"{gain}_max"]
-    if not (isinstance(value, float) and isinstance(limit, float) and limit):  # out of range, or none of it
+    value, limit = row[gain], row[f"{gain}_max"]
+    if value is None or not limit:  # out of range, or none of it
         return str(gain)
     return f"{gain} {100 * value / limit:.0f} %"
 
@@ -160,9 +159,9 @@ def with_unbounded(row: Row) -> Row:
 def stable_steps_text(row: Row) -> str:
     """Return up to which beta h all steps are stable at alpha = beta, and what all of them need."""
     ratio, limit = row["unconditional_damping_ratio"], row["critical_damping_limit"]
-    if isinstance(limit, float):
+    if limit is not None:
         exact = row["critical_damping_limit_exact"]
-        return f"{limit:.6g} = {exact}" if exact and "/" in str(exact) else f"{limit:.6g}"
+        return f"{limit:.6g} = {exact}" if exact and "/" in exact else f"{limit:.6g}"
     if row["stable_for_all"] == "proven":
         return "all (proven for any α, β)"
     if ratio is None:
@@ -189,12 +188,8 @@ def diverged_text(row: Row) -> str:
 
 def milliseconds_text(row: Row) -> str:
     """Return median and range of the processor time of a run: 3.27 (3.24 to 3.41)."""
-    texts: list[str] = []
-    for key in ("seconds", "seconds_min", "seconds_max"):
-        seconds = row[key]
-        assert isinstance(seconds, float)
-        texts.append(formatted(1e3 * seconds, ".3g"))
-    median, shortest, longest = texts
+    times = (row["seconds"], row["seconds_min"], row["seconds_max"])
+    median, shortest, longest = (formatted(1e3 * seconds, ".3g") for seconds in times)
     return f"{median} ({shortest} to {longest})"
 
 
@@ -208,6 +203,6 @@ def safe_step_text(row: Row) -> str:
     limit = row["h_limit"]
     if not row["safe"]:
         return "none"
-    if not isinstance(limit, float) or limit == float("inf"):
+    if limit is None:
         return "unlimited"
     return f"{float(Context(prec=4, rounding=ROUND_FLOOR).create_decimal_from_float(limit)):.4g}"

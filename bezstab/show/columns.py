@@ -7,10 +7,12 @@ import math
 import unicodedata
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 Value = str | float | int | Sequence[float] | Sequence[Sequence[str]] | None
-Row = Mapping[str, Value]
+Row = Mapping[str, Any]
+"""A value by key, each of the kind that its `Field` says."""
+
 Format = Literal["text", "json", "csv", "markdown"]
 
 MISSING = "-"

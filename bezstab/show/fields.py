@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import cmath
+import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 from importlib import import_module
 from typing import Any, Literal, get_args
 
@@ -16,27 +19,33 @@ Kind = Literal["number", "integer", "text", "truth", "numbers", "text rows"]
 Sentence = Callable[[Row], str]
 
 
+PARTS: Mapping[str, Callable[[complex], float]] = {
+    "abs": abs,
+    "angle_deg": lambda z: math.degrees(cmath.phase(z)),
+}
+"""What a complex number has beside its real and its imaginary part."""
+
+
 @dataclass(frozen=True)
 class Field:
-    """One value of a row: its key in JSON and CSV, its kind and meaning, and how a table shows it.
+    """One value of a row: its key in JSON and CSV, its meaning and kind, where it is from, and how a table shows it.
 
     A table shows it below `heading`, unless that is empty, in the format `form`, or as the `text` made of the row.
-    `unit` is "" where it has none; `null` says when there is no value, "" for never; `values` are all that a text can
-    be, where there are few; `values_of` names types that list them, such as "evidence.MovingVerdict". The value is
-    `value` of the result, by default its attribute of the name of the key.
+    `unit` is "" where it has none; `null` says when there is no value, "" for never; `values_of` names types that list
+    all that a text can be, such as "evidence.MovingVerdict". `path` leads to it in the result: attributes and places,
+    such as "margins.alpha.0"; by default the attribute that is called like the key.
     """
 
     key: str
-    kind: Kind
     meaning: str
     heading: str = ""
     form: str = ""
+    kind: Kind = "number"
     text: Callable[[Row], str] | None = None
     unit: str = ""
     null: str = ""
-    values: tuple[str, ...] = ()
     values_of: tuple[str, ...] = ()
-    value: Callable[[Any], object] | None = None
+    path: str = ""
 
     @property
     def description(self) -> str:
@@ -45,10 +54,11 @@ class Field:
         return f"{self.meaning}{unit}{f'; null {self.null}' if self.null else ''}."
 
     @property
-    def all_values(self) -> tuple[str, ...]:
-        """All that a text can be, where there are few, those of named types included; loads what has the types."""
-        types = [getattr(import_module(f"bezstab.{room}"), name) for room, name in map(_parted, self.values_of)]
-        return tuple(dict.fromkeys([*self.values, *(value for each in types for value in get_args(each))]))
+    def values(self) -> tuple[str, ...]:
+        """All that a text can be, where there are few; loads what has the types that say so."""
+        named = [name.rpartition(".") for name in self.values_of]
+        types = [getattr(import_module(f"bezstab.{module}"), name) for module, _, name in named]
+        return tuple(dict.fromkeys(value for each in types for value in get_args(each)))
 
     @property
     def column(self) -> Column:
@@ -59,15 +69,20 @@ class Field:
         """Return the same field as another table shows it."""
         return replace(self, heading=heading, form=form, text=text)
 
+    def of(self, path: str) -> Field:
+        """Return the same field where another result has it."""
+        return replace(self, path=path)
+
     @property
     def hidden(self) -> Field:
         """The same field where a table does not show it."""
         return self.shown("")
 
 
-def _parted(name: str) -> tuple[str, str]:
-    room, _, last = name.partition(".")
-    return room, last
+number = partial(Field, kind="number")
+integer = partial(Field, kind="integer")
+text = partial(Field, kind="text")
+truth = partial(Field, kind="truth")
 
 
 @dataclass(frozen=True)
@@ -95,22 +110,45 @@ class RowKind:
 
 
 def cells(fields: Sequence[Field], result: object, found: Mapping[str, Value] | None = None) -> dict[str, Value]:
-    """Return the values of fields by key: those found, else what each field takes from a result.
+    """Return the values of fields by key: those found, else what each field's path leads to in a result.
 
-    Numbers and texts as they are, an exact number as float64, a method or a scene by its name. TypeError, naming the
-    field and its type, for anything else.
+    Numbers and texts as they are, an exact number as float64, None for what is infinite or missing on the way, a method
+    or a scene by its name. TypeError, naming the field and its type, for anything else.
     """
     known = found or {}
     return {field.key: known[field.key] if field.key in known else _cell(field, result) for field in fields}
 
 
+def parts_of(z: complex) -> dict[str, float]:
+    """Return real and imaginary part of a complex number, its modulus and its angle in degrees, by name."""
+    return {"real": z.real, "imag": z.imag, **{name: part(z) for name, part in PARTS.items()}}
+
+
+def _found_at(path: str, result: object) -> Any:
+    """Return what a path of attributes and places leads to; None where something on the way is None."""
+    value: Any = result
+    for name in path.split("."):
+        if value is None:
+            return None
+        if name in PARTS and isinstance(value, complex):
+            value = PARTS[name](value)
+        else:
+            value = value[int(name)] if name.isdigit() else getattr(value, name)
+    return value
+
+
 def _cell(field: Field, result: object) -> Value:
-    value = field.value(result) if field.value else getattr(result, field.key)
+    path = field.path or field.key
+    value = _found_at(path, result)
+    if field.kind == "numbers" and value is not None:
+        return [float(number) for number in value]
+    if field.kind == "text rows" and value is not None:
+        return [[str(number) for number in row] for row in value]
     if isinstance(value, Fraction):
-        return float(value)
+        return str(value) if field.kind == "text" else float(value)
     if value is None or isinstance(value, str | float | int):
-        return value
+        return None if isinstance(value, float) and not math.isfinite(value) else value
     name = getattr(value, "name", None)
     if isinstance(name, str):  # a method, a scene
         return name
-    raise TypeError(f"{type(result).__name__}.{field.key} is a {type(value).__name__}: no row knows how to show it")
+    raise TypeError(f"{type(result).__name__}.{path} is a {type(value).__name__}: no row knows how to show it")

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 from bezstab.engines import DRIVE_METHODS
-from bezstab.show.columns import Row, Value
+from bezstab.show.columns import Row
 from bezstab.show.fields import cells
 from bezstab.show.row_kinds import HELD
 
@@ -22,30 +21,9 @@ NOT_JUDGED = "Not judged: a limit of the torque, friction, and what else the dri
 
 def held_row(answer: HeldAnswer) -> Row:
     """Return what one way of applying a held or late drive does as a row; limits as gains and as steps."""
-    question, limits = answer.question, answer.limits
-    kp, kd = limits.kp or (None, None), limits.kd or (None, None)
-    drive, timing = question.drive, question.timing
-    found: dict[str, Value] = {
-        "drive": DRIVE_METHODS[answer.method.name],
-        "h": float(question.h),
-        "every": timing.every,
-        "late": float(timing.late),
-        "filter": float(timing.filter_steps * question.h),
-        "inertia": float(drive.inertia),
-        "kp": float(drive.kp),
-        "kd": float(drive.kd),
-        "kp_max": _finite(kp[1]),
-        "kd_min": _finite(kd[0]),
-        "kd_max": _finite(kd[1]),
-        "every_max": limits.every,
-        "late_max": limits.late,
-        "held_by": answer.used_up,
-    }
-    return cells(HELD.fields, answer, found)
-
-
-def _finite(limit: float | None) -> float | None:
-    return None if limit is None or math.isinf(limit) else limit
+    question = answer.question
+    filtered = float(question.timing.filter_steps * question.h)
+    return cells(HELD.fields, answer, {"drive": DRIVE_METHODS[answer.method.name], "filter": filtered})
 
 
 def timing_words(timing: Timing, h: float) -> str:

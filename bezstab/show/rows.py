@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
-import math
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING
@@ -13,7 +11,7 @@ from bezstab.errors import InputError
 from bezstab.methods import Method, evaluations, implicit, steps
 from bezstab.show.cells import LIMITS
 from bezstab.show.columns import Row, Value
-from bezstab.show.fields import cells
+from bezstab.show.fields import cells, parts_of
 from bezstab.show.row_kinds import (
     ACCURACY,
     ENGINES_LISTED,
@@ -25,7 +23,6 @@ from bezstab.show.row_kinds import (
     LISTED_METHODS,
     MEASUREMENTS,
     MEMBERS,
-    MOVING,
     POLES,
     PROBED,
     REGIONS,
@@ -34,12 +31,6 @@ from bezstab.show.row_kinds import (
     VERDICT_MAPS,
 )
 from bezstab.units import alpha_and_beta
-
-COST = (
-    *("omega_h", "forced_error", "total_error", "velocity_error", "order_left"),
-    *("times_least", "times_least_velocity"),
-)
-"""What accuracy a feedback costs, by key."""
 
 NOT_KNOWN = "not known"
 """How the reason begins where the search for a best point failed."""
@@ -52,46 +43,23 @@ if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
         LikePoint,
         Linted,
         Measurement,
-        MovingPole,
         ProbedPole,
         Run,
         VerdictMap,
     )
     from bezstab.mechanism import Mechanism, Simulation
     from bezstab.questions import Answer, ChainMap, ForcedErrors, RegionAnswer
-    from bezstab.stability import Choice, FrontPoint, Limit, Member, Region
-
-
-def complex_parts(prefix: str, z: complex) -> dict[str, float]:
-    """Return real and imaginary part, modulus and angle (degrees), as `prefix` + real, imag, abs, angle_deg."""
-    parts = {"real": z.real, "imag": z.imag, "abs": abs(z), "angle_deg": math.degrees(cmath.phase(z))}
-    return {f"{prefix}{key}": value for key, value in parts.items()}
+    from bezstab.stability import FrontPoint, Limit, Member, Region
 
 
 def pole_rows(answer: Answer, poles: Iterable[complex]) -> list[Row]:
     """Return a row for each pole of a method at the point of an answer (dimensionless), angles in degrees."""
-    return [cells(POLES.fields, answer, {**complex_parts("z_", complex(z)), **cost_cells(answer)}) for z in poles]
+    return [cells(POLES.fields, answer, _of_pole(complex(z))) for z in poles]
 
 
-def cost_cells(answer: Answer) -> dict[str, Value]:
-    """Return what accuracy the feedback of an answer costs; None for what is not known."""
-    if answer.cost is None:
-        return {**dict.fromkeys(COST), "omega_h": float(answer.question.motion.omega_h)}
-    return {key: getattr(answer.cost, key) for key in COST}
-
-
-def moving_row(moving: MovingPole) -> Row:
-    """Return what a mechanism's motion does to the poles at one point; kappa in 1/s, the rest dimensionless.
-
-    `z_abs_moving` is the rate over the motion, `z_abs_worst` the largest for a moment; `safe_speed` the factor on the
-    speed at which the rate is one or the law ends, None where no speed is safe, or every one.
-    """
-    speed = moving.safe_speed if math.isfinite(moving.safe_speed) else None
-    return cells(
-        MOVING,
-        moving,
-        {"double_pole": moving.double, "moving_verdict": moving.verdict, "safe_speed": speed},
-    )
+def _of_pole(z: complex) -> dict[str, Value]:
+    """Return what the row of a choice says of a pole."""
+    return {f"z_{name}": part for name, part in parts_of(z).items()}
 
 
 def method_row(method: Method, name: str = "", group: str | None = None) -> Row:
@@ -167,42 +135,19 @@ def region_row(answer: RegionAnswer) -> Row:
     """
     from bezstab.show.best_point_text import best_point_words
 
-    region, inside, exact_limit = answer.region, answer.inside, answer.critical_damping_limit_exact
+    region, inside = answer.region, answer.inside
     reason = None if inside else f"{NOT_KNOWN}: {answer.trouble}" if answer.trouble else _nowhere(answer)
     found = {
-        "method": region.method.name,
-        "z_abs_below": region.level,
-        "area": region.area,
-        "bounded": region.bounded,
-        **_limits(region),
         "approached": _approached(region),
-        "best_z_abs": inside.z_abs if inside else None,
-        "best_alpha_hat": inside.alpha_hat if inside else None,
-        "best_beta_hat": inside.beta_hat if inside else None,
         "best_where": best_point_words(inside) if inside else reason,
         "best_reason": reason,
-        "critical_damping_limit_exact": None if exact_limit is None else str(exact_limit),
     }
     return cells(REGIONS.fields, answer, found)
 
 
 def accuracy_cells(forced: ForcedErrors) -> dict[str, Value]:
     """Return what the best points of both maps force, the fastest and the most accurate."""
-    chosen = forced.chosen
-    found = {
-        "omega_h": float(forced.motion.omega_h),
-        "accurate_alpha_hat": chosen.alpha_hat if chosen else None,
-        "accurate_beta_hat": chosen.beta_hat if chosen else None,
-        "accurate_z_abs": abs(chosen.pole) if chosen else None,
-    }
-    return cells(ACCURACY, forced, found)
-
-
-def _limits(region: Region) -> dict[str, float | None]:
-    """Return the ends of a region's ranges by name; None where it is empty, or goes on without end."""
-    (alpha_min, alpha_max), (beta_min, beta_max) = region.extent or ((math.inf, math.inf), (math.inf, math.inf))
-    ends = (alpha_min, alpha_max, beta_min, beta_max)
-    return {key: float(end) if math.isfinite(end) else None for key, end in zip(LIMITS, ends, strict=True)}
+    return cells(ACCURACY, forced)
 
 
 def _approached(region: Region) -> str | None:
@@ -227,22 +172,14 @@ def _nowhere(answer: RegionAnswer) -> str | None:
 
 def family_row(member: Member) -> Row:
     """Return what has become of a family at its number of steps; None where its region is empty."""
-    alpha_max = beta_max = None
-    if member.region.extent:
-        (_, alpha_max), (_, beta_max) = member.region.extent
-    found = {
-        "steps": member.n,
-        "area": member.region.area,
-        "alpha_hat_max": alpha_max,
-        "beta_hat_max": beta_max,
-        "best_z_abs": member.z_abs,
-    }
-    return cells(MEMBERS.fields, member, found)
+    return cells(MEMBERS.fields, member)
 
 
 def limit_row(limit: Limit) -> Row:
     """Return the row of the Bezier family's limit, of order two, which has no number of steps."""
-    return cells(MEMBERS.fields, limit, {"steps": None, "method": "B∞", "best_z_abs": limit.z_abs, "order": 2})
+    found = {"steps": None, "method": "B∞", "best_z_abs": limit.z_abs, "order": 2}
+    own = {key: getattr(limit, key) for key in ("area", "alpha_hat_max", "beta_hat_max")}
+    return cells(MEMBERS.fields, limit, found | own)
 
 
 def simulation_row(simulation: Simulation) -> Row:
@@ -251,25 +188,16 @@ def simulation_row(simulation: Simulation) -> Row:
     `time` is where it ended (s); h in s. The drift is what of the change of energy is not the work (J) of drivers and
     of applied forces, which are there as well. `singular_passages` counts the singular configurations met.
     """
-    trajectory = simulation.trajectory
-    return cells(
-        SIMULATIONS.fields,
-        simulation,
-        {
-            "scene": trajectory.mechanism.scene.name,
-            "method": trajectory.method.name,
-            "run_evaluations": trajectory.evaluations,
-            **{key: getattr(trajectory, key) for key in ("failure", "factorizations", "least_pivot", "pivot_time")},
-            "iterations": trajectory.iterations,
-            "time": float(simulation.t[-1]),
-            "c_max": float(abs(simulation.c).max()),
-            "cdot_max": float(abs(simulation.cdot).max()),
-            "energy_drift": float(simulation.energy_drift[-1]),
-            "driver_work": float(simulation.driver_work[-1]),
-            "force_work": float(simulation.force_work[-1]),
-            "singular_passages": len(simulation.singular_times),
-        },
-    )
+    found = {
+        "time": float(simulation.t[-1]),
+        "c_max": float(abs(simulation.c).max()),
+        "cdot_max": float(abs(simulation.cdot).max()),
+        "energy_drift": float(simulation.energy_drift[-1]),
+        "driver_work": float(simulation.driver_work[-1]),
+        "force_work": float(simulation.force_work[-1]),
+        "singular_passages": len(simulation.singular_times),
+    }
+    return cells(SIMULATIONS.fields, simulation, found)
 
 
 def measurement_row(scene: str, measurement: Measurement) -> Row:
@@ -277,22 +205,12 @@ def measurement_row(scene: str, measurement: Measurement) -> Row:
 
     None where nothing was measured; verdicts agree if both or neither diverge.
     """
-    predicted = complex_parts("z_", measurement.predicted)
-    measured: dict[str, float | None] = dict.fromkeys(predicted)
-    difference: dict[str, float | None] = dict.fromkeys(predicted)
+    difference: dict[str, float | None] = dict.fromkeys(parts_of(measurement.predicted))
     if measurement.measured is not None:
-        parts = complex_parts("z_", measurement.measured)
-        measured |= parts
-        difference |= {key: parts[key] - predicted[key] for key in parts}
-    found = {
-        "scene": scene,
-        **{f"predicted_{key}": value for key, value in predicted.items()},
-        "law_z_abs": measurement.law_abs,
-        "floquet_z_abs": measurement.floquet_abs,
-        **{f"measured_{key}": value for key, value in measured.items()},
-        **{f"difference_{key}": value for key, value in difference.items()},
-        "measurable": measurement.measured is not None,
-    }
+        predicted = parts_of(measurement.predicted)
+        difference = {name: part - predicted[name] for name, part in parts_of(measurement.measured).items()}
+    found: dict[str, Value] = {f"difference_z_{name}": part for name, part in difference.items()}
+    found |= {"scene": scene, "measurable": measurement.measured is not None}
     return cells(MEASUREMENTS.fields, measurement, found)
 
 
@@ -356,19 +274,12 @@ def exact_rate_words(mechanism: Mechanism, measurements: Sequence[Measurement]) 
 
 def probed_pole_row(column: str, found: ProbedPole) -> Row:
     """Return the dominant pole in a column of a log, per row of it, angle in degrees; None where none is claimed."""
-    parts: dict[str, float | None] = dict.fromkeys(complex_parts("z_", 0))
-    if found.pole is not None:
-        parts |= complex_parts("z_", found.pole)
-    return cells(PROBED.fields, found, {"column": column, **parts})
+    return cells(PROBED.fields, found, {"column": column})
 
 
 def likeness_row(column: str, likeness: Likeness) -> Row:
     """Return how far the pole in a column of a log is from a method's, per row of the log, angle in degrees."""
-    of_method = {
-        "predicted_z_abs": abs(likeness.predicted),
-        "predicted_z_angle_deg": complex_parts("", likeness.predicted)["angle_deg"],
-    }
-    return {"column": column, **cells(LIKENESS, likeness, of_method)}
+    return {"column": column, **cells(LIKENESS, likeness)}
 
 
 def like_point_row(column: str, point: LikePoint, h: float | None) -> Row:
@@ -389,64 +300,20 @@ def linted_row(linted: Linted) -> Row:
 
 def verdict_map_row(verdicts: VerdictMap) -> Row:
     """Return how far simulated verdicts agree with |z_p| < 1, and how near to one those lie that do not."""
-    return cells(
-        VERDICT_MAPS.fields,
-        verdicts,
-        {
-            "run_steps": verdicts.run,
-            "runs": verdicts.undecided.size,
-            "undecided": verdicts.undecided.size - verdicts.judged,
-            "judged_runs": verdicts.judged,
-            "agreeing_share": verdicts.agreement,
-            "too_close": int(verdicts.too_close.sum()),
-            "farthest": verdicts.farthest_disagreement,
-            "disagreeing": verdicts.disagreements_beyond_band,
-        },
-    )
+    unjudged = verdicts.undecided.size - verdicts.judged
+    found = {"undecided": unjudged, "too_close": int(verdicts.too_close.sum())}
+    return cells(VERDICT_MAPS.fields, verdicts, found)
 
 
 def run_row(run: Run, front: str) -> Row:
     """Return one run of a sweep: its errors (SI), its cost (s of processor time), the fronts it is on."""
-    found: Row = {"run_evaluations": run.evaluations, "observed_order": run.order, "front": front}
-    return cells(SWEPT.fields, run, found)
+    return cells(SWEPT.fields, run, {"front": front})
 
 
 def front_row(point: FrontPoint, h: float | None) -> Row:
     """Return a point of the front of |z_p| against forced error, with h (s) in 1/s too."""
     alpha, beta = (None, None) if h is None else alpha_and_beta(point.alpha_hat, point.beta_hat, h)
     return cells(FRONTS.fields, point, {"h": h, "alpha": alpha, "beta": beta})
-
-
-def choice_cells(
-    choice: Choice, h: Fraction | float | None, typed: tuple[Fraction, Fraction] | None = None
-) -> dict[str, Value]:
-    """Return what a step makes of a choice: alpha and beta in 1/s, how fast it settles, how far it may be off.
-
-    `typed` is the point (alpha_hat, beta_hat) before it was rounded: what was typed in 1/s is shown so again.
-    """
-    alpha = beta = settle_seconds = h_limit = None
-    margins = choice.margins
-    if h is not None:
-        alpha_hat, beta_hat = typed or (choice.alpha_hat, choice.beta_hat)
-        alpha, beta = alpha_and_beta(alpha_hat, beta_hat, h)
-        if choice.settle_steps is not None:
-            settle_seconds = choice.settle_steps * float(h) * float(choice.method.step_multiple)
-        h_limit = margins.h * float(h) if margins else None
-    alpha_min, alpha_max = margins.alpha if margins else (None, None)
-    beta_min, beta_max = margins.beta if margins else (None, None)
-    return {
-        **complex_parts("z_", choice.pole),
-        "h": None if h is None else float(h),
-        "alpha": alpha,
-        "beta": beta,
-        "settle_seconds": settle_seconds,
-        "h_factor": margins.h if margins else None,
-        "h_limit": h_limit,
-        "alpha_factor_min": alpha_min,
-        "alpha_factor_max": alpha_max,
-        "beta_factor_min": beta_min,
-        "beta_factor_max": beta_max,
-    }
 
 
 def chain_rows(engine: Engine, found: ChainMap) -> list[Row]:
@@ -473,17 +340,11 @@ def engine_row(engine: Engine, point: tuple[Fraction, Fraction] | None, h: Fract
             setting = engine.setting(point, h)
         except InputError as error:
             setting = str(error)
-    sweeping = engine.sweeping
     found: dict[str, Value] = {
-        "engine": engine.name,
         "parameters": ", ".join(engine.parameters),
         "optional": ", ".join(engine.optional),
         "units": ", ".join(engine.units),
         "witness": witness_of(engine.name),
         "setting": setting,
-        "swept_iterations": sweeping.iterations if sweeping else None,
-        "swept_word": sweeping.word if sweeping else None,
-        "swept_source": sweeping.source if sweeping else None,
-        "swept_excludes": sweeping.excludes if sweeping else None,
     }
     return cells(ENGINES_LISTED.fields, engine, found)

@@ -52,7 +52,7 @@ def _value_schema(field: Field, sometimes: bool) -> dict[str, Any]:
     """Return the schema of one value, which is null where the key says so, or `sometimes`."""
     schema: dict[str, Any] = {"description": field.description, **JSON_TYPES[field.kind]}
     may_be_null = bool(field.null) or sometimes
-    if values := field.all_values:
+    if values := field.values:
         schema["enum"] = [*values, *([None] if may_be_null else [])]
     if may_be_null:
         schema["type"] = [schema["type"], "null"]

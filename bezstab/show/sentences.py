@@ -1,8 +1,23 @@
 """What rows say, in words: for each kind of row the sentence above its block of lines."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
 from bezstab.show.cells import diverged_text, order_text, safe_step_text, step_limit
 from bezstab.show.columns import Row, Value, formatted
 from bezstab.show.words import change_words, growth_words, safety_words, seconds_words, sweeps_words
+
+if TYPE_CHECKING:
+    from bezstab.engines import Point
+    from bezstab.evidence import Likeness
+
+NAMED = 3
+"""Excluded methods that a sentence names; of more it gives the number and the nearest."""
+
+FASTER = 3.0
+"""Times what is allowed for: so much faster a mechanism may turn than somebody guessed."""
 
 
 def answer_sentence(row: Row) -> str:
@@ -13,7 +28,7 @@ def answer_sentence(row: Row) -> str:
         return f"{safety_words(row)} How far the step, α and β may grow is not known: {row['margins_reason']}."
     limit = step_limit(row)
     factor = row["h_factor"] if row["h"] is None else None
-    step = f"to {seconds_words(limit)}" if isinstance(limit, float) else growth_words(factor)
+    step = growth_words(factor) if limit is None else f"to {seconds_words(limit)}"
     alpha, beta = growth_words(row["alpha_factor_max"]), growth_words(row["beta_factor_max"])
     begin = "At rest the" if "z_abs_moving" in row else "The"
     if {step, alpha, beta} == {growth_words(None)}:
@@ -61,17 +76,15 @@ def held_sentence(row: Row) -> str:
     Safe (explicit). Each step multiplies the error by 0.95. It stays stable with one of these alone: kp up to 849, kd
     from 1.03 to 48.4, a torque every 19 steps, at most 6 steps late; kp is nearest to its limit.
     """
-    z_abs = row["z_abs"]
-    assert isinstance(z_abs, float)
-    change = change_words(z_abs, row["verdict"])
+    change = change_words(row["z_abs"], row["verdict"])
     sentence = f"{'Safe' if row['safe'] else 'Not safe'} ({row['drive']}). {change[0].upper()}{change[1:]}."
     changes = ", ".join(_changes(row))
     if not row["safe"]:
         remedy = f"It is stable with one of these alone: {changes}." if changes else "No single change makes it stable."
-        return f"{sentence} {CAUSES[str(row['held_by'])]} {remedy}"
+        return f"{sentence} {CAUSES[row['held_by']]} {remedy}"
     if not changes:
         return sentence
-    nearest = f"; {NEAREST[str(row['held_by'])]}" if row["held_by"] else ""
+    nearest = f"; {NEAREST[row['held_by']]}" if row["held_by"] else ""
     return f"{sentence} It stays stable with one of these alone: {changes}{nearest}."
 
 
@@ -79,10 +92,10 @@ def _changes(row: Row) -> list[str]:
     """Return how far each number alone may go with which a drive is stable."""
     kp_max, kd_min, kd_max = row["kp_max"], row["kd_min"], row["kd_max"]
     changes = []
-    if isinstance(kp_max, float):
+    if kp_max is not None:
         changes.append(f"kp up to {kp_max:.3g}")
-    if isinstance(kd_min, float):
-        end = f"to {kd_max:.3g}" if isinstance(kd_max, float) else "on"
+    if kd_min is not None:
+        end = "on" if kd_max is None else f"to {kd_max:.3g}"
         changes.append(f"kd from {kd_min:.3g} {end}")
     if row["every_max"] is not None:
         changes.append(f"a torque every {_steps(row['every_max'])}")
@@ -135,17 +148,13 @@ def member_sentence(row: Row) -> str:
 
 def run_sentence(row: Row) -> str:
     """Return how long a run of a mechanism went well, and how far it stayed from its constraints."""
-    time = row["time"]
-    assert isinstance(time, float)
-    end = f"broke down after {seconds_words(time)}" if row["failure"] else f"went through to {seconds_words(time)}"
-    return f"{row['method']} {end}; the largest |c| is {formatted(row['c_max'], '.1e')}."
+    how = "broke down after" if row["failure"] else "went through to"
+    return f"{row['method']} {how} {seconds_words(row['time'])}; the largest |c| is {formatted(row['c_max'], '.1e')}."
 
 
 def cost_sentence(row: Row) -> str:
     """Return what one run costs and what it buys."""
-    h = row["h"]
-    assert isinstance(h, float)
-    with_step = f"{row['method']} with h = {seconds_words(h)}"
+    with_step = f"{row['method']} with h = {seconds_words(row['h'])}"
     if row["failure"]:
         return f"{with_step} diverged."
     return f"{with_step}: a trajectory error of {diverged_text(row)} for {row['run_evaluations']} evaluations."
@@ -160,7 +169,6 @@ def measurement_sentence(row: Row) -> str:
     """Return the predicted and the measured modulus, and whether the verdicts agree."""
     ends = {True: "the verdicts agree", False: "the verdicts DISAGREE", None: "too close to call"}
     agree = row["verdicts_agree"]
-    assert agree is None or isinstance(agree, bool)
     if not row["measurable"]:
         verdict = "" if agree is None else f" The run {row['measured_verdict']}: {ends[agree]}."
         return f"Not measurable: {row['reason']}.{verdict}"
@@ -203,7 +211,7 @@ def front_sentence(row: Row) -> str:
 
 def finding_sentence(row: Row) -> str:
     """Return whether a claim is confirmed."""
-    return f"{str(row['agreement']).capitalize()}."
+    return f"{row['agreement'].capitalize()}."
 
 
 def chain_sentence(row: Row) -> str:
@@ -214,3 +222,48 @@ def chain_sentence(row: Row) -> str:
     bodies = count if row["chain_mass_ratio"] == 1 else f"{count}, the last {row['chain_mass_ratio']:g} times as heavy"
     own = sweeps_words(row["swept_iterations"])
     return f"{bodies}: stable {enough}. With {own} each step multiplies the error by {z_abs:.4f}."
+
+
+def likeness_sentence(like: Sequence[Likeness], point: Point) -> str:
+    """Return in words which methods a measured pole fits at a point, the nearest first, and which are excluded."""
+    at = f"({float(point[0]):.6g}, {float(point[1]):.6g})"
+    fitting = [one for one in like if one.fits]
+    excluded = [one for one in like if not one.fits]
+    if not fitting:
+        return _nothing_fits(like[0], at)
+    first = fitting[0]
+    equal = first.same_as.split(", ") if first.same_as else []
+    parts = [f"this behaves like {first.method.name} at {at} to {max(first.distance, first.error):.1g}"]
+    if not first.dominant:
+        parts[0] += ", by a lesser pole of it"
+    if equal:
+        parts.append(f"{_listed(equal)} {'has' if len(equal) == 1 else 'have'} the same poles there")
+    others = [one.method.name for one in fitting[1:] if one.method.name not in equal]
+    if others:
+        parts.append(f"{_listed(others)} {'cannot be told from it' if len(others) == 1 else 'cannot be told apart'}")
+    if excluded:
+        names = [one.method.name for one in excluded]
+        if len(names) <= NAMED:
+            parts.append(f"{_listed(names)} {'is' if len(names) == 1 else 'are'} excluded")
+        else:
+            parts.append(f"{len(names)} others are excluded, the nearest {names[0]}, {excluded[0].distance:.1g} off")
+    return "; ".join(parts) + "."
+
+
+def _nothing_fits(nearest: Likeness, at: str) -> str:
+    """Return in words that nothing fits, or that it cannot be told: where the motion may well be faster than said."""
+    off = f"the nearest is {nearest.method.name}, {nearest.distance:.1g} off where {nearest.allowed:.1g} is allowed"
+    if nearest.distance - nearest.error < FASTER * (nearest.allowed - nearest.error):
+        return (
+            f"what this is at {at} cannot be told: {off}, and it would fit if the mechanism turned up to {FASTER:.0f} "
+            "times as fast as is allowed for (--turning)."
+        )
+    return (
+        f"nothing fits at {at}: {off}. Is α, β or h another, does the mechanism turn much faster (--turning), or are "
+        "there several steps from row to row (--every)?"
+    )
+
+
+def _listed(names: Sequence[str]) -> str:
+    """Return names as 'A', 'A and B' or 'A, B and C'."""
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"

@@ -9,30 +9,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from fractions import Fraction
 
-    from bezstab.show.columns import Row
     from bezstab.stability import VaryingSteps
-
-
-def varying_row(varying: VaryingSteps) -> Row:
-    """Return the verdict on a range of steps, and what proves it; h in s.
-
-    `certificate` is a list of rows of rational strings, which `certificate_kind` explains: a "quadratic" form X, or the
-    corners of one half of a "polygon", for the state (c, h_max cdot[, h_max^2 cddot]) with h_max = `varying_h_max`;
-    None where every single step is stable and steps commute ("commuting"), and where nothing is proven. `sequence` has
-    the steps (s) of a sequence that does not decay when it is repeated, `growth` times as large errors after each
-    round; None unless it was refuted.
-    """
-    certificate, sequence = varying.certificate, varying.sequence
-    return {
-        "varying": varying.varying,
-        "varying_h_min": float(varying.h_min),
-        "varying_h_max": float(varying.h_max),
-        "hold": varying.hold,
-        "certificate_kind": varying.kind,
-        "certificate": None if certificate is None else [[str(number) for number in row] for row in certificate],
-        "sequence": None if sequence is None else [float(step) for step in sequence],
-        "growth": varying.growth,
-    }
 
 
 def varying_words(name: str, varying: VaryingSteps) -> str:

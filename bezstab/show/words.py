@@ -18,9 +18,9 @@ def seconds_words(seconds: float) -> str:
     return f"{seconds:.3g} s"
 
 
-def growth_words(factor: Value) -> str:
+def growth_words(factor: float | None) -> str:
     """Return how far something may grow: 1.32-fold, or without limit where there is no factor."""
-    return f"{factor:.3g}-fold" if isinstance(factor, float) else "without limit"
+    return "without limit" if factor is None else f"{factor:.3g}-fold"
 
 
 def times_words(factor: float) -> str:
@@ -57,11 +57,10 @@ def safety_words(row: Row) -> str:
     safe = "Safe" if row["safe"] else "Not safe"
     if row.get("sweeps"):
         safe = f"One constraint alone: {safe.lower()}"
-    z_abs, moving = row["z_abs"], row.get("z_abs_moving")
-    assert isinstance(z_abs, float)
-    at_rest = change_words(z_abs, row["verdict"])
+    moving = row.get("z_abs_moving")
+    at_rest = change_words(row["z_abs"], row["verdict"])
     varying = f" when steps vary ({row['varying']})" if "varying" in row else ""
-    if not isinstance(moving, float):
+    if moving is None:
         begin = f"With constant steps {at_rest}" if varying else at_rest[0].upper() + at_rest[1:]
         return f"{safe}{varying}. {begin}."
     if row["moving_verdict"] in ("converges", "diverges"):
@@ -84,17 +83,15 @@ def swept_words(row: Row) -> str:
     asked, of a scene that moves and of steps that vary, is said of constraints that are solved exactly.
     """
     z_abs, alone, stable = row["swept_z_abs"], row["alone_z_abs"], row["stable_iterations"]
-    assert isinstance(z_abs, float)
-    assert isinstance(alone, float)
     digits = next(digits for digits in range(4, MOST_DIGITS + 1) if float(f"{z_abs:.{digits}f}") != 1)
     enough = "No number of sweeps that was tried is stable" if stable is None else f"Stable from {sweeps_words(stable)}"
     safe = "Safe" if row["safe"] else "Not safe"
-    begin = f"{safe} in {row['swept']}: each" if bool(row["safe"]) == (z_abs < 1) else f"{safe}. In {row['swept']} each"
+    begin = f"{safe} in {row['swept']}: each" if row["safe"] == (z_abs < 1) else f"{safe}. In {row['swept']} each"
     sentences = [f"{begin} step multiplies the error by {z_abs:.{digits}f} (one constraint alone: {alone:.2f})", enough]
     if "moving_verdict" in row:
         moving = row["z_abs_moving"]
         over = f"it is {row['moving_verdict']}"
-        if isinstance(moving, float) and row["moving_verdict"] in ("converges", "diverges"):
+        if moving is not None and row["moving_verdict"] in ("converges", "diverges"):
             over = change_words(moving, row["moving_verdict"])
         sentences.append(f"Solved exactly, over the motion {over}")
     if "varying" in row:

@@ -14,10 +14,10 @@ from click.testing import CliRunner
 from numpy.typing import NDArray
 
 from bezstab.cli import main
-from bezstab.cli.probe_command import likeness_sentence
 from bezstab.evidence import Likeness, model_xml
 from bezstab.mechanism import compiled_mechanism, constraint_errors, load_scene, perturbed_state
 from bezstab.methods import REGISTRY, lookup
+from bezstab.show import likeness_sentence
 from bezstab.stability import FloatArray, poles
 from tests.cli.running import rows, run
 from tests.reference.sampled_responses import of_poles

@@ -75,16 +75,19 @@ class Sample:
 
 
 SAMPLE = Sample(lookup("B4"), Fraction(1, 4), None, np.zeros(2))
-METHOD = Field("method", "text", "Name of the method", "method")
-SHARE = Field("share", "number", "What is taken", "taken", ".0%", unit="s", null="never")
-MISSING = Field("missing", "text", "What is missing", "missing", null="always")
+METHOD = Field("method", "Name of the method", "method", kind="text")
+SHARE = Field("share", "What is taken", "taken", ".0%", unit="s", null="never")
+MISSING = Field("missing", "What is missing", "missing", kind="text", null="always")
 
 
 def test_a_row_has_names_and_numbers_of_a_result_unless_they_were_found() -> None:
     assert cells((METHOD, SHARE, MISSING), SAMPLE) == {"method": "B4", "share": 0.25, "missing": None}
     assert cells((METHOD, SHARE), SAMPLE, {"share": 0.5, "other": 1}) == {"method": "B4", "share": 0.5}
     with pytest.raises(TypeError, match=r"Sample\.values is a ndarray"):
-        cells((Field("values", "numbers", "Values"),), SAMPLE)
+        cells((Field("values", "Values"),), SAMPLE)
+    result = replace(SAMPLE, values=(3 + 4j, float("inf")))
+    for path, value in (("values.0.abs", 5), ("values.0.imag", 4), ("values.1", None), ("missing.any", None)):
+        assert cells((SHARE.of(path),), result) == {"share": value}
 
 
 def test_a_table_shows_what_has_a_heading_and_something_to_show() -> None:
@@ -97,7 +100,7 @@ def test_a_table_shows_what_has_a_heading_and_something_to_show() -> None:
 
 
 def test_one_line_makes_a_column_a_key_and_its_documentation() -> None:
-    new = Field("settles", "truth", "Whether errors settle", "settles", value=lambda sample: sample.share < 1)
+    new = Field("settles", "Whether errors settle", "settles", kind="truth", path="method.scheme.has_mu")
     kind = replace(row_kinds.EXTREMES, fields=(METHOD, new))
     rows = [cells(kind.fields, SAMPLE)]
     assert render(rows, kind.columns(rows), "text").split() == ["method", "settles", "B4", "yes"]

@@ -10,8 +10,9 @@ from hypothesis import strategies as st
 from bezstab.engines import Drive
 from bezstab.methods import lookup
 from bezstab.questions import HeldQuestion, held_answers
-from bezstab.show import ROW_KINDS, Row, held_row, timing_words, varying_row, varying_words
+from bezstab.show import ROW_KINDS, Row, cells, held_row, timing_words, varying_words
 from bezstab.show.best_point_text import best_point_words, falling_words
+from bezstab.show.row_kinds import VARYING
 from bezstab.show.sentences import held_sentence
 from bezstab.show.words import change_words, safety_words, seconds_words, times_words
 from bezstab.stability import FarLimit, Timing, VaryingSteps, best_point
@@ -147,4 +148,4 @@ def test_of_steps_that_vary_it_is_said_why(found: dict[str, object], said: str) 
 def test_a_certificate_is_written_as_rationals() -> None:
     half = Fraction(1, 2)
     proven = VaryingSteps("proven", SHORT, LONG, hold=False, kind="quadratic", certificate=((half, LONG), (LONG, half)))
-    assert varying_row(proven)["certificate"] == [["1/2", "1/50"], ["1/50", "1/2"]]
+    assert cells(VARYING, proven, {"shown_by": None})["certificate"] == [["1/2", "1/50"], ["1/50", "1/2"]]

@@ -1,0 +1,180 @@
+"""What a log of somebody else's simulator says: the pole in each column, and which method or feedback has it.
+
+log, columns, steps, a point or methods   →   LogQuestion   →   log_answers   →   likenesses, or points, by column
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+
+from bezstab.engines import Point
+from bezstab.errors import InputError
+from bezstab.evidence import (
+    Likeness,
+    LikePoint,
+    Log,
+    ProbedPole,
+    error_columns,
+    likenesses,
+    points_like,
+    probed_pole,
+    row_step,
+    steps_between_rows,
+    time_column,
+)
+from bezstab.methods import REGISTRY, Method, lookup
+from bezstab.stability import FloatArray
+
+SAME_STEP = 1e-3
+"""Of the time between rows: by as much that of two runs may differ, as times are rounded."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class LogQuestion:
+    """Which poles do columns of a log have, and which of some methods (without any: of all) have them at a point?
+
+    Without a `point` it is asked at which points the methods have them. `columns` and `time` are names or numbers of
+    columns of the log, else all but that of times. `minus` is the log of another run, to subtract. The integrator takes
+    `every` steps of `h` (s) from row to row. Constraints turn at the rate `turning` (1/s). With `jointly` one pole is
+    fitted to all columns. InputError for a column that is not there, and for times that do not fit h.
+    """
+
+    log: Log
+    columns: Sequence[str] = ()
+    time: str | None = None
+    minus: Log | None = None
+    jointly: bool = False
+    every: int | None = None
+    h: float | None = None
+    point: Point | None = None
+    methods: Sequence[Method] = ()
+    turning: Fraction | None = None
+
+    def __post_init__(self) -> None:
+        _ = self.groups
+        if self.minus:
+            _check_same_step(self.minus, self.log)
+        _ = self.turned
+        row = self.row_step
+        if self.h is None or row is None:
+            return
+        apart = f"the log's times are {row:.6g} s apart"
+        if self.own_steps and not self.logged:
+            raise InputError(f"{apart}: expected a multiple of the step, --h {self.h:g}")
+        if self.every is not None and round(row / self.h) != self.every:
+            raise InputError(f"--every {self.every}: {apart}, {row / self.h:.4g} times --h {self.h:g}")
+
+    @cached_property
+    def groups(self) -> list[list[int]]:
+        """The places of the columns to each of which, or to all of which jointly, a pole is fitted."""
+        places = error_columns(self.log, self.columns, time_column(self.log, self.time))
+        return [places] if self.jointly else [[place] for place in places]
+
+    @cached_property
+    def row_step(self) -> float | None:
+        """The time between rows in s; None without a column of times."""
+        return _row_step(self.log, time_column(self.log, self.time))
+
+    @cached_property
+    def own_steps(self) -> dict[Method, int | None]:
+        """How many steps each method that is compared takes from row to row; None where these are no whole number."""
+        compared = self.methods or ([lookup(name) for name in REGISTRY] if self.point else [])
+        return {method: steps_between_rows(method, self.h, self.row_step, self.every or 1) for method in compared}
+
+    @property
+    def logged(self) -> dict[Method, int]:
+        """The methods that may have made the log, each with its steps from row to row."""
+        return {method: between for method, between in self.own_steps.items() if between is not None}
+
+    @property
+    def turned(self) -> float | None:
+        """How far the constraints turn in a step, kappa h; None without a rate."""
+        if self.turning is None:
+            return None
+        if self.h is not None:
+            return float(self.turning) * self.h
+        if self.row_step is None:
+            raise InputError("--turning is a rate in 1/s: it needs --h, or a column of times in the log")
+        return float(self.turning) * self.row_step / (self.every or 1)
+
+
+@dataclass(frozen=True)
+class ColumnAnswer:
+    """The pole in a column of a log (or in all jointly, then called by all their names), and what has it."""
+
+    question: LogQuestion
+    column: str
+    found: ProbedPole
+
+    @cached_property
+    def likenesses(self) -> list[Likeness]:
+        """How near the pole is to each method's at the point, the nearest first; none without a pole or a point."""
+        if self.question.point is None:
+            return []
+        return likenesses(self.found, self.question.logged, *self.question.point, self.question.turned)
+
+    @property
+    def points(self) -> list[LikePoint]:
+        """Where the methods have the pole, if no point was given."""
+        return self._points_and_remarks[0]
+
+    @property
+    def remarks(self) -> list[str]:
+        """Why a method has the pole nowhere."""
+        return self._points_and_remarks[1]
+
+    @cached_property
+    def _points_and_remarks(self) -> tuple[list[LikePoint], list[str]]:
+        found: list[LikePoint] = []
+        remarks: list[str] = []
+        if self.question.point is not None or self.found.pole is None:
+            return found, remarks
+        for method, between in self.question.own_steps.items():
+            try:
+                points = [] if between is None else points_like(self.found, method, between)
+            except InputError as error:
+                remarks.append(f"{error}.")
+                continue
+            found += points
+            if not points:
+                remarks.append(f"{method.name} has this pole for its dominant one nowhere.")
+        return found, remarks
+
+    @property
+    def told(self) -> bool:
+        """Whether a pole could be told, of which something can be said."""
+        return bool(self.likenesses) if self.question.point else self.found.pole is not None
+
+    @property
+    def fits(self) -> bool:
+        """Whether a method fits, or has the pole somewhere; so, too, where none is asked about."""
+        if self.question.point:
+            return any(one.fits for one in self.likenesses)
+        return bool(self.points) or not self.question.own_steps
+
+
+def log_answers(question: LogQuestion) -> Iterator[ColumnAnswer]:
+    """Yield the answer for each column, or for all jointly; InputError as `probed_pole`."""
+    log, minus = question.log, question.minus
+    for group in question.groups:
+        names = [log.columns[place] for place in group]
+        other = None if minus is None else _columns_called(names, minus, log, group)
+        yield ColumnAnswer(question, ", ".join(names), probed_pole(log.values[:, group], other))
+
+
+def _columns_called(names: Sequence[str], other: Log, log: Log, places: Sequence[int]) -> FloatArray:
+    """Return another run's values in the columns of these names; InputError if it has others."""
+    same = other.columns == log.columns
+    return other.values[:, list(places) if same else [other.number_of(name) for name in names]]
+
+
+def _check_same_step(other: Log, log: Log) -> None:
+    """Raise InputError where two logs have columns of times with different steps."""
+    own, others = _row_step(log, time_column(log)), _row_step(other, time_column(other))
+    if own is not None and others is not None and abs(own - others) > SAME_STEP * own:
+        raise InputError(f"--minus: {other.name} has rows every {others:.6g} s, {log.name} every {own:.6g} s")
+
+
+def _row_step(log: Log, time: int | None) -> float | None:
+    return None if time is None else row_step(log, time)
