@@ -141,9 +141,8 @@ def choose(
     box, cut = search_box(region(method))
     pencil = free_pencil_of(method)  # a pole that no parameters move must not hide the others
     at_rest = modulus is None
-    if modulus is None:
-        modulus = partial(largest_modulus, pencil)
-    within = pencil.all_within if at_rest else None
+    modulus = modulus or partial(largest_modulus, pencil)
+    within = pencil.all_within if at_rest else partial(_below, modulus)
     if along:
         point, cut = _along_curve(method, along, goal, modulus, spread, rate, omega_h), False
     elif goal == "accurate":
@@ -176,7 +175,7 @@ def _accurate(
     method: Method,
     box: Extent,
     modulus: Modulus,
-    within: Within | None,
+    within: Within,
     *,
     omega_h: Fraction,
     rate: float | None,
@@ -186,7 +185,7 @@ def _accurate(
     """Return the point of the goal accurate; where nothing decays as fast as it does by default, at half of robust."""
 
     def found(rate: float) -> tuple[float, float]:
-        decays = _decays(modulus, within, rate)
+        decays = _decays(within, rate)
         return accurate_point(method, box, decays, omega_h=omega_h, spread=spread, equal=equal)
 
     if rate is not None:
@@ -198,11 +197,13 @@ def _accurate(
         return found(fast.worst**0.5)
 
 
-def _decays(modulus: Modulus, within: Within | None, rate: float) -> Decays:
-    """Return whether |z_p| is at most a rate, as a function; `within` tells that faster than `modulus`."""
-    if within:
-        return lambda alpha_hat, beta_hat: within(alpha_hat, beta_hat, np.full(alpha_hat.shape, rate))
-    return lambda alpha_hat, beta_hat: modulus(alpha_hat, beta_hat) <= rate
+def _below(modulus: Modulus, alpha_hat: FloatArray, beta_hat: FloatArray, bound: FloatArray) -> BoolArray:
+    return np.asarray(modulus(alpha_hat, beta_hat) < bound)
+
+
+def _decays(within: Within, rate: float) -> Decays:
+    """Return whether |z_p| is below a rate, as a function."""
+    return lambda alpha_hat, beta_hat: within(alpha_hat, beta_hat, np.full(alpha_hat.shape, rate))
 
 
 def _along_curve(
@@ -217,7 +218,7 @@ def _along_curve(
     """Return the point of a curve that a goal asks for; InputError where none meets it."""
     if goal == "accurate":
         rate = default_rate(method, omega_h) if rate is None else rate
-        objective = _accuracy(method, _decays(modulus, None, rate), omega_h, spread)
+        objective = _accuracy(method, _decays(partial(_below, modulus), rate), omega_h, spread)
         point = least_along(curve, objective)
         if np.isinf(objective(np.array([point[0]]), np.array([point[1]]), np.inf)).any():
             raise InputError(
@@ -233,7 +234,9 @@ def _along_curve(
         if found is None:
             raise InputError(f"--settle: no setting of the engine has |z_p| <= {rate:.6g} with {method.name}")
         return found
-    return least_along(curve, _slowest(method, modulus, None, spread) if goal == "robust" else _throughout(modulus))
+    return least_along(
+        curve, _slowest(method, modulus, partial(_below, modulus), spread) if goal == "robust" else _throughout(modulus)
+    )
 
 
 def _accuracy(method: Method, decays: Decays, omega_h: Fraction, spread: float) -> Objective:
@@ -363,7 +366,7 @@ def describe_point(
 # Whether a value is below a line needs no pole: Schur's recursion tells whether all are within a circle.
 
 
-def _slowest(method: Method, modulus: Modulus, within: Within | None, spread: float) -> Objective:
+def _slowest(method: Method, modulus: Modulus, within: Within, spread: float) -> Objective:
     """Return the objective of `robust`: the largest decay factor per largest step, over smaller steps and the spread.
 
     A step of share s of the largest turns (alpha_hat, beta_hat) into (s alpha_hat, s^2 beta_hat) and takes 1/s steps;
@@ -391,16 +394,15 @@ def _slowest(method: Method, modulus: Modulus, within: Within | None, spread: fl
         return np.asarray((modulus(scaled_alpha, scaled_beta) ** (1 / share)).max(axis=(0, 1)))
 
     def below(bound: float | FloatArray, shares: FloatArray, alpha_hat: FloatArray, beta_hat: FloatArray) -> BoolArray:
-        assert within
         share, scaled_alpha, scaled_beta = scaled(shares, alpha_hat, beta_hat)
         return np.asarray(within(scaled_alpha, scaled_beta, bound**share).all(axis=(0, 1)))
 
     def objective(alpha_hat: FloatArray, beta_hat: FloatArray, reached: float) -> FloatArray:
         worst = limit(alpha_hat, beta_hat)
-        if within and np.isinf(reached) and worst.size > SCOUTS:
+        if np.isinf(reached) and worst.size > SCOUTS:
             reached = float(objective(alpha_hat[::SCOUTS], beta_hat[::SCOUTS], reached).min())
         left = np.flatnonzero(worst <= reached)
-        if within and np.isfinite(reached):
+        if np.isfinite(reached):
             kept = left
             for shares in (largest_step, smaller_steps):  # in this order: most points fail at the largest
                 kept = kept[below(reached * (1 + AS_SMALL), shares, alpha_hat[kept], beta_hat[kept])]
@@ -413,7 +415,7 @@ def _slowest(method: Method, modulus: Modulus, within: Within | None, spread: fl
         def complete(some: NDArray[np.intp]) -> None:
             """Let the smaller steps count as well, where one of them is the worst."""
             share, scaled_alpha, scaled_beta = scaled(smaller_steps, alpha_hat[some], beta_hat[some])
-            counts = ~within(scaled_alpha, scaled_beta, worst[some] ** share) if within else np.full(share.shape, True)
+            counts = ~within(scaled_alpha, scaled_beta, worst[some] ** share)
             if counts.any():
                 values = np.zeros(share.shape)
                 values[counts] = modulus(scaled_alpha[counts], scaled_beta[counts]) ** (1 / share[counts])

@@ -39,10 +39,9 @@ CLOSE = 0.3  # of the largest |z|: poles that may be one multiple pole, which fl
 NEWTON_STEPS = 16  # from a narrowed minimum three to ten lead to its kink; most sets have none there
 NEARBY = 0.5  # of the parameters' size, and of one for a pole: what is flat leads further, to no minimum nearby
 DIFFERENCE = 1e-6  # of the unknowns' sizes: central differences' truncation is 1e-12 of a slope, and the slope's alone
-SETTLED = 1e-9  # relative: after a step so small the next, a thousandth of it or less, changes nothing
-ROUNDING = 1e-9  # relative: what float64 leaves of equations and of moduli that are equal; others differ far more
-ZERO_STEPS, ZERO_SETTLED = 40, 1e-10  # by differences Newton's method is slower, and settles to their error
-ALL_ZERO = 1e-10  # of its size at other places: a coefficient that vanishes, and is not only small beside others
+ROUNDING = (
+    1e-9  # relative: what float64 leaves of equations and of equal moduli; a last step of Newton's, whose next is none
+)
 SMALL = 1e-3  # a parameter below it is as if of that size
 SAME = 1e-6  # relative: float64 parts a double pole by 1e-8, and it is no larger
 ALIKE = 1e-4  # relative: a triple pole is known to 1e-5, and passes for a kink of other kinds beside it
@@ -112,7 +111,7 @@ def solved(chart: Chart, start: Place, active: Sequence[Active], held: Mapping[i
                 multipliers = multipliers - step[len(x) :]
             if free and np.any(np.abs(x - first) > allowed):
                 return None
-            settled = bool(np.abs(step[: len(x)]).max() <= SETTLED)
+            settled = bool(np.abs(step[: len(x)]).max() <= ROUNDING)
     return None
 
 
@@ -319,7 +318,7 @@ def _all_zero(chart: Chart, start: Place) -> Iterator[Least]:
     for equations in (where_the_last_touches, vanishing):
         x = np.array(start)
         with np.errstate(all="ignore"):
-            for _ in range(ZERO_STEPS):
+            for _ in range(NEWTON_STEPS):
                 beside = DIFFERENCE * np.maximum(np.abs(x), SMALL)
                 sides = [equations(x + by) - equations(x - by) for by in np.diag(beside)]
                 value = equations(x)
@@ -327,7 +326,7 @@ def _all_zero(chart: Chart, start: Place) -> Iterator[Least]:
                     break
                 step = np.linalg.lstsq(np.array(sides).T / 2, value, rcond=ROUNDING)[0] * beside
                 x = x - step
-                if np.all(np.abs(step) <= ZERO_SETTLED * np.maximum(np.abs(x), SMALL)):
+                if np.all(np.abs(step) <= ROUNDING * np.maximum(np.abs(x), SMALL)):
                     place = _folded(chart, (float(x[0]), float(x[1])))
                     if place and _vanish(chart, place):
                         degree = chart.coefficients(*place).shape[1] - 1
@@ -342,4 +341,4 @@ def _vanish(chart: Chart, place: Place) -> bool:
     That they are small beside the leading one does not say it: so they may be wherever a parameter is large.
     """
     here, farther, origin = (np.abs(chart.coefficients(t * place[0], t * place[1])[0, :-1]) for t in (1, 2, 0))
-    return bool((here <= ALL_ZERO * (farther + origin)).all())
+    return bool((here <= ROUNDING * (farther + origin)).all())
