@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from bezstab.methods import STEP_FAMILIES
 from bezstab.show import plot
 from bezstab.show.plot import Point, Range
 from bezstab.show.style import (
@@ -26,7 +27,6 @@ from bezstab.show.style import (
 )
 from bezstab.stability import BestPoint, Choice, FloatArray, Limit, Member, Region
 
-FAMILY_NAMES = {"bezier": "Bézier", "adams-bashforth": "Adams–Bashforth"}
 THINNEST, STEP_OF_WIDTH, WIDEST = 0.9, 0.15, 1.8
 """Points: lines grow thinner from the first to the last, so that of those that coincide all show."""
 
@@ -154,7 +154,7 @@ def family_figure(families: Mapping[str, Sequence[Member]], shown: str, limit: L
         figure = column_figure(1.3)
         (area, fastest), (accuracy, regions) = figure.subplots(2, 2)
         for place, (name, members) in enumerate(families.items()):
-            label = FAMILY_NAMES.get(name, name)
+            label = STEP_FAMILIES[name].title
             plot.family(members, "area", area, label=label, **line_at(place))
             plot.family(members, "least |z_p|", fastest, label=label, **line_at(place))
         place = list(families).index(shown)
