@@ -11,11 +11,10 @@ from bezstab.cli.asking import (
     given_point_options,
     moving_scene_options,
     omega_option,
-    say_unknown_costs,
-    say_what_was_made,
+    show_below,
 )
 from bezstab.cli.options import METHOD, USUAL_METHODS, Rule, format_option, methods_option, ruled
-from bezstab.cli.output import Files, for_reading, picture_options, show_blocks, show_groups, show_rows, show_text
+from bezstab.cli.output import Files, picture_options, show_blocks, show_groups, show_rows, show_text
 from bezstab.errors import InputError
 from bezstab.methods import GROUPS, STEP_FAMILIES, Method, lookup
 from bezstab.show import (
@@ -59,7 +58,7 @@ def poles(all_poles: bool, form: Format, **typed: Any) -> None:
     """
     from bezstab import stability
     from bezstab.questions import answers
-    from bezstab.show import added_cells, engine_cells, motion_words, pole_rows
+    from bezstab.show import added_cells, engine_cells, pole_rows
 
     question = asked(**typed)
     poles_of = stability.poles if all_poles else stability.dominant_pole
@@ -75,10 +74,7 @@ def poles(all_poles: bool, form: Format, **typed: Any) -> None:
     alpha_hat, beta_hat = map(float, question.given.point)
     without = () if costs_shown else ("total_error", "times_least")
     show_rows(kind, rows, form, without, f"α̂ = {alpha_hat:.10g}, β̂ = {beta_hat:.10g}")
-    say_unknown_costs(at_point)
-    if costs_shown and for_reading(form):
-        show_text(f"\n{motion_words(question.motion)}")
-    say_what_was_made(question, form)
+    show_below(question, at_point, form, motion=costs_shown)
 
 
 @click.command()
