@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from functools import cache, partial
+from typing import Any
 
 import numpy as np
 
@@ -24,14 +25,15 @@ from bezstab.mechanism.stepping import (
     Operations,
     Room,
     Rows,
+    Steps,
     TakeSteps,
     stepper,
 )
 
 Accelerate = Callable[[float, FloatArray, FloatArray, FloatArray], float]
-"""accelerate(t, gains, state, found) writes accelerations (n, lanes) of a state (2, n, lanes); the least pivot.
+"""accelerate(t, gains, state, found) writes accelerations (n lanes,) of a state (2, n lanes); the least pivot.
 
-So do corrections of position and velocity, (2n, lanes)."""
+So do corrections of position and velocity, (2n lanes,)."""
 
 
 @cache
@@ -44,7 +46,7 @@ def array_steps(mechanism: Mechanism) -> TakeSteps:
     )
     of_arrays, of_floats = (correction_function(mechanism, library) for library in (np, math))
     slope = slope_function(mechanism, np)
-    return stepper(
+    take_steps = stepper(
         Operations(
             change_step=change_step,
             evaluate=partial(evaluate, given),
@@ -62,22 +64,38 @@ def array_steps(mechanism: Mechanism) -> TakeSteps:
         )
     )
 
+    def take(rows: Rows, steps: Steps, *others: Any) -> tuple[int, float, float]:
+        return take_steps(_of_numbers(rows), _of_numbers(steps), *others)
+
+    return take
+
+
+def _of_numbers(given: Any) -> Any:
+    """Return rows or steps with lists in place of what is read number by number, of which arrays cost most."""
+    fields = (each.tolist() if isinstance(each, np.ndarray) and each.ndim == 1 else each for each in given)
+    return given._make(fields)
+
 
 def _written(of_arrays: StateFunction, judged_arrays: StateFunction, judged_floats: StateFunction) -> Accelerate:
     """Return a function on numpy's arrays; of a lane alone it is that on floats, which is ten times as fast."""
 
     def accelerate(time: float, gains: FloatArray, state: FloatArray, found: FloatArray) -> float:
-        if found.shape[1] > 1 or found.dtype != np.float64:
-            for place, each in zip(range(len(found)), of_arrays(time, *gains, *state), strict=False):  # less a pivot
-                found[place] = each
+        lanes = gains.shape[1]
+        if lanes > 1 or found.dtype != np.float64:
+            by_lane = found.reshape(-1, lanes)
+            results = of_arrays(time, *gains, *state.reshape(2, -1, lanes))
+            for place, each in zip(range(len(by_lane)), results, strict=False):  # less a pivot
+                by_lane[place] = each
             return 1.0
-        two_alpha, beta_squared = gains[:, 0].tolist()
-        q, v = state[:, :, 0].tolist()
+        (two_alpha,), (beta_squared,) = gains.tolist()
+        q, v = state.tolist()
         try:
             *accelerations, pivot = judged_floats(time, two_alpha, beta_squared, q, v)
         except (ArithmeticError, ValueError):  # what Python refuses is infinite, or no number
-            *accelerations, pivot = (float(np.squeeze(each)) for each in judged_arrays(time, *gains, *state))
-        found[:, 0] = accelerations
+            *accelerations, pivot = (
+                float(np.squeeze(each)) for each in judged_arrays(time, *gains, *state[..., np.newaxis])
+            )
+        found[:] = accelerations
         return float(pivot)
 
     return accelerate
@@ -107,9 +125,7 @@ def evaluate(
 ) -> float:
     """Take an explicit evaluation."""
     arguments(rows.arguments[number], h, registers, room.state)
-    lanes = gains.shape[1]
-    moment = time + rows.moments[number] * h
-    pivot = accelerate(moment, gains, room.state.reshape(2, -1, lanes), room.found.reshape(-1, lanes))
+    pivot = accelerate(time + rows.moments[number] * h, gains, room.state, room.found)
     np.multiply(room.found, h * h, out=registers[len(rows.powers) + number])
     return pivot
 
@@ -118,10 +134,12 @@ def finish(rows: Rows, h: float, registers: FloatArray, room: Room, into: FloatA
     """Combine, write the new state, and move on."""
     columns = rows.combined.shape[1]
     np.dot(rows.combined, registers[:columns], out=registers[columns:])
-    into[:] = registers[rows.state]
-    into[1] /= h
-    registers[rows.moved_to] = registers[rows.moved_from]
-    return float(np.abs(into).sum())
+    position, velocity = rows.state
+    into[0] = registers[position]
+    np.divide(registers[velocity], h, out=into[1])
+    for start, end in zip(rows.moved_from, rows.moved_to, strict=True):
+        registers[end] = registers[start]
+    return float(np.add.reduce(np.abs(into), axis=None))
 
 
 def by_lane(array: FloatArray, room: Room) -> FloatArray:
@@ -155,23 +173,16 @@ def residual(
     registers: FloatArray,
     room: Room,
 ) -> float:
-    """Write the residuals of a group, and the sizes of what they are computed from, of lanes that are running."""
+    """Write the residuals of a group, and the sizes of what they are computed from."""
     least = 1.0
     unknown = unknowns(rows, group, registers)
     sizes = np.abs(by_lane(unknown, room)).sum(axis=(0, 1))
-    state, found, everywhere = by_lane(room.state, room), by_lane(room.found, room), room.running.all()
     for place, number in enumerate(range(group[0], group[1])):
         row = rows.arguments[number]
         np.dot(row, registers[: row.shape[1]], out=room.state)
-        sizes += np.abs(state).sum(axis=(0, 1))
+        sizes += np.abs(by_lane(room.state, room)).sum(axis=(0, 1))
         room.state[1] /= h
-        moment = time + rows.moments[number] * h
-        if everywhere:
-            pivot = accelerate(moment, gains, state, found)
-        else:
-            some = found[:, room.running]
-            pivot = accelerate(moment, gains[:, room.running], state[:, :, room.running], some)
-            found[:, room.running] = some
+        pivot = accelerate(time + rows.moments[number] * h, gains, room.state, room.found)
         least = min(least, pivot)
         np.multiply(room.found, -h * h, out=room.residuals[place])
         room.residuals[place] += unknown[place]
@@ -263,7 +274,7 @@ def end(rows: Rows, group: IntArray, registers: FloatArray, room: Room) -> float
 
 def measure(correct: Accelerate, time: float, gains: FloatArray, state: FloatArray, room: Room) -> float:
     """Write how a state has to be corrected, for its constraints to hold."""
-    return correct(time, gains, by_lane(state, room), room.off.reshape(-1, gains.shape[1]))
+    return correct(time, gains, state, room.off)
 
 
 def distance(state: FloatArray, room: Room) -> float:

@@ -14,8 +14,8 @@ from pathlib import Path
 from types import FunctionType
 from typing import Any
 
+from bezstab import compiling
 from bezstab.compiling import INNER, check_numba, compiled_choice, compiler, numba_is_installed
-from bezstab.mechanism import stepping
 from bezstab.mechanism.compiled import Mechanism, corrections_of
 from bezstab.mechanism.generated_code import TAKE, MachineCode, compiled_source, machine_code, slope_lines
 from bezstab.mechanism.start import CLOSED
@@ -431,9 +431,11 @@ def _code(mechanism: Mechanism, solving: bool, projecting: bool, stride: int) ->
 def _kept_file(mechanism: Mechanism, solving: bool, projecting: bool, stride: int) -> Path:
     """Return the file beside which numba keeps a scene's code: its name stands for all that makes it."""
     code = _code(mechanism, solving, projecting, stride)
-    made_from = [Path(file).read_bytes() for file in (stepping.__file__, __file__)]
+    # every file of this room, so that no number that one of them lends can be forgotten, and the options of numba
+    room = sorted(Path(__file__).parent.glob("*.py"))
+    made_from = [file.read_bytes() for file in (*room, Path(compiling.__file__))]
     made_from += [code.source.encode(), *(table.tobytes() for table in code.tables.values())]
-    made_from += [sys.version.encode(), version("numba").encode()]
+    made_from += [each.encode() for each in (sys.version, version("numba"), version("llvmlite"))]
     name = hashlib.sha256(b"\0".join(made_from)).hexdigest()
     home = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA") or Path.home() / ".cache"
     return Path(home) / "bezstab" / name / "steps.py"

@@ -178,7 +178,7 @@ def simulate(
 def checked_start(state: tuple[FloatArray, FloatArray]) -> FloatArray:
     """Return q and v as one state, shape (2n,). InputError where no run could go on from there."""
     first = np.concatenate(state).astype(np.float64)
-    cause = breakdown(first, 1.0, 0.0)
+    cause = breakdown(first)
     if cause:
         raise InputError(f"the start: {cause}")
     return first
@@ -389,11 +389,11 @@ def steps_in_blocks(
         states, pivots = np.empty((last - first, 2, n * stride), carried.dtype), np.empty(last - first)
         steps = steps_between(first, last)
         with np.errstate(all="ignore"):  # what runs into infinity is judged by its numbers
-            taken, unsolved = take_steps(
+            taken, *unsolved = take_steps(
                 rows, steps, registers, inverses, before, room, judged, states, pivots, work.counts
             )
         states = states.reshape(last - first, 2 * n, stride)[..., :lanes].reshape(last - first, 2 * n, *batch)
-        cause = breakdown(states[taken - 1], pivots[taken - 1], unsolved) if judged else None
+        cause = breakdown(states[taken - 1], pivots[taken - 1], *unsolved) if judged else None
         if cause:
             taken -= 1
         yield Block(states[:taken], pivots[:taken], cause)
@@ -442,16 +442,16 @@ def carried_quantities(
     return np.array(carried), first * h, remembered.newest
 
 
-def breakdown(state: FloatArray, pivot: float, unsolved: float) -> str | None:
+def breakdown(state: FloatArray, pivot: float = 1.0, unsolved: float = 0.0, unsettled: float = 0.0) -> str | None:
     """Return why a run cannot go on from a state that it reached with this least pivot; None if it can.
 
-    `unsolved` is the size of the last correction of equations that were not solved, 0 where all were.
+    `unsolved` is the size of the last correction of equations that were not solved, `unsettled` that of a position
+    which its projection did not bring back to the constraints, 0 where all was.
     """
-    if unsolved:
-        how = f"in {MOST_ITERATIONS} iterations (last correction {unsolved:.2g})"
-        return (
-            f"Newton's method did not converge{f' {how}' if unsolved < math.inf else ': its iterates are not finite'}"
-        )
+    for left, what in ((unsolved, "Newton's method"), (unsettled, "projection: Newton's method for the position")):
+        if left:
+            how = f"in {MOST_ITERATIONS} iterations (last correction {left:.2g})"
+            return f"{what} did not converge{f' {how}' if left < math.inf else ': its iterates are not finite'}"
     if pivot <= SINGULAR:
         return f"singular configuration: C_q M^-1 C_q^T has lost its rank (relative pivot {pivot:.2g})"
     # written so that what is not a number fails

@@ -145,11 +145,12 @@ class Steps(NamedTuple):
     gains: FloatArray
 
 
-TakeSteps = Callable[..., tuple[int, float]]
+TakeSteps = Callable[..., tuple[int, float, float]]
 """take_steps(rows, steps, registers, inverses, before, room, judged, states, pivots, counts).
 
-It takes steps until they are at their end or, if they are `judged`, a run breaks down, and returns how many, and the
-size of the last correction of equations that were not solved, a projection's included, 0 where all were.
+It takes steps until they are at their end or, if they are `judged`, a run breaks down, and returns how many, the size
+of the last correction of equations that were not solved, and of a position that did not settle in its projection, 0
+where all did.
 
 `registers` are in units of the step before[0] (s), the last one's; `inverses` (kinds of steps, groups, unknowns,
 unknowns, lanes) are the inverse Jacobians of the last of each kind, nan at first. `states` (steps, 2, width) get q and
@@ -339,15 +340,14 @@ def stepper(
         states: FloatArray,
         pivots: FloatArray,
         counts: IntArray,
-    ) -> tuple[int, float]:
+    ) -> tuple[int, float, float]:
         for k in range(len(steps.times)):
             time, h = steps.times[k], steps.lengths[k]
             gains = steps.gains[min(k, len(steps.gains) - 1)]
             if h != before[0]:
                 change_step(rows, h / before[0], registers, room)
                 before[0] = h
-            pivot = 1.0
-            unsolved = 0.0
+            pivot, unsolved, unsettled = 1.0, 0.0, 0.0
             for number in range(len(rows.groups)):
                 group = rows.groups[number]
                 if group[2]:
@@ -360,12 +360,12 @@ def stepper(
                 pivot = min(pivot, worst)
             size = finish(rows, h, registers, room, states[k])
             if rows.projected > 0 and size < BLOWN_UP:
-                worst, left, size = project(rows, time + h, h, gains, registers, room, states[k], counts)
-                pivot, unsolved = min(pivot, worst), max(unsolved, left)
+                worst, unsettled, size = project(rows, time + h, h, gains, registers, room, states[k], counts)
+                pivot = min(pivot, worst)
             pivots[k] = pivot
-            if judged and (unsolved > 0 or not (pivot > SINGULAR and size < BLOWN_UP)):
-                return k + 1, unsolved
-        return len(steps.times), 0.0
+            if judged and (unsolved > 0 or unsettled > 0 or not (pivot > SINGULAR and size < BLOWN_UP)):
+                return k + 1, unsolved, unsettled
+        return len(steps.times), 0.0, 0.0
 
     taken: TakeSteps = take_steps
     return taken
