@@ -122,7 +122,7 @@ def test_an_unbounded_region_makes_room_for_its_window_and_points_to_where_it_go
     assert axes.get_xlim()[1] < 1.2 * alpha_max
     assert axes.get_ylim()[1] < 1.2 * beta_max
     arrows = plot.open_edges(shape, axes)
-    assert {arrow.get_marker() for arrow in arrows} == {">", "^"}
+    assert {">", "^"} <= {arrow.get_marker() for arrow in arrows}
 
 
 def test_a_bounded_or_empty_region_does_not_go_on() -> None:
