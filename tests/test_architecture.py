@@ -200,8 +200,10 @@ def test_one_file_writes_source_and_nobody_else_takes_it_apart_or_executes_it() 
 
 WITHOUT_TESTS_OF_THEIR_OWN = {
     *("paper/lost.py", "paper/reports.py"),  # no logic
-    "methods/step_equations.py",  # tested where schemes are made of equations: second_order
+    *(f"methods/{name}.py" for name in ("step_equations", "determinants", "polynomials")),
+    *(f"stability/{name}.py" for name in ("neighbourhoods", "low_degrees", "quadratures", "shapes")),
 }
+"""Arithmetic whose errors the tests of what uses it show: of second-order schemes, verdicts, maps and areas."""
 
 
 def test_the_tests_mirror_the_tree() -> None:
