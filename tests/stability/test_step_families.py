@@ -4,8 +4,8 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from bezstab.methods import REGISTRY, accuracy, lookup
-from bezstab.stability import FAMILIES, bezier_limit, family_members
+from bezstab.methods import REGISTRY, STEP_FAMILIES, accuracy, lookup
+from bezstab.stability import bezier_limit, family_members
 from tests.reference.region_areas import region_area
 
 
@@ -16,7 +16,7 @@ def test_members_are_the_registered_methods_with_their_known_areas() -> None:
     assert [member.region.area for member in found] == pytest.approx(areas, abs=1e-12)
     assert [(member.order, member.error_constant) for member in found] == [accuracy(member.method) for member in found]
     prefixes = {"bezier": "B", "adams-bashforth": "AB"}
-    assert all(f"{prefixes[name]}{largest}" in REGISTRY for name, (_, largest) in FAMILIES.items())
+    assert all(f"{prefixes[name]}{family.largest}" in REGISTRY for name, family in STEP_FAMILIES.items())
 
 
 def extrapolated(values: list[float], n: list[int]) -> float:
