@@ -141,11 +141,6 @@ def test_another_room_is_entered_through_its_door() -> None:
                 assert set(names) <= behind_the_door(room), path
 
 
-def test_nobody_enters_the_paper() -> None:
-    for path in [path for path in FILES if path.parts[0] != "paper"]:
-        assert not [module for module, _ in own_imports(path) if module.split(".")[0] == "paper"], path
-
-
 def test_only_the_appointed_files_see_a_library() -> None:
     for path in FILES:
         for library in {module.split(".")[0] for module, _ in imports(path, with_types=False)} & set(APPOINTED):

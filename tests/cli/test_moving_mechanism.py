@@ -3,14 +3,10 @@
 import json
 from typing import Any
 
-import numpy as np
 import pytest
-from numpy.typing import ArrayLike
 
-from bezstab.evidence import moving_mechanisms
-from bezstab.mechanism import TurningNormals, compiled_mechanism, constraint_motion, load_scene
-from bezstab.stability import FloatArray
-from tests.cli.running import DATA, rows, run
+from bezstab.mechanism import compiled_mechanism, constraint_motion, load_scene
+from tests.cli.running import rows, run
 
 FOUR_BAR = ("--scene", "driven_four_bar", "--h", "0.01")
 
@@ -89,22 +85,3 @@ def test_a_scene_is_looked_at_for_as_long_as_it_says() -> None:
     """Andrews' mechanism speeds up all the time; over the 0.03 s of its benchmark kappa is 281 1/s."""
     (row,) = rows("poles", "--alpha", "0.1", "--beta", "0.01", "--method", "AB4", "--scene", "andrews", "--h", "1e-5")
     assert row["kappa"] == pytest.approx(281, rel=0.01)
-
-
-@pytest.mark.slow
-def test_choose_for_a_six_bar_computes_a_small_part_of_the_table_of_growth_rates(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """217 of 6161 entries; all of them are nine tenths of the time that such a mechanism would take."""
-    computed = 0
-    growth_rates = moving_mechanisms.growth_rates
-
-    def counted(turning: TurningNormals, chi: ArrayLike) -> FloatArray:
-        nonlocal computed
-        computed += np.size(chi)
-        return growth_rates(turning, chi)
-
-    monkeypatch.setattr(moving_mechanisms, "growth_rates", counted)
-    (row,) = rows("choose", "--method", "B4", "--scene", str(DATA / "six_bar.toml"), "--h", "0.001")
-    assert row["moving_verdict"] == "converges"
-    assert 0 < computed < 0.1 * moving_mechanisms.RADII * moving_mechanisms.ANGLES

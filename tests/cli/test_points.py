@@ -13,7 +13,6 @@ from bezstab.cli import main
 from bezstab.cli.asking import say_if_units_were_mistaken
 from bezstab.engines import DRIVE_METHODS, ENGINES
 from bezstab.methods import lookup
-from bezstab.stability import verdict
 from tests.cli.running import DATA, rows, run
 
 
@@ -163,7 +162,7 @@ def test_numbers_that_look_like_one_over_seconds_are_said_to() -> None:
 @pytest.mark.parametrize(
     ("alpha", "beta", "h"),
     [
-        ("0.5", "0.25", "1/240"),  # stable as typed
+        ("1.5", "0.9", "1/240"),  # stable as typed
         ("4", "3", None),  # too strong for SYM, but no number of 1/s
         ("4", "3", "2"),  # too strong in either unit
         ("-0.5", "0.9", "1e-3"),  # no feedback in 1/s is so weak
@@ -187,17 +186,6 @@ def test_what_was_typed_is_shown_as_typed() -> None:
         assert tuple(given[key] for key in keys) == typed
 
 
-@pytest.mark.parametrize("name", ["SYM", "AB4"])
-def test_without_a_step_the_largest_safe_one_is_the_answer(name: str) -> None:
-    asked = ("check", "--method", name, "--alpha", "60", "--beta", "55", "--physical")
-    limit = Fraction(str(first_row(*asked)["h_limit"]))
-    for factor, expected in (("0.001", "converges"), ("0.5", "converges"), ("0.999999", "converges"), ("1.000001", "")):
-        h = limit * Fraction(factor)
-        assert verdict(lookup(name), 120 * h, 55**2 * h**2) == (expected or "diverges")
-    shown = Fraction(re.match(r"Safe up to h = ([\d.]+) s\.", run(*asked).stdout)[1])  # type: ignore[index]
-    assert limit * Fraction("0.999") < shown <= limit  # rounded down: what is copied is safe
-
-
 def test_a_method_without_region_is_not_safe() -> None:
     """The explicit leapfrog, y1 = y[-1] + 2 h f0: its root -1 grows with every damping."""
     result = run("check", "--method", str(DATA / "leapfrog.toml"), "--alpha", "0.1", "--beta", "0.01")
@@ -210,19 +198,6 @@ def test_a_root_on_the_circle_that_no_feedback_moves_leaves_nothing() -> None:
     (row,) = rows("region", "--method", str(DATA / "shared_i.toml"), "--figure", "none", "--table", "none")
     assert (row["area"], row["best_z_abs"]) == (0, None)
     assert row["best_where"] == "stable nowhere: a pole stays at ±i whatever α̂ and β̂"
-
-
-@pytest.mark.slow
-def test_faster_and_slower_decay_cost_what_those_choices_have() -> None:
-    asked = ("choose", "--method", "RK4", "--h", "0.002")
-    text, here = run(*asked).stdout, first_row(*asked)
-    goal, settle = re.search(r"--goal (\w+) takes", text)[1], re.search(r"--settle ([\d.]+)", text)[1]  # type: ignore[index]
-    faster, slower = first_row(*asked, "--goal", goal), first_row(*asked, "--settle", settle)
-    for line, choice in (("Faster", faster), ("Slower", slower)):
-        times = re.search(rf"{line} decay: .* forces ([\d.,]+) times the error", text)
-        assert times
-        assert float(times[1].replace(",", "")) == pytest.approx(choice["total_error"] / here["total_error"], rel=0.05)
-    assert f"from {here['z_abs']:.4f} to {faster['z_abs']:.4f} a step" in text
 
 
 CHAIN = ("--h", "1/60", "--chain", "10", "--mass-ratio", "10")

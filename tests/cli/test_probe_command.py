@@ -104,13 +104,6 @@ def test_a_point_in_another_unit_is_noticed() -> None:
     assert "this behaves like SYM at (0.666667, 0.25)" in right.stdout
 
 
-def test_a_method_from_a_file_is_compared_too() -> None:
-    file = str(CONFIGS / "methods" / "houbolt.toml")
-    write("log.csv", c=response(file, 0.5, 0.2))
-    _, nearest, _ = rows(*f"probe log.csv --alpha 1/2 --beta 0.2 --method RK4 --method {file}".split())
-    assert (nearest["method"], nearest["fits"]) == ("Houbolt", True)
-
-
 def test_without_a_point_the_point_is_found_in_both_units() -> None:
     write("log.csv", time=np.arange(300) / 100, c=response("B4", 0.5, 0.1))
     write("zero.csv", time=np.arange(300) / 100, c=np.zeros(300))

@@ -3,7 +3,7 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bezstab.mechanism import compiled_mechanism, initial_state, load_scene, simulated
+from bezstab.mechanism import compiled_mechanism, initial_state, load_scene
 from bezstab.methods import lookup
 from bezstab.show import plot
 from bezstab.stability import region
@@ -17,18 +17,6 @@ def test_two_regions_share_given_axes_and_take_the_callers_style() -> None:
     second = plot.region(region(lookup("AB4")), axes)
     assert axes.lines[:] == [first, second]
     assert (first.get_color(), first.get_linewidth()) == ("red", 3)
-
-
-def test_a_history_shows_one_constraint_or_its_derivative() -> None:
-    mechanism = compiled_mechanism(load_scene("pendulum"))
-    run = simulated(mechanism, lookup("SYM"), h=1e-3, duration=0.1, alpha_hat=1.0, beta_hat=0.2)
-    last = run.c.shape[1]
-    axes = Figure().add_subplot()
-    line = plot.history(run, constraint=last, axes=axes)
-    assert np.array(line.get_xydata()).tolist() == np.stack([run.t, run.c[:, last - 1]], axis=1).tolist()
-    slope = plot.history(run, derivative=True, axes=axes)
-    assert axes.lines[:] == [line, slope]
-    assert np.array(slope.get_ydata()).tolist() == run.cdot[:, 0].tolist()
 
 
 @pytest.mark.parametrize(
