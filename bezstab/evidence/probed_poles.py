@@ -537,11 +537,11 @@ def _solutions(method: Method, z: ComplexArray, error: float) -> tuple[list[Like
     found: list[LikePoint] = []
     for a, b in points[(last < SOLVED * (1 + np.abs(points).max(axis=1))) | (residual < SOLVED**2 * scale)].tolist():
         known = any(abs(a - one.alpha_hat) + abs(b - one.beta_hat) < SAME * (1 + abs(a) + abs(b)) for one in found)
-        if known or abs(poles(method, a, b)[0]) > abs(z[0]) + 10 * error + SAME:
-            continue
         jacobian = _jacobian(equations, np.array([[a, b]]))[:, :, 0]
         if np.linalg.cond(jacobian) > 1 / SAME:
-            singular = True
+            singular = True  # of the curve some part may have these for its dominant poles
+            continue
+        if known or abs(poles(method, a, b)[0]) > abs(z[0]) + 10 * error + SAME:
             continue
         slopes = np.abs([polyval3d(pole, a, b, polyder(table)) for pole in z])  # by each pole, which may be off
         found.append(LikePoint(method, a, b, *(np.abs(np.linalg.inv(jacobian)) @ (slopes * error)).tolist()))

@@ -170,7 +170,8 @@ def test_two_poles_of_one_mu_leave_a_curve() -> None:
     assert point[0] ** 2 > 4 * point[1]
     assert z[0].imag != 0
     with pytest.raises(InputError, match="curve of points"):
-        points_like(ProbedPole(complex(z[0].real, abs(z[0].imag)), 1e-9, 50, 100, (complex(z[0]),), ""), method)
+        upper = complex(z[0].real, abs(z[0].imag))
+        points_like(ProbedPole(upper, 1e-9, 50, 100, (upper,), ""), method)
 
 
 def test_the_stated_error_of_a_point_covers_a_pole_off_by_the_stated_error() -> None:
