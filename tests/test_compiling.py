@@ -1,5 +1,4 @@
 import importlib.util
-import os
 import sys
 
 import pytest
@@ -9,7 +8,6 @@ from bezstab.compiling import (
     check_numba,
     compiled_choice,
     compiler,
-    cores,
 )
 from bezstab.errors import InputError
 
@@ -32,7 +30,3 @@ def test_a_missing_compiler_is_refused_in_a_line(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     with pytest.raises(InputError, match=r"pip install 'bezstab\[fast\]'"):
         check_numba()
-
-
-def test_the_cores_are_those_that_this_process_may_use() -> None:
-    assert 1 <= cores() <= (os.cpu_count() or 1)

@@ -7,11 +7,6 @@ from bezstab.errors import InputError
 from bezstab.files import output_directory, read_toml, write_whole
 
 
-def test_a_file_is_written_whole(tmp_path: Path) -> None:
-    write_whole(tmp_path / "a.bin", lambda file: file.write(b"whole"))
-    assert (tmp_path / "a.bin").read_bytes() == b"whole"
-
-
 @pytest.mark.parametrize("error", [RuntimeError, KeyboardInterrupt])
 def test_an_interruption_leaves_what_was_there(tmp_path: Path, error: type[BaseException]) -> None:
     (path := tmp_path / "a.bin").write_bytes(b"old")
@@ -35,23 +30,6 @@ def test_what_cannot_be_written_is_the_users_mistake(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="cannot write"):
         write_whole(tmp_path / "taken", lambda file: file.write(b""))
     assert {entry.name for entry in tmp_path.iterdir()} == {"file", "taken"}
-
-
-@pytest.mark.parametrize("becomes_a_file", [False, True])
-def test_a_directory_that_goes_away_is_named_once(becomes_a_file: bool, tmp_path: Path) -> None:
-    directory = output_directory(tmp_path / "a")
-
-    def go_away(file: BinaryIO) -> None:
-        directory.rmdir()
-        if becomes_a_file:
-            directory.touch()
-
-    with pytest.raises(InputError, match=f"cannot write {directory / 'b'}: "):
-        write_whole(directory / "b", go_away)
-
-
-def test_a_missing_directory_is_made(tmp_path: Path) -> None:
-    assert list(output_directory(tmp_path / "a" / "b").iterdir()) == []
 
 
 def test_a_toml_file_is_parsed_and_named_when_refused(tmp_path: Path) -> None:

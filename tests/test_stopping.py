@@ -1,6 +1,5 @@
 """Processes that end when they are told to: what they do first, what they finish first."""
 
-import os
 import signal
 import subprocess
 import sys
@@ -91,12 +90,3 @@ def test_a_process_that_is_started_in_a_section_does_not_hear_ctrl_c() -> None:
         blocked = subprocess.run([sys.executable, "-c", ask], capture_output=True, text=True, check=True).stdout
     assert blocked == f"{sorted(WORDS)}\n"
     assert not set(WORDS) & signal.pthread_sigmask(signal.SIG_BLOCK, [])
-
-
-def test_elsewhere_a_section_changes_nothing() -> None:
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    try:
-        with pytest.raises(KeyboardInterrupt), signals_deferred():
-            os.kill(os.getpid(), signal.SIGINT)
-    finally:
-        signal.signal(signal.SIGINT, before)

@@ -29,7 +29,7 @@ from bezstab.engines import Drive, Engine
 from bezstab.errors import InputError
 from bezstab.methods import Method
 from bezstab.rationals import rational, typed_number
-from bezstab.show import Format
+from bezstab.show import Format, motion_words
 from bezstab.units import to_dimensionless
 
 if TYPE_CHECKING:
@@ -236,10 +236,20 @@ def say_if_it_turns_too_far(scene: str | None, speed: Fraction, h: Fraction | No
         say(f"bezstab: {warning}")
 
 
-def say_what_was_made(question: "Question", form: Format) -> None:
-    """Say on standard error, where people read, what the engine made of its values and what that leaves out."""
-    if question.engine and for_reading(form):
-        for note in question.given.notes or ():
+def show_below(question: "Question", found: "Sequence[Answer]", form: Format, *, motion: bool = True) -> None:
+    """Print below answers what their errors are shares of, and on standard error why they are not known.
+
+    Of an engine also, where people read, what it made of its values and what that leaves out.
+    """
+    for reason in dict.fromkeys(answer.cost_reason for answer in found):
+        if reason:
+            say(f"bezstab: {reason}")
+    if not for_reading(form):
+        return
+    if motion and not question.drive:
+        show_text(f"\n{motion_words(question.motion)}")
+    if question.engine:
+        for note in () if question.goal else question.given.notes or ():
             say(f"{question.engine.name}: {note} (--as-typed leaves that out)")
         say_what_is_left_out(question.engine, many=question.swept is not None)
 
@@ -251,13 +261,6 @@ def say_what_is_left_out(engine: Engine, *, many: bool = False) -> None:
     say(f"{engine.name}: left out: {engine.excludes}{swept + ask if engine.sweeps and not many else ''}")
     if many and engine.sweeping:
         say(f"{engine.name}: sweeps are its {engine.sweeping.word}; of them left out: {engine.sweeping.excludes}")
-
-
-def say_unknown_costs(answers: "Iterable[Answer]") -> None:
-    """Say on standard error why it is not known what accuracy a feedback costs, each reason once."""
-    for reason in dict.fromkeys(answer.cost_reason for answer in answers):
-        if reason:
-            say(f"bezstab: {reason}")
 
 
 def say_varying(answers: "Iterable[Answer]") -> None:

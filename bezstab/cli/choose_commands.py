@@ -16,10 +16,8 @@ from bezstab.cli.asking import (
     hold_option,
     moving_scene_options,
     omega_option,
-    say_unknown_costs,
     say_varying,
-    say_what_is_left_out,
-    say_what_was_made,
+    show_below,
 )
 from bezstab.cli.held_drives import (
     HeldTiming,
@@ -56,7 +54,6 @@ from bezstab.show import (
     answer_row,
     costs_words,
     largest_step_row,
-    motion_words,
     trade_words,
 )
 
@@ -167,20 +164,16 @@ def choose(
     )
     chosen = list(progress(answers(question), question.goal or "", len(question.methods)))
     show_rows(CHOICES, [answer_row(answer) for answer in chosen], form, _left_out(question))
-    say_unknown_costs(chosen)
     if for_reading(form):
         say_varying(chosen)
         for answer in chosen if not (drive or question.swept) else ():
             if lines := trade_words(answer):
                 name = f"{answer.method.name}: " if len(chosen) > 1 else ""
                 show_text("\n" + "\n".join(f"{name}{line}" for line in lines))
-        if not drive:
-            show_text(f"\n{motion_words(question.motion)}")
-        for line in map(alone_words, chosen):
-            if line:
-                show_text(f"\n{line}")
-        if engine:
-            say_what_is_left_out(engine, many=question.swept is not None)
+    show_below(question, chosen, form)
+    for line in map(alone_words, chosen):
+        if line and for_reading(form):
+            show_text(f"\n{line}")
     context.exit(0 if all(answer.safe for answer in chosen) else 1)
 
 
@@ -258,12 +251,9 @@ def check(
         if instead := [answer_row(answer) for answer in found if answer.role == "instead"]:
             show_text("\nWhat `choose` gives instead:\n")
             show_rows(CHECKED, instead, form, without)
-        if not drive:
-            show_text(f"\n{motion_words(question.motion)}")
     else:
         show_rows(CHECKED, [answer_row(answer) for answer in found], form)
-    say_unknown_costs(found)
-    say_what_was_made(question, form)
+    show_below(question, found, form)
     context.exit(0 if all(answer.safe for answer in given) else 1)
 
 

@@ -11,13 +11,12 @@ from bezstab.cli.asking import (
     given_point_options,
     moving_scene_options,
     omega_option,
-    say_unknown_costs,
-    say_what_was_made,
+    show_below,
 )
 from bezstab.cli.options import METHOD, USUAL_METHODS, Rule, format_option, methods_option, ruled
-from bezstab.cli.output import Files, for_reading, picture_options, show_blocks, show_groups, show_rows, show_text
+from bezstab.cli.output import Files, picture_options, show_blocks, show_groups, show_rows, show_text
 from bezstab.errors import InputError
-from bezstab.methods import GROUPS, Method, lookup
+from bezstab.methods import GROUPS, STEP_FAMILIES, Method, lookup
 from bezstab.show import (
     LISTED_METHODS,
     MEMBERS,
@@ -59,7 +58,7 @@ def poles(all_poles: bool, form: Format, **typed: Any) -> None:
     """
     from bezstab import stability
     from bezstab.questions import answers
-    from bezstab.show import added_cells, engine_cells, motion_words, pole_rows
+    from bezstab.show import added_cells, engine_cells, pole_rows
 
     question = asked(**typed)
     poles_of = stability.poles if all_poles else stability.dominant_pole
@@ -75,10 +74,7 @@ def poles(all_poles: bool, form: Format, **typed: Any) -> None:
     alpha_hat, beta_hat = map(float, question.given.point)
     without = () if costs_shown else ("total_error", "times_least")
     show_rows(kind, rows, form, without, f"α̂ = {alpha_hat:.10g}, β̂ = {beta_hat:.10g}")
-    say_unknown_costs(at_point)
-    if costs_shown and for_reading(form):
-        show_text(f"\n{motion_words(question.motion)}")
-    say_what_was_made(question, form)
+    show_below(question, at_point, form, motion=costs_shown)
 
 
 @click.command()
@@ -139,7 +135,7 @@ def property_column(key: str, row: Row) -> Column:
 
 
 @click.command()
-@click.argument("name", metavar="bezier|adams-bashforth", type=click.Choice(["bezier", "adams-bashforth"]))
+@click.argument("name", metavar="|".join(STEP_FAMILIES), type=click.Choice(list(STEP_FAMILIES)))
 @click.option("--from", "first", type=click.IntRange(min=1), default=2, help="Smallest n.")
 @click.option("--to", "last", type=click.IntRange(min=1), help="Largest n [12 for bezier, 8 for adams-bashforth].")
 @picture_options
@@ -154,12 +150,12 @@ def family(name: str, first: int, last: int | None, files: Files, form: Format) 
     Example: bezstab family bezier --from 2 --to 5
     """
     from bezstab import show
-    from bezstab.stability import FAMILIES, bezier_limit, family_members
+    from bezstab.stability import bezier_limit, family_members
 
-    largest = {family_name: most for family_name, (_, most) in FAMILIES.items()}
-    last = largest[name] if last is None else last
-    if not first <= last <= largest[name]:
-        raise InputError(f"--from {first} --to {last}: expected 1 <= from <= to <= {largest[name]} for {name}")
+    largest = STEP_FAMILIES[name].largest
+    last = largest if last is None else last
+    if not first <= last <= largest:
+        raise InputError(f"--from {first} --to {last}: expected 1 <= from <= to <= {largest} for {name}")
     files.check_output()
     members = family_members(name, first, last)
     limit = bezier_limit() if name == "bezier" else None
@@ -169,8 +165,10 @@ def family(name: str, first: int, last: int | None, files: Files, form: Format) 
     show_rows(MEMBERS, rows, form)
 
     def draw() -> "Figure":
-        others = {other: family_members(other, 2, most) for other, most in largest.items() if other != name}
-        families = {each: members if each == name else others[each] for each in largest}
+        families = {
+            each: members if each == name else family_members(each, 2, family.largest)
+            for each, family in STEP_FAMILIES.items()
+        }
         return show.family_figure(families, name, limit)
 
     files.write(files.path("family", name), draw)

@@ -15,7 +15,7 @@ from bezstab.engines import ENGINES, Engine, engine_and_values, engine_named
 from bezstab.errors import InputError
 from bezstab.methods import REGISTRY, lookup
 from bezstab.rationals import rational
-from bezstab.show import FIGURE_FORMS, TABLE_FORMS, Format
+from bezstab.show import Format
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
@@ -151,20 +151,6 @@ speed_option = click.option(
 )
 step_option = click.option("--h", type=SECONDS, default="0.001", help="Step size in s.")
 physical_option = click.option("--physical", is_flag=True, help="--alpha and --beta are α and β in 1/s; needs --h.")
-output_option = click.option(
-    "-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory for what is written."
-)
-figure_option = click.option(
-    "--figure", type=click.Choice([*FIGURE_FORMS, "none"]), default="png", help="Format of the figure."
-)
-
-
-def table_option(default: str) -> Decorator:
-    """Return the option --table."""
-    choice = click.Choice([*TABLE_FORMS, "none"])
-    return click.option("--table", type=choice, default=default, help="Format of the table.")
-
-
 format_option = click.option(
     "--format",
     "form",
@@ -172,13 +158,6 @@ format_option = click.option(
     default="text",
     help="What to print on standard output.",
 )
-workers_option = click.option(
-    "--workers", type=click.IntRange(1, 1000), help="Number of processes [one for each core]."
-)
-scheduler_option = click.option(
-    "--scheduler", help="Address of a Dask scheduler, tcp://host:port, in place of --workers."
-)
-resume_option = click.option("--resume", is_flag=True, help="Continue a run with the same options that was stopped.")
 
 
 def _choose_compiled(context: click.Context, parameter: click.Parameter, choice: str) -> None:

@@ -12,18 +12,24 @@ from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 
 import click
 
-from bezstab.cli.options import (
-    figure_option,
-    gathered,
-    output_option,
-    resume_option,
-    scheduler_option,
-    table_option,
-    workers_option,
-)
+from bezstab.cli.options import gathered
 from bezstab.cli.terminal import text_width
 from bezstab.files import output_directory, write_whole
-from bezstab.show import Column, Format, Row, RowKind, Sentence, block, finite, fits, render, visible, wrapped
+from bezstab.show import (
+    FIGURE_FORMS,
+    TABLE_FORMS,
+    Column,
+    Format,
+    Row,
+    RowKind,
+    Sentence,
+    block,
+    finite,
+    fits,
+    render,
+    visible,
+    wrapped,
+)
 from bezstab.stopping import if_stopped
 
 if TYPE_CHECKING:
@@ -166,12 +172,25 @@ class Files:
             write_file(path.with_name(f"{path.name}.{self.figure}"), partial(save, drawn, self.figure))
 
 
-file_options = gathered(Files, "files", output_option, figure_option, table_option("csv"))
-figure_options = gathered(Files, "files", output_option, figure_option, table_option("none"))
-"""Of a command whose table is long and seldom wanted: it is written when asked for."""
+_where_and_figure = (
+    click.option("-o", "--output", type=click.Path(path_type=Path), default=".", help="Directory for what is written."),
+    click.option("--figure", type=click.Choice([*FIGURE_FORMS, "none"]), default="png", help="Format of the figure."),
+)
+_table_forms = click.Choice([*TABLE_FORMS, "none"])
 
-picture_options = gathered(Files, "files", output_option, figure_option)
+picture_options = gathered(Files, "files", *_where_and_figure)
 """Of a command that has no table beside what it prints."""
+
+figure_options, file_options = (
+    gathered(
+        Files,
+        "files",
+        *_where_and_figure,
+        click.option("--table", type=_table_forms, default=usual, help="Format of the table."),
+    )
+    for usual in ("none", "csv")
+)
+"""Of commands that also write a table: one that is long and seldom wanted when it is asked for, and any other."""
 
 
 @dataclass(frozen=True)
@@ -183,7 +202,13 @@ class Work:
     resume: bool
 
 
-work_options = gathered(Work, "work", workers_option, scheduler_option, resume_option)
+work_options = gathered(
+    Work,
+    "work",
+    click.option("--workers", type=click.IntRange(1, 1000), help="Number of processes [one for each core]."),
+    click.option("--scheduler", help="Address of a Dask scheduler, tcp://host:port, in place of --workers."),
+    click.option("--resume", is_flag=True, help="Continue a run with the same options that was stopped."),
+)
 
 
 def progress(

@@ -31,7 +31,7 @@ from bezstab.evidence.logs import UNEVEN, decimal_place
 from bezstab.evidence.measured_poles import CLOSE
 from bezstab.evidence.noisy_prediction import LARGEST_ERROR, VISIBLE, NoisyFit, fit_in_noise
 from bezstab.methods import Method, closed_loop_at, closed_loop_table
-from bezstab.stability import ComplexArray, FloatArray, poles, region, turning_sensitivity, window
+from bezstab.stability import ComplexArray, FloatArray, poles, region, spectral_radius, turning_sensitivity, window
 
 ORDER = 8
 """Poles that are looked for: as many as four-step methods have. Of longer ones the lesser poles die out first."""
@@ -50,6 +50,9 @@ STARTS = 9
 
 ITERATIONS = 40
 """Of Newton's method: from a start that leads anywhere it settles within some twenty."""
+
+ON_A_LINE = 201
+"""Samples of a line of points, across the region's window: is z the dominant pole on some of it?"""
 
 SOLVED = 1e-9
 """Of a point's size: the last change of Newton's method where it has settled."""
@@ -522,26 +525,30 @@ def points_like(probed: ProbedPole, method: Method, between: int = 1) -> list[Li
 def _solutions(method: Method, z: ComplexArray, error: float) -> tuple[list[LikePoint], bool]:
     """Return the points at which both z are poles, the first the dominant one; shape of z (2,), `error` of each.
 
-    And whether there are others which are no points but a curve.
+    And whether there is a curve of such points, instead.
     """
     table = np.array(closed_loop_table(method), float)  # by powers of z, alpha_hat and beta_hat
     equations = _equations(table, z)
     points = _starting_points(method, z)
+    # Where one mu has both z, so has the whole straight line of that mu, and Newton's method ends anywhere on it.
+    line = np.ptp(points[1:], axis=0).max() * np.linspace(-1, 1, ON_A_LINE)[:, np.newaxis]
     with np.errstate(all="ignore"):  # what leaves the range is left out below
         for _ in range(ITERATIONS):
             points = points - _newton_step(equations, points)
         last = np.abs(_newton_step(equations, points)).max(axis=1)
         residual = np.abs([polyval2d(points[:, 0], points[:, 1], equation) for equation in equations]).max(axis=0)
     scale = np.abs(equations).max()
+    largest = abs(z[0]) + 10 * error + SAME  # of a point at which the first z is the dominant pole
     singular = False
     found: list[LikePoint] = []
     for a, b in points[(last < SOLVED * (1 + np.abs(points).max(axis=1))) | (residual < SOLVED**2 * scale)].tolist():
-        known = any(abs(a - one.alpha_hat) + abs(b - one.beta_hat) < SAME * (1 + abs(a) + abs(b)) for one in found)
         jacobian = _jacobian(equations, np.array([[a, b]]))[:, :, 0]
         if np.linalg.cond(jacobian) > 1 / SAME:
-            singular = True  # of the curve some part may have these for its dominant poles
+            along = np.linalg.svd(jacobian)[2][-1]
+            singular = singular or bool((spectral_radius(method, *(np.array([a, b]) + line * along).T) < largest).any())
             continue
-        if known or abs(poles(method, a, b)[0]) > abs(z[0]) + 10 * error + SAME:
+        known = any(abs(a - one.alpha_hat) + abs(b - one.beta_hat) < SAME * (1 + abs(a) + abs(b)) for one in found)
+        if known or spectral_radius(method, a, b) > largest:
             continue
         slopes = np.abs([polyval3d(pole, a, b, polyder(table)) for pole in z])  # by each pole, which may be off
         found.append(LikePoint(method, a, b, *(np.abs(np.linalg.inv(jacobian)) @ (slopes * error)).tolist()))

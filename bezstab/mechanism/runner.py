@@ -29,10 +29,10 @@ from bezstab.mechanism.stepping import (
     rows_of,
 )
 from bezstab.methods import (
+    STEP_FAMILIES,
     Method,
     SecondOrder,
     adams_bashforth,
-    bezier,
     evaluations,
     implicit,
     lookup,
@@ -498,8 +498,9 @@ def _starters(method: Method, start: Start) -> list[tuple[Method, int]]:
         case "euler":
             return [(lookup("RK1"), needed)]
         case "ramp":
-            family = bezier if method.family is not None and method.family.name == "Bezier" else adams_bashforth
-            return [(family(n), 1) for n in range(1, needed + 1)]
+            named = {family.name: family.make for family in STEP_FAMILIES.values()}
+            make = named.get(method.family.name if method.family else "", adams_bashforth)
+            return [(make(n), 1) for n in range(1, needed + 1)]
 
 
 def _implicit_starters(start: Start, needed: int) -> list[tuple[Method, int]]:

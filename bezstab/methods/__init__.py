@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from bezstab.lazy import lazy_names
 from bezstab.methods.method_files import read_method
-from bezstab.methods.multistep_methods import adams_bashforth, adams_bashforth_moulton, bezier
+from bezstab.methods.multistep_methods import STEP_FAMILIES, adams_bashforth, adams_bashforth_moulton, bezier
 from bezstab.methods.polynomials import Polynomial
 from bezstab.methods.recipes import recipe
 from bezstab.methods.registry import GROUPS, REGISTRY, lookup

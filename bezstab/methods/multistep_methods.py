@@ -10,8 +10,8 @@ they differ in the curve. Time is counted in steps from t_k: the known values si
     Bezier            the Bernstein curve with the values as control points, extended past its end
 """
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 from math import comb
@@ -56,6 +56,23 @@ def adams_bashforth(n: int) -> Method:
 
 def _adams_bashforth_scheme(n: int) -> LinearMultistep:
     return _explicit_adams(_interpolatory_weights([-j for j in range(n)]))
+
+
+@dataclass(frozen=True)
+class StepFamily:
+    """Explicit methods by their number of steps n, up to the `largest`; figures call the family by its `title`."""
+
+    name: str
+    title: str
+    make: Callable[[int], Method]
+    largest: int
+
+
+STEP_FAMILIES = {
+    "bezier": StepFamily("Bezier", "Bézier", bezier, 12),
+    "adams-bashforth": StepFamily("Adams-Bashforth", "Adams–Bashforth", adams_bashforth, 8),
+}
+"""By the names that are typed."""
 
 
 def adams_bashforth_moulton(n: int) -> Method:

@@ -20,9 +20,9 @@ from bezstab.show.plot import Point
 from bezstab.show.style import (
     DASHES,
     column_figure,
+    hollow_line_at,
     keep_markers_whole,
     legend_below,
-    line_at,
     method_marker,
     plane_axes,
     plane_coordinates,
@@ -35,9 +35,6 @@ TICKS = (0.1, 0.5, 0.8, 0.9, 0.95, 0.98, 0.99, 0.995, 0.998, 0.999, 0.9999)
 
 UP, ACROSS = 0.07, 0.13
 """Of an axis: labels nearer than that would overlap, one above or one beside the other."""
-
-LARGEST_MARKER, MARKER_STEP, MARKER_SIZES = 7.0, 0.5, 10
-"""Points: hollow markers of falling size, so that coinciding fronts all show."""
 
 FASTEST_DRAWN, SLOWEST_DRAWN = 0.1, 0.9999
 """|z_p|: beyond, three steps are enough, or tens of thousands are not, and colours no longer change."""
@@ -197,9 +194,7 @@ def error_front_figure(fronts: Sequence[Sequence[FrontPoint]]) -> Figure:
         axes.set_yscale("log")
         for place, front in enumerate(fronts):
             drawn = [point for point in front if point.z_abs_below >= FASTEST_DRAWN]
-            size = LARGEST_MARKER - MARKER_STEP * (place % MARKER_SIZES)
-            hollow = {"markersize": size, "markerfacecolor": "none", "markeredgewidth": 0.7, "linewidth": 0.8}
-            style = {**line_at(place), **hollow, "marker": method_marker(front[0].method)}
+            style = {**hollow_line_at(place), "linewidth": 0.8, "marker": method_marker(front[0].method)}
             x, y = [point.z_abs_below for point in drawn], [point.combined_error for point in drawn]
             axes.plot(x, y, label=front[0].method.name, **style)
         axes.set(xlabel="$|z_p|$ at most", ylabel="least forced error / motion")

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.show.columns import Row, Value
+from bezstab.show.row_kinds import FIELDS
 from bezstab.stability import ComplexArray, FloatArray, Region
 from bezstab.units import feedback_gains
 
@@ -19,8 +20,6 @@ if TYPE_CHECKING:  # so that an array of the plane does not load what runs mecha
     from bezstab.mechanism import Simulation
 
 Arrays = dict[str, NDArray[np.generic]]
-
-TEXTS = ("failure", "front")  # keys of a run that hold text: missing, they are empty, not nan
 
 
 def map_arrays(alpha_hat: FloatArray, beta_hat: FloatArray, z: ComplexArray, h: float | None) -> Arrays:
@@ -104,7 +103,7 @@ def history_arrays(simulation: Simulation) -> Arrays:
 def untimed_arrays(rows: Sequence[Row]) -> Arrays:
     """Return rows as arrays of shape (rows,) without processor times, which no two runs share.
 
-    What is missing is nan among numbers and empty among TEXTS.
+    What is missing is nan among numbers and an empty text among texts.
     """
     keys = [key for key in rows[0] if not key.startswith("seconds")]
     return {key: np.array([_present(key, row[key]) for row in rows]) for key in keys}
@@ -113,7 +112,7 @@ def untimed_arrays(rows: Sequence[Row]) -> Arrays:
 def _present(key: str, value: Value) -> Value:
     if value is not None:
         return value
-    return "" if key in TEXTS else math.nan
+    return "" if FIELDS[key].kind == "text" else math.nan
 
 
 def write_arrays(arrays: Mapping[str, NDArray[np.generic]], form: str, file: BinaryIO) -> None:

@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from bezstab.methods import STEP_FAMILIES
 from bezstab.show import plot
 from bezstab.show.plot import Point, Range
 from bezstab.show.style import (
@@ -26,7 +27,6 @@ from bezstab.show.style import (
 )
 from bezstab.stability import BestPoint, Choice, FloatArray, Limit, Member, Region
 
-FAMILY_NAMES = {"bezier": "Bézier", "adams-bashforth": "Adams–Bashforth"}
 THINNEST, STEP_OF_WIDTH, WIDEST = 0.9, 0.15, 1.8
 """Points: lines grow thinner from the first to the last, so that of those that coincide all show."""
 
@@ -52,8 +52,8 @@ def region_figure(
 ) -> Figure:
     """Return the |z_p| map with exact boundary, faster regions, best point and critical damping (paper Fig. 1).
 
-    With the best point and that of a choice, where given and inside the map. Of an unbounded region it says that it
-    goes on.
+    With the best point and that of a choice, where given and inside the map. The label of an unbounded
+    region says so, and arrows along the edges of the axes point to where it goes on.
 
     z_abs has shape (beta_hat.size, alpha_hat.size). With h (s) the axes are 2 alpha (1/s) and beta^2 (1/s^2), else
     alpha_hat and beta_hat; `marks` are points (alpha_hat, beta_hat) by their labels. Of a `scene`, by name, that moves
@@ -66,7 +66,8 @@ def region_figure(
         image = plot.modulus_map(alpha_hat, beta_hat, z_abs, region.level, axes, h)
         figure.colorbar(image, label="$|z_p|$")
         at_rest = " at rest" if moving else ""
-        boundary = {"color": "black", "linestyle": "-", "label": rf"$|z_p| = {region.level:g}${at_rest}"}
+        unbounded = "" if region.bounded else " (unbounded)"
+        boundary = {"color": "black", "linestyle": "-", "label": rf"$|z_p| = {region.level:g}${at_rest}{unbounded}"}
         plot.region(region, axes, h, **boundary)
         for number, inner in enumerate(faster, start=1):
             curve = {"color": "white", "linestyle": DASHES[number % 4], "label": rf"$|z_p| = {inner.level:g}${at_rest}"}
@@ -83,7 +84,7 @@ def region_figure(
         left, bottom = plane_coordinates(alpha_hat[0], beta_hat[0], h)
         right, top = plane_coordinates(alpha_hat[-1], beta_hat[-1], h)
         axes.set(xlim=(left, right), ylim=(bottom, top), facecolor="0.93")
-        plot.goes_on(region, axes, h)
+        plot.open_edges(region, axes, h, color="white", markeredgecolor="black")
         keep_markers_whole(axes)
         if alpha_and_beta:
             mark_in_alpha_and_beta(axes)
@@ -154,7 +155,7 @@ def family_figure(families: Mapping[str, Sequence[Member]], shown: str, limit: L
         figure = column_figure(1.3)
         (area, fastest), (accuracy, regions) = figure.subplots(2, 2)
         for place, (name, members) in enumerate(families.items()):
-            label = FAMILY_NAMES.get(name, name)
+            label = STEP_FAMILIES[name].title
             plot.family(members, "area", area, label=label, **line_at(place))
             plot.family(members, "least |z_p|", fastest, label=label, **line_at(place))
         place = list(families).index(shown)

@@ -19,7 +19,6 @@ from matplotlib.image import AxesImage
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
-from matplotlib.text import Annotation
 
 from bezstab.errors import check_kind
 from bezstab.methods import Method
@@ -57,7 +56,6 @@ __all__ = [
     "critical_damping",
     "disagreements",
     "family",
-    "goes_on",
     "history",
     "largest_error",
     "marks",
@@ -77,11 +75,6 @@ def __dir__() -> list[str]:
     return sorted(__all__)
 
 
-EDGE = 0.99
-"""Share of the axes at which an arrow that points beyond them ends."""
-WORD = (0.16, 0.06)
-"""Half of the room that the word "unbounded" takes beside a marker, in shares of the axes."""
-SHARES = np.linspace(0.1, 0.9, 81)
 ALONG_AN_EDGE, ARROWS = 121, 5
 """Points along an edge of the axes, and how many of them are arrows."""
 PARABOLA = 400  # points of a smooth curve: more than its pixels tell apart
@@ -206,62 +199,6 @@ def _one_point(point: Point, axes: Axes, h: float | None, **line: Any) -> Line2D
     style = {"linestyle": "none", "color": "white", "markeredgecolor": "black", **line}
     (drawn,) = axes.plot(x, y, **style)
     return drawn
-
-
-def goes_on(region: Region, axes: Axes, h: float | None = None) -> Annotation | None:
-    """Draw an arrow and the word "unbounded" to where a region goes on beyond the axes; return it, None if it does not.
-
-    Into the upper right corner if the region goes on there, else to the right, else up, through the middle of what is
-    inside at that edge. With h (s) the axes are 2 alpha (1/s) and beta^2 (1/s^2).
-    """
-    if region.bounded or region.extent is None:
-        return None
-    rightwards, upwards = (bool(np.isinf(end)) for _, end in region.extent)
-    corner = _middle_inside(region, axes, h, np.array([EDGE]), np.array([EDGE]))
-    at_the_right = _middle_inside(region, axes, h, np.array([EDGE]), SHARES)
-    at_the_top = _middle_inside(region, axes, h, SHARES, np.array([EDGE]))
-    if rightwards and upwards and corner:
-        place = (0.78, 0.9), corner
-    elif rightwards and at_the_right:
-        place = (0.75, at_the_right[1]), at_the_right
-    elif upwards and at_the_top:
-        place = (at_the_top[0], 0.85), at_the_top
-    else:
-        return None
-    outline = withStroke(linewidth=1.6, foreground="black")
-    return axes.annotate(
-        "unbounded",
-        xy=place[1],
-        xytext=_off_points(axes, place[0]),
-        xycoords="axes fraction",
-        ha="center",
-        va="center",
-        color="white",
-        fontsize=7,
-        path_effects=[outline],
-        arrowprops={"arrowstyle": "->", "color": "white", "path_effects": [outline]},
-    )
-
-
-def _off_points(axes: Axes, place: Point) -> Point:
-    """Return the place of a word, in shares of the axes, moved down until it hides no point that is drawn alone."""
-    low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
-    lines = [np.asarray(line.get_xydata()) for line in axes.lines]
-    points = [((line[0] - low) / (high - low)).tolist() for line in lines if len(line) == 1]
-    across, up = place
-    while any(abs(x - across) < WORD[0] and abs(y - up) < WORD[1] for x, y in points):
-        up -= WORD[1]
-    return across, up
-
-
-def _middle_inside(region: Region, axes: Axes, h: float | None, across: FloatArray, up: FloatArray) -> Point | None:
-    """Return the middle of those places that lie inside a region, in shares of the axes; None if none does."""
-    across, up = np.broadcast_arrays(across, up)
-    inside = np.flatnonzero(_inside(region, axes, h, across, up))
-    if not inside.size:
-        return None
-    middle = inside[inside.size // 2]
-    return float(across[middle]), float(up[middle])
 
 
 def _inside(region: Region, axes: Axes, h: float | None, across: FloatArray, up: FloatArray) -> BoolArray:

@@ -11,11 +11,17 @@ from matplotlib.ticker import MaxNLocator
 from bezstab.evidence import Run, SweptRuns
 from bezstab.mechanism import Scene, Simulation
 from bezstab.show import plot
-from bezstab.show.style import TITLE_WIDTH, column_figure, legend_below, line_at, mark_powers, styled, title_lines
+from bezstab.show.style import (
+    TITLE_WIDTH,
+    column_figure,
+    hollow_line_at,
+    legend_below,
+    line_at,
+    mark_powers,
+    styled,
+    title_lines,
+)
 from bezstab.stability import FloatArray
-
-LARGEST_MARKER, MARKER_STEP, MARKER_SIZES = 7.0, 0.5, 10
-"""Points: hollow markers of falling size, so that coinciding curves all show."""
 
 TREATMENTS: dict[tuple[str, bool], tuple[str, dict[str, Any]]] = {
     ("baumgarte", True): ("feedback, advised", {"marker": "o", "markerfacecolor": "none"}),
@@ -85,9 +91,7 @@ def work_precision_figure(swept: SweptRuns, scene: str, constraint: bool, floor:
         top = 10 * max(known_errors, default=1.0)
         for place, method in enumerate(dict.fromkeys(run.method for run in runs)):
             own = [run for run in runs if run.method == method]
-            size = LARGEST_MARKER - MARKER_STEP * (place % MARKER_SIZES)
-            hollow = {"markersize": size, "markerfacecolor": "none", "markeredgewidth": 0.7}
-            plot.work_precision(own, constraint, floor, axes, swept.against, **line_at(place), **hollow)
+            plot.work_precision(own, constraint, floor, axes, swept.against, **hollow_line_at(place))
             failed = [run.cost(swept.against) for run in own if run.failure]
             axes.plot(failed, [top] * len(failed), "x", color=line_at(place)["color"], markersize=4)
         front = swept.constraint_front if constraint else swept.trajectory_front

@@ -54,6 +54,9 @@ DASHES: list[str | tuple[int, tuple[float, ...]]] = [
 ]
 """One more than there are colours: 42 lines differ in colour or dashes, and the first six in both."""
 
+LARGEST_MARKER, MARKER_STEP, MARKER_SIZES = 7.0, 0.5, 10
+"""Points: hollow markers of falling size, so that those that coincide all show."""
+
 ACCENT = "#d55e00"  # for what must be seen first: a limit, a disagreement
 CLOSEST_TICKS = 0.06  # of an axis' length: labels nearer than that would overlap
 ABOVE_THE_AXES = 3  # their lines and ticks are drawn at 2.5
@@ -189,6 +192,12 @@ def _outer_edges(points: FloatArray) -> tuple[float, float]:
 def line_at(place: int) -> dict[str, Any]:
     """Return colour and dashes of the method that is drawn in that place, from 0, of a figure: no two share both."""
     return {"color": COLOURS[place % len(COLOURS)], "linestyle": DASHES[place % len(DASHES)]}
+
+
+def hollow_line_at(place: int) -> dict[str, Any]:
+    """Return the same with markers that are hollow, and smaller than those of the place before."""
+    size = LARGEST_MARKER - MARKER_STEP * (place % MARKER_SIZES)
+    return {**line_at(place), "markersize": size, "markerfacecolor": "none", "markeredgewidth": 0.7}
 
 
 def next_line(axes: Axes) -> dict[str, Any]:

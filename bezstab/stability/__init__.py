@@ -32,7 +32,7 @@ from bezstab.stability.margins import Margins, largest_stable_step, stability_ma
 from bezstab.stability.pencils import Pencil, pencil_of, roots_in_z
 from bezstab.stability.regions import Region, pole_place, region, useful_window, window
 from bezstab.stability.searches import bisected, first_where
-from bezstab.stability.step_families import FAMILIES, Limit, Member, bezier_limit, family_members
+from bezstab.stability.step_families import Limit, Member, bezier_limit, family_members
 from bezstab.stability.step_sequences import Varying, VaryingSteps, varying_steps
 from bezstab.stability.sweeps import Growth, chain, fewest_sweeps, inverse_effective_masses, swept_growth
 from bezstab.stability.turning import own_feedback_root, turning_sensitivity, turning_shift

@@ -24,7 +24,8 @@ from bezstab.stability.answer_checks import (
     check_least_equal,
 )
 from bezstab.stability.arrays import BoolArray, Extent, FloatArray
-from bezstab.stability.best_points import AS_SMALL, best_point
+from bezstab.stability.best_points import best_point
+from bezstab.stability.charts import chart_of
 from bezstab.stability.closed_loop import (
     AnyPencil,
     any_pencil_of,
@@ -33,12 +34,10 @@ from bezstab.stability.closed_loop import (
     largest_pole,
     verdict,
 )
-from bezstab.stability.curve_choices import Curve, least_along, mildest_along
+from bezstab.stability.critical_points import critical_place
+from bezstab.stability.curve_choices import AS_SMALL, Curve, least_along, mildest_along
 from bezstab.stability.forced_errors import OMEGA_H
 from bezstab.stability.margins import Margins, stability_margins
-from bezstab.stability.pencils import Pencil, largest_root_in_z
-from bezstab.stability.plane_best_points import critical_point
-from bezstab.stability.plane_pencils import PlanePencil
 from bezstab.stability.regions import Region, pole_place, region
 from bezstab.stability.searches import first_where, zoom_on_minimum
 from bezstab.units import check_step
@@ -57,10 +56,8 @@ SPREAD_POINTS = 9  # per axis, of the points among which the worst is looked for
 SCOUTS = 16  # of a row one point in so many is looked at first, for a value that the others must be below
 SHARES = 8  # of the largest step, besides the limit of small ones: in practice either end is the slowest
 AT_DEADBEAT = 0.01  # of alpha_hat, beta_hat: a double pole that is so near to zero may be followed no further
-ASIDE = 1e-7  # of mu: a double mu splits by 1e-8 in float64, which must not let a rival of equal modulus win
 DEADBEAT = 1e-6  # a double pole at zero, as far as float64 tells it
 SLOW = 1e-12  # 1 - |z_p| of which rounding leaves three digits: the decay takes 1e13 steps
-REAL = 1e-9  # of |z|: an imaginary part below it is rounding
 SEARCHED = 4.0  # alpha h and beta h: there e^-4, a fiftieth, is left after a step, and nobody asks for faster decay
 
 
@@ -157,7 +154,7 @@ def choose(
         point, cut = _gentle(method, of_all, box, rate), False
         check_gentle(method, of_all, point[0], rate)
     elif goal == "critical":
-        point = _critical_point(pencil, box, cut)
+        point = _critical_point(method, box)
         check_critical(pencil, point[0], point[1], box, cut)
         if equal and not math.isclose(point[1], point[0] ** 2 / 4):
             raise InputError(
@@ -494,51 +491,17 @@ def _least(extent: Extent, objective: Objective, equal: bool, cut: bool, finer: 
     return 2 * float(best[0]), float(best[-1]) ** 2
 
 
-def _critical_point(pencil: AnyPencil, box: Extent, cut: bool) -> tuple[float, float]:
-    """Return the fastest point whose dominant pole is real and positive; InputError if there is none."""
-    (_, alpha_hat_max), (_, beta_hat_max) = box
-    if isinstance(pencil, PlanePencil):
-        found = critical_point(pencil, (alpha_hat_max, beta_hat_max))
-        if found is None:
-            raise InputError(f"{pencil.method.name}: no double pole is dominant: --goal critical has no answer")
-        best = best_point(pencil.method)
-        if best and not best.z_abs and math.dist(found, (best.alpha_hat, best.beta_hat)) < AT_DEADBEAT:
-            return best.alpha_hat, best.beta_hat
-        return found
-    furthest = 2 * math.sqrt(beta_hat_max) + alpha_hat_max
-    if cut:
-        furthest = min(alpha_hat_max / 2, math.sqrt(beta_hat_max)) * float(pencil.method.step_multiple)
-    return _critical(pencil, furthest)
-
-
-def _critical(pencil: Pencil, furthest_mu: float) -> tuple[float, float]:
-    """Return the double mu < 0 with the smallest dominant root that is real and positive.
-
-    A single mu is the slower of two, so the other may as well be there too. From zero on, the dominant root starts at
-    one and is real until a parasitic root overtakes it: the search is on that stretch alone.
-    """
-
-    def real_dominant_root(mu: FloatArray) -> FloatArray:
-        z = largest_root_in_z(pencil, mu.astype(complex))
-        return np.where((np.abs(z.imag) < REAL * np.abs(z)) & (z.real > 0), z.real, np.inf)
-
-    mu = -np.linspace(0, furthest_mu, SAMPLES)[1:]
-    overtaken = first_where(lambda mu: np.isinf(real_dominant_root(mu)), mu)
-    furthest = mu[-1] if overtaken is None else overtaken[0]
-    candidates = np.append(mu[mu > furthest], furthest)
-    best = candidates[np.argmin(real_dominant_root(candidates))]
-    found, _ = zoom_on_minimum(
-        lambda points: real_dominant_root(points[:, 0]),
-        np.array([best]),
-        reach=np.abs(mu[:1]),
-        points=GRID,
-        shrink=ZOOM,
-        rounds=ZOOMS,
-        fold=lambda points: np.clip(points, furthest, 0),
-    )
-    double_mu = max(furthest * (1 - ASIDE), float(found[0]))
-    alpha_hat, beta_hat = pencil.to_user @ np.array([-2 * double_mu, double_mu**2])
-    return float(alpha_hat), float(beta_hat)
+def _critical_point(method: Method, box: Extent) -> tuple[float, float]:
+    """Return the fastest point whose dominant pole is double, real and positive; InputError if there is none."""
+    chart = chart_of(free_pencil_of(method), region(method))
+    place = critical_place(chart, box)
+    if place is None:
+        raise InputError(f"{method.name}: no double pole is dominant: --goal critical has no answer")
+    found = chart.user_point(place)
+    best = best_point(method)
+    if best and not best.z_abs and math.dist(found, (best.alpha_hat, best.beta_hat)) < AT_DEADBEAT:
+        return best.alpha_hat, best.beta_hat
+    return found
 
 
 def _gentle(method: Method, modulus: Modulus, extent: Extent, rate: float) -> tuple[float, float]:

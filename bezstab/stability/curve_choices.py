@@ -14,12 +14,12 @@ import numpy as np
 from bezstab.errors import NumericalError
 from bezstab.stability.answer_checks import BETTER, NO_LESS, Modulus, Objective
 from bezstab.stability.arrays import BoolArray, FloatArray, even_points
-from bezstab.stability.best_points import AS_SMALL
 from bezstab.stability.searches import first_where, zoom_on_minimum
 
 Curve = Callable[[Any], tuple[Any, Any]]
 """alpha_hat and beta_hat over arrays of shares of the way."""
 
+AS_SMALL = 1e-10  # relative: a value by so much above the least so far is looked at; Schur's recursion rounds by less
 SAMPLES = 1000  # |z_p| has no features as narrow as that, and what is narrower the zoom finds
 GRID, ZOOM, ROUNDS = 21, 0.2, 15  # 0.2^15 = 3e-11 of the curve, where the objective is flat to rounding
 ROUNDING = 1e-14  # of a share: so near to a sample it is the sample, which may be an exact point, as beta_hat = 1 is

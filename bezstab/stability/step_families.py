@@ -1,24 +1,17 @@
 """Families of methods by their number of steps, and the limit that the Bezier family tends to."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
-from bezstab.methods import Method, accuracy, adams_bashforth, bezier
+from bezstab.methods import STEP_FAMILIES, Method, accuracy
 from bezstab.read_only import ReadOnlyArrays
 from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
 from bezstab.stability.best_points import best_point
 from bezstab.stability.regions import Region, region
 from bezstab.stability.searches import first_where
-
-FAMILIES: dict[str, tuple[Callable[[int], Method], int]] = {
-    "bezier": (bezier, 12),
-    "adams-bashforth": (adams_bashforth, 8),
-}
-"""What makes a member, and the largest number of steps."""
 
 NODES = 128  # of Gauss and Legendre on half the circle: the integrand is analytic, three quarters of them are enough
 FINE_POINTS = 100_000  # of the locus, from which its largest coordinates are taken: to (pi / 1e5)^2 of them
@@ -51,11 +44,11 @@ class Limit(ReadOnlyArrays):
 
 
 def family_members(family: str, first: int, last: int) -> list[Member]:
-    """Return the methods of a family (a key of FAMILIES) from `first` to `last` steps, with their regions.
+    """Return the methods of a family (a key of STEP_FAMILIES) from `first` to `last` steps, with their regions.
 
     KeyError for another family; NumericalError as for `region` and `best_point`. Dimensionless.
     """
-    make, _ = FAMILIES[family]
+    make = STEP_FAMILIES[family].make
     members = []
     for n in range(first, last + 1):
         method = make(n)

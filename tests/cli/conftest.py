@@ -19,6 +19,6 @@ def _few_extremes(monkeypatch: pytest.MonkeyPatch) -> None:
     every = evidence.extreme_checks
 
     def first_checks(full: bool) -> Iterator[Callable[[], evidence.Check]]:
-        return islice(every(full), 6)
+        return islice(every(full), 2)
 
     monkeypatch.setattr(evidence, "extreme_checks", first_checks)

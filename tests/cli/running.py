@@ -1,7 +1,6 @@
-"""How the tests run commands: in this process, or as a child that hears Ctrl-C."""
+"""How the tests run commands in this process."""
 
 import json
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +8,8 @@ import numpy as np
 from click.testing import CliRunner, Result
 
 from bezstab.cli import main
+
+DATA = Path(__file__).parent / "data"
 
 
 def run(*arguments: str) -> Result:
@@ -29,14 +30,3 @@ def arrays(path: Path) -> dict[str, Any]:
     """Return the arrays of an NPZ file by name."""
     with np.load(path) as file:
         return dict(file)
-
-
-# A child inherits an ignored SIGINT, as every job in the background of a script has it, and Python then keeps it so.
-HEARS_INTERRUPTS = (
-    "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); from bezstab.__main__ import run; run()"
-)
-
-
-def interruptible(*arguments: str) -> list[str]:
-    """Return the words that start a command as a child process which Ctrl-C can stop, whatever started the tests."""
-    return [sys.executable, "-c", HEARS_INTERRUPTS, *arguments]

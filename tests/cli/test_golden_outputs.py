@@ -17,7 +17,6 @@ import pytest
 from tests.cli.running import run
 
 GOLDEN: list[dict[str, Any]] = json.loads((Path(__file__).parent / "golden" / "outputs.json").read_text("utf-8"))
-SLOW = ("extremes", "paper", "family", "tradeoff", "verify", "choose --method B4 --method AB4 --method SYM")
 
 
 @dataclass(frozen=True)
@@ -107,14 +106,8 @@ def _without_numbers(text: str) -> str:
     return re.sub(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?", "#", text)
 
 
-@pytest.mark.parametrize(
-    "golden",
-    [
-        pytest.param(golden, id=golden["command"], marks=[pytest.mark.slow] * golden["command"].startswith(SLOW))
-        for golden in GOLDEN
-    ],
-)
-@pytest.mark.slow_except("poles", "choose", "check", "engines", "region --method B4 --method AB4")
+@pytest.mark.parametrize("golden", GOLDEN, ids=[golden["command"] for golden in GOLDEN])
+@pytest.mark.slow_except("poles", "choose --engine", "check", "engines", "region --method B4 --method AB4")
 def test_a_command_prints_what_it_printed_before(golden: dict[str, Any], tmp_path: Path) -> None:
     command = golden["command"]
     result = run(*shlex.split(command), "--format", "json")

@@ -169,8 +169,8 @@ def test_two_poles_of_one_mu_leave_a_curve() -> None:
     z = poles(method, *point)
     assert point[0] ** 2 > 4 * point[1]
     assert z[0].imag != 0
+    upper = complex(z[0].real, abs(z[0].imag))
     with pytest.raises(InputError, match="curve of points"):
-        upper = complex(z[0].real, abs(z[0].imag))
         points_like(ProbedPole(upper, 1e-9, 50, 100, (upper,), ""), method)
 
 

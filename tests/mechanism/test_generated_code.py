@@ -32,8 +32,8 @@ from tests.mechanism.test_scenes import pendulum
 from tests.methods.kinds import EXPLICIT, FEW, IMPLICIT, SAMPLE, sampled
 from tests.reference.literal_equation_9 import literal_slope
 from tests.reference.one_coordinate_motion import DIGITS, distance, shared_times, shown_order, slider_crank_states
-from tests.reference.plain_steps import plain_step
 from tests.reference.precise_runs import precise_run
+from tests.reference.steppers import timed_step
 
 H = 1e-3  # s
 CALL = re.compile(r"(\w+)\(")
@@ -48,8 +48,7 @@ def test_each_step_is_the_formula_applied_to_equation_9(scene: str, name: str) -
     states = list(np.concatenate([run.q, run.v], axis=1))
     slope = literal_slope(mechanism.equations, *gains)
     for last in range(steps(method) - 1, len(states) - 1):
-        past = states[last::-1][: steps(method)]
-        expected = plain_step(method, slope, run.t[last], H, past)
+        expected = timed_step(method, slope, run.t[: last + 1], states[: last + 1], H)
         # the rounding of accelerations near 100 SI units, times h and what the condition of Eq. 9 makes of it
         assert states[last + 1] == pytest.approx(expected, abs=1e-12)
 
@@ -65,8 +64,8 @@ def test_a_stepper_knows_the_time_within_its_step() -> None:
         states = list(np.concatenate([run.q, run.v], axis=1))
         slope = literal_slope(mechanism.equations, 0.0, 0.0)
         for last in range(steps(method) - 1, len(states) - 1):
-            past = states[last::-1][: steps(method)]
-            assert states[last + 1] == pytest.approx(plain_step(method, slope, run.t[last], 0.1, past), abs=1e-14)
+            expected = timed_step(method, slope, run.t[: last + 1], states[: last + 1], 0.1)
+            assert states[last + 1] == pytest.approx(expected, abs=1e-14)
 
 
 @cache

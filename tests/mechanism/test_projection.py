@@ -32,7 +32,7 @@ from tests.mechanism.test_stepping import KINDS, assert_alike, step_for
 from tests.reference.one_coordinate_motion import shown_order
 from tests.reference.plain_projection import FloatArray, projected, saddle_solution
 from tests.reference.plain_second_order import plain_second_order_run
-from tests.reference.plain_steps import plain_step
+from tests.reference.steppers import one_step
 
 H = 1e-3  # s
 WITHIN = 4e-12  # m, m/s: corrections of up to 1e-12 in sum are left, and constraints weigh a coordinate by some units
@@ -110,7 +110,7 @@ def plain_run(
     def accelerations(q: FloatArray, v: FloatArray) -> FloatArray:
         return np.array(acceleration(0.0, 0.0, 0.0, q.tolist(), v.tolist()))
 
-    def slope(_: float, y: FloatArray) -> FloatArray:
+    def slope(y: FloatArray) -> FloatArray:
         return np.concatenate([y[n:], accelerations(y[:n], y[n:])])
 
     history = list(states)
@@ -118,7 +118,7 @@ def plain_run(
         if implicit(method) or isinstance(method.scheme, SecondOrder):  # of those that remember nothing but their state
             (new,) = plain_second_order_run(second_order_form(method.scheme), accelerations, h, history[-1:], 1)
         else:
-            new = plain_step(method, slope, 0.0, h, history[: -steps(method) - 1 : -1])
+            new = one_step(method, slope, history[-steps(method) :], h, float)
         history.append(projected(mechanism, 0.0, new, iterations))
     return np.array(history[len(states) :])
 

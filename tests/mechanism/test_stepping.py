@@ -21,7 +21,7 @@ from bezstab.methods import REGISTRY, Method, SecondOrder, implicit, lookup, sec
 from bezstab.units import feedback_gains
 from tests.evidence.samples import of_campaign
 from tests.reference.plain_second_order import FloatArray, plain_second_order_run
-from tests.reference.plain_steps import plain_step
+from tests.reference.steppers import one_step
 
 H = 1e-3  # s
 EPS = np.finfo(float).eps
@@ -76,12 +76,12 @@ def plain_run(
         scheme = second_order_form(method.scheme)
         return np.array(plain_second_order_run(scheme, accelerations, H, states, count))
 
-    def slope(_: float, y: FloatArray) -> FloatArray:
+    def slope(y: FloatArray) -> FloatArray:
         return np.concatenate([y[n:], accelerations(y[:n], y[n:])])
 
     history = list(states)
     for _ in range(count):
-        history.append(plain_step(method, slope, 0.0, H, history[: -steps(method) - 1 : -1]))
+        history.append(one_step(method, slope, history[-steps(method) :], H, float))
     return np.array(history[len(states) :])
 
 

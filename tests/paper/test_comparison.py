@@ -130,6 +130,7 @@ def test_ab4_makes_one_regular_wave_of_its_poles_angle() -> None:
     assert f"{1000 * turns:.0f} turns a second, each of {1 / turns:.2f} steps; but regular" in found("irregularly").here
 
 
+@pytest.mark.slow
 def test_what_is_no_single_wave_is_called_irregular() -> None:
     run = next(run for run in compared() if run.method.name == "AB4" and run.beta_hat == 0.101)
     noise = np.random.default_rng(1).normal(size=run.observation.c.shape)
@@ -157,6 +158,7 @@ def test_fig_9_keeps_the_papers_panels() -> None:
     assert [axes.get_title()[0] for axes in figure.axes] == list("abcdef")
 
 
+@pytest.mark.slow
 def test_rounding_is_zero_in_the_table() -> None:
     run = next(run for run in compared() if run.method.name == "AB4" and run.alpha_hat == 0.1)
     assert 0 < run.largest(8, 10) < ROUNDED

@@ -22,7 +22,6 @@ import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval
 
 from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
-from bezstab.stability.boundary_locus import rim_radius
 from bezstab.stability.pencils import Pencil, all_inside, deadbeat_mu
 
 COSINE_SLACK = 1e-6  # a double zero splits by sqrt(eps) = 1e-8 into the complex plane; more candidates do no harm
@@ -38,13 +37,11 @@ LEADING = 1e-14  # of the largest coefficient: a leading coefficient below it is
 
 
 def mu_bound(pencil: Pencil, level: float) -> float:
-    """Return a radius that holds every mu whose roots z all have |z| < level; for an implicit method that of its rim.
+    """Return a radius that holds every mu whose roots z all have |z| < level, of an explicit method.
 
     The coefficient of z^(n-i) is at most comb(n, i) level^i; each that depends on mu bounds mu by Cauchy's rule
     (|x| <= 2 max |c_j / c_d|^(1/(d-j))).
     """
-    if pencil.implicit:
-        return rim_radius(pencil, level)
     table = pencil.table
     degree = len(table) - 1
     bounds = []
@@ -160,7 +157,7 @@ def turning_radii(pencil: Pencil, level: float) -> FloatArray:
     cos(theta).  A slice length has a square root there, and a part of S_r too thin to be met begins or ends there.
     """
     table = pencil.table
-    if (pencil.steps == 1 and not pencil.implicit) or table.shape[1] != 2:
+    if pencil.steps == 1 or table.shape[1] != 2:
         return np.zeros(0)
     slope = polyder(table)
 
@@ -190,23 +187,20 @@ def paired_crossings(pencil: Pencil, level: float, radius: FloatArray) -> FloatA
 
 
 def _one_step_crossings(pencil: Pencil, level: float, radius: FloatArray) -> FloatArray:
-    """Return paired_crossings for z = N(mu) / Q(mu): on |mu| = radius |N|^2 = level^2 |Q|^2, polynomials in cos phi.
-
-    Of an implicit method at a level next to one N and level Q nearly cancel far out, and cosines keep few digits.
-    """
+    """Return paired_crossings for z = R(mu): on |mu| = radius |R|^2 = level^2 is a polynomial in cos phi."""
     around = radius[:, np.newaxis]
-    numerator, denominator = pencil.table[0], np.trim_zeros(level * pencil.table[1], "b")
-    numerator_slope, denominator_slope = polyder(numerator), polyder(denominator)
+    minus_r = pencil.table[0]
+    slope = polyder(minus_r)
 
     def growth(cosine: FloatArray) -> FloatArray:
         mu = around * (cosine + 1j * np.sqrt(1 - cosine**2))
-        return np.asarray(np.abs(polyval(mu, numerator)) ** 2 - np.abs(polyval(mu, denominator)) ** 2)
+        return np.asarray(np.abs(polyval(mu, minus_r)) ** 2 - level**2)
 
     def step_at(phi: FloatArray) -> FloatArray:
         mu = around * np.exp(1j * phi)
-        n, d = polyval(mu, numerator), polyval(mu, denominator)
-        rate = (1j * mu * (polyval(mu, numerator_slope) / n - polyval(mu, denominator_slope) / d)).real
-        return np.asarray(np.log(np.abs(n / d)) / rate)
+        r = polyval(mu, minus_r)
+        rate = (1j * mu * polyval(mu, slope) / r).real
+        return np.asarray(np.log(np.abs(r) / level) / rate)
 
     return around * np.cos(_refined(_cosine_zeros(growth, pencil.table.shape[1] - 1, len(radius)), step_at))
 
@@ -358,8 +352,6 @@ def slices(pencil: Pencil, level: float, q: FloatArray, events: FloatArray, boun
         pairs[positive] = -2 * found
     split = np.where(positive[:, np.newaxis], np.concatenate([-2 * radius, 2 * radius], axis=1), np.nan)
     events = events[events != 0]
-    if pencil.implicit:
-        events = np.append(events, [-bound, bound])
     lines = -(events + q[:, np.newaxis] / events)
     furthest = bound + np.abs(q[:, np.newaxis]) / bound
     ends = np.concatenate([pairs, split, lines, -furthest, furthest], axis=1)
@@ -376,9 +368,6 @@ def slices(pencil: Pencil, level: float, q: FloatArray, events: FloatArray, boun
     stable = all_inside(pencil, first, level)
     real = np.isfinite(p) & ~is_pair & stable
     stable[real] = all_inside(pencil, second[real].astype(complex), level)
-    if pencil.implicit:
-        with np.errstate(all="ignore"):
-            stable &= (np.abs(first) < bound) & (np.abs(second) < bound)
     return Slices(ends, stable & np.isfinite(p))
 
 

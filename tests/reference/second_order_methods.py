@@ -1,9 +1,6 @@
-"""Second-order schemes as text, and the region's area and poles of any P by brute force."""
+"""Second-order schemes as text, and registered methods written as such."""
 
-import numpy as np
-
-from bezstab.methods import Method, closed_loop_table, lookup, recipe, second_order_form
-from bezstab.stability import ComplexArray, FloatArray
+from bezstab.methods import Method, lookup, recipe, second_order_form
 
 RECIPES = {
     "half": {"x1": "x0 + v0 + 1/2 a0", "vh": "v0 + 1/2 a0", "a1": "acceleration(x1, vh)", "v1": "vh + 1/2 a1"},
@@ -59,15 +56,3 @@ def as_second_order(name: str) -> Method:
     """Return a registered method written as a second-order scheme."""
     method = lookup(name)
     return Method(f"{name} as x, v, a", second_order_form(method.scheme), "", method.step_multiple)
-
-
-def companion_poles(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
-    """Return P's roots as eigenvalues of companion matrices; shape of the points plus an axis for the roots."""
-    table = np.array(closed_loop_table(method), float)
-    coefficients = [np.polynomial.polynomial.polyval2d(alpha_hat, beta_hat, in_plane) for in_plane in table]
-    n = len(coefficients) - 1
-    companion = np.zeros((*np.shape(alpha_hat), n, n))
-    companion[..., range(1, n), range(n - 1)] = 1
-    for k in range(n):
-        companion[..., k, -1] = -coefficients[k] / coefficients[n]
-    return np.linalg.eigvals(companion).astype(complex)

@@ -63,13 +63,6 @@ def test_a_click_proves() -> None:
     assert "diverges (proven)" in explorer.text.get_text()
 
 
-def test_outside_the_map_nothing_changes() -> None:
-    explorer, canvas, _ = window("B4")
-    before = explorer.point
-    canvas.callbacks.process("motion_notify_event", MouseEvent("motion_notify_event", canvas, 1, 1))
-    assert explorer.point == before
-
-
 @pytest.mark.slow
 def test_keys_switch_the_method_and_print_the_point() -> None:
     explorer, canvas, printed = window("B4", "AB4")
@@ -84,17 +77,6 @@ def test_keys_switch_the_method_and_print_the_point() -> None:
     key(canvas, "n")
     assert explorer.method == lookup("B4")
     key(canvas, "x")
-
-
-@pytest.mark.slow
-def test_only_what_moves_is_drawn_again() -> None:
-    explorer, canvas, _ = window("B4")
-    drawn: list[Any] = []
-    canvas.mpl_connect("draw_event", drawn.append)
-    before = bytes(canvas.buffer_rgba())
-    mouse(explorer, canvas, "motion_notify_event", 0.2, 0.3)
-    assert not drawn  # no whole redraw
-    assert bytes(canvas.buffer_rgba()) != before
 
 
 def test_without_a_window_one_line_says_so(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -57,15 +57,6 @@ def test_only_the_fast_part_is_a_band() -> None:
     assert np.isnan(drawn[t < 0.5 - 1.5 * column]).mean() > 0.9
 
 
-def test_gaps_stay_gaps_and_two_values_are_enough() -> None:
-    t = np.linspace(0, 1, 4001)
-    values = np.abs(np.sin(2 * np.pi * 500 * t))
-    values[::7] = np.nan
-    history_line(axes := panel(), t, values)
-    assert all(np.isfinite(corners(band)).all() for band in bands(axes))
-    assert np.array(history_line(panel(), t[:2], t[:2]).get_ydata()).tolist() == t[:2].tolist()
-
-
 def test_a_spike_at_the_start_is_a_line() -> None:
     t = np.linspace(0, 10, 10_001)
     values = np.exp(-50 * t) * np.cos(500 * t) + 0.1 * t

@@ -1,14 +1,7 @@
-from collections.abc import Sequence
 from fractions import Fraction
-from io import BytesIO
-from itertools import pairwise
 
 import numpy as np
 import pytest
-from matplotlib.axes import Axes
-from matplotlib.backend_bases import RendererBase
-from matplotlib.lines import Line2D
-from matplotlib.text import Text
 
 from bezstab.evidence import (
     NO_FEEDBACK,
@@ -21,10 +14,9 @@ from bezstab.evidence import (
     swept_runs,
     with_fronts,
 )
-from bezstab.mechanism import Projection, at_speed, compiled_mechanism, initial_state, load_scene, simulated
+from bezstab.mechanism import Projection, compiled_mechanism, initial_state, load_scene, simulated
 from bezstab.methods import lookup
 from bezstab.show.run_figures import history_figure, projection_figure, scene_figure, work_precision_figure
-from bezstab.show.style import save
 
 
 def test_the_scene_figure_joins_the_bodies_where_their_joints_are() -> None:
@@ -39,50 +31,35 @@ def test_the_scene_figure_joins_the_bodies_where_their_joints_are() -> None:
     assert {text.get_text() for text in axes.texts} == {"crank", "rod", "slider"}
 
 
-@pytest.mark.parametrize(
-    ("constraint", "against", "label"),
-    [
-        (False, "evaluations", "evaluations of f"),
-        (True, "evaluations", "evaluations of f"),
-        (False, "time", "processor time (s)"),
-    ],
-)
 @pytest.mark.slow
-def test_the_work_precision_figure_has_every_run_and_rings_the_front(
-    constraint: bool, against: Cost, label: str
-) -> None:
+def test_the_work_precision_figure_has_every_run_and_rings_the_front() -> None:
     scene, steps, point = load_scene("slider_crank_light"), (0.004, 0.008, 0.0125), (50.0, 50.0)
     true = reference_motion(scene, min(steps), 1.0)
     sweeps = [Sweep(lookup(name), scene, steps, 1.0, point, True, 1, true) for name in ("B2", "AB4")]
     swept = [run for sweep in sweeps for run in swept_runs(sweep, measured_runs(sweep))]
-    failed = [run for run in swept if run.failure]
+    failed, ended = ([run for run in swept if bool(run.failure) == wanted] for wanted in (True, False))
     assert failed  # AB4 at the largest step
-    figure = work_precision_figure(with_fronts(swept, 0.0, against), scene.name, constraint)
-    (axes,) = figure.axes
-    assert axes.get_xlabel() == label
-    lines = {str(line.get_label()): np.array(line.get_xydata()) for line in axes.lines}
 
-    def cost(run: Run) -> float:
-        return run.evaluations if against == "evaluations" else run.seconds
+    def drawn(run: Run, constraint: bool, against: Cost) -> tuple[float, float | None]:
+        cost = run.evaluations if against == "evaluations" else run.seconds
+        return cost, run.c_max if constraint else run.trajectory_error
 
-    def expected(these: Sequence[Run]) -> list[tuple[float, float | None]]:
-        return [(cost(run), run.c_max if constraint else run.trajectory_error) for run in these]
-
-    for name in ("B2", "AB4"):
-        own = [run for run in swept if run.method.name == name and not run.failure]
-        assert lines[name].tolist() == [list(point) for point in expected(own)]
-    ended = [run for run in swept if not run.failure]
-    assert lines["front"].tolist() == [list(expected(ended)[k]) for k in pareto_front(expected(ended))]
-    crosses = [line for line in axes.lines if line.get_marker() == "x" and len(np.array(line.get_xydata()))]
-    assert sorted(x for line in crosses for x, _ in np.array(line.get_xydata())) == sorted(cost(run) for run in failed)
-    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
-    assert "diverged" in lines
-    shapes = {
-        name: (line.get_marker(), line.get_markersize()) for name in ("B2", "AB4") for line in [lines_of(axes)[name]]
-    }
-    assert len(set(shapes.values())) == len(shapes)  # coinciding curves are told apart
+    kinds: list[tuple[bool, Cost]] = [(False, "evaluations"), (True, "evaluations"), (False, "time")]
+    for constraint, against in kinds:
+        (axes,) = work_precision_figure(with_fronts(swept, 0.0, against), scene.name, constraint).axes
+        lines = {str(line.get_label()): np.array(line.get_xydata()).tolist() for line in axes.lines}
+        places = [drawn(run, constraint, against) for run in ended]
+        for name in ("B2", "AB4"):
+            own = [list(place) for run, place in zip(ended, places, strict=True) if run.method.name == name]
+            assert lines[name] == own
+        assert lines["front"] == [list(places[k]) for k in pareto_front(places)]
+        crosses = [np.array(line.get_xydata()) for line in axes.lines if line.get_marker() == "x"]
+        across = sorted(x for cross in crosses for x, _ in cross)
+        assert across == sorted(drawn(run, constraint, against)[0] for run in failed)
+        assert "diverged" in lines
 
 
+@pytest.mark.slow
 def test_the_projection_figure_shows_all_three_errors_of_every_way_to_hold_the_constraints() -> None:
     """A line for each method and way in each axes; filled markers are projection, crosses a point that was given."""
     scene, steps = load_scene("slider_crank_light"), (0.008, 0.004)
@@ -109,10 +86,6 @@ def test_the_projection_figure_shows_all_three_errors_of_every_way_to_hold_the_c
     assert labels == ["B2", "SYM", "feedback, advised", "feedback, given", "projection"]
 
 
-def lines_of(axes: Axes) -> dict[str, Line2D]:
-    return {str(line.get_label()): line for line in axes.lines}
-
-
 def test_the_history_figure_says_what_was_run_and_shows_decay_as_a_line() -> None:
     pendulum = compiled_mechanism(load_scene("pendulum"))
     run = simulated(pendulum, lookup("SYM"), h=0.002, duration=0.2, alpha_hat=0.5, beta_hat=0.1, perturb=1e-4)
@@ -125,69 +98,3 @@ def test_the_history_figure_says_what_was_run_and_shows_decay_as_a_line() -> Non
     title = figure.texts[0].get_text()
     for part in ("SYM", "0.002 s", r"\hat\alpha$ = 0.5", r"\hat\beta$ = 0.1"):
         assert part in title
-
-
-def test_why_a_run_ended_is_written_whole_within_the_figure() -> None:
-    crank = compiled_mechanism(load_scene("slider_crank"))
-    run = simulated(crank, lookup("AB4"), h=0.001, duration=1, alpha_hat=1.5, beta_hat=0.8)
-    assert run.failure is not None
-    figure = history_figure(run)
-    assert run.failure in figure.texts[0].get_text().replace("\n", " ")
-    figure.savefig(BytesIO())  # which lays it out
-    (box,) = (
-        text.get_window_extent() for text in figure.findobj(Text) if text.get_text() == figure.texts[0].get_text()
-    )
-    assert box.x0 >= 0
-    assert box.x1 <= figure.bbox.x1
-    assert box.y1 <= figure.bbox.y1
-
-
-@pytest.mark.parametrize("scene", ["slider_crank_light", "four_bar"])
-def test_the_title_is_within_the_figure_and_names_the_speed(scene: str) -> None:
-    mechanism = compiled_mechanism(at_speed(load_scene(scene), 3.0))
-    run = simulated(mechanism, lookup("generalized-alpha"), h=0.001, duration=0.01, alpha_hat=1 / 3, beta_hat=1 / 36)
-    figure = history_figure(run)
-    figure.savefig(BytesIO())
-    box = figure.texts[0].get_window_extent()
-    assert box.x0 >= 0
-    assert box.x1 <= figure.bbox.x1
-    assert box.y1 <= figure.bbox.y1
-    assert "3 times as fast" in figure.texts[0].get_text()
-
-
-@pytest.mark.parametrize("name", ["slider_crank", "four_bar", "andrews"])
-def test_names_in_a_scene_cut_no_body_and_lie_within_the_axes(name: str) -> None:
-    scene = load_scene(name)
-    figure = scene_figure(scene, initial_state(compiled_mechanism(scene))[0])
-    (axes,) = figure.axes
-    figure.savefig(BytesIO())
-    bars = {str(line.get_label()): line for line in axes.lines if not str(line.get_label()).startswith("_")}
-    for text in axes.texts:
-        patch = text.get_bbox_patch()  # the box behind a name hides more than the name does
-        box = Text.get_window_extent(text) if patch is None else patch.get_window_extent()
-        assert axes.bbox.x0 < box.x0
-        assert box.x1 < axes.bbox.x1
-        points = axes.transData.transform(np.array(bars[text.get_text()].get_xydata()))
-        along = points[0] + np.linspace(0, 1, 200)[:, np.newaxis] * (points[-1] - points[0])
-        assert not any(box.contains(x, y) for x, y in along)
-
-
-@pytest.mark.parametrize(("h", "duration"), [(1e-3, 0.018), (1e-5, 1.3e-4), (1e-3, 2.0), (0.01, 170.0)])
-@pytest.mark.slow_except("0.01-170.0")
-def test_times_below_a_history_are_apart(h: float, duration: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    """As they are drawn: where they stand is decided by the size at which a file is written."""
-    drawn: dict[Text, tuple[float, float]] = {}
-    draw = Text.draw
-
-    def seen(text: Text, renderer: RendererBase) -> None:
-        box = text.get_window_extent(renderer)
-        drawn[text] = (box.x0, box.x1)
-        draw(text, renderer)
-
-    pendulum = compiled_mechanism(load_scene("pendulum"))
-    figure = history_figure(simulated(pendulum, lookup("SYM"), h=h, duration=duration, alpha_hat=0.5, beta_hat=0.1))
-    monkeypatch.setattr(Text, "draw", seen)
-    save(figure, "png", BytesIO())
-    labels = [drawn[label] for label in figure.axes[-1].get_xticklabels() if label in drawn]
-    assert len(labels) >= 3
-    assert all(left_end < right_start for (_, left_end), (right_start, _) in pairwise(sorted(labels)))

@@ -25,7 +25,10 @@ from bezstab.stability import (
     verdict,
 )
 from bezstab.stability.answer_checks import _compare, check_best_point, check_margin
+from bezstab.stability.charts import SPACINGS, Chart
+from bezstab.stability.least_modulus import Least, least_on
 from bezstab.stability.path_crossings import Path
+from bezstab.stability.pencils import deadbeat_mu
 from tests.stability.made_methods import runge_kutta
 
 
@@ -34,6 +37,15 @@ def nothing_remembered() -> Iterator[None]:
     best_points._best_or_limit.cache_clear()
     yield
     best_points._best_or_limit.cache_clear()
+
+
+def beside_the_least(chart: Chart) -> tuple[float, Least]:
+    """Return a place a tenth from the least on a chart, with its modulus."""
+    _, least = least_on(chart)
+    assert least
+    place = (0.9 * least.place[0], 0.9 * least.place[1])
+    z_abs = float(chart.modulus(np.array(place)))
+    return z_abs, replace(least, place=place, z_abs=z_abs)
 
 
 @pytest.mark.promise("Every region, best point, choice and margin")
@@ -54,23 +66,14 @@ def test_a_wrong_best_point_is_no_answer(name: str, factor: float, moved: float)
 @pytest.mark.parametrize("name", ["B4", "AB4", "ABM3"])
 @pytest.mark.slow_except("AB4")
 def test_a_kink_that_is_not_the_least_is_no_answer(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    smallest = best_points._smallest
-
-    def another(pencil: Any, search: Any, limit: float) -> Any:
-        least = smallest(pencil, best_points.SEARCHES[0], limit)
-        assert least
-        mu = 0.9 * least.mu
-        return replace(least, mu=mu, z_abs=float(best_points._largest_modulus(pencil, np.array([mu]))[0]))
-
-    monkeypatch.setattr(best_points, "_smallest", another)
+    monkeypatch.setattr(best_points, "least_on", beside_the_least)
     with pytest.raises(NumericalError, match="below the best point"):
         best_point(lookup(name))
 
 
 @pytest.mark.parametrize("name", ["RK1", "RK2", "RK4", "SIE"])
 def test_a_deadbeat_point_that_is_none_is_no_answer(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    zeros = best_points._zeros
-    monkeypatch.setattr(best_points, "_zeros", lambda pencil: [1.001 * mu for mu in zeros(pencil)])
+    monkeypatch.setattr(best_points, "deadbeat_mu", lambda pencil: 1.001 * deadbeat_mu(pencil))
     with pytest.raises(NumericalError, match="to be zero"):
         best_point(lookup(name))
 
@@ -105,18 +108,16 @@ def test_what_fails_at_first_is_searched_more_finely(monkeypatch: pytest.MonkeyP
     method = lookup("AB3")
     right_best, right_choice = best_point(method), choose(method, "fastest", equal=True)
     assert right_best
-    smallest, least = best_points._smallest, choices._least
+    least = choices._least
 
-    def another(pencil: Any, search: Any, limit: float) -> Any:
-        found = smallest(pencil, search, limit)
-        assert found
-        return found if search is not best_points.SEARCHES[0] else replace(found, mu=0.9 * found.mu)
+    def another(chart: Chart) -> tuple[float, Least | None]:
+        return least_on(chart) if len(chart.axes[0]) > SPACINGS + 1 else beside_the_least(chart)
 
     def beside(extent: Any, objective: Any, equal: bool, cut: bool, finer: int) -> tuple[float, float]:
         alpha_hat, beta_hat = least(extent, objective, equal, cut, finer)
         return (alpha_hat, beta_hat) if finer > 1 else (0.99 * alpha_hat, 0.99**2 * beta_hat)
 
-    monkeypatch.setattr(best_points, "_smallest", another)
+    monkeypatch.setattr(best_points, "least_on", another)
     monkeypatch.setattr(choices, "_least", beside)
     best_points._best_or_limit.cache_clear()
     found = best_point(method)
@@ -138,8 +139,8 @@ def test_what_fails_at_first_is_searched_more_finely(monkeypatch: pytest.MonkeyP
 def test_a_critical_point_beside_its_place_is_no_answer(name: str, off: float, monkeypatch: pytest.MonkeyPatch) -> None:
     critical_point = choices._critical_point
 
-    def beside(pencil: Any, box: Any, cut: bool) -> tuple[float, float]:
-        alpha_hat, beta_hat = critical_point(pencil, box, cut)
+    def beside(method: Any, box: Any) -> tuple[float, float]:
+        alpha_hat, beta_hat = critical_point(method, box)
         return off * alpha_hat, off**2 * beta_hat
 
     monkeypatch.setattr(choices, "_critical_point", beside)

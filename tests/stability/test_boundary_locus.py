@@ -1,130 +1,12 @@
-from dataclasses import replace
-from math import pi
-
 import numpy as np
 import pytest
-from numpy.polynomial.polynomial import polyval2d
 
 from bezstab.errors import NumericalError
-from bezstab.methods import LinearMultistep, lookup
-from bezstab.stability import FloatArray, Region, pencil_of, region, spectral_radius
-from bezstab.stability.boundary_locus import Arc, _ends_on_the_axis, bounds_of, rim_radius
-from bezstab.stability.pencils import largest_root_in_z
-from tests.methods.kinds import EXPLICIT, sampled
+from bezstab.stability import Region, pencil_of, region, spectral_radius
+from bezstab.stability.boundary_locus import bounds_of
 from tests.reference.companion_poles import radius
 from tests.reference.sliced_areas import sliced_area
 from tests.stability.made_methods import multistep, runge_kutta
-
-
-def arcs(name: str, level: float) -> tuple[Arc, ...]:
-    return bounds_of(pencil_of(lookup(name)), level).arcs
-
-
-@pytest.mark.parametrize("name", sampled(EXPLICIT))
-@pytest.mark.parametrize("level", [1.0, 0.9])
-def test_an_arc_lies_in_the_upper_half_on_the_level(name: str, level: float) -> None:
-    for arc in arcs(name, level):
-        inner = arc.mu[20:-20]  # towards its ends other roots come near the circle too
-        assert (inner.imag > 0).all()
-        # an ABM has roots that nearly meet on the circle
-        assert np.abs(largest_root_in_z(arc.pencil, inner)) == pytest.approx(level, abs=1e-6 if "ABM" in name else 1e-9)
-
-
-def test_halves_that_agree_to_rounding_are_not_halved_further(monkeypatch: pytest.MonkeyPatch) -> None:
-    """B4's density is smooth but at its ends: 16 nodes to each half, and as many halvings as digits at either end."""
-    (arc,) = arcs("B4", 1.0)
-    asked: list[int] = []
-    density = Arc._area_density
-
-    def counted(self: Arc, theta: FloatArray) -> FloatArray:
-        asked.append(theta.size)
-        return density(self, theta)
-
-    monkeypatch.setattr(Arc, "_area_density", counted)
-    arc.area()
-    assert sum(asked) < 2 * 16 * 2 * 15
-
-
-def axis_ends(theta: list[float], mu: list[complex]) -> FloatArray:
-    """Return where B4's interval of the real axis may end, with one arc given by its samples; z = 1 is at mu = 0."""
-    pencil = pencil_of(lookup("B4"))
-    return _ends_on_the_axis(pencil, 1.0, [Arc(pencil, 1.0, np.array(theta), np.array(mu))])
-
-
-def test_an_interval_may_end_where_an_arc_reaches_the_axis_with_a_pair_on_the_circle() -> None:
-    solved = axis_ends([0.0, pi], [0j, 0j])  # at either angle z is real: these are solved for, whatever the arc says
-    assert solved == pytest.approx([-27 / 34, 0], abs=1e-12)
-    away = -0.5 + 0.1j
-    assert axis_ends([2.0, 2.1, 2.2], [-0.5 + 0j, away, away]) == pytest.approx([-27 / 34, -0.5, 0], abs=1e-12)
-    assert axis_ends([2.0, 2.1, 2.2], [away, away, -0.5 + 0j]) == pytest.approx([-27 / 34, -0.5, 0], abs=1e-12)
-    assert axis_ends([0.0, 2.1, 2.2], [-0.5 + 0j, away, away]) == pytest.approx(solved, abs=0)
-    assert axis_ends([2.0, 2.1, pi], [away, away, -0.5 + 0j]) == pytest.approx(solved, abs=0)
-
-
-@pytest.mark.parametrize(("apart", "ends"), [(1e-6, 3), (1e-11, 2)])
-def test_ends_of_an_interval_are_one_only_if_they_coincide_to_rounding(apart: float, ends: int) -> None:
-    beside = -27 / 34 * (1 - apart) + 0j
-    assert len(axis_ends([2.0, 2.1], [beside, -0.5 + 0.1j])) == ends
-
-
-@pytest.mark.parametrize("name", ["B4", "AB4", "RK4"])
-def test_between_its_samples_an_arc_is_solved_for(name: str) -> None:
-    for arc in arcs(name, 1.0):
-        theta = (arc.theta[1:] + arc.theta[:-1]) / 2
-        residual = polyval2d(np.exp(1j * theta), arc.at(theta), pencil_of(lookup(name)).table)
-        assert np.abs(residual).max() < 1e-12
-
-
-@pytest.mark.parametrize("name", ["B4", "AB3", "AB4", "RK4"])
-def test_nothing_on_an_arc_is_further_than_its_furthest(name: str) -> None:
-    for arc in arcs(name, 1.0):
-        theta = np.linspace(arc.theta[0], arc.theta[-1], 5000)
-        for direction in ([1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.3, -1.0]):
-            along = arc.coordinate(theta, np.array(direction)).max()
-            assert along - 1e-12 < arc.furthest(np.array(direction)) < along + 1e-5
-
-
-@pytest.mark.parametrize(("name", "direction"), [("B4", (0.0, 1.0)), ("AB3", (1.0, 0.0))])
-def test_an_arc_turns_where_it_does_however_its_samples_lie(name: str, direction: tuple[float, float]) -> None:
-    (arc,) = arcs(name, 1.0)
-    (turn,) = arc.turns(np.array(direction))
-    theta = np.array([arc.theta[0], turn - 0.006, turn + 0.005, turn + 0.1, arc.theta[-1]])  # nearly at a bracket's end
-    few = replace(arc, theta=theta, mu=arc.at(theta))
-    # where it turns it is flat: to the root of rounding
-    assert few.turns(np.array(direction)) == pytest.approx([turn], abs=1e-7)
-
-
-def test_the_interval_of_a_bezier_method_ends_at_zero_and_at_minus_one() -> None:
-    scheme = lookup("B4").scheme
-    assert isinstance(scheme, LinearMultistep)
-    rho, sigma = (np.polyval(np.array(part, float), -1.0) for part in (scheme.rho, scheme.sigma))
-    ((start, end),) = bounds_of(pencil_of(lookup("B4")), 1.0).intervals
-    assert (start, end) == pytest.approx((rho / sigma, 0), abs=1e-12)
-
-
-def on_locus(name: str) -> tuple[FloatArray, FloatArray]:
-    """Return (-2 Re mu, |mu|^2) for mu = rho/sigma over the upper half circle, and |z_p| there."""
-    scheme = lookup(name).scheme
-    assert isinstance(scheme, LinearMultistep)
-    z = np.exp(1j * np.linspace(0.01, 3.13, 500))
-    mu = np.polyval(np.array(scheme.rho, float), z) / np.polyval(np.array(scheme.sigma, float), z)
-    points = np.stack([-2 * mu.real, np.abs(mu) ** 2], axis=1)
-    return points, radius(lookup(name), *points.T)
-
-
-@pytest.mark.parametrize("name", ["AB4", "AB5", "AB6"])
-def test_the_loops_of_the_locus_are_cut(name: str) -> None:
-    points, modulus = on_locus(name)
-    loop = points[modulus > 1 + 1e-3]
-    assert len(loop) > 10
-    curve = region(lookup(name)).boundary[0]
-    gaps = np.abs(loop[:, None] - curve).max(axis=-1).min(axis=1)
-    assert gaps.max() > 0.01 * np.abs(curve).max()  # chords are a hundredth of that
-
-
-@pytest.mark.parametrize("name", ["B1", "B2", "B3", "B4", "B12"])
-def test_the_whole_locus_of_a_bezier_method_is_boundary(name: str) -> None:
-    assert on_locus(name)[1] == pytest.approx(1, abs=1e-9)  # eps times the condition, at most 1e4 near z = 1
 
 
 @pytest.mark.promise(
@@ -181,31 +63,6 @@ def test_a_region_of_which_a_strip_lies_far_away_is_not_empty() -> None:
     assert shape.area == pytest.approx(conjugate - near**3 / 6 + strip, rel=1e-4)  # pixels of 1/200
     assert shape.extent
     assert shape.extent[1][1] > 1e7
-
-
-@pytest.mark.parametrize(
-    ("name", "intervals", "stable_angle"),
-    [
-        ("implicit-euler", [(-128, 0), (2, 128)], np.pi),
-        ("trapezoid", [(-128, 0)], np.pi / 2),
-        ("bdf2", [(-256, 0), (4, 256)], np.pi),
-    ],
-)
-def test_an_unbounded_set_is_cut_off_at_its_rim(
-    name: str, intervals: list[tuple[float, float]], stable_angle: float
-) -> None:
-    pencil = pencil_of(lookup(name))
-    bounds = bounds_of(pencil, 1.0, 1, rim_radius(pencil, 1.0))
-    assert np.array(bounds.intervals) == pytest.approx(np.array(intervals), abs=1e-9)
-    assert bounds.rim == pytest.approx(stable_angle, abs=1e-9)
-    assert not bounds.bounded
-
-
-def test_a_bounded_set_of_an_implicit_method_does_not_reach_its_rim() -> None:
-    pencil = pencil_of(lookup("am3"))
-    bounds = bounds_of(pencil, 1.0, 1, rim_radius(pencil, 1.0))
-    assert bounds.bounded
-    assert np.array(bounds.intervals) == pytest.approx(np.array([(-6, 0)]), abs=1e-12)
 
 
 def test_where_the_modulus_touches_the_level_an_interval_ends() -> None:

@@ -11,7 +11,6 @@ from bezstab.stability import (
     region,
     unconditional_damping_ratio,
 )
-from tests.methods.kinds import SECOND_ORDER
 from tests.reference.companion_poles import radius
 from tests.stability.made_methods import multistep, runge_kutta
 
@@ -52,20 +51,14 @@ def test_limits_at_critical_damping_are_the_known_numbers(name: str) -> None:
     assert critical_damping_limit(lookup(name)) == pytest.approx(float(LIMITS[name]), rel=1e-15)
 
 
-@pytest.mark.parametrize(
-    "name", ["am3", "am4", "am5", "am6", "B4", "B8", "AB3", "AB8", "RK2", "SIE", "B4@2", "AB4@1/3"]
-)
+@pytest.mark.parametrize("name", [*IMPLICIT_LIMITS, "B4", "AB8", "RK2", "SIE", "B4@2", "AB4@1/3"])
 def test_a_rational_limit_is_given_exactly(name: str) -> None:
     limit = exact_critical_damping_limit(lookup(name))
     assert limit
+    assert limit == IMPLICIT_LIMITS.get(name, limit)
     assert float(limit) == critical_damping_limit(lookup(name))
     at_limit = closed_loop_at(lookup(name), 2 * limit, limit**2)
     assert 0 in (sum(at_limit), sum((-1) ** k * c for k, c in enumerate(at_limit)))  # a root 1 or -1
-
-
-def test_the_limits_of_adams_moulton_methods_are_exact_numbers() -> None:
-    found = {name: exact_critical_damping_limit(lookup(name)) for name in IMPLICIT_LIMITS}
-    assert found == IMPLICIT_LIMITS
 
 
 @pytest.mark.parametrize("name", ["RK3", "RK4", "SYM", "bdf2", "average-acceleration"])
@@ -100,7 +93,7 @@ def converges(method: Method, damping_ratio: Fraction, beta_step: Fraction) -> b
     return bool(polynomial[0]) and recursion_verdict(polynomial) == "converges"
 
 
-@pytest.mark.parametrize("name", [*LIMITS, "B8", "AB6", "ABM3", "RK4", "dopri5", "yoshida4", "RK4@5", "SYM@1/3"])
+@pytest.mark.parametrize("name", [*LIMITS, "AB6", "ABM3", "dopri5", "yoshida4", "RK4@5"])
 def test_the_verdict_turns_at_the_limit_and_not_before(name: str) -> None:
     method, limit = lookup(name), critical_damping_limit(lookup(name))
     assert limit
@@ -109,7 +102,7 @@ def test_the_verdict_turns_at_the_limit_and_not_before(name: str) -> None:
     assert not converges(method, Fraction(1), (1 + Fraction(1, 10**9)) * Fraction(limit))
 
 
-@pytest.mark.parametrize("name", ["implicit-euler", "bdf2", "bdf6", "gauss4", "average-acceleration", "hht"])
+@pytest.mark.parametrize("name", ["bdf2", "bdf6", "gauss4", "hht"])
 def test_there_is_no_limit_where_every_step_is_stable(name: str) -> None:
     assert critical_damping_limit(lookup(name)) is None
 
@@ -121,36 +114,22 @@ def test_a_method_that_is_stable_nowhere_has_limit_zero_and_no_ratio() -> None:
 
 
 @pytest.mark.parametrize("name", RATIOS)
-@pytest.mark.slow_except("bdf3")
-def test_bdf_methods_need_a_damping_ratio(name: str) -> None:
-    assert unconditional_damping_ratio(lookup(name)) == pytest.approx(RATIOS[name], abs=5e-7)
-
-
-@pytest.mark.parametrize("name", RATIOS)
 @pytest.mark.slow
-def test_above_the_ratio_every_step_is_stable_and_just_below_some_is_not(name: str) -> None:
+def test_above_its_damping_ratio_every_step_of_a_bdf_method_is_stable_and_just_below_some_is_not(name: str) -> None:
     ratio = unconditional_damping_ratio(lookup(name))
     assert ratio
+    assert ratio == pytest.approx(RATIOS[name], abs=5e-7)
     step = 10 ** np.linspace(-1, 3, 1001)
     for above in (1 + 1e-6, 1.01, 1.5, 10):  # of float64 the lobe beyond 1 + 1e-6 keeps 1 - |z_p| = 1e-7
         assert (radius(lookup(name), 2 * above * ratio * step, step**2) < 1 + 1e-12).all()
     assert (radius(lookup(name), 2 * 0.999 * ratio * step, step**2) > 1).any()
 
 
-@pytest.mark.parametrize("name", ["trapezoid", "sdirk2", "radau3", "average-acceleration", "generalized-alpha"])
+@pytest.mark.parametrize("name", ["trapezoid", "radau3", "generalized-alpha"])
 def test_the_ratio_is_zero_where_all_is_stable(name: str) -> None:
     assert unconditional_damping_ratio(lookup(name)) == 0
 
 
-@pytest.mark.parametrize("name", ["B4", "AB2", "RK4", "SYM", "am3", "verlet-half", "imex-euler", "verlet-kdk"])
+@pytest.mark.parametrize("name", ["B4", "RK4", "SYM", "am3", "imex-euler"])
 def test_there_is_no_ratio_where_even_critical_damping_has_a_limit(name: str) -> None:
     assert unconditional_damping_ratio(lookup(name)) is None
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", SECOND_ORDER)
-def test_second_order_schemes_turn_at_their_limit(name: str) -> None:
-    limit = critical_damping_limit(lookup(name))
-    if limit:
-        assert converges(lookup(name), Fraction(1), (1 - Fraction(1, 10**9)) * Fraction(limit))
-        assert not converges(lookup(name), Fraction(1), (1 + Fraction(1, 10**9)) * Fraction(limit))

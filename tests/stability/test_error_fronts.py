@@ -8,17 +8,18 @@ import numpy as np
 import pytest
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.methods import REGISTRY, lookup
+from bezstab.methods import lookup
 from bezstab.stability import best_point, combined_error, error_front, error_fronts, forced_error, spectral_radius
 from bezstab.stability.searches import zoom_on_minimum
+from tests.methods.kinds import sampled
 
 OMEGA_H = Fraction(1, 100)
 QUICK = ("RK4", "B4", "SYM")
 TRADED = ("B2", "B3", "AB2", "AB4", "ABM4", "SIE", "dopri5", "bs3", "gauss4", "verlet-half", "bdf2", "hht")
-"""One of each kind besides; the others in make test-slow."""
+"""One of each kind besides, in make test-slow."""
 
-POINTS = 450
-"""Per axis of brute force, over five decades: errors change by a twentieth from one to the next."""
+POINTS = 300
+"""Per axis of brute force, over five decades: errors change by a fourteenth from one to the next."""
 
 PROMISED = 1e-3
 """Relative: what the front is checked to, as brute force meets its corners no more closely."""
@@ -43,7 +44,7 @@ def test_brute_force_finds_nothing_better(name: str, omega_h: Fraction) -> None:
 
 
 @pytest.mark.promise("The least error at each |z_p| (`tradeoff --predicted`)")
-@pytest.mark.parametrize("name", [*QUICK, *(pytest.param(name, marks=pytest.mark.slow) for name in REGISTRY)])
+@pytest.mark.parametrize("name", sampled([*QUICK, *TRADED], quick=["RK4", "SYM"]))
 def test_each_point_decays_as_fast_as_is_said_and_forces_what_is_said(name: str) -> None:
     method = lookup(name)
     front = error_front(method)
@@ -73,7 +74,7 @@ def test_it_ends_at_the_least_modulus_and_at_no_rate_that_is_not_reached() -> No
 
 @pytest.mark.slow
 def test_where_modulus_falls_on_without_end_rates_beyond_what_is_looked_at_have_no_point() -> None:
-    front = error_front(lookup("bdf3"))
+    front = error_front(lookup("bdf3"), [0.999, 0.1])
     assert best_point(lookup("bdf3")) is None
     assert 0.1 not in {point.z_abs_below for point in front}
     assert front[0].z_abs_below == 0.999

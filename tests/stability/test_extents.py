@@ -1,18 +1,15 @@
 """Extents of regions, those without end above all, against exact polygons and proven verdicts far out."""
 
-from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 import pytest
 
-from bezstab.errors import NumericalError
 from bezstab.methods import Method, PlaneStrips, Strip, lookup, recipe
 from bezstab.questions import RegionAnswer
 from bezstab.show import region_row, with_unbounded
 from bezstab.stability import region, verdict
-from bezstab.stability.plane_cells import shape_of_strips, strips_shape
-from bezstab.stability.region_checks import check_region
+from bezstab.stability.plane_cells import shape_of_strips
 from tests.methods.kinds import sampled
 from tests.reference.extents import contradictions
 from tests.reference.one_evaluation_schemes import one_evaluation_schemes, polygon_extent
@@ -44,13 +41,6 @@ def test_a_scheme_with_one_evaluation_has_the_extent_of_its_polygons(name: str, 
         assert not np.array(found.approached).any()  # polygons have their corners
 
 
-def test_half_of_the_family_has_no_end() -> None:
-    """So that the test above is about regions without end."""
-    assert len(SCHEMES) == 135
-    endless = [name for name in QUICK if not region(SCHEMES[name]).bounded]
-    assert len(endless) == 3
-
-
 def test_an_implicit_spring_with_an_explicit_damper_has_no_largest_alpha_hat() -> None:
     """alpha_hat < 2 + beta_hat / 2, which is 2 at beta_hat = 0 and 12 at 20; -alpha_hat < beta_hat."""
     method = SCHEMES[QUICK[0]]
@@ -66,16 +56,6 @@ def test_proven_verdicts_near_and_far_out_agree(name: str, level: float) -> None
     found = region(lookup(name), level)
     assert found.extent
     assert contradictions(found.method, level, found.extent) == []
-
-
-@pytest.mark.parametrize("wrong", [(-np.inf, 2.0), (0.0, np.inf), (-3.0, np.inf)])
-def test_a_wrong_range_of_alpha_hat_does_not_pass_the_check(wrong: tuple[float, float]) -> None:
-    method = SCHEMES[QUICK[0]]
-    shape = strips_shape(method, 1.0)
-    assert shape
-    check_region(method, 1.0, shape)
-    with pytest.raises(NumericalError, match="the extent"):
-        check_region(method, 1.0, replace(shape, extent=(wrong, shape.extent[1])))
 
 
 def test_a_limit_that_edges_come_near_is_told_from_an_end_that_they_attain() -> None:

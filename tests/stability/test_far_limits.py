@@ -5,22 +5,9 @@ import pytest
 
 from bezstab.methods import lookup
 from bezstab.stability import spectral_radius
-from bezstab.stability.far_limits import FarLimit, least_far_limit
+from bezstab.stability.far_limits import least_far_limit
 from bezstab.stability.plane_pencils import plane_pencil_of
 from tests.reference.second_order_methods import second_order
-
-
-@pytest.mark.parametrize(
-    ("limit", "at_hundred"),
-    [
-        (FarLimit(0.0, (0, 1)), (1.0, 100.0)),
-        (FarLimit(0.0, (1, 0)), (100.0, 1.0)),
-        (FarLimit(0.0, (1, 1), ratio=3.0), (300.0, 100.0)),
-        (FarLimit(0.0, (1, 2), ratio=4.0), (200.0, 10000.0)),
-    ],
-)
-def test_a_way_keeps_its_ratio(limit: FarLimit, at_hundred: tuple[float, float]) -> None:
-    assert limit.point(100.0) == pytest.approx(at_hundred)
 
 
 @pytest.mark.parametrize("name", ["average-acceleration", "hht", "generalized-alpha", "imex-euler", "implicit-euler"])

@@ -48,15 +48,6 @@ def test_symplectic_euler_leaves_velocities_half_a_step_off() -> None:
     assert cost.times_least_velocity == pytest.approx(1, rel=0.01)
 
 
-def test_strong_feedback_costs_gauss4_velocities_alone() -> None:
-    robust = choose(lookup("gauss4"), "robust", margins=False)
-    cost = feedback_cost(lookup("gauss4"), robust.alpha_hat, robust.beta_hat)
-    assert cost.times_least is not None
-    assert cost.times_least_velocity is not None
-    assert cost.times_least < 1
-    assert cost.times_least_velocity > 1000
-
-
 def test_a_motion_too_fast_for_its_steps_is_refused() -> None:
     for point in ((0.5, 0.1), (10.0, 10.0)):
         with pytest.raises(InputError, match="omega h = 1 rad a step"):

@@ -7,26 +7,13 @@ import numpy as np
 import pytest
 
 from bezstab.errors import InputError
-from bezstab.methods import ExponentialSum, forced_errors, leading_error, lookup
+from bezstab.methods import forced_errors, leading_error, lookup
 from bezstab.stability import forced_error, forced_response, turning_response
+from tests.reference.forced_runs import exact_value
 
 METHODS = ("B4", "AB4", "AB8", "RK4", "dopri5", "SYM", "verlet-half", "hht", "gauss4")
 OMEGAS = (Fraction(1, 10**6), Fraction(1, 100), Fraction(3, 10), Fraction(9, 10))
 POINTS = ((1e-5, 1e-10), (0.02, 1e-4), (0.02, 3e-4))
-
-
-def value(terms: ExponentialSum, alpha_hat: float, beta_hat: float, omega: Fraction) -> mpmath.mpc:
-    theta = 1j * mpmath.mpf(omega.numerator) / omega.denominator
-    return mpmath.fsum(
-        mpmath.mpf(c.numerator)
-        / c.denominator
-        * mpmath.mpf(alpha_hat) ** i
-        * mpmath.mpf(beta_hat) ** j
-        * theta**m
-        * mpmath.exp(theta * k.numerator / k.denominator)
-        for (i, j), of_powers in terms.items()
-        for (k, m), c in of_powers.items()
-    )
 
 
 @pytest.mark.promise("The error that a method forces on a constraint that moves (`methods`, `choose --goal accurate`)")
@@ -38,9 +25,9 @@ def test_it_has_ten_digits_of_the_exact_functions(name: str, omega: Fraction) ->
     for point in POINTS:
         found = forced_error(lookup(name), *point, omega)
         with mpmath.workdps(150):  # down to theta^10 = 1e-60 all terms cancel
-            below = abs(value(errors.denominator, *point, omega))
-            position = abs(value(errors.position, *point, omega)) / below
-            velocity = abs(value(errors.velocity, *point, omega)) / below / float(omega)
+            below = abs(exact_value(errors.denominator, *point, omega))
+            position = abs(exact_value(errors.position, *point, omega)) / below
+            velocity = abs(exact_value(errors.velocity, *point, omega)) / below / float(omega)
         # D is a difference of powers of z - 1: ten digits are left where omega h is large and steps are many
         assert float(found.position) == pytest.approx(float(position), rel=1e-10)
         assert float(found.velocity) == pytest.approx(float(velocity), rel=1e-10)
@@ -68,22 +55,18 @@ def test_a_response_is_the_error_over_the_power_of_theta_that_it_begins_with(nam
     assert response[2] == 0  # no step follows that
 
 
-def test_a_step_of_five_h_forces_what_its_own_parameters_do() -> None:
-    five = forced_error(lookup("RK4@5"), 0.1, 0.01, Fraction(1, 100))
-    one = forced_error(lookup("RK4"), 0.5, 0.25, Fraction(1, 20))
-    assert float(five.position) == pytest.approx(float(one.position), rel=1e-12)
-    assert float(five.velocity) == pytest.approx(float(one.velocity), rel=1e-12)
-
-
 @pytest.mark.parametrize("omega", [Fraction(0), Fraction(1), Fraction(1, 10**7)])
 def test_a_motion_that_no_step_follows_or_that_is_none_is_refused(omega: Fraction) -> None:
     with pytest.raises(InputError, match="rad a step: expected 1e-06 to 1"):
         forced_error(lookup("RK4"), 0.5, 0.1, omega)
 
 
-def test_normals_that_turn_add_to_gauss_alone() -> None:
-    found = turning_response(lookup("gauss4"), 3.0, 12.0)
+@pytest.mark.promise("What normals that turn add to it")
+@pytest.mark.parametrize("multiple", [1, 5])
+def test_normals_that_turn_add_to_gauss_alone(multiple: int) -> None:
+    """-b/5184 of the turning normal, b of the method's own step, where methods/test_steady_errors has it as a run."""
+    found = turning_response(lookup(f"gauss4@{multiple}"), 3.0, 12.0)
     assert found
     assert found[0] == 3
-    assert found[1] == pytest.approx(-12 / 5184, rel=1e-14)
+    assert found[1] == pytest.approx(-12 * multiple**6 / 5184, rel=1e-14)
     assert turning_response(lookup("RK4"), 1.0, 1.0) is None

@@ -5,7 +5,7 @@ import pytest
 
 from bezstab.methods import LinearMultistep, Method, lookup
 from bezstab.stability import dominant_pole, pole_map, poles, spectral_radius
-from tests.methods.kinds import EXPLICIT, IMPLICIT, SOLVED, sampled
+from tests.methods.kinds import EXPLICIT, IMPLICIT, sampled
 from tests.reference.companion_poles import radius
 
 
@@ -22,16 +22,17 @@ def test_the_map_is_the_dominant_pole_on_the_mesh(name: str, columns: int, rows:
     "|z_p| over a map",
     computed="1e-12 of what all poles give; 1e-4 for PECE, whose four roots meet at z = 1",
 )
-@pytest.mark.parametrize("name", sampled(EXPLICIT))
-@pytest.mark.slow_except("B2")
+@pytest.mark.parametrize("name", sampled([*EXPLICIT, *IMPLICIT], quick=["B2", "RK4", "bdf2", "radau3"]))
 def test_a_map_follows_the_pole_that_is_largest_everywhere(name: str) -> None:
-    method = lookup(name)
-    for low, high in (((-3, -2), (5, 6)), ((0, 0), (40, 900))):  # kinks and branch points; far outside
+    for low, high in (((-9, -6), (9, 12)), ((0, 0), (40, 900))):  # kinks, branch points, infinite poles; far outside
         alpha_hat, beta_hat = np.linspace(low, high, 120).T
         grid = (alpha_hat, beta_hat[:, np.newaxis])
-        every = np.abs(poles(method, *grid)).max(axis=-1)
-        # of ABM four roots meet at z = 1 along a curve of the plane, and float64 keeps a quarter of the digits there
-        assert np.allclose(spectral_radius(method, *grid), every, rtol=1e-4 if "ABM" in name else 1e-12, atol=0)
+        every = np.abs(poles(lookup(name), *grid)).max(axis=-1)
+        apart = np.abs(spectral_radius(lookup(name), *grid) - every) / every
+        # of ABM four roots meet at z = 1 along a curve of the plane, and float64 keeps a quarter of the digits there;
+        # where a pole is 1e6, of an implicit P's leading coefficient a millionth is left: it is that much less known
+        allowed = 1e-4 if "ABM" in name else 1e-12 if name in EXPLICIT else 1e-10 * np.maximum(1, every)
+        assert (apart <= allowed).all()
 
 
 def test_a_map_whose_rows_leap_over_branch_points_follows_no_pole_across_them() -> None:
@@ -41,15 +42,3 @@ def test_a_map_whose_rows_leap_over_branch_points_follows_no_pole_across_them() 
     grid = (np.linspace(8.673741, 86.61854885, 211), np.linspace(-28.26979122, 65.9313013, 197)[:, np.newaxis])
     every = np.abs(poles(method, *grid)).max(axis=-1)
     assert np.allclose(spectral_radius(method, *grid), every, rtol=1e-12, atol=0)
-
-
-@pytest.mark.parametrize("name", sampled(IMPLICIT, quick=SOLVED))
-def test_the_pole_of_an_implicit_method_is_followed_past_where_one_is_infinite(name: str) -> None:
-    method = lookup(name)
-    for low, high in (((-9, -6), (9, 12)), ((0, 0), (40, 900))):  # infinite at positive mu; far outside
-        alpha_hat, beta_hat = np.linspace(low, high, 120).T
-        grid = (alpha_hat, beta_hat[:, np.newaxis])
-        every = np.abs(poles(method, *grid)).max(axis=-1)
-        # where a pole is 1e6, of P's leading coefficient a millionth is left: it is that much less well known
-        apart = np.abs(spectral_radius(method, *grid) - every) / every
-        assert (apart < 1e-10 * np.maximum(1, every)).all()

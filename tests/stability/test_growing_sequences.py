@@ -1,4 +1,3 @@
-import math
 from fractions import Fraction
 from itertools import islice
 
@@ -6,15 +5,9 @@ import numpy as np
 import pytest
 
 from bezstab.methods import lookup, step_matrix
-from bezstab.stability.growing_sequences import growing_words, grows, growth_of, lengths_tried
+from bezstab.stability.growing_sequences import growing_words, grows, growth_of
 
 ONE, HALF = Fraction(1), Fraction(1, 2)
-
-
-def test_the_lengths_tried_span_the_range() -> None:
-    lengths = lengths_tried(Fraction(1, 10))
-    assert (lengths[0], lengths[-1]) == (Fraction(1, 10), ONE)
-    assert lengths_tried(ONE) == [1]
 
 
 def test_the_first_word_is_short_and_grows() -> None:
@@ -63,8 +56,3 @@ def test_growth_is_that_of_a_run() -> None:
     word = [ONE, Fraction(short) * 60]
     # after 60 rounds the lesser pole is gone: their product is that of determinants, 0.6 a round
     assert growth_of(matrix, word) == pytest.approx((abs(c) + abs(v)) / before, rel=1e-9)
-
-
-def test_growth_is_infinite_where_a_step_has_no_solution() -> None:
-    # average acceleration divides by 1 + alpha_hat / 2 + beta_hat / 4, zero at (-3, 2)
-    assert growth_of(step_matrix(lookup("average-acceleration"), Fraction(-3), Fraction(2)), [ONE]) == math.inf

@@ -3,6 +3,7 @@
 from fractions import Fraction
 from math import floor
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -31,13 +32,6 @@ POSITIVE = st.fractions(Fraction(1, 100), 4, max_denominator=1000)
 def test_a_fresh_drive_has_the_polynomial_of_its_method(way: str, a: Fraction, b: Fraction) -> None:
     expected = closed_loop_at(lookup(way), a, b)
     assert held_polynomial(way, a, b, Timing()) == [c / expected[0] for c in expected]
-
-
-@given(a=POSITIVE, b=POSITIVE)
-@settings(deadline=None, max_examples=10)
-def test_one_step_late_is_the_recipe_with_the_state_before(a: Fraction, b: Fraction) -> None:
-    found = held_polynomial("SYM", a, b, Timing(late=Fraction(1)))
-    assert found == [1, -2, 1 + a + b, -a]  # z (z - 1)^2 + b z + a (z - 1)
 
 
 def converges_by_law(way: str, a: Fraction, b: Fraction, timing: Timing) -> bool:
@@ -90,18 +84,9 @@ def test_where_no_closed_form_is_known_there_is_no_law(way: str, timing: Timing)
     assert law_bounds(way, Fraction(1), timing) == ()
 
 
-@pytest.mark.parametrize("every", [2, 3, 10])
-def test_stiffness_alone_is_unstable_if_it_is_held(every: int) -> None:
-    assert held_verdict("SYM", Fraction(0), Fraction(1, 10**6), Timing(every)) == "diverges"
-
-
 DAMPING_RATIOS = (0.05, 0.1, 0.3, 0.7, 1, 2)
 LIMITS = {
-    Timing(): (1.902, 1.810, 1.488, 1.041, 0.828, 0.472),
-    Timing(late=Fraction(1)): (0.099, 0.192, 0.441, 0.473, 0.400, 0.235),
     Timing(late=Fraction(2)): (0.050, 0.098, 0.243, 0.289, 0.2485, 0.146),
-    Timing(every=2): (0.200, 0.400, 0.936, 0.590, 0.449, 0.243),
-    Timing(every=4): (0.067, 0.133, 0.400, 0.320, 0.236, 0.123),
     Timing(every=10): (0.022, 0.044, 0.133, 0.136, 0.098, 0.050),
     Timing(every=4, late=Fraction(4)): (0.018, 0.036, 0.095, 0.123, 0.105, 0.060),
 }
@@ -223,13 +208,6 @@ def test_a_drive_without_damping_is_told_how_much_it_needs(a: Fraction) -> None:
     assert found.every is None  # without damping it is marginal even when it is fresh
 
 
-def test_a_marginal_drive_is_not_taken_for_a_stable_one() -> None:
-    """Fresh and undamped its poles have modulus one at any stiffness, which float64 takes for a little less."""
-    found = held_limits("SYM", Fraction(0), Fraction("0.01"), Timing())
-    assert found.kp is None
-    assert found.kd == pytest.approx((0, 1.995), rel=1e-9)
-
-
 def test_where_nothing_helps_there_are_no_limits() -> None:
     found = held_limits("SYM", Fraction("1.8"), Fraction("0.8"), Timing(every=4))
     assert (found.kp, found.kd, found.every, found.late) == (None, None, None, None)
@@ -249,20 +227,12 @@ MAPPED = [
 
 @pytest.mark.promise("Drives that are held or late (`check --pd --every --late`)")
 @pytest.mark.parametrize(("way", "timing"), MAPPED, ids=str)
-def test_the_cells_of_a_map_are_stable_where_the_verdict_is_proven(way: str, timing: Timing) -> None:
-    found = held_map(way, timing, 12, (0.01, 0.0001))
-    for row, b in enumerate(found.beta_hat):
-        for column, a in enumerate(found.alpha_hat):
-            z_abs = found.z_abs[row, column]
-            if abs(z_abs - 1) > 1e-9:  # float64's rounding of a pole
-                verdict = held_verdict(way, Fraction(a), Fraction(b), timing)
-                assert (z_abs < 1) == (verdict == "converges"), (a, b)
-
-
-@pytest.mark.parametrize(("way", "timing"), MAPPED, ids=str)
-def test_a_map_shows_all_that_is_stable_and_little_else(way: str, timing: Timing) -> None:
+def test_a_map_shows_all_that_is_stable_and_its_cells_are_where_the_verdict_is_proven(way: str, timing: Timing) -> None:
     found = held_map(way, timing, 40, (0.0, 0.0))
     stable = found.z_abs < 1
+    for row, column in np.argwhere(np.abs(found.z_abs - 1) > 1e-9)[::17]:  # float64's rounding of a pole
+        point = Fraction(found.alpha_hat[column]), Fraction(found.beta_hat[row])
+        assert stable[row, column] == (held_verdict(way, *point, timing) == "converges"), point
     for edge, axis in ((stable.any(axis=0), found.alpha_hat), (stable.any(axis=1), found.beta_hat)):
         reach = axis[edge].max() / axis[-1]
         assert (0.7 < reach < 1) or axis[-1] == STRONGEST

@@ -6,22 +6,21 @@ from numpy.polynomial.polynomial import polyroots, polysub, polyval2d
 
 from bezstab.methods import Method, lookup
 from bezstab.stability import pencil_of, region
-from bezstab.stability.locus_tracks import STEP_SHARE, sampled_angles, tracks
+from bezstab.stability.locus_tracks import tracks
 from tests.reference.slice_integral import slice_area
 from tests.stability.made_methods import CLOSE_BRANCHES, FAR_INTERVAL
 
 LEVELS = [1.0, 0.93, 0.75, 0.5]
 
 
-@pytest.mark.parametrize("level", [*LEVELS, 0.925, 0.935])
+@pytest.mark.parametrize("level", LEVELS)
 @pytest.mark.parametrize("method", [CLOSE_BRANCHES, FAR_INTERVAL], ids=["close", "far"])
 @pytest.mark.slow_except("far-0.93")
 def test_the_area_is_that_of_the_slices(method: Method, level: float) -> None:
-    assert region(method, level).area == pytest.approx(slice_area(method, level).area, rel=1e-8)
-
-
-def test_the_area_between_close_branches_to_twelve_digits() -> None:
-    assert region(CLOSE_BRANCHES, 0.93).area == pytest.approx(27.904641404469, rel=1e-12)
+    area = region(method, level).area
+    assert area == pytest.approx(slice_area(method, level).area, rel=1e-8)
+    if (method, level) == (CLOSE_BRANCHES, 0.93):
+        assert area == pytest.approx(27.904641404469, rel=1e-12)
 
 
 @pytest.mark.parametrize("level", LEVELS)
@@ -45,31 +44,3 @@ def test_every_branch_solves_pi_between_its_samples(name: str) -> None:
         mu = track.at(theta)
         size = polyval2d(np.full(theta.shape, 0.9), np.abs(mu), np.abs(pencil.table))
         assert (np.abs(polyval2d(0.9 * np.exp(1j * theta), mu, pencil.table)) < 1e-12 * size).all()
-
-
-@pytest.mark.parametrize("name", ["RK4", "ABM3"])
-def test_all_branches_together_are_all_roots(name: str) -> None:
-    pencil = pencil_of(lookup(name))
-    theta = np.array([1.0])
-    found = [
-        complex(track.at(theta)[0]) for track in tracks(pencil, 0.9, finer=1) if track.theta[0] < 1 < track.theta[-1]
-    ]
-    powers = (0.9 * np.exp(1j)) ** np.arange(pencil.steps + 1)
-    assert np.sort_complex(np.array(found)) == pytest.approx(
-        np.sort_complex(np.roots((powers @ pencil.table)[::-1])), rel=1e-9
-    )
-
-
-def test_a_finer_sampling_has_shorter_steps_throughout() -> None:
-    coarse, fine = (sampled_angles(pencil_of(CLOSE_BRANCHES), 0.93, finer) for finer in (1, 2))
-    assert len(fine) > 1.5 * len(coarse)
-    assert np.diff(fine).max() < 0.6 * np.diff(coarse).max()
-
-
-def test_steps_are_a_share_of_the_distance_to_the_nearest_branch_point() -> None:
-    pencil = pencil_of(CLOSE_BRANCHES)
-    theta = sampled_angles(pencil, 0.93, finer=1)
-    z = 0.93 * np.exp(1j * theta)
-    distance = np.abs(z[:, np.newaxis] - pencil.branch_points_in_z).min(axis=1)
-    step = 0.93 * np.diff(theta)
-    assert (step <= STEP_SHARE * np.minimum(distance[1:], distance[:-1])).all()

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bezstab.methods import lookup, step_matrix
-from bezstab.stability.lyapunov_polygons import RAYS, _flow_to_next_ray, invariant_polygon, proves_decay
+from bezstab.stability.lyapunov_polygons import invariant_polygon, proves_decay
 
 ONE, HALF, NONE = Fraction(1), Fraction(1, 2), Fraction(0)
 SQUARE = [(ONE, NONE), (NONE, ONE)]
@@ -50,21 +50,3 @@ def test_none_is_found_where_a_step_grows() -> None:
     matrix = step_matrix(lookup("SYM"), Fraction(1, 10), Fraction(5))
     matrices = np.array([[[float(entry) for entry in row] for row in matrix.at(s)] for s in (HALF, ONE)])
     assert invariant_polygon(matrix, np.array([0.5, 1.0]), matrices, None, np.eye(2), HALF) is None
-
-
-def test_a_flow_grows_from_ray_to_ray_as_its_orbits_do() -> None:
-    # x' = x, y' = -y turns from the y axis to the x axis on hyperbolas x y = constant: r^2 is as 1 / sin(2 phi)
-    growth, targets, _ = _flow_to_next_ray(np.diag([1.0, -1.0]))
-    forwards, backwards = growth
-    start, end = RAYS // 4, RAYS // 18  # 45 and about 10 degrees
-    numbers = np.arange(end + 1, start + 1)
-    assert (targets[1, numbers] == numbers - 1).all()
-    grown = np.log(1 / np.sin(2 * np.pi * end / RAYS)) / 2
-    assert backwards[numbers].sum() == pytest.approx(grown, rel=1e-3)  # of second order in the angle between rays
-    assert np.isneginf(forwards[numbers]).all()
-
-
-def test_a_spiral_grows_alike_from_each_ray() -> None:
-    growth, _, _ = _flow_to_next_ray(np.array([[-3.0, -2.0], [2.0, -3.0]]))  # exp(-3 t) while it turns by 2 t
-    assert growth[0] == pytest.approx(-1.5 * np.pi / RAYS, rel=1e-12)
-    assert np.isneginf(growth[1]).all()

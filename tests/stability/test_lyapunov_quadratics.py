@@ -10,11 +10,6 @@ HALF, ONE = Fraction(1, 2), Fraction(1)
 IDENTITY = [[ONE, Fraction(0)], [Fraction(0), ONE]]
 
 
-def test_the_best_form_of_a_rotation_that_shrinks_is_round() -> None:
-    turn = 0.9 * np.array([[[0.6, -0.8], [0.8, 0.6]]])
-    assert centred_form(turn, np.array([1 - 0.81])) == pytest.approx(np.eye(2), abs=1e-6)
-
-
 def test_a_form_that_all_matrices_make_smaller_is_found() -> None:
     # both shrink the norm |T x|, in whose coordinates they are plain
     plain = np.array([[[0.5, 0.3], [0.0, 0.5]], [[0.5, 0.0], [0.3, 0.5]]])
@@ -39,10 +34,6 @@ def test_a_form_that_is_not_positive_proves_nothing() -> None:
     matrix = step_matrix(lookup("implicit-euler"), Fraction(0), ONE)
     negative = [[-entry for entry in row] for row in IDENTITY]
     assert not proves_decay(negative, matrix, HALF)
-
-
-def test_a_form_of_another_point_proves_nothing() -> None:
-    assert not proves_decay(IDENTITY, step_matrix(lookup("SYM"), HALF, Fraction(3)), HALF)
 
 
 def test_rounding_keeps_small_entries_exact_in_units_of_the_last() -> None:

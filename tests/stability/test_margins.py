@@ -58,15 +58,6 @@ def test_margins_of_symplectic_euler_are_those_of_its_triangle(a: float, share: 
     assert (found.alpha[0], found.beta[0]) == (0, 0)
 
 
-def test_margins_of_explicit_euler_have_formulas() -> None:
-    """z = 1 + mu: a conjugate pair is inside for beta_hat < alpha_hat, a real pair for mu > -2."""
-    a, b = 0.01, 0.0025
-    found = stability_margins(lookup("B1"), a, b)
-    assert found.h == pytest.approx(a / b, rel=1e-14)
-    assert found.alpha == pytest.approx((b / a, (4 + b) / (2 * a)), rel=1e-14)
-    assert found.beta == pytest.approx((0, math.sqrt(a / b)), rel=1e-14)
-
-
 @pytest.mark.promise(
     "Margins",
     computed=(
@@ -77,7 +68,7 @@ def test_margins_of_explicit_euler_have_formulas() -> None:
 @pytest.mark.parametrize(
     "name",
     sampled(
-        ["B2", "B4", "B12", "AB4", "ABM3", "RK4", "SYM", "RK4@5", "bdf3", "am4", "verlet-kdk", "yoshida4"],
+        ["B4", "B12", "AB4", "ABM3", "RK4", "RK4@5", "bdf3", "am4", "verlet-kdk", "yoshida4"],
         quick=["B4", "RK4", "verlet-kdk"],
     ),
 )
@@ -91,23 +82,13 @@ def test_each_end_of_a_margin_lies_between_two_proven_verdicts(name: str) -> Non
 
 
 @pytest.mark.promise("Margins")
-@pytest.mark.parametrize("name", ["B4", "RK4", "bdf3"])
-@pytest.mark.parametrize("exponent", [3, 5, 7])
+@pytest.mark.parametrize(("name", "exponent"), [("B4", 7), ("RK4", 3), ("RK4", 5), ("bdf3", 7)])
 def test_margins_of_weak_feedback_are_right_however_far(name: str, exponent: int) -> None:
     """Rounding cannot tell such a mu from the imaginary axis; factors reach from 1e-20 to 1e8."""
     alpha_hat, beta_hat = Fraction(2, 10**exponent), Fraction(1, 10 ** (2 * exponent))
     found = stability_margins(lookup(name), alpha_hat, beta_hat)
     assert found.alpha[1] > 10 ** (exponent - 1)
     assert_each_end_is_proven(name, alpha_hat, beta_hat)
-
-
-def test_the_least_alpha_of_a_bezier_method_falls_with_the_third_power_of_beta() -> None:
-    """mu = i theta + C theta^3 i - D theta^4 + ...: order two, whose leading error is imaginary, so alpha_hat ~ q^2."""
-    lower = [
-        stability_margins(lookup("B4"), Fraction(2, 10**k), Fraction(1, 10 ** (2 * k))).alpha[0] for k in (3, 4, 5)
-    ]
-    assert lower[0] / lower[1] == pytest.approx(1000, rel=1e-4)
-    assert lower[1] / lower[2] == pytest.approx(1000, rel=1e-6)
 
 
 @pytest.mark.parametrize("name", ["B4", "RK4"])
@@ -152,24 +133,19 @@ def test_the_largest_step_of_fixed_gains_is_the_margin() -> None:
         assert limit == pytest.approx(stability_margins(method, a, b).h * 0.001, rel=1e-9)
 
 
-def test_a_setting_that_stays_where_it_is_has_no_largest_step() -> None:
-    assert largest_stable_step(lookup("SYM"), lambda step: [(Fraction(1), Fraction(1, 5))], 0.01) is None
+def test_the_largest_step_of_a_setting_is_that_of_all_its_points_and_may_be_none() -> None:
+    inside = Fraction(1), Fraction(1, 5)
 
-
-def test_all_points_of_a_setting_count() -> None:
-    def points(step: Fraction) -> list[tuple[Fraction, Fraction]]:
-        return [(Fraction(1), Fraction(1, 5)), (Fraction(1), step)]  # SYM: beta_hat < 2 at alpha_hat = 1
-
-    assert largest_stable_step(lookup("SYM"), points, 0.01) == pytest.approx(2, rel=1e-12)
-
-
-def test_steps_that_mean_nothing_end_the_search() -> None:
-    def points(step: Fraction) -> list[tuple[Fraction, Fraction]]:
+    def until_one(step: Fraction) -> list[tuple[Fraction, Fraction]]:
         if step > 1:
             raise InputError("out of range")
-        return [(Fraction(1), Fraction(1, 5))]
+        return [inside]
 
-    assert largest_stable_step(lookup("SYM"), points, 0.01) is None
+    method = lookup("SYM")  # beta_hat < 2 at alpha_hat = 1
+    limit = largest_stable_step(method, lambda step: [inside, (Fraction(1), step)], 0.01)
+    assert limit == pytest.approx(2, rel=1e-12)
+    assert largest_stable_step(method, lambda step: [inside], 0.01) is None
+    assert largest_stable_step(method, until_one, 0.01) is None
 
 
 @pytest.mark.parametrize("name", ["B4", "ABM3@2"])

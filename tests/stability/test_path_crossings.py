@@ -12,11 +12,6 @@ from bezstab.stability.path_crossings import Path, crossing_factors
 from tests.methods.kinds import sampled
 
 
-def test_a_path_scales_its_point() -> None:
-    path = Path(lookup("B4"), Fraction(1, 2), Fraction(1, 10), (1, 2))
-    assert path.at(Fraction(3)) == (Fraction(3, 2), Fraction(9, 10))
-
-
 def test_a_path_that_stays_where_it_is_crosses_nothing() -> None:
     assert crossing_factors(Path(lookup("RK4"), Fraction(0), Fraction(1, 10), (1, 0))) == ()
 

@@ -7,8 +7,8 @@ import pytest
 from bezstab.errors import NumericalError
 from bezstab.methods import Method, closed_loop_at
 from bezstab.stability import dominant_pole, poles, spectral_radius, verdict
-from bezstab.stability.plane_pencils import plane_pencil_of
-from tests.reference.second_order_methods import RECIPES, as_second_order, companion_poles, newmark, second_order
+from tests.reference.companion_poles import eigenvalues
+from tests.reference.second_order_methods import RECIPES, as_second_order, second_order
 
 METHODS = [second_order(name) for name in RECIPES] + [as_second_order(name) for name in ("SYM", "B2", "RK4", "AB3")]
 
@@ -17,7 +17,7 @@ METHODS = [second_order(name) for name in RECIPES] + [as_second_order(name) for 
 def test_poles_are_eigenvalues_of_the_companion(method: Method) -> None:
     alpha_hat, beta_hat = np.meshgrid(np.linspace(0.03, 2.1, 23), np.linspace(0.02, 2.3, 29))
     z = np.sort(np.abs(poles(method, alpha_hat, beta_hat)), axis=-1)
-    expected = np.sort(np.abs(companion_poles(method, alpha_hat, beta_hat)), axis=-1)
+    expected = np.sort(np.abs(eigenvalues(method, alpha_hat, beta_hat)), axis=-1)
     assert np.abs(z - expected).max() < 1e-6  # eigenvalues keep half the digits of double poles
     assert np.median(np.abs(z - expected)) < 1e-14
     largest = np.abs(poles(method, alpha_hat, beta_hat)[..., 0])
@@ -62,8 +62,3 @@ def test_the_place_is_named_where_a_pole_leaves_the_range() -> None:
     alpha_hat, beta_hat = np.array([0.5, 1e308, 0.25]), np.array([0.1, 1.5e308, 0.3])
     with pytest.raises(NumericalError, match=r"alpha_hat = 1e\+308, beta_hat = 1.5e\+308 a pole leaves the range"):
         poles(second_order("old"), alpha_hat, beta_hat)
-
-
-def test_a_pencil_knows_its_degree_and_name() -> None:
-    assert plane_pencil_of(newmark("1/4", "1/4")).degree == 2
-    assert repr(plane_pencil_of(second_order("old"))) == "PlanePencil(old)"

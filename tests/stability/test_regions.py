@@ -6,22 +6,17 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from bezstab.methods import LinearMultistep, Method, RungeKutta, lookup, second_order_form
+from bezstab.methods import Method, RungeKutta, lookup, second_order_form
 from bezstab.rationals import rational
-from bezstab.stability import Extent, FloatArray, Region, region, spectral_radius, useful_window, verdict, window
-from bezstab.stability.plane_cells import strips_shape
-from tests.methods.kinds import EXPLICIT, FEW, SOLVED, sampled
-from tests.reference.companion_poles import eigenvalues, polynomial_at, radius
+from bezstab.stability import Extent, FloatArray, Region, region, useful_window, verdict, window
+from tests.methods.kinds import EXPLICIT, SOLVED, sampled
+from tests.reference.companion_poles import radius
 from tests.reference.enclosed_points import enclosed
 from tests.reference.fifty_digit_poles import modulus_from_p
-from tests.reference.least_moduli import least_modulus
+from tests.reference.random_methods import random_method
 from tests.reference.region_areas import region_area
-from tests.reference.second_order_methods import as_second_order
 from tests.reference.sliced_areas import proven_sliced_integral, sliced_area, stable
 from tests.stability.made_methods import multistep, runge_kutta
-
-EPS = float(np.finfo(float).eps)
-
 
 NAMES = [*EXPLICIT, "RK4@5"]
 
@@ -68,14 +63,11 @@ def test_a_step_of_m_h_divides_the_area_by_m_cubed(name: str, level: float, mult
     assert scaled == pytest.approx(plain / float(rational(multiple)) ** 3, rel=1e-13)  # rounding alone
 
 
-FAST = ["B4", "RK2", "SYM"]
-
-
 @pytest.mark.promise("Area of a region")
 @pytest.mark.parametrize(
     ("name", "level"),
     [
-        pytest.param(name, level, marks=[] if name in FAST and level == 1 else pytest.mark.slow)
+        pytest.param(name, level, marks=[] if name in {"B4", "RK2", "SYM"} and level == 1 else pytest.mark.slow)
         for name in NAMES
         for level in LEVELS
     ],
@@ -90,81 +82,20 @@ def test_slices_of_constant_alpha_hat_give_the_same_area(name: str, level: float
     assert sliced_area(lookup(name), level) == pytest.approx(shape.area, rel=1e-10)
 
 
-@pytest.mark.parametrize("name", sampled(NAMES, quick=FEW))
-@pytest.mark.parametrize("level", [1.0, 0.9])
-def test_counting_cells_converges_to_the_area(name: str, level: float) -> None:
-    method = lookup(name)
-    box = window(region(method))
-    full = np.prod(np.diff(box))
-    for size in (24, 96, 288):
-        a, b = (low + (high - low) * (np.arange(size) + 0.5) / size for low, high in box)
-        counted = stable(method, level, *np.meshgrid(a, b)).mean() * full
-        assert abs(counted - region(method, level).area) < full / size  # cells that the edge cuts: a few a row
-
-
-@pytest.mark.promise("Boundary")
-@pytest.mark.parametrize("name", sampled(NAMES))
-@pytest.mark.parametrize("level", LEVELS)
-@pytest.mark.slow_except("0.95-RK1")
-def test_every_boundary_point_has_the_modulus_of_the_level(name: str, level: float) -> None:
-    method = lookup(name)
-    for curve in region(method, level).boundary:
-        z = eigenvalues(method, *curve.T)
-        c = polynomial_at(method, *curve.T)
-        powers = np.arange(len(c) - 1, -1, -1)[:, None, None]
-        terms = c[..., None] * z**powers
-        with np.errstate(all="ignore"):  # infinite at a double root
-            condition = np.abs(terms).sum(axis=0) / np.abs((powers * terms).sum(axis=0))
-        top = np.argmax(np.abs(z), axis=1)
-        near = np.abs(z - np.take_along_axis(z, top[:, None], 1)) < 1e-2
-        near |= np.abs(z - np.take_along_axis(z, top[:, None], 1).conj()) < 1e-2
-        on_circle = np.abs(z) > level - 1e-3
-        condition = np.where(on_circle, condition, 0).max(axis=1)
-        # first order: eps times the root's condition; where m > 1 meet that is void and eps^(1/m) is what remains.
-        # Of six stages the coefficients of P, by which the eigenvalues know it, have themselves lost a digit more.
-        meeting = near.sum(axis=1)
-        for modulus, digits_lost in ((np.abs(z).max(axis=1), 1000), (spectral_radius(method, *curve.T), 100)):
-            bound = np.minimum(digits_lost * EPS * condition, np.where(meeting > 1, 30 * EPS ** (1 / meeting), 1e-10))
-            error = np.abs(modulus - level)
-            assert (error <= bound).all()
-            assert (error < 1e-10).mean() > 0.9  # all but corners and the points that crowd around them
-
-
 @pytest.mark.promise("Boundary", computed="|z_p| is the level to 1e-10, away from corners, in fifty digits")
-@pytest.mark.parametrize(("name", "level"), [("B4", 1.0), ("AB4", 0.95), ("RK4", 0.8), ("ABM3", 1.0), ("SYM", 0.95)])
+@pytest.mark.parametrize(
+    ("name", "level"),
+    [
+        *(("AB4", 0.95), ("RK4", 0.8), ("SYM", 0.95)),
+        *(pytest.param(name, 1.0, marks=pytest.mark.slow) for name in ("B4", "AB8", "ABM3", "dopri5", "RK4@5")),
+    ],
+)
 def test_boundary_points_in_fifty_digits(name: str, level: float) -> None:
     method = lookup(name)
     curve = np.concatenate(region(method, level).boundary)
     for alpha_hat, beta_hat in curve[np.linspace(0, len(curve) - 1, 12, dtype=int)[1:-1]]:
         # the point's own rounding
         assert modulus_from_p(method, alpha_hat, beta_hat) == pytest.approx(level, abs=1e-10)
-
-
-@pytest.mark.parametrize("name", sampled(NAMES))
-@pytest.mark.parametrize("level", [1.0, 0.95])
-def test_every_edge_separates_stable_from_unstable(name: str, level: float) -> None:
-    method = lookup(name)
-    shape = region(method, level)
-    if shape.extent is None:
-        return
-    scale = np.diff(shape.extent)[:, 0]
-    for curve in shape.boundary:
-        points = curve / scale
-        points = points[np.append(True, np.abs(np.diff(points, axis=0)).max(axis=1) > 1e-4)]  # corners repeat
-        back, ahead = points[1:-1] - points[:-2], points[2:] - points[1:-1]
-        tangent = back + ahead
-        cosine = np.sum(back * ahead, axis=1) / np.linalg.norm(back, axis=1) / np.linalg.norm(ahead, axis=1)
-        corners = np.append(points[1:-1][cosine < 0.9], points[:1], axis=0)
-        # where two arcs of S cross on the real axis the region ends in a cusp, thinner than the step at less than 0.02
-        smooth = (cosine > 0.99) & (np.linalg.norm(points[1:-1, None] - corners, axis=-1).min(axis=1) > 0.02)
-        assert smooth.sum() > 100 * (len(curve) // 400)
-        normal = (np.stack([-tangent[:, 1], tangent[:, 0]]) / np.linalg.norm(tangent, axis=1)).T
-        left, right = (
-            # 1e-6: a hundredth of the least chord, and 1e8 times the rounding of |z_p|
-            radius(method, *((points[1:-1] + sign * 1e-6 * normal)[smooth] * scale).T) - level
-            for sign in (1, -1)
-        )
-        assert (left * right < 0).all()
 
 
 @pytest.mark.promise("Boundary, drawn")
@@ -180,30 +111,14 @@ def test_the_boundary_encloses_exactly_the_stable_points(name: str, level: float
     assert (enclosed(region(method, level).boundary, points) == (modulus < level))[clear].all()
 
 
-@pytest.mark.slow
-@given(st.sampled_from(["B2", "B4", "AB3", "ABM3", "RK3", "RK4", "SIE", "SYM"]), st.floats(0.7, 1), st.floats(0.7, 1))
-@settings(max_examples=40, deadline=None)
-def test_regions_nest(name: str, one: float, other: float) -> None:
-    lower, upper = sorted((one, other))
-    assume(upper - lower > 0.02)  # beyond what chords hide
-    small, large = region(lookup(name), lower), region(lookup(name), upper)
-    assert small.area is not None
-    assert large.area is not None
-    assert 0 < small.area < large.area
-    assert enclosed(large.boundary, np.concatenate(small.boundary)).all()
+LEAST_SQUARED = {"B2": 1 / 3, "B3": 7 / 19, "AB3": 11 / 23, "B4": (66 + sqrt(5056)) / 350, "AB4": (11 + sqrt(616)) / 55}
+"""By hand, zeros p of the even part of (p - 1) |sigma|(p), for B2, B3, B4 and AB4: 6p^2 - 2, 38p^2 - 14,
+350p^4 - 132p^2 - 2, 55p^4 - 22p^2 - 9."""
 
 
-def test_least_moduli_in_closed_form() -> None:
-    # the even part of (p - 1) |sigma|(p), by hand: 6p^2 - 2, 38p^2 - 14, 350p^4 - 132p^2 - 2, 55p^4 - 22p^2 - 9
-    expected = {"B2": 1 / 3, "B3": 7 / 19, "AB3": 11 / 23}
-    expected |= {"B4": (66 + sqrt(5056)) / 350, "AB4": (11 + sqrt(616)) / 55}
-    for name, square in expected.items():
-        assert least_modulus(name) == pytest.approx(sqrt(square), rel=1e-12)
-
-
-@pytest.mark.parametrize("name", ["B2", "B3", "B4", "AB2", "AB3", "AB4"])
+@pytest.mark.parametrize("name", LEAST_SQUARED)
 def test_a_region_is_empty_exactly_below_the_least_modulus(name: str) -> None:
-    method, least = lookup(name), least_modulus(name)
+    method, least = lookup(name), sqrt(LEAST_SQUARED[name])
     for level in (least - 1e-6, 0.9 * least):
         assert region(method, level) == Region(method, level, 0.0, (), None)
     above = region(method, least + 1e-6)
@@ -274,33 +189,12 @@ def test_the_largest_alpha_hat_in_closed_form(name: str) -> None:
     assert found_extent(region(lookup(name)))[0][1] == pytest.approx(LARGEST[name], abs=1e-11)  # solved, not sampled
 
 
-def test_the_limit_of_rk4_is_that_of_the_engines_table() -> None:
-    assert found_extent(region(lookup("RK4")))[0][1] == pytest.approx(5.5706, abs=5e-5)  # as printed
-
-
-@pytest.mark.parametrize("level", [1.0, 0.9, 0.3])
-def test_the_extent_of_euler_at_a_level(level: float) -> None:
-    # alpha_hat = 2 - s, beta_hat = p - s + 1 at the triangle's corners s = +-2r, p = r^2
-    exact = ((2 - 2 * level, 2 + 2 * level), ((1 - level) ** 2, (1 + level) ** 2))
-    assert np.array(found_extent(region(lookup("RK1"), level))) == pytest.approx(np.array(exact), abs=1e-12)
-
-
 @pytest.mark.parametrize("level", [1.0, 0.9])
 def test_the_window_shows_the_region_the_origin_and_a_margin(level: float) -> None:
     shape = region(lookup("B3"), level)
     for (low, high), (first, last) in zip(found_extent(shape), window(shape), strict=True):
         assert low >= first == 0
         assert last == pytest.approx(1.05 * high)
-
-
-@pytest.mark.parametrize("name", sampled(["ABM3", "ABM4"], quick=["ABM3"]))
-@pytest.mark.slow
-def test_pece_as_a_recipe_has_its_region_at_a_level_of_two_digits(name: str) -> None:
-    """By strips of the plane, and by the locus in mu: ABM4's curves at 0.61 have coefficients of 384 bits."""
-    by_strips = strips_shape(as_second_order(name), 0.61)
-    assert by_strips
-    # integrals by two rules, each good to 1e-12 of the area
-    assert by_strips.area == pytest.approx(region(lookup(name), 0.61).area, rel=1e-11)
 
 
 def test_a_recipe_keeps_the_poles_that_no_feedback_moves() -> None:
@@ -329,30 +223,31 @@ def test_the_useful_window_is_the_window_of_what_has_no_such_islands(name: str) 
 USERS = [
     multistep("extrapolated BDF2", "1 -4/3 1/3", "0 4/3 -2/3"),
     multistep("damped leapfrog", "1 -1/4 -3/4", "0 2 -1/4"),
-    runge_kutta("SSP RK3", "1; 1/4 1/4", "1/6 1/6 2/3"),
     runge_kutta("two intervals", "1/9", "0 1"),
     runge_kutta("lobes", "2; 0 1", "0 0 1"),
 ]
 
 
 @pytest.mark.promise("Area of a user's method", computed="1e-9 against slices")
-@pytest.mark.slow
-@pytest.mark.parametrize("method", USERS, ids=lambda method: method.name)
-@pytest.mark.parametrize("level", [1.0, 0.8])
-def test_user_made_methods_have_the_sliced_area(method: Method, level: float) -> None:
+@pytest.mark.parametrize(
+    ("method", "level"),
+    [
+        (lookup("am3"), 1.0),
+        *(
+            pytest.param(method, level, marks=pytest.mark.slow)
+            for method in (*USERS, lookup("am4"), lookup("am6"))
+            for level in (1.0, 0.8)
+        ),
+    ],
+    ids=lambda case: getattr(case, "name", str(case)),
+)
+def test_user_made_and_adams_moulton_methods_have_the_sliced_area(method: Method, level: float) -> None:
     shape = region(method, level)
     if shape.extent is None:
         box = np.meshgrid(np.linspace(-1, 3, 300), np.linspace(-1, 3, 300))
         assert not stable(method, level, *box).any()
         return
     assert sliced_area(method, level, panels=128) == pytest.approx(shape.area, rel=1e-9)  # small lobes in a large box
-
-
-def test_ssp_rk3_has_the_region_of_rk3() -> None:
-    # every 3-stage method of order 3 has R = 1 + mu + mu^2/2 + mu^3/6
-    ssp = next(method for method in USERS if method.name == "SSP RK3")
-    assert region(ssp).area == pytest.approx(region(lookup("RK3")).area, rel=1e-13)
-    assert np.array(region(ssp).extent) == pytest.approx(np.array(region(lookup("RK3")).extent), abs=1e-12)
 
 
 def test_two_real_intervals_give_three_components() -> None:
@@ -366,47 +261,10 @@ def test_two_real_intervals_give_three_components() -> None:
     assert [*mixed.min(axis=0), *mixed.max(axis=0)] == pytest.approx([6, 0, 12, 27], abs=1e-12)
 
 
-TWELFTHS = st.integers(-36, 36).map(lambda n: rational(f"{n}/12"))
-
-
-FRACTIONS = st.integers(-11, 11).map(lambda n: rational(f"{n}/12"))
-
-
-@st.composite
-def methods(draw: st.DrawFn) -> Method:
-    """Draw a zero-stable multistep method of 2 or 3 steps, or a Runge-Kutta method of 2 or 3 stages."""
-    kind, one, zero = (
-        draw(st.sampled_from(["2 steps", "3 steps", "2 stages", "3 stages"])),
-        rational("1"),
-        rational("0"),
-    )
-    if kind == "2 steps":
-        q, b = draw(FRACTIONS), draw(TWELFTHS)
-        return Method(kind, LinearMultistep((one, -1 - q, q), (zero, b, 1 - q - b)), "")
-    if kind == "3 steps":
-        v, b, c = draw(FRACTIONS), draw(TWELFTHS), draw(TWELFTHS)
-        u = (1 + v) * draw(FRACTIONS)  # z^2 + u z + v inside the circle: |v| < 1, |u| < 1 + v
-        return Method(kind, LinearMultistep((one, u - 1, v - u, -v), (zero, b, c, 1 + u + v - b - c)), "")
-    stages = int(kind[0])
-    rows = tuple(tuple(draw(TWELFTHS) if j < i else zero for j in range(stages)) for i in range(stages))
-    weights = [draw(TWELFTHS) for _ in range(stages - 1)]
-    return Method(kind, RungeKutta(rows, (*weights, 1 - sum(weights, zero))), "")
-
-
-@given(methods(), st.sampled_from([1.0, 0.95, 0.8, 0.5]))
-@settings(max_examples=10, deadline=None)
-def test_random_methods_are_stable_where_the_boundary_says(method: Method, level: float) -> None:
-    is_stable_where_the_boundary_says(method, level)
-
-
-@pytest.mark.slow
-@given(methods(), st.sampled_from([1.0, 0.95, 0.8, 0.5]))
-@settings(max_examples=50, deadline=None)
-def test_more_random_methods_are_stable_where_the_boundary_says(method: Method, level: float) -> None:
-    is_stable_where_the_boundary_says(method, level)
-
-
-def is_stable_where_the_boundary_says(method: Method, level: float) -> None:
+@pytest.mark.parametrize("number", [pytest.param(n, marks=[pytest.mark.slow] if n % 5 else []) for n in range(15)])
+@pytest.mark.parametrize("level", [0.95, 0.5])
+def test_random_methods_are_stable_where_the_boundary_says(number: int, level: float) -> None:
+    method = random_method(number)
     shape = region(method, level)
     low, high = np.transpose(shape.extent or ((0, 6), (0, 9)))
     size, shift = high - low, 2e-3 * (high - low)  # 200 times what chords leave out
@@ -494,8 +352,7 @@ NEXT_TO_ONE = [0.999, 0.99995, 0.999999]
     ("name", "level"),
     [
         *(("trapezoid", level) for level in NEXT_TO_ONE),
-        ("average-acceleration", 0.99995),
-        pytest.param("average-acceleration", 0.999999, marks=pytest.mark.slow),
+        pytest.param("average-acceleration", 0.99995, marks=pytest.mark.slow),
     ],
 )
 def test_next_to_one_a_half_plane_is_a_disc_to_rounding_of_one_minus_the_level(name: str, level: float) -> None:
@@ -505,12 +362,11 @@ def test_next_to_one_a_half_plane_is_a_disc_to_rounding_of_one_minus_the_level(n
     assert region(lookup(name), level).area == pytest.approx(exact, rel=1e-15 / (1 - level))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "level"),
     [
-        pytest.param(name, level, marks=[] if level == 0.99995 else pytest.mark.slow)
-        for name in ("gauss4", "average-acceleration", "verlet-kdk")
-        for level in NEXT_TO_ONE
+        *(("gauss4", 0.999999), ("average-acceleration", 0.99995), ("verlet-kdk", 0.999999)),
     ],
 )
 def test_next_to_one_the_area_is_that_of_slices_whose_ends_are_proven(name: str, level: float) -> None:
@@ -518,20 +374,6 @@ def test_next_to_one_the_area_is_that_of_slices_whose_ends_are_proven(name: str,
     integral = proven_sliced_integral(lookup(name), level, panels=10, widened=1.01)
     assert integral.error < 1e-8 * integral.value
     assert region(lookup(name), level).area == pytest.approx(integral.value, rel=2e-8)
-
-
-@pytest.mark.parametrize(
-    ("name", "level"),
-    [
-        ("am3", 1.0),
-        pytest.param("am4", 0.8, marks=pytest.mark.slow),
-        *[pytest.param(name, level, marks=pytest.mark.slow) for name in ("am5", "am6") for level in (1.0, 0.8)],
-    ],
-)
-def test_adams_moulton_regions_have_the_area_of_their_slices(name: str, level: float) -> None:
-    shape = region(lookup(name), level)
-    assert shape.bounded
-    assert sliced_area(lookup(name), level) == pytest.approx(shape.area, rel=1e-9)
 
 
 @pytest.mark.parametrize("name", UNBOUNDED)
@@ -572,31 +414,6 @@ def crossed(curve: FloatArray, start: FloatArray, end: FloatArray) -> int:
     return int(((along > 0) & (along < 1)).sum())
 
 
-@pytest.mark.parametrize("name", UNBOUNDED)
-def test_the_boundary_of_an_unbounded_region_has_its_level(name: str) -> None:
-    for level in (1.0, 0.9):
-        shape = region(lookup(name), level)
-        points = np.concatenate([curve[3:-3:7] for curve in shape.boundary])
-        if points.size:  # at double poles eigenvalues keep half the digits, of bdf6 a few of twelve
-            z_abs = radius(lookup(name), points[:, 0], points[:, 1])
-            assert np.quantile(np.abs(z_abs - level), 0.9) < 1e-5
-
-
-@pytest.mark.parametrize("name", ["bdf3", "bdf4", "bdf5", "bdf6"])
-def test_the_lobe_of_a_bdf_method_is_its_locus(name: str) -> None:
-    scheme = lookup(name).scheme
-    assert isinstance(scheme, LinearMultistep)
-    z = np.exp(1j * np.linspace(0.1, 3, 50))
-    mu = np.polyval(np.array(scheme.rho, float), z) / np.polyval(np.array(scheme.sigma, float), z)
-    mu = mu[(mu.imag > 0) & (np.abs(mu) > 0.1)]
-    z_abs = radius(lookup(name), -2 * mu.real, np.abs(mu) ** 2)
-    active = mu[np.abs(z_abs - 1) < 1e-6]  # where no other root is outside
-    assert active.size > 10
-    drawn = np.concatenate(region(lookup(name)).boundary)
-    for point in np.stack([-2 * active.real, np.abs(active) ** 2], axis=-1):
-        assert np.abs(drawn - point).max(axis=1).min() < 0.05 * np.abs(point).max()  # 400 points of an arc
-
-
 def test_at_the_level_of_infinity_the_region_is_a_half_plane_of_mu() -> None:
     # theta = 3/4, r = 1/3: Re mu < -(1 - r^2) / (2 (1 - theta + r^2 theta)) = -4/3
     shape = region(theta_method("3/4"), 1 / 3)
@@ -621,16 +438,6 @@ def test_the_window_of_an_unbounded_region_holds_its_lobe_and_goes_on() -> None:
     curved = lobe[lobe[:, 1] > 0]
     assert alpha_high > 1.4 * curved[curved[:, 0] < 20, 0].max()
     assert beta_high > 1.4 * curved[:, 1].max()
-
-
-def test_a_map_passes_points_at_which_an_implicit_step_has_no_solution() -> None:
-    axis = np.linspace(-4, 4, 65)
-    z_abs = spectral_radius(lookup("implicit-euler"), axis, axis[:, np.newaxis])
-    assert np.isinf(z_abs[40, 16])  # 1 + alpha_hat + beta_hat = 0
-    assert not np.isnan(z_abs).any()
-    regular = np.isfinite(z_abs)
-    alpha_hat, beta_hat = (grid[regular] for grid in np.meshgrid(axis, axis))
-    assert z_abs[regular] == pytest.approx(radius(lookup("implicit-euler"), alpha_hat, beta_hat), rel=1e-9)
 
 
 def implicit_runge_kutta(rows: str, weights: str) -> Method:

@@ -58,16 +58,6 @@ def test_roots_of_very_different_size_keep_their_digits() -> None:
     assert np.sort(found.real) == pytest.approx(exact, rel=1e-13)
 
 
-def test_no_points_have_no_roots() -> None:
-    assert roots_of_table(np.ones((4, 2)), np.empty(0, complex)).shape == (3, 0)
-
-
-def test_a_linear_polynomials_root_is_a_quotient() -> None:
-    table = np.array([[1.0, 2.0], [1.0, 3.0]])  # 1 + 2 x + (1 + 3 x) y
-    x = np.array([0.5 + 1j, -2.0, 1e3j])
-    assert roots_of_table(table, x)[0] == pytest.approx(-(1 + 2 * x) / (1 + 3 * x), rel=1e-14)
-
-
 def test_roots_whose_powers_leave_float64_keep_their_digits() -> None:
     exact = np.array([1e-120, 1.0, 1e120])
     ascending = [-1.0, 1e120, -1e120, 1.0]  # of the product, where each coefficient is one term and trifles

@@ -4,8 +4,8 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from bezstab.methods import REGISTRY, LinearMultistep, accuracy, bezier, lookup
-from bezstab.stability import FAMILIES, bezier_limit, family_members
+from bezstab.methods import REGISTRY, STEP_FAMILIES, accuracy, lookup
+from bezstab.stability import bezier_limit, family_members
 from tests.reference.region_areas import region_area
 
 
@@ -16,7 +16,7 @@ def test_members_are_the_registered_methods_with_their_known_areas() -> None:
     assert [member.region.area for member in found] == pytest.approx(areas, abs=1e-12)
     assert [(member.order, member.error_constant) for member in found] == [accuracy(member.method) for member in found]
     prefixes = {"bezier": "B", "adams-bashforth": "AB"}
-    assert all(f"{prefixes[name]}{largest}" in REGISTRY for name, (_, largest) in FAMILIES.items())
+    assert all(f"{prefixes[name]}{family.largest}" in REGISTRY for name, family in STEP_FAMILIES.items())
 
 
 def extrapolated(values: list[float], n: list[int]) -> float:
@@ -37,16 +37,6 @@ def test_the_limit_is_where_the_family_tends() -> None:
     assert extrapolated([end[1][1] for end in ends if end], n) == pytest.approx(limit.beta_hat_max, abs=1e-5)
     constants = [float(member.error_constant) for member in found]
     assert extrapolated(constants, n) == pytest.approx(float(limit.error_constant), abs=1e-6)
-
-
-@pytest.mark.slow
-def test_the_weights_tend_to_those_of_the_limits_mapping() -> None:
-    scheme = bezier(400).scheme
-    assert isinstance(scheme, LinearMultistep)
-    with mp.workdps(30):
-        for j in range(4):
-            weight = mp.quad(lambda x, j=j: mp.e**x * (-x) ** j / mp.factorial(j), [0, 1])
-            assert float(scheme.sigma[1 + j]) == pytest.approx(float(weight), abs=5 / 400)
 
 
 @pytest.mark.promise(

@@ -135,20 +135,10 @@ def test_with_enough_damping_the_limit_is_that_of_constant_steps(ratio: str) -> 
 
 
 @pytest.mark.promise("Steps that vary, proven (`check --h-min --h-max`)")
-@pytest.mark.parametrize("name", ["RK4", "RK4@2", "tsit5", "implicit-euler", "gauss4", "trapezoid"])
+@pytest.mark.parametrize("name", ["RK4", "RK4@2", "implicit-euler", "gauss4"])
 def test_steps_that_commute_need_only_be_stable_alone(name: str) -> None:
     found = varying_steps(lookup(name), Fraction("0.1"), Fraction(1, 4), h=Fraction(1), h_min=TINY, h_max=Fraction(1))
     assert (found.varying, found.kind, found.certificate) == ("proven", "commuting", None)
-
-
-def test_one_step_of_the_range_that_does_not_decay_refutes() -> None:
-    # RK4 without damping decays for 0 < beta h < sqrt 8
-    method, h = lookup("RK4"), Fraction(1)
-    within = varying_steps(method, Fraction(0), Fraction(79, 10), h=h, h_min=Fraction(1, 10), h_max=h)
-    beyond = varying_steps(method, Fraction(0), Fraction(81, 10), h=h, h_min=Fraction(1, 10), h_max=h)
-    assert (within.varying, beyond.varying) == ("proven", "refuted")
-    assert beyond.sequence
-    assert Fraction(81, 10) * beyond.sequence[0] ** 2 >= 8
 
 
 def test_held_parameters_bear_what_fixed_ones_do_not() -> None:

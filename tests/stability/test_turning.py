@@ -30,7 +30,7 @@ def test_symplectic_euler_follows_its_own_shifted_polynomial(alpha_hat: float, b
 
 
 @pytest.mark.promise("What the motion does to a pole, for every integrator")
-@pytest.mark.parametrize("name", ["B4", "AB3", "RK4", "SIE", "ABM3", "trapezoid", "bdf2", "RK4@2", "AB2@1/2"])
+@pytest.mark.parametrize("name", ["B4", "AB3", "RK4", "ABM3", "trapezoid", "AB2@1/2"])
 @pytest.mark.parametrize(("alpha_hat", "beta_hat"), POINTS)
 def test_a_method_and_its_second_order_form_have_the_same_sensitivity(
     name: str, alpha_hat: float, beta_hat: float
@@ -55,11 +55,3 @@ def test_the_better_the_method_the_less_it_is_turned(rate: float, damping: float
         z = poles(lookup(name), alpha_hat, beta_hat)[0]
         chi = complex(turning_sensitivity(lookup(name), alpha_hat, beta_hat, z))
         assert abs(chi) < 5 * (rate * h) ** (order - 1)  # of a velocity scheme one order less
-
-
-def test_arrays_of_points_broadcast() -> None:
-    alpha_hat = np.linspace(0.1, 0.5, 5)
-    z = poles(lookup("B4"), alpha_hat, 0.1)
-    chi = turning_sensitivity(lookup("B4"), alpha_hat[:, np.newaxis], 0.1, z)
-    assert chi.shape == z.shape
-    assert np.allclose(chi[2], turning_sensitivity(lookup("B4"), alpha_hat[2], 0.1, z[2]))

@@ -1,0 +1,45 @@
+"""The fastest feedback without oscillation: the smallest dominant pole that is double, real and positive.
+
+From one, where both parameters are zero, the double pole is followed down along its curve, until another pole overtakes
+it or a parameter leaves the region's box. On the chart of a method with a mu that curve is the real axis, where both
+mu are the same; elsewhere P and P' are zero on it.
+"""
+
+import numpy as np
+
+from bezstab.stability.arrays import EPS, Extent
+from bezstab.stability.charts import Chart, Place
+from bezstab.stability.least_modulus import Active, other_poles, solved
+
+STEP = 1 / 100  # of the pole, from one place to the next; the last is halved until it is rounding
+ASIDE = 1e-7  # of mu: a double mu splits by 1e-8 in float64, which must not let a rival of equal modulus win
+CONJUGATE = 3e-8  # Im mu of mu, whose square is four roundings: two real mu that rounding parts move margins by 1e-8
+NEARBY = 0.2  # of one, and of the parameters: a place further from the last is on another curve
+
+
+def critical_place(chart: Chart, box: Extent) -> Place | None:
+    """Return the place on the chart; None if no double pole below one is dominant."""
+    pole, place, step, ended = 1.0, (0.0, 0.0), STEP, False
+    while pole > 0 and step > EPS:
+        lower = max(0.0, pole - step)
+        found = _double_at(chart, lower, place)
+        if found and all(0 <= each <= end for each, (_, end) in zip(chart.user_point(found), box, strict=True)):
+            pole, place = lower, found
+        else:
+            ended = True
+        if ended:
+            step /= 2
+    if pole == 1:
+        return None
+    return place if chart.real else (place[0] * (1 - ASIDE), place[0] * CONJUGATE)
+
+
+def _double_at(chart: Chart, pole: float, near: Place) -> Place | None:
+    """Return the place near another one where a pole is double; None if there is none, or a larger pole."""
+    double = [Active(complex(pole), multiplicity=2 if chart.real else 1, real=True)]
+    held = {2: pole} if chart.real else {1: 0.0, 2: pole}
+    found = solved(chart, near, double, held)
+    if found is None or np.abs(np.subtract(found.parameters, near)).max() > NEARBY * (1 + np.abs(near).max()):
+        return None
+    others = other_poles(chart, found.parameters, np.array([pole], complex), double)
+    return found.parameters if others is not None and np.abs(others).max(initial=0.0) < pole else None

@@ -1,0 +1,164 @@
+"""What holds of every command that prints rows: its schema, its keys, its forms and the width of its lines.
+
+A validator that is not ours holds the rows against the schema.
+"""
+
+import csv
+import io
+import json
+import os
+import pty
+import re
+import shlex
+import subprocess
+import sys
+
+import click
+import pytest
+from click.testing import CliRunner
+from jsonschema import Draft202012Validator
+
+from bezstab.cli import main
+from bezstab.show import ROW_KINDS, json_schema, shown_width
+from tests.cli.running import DATA, run
+
+SMALL = "--figure none --table none"
+WITHOUT_ROWS = {"explore", "schema"}
+"""Commands that open a window, or print a schema."""
+
+EXAMPLES = (
+    "poles --alpha 0.5 --beta 0.1",
+    "poles --alpha 1 --beta 2 --method SYM --all-poles",
+    "poles --alpha 0.5 --beta 0.1 --scene driven_four_bar --h 0.005",
+    f"region --method SYM --method bdf3 {SMALL}",
+    f"region --method SYM --method bdf3 --accuracy {SMALL}",
+    f"region --method SYM --scene driven_four_bar --h 0.01 {SMALL}",
+    "methods",
+    "methods SYM RK4@5",
+    "family bezier --from 2 --to 3 --figure none",
+    "choose --engine mujoco --h 0.002",
+    "choose --method SYM --h 0.01 --scene driven_four_bar",
+    "choose --method SYM --method RK1 --h 0.01",
+    "check --method SYM --alpha 2 --beta 2",
+    "check --method SYM --method RK2 --alpha 2 --beta 2",
+    "check --method SYM --alpha 2 --beta 100 --physical --h-min 0.00917 --h-max 1/60",
+    "check --engine mujoco=0.02,1 --h 0.002",
+    "check --engine bullet=0.2 --h 1/60 --chain 3 --mass-ratio 10",
+    "check --pd 1000,80,0.1 --h 1/240",
+    "check --pd 200,5,0.1 --h 0.002 --every 4 --late 1",
+    "check --method SYM --alpha 1 --beta 0.5 --h 0.01 --scene driven_four_bar",
+    "lint two_joints.xml",
+    "probe pendulum.csv --alpha 2/3 --beta 1/4 --method SYM --method RK4",
+    "probe pendulum.csv --method SYM --h 1/120",
+    "chains --engine bullet=0.2 --h 1/60 --to 3 --figure none",
+    "engines",
+    "engines --alpha 1 --beta 0.2 --h 0.002",
+    f"simulate --scene pendulum --method SYM --time 0.02 {SMALL}",
+    "verify --scene pendulum --method SYM --points 3",
+    "verify --scene pendulum --method RK2 --alpha 2 --beta 2",
+    f"verify --scene pendulum --method SYM --map 3 --workers 1 {SMALL}",
+    "verify --witness mujoco",
+    "verify --scene driven_four_bar --h 0.01 --alpha 0.5 --beta 0.1 --floquet",
+    "verify --scene driven_four_bar --h 0.01 --method SYM --accuracy",
+    f"tradeoff --scene pendulum --method SYM --h 0.01 --h 0.02 --time 0.1 --workers 1 {SMALL}",
+    f"tradeoff --predicted --method SYM --level 0.9 --h 0.01 --omega 2 {SMALL}",
+    "extremes --short",
+    "paper --only fig7 --figure none",
+)
+"""Together they print every kind of row."""
+QUICK = ("poles --alpha 1", "check --method SYM --alpha 2 --beta 2", "probe", "engines", "simulate")
+
+
+def printed(example: str, *form: str, columns: int | None = None) -> str:
+    """Return what an example prints; a choice that is not safe ends with status one."""
+    environment = {"COLUMNS": str(columns) if columns else None}
+    result = CliRunner(env=environment).invoke(main, [*shlex.split(example), *form])
+    assert result.exit_code in (0, 1), result.stderr
+    assert isinstance(result.exception, SystemExit | None)
+    return result.stdout
+
+
+def widest(text: str) -> int:
+    return max(map(shown_width, text.splitlines()))
+
+
+def test_every_command_that_prints_rows_has_a_schema_and_an_example() -> None:
+    names = set(main.list_commands(click.Context(main))) - WITHOUT_ROWS
+    assert names == set(ROW_KINDS) == {example.split()[0] for example in EXAMPLES}
+    for name in names:
+        schema = json.loads(run("schema", name).stdout)
+        assert schema == json_schema(name)
+        Draft202012Validator.check_schema(schema)
+
+
+@pytest.mark.promise(
+    "Keys of JSON and CSV",
+    computed=(
+        "one vocabulary for all commands; every example is valid under its schema, by a validator that is not "
+        "ours, every row with the same keys"
+    ),
+)
+@pytest.mark.promise("Text on a terminal", computed="no line is wider, at 80 and 120 columns, for every command")
+@pytest.mark.usefixtures("_few_extremes")
+@pytest.mark.parametrize("example", EXAMPLES)
+@pytest.mark.slow_except(*QUICK)
+def test_an_example_keeps_to_its_schema_its_keys_and_the_width_of_the_terminal(
+    example: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(DATA)
+    rows = json.loads(printed(example, "--format", "json"))
+    Draft202012Validator(json_schema(example.split(maxsplit=1)[0])).validate(rows)
+    (keys,) = {tuple(row) for row in rows}
+    if example.startswith(QUICK):
+        assert next(csv.reader(io.StringIO(printed(example, "--format", "csv")))) == list(keys)
+        assert re.search(r"^\|[-| ]+\|$", printed(example, "--format", "markdown"), re.MULTILINE)
+    for columns in (80, 120):
+        assert widest(printed(example, columns=columns)) <= columns
+
+
+def test_the_validator_refuses_other_rows() -> None:
+    (row,) = json.loads(printed("poles --method SYM --alpha 1 --beta 0.5 --format json"))
+    validator = Draft202012Validator(json_schema("poles"))
+    assert validator.is_valid([row])
+    assert not validator.is_valid([{**row, "z": 1}])  # a key that is not in the vocabulary
+    assert not validator.is_valid([{**row, "z_abs": "0.5"}])  # a number that is a text
+    assert not validator.is_valid([{key: value for key, value in row.items() if key != "safe"}])
+
+
+def test_help_wraps_at_80_columns_and_explains_every_option() -> None:
+    context = click.Context(main)
+    for name in ("", *main.list_commands(context)):
+        assert max(widest(printed(f"{name} --help", columns=columns)) for columns in (80, 200)) <= 80, name
+        for option in getattr(main.get_command(context, name), "params", []):
+            assert not isinstance(option, click.Option) or option.help, (name, option.opts)
+
+
+@pytest.mark.parametrize("columns", ["", "0", "-1", "wide"])
+def test_without_a_width_several_rows_are_a_table_and_one_row_is_a_block(
+    columns: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", columns)
+    several = run("poles", "--alpha", "0.5", "--beta", "0.1").stdout.splitlines()
+    assert several[2].split() == ["method", "pole", "z", "|z|", "∠z", "(deg)", "verdict", "error", "×", "least"]
+    assert len(several) == 2 + 1 + 8 + 2  # the last line says what errors are shares of
+    single = run("poles", "--alpha", "0.5", "--beta", "0.1", "--method", "B4").stdout.splitlines()
+    assert single[2:5] == ["Safe. Each step multiplies the error by 0.78.", "", "method    B4"]
+
+
+@pytest.mark.slow
+def test_a_terminal_that_says_how_wide_it_is_is_believed() -> None:
+    """On a real terminal of 60 columns, without COLUMNS: what goes to a pipe is wider."""
+    import fcntl
+    import struct
+    import termios
+
+    ours, theirs = pty.openpty()
+    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 60, 0, 0))
+    environment = {key: value for key, value in os.environ.items() if key != "COLUMNS"}
+    command = "poles --alpha 0.5 --beta 0.1"
+    subprocess.run([sys.executable, "-m", "bezstab", *command.split()], stdout=theirs, env=environment, check=True)
+    os.close(theirs)
+    shown = os.read(ours, 65536).decode()
+    os.close(ours)
+    assert 40 < widest(shown) <= 60
+    assert widest(printed(command)) > 60

@@ -1,0 +1,231 @@
+"""Points as they are typed: an engine's words, a drive's gains, units that were probably meant, feedback to choose."""
+
+import json
+import math
+import re
+from fractions import Fraction
+from typing import Any
+
+import click
+import pytest
+
+from bezstab.cli import main
+from bezstab.cli.asking import say_if_units_were_mistaken
+from bezstab.engines import DRIVE_METHODS, ENGINES
+from bezstab.methods import lookup
+from tests.cli.running import DATA, rows, run
+
+
+def first_row(*arguments: str) -> dict[str, Any]:
+    """Return the first row of an answer, whether it is safe or not."""
+    row: dict[str, Any] = json.loads(run(*arguments, "--format", "json").stdout)[0]
+    return row
+
+
+@pytest.mark.parametrize(
+    ("name", "alpha", "beta", "verdict"),
+    [
+        ("SYM", "1", "2", "marginal"),
+        ("SYM", "1", "2.00000000000000000001", "diverges"),
+        ("SYM", "1", "1.99999999999999999999", "converges"),
+        ("RK1", "6/11", "6/11", "marginal"),
+        ("RK1", "2.00000000000000000002", "2", "converges"),
+    ],
+)
+def test_the_verdict_is_proven_on_the_numbers_as_typed(name: str, alpha: str, beta: str, verdict: str) -> None:
+    (row,) = rows("poles", "--method", name, "--alpha", alpha, "--beta", beta)
+    assert row["verdict"] == verdict
+
+
+def test_omega_times_h_is_taken_exactly_as_typed_and_h_alone_makes_no_unit() -> None:
+    point = ("poles", "--method", "SYM", "--alpha", "1", "--beta", "1/2")
+    (row,) = rows(*point, "--h", "1/240", "--omega", "12")
+    assert row["omega_h"] == 1 / 20
+    (usual,) = rows(*point)
+    assert (usual["alpha_hat"], usual["z_abs"]) == (row["alpha_hat"], row["z_abs"])
+    (at_rest,) = rows(*point, "--scene", str(DATA / "plumb.toml"), "--h", "0.01", "--omega", "2")
+    assert (at_rest["omega_h"], at_rest["kappa"]) == (0.02, 0)
+
+
+def test_an_engine_is_asked_with_its_own_integrator_unless_another_is_named() -> None:
+    for words, options, method in (
+        ("mujoco=0.02,1", (), "SYM"),
+        ("rigidbodydynamics.jl=100,30", (), "RK4"),
+        ("physx-drive=1000,10", (), "implicit-euler"),
+        ("drake-sap", (), "SYM"),
+        ("mujoco=0.02,1", ("--method", "RK4"), "RK4"),
+        ("pinocchio=100,20", ("--method", "SIE"), "SIE"),
+    ):
+        assert first_row("poles", "--engine", words, "--h", "0.002", *options)["method"] == method
+
+
+def test_an_engines_clamps_are_applied_unless_told_not_to() -> None:
+    words = ("check", "--engine", "mujoco=0.0001,1", "--h", "0.002")
+    applied, as_typed = run(*words), run(*words, "--as-typed", "--format", "json")
+    assert (applied.exit_code, as_typed.exit_code) == (0, 1)
+    assert "refsafe raises timeconst 0.0001 s" in applied.stderr
+    assert "mujoco: left out: " in applied.stderr
+    given = json.loads(as_typed.stdout)[0]
+    assert (given["alpha_hat"], given["applied"], as_typed.stderr) == (40, "as typed", "")
+    clamped = first_row("check", "--engine", "box2d=120,2", "--h", "1/240")
+    assert "clamped to 0.25/h = 60" in clamped["applied"]
+    assert clamped["excludes"] == ENGINES["box2d"].excludes
+
+
+def test_what_is_meant_in_seconds_has_a_largest_step_and_what_is_meant_per_step_has_none() -> None:
+    def limits(*words: str) -> tuple[Any, Any]:
+        row = first_row("check", "--engine", *words, "--h", "1/240")
+        return row["engine_h_limit"], row["h_limit"]
+
+    for words in ("bullet=0.2", "box2d=60,2", "mujoco=0.02,1"):
+        of_the_engine, of_alpha_and_beta = limits(words)
+        assert of_the_engine is None
+        assert of_alpha_and_beta is not None
+    # 2h / timeconst reaches 4 sqrt 2 - 4, where the critically damped path leaves SYM's triangle
+    assert limits("mujoco=0.02,1", "--as-typed")[0] == pytest.approx(0.02 * (2 * math.sqrt(2) - 2), rel=1e-12)
+    # stiffness and damping stay as they are, as alpha and beta do: the two ways agree
+    of_the_engine, of_alpha_and_beta = limits("brax-spring=5000,20,1")
+    assert of_the_engine == pytest.approx(of_alpha_and_beta, rel=1e-9)
+
+
+def test_what_an_engine_takes_for_large_errors_has_to_be_safe_too() -> None:
+    # with r = 18/19 (1.74, 0.49) is stable for SYM, but without (1.84, 0.54) is not
+    stiffness, damping = 0.54 / 0.002**2, 1.84 / 0.002
+    result = run("check", "--engine", f"mujoco={-stiffness!r},{-damping!r}", "--h", "0.002", "--format", "json")
+    small, large, instead = json.loads(result.stdout)
+    assert (small["verdict"], large["verdict"], instead["goal"]) == ("converges", "diverges", "accurate")
+    assert "solimp" in large["goal"]
+    assert result.exit_code == 1
+
+
+@pytest.mark.slow
+def test_what_choose_prints_for_an_engine_that_engine_reads_as_the_point() -> None:
+    h = Fraction(1, 240)
+    for name, engine in ENGINES.items():
+        if not engine.method or name == "chrono-explicit":
+            continue
+        (row,) = rows("choose", "--engine", name, "--h", "1/240", "--goal", "fastest")
+        point = row["alpha_hat"], row["beta_hat"]
+        values = engine.values((Fraction(str(point[0])), Fraction(str(point[1]))), h)
+        assert all(value in str(row["setting"]) for value in values), name
+        read = engine.applied(tuple(map(Fraction, values)), h)
+        assert not read.notes
+        assert tuple(map(float, read.point)) == pytest.approx(point, rel=1e-7, abs=1e-9), name
+        assert (row["safe"], row["sweeps"]) == (True, engine.sweeps)
+
+
+@pytest.mark.promise("What a drive's gains mean")
+def test_a_drive_is_shown_in_all_ways_of_applying_it() -> None:
+    given = {str(row["method"]): row for row in rows("poles", "--pd", "1000,80,0.1", "--h", "1/240")}
+    assert {name: row["drive"] for name, row in given.items()} == DRIVE_METHODS
+    assert [row["verdict"] for row in given.values()] == ["diverges", "converges", "converges", "converges"]
+    explicit, velocity = given["SYM"], given["imex-euler"]
+    assert (explicit["used_up"], explicit["kp_max"]) == ("kd", None)  # no kp helps
+    assert explicit["kd_max"] == pytest.approx((4 - 1000 / 0.1 / 240**2) / 2 * 0.1 * 240)
+    assert (velocity["used_up"], velocity["kd_max"]) == ("kp", None)
+    assert velocity["kp_max"] == pytest.approx((4 + 2 * 80 / 0.1 / 240) * 0.1 * 240**2)
+    assert given["implicit-euler"]["used_up"] is None
+
+
+@pytest.mark.parametrize("gains", ["1,0,1", "0,1,1", "0,0,1", "-1,1,1"])
+def test_a_drive_without_one_of_its_gains_is_shown_too(gains: str) -> None:
+    assert [row["method"] for row in rows("poles", "--pd", gains, "--h", "0.01")] == list(DRIVE_METHODS)
+
+
+def test_what_choose_gives_for_a_drive_are_its_gains() -> None:
+    assert run("check", "--pd", "1000,80,0.1", "--h", "1/240", "--method", "stable-pd").exit_code == 0
+    chosen = first_row("choose", "--pd", "1000,80,0.1", "--h", "1/240", "--method", "SYM")
+    assert (chosen["kd"] / 24, chosen["kp"] * 10 / 240**2) == pytest.approx((chosen["alpha_hat"], chosen["beta_hat"]))
+    assert chosen["goal"] == "robust"  # of a drive no forced error is told: nothing feeds its target's acceleration
+
+
+def test_a_held_and_late_drive_is_judged_as_its_gains_are_chosen() -> None:
+    timing = ("--h", "0.002", "--every", "4", "--late", "1", "--method", "SYM")
+    (row,) = rows("choose", "--pd", "0.1", "--bandwidth", "5", *timing[:6])
+    assert (row["kp"], row["kd"], row["every"], row["late"], row["safe"]) == (98.7, 6.28, 4, 1, True)
+    assert rows("check", "--pd", "98.7,6.28,0.1", *timing) == [row]
+    (fresh,) = rows("check", "--pd", "200,5,0.1", "--h", "0.002", "--every", "1", "--method", "SYM")
+    plain = first_row("check", "--pd", "200,5,0.1", "--h", "0.002", "--method", "SYM")
+    for key in ("kp_max", "kd_max", "z_abs"):
+        assert fresh[key] == pytest.approx(plain[key], rel=1e-9)
+
+
+def test_numbers_that_look_like_one_over_seconds_are_said_to() -> None:
+    typed = "check --method SYM --alpha 50 --beta 50.5 --h 0.002"
+    assert run(*typed.split()).stderr.splitlines()[0].endswith(f"add --physical: bezstab {typed} --physical")
+    assert run(*typed.split(), "--physical").stderr == ""
+    for command in ("poles", "check --method SYM", f"probe {DATA}/pendulum.csv"):  # and no step to read them at
+        said = run(*command.split(), "--alpha", "14217", "--beta", "16544").stderr
+        assert "taken as α̂ and β̂, without unit; if they are in 1/s, add --physical and your --h\n" in said
+
+
+@pytest.mark.parametrize(
+    ("alpha", "beta", "h"),
+    [
+        ("1.5", "0.9", "1/240"),  # stable as typed
+        ("4", "3", None),  # too strong for SYM, but no number of 1/s
+        ("4", "3", "2"),  # too strong in either unit
+        ("-0.5", "0.9", "1e-3"),  # no feedback in 1/s is so weak
+    ],
+)
+def test_other_numbers_are_taken_without_a_word(
+    alpha: str, beta: str, h: str | None, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with click.Context(main, info_name="check"):
+        say_if_units_were_mistaken([lookup("SYM")], Fraction(alpha), Fraction(beta), None if h is None else Fraction(h))
+    assert capsys.readouterr().err == ""
+
+
+def test_what_was_typed_is_shown_as_typed() -> None:
+    for asked, keys, typed in (
+        ("--method SYM --h 1/240 --alpha 60 --beta 60.1 --physical", ("alpha", "beta"), (60, 60.1)),
+        ("--engine maplesim=60,60.1 --method SYM --h 0.003", ("alpha", "beta"), (60, 60.1)),
+        ("--pd 1000,80.1,0.3 --method stable-pd --h 1/239", ("kp", "kd"), (1000, 80.1)),
+    ):
+        given = first_row("check", *asked.split())
+        assert tuple(given[key] for key in keys) == typed
+
+
+def test_a_method_without_region_is_not_safe() -> None:
+    """The explicit leapfrog, y1 = y[-1] + 2 h f0: its root -1 grows with every damping."""
+    result = run("check", "--method", str(DATA / "leapfrog.toml"), "--alpha", "0.1", "--beta", "0.01")
+    assert (result.exit_code, result.stdout[:9]) == (1, "Not safe.")
+    assert "nothing instead: leapfrog is not stable with any α and β" in result.stderr
+
+
+@pytest.mark.promise("Poles that no feedback moves, where ρ and σ share a factor")
+def test_a_root_on_the_circle_that_no_feedback_moves_leaves_nothing() -> None:
+    (row,) = rows("region", "--method", str(DATA / "shared_i.toml"), "--figure", "none", "--table", "none")
+    assert (row["area"], row["best_z_abs"]) == (0, None)
+    assert row["best_where"] == "stable nowhere: a pole stays at ±i whatever α̂ and β̂"
+
+
+CHAIN = ("--h", "1/60", "--chain", "10", "--mass-ratio", "10")
+
+
+@pytest.mark.slow
+def test_choose_gives_the_strongest_share_and_the_fewest_sweeps_that_a_chain_allows() -> None:
+    """What it prints is stable there, and nearly a tenth more is; more is not. So are the sweeps that it names."""
+    chosen = run("choose", "--engine", "chipmunk", *CHAIN).stdout
+    named = re.search(r"would get errorBias = (\S+): .* that takes (\d+) sweeps", chosen)
+    own = re.search(r"to paste +errorBias = (\S+)", chosen)
+    assert named
+    assert own
+    strongest, sweeps = (1 - float(each) ** (1 / 60) for each in (own[1], named[1])), int(named[2])
+    share, alone = strongest
+    for asked, iterations, status in (
+        (share, 10, 0),
+        (1.09 * share, 10, 0),
+        (1.11 * share, 10, 1),
+        (1.1 * alone, sweeps, 0),
+        (1.1 * alone, sweeps - 1, 1),
+    ):
+        values = f"chipmunk={(1 - asked) ** 60!r}"
+        assert run("check", "--engine", values, *CHAIN, "--iterations", str(iterations)).exit_code == status
+
+
+def test_chains_prints_the_fewest_stable_sweeps_of_each_length() -> None:
+    found = rows("chains", "--engine", f"chipmunk={0.9**60!r}", "--h", "1/60", "--mass-ratio", "10", "--to", "5")
+    assert [(row["chain_bodies"], row["chain_mass_ratio"]) for row in found] == [(k, 10) for k in range(1, 6)]
+    assert [row["stable_iterations"] for row in found[2:]] == [3, 4, 5]  # two bodies are marginal with one sweep
+    assert found[0]["swept_z_abs"] == pytest.approx(0.9)

@@ -1,0 +1,243 @@
+"""Commands as processes: damage, other runs, full disks, closed streams, signals: a line each, and no litter."""
+
+import os
+import random
+import resource
+import shutil
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+
+from tests.cli.processes import catches, files_below, finished, group_members, started, wait_until
+
+pytestmark = pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="looks at processes as Linux shows them")
+
+NAME = "verify_pendulum_SYM"
+SMALL = ("verify", "--map", "6", "--method", "SYM", "--scene", "pendulum", "--figure", "none", "--workers", "1")
+LONG = ("verify", "--map", "300", "--method", "SYM", "--scene", "pendulum", "--figure", "none", "--workers", "2")
+
+
+def only_line(errors: bytes) -> str:
+    """Return the one line of standard error; AssertionError if there are more or none."""
+    (line,) = errors.decode().splitlines()
+    return line
+
+
+def wait_for_chunk(path: Path, running: "subprocess.Popen[bytes]") -> None:
+    wait_until(lambda: list(path.glob("*.chunks/[0-9]*.npz")), running)
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    """Return the table that the small job writes."""
+    path = tmp_path_factory.mktemp("whole")
+    assert finished(*SMALL, cwd=path).returncode == 0
+    return (path / f"{NAME}.csv").read_bytes()
+
+
+def assert_resumes_to(whole: bytes, path: Path, *also_said: str) -> None:
+    """Assert that the small job goes on where it was stopped, to the same bytes, and leaves nothing else."""
+    resumed = finished(*SMALL, "--resume", cwd=path)
+    assert resumed.returncode == 0
+    assert resumed.stderr.decode().splitlines() == [*also_said, f"wrote {NAME}.csv"]
+    assert files_below(path) == [f"{NAME}.csv"]
+    assert (path / f"{NAME}.csv").read_bytes() == whole
+
+
+@pytest.mark.slow
+def test_a_damaged_chunk_is_computed_again_to_the_same_bytes(whole: bytes, tmp_path: Path) -> None:
+    (table := tmp_path / f"{NAME}.csv").mkdir()  # so that the table cannot be written, when all chunks are
+    assert finished(*SMALL, cwd=tmp_path).returncode == 2
+    table.rmdir()
+    chunk = tmp_path / f"{NAME}.chunks" / "0.npz"
+    chunk.write_bytes(chunk.read_bytes()[:-30])
+    assert_resumes_to(whole, tmp_path, f"bezstab: {NAME}.chunks/0.npz is damaged: computed again")
+
+
+@pytest.mark.slow
+def test_a_second_run_names_the_first_and_a_killed_run_leaves_no_workers(tmp_path: Path) -> None:
+    with started(*LONG, cwd=tmp_path) as first:
+        wait_for_chunk(tmp_path, first)
+        second = finished(*LONG, "--resume", cwd=tmp_path)
+        assert second.returncode == 2
+        assert f"process {first.pid}" in only_line(second.stderr)
+        assert len(group_members(first.pid)) >= 2
+        first.kill()
+        _, errors = first.communicate(timeout=60)  # ends when the last that could write there is gone
+        assert errors == b""
+        wait_until(lambda: not group_members(first.pid))
+    with started(*LONG, "--resume", cwd=tmp_path) as third:
+        known = len(list(tmp_path.glob("*.chunks/[0-9]*.npz")))
+        wait_until(lambda: len(list(tmp_path.glob("*.chunks/[0-9]*.npz"))) > known, third)
+
+
+# a process whose files are limited must not keep compiled modules: Python leaves them cut short, for all others to read
+COMPILES_FOR_ITSELF = {"PYTHONDONTWRITEBYTECODE": "1"}
+
+
+def finished_on_a_full_disk(*arguments: str, size: int, cwd: Path) -> subprocess.CompletedProcess[bytes]:
+    """Return what a command printed whose files may have so many bytes each: to it, the disk is full there."""
+    return finished(
+        *arguments,
+        cwd=cwd,
+        environment=COMPILES_FOR_ITSELF,
+        prepare=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size)),
+    )
+
+
+@pytest.mark.slow
+def test_a_full_disk_takes_one_line_and_resume_goes_on(whole: bytes, tmp_path: Path) -> None:
+    full = finished_on_a_full_disk(*SMALL, size=700, cwd=tmp_path)
+    assert full.returncode == 2
+    assert only_line(full.stderr).startswith("bezstab: cannot write")
+    assert not [name for name in files_below(tmp_path) if "/." in name or name.endswith(".csv")]
+    assert_resumes_to(whole, tmp_path)
+
+
+@pytest.mark.parametrize("files", ["--figure none --table npz", "--figure svg --table none"])
+@pytest.mark.slow
+def test_a_full_disk_leaves_no_part_of_a_result(files: str, tmp_path: Path) -> None:
+    command = f"region --method B2 --grid 20 {files}"
+    full = finished_on_a_full_disk(*command.split(), size=1000, cwd=tmp_path)
+    assert full.returncode == 2
+    assert only_line(full.stderr).startswith("bezstab: cannot write")
+    assert files_below(tmp_path) == []
+
+
+def test_an_answer_that_cannot_be_printed_takes_one_line(tmp_path: Path) -> None:
+    with Path("/dev/full").open("wb") as full:
+        no_space = finished("engines", cwd=tmp_path, stdout=full)
+    closed = finished("engines", cwd=tmp_path, prepare=lambda: os.close(1))
+    assert (no_space.returncode, closed.returncode) == (2, 2)
+    assert only_line(no_space.stderr) == "bezstab: No space left on device"
+    assert only_line(closed.stderr) == "bezstab: standard output is closed: there is nowhere to answer"
+
+
+def test_without_any_stream_nothing_is_said_and_nothing_written(tmp_path: Path) -> None:
+    def close_standard_streams() -> None:
+        for descriptor in (0, 1, 2):
+            os.close(descriptor)
+
+    assert finished("region", "--method", "B2", cwd=tmp_path, prepare=close_standard_streams).returncode == 2
+    assert files_below(tmp_path) == []
+
+
+@pytest.mark.slow
+def test_an_answer_needs_no_standard_error(whole: bytes, tmp_path: Path) -> None:
+    run = finished(*SMALL, cwd=tmp_path, prepare=lambda: os.close(2))
+    assert (run.returncode, bool(run.stdout)) == (0, True)
+    assert (tmp_path / f"{NAME}.csv").read_bytes() == whole
+
+
+@pytest.mark.slow
+def test_a_closed_pipe_is_no_error_to_read_and_no_verdict(tmp_path: Path) -> None:
+    """1 would say that fault was found, as it is here; 141 is what a shell says of SIGPIPE."""
+    with started("check", "--method", "SYM", "--alpha", "3", "--beta", "3", cwd=tmp_path) as source:
+        assert source.stdout
+        assert source.stderr
+        source.stdout.close()
+        assert source.stderr.read() == b""
+        assert source.wait(timeout=60) == 141
+
+
+SIGNALS = {signal.SIGINT: ("interrupted", 130), signal.SIGTERM: ("terminated", 143), signal.SIGHUP: ("hung up", 129)}
+
+
+def check_stopped(number: signal.Signals, running: "subprocess.Popen[bytes]", path: Path) -> None:
+    """Assert that a run which was told to end has: by its line and status, or because it was just finished."""
+    _, errors = running.communicate(timeout=60)
+    wait_until(lambda: not group_members(running.pid))  # no worker is left
+    word, status = SIGNALS[number]
+    if running.returncode != 0:
+        assert running.returncode == status
+        *before, last = errors.decode().splitlines()
+        assert last == f"bezstab: {word}"
+        assert not [line for line in before if "--resume goes on" not in line and not line.startswith("wrote ")]
+        assert bool(list(path.glob("*.chunks/[0-9]*.npz"))) <= bool(before)
+    assert not [name for name in files_below(path) if Path(name).name.startswith(".")]
+
+
+@pytest.mark.parametrize(("number", "to_all"), [(signal.SIGINT, True), (signal.SIGTERM, False)])
+@pytest.mark.slow
+def test_a_signal_ends_a_run_at_any_moment_and_resume_goes_on(
+    number: signal.Signals, to_all: bool, whole: bytes, tmp_path: Path
+) -> None:
+    """To all: as a terminal sends Ctrl-C, to the workers too."""
+    moments = random.Random(str(number))
+    for most in (0.02, 0.5, 2.0):  # s after its start, at random
+        with started(*SMALL[:-1], "2", "--resume", cwd=tmp_path) as running:
+            wait_until(lambda: catches(signal.SIGHUP, running.pid), running)  # until then Python alone starts
+            time.sleep(moments.uniform(0, most))
+            if running.poll() is None:
+                os.killpg(running.pid, number) if to_all else running.send_signal(number)
+            check_stopped(number, running, tmp_path)
+    assert_resumes_to(whole, tmp_path)
+
+
+def test_a_signal_ends_every_command_at_any_moment(tmp_path: Path) -> None:
+    moments = random.Random(1)
+    for number in SIGNALS:
+        with started("region", "--method", "B2", cwd=tmp_path) as running:
+            wait_until(lambda: catches(signal.SIGHUP, running.pid), running)
+            time.sleep(moments.uniform(0, 0.5))
+            if running.poll() is None:
+                running.send_signal(number)
+            check_stopped(number, running, tmp_path)
+
+
+@pytest.mark.parametrize(
+    "command", ["region --grid 4000 --method B12", "simulate --time 100000 --method RK4 --compiled yes"]
+)
+@pytest.mark.slow
+def test_an_interrupt_stops_what_computes_in_one_call(command: str, tmp_path: Path) -> None:
+    with started(*command.split(), cwd=tmp_path) as running:
+        time.sleep(5)  # until then it has begun to compute
+        assert running.poll() is None
+        running.send_signal(signal.SIGINT)
+        _, errors = running.communicate(timeout=60)
+        assert running.returncode == 130
+    assert only_line(errors) == "bezstab: interrupted"
+    assert files_below(tmp_path) == []
+
+
+@pytest.mark.slow
+def test_a_signal_that_was_ignored_stays_so(tmp_path: Path) -> None:
+    def ignore_hangup() -> None:
+        signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as nohup does
+
+    with started("poles", "--alpha", "1", "--beta", "1", cwd=tmp_path, prepare=ignore_hangup) as running:
+        wait_until(lambda: catches(signal.SIGTERM, running.pid), running)
+        running.send_signal(signal.SIGHUP)
+        assert running.wait(timeout=60) == 0
+
+
+OLD_LOCALE = {"LANG": "C", "LC_ALL": "C", "PYTHONCOERCECLOCALE": "0", "PYTHONUTF8": "0"}  # then files' names are ASCII
+
+
+@pytest.mark.slow
+def test_what_an_encoding_or_a_file_system_lacks_is_changed_and_json_is_not(tmp_path: Path) -> None:
+    (tmp_path / "é∞.toml").write_text('name = "é∞"\nA = [["0"]]\nb = ["1"]\n', encoding="utf-8")
+    shutil.copy(tmp_path / "é∞.toml", tmp_path / "own.toml")
+    poles = ("poles", "--alpha", "0.5", "--beta", "0.1", "--method", "own.toml")
+    text = finished(*poles, cwd=tmp_path, environment={"PYTHONIOENCODING": "latin-1"})
+    assert text.stdout.decode("latin-1").startswith("?? = 0.5, ?? = 0.1\n")
+    as_json = finished(*poles, "--format", "json", cwd=tmp_path, environment={"PYTHONIOENCODING": "latin-1"})
+    assert b'"\\u00e9\\u221e"' in as_json.stdout
+    region = ("region", "--method", "own.toml", "--grid", "9", "-o", "out")
+    drawn = finished(*region, cwd=tmp_path, environment={**OLD_LOCALE, "HOME": None, "MPLCONFIGDIR": "/dev/null"})
+    assert (text.returncode, as_json.returncode, drawn.returncode) == (0, 0, 0)
+    assert only_line(drawn.stderr).startswith("wrote out/region_")
+    assert len(files_below(tmp_path / "out")) == 1
+
+
+@pytest.mark.slow
+def test_a_terminal_shows_what_is_worked_on_and_a_pipe_does_not(tmp_path: Path) -> None:
+    ours, theirs = os.openpty()
+    with os.fdopen(theirs, "wb") as terminal:
+        answered = finished(*SMALL, cwd=tmp_path, stderr=terminal)
+    assert b"100%" in os.read(ours, 65536)
+    os.close(ours)
+    assert b"100%" not in answered.stdout
