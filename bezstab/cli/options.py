@@ -248,7 +248,8 @@ class Rule:
         if self.option not in typed:
             return
         if self.needs and not typed & set(self.needs):
-            raise click.UsageError(f"{self.option} needs {' or '.join(self.needs)}: {self.why}")
+            one_of = "one of " if len(self.needs) > 1 else ""
+            raise click.UsageError(f"{self.option} needs {one_of}{', '.join(self.needs)}: {self.why}")
         refuse_beside(self.option, self.excludes, self.why)
 
 
