@@ -25,7 +25,6 @@ from bezstab.evidence.linear_prediction import SAMPLES, SETTLED, SPREAD, Refusal
 from bezstab.evidence.moving_mechanisms import MovingPole, MovingVerdict, moving_poles
 from bezstab.evidence.own_motions import find_own_motions
 from bezstab.mechanism import (
-    CHEAPER_TOGETHER,
     Block,
     Mechanism,
     constraint_errors,
@@ -205,7 +204,7 @@ def _kicked_responses(
     shape = (RUN + 1, len(KICKS), alpha_hat.size)
     difference, size = np.zeros(shape), np.full(shape, np.inf)
     seen = iter(progress(range(RUN + 1)))
-    compiled = runs_compiled(mechanism, method, size.size * 2 * evaluations(method) // CHEAPER_TOGETHER)
+    compiled = runs_compiled(mechanism, method, size.size * 2 * evaluations(method), together=True)
     with np.errstate(all="ignore"):  # what diverges runs into infinity, and is cut off there
         for some, blocks in kicked_motions(mechanism, method, h, alpha_hat, beta_hat, KICKS, RUN, compiled):
             k = 0

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from bezstab.errors import InputError, NumericalError
 from bezstab.evidence.kick_fates import fates, follow
 from bezstab.evidence.measured_poles import kicked_motions, nothing_happens_without_feedback
-from bezstab.mechanism import CHEAPER_TOGETHER, Scene, compiled_mechanism, runs_compiled, turning_normals
+from bezstab.mechanism import Scene, compiled_mechanism, runs_compiled, turning_normals
 from bezstab.methods import Method, evaluations
 from bezstab.read_only import ReadOnlyArrays
 from bezstab.stability import FloatArray, pole_map, poles, region, turning_shift, useful_window
@@ -118,7 +118,7 @@ def map_rows(scene: Scene, method: Method, h: float, count: int) -> list[MapRows
     NumericalError as `region`.
     """
     mechanism = compiled_mechanism(scene)
-    compiled = runs_compiled(mechanism, method, 2 * count**2 * MAP_RUN * evaluations(method) // CHEAPER_TOGETHER)
+    compiled = runs_compiled(mechanism, method, 2 * count**2 * MAP_RUN * evaluations(method), together=True)
     centres = (np.arange(count) + 0.5) / count
     alpha_window, beta_window = useful_window(region(method))
     alpha_hat = _inside(alpha_window, centres)

@@ -39,12 +39,14 @@ CHEAPER_TOGETHER = 20
 LANES = 32
 """Runs side by side: what they remember stays in the fastest memory."""
 
-_compiled: set[tuple[Mechanism, bool, bool]] = set()
-"""What this process has compiled or loaded, for implicit methods or explicit ones, with projection or without."""
+_compiled: set[tuple[Mechanism, bool, bool, int]] = set()
+"""What this process has compiled or loaded: for implicit methods, with projection, and for how many runs together."""
 
 
-def runs_compiled(mechanism: Mechanism, method: Method, evaluations: int, projecting: bool = False) -> bool:
-    """Return whether a run of so many evaluations is to be compiled. InputError if it must be and cannot be.
+def runs_compiled(
+    mechanism: Mechanism, method: Method, evaluations: int, projecting: bool = False, together: bool = False
+) -> bool:
+    """Return whether a run, or runs together, of so many evaluations are to be compiled. InputError if that cannot be.
 
     That is without numba. By default where numba is there and it pays: the run is long, or its scene has been compiled
     before. `evaluations` do not include what iterations and projections take. InputError, too, where BEZSTAB_COMPILED
@@ -59,13 +61,16 @@ def runs_compiled(mechanism: Mechanism, method: Method, evaluations: int, projec
     if not numba_is_installed():
         return False
     solving = implicit(method)
-    if (mechanism, solving, projecting) in _compiled:
+    stride = LANES if together else 1
+    if (mechanism, solving, projecting, stride) in _compiled:
         return True
+    if together:
+        evaluations //= CHEAPER_TOGETHER
     if solving:
         evaluations *= ITERATIONS_OF_A_SOLUTION
     if evaluations < WORTH_LOADING:
         return False
-    return evaluations >= WORTH_COMPILING or _is_kept(_kept_file(mechanism, solving, projecting, stride=1))
+    return evaluations >= WORTH_COMPILING or _is_kept(_kept_file(mechanism, solving, projecting, stride))
 
 
 N, STRIDE, WIDTH = 1, 1, 1
@@ -414,7 +419,7 @@ def machine_steps(mechanism: Mechanism, solving: bool, projecting: bool, stride:
     take = compiled_source(TAKE, math, called, str(file))["take"]
     take.__name__ = take.__qualname__ = f"take_{file.parent.name}"
     steps = numba.njit(error_model="numpy", _nrt=False, no_cfunc_wrapper=True, cache=_keep(file))(take)
-    _compiled.add((mechanism, solving, projecting))
+    _compiled.add((mechanism, solving, projecting, stride))
     return steps, code.size
 
 

@@ -121,9 +121,10 @@ def slider_crank(rpm: float) -> Mechanism:
 @pytest.mark.slow
 def test_at_rest_nothing_is_left_between_the_measured_pole_and_the_predicted_one(name: str) -> None:
     method = lookup(name)
-    found = measure_poles(slider_crank(rpm=0), method, H, *random_points(method, 30))
+    count = of_campaign(30, 12)
+    found = measure_poles(slider_crank(rpm=0), method, H, *random_points(method, count))
     wrong = errors(found)
-    assert len(wrong) > 15
+    assert len(wrong) > count / 2
     assert np.median(wrong) < 1e-6  # 1e-8 to 4e-8; gravity moves the crank a little meanwhile
     assert not contradictions(found)
 
@@ -186,15 +187,12 @@ def test_feedback_that_throws_the_mechanism_apart_diverges_unless_it_breaks_down
 @pytest.mark.parametrize(
     ("name", "scene"),
     [
-        *(
-            (name, "pendulum")
-            for name in of_campaign([*SECOND_ORDER, *IMPLICIT], ["verlet-half", "hht", "bdf6", "gauss4"])
-        ),
-        *((name, "slider_crank") for name in of_campaign(OF_EACH_KIND, ("stable-pd",))),
+        *((name, "pendulum") for name in of_campaign([*SECOND_ORDER, *IMPLICIT], ["verlet-half", "hht"])),
+        *((name, "slider_crank") for name in of_campaign(OF_EACH_KIND, ("verlet-half",))),
     ],
 )
 def test_all_methods_that_solve_equations_have_the_predicted_pole(name: str, scene: str) -> None:
-    check_promise(scene, name, of_campaign(60, 20))
+    check_promise(scene, name, of_campaign(60, 12))
 
 
 @pytest.mark.promise(

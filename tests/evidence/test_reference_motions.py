@@ -27,8 +27,7 @@ def test_the_reference_has_the_digits_it_claims() -> None:
 
 @pytest.mark.slow
 def test_between_its_steps_the_reference_is_as_good() -> None:
-    true = reference_motion(load_scene(LIGHT), 1e-3, 2.0)
-    other = reference_motion(load_scene(LIGHT), 1e-3 * np.sqrt(0.5), 2.0)
+    true, other = (reference_motion(load_scene(LIGHT), h, 0.5) for h in (1e-3, 1e-3 * np.sqrt(0.5)))
     assert np.abs(true.at(other.t[:-1]) - other.q[:-1]).max() < true.error + other.error + 1e-13
 
 

@@ -27,8 +27,9 @@ from bezstab.mechanism.compiled import (
 )
 from bezstab.mechanism.generated_code import compiled_source, judged_source, machine_code, slope_lines
 from bezstab.methods import accuracy, lookup, steps
+from tests.evidence.samples import of_campaign
 from tests.mechanism.test_scenes import pendulum
-from tests.methods.kinds import EXPLICIT, FEW, IMPLICIT, sampled
+from tests.methods.kinds import EXPLICIT, FEW, IMPLICIT, SAMPLE, sampled
 from tests.reference.literal_equation_9 import literal_slope
 from tests.reference.one_coordinate_motion import DIGITS, distance, shared_times, shown_order, slider_crank_states
 from tests.reference.precise_runs import precise_run
@@ -85,7 +86,9 @@ HIGH_ORDERS = [name for name in IMPLICIT if accuracy(lookup(name))[0] > 4]
 
 
 @pytest.mark.promise("Orders of runs with α and β fixed", measured="0.1")
-@pytest.mark.parametrize("name", sampled([*EXPLICIT, *HIGH_ORDERS], quick=[*FEW, "AB8"]))
+@pytest.mark.parametrize(
+    "name", sampled(of_campaign([*EXPLICIT, *HIGH_ORDERS], [*SAMPLE, "B12", "am5"]), quick=[*FEW, "AB8"])
+)
 @pytest.mark.slow_except("AB4", "SIE")
 def test_with_alpha_and_beta_fixed_a_method_keeps_its_order(name: str) -> None:
     """All from exact first values and in 30 digits: float64 ends the descent of AB7 and AB8 before 0.1 is reached."""

@@ -25,6 +25,7 @@ from bezstab.mechanism import (
 from bezstab.mechanism.compiled import correction_function
 from bezstab.mechanism.projection import check_projected
 from bezstab.methods import Method, SecondOrder, evaluations, implicit, lookup, second_order_form, steps
+from tests.evidence.samples import of_campaign
 from tests.mechanism.test_runner import measured_order
 from tests.mechanism.test_second_order_memory import LEAPFROG, STOERMER
 from tests.mechanism.test_stepping import KINDS, assert_alike, step_for
@@ -138,7 +139,7 @@ def test_steps_are_the_plain_ones(name: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "methods"),
-    [("slider_crank", KINDS), ("driven_four_bar", [name for name in KINDS if not implicit(lookup(name))])],
+    of_campaign([("slider_crank", KINDS), ("driven_four_bar", KINDS)], [("slider_crank", KINDS)]),
 )
 def test_compiled_projection_is_that_of_numpy(name: str, methods: Sequence[str]) -> None:
     mechanism, h = scene(name), step_for(name)
@@ -219,7 +220,7 @@ def test_steps_of_different_lengths_are_projected_too() -> None:
 
 
 @pytest.mark.promise("Projection (`--stabilise projection`)")
-@pytest.mark.parametrize("compiled", [False, pytest.param(True, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("compiled", of_campaign([False, True], [False]))
 def test_a_singular_configuration_ends_a_run_and_says_when(compiled: bool) -> None:
     """The first step of explicit Euler ends where crank and rod of one length stand upright: S has no inverse there."""
     shipped, before, rate = load_scene("slider_crank_equal"), 1e-4, 2.0

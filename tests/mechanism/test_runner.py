@@ -23,6 +23,7 @@ from bezstab.mechanism import (
 )
 from bezstab.methods import Method, accuracy, evaluations, lookup, steps
 from bezstab.units import feedback_gains
+from tests.evidence.samples import of_campaign
 from tests.mechanism.test_scenes import four_bars, pendulum, small
 from tests.mechanism.test_second_order_memory import STOERMER
 from tests.methods.kinds import EXPLICIT, IMPLICIT, SECOND_ORDER, sampled
@@ -460,9 +461,7 @@ energy is off by 2e-4 J on one processor and by half a joule on another. At 9e-4
 
 
 @pytest.mark.promise("IFToMM's A01 and A02")
-@pytest.mark.parametrize(
-    ("count", "duration", "passages"), [(5, 1.5, 2), pytest.param(40, 20.0, 20, marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize(("count", "duration", "passages"), [(5, 1.5, 2), of_campaign((40, 20.0, 20), (40, 4.0, 4))])
 @pytest.mark.slow
 def test_a02_the_four_bars_go_through_their_singular_positions(count: int, duration: float, passages: int) -> None:
     """The benchmark has N = 40, runs for 20 s and allows errors of 1e-3 at most; its exact motion by quadrature."""
