@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
-from typing import get_args
+from typing import assert_never, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -161,10 +161,13 @@ def choose(
             )
     elif goal == "robust":
         point = _checked_least(pencil, box, _slowest(method, modulus, within, spread), equal, cut)
-    elif not equal and at_rest and (best := best_point(method)):
-        point, cut = (best.alpha_hat, best.beta_hat), False
-    else:  # on a line, or where |z_p| falls on as the feedback grows, or for a mechanism that moves
-        point = _checked_least(pencil, box, _throughout(modulus), equal, cut)
+    elif goal == "fastest":
+        if not equal and at_rest and (best := best_point(method)):
+            point, cut = (best.alpha_hat, best.beta_hat), False
+        else:  # on a line, or where |z_p| falls on as the feedback grows, or for a mechanism that moves
+            point = _checked_least(pencil, box, _throughout(modulus), equal, cut)
+    else:
+        assert_never(goal)
     choice = describe_point(method, goal, exact(point[0]), exact(point[1]), spread, margins)
     if choice.verdict != "converges":
         raise NumericalError(f"{method.name}: the point {point} found for {goal} is not stable")
@@ -234,9 +237,11 @@ def _along_curve(
         if found is None:
             raise InputError(f"--settle: no setting of the engine has |z_p| <= {rate:.6g} with {method.name}")
         return found
-    return least_along(
-        curve, _slowest(method, modulus, partial(_below, modulus), spread) if goal == "robust" else _throughout(modulus)
-    )
+    if goal == "robust":
+        return least_along(curve, _slowest(method, modulus, partial(_below, modulus), spread))
+    if goal == "fastest":
+        return least_along(curve, _throughout(modulus))
+    assert_never(goal)
 
 
 def _accuracy(method: Method, decays: Decays, omega_h: Fraction, spread: float) -> Objective:
