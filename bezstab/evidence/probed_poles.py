@@ -544,8 +544,10 @@ def _solutions(method: Method, z: ComplexArray, error: float) -> tuple[list[Like
     for a, b in points[(last < SOLVED * (1 + np.abs(points).max(axis=1))) | (residual < SOLVED**2 * scale)].tolist():
         jacobian = _jacobian(equations, np.array([[a, b]]))[:, :, 0]
         if np.linalg.cond(jacobian) > 1 / SAME:
-            along = np.linalg.svd(jacobian)[2][-1]
-            singular = singular or bool((spectral_radius(method, *(np.array([a, b]) + line * along).T) < largest).any())
+            if not singular:
+                along = np.linalg.svd(jacobian)[2][-1]
+                alpha_hat, beta_hat = (np.array([a, b]) + line * along).T
+                singular = bool((spectral_radius(method, alpha_hat, beta_hat) < largest).any())
             continue
         known = any(abs(a - one.alpha_hat) + abs(b - one.beta_hat) < SAME * (1 + abs(a) + abs(b)) for one in found)
         if known or spectral_radius(method, a, b) > largest:

@@ -154,8 +154,11 @@ def trapezoid() -> Method:
 
 
 EXPLICIT_MULTISTEP = (
-    MethodGroup("Bézier", {f"B{n}": partial(bezier, n) for n in range(1, 13)}),
-    MethodGroup("Adams-Bashforth", {f"AB{n}": partial(adams_bashforth, n) for n in range(1, 9)}),
+    MethodGroup("Bézier", {f"B{n}": partial(bezier, n) for n in range(1, STEP_FAMILIES["bezier"].largest + 1)}),
+    MethodGroup(
+        "Adams-Bashforth",
+        {f"AB{n}": partial(adams_bashforth, n) for n in range(1, STEP_FAMILIES["adams-bashforth"].largest + 1)},
+    ),
     MethodGroup(
         "Adams-Bashforth-Moulton, predicted and corrected (PECE)",
         {f"ABM{n}": partial(adams_bashforth_moulton, n) for n in range(2, 5)},

@@ -39,9 +39,7 @@ CLOSE = 0.3  # of the largest |z|: poles that may be one multiple pole, which fl
 NEWTON_STEPS = 16  # from a narrowed minimum three to ten lead to its kink; most sets have none there
 NEARBY = 0.5  # of the parameters' size, and of one for a pole: what is flat leads further, to no minimum nearby
 DIFFERENCE = 1e-6  # of the unknowns' sizes: central differences' truncation is 1e-12 of a slope, and the slope's alone
-ROUNDING = (
-    1e-9  # relative: what float64 leaves of equations and of equal moduli; a last step of Newton's, whose next is none
-)
+ROUNDING = 1e-9  # relative: what float64 leaves of equations and equal moduli; a last step of Newton's
 SMALL = 1e-3  # a parameter below it is as if of that size
 SAME = 1e-6  # relative: float64 parts a double pole by 1e-8, and it is no larger
 ALIKE = 1e-4  # relative: a triple pole is known to 1e-5, and passes for a kink of other kinds beside it
