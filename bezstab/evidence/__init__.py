@@ -37,7 +37,6 @@ from bezstab.evidence.moving_mechanisms import (
     MovingPole,
     MovingVerdict,
     growth_rates,
-    momentary_rates,
     moving_pole,
     moving_poles,
     tabulated_rates,

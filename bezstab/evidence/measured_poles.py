@@ -21,7 +21,7 @@ from typing import Literal
 import numpy as np
 
 from bezstab.evidence.kicked_revolutions import rates_of_kicked_revolutions
-from bezstab.evidence.linear_prediction import SAMPLES, SETTLED, SPREAD, Refusal, fit_dominant_pole
+from bezstab.evidence.linear_prediction import NEGLIGIBLE, SAMPLES, SPREAD, Refusal, fit_dominant_pole
 from bezstab.evidence.moving_mechanisms import MovingPole, MovingVerdict, moving_poles
 from bezstab.evidence.own_motions import find_own_motions
 from bezstab.mechanism import (
@@ -310,7 +310,7 @@ def _measured_verdict(
         return "diverges" if grown else "too close to call"
     after_largest_kick = np.abs(difference[:, 0])
     second_half = after_largest_kick[len(after_largest_kick) // 2 :]
-    settled = second_half.max() < SETTLED * after_largest_kick.max()
+    settled = second_half.max() < NEGLIGIBLE * after_largest_kick.max()
     return "converges" if settled else "too close to call"
 
 

@@ -28,11 +28,9 @@ of their constraints; 3.8.1, 3.10, 3.11 and 4.0 do as it says (measured).
 LEAST_IMPEDANCE, MOST_IMPEDANCE = 0.0001, 0.9999
 """MuJoCo keeps d in between (mjMINIMP, mjMAXIMP)."""
 
-LEAST_MIX = 1e-15
-"""MuJoCo's mjMINVAL: a solmix below it counts as none."""
-
-LEAST_SIZE, LARGEST_SIZE = 1e-15, 1e15
-"""Of numbers that are not zero: below MuJoCo's mjMINVAL nothing counts, and beyond its inverse nobody means it."""
+LEAST_SIZE = 1e-15
+"""MuJoCo's mjMINVAL, its least R: a lesser solmix counts as none, and of other numbers neither what is less nor what is
+beyond the inverse is what anybody means."""
 
 MOST_ROWS = 300
 """Of one equality, such as a flex's: beyond, its masses are left out, and it is judged as contacts are."""
@@ -201,9 +199,9 @@ def model_data(mujoco: types.ModuleType, model: Any) -> ModelData:
 
 def _require_sizes(name: str, values: Sequence[float]) -> None:
     """Raise InputError unless every number is zero or of a size that somebody may mean."""
-    if not all(value == 0 or LEAST_SIZE <= abs(value) <= LARGEST_SIZE for value in values):
+    if not all(value == 0 or min(abs(value), 1 / abs(value)) >= LEAST_SIZE for value in values):
         listed = " ".join(f"{value:g}" for value in values)
-        raise InputError(f"{name} = {listed}: expected 0, or sizes from {LEAST_SIZE:g} to {LARGEST_SIZE:g}")
+        raise InputError(f"{name} = {listed}: expected 0, or sizes from {LEAST_SIZE:g} to {1 / LEAST_SIZE:g}")
 
 
 @dataclass(frozen=True)
@@ -390,7 +388,7 @@ def _mixed(model: Any, one: int, other: int) -> tuple[FloatArray, FloatArray]:
         chosen = one if model.geom_priority[one] > model.geom_priority[other] else other
         return solref[chosen], solimp[chosen]
     mix = model.geom_solmix[[one, other]]
-    mix = np.where(mix < LEAST_MIX, 0.0, mix)
+    mix = np.where(mix < LEAST_SIZE, 0.0, mix)
     share = mix[0] / mix.sum() if mix.sum() > 0 else 0.5
     mixed_solimp = share * solimp[one] + (1 - share) * solimp[other]
     if solref[one, 0] > 0 and solref[other, 0] > 0:
