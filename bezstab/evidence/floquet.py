@@ -28,7 +28,6 @@ from bezstab.methods import Method, Quantity
 from bezstab.stability import BoolArray, FloatArray
 from bezstab.units import feedback_gains
 
-LOOKED_AT = 4  # steps between two looks at how large changes have grown: a pole of 1e60 leaves room
 FIRST_SHARE = 1 / 3  # of the steps in which errors stand out: there the lesser poles still count
 STANDS_OUT = 1e-7  # of the change of the coordinates: the free motion of a method has a constraint error of this size
 TOGETHER = 32  # points: fewer spend their time in Python, more do not fit a core's cache
@@ -124,8 +123,7 @@ def revolution(course: Course, answers: list[FloatArray], added: Values | None =
         changes = linearized_step(course, [answer[k] for answer in answers], changes)
         for quantity, amount in (added or {}).items():
             changes[quantity][:, :, -1] += amount[k]
-        if k % LOOKED_AT == 0:
-            log_scale += _rescaled(changes, rows)
+        log_scale += _rescaled(changes, rows)
     whole = np.concatenate(list(changes.values()), axis=1)
     return Revolution(course.steps, whole[:, :, :rows], log_scale, whole[:, :, rows])
 
@@ -178,8 +176,7 @@ def _rates_of_errors(
         with np.errstate(divide="ignore"):
             log_errors[:, k] = np.log(error) + log_scale
         stands_out[:, k] = error > STANDS_OUT * displaced
-        if k % LOOKED_AT == 0:
-            log_scale = log_scale + _rescaled(changes, mechanism.constraints)
+        log_scale += _rescaled(changes, mechanism.constraints)
     first, last = _ends_of_what_stands_out(stands_out, 1 + sum(each.name == newest.name for each in carried))
     point = np.arange(points)
     growth = log_errors[point, last] - log_errors[point, first]

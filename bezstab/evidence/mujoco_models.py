@@ -475,34 +475,10 @@ def _force(loaded: _Loaded, actuator: int, direction: FloatArray) -> Feedback | 
 
 
 def _flexes(loaded: _Loaded) -> Iterator[Unjudged]:
-    """Yield what acts on a flex besides its equalities: the springs of its elements, and its contacts."""
-    model = loaded.model
-    for flex in range(model.nflex):
-        element = loaded.named("flex", flex)
-        if model.flex_edgestiffness[flex] or model.flex_edgedamping[flex] or _is_elastic(model, flex):
-            yield Unjudged(element, "flex spring", "its springs are of all its elements together")
-        touches = model.flex_contype[flex] or model.flex_conaffinity[flex] or model.flex_selfcollide[flex]
-        if touches and loaded.has("CONSTRAINT") and loaded.has("CONTACT"):
-            yield Unjudged(element, "flex contact", "it depends on what it touches")
-
-
-def _is_elastic(model: Any, flex: int) -> bool:
-    """Return whether a flex resists being strained or bent."""
-    entries = (
-        (model.flex_stiffness, getattr(model, "flex_stiffnessadr", None)),
-        (model.flex_bending, getattr(model, "flex_bendingadr", None)),
-    )
-    return not model.flex_rigid[flex] and any(_part(np.ravel(*each[:1]), each[1], flex).any() for each in entries)
-
-
-def _part(values: FloatArray, starts: Any, flex: int) -> FloatArray:
-    """Return the entries of one flex; all of them in versions that do not say where a flex's own begin."""
-    if starts is None:
-        return values
-    if starts[flex] < 0:
-        return values[:0]
-    later = [start for start in starts[flex + 1 :].tolist() if start >= 0]
-    return values[starts[flex] : later[0] if later else None]
+    """Yield what may act on a flex besides its equalities."""
+    for flex in range(loaded.model.nflex):
+        reason = "springs and contacts, if it has any, are of all its elements together"
+        yield Unjudged(loaded.named("flex", flex), "flex", reason)
 
 
 def _tendon_directions(model: Any, data: Any) -> FloatArray:

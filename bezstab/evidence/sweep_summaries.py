@@ -28,9 +28,6 @@ ORDER_LOST = 0.5
 ALIKE = 1.05
 """Ratios nearer to one are neither won nor lost."""
 
-UNLIMITED = 1e300
-"""Times better than any limit is to have none."""
-
 
 @dataclass(frozen=True)
 class Summary:
@@ -187,9 +184,9 @@ def _comparison_sentence(bezier: Summary, other: Summary) -> str:
     """Return where a Bezier method wins and where it loses against another, with the numbers."""
     wins, loses = [], []
     for times_better, text in _advantages(bezier, other):
-        if np.log(times_better) > np.log(ALIKE):
+        if times_better > ALIKE:
             wins.append(text)
-        elif -np.log(times_better) > np.log(ALIKE):
+        elif times_better < 1 / ALIKE:
             loses.append(text)
     clauses = [f"{verb}: {', '.join(texts)}" for verb, texts in (("wins", wins), ("loses", loses)) if texts]
     return f"{bezier.method.name} against {other.method.name} {'; '.join(clauses) or 'does as well'}."
@@ -201,7 +198,7 @@ def _advantages(bezier: Summary, other: Summary) -> Iterator[tuple[float, str]]:
         ratio = bezier.area / other.area
         yield ratio, f"region {ratio:.2g} times as large"
     if other.unlimited:
-        yield 1 / UNLIMITED, "stable up to some α = β, the other at every"
+        yield 0.0, "stable up to some α = β, the other at every"
     if other.alpha_step and bezier.alpha_step:
         ratio = other.alpha_step / bezier.alpha_step
         yield 1 / ratio, f"stable at one α = β with {ratio:.2g} times the evaluations"
