@@ -18,12 +18,11 @@ from numpy.typing import NDArray
 from bezstab.evidence.linearized_steps import (
     Course,
     Values,
-    course_of_steps,
     linearized_step,
     on_the_motion,
     take_steps,
 )
-from bezstab.mechanism import Mechanism, constraint_jacobian
+from bezstab.mechanism import constraint_jacobian
 from bezstab.methods import Method, Quantity
 from bezstab.stability import BoolArray, FloatArray
 from bezstab.units import feedback_gains
@@ -36,21 +35,8 @@ NUMBERS = 2**23  # of all steps of the points that are taken together: 64 MB
 IntArray = NDArray[np.int_]
 
 
-def floquet_rates(
-    mechanism: Mechanism, method: Method, h: float, alpha_hat: FloatArray, beta_hat: FloatArray, duration: float
-) -> FloatArray:
-    """Return |z| per step of the method over the motion at each of a row of points; shape (points,), dimensionless.
-
-    h (s) is the user's step; over a revolution it is taken so that a whole number of steps fills it, at most half a
-    step in all from h. A motion that is no revolution lasts `duration` (s). InputError and NumericalError as
-    `regular_motion`.
-    """
-    course = course_of_steps(mechanism, method, h, duration)
-    return rates_on_the_motion(course, gains_on(course, method, alpha_hat, beta_hat))
-
-
 def rates_on_the_motion(course: Course, gains: FloatArray) -> FloatArray:
-    """Return the same of points with these gains, shape (2, points)."""
+    """Return |z| per step over the motion of the mechanism at points with these gains, (2, points); shape (points,)."""
     rates = np.empty(gains.shape[1])
     newest = max((each for each in course.memory.carried if each.name == "x"), key=lambda each: each.step)
     sizes = [] if course.along.closed else _sizes_of_errors(course, newest)

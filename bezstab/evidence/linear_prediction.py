@@ -31,7 +31,7 @@ has found one and the same.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -69,20 +69,24 @@ SPREAD = 1e-3
 
 @dataclass(frozen=True)
 class Fit:
-    """The dominant pole of a response, per sample, and how well it is known.
+    """The poles of a response, per sample, and how well the dominant one is known.
 
-    `pole` lies in the closed upper half plane, for its conjugate is a pole too. `start` is the first sample of the
-    window that gave it and `samples` its length. `uncertainty` bounds the error of the pole in the plane, as far as
-    samples can tell: by how much the better half of the fits is off it, or what the window's recursion leaves open
-    where that is more. `poles` are all that carry amplitude in the window, by modulus, those of the closed upper half
-    plane.
+    `poles` carry amplitude in a window of the response and lie in the closed upper half plane, for conjugates are poles
+    too; by modulus. `residual` is the relative error of the window's recursion, `start` its first sample and `samples`
+    its length. `uncertainty` bounds the error of the dominant pole in the plane, as far as samples can tell: what the
+    recursion leaves open, or by how much other windows are off it where that is more.
     """
 
-    pole: complex
+    poles: tuple[complex, ...]
+    residual: float
     start: int
     samples: int
     uncertainty: float
-    poles: tuple[complex, ...]
+
+    @property
+    def pole(self) -> complex:
+        """The dominant pole."""
+        return self.poles[0]
 
 
 @dataclass(frozen=True)
@@ -90,26 +94,6 @@ class Refusal:
     """Why no pole is claimed, in one line."""
 
     reason: str
-
-
-@dataclass(frozen=True)
-class WindowFit:
-    """What one window gives: the recursion's residual, its poles, and the window's ends (samples).
-
-    `poles` carry amplitude and lie in the closed upper half plane, by modulus; `formal_error` is the standard error of
-    the dominant one if what the recursion leaves is noise.
-    """
-
-    residual: float
-    poles: tuple[complex, ...]
-    formal_error: float
-    start: int
-    stop: int
-
-    @property
-    def pole(self) -> complex:
-        """The dominant pole."""
-        return self.poles[0]
 
 
 def fit_dominant_pole(
@@ -133,7 +117,7 @@ def fit_dominant_pole(
     """
     if sizes is None:
         sizes = np.abs(responses)
-    fits: list[WindowFit] = []
+    fits: list[Fit] = []
     longest = 0
     for response, size in zip(responses.T, sizes.T, strict=True):
         for window in response_windows(response, size, limits, floor):
@@ -145,7 +129,7 @@ def fit_dominant_pole(
     fits.sort(key=lambda fit: fit.residual)
     better_half = fits[: (len(fits) + 1) // 2]
     # Several responses in one window are no independent witnesses: they may differ by a factor only.
-    if len({(fit.start, fit.stop) for fit in better_half}) < 2:
+    if len({(fit.start, fit.samples) for fit in better_half}) < 2:
         return Refusal(f"no linear recursion fits the {longest} samples between round-off and the linear range")
     z = np.array([fit.pole for fit in better_half])
     moduli = np.abs(z)
@@ -155,13 +139,8 @@ def fit_dominant_pole(
             differing = f"{spread:.1g} in {quantity}"
             return Refusal(f"fits differ by {differing}: poles of nearly equal modulus, or too much forced error")
     median = better_half[int(np.argsort(moduli)[len(moduli) // 2])]
-    return Fit(
-        pole=median.pole,
-        start=median.start,
-        samples=median.stop - median.start,
-        uncertainty=max(TIMES_FARTHEST * float(np.abs(z - median.pole).max()), STANDARD_ERRORS * median.formal_error),
-        poles=median.poles,
-    )
+    farthest = TIMES_FARTHEST * float(np.abs(z - median.pole).max())
+    return replace(median, uncertainty=max(farthest, median.uncertainty))
 
 
 def response_windows(
@@ -191,7 +170,7 @@ def response_windows(
             yield slice(start, min(end, start + SAMPLES))
 
 
-def fit_window(samples: FloatArray, order: int, start: int = 0) -> WindowFit | None:
+def fit_window(samples: FloatArray, order: int, start: int = 0) -> Fit | None:
     """Return what the shortest recursion of at most `order` says of the samples, which begin at `start`; None without.
 
     A recursion of p terms is tried only on 2p + 2 samples and more, so that there are more equations than unknowns.
@@ -212,9 +191,8 @@ def fit_window(samples: FloatArray, order: int, start: int = 0) -> WindowFit | N
         if residual < RESIDUAL:
             z = np.roots([1.0, *-coefficients[::-1]])
             poles = _poles_with_amplitude(samples, z)
-            left_over = before @ coefficients - after
-            error = _formal_error(before, left_over, coefficients, poles[0])
-            return WindowFit(residual, poles, error, start, start + len(samples))
+            error = _formal_error(before, before @ coefficients - after, coefficients, poles[0])
+            return Fit(poles, residual, start, len(samples), STANDARD_ERRORS * error)
     return None
 
 

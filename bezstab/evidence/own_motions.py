@@ -72,21 +72,16 @@ class OwnMotions:
         return np.asarray(np.isfinite(self.states).all(axis=(0, 2)))
 
 
-def own_motion_rates(
-    mechanism: Mechanism, method: Method, h: float, alpha_hat: FloatArray, beta_hat: FloatArray, duration: float
-) -> FloatArray:
-    """Return |z| per step along the method's own motion at each of a row of points; shape (points,), dimensionless.
-
-    Those of `floquet_rates`, whose arguments and errors these are, for a motion that is no revolution, and at points
-    where the method has no such motion near that of the mechanism.
-    """
-    return find_own_motions(mechanism, method, h, alpha_hat, beta_hat, duration).rates
-
-
 def find_own_motions(
     mechanism: Mechanism, method: Method, h: float, alpha_hat: FloatArray, beta_hat: FloatArray, duration: float
 ) -> OwnMotions:
-    """Return the motions that have these rates; arguments and errors as `own_motion_rates`."""
+    """Return the method's own motions at each of a row of points, and |z| per step along them.
+
+    The rates are those on the mechanism's motion for a motion that is no revolution, and at points where the method has
+    none of its own near that of the mechanism. h (s) is the user's step; over a revolution it is taken so that a whole
+    number of steps fills it, at most half a step in all from h. A motion that is no revolution lasts `duration` (s).
+    InputError and NumericalError as `regular_motion`.
+    """
     course = course_of_steps(mechanism, method, h, duration)
     gains = gains_on(course, method, alpha_hat, beta_hat)
     rates = np.full(alpha_hat.size, np.nan)

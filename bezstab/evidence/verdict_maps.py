@@ -81,8 +81,7 @@ class VerdictMap(ReadOnlyArrays):
     @property
     def farthest_disagreement(self) -> float | None:
         """The largest | |z_p| - 1 | at which the verdicts differ; None where they nowhere do."""
-        distance = self._distances_of_disagreement()
-        return float(distance.max()) if distance.size else None
+        return max(np.abs(self.z_abs - 1)[self.disagrees].tolist(), default=None)
 
     @property
     def disagreements_beyond_band(self) -> int:
@@ -93,10 +92,6 @@ class VerdictMap(ReadOnlyArrays):
     def too_close(self) -> BoolArray:
         """Where |z_p| is nearer to one than the band, or than the motion moves it; shape (beta_hat, alpha_hat)."""
         return np.asarray(~(np.abs(self.z_abs - 1) > np.maximum(self.band, self.moved)))
-
-    def _distances_of_disagreement(self) -> FloatArray:
-        distance: FloatArray = np.abs(self.z_abs - 1)[self.disagrees]
-        return distance
 
 
 @dataclass(frozen=True)

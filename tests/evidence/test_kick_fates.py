@@ -5,12 +5,13 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from bezstab.evidence import floquet_rates, map_rows, simulated_verdicts, verdict_map
+from bezstab.evidence import map_rows, simulated_verdicts, verdict_map
 from bezstab.evidence.kick_fates import fates, follow
 from bezstab.mechanism import load_scene
 from bezstab.methods import lookup
 from bezstab.stability import FloatArray
 from tests.evidence.driven_four_bar import four_bar
+from tests.evidence.exact_rates import floquet_rates
 from tests.evidence.samples import of_campaign
 
 KICK, RUN = 1e-8, 2000

@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 from bezstab.compiling import COMPILED_CHOICE
-from bezstab.evidence import LINEAR, SPREAD, Measurement, floquet_rates, measure_poles, random_points
+from bezstab.evidence import LINEAR, SPREAD, Measurement, measure_poles, random_points
 from bezstab.evidence.measured_poles import KICKS, _measured_verdict
 from bezstab.mechanism import Mechanism, compiled_mechanism, load_scene
 from bezstab.methods import LinearMultistep, Method, lookup, steps
 from bezstab.stability import spectral_radius
+from tests.evidence.exact_rates import floquet_rates
 from tests.evidence.samples import of_campaign
 from tests.mechanism.test_scenes import small
 from tests.methods.kinds import EXPLICIT, FEW, IMPLICIT, SAMPLE, SECOND_ORDER, sampled

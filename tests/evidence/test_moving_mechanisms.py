@@ -8,7 +8,6 @@ import pytest
 from bezstab.evidence import (
     LAW_HOLDS,
     MovingPole,
-    floquet_rates,
     growth_rates,
     moving_pole,
     tabulated_rates,
@@ -19,6 +18,7 @@ from bezstab.methods import lookup
 from bezstab.stability import poles, spectral_radius
 from bezstab.units import feedback_gains
 from tests.evidence.driven_four_bar import four_bar, turning
+from tests.evidence.exact_rates import floquet_rates
 from tests.methods.kinds import sampled
 
 OMEGA = 2 * np.pi

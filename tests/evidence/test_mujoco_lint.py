@@ -377,14 +377,6 @@ def test_a_gain_of_the_wrong_sign_is_unsafe_at_any_step() -> None:
     assert "wrong sign" in row.advice
 
 
-def test_what_is_no_constant_gain_is_not_judged() -> None:
-    drives = '<damper joint="x" kv="2" ctrlrange="0 1"/><muscle joint="x" lengthrange="0 1"/>'
-    case = replace(DRIVES["position"], more=actuator(drives))
-    rows = lint(case.model("Euler"))
-    assert [row.verdict for row in rows] == [None, None]
-    assert all(row.advice.startswith("not judged") and not row.unsafe for row in rows)
-
-
 @pytest.mark.promise("`lint`: every kind of row of a MuJoCo model, flexes too, under each of its four integrators")
 def test_springs_and_contacts_of_a_flex_are_not_judged() -> None:
     start = '<flexcomp name="f" type="grid" spacing=".1 .1 .1" radius=".001" mass="2" dim='
@@ -441,3 +433,11 @@ def test_all_together_is_mujocos_own_step_on_random_arms(integrator: str) -> Non
             assert together.verdict == ("diverges" if moduli[0] > 1 else "converges")
             verdicts.add(together.verdict)
     assert verdicts == {"converges", "diverges"}
+
+
+def test_what_is_no_constant_gain_is_not_judged() -> None:
+    drives = '<damper joint="x" kv="2" ctrlrange="0 1"/><muscle joint="x" lengthrange="0 1"/>'
+    case = replace(DRIVES["position"], more=actuator(drives))
+    rows = lint(case.model("Euler"))
+    assert [row.verdict for row in rows] == [None, None]
+    assert all(row.advice.startswith("not judged") and not row.unsafe for row in rows)

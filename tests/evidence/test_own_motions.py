@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
-from bezstab.evidence import floquet_rates, moving_poles, own_motion_rates
+from bezstab.evidence import moving_poles
 from bezstab.mechanism import compiled_mechanism, load_scene
 from bezstab.methods import lookup
 from bezstab.stability import FloatArray, region, spectral_radius, window
 from tests.evidence.driven_four_bar import four_bar, turning
+from tests.evidence.exact_rates import floquet_rates, own_motion_rates
 from tests.evidence.samples import of_campaign
 from tests.reference.perturbed_revolutions import rates_after_kicks, runner_motion, settled_multiplier
 

@@ -245,21 +245,6 @@ def test_coarse_rounding_is_refused_and_said() -> None:
     assert "rounded to 0.00391" in probed_pole(sixteenths).reason
 
 
-@pytest.mark.slow
-def test_noise_and_rounding_together_are_never_answered_wrongly() -> None:
-    random = np.random.default_rng(4)
-    answered = 0
-    for _ in range(of_campaign(60, 10)):
-        modulus, angle = random.uniform(0.6, 0.99), random.uniform(0.1, 3.0)
-        noise = 10 ** random.uniform(-9, -2) * random.normal(size=400)
-        c = np.round(two_poles(400, modulus, angle, 1.0, 0.5) + noise, int(random.integers(3, 10)))
-        found = probed_pole(c)
-        if found.pole is not None and found.uncertainty is not None:
-            answered += 1
-            assert abs(found.pole - modulus * np.exp(1j * angle)) < 10 * found.uncertainty + 1e-6
-    assert answered > 2
-
-
 def test_powers_of_one_half_are_not_taken_for_a_quantiser() -> None:
     assert told(0.5 ** np.arange(40.0), np.zeros(40)).pole == pytest.approx(0.5, abs=1e-9)
 
