@@ -38,8 +38,9 @@ ITERATIONS = 40
 """Of Newton's method at most: from a start that leads anywhere it settles within some twenty. Gauss and Newton's ends
 before, where a change is NEGLIGIBLE beside the standard errors, or none that is not leaves less over."""
 
-LARGEST_ERROR = 0.05
-"""In the plane: beyond, errors of poles are no longer normal, and nobody is helped."""
+RESOLVED = 0.05
+"""In the plane: a pole that is nearer to 1 changes from row to row as little as what a motion forces. Of one that is
+not known to so much errors are no longer normal, and nobody is helped."""
 
 
 @dataclass(frozen=True)

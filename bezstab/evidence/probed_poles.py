@@ -29,7 +29,7 @@ from bezstab.errors import InputError, NumericalError
 from bezstab.evidence.linear_prediction import NEGLIGIBLE, SAMPLES, SPREAD, Fit, Refusal, fit_dominant_pole
 from bezstab.evidence.logs import UNEVEN, decimal_place
 from bezstab.evidence.measured_poles import CLOSE, GROWN
-from bezstab.evidence.noisy_prediction import ITERATIONS, LARGEST_ERROR, VISIBLE, NoisyFit, fit_in_noise
+from bezstab.evidence.noisy_prediction import ITERATIONS, RESOLVED, VISIBLE, NoisyFit, fit_in_noise
 from bezstab.methods import Method, closed_loop_at, closed_loop_table
 from bezstab.stability import EPS, ComplexArray, FloatArray, poles, region, spectral_radius, turning_sensitivity, window
 
@@ -45,9 +45,6 @@ SHARES = (1.0, 1e-1, 1e-2, 1e-3, 1e-4)
 STARTS = 9
 """Of Newton's method along each side of the region's window."""
 
-ON_A_LINE = 201
-"""Samples of a line of points, across the region's window: is z the dominant pole on some of it?"""
-
 SAME = 1e-6
 """Of a point's size, and of |z|: solutions nearer than that are one, which Newton's method reached from two places.
 Where its last change is less it has settled: the next would be about the square."""
@@ -62,9 +59,6 @@ BEYOND_THE_LAW = 1.5
 
 DIFFERENCES = 3
 """Times that samples are differenced at most: each takes off a factor omega h of what a motion forces."""
-
-SLOW = 0.05
-"""From 1: poles so near to it change from row to row as little as what a motion forces."""
 
 IN_NOISE = "in noise of {}, which shows two poles very close together as one"
 FORCED_IN_NOISE = (
@@ -235,11 +229,11 @@ def _told_in_noise(fit: NoisyFit, rows: int, of_two_runs: bool, cut: str) -> Pro
     In one run a pole near 1 is what the motion forces, and one on the circle may be.
     """
     noise = ", ".join(f"{level:.2g}" for level in fit.noise)
-    poles = [pole for pole in fit.poles if of_two_runs or abs(pole.z - 1) > SLOW]
+    poles = [pole for pole in fit.poles if of_two_runs or abs(pole.z - 1) > RESOLVED]
     if not poles:
         return _refused(rows, (FORCED_IN_NOISE if fit.poles else ALL_NOISE).format(noise), cut)
     dominant = poles[0]
-    if dominant.uncertainty > LARGEST_ERROR:
+    if dominant.uncertainty > RESOLVED:
         return _refused(rows, HIDDEN_IN_NOISE.format(noise, dominant.z, dominant.uncertainty), cut)
     on_the_circle = abs(abs(dominant.z) - 1) < max(CLOSE, dominant.uncertainty)
     if on_the_circle and not of_two_runs:
@@ -251,7 +245,7 @@ def _told_in_noise(fit: NoisyFit, rows: int, of_two_runs: bool, cut: str) -> Pro
 
 def _is_not_forced(fit: Fit, samples: FloatArray) -> bool:
     """Return whether one run's pole is none that a motion could force, and nothing larger has decayed before it."""
-    return abs(fit.pole - 1) > SLOW and _explains_the_start(fit, samples)
+    return abs(fit.pole - 1) > RESOLVED and _explains_the_start(fit, samples)
 
 
 def _is_slow_pole(fit: Fit, of_changes: Fit, samples: FloatArray) -> bool:
@@ -517,8 +511,6 @@ def _solutions(method: Method, z: ComplexArray, error: float) -> tuple[list[Like
     table = np.array(closed_loop_table(method), float)  # by powers of z, alpha_hat and beta_hat
     equations = _equations(table, z)
     points = _starting_points(method, z)
-    # Where one mu has both z, so has the whole straight line of that mu, and Newton's method ends anywhere on it.
-    line = np.ptp(points[1:], axis=0).max() * np.linspace(-1, 1, ON_A_LINE)[:, np.newaxis]
     with np.errstate(all="ignore"):  # what leaves the range is left out below
         for _ in range(ITERATIONS):
             points = points - _newton_step(equations, points)
@@ -531,10 +523,11 @@ def _solutions(method: Method, z: ComplexArray, error: float) -> tuple[list[Like
     for a, b in points[(last < SAME * (1 + np.abs(points).max(axis=1))) | (residual < SAME**2 * scale)].tolist():
         jacobian = _jacobian(equations, np.array([[a, b]]))[:, :, 0]
         if np.linalg.cond(jacobian) > 1 / SAME:
-            if not singular:
-                along = np.linalg.svd(jacobian)[2][-1]
-                alpha_hat, beta_hat = (np.array([a, b]) + line * along).T
-                singular = bool((spectral_radius(method, alpha_hat, beta_hat) < largest).any())
+            # Where one mu, a real one, has both z, so has the whole straight line of that mu, and Newton's method ends
+            # anywhere on it. If z is the dominant pole on some of it, then where the other mu is the same.
+            mu = np.roots([1, a, b])
+            mu = mu[mu.imag == 0].real
+            singular |= bool((spectral_radius(method, -2 * mu, mu**2) < largest).any())
             continue
         known = any(abs(a - one.alpha_hat) + abs(b - one.beta_hat) < SAME * (1 + abs(a) + abs(b)) for one in found)
         if known or spectral_radius(method, a, b) > largest:
