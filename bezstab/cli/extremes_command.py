@@ -4,7 +4,7 @@ import click
 
 from bezstab.cli.options import compiled_option, format_option
 from bezstab.cli.output import progress, show_rows
-from bezstab.show import EXTREMES, Format, cells
+from bezstab.show import EXTREMES, Format
 
 
 @click.command()
@@ -25,6 +25,6 @@ def extremes(context: click.Context, short: bool, form: Format) -> None:
 
     checks = list(extreme_checks(not short))
     outcomes = [check() for check in progress(checks, "extremes")]
-    rows = [cells(EXTREMES.fields, outcome) for outcome in outcomes]
+    rows = [EXTREMES.row(outcome) for outcome in outcomes]
     show_rows(EXTREMES, rows, form)
     context.exit(0 if all(outcome.held for outcome in outcomes) else 1)

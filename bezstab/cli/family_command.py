@@ -8,7 +8,7 @@ from bezstab.cli.options import format_option
 from bezstab.cli.output import Files, picture_options, show_rows
 from bezstab.errors import InputError
 from bezstab.methods import STEP_FAMILIES
-from bezstab.show import MEMBERS, Format
+from bezstab.show import MEMBERS, Format, Row
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -39,7 +39,7 @@ def family(name: str, first: int, last: int | None, files: Files, form: Format) 
     files.check_output()
     members = family_members(name, first, last)
     limit = bezier_limit() if name == "bezier" else None
-    rows = [show.family_row(member) for member in members]
+    rows: list[Row] = [MEMBERS.row(member) for member in members]
     if limit:
         rows.append(show.limit_row(limit))
     show_rows(MEMBERS, rows, form)

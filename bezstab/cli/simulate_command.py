@@ -25,7 +25,7 @@ from bezstab.cli.options import (
 from bezstab.cli.output import Files, figure_options, say, show_rows
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method
-from bezstab.show import SIMULATIONS, Format, passages_words, simulation_row
+from bezstab.show import SIMULATIONS, Format, passages_words
 
 
 @click.command()
@@ -93,7 +93,7 @@ def simulate(point: TypedPoint, files: Files, form: Format, **typed: Any) -> Non
         lambda: show.history_figure(run),
         lambda: show.history_arrays(run),
     )
-    show_rows(SIMULATIONS, [simulation_row(run)], form)
+    show_rows(SIMULATIONS, [SIMULATIONS.row(run)], form)
     if len(run.singular_times):
         say(f"bezstab: {passages_words(run.singular_times.tolist())}")
     if run.failure:

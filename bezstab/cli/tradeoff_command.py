@@ -35,7 +35,7 @@ from bezstab.cli.output import (
     show_text,
     work_options,
 )
-from bezstab.show import FRONTS, SWEPT, Format, combined_words, front_row, run_row
+from bezstab.show import FRONTS, SWEPT, Format, combined_words, front_row
 
 if TYPE_CHECKING:
     from bezstab.evidence import SweptRuns
@@ -140,7 +140,7 @@ def tradeoff(
     job = f"{question.methods} {question}"
     with results_of_chunks(evidence.measured_runs, question.sweeps, path, job, work) as results:
         swept = question.swept(results)
-        rows = [run_row(run, front) for run, front in zip(swept.runs, swept.front_labels, strict=True)]
+        rows = [SWEPT.row(run, front=front) for run, front in zip(swept.runs, swept.front_labels, strict=True)]
         files.write(path, None, lambda: show.untimed_arrays(rows))
         _write_figures(question, swept, path, files)
     show_rows(SWEPT, rows, form)

@@ -29,7 +29,7 @@ from bezstab.cli.output import (
     show_text,
     work_options,
 )
-from bezstab.show import FORCED, MEASUREMENTS, SUMMARIES, VERDICT_MAPS, WITNESSED, Format, cells
+from bezstab.show import FORCED, MEASUREMENTS, SUMMARIES, VERDICT_MAPS, WITNESSED, Format
 
 if TYPE_CHECKING:
     from bezstab.questions import VerifyQuestion
@@ -117,9 +117,8 @@ def _show_witnesses(question: "VerifyQuestion", form: Format) -> None:
     """Print a row for each run of MuJoCo's integrators."""
     from bezstab.evidence import mujoco_witnesses, witness_count
 
-    scene = {"scene": question.mechanism.scene.name}
     witnesses = progress(mujoco_witnesses(question.mechanism, float(question.h)), "MuJoCo", witness_count())
-    show_rows(WITNESSED, [cells(WITNESSED.fields, each, scene) for each in witnesses], form)
+    show_rows(WITNESSED, [WITNESSED.row(each, scene=question.mechanism.scene.name) for each in witnesses], form)
 
 
 def _show_forced_errors(question: "VerifyQuestion", form: Format) -> int:
@@ -149,7 +148,7 @@ def _show_measurements(question: "VerifyQuestion", form: Format) -> None:
 
     mechanism, floquet = question.mechanism, question.floquet
     measured = [question.measurements(method, partial(progress, label=method.name)) for method in question.methods]
-    rows = [show.measurement_row(mechanism.scene.name, each) for of_method in measured for each in of_method]
+    rows = [MEASUREMENTS.row(each, scene=mechanism.scene.name) for of_method in measured for each in of_method]
     show_rows(MEASUREMENTS, rows, form, () if floquet else ("right",))
     if not for_reading(form):
         return
@@ -157,7 +156,7 @@ def _show_measurements(question: "VerifyQuestion", form: Format) -> None:
         show_text(show.exact_rate_words(mechanism, of_method))
     if len(rows) > len(measured):  # of one point each there is nothing to sum up
         click.echo()
-        summaries = [cells(SUMMARIES.fields, evidence.measurement_summary(of_method)) for of_method in measured]
+        summaries = [SUMMARIES.row(evidence.measurement_summary(of_method)) for of_method in measured]
         show_rows(SUMMARIES, summaries, form, () if floquet else OVER_THE_MOTION)
 
 
@@ -176,5 +175,5 @@ def _show_map(question: "VerifyQuestion", across: int, work: Work, files: Files,
             verdicts = evidence.verdict_map(chunks, results)
             draw = partial(show.verdict_figure, verdicts, region(method))
             files.write(path, draw, partial(show.verdict_arrays, verdicts))
-        rows.append(show.verdict_map_row(verdicts))
+        rows.append(VERDICT_MAPS.row(verdicts))
     show_rows(VERDICT_MAPS, rows, form)
