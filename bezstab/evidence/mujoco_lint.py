@@ -118,6 +118,11 @@ class Linted:
         return not self.safe_together and self._unsafe_alone
 
     @property
+    def safe(self) -> bool | None:
+        """Whether it is not unsafe; None where that was not judged."""
+        return None if self.verdict is None else not self.unsafe
+
+    @property
     def _unsafe_alone(self) -> bool:
         return self.verdict == "diverges" or (self.verdict == "marginal" and bool(self.alpha_hat))
 
@@ -236,7 +241,7 @@ def _springs_and_dampers(model: ModelData, feedbacks: Sequence[Feedback]) -> tup
 def _verdict(method: Method, point: Point) -> Verdict:
     """Return the proven verdict; where there is no stiffness, that on the velocity alone."""
     polynomial = closed_loop_at(method, *point)
-    if point[1] == 0:  # nothing holds the position: P = (z - 1) Q, and Q's coefficients are the running sums of P's
+    if point[1] == 0:  # nothing holds the position: P = (z - 1) Q, and -Q's coefficients are the running sums of P's
         polynomial = list(accumulate(polynomial))[:-1]
     return recursion_verdict(polynomial)
 

@@ -25,7 +25,7 @@ def test_the_explicit_curve_of_a_multistep_method_is_its_determinants(name: str,
         assert all(min(abs(s / t - 1) for t in _positive_roots(pairs)) < 1e-15 for s in by_curve)
         for factor in _positive_roots(pairs):  # of real pairs z, 1/z the determinant vanishes too
             point = alpha_hat * factor ** powers[0], beta_hat * factor ** powers[1]
-            z = np.roots([float(c) for c in closed_loop_at(lookup(name), *point)])
+            z = np.polynomial.polynomial.polyroots([float(c) for c in closed_loop_at(lookup(name), *point)])
             on_circle = np.abs(z[np.abs(z.imag) > 1e-3 * np.abs(z)])
             if (np.abs(on_circle - 1) < 1e-9).any():
                 assert min(abs(float(s / factor) - 1) for s in by_curve) < 1e-15
