@@ -328,7 +328,7 @@ def outcome(log: RandomLog, found: ProbedPole, turned: float | None) -> str:
     ),
 )
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", of_campaign([1, 2, 7], [7]))
+@pytest.mark.parametrize("seed", of_campaign([1, 2, 7], [1]))
 def test_the_true_method_is_named_whatever_made_the_log(seed: int) -> None:
     """Of random logs it is first or among those that fit, whether or not one knows how fast the mechanism turns.
 
