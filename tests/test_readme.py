@@ -58,7 +58,7 @@ def prompted(session: str) -> str:
 
 SESSIONS = [session for page in PAGES for session in sessions(page)]
 GOLDEN = ("extremes --short", "paper -o figures")
-"""Commands of pages that are among the golden outputs."""
+"""Commands of pages that others run: tests/evidence/test_extremes.py, tests/paper/test_command.py."""
 
 INLINE = sorted({command for page in PAGES for command in commands(page)} - {*GOLDEN})
 

@@ -127,11 +127,6 @@ def test_a_drive_is_shown_in_all_ways_of_applying_it() -> None:
     assert given["implicit-euler"]["used_up"] is None
 
 
-@pytest.mark.parametrize("gains", ["1,0,1", "0,1,1", "0,0,1", "-1,1,1"])
-def test_a_drive_without_one_of_its_gains_is_shown_too(gains: str) -> None:
-    assert [row["method"] for row in rows("poles", "--pd", gains, "--h", "0.01")] == list(DRIVE_METHODS)
-
-
 def test_what_choose_gives_for_a_drive_are_its_gains() -> None:
     assert run("check", "--pd", "1000,80,0.1", "--h", "1/240", "--method", "stable-pd").exit_code == 0
     chosen = first_row("choose", "--pd", "1000,80,0.1", "--h", "1/240", "--method", "SYM")
@@ -222,10 +217,3 @@ def test_choose_gives_the_strongest_share_and_the_fewest_sweeps_that_a_chain_all
     ):
         values = f"chipmunk={(1 - asked) ** 60!r}"
         assert run("check", "--engine", values, *CHAIN, "--iterations", str(iterations)).exit_code == status
-
-
-def test_chains_prints_the_fewest_stable_sweeps_of_each_length() -> None:
-    found = rows("chains", "--engine", f"chipmunk={0.9**60!r}", "--h", "1/60", "--mass-ratio", "10", "--to", "5")
-    assert [(row["chain_bodies"], row["chain_mass_ratio"]) for row in found] == [(k, 10) for k in range(1, 6)]
-    assert [row["stable_iterations"] for row in found[2:]] == [3, 4, 5]  # two bodies are marginal with one sweep
-    assert found[0]["swept_z_abs"] == pytest.approx(0.9)

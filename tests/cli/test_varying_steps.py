@@ -22,13 +22,11 @@ def rows_of(*arguments: str, status: int = 0) -> list[dict[str, Any]]:
     return printed
 
 
-def test_steps_that_are_stable_alone_are_refuted_together_and_simulate_shows_it() -> None:
+def test_steps_that_are_refuted_together_may_be_typed_or_stand_in_a_file() -> None:
     given = rows_of("check", *EXAMPLE, status=1)[0]
     assert (given["verdict"], given["varying"], len(given["sequence"])) == ("converges", "refuted", 2)
     assert given["h_limit"] == pytest.approx(0.0196, abs=1e-4)  # every constant step up to here decays
     at = ("simulate", *EXAMPLE[:7], "--h", "1/60", "--perturb", "1e-6", "--time", "0.5", *NOTHING, "--steps")
-    for step in given["sequence"]:
-        assert rows_of(*at, repr(step))[0]["c_max"] < 1e-4
     steps = ",".join(map(repr, given["sequence"]))
     Path("steps.txt").write_text(steps.replace(",", "\n"), encoding="utf-8")
     typed, from_file = (rows_of(*at, each)[0]["c_max"] for each in (steps, "steps.txt"))

@@ -55,11 +55,3 @@ def test_only_the_fast_part_is_a_band() -> None:
     late = t > 0.5 + 1.5 * column
     assert drawn[late].tolist() == values[late].tolist()
     assert np.isnan(drawn[t < 0.5 - 1.5 * column]).mean() > 0.9
-
-
-def test_a_spike_at_the_start_is_a_line() -> None:
-    t = np.linspace(0, 10, 10_001)
-    values = np.exp(-50 * t) * np.cos(500 * t) + 0.1 * t
-    line = history_line(axes := panel(), t, values)
-    assert not bands(axes)
-    assert np.array(line.get_ydata()).tolist() == values.tolist()

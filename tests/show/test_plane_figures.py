@@ -83,10 +83,8 @@ def test_the_family_figure_has_a_point_per_method_and_the_limit() -> None:
     assert np.array(constant.lines[0].get_xydata()).tolist() == errors
     assert [np.array(axes.lines[-1].get_ydata())[0] for axes in (area, fastest)] == [limit.area, limit.z_abs]
     assert np.array(regions.lines[-1].get_xydata()) == pytest.approx(limit.boundary)
-    _, _, orders, regions = family_figure(families, "adams-bashforth", None).axes
-    assert orders.get_ylabel() == "order of accuracy"
+    _, _, orders, _ = family_figure(families, "adams-bashforth", None).axes
     assert np.array(orders.lines[0].get_xydata()).tolist() == [[2, 2], [3, 3]]
-    assert [line.get_label() for line in regions.lines] == ["AB2", "AB3"]
 
 
 def test_a_comparison_draws_each_boundary_in_a_given_window_or_in_alpha_and_beta() -> None:

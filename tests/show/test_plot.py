@@ -54,13 +54,6 @@ def test_a_body_on_a_pivot_is_drawn_from_it_and_only_what_slides_is_a_square(
     assert lengths == pytest.approx({name: lengths_in_files[name] for name in pivots})
 
 
-def test_an_unbounded_region_points_to_where_it_goes_on() -> None:
-    axes = Figure().add_subplot()
-    assert {">", "^"} <= {arrow.get_marker() for arrow in plot.open_edges(region(lookup("bdf6")), axes)}
-    for shape in (region(lookup("B4")), region(lookup("AB4"), 0.1)):
-        assert plot.open_edges(shape, axes) == []
-
-
 @pytest.mark.parametrize(("h", "names"), [(None, ("alpha", "beta")), (0.001, ("1/s", "1/s"))])
 def test_axes_that_are_given_empty_are_labelled_and_others_left_alone(h: float | None, names: tuple[str, str]) -> None:
     stable = region(lookup("B4"))

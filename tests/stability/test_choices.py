@@ -37,19 +37,10 @@ def test_no_point_is_more_robust(name: str) -> None:
     best = worst_decay(lookup(name), chosen.alpha_hat, chosen.beta_hat, shares, 0.1)
     random = np.random.default_rng(5)
     for size in (0.3, 0.1, 0.03, 0.01, 1e-3, 1e-4):
-        for a, b in random.normal(1, size, (60, 2)) * (chosen.alpha_hat, chosen.beta_hat):
+        for a, b in random.normal(1, size, (20, 2)) * (chosen.alpha_hat, chosen.beta_hat):
             if a > 0 and b > 0:
                 # six digits; that small steps end at a millionth here costs as much again
                 assert worst_decay(lookup(name), a, b, shares, 0.1) > best * (1 - 2e-6)
-
-
-@pytest.mark.parametrize("name", sampled(["B2", "B4", "AB4", "RK4"], quick=["B2", "RK4"]))
-def test_the_robust_choice_bears_the_spread_better_than_the_fastest(name: str) -> None:
-    robust, fastest = choose(lookup(name), "robust", 0.1), choose(lookup(name), "fastest", 0.1)
-    assert abs(fastest.pole) <= abs(robust.pole)
-    assert robust.worst < fastest.worst
-    assert robust.margins
-    assert robust.margins.h > 1.1
 
 
 @pytest.mark.parametrize("name", ["B3", "B8", "AB4"])
@@ -85,16 +76,6 @@ def test_the_gentle_choice_solves_for_mu(name: str, rate: float) -> None:
     assert np.abs(z).max() == pytest.approx(rate)
 
 
-@pytest.mark.parametrize("goal", ["robust", "fastest", "critical"])
-def test_a_step_of_five_h_scales_the_choice(goal: Goal) -> None:
-    plain, fivefold = (choose(lookup(name), goal) for name in ("RK2", "RK2@5"))
-    # the objective is flat to rounding within the square root of it
-    assert (5 * fivefold.alpha_hat, 25 * fivefold.beta_hat) == pytest.approx(
-        (plain.alpha_hat, plain.beta_hat), rel=1e-4
-    )
-    assert abs(fivefold.pole) == pytest.approx(abs(plain.pole), abs=1e-6)
-
-
 @pytest.mark.slow
 def test_a_goal_out_of_reach_is_refused() -> None:
     with pytest.raises(InputError, match="--keep"):
@@ -121,11 +102,6 @@ def test_a_choice_is_proven_and_described() -> None:
     unsafe = describe_point(lookup("SYM"), "as given", Fraction(2), Fraction(2))
     assert (unsafe.verdict, unsafe.margins, unsafe.settle_steps) == ("diverges", None, None)
     assert describe_point(lookup("SYM"), "as given", Fraction(1), Fraction(2)).verdict == "marginal"
-
-
-def test_the_repr_of_a_choice_is_one_line() -> None:
-    described = describe_point(lookup("SYM"), "as given", Fraction(1), Fraction(1))
-    assert repr(described) == "Choice(SYM, as given: alpha_hat = 1, beta_hat = 1, |z_p| = 0, converges)"
 
 
 @pytest.mark.parametrize(("name", "point"), [("B4", ("1/5", "1/50")), ("RK4", ("1/5", "1/50"))])

@@ -1,4 +1,3 @@
-import numpy as np
 import pytest
 
 from bezstab.methods import Method, lookup
@@ -6,7 +5,7 @@ from bezstab.stability import Extent, region, spectral_radius
 from bezstab.stability.charts import chart_of
 from bezstab.stability.closed_loop import free_pencil_of
 from bezstab.stability.critical_points import critical_place
-from tests.reference.second_order_methods import as_second_order, second_order
+from tests.reference.second_order_methods import second_order
 
 BOX = ((0.0, 8.0), (0.0, 16.0))
 
@@ -39,9 +38,3 @@ def test_it_is_followed_no_further_than_the_box() -> None:
     """z = 1 / (1 - mu) of implicit Euler has no least value: with both mu at -1/2 alpha_hat is one."""
     found = critical_point(lookup("implicit-euler"), ((0.0, 1.0), (0.0, 16.0)))
     assert found == pytest.approx((1, 1 / 4))
-
-
-@pytest.mark.parametrize("name", ["B4", "AB3", "ABM3"])
-def test_both_charts_of_a_method_have_the_same_point(name: str) -> None:
-    of_mu, of_plane = critical_point(lookup(name)), critical_point(as_second_order(name))
-    assert np.array(of_plane) == pytest.approx(np.array(of_mu), rel=1e-6)
