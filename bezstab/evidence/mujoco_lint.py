@@ -245,7 +245,7 @@ def _springs_and_dampers(model: ModelData, feedbacks: Sequence[Feedback]) -> tup
 def _verdict(method: Method, point: Point) -> Verdict:
     """Return the proven verdict; where there is no stiffness, that on the velocity alone."""
     polynomial = closed_loop_at(method, *point)
-    if point[1] == 0:  # nothing holds the position: P = (z - 1) Q, and Q's coefficients are the running sums of P's
+    if point[1] == 0:  # nothing holds the position: P = (z - 1) Q, and -Q's coefficients are the running sums of P's
         polynomial = list(accumulate(polynomial))[:-1]
     return recursion_verdict(polynomial)
 

@@ -445,13 +445,13 @@ def kicked_responses(
 
 
 def _polynomial_without_zeros(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> tuple[Fraction, ...]:
-    """Return P at one point in descending powers of z, monic and without roots at zero."""
-    descending = list(closed_loop_at(method, alpha_hat, beta_hat))
-    while descending and descending[-1] == 0:
-        descending.pop()
-    while descending and descending[0] == 0:
-        descending.pop(0)
-    return tuple(coefficient / descending[0] for coefficient in descending)
+    """Return P at one point in ascending powers of z, monic and without roots at zero."""
+    polynomial = closed_loop_at(method, alpha_hat, beta_hat)
+    while polynomial and polynomial[-1] == 0:
+        polynomial.pop()
+    while polynomial and polynomial[0] == 0:
+        polynomial.pop(0)
+    return tuple(coefficient / polynomial[-1] for coefficient in polynomial)
 
 
 def _likeness(

@@ -33,4 +33,4 @@ def test_numbers_so_long_that_it_would_take_minutes_are_refused() -> None:
 
 def is_schur_or_none(polynomial: list[Fraction]) -> bool:
     """Return whether all roots are inside; False where one is infinite."""
-    return bool(polynomial[0]) and is_schur(polynomial)
+    return bool(polynomial[-1]) and is_schur(polynomial)

@@ -30,8 +30,8 @@ POINTS = [(F(3, 7), F(2, 11)), (F(-1, 3), F(5, 2)), (F(0), F(1)), (F(7, 2), F(0)
 
 def is_shifted(longer: list[Fraction], shorter: list[Fraction]) -> bool:
     """Return whether one polynomial is the other, made monic, times a power of z."""
-    monic = [c / shorter[0] for c in shorter]
-    return longer == monic + [F(0)] * (len(longer) - len(monic))
+    monic = [c / shorter[-1] for c in shorter]
+    return longer == [F(0)] * (len(longer) - len(monic)) + monic
 
 
 @pytest.mark.promise(
@@ -72,7 +72,7 @@ def test_p_of_a_random_recipe_is_that_of_its_own_step(
     assert scheme.implicit == has_a_circle(scheme)
     p = closed_loop_at(Method("own", scheme, ""), *point)
     polynomial = step_polynomial(scheme, *point)
-    assert (polynomial is None) == (p[0] == 0)
+    assert (polynomial is None) == (p[-1] == 0)
     assume(polynomial is not None)
     assert polynomial is not None
     assert is_shifted(polynomial, p)

@@ -89,7 +89,7 @@ def test_the_polynomial_of_hilber_hughes_and_taylor_is_that_of_theory(alpha: str
 def test_a_composition_keeps_volume_without_feedback_of_velocity(name: str) -> None:
     """The product of the two roots is one for alpha_hat = 0, exactly, irrational coefficients or not."""
     for beta_hat in (F(1, 3), F(7, 2)):
-        first, _, last = closed_loop_at(lookup(name), F(0), beta_hat)
+        last, _, first = closed_loop_at(lookup(name), F(0), beta_hat)
         assert first == last
 
 

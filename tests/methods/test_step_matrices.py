@@ -15,9 +15,9 @@ ONE_STEP = (
 
 def without_zero_roots(polynomial: list[Fraction]) -> list[Fraction]:
     """Return the monic polynomial without its roots at zero."""
-    monic = [coefficient / polynomial[0] for coefficient in polynomial]
-    while monic[-1] == 0:
-        monic.pop()
+    monic = [coefficient / polynomial[-1] for coefficient in polynomial]
+    while monic[0] == 0:
+        monic.pop(0)
     return monic
 
 

@@ -74,7 +74,7 @@ def test_a_limit_at_which_a_root_only_touches_the_circle_is_exact(stages: str, l
 
 def converges(method: Method, damping_ratio: Fraction, beta_step: Fraction) -> bool:
     polynomial = closed_loop_at(method, 2 * damping_ratio * beta_step, beta_step**2)
-    return bool(polynomial[0]) and recursion_verdict(polynomial) == "converges"
+    return bool(polynomial[-1]) and recursion_verdict(polynomial) == "converges"
 
 
 @pytest.mark.parametrize("name", [*LIMITS, "AB6", "ABM3", "dopri5", "yoshida4", "RK4@5"])

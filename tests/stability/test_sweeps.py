@@ -65,7 +65,7 @@ def test_verdicts_are_those_of_exact_arithmetic(ratio: int, sweeps: int, share: 
     bodies = 3
     exact = columns(hard_step(bodies, Fraction(ratio), sweeps, Fraction(share)), bodies, Fraction(1))
     matrix = sympy.Matrix([[sympy.Rational(x.numerator, x.denominator) for x in map(Fraction, row)] for row in exact])
-    coefficients = [Fraction(int(c.p), int(c.q)) for c in matrix.charpoly().all_coeffs()]
+    coefficients = [Fraction(int(c.p), int(c.q)) for c in matrix.charpoly().all_coeffs()[::-1]]
     growth = swept_growth(chain(bodies, ratio), hard_velocity_step(Fraction(share), sweeps, kept=1.0))
     assert growth.decays is (recursion_verdict(coefficients) == "converges")
 
