@@ -10,24 +10,9 @@ from bezstab.stability import best_point, region
 from tests.reference.extents import Extent
 from tests.reference.lower_points import contradictions as best_point_contradictions
 from tests.reference.one_evaluation_schemes import one_evaluation_schemes
-from tests.reference.random_methods import other_random_method, random_method
+from tests.reference.random_methods import random_method
 from tests.stability import campaign
-from tests.stability.campaign import cases_of, compared, other_cases_of, other_compared
-
-SAMPLE = range(0, 6000, 404)  # 15 methods: 404 goes round the fifteen kinds
-OTHER_SAMPLE = range(0, 5000, 719)  # 7 methods: 719 goes round the six kinds
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("number", SAMPLE)
-def test_no_random_method_has_a_silent_wrong_area(number: int) -> None:
-    assert [case for case in cases_of(number) if case.verdict == "silent"] == []
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("number", OTHER_SAMPLE)
-def test_no_random_implicit_or_second_order_method_has_a_silent_wrong_area(number: int) -> None:
-    assert [case for case in other_cases_of(number) if case.verdict == "silent"] == []
+from tests.stability.campaign import LEVELS, cases_of, compared, other_cases_of, other_compared
 
 
 @pytest.mark.promise(
@@ -47,10 +32,15 @@ def test_no_random_implicit_or_second_order_method_has_a_silent_wrong_area(numbe
     ),
 )
 @pytest.mark.slow
-def test_the_first_of_each_kind_agree() -> None:
-    for number in (1, 6, 11):
-        assert [case.verdict for case in cases_of(number)] == ["agrees"] * 4
-    assert other_compared(other_random_method(1), 1.0).verdict == "agrees"
+@pytest.mark.parametrize("number", range(15))
+def test_the_first_of_each_of_fifteen_kinds_agree(number: int) -> None:
+    assert [case.verdict for case in cases_of(number)] == ["agrees"] * len(LEVELS)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", range(6))
+def test_the_first_of_each_of_six_implicit_or_second_order_kinds_agree_or_are_unbounded(number: int) -> None:
+    assert {case.verdict for case in other_cases_of(number)} <= {"agrees", "unbounded"}
 
 
 def test_a_region_of_fifteen_parts_passes_its_own_check() -> None:
