@@ -97,7 +97,7 @@ def _imports(path: Path, with_types: bool) -> Iterator[tuple[str, tuple[str, ...
 
 def _nodes(node: ast.AST, with_types: bool) -> Iterator[ast.AST]:
     for child in ast.iter_child_nodes(node):
-        for_types = isinstance(child, ast.If) and ast.unparse(child.test) == "TYPE_CHECKING"
+        for_types = isinstance(child, ast.If) and getattr(child.test, "id", "") == "TYPE_CHECKING"
         if with_types or not for_types:
             yield child
             yield from _nodes(child, with_types)

@@ -61,7 +61,8 @@ def test_simulate_says_where_it_goes_through_singular_configurations(time: str, 
 
 @pytest.mark.slow
 def test_tradeoff_writes_a_table_without_times_and_two_figures_and_the_same_again(tmp_path: Path) -> None:
-    command = "tradeoff --scene pendulum --method SYM --method AB4 --h 0.01 --h 0.02 --time 0.1 --workers"
+    point = "--alpha 0.1 --beta 0.01 --repeats 1"
+    command = f"tradeoff --scene pendulum --method SYM --method AB4 --h 0.01 --h 0.02 --time 0.1 {point} --workers"
     found = rows(*command.split(), "2")
     written = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
     name = "tradeoff_pendulum"

@@ -78,7 +78,7 @@ def test_p_of_a_random_recipe_is_that_of_its_own_step(
     assert is_shifted(polynomial, p)
 
 
-@settings(deadline=None, max_examples=30)
+@settings(deadline=None, max_examples=15)
 @given(RECIPES, st.sampled_from(["x0", "v0", "x[-1]"]))
 def test_a_motion_that_is_not_followed_or_an_acceleration_that_does_not_act_in_full_is_refused(
     equations: dict[str, str], quantity: str

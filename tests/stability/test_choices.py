@@ -11,8 +11,6 @@ from bezstab.stability import (
     choose,
     choose_at_step,
     describe_point,
-    pencil_of,
-    roots_in_z,
     spectral_radius,
 )
 from tests.methods.kinds import sampled
@@ -59,21 +57,6 @@ def test_the_critical_choice_of_rk4_is_the_minimum_of_its_stability_function() -
     chosen = choose(lookup("RK4"), "critical")
     assert abs(chosen.pole) == pytest.approx(1 + real + real**2 / 2 + real**3 / 6 + real**4 / 24, abs=1e-7)
     assert chosen.alpha_hat == pytest.approx(-2 * real, rel=1e-3)  # flat there
-
-
-@pytest.mark.parametrize("name", ["B4", "AB4", "RK4", "SIE"])
-@pytest.mark.parametrize("rate", [0.999, 0.95, 0.85])
-@pytest.mark.slow_except("0.95")
-def test_the_gentle_choice_solves_for_mu(name: str, rate: float) -> None:
-    chosen = choose(lookup(name), "gentle", rate=rate)
-    pencil = pencil_of(lookup(name))
-    in_mu = np.vander([rate], pencil.steps + 1, increasing=True) @ pencil.table  # pi(rate, mu), ascending
-    mu = np.roots(in_mu[0][::-1])
-    nearest = max(mu[(np.abs(mu.imag) < 1e-9) & (mu.real < 0)].real)
-    assert chosen.alpha_hat == pytest.approx(-2 * nearest, rel=1e-7)  # a double mu: half the digits
-    assert chosen.beta_hat == pytest.approx(nearest**2, rel=1e-7)
-    z = roots_in_z(pencil, np.array([nearest], complex))
-    assert np.abs(z).max() == pytest.approx(rate)
 
 
 @pytest.mark.slow
