@@ -45,7 +45,7 @@ from bezstab.cli.output import (
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method, check_one_step
 from bezstab.rationals import exact
-from bezstab.show import EXTREMES, FRONTS, SIMULATIONS, SWEPT, Format, cells
+from bezstab.show import EXTREMES, FRONTS, SIMULATIONS, SWEPT, Format
 
 if TYPE_CHECKING:
     from bezstab.evidence import Cost, Held, SweptRuns
@@ -156,7 +156,7 @@ def simulate(
         lambda: show.history_figure(simulation),
         lambda: show.history_arrays(simulation),
     )
-    show_rows(SIMULATIONS, [show.simulation_row(simulation)], form)
+    show_rows(SIMULATIONS, [SIMULATIONS.row(simulation)], form)
     if len(simulation.singular_times):
         say(f"bezstab: {_passages_text(simulation.singular_times.tolist())}")
     if simulation.failure:
@@ -297,7 +297,7 @@ def tradeoff(
     with results_of_chunks(evidence.measured_runs, sweeps, path, job, work) as results:
         per_method = (evidence.swept_runs(*each) for each in zip(sweeps, results, strict=True))
         swept = evidence.with_fronts(list(chain.from_iterable(per_method)), reference.error, against)
-        rows = [show.run_row(run, front) for run, front in zip(swept.runs, swept.front_labels, strict=True)]
+        rows = [SWEPT.row(run, front=front) for run, front in zip(swept.runs, swept.front_labels, strict=True)]
         files.write(path, None, lambda: show.untimed_arrays(rows))
         figures = {
             "projection": lambda: show.projection_figure(swept, loaded_scene.name, reference.error),
@@ -435,6 +435,6 @@ def extremes(context: click.Context, short: bool, form: Format) -> None:
 
     checks = list(extreme_checks(not short))
     outcomes = [check() for check in progress(checks, "extremes")]
-    rows = [cells(EXTREMES.fields, outcome) for outcome in outcomes]
+    rows = [EXTREMES.row(outcome) for outcome in outcomes]
     show_rows(EXTREMES, rows, form)
     context.exit(0 if all(outcome.held for outcome in outcomes) else 1)

@@ -159,7 +159,7 @@ def family(name: str, first: int, last: int | None, files: Files, form: Format) 
     files.check_output()
     members = family_members(name, first, last)
     limit = bezier_limit() if name == "bezier" else None
-    rows = [show.family_row(member) for member in members]
+    rows: list[Row] = [MEMBERS.row(member) for member in members]
     if limit:
         rows.append(show.limit_row(limit))
     show_rows(MEMBERS, rows, form)

@@ -33,7 +33,7 @@ from bezstab.cli.output import (
     work_options,
 )
 from bezstab.methods import Method
-from bezstab.show import FORCED, MEASUREMENTS, SUMMARIES, VERDICT_MAPS, WITNESSED, Format, cells
+from bezstab.show import FORCED, MEASUREMENTS, SUMMARIES, VERDICT_MAPS, WITNESSED, Format
 
 if TYPE_CHECKING:
     from bezstab.mechanism import Mechanism
@@ -129,7 +129,7 @@ def _show_witnesses(mechanism: "Mechanism", h: float, form: Format) -> None:
     from bezstab.evidence import mujoco_witnesses, witness_count
 
     witnesses = progress(mujoco_witnesses(mechanism, h), "MuJoCo", witness_count())
-    show_rows(WITNESSED, [cells(WITNESSED.fields, each, {"scene": mechanism.scene.name}) for each in witnesses], form)
+    show_rows(WITNESSED, [WITNESSED.row(each, scene=mechanism.scene.name) for each in witnesses], form)
 
 
 def _show_forced_errors(
@@ -178,7 +178,7 @@ def _show_measurements(
         alpha_hat, beta_hat = evidence.random_points(method, points) if given is None else given
         bar = partial(progress, label=method.name)
         measured.append(evidence.measure_poles(mechanism, method, h, alpha_hat, beta_hat, bar, floquet))
-    rows = [show.measurement_row(mechanism.scene.name, each) for of_method in measured for each in of_method]
+    rows = [MEASUREMENTS.row(each, scene=mechanism.scene.name) for of_method in measured for each in of_method]
     show_rows(MEASUREMENTS, rows, form, () if floquet else ("right",))
     if not for_reading(form):
         return
@@ -186,7 +186,7 @@ def _show_measurements(
         show_text(show.exact_rate_words(mechanism, of_method))
     if len(rows) > len(methods):  # of one point each there is nothing to sum up
         click.echo()
-        summaries = [cells(SUMMARIES.fields, evidence.measurement_summary(of_method)) for of_method in measured]
+        summaries = [SUMMARIES.row(evidence.measurement_summary(of_method)) for of_method in measured]
         show_rows(SUMMARIES, summaries, form, () if floquet else OVER_THE_MOTION)
 
 
@@ -216,5 +216,5 @@ def _show_map(
                 partial(show.verdict_arrays, verdicts),
             )
             files.write(path, draw, arrays)
-        rows.append(show.verdict_map_row(verdicts))
+        rows.append(VERDICT_MAPS.row(verdicts))
     show_rows(VERDICT_MAPS, rows, form)

@@ -12,6 +12,8 @@ histories of c_1 is followed:
 Linear prediction finds the poles of that recursion.
 """
 
+import cmath
+import math
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -114,6 +116,28 @@ class Measurement:
         point = f"{self.method.name} at alpha_hat {self.alpha_hat:g}, beta_hat {self.beta_hat:g}"
         measured = "none measured" if self.measured is None else f"measured {abs(self.measured):.6g}"
         return f"Measurement({point}: |z_p| = {abs(self.predicted):.6g}, {measured})"
+
+    @property
+    def measurable(self) -> bool:
+        """Whether a pole could be measured."""
+        return self.measured is not None
+
+    @property
+    def difference(self) -> complex | None:
+        """The measured pole less the predicted one; None where none was measured."""
+        return None if self.measured is None else self.measured - self.predicted
+
+    @property
+    def difference_abs(self) -> float | None:
+        """The modulus measured less that predicted."""
+        return None if self.measured is None else abs(self.measured) - abs(self.predicted)
+
+    @property
+    def difference_angle_deg(self) -> float | None:
+        """The angle measured less that predicted, in degrees."""
+        if self.measured is None:
+            return None
+        return math.degrees(cmath.phase(self.measured)) - math.degrees(cmath.phase(self.predicted))
 
     @property
     def verdicts_agree(self) -> bool | None:

@@ -127,6 +127,11 @@ class Linted:
         return not self.safe_together and self._unsafe_alone
 
     @property
+    def safe(self) -> bool | None:
+        """Whether it is not unsafe; None where that was not judged."""
+        return None if self.verdict is None else not self.unsafe
+
+    @property
     def _unsafe_alone(self) -> bool:
         return self.verdict == "diverges" or (self.verdict == "marginal" and bool(self.alpha_hat))
 

@@ -59,7 +59,12 @@ class VerdictMap(ReadOnlyArrays):
     @property
     def judged(self) -> int:
         """The number of runs with a verdict."""
-        return self.undecided.size - int(self.undecided.sum())
+        return self.undecided.size - self.unjudged
+
+    @property
+    def unjudged(self) -> int:
+        """The number of runs without a verdict."""
+        return int(self.undecided.sum())
 
     @property
     def agreeing(self) -> int:
@@ -93,6 +98,11 @@ class VerdictMap(ReadOnlyArrays):
     def too_close(self) -> BoolArray:
         """Where |z_p| is nearer to one than the band, or than the motion moves it; shape (beta_hat, alpha_hat)."""
         return np.asarray(~(np.abs(self.z_abs - 1) > np.maximum(self.band, self.moved)))
+
+    @property
+    def close_runs(self) -> int:
+        """The number of runs where |z_p| is so near to one."""
+        return int(self.too_close.sum())
 
     def _distances_of_disagreement(self) -> FloatArray:
         distance: FloatArray = np.abs(self.z_abs - 1)[self.disagrees]
