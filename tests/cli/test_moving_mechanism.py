@@ -53,20 +53,6 @@ def test_a_scenes_own_motion_is_taken_and_omega_instead_of_it() -> None:
 
 
 @pytest.mark.slow
-def test_what_the_motion_undoes_is_not_safe_and_instead_is_what_choose_chooses() -> None:
-    """The point that is stable at rest, and the choice for the same omega at rest, are not settled as it moves."""
-    method = ("--method", "AB4", "--h", "0.015")
-    (at_rest,) = rows("choose", *method, "--omega", "7.873")
-    point = ("--alpha", repr(at_rest["alpha_hat"]), "--beta", repr(at_rest["beta_hat"]))
-    (_, instead), status = rows_and_status("check", *method, "--scene", "driven_four_bar", *point)
-    (chosen,) = rows("choose", *method, "--scene", "driven_four_bar")
-    assert (run("check", *method, *point).exit_code, status) == (0, 1)
-    for key in ("alpha_hat", "beta_hat"):
-        assert instead[key] == chosen[key] < at_rest[key]  # type: ignore[operator]
-    assert (instead["safe"], chosen["moving_verdict"]) == (True, "converges")
-
-
-@pytest.mark.slow
 def test_beyond_the_law_choose_calls_nothing_safe() -> None:
     result = run("choose", "--method", "AB4", "--goal", "robust", "--h", "0.02", *FOUR_BAR[:2], "--speed", "1.8")
     assert "turn by κh = 0.12 a step: beyond 0.1 the law fails" in result.stderr

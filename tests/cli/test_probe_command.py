@@ -82,16 +82,6 @@ def test_sentences_in_full() -> None:
     assert likeness_sentence([like("B4", 2e-2)], point).startswith("nothing fits at (1, 0.25): the nearest is B4, 0.02")
 
 
-def test_without_a_point_the_point_is_found_in_both_units() -> None:
-    write("log.csv", time=np.arange(300) / 100, c=response("B4", 0.5, 0.1))
-    write("zero.csv", time=np.arange(300) / 100, c=np.zeros(300))
-    (_, row) = rows(*shlex.split("probe log.csv --minus zero.csv --method B4 --h 0.01"))
-    assert (row["alpha_hat"], row["beta_hat"]) == pytest.approx((0.5, 0.1), abs=1e-6)
-    assert (row["alpha"], row["beta"]) == pytest.approx((25, np.sqrt(0.1) / 0.01), abs=1e-4)
-    write("log.csv", c=0.9 ** np.arange(300.0))
-    assert "curve of points" in run(*shlex.split("probe log.csv --minus zero.csv --method SYM --column c")).stdout
-
-
 def test_standard_input_is_read_for_a_dash_and_columns_are_fitted_jointly_if_asked_for() -> None:
     c = response("B4", 0.5, 0.1)
     text = "\n".join(f"{value:.9g}" for value in c)

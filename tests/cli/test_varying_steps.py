@@ -88,16 +88,6 @@ def test_anyone_can_verify_the_certificate_that_is_printed() -> None:
     assert form_decreases(form, symplectic_euler(Fraction(1), Fraction(1, 4)), Fraction(1, 10), Fraction(1))
 
 
-def test_an_engine_says_itself_what_it_holds() -> None:
-    # an error reduction per step, or one that is clamped to the step, is held; a stiffness and a damping are not
-    asked = ("--h", "1/60", "--h-min", "1/240")
-    for words, held in (("bullet=0.2", True), ("box2d=60,2", True), ("brax-spring=500,20,1", False)):
-        given = rows_of("check", "--engine", words, *asked)[0]
-        assert (given["varying"], given["hold"]) == ("proven", held)
-    # a part of the error per second is another part of it at each step, and another stiffness
-    assert rows_of("check", "--engine", "chipmunk=0.0018", *asked, "--hold")[0]["hold"]
-
-
 def test_a_choice_is_proven_for_steps_that_vary_if_it_is_asked_to_be() -> None:
     asked = ("choose", "--method", "SYM", "--h", "0.001")
     (chosen,) = rows_of(*asked, "--h-min", "0.0001", "--h-max", "0.0012")
