@@ -69,6 +69,11 @@ def test_a_fresh_drive_converges_where_its_law_says(way: str, a: Fraction, b: Fr
     assert converges_by_law(way, a, b, Timing()) == (held_verdict(way, a, b, Timing()) == "converges")
 
 
+def test_where_no_closed_form_is_known_there_is_no_law() -> None:
+    for timing in (Timing(every=2, late=Fraction(1)), Timing(late=Fraction(1, 2)), Timing(filter_steps=Fraction(1))):
+        assert law_bounds("SYM", Fraction(1), timing) == ()
+
+
 def grown(way: str, a: float, b: float, timing: Timing, steps: int) -> float:
     """Return how much |x| + |v| grows in many steps, as a controller and a physics engine would compute it."""
     x, v, filtered = 1.0, 0.3, 0.3

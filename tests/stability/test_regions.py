@@ -225,6 +225,11 @@ def test_what_a_region_contains_converges(name: str) -> None:
         assert contained == (verdict(lookup(name), alpha_hat, beta_hat) == "converges")
 
 
+def test_a_region_of_a_level_contains_what_is_below_it() -> None:
+    # z = 1 + mu: |z|^2 is 1/2 and 1/10
+    assert region(lookup("RK1"), 0.5).contains([1, 2], [0.5, 1.1]).tolist() == [False, True]
+
+
 def test_the_repr_of_a_region_is_one_line_without_its_arrays() -> None:
     assert repr(region(lookup("RK1"))) == "Region(RK1: |z_p| < 1, area 4, 1 closed curve)"
 
