@@ -122,6 +122,8 @@ def test_arrows_along_the_edges_are_where_an_unbounded_region_goes_on(h: float |
     places = [(str(line.get_marker()), round(float(np.nanmax(line.get_xydata())), 6)) for line in arrows]
     assert len(set(places)) == len(places)
     assert {">", "^"} <= {marker for marker, _ in places}
+    upright = comparison_figure([region(lookup("linear-acceleration"))], (0.0, 1.0), (0.0, 1.0)).axes[0].lines
+    assert "^" not in {line.get_marker() for line in upright}  # it ends at beta_hat = 12, above these axes
 
 
 @pytest.mark.slow

@@ -1,15 +1,18 @@
 from fractions import Fraction
 from itertools import product
 
+import numpy as np
 import pytest
 import sympy as sp
 from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from bezstab.methods import ALPHA_HAT, BETA_HAT, LinearMultistep, Method, lookup, recipe
 from bezstab.stability import stable_for_all
 from bezstab.stability.quadrant_proofs import (
     RING,
     _positive,
+    stability_conditions,
 )
 from tests.reference.rationals import rationals
 
@@ -64,6 +67,19 @@ def test_newmark_is_stable_for_all_where_hughes_says_so(velocity: Fraction, posi
     )
     expected = "proven" if velocity >= half and 2 * position >= velocity else "no"
     assert stable_for_all(Method("newmark", scheme, "")) == expected
+
+
+@settings(max_examples=50, deadline=None)
+@given(st.lists(st.complex_numbers(max_magnitude=1.5, allow_nan=False), min_size=1, max_size=3))
+def test_the_conditions_say_what_the_roots_say(roots: list[complex]) -> None:
+    real = np.poly([*roots, *np.conj(roots)]).real
+    exact = [Fraction(c).limit_denominator(10**6) for c in real[::-1]]
+    moduli = np.abs(np.roots([float(c) for c in exact[::-1]]))
+    if (np.abs(moduli - 1) < 1e-3).any():
+        return  # too near for float64, of which roots may be triple
+    ring = sp.QQ[sp.Symbol("step")]
+    conditions = stability_conditions([ring.convert(sp.Rational(c.numerator, c.denominator)) for c in exact], ring)
+    assert all(ring.to_sympy(condition) > 0 for condition in conditions) == (moduli < 1).all()
 
 
 def test_only_what_is_positive_on_the_whole_quadrant_passes() -> None:
