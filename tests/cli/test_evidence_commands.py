@@ -23,16 +23,6 @@ def test_simulate_writes_the_history_that_its_row_sums_up(tmp_path: Path) -> Non
     assert {"crank.theta", "d/dt slider.x", "cdot_4", "lambda_1", "energy"} <= set(history)
 
 
-def test_a_projected_run_says_what_that_costs() -> None:
-    common = ("simulate", "--method", "AB4", "--time", "0.05", *NOTHING)
-    (held,) = rows(*common, "--stabilise", "projection", "--perturb", "1e-4", "--iterations", "2")
-    (fed_back,) = rows(*common)
-    assert (held["stabilise"], held["alpha_hat"], held["beta_hat"]) == ("projection", 0, 0)
-    assert fed_back["factorizations"] == fed_back["run_evaluations"] == held["run_evaluations"]
-    # of 50 steps, two or three more of each
-    assert 50 <= held["factorizations"] - held["run_evaluations"] <= 150  # type: ignore[operator]
-
-
 def test_a_run_that_fails_is_status_three_with_its_time_and_keeps_the_history(tmp_path: Path) -> None:
     result = run("simulate", "--alpha", "1.7", "--beta", "0.8", "--time", "1", "--table", "csv", "--format", "json")
     assert result.exit_code == 3
