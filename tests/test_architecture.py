@@ -176,7 +176,7 @@ WITHOUT_TESTS_OF_THEIR_OWN = {
     *("paper/lost.py", "paper/reports.py"),  # no logic
     *(f"methods/{name}.py" for name in ("step_equations", "determinants", "polynomials")),
     *(f"stability/{name}.py" for name in ("neighbourhoods", "low_degrees", "quadratures", "shapes")),
-    *(f"stability/{name}.py" for name in ("charts", "critical_points", "far_limits", "least_modulus", "real_factors")),
+    *(f"stability/{name}.py" for name in ("charts", "critical_points", "least_modulus", "real_factors")),
 }
 """Arithmetic whose errors the tests of what uses it show: of schemes, verdicts, maps, areas and best points."""
 
