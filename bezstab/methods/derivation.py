@@ -70,9 +70,9 @@ def closed_loop_table(method: Method) -> PlaneTable:
 
 
 def closed_loop_at(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> list[Fraction]:
-    """Return the exact coefficients of P(z), in descending powers, at one point.
+    """Return the exact coefficients of P(z), in ascending powers, at one point.
 
-    The first is zero where a root is infinite: there an implicit step has no solution.
+    The last is zero where a root is infinite: there an implicit step has no solution.
     """
     planes, scale_of_planes = _whole_planes(method)
     alpha_powers = _whole_powers(alpha_hat, len(planes[0]) - 1)
@@ -86,10 +86,10 @@ def closed_loop_at(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> l
 
 @cache
 def _whole_planes(method: Method) -> tuple[list[list[list[int]]], int]:
-    """Return a multiple of the closed loop's table that is whole, by descending powers of z, and the factor."""
-    descending = closed_loop_table(method)[::-1]
-    scale = lcm(*(c.denominator for in_plane in descending for row in in_plane for c in row))
-    return [[[int(c * scale) for c in row] for row in in_plane] for in_plane in descending], scale
+    """Return a multiple of the closed loop's table that is whole, and the factor."""
+    table = closed_loop_table(method)
+    scale = lcm(*(c.denominator for in_plane in table for row in in_plane for c in row))
+    return [[[int(c * scale) for c in row] for row in in_plane] for in_plane in table], scale
 
 
 def _whole_powers(number: Fraction, most: int) -> list[int]:

@@ -161,6 +161,6 @@ def product_over_feedback(pi: MuTable) -> PlaneTable:
 
 
 def characteristic(matrix: Sequence[Sequence[Fraction]]) -> list[Fraction]:
-    """Return the coefficients of det(z - matrix) in descending powers of z, exact."""
+    """Return the coefficients of det(z - matrix) in ascending powers of z, exact."""
     rows = [[in_field(c) for c in row] for row in matrix]
-    return [as_fraction(c) for c in DomainMatrix(rows, (len(rows), len(rows)), sp.QQ).charpoly()]
+    return [as_fraction(c) for c in reversed(DomainMatrix(rows, (len(rows), len(rows)), sp.QQ).charpoly())]

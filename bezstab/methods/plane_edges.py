@@ -135,8 +135,8 @@ def _coefficients(table: Iterable[CurveTable], level: Fraction) -> list[sp.Poly]
 
 
 def _at(coefficients: list[sp.Poly], alpha_hat: Fraction, beta_hat: Fraction) -> list[Fraction]:
-    """Return the coefficients at a point, descending in z."""
-    return [_value(_table(coefficient), alpha_hat, beta_hat) for coefficient in reversed(coefficients)]
+    """Return the coefficients at a point, ascending in z."""
+    return [_value(_table(coefficient), alpha_hat, beta_hat) for coefficient in coefficients]
 
 
 def _value(table: CurveTable, alpha_hat: Fraction, beta_hat: Fraction) -> Fraction:

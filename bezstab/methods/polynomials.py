@@ -1,14 +1,13 @@
-"""Polynomials with rational coefficients as data, in two forms, and the arithmetic of the first.
+"""Polynomials with rational coefficients as data, in ascending powers, and arithmetic of those in one variable.
 
-Polynomial             coefficients in descending powers of one variable
-MuTable, PlaneTable    tables by ascending powers: of z and mu, and of z, alpha_hat and beta_hat
+Polynomial             coefficients of one variable
+MuTable, PlaneTable    tables: of z and mu, and of z, alpha_hat and beta_hat
 
 Algebra in several variables is sympy's (determinants, derivation).
 """
 
 from collections.abc import Sequence
 from fractions import Fraction
-from itertools import zip_longest
 
 Polynomial = Sequence[Fraction]
 
@@ -19,10 +18,10 @@ PlaneTable = tuple[tuple[tuple[Fraction, ...], ...], ...]
 """A polynomial in z, alpha_hat and beta_hat: table[k][i][j] belongs to z^k alpha_hat^i beta_hat^j."""
 
 
-def horner(descending: Polynomial, x: Fraction) -> Fraction:
+def horner(polynomial: Polynomial, x: Fraction) -> Fraction:
     """Return the value of a polynomial."""
     value = Fraction(0)
-    for coefficient in descending:
+    for coefficient in reversed(polynomial):
         value = value * x + coefficient
     return value
 
@@ -39,19 +38,20 @@ def lagrange_integral(node: Fraction | int, others: Sequence[Fraction | int], en
 def trimmed(polynomial: Polynomial) -> list[Fraction]:
     """Return the monic polynomial with the same roots, leading zeros dropped; ZeroDivisionError for zero."""
     p = list(polynomial)
-    while len(p) > 1 and p[0] == 0:
-        del p[0]
-    return [a / p[0] for a in p]
+    while len(p) > 1 and p[-1] == 0:
+        p.pop()
+    return [a / p[-1] for a in p]
 
 
 def quotient_and_remainder(p: Polynomial, divisor: Polynomial) -> tuple[list[Fraction], list[Fraction]]:
     """Return quotient and remainder of polynomial long division; the divisor's leading coefficient is not zero."""
-    remainder, quotient = list(p), []
+    remainder = list(p)
+    quotient: list[Fraction] = []
     while len(remainder) >= len(divisor):
-        factor = remainder[0] / divisor[0]
-        quotient.append(factor)
-        difference = [a - factor * b for a, b in zip_longest(remainder, divisor, fillvalue=Fraction(0))]
-        remainder = difference[1:]  # the leading coefficient has become 0
+        factor = remainder.pop() / divisor[-1]
+        quotient.insert(0, factor)
+        for k, b in enumerate(divisor[:-1], start=len(remainder) + 1 - len(divisor)):
+            remainder[k] -= factor * b
     return quotient, remainder
 
 

@@ -20,13 +20,13 @@ BITS = 70  # of a root, relative: float64 has 53
 SHORT = 2**24  # denominators up to it are tried for a root that is known to 70 bits: one that fits is no chance
 
 WholePolynomial = tuple[int, ...]
-"""Whole coefficients without a common factor, descending powers, the first positive."""
+"""Whole coefficients without a common factor, ascending powers, the last positive."""
 
 
 def whole_coefficients(polynomial: sp.Poly) -> WholePolynomial:
     """Return the coefficients of a polynomial in one variable, as whole numbers; it is not zero."""
-    whole, _ = whole_multiples([as_fraction(c) for c in polynomial.set_domain(sp.QQ).rep.to_list()])
-    shared = gcd(*whole) * (1 if whole[0] > 0 else -1)
+    whole, _ = whole_multiples([as_fraction(c) for c in reversed(polynomial.set_domain(sp.QQ).rep.to_list())])
+    shared = gcd(*whole) * (1 if whole[-1] > 0 else -1)
     return tuple(c // shared for c in whole)
 
 
@@ -34,18 +34,18 @@ def whole_coefficients(polynomial: sp.Poly) -> WholePolynomial:
 def real_roots(whole: WholePolynomial) -> tuple[Fraction, ...]:
     """Return the real roots of a polynomial that has no multiple ones, ascending."""
     mirrored = tuple(c * (-1) ** k for k, c in enumerate(whole))
-    at_zero = (Fraction(0),) if whole[-1] == 0 else ()
+    at_zero = (Fraction(0),) if whole[0] == 0 else ()
     return (*(-root for root in reversed(positive_roots(mirrored))), *at_zero, *positive_roots(whole))
 
 
 @cache
 def positive_roots(whole: WholePolynomial) -> tuple[Fraction, ...]:
     """Return the positive roots of a polynomial that has no multiple ones, ascending."""
-    if whole[-1] == 0:
-        whole = whole[:-1]
+    if whole[0] == 0:
+        whole = whole[1:]
     if len(whole) == 2:
-        return (Fraction(-whole[1], whole[0]),) if whole[0] * whole[1] < 0 else ()
-    first, last = -_octaves_above(whole), _octaves_above(whole[::-1])
+        return (Fraction(-whole[0], whole[1]),) if whole[0] * whole[1] < 0 else ()
+    first, last = -_octaves_above(whole[::-1]), _octaves_above(whole)
     octaves = [(Fraction(2) ** k, Fraction(2) ** (k + 1)) for k in range(first, last)]
     return tuple(_refined(whole, *ends) for octave in octaves for ends in _isolated(whole, *octave))
 
@@ -53,7 +53,7 @@ def positive_roots(whole: WholePolynomial) -> tuple[Fraction, ...]:
 def value_sign(whole: WholePolynomial, x: Fraction) -> int:
     """Return a number with the sign of the polynomial at x: its value times a power of x's denominator."""
     total, scale = 0, 1
-    for c in whole:
+    for c in reversed(whole):
         total = total * x.numerator + c * scale
         scale *= x.denominator
     return total
@@ -71,19 +71,20 @@ def _octaves_above(ascending: Sequence[int]) -> int:
     return 2 + max((-((leading - 1 - bits) // (n - j)) for j, bits in enumerate(others) if bits), default=0)
 
 
-def _isolated(descending: Sequence[int], low: Fraction, high: Fraction) -> list[tuple[Fraction, Fraction]]:
+def _isolated(whole: Sequence[int], low: Fraction, high: Fraction) -> list[tuple[Fraction, Fraction]]:
     """Return intervals from low to below high with one root each, ascending; of no width where low is a root.
 
     x = low + (high - low) / (1 + y), y from zero to infinity, is x from high down to low.
     """
     scale = low.denominator * high.denominator
     start, width = int(low * scale), int((high - low) * scale)
-    of_scaled = _shifted([c * scale**k for k, c in enumerate(descending)][::-1], start)  # ascending in scale x - start
-    in_y = _shifted([c * width**k for k, c in enumerate(of_scaled)][::-1], 1)
+    n = len(whole) - 1
+    of_scaled = _shifted([c * scale ** (n - k) for k, c in enumerate(whole)], start)  # in scale x - start
+    in_y = _shifted([c * width**k for k, c in enumerate(of_scaled)][::-1], 1)  # times (1 + y)^n
     changes = sum(one != other for one, other in pairwise(c > 0 for c in in_y if c))
     if changes > 1:
         middle = (low + high) / 2
-        return _isolated(descending, low, middle) + _isolated(descending, middle, high)
+        return _isolated(whole, low, middle) + _isolated(whole, middle, high)
     at_low = [(low, low)] if of_scaled[0] == 0 else []
     return [*at_low, (low, high)] if changes else at_low
 
@@ -101,7 +102,7 @@ def _refined(whole: WholePolynomial, low: Fraction, high: Fraction) -> Fraction:
     """Return the one root between two positive numbers, by bisection on a grid of binary fractions."""
     if low == high:
         return low
-    slope = tuple(c * (len(whole) - 1 - k) for k, c in enumerate(whole[:-1]))
+    slope = tuple(k * c for k, c in enumerate(whole))[1:]
     rising = (value_sign(whole, low) or value_sign(slope, low)) < 0  # low may be a root, too
     bits = BITS + max(0, -size_in_bits(low))
 

@@ -73,7 +73,7 @@ class FirstOrder(ABC):
 
 @dataclass(frozen=True)
 class LinearMultistep(FirstOrder):
-    """rho(E) y = h sigma(E) f: coefficients in descending powers of z, rho monic after construction.
+    """rho(E) y = h sigma(E) f: coefficients from the newest value back, as files have them; rho begins with 1.
 
     InputError unless the method is consistent (rho(1) = 0, sigma(1) = rho'(1)) and zero-stable (the roots of rho in
     the closed unit disc, those on the circle simple): Hairer, Norsett & Wanner I, section III.2-3.
@@ -94,7 +94,7 @@ class LinearMultistep(FirstOrder):
         slope = sum(((self.steps - i) * a for i, a in enumerate(self.rho)), ZERO)
         if sum(self.sigma) != slope:
             raise InputError(f"inconsistent: sigma(1) = {sum(self.sigma)}, but rho'(1) = {slope}")
-        if recursion_verdict(self.rho) == "diverges":
+        if recursion_verdict(self.rho[::-1]) == "diverges":
             raise InputError("zero-unstable: rho has a root outside the unit circle, or a repeated one on it")
         leading = self.rho[0]
         object.__setattr__(self, "rho", tuple(a / leading for a in self.rho))
@@ -138,7 +138,7 @@ class LinearMultistep(FirstOrder):
 
     def divided(self, factor: Polynomial) -> "LinearMultistep":
         """Return the scheme with rho and sigma divided by a factor of both."""
-        rho, sigma = (quotient_and_remainder(part, factor)[0] for part in (self.rho, self.sigma))
+        rho, sigma = (quotient_and_remainder(part[::-1], factor)[0][::-1] for part in (self.rho, self.sigma))
         return LinearMultistep(tuple(rho), tuple(sigma))
 
 
@@ -232,12 +232,10 @@ class RungeKutta(FirstOrder):
         from bezstab.methods.determinants import characteristic  # loads sympy
 
         less_weights = [[a - b for a, b in zip(row, self.weights, strict=True)] for row in self.tableau]
-        # det(I - mu M) is the characteristic polynomial of M backwards: its descending powers are ascending here
-        above, below = ([*_without_zeros(characteristic(each))][::-1] for each in (less_weights, self.tableau))
+        # det(I - mu M) is the characteristic polynomial of M backwards
+        above, below = (_without_zeros(characteristic(each)[::-1]) for each in (less_weights, self.tableau))
         unused = polynomial_gcd(above, below)
-        above, below = (
-            [c * unused[-1] for c in quotient_and_remainder(each, unused)[0][::-1]] for each in (above, below)
-        )
+        above, below = ([c * unused[0] for c in quotient_and_remainder(each, unused)[0]] for each in (above, below))
         columns = list(zip_longest(above, below, fillvalue=ZERO))
         return tuple(-a for a, _ in columns), tuple(b for _, b in columns)
 

@@ -1,6 +1,6 @@
 """The Schur-Cohn (Jury) test in exact rational arithmetic: where a polynomial's roots lie in the unit disc.
 
-Polynomials are sequences of Fraction in descending powers of z.
+Polynomials are sequences of Fraction in ascending powers of z.
 """
 
 from fractions import Fraction
@@ -29,7 +29,7 @@ def recursion_verdict(polynomial: Polynomial) -> Verdict:
     p = trimmed(polynomial)
     if is_schur(p):
         return "converges"
-    if abs(p[-1]) > abs(p[0]):  # the product of all |z| exceeds one
+    if abs(p[0]) > abs(p[-1]):  # the product of all |z| exceeds one
         return "diverges"
     reciprocal = trimmed(p[::-1])
     shared = polynomial_gcd(p, reciprocal)
@@ -49,8 +49,8 @@ def is_schur(polynomial: Polynomial) -> bool:
     A proof either way: whole numbers, whose last bits are dropped as long as their sum of errors decides nothing.
     """
     whole, _ = whole_multiples(polynomial)
-    while len(whole) > 1 and whole[0] == 0:
-        del whole[0]
+    while len(whole) > 1 and whole[-1] == 0:
+        whole.pop()
     decided = _whole_is_schur(whole, WORKING_BITS)
     return bool(_whole_is_schur(whole, None)) if decided is None else decided
 
@@ -59,16 +59,16 @@ def _whole_is_schur(p: list[int], bits: int | None) -> bool | None:
     """Return is_schur of whole coefficients, kept to so many bits (None: all); None if what is dropped might decide."""
     error = 0  # of every coefficient, at most
     while len(p) > 1:
-        lead, last = abs(p[0]), abs(p[-1])
+        lead, last = abs(p[-1]), abs(p[0])
         if lead - last <= 2 * error:
             return False if last - lead >= 2 * error else None
         error *= lead + last + 2 * max(abs(a) for a in p) + 2 * error  # of two products, each factor off by it
-        p = [p[0] * a - p[-1] * b for a, b in zip(p[:-1], p[:0:-1], strict=True)]  # p(0) - k lead(p) is 0
+        p = [p[-1] * a - p[0] * b for a, b in zip(p[1:], p[-2::-1], strict=True)]  # p(0) - k lead(p) is 0
         if bits is None:
             shared = gcd(*p)
             p = [a // shared for a in p]
             continue
-        beyond = p[0].bit_length() - bits
+        beyond = p[-1].bit_length() - bits
         if beyond > 0:
             p = [a >> beyond for a in p]
             error = (error >> beyond) + 2  # rounding of p, and of the error itself
@@ -77,5 +77,4 @@ def _whole_is_schur(p: list[int], bits: int | None) -> bool | None:
 
 def _derivative(p: Polynomial) -> list[Fraction]:
     """Return the derivative; 1 in place of the 0 of a constant, as neither has a root outside."""
-    degree = len(p) - 1
-    return [(degree - i) * a for i, a in enumerate(p[:-1])] or [Fraction(1)]
+    return [k * a for k, a in enumerate(p)][1:] or [Fraction(1)]

@@ -87,8 +87,8 @@ class SecondOrder:
                     )
 
     def _check_motion(self) -> None:
-        free = [in_plane[0][0] for in_plane in reversed(self.table)]
-        if not free or not free[0]:  # else without feedback, or with little, a step has no solution or many
+        free = [in_plane[0][0] for in_plane in self.table]
+        if not free or not free[-1]:  # else without feedback, or with little, a step has no solution or many
             raise InputError("the equations do not determine x1 and v1")
         reduced, rest = quotient_and_remainder(free, (ONE, Fraction(-2), ONE))
         if any(rest) or not reduced:
@@ -120,7 +120,7 @@ class SecondOrder:
                 name = equation.result.name
                 if name in part:
                     alone.append(Assignment(equation.result, tuple(x for x in value_of[name] if x[1].name in part)))
-            free = [in_plane[0][0] for in_plane in reversed(determinant_table(alone))]
+            free = [in_plane[0][0] for in_plane in determinant_table(alone)]
             if recursion_verdict(free) == "diverges":
                 return False
         return True

@@ -18,18 +18,18 @@ from bezstab.rationals import ONE
 
 @cache
 def shared_factor(method: Method) -> tuple[Fraction, ...]:
-    """Return the monic polynomial in z, descending powers, that divides pi(z, mu) for every mu; (1,) if none does.
+    """Return the monic polynomial in z that divides pi(z, mu) for every mu; (1,) if none does.
 
     For a second-order scheme: that divides P(z; alpha_hat, beta_hat) for every alpha_hat and beta_hat. The greatest
     common divisor of the coefficients of the powers of mu, or of those of alpha_hat and beta_hat, by Euclid's
     algorithm, exact. A root of it at zero, an unused past value, is left out: it never decides.
     """
     shared: list[Fraction] = []
-    for ascending in zip(*_by_power_of_z(method), strict=True):
-        if any(ascending):
-            shared = polynomial_gcd(shared, ascending[::-1]) if shared else trimmed(ascending[::-1])
-    while len(shared) > 1 and shared[-1] == 0:
-        shared.pop()
+    for polynomial in zip(*_by_power_of_z(method), strict=True):
+        if any(polynomial):
+            shared = polynomial_gcd(shared, polynomial) if shared else trimmed(polynomial)
+    while len(shared) > 1 and shared[0] == 0:
+        del shared[0]
     return tuple(shared)
 
 
@@ -51,10 +51,7 @@ def reduced_table(method: Method) -> PlaneTable:
     if len(factor) == 1:
         return table
     quotients = [
-        [
-            quotient_and_remainder([in_plane[i][j] for in_plane in reversed(table)], factor)[0][::-1]
-            for j in range(len(table[0][i]))
-        ]
+        [quotient_and_remainder([in_plane[i][j] for in_plane in table], factor)[0] for j in range(len(table[0][i]))]
         for i in range(len(table[0]))
     ]
     degree = len(table) - len(factor)
@@ -68,7 +65,7 @@ def fixed_poles(method: Method) -> tuple[complex, ...]:
     They are the roots of the factor that rho and sigma share, each at least a double pole, or that all coefficients of
     a second-order scheme's P share; dimensionless. None for an ordinary method.
     """
-    factor = sp.Poly([in_field(c) for c in shared_factor(method)], Z, domain=sp.QQ)
+    factor = sp.Poly([in_field(c) for c in reversed(shared_factor(method))], Z, domain=sp.QQ)
     poles: list[complex] = []
     if factor.degree() > 0:
         for part, _ in factor.sqf_list()[1]:  # without its multiple roots, which float64 would split

@@ -48,8 +48,8 @@ class StepMatrix:
 
     def at(self, step: Fraction) -> list[list[Fraction]]:
         """Return the matrix of one step, exact; ZeroDivisionError where the step has no solution."""
-        denominator = horner(self.denominator[::-1], step)
-        return [[horner(entry[::-1], step) / denominator for entry in row] for row in self.entries]
+        denominator = horner(self.denominator, step)
+        return [[horner(entry, step) / denominator for entry in row] for row in self.entries]
 
 
 def step_matrix(method: Method, alpha_hat: Fraction, beta_hat: Fraction, hold: bool = False) -> StepMatrix:

@@ -101,7 +101,7 @@ def polynomial_of_b2() -> Finding:
     points = list(product(SAMPLES, SAMPLES))
     agree = []
     for alpha_hat, beta_hat in points:
-        ours = closed_loop_at(lookup("B2"), alpha_hat, beta_hat)
+        ours = closed_loop_at(lookup("B2"), alpha_hat, beta_hat)[::-1]
         printed = printed_polynomial_of_b2(alpha_hat, beta_hat)
         agree.append([c / ours[0] for c in ours] == [c / printed[0] for c in printed])
     return finding(

@@ -53,7 +53,7 @@ def verdict(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> Verdict:
     P's leading coefficient vanishes a pole is infinite, the implicit step has no solution, and it 'diverges'.
     """
     polynomial = closed_loop_at(method, alpha_hat, beta_hat)
-    return recursion_verdict(polynomial) if polynomial[0] else "diverges"
+    return recursion_verdict(polynomial) if polynomial[-1] else "diverges"
 
 
 @lru_cache(maxsize=PROVEN)
@@ -65,8 +65,7 @@ def converges(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> bool:
 def decays_faster(method: Method, level: Fraction, alpha_hat: Fraction, beta_hat: Fraction) -> bool:
     """Return whether |z_p| < level at one exact, dimensionless point: Schur's recursion in rationals, a proof."""
     polynomial = closed_loop_at(method, alpha_hat, beta_hat)
-    degree = len(polynomial) - 1
-    return polynomial[0] != 0 and is_schur([c * level ** (degree - i) for i, c in enumerate(polynomial)])
+    return polynomial[-1] != 0 and is_schur([c * level**k for k, c in enumerate(polynomial)])
 
 
 def poles(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike) -> ComplexArray:

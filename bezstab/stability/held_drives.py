@@ -84,7 +84,7 @@ RK4 is the explicit way in an engine whose steps move a mass under a constant fo
 
 
 def held_polynomial(way: str, alpha_hat: Fraction, beta_hat: Fraction, timing: Timing) -> list[Fraction]:
-    """Return the characteristic polynomial over `every` steps, exact, in descending powers.
+    """Return the characteristic polynomial over `every` steps, exact, in ascending powers.
 
     `way` is one of SEEN. KeyError for another.
     """
@@ -95,7 +95,7 @@ def held_polynomial(way: str, alpha_hat: Fraction, beta_hat: Fraction, timing: T
     size = len(matrix)
     elements = [[QQ(entry.numerator, entry.denominator) for entry in row] for row in matrix]
     coefficients = DomainMatrix(elements, (size, size), QQ).charpoly()
-    return [Fraction(int(each.numerator), int(each.denominator)) for each in coefficients]
+    return [Fraction(int(each.numerator), int(each.denominator)) for each in reversed(coefficients)]
 
 
 def held_verdict(way: str, alpha_hat: Fraction, beta_hat: Fraction, timing: Timing) -> Verdict:

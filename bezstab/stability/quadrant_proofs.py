@@ -74,22 +74,22 @@ def stability_conditions(coefficients: Sequence[Any], ring: Any) -> Iterator[Any
 
 
 def coefficients_in_w(coefficients: Sequence[Any], ring: Any) -> list[Any]:
-    """Return the coefficients of (1 - w)^n P((1 + w) / (1 - w)) in descending powers of w."""
+    """Return the coefficients of (1 - w)^n P((1 + w) / (1 - w)) in ascending powers of w."""
     degree = len(coefficients) - 1
     total = [ring.zero] * (degree + 1)
     for k, coefficient in enumerate(coefficients):
         moved = sp.Poly((1 + W) ** k * (1 - W) ** (degree - k), W)
-        for power, factor in enumerate(moved.all_coeffs()):
+        for power, factor in enumerate(reversed(moved.all_coeffs())):
             total[power] += coefficient * ring.convert(sp.Integer(factor))
     return total
 
 
-def hurwitz_determinant(descending: Sequence[Any], size: int, ring: Any) -> Any:
-    """Return Hurwitz' determinant of some size: its entry in row i, column j is coefficient number 2 j - i (from 1)."""
+def hurwitz_determinant(in_w: Sequence[Any], size: int, ring: Any) -> Any:
+    """Return Hurwitz' determinant of some size: its entry in row i, column j (from 1) is that of w^(n + i - 2 j)."""
 
     def entry(row: int, column: int) -> Any:
-        number = 2 * column - row
-        return descending[number] if 0 <= number < len(descending) else ring.zero
+        power = len(in_w) - 1 + row - 2 * column
+        return in_w[power] if 0 <= power < len(in_w) else ring.zero
 
     indices = range(1, size + 1)
     matrix = DomainMatrix([[entry(row, column) for column in indices] for row in indices], (size, size), ring)

@@ -68,11 +68,11 @@ def follows_its_recursion(method: Method, alpha_hat: str, beta_hat: str) -> None
     run = simulate(mechanism, method, H, 40 * H * multiple, gains, perturbed_state(mechanism, 1.0))
     assert run.failure is None
     coefficients = np.array([float(c) for c in closed_loop_at(method, *point)])
-    while not coefficients[-1]:  # roots at zero need no memory
-        coefficients = coefficients[:-1]
+    while not coefficients[0]:  # roots at zero need no memory
+        coefficients = coefficients[1:]
     c = run.q[states_needed(method) + 1 :, 1]  # behind the start, whose steps are another method's
     windows = np.lib.stride_tricks.sliding_window_view(c, len(coefficients))
-    left_over = np.abs(windows @ coefficients[::-1])
+    left_over = np.abs(windows @ coefficients)
     # rounding of c itself, of the accelerations h^2 (2 alpha cdot + beta^2 c), and of the velocities among them
     size = np.abs(coefficients).sum() * np.abs(windows).max(axis=1)
     assert (left_over <= 1e-11 * size + 1e-13 * np.abs(coefficients).sum()).all()

@@ -33,7 +33,7 @@ TINY = Fraction(1, 10**20)
 @given(several(inside | on_circle | outside), small_rationals.filter(bool), st.integers(0, 3), st.integers(0, 3))
 def test_verdict_is_that_of_the_known_roots(factors: list[Factor], c: Fraction, leading: int, at_zero: int) -> None:
     """Whatever the constant in front, with leading zeros, and with roots at zero."""
-    p = [Fraction(0)] * leading + [c * a for a in product(factors)] + [Fraction(0)] * at_zero
+    p = [Fraction(0)] * at_zero + [c * a for a in product(factors)] + [Fraction(0)] * leading
     assert recursion_verdict(p) == verdict_by_roots(factors)
     assert is_schur(p) == (verdict_by_roots(factors) == "converges")
 
@@ -51,7 +51,7 @@ def test_one_part_in_ten_to_the_twenty_off_the_circle_decides(inner: list[Factor
 @given(several(inside, least=1), st.lists(on_circle, unique=True, max_size=3))
 def test_roots_in_pairs_z_and_one_over_z_diverge(inner: list[Factor], circle: list[Factor]) -> None:
     """Such a polynomial is reciprocal like one with all its roots on the circle: gcd(P, P*) = P for both."""
-    inner = [f if f[-1] else (Fraction(1), Fraction(1, 2)) for f in inner]  # zero has no reciprocal
+    inner = [f if f[0] else (Fraction(1, 2), Fraction(1)) for f in inner]  # zero has no reciprocal
     assert recursion_verdict(product(inner + list(map(reciprocal, inner)) + circle)) == "diverges"
 
 
@@ -67,7 +67,7 @@ def test_a_constant_converges_and_the_zero_polynomial_has_no_verdict() -> None:
 def test_cyclotomic_polynomials_are_marginal_and_share_roots_only_with_themselves(n: int) -> None:
     z = sp.Symbol("z")
     this, following = (
-        tuple(map(Fraction, map(int, sp.cyclotomic_poly(k, z, polys=True).all_coeffs()))) for k in (n, n + 1)
+        tuple(map(Fraction, map(int, sp.cyclotomic_poly(k, z, polys=True).all_coeffs()[::-1]))) for k in (n, n + 1)
     )
     assert recursion_verdict(this) == "marginal"
     assert not is_schur(this)

@@ -14,5 +14,5 @@ def sympy_rational(value: Fraction) -> sp.Rational:
 
 
 def polynomial_in_z(coefficients: Sequence[Fraction]) -> sp.Expr:
-    """Return the polynomial with these coefficients in descending powers."""
-    return sum(sympy_rational(a) * Z**k for k, a in enumerate(reversed(coefficients)))
+    """Return the polynomial with these coefficients in ascending powers."""
+    return sum(sympy_rational(a) * Z**k for k, a in enumerate(coefficients))

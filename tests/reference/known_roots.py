@@ -11,29 +11,29 @@ from bezstab.methods import Polynomial, Verdict
 from tests.reference.rationals import rationals
 
 Factor = tuple[Fraction, ...]
-"""Monic, irreducible over the reals: z - r, or z^2 - 2 a z + a^2 + b^2 for the pair a +- ib."""
+"""Monic, ascending, irreducible over the reals: z - r, or z^2 - 2 a z + a^2 + b^2 for the pair a +- ib."""
 
 ONE = Fraction(1)
 
 
 def real(r: Fraction) -> Factor:
     """Return the factor with the root r."""
-    return ONE, -r
+    return -r, ONE
 
 
 def pair(a: Fraction, b: Fraction) -> Factor:
     """Return the factor with the roots a + ib and a - ib."""
-    return ONE, -2 * a, a * a + b * b
+    return a * a + b * b, -2 * a, ONE
 
 
 def squared_modulus(factor: Factor) -> Fraction:
     """Return |z|^2 of its root or roots."""
-    return factor[-1] ** 2 if len(factor) == 2 else factor[-1]
+    return factor[0] ** 2 if len(factor) == 2 else factor[0]
 
 
 def reciprocal(factor: Factor) -> Factor:
     """Return the factor with the roots 1/z."""
-    return tuple(a / factor[-1] for a in factor[::-1])
+    return tuple(a / factor[0] for a in factor[::-1])
 
 
 def product(factors: Sequence[Factor]) -> list[Fraction]:
@@ -50,7 +50,7 @@ def product(factors: Sequence[Factor]) -> list[Fraction]:
 
 def scaled(p: Polynomial, s: Fraction) -> list[Fraction]:
     """Return the polynomial whose roots are s times those of p."""
-    return [a * s**k for k, a in enumerate(p)]
+    return [a * s ** (len(p) - 1 - k) for k, a in enumerate(p)]
 
 
 def verdict_by_roots(factors: Sequence[Factor]) -> Verdict:

@@ -38,7 +38,7 @@ def _kept(scheme: SecondOrder) -> list[Quantity]:
 def step_polynomial(scheme: SecondOrder, alpha_hat: Fraction, beta_hat: Fraction) -> list[Fraction] | None:
     """Return the characteristic polynomial of the matrix that takes what a step starts from to the next step's.
 
-    Descending powers, monic, exact. Each column of the equations is found by putting in a unit vector. None where the
+    Ascending powers, monic, exact. Each column of the equations is found by putting in a unit vector. None where the
     new values are not determined.
     """
     new, kept = [equation.result for equation in scheme.equations], _kept(scheme)
@@ -66,7 +66,7 @@ def step_polynomial(scheme: SecondOrder, alpha_hat: Fraction, beta_hat: Fraction
         else:
             rows.append([sp.QQ(int(q == later)) for q in kept])
     polynomial = DomainMatrix(rows, (len(kept), len(kept)), sp.QQ).charpoly()
-    return [Fraction(int(c.numerator), int(c.denominator)) for c in polynomial]
+    return [Fraction(int(c.numerator), int(c.denominator)) for c in reversed(polynomial)]
 
 
 def _exact(numbers: list[Fraction]) -> list[Any]:

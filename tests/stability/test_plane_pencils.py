@@ -32,7 +32,7 @@ def test_dominant_poles_are_right_to_fifty_digits_but_for_their_condition(method
         with mpmath.workdps(50):
             exact = closed_loop_at(method, Fraction(alpha_hat), Fraction(beta_hat))
             roots = mpmath.polyroots(
-                [mpmath.mpf(c.numerator) / c.denominator for c in exact], maxsteps=500, extraprec=200
+                [mpmath.mpf(c.numerator) / c.denominator for c in reversed(exact)], maxsteps=500, extraprec=200
             )
             z = dominant_pole(method, alpha_hat, beta_hat)
             nearest = min(roots, key=lambda root: abs(root - mpmath.mpc(complex(z))))

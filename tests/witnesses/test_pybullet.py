@@ -107,7 +107,9 @@ def test_a_position_motor_is_symplectic_euler(world: int, velocity_gain: str, of
     alpha_hat = Fraction(velocity_gain)
     beta_hat = Fraction(of_limit) * (4 - 2 * alpha_hat)
     found = motor_positions(world, float(beta_hat), float(alpha_hat))
-    recursion = np.convolve(found, [float(c) for c in closed_loop_at(lookup("SYM"), alpha_hat, beta_hat)], "valid")
+    recursion = np.convolve(
+        found, [float(c) for c in closed_loop_at(lookup("SYM"), alpha_hat, beta_hat)[::-1]], "valid"
+    )
     assert np.abs(recursion).max() < 1e-9 * np.abs(found).max()
     grows = bool(np.abs(found[-2:]).max() > ERROR)
     assert grows is (Fraction(of_limit) > 1)
