@@ -301,8 +301,8 @@ def tradeoff(
         files.write(path, None, lambda: show.untimed_arrays(rows))
         figures = {
             "projection": lambda: show.projection_figure(swept, loaded_scene.name, reference.error),
-            "trajectory": lambda: show.work_precision_figure(swept, loaded_scene.name, False, reference.error),
-            "constraint": lambda: show.work_precision_figure(swept, loaded_scene.name, True),
+            "trajectory": lambda: show.work_precision_figure(swept, loaded_scene.name, "trajectory", reference.error),
+            "constraint": lambda: show.work_precision_figure(swept, loaded_scene.name, "constraint"),
         }
         for name in ("projection",) if against == "projection" else ("trajectory", "constraint"):
             files.write(path.with_name(f"{path.name}_{name}"), figures[name])
