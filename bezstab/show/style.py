@@ -39,7 +39,6 @@ STYLE: dict[str, Any] = {
     "axes.axisbelow": True,  # a grid is below what is drawn
     "grid.color": "0.9",
     "mathtext.fontset": "dejavusans",
-    "mathtext.default": "it",
 }
 COLOURS = ("#00395c", "#e69f00", "#009e73", "#cc79a7", "#d55e00", "#56b4e9")
 """Okabe and Ito's, which the colour-blind tell apart; neighbours differ in lightness, so that grey keeps them apart."""
