@@ -141,15 +141,10 @@ class SweptRuns:
     @property
     def front_labels(self) -> list[str]:
         """For each run on which fronts it is: T by trajectory error, c by constraint error, "T c", or nothing."""
-        labels = []
-        for index in range(len(self.runs)):
-            letters = []
-            if index in self.trajectory_front:
-                letters.append("T")
-            if index in self.constraint_front:
-                letters.append("c")
-            labels.append(" ".join(letters))
-        return labels
+        fronts = {"T": self.trajectory_front, "c": self.constraint_front}
+        return [
+            " ".join(letter for letter, front in fronts.items() if index in front) for index in range(len(self.runs))
+        ]
 
 
 def sweep_compiled(

@@ -86,8 +86,7 @@ class VerdictMap(ReadOnlyArrays):
     @property
     def farthest_disagreement(self) -> float | None:
         """The largest | |z_p| - 1 | at which the verdicts differ; None where they nowhere do."""
-        distance = self._distances_of_disagreement()
-        return float(distance.max()) if distance.size else None
+        return max(np.abs(self.z_abs - 1)[self.disagrees].tolist(), default=None)
 
     @property
     def disagreements_beyond_band(self) -> int:
@@ -103,10 +102,6 @@ class VerdictMap(ReadOnlyArrays):
     def close_runs(self) -> int:
         """The number of runs where |z_p| is so near to one."""
         return int(self.too_close.sum())
-
-    def _distances_of_disagreement(self) -> FloatArray:
-        distance: FloatArray = np.abs(self.z_abs - 1)[self.disagrees]
-        return distance
 
 
 @dataclass(frozen=True)

@@ -66,7 +66,6 @@ from bezstab.show.row_kinds import (
 )
 from bezstab.show.rows import (
     NOT_KNOWN,
-    accuracy_cells,
     chain_rows,
     engine_row,
     exact_rate_words,
@@ -82,16 +81,15 @@ from bezstab.show.rows import (
     whole_row,
 )
 from bezstab.show.schemas import json_schema
-from bezstab.show.sentences import likeness_sentence, one_pole_sentence
+from bezstab.show.sentences import likeness_sentence, one_pole_sentence, passages_words
 from bezstab.show.varying_rows import sequence_text, varying_words
 
 if TYPE_CHECKING:
     from bezstab.show import plot
-    from bezstab.show.accuracy_figures import accuracy_map_figure, error_front_figure
+    from bezstab.show.accuracy_figures import error_front_figure
     from bezstab.show.arrays import (
         boundary_arrays,
         history_arrays,
-        map_arrays,
         untimed_arrays,
         verdict_arrays,
         write_arrays,
@@ -101,6 +99,7 @@ if TYPE_CHECKING:
     from bezstab.show.held_figures import held_figure
     from bezstab.show.histories import history_line
     from bezstab.show.plane_figures import comparison_figure, family_figure, region_figure, verdict_figure
+    from bezstab.show.region_maps import map_figure, map_rows, map_table
     from bezstab.show.run_figures import history_figure, projection_figure, scene_figure, work_precision_figure
     from bezstab.show.style import DASHES, column_figure, legend_below, line_at, save, styled
 
