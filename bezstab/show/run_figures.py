@@ -1,5 +1,6 @@
 """Figures of simulations: a scene, the history of a run, and what accuracy costs."""
 
+from collections.abc import Callable
 from itertools import product
 from textwrap import fill
 from typing import Any
@@ -140,3 +141,14 @@ def projection_figure(swept: SweptRuns, scene: str, floor: float) -> Figure:
         ]
         legend_below(figure, [*of_methods, *of_treatments])
         return figure
+
+
+def trade_figures(swept: SweptRuns, scene: str) -> dict[str, Callable[[], Figure]]:
+    """Return what draws the figures of a sweep, by name: feedback against projection, else both errors by cost."""
+    known = swept.reference_error
+    if swept.against == "projection":
+        return {"projection": lambda: projection_figure(swept, scene, known)}
+    return {
+        "trajectory": lambda: work_precision_figure(swept, scene, "trajectory", known),
+        "constraint": lambda: work_precision_figure(swept, scene, "constraint"),
+    }
