@@ -5,11 +5,9 @@ from fractions import Fraction
 import pytest
 
 from bezstab.mechanism.programs import Evaluation, Program, program_of
-from bezstab.mechanism.second_order_memory import memory
 from bezstab.methods import REGISTRY, lookup, second_order_form
-from tests.mechanism.test_second_order_memory import LEAPFROG
 
-HALF, QUARTER, ONE, NONE = Fraction(1, 2), Fraction(1, 4), Fraction(1), Fraction(0)
+HALF, ONE, NONE = Fraction(1, 2), Fraction(1), Fraction(0)
 
 
 def program(name: str) -> Program:
@@ -28,30 +26,6 @@ def test_velocity_verlet_is_the_program_of_the_books() -> None:
         state=(4, 5),
         corrected=((ONE, NONE), (NONE, ONE), (NONE, NONE)),
     )
-
-
-def test_a_projection_changes_what_is_carried_of_the_newest_state_and_nothing_older() -> None:
-    """Two states of bdf2; of a scheme that carries the velocity half a step back, that."""
-    found = program("bdf2")
-    names = [str(quantity) for quantity in memory(second_order_form(lookup("bdf2").scheme)).carried]
-    shares = dict(zip(names, found.corrected, strict=True))
-    assert {name for name, of_it in shares.items() if any(of_it)} == {"x0", "v0"}
-    assert {"x[-1]", "v[-1]"} <= set(shares)
-    names = [str(quantity) for quantity in memory(LEAPFROG).carried]
-    shares = dict(zip(names, program_of(LEAPFROG).corrected, strict=True))
-    assert shares == {"x0": (ONE, NONE), "w[0]": (NONE, ONE), "a0": (NONE, NONE)}
-
-
-def test_the_trapezoidal_rule_waits_for_its_acceleration() -> None:
-    """x1 = x0 + v0/2 + v1/2 and v1 = v0 + a0/2 + a1/2: a1 is sought from a0 on."""
-    found = program("trapezoid")
-    (evaluation,) = found.evaluations
-    assert found.groups == ((0, 1, True),)
-    names = {register: name for name, register in zip("xva", range(3), strict=True)}
-    assert sorted(names[register] for _, register in found.moves) == ["a", "v", "x"]
-    assert evaluation.position == (ONE, ONE, QUARTER, QUARTER)
-    assert evaluation.velocity == (NONE, ONE, HALF, HALF)
-    assert evaluation.guess == 2
 
 
 @pytest.mark.parametrize("name", REGISTRY)

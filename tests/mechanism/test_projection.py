@@ -1,7 +1,6 @@
 """Projection: what holds after each step, what it costs, and that the order of accuracy stays."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +10,6 @@ from bezstab.errors import InputError
 from bezstab.mechanism import (
     Mechanism,
     Projection,
-    acceleration_function,
     compiled_mechanism,
     constraint_jacobian,
     initial_state,
@@ -23,15 +21,14 @@ from bezstab.mechanism import (
 )
 from bezstab.mechanism.compiled import correction_function
 from bezstab.mechanism.projection import check_projected
-from bezstab.methods import Method, SecondOrder, evaluations, implicit, lookup, second_order_form, steps
+from bezstab.methods import Method, evaluations, implicit, lookup, steps
 from tests.evidence.samples import of_campaign
 from tests.mechanism.test_runner import measured_order
 from tests.mechanism.test_second_order_memory import LEAPFROG, STOERMER
 from tests.mechanism.test_stepping import KINDS, assert_alike, step_for
 from tests.reference.one_coordinate_motion import shown_order
-from tests.reference.plain_projection import FloatArray, projected, saddle_solution
-from tests.reference.plain_second_order import plain_second_order_run
-from tests.reference.steppers import one_step
+from tests.reference.plain_projection import saddle_solution
+from tests.reference.plain_runs import plain_run
 
 H = 1e-3  # s
 WITHIN = 4e-12  # m, m/s: corrections of up to 1e-12 in sum are left, and constraints weigh a coordinate by some units
@@ -90,28 +87,6 @@ def test_what_is_carried_of_a_velocity_is_projected_with_it() -> None:
     assert shown_order(errors) == pytest.approx(2, abs=0.1)
 
 
-def plain_run(
-    mechanism: Mechanism, method: Method, h: float, states: list[FloatArray], count: int, iterations: int
-) -> FloatArray:
-    """Return `count` states after the given ones by the method's formula, each projected by numpy; no driver."""
-    n, acceleration = mechanism.size, acceleration_function(mechanism, math)
-
-    def accelerations(q: FloatArray, v: FloatArray) -> FloatArray:
-        return np.array(acceleration(0.0, 0.0, 0.0, q.tolist(), v.tolist()))
-
-    def slope(y: FloatArray) -> FloatArray:
-        return np.concatenate([y[n:], accelerations(y[:n], y[n:])])
-
-    history = list(states)
-    for _ in range(count):
-        if implicit(method) or isinstance(method.scheme, SecondOrder):  # of those that remember nothing but their state
-            (new,) = plain_second_order_run(second_order_form(method.scheme), accelerations, h, history[-1:], 1)
-        else:
-            new = one_step(method, slope, history[-steps(method) :], h, float)
-        history.append(projected(mechanism, 0.0, new, iterations))
-    return np.array(history[len(states) :])
-
-
 @pytest.mark.promise("Projection (`--stabilise projection`)")
 @pytest.mark.parametrize("name", ["B4", "AB4", "RK4", "SYM", "implicit-euler"])
 def test_steps_are_the_plain_ones(name: str) -> None:
@@ -120,21 +95,17 @@ def test_steps_are_the_plain_ones(name: str) -> None:
     run = simulate(mechanism, method, H, count * H, (0.0, 0.0), projection=Projection(1), compiled=False)
     states = np.concatenate([run.q, run.v], axis=1)
     first = steps(method)
-    expected = plain_run(mechanism, method, H, list(states[:first]), count + 1 - first, iterations=1)
+    expected = plain_run(mechanism, method, H, (0.0, 0.0), states[:first], count + 1 - first, iterations=1)
     assert states[first:] == pytest.approx(expected, rel=1e-12, abs=1e-12 * abs(states).max())
 
 
 @pytest.mark.promise("Projection (`--stabilise projection`)")
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("name", "methods"),
-    of_campaign([("slider_crank", KINDS), ("driven_four_bar", KINDS)], [("pendulum", KINDS)]),
-)
-def test_compiled_projection_is_that_of_numpy(name: str, methods: Sequence[str]) -> None:
-    mechanism, h = scene(name), step_for(name)
-    for method in methods:
+@pytest.mark.parametrize("name", of_campaign(["slider_crank", "driven_four_bar"], ["pendulum"]))
+def test_compiled_projection_is_that_of_numpy(name: str) -> None:
+    for method in KINDS:
         by_numpy, compiled = (
-            simulate(mechanism, lookup(method), h, 100 * h, (0.0, 0.0), projection=Projection(2), compiled=each)
+            simulate(scene(name), lookup(method), H, 100 * H, (0.0, 0.0), projection=Projection(2), compiled=each)
             for each in (False, True)
         )
         assert_alike(by_numpy, compiled)
@@ -144,42 +115,31 @@ def test_compiled_projection_is_that_of_numpy(name: str, methods: Sequence[str])
 @pytest.mark.promise("Projection (`--stabilise projection`)")
 @pytest.mark.parametrize("name", ["slider_crank", "driven_four_bar", "andrews", "driven_slider_crank"])
 def test_corrections_are_the_least_ones_in_the_metric_of_the_masses(name: str) -> None:
-    """M dq and M dv are orthogonal to all that the constraints let move, and solve the saddle-point equations."""
-    mechanism = scene(name)
-    n, t = mechanism.size, 0.3
-    generator = np.random.default_rng(1)
-    q, v = initial_state(mechanism)
-    q = q + 1e-3 * generator.standard_normal(n)
-    v = v + generator.standard_normal(n)
+    mechanism, t, generator = scene(name), 0.3, np.random.default_rng(1)
+    n = mechanism.size
+    state = np.concatenate(initial_state(mechanism))
+    q, v = np.split(state + np.repeat([1e-3, 1.0], n) * generator.standard_normal(2 * n), 2)
     *found, _ = correction_function(mechanism, math)(t, 0.0, 0.0, q.tolist(), v.tolist())
     seen = observe(mechanism, np.array([t]), q[np.newaxis], v[np.newaxis], 0.0, 0.0)
     jacobian = constraint_jacobian(mechanism, t, q)
-    _, _, directions = np.linalg.svd(jacobian)
-    free = directions[mechanism.constraints :]
-    masses = np.array(mechanism.equations.mass, float)
     for correction, error in ((np.array(found[:n]), seen.c[0]), (np.array(found[n:]), seen.cdot[0])):
         expected = saddle_solution(mechanism, jacobian, error)
         assert correction == pytest.approx(expected, rel=1e-9, abs=1e-11 * abs(expected).max())
-        assert free @ (masses * correction) == pytest.approx(0, abs=1e-11 * abs(masses * correction).max())
-        assert jacobian @ correction == pytest.approx(-error, abs=1e-11 * abs(jacobian).max() * abs(correction).max())
 
 
 def test_the_cost_is_counted() -> None:
     """A projection that moves the state computes a correction twice: the second says that it is enough."""
     mechanism, count = scene("driven_four_bar"), 40
     for name in ("SYM", "RK2", "hht"):
-        held, plain = (
-            simulate(mechanism, lookup(name), H, count * H, (0.0, 0.0), projection=each)
-            for each in (Projection(1), None)
-        )
-        assert (held.projections, plain.projections) == (2 * count, None)
-        assert held.factorizations == held.evaluations + 2 * count
-        assert plain.factorizations == plain.evaluations
-        if not implicit(lookup(name)):
-            assert held.evaluations == plain.evaluations == count * evaluations(lookup(name))
+        run = simulate(mechanism, lookup(name), H, count * H, (0.0, 0.0), projection=Projection(1))
+        assert run.projections == 2 * count
+        assert run.factorizations == run.evaluations + 2 * count
+        if name in ("SYM", "RK2"):
+            assert run.evaluations == count * evaluations(lookup(name))
+    plain = simulate(mechanism, lookup("SYM"), H, count * H, (0.0, 0.0))
+    assert (plain.projections, plain.factorizations) == (None, plain.evaluations)
     ab4 = simulate(mechanism, lookup("AB4"), H, count * H, (0.0, 0.0), projection=Projection())
-    assert ab4.projections is not None
-    assert ab4.projections <= 2 * count  # those of its start are counted, too
+    assert 2 * (count - 3) <= (ab4.projections or 0) <= 2 * count  # those of its start are counted, too
 
 
 def test_more_iterations_come_closer() -> None:
@@ -234,14 +194,18 @@ def test_a_position_from_which_newtons_method_finds_none_ends_a_run() -> None:
     assert abs(observe(mechanism, given_up.t, given_up.q, given_up.v, 0.0, 0.0).c).max() > 1e-3
 
 
-@pytest.mark.parametrize(
-    ("gain", "projection", "held"),
-    [(0.1, None, "baumgarte"), (0.0, None, "none"), (0.0, Projection(), "projection")],
-)
-def test_a_run_says_what_held_its_constraints(gain: float, projection: Projection | None, held: str) -> None:
-    mechanism, method = scene("pendulum"), lookup("SYM")
-    run = simulated(mechanism, method, h=H, duration=5 * H, alpha_hat=gain, beta_hat=gain, projection=projection)
-    assert run.stabilise == held
+def test_a_run_says_what_held_its_constraints() -> None:
+    for gain, projection, held in ((0.1, None, "baumgarte"), (0.0, None, "none"), (0.0, Projection(), "projection")):
+        run = simulated(
+            scene("pendulum"),
+            lookup("SYM"),
+            h=H,
+            duration=5 * H,
+            alpha_hat=gain,
+            beta_hat=gain,
+            projection=projection,
+        )
+        assert run.stabilise == held
 
 
 def test_bad_input_is_refused() -> None:

@@ -6,7 +6,6 @@ from dataclasses import replace
 import mpmath as mp
 import numpy as np
 import pytest
-import sympy as sp
 from numpy.typing import NDArray
 
 from bezstab.errors import InputError
@@ -20,11 +19,11 @@ from bezstab.mechanism import (
     simulate,
     simulated,
 )
-from bezstab.methods import Method, accuracy, evaluations, lookup, steps
+from bezstab.methods import REGISTRY, Method, accuracy, evaluations, lookup, steps
 from bezstab.units import feedback_gains
 from tests.evidence.samples import of_campaign
 from tests.mechanism.test_scenes import four_bars
-from tests.methods.kinds import EXPLICIT, IMPLICIT, SECOND_ORDER, sampled
+from tests.methods.kinds import FEW, SOLVED
 from tests.reference.one_coordinate_motion import (
     distance,
     four_bar_chain_energies,
@@ -37,9 +36,11 @@ from tests.reference.one_coordinate_motion import (
 FloatArray = NDArray[np.float64]
 
 H = 1e-3  # s
-QUICK = {"verlet-half", "verlet-predicted", "hht", "rkn4", "bdf2", "am3", "sdirk2", "radau3"}
-"""Of the methods that solve equations or treat velocities differently; the others in make test-slow."""
 STARTS: tuple[Start, ...] = ("rk4", "ramp", "euler")
+
+
+def order(name: str) -> int:
+    return accuracy(lookup(name))[0]
 
 
 def measured_order(
@@ -59,77 +60,49 @@ def measured_order(
 
 
 @pytest.mark.promise("Orders of runs with α and β fixed")
-@pytest.mark.parametrize("name", sampled([name for name in EXPLICIT if accuracy(lookup(name))[0] <= 4]))
-@pytest.mark.slow_except("AB", "RK1", "B4")
+@pytest.mark.parametrize("name", of_campaign([name for name in REGISTRY if order(name) <= 4], [*FEW, *SOLVED]))
+@pytest.mark.slow_except("B4", "AB4", "verlet-half", "rkn4", "hht")
 def test_a_run_keeps_its_methods_order_up_to_that_of_its_start(name: str) -> None:
-    # RK4's first steps, each with an error of order 5, decide the rest. The next term moves the order by 0.05 at most
-    order, _ = accuracy(lookup(name))
-    assert measured_order(name, 400, lambda _: (20.0, 100.0)) == pytest.approx(order, abs=0.1)
-
-
-@pytest.mark.promise("Orders kept and lost with α̂ and β̂ fixed", measured="0.1, one method of each kind and more")
-@pytest.mark.parametrize(
-    ("name", "order"),
-    [
-        *((name, accuracy(lookup(name))[0]) for name in ("B1", "B2", "B3", "B4", "AB2", "AB3", "AB4", "ABM2", "ABM3")),
-        *(("RK2", 1), ("RK3", 2), ("RK4", 2), ("SIE", 1)),
-    ],
-)
-@pytest.mark.slow_except("B4", "AB4", "RK4")
-def test_with_alpha_hat_and_beta_hat_fixed_runge_kutta_methods_lose_order(name: str, order: int) -> None:
-    """The feedback grows as h shrinks, and with it the push that stages get which leave the constraints."""
-    count = 3200 if name == "RK2" else 800  # the order of RK2 falls from 2 slowly: 1.27 at 400, 1.08 at 1600
-    assert measured_order(name, count, lambda h: feedback_gains(0.5, 0.1, h)) == pytest.approx(order, abs=0.1)
+    """RK4's first steps, each with an error of order 5, decide the rest."""
+    # the next term moves the order by 0.05 at most; dirk3 and the BDF methods come nearest to the bound, by 0.03
+    assert measured_order(name, 400, lambda _: (20.0, 100.0)) == pytest.approx(order(name), abs=0.1)
 
 
 SHOWN_ORDERS = {
-    "verlet-half": 2,
-    "verlet-predicted": 2,
-    "verlet-old": 2,
-    "verlet-implicit": 2,
-    "verlet-kdk": 2,
-    "average-acceleration": 2,
-    "linear-acceleration": 2,
-    "central-difference": 2,
-    "hht": 2,
-    "generalized-alpha": 2,
+    **{name: order(name) for name in ("B1", "B2", "B3", "B4", "AB2", "AB3", "AB4", "ABM2", "ABM3")},
+    **dict.fromkeys(("verlet-half", "verlet-predicted", "verlet-old", "verlet-implicit", "verlet-kdk"), 2),
+    **dict.fromkeys(("average-acceleration", "linear-acceleration", "central-difference", "heun"), 2),
+    **dict.fromkeys(("hht", "generalized-alpha", "trapezoid", "implicit-midpoint", "bdf2"), 2),
     "stable-pd": 1,
     "implicit-euler": 1,
-    "trapezoid": 2,
-    "implicit-midpoint": 2,
-    "bdf2": 2,
     "bdf3": 3,
     "bdf4": 4,
     "am3": 3,
     "am4": 4,
-    "heun": 2,
     # lower than on a free motion, for what happens between the ends of a step leaves the constraints
-    "ssprk3": 1,
-    "bs3": 1,
-    "cash-karp": 1,
-    "dirk3": 1,
-    "dopri5": 2,
-    "tsit5": 2,
-    "ruth3": 2,
-    "forest-ruth": 2,
-    "yoshida4": 2,
+    **dict.fromkeys(("RK2", "SIE", "ssprk3", "bs3", "cash-karp", "dirk3"), 1),
+    **dict.fromkeys(("RK3", "RK4", "dopri5", "tsit5", "ruth3", "forest-ruth", "yoshida4"), 2),
     "rkn4": 3,
 }
 """With alpha_hat and beta_hat fixed. Slow to fall to 1: sdirk2, imex-euler, ralston: 1.19, 1.13, 1.05 at 3200 steps."""
 
+SHOWN_EACH_TIME = ("B4", "AB4", "ABM3", "RK2", "RK4", "verlet-half", "ssprk3", "hht", "bdf3", "dopri5", "rkn4")
 
-@pytest.mark.promise("Orders kept and lost with α̂ and β̂ fixed")
-@pytest.mark.parametrize(
-    "name", of_campaign(tuple(SHOWN_ORDERS), ("verlet-half", "ssprk3", "hht", "bdf3", "dopri5", "rkn4"))
+
+@pytest.mark.promise("Orders kept and lost with α̂ and β̂ fixed", measured="0.1, one method of each kind and more")
+@pytest.mark.parametrize("name", of_campaign(tuple(SHOWN_ORDERS), SHOWN_EACH_TIME))
+@pytest.mark.slow_except("B4", "AB4", "RK4", "verlet-half")
+def test_with_alpha_hat_and_beta_hat_fixed_methods_with_stages_lose_order(name: str) -> None:
+    """The feedback grows as h shrinks, and with it the push that stages get which leave the constraints."""
+    count = 3200 if name == "RK2" else 800  # the order of RK2 falls from 2 slowly: 1.27 at 400, 1.08 at 1600
+    shown = measured_order(name, count, lambda h: feedback_gains(0.5, 0.1, h))
+    assert shown == pytest.approx(SHOWN_ORDERS[name], abs=0.1)
+
+
+@pytest.mark.promise(
+    "Motion of pendulum, slider-crank, four-bars",
+    measured="converges to quadrature of the one coordinate, with the method's order",
 )
-@pytest.mark.slow_except("verlet-half", "ssprk3")
-def test_orders_of_other_kinds_with_alpha_hat_and_beta_hat_fixed(name: str) -> None:
-    assert measured_order(name, 800, lambda h: feedback_gains(0.5, 0.1, h)) == pytest.approx(
-        SHOWN_ORDERS[name], abs=0.1
-    )
-
-
-@pytest.mark.promise("Motion of pendulum, slider-crank, four-bars")
 @pytest.mark.parametrize("name", ["RK4", "AB4", "AB3", "B4", "SYM"])
 @pytest.mark.slow_except("AB4", "SYM")
 def test_the_parallel_four_bars_move_as_one_coordinate(name: str) -> None:
@@ -142,27 +115,25 @@ def test_the_parallel_four_bars_move_as_one_coordinate(name: str) -> None:
         rods = run.q[:, :4]
         assert np.ptp(rods, axis=1).max() < 1e-13  # rad: equal but for the rounding of 800 steps
         errors.append(distance(rods[:, 0].tolist(), reference))
-    assert shown_order(errors) == pytest.approx(accuracy(lookup(name))[0], abs=0.1)
+    assert shown_order(errors) == pytest.approx(order(name), abs=0.1)
 
 
-@pytest.mark.promise(
-    "Motion of pendulum, slider-crank, four-bars",
-    measured="converges to quadrature of the one coordinate, with the method's order",
+@pytest.mark.promise("Runs that break down")
+@pytest.mark.parametrize(
+    ("scene", "method", "h", "gains", "cause"),
+    [
+        ("slider_crank", "B4", H, feedback_gains(1.7, 0.8, H), "blow-up"),
+        ("four_bar", "implicit-midpoint", 0.5, (20.0, 100.0), "Newton's method did not converge"),
+        ("slider_crank_equal", "RK1", H, (0.0, 0.0), "singular configuration"),
+    ],
 )
-@pytest.mark.parametrize("name", ["B4", "ABM4", "RK4@5", "bdf3", "hht", "imex-euler", "sdirk2@2"])
-@pytest.mark.slow_except("RK4@5")
-def test_the_pendulum_keeps_time(name: str) -> None:
-    order, _ = accuracy(lookup(name))
-    run = simulate(compiled_mechanism(load_scene("pendulum")), lookup(name), 1e-3, 1.5, (20.0, 100.0))
-    quarter = 9.81**-0.5 * float(sp.elliptic_k(sp.Rational(1, 2)).evalf())  # released from the horizontal
-    below = float(np.interp(0, -run.q[:, 0], run.t))  # x falls from 1 through 0 to -1
-    assert below == pytest.approx(quarter, abs=2e-3 if order == 1 else 2e-5)  # h, and h^2 for the slope's bend
-
-
-def test_a_blow_up_ends_the_run_with_time_and_cause() -> None:
-    run = simulate(compiled_mechanism(load_scene("slider_crank")), lookup("B4"), H, 5.0, feedback_gains(1.7, 0.8, H))
-    assert run.failure
-    assert run.failure.startswith(f"at t = {run.t[-1] + H:.6g} s: ")
+def test_a_run_that_ends_says_when_and_why(
+    scene: str, method: str, h: float, gains: tuple[float, float], cause: str
+) -> None:
+    mechanism = compiled_mechanism(load_scene(scene))
+    upright = (np.array([np.pi / 2, 0.0, 0.175, -np.pi / 2, 0.0]), np.zeros(5))  # crank and rod of one length
+    run = simulate(mechanism, lookup(method), h, 50.0, gains, upright if cause.startswith("singular") else None)
+    assert str(run.failure).startswith(f"at t = {run.t[-1] + h:.6g} s: {cause}")
     assert np.isfinite(run.q).all()
     assert len(run.t) == len(run.q) == len(run.v)
     assert repr(run).endswith(", failed)")
@@ -176,16 +147,6 @@ def test_a_start_that_has_blown_up_is_refused() -> None:
             simulate(mechanism, lookup("B4"), H, 1.0, (0.0, 0.0), state)
 
 
-@pytest.mark.promise("Runs that break down")
-def test_a_singular_configuration_is_named() -> None:
-    mechanism = compiled_mechanism(load_scene("slider_crank_equal"))
-    flat = (np.array([np.pi / 2, 0.175 * 0, 0.35 - 0.175, -np.pi / 2, 0.0]), np.zeros(5))
-    run = simulate(mechanism, lookup("RK1"), H, 0.1, (0.0, 0.0), flat)
-    assert run.failure
-    assert "singular" in run.failure
-    assert len(run.t) == 1
-
-
 @pytest.mark.promise("Costs of runs")
 @pytest.mark.parametrize("start", STARTS)
 def test_the_start_provides_the_first_values(start: Start) -> None:
@@ -194,11 +155,9 @@ def test_the_start_provides_the_first_values(start: Start) -> None:
     first = {"rk4": 4, "ramp": 1, "euler": 1}[start] * (steps(method) - 1)
     assert run.evaluations == first + (10 - (steps(method) - 1)) * evaluations(method)
     assert len(run.t) == 11
-
-
-def test_a_run_shorter_than_its_start_counts_what_it_took() -> None:
-    run = simulate(compiled_mechanism(load_scene("slider_crank")), lookup("B4"), H, 2 * H, (0.0, 0.0))
-    assert run.evaluations == 2 * evaluations(lookup("RK4"))
+    if start == "rk4":  # a run shorter than its start counts what it took
+        short = simulate(compiled_mechanism(load_scene("slider_crank")), method, H, 2 * H, (0.0, 0.0))
+        assert short.evaluations == 2 * 4
 
 
 def test_a_ramp_follows_the_family_whatever_the_method_is_called() -> None:
@@ -246,44 +205,16 @@ def test_andrews_squeezing_mechanism_ends_where_the_test_set_says(name: str, h: 
     assert andrews_angles(name, h) == pytest.approx(ANDREWS, rel=ANDREWS_DIGITS, abs=0)
 
 
-# Implicit and second-order methods
-
-
-@pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param(name, marks=[] if name in QUICK else [pytest.mark.slow])
-        for name in of_campaign((*SECOND_ORDER, *IMPLICIT), tuple(sorted(QUICK)))
-        if accuracy(lookup(name))[0] <= 4
-    ],
-)
-@pytest.mark.slow_except("verlet", "rkn4", "hht")
-def test_so_does_one_that_solves_equations_or_treats_velocities_differently(name: str) -> None:
-    # dirk3 and the BDF methods come nearest to the bound, by 0.03
-    order, _ = accuracy(lookup(name))
-    assert measured_order(name, 400, lambda _: (20.0, 100.0)) == pytest.approx(order, abs=0.1)
-
-
 def test_iterations_and_evaluations_of_an_implicit_run_are_counted() -> None:
     mechanism = compiled_mechanism(load_scene("slider_crank"))
     run = simulate(mechanism, lookup("trapezoid"), H, 0.1, (20.0, 100.0))
     assert run.iterations is not None
     assert 300 <= run.iterations <= 400  # a correction, one to see that it was enough, and one more: a hundred times
     jacobians = (run.evaluations - 1 - run.iterations) / mechanism.size  # and one evaluation for the first acceleration
-    assert jacobians in range(
-        1, 20
-    )  # one serves as long as the crank, at 6 degrees in a hundred steps, has hardly turned
+    assert jacobians in range(1, 20)  # one serves as long as the crank, at 6 degrees in a hundred steps, hardly turns
     explicit = simulate(mechanism, lookup("verlet-half"), H, 0.1, (20.0, 100.0))
     assert explicit.iterations is None
     assert explicit.evaluations == 101
-
-
-def test_a_step_that_does_not_converge_ends_the_run_with_time_and_cause() -> None:
-    mechanism = compiled_mechanism(load_scene("four_bar"))
-    run = simulate(mechanism, lookup("implicit-midpoint"), 0.5, 50.0, (20.0, 100.0))
-    assert run.failure
-    assert run.failure.startswith(f"at t = {run.t[-1] + 0.5:.6g} s: Newton's method did not converge")
-    assert np.isfinite(run.q).all()
 
 
 @pytest.mark.parametrize("start", STARTS)
@@ -310,13 +241,10 @@ def test_gauss_methods_keep_what_is_quadratic(name: str) -> None:
     assert min(drifts["trapezoid"], drifts["bdf2"]) > 1e-6
 
 
-@pytest.mark.parametrize("name", ["trapezoid", "bdf2"])
-@pytest.mark.slow_except("trapezoid")
-def test_a_coarse_step_does_not_fail_by_an_earlier_steps_jacobian(name: str) -> None:
+def test_a_coarse_step_does_not_fail_by_an_earlier_steps_jacobian() -> None:
     """Those of the step before lead astray here: runs that trust them end after a third of a second."""
-    run = simulate(
-        compiled_mechanism(load_scene("four_bar")), lookup(name), 0.02, 2.0, feedback_gains(40.0, 400.0, 0.02)
-    )
+    mechanism, h = compiled_mechanism(load_scene("four_bar")), 0.02
+    run = simulate(mechanism, lookup("trapezoid"), h, 2.0, feedback_gains(40.0, 400.0, h))
     assert run.failure is None
     assert run.t[-1] == pytest.approx(2.0)
 
@@ -339,6 +267,7 @@ def test_the_exact_pendulum_is_that_of_the_benchmark() -> None:
     assert exact_pendulum(10.0) == pytest.approx(A01_AT_10_S, abs=1e-12)  # as printed
 
 
+@pytest.mark.promise("Motion of pendulum, slider-crank, four-bars")
 @pytest.mark.promise(
     "IFToMM's A01 and A02",
     measured=(

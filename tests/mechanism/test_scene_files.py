@@ -1,4 +1,5 @@
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -7,22 +8,11 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from bezstab.errors import InputError
-from bezstab.mechanism import load_scene, parse_scene, read_scene, shipped_scenes
-from tests.mechanism.test_scenes import SHIPPED, pendulum
+from bezstab.mechanism import parse_scene, read_scene, shipped_scenes
+from tests.mechanism.test_scenes import pendulum
 
 SPRING = {"bodies": ["ground", "bob"], "points": [[0, 2], [0, 0]], "stiffness": 3.0, "free_length": 1.0}
 LINE = {"type": "point-on-line", "bodies": ["ground", "bob"], "points": [[0, 0], [0, 0]]}
-
-
-@pytest.mark.parametrize("name", SHIPPED)
-def test_every_shipped_scene_is_read(name: str) -> None:
-    assert load_scene(name).coordinates
-
-
-def test_the_chain_grows_with_its_count() -> None:
-    for count in (7, 100):
-        data = {"name": "chain", "four_bar_chain": {"count": count, "length": 1.0, "mass": 1.0}}
-        assert len(parse_scene(data).coordinates) == 1 + 4 * count
 
 
 @pytest.mark.parametrize(
@@ -30,22 +20,17 @@ def test_the_chain_grows_with_its_count() -> None:
     [
         ({"surprise": 1}, "surprise"),
         ({"body__surprise": 1}, "surprise"),
-        ({"joint__surprise": 1}, "surprise"),
         ({"initial__surprise": 1}, "surprise"),
         ({"body__mass": 0.0}, "mass"),
-        ({"body__mass": float("nan")}, "mass"),
         ({"body__mass": "__import__('os').system('true')"}, "mass"),
         ({"body__free": ["x", "y", "theta"]}, "inertia"),
-        ({"body__mass": 1e300}, "mass"),
         ({"gravity": [0.0, 1e-300]}, "gravity"),
-        ({"body__free": ["z"]}, "free"),
         ({"body__free": ["x", "x"]}, "free"),
         ({"body__name": "ground"}, "ground"),
         ({"body__center": [1.0, 0.0]}, "center"),
         ({"joint__bodies": ["ground", "ghost"]}, "ghost"),
         ({"joint__bodies": ["bob", "bob"]}, "bodies"),
         ({"joint__points": [[0, 0]]}, "points"),
-        ({"joint__length": 0}, "length"),
         ({"joint__type": "weld"}, "type"),
         ({"joint": {"type": "driver", "coordinate": "bob.theta"}}, "bob.theta"),
         ({"joint": {"type": "driver", "coordinate": "bob.x", "offset": 1.0}}, "never moves bob.x"),
@@ -54,25 +39,19 @@ def test_the_chain_grows_with_its_count() -> None:
             "unknown key 'rpm': write rate, in rad/s (2π/60 times the rpm); known are type, coordinate, offset, rate",
         ),
         ({"joint": {**LINE, "direction": [0, 0]}}, "direction"),
-        ({"gravity": [0.0]}, "gravity"),
         ({"duration": 0}, "duration"),
         ({"initial__position": {"ghost.x": 1.0}}, "ghost.x"),
-        ({"initial": 3}, "initial"),
         ({"force": [{"body": "ghost", "force": [0, 1]}]}, "ghost"),
-        ({"spring": [{**SPRING, "bodies": ["ground", "ghost"]}]}, "ghost"),
         ({"spring": [{**SPRING, "stiffness": -3.0}]}, "stiffness"),
         ({"spring": [{**SPRING, "stiffness": 0.0}]}, "stiffness and damping"),
-        ({"spring": [{**SPRING, "damping": -1.0}]}, "damping"),
         ({"spring": [{**SPRING, "free_length": -1.0}]}, "free_length"),
         ({"spring": [{key: SPRING[key] for key in ("bodies", "points", "stiffness")}]}, "free_length"),
         ({"spring": [{**SPRING, "length": 1.0}]}, "length"),
     ],
 )  # fmt: skip
 def test_a_bad_scene_takes_one_line_that_names_the_key(changes: dict[str, Any], named: str) -> None:
-    with pytest.raises(InputError) as caught:
+    with pytest.raises(InputError, match=rf"\A.*{re.escape(named)}.*\Z"):
         parse_scene(pendulum(**changes))
-    assert named in str(caught.value)
-    assert "\n" not in str(caught.value)
 
 
 def test_a_scene_that_says_nothing_is_looked_at_for_a_second() -> None:
@@ -86,14 +65,6 @@ def test_a_mere_damper_needs_no_free_length() -> None:
     assert (spring.stiffness, spring.free_length, spring.damping) == (0, 0, 2)
 
 
-def test_an_unknown_scene_suggests_a_near_one(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="did you mean pendulum"):
-        load_scene("pendulm")
-    for bad in (tmp_path / "missing.toml", tmp_path):
-        with pytest.raises(InputError):
-            read_scene(bad)
-
-
 PENDULUM = (shipped_scenes()["pendulum"]).read_bytes()
 HOSTILE: dict[str, bytes] = {
     "a number of 5000 digits": b"name = " + b"1" * 5000,
@@ -102,38 +73,33 @@ HOSTILE: dict[str, bytes] = {
     "deep nesting": b"body = " + b"[" * 20000 + b"]" * 20000,
     "deep nesting of tables": b"[" + b".".join([b"a"] * 20000) + b"]",
     "undecodable bytes": PENDULUM + bytes(range(128, 256)),
-    "UTF-16": PENDULUM.decode().encode("utf-16"),
-    "NUL": b"\0" * 64,
-    "not TOML": b"name: pendulum",
     "a duplicate key": PENDULUM + PENDULUM,
-    "an unclosed string": b'name = "a\n\n',
     "a line break in a key": b'"a\\nb" = 1\n' + PENDULUM,
     "a line break in a name": PENDULUM.replace(b'"bob"', b'"b\\u2028ob"'),
     "no chain at all": b'name = "chain"\n[four_bar_chain]\ncount = 1e300\nlength = 1\nmass = 1',
     "a chain too long": b'name = "chain"\n[four_bar_chain]\ncount = 2\nlength = 1e200\nmass = 1',
     "a chain of no inertia": b'name = "chain"\n[four_bar_chain]\ncount = 2\nlength = 1e-200\nmass = 1',
-    "nothing": b"",
 }
 
 
 def refusal(path: Path) -> str:
     with pytest.raises(InputError) as caught:
         read_scene(path)
-    return str(caught.value)
+    message = str(caught.value)
+    assert len(message.splitlines()) == 1
+    return message
 
 
 @pytest.mark.parametrize("content", HOSTILE.values(), ids=HOSTILE.keys())
 @pytest.mark.slow
 def test_a_hostile_file_is_refused_in_one_line_that_names_it(content: bytes, tmp_path: Path) -> None:
     (path := tmp_path / "scene.toml").write_bytes(content)
-    message = refusal(path)
-    assert len(message.splitlines()) == 1
-    assert str(path) in message
+    assert str(path) in refusal(path)
 
 
 @pytest.mark.parametrize("name", ["a\nb.toml", "a\0b.toml", "x" * 300 + ".toml", "missing.toml", "."])
 def test_a_path_that_cannot_be_read_is_refused_in_one_line(name: str, tmp_path: Path) -> None:
-    assert len(refusal(tmp_path / name).splitlines()) == 1
+    refusal(tmp_path / name)
 
 
 @settings(deadline=None)  # the file system has no bounded time
@@ -152,15 +118,17 @@ def test_any_bytes_are_a_scene_or_one_line_of_refusal(tmp_path_factory: pytest.T
     try:
         scene = read_scene(path)
     except InputError:
-        message = refusal(path)
-        assert len(message.splitlines()) == 1
-        assert str(path) in message
+        assert str(path) in refusal(path)
     else:
         assert scene.coordinates
 
 
-def test_a_chains_guesses_stand_it_upright_and_are_for_coordinates_it_has() -> None:
-    chain = parse_scene({"name": "chain", "four_bar_chain": {"count": 3, "length": 2.0, "mass": 1.0}})
+def test_a_chain_grows_with_its_count_and_its_guesses_stand_it_upright_and_are_for_coordinates_it_has() -> None:
+    long, chain = (
+        parse_scene({"name": "chain", "four_bar_chain": {"count": count, "length": 2.0, "mass": 1.0}})
+        for count in (100, 3)
+    )
+    assert len(long.coordinates) == 1 + 4 * 100
     assert set(chain.guess) <= set(chain.coordinates)
     assert {chain.guess[f"rod{i}.theta"] for i in range(4)} == {math.pi / 2}
     assert [(chain.guess[f"coupler{i}.x"], chain.guess[f"coupler{i}.y"]) for i in range(3)] == [(1, 2), (3, 2), (5, 2)]

@@ -25,8 +25,9 @@ def test_it_is_the_run_from_the_perturbed_start_and_its_observation() -> None:
     assert both.c[0, 0] == pytest.approx(1e-4, rel=1e-3)  # to first order in the perturbation
 
 
-def test_a_run_that_breaks_down_says_so() -> None:
-    run = simulated(PENDULUM, lookup("SYM"), h=0.1, duration=100.0, alpha_hat=3.0, beta_hat=3.0, perturb=1e-3)
-    assert run.failure is not None
+def test_all_that_is_told_of_a_run_that_breaks_down_ends_with_it() -> None:
+    mechanism = compiled_mechanism(load_scene("driven_four_bar"))
+    run = simulated(mechanism, lookup("B4"), h=H, duration=5.0, alpha_hat=1.7, beta_hat=0.8, perturb=1e-4)
+    assert run.failure
     assert "failed" in repr(run)
-    assert len(run.t) == len(run.c) < 1001
+    assert len(run.t) == len(run.c) == len(run.driver_work) < 5001

@@ -170,28 +170,18 @@ def test_steps_of_two_lengths_cost_newtons_method_no_more_than_equal_ones() -> N
     assert in_turn.evaluations < 1.2 * equal.evaluations
 
 
-def test_a_run_that_breaks_down_says_when() -> None:
-    run = run_with([0.05], 5)
-    assert run.failure
-    assert run.failure.startswith("at t = ")
-    assert run.t[-1] < 5
-
-
 @pytest.mark.parametrize("name", ["B4", "AB2", "ABM2", "bdf2"])
 def test_methods_of_several_steps_are_refused(name: str) -> None:
     with pytest.raises(InputError, match="its coefficients assume"):
         run_with([H], 0.4, name)
 
 
-PENDULUM = compiled_mechanism(load_scene("pendulum"))
-
-
 def compiled_and_not(name: str, monkeypatch: pytest.MonkeyPatch, **point: Any) -> Simulation:
     """Return a run of the pendulum, the same by Python and compiled, to rounding and in all that is said of it."""
-    runs = []
+    pendulum, runs = compiled_mechanism(load_scene("pendulum")), []
     for choice in ("no", "yes"):
         monkeypatch.setenv(COMPILED_CHOICE, choice)
-        runs.append(simulated_with_steps(PENDULUM, lookup(name), perturb=1e-6, **point))
+        runs.append(simulated_with_steps(pendulum, lookup(name), perturb=1e-6, **point))
     assert_alike(runs[0].trajectory, runs[1].trajectory)
     return runs[1]
 

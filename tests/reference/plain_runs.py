@@ -1,0 +1,49 @@
+"""Runs that are nothing but a method's formula and the accelerations, projected by numpy if asked for."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bezstab.mechanism import Mechanism, acceleration_function
+from bezstab.methods import Method, SecondOrder, implicit, second_order_form, steps
+from tests.reference.plain_projection import projected
+from tests.reference.plain_second_order import plain_second_order_run
+from tests.reference.steppers import one_step
+
+FloatArray = NDArray[np.float64]
+
+
+def plain_run(
+    mechanism: Mechanism,
+    method: Method,
+    h: float,
+    gains: tuple[float, float],
+    states: Sequence[FloatArray],
+    count: int,
+    iterations: int = 0,
+) -> FloatArray:
+    """Return `count` states (q then v) after the given ones, h (s) apart, of a mechanism that nothing drives.
+
+    Each is projected by so many iterations, if any: then the method must remember no acceleration.
+    """
+    n, acceleration = mechanism.size, acceleration_function(mechanism, math)
+
+    def accelerations(q: FloatArray, v: FloatArray) -> FloatArray:
+        return np.array(acceleration(0.0, *gains, q.tolist(), v.tolist()))
+
+    def slope(y: FloatArray) -> FloatArray:
+        return np.concatenate([y[n:], accelerations(y[:n], y[n:])])
+
+    of_second_order = implicit(method) or isinstance(method.scheme, SecondOrder)
+    if of_second_order and not iterations:
+        return np.array(plain_second_order_run(second_order_form(method.scheme), accelerations, h, states, count))
+    history = list(states)
+    for _ in range(count):
+        if of_second_order:
+            (new,) = plain_second_order_run(second_order_form(method.scheme), accelerations, h, history[-1:], 1)
+        else:
+            new = one_step(method, slope, history[-steps(method) :], h, float)
+        history.append(projected(mechanism, 0.0, new, iterations) if iterations else new)
+    return np.array(history[len(states) :])
