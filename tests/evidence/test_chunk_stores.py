@@ -2,62 +2,55 @@
 
 import multiprocessing
 import shutil
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from bezstab.errors import InputError
-from bezstab.evidence import chunk_store
+from bezstab.evidence.chunk_stores import ChunkStore, chunk_store
 from tests.evidence.samples import of_campaign
 
 SQUARES = {"square": np.array([1, 4, 9]), "name": np.array(["a", "b"])}
 
 
-@pytest.mark.parametrize("stride", of_campaign([1], [13]))
-def test_a_flipped_bit_is_seen_or_does_no_harm(stride: int, tmp_path: Path) -> None:
-    with chunk_store(tmp_path / "job", "squares", resume=False) as store:
-        store.save(0, SQUARES)
-        content = store.file(0).read_bytes()
-        seen = 0
-        bits = range(0, 8 * len(content), stride)
-        for bit in bits:
-            damaged = bytearray(content)
-            damaged[bit // 8] ^= 1 << bit % 8
-            store.file(0).write_bytes(damaged)
-            loaded = store.load(0)
-            seen += loaded is None
-            if loaded is not None:
-                assert {key: array.tolist() for key, array in loaded.items()} == {
-                    key: array.tolist() for key, array in SQUARES.items()
-                }
-        assert seen > len(bits) / 2  # most bits matter
+@pytest.fixture
+def store(tmp_path: Path) -> Iterator[ChunkStore]:
+    with chunk_store(tmp_path / "job", "squares", resume=False) as opened:
+        opened.save(0, SQUARES)
+        yield opened
 
 
-def test_every_truncation_is_seen(tmp_path: Path) -> None:
-    with chunk_store(tmp_path / "job", "squares", resume=False) as store:
-        store.save(0, SQUARES)
-        content = store.file(0).read_bytes()
-        for length in range(0, len(content), 7):
-            store.file(0).write_bytes(content[:length])
-            assert store.load(0) is None
+def test_a_flipped_bit_is_seen_or_does_no_harm(store: ChunkStore) -> None:
+    content, seen = store.file(0).read_bytes(), []
+    for bit in range(0, 8 * len(content), of_campaign(1, 13)):
+        damaged = bytearray(content)
+        damaged[bit // 8] ^= 1 << bit % 8
+        store.file(0).write_bytes(damaged)
+        loaded = store.load(0)
+        seen.append(loaded is None)
+        if loaded is not None:
+            np.testing.assert_equal(loaded, SQUARES)
+    assert np.mean(seen) > 0.5  # most bits matter
 
 
-def test_a_chunk_of_another_number_or_job_is_not_taken(tmp_path: Path) -> None:
-    with chunk_store(tmp_path / "squares", "squares", resume=False) as store:
-        store.save(0, SQUARES)
-        shutil.copy(store.file(0), store.file(1))
-        assert store.load(0) is not None
-        assert store.load(1) is None
-        with chunk_store(tmp_path / "cubes", "cubes", resume=False) as other:
-            shutil.copy(store.file(0), other.file(0))
-            assert other.load(0) is None
+def test_every_truncation_is_seen(store: ChunkStore) -> None:
+    content = store.file(0).read_bytes()
+    for length in range(0, len(content), 7):
+        store.file(0).write_bytes(content[:length])
+        assert store.load(0) is None
 
 
-def test_what_is_no_chunk_is_not_one(tmp_path: Path) -> None:
-    with chunk_store(tmp_path / "job", "squares", resume=False) as store:
-        (store.path / "7.npz").mkdir()
-        assert not store.has(7)
+def test_a_chunk_of_another_number_or_job_is_not_taken_nor_what_is_none(store: ChunkStore, tmp_path: Path) -> None:
+    shutil.copy(store.file(0), store.file(1))
+    (store.path / "7.npz").mkdir()
+    assert store.load(0) is not None
+    assert store.load(1) is None
+    assert not store.has(7)
+    with chunk_store(tmp_path / "cubes", "cubes", resume=False) as other:
+        shutil.copy(store.file(0), other.file(0))
+        assert other.load(0) is None
 
 
 def test_chunks_without_a_job_are_not_trusted(tmp_path: Path) -> None:
@@ -75,15 +68,11 @@ def test_a_damaged_job_is_one_of_other_options(tmp_path: Path) -> None:
         pass
 
 
-def test_two_runs_do_not_work_in_the_same_place(tmp_path: Path) -> None:
-    with chunk_store(tmp_path / "job", "squares", resume=False) as store:
-        store.save(0, SQUARES)
-        for resume in (False, True):
-            with pytest.raises(InputError, match=r"in use by another run \(process \d+\)"):
-                chunk_store(tmp_path / "job", "squares", resume).__enter__()
-        assert store.load(0) is not None  # nothing of the first was touched
-    with chunk_store(tmp_path / "job", "squares", resume=True) as store:
-        assert store.has(0)
+def test_two_runs_do_not_work_in_the_same_place(store: ChunkStore) -> None:
+    for resume in (False, True):
+        with pytest.raises(InputError, match=r"in use by another run \(process \d+\)"):
+            chunk_store(store.path, "squares", resume).__enter__()
+    assert store.load(0) is not None  # nothing of the first was touched
 
 
 def test_what_a_killed_run_had_half_written_goes_and_what_is_not_ours_stays(tmp_path: Path) -> None:

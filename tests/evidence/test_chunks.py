@@ -89,10 +89,7 @@ def cluster() -> Iterator[str]:
     """Run a real scheduler and two workers, each a process of its own, on loopback."""
     python = [sys.executable, "-m"]
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-    environment = {
-        **os.environ,
-        "PYTHONPATH": str(Path(__file__).parent.parent.parent),
-    }  # where the workers find this file
+    environment = os.environ | {"PYTHONPATH": str(Path(__file__).parent.parent.parent)}  # where workers find this file
     port = 20000 + os.getpid() % 20000
     address = f"tcp://127.0.0.1:{port}"
     serve = [*python, "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", str(port), "--no-dashboard"]

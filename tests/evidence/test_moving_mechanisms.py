@@ -10,6 +10,7 @@ from bezstab.evidence import (
     MovingPole,
     growth_rates,
     moving_pole,
+    moving_poles,
     tabulated_rates,
 )
 from bezstab.evidence.moving_mechanisms import LARGEST_CHI, growth_rates_and_sure_ones
@@ -19,7 +20,6 @@ from bezstab.stability import poles, spectral_radius
 from bezstab.units import feedback_gains
 from tests.evidence.driven_four_bar import four_bar, turning
 from tests.evidence.exact_rates import floquet_rates
-from tests.methods.kinds import sampled
 
 OMEGA = 2 * np.pi
 
@@ -61,10 +61,7 @@ def test_the_table_is_good_to_half_a_percent_and_grows_in_proportion_beyond() ->
 )
 @pytest.mark.parametrize(
     "name",
-    sampled(
-        ["B4", "AB4", "AB2", "SYM", "RK4", "verlet-predicted", "newmark(1/4,1/2)"],
-        quick=["AB2", "SYM", "RK4", "newmark(1/4,1/2)"],
-    ),
+    ["B4", "AB4", "AB2", "SYM", "RK4", "verlet-predicted", "newmark(1/4,1/2)"],
 )
 @pytest.mark.slow_except("SYM")
 def test_the_law_closes_most_of_the_gap_to_the_exact_rate(name: str) -> None:
@@ -79,21 +76,10 @@ def test_the_law_closes_most_of_the_gap_to_the_exact_rate(name: str) -> None:
     near_one = (at_rest > 0.8) & (at_rest < 1.1) & far_from_the_corners
     alpha_hat, beta_hat = points[near_one][:30].T
     exact = floquet_rates(four_bar(), method, 1 / count, alpha_hat, beta_hat, 1.0)
-    law = np.array([
-        moving_pole(method, turning(), 1 / count, a, b).z_abs_moving for a, b in zip(alpha_hat, beta_hat, strict=True)
-    ])  # fmt: skip
+    law = np.array([each.z_abs_moving for each in moving_poles(method, turning(), 1 / count, alpha_hat, beta_hat)])
     map_error, law_error = np.abs(at_rest[near_one][:30] - exact), np.abs(law - exact)
     assert np.median(law_error) < 0.15 * np.median(map_error)
     assert not ((law > 1) != (exact > 1))[np.abs(exact - 1) > 1e-3].any()
-
-
-def test_a_verdict_that_the_motion_can_turn_is_not_settled() -> None:
-    step = 0.1 / OMEGA
-    safe = moving_pole(lookup("B4"), turning(), step, 0.5, 0.2)
-    close = moving_pole(lookup("B4"), turning(), step, 0.5, 0.1)
-    assert safe.settled
-    assert safe.z_abs < safe.z_abs_moving < safe.z_abs_worst < 1
-    assert not close.settled or close.z_abs_worst < 1
 
 
 @pytest.mark.parametrize(("share", "turns_round"), [(0.99, True), (1.01, False)])
@@ -102,13 +88,10 @@ def test_symplectic_euler_keeps_a_mass_on_a_circle_up_to_a_known_speed(share: fl
     if and only if omega h < sqrt(beta_hat / (beta_hat + 4 alpha_hat))."""
     alpha_hat, beta_hat, h = 0.5, 0.25, 1e-3
     limit = np.sqrt(beta_hat / (beta_hat + 4 * alpha_hat))
-    scene = replace(load_scene("pendulum"), gravity=(0.0, 0.0))
-    mechanism = compiled_mechanism(scene)
-    length = float(np.hypot(scene.position["bob.x"], scene.position.get("bob.y", 0.0))) or 1.0
-    speed = share * limit / h
-    state = np.array([length, 0.0]), np.array([0.0, speed * length])
+    mechanism = compiled_mechanism(replace(load_scene("pendulum"), gravity=(0.0, 0.0)))  # of length 1 m
+    state = np.array([1.0, 0.0]), np.array([0.0, share * limit / h])
     run = simulate(mechanism, lookup("SYM"), h, 3.0, feedback_gains(alpha_hat, beta_hat, h), state)
-    radius = np.hypot(run.q[-500:, 0], run.q[-500:, 1]) / length
+    radius = np.hypot(run.q[-500:, 0], run.q[-500:, 1])
     steady = run.failure is None and float(np.ptp(radius)) < 1e-6
     assert steady == turns_round
 
@@ -134,29 +117,6 @@ def test_at_rest_poles_stay_where_they_are_however_large_chi_is() -> None:
     at_rest = replace(moving, rates=np.zeros_like(moving.rates))
     pole = moving_pole(lookup("SYM"), at_rest, 0.01, 1.0, 0.5)
     assert (pole.verdict, pole.z_abs) == ("converges", 0.5)
-
-
-@pytest.mark.promise("Where the law of the motion fails")
-@pytest.mark.parametrize(
-    ("name", "alpha_hat", "beta_hat"),
-    [
-        ("SYM", 1.0, 1.0),
-        ("SYM", 1.0, 0.99),
-        ("RK2", 2.0, 2.0),
-        ("AB4", 0.42928868, 0.04607219),
-        ("B4", 1.0127, 0.256389),
-    ],
-)
-@pytest.mark.parametrize("step", [0.001, 0.005, 0.02])
-@pytest.mark.slow_except("0.02")
-def test_double_poles_stay_within_their_reach(name: str, alpha_hat: float, beta_hat: float, step: float) -> None:
-    """Where the law itself has zero or no bound at all."""
-    moving = moving_pole(lookup(name), turning(), step, alpha_hat, beta_hat)
-    (exact,) = floquet_rates(four_bar(), lookup(name), step, np.array([alpha_hat]), np.array([beta_hat]), 1.0)
-    assert moving.double
-    assert moving.z_abs <= moving.z_abs_moving <= moving.z_abs_worst
-    assert exact < moving.z_abs_worst
-    assert not moving.settled or exact < 1
 
 
 @pytest.mark.slow

@@ -104,25 +104,27 @@ def test_what_is_switched_off_is_left_out() -> None:
     flags = "".join(
         f' {flag}="disable"' for flag in ("equality", "limit", "frictionloss", "contact", "spring", "damper")
     )
-    text = ROBOT.replace(
-        "<default>", f'<option><flag refsafe="disable" eulerdamp="disable"{flags}/></option><default>', 1
-    )
-    found = model_data(mujoco, mujoco.MjModel.from_xml_string(text))
+    found = read(f'<option><flag refsafe="disable" eulerdamp="disable"{flags}/></option>')
     assert not found.constraints
     assert {each.kind for each in found.feedbacks} == {"drive"}
     assert (found.refsafe, found.euler_damping) == (False, False)
 
 
+def read(option: str, **changes: str) -> ModelData:
+    """Return what is read of the robot with an option, and with some of its texts replaced."""
+    text = ROBOT.replace("<default>", f"{option}<default>", 1)
+    for old, new in changes.items():
+        text = text.replace(f'name="{old}"', f'name="{old}" {new}')
+    return model_data(mujoco, mujoco.MjModel.from_xml_string(text))
+
+
 def test_actuators_of_a_group_that_is_switched_off_are_left_out() -> None:
-    text = ROBOT.replace("<default>", '<option actuatorgroupdisable="2"/><default>', 1)
-    text = text.replace('<position name="motor"', '<position group="2" name="motor"')
-    found = model_data(mujoco, mujoco.MjModel.from_xml_string(text))
+    found = read('<option actuatorgroupdisable="2"/>', motor='group="2"')
     assert [each.element for each in found.feedbacks if each.kind == "drive"] == ["actuator 1"]
 
 
 def test_an_override_holds_for_every_contact() -> None:
-    text = ROBOT.replace("<default>", '<option o_solref="0.2 1"><flag override="enable"/></option><default>', 1)
-    found = model_data(mujoco, mujoco.MjModel.from_xml_string(text))
+    found = read('<option o_solref="0.2 1"><flag override="enable"/></option>')
     assert {each.solref for each in found.constraints if each.kind.startswith("contact")} == {(0.2, 1)}
 
 
@@ -130,7 +132,6 @@ def test_an_override_holds_for_every_contact() -> None:
     ("name", "text", "words"),
     [
         ("none.xml", None, "No such file"),
-        ("empty.xml", "", "XML"),
         ("wrong.xml", "<mujoco><oops/></mujoco>", "oops"),
         ("nan.xml", '<mujoco><option timestep="nan"/></mujoco>', "timestep = nan"),
         (

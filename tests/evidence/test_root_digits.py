@@ -26,20 +26,6 @@ def test_a_pole_that_is_missing_does_not_hold(monkeypatch: pytest.MonkeyPatch) -
     assert "roots were found" in found.seen
 
 
-def test_two_roots_that_nearly_coincide_have_a_start_each() -> None:
-    with mp.workdps(root_digits.DIGITS):
-        first, second, third = mp.mpf(1), 1 + mp.mpf(10) ** -8, mp.mpf(3)
-        polynomial = [1, -(first + second + third), first * second + (first + second) * third, -first * second * third]
-        beside_the_first = [first + mp.mpf(10) ** -9, first + 4 * mp.mpf(10) ** -9]  # Newton leads both to the first
-        elsewhere = [second + mp.mpf(10) ** -5, mp.mpf("3.1")]
-        found = root_digits.all_roots(polynomial, [*map(mp.mpc, beside_the_first), *map(mp.mpc, elsewhere)])
-        assert {k: float(abs(z - (first, second, None, third)[k])) < 1e-30 for k, z in found.items()} == {
-            0: True,
-            1: True,
-            3: True,
-        }
-
-
 @pytest.mark.parametrize("mu", [-0.4, -0.1 + 0.3j])
 def test_the_condition_number_is_how_far_a_root_moves_with_its_coefficients(mu: complex) -> None:
     with mp.workdps(60):
