@@ -38,38 +38,32 @@ def fate(error: FloatArray, drift: FloatArray, size: float = 0.0, calm: bool = T
     return "none" if undecided else "diverges" if diverges else "converges"
 
 
-def test_an_error_that_dies_has_converged_whatever_the_motions_do_afterwards() -> None:
-    drift = 0.1 * STEPS  # apart, for good
-    forced = 1e-3 * drift  # late differences are 1e5 times those after a hundred steps
-    assert fate(geometric(0.9) + forced**2, drift) == "converges"
-    assert fate(geometric(0.99), drift) == "converges"
+APART, SLOWLY_APART = 0.1 * STEPS, 0.01 * STEPS
+"""How the motions of two runs drift apart, for good."""
 
 
-def test_an_error_that_grows_tenfold_has_diverged() -> None:
-    assert fate(geometric(1.005), 0.01 * STEPS) == "diverges"
-    assert fate(geometric(1.2), STILL) == "diverges"  # out of the linear range in 60 steps
-
-
-def test_an_error_that_rises_before_it_dies_has_converged() -> None:
-    """Of a double pole at 0.97, as symplectic Euler's near alpha_hat = 0, beta_hat = 4, the rise is elevenfold."""
-    assert np.max(STEPS * geometric(0.97)) > 10
-    assert fate((1 + STEPS) * geometric(0.97), STILL) == "converges"
-
-
-def test_an_error_that_dies_and_comes_back_as_a_constraint_error_has_no_verdict() -> None:
-    """As of a growing mode that the kick hardly excites."""
-    assert fate(geometric(0.9) + 1e-6 * geometric(1.01), STILL) == "none"
-
-
-def test_a_difference_of_motions_that_grows_is_no_growth_of_an_error() -> None:
-    drift = 1e4 * STEPS
-    assert fate(np.maximum(geometric(0.999), 1e-3 * drift).astype(float), drift) == "none"
-
-
-def test_what_lives_to_the_end_is_judged_by_its_halves() -> None:
-    assert fate(geometric(0.9985), STILL) == "converges"
-    assert fate(geometric(1.0005), STILL) == "diverges"
-    assert fate(geometric(1.0005), 1.0 * STEPS) == "none"  # of the motion as likely
+@pytest.mark.parametrize(
+    ("error", "drift", "verdict"),
+    [
+        # it dies whatever the motions do afterwards: late differences are 1e5 times those after a hundred steps
+        (geometric(0.9) + (1e-3 * APART) ** 2, APART, "converges"),
+        (geometric(0.99), APART, "converges"),
+        (geometric(1.005), SLOWLY_APART, "diverges"),  # tenfold
+        (geometric(1.2), STILL, "diverges"),  # out of the linear range in 60 steps
+        # of a double pole at 0.97, as symplectic Euler's near (0, 4): it rises elevenfold before it dies
+        ((1 + STEPS) * geometric(0.97), STILL, "converges"),
+        (geometric(0.9) + 1e-6 * geometric(1.01), STILL, "none"),  # of a growing mode that the kick hardly excites
+        (np.maximum(geometric(0.999), 10 * STEPS), 1e4 * STEPS, "none"),  # a difference of motions, no error's growth
+        # what lives to the end is judged by its halves
+        (geometric(0.9985), STILL, "converges"),
+        (geometric(1.0005), STILL, "diverges"),
+        (geometric(1.0005), STEPS, "none"),  # of the motion as likely
+    ],
+)
+def test_an_error_that_dies_has_converged_and_one_that_grows_tenfold_diverged(
+    error: FloatArray, drift: FloatArray, verdict: str
+) -> None:
+    assert fate(error, drift) == verdict
 
 
 @pytest.mark.promise("Runs that break down")

@@ -1,6 +1,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from bezstab.evidence import measure_poles, measurement_summary
 from bezstab.mechanism import compiled_mechanism, load_scene
@@ -16,8 +17,6 @@ def test_errors_verdicts_and_wrong_sides_are_counted() -> None:
     one_side = replace(good, measured_rate=1.1, floquet_abs=1.2)
     summary = measurement_summary([good, off, lost, one_side])
     assert (summary.points, summary.measured, summary.called, summary.wrong) == (4, 3, 3, 1)
-    assert summary.largest_error is not None
-    assert abs(summary.largest_error - 0.5 * abs(good.predicted)) < 1e-6
+    assert summary.largest_error == pytest.approx(0.5 * abs(good.predicted), abs=1e-6)
     assert (summary.followed, summary.wrong_sides) == (1, "1, 1, 0")
-    assert summary.floquet_error is not None
-    assert abs(summary.floquet_error - 0.1) < 1e-12
+    assert summary.floquet_error == pytest.approx(0.1, abs=1e-12)

@@ -17,7 +17,7 @@ from bezstab.mechanism import (
     shipped_scenes,
     simulate,
 )
-from bezstab.mechanism.scenes import Distance, Driver
+from bezstab.mechanism.scenes import Driver
 from bezstab.methods import lookup
 
 SHIPPED = [
@@ -58,34 +58,18 @@ def small(name: str) -> Scene:
     return four_bars(3) if name == "n_four_bar" else load_scene(name)
 
 
-def scene(*joints: Revolute | Distance | Driver) -> Scene:
-    return Scene("two bodies", (0.0, 0.0), (CRANK, SLIDER), joints, (), (), position={}, velocity={}, guess={})
-
-
-def test_coordinates_are_those_left_free_in_the_order_of_the_bodies() -> None:
-    assert scene().coordinates == ("crank.theta", "slider.x", "slider.theta")
-
-
-def test_attachments_are_where_joints_hold_and_a_driver_holds_nowhere() -> None:
-    rod = Distance(("crank", "slider"), ((1.0, 0.0), (0.0, 2.0)), length=3.0)
+def test_a_scene_says_what_it_is_made_of() -> None:
+    """Coordinates left free in the order of the bodies; rows by number, kind and bodies; where joints hold them."""
     drive = Driver("crank.theta", 0.0, 1.0, 0.0, 0.0, 0.0, 0.0)
-    assert scene(rod, drive).attachments == (("crank", (1.0, 0.0)), ("slider", (0.0, 2.0)))
-
-
-@pytest.mark.parametrize("name", SHIPPED)
-def test_equal_scenes_have_equal_hashes(name: str) -> None:
-    assert load_scene(name) == load_scene(name)
-    assert hash(load_scene(name)) == hash(load_scene(name))
-
-
-def test_a_joints_rows_are_named_by_number_kind_and_bodies() -> None:
-    pin = Revolute(("crank", "slider"), ((0.0, 0.0), (0.0, 0.0)))
-    drive = Driver("crank.theta", 0.0, 1.0, 0.0, 0.0, 0.0, 0.0)
-    assert scene(drive, pin).constraint_names == (
+    pin = Revolute(("crank", "slider"), ((1.0, 0.0), (0.0, 2.0)))
+    scene = Scene("two", (0.0, 0.0), (CRANK, SLIDER), (drive, pin), (), (), position={}, velocity={}, guess={})
+    assert scene.coordinates == ("crank.theta", "slider.x", "slider.theta")
+    assert scene.constraint_names == (
         "joint 1 (driver of crank.theta)",
         "x of joint 2 (revolute, crank and slider)",
         "y of joint 2 (revolute, crank and slider)",
     )
+    assert scene.attachments == (("crank", (1.0, 0.0)), ("slider", (0.0, 2.0)))
 
 
 @pytest.mark.parametrize("name", ["four_bar", "driven_four_bar", "n_four_bar"])
@@ -112,11 +96,12 @@ def test_a_faster_driver_takes_the_same_course_in_less_time() -> None:
 
 def test_a_scene_at_another_speed_says_so_and_at_its_own_is_the_same() -> None:
     four_bar = load_scene("four_bar")
-    assert at_speed(four_bar, 1.0) == four_bar
+    assert at_speed(four_bar, 1.0) == four_bar == load_scene("four_bar")
+    assert hash(four_bar) == hash(load_scene("four_bar"))
     assert at_speed(four_bar, 0.5).name == "four-bar, 0.5 times as fast"
 
 
-@pytest.mark.parametrize("factor", [0.0, -1.0, float("nan"), float("inf"), 1e101])
+@pytest.mark.parametrize("factor", [0.0, -1.0, float("nan"), 1e101])
 def test_a_speed_that_is_none_is_refused(factor: float) -> None:
     with pytest.raises(InputError, match=r"speed .*: expected 1e-100 to 1e\+100"):
         at_speed(load_scene("four_bar"), factor)

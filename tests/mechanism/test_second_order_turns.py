@@ -8,8 +8,6 @@ import pytest
 from bezstab.mechanism import (
     Mechanism,
     compiled_mechanism,
-    load_scene,
-    march,
     parse_scene,
     perturbed_state,
     simulate,
@@ -91,17 +89,3 @@ def test_a_step_knows_the_times_of_its_evaluations() -> None:
         for name in names:
             run = simulate(mechanism, lookup(name), h, 1.0, (0.0, 0.0))
             assert np.diff(run.v[:, 0]) / h == pytest.approx(expected, abs=1e-12)
-
-
-@pytest.mark.parametrize("name", ["verlet-predicted", "trapezoid", "bdf3", "radau3", "hht"])
-def test_a_batch_is_as_many_single_runs(name: str) -> None:
-    mechanism, method = compiled_mechanism(load_scene("slider_crank")), lookup(name)
-    q, v = perturbed_state(mechanism, 1e-3)
-    two_alpha, beta_squared = np.array([100.0, 200.0, 300.0]), np.array([1e4, 2e4, 4e4])
-    state = np.concatenate([q, v])[:, np.newaxis]
-    *_, block = march(mechanism, method, H, (two_alpha, beta_squared), state, "rk4", 30)
-    together = block.states[-1]
-    for k in range(3):
-        alone = simulate(mechanism, method, H, 30 * H, (float(two_alpha[k]), float(beta_squared[k])), (q, v))
-        # each iteration ends within 1e-13 of the sizes, and a velocity is that over h
-        assert together[:, k] == pytest.approx([*alone.q[-1], *alone.v[-1]], abs=1e-10)
