@@ -126,9 +126,8 @@ def test_a_sweep_knows_its_fronts(against: Cost) -> None:
     measured = [measured_runs(sweep) for sweep in sweeps]
     runs = [run for sweep, arrays in zip(sweeps, measured, strict=True) for run in swept_runs(sweep, arrays)]
     whole = with_fronts(runs, sweeps[0].reference.error, against)
-    trajectory = [(run.cost(against), run.trajectory_error) for run in whole.runs]
-    constraint = [(run.cost(against), None if run.failure else run.c_max) for run in whole.runs]
-    for front, points in ((whole.trajectory_front, trajectory), (whole.constraint_front, constraint)):
+    for front, error in ((whole.trajectory_front, "trajectory_error"), (whole.constraint_front, "c_max")):
+        points = [(run.cost(against), None if run.failure else getattr(run, error)) for run in whole.runs]
         assert {points[index] for index in front} == undominated(points)
     for index, label in enumerate(whole.front_labels):
         assert ("T" in label) == (index in whole.trajectory_front)

@@ -76,13 +76,10 @@ def test_a_point_on_a_line_keeps_to_it() -> None:
 
 def test_a_distance_joint_holds_two_points_a_length_apart() -> None:
     """c = (d^2 - l^2) / (2 l), d the distance of the points, neither of which lies at a frame's origin."""
-    first, second = (0.3, -0.4), (0.2, 0.7)
-    joint = {"type": "distance", "bodies": ["ground", "bob"], "points": [first, second], "length": 2.0}
-    initial = {"position": {"bob.x": 2.1, "bob.y": -1.1}, "velocity": {"bob.x": 0.0, "bob.y": 1.5}}
-    mechanism = compiled_mechanism(parse_scene({**pendulum(), "joint": [joint], "initial": initial}))
-    q, v = np.array([[2.5, 1.5]]), np.array([[0.5, 1.5]])
+    joint = {"type": "distance", "bodies": ["ground", "bob"], "points": [[0.3, -0.4], [0.2, 0.7]], "length": 2.0}
+    mechanism = compiled_mechanism(parse_scene({**pendulum(), "joint": [joint]}))
+    q, v, apart = np.array([[2.5, 1.5]]), np.array([[0.5, 1.5]]), np.array([2.4, 2.6])
     seen = observe(mechanism, np.zeros(1), q, v, 0.0, 0.0)
-    apart = q[0] + second - first
     assert seen.c[0] == pytest.approx((apart @ apart - 4) / 4, rel=1e-14)
     assert seen.cdot[0] == pytest.approx(apart @ v[0] / 2, rel=1e-14)
 

@@ -59,6 +59,10 @@ def measured_order(
     return shown_order(errors)
 
 
+@pytest.mark.promise(
+    "Motion of pendulum, slider-crank, four-bars",
+    measured="converges to quadrature of the one coordinate, with the method's order",
+)
 @pytest.mark.promise("Orders of runs with α and β fixed")
 @pytest.mark.parametrize("name", of_campaign([name for name in REGISTRY if order(name) <= 4], [*FEW, *SOLVED]))
 @pytest.mark.slow_except("B4", "AB4", "verlet-half", "rkn4", "hht")
@@ -97,25 +101,6 @@ def test_with_alpha_hat_and_beta_hat_fixed_methods_with_stages_lose_order(name: 
     count = 3200 if name == "RK2" else 800  # the order of RK2 falls from 2 slowly: 1.27 at 400, 1.08 at 1600
     shown = measured_order(name, count, lambda h: feedback_gains(0.5, 0.1, h))
     assert shown == pytest.approx(SHOWN_ORDERS[name], abs=0.1)
-
-
-@pytest.mark.promise(
-    "Motion of pendulum, slider-crank, four-bars",
-    measured="converges to quadrature of the one coordinate, with the method's order",
-)
-@pytest.mark.parametrize("name", ["RK4", "AB4", "AB3", "B4", "SYM"])
-@pytest.mark.slow_except("AB4", "SYM")
-def test_the_parallel_four_bars_move_as_one_coordinate(name: str) -> None:
-    mechanism, duration = compiled_mechanism(four_bars(3)), 0.5
-    reference = shared_angles(four_bar_chain_energies(3), np.pi / 2, -1.0, duration)
-    assert reference[-1] > 0.3  # well above the ground, where the rods lie in line and the motion branches
-    errors = []
-    for count in (400, 800):
-        run = simulate(mechanism, lookup(name), duration / count, duration, (20.0, 100.0))
-        rods = run.q[:, :4]
-        assert np.ptp(rods, axis=1).max() < 1e-13  # rad: equal but for the rounding of 800 steps
-        errors.append(distance(rods[:, 0].tolist(), reference))
-    assert shown_order(errors) == pytest.approx(order(name), abs=0.1)
 
 
 @pytest.mark.promise("Runs that break down")
@@ -267,7 +252,6 @@ def test_the_exact_pendulum_is_that_of_the_benchmark() -> None:
     assert exact_pendulum(10.0) == pytest.approx(A01_AT_10_S, abs=1e-12)  # as printed
 
 
-@pytest.mark.promise("Motion of pendulum, slider-crank, four-bars")
 @pytest.mark.promise(
     "IFToMM's A01 and A02",
     measured=(
@@ -305,6 +289,7 @@ energy is off by 2e-4 J on one processor and by half a joule on another. At 9e-4
 """
 
 
+@pytest.mark.promise("Motion of pendulum, slider-crank, four-bars")
 @pytest.mark.promise("IFToMM's A01 and A02")
 @pytest.mark.parametrize(("count", "duration", "passages"), of_campaign([(5, 1.5, 2), (40, 20.0, 20)], [(5, 1.5, 2)]))
 @pytest.mark.slow
