@@ -252,6 +252,7 @@ def test_the_exact_pendulum_is_that_of_the_benchmark() -> None:
     assert exact_pendulum(10.0) == pytest.approx(A01_AT_10_S, abs=1e-12)  # as printed
 
 
+@pytest.mark.promise("Motion of pendulum, slider-crank, four-bars")
 @pytest.mark.promise(
     "IFToMM's A01 and A02",
     measured=(
