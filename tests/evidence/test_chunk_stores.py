@@ -53,19 +53,20 @@ def test_a_chunk_of_another_number_or_job_is_not_taken_nor_what_is_none(store: C
         assert other.load(0) is None
 
 
-def test_chunks_without_a_job_are_not_trusted(tmp_path: Path) -> None:
-    with chunk_store(tmp_path / "job", "squares", resume=False) as store:
+def test_chunks_of_another_job_or_of_none_are_not_gone_on_with(tmp_path: Path) -> None:
+    path = tmp_path / "job"
+    with chunk_store(path, "squares", resume=False) as store:
         store.save(0, SQUARES)
-    (tmp_path / "job" / "job.txt").unlink()
-    with chunk_store(tmp_path / "job", "squares", resume=True) as store:
+    for job in (b"cubes", b"\xff\xfe"):
+        (path / "job.txt").write_bytes(job)
+        with pytest.raises(InputError, match=r"--resume: .* other options"), chunk_store(path, "squares", resume=True):
+            pass
+    (path / "job.txt").unlink()
+    with chunk_store(path, "squares", resume=True) as store:
         assert not store.has(0)
-
-
-def test_a_damaged_job_is_one_of_other_options(tmp_path: Path) -> None:
-    with chunk_store(tmp_path / "job", "squares", resume=False):
-        (tmp_path / "job" / "job.txt").write_bytes(b"\xff\xfe")
-    with pytest.raises(InputError, match="other options"), chunk_store(tmp_path / "job", "squares", resume=True):
-        pass
+        store.save(0, SQUARES)
+    with chunk_store(path, "squares", resume=False) as store:
+        assert not store.has(0)
 
 
 def test_two_runs_do_not_work_in_the_same_place(store: ChunkStore) -> None:

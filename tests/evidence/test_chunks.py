@@ -43,13 +43,6 @@ def test_a_resumed_job_does_only_what_is_missing(tmp_path: Path) -> None:
     with worker_pool(1) as workers, chunk_store(tmp_path / "job", "squares", resume=True) as store:
         arrived = dict(completed_chunks(square, [Job(number) for number in range(3)], workers, store))
     assert squares(arrived) == [0, -1, 4]  # the second was not done again
-    with (
-        pytest.raises(InputError, match=r"--resume: .* other options"),
-        chunk_store(tmp_path / "job", "cubes", resume=True),
-    ):
-        pass
-    with chunk_store(tmp_path / "job", "cubes", resume=False) as store:
-        assert not store.has(1)
 
 
 @pytest.mark.slow

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from bezstab.errors import InputError, NumericalError
 from bezstab.mechanism import (
@@ -110,13 +111,9 @@ def parallel_rods(count: int, angle: float) -> dict[str, Any]:
 @pytest.mark.promise("Constraints that follow from others")
 def test_the_third_of_three_parallel_rods_is_redundant_and_named() -> None:
     """Along x, its tip goes where the coupler is taken by the other two; along y likewise, but for its own angle."""
-    with pytest.raises(InputError) as caught:
+    named = "".join(rf".*joint {number} \(revolute, rod{number - 1} and coupler\)" for number in (3, 1, 2))
+    with pytest.raises(InputError, match=rf"\Ajoint: redundant constraints: 6 constraints, rank 5: y of{named}.*\Z"):
         initial_state(compiled_mechanism(parse_scene(parallel_rods(3, angle=1.0))))
-    message = str(caught.value)
-    assert message.startswith("joint: redundant constraints: 6 constraints, rank 5: y of joint 3 (revolute, rod2 and ")
-    for number in (1, 2, 3):
-        assert f"joint {number} (revolute, rod{number - 1} and coupler)" in message
-    assert "\n" not in message
 
 
 def test_parallel_rods_that_lie_in_line_start_singular_but_not_redundant() -> None:
@@ -131,13 +128,19 @@ def test_a_driven_mechanism_that_cannot_leave_a_singular_start_is_refused_as_eit
         initial_state(compiled_mechanism(parse_scene({**pendulum(), "joint": [STRING, driver]})))
 
 
-@pytest.mark.parametrize(("changes", "starts"), [({}, False), ({"free_length": 0.0}, True), ({"damping": 1.0}, False)])
-def test_a_spring_without_a_direction_is_refused(changes: dict[str, float], starts: bool) -> None:
-    spring = {"bodies": ["ground", "bob"], "points": [[1, 0], [0, 0]], "stiffness": 1.0, "free_length": 0.5, **changes}
+def test_a_spring_without_a_direction_is_refused_unless_it_needs_none() -> None:
     initial = {"position": {"bob.x": 1.0, "bob.y": 0.0}, "velocity": {"bob.y": 0.0}}
-    mechanism = compiled_mechanism(parse_scene(pendulum(spring=[spring], initial=initial)))
-    if starts:
-        assert initial_state(mechanism)[0] == pytest.approx([1, 0])
-    else:
+
+    def start(**changes: float) -> NDArray[np.float64]:
+        spring = {
+            "bodies": ["ground", "bob"],
+            "points": [[1, 0], [0, 0]],
+            "stiffness": 1.0,
+            "free_length": 0.5,
+        } | changes
+        return initial_state(compiled_mechanism(parse_scene(pendulum(spring=[spring], initial=initial))))[0]
+
+    assert start(free_length=0.0) == pytest.approx([1, 0])
+    for changes in ({}, {"damping": 1.0}):
         with pytest.raises(InputError, match="spring 1: its ends meet"):
-            initial_state(mechanism)
+            start(**changes)
