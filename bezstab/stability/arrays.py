@@ -17,6 +17,18 @@ Extent = tuple[tuple[float, float], tuple[float, float]]
 EPS = float(np.finfo(float).eps)
 """The spacing of float64 at one, 2^-52."""
 
+DOUBLE = 64 * EPS**0.5
+"""Relative: by less does rounding part a double pole, or move it from zero."""
+
+TRIPLE = 16 * EPS ** (1 / 3)
+"""The same of a triple pole."""
+
+SLOW = 4096 * EPS
+"""1 - |z_p| of which rounding leaves three digits: such a decay takes 1e12 steps, and counts as none."""
+
+SETTLED = 1e-9
+"""Relative: an iteration whose last step is no larger has come to what rounding leaves, or to its square."""
+
 PLASTIC = 1.32471795724474602596
 """The number with x^3 = x + 1: multiples of 1/x and 1/x^2 fill a square evenly (M. Roberts, 2018)."""
 
