@@ -13,7 +13,6 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from fractions import Fraction
-from typing import get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -481,26 +480,22 @@ def simulate(
     feedback is given in one of the two ways. NumericalError if the start cannot be perturbed. Source:
     paper Eqs. 6 to 9.
     """
-    if stabilise not in get_args(mechanism.Stabilise):
-        raise InputError(f"stabilise {stabilise!r}: expected {', '.join(get_args(mechanism.Stabilise))}")
-    if iterations is not None and stabilise != "projection":
-        raise InputError("iterations are those of stabilise='projection'")
-    a, b = Fraction(0), Fraction(0)
-    if stabilise == "baumgarte":
-        a, b = _plane_point(alpha_hat, beta_hat, alpha, beta, h)
-    elif any(each is not None for each in (alpha_hat, beta_hat, alpha, beta)):
-        raise InputError(f"stabilise={stabilise!r} has no feedback: expected neither alpha nor beta")
-    return mechanism.simulated(
-        mechanism.compiled_mechanism(_scene(scene)),
-        _method(method),
-        h=_real(h, "h"),
-        duration=_real(duration, "duration"),
-        alpha_hat=float(a),
-        beta_hat=float(b),
-        perturb=_real(perturb, "perturb"),
-        start=start,
-        projection=mechanism.Projection(iterations) if stabilise == "projection" else None,
-    )
+    point = None
+    if stabilise == "baumgarte" or any(each is not None for each in (alpha_hat, beta_hat, alpha, beta)):
+        point = _plane_point(alpha_hat, beta_hat, alpha, beta, h)
+    with _in_keywords():
+        question = questions.RunQuestion(
+            scene=_scene(scene),
+            method=_method(method),
+            duration=_real(duration, "duration"),
+            h=_real(h, "h"),
+            point=point,
+            stabilise=stabilise,
+            iterations=iterations,
+            perturb=_real(perturb, "perturb"),
+            start=start,
+        )
+    return questions.run_answer(question)
 
 
 def verify(
@@ -525,11 +520,10 @@ def verify(
     InputError for a scene that cannot start, and unless the points are given in one of the two ways.
     Source: opposite kicks and linear prediction (Prony).
     """
-    h = _real(h, "h")
-    check_step(h)
-    a, b = np.broadcast_arrays(*_plane_arrays(alpha_hat, beta_hat, alpha, beta, h))
-    compiled = mechanism.compiled_mechanism(_scene(scene))
-    return evidence.measure_poles(compiled, _method(method), h, np.atleast_1d(a).ravel(), np.atleast_1d(b).ravel())
+    point = np.broadcast_arrays(*_plane_arrays(alpha_hat, beta_hat, alpha, beta, h))
+    asked = _method(method)
+    question = questions.VerifyQuestion(scene=_scene(scene), methods=(asked,), h=_real(h, "h"), point=point)
+    return question.measurements(asked)
 
 
 def probe(

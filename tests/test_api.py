@@ -111,19 +111,10 @@ def test_a_held_drive_is_checked_as_on_the_command_line() -> None:
     assert answer.limits.kd == (row["kd_min"], row["kd_max"])
 
 
-def test_a_region_knows_what_it_contains() -> None:
-    stable = bezstab.region("B4")
-    a, b = np.meshgrid(np.linspace(-0.2, 1.8, 41), np.linspace(-0.1, 0.9, 31))
-    assert (stable.contains(a, b) == (bezstab.spectral_radius("B4", alpha_hat=a, beta_hat=b) < 1)).all()
-
-
-def test_a_probe_of_a_log_has_the_methods_that_fit_and_the_point() -> None:
+def test_a_result_is_shown_in_a_line() -> None:
     error = np.round(1e-4 * (bezstab.dominant_pole("B4", alpha_hat=0.5, beta_hat=0.1) ** np.arange(150)).real, 13)
     found = bezstab.probe(error, differenced=True, methods=["B4", "RK4"], alpha_hat=0.5, beta_hat=0.1)
-    assert found.fitting == ("B4",)
-    placed = bezstab.probe(error, minus=0 * error, methods=["B4"], h=0.01)
-    assert (placed.points[0].alpha_hat, placed.points[0].beta_hat) == pytest.approx((0.5, 0.1), abs=1e-6)
-    for result in (found, found.likenesses[0], placed.points[0], bezstab.region("B4"), bezstab.best_point("B4")):
+    for result in (found, found.likenesses[0], bezstab.region("B4"), bezstab.best_point("B4")):
         assert repr(result).startswith(f"{type(result).__name__}(")
         assert len(repr(result)) < 160
         assert "array" not in repr(result)

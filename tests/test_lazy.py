@@ -3,7 +3,6 @@ import pytest
 from bezstab.lazy import lazy_names
 
 load = lazy_names("bezstab.methods")
-PACKAGES = ("bezstab", "bezstab.methods", "bezstab.stability", "bezstab.show")
 
 
 def test_a_name_is_that_of_the_module_that_defines_it() -> None:

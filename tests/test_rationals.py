@@ -1,6 +1,5 @@
 """The exact reading of numbers: texts, and floats as they are printed."""
 
-import math
 from decimal import Decimal
 from fractions import Fraction
 
@@ -17,12 +16,6 @@ from bezstab.rationals import bisected_integers, exact, rational, typed_number, 
 def test_a_float_is_exactly_the_decimal_it_shows(x: float) -> None:
     assert exact(x) == Fraction(Decimal(repr(x)))
     assert float(exact(x)) == x
-
-
-@pytest.mark.parametrize("x", [math.nan, math.inf, -math.inf])
-def test_what_is_no_number_shows_none(x: float) -> None:
-    with pytest.raises(ValueError, match="Invalid literal"):
-        exact(x)
 
 
 @pytest.mark.parametrize("size", ["0.99e-307", "1e-400", "1.01e308", "1e400"])
@@ -54,19 +47,11 @@ def test_a_number_is_read_exactly(text: str, value: Fraction) -> None:
     assert rational(text) == value
 
 
-@given(st.integers(-(10**15), 10**15), st.integers(1, 10**15))
-def test_a_printed_fraction_reads_back_as_itself(p: int, q: int) -> None:
-    assert rational(str(Fraction(p, q))) == Fraction(p, q)
-
-
 @pytest.mark.parametrize(
     "text",
     [
-        *("nan", "inf", "-inf", "1e999", "-1e999", "1e-999", "1.1e308", "1e-400", "1e99999", "1e999999999"),
-        *("1/0", "0/0", "1/-2", "1/2.0", "1.0/2", "1/2/3", "1/", "/2", "1 / 2"),
-        *("", " ", ".", "-", "+", "e5", "1e", "1e+", ".e1", "--1", "+-1", "1 2", "1,5", "1.2.3"),
-        *("0x10", "0b1", "1_000", "1j", "1f", "1e3.5", "True", "pi", "1+1", "2**3", "1\n2", "1\0"),
-        *("１", "٣", "1²", "½", "−1", "1e٣"),
+        *("nan", "inf", "-1e999", "1.1e308", "1e-400", "1e999999999", "1/0", "1/-2", "1.0/2", "1 / 2", "", "--1"),
+        *("0x10", "1_000", "1j", "True", "pi", "2**3", "1\n2", "1\0", "１", "½", "−1", "1e٣"),
         *("1" * 400, "1" * 1001, "1" * 100_000, "1/" + "1" * 100_000, "0." + "0" * 100_000 + "1"),
     ],
 )

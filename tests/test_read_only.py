@@ -58,13 +58,3 @@ def test_every_array_of_a_result_is_read_only(name: str) -> None:
     found = list(arrays_in(RESULTS[name]()))
     assert bool(found) == (name not in WITHOUT_ARRAYS)
     assert not any(array.flags.writeable for array in found)
-
-
-@pytest.mark.parametrize("function", [bezstab.poles, bezstab.dominant_pole, bezstab.spectral_radius])
-@pytest.mark.parametrize("method", ["B4", "verlet-half", "hht"])
-def test_plain_arrays_are_made_anew_for_each_caller(method: str, function: Callable[..., Any]) -> None:
-    points = {"alpha_hat": np.array([0.3, 0.5]), "beta_hat": np.array([0.1, 0.1])}
-    first = function(method, **points)
-    expected = first.copy()
-    first[:] = 0
-    assert np.array_equal(function(method, **points), expected)

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable
-from fractions import Fraction
 from functools import partial
 from typing import Any
 
@@ -21,33 +20,6 @@ def refusal(ask: Callable[[], object]) -> str:
     return str(caught.value)
 
 
-def test_entries_are_handed_out_as_what_they_are() -> None:
-    table = TomlTable({"name": "bob", "free": ["x", "y"], "mass": 2, "at": [1, 0.5], "q": {"bob.x": 1}})
-    assert table.text("name") == "bob"
-    assert table.texts("free") == ["x", "y"]
-    assert table.positive_number("mass") == table.number("mass") == 2.0
-    assert table.point("at") == (1.0, 0.5)
-    assert table.numbers("q", allowed=["bob.x", "bob.y"]) == {"bob.x": 1.0}
-    table.refuse_unknown_keys()
-
-
-def test_rationals_are_exact() -> None:
-    table = TomlTable({"b": ["175/108", "-0.1"], "A": [["0", "0"], ["1/3", "0"]]})
-    assert table.exact_numbers("b", rational) == (Fraction(175, 108), Fraction(-1, 10))
-    assert table.exact_rows("A", rational) == ((Fraction(0), Fraction(0)), (Fraction(1, 3), Fraction(0)))
-
-
-def test_what_is_absent_takes_its_default() -> None:
-    table = TomlTable({})
-    assert table.text("name", default="own") == "own"
-    assert table.number("torque", default=0.0) == 0.0
-    assert table.point("point", default=(0.0, 0.0)) == (0.0, 0.0)
-    assert table.numbers("q", allowed=[]) == {}
-    assert table.tables("body") == []
-    assert table.table("initial").data == {}
-    assert table.optional_table("chain") is None
-
-
 def test_what_is_absent_without_a_default_is_missing() -> None:
     assert refusal(lambda: TomlTable({}, "bob").positive_number("mass")) == "bob: mass is missing: found nothing"
     assert refusal(lambda: TomlTable({"mas": 1}).positive_number("mass")) == "mass is missing: found mas"
@@ -62,19 +34,6 @@ def test_a_message_has_the_place_the_key_the_value_and_what_is_expected() -> Non
 @given(st.floats(1e-100, 1e100) | st.floats(-1e100, -1e-100) | st.just(0.0))
 def test_every_number_of_ordinary_size_is_handed_out(value: float) -> None:
     assert TomlTable({"x": value}).number("x") == value
-
-
-def test_a_name_that_is_not_allowed_is_refused_with_those_that_are() -> None:
-    table = TomlTable({"q": {"ghost.x": 1.0}}, "initial")
-    said = "initial: q names 'ghost.x', which is not among bob.x, bob.y"
-    assert refusal(lambda: table.numbers("q", allowed=["bob.x", "bob.y"])) == said
-
-
-def test_a_key_nobody_asked_for_is_unknown_and_the_known_ones_are_listed() -> None:
-    table = TomlTable({"name": "bob", "mas": 1.0}, "body 'bob'")
-    table.text("name")
-    table.number("mass", default=0.0)
-    assert refusal(table.refuse_unknown_keys) == "body 'bob': unknown key 'mas': known are name, mass"
 
 
 def test_an_unknown_key_of_a_table_within_is_found_from_outside() -> None:

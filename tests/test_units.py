@@ -48,14 +48,6 @@ def test_there_and_back(alpha: Fraction, beta: Fraction, h: Fraction) -> None:
     assert back == pytest.approx((float(alpha), float(beta)), rel=1e-14)
 
 
-def test_arrays_go_element_by_element() -> None:
-    alpha_hat, beta_hat = np.array([0.0, 0.5, 2.0]), np.array([0.0, 0.1, 1.0])
-    alpha, beta = from_dimensionless(alpha_hat, beta_hat, 0.01)
-    pairs = [from_dimensionless(a, b, 0.01) for a, b in zip(alpha_hat.tolist(), beta_hat.tolist(), strict=True)]
-    assert list(zip(alpha.tolist(), beta.tolist(), strict=True)) == pairs
-    assert from_dimensionless(np.array([]), np.array([]), 0.01)[1].shape == (0,)
-
-
 @pytest.mark.parametrize("beta_hat", [-0.1, -1e-300, math.nan])
 def test_a_negative_beta_hat_has_gains_but_no_beta(beta_hat: float) -> None:
     with pytest.raises(InputError, match="expected 0 or more"):

@@ -1,9 +1,9 @@
 """What poles, check and choose share: the options of a question, and what is said below its answers."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
@@ -33,9 +33,9 @@ from bezstab.show import Format, motion_words
 from bezstab.units import to_dimensionless
 
 if TYPE_CHECKING:
-    from bezstab.mechanism import TurningNormals
     from bezstab.questions import Answer, Question
 
+Asked = TypeVar("Asked")
 GAINS = ("kp", "kd", "inertia")
 
 
@@ -48,6 +48,11 @@ def drive_of(text: str) -> Drive:
     if len(numbers) != len(GAINS):
         raise InputError(f"{len(numbers)} values, expected {','.join(GAINS)}")
     return Drive(*numbers)
+
+
+def inertia_or_drive_of(text: str) -> Drive:
+    """Return the drive that 100,2,0.01 says, or the inertia alone, with gains that are to be chosen."""
+    return Drive(Fraction(0), Fraction(0), rational(text)) if "," not in text else drive_of(text)
 
 
 DRIVE = ParsedType(",".join(GAINS), drive_of)
@@ -167,65 +172,47 @@ def moving_scene_options(help_text: str) -> Decorator:
     return together(scene_option(None, help_text), speed)
 
 
-def asked(
-    *,
-    methods: Sequence[Method],
-    point: TypedPoint | None = None,
-    engine: tuple[Engine, tuple[Fraction, ...] | None] | None = None,
-    drive: Drive | None = None,
-    chain: int | None = None,
-    mass_ratio: Fraction | None = None,
-    iterations: int | None = None,
-    **typed: Any,
-) -> "Question":
-    """Return the question that was typed; other options than these are called like its fields.
+def asked(kind: Callable[..., Asked], **typed: Any) -> Asked:
+    """Return the question that was typed: one of a kind of `bezstab.questions`, whose fields options are called like.
 
-    What looks mistaken in it is said, and how its scene moves is found. InputError as Question.
+    Methods are left out where an engine or a drive has its own and none was typed. What looks mistaken in a point is
+    said. InputError as the question.
     """
-    from bezstab.questions import Question, typed_chain
+    from bezstab.questions import typed_chain
 
-    longest = typed["h"] or (typed["h_max"] if typed.get("h_min") else None)
-    methods = methods_typed(methods, engine is not None or drive is not None)
-    named, values = engine or (None, None)
-    question = Question(
-        methods=methods,
-        point=point.at(methods, longest) if point else None,
-        engine=named,
-        values=values,
-        drive=drive,
-        chain=typed_chain(chain, mass_ratio),
-        iterations=iterations,
-        **typed,
-    )
-    prepare(question)
+    if isinstance(typed.get("engine"), tuple):
+        typed["engine"], typed["values"] = typed["engine"]
+    if (typed.get("engine") or typed.get("drive")) and left_at_default("methods"):
+        typed["methods"] = ()
+    if "chain" in typed:
+        typed["chain"] = typed_chain(typed["chain"], typed.pop("mass_ratio"))
+    if "point" in typed:
+        methods = typed["methods"] if "methods" in typed else [typed["method"]]
+        longest = typed["h"] or (typed.get("h_max") if typed.get("h_min") else None)
+        typed["point"] = typed["point"].at(methods, longest)
+    return kind(**typed)
+
+
+def asked_of_feedback(**typed: Any) -> "Question":
+    """Return the question about feedback that was typed; find how its scene moves."""
+    from bezstab.questions import Question
+
+    question = asked(Question, **typed)
+    find_turning(typed["scene"], question.speed, question.h)
+    _ = question.motion
+    say_if_it_turns_too_far(typed["scene"], question.speed, question.h)
     return question
 
 
-def methods_typed(methods: Sequence[Method], has_usual_ones: bool) -> tuple[Method, ...]:
-    """Return the methods that were typed, else none where an engine or a drive has its own, else the default."""
-    return () if has_usual_ones and left_at_default("methods") else tuple(methods)
-
-
-def prepare(question: "Question") -> None:
-    """Find how the scene of a question moves, with a bar on a terminal; where the law fails for it, that is said."""
-    scene = question.scene if isinstance(question.scene, str) else None
-    turning_with_bar(scene, question.speed, question.h)
-    _ = question.motion
-    say_if_it_turns_too_far(scene, question.speed, question.h)
-
-
-def turning_with_bar(scene: str | None, speed: Fraction, h: Fraction | None) -> "TurningNormals | None":
-    """Return how the normals of a scene's constraints turn, None without one; h in s, errors as `turning_of`.
-
-    A bar on a terminal shows that it is worked on.
-    """
+def find_turning(scene: str | None, speed: Fraction, h: Fraction | None) -> None:
+    """Find how the constraints of a scene turn at a step of h (s), with a bar on a terminal; errors as `turning_of`."""
     from bezstab.questions import turning_of, turning_stages
 
     if scene and h is not None:
         name, stages = turning_stages(scene, speed)
         for stage in progress(stages, name):
             stage()
-    return turning_of(scene, speed, h)
+    turning_of(scene, speed, h)
 
 
 def say_if_it_turns_too_far(scene: str | None, speed: Fraction, h: Fraction | None) -> None:
@@ -261,6 +248,21 @@ def say_what_is_left_out(engine: Engine, *, many: bool = False) -> None:
     say(f"{engine.name}: left out: {engine.excludes}{swept + ask if engine.sweeps and not many else ''}")
     if many and engine.sweeping:
         say(f"{engine.name}: sweeps are its {engine.sweeping.word}; of them left out: {engine.sweeping.excludes}")
+
+
+WITHOUT_ACCURACY = ("total_error", "order_left", "times_least_velocity")
+"""What tables of a drive leave out: nothing feeds its target's acceleration forward."""
+
+OF_ONE_ALONE = (
+    *("worst", "settle_steps", "settle_seconds", "h_limit"),
+    *("alpha_factor_min", "alpha_factor_max", "beta_factor_min", "beta_factor_max"),
+)
+"""What tables of constraints that an engine sweeps over leave out: it is told of one of them alone."""
+
+
+def left_out(question: "Question") -> tuple[str, ...]:
+    """Return the keys that tables of a question leave out."""
+    return (*(WITHOUT_ACCURACY if question.drive else ()), *(OF_ONE_ALONE if question.swept else ()))
 
 
 def say_varying(answers: "Iterable[Answer]") -> None:

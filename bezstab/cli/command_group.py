@@ -1,7 +1,9 @@
 """The group of all commands: how they are listed, found and ended."""
 
+import ast
 import importlib
 import os
+import pkgutil
 import sys
 import traceback
 from collections.abc import Mapping, Sequence
@@ -10,32 +12,25 @@ from typing import Any, NoReturn
 import click
 
 from bezstab import __version__
-from bezstab.cli.chains_command import chains
-from bezstab.cli.choose_commands import check, choose, engines, explore
-from bezstab.cli.evidence_commands import extremes, simulate, tradeoff
-from bezstab.cli.lint_command import lint
-from bezstab.cli.map_commands import family, methods, poles
-from bezstab.cli.output import NUMERICAL_TROUBLE, say
-from bezstab.cli.probe_command import probe
-from bezstab.cli.region_command import region
-from bezstab.cli.schema_command import schema
-from bezstab.cli.verify_command import verify
 from bezstab.errors import InputError, NumericalError
 
-SECTIONS: Mapping[str, Sequence[click.Command]] = {
-    "Maps": (poles, region, methods, family),
-    "Choose": (choose, check, lint, engines, chains, explore),
-    "Evidence": (simulate, verify, probe, tradeoff, extremes),
-    "Programs": (schema,),
+SECTIONS: Mapping[str, Sequence[str]] = {
+    "Maps": ("poles", "region", "methods", "family"),
+    "Choose": ("choose", "check", "lint", "engines", "chains", "explore"),
+    "Evidence": ("simulate", "verify", "probe", "tradeoff", "extremes"),
+    "Programs": ("schema",),
+    "Paper": ("paper",),
 }
-"""What `bezstab --help` lists under which heading, in this order."""
+"""What `bezstab --help` lists under which heading, in this order. The command NAME is in the file NAME_command.py."""
 
-LOADED_LATE: Mapping[str, Mapping[str, str]] = {"Paper": {"paper": "bezstab.paper.command:paper"}}
-"""Extensions by heading and name, each as module:command: nothing imports them, the group finds them by name."""
-
+ELSEWHERE: Mapping[str, str] = {"paper": "bezstab.paper.command"}
+"""The module of each command that is an extension: nothing imports it, the group finds it by name."""
 
 COMPLETE = "_BEZSTAB_COMPLETE"
 """Environment variable in which a shell says that it wants to complete a command."""
+
+NUMERICAL_TROUBLE = 3
+"""Exit status where an answer, or a part of it, could not be found, or runs break down; a message says why."""
 
 READER_GONE = 128 + 13
 """Exit status where nobody reads the answer any more: as a shell has it for SIGPIPE, and unlike 1, "fault is found"."""
@@ -46,7 +41,7 @@ DEFECT = 70
 
 
 class BezstabGroup(click.Group):
-    """A group that lists its commands under headings, finds extensions when asked for, and ends errors in one line.
+    """A group that lists its commands under headings, loads a command when it is called, and ends errors in one line.
 
     Exit status 2 for a user's mistake and for what the system refuses (a full disk, a closed standard output), 3 for
     numerical trouble, 70 for a defect of this program. A signal that ends a run is 128 + its number, as a shell has it:
@@ -56,29 +51,21 @@ class BezstabGroup(click.Group):
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names of all commands in the order of their sections."""
-        return [name for names in self._names_by_section().values() for name in names]
+        return [name for names in SECTIONS.values() for name in names]
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """Return the command of that name, an extension's loaded now; None if there is none."""
-        for commands in LOADED_LATE.values():
-            if cmd_name in commands:
-                module, _, function = commands[cmd_name].partition(":")
-                command: click.Command = getattr(importlib.import_module(module), function)
-                return command
-        return super().get_command(ctx, cmd_name)
+        """Return the command of that name, loaded now; None if there is none."""
+        if cmd_name not in self.list_commands(ctx):
+            return None
+        command: click.Command = getattr(importlib.import_module(_module_of(cmd_name)), cmd_name)
+        return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write a heading for each section and a sentence for each command."""
-        longest = max(len(name) for name in self.list_commands(ctx))
-        room = formatter.width - 6 - longest  # as click counts it: two indents and the gap between name and sentence
-        for heading, names in self._names_by_section().items():
-            sentences: list[tuple[str, str]] = []
-            for name in names:
-                command = self.get_command(ctx, name)
-                assert command
-                sentences.append((name.ljust(longest), command.get_short_help_str(room)))
+        longest = max(map(len, self.list_commands(ctx)))
+        for heading, names in SECTIONS.items():
             with formatter.section(heading):
-                formatter.write_dl(sentences)
+                formatter.write_dl([(name.ljust(longest), _sentence(name)) for name in names])
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command that was typed, and let it alone speak: matplotlib has words where it finds no home."""
@@ -119,15 +106,25 @@ class BezstabGroup(click.Group):
             sys.exit(DEFECT)
         sys.exit(status if isinstance(status, int) else 0)  # a command that calls ctx.exit(status) returns it here
 
-    def _names_by_section(self) -> dict[str, list[str]]:
-        sections = {heading: [command.name or "" for command in commands] for heading, commands in SECTIONS.items()}
-        for heading, commands in LOADED_LATE.items():
-            sections.setdefault(heading, []).extend(commands)
-        return sections
+
+def _module_of(name: str) -> str:
+    """Return the module that has the command of this name."""
+    return ELSEWHERE.get(name, f"bezstab.cli.{name}_command")
+
+
+def _sentence(name: str) -> str:
+    """Return the first line of a command's docstring; its file is read and not run, as that would take time."""
+    package, _, file = _module_of(name).rpartition(".")
+    for node in ast.parse(pkgutil.get_data(package, f"{file}.py") or b"").body:
+        if isinstance(node, ast.FunctionDef) and node.name == name:
+            return (ast.get_docstring(node) or "").partition("\n")[0]
+    raise LookupError(f"{package}.{file} has no function {name}")
 
 
 def _complain(message: str) -> None:
     """Print bad news in one line."""
+    from bezstab.cli.output import say  # which loads more than --help needs
+
     say(f"bezstab: {' '.join(message.split())}")
 
 
@@ -141,7 +138,6 @@ def _give_up_output() -> None:
 
 @click.group(
     cls=BezstabGroup,
-    commands=[command for commands in SECTIONS.values() for command in commands],
     context_settings={"help_option_names": ["-h", "--help"], "show_default": True},
     invoke_without_command=True,
 )

@@ -75,7 +75,6 @@ def lint(
     Example: bezstab lint robot.xml
     """
     from bezstab.evidence import linted_model, read_mujoco_model
-    from bezstab.show import linted_row
     from bezstab.stability import Timing
 
     timing = Timing(every, late)
@@ -83,7 +82,7 @@ def lint(
     linted = list(progress(linted_model(model_data, gains, timing), "lint", model_data.size))
     heading = f"{model.name}: timestep {model_data.h:g} s, integrator {model_data.integrator}"
     if linted or not for_reading(form):
-        rows = [linted_row(each) for each in linted]
+        rows = [LINTED.row(each, advice=each.advice or None) for each in linted]
         show_rows(LINTED, rows, form, heading=heading)
     else:
         show_text(

@@ -20,7 +20,7 @@ from bezstab.show import Format
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
-    from bezstab.mechanism import Projection, Stabilise
+    from bezstab.mechanism import Stabilise
 
 EngineValues = tuple[Engine, tuple[Fraction, ...]]
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -285,18 +285,7 @@ def left_at_default(parameter: str) -> bool:
     return click.get_current_context().get_parameter_source(parameter) != click.core.ParameterSource.COMMANDLINE
 
 
-def projection_asked_for(stabilise: "Stabilise", iterations: int | None, against: bool = False) -> "Projection | None":
-    """Return the projection that the running command is asked for; UsageError for options that do not go with it.
-
-    `against`: whether there are runs with projection beside those with feedback.
-    """
-    projected = stabilise == "projection" or against
-    if iterations is not None and not projected:
-        raise click.UsageError("--iterations needs --stabilise projection: they are its iterations")
+def refuse_feedback(stabilise: "Stabilise") -> None:
+    """Raise UsageError where something was typed about a feedback, and something else is to hold the constraints."""
     if stabilise != "baumgarte":
         refuse_beside(f"--stabilise {stabilise}", OF_FEEDBACK, "it has no feedback")
-    if not projected:
-        return None
-    from bezstab.mechanism import Projection
-
-    return Projection(iterations)

@@ -38,9 +38,6 @@ if TYPE_CHECKING:
     from bezstab.evidence import Arrays
 
 Item = TypeVar("Item")
-NUMERICAL_TROUBLE = 3
-"""Exit status where an answer, or a part of it, could not be found, or runs break down; a message says why."""
-
 INDENT = " " * 4
 """Of a command line that is shown to be copied, and once more of its continued lines."""
 

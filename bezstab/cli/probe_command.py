@@ -124,10 +124,10 @@ def probe(
 
 def _show(found: "Sequence[ColumnAnswer]", form: Format) -> None:
     """Print all rows; for reading in a table of each kind, with the sentences below."""
-    from bezstab.show import like_point_row, likeness_row, likeness_sentence, probed_pole_row
+    from bezstab.show import LIKENESS, cells, like_point_row, likeness_sentence
 
-    fits = [probed_pole_row(answer.column, answer.found) for answer in found]
-    likenesses = [likeness_row(answer.column, one) for answer in found for one in answer.likenesses]
+    fits = [PROBED.row(answer.found, column=answer.column) for answer in found]
+    likenesses = [{"column": answer.column, **cells(LIKENESS, one)} for answer in found for one in answer.likenesses]
     points = [like_point_row(answer.column, one, answer.question.h) for answer in found for one in answer.points]
     if not for_reading(form):
         show_rows(PROBED, [*fits, *likenesses, *points], form)

@@ -1,22 +1,15 @@
 """The command that draws where a method is stable: region."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from fractions import Fraction
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 import numpy as np
 
-from bezstab.cli.asking import (
-    DRIVE,
-    methods_typed,
-    omega_option,
-    say_if_it_turns_too_far,
-    turning_with_bar,
-)
-from bezstab.cli.held_drives import HeldTiming, region_held, timing_options
+from bezstab.cli.asking import DRIVE, asked, find_turning, omega_option, say_if_it_turns_too_far
+from bezstab.cli.command_group import NUMERICAL_TROUBLE
+from bezstab.cli.held_drives import held_asked, refuse_others, show_held, timing_options
 from bezstab.cli.options import (
     ENGINE,
     NUMBER,
@@ -25,121 +18,38 @@ from bezstab.cli.options import (
     SPEED,
     Rule,
     format_option,
-    gathered,
     methods_option,
     ruled,
     scene_option,
 )
-from bezstab.cli.output import (
-    NUMERICAL_TROUBLE,
-    Files,
-    figure_options,
-    for_reading,
-    progress,
-    say,
-    show_rows,
-    show_text,
-)
-from bezstab.engines import Drive, Engine
-from bezstab.errors import InputError, NumericalError
-from bezstab.methods import Method
-from bezstab.show import NOT_KNOWN, REGIONS, Format, Row, combined_words
+from bezstab.cli.output import Files, figure_options, for_reading, progress, say, show_rows, show_text
+from bezstab.errors import NumericalError
+from bezstab.show import NOT_KNOWN, REGIONS, Format, Row, combined_words, region_row
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from matplotlib.figure import Figure
 
-    from bezstab.mechanism import TurningNormals
-    from bezstab.questions import ReferenceMotion
-    from bezstab.stability import ComplexArray, Extent, FloatArray
-
-MOST_DRAWN = 1e100  # of a window's ends: their squares are drawn as well
-Window = tuple[Fraction, Fraction]
-
-
-@dataclass(frozen=True)
-class Plane:
-    """The part of the plane that is drawn, how finely, and what its axes say; InputError for a window that is none."""
-
-    quality: str
-    grid: int | None
-    alpha_range: Window | None
-    beta_range: Window | None
-    h: Fraction | None
-    alpha_beta: bool
-
-    def __post_init__(self) -> None:
-        for typed, (low, high) in self.windows.items():
-            if not float(low) < float(high):
-                raise InputError(f"{typed}: the first value must be smaller than the second")
-            if max(abs(low), abs(high)) > MOST_DRAWN:
-                raise InputError(f"{typed}: expected at most {MOST_DRAWN:g}")
-
-    @property
-    def windows(self) -> dict[str, Window]:
-        """The ranges that were given, each with its option as typed."""
-        given = {"--alpha-range": self.alpha_range, "--beta-range": self.beta_range}
-        return {f"{option} {float(ends[0]):g} {float(ends[1]):g}": ends for option, ends in given.items() if ends}
-
-    @property
-    def step(self) -> float | None:
-        """The step in s."""
-        return None if self.h is None else float(self.h)
-
-    @property
-    def points(self) -> int:
-        """How many points each axis has."""
-        from bezstab.stability import QUALITY
-
-        return self.grid or QUALITY[self.quality]
-
-    def poles(
-        self, method: Method, fitting: "Extent", spaced: "Callable[[float, float, int], FloatArray]"
-    ) -> "tuple[FloatArray, FloatArray, ComplexArray]":
-        """Return the points on both axes, and the dominant poles there, of shape (beta_hat.size, alpha_hat.size).
-
-        Over the ranges that were given, else over `fitting`. A bar on a terminal shows that it is worked on.
-        """
-        from bezstab.stability import pole_map
-
-        ends = (self.alpha_range or fitting[0], self.beta_range or fitting[1])
-        alpha_hat, beta_hat = (spaced(float(low), float(high), self.points) for low, high in ends)
-        blocks = pole_map(method, alpha_hat, beta_hat)
-        z = np.concatenate(list(progress(blocks, method.name, len(beta_hat), len)))
-        return alpha_hat, beta_hat, z
-
-
-@dataclass(frozen=True)
-class Drawing:
-    """What all maps of a command have: the plane, levels of |z_p|, points that are marked, where files go."""
-
-    plane: Plane
-    levels: Sequence[float]
-    marks: Mapping[str, tuple[float, float]]
-    files: Files
+    from bezstab.questions import HeldAnswer, HeldQuestion, MapAnswer, MapQuestion
 
 
 @click.command()
 @methods_option("B4")
 @figure_options
-@gathered(
-    Plane,
-    "plane",
-    click.option(
-        "--quality",
-        type=click.Choice(["balanced", "fast", "fine"]),
-        default="balanced",
-        help="Points per axis of the map: fast 50, balanced 200, fine 1000.",
-    ),
-    click.option("--grid", type=click.IntRange(2, 4000), help="Points per axis, in place of --quality."),
-    click.option(
-        "--alpha-range", type=NUMBER, nargs=2, help="α̂ is drawn from the first value to the second [over the region]."
-    ),
-    click.option(
-        "--beta-range", type=NUMBER, nargs=2, help="β̂ is drawn from the first value to the second [over the region]."
-    ),
-    click.option("--h", type=SECONDS, help="Step size in s; the axes are then 2α (1/s) and β² (1/s²)."),
-    click.option("--alpha-beta", is_flag=True, help="Write α and β (1/s) at the axes of the figure; needs --h."),
+@click.option(
+    "--quality",
+    type=click.Choice(["balanced", "fast", "fine"]),
+    default="balanced",
+    help="Points per axis of the map: fast 50, balanced 200, fine 1000.",
 )
+@click.option("--grid", type=click.IntRange(2, 4000), help="Points per axis, in place of --quality.")
+@click.option(
+    "--alpha-range", type=NUMBER, nargs=2, help="α̂ is drawn from the first value to the second [over the region]."
+)
+@click.option(
+    "--beta-range", type=NUMBER, nargs=2, help="β̂ is drawn from the first value to the second [over the region]."
+)
+@click.option("--h", type=SECONDS, help="Step size in s; the axes are then 2α (1/s) and β² (1/s²).")
+@click.option("--alpha-beta", is_flag=True, help="Write α and β (1/s) at the axes of the figure; needs --h.")
 @click.option(
     "--level",
     "levels",
@@ -190,19 +100,13 @@ class Drawing:
 @click.pass_context
 def region(
     context: click.Context,
-    methods: Sequence[Method],
+    /,
+    quality: str,
+    grid: int | None,
+    alpha_beta: bool,
     files: Files,
-    plane: Plane,
-    levels: Sequence[Fraction],
-    compare: bool,
-    accuracy: bool,
-    omega: Fraction | None,
-    drive: Drive | None,
-    timing: HeldTiming,
-    engine: Engine | None,
-    scene: str | None,
-    speeds: Sequence[Fraction],
     form: Format,
+    **typed: Any,
 ) -> None:
     """Draw where each method is stable, and |z_p| there.
 
@@ -216,151 +120,83 @@ def region(
 
     Example: bezstab region --method B4
     """
-    from bezstab.questions import engine_marks, methods_for, motion_of
+    from bezstab.questions import MapQuestion, map_answer
+    from bezstab.stability import QUALITY
 
-    if held := timing.question(drive, plane.h, methods, always=drive is not None):
-        region_held(held, plane.points, files, form)
+    points = grid or QUALITY[quality]
+    if held := held_asked(typed, always=typed["drive"] is not None):
+        _show_held(held, points, files, form)
         return
-    if any(level > 1 for level in levels):
-        raise InputError(f"--level {float(max(levels)):g}: must be at most 1, the stability boundary")
-    if compare and len(levels) > 1:
-        raise InputError(f"--compare takes one --level, but {len(levels)} were given")
-    if accuracy and len(speeds) > 1:
-        raise InputError(f"--accuracy takes one --speed, but {len(speeds)} were given")
-    methods = methods_for(methods_typed(methods, engine is not None), engine, None)
-    speeds = speeds or [Fraction(1)]
-    motion = motion_of(omega, scene, speeds[0], plane.h) if accuracy else None
-    turnings = {} if motion else {speed: turning_with_bar(scene, speed, plane.h) for speed in speeds}
-    for speed in turnings:
-        say_if_it_turns_too_far(scene, speed, plane.h)
+    del typed["drive"]
+    question = asked(MapQuestion, points=points, **typed)
+    for speed in () if question.motion else question.speeds:
+        find_turning(question.scene, speed, question.h)
+        say_if_it_turns_too_far(question.scene, speed, question.h)
     files.check_output()
-    marks = engine_marks(engine, plane.h) if engine and plane.h else {}
-    drawing = Drawing(plane, [float(level) for level in levels], marks, files)
-    if compare:
-        rows, failed = _compared_rows(methods, drawing), list[NumericalError]()
-    elif motion:
-        rows, failed = _each_for_itself(methods, lambda method: _accuracy_rows(method, motion, drawing))
+    rows: list[Row] = []
+    failed: list[NumericalError] = []
+    if question.compare:
+        rows = _show_boundaries(question, alpha_beta, files)
     else:
-        rows, failed = _each_for_itself(methods, lambda method: _region_rows(method, drawing, turnings, scene))
+        for method in question.methods:
+            try:
+                rows += _show_map(map_answer(question, method), alpha_beta, files)
+            except NumericalError as error:
+                failed.append(error)
+        if not rows:
+            raise failed[0]
     for each in failed:
         say(f"bezstab: {each}")
-    show_rows(REGIONS, rows, form, () if levels else ("z_abs_below",))
-    if motion and for_reading(form):
-        show_text(combined_words(motion))
+    show_rows(REGIONS, rows, form, () if question.levels else ("z_abs_below",))
+    if question.motion and for_reading(form):
+        show_text(combined_words(question.motion))
     if failed or any((row["best_reason"] or "").startswith(NOT_KNOWN) for row in rows):
         context.exit(NUMERICAL_TROUBLE)
 
 
-def _each_for_itself(
-    methods: Sequence[Method], rows_of: "Callable[[Method], list[Row]]"
-) -> tuple[list[Row], list[NumericalError]]:
-    """Return the rows of all methods that have some, and why others have none; NumericalError if nothing is left."""
-    rows: list[Row] = []
-    failed: list[NumericalError] = []
-    for method in methods:
-        try:
-            rows += rows_of(method)
-        except NumericalError as error:
-            failed.append(error)
-    if not rows:
-        raise failed[0]
-    return rows, failed
+def _show_map(answer: "MapAnswer", alpha_beta: bool, files: Files) -> list[Row]:
+    """Write the map of one method; return its rows."""
+    from bezstab import show
+
+    if answer.forced and answer.forced.reason:
+        say(f"bezstab: {answer.forced.reason}")
+    if files.wanted:
+        rows_of_map = len(answer.axes[1])
+        z = np.concatenate(list(progress(answer.dominant_poles(), answer.method.name, rows_of_map, len)))
+        of_what = ["accuracy"] if answer.forced else [Path(answer.question.scene).stem] if answer.question.scene else []
+        files.write(
+            files.path("region", answer.method.name, *of_what),
+            lambda: show.map_figure(answer, z, alpha_and_beta=alpha_beta),
+            lambda: show.map_table(answer, z),
+        )
+    return show.map_rows(answer)
 
 
-def _compared_rows(methods: Sequence[Method], drawing: Drawing) -> list[Row]:
+def _show_boundaries(question: "MapQuestion", alpha_beta: bool, files: Files) -> list[Row]:
     """Write the boundaries of all methods into one table and one figure; return a row for each."""
-    from bezstab import questions, show
+    from bezstab import show
+    from bezstab.questions import region_answer
 
-    plane, files = drawing.plane, drawing.files
-    answers = [questions.region_answer(method, *drawing.levels) for method in methods]
+    h = None if question.h is None else float(question.h)
+    answers = [region_answer(method, *map(float, question.levels)) for method in question.methods]
     regions = [answer.region for answer in answers]
     files.write(
-        files.path("compare", *(method.name for method in methods)),
-        lambda: show.comparison_figure(
-            regions, plane.alpha_range, plane.beta_range, plane.step, alpha_and_beta=plane.alpha_beta
-        ),
-        lambda: show.boundary_arrays(regions, plane.step),
+        files.path("compare", *(method.name for method in question.methods)),
+        lambda: show.comparison_figure(regions, question.alpha_range, question.beta_range, h, alpha_beta),
+        lambda: show.boundary_arrays(regions, h),
     )
-    return [show.region_row(answer) for answer in answers]
+    return [region_row(answer) for answer in answers]
 
 
-def _region_rows(
-    method: Method, drawing: Drawing, turnings: "Mapping[Fraction, TurningNormals | None]", scene: str | None
-) -> list[Row]:
-    """Write the |z_p| map of one method; return the rows of its region, of each speed of a scene, and of each level."""
-    from bezstab import evidence, questions, show, stability
-    from bezstab.mechanism import load_scene
+def _show_held(question: "HeldQuestion", points: int, files: Files, form: Format) -> None:
+    """Print what `check` prints of a held drive, and write the map of each way of applying it over kd and kp."""
+    from bezstab import show
 
-    plane, files = drawing.plane, drawing.files
-    answer, *of_levels = questions.region_answers(method, drawing.levels)
-    moving = {
-        float(speed): evidence.moving_region(method, turning, plane.step)
-        for speed, turning in turnings.items()
-        if turning and plane.step
-    }
-    if files.wanted:
-        alpha_hat, beta_hat, z = plane.poles(method, answer.window, np.linspace)
-        files.write(
-            files.path("region", method.name, *([Path(scene).stem] if scene else [])),
-            lambda: show.region_figure(
-                answer.region,
-                [stability.region(method, level) for level in drawing.levels or answer.faster_levels],
-                answer.best,
-                alpha_hat,
-                beta_hat,
-                np.abs(z),
-                plane.step,
-                drawing.marks,
-                moving,
-                chosen=stability.choose(method, "robust", margins=False) if answer.best else None,
-                alpha_and_beta=plane.alpha_beta,
-                scene=load_scene(scene).name if scene else "",
-            ),
-            lambda: show.map_arrays(alpha_hat, beta_hat, z, plane.step),
-        )
-    row = show.region_row(answer)
-    of_speeds: list[Row] = [
-        {**row, "speed": float(speed), "kappa": turning.kappa, "area_moving": moving[float(speed)].area}
-        for speed, turning in turnings.items()
-        if turning
-    ]
-    at_rest: Row = {"speed": None, "kappa": None, "area_moving": None} if scene else {}
-    return [*(of_speeds or [row]), *({**show.region_row(each), **at_rest} for each in of_levels)]
+    refuse_others("--pd", "--quality", "--grid", "--output", "--figure")
+    files.check_output()
 
+    def draw(answer: "HeldAnswer") -> "Figure":
+        return show.held_figure(answer, answer.map(points))
 
-def _accuracy_rows(method: Method, motion: "ReferenceMotion", drawing: Drawing) -> list[Row]:
-    """Write the map of the error that one method forces over |z_p|; return the row of its region and of each level."""
-    from bezstab import questions, show, stability
-
-    plane, files = drawing.plane, drawing.files
-    for typed, (low, _) in plane.windows.items():
-        if low <= 0:
-            raise InputError(f"{typed}: the axes of --accuracy are logarithmic, and begin above 0")
-    answers = questions.region_answers(method, drawing.levels)
-    forced = questions.forced_errors_of(method, motion)
-    if forced.reason:
-        say(f"bezstab: {forced.reason}")
-    if files.wanted:
-        alpha_hat, beta_hat, z = plane.poles(method, forced.window, np.geomspace)
-        error = stability.combined_error(method, alpha_hat, beta_hat[:, np.newaxis], motion.omega_h)
-        decaying = np.where(np.abs(z) < 1, error, np.nan)
-        below = [level for level in drawing.levels if level < 1]
-        files.write(
-            files.path("region", method.name, "accuracy"),
-            lambda: show.accuracy_map_figure(
-                answers[0].region,
-                float(motion.omega_h),
-                alpha_hat,
-                beta_hat,
-                np.abs(z),
-                decaying,
-                levels=below or [stability.default_rate(method, motion.omega_h)],
-                best=forced.best,
-                chosen=forced.chosen,
-                h=plane.step,
-                marks=drawing.marks,
-            ),
-            lambda: {**show.map_arrays(alpha_hat, beta_hat, z, plane.step), "combined_error": decaying.ravel()},
-        )
-    added = show.accuracy_cells(forced)
-    return [{**show.region_row(answer), **added} for answer in answers]
+    for answer in show_held(question, form):
+        files.write(files.path("region", answer.method.name, "held"), partial(draw, answer))

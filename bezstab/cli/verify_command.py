@@ -1,15 +1,13 @@
 """The command that holds predicted poles against measured ones: verify."""
 
-from collections.abc import Sequence
-from fractions import Fraction
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
-import numpy as np
 
-from bezstab.cli.asking import TypedPoint, point_options
+from bezstab.cli.asking import asked, point_options
+from bezstab.cli.command_group import NUMERICAL_TROUBLE
 from bezstab.cli.options import (
     Rule,
     compiled_option,
@@ -21,7 +19,6 @@ from bezstab.cli.options import (
     step_option,
 )
 from bezstab.cli.output import (
-    NUMERICAL_TROUBLE,
     Files,
     Work,
     file_options,
@@ -32,13 +29,11 @@ from bezstab.cli.output import (
     show_text,
     work_options,
 )
-from bezstab.methods import Method
-from bezstab.show import FORCED, MEASUREMENTS, SUMMARIES, VERDICT_MAPS, WITNESSED, Format, cells
+from bezstab.show import FORCED, MEASUREMENTS, SUMMARIES, VERDICT_MAPS, WITNESSED, Format
 
 if TYPE_CHECKING:
-    from bezstab.mechanism import Mechanism
+    from bezstab.questions import VerifyQuestion
 
-RANDOM_POINTS = 20  # unless told otherwise
 ONE_CHOICE = "each says which points are verified"
 
 OVER_THE_MOTION = ("followed", "map_error", "law_error", "floquet_error", "wrong_sides")
@@ -79,19 +74,14 @@ OVER_THE_MOTION = ("followed", "map_error", "law_error", "floquet_error", "wrong
 @click.pass_context
 def verify(
     context: click.Context,
-    scene: str,
-    speed: Fraction,
-    methods: Sequence[Method],
-    point: TypedPoint,
-    points: int | None,
+    /,
     cells_across: int | None,
-    floquet: bool,
     accuracy: bool,
     witness: str | None,
-    h: Fraction,
     work: Work,
     files: Files,
     form: Format,
+    **typed: Any,
 ) -> None:
     """Compare predicted poles with poles measured in a simulation.
 
@@ -110,49 +100,41 @@ def verify(
 
     Example: bezstab verify --method AB4 --points 20
     """
-    from bezstab.mechanism import at_speed, compiled_mechanism, load_scene
+    from bezstab.questions import VerifyQuestion
 
-    at = point.at(methods, h)
-    mechanism = compiled_mechanism(at_speed(load_scene(scene), float(speed)))
+    question = asked(VerifyQuestion, **typed)
     if accuracy:
-        context.exit(_show_forced_errors(mechanism, methods, float(h), at, form))
+        context.exit(_show_forced_errors(question, form))
     elif witness:
-        _show_witnesses(mechanism, float(h), form)
+        _show_witnesses(question, form)
     elif cells_across:
-        _show_map(mechanism, methods, float(h), cells_across, Path(scene).stem, work, files, form)
+        _show_map(question, cells_across, work, files, form)
     else:
-        _show_measurements(mechanism, methods, float(h), at, points or RANDOM_POINTS, floquet, form)
+        _show_measurements(question, form)
 
 
-def _show_witnesses(mechanism: "Mechanism", h: float, form: Format) -> None:
-    """Print a row for each run of MuJoCo's integrators; h in s."""
+def _show_witnesses(question: "VerifyQuestion", form: Format) -> None:
+    """Print a row for each run of MuJoCo's integrators."""
     from bezstab.evidence import mujoco_witnesses, witness_count
 
-    witnesses = progress(mujoco_witnesses(mechanism, h), "MuJoCo", witness_count())
-    show_rows(WITNESSED, [cells(WITNESSED.fields, each, {"scene": mechanism.scene.name}) for each in witnesses], form)
+    witnesses = progress(mujoco_witnesses(question.mechanism, float(question.h)), "MuJoCo", witness_count())
+    show_rows(WITNESSED, [WITNESSED.row(each, scene=question.mechanism.scene.name) for each in witnesses], form)
 
 
-def _show_forced_errors(
-    mechanism: "Mechanism", methods: Sequence[Method], h: float, point: tuple[Fraction, Fraction] | None, form: Format
-) -> int:
-    """Print predicted and measured errors at shares of a point's gains, and return the exit status; h in s."""
+def _show_forced_errors(question: "VerifyQuestion", form: Format) -> int:
+    """Print predicted and measured errors at shares of a point's gains, and return the exit status."""
     from bezstab import evidence, show
-    from bezstab.stability import choose
 
-    pairs_by_method = {}
-    for method in methods:
-        if point:
-            at = float(point[0]), float(point[1])
-        else:
-            chosen = choose(method, "robust", margins=False)
-            at = chosen.alpha_hat, chosen.beta_hat
-        found = evidence.halved_steps(mechanism, method, h, at, mechanism.scene.duration)
-        pairs_by_method[method.name] = list(progress(found, method.name, len(evidence.SHARES)))
-    every_pair = [pair for pairs in pairs_by_method.values() for pair in pairs]
-    show_rows(FORCED, [row for pair in every_pair for row in show.forced_rows(mechanism.scene.name, pair)], form)
+    by_method = {
+        method.name: list(progress(question.forced_errors(method), method.name, len(evidence.SHARES)))
+        for method in question.methods
+    }
+    every_pair = [pair for pairs in by_method.values() for pair in pairs]
+    scene = question.mechanism.scene.name
+    show_rows(FORCED, [row for pair in every_pair for row in show.forced_rows(scene, pair)], form)
     if for_reading(form):
         click.echo()
-        for name, pairs in pairs_by_method.items():
+        for name, pairs in by_method.items():
             show_text(show.forced_words(name, pairs))
     outcomes = {pair.holds for pair in every_pair}
     if None in outcomes:
@@ -160,61 +142,38 @@ def _show_forced_errors(
     return 0 if outcomes == {True} else 1
 
 
-def _show_measurements(
-    mechanism: "Mechanism",
-    methods: Sequence[Method],
-    h: float,
-    point: tuple[Fraction, Fraction] | None,
-    points: int,
-    floquet: bool,
-    form: Format,
-) -> None:
+def _show_measurements(question: "VerifyQuestion", form: Format) -> None:
     """Print the poles measured at one point, else at random ones, and where there are several how well they agree."""
     from bezstab import evidence, show
 
-    measured = []
-    for method in methods:
-        given = None if point is None else np.array(point, float)[:, np.newaxis]
-        alpha_hat, beta_hat = evidence.random_points(method, points) if given is None else given
-        bar = partial(progress, label=method.name)
-        measured.append(evidence.measure_poles(mechanism, method, h, alpha_hat, beta_hat, bar, floquet))
-    rows = [show.measurement_row(mechanism.scene.name, each) for of_method in measured for each in of_method]
+    mechanism, floquet = question.mechanism, question.floquet
+    measured = [question.measurements(method, partial(progress, label=method.name)) for method in question.methods]
+    rows = [MEASUREMENTS.row(each, scene=mechanism.scene.name) for of_method in measured for each in of_method]
     show_rows(MEASUREMENTS, rows, form, () if floquet else ("right",))
     if not for_reading(form):
         return
     for of_method in measured if floquet else ():
         show_text(show.exact_rate_words(mechanism, of_method))
-    if len(rows) > len(methods):  # of one point each there is nothing to sum up
+    if len(rows) > len(measured):  # of one point each there is nothing to sum up
         click.echo()
-        summaries = [cells(SUMMARIES.fields, evidence.measurement_summary(of_method)) for of_method in measured]
+        summaries = [SUMMARIES.row(evidence.measurement_summary(of_method)) for of_method in measured]
         show_rows(SUMMARIES, summaries, form, () if floquet else OVER_THE_MOTION)
 
 
-def _show_map(
-    mechanism: "Mechanism",
-    methods: Sequence[Method],
-    h: float,
-    across: int,
-    scene_name: str,
-    work: Work,
-    files: Files,
-    form: Format,
-) -> None:
+def _show_map(question: "VerifyQuestion", across: int, work: Work, files: Files, form: Format) -> None:
     """Simulate across x across runs of each method, write their verdicts as table and figure, print how many agree."""
     from bezstab import evidence, show
     from bezstab.stability import region
 
     rows = []
-    for method in methods:
-        path = files.path("verify", scene_name, method.name)
-        job = f"--map {across} --h {h} {method} {mechanism.scene}"
-        chunks = evidence.map_rows(mechanism.scene, method, h, across)
+    scene, h = question.mechanism.scene, float(question.h)
+    for method in question.methods:
+        path = files.path("verify", Path(str(question.scene)).stem, method.name)
+        chunks = evidence.map_rows(scene, method, h, across)
+        job = f"--map {across} --h {h} {method} {scene}"
         with results_of_chunks(evidence.simulated_verdicts, chunks, path, job, work) as results:
             verdicts = evidence.verdict_map(chunks, results)
-            draw, arrays = (
-                partial(show.verdict_figure, verdicts, region(method)),
-                partial(show.verdict_arrays, verdicts),
-            )
-            files.write(path, draw, arrays)
-        rows.append(show.verdict_map_row(verdicts))
+            draw = partial(show.verdict_figure, verdicts, region(method))
+            files.write(path, draw, partial(show.verdict_arrays, verdicts))
+        rows.append(VERDICT_MAPS.row(verdicts))
     show_rows(VERDICT_MAPS, rows, form)

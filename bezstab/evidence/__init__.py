@@ -19,7 +19,6 @@ from bezstab.evidence.accuracy_costs import (
 from bezstab.evidence.chunk_stores import Arrays, chunk_store
 from bezstab.evidence.chunks import ATTEMPTS, completed_chunks
 from bezstab.evidence.extremes import Check, extreme_checks
-from bezstab.evidence.floquet import floquet_rates
 from bezstab.evidence.forced_runs import SHARES, HalvedStep, halved_steps
 from bezstab.evidence.linear_prediction import SPREAD, Fit, Refusal, fit_dominant_pole
 from bezstab.evidence.logs import Log, error_columns, log_from, parse_log, read_log, row_step, time_column
@@ -37,7 +36,6 @@ from bezstab.evidence.moving_mechanisms import (
     MovingPole,
     MovingVerdict,
     growth_rates,
-    momentary_rates,
     moving_pole,
     moving_poles,
     tabulated_rates,
@@ -47,7 +45,6 @@ from bezstab.evidence.mujoco_controllers import MotorGains
 from bezstab.evidence.mujoco_lint import Linted, linted_model
 from bezstab.evidence.mujoco_models import ModelData, model_data, mujoco_module, read_mujoco_model
 from bezstab.evidence.mujoco_witness import TIMES, Outcome, Witnessed, model_xml, mujoco_witnesses, witness_count
-from bezstab.evidence.own_motions import own_motion_rates
 from bezstab.evidence.pareto import pareto_front
 from bezstab.evidence.probed_poles import (
     Likeness,

@@ -133,15 +133,10 @@ class SweptRuns:
     @property
     def front_labels(self) -> list[str]:
         """For each run on which fronts it is: T by trajectory error, c by constraint error, "T c", or nothing."""
-        labels = []
-        for index in range(len(self.runs)):
-            letters = []
-            if index in self.trajectory_front:
-                letters.append("T")
-            if index in self.constraint_front:
-                letters.append("c")
-            labels.append(" ".join(letters))
-        return labels
+        fronts = {"T": self.trajectory_front, "c": self.constraint_front}
+        return [
+            " ".join(letter for letter, front in fronts.items() if index in front) for index in range(len(self.runs))
+        ]
 
 
 def sweep_compiled(
@@ -208,11 +203,11 @@ def _measured_run(sweep: Sweep, h: float, point: tuple[float, float]) -> dict[st
         "beta_hat": point[1],
         "z_abs": z_abs,
         "trajectory_error": trajectory_error,
-        "c_max": float(np.abs(seen.c).max()),
+        "c_max": seen.c_max,
         "measured_error": np.nan if run.failure else float(np.abs(seen.c[run.t >= COMPARED * run.t[-1]]).max()),
         "predicted_error": _predicted_error(sweep, h, point) if z_abs < 1 else np.nan,
         "c_rms": float(np.sqrt((seen.c**2).mean())),
-        "cdot_max": float(np.abs(seen.cdot).max()),
+        "cdot_max": seen.cdot_max,
         "cdot_rms": float(np.sqrt((seen.cdot**2).mean())),
         "energy_drift": float(energy_balance(seen, h * float(method.step_multiple)).drift[-1]),
         "evaluations": run.evaluations,

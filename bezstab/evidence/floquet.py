@@ -18,17 +18,15 @@ from numpy.typing import NDArray
 from bezstab.evidence.linearized_steps import (
     Course,
     Values,
-    course_of_steps,
     linearized_step,
     on_the_motion,
     take_steps,
 )
-from bezstab.mechanism import Mechanism, constraint_jacobian
+from bezstab.mechanism import constraint_jacobian
 from bezstab.methods import Method, Quantity
 from bezstab.stability import BoolArray, FloatArray
 from bezstab.units import feedback_gains
 
-LOOKED_AT = 4  # steps between two looks at how large changes have grown: a pole of 1e60 leaves room
 FIRST_SHARE = 1 / 3  # of the steps in which errors stand out: there the lesser poles still count
 STANDS_OUT = 1e-7  # of the change of the coordinates: the free motion of a method has a constraint error of this size
 TOGETHER = 32  # points: fewer spend their time in Python, more do not fit a core's cache
@@ -37,21 +35,8 @@ NUMBERS = 2**23  # of all steps of the points that are taken together: 64 MB
 IntArray = NDArray[np.int_]
 
 
-def floquet_rates(
-    mechanism: Mechanism, method: Method, h: float, alpha_hat: FloatArray, beta_hat: FloatArray, duration: float
-) -> FloatArray:
-    """Return |z| per step of the method over the motion at each of a row of points; shape (points,), dimensionless.
-
-    h (s) is the user's step; over a revolution it is taken so that a whole number of steps fills it, at most half a
-    step in all from h. A motion that is no revolution lasts `duration` (s). InputError and NumericalError as
-    `regular_motion`.
-    """
-    course = course_of_steps(mechanism, method, h, duration)
-    return rates_on_the_motion(course, gains_on(course, method, alpha_hat, beta_hat))
-
-
 def rates_on_the_motion(course: Course, gains: FloatArray) -> FloatArray:
-    """Return the same of points with these gains, shape (2, points)."""
+    """Return |z| per step over the motion of the mechanism at points with these gains, (2, points); shape (points,)."""
     rates = np.empty(gains.shape[1])
     newest = max((each for each in course.memory.carried if each.name == "x"), key=lambda each: each.step)
     sizes = [] if course.along.closed else _sizes_of_errors(course, newest)
@@ -124,8 +109,7 @@ def revolution(course: Course, answers: list[FloatArray], added: Values | None =
         changes = linearized_step(course, [answer[k] for answer in answers], changes)
         for quantity, amount in (added or {}).items():
             changes[quantity][:, :, -1] += amount[k]
-        if k % LOOKED_AT == 0:
-            log_scale += _rescaled(changes, rows)
+        log_scale += _rescaled(changes, rows)
     whole = np.concatenate(list(changes.values()), axis=1)
     return Revolution(course.steps, whole[:, :, :rows], log_scale, whole[:, :, rows])
 
@@ -178,8 +162,7 @@ def _rates_of_errors(
         with np.errstate(divide="ignore"):
             log_errors[:, k] = np.log(error) + log_scale
         stands_out[:, k] = error > STANDS_OUT * displaced
-        if k % LOOKED_AT == 0:
-            log_scale = log_scale + _rescaled(changes, mechanism.constraints)
+        log_scale += _rescaled(changes, mechanism.constraints)
     first, last = _ends_of_what_stands_out(stands_out, 1 + sum(each.name == newest.name for each in carried))
     point = np.arange(points)
     growth = log_errors[point, last] - log_errors[point, first]

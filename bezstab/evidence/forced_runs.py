@@ -78,13 +78,13 @@ class ForcedMotion:
         return self.measured / self.predicted
 
     @property
-    def reason(self) -> str | None:
-        """Why there is nothing to compare, in words; None where there is."""
+    def reason(self) -> str:
+        """Why there is nothing to compare, in words; empty where there is."""
         if self.failure:
             return f"the run broke down {self.failure}"
         if self.predicted < ROUNDED:
             return f"below {ROUNDED:g} rounding is as large"
-        return None
+        return ""
 
 
 @dataclass(frozen=True)

@@ -36,14 +36,14 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.evidence.linear_prediction import SETTLED
+from bezstab.evidence.linear_prediction import NEGLIGIBLE
 from bezstab.evidence.measured_poles import APART, AT_ONCE, GROWN, LINEAR
 from bezstab.stability import FloatArray
 
 BoolArray = NDArray[np.bool_]
 
 WINDOW = 10
-"""Steps: an oscillation so slow that it is below SETTLED in all of them passes no zero within thousands of steps."""
+"""Steps: an oscillation so slow that it is below NEGLIGIBLE in all of them passes no zero within thousands of steps."""
 
 PARTS = 8
 """Of a run: where nothing has come of the error by its end, the last is compared with the one before the middle."""
@@ -116,7 +116,7 @@ def fates(followed: Followed, thrown_apart_is_growth: bool) -> tuple[BoolArray, 
     window = np.arange(windows)[:, np.newaxis]
     linear_windows = followed.linear_steps // WINDOW
     largest_so_far = np.maximum.accumulate(np.maximum(error, 1.0), axis=0)  # the kick itself is one
-    dead = (window < linear_windows) & (error < SETTLED * largest_so_far)
+    dead = (window < linear_windows) & (error < NEGLIGIBLE * largest_so_far)
     grown = (error > GROWN) & (share > OF_ALL)
     died = dead.any(axis=0)
     died_in = np.where(died, dead.argmax(axis=0), windows)

@@ -31,7 +31,7 @@ has found one and the same.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -44,8 +44,9 @@ InexactArray = NDArray[np.inexact[Any]]
 ABOVE_FORCED = (1e2, 1e3, 1e4, 1e5, 1e6)
 """Least |d| of a window, in units of the largest |d| in the second half of the response: above what is forced."""
 
-SETTLED = 1e-3
-"""Of the largest |d|: if no more remains in the second half, what remains there is forced, not still decaying."""
+NEGLIGIBLE = 1e-3
+"""A share that does not count: of the largest sample, what is left at the end is forced, not still decaying; of the
+largest amplitude, a root with less belongs to the noise; of a sample, a pole so small is gone with the next."""
 
 SKIPPED = (0.5, 0.3, 0.0)
 """Share of a window that is left to the poles that decay fast."""
@@ -56,12 +57,8 @@ SAMPLES = 400
 RESIDUAL = 1e-4
 """Relative, of a recursion that is believed. The least order that reaches it is taken, so that noise is not fitted."""
 
-CARRIES = 1e-3
-"""Of the largest amplitude: a root with less belongs to the noise."""
-
-FORMAL_ERRORS = 3.0
-"""Standard errors of one window's fit that are stated: its equations share samples, so that their errors are not
-independent."""
+STANDARD_ERRORS = 3.0
+"""That are stated, and beyond which nothing is taken for chance: 99.7 % of normal errors are less."""
 
 TIMES_FARTHEST = 2.0
 """Times the farthest pole of the better half of the fits, that is stated: windows overlap, and err alike."""
@@ -72,25 +69,24 @@ SPREAD = 1e-3
 
 @dataclass(frozen=True)
 class Fit:
-    """The dominant pole of a response, per sample, and how well it is known.
+    """The poles of a response, per sample, and how well the dominant one is known.
 
-    `pole` lies in the closed upper half plane, for its conjugate is a pole too. `residual` is the relative error of the
-    recursion in the window that gave it, `order` the number of poles in that recursion, `start` the window's first
-    sample and `samples` its length. `spread_abs` (relative) and `spread_angle` (rad) say by how much the better half of
-    all fits differ. `uncertainty` bounds the error of the pole in the plane, as far as samples can tell: by how much
-    these fits are off it, or what the residual leaves open where that is more. `poles` are all that carry amplitude in
-    the window, by modulus, those of the closed upper half plane.
+    `poles` carry amplitude in a window of the response and lie in the closed upper half plane, for conjugates are poles
+    too; by modulus. `residual` is the relative error of the window's recursion, `start` its first sample and `samples`
+    its length. `uncertainty` bounds the error of the dominant pole in the plane, as far as samples can tell: what the
+    recursion leaves open, or by how much other windows are off it where that is more.
     """
 
-    pole: complex
+    poles: tuple[complex, ...]
     residual: float
-    order: int
     start: int
     samples: int
-    spread_abs: float
-    spread_angle: float
     uncertainty: float
-    poles: tuple[complex, ...]
+
+    @property
+    def pole(self) -> complex:
+        """The dominant pole."""
+        return self.poles[0]
 
 
 @dataclass(frozen=True)
@@ -98,27 +94,6 @@ class Refusal:
     """Why no pole is claimed, in one line."""
 
     reason: str
-
-
-@dataclass(frozen=True)
-class WindowFit:
-    """What one window gives: the recursion's residual, its order and poles, and the window's ends (samples).
-
-    `poles` carry amplitude and lie in the closed upper half plane, by modulus; `formal_error` is the standard error of
-    the dominant one if what the recursion leaves is noise.
-    """
-
-    residual: float
-    order: int
-    poles: tuple[complex, ...]
-    formal_error: float
-    start: int
-    stop: int
-
-    @property
-    def pole(self) -> complex:
-        """The dominant pole."""
-        return self.poles[0]
 
 
 def fit_dominant_pole(
@@ -132,7 +107,7 @@ def fit_dominant_pole(
 
     `responses` has shape (samples, responses), equally spaced in time; unit as the user likes, for the pole has none.
     `order` is the largest number of poles to look for. `sizes`, of the same shape and by default |responses|, is what
-    must stay below a limit for the system to answer linearly; every one of `limits` is tried. `floor`, in the unit of
+    must not exceed a limit for the system to answer linearly; every one of `limits` is tried. `floor`, in the unit of
     the samples, is what their rounding amounts to: like what is forced, it stays far below a window. A number that is
     not finite ends a response. No errors are raised: what cannot be fitted is a Refusal.
 
@@ -142,7 +117,7 @@ def fit_dominant_pole(
     """
     if sizes is None:
         sizes = np.abs(responses)
-    fits: list[WindowFit] = []
+    fits: list[Fit] = []
     longest = 0
     for response, size in zip(responses.T, sizes.T, strict=True):
         for window in response_windows(response, size, limits, floor):
@@ -154,28 +129,18 @@ def fit_dominant_pole(
     fits.sort(key=lambda fit: fit.residual)
     better_half = fits[: (len(fits) + 1) // 2]
     # Several responses in one window are no independent witnesses: they may differ by a factor only.
-    if len({(fit.start, fit.stop) for fit in better_half}) < 2:
+    if len({(fit.start, fit.samples) for fit in better_half}) < 2:
         return Refusal(f"no linear recursion fits the {longest} samples between round-off and the linear range")
     z = np.array([fit.pole for fit in better_half])
     moduli = np.abs(z)
-    spread_abs = float(np.ptp(moduli / moduli.max()))
-    spread_angle = float(np.ptp(np.angle(z)))
-    for spread, quantity in ((spread_abs, "|z| (relative)"), (spread_angle, "angle (rad)")):
+    for quantity, values in {"|z| (relative)": moduli / moduli.max(), "angle (rad)": np.angle(z)}.items():
+        spread = float(np.ptp(values))
         if not spread <= SPREAD:  # not a number included
             differing = f"{spread:.1g} in {quantity}"
             return Refusal(f"fits differ by {differing}: poles of nearly equal modulus, or too much forced error")
     median = better_half[int(np.argsort(moduli)[len(moduli) // 2])]
-    return Fit(
-        pole=median.pole,
-        residual=median.residual,
-        order=median.order,
-        start=median.start,
-        samples=median.stop - median.start,
-        spread_abs=spread_abs,
-        spread_angle=spread_angle,
-        uncertainty=max(TIMES_FARTHEST * float(np.abs(z - median.pole).max()), FORMAL_ERRORS * median.formal_error),
-        poles=median.poles,
-    )
+    farthest = TIMES_FARTHEST * float(np.abs(z - median.pole).max())
+    return replace(median, uncertainty=max(farthest, median.uncertainty))
 
 
 def response_windows(
@@ -187,12 +152,12 @@ def response_windows(
     """
     ends: set[int] = set()
     for limit in limits:
-        outside = np.flatnonzero(~(size < limit))  # not a number included
+        outside = np.flatnonzero(~(size <= limit))  # not a number included
         end = int(outside[0]) if outside.size else len(response)
         within = np.abs(response[:end])
         largest = within.max(initial=0.0)
         remaining = max(within[len(within) // 2 :].max(initial=0.0), floor)
-        if remaining < SETTLED * largest:
+        if remaining < NEGLIGIBLE * largest:
             # It has decayed to what is forced: end where it is last well above that.
             for factor in ABOVE_FORCED:
                 last_above = np.flatnonzero(within > factor * remaining).max(initial=-1)
@@ -205,7 +170,7 @@ def response_windows(
             yield slice(start, min(end, start + SAMPLES))
 
 
-def fit_window(samples: FloatArray, order: int, start: int = 0) -> WindowFit | None:
+def fit_window(samples: FloatArray, order: int, start: int = 0) -> Fit | None:
     """Return what the shortest recursion of at most `order` says of the samples, which begin at `start`; None without.
 
     A recursion of p terms is tried only on 2p + 2 samples and more, so that there are more equations than unknowns.
@@ -226,9 +191,8 @@ def fit_window(samples: FloatArray, order: int, start: int = 0) -> WindowFit | N
         if residual < RESIDUAL:
             z = np.roots([1.0, *-coefficients[::-1]])
             poles = _poles_with_amplitude(samples, z)
-            left_over = before @ coefficients - after
-            error = _formal_error(before, left_over, coefficients, poles[0])
-            return WindowFit(residual, terms, poles, error, start, start + len(samples))
+            error = _formal_error(before, before @ coefficients - after, coefficients, poles[0])
+            return Fit(poles, residual, start, len(samples), STANDARD_ERRORS * error)
     return None
 
 
@@ -254,6 +218,6 @@ def _poles_with_amplitude(samples: FloatArray, z: InexactArray) -> tuple[complex
     powers = (z / growth) ** k[:, np.newaxis]
     scaled = samples * np.exp(-k * np.log(growth))
     amplitudes = np.abs(np.linalg.lstsq(powers, scaled, rcond=None)[0])
-    carrying = z[amplitudes > CARRIES * amplitudes.max()]
+    carrying = z[amplitudes > NEGLIGIBLE * amplitudes.max()]
     upper = sorted((complex(root) for root in carrying if root.imag >= 0), key=abs, reverse=True)
     return tuple(upper)

@@ -31,8 +31,8 @@ from bezstab.mechanism import (
 from bezstab.methods import Method, Quantity, second_order_form
 from bezstab.stability import FloatArray
 
-ITERATIONS = 12  # of Newton's method for accelerations: each squares the error, more only find nothing
-SOLVED = 1e-9  # m, rad: the last correction of h^2 qddot; the next would be about its square
+ITERATIONS = 12  # of Newton's method: each squares the error, more only find nothing
+SOLVED = 1e-8  # m, rad: the last correction, of h^2 qddot or of a motion's start; the next would be about its square
 
 Sum = Mapping[Quantity, Fraction]
 Values = dict[Quantity, FloatArray]

@@ -12,6 +12,8 @@ histories of c_1 is followed:
 Linear prediction finds the poles of that recursion.
 """
 
+import cmath
+import math
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -21,8 +23,8 @@ from typing import Literal
 import numpy as np
 
 from bezstab.evidence.kicked_revolutions import rates_of_kicked_revolutions
-from bezstab.evidence.linear_prediction import SAMPLES, SETTLED, SPREAD, Refusal, fit_dominant_pole
-from bezstab.evidence.moving_mechanisms import MovingPole, MovingVerdict, moving_poles
+from bezstab.evidence.linear_prediction import NEGLIGIBLE, SAMPLES, SPREAD, Refusal, fit_dominant_pole
+from bezstab.evidence.moving_mechanisms import MovingVerdict, moving_poles
 from bezstab.evidence.own_motions import find_own_motions
 from bezstab.mechanism import (
     Block,
@@ -37,7 +39,7 @@ from bezstab.mechanism import (
     states_needed,
     turning_normals,
 )
-from bezstab.methods import Method, Verdict, closed_loop_table, evaluations, steps
+from bezstab.methods import Method, Verdict, evaluations, steps
 from bezstab.rationals import exact
 from bezstab.stability import (
     ComplexArray,
@@ -71,7 +73,7 @@ AT_ONCE = 10
 APART = 1.0
 """|c|, SI units, of a mechanism of about a metre that is in pieces."""
 
-CALM = 1e-3 * LINEAR[0]
+CALM = NEGLIGIBLE * LINEAR[0]
 """Largest |c|, SI units, of a mechanism to which nothing happens in the steps in which feedback has thrown it apart."""
 
 CLOSE = 1e-4
@@ -114,6 +116,28 @@ class Measurement:
         point = f"{self.method.name} at alpha_hat {self.alpha_hat:g}, beta_hat {self.beta_hat:g}"
         measured = "none measured" if self.measured is None else f"measured {abs(self.measured):.6g}"
         return f"Measurement({point}: |z_p| = {abs(self.predicted):.6g}, {measured})"
+
+    @property
+    def measurable(self) -> bool:
+        """Whether a pole could be measured."""
+        return self.measured is not None
+
+    @property
+    def difference(self) -> complex | None:
+        """The measured pole less the predicted one; None where none was measured."""
+        return None if self.measured is None else self.measured - self.predicted
+
+    @property
+    def difference_abs(self) -> float | None:
+        """The modulus measured less that predicted."""
+        return None if self.measured is None else abs(self.measured) - abs(self.predicted)
+
+    @property
+    def difference_angle_deg(self) -> float | None:
+        """The angle measured less that predicted, in degrees."""
+        if self.measured is None:
+            return None
+        return math.degrees(cmath.phase(self.measured)) - math.degrees(cmath.phase(self.predicted))
 
     @property
     def verdicts_agree(self) -> bool | None:
@@ -172,29 +196,39 @@ def measure_poles(
     duration = RUN * h * float(method.step_multiple)
     turning = turning_normals(mechanism, duration)
     moving = moving_poles(method, turning, h, alpha_hat, beta_hat)
-    exact_rates: list[float | None] = [None] * alpha_hat.size
-    shown_rates: list[float | None] = [None] * alpha_hat.size
+    exact_rates, shown_rates = np.full((2, alpha_hat.size), np.nan)
     if floquet:
         motions = find_own_motions(mechanism, method, h, alpha_hat, beta_hat, duration)
-        shown = rates_of_kicked_revolutions(mechanism, method, motions)
-        exact_rates = motions.rates.tolist()
-        shown_rates = [float(rate) if np.isfinite(rate) else None for rate in shown]
-    return [
-        _measurement(
-            method,
-            float(a),
-            float(b),
-            moving[i],
-            exact_rates[i],
-            shown_rates[i],
-            h,
-            turning.closed,
-            difference[:, :, i],
-            size[:, :, i],
-            bool(thrown_apart[i]),
+        exact_rates, shown_rates = motions.rates, rates_of_kicked_revolutions(mechanism, method, motions)
+    found = []
+    for i, (a, b) in enumerate(zip(alpha_hat.tolist(), beta_hat.tolist(), strict=True)):
+        responses = difference[:, :, i], size[:, :, i]
+        measured, reason = _measured_pole(method, a, b, *responses)
+        measured_verdict = _measured_verdict(measured, *responses, max(CLOSE, moving[i].shift(method, h)))
+        if thrown_apart[i] and measured_verdict == "too close to call":  # so fast that no growth shows while linear
+            measured_verdict, reason = "diverges", f"the feedback throws the mechanism apart within {AT_ONCE} steps"
+        found.append(
+            Measurement(
+                method=method,
+                alpha_hat=a,
+                beta_hat=b,
+                predicted=complex(dominant_pole(method, a, b)),
+                predicted_verdict=verdict(method, exact(a), exact(b)),
+                law_abs=moving[i].z_abs_moving,
+                law_verdict=moving[i].verdict,
+                floquet_abs=_known(exact_rates[i]),
+                periodic=turning.closed,
+                measured=measured,
+                measured_rate=_known(shown_rates[i]),
+                measured_verdict=measured_verdict,
+                reason=reason,
+            )
         )
-        for i, (a, b) in enumerate(zip(alpha_hat, beta_hat, strict=True))
-    ]
+    return found
+
+
+def _known(rate: float) -> float | None:
+    return float(rate) if np.isfinite(rate) else None
 
 
 def _kicked_responses(
@@ -218,63 +252,22 @@ def _kicked_responses(
     return difference, size
 
 
-def _measurement(
-    method: Method,
-    alpha_hat: float,
-    beta_hat: float,
-    moving: MovingPole,
-    floquet_abs: float | None,
-    measured_rate: float | None,
-    h: float,
-    periodic: bool,
-    difference: FloatArray,
-    size: FloatArray,
-    thrown_apart: bool = False,
-) -> Measurement:
-    """Return the measurement at one point from its responses of shape (steps, kicks); h in s.
-
-    `thrown_apart`: feedback has thrown the mechanism apart within a few steps.
-    """
+def _measured_pole(
+    method: Method, alpha_hat: float, beta_hat: float, difference: FloatArray, size: FloatArray
+) -> tuple[complex | None, str]:
+    """Return the dominant pole that responses of shape (steps, kicks) show, or None and why they show none."""
     predicted = complex(dominant_pole(method, alpha_hat, beta_hat))
-    measured, reason = None, ""
     all_poles = poles(method, alpha_hat, beta_hat)
     rival = _rival(all_poles, predicted)
     # Over a window of SAMPLES steps the lesser of two such moduli does not even fall to 1/e of the other.
     if rival > (1 - 1 / SAMPLES) * abs(predicted):
-        reason = f"another pole, of modulus {rival:.6g}, is too near to tell them apart"
-    else:
-        fit = fit_dominant_pole(difference, order=_number_of_poles(method), sizes=size, limits=LINEAR)
-        if isinstance(fit, Refusal):
-            reason = fit.reason
-        elif _is_another(fit.pole, predicted, all_poles):
-            reason = f"the kick hardly excites the dominant pole: what answers is one of modulus {abs(fit.pole):.6g}"
-        else:
-            measured = fit.pole
-    measured_verdict = _measured_verdict(measured, difference, size, max(CLOSE, moving.shift(method, h)))
-    if thrown_apart and measured_verdict == "too close to call":  # so fast that no growth shows in the linear range
-        measured_verdict, reason = "diverges", f"the feedback throws the mechanism apart within {AT_ONCE} steps"
-    return Measurement(
-        method=method,
-        alpha_hat=alpha_hat,
-        beta_hat=beta_hat,
-        predicted=predicted,
-        predicted_verdict=verdict(method, exact(alpha_hat), exact(beta_hat)),
-        law_abs=moving.z_abs_moving,
-        law_verdict=moving.verdict,
-        floquet_abs=floquet_abs,
-        periodic=periodic,
-        measured=measured,
-        measured_rate=measured_rate,
-        measured_verdict=measured_verdict,
-        reason=reason,
-    )
-
-
-def _number_of_poles(method: Method) -> int:
-    """Return the degree of P: for each of two mu as many as the method steps, or that of a second-order scheme."""
-    if not method.has_mu:
-        return len(closed_loop_table(method)) - 1
-    return 2 * steps(method)
+        return None, f"another pole, of modulus {rival:.6g}, is too near to tell them apart"
+    fit = fit_dominant_pole(difference, order=len(all_poles), sizes=size, limits=LINEAR)
+    if isinstance(fit, Refusal):
+        return None, fit.reason
+    if _is_another(fit.pole, predicted, all_poles):
+        return None, f"the kick hardly excites the dominant pole: what answers is one of modulus {abs(fit.pole):.6g}"
+    return fit.pole, ""
 
 
 def _rival(z: ComplexArray, predicted: complex) -> float:
@@ -310,7 +303,7 @@ def _measured_verdict(
         return "diverges" if grown else "too close to call"
     after_largest_kick = np.abs(difference[:, 0])
     second_half = after_largest_kick[len(after_largest_kick) // 2 :]
-    settled = second_half.max() < SETTLED * after_largest_kick.max()
+    settled = second_half.max() < NEGLIGIBLE * after_largest_kick.max()
     return "converges" if settled else "too close to call"
 
 

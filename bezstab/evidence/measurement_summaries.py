@@ -32,7 +32,7 @@ class MeasurementSummary:
 
 def measurement_summary(measurements: Sequence[Measurement]) -> MeasurementSummary:
     """Return how well the measured poles of one method agree; there is at least one measurement."""
-    errors = [abs(abs(each.measured) - abs(each.predicted)) for each in measurements if each.measured is not None]
+    errors = [abs(each.difference_abs) for each in measurements if each.difference_abs is not None]
     agreements = [each.verdicts_agree for each in measurements]
     followed = [(each, each.measured_rate) for each in measurements if each.measured_rate is not None]
     rates = [

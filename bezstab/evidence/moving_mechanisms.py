@@ -26,7 +26,7 @@ LAW_HOLDS = 0.1  # rad, kappa h: at twice that terms beside chi, too, have been 
 
 LARGEST_CHI = 32.0  # of the table: ten times what is seen on a boundary; further out the law does not hold at any speed
 RADII, ANGLES = 101, 61
-AT_A_TIME = 1024  # chi whose Y stay in a core's cache through all steps
+AT_A_TIME = 1024  # chi whose Y stay in a core's cache through all steps, and points with the distances of their poles
 RESCALED = 20  # steps between two looks at how large Y has grown: e^(32 kappa T / 10) at most, within float64
 
 Value = TypeVar("Value", bound=np.generic)

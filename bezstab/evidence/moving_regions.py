@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bezstab.evidence.moving_mechanisms import first_order_law
+from bezstab.evidence.moving_mechanisms import AT_A_TIME, first_order_law
 from bezstab.mechanism import TurningNormals
 from bezstab.methods import Method
 from bezstab.read_only import ReadOnlyArrays
@@ -32,7 +32,6 @@ from bezstab.stability import (
 
 LINES = 160  # of constant beta_hat, at Gauss and Legendre's nodes: the length of a line has kinks, so 1e-4 of the area
 SAMPLES = 241  # along a line; what is narrower than 1/240 of the window is not seen
-AT_A_TIME = 4096  # points, whose distances between poles stay within a few MB
 HALVINGS = 20  # of a sample's width: 1e-6 of it, well below what the lines make of the area
 HOPELESS = 10.0  # of ln|z| a step: nothing is chosen there, and `choose` can still raise |z| to a power
 

@@ -26,7 +26,7 @@ import numpy as np
 from bezstab.engines import ENGINES, Drive
 from bezstab.errors import NumericalError
 from bezstab.evidence.mujoco_controllers import Controlled, MotorGains, controlled_motors, lifted_step
-from bezstab.evidence.mujoco_models import Constraint, Feedback, ModelData
+from bezstab.evidence.mujoco_models import LEAST_SIZE, Constraint, Feedback, ModelData
 from bezstab.methods import Method, Verdict, closed_loop_at, lookup, recursion_verdict
 from bezstab.rationals import exact
 from bezstab.stability import (
@@ -58,23 +58,17 @@ DEFAULT_SOLREF = (0.02, 1.0)
 DIGITS = 12
 """Of a share: what linear algebra in float64 leaves of small matrices."""
 
-MOVING = 1e-9
-"""Least share: below, a direction has no mass, but for rounding."""
-
 FURTHEST = 1e3
 """Factor on the step beyond which nobody asks, and its inverse."""
 
 FACTORS = np.geomspace(1, FURTHEST, 120)
 """Where an end of stability is looked for first: the maps here have no gap of 6 %."""
 
-UNDAMPED = 1e-9
-"""Of |z|: without damping it is one to rounding, and only what is larger grows."""
+ROUNDING = 1e-9
+"""Of |z|, which without damping is one but for it, or zero; and of shares: of less a direction has no mass."""
 
 MOST_DOFS = 100
 """That are judged together: the eigenvalues of twice as many are found some two hundred times, within seconds."""
-
-LEAST_SOFTENING = 1e-15
-"""MuJoCo's mjMINVAL, its least R: it keeps rows that move nothing from being singular."""
 
 FREE = 1e-5
 """Of z: double poles at one, of joints that nothing holds, are split so far by the root of rounding, and masses."""
@@ -84,9 +78,6 @@ SEEN = 1e-3
 
 SOFT = 5
 """Times slower than need be: then an equality or a limit is called soft."""
-
-DEADBEAT = 1e-9
-"""Of |z|: what is less is gone at once."""
 
 LEAST_HOLD = 0.1
 """Of d at the constraint: with less, a small error hardly feels it, and |z| says only that."""
@@ -125,6 +116,11 @@ class Linted:
     def unsafe(self) -> bool:
         """Whether errors grow, or would at the smallest change; without damping they are only kept, at any step."""
         return not self.safe_together and self._unsafe_alone
+
+    @property
+    def safe(self) -> bool | None:
+        """Whether it is not unsafe; None where that was not judged."""
+        return None if self.verdict is None else not self.unsafe
 
     @property
     def _unsafe_alone(self) -> bool:
@@ -274,7 +270,7 @@ def _end_of(points: Points, method: Method) -> float | None:
 
     def unstable(factors: FloatArray) -> BoolArray:
         alpha_hat, beta_hat = points(factors)
-        limit = 1.0 if alpha_hat.all() else 1 + UNDAMPED
+        limit = 1.0 if alpha_hat.all() else 1 + ROUNDING
         return np.asarray((_moduli(method, alpha_hat, beta_hat) >= limit).any(axis=-1))
 
     return _h_factor(unstable)
@@ -421,13 +417,13 @@ def _shares(plant: _Plant, constraint: Constraint) -> Shares:
 
 def _softening(diagonal: FloatArray, impedance: float) -> FloatArray:
     """Return MuJoCo's R of rows, from its estimate of the diagonal of J M^-1 J'."""
-    return np.maximum(LEAST_SOFTENING, diagonal * (1 - impedance) / impedance)
+    return np.maximum(LEAST_SIZE, diagonal * (1 - impedance) / impedance)
 
 
 def _extremes(regularized: FloatArray, damped: FloatArray, impedance: float) -> tuple[float, float]:
     """Return the least and the largest eigenvalue of A' (A + R)^-1 that belongs to a direction that moves."""
     found = np.linalg.eigvals(np.linalg.solve(regularized, damped)).real
-    moving = found[found > MOVING]  # a direction that moves nothing has no error either
+    moving = found[found > ROUNDING]  # a direction that moves nothing has no error either
     return (float(moving.min()), float(moving.max())) if moving.size else (impedance, impedance)
 
 
@@ -454,7 +450,7 @@ def _softness(plant: _Plant, constraint: Constraint, shares: Shares, z_abs: floa
         return f"solimp leaves small errors alone: d = {constraint.solimp[0]:g} at the constraint itself"
     firm = (2 * plant.model.h, 1.0)
     faster = _worst(plant.method, _constraint_points(plant, constraint, shares, firm))[2]
-    times = float(np.log(max(DEADBEAT, faster)) / np.log(max(DEADBEAT, z_abs)))
+    times = float(np.log(max(ROUNDING, faster)) / np.log(max(ROUNDING, z_abs)))
     return f'needlessly soft: solref="{_numbers(firm)}" settles {times:.0f} times as fast' if times > SOFT else ""
 
 
@@ -649,11 +645,11 @@ def _linted_together(plant: _Plant, constraints: Sequence[Constraint], controlle
     modulus = cache(together.modulus)
 
     def unstable(factors: FloatArray) -> BoolArray:
-        return np.array([modulus(factor) > 1 + UNDAMPED for factor in factors.tolist()])
+        return np.array([modulus(factor) > 1 + ROUNDING for factor in factors.tolist()])
 
     z_abs = modulus(1.0)
     verdict: Verdict = "marginal"
-    if abs(z_abs - 1) > UNDAMPED:
+    if abs(z_abs - 1) > ROUNDING:
         verdict = "diverges" if z_abs > 1 else "converges"
     end = _h_factor(unstable)
     return Linted(

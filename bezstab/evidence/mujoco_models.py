@@ -28,11 +28,9 @@ of their constraints; 3.8.1, 3.10, 3.11 and 4.0 do as it says (measured).
 LEAST_IMPEDANCE, MOST_IMPEDANCE = 0.0001, 0.9999
 """MuJoCo keeps d in between (mjMINIMP, mjMAXIMP)."""
 
-LEAST_MIX = 1e-15
-"""MuJoCo's mjMINVAL: a solmix below it counts as none."""
-
-LEAST_SIZE, LARGEST_SIZE = 1e-15, 1e15
-"""Of numbers that are not zero: below MuJoCo's mjMINVAL nothing counts, and beyond its inverse nobody means it."""
+LEAST_SIZE = 1e-15
+"""MuJoCo's mjMINVAL, its least R: a lesser solmix counts as none, and of other numbers neither what is less nor what is
+beyond the inverse is what anybody means."""
 
 MOST_ROWS = 300
 """Of one equality, such as a flex's: beyond, its masses are left out, and it is judged as contacts are."""
@@ -201,9 +199,9 @@ def model_data(mujoco: types.ModuleType, model: Any) -> ModelData:
 
 def _require_sizes(name: str, values: Sequence[float]) -> None:
     """Raise InputError unless every number is zero or of a size that somebody may mean."""
-    if not all(value == 0 or LEAST_SIZE <= abs(value) <= LARGEST_SIZE for value in values):
+    if not all(value == 0 or min(abs(value), 1 / abs(value)) >= LEAST_SIZE for value in values):
         listed = " ".join(f"{value:g}" for value in values)
-        raise InputError(f"{name} = {listed}: expected 0, or sizes from {LEAST_SIZE:g} to {LARGEST_SIZE:g}")
+        raise InputError(f"{name} = {listed}: expected 0, or sizes from {LEAST_SIZE:g} to {1 / LEAST_SIZE:g}")
 
 
 @dataclass(frozen=True)
@@ -390,7 +388,7 @@ def _mixed(model: Any, one: int, other: int) -> tuple[FloatArray, FloatArray]:
         chosen = one if model.geom_priority[one] > model.geom_priority[other] else other
         return solref[chosen], solimp[chosen]
     mix = model.geom_solmix[[one, other]]
-    mix = np.where(mix < LEAST_MIX, 0.0, mix)
+    mix = np.where(mix < LEAST_SIZE, 0.0, mix)
     share = mix[0] / mix.sum() if mix.sum() > 0 else 0.5
     mixed_solimp = share * solimp[one] + (1 - share) * solimp[other]
     if solref[one, 0] > 0 and solref[other, 0] > 0:
@@ -477,34 +475,10 @@ def _force(loaded: _Loaded, actuator: int, direction: FloatArray) -> Feedback | 
 
 
 def _flexes(loaded: _Loaded) -> Iterator[Unjudged]:
-    """Yield what acts on a flex besides its equalities: the springs of its elements, and its contacts."""
-    model = loaded.model
-    for flex in range(model.nflex):
-        element = loaded.named("flex", flex)
-        if model.flex_edgestiffness[flex] or model.flex_edgedamping[flex] or _is_elastic(model, flex):
-            yield Unjudged(element, "flex spring", "its springs are of all its elements together")
-        touches = model.flex_contype[flex] or model.flex_conaffinity[flex] or model.flex_selfcollide[flex]
-        if touches and loaded.has("CONSTRAINT") and loaded.has("CONTACT"):
-            yield Unjudged(element, "flex contact", "it depends on what it touches")
-
-
-def _is_elastic(model: Any, flex: int) -> bool:
-    """Return whether a flex resists being strained or bent."""
-    entries = (
-        (model.flex_stiffness, getattr(model, "flex_stiffnessadr", None)),
-        (model.flex_bending, getattr(model, "flex_bendingadr", None)),
-    )
-    return not model.flex_rigid[flex] and any(_part(np.ravel(*each[:1]), each[1], flex).any() for each in entries)
-
-
-def _part(values: FloatArray, starts: Any, flex: int) -> FloatArray:
-    """Return the entries of one flex; all of them in versions that do not say where a flex's own begin."""
-    if starts is None:
-        return values
-    if starts[flex] < 0:
-        return values[:0]
-    later = [start for start in starts[flex + 1 :].tolist() if start >= 0]
-    return values[starts[flex] : later[0] if later else None]
+    """Yield what may act on a flex besides its equalities."""
+    for flex in range(loaded.model.nflex):
+        reason = "springs and contacts, if it has any, are of all its elements together"
+        yield Unjudged(loaded.named("flex", flex), "flex", reason)
 
 
 def _tendon_directions(model: Any, data: Any) -> FloatArray:

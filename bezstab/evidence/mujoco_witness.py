@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.errors import InputError
-from bezstab.evidence.mujoco_models import mujoco_module
+from bezstab.evidence.mujoco_models import MOST_IMPEDANCE, mujoco_module
 from bezstab.mechanism import GROUND, Body, Mechanism, Revolute, Scene, constraint_errors, perturbed_state
 from bezstab.methods import Method, lookup
 from bezstab.stability import FloatArray, first_where, region, spectral_radius
@@ -30,9 +30,6 @@ RAYS = (15.0, 30.0, 45.0, 60.0, 75.0)
 
 TIMES = (0.9, 1.1)
 """The boundary: nearer, growth takes thousands of steps."""
-
-IMPEDANCE = 0.9999
-"""The most that MuJoCo takes: the rest of the unconstrained acceleration leaks into the constraint."""
 
 RUN = 3000
 """Steps."""
@@ -131,7 +128,8 @@ def model_xml(scene: Scene, integrator: str, h: float, alpha_hat: float, beta_ha
     if scene.forces or scene.springs or not all(isinstance(joint, Revolute) for joint in scene.joints):
         raise InputError(f"--witness mujoco: {scene.name} has more than revolute joints and gravity: not supported")
     two_alpha, beta_squared = feedback_gains(alpha_hat, beta_hat, h)
-    feedback = f'solref="{-beta_squared!r} {-two_alpha!r}" solimp="{IMPEDANCE} {IMPEDANCE} 1 0.5 1"'
+    # The most that MuJoCo takes: the rest of the unconstrained acceleration leaks into the constraint.
+    feedback = f'solref="{-beta_squared!r} {-two_alpha!r}" solimp="{MOST_IMPEDANCE} {MOST_IMPEDANCE} 1 0.5 1"'
     sites: dict[str, str] = dict.fromkeys([GROUND, *(body.name for body in scene.bodies)], "")
     connections = ""
     for number, joint in enumerate(scene.joints):

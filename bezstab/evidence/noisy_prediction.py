@@ -22,11 +22,8 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from bezstab.evidence.linear_prediction import SAMPLES, TIMES_FARTHEST, FloatArray
+from bezstab.evidence.linear_prediction import NEGLIGIBLE, SAMPLES, STANDARD_ERRORS, TIMES_FARTHEST, FloatArray
 from bezstab.stability import EPS, ComplexArray
-
-STANDARD_ERRORS = 3.0
-"""That are stated: 99.7 % of normal errors are less, and by Cornish and Fisher's expansion as many of fewer samples."""
 
 FREEDOM = 24
 """Samples more than unknowns, at least: of fewer nobody can tell whether what is left over is white."""
@@ -37,37 +34,18 @@ VISIBLE = 8
 BEYOND = 3
 """Poles more than are worth it: a pair can be where one is not, and what they would change is told as an error."""
 
-SURE = 3.3
-"""Standard deviations from what white noise shows on average: one in a thousand is beyond."""
+ITERATIONS = 40
+"""Of Newton's method at most: from a start that leads anywhere it settles within some twenty. Gauss and Newton's ends
+before, where a change is NEGLIGIBLE beside the standard errors, or none that is not leaves less over."""
 
-LAGS = 10
-"""Distances, in samples, at which what is left over is asked whether it is related."""
-
-ITERATIONS = 30
-"""Of Gauss and Newton's method at most; near the solution each gains a few digits."""
-
-SETTLED = 1e-3
-"""Of a standard error: a smaller change of every unknown ends the iteration."""
-
-SHORTEST_STEP = 1e-3
-"""Of Gauss and Newton's change: where not even that leaves less over, the iteration ends."""
-
-LEAST_MODULUS = 1e-3
-"""Of z: a lesser pole is gone after one sample, and its logarithm means nothing."""
-
-LARGEST_ERROR = 0.05
-"""In the plane: beyond, errors of poles are no longer normal, and nobody is helped."""
-
-SHORTER = 2
-"""Times shorter is the next stretch that is tried."""
-
-STARTS = (0, 4)
-"""Samples that are left out at the beginning: of long methods the first few belong to poles that are soon gone."""
+RESOLVED = 0.05
+"""In the plane: a pole that is nearer to 1 changes from row to row as little as what a motion forces. Of one that is
+not known to so much errors are no longer normal, and nobody is helped."""
 
 
 @dataclass(frozen=True)
 class NoisyPole:
-    """A pole in the closed upper half plane, per sample, and how far off it may be in the plane (STANDARD_ERRORS)."""
+    """A pole in the closed upper half plane, per sample, and how far off it may be in the plane: STANDARD_ERRORS."""
 
     z: complex
     uncertainty: float
@@ -96,19 +74,23 @@ def fit_in_noise(responses: FloatArray, order: int) -> NoisyFit | None:
     Numer. Anal. 10, 1973), from the matrix pencil's poles (Hua and Sarkar, IEEE Trans. ASSP 38, 1990).
     """
     usable = responses[: int(np.logical_and.accumulate(np.isfinite(responses).all(axis=1)).sum())]
-    for start, end in _stretches(len(usable)):
+    for start, end in _stretches(len(usable), order):
         fit = _fit_stretch(usable[start:end], order)
         if fit is not None and _goes_on(fit[1], usable[end:]):
             return NoisyFit(*fit, start, end - start)
     return None
 
 
-def _stretches(rows: int) -> Iterator[tuple[int, int]]:
-    """Yield the first row of the stretches that are tried and that after the last, the longest first."""
+def _stretches(rows: int, order: int) -> Iterator[tuple[int, int]]:
+    """Yield the first row of the stretches that are tried and that after the last, the longest first.
+
+    Each is half as long as the one before. With `order` samples left out at the beginning, too: of long methods the
+    first few belong to poles that are soon gone.
+    """
     end = min(rows, SAMPLES)
     while end > FREEDOM:
-        yield from ((start, end) for start in STARTS)
-        end //= SHORTER
+        yield from ((start, end) for start in (0, order))
+        end //= 2
 
 
 def _goes_on(noise: Sequence[float], rest: FloatArray) -> bool:
@@ -123,7 +105,7 @@ def _goes_on(noise: Sequence[float], rest: FloatArray) -> bool:
         apart = np.abs(np.log(variances))
     # White noise has logarithms of mean squares with the variance 2 / n, and that of its fourth differences some 4.5
     # times as much, as they are related.
-    return bool((apart < SURE * np.sqrt(9 / len(rest))).all())
+    return bool((apart < STANDARD_ERRORS * np.sqrt(9 / len(rest))).all())
 
 
 def _fit_stretch(samples: FloatArray, order: int) -> tuple[tuple[NoisyPole, ...], tuple[float, ...]] | None:
@@ -171,6 +153,7 @@ def _visible_poles(chosen: "_Sum", richer: "Sequence[_Sum]") -> tuple[NoisyPole,
         if visible < VISIBLE:
             continue
         shifts = [float(np.abs(other.z - z).min()) for other in richer]
+        # By Cornish and Fisher's expansion as many of the errors of fewer samples are less.
         factor = STANDARD_ERRORS * (1 + (STANDARD_ERRORS**2 + 1) / (4 * chosen.freedom))
         found.append(NoisyPole(complex(z), factor * float(error) + TIMES_FARTHEST * max(shifts, default=0.0)))
     return tuple(sorted(found, key=lambda pole: -abs(pole.z)))
@@ -197,7 +180,7 @@ class _Sum:
         for _ in range(ITERATIONS):
             change = -np.linalg.lstsq(current.slopes, current.left_over.ravel(), rcond=None)[0]
             share = 1.0
-            while share >= SHORTEST_STEP:
+            while share >= NEGLIGIBLE:
                 following = cls.of(samples, _moved(current.z, np.asarray(share * change).reshape(-1, 2)))
                 if following.squares < current.squares:
                     break
@@ -206,7 +189,7 @@ class _Sum:
                 break
             gained = current.squares - following.squares
             current = following
-            if gained < SETTLED**2 * current.squares / max(current.freedom, 1):
+            if gained < NEGLIGIBLE**2 * current.squares / max(current.freedom, 1):
                 break
         return current
 
@@ -279,7 +262,7 @@ def _signal_vectors(samples: FloatArray) -> FloatArray:
 def _shifting_poles(vectors: FloatArray) -> ComplexArray:
     """Return poles of the closed upper half plane that nearly fit: they multiply sums of powers shifted by a row."""
     z = np.linalg.eigvals(np.linalg.lstsq(vectors[:-1], vectors[1:], rcond=None)[0])
-    z = np.where(np.abs(z) < LEAST_MODULUS, LEAST_MODULUS, z)
+    z = np.where(np.abs(z) < NEGLIGIBLE, NEGLIGIBLE, z)
     return np.asarray(z[z.imag >= 0], complex)
 
 
@@ -289,7 +272,7 @@ def _moved(z: ComplexArray, change: FloatArray) -> ComplexArray:
     moved = z * np.exp(by_log + 1j * by_angle)
     above = moved.real + 1j * np.maximum(np.abs(moved.imag), 1e-12 * np.abs(moved))
     kept = np.where(z.imag != 0, above, moved.real)
-    return np.asarray(np.where(np.abs(kept) < LEAST_MODULUS, LEAST_MODULUS * kept / np.abs(kept), kept))
+    return np.asarray(np.where(np.abs(kept) < NEGLIGIBLE, NEGLIGIBLE * kept / np.abs(kept), kept))
 
 
 def _is_white(fitted: _Sum) -> bool:
@@ -299,10 +282,10 @@ def _is_white(fitted: _Sum) -> bool:
 
 def _unrelated(noise: FloatArray) -> bool:
     count = len(noise)
-    lags = min(LAGS, count // 4)
+    lags = round(np.log(count))  # as many distances, in samples: Tsay, Analysis of Financial Time Series, section 2.2
     total = float(noise @ noise)
     related = sum((float(noise[lag:] @ noise[:-lag]) / total) ** 2 / (count - lag) for lag in range(1, lags + 1))
-    return bool(count * (count + 2) * related < lags + SURE * np.sqrt(2 * lags) + SURE**2 / 2)
+    return bool(count * (count + 2) * related < lags + STANDARD_ERRORS * np.sqrt(2 * lags) + STANDARD_ERRORS**2 / 2)
 
 
 def _even(noise: FloatArray) -> bool:
@@ -310,4 +293,4 @@ def _even(noise: FloatArray) -> bool:
     half = len(noise) // 2
     first, second = np.mean(noise[:half] ** 2), np.mean(noise[half:] ** 2)
     with np.errstate(divide="ignore"):
-        return bool(abs(np.log(first) - np.log(second)) < SURE * np.sqrt(4 / half))
+        return bool(abs(np.log(first) - np.log(second)) < STANDARD_ERRORS * np.sqrt(4 / half))

@@ -34,6 +34,8 @@ from bezstab.evidence.floquet import (
     revolution,
 )
 from bezstab.evidence.linearized_steps import (
+    ITERATIONS,
+    SOLVED,
     Course,
     Values,
     course_of_steps,
@@ -46,9 +48,7 @@ from bezstab.mechanism import Mechanism
 from bezstab.methods import Method, Quantity
 from bezstab.stability import BoolArray, FloatArray
 
-PASSES = 12  # over the revolution: Newton's method squares the error, more passes only find nothing
 AMPLIFIED = 1e8  # in a revolution: more leaves solving no digits
-CLOSED = 1e-8  # m, rad: the last correction, the next would be its square; a rate is off by about 1/100 of it
 BESIDE = 1.0  # m, rad, from the motion of the mechanism: weak feedback drifts by 0.3, other closures lie further off
 
 
@@ -72,21 +72,16 @@ class OwnMotions:
         return np.asarray(np.isfinite(self.states).all(axis=(0, 2)))
 
 
-def own_motion_rates(
-    mechanism: Mechanism, method: Method, h: float, alpha_hat: FloatArray, beta_hat: FloatArray, duration: float
-) -> FloatArray:
-    """Return |z| per step along the method's own motion at each of a row of points; shape (points,), dimensionless.
-
-    Those of `floquet_rates`, whose arguments and errors these are, for a motion that is no revolution, and at points
-    where the method has no such motion near that of the mechanism.
-    """
-    return find_own_motions(mechanism, method, h, alpha_hat, beta_hat, duration).rates
-
-
 def find_own_motions(
     mechanism: Mechanism, method: Method, h: float, alpha_hat: FloatArray, beta_hat: FloatArray, duration: float
 ) -> OwnMotions:
-    """Return the motions that have these rates; arguments and errors as `own_motion_rates`."""
+    """Return the method's own motions at each of a row of points, and |z| per step along them.
+
+    The rates are those on the mechanism's motion for a motion that is no revolution, and at points where the method has
+    none of its own near that of the mechanism. h (s) is the user's step; over a revolution it is taken so that a whole
+    number of steps fills it, at most half a step in all from h. A motion that is no revolution lasts `duration` (s).
+    InputError and NumericalError as `regular_motion`.
+    """
     course = course_of_steps(mechanism, method, h, duration)
     gains = gains_on(course, method, alpha_hat, beta_hat)
     rates = np.full(alpha_hat.size, np.nan)
@@ -108,7 +103,7 @@ def _rates_and_states(course: Course, gains: FloatArray) -> tuple[FloatArray, Fl
     motions = at_points(along, rates.size)
     start = np.concatenate([value[0] for value in along.values()])
     left = np.arange(rates.size)
-    for _ in range(PASSES):
+    for _ in range(ITERATIONS):
         with np.errstate(all="ignore"):  # of what runs into infinity; what is not a number is not less
             values, answers = take_steps(course, gains[:, left], motions)
             next_starts = _next_starts(course, motions)
@@ -117,7 +112,7 @@ def _rates_and_states(course: Course, gains: FloatArray) -> tuple[FloatArray, Fl
             correction = _correction(around)
             begins = np.concatenate([value[0] for value in motions.values()], axis=1)
             beside = np.abs(begins + correction - start).max(axis=1) < BESIDE
-            closed = beside & (np.abs(correction).max(axis=1) < CLOSED)
+            closed = beside & (np.abs(correction).max(axis=1) < SOLVED)
         rates[left[closed]] = around.at(closed).rates()
         states[:, left[closed]] = _states(course, values)[:, closed]
         going_on = beside & ~closed

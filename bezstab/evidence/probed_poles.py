@@ -26,12 +26,12 @@ from numpy.polynomial.polynomial import polyder, polyval2d, polyval3d
 from numpy.typing import ArrayLike
 
 from bezstab.errors import InputError, NumericalError
-from bezstab.evidence.linear_prediction import SAMPLES, SETTLED, SPREAD, Fit, Refusal, fit_dominant_pole
+from bezstab.evidence.linear_prediction import NEGLIGIBLE, SAMPLES, SPREAD, Fit, Refusal, fit_dominant_pole
 from bezstab.evidence.logs import UNEVEN, decimal_place
-from bezstab.evidence.measured_poles import CLOSE
-from bezstab.evidence.noisy_prediction import LARGEST_ERROR, VISIBLE, NoisyFit, fit_in_noise
+from bezstab.evidence.measured_poles import CLOSE, GROWN
+from bezstab.evidence.noisy_prediction import ITERATIONS, RESOLVED, VISIBLE, NoisyFit, fit_in_noise
 from bezstab.methods import Method, closed_loop_at, closed_loop_table
-from bezstab.stability import ComplexArray, FloatArray, poles, region, spectral_radius, turning_sensitivity, window
+from bezstab.stability import EPS, ComplexArray, FloatArray, poles, region, spectral_radius, turning_sensitivity, window
 
 ORDER = 8
 """Poles that are looked for: as many as four-step methods have. Of longer ones the lesser poles die out first."""
@@ -39,26 +39,15 @@ ORDER = 8
 FEWEST = 12
 """Samples: two windows that differ, each with more equations than a pair of poles has unknowns."""
 
-GROWS = 100.0
-"""Times the start: what ends up so much larger has grown, and has left the linear range on its way."""
-
-LINEAR_SHARES = (np.inf, 1e-1, 1e-2, 1e-3, 1e-4)
-"""Of the largest sample of a response that grows, up to which it is tried as linear."""
+SHARES = (1.0, 1e-1, 1e-2, 1e-3, 1e-4)
+"""Of the kick that a user gives, and of the largest sample of a response that grows: one is in the linear range."""
 
 STARTS = 9
 """Of Newton's method along each side of the region's window."""
 
-ITERATIONS = 40
-"""Of Newton's method: from a start that leads anywhere it settles within some twenty."""
-
-ON_A_LINE = 201
-"""Samples of a line of points, across the region's window: is z the dominant pole on some of it?"""
-
-SOLVED = 1e-9
-"""Of a point's size: the last change of Newton's method where it has settled."""
-
 SAME = 1e-6
-"""Of a point's size, and of |z|: solutions nearer than that are one, which Newton's method reached from two places."""
+"""Of a point's size, and of |z|: solutions nearer than that are one, which Newton's method reached from two places.
+Where its last change is less it has settled: the next would be about the square."""
 
 TURNED = 3e-2
 """rad a step, where nobody has said how fast the mechanism turns: 300 revolutions a minute at 1 ms, or one in two
@@ -70,18 +59,6 @@ BEYOND_THE_LAW = 1.5
 
 DIFFERENCES = 3
 """Times that samples are differenced at most: each takes off a factor omega h of what a motion forces."""
-
-HIDDEN = 30.0
-"""Times what a pole explains: larger samples before its window belong to something that has decayed since."""
-
-KICK_SHARES = (1.0, 1e-2, 1e-4)
-"""Of the kick that a user gives for a step of theirs."""
-
-UNSEEN_GROWTH = 1e9
-"""Times a pole may grow over a log and still not be seen: from the last of nine digits."""
-
-SLOW = 0.05
-"""From 1: poles so near to it change from row to row as little as what a motion forces."""
 
 IN_NOISE = "in noise of {}, which shows two poles very close together as one"
 FORCED_IN_NOISE = (
@@ -210,8 +187,8 @@ def probed_pole(c: ArrayLike, minus: ArrayLike | None = None, differenced: bool 
     answering = int((np.abs(samples) > 0).any(axis=1).sum())
     if answering < FEWEST // 2:
         return _refused(len(samples), f"the error is gone after {answering} rows: too soon for a pole to be told", cut)
-    if rounding > SETTLED * largest:
-        coarse = f"rounded to {rounding:.3g}, which is more than {SETTLED:g} of the largest, {largest:.3g}"
+    if rounding > NEGLIGIBLE * largest:
+        coarse = f"rounded to {rounding:.3g}, which is more than {NEGLIGIBLE:g} of the largest, {largest:.3g}"
         return _refused(len(samples), coarse, cut)
     return _fitted(samples, rounding, differenced or minus is not None, cut)
 
@@ -252,11 +229,11 @@ def _told_in_noise(fit: NoisyFit, rows: int, of_two_runs: bool, cut: str) -> Pro
     In one run a pole near 1 is what the motion forces, and one on the circle may be.
     """
     noise = ", ".join(f"{level:.2g}" for level in fit.noise)
-    poles = [pole for pole in fit.poles if of_two_runs or abs(pole.z - 1) > SLOW]
+    poles = [pole for pole in fit.poles if of_two_runs or abs(pole.z - 1) > RESOLVED]
     if not poles:
         return _refused(rows, (FORCED_IN_NOISE if fit.poles else ALL_NOISE).format(noise), cut)
     dominant = poles[0]
-    if dominant.uncertainty > LARGEST_ERROR:
+    if dominant.uncertainty > RESOLVED:
         return _refused(rows, HIDDEN_IN_NOISE.format(noise, dominant.z, dominant.uncertainty), cut)
     on_the_circle = abs(abs(dominant.z) - 1) < max(CLOSE, dominant.uncertainty)
     if on_the_circle and not of_two_runs:
@@ -268,7 +245,7 @@ def _told_in_noise(fit: NoisyFit, rows: int, of_two_runs: bool, cut: str) -> Pro
 
 def _is_not_forced(fit: Fit, samples: FloatArray) -> bool:
     """Return whether one run's pole is none that a motion could force, and nothing larger has decayed before it."""
-    return abs(fit.pole - 1) > SLOW and _explains_the_start(fit, samples)
+    return abs(fit.pole - 1) > RESOLVED and _explains_the_start(fit, samples)
 
 
 def _is_slow_pole(fit: Fit, of_changes: Fit, samples: FloatArray) -> bool:
@@ -286,12 +263,15 @@ def _on_the_circle(fit: Fit) -> bool:
 
 
 def _explains_the_start(fit: Fit, samples: FloatArray) -> bool:
-    """Return whether samples before the fit's window are no larger than its pole makes them, traced back."""
+    """Return whether samples before the fit's window are no larger than its pole makes them, traced back.
+
+    Ten times as large ones belong to something that has decayed since.
+    """
     sizes = np.nanmax(np.abs(samples), axis=1)
     before, within = sizes[: fit.start], sizes[fit.start : fit.start + fit.samples]
     with np.errstate(over="ignore"):
         traced_back = within.max() * abs(fit.pole) ** -fit.start if abs(fit.pole) < 1 else within.max()
-    return bool(before.max(initial=0.0) <= HIDDEN * traced_back)
+    return bool(before.max(initial=0.0) <= GROWN * traced_back)
 
 
 def _claimed(fit: Fit, rows: int, reason: str) -> ProbedPole:
@@ -371,7 +351,7 @@ def _linear_limits(samples: FloatArray) -> Sequence[float]:
     sizes = np.nanmax(np.abs(samples), axis=1)
     start = sizes[:3].max()  # of an oscillation one row may be next to zero
     end = sizes[4 * len(sizes) // 5 :].max()
-    return [share * float(sizes.max()) for share in LINEAR_SHARES] if end > GROWS * start else (np.inf,)
+    return [share * float(sizes.max()) for share in SHARES] if end > GROWN * start else (np.inf,)
 
 
 def likenesses(
@@ -425,16 +405,16 @@ def kicked_responses(
     """Return half the difference of constraint errors after kicks up and down, shape (steps + 1, kicks).
 
     `step` takes a state, an array of any shape, to the next, and is not to change it in place; `constraint` is the
-    error in a state. The state is kicked by `kick`, of its shape, and by small parts of it (KICK_SHARES): decay is seen
+    error in a state. The state is kicked by `kick`, of its shape, and by small parts of it (SHARES): decay is seen
     longest after the largest, growth after the smallest. From where an error is not finite all is nan, and no step is
     taken. InputError for a kick of another shape.
     """
     start, change = np.asarray(state, np.float64), np.asarray(kick, np.float64)
     if start.shape != change.shape:
         raise InputError(f"kick has shape {change.shape}, the state has {start.shape}")
-    responses = np.full((steps + 1, len(KICK_SHARES)), np.nan)
+    responses = np.full((steps + 1, len(SHARES)), np.nan)
     with np.errstate(all="ignore"):  # what diverges runs into infinity, and is cut off there
-        for place, share in enumerate(KICK_SHARES):
+        for place, share in enumerate(SHARES):
             up, down = start + share * change, start - share * change
             for k in range(steps + 1):
                 responses[k, place] = (float(constraint(up)) - float(constraint(down))) / 2
@@ -464,9 +444,10 @@ def _likeness(
         per_row = z**between
     per_row = per_row.real + 1j * np.abs(per_row.imag)
     leading = np.abs(z) > (1 - 1 / SAMPLES) * np.abs(z[0])
-    # Another pole answers only if the kick has hardly excited the dominant one, and that has not grown out of rounding.
+    # Another pole answers only if the kick has hardly excited the dominant one, and that has not grown out of the
+    # rounding of float64.
     distances = np.abs(per_row - probed.pole)
-    if probed.rows * np.log(max(np.abs(per_row[0]), 1.0)) > np.log(UNSEEN_GROWTH):
+    if probed.rows * np.log(max(np.abs(per_row[0]), 1.0)) > -np.log(EPS):
         distances[~leading] = np.inf
     nearest = int(np.argmin(distances))
     moved = between * _motion_shift(method, point, z, nearest, turned) * float(np.abs(per_row[nearest]))
@@ -530,8 +511,6 @@ def _solutions(method: Method, z: ComplexArray, error: float) -> tuple[list[Like
     table = np.array(closed_loop_table(method), float)  # by powers of z, alpha_hat and beta_hat
     equations = _equations(table, z)
     points = _starting_points(method, z)
-    # Where one mu has both z, so has the whole straight line of that mu, and Newton's method ends anywhere on it.
-    line = np.ptp(points[1:], axis=0).max() * np.linspace(-1, 1, ON_A_LINE)[:, np.newaxis]
     with np.errstate(all="ignore"):  # what leaves the range is left out below
         for _ in range(ITERATIONS):
             points = points - _newton_step(equations, points)
@@ -541,13 +520,14 @@ def _solutions(method: Method, z: ComplexArray, error: float) -> tuple[list[Like
     largest = abs(z[0]) + 10 * error + SAME  # of a point at which the first z is the dominant pole
     singular = False
     found: list[LikePoint] = []
-    for a, b in points[(last < SOLVED * (1 + np.abs(points).max(axis=1))) | (residual < SOLVED**2 * scale)].tolist():
+    for a, b in points[(last < SAME * (1 + np.abs(points).max(axis=1))) | (residual < SAME**2 * scale)].tolist():
         jacobian = _jacobian(equations, np.array([[a, b]]))[:, :, 0]
         if np.linalg.cond(jacobian) > 1 / SAME:
-            if not singular:
-                along = np.linalg.svd(jacobian)[2][-1]
-                alpha_hat, beta_hat = (np.array([a, b]) + line * along).T
-                singular = bool((spectral_radius(method, alpha_hat, beta_hat) < largest).any())
+            # Where one mu, a real one, has both z, so has the whole straight line of that mu, and Newton's method ends
+            # anywhere on it. If z is the dominant pole on some of it, then where the other mu is the same.
+            mu = np.roots([1, a, b])
+            mu = mu[mu.imag == 0].real
+            singular |= bool((spectral_radius(method, -2 * mu, mu**2) < largest).any())
             continue
         known = any(abs(a - one.alpha_hat) + abs(b - one.beta_hat) < SAME * (1 + abs(a) + abs(b)) for one in found)
         if known or spectral_radius(method, a, b) > largest:

@@ -15,6 +15,7 @@ would prove nothing if two starts led to one root, or if a pole were missing: as
 there are.
 """
 
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -36,9 +37,6 @@ AT_BEST = 15.0
 
 MOST_COUNTED = mp.mpf(10) ** -17
 """Of an error: below, float64 cannot show it, and a difference of zero has no logarithm."""
-
-UNDERFLOW = 2.3e-308
-"""What float64 no longer holds to all digits."""
 
 
 @dataclass(frozen=True)
@@ -97,7 +95,7 @@ def _seen_and_reference(
     """Return the roots of pi(z, mu), each beside the pole that was found for it."""
     polynomial = [mp.polyval(row[::-1], mu) for row in table][::-1]  # in z, descending powers
     smallest = min(abs(c) * abs(mu) ** j for row in table for j, c in enumerate(row) if c)
-    if smallest < UNDERFLOW:
+    if smallest < sys.float_info.min:  # float64 no longer holds all of its digits
         next_to_one = _polished(polynomial, mp.mpc(1))
         if not next_to_one:
             raise NumericalError("no root next to 1 was found")

@@ -59,7 +59,12 @@ class VerdictMap(ReadOnlyArrays):
     @property
     def judged(self) -> int:
         """The number of runs with a verdict."""
-        return self.undecided.size - int(self.undecided.sum())
+        return self.undecided.size - self.unjudged
+
+    @property
+    def unjudged(self) -> int:
+        """The number of runs without a verdict."""
+        return int(self.undecided.sum())
 
     @property
     def agreeing(self) -> int:
@@ -81,8 +86,7 @@ class VerdictMap(ReadOnlyArrays):
     @property
     def farthest_disagreement(self) -> float | None:
         """The largest | |z_p| - 1 | at which the verdicts differ; None where they nowhere do."""
-        distance = self._distances_of_disagreement()
-        return float(distance.max()) if distance.size else None
+        return max(np.abs(self.z_abs - 1)[self.disagrees].tolist(), default=None)
 
     @property
     def disagreements_beyond_band(self) -> int:
@@ -94,9 +98,10 @@ class VerdictMap(ReadOnlyArrays):
         """Where |z_p| is nearer to one than the band, or than the motion moves it; shape (beta_hat, alpha_hat)."""
         return np.asarray(~(np.abs(self.z_abs - 1) > np.maximum(self.band, self.moved)))
 
-    def _distances_of_disagreement(self) -> FloatArray:
-        distance: FloatArray = np.abs(self.z_abs - 1)[self.disagrees]
-        return distance
+    @property
+    def close_runs(self) -> int:
+        """The number of runs where |z_p| is so near to one."""
+        return int(self.too_close.sum())
 
 
 @dataclass(frozen=True)

@@ -34,6 +34,16 @@ class Observation(ReadOnlyArrays):
     applied_power: FloatArray
     pivots: FloatArray
 
+    @property
+    def c_max(self) -> float:
+        """The largest |c| of all constraints at all times (m or rad)."""
+        return float(np.abs(self.c).max())
+
+    @property
+    def cdot_max(self) -> float:
+        """The largest |cdot|, as c_max (m/s or rad/s)."""
+        return float(np.abs(self.cdot).max())
+
     def __repr__(self) -> str:
         times, constraints = self.c.shape
         return f"Observation({times} times, {constraints} constraints)"

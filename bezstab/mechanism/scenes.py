@@ -1,6 +1,7 @@
 """A planar mechanism as data: bodies with their free coordinates, joints, forces, springs, gravity, initial state."""
 
-from collections.abc import Mapping
+import cmath
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from bezstab.errors import InputError
@@ -28,6 +29,11 @@ class Body:
     inertia: float
     locked: Mapping[str, float] = field(hash=False)
     center: Point
+
+    @property
+    def turns_in_place(self) -> bool:
+        """Whether its frame's origin stays where it is, a pivot, and the body turns about it."""
+        return "theta" in self.free and not {"x", "y"} & set(self.free)
 
 
 @dataclass(frozen=True)
@@ -150,6 +156,22 @@ class Scene:
         """Each body's or the ground's name, and the point in its frame (m), wherever a joint holds it."""
         joined = (joint for joint in self.joints if not isinstance(joint, Driver))
         return tuple(end for joint in joined for end in zip(joint.bodies, joint.points, strict=True))
+
+    def joint_places(self, q: Sequence[float]) -> dict[str, list[Point]]:
+        """Return where the joints of each body, and of the ground, are in a state q, in m and ascending.
+
+        The pivot of a body that turns in its place is one of them.
+        """
+        free = dict(zip(self.coordinates, q, strict=True))
+        origins, turns = {GROUND: 0j}, {GROUND: 1 + 0j}  # numbers x + iy
+        places: dict[str, set[complex]] = {}
+        for body in self.bodies:
+            x, y, theta = (free.get(f"{body.name}.{axis}", body.locked.get(axis, 0.0)) for axis in COORDINATES)
+            origins[body.name], turns[body.name] = complex(x, y), cmath.rect(1, theta)
+            places[body.name] = {complex(x, y)} if body.turns_in_place else set()
+        for name, local in self.attachments:
+            places.setdefault(name, set()).add(origins[name] + complex(*local) * turns[name])
+        return {name: sorted((at.real, at.imag) for at in joints) for name, joints in places.items() if joints}
 
 
 def at_speed(scene: Scene, factor: float) -> Scene:

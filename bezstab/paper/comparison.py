@@ -14,9 +14,20 @@ from bezstab.methods import Verdict, lookup, steps
 from bezstab.paper.experiments import DURATION, STEP, Experiment, experiment
 from bezstab.paper.findings import Finding, finding
 from bezstab.paper.printed import COMPARED, TABLE_5, PrintedCase, PrintedPole
-from bezstab.paper.reports import Progress, Report, captioned_table, pole_cells
+from bezstab.paper.reports import Progress, Report, captioned_table
 from bezstab.rationals import exact
-from bezstab.show import Column, Row, column, column_figure, history_line, legend_below, line_at, pole_text, styled
+from bezstab.show import (
+    Column,
+    Row,
+    column,
+    column_figure,
+    history_line,
+    legend_below,
+    line_at,
+    pole_cells,
+    pole_text,
+    styled,
+)
 from bezstab.stability import dominant_pole, feedback_cost, verdict
 
 ROUNDED = 1e-13  # m: below, c_1 is rounding amplified by beta^2 h^2 / |1 - z|, and differs between machines

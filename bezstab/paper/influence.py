@@ -12,8 +12,8 @@ from bezstab.methods import lookup
 from bezstab.paper.experiments import STEP, Experiment, experiment
 from bezstab.paper.findings import Finding, finding
 from bezstab.paper.printed import FASTER_LEVEL, TABLE_5
-from bezstab.paper.reports import Progress, Report, captioned_table, pole_cells
-from bezstab.show import Column, Row, column, column_figure, history_line, line_at, pole_text, styled
+from bezstab.paper.reports import Progress, Report, captioned_table
+from bezstab.show import Column, Row, column, column_figure, history_line, line_at, pole_cells, pole_text, styled
 from bezstab.stability import FloatArray, poles
 
 KICK = 1e-3  # m: Table 4 is about decay and growth, so there must be something that decays or grows

@@ -4,8 +4,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from bezstab.paper.experiments import Experiment
 from bezstab.paper.findings import Finding
 from bezstab.show import Column, Row, render
@@ -34,13 +32,3 @@ class Report:
 def captioned_table(caption: str, rows: Sequence[Row], columns: Sequence[Column]) -> str:
     """Return a table as Markdown below its caption."""
     return f"{caption}\n\n{render(rows, columns, 'markdown')}\n"
-
-
-def pole_cells(pole: complex) -> Row:
-    """Return the cells that show a pole: its real and imaginary part, its modulus, its angle in degrees."""
-    return {
-        "z_real": pole.real,
-        "z_imag": pole.imag,
-        "z_abs": abs(pole),
-        "z_angle_deg": float(np.degrees(np.angle(pole))),
-    }

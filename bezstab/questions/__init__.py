@@ -13,9 +13,15 @@ from bezstab.questions.motions import ReferenceMotion, check_speed, motion_of, t
 from bezstab.questions.question import Question, methods_for, usual_goal
 from bezstab.questions.regions import (
     ForcedErrors,
+    MapAnswer,
+    MapQuestion,
     RegionAnswer,
     engine_marks,
     forced_errors_of,
+    map_answer,
     region_answer,
     region_answers,
 )
+from bezstab.questions.runs import RunQuestion, projection_for, run_answer
+from bezstab.questions.trades import FrontQuestion, TradeQuestion
+from bezstab.questions.verifications import VerifyQuestion

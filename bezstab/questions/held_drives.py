@@ -21,9 +21,11 @@ from bezstab.stability import (
     BoolArray,
     FloatArray,
     HeldLimits,
+    HeldMap,
     Timing,
     first_where,
     held_limits,
+    held_map,
     held_spectral_radius,
     held_verdict,
 )
@@ -104,6 +106,11 @@ class HeldAnswer:
     def used_up(self) -> UsedUp | None:
         """What makes it unstable; of a stable drive the number that is nearest to its end. None where none has one."""
         return self._nearest_end() if self.safe else self._cause()
+
+    def map(self, points: int) -> HeldMap:
+        """Return |z_p| around this drive, at so many points along each axis."""
+        alpha_hat, beta_hat = self.question.drive.point(self.question.h)
+        return held_map(self.method.name, self.question.timing, points, (float(alpha_hat), float(beta_hat)))
 
     def _cause(self) -> UsedUp:
         """Return what an unstable drive would be stable without."""

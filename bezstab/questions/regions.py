@@ -1,31 +1,46 @@
-"""What there is to say of a region: how large it is, where errors shrink fastest, what part of the plane shows it."""
+"""What there is to say of a region: how large it is, where errors shrink fastest, what part of the plane shows it.
 
-from collections.abc import Sequence
+methods, levels, a window, an engine, a scene or a motion   →   MapQuestion   →   map_answer   →   MapAnswer, by method
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 
+import numpy as np
+
 from bezstab.engines import Engine
 from bezstab.errors import InputError, NumericalError
+from bezstab.evidence import MovingRegion, moving_region
+from bezstab.mechanism import TurningNormals, load_scene
 from bezstab.methods import Method
-from bezstab.questions.motions import ReferenceMotion
+from bezstab.questions.motions import ReferenceMotion, motion_of, turning_of
+from bezstab.questions.question import methods_for
 from bezstab.stability import (
     BestPoint,
     Choice,
+    ComplexArray,
     Extent,
     FarLimit,
+    FloatArray,
     Region,
     best_point_or_reason,
     choose,
     combined_error,
     critical_damping_limit,
+    default_rate,
     exact_critical_damping_limit,
     falls_towards,
+    pole_map,
     region,
     stable_for_all,
     unconditional_damping_ratio,
     useful_window,
 )
+
+MOST_DRAWN = 1e100
+"""Of a window's ends: their squares are drawn as well."""
 
 BEYOND = 1.25
 """Times the parameters of a point: so far is shown beyond one that lies outside the window."""
@@ -161,3 +176,146 @@ def _holding(shown: Extent, point: BestPoint | Choice | None) -> Extent:
         return shown
     (left, right), (low, high) = shown
     return (left, max(right, BEYOND * point.alpha_hat)), (low, max(high, BEYOND * point.beta_hat))
+
+
+Window = tuple[Fraction, Fraction]
+
+
+@dataclass(frozen=True, kw_only=True)
+class MapQuestion:
+    """Where is each method stable, and how fast do errors decay there?
+
+    `levels` are further values of |z_p|, at most 1, whose regions are asked about. The windows `alpha_range` and
+    `beta_range` are in alpha_hat and beta_hat; without them a window holds the region. Axes have so many `points`. With
+    a step `h` (s) an `engine` gives points to mark, and the region of a `scene` is asked about as it moves, at `speeds`
+    times its own speed. With `accuracy` the error is asked about that feedback forces, on a motion of rate `omega`
+    (1/s) or on that of the scene. With `compare` boundaries are compared, at one level. InputError for what does not
+    go together.
+    """
+
+    methods: tuple[Method, ...] = ()
+    levels: tuple[Fraction, ...] = ()
+    alpha_range: Window | None = None
+    beta_range: Window | None = None
+    points: int
+    h: Fraction | None = None
+    engine: Engine | None = None
+    scene: str | None = None
+    speeds: tuple[Fraction, ...] = ()
+    accuracy: bool = False
+    omega: Fraction | None = None
+    compare: bool = False
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "methods", methods_for(self.methods, self.engine, None))
+        object.__setattr__(self, "speeds", self.speeds or (Fraction(1),))
+        for option, ends in (("--alpha-range", self.alpha_range), ("--beta-range", self.beta_range)):
+            if ends:
+                self._check_window(option, *ends)
+        if any(level > 1 for level in self.levels):
+            raise InputError(f"--level {float(max(self.levels)):g}: must be at most 1, the stability boundary")
+        if self.compare and len(self.levels) > 1:
+            raise InputError(f"--compare takes one --level, but {len(self.levels)} were given")
+        if self.accuracy and len(self.speeds) > 1:
+            raise InputError(f"--accuracy takes one --speed, but {len(self.speeds)} were given")
+        _ = self.motion
+
+    def _check_window(self, option: str, low: Fraction, high: Fraction) -> None:
+        typed = f"{option} {float(low):g} {float(high):g}"
+        if not float(low) < float(high):
+            raise InputError(f"{typed}: the first value must be smaller than the second")
+        if max(abs(low), abs(high)) > MOST_DRAWN:
+            raise InputError(f"{typed}: expected at most {MOST_DRAWN:g}")
+        if self.accuracy and low <= 0:
+            raise InputError(f"{typed}: the axes of --accuracy are logarithmic, and begin above 0")
+
+    @cached_property
+    def motion(self) -> ReferenceMotion | None:
+        """The motion on which errors are told; None where they are not asked about. Errors as `motion_of`."""
+        return motion_of(self.omega, self.scene, self.speeds[0], self.h) if self.accuracy else None
+
+    @cached_property
+    def turnings(self) -> Mapping[Fraction, TurningNormals]:
+        """How the constraints of the scene turn, by speed; none where nothing moves is asked about."""
+        found = {} if self.accuracy else {speed: turning_of(self.scene, speed, self.h) for speed in self.speeds}
+        return {speed: turning for speed, turning in found.items() if turning}
+
+    @property
+    def scene_name(self) -> str:
+        """What the scene is called; nothing without one."""
+        return load_scene(self.scene).name if self.scene else ""
+
+    @property
+    def marks(self) -> dict[str, tuple[float, float]]:
+        """The points to mark: those of the engine."""
+        return engine_marks(self.engine, self.h) if self.engine and self.h else {}
+
+
+@dataclass(frozen=True)
+class MapAnswer:
+    """One method's answer: its stable region and those of the levels below 1; the rest is found when asked for."""
+
+    question: MapQuestion
+    regions: list[RegionAnswer]
+
+    @property
+    def stable(self) -> RegionAnswer:
+        """The region where the method is stable."""
+        return self.regions[0]
+
+    @property
+    def method(self) -> Method:
+        """The method."""
+        return self.stable.region.method
+
+    @cached_property
+    def moving(self) -> dict[float, MovingRegion]:
+        """The region of the scene as it moves, by speed."""
+        h = float(self.question.h or 0)
+        return {float(speed): moving_region(self.method, each, h) for speed, each in self.question.turnings.items()}
+
+    @cached_property
+    def forced(self) -> ForcedErrors | None:
+        """What the best points force on the motion; None without one."""
+        return forced_errors_of(self.method, self.question.motion) if self.question.motion else None
+
+    @property
+    def drawn_levels(self) -> list[float]:
+        """The levels of |z_p| to draw: those that were given, else one that suits the method."""
+        given = [float(level) for level in self.question.levels if level < 1 or not self.question.motion]
+        if given:
+            return given
+        motion = self.question.motion
+        return [default_rate(self.method, motion.omega_h)] if motion else self.stable.faster_levels
+
+    @cached_property
+    def chosen(self) -> Choice | None:
+        """The point to draw beside the fastest: the choice of the goal accurate on a motion, else of robust."""
+        if self.forced:
+            return self.forced.chosen
+        return choose(self.method, "robust", margins=False) if self.stable.best else None
+
+    @cached_property
+    def axes(self) -> tuple[FloatArray, FloatArray]:
+        """The points on both axes: equally spaced, or by equal factors where the error is asked about."""
+        spaced = np.geomspace if self.forced else np.linspace
+        fitting = self.forced.window if self.forced else self.stable.window
+        ends = (self.question.alpha_range or fitting[0], self.question.beta_range or fitting[1])
+        alpha_hat, beta_hat = (spaced(float(low), float(high), self.question.points) for low, high in ends)
+        return alpha_hat, beta_hat
+
+    def dominant_poles(self) -> Iterator[ComplexArray]:
+        """Yield the dominant poles over both axes, a block of rows (constant beta_hat) at a time, as `pole_map`."""
+        return pole_map(self.method, *self.axes)
+
+    def errors(self, z: ComplexArray) -> FloatArray:
+        """Return the error that is forced over both axes, a share of the motion; nan where |z| is not below 1."""
+        assert self.question.motion
+        alpha_hat, beta_hat = self.axes
+        error = combined_error(self.method, alpha_hat, beta_hat[:, np.newaxis], self.question.motion.omega_h)
+        return np.where(np.abs(z) < 1, error, np.nan)
+
+
+def map_answer(question: MapQuestion, method: Method) -> MapAnswer:
+    """Return the answer for one method; errors as `region`."""
+    return MapAnswer(question, region_answers(method, [float(level) for level in question.levels]))

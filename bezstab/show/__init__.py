@@ -48,6 +48,7 @@ from bezstab.show.row_kinds import (
     FRONTS,
     HELD,
     LARGEST_STEPS,
+    LIKENESS,
     LINTED,
     LISTED_METHODS,
     MEASUREMENTS,
@@ -65,39 +66,30 @@ from bezstab.show.row_kinds import (
 )
 from bezstab.show.rows import (
     NOT_KNOWN,
-    accuracy_cells,
     chain_rows,
     engine_row,
     exact_rate_words,
-    family_row,
     forced_rows,
     forced_words,
     front_row,
     like_point_row,
-    likeness_row,
     limit_row,
-    linted_row,
-    measurement_row,
     method_row,
+    pole_cells,
     pole_rows,
-    probed_pole_row,
     region_row,
-    run_row,
-    simulation_row,
-    verdict_map_row,
     whole_row,
 )
 from bezstab.show.schemas import json_schema
-from bezstab.show.sentences import likeness_sentence, one_pole_sentence
+from bezstab.show.sentences import likeness_sentence, one_pole_sentence, passages_words
 from bezstab.show.varying_rows import sequence_text, varying_words
 
 if TYPE_CHECKING:
     from bezstab.show import plot
-    from bezstab.show.accuracy_figures import accuracy_map_figure, error_front_figure
+    from bezstab.show.accuracy_figures import error_front_figure
     from bezstab.show.arrays import (
         boundary_arrays,
         history_arrays,
-        map_arrays,
         untimed_arrays,
         verdict_arrays,
         write_arrays,
@@ -107,6 +99,7 @@ if TYPE_CHECKING:
     from bezstab.show.held_figures import held_figure
     from bezstab.show.histories import history_line
     from bezstab.show.plane_figures import comparison_figure, family_figure, region_figure, verdict_figure
+    from bezstab.show.region_maps import map_figure, map_rows, map_table
     from bezstab.show.run_figures import history_figure, projection_figure, scene_figure, work_precision_figure
     from bezstab.show.style import DASHES, column_figure, legend_below, line_at, save, styled
 

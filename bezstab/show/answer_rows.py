@@ -53,8 +53,8 @@ MOST_STEPS = 10**5  # of a run: some seconds
 
 def answer_row(answer: Answer) -> Row:
     """Return all that an answer has as a row; keys of an engine, a drive, a scene, a range of steps where asked for."""
-    fields = CHOICES.fields if answer.role == "chosen" else CHECKED.fields
-    return {**cells(fields, answer), **_engine_cells(answer), **added_cells(answer)}
+    kind = CHOICES if answer.role == "chosen" else CHECKED
+    return {**kind.row(answer), **_engine_cells(answer), **added_cells(answer)}
 
 
 def added_cells(answer: Answer) -> dict[str, Value]:
@@ -105,7 +105,7 @@ def engine_cells(answer: Answer) -> dict[str, Value]:
 
 def largest_step_row(found: LargestStep) -> Row:
     """Return up to which step (s) alpha and beta (1/s) are stable: None where small steps are not."""
-    return cells(LARGEST_STEPS.fields, found, {"role": "given", "h_limit": found.h_limit if found.safe else None})
+    return LARGEST_STEPS.row(found, role="given", h_limit=found.h_limit if found.safe else None)
 
 
 def costs_words(answer: Answer) -> str | None:

@@ -31,9 +31,9 @@ class Field:
     """One value of a row: its key in JSON and CSV, its meaning and kind, where it is from, and how a table shows it.
 
     A table shows it below `heading`, unless that is empty, in the format `form`, or as the `text` made of the row.
-    `unit` is "" where it has none; `null` says when there is no value, "" for never; `values_of` names types that list
-    all that a text can be, such as "evidence.MovingVerdict". `path` leads to it in the result: attributes and places,
-    such as "margins.alpha.0"; by default the attribute that is called like the key.
+    `unit` is "" where it has none. `null` says when there is no value, "" for never. `values_of` names types that list
+    all that a text can be, such as "evidence.MovingVerdict". `path` leads to it in the result by attributes and places,
+    such as "margins.alpha.0", or "t.-1" for the last time. By default it is the attribute that has the key's name.
     """
 
     key: str
@@ -108,20 +108,20 @@ class RowKind:
         columns = [field.column for field in (*self.fields, *self.added) if field.heading and field.key in keys]
         return [column for column in columns if any(column.cell(row) != MISSING for row in rows)]
 
+    def row(self, result: object, **found: Value) -> dict[str, Value]:
+        """Return the row of a result, without what options add: of each field what was found, else as `cells`."""
+        return cells(self.fields, result, found)
+
 
 def cells(fields: Sequence[Field], result: object, found: Mapping[str, Value] | None = None) -> dict[str, Value]:
     """Return the values of fields by key: those found, else what each field's path leads to in a result.
 
-    Numbers and texts as they are, an exact number as float64, None for what is infinite or missing on the way, a method
-    or a scene by its name. TypeError, naming the field and its type, for anything else.
+    Numbers and texts are as they are, an exact number is float64, what is infinite or missing on the way is None. A
+    method or a scene is its name; several texts are one, with commas between them. TypeError, naming the field and its
+    type, for anything else.
     """
     known = found or {}
     return {field.key: known[field.key] if field.key in known else _cell(field, result) for field in fields}
-
-
-def parts_of(z: complex) -> dict[str, float]:
-    """Return real and imaginary part of a complex number, its modulus and its angle in degrees, by name."""
-    return {"real": z.real, "imag": z.imag, **{name: part(z) for name, part in PARTS.items()}}
 
 
 def _found_at(path: str, result: object) -> Any:
@@ -133,7 +133,7 @@ def _found_at(path: str, result: object) -> Any:
         if name in PARTS and isinstance(value, complex):
             value = PARTS[name](value)
         else:
-            value = value[int(name)] if name.isdigit() else getattr(value, name)
+            value = value[int(name)] if name.lstrip("-").isdigit() else getattr(value, name)
     return value
 
 
@@ -146,6 +146,8 @@ def _cell(field: Field, result: object) -> Value:
         return [[str(number) for number in row] for row in value]
     if isinstance(value, Fraction):
         return str(value) if field.kind == "text" else float(value)
+    if isinstance(value, tuple) and field.kind == "text":
+        return ", ".join(value)
     if value is None or isinstance(value, str | float | int):
         return None if isinstance(value, float) and not math.isfinite(value) else value
     name = getattr(value, "name", None)

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from bezstab.engines import DRIVE_METHODS
 from bezstab.show.columns import Row
-from bezstab.show.fields import cells
 from bezstab.show.row_kinds import HELD
 
 if TYPE_CHECKING:
@@ -21,9 +20,8 @@ NOT_JUDGED = "Not judged: a limit of the torque, friction, and what else the dri
 
 def held_row(answer: HeldAnswer) -> Row:
     """Return what one way of applying a held or late drive does as a row; limits as gains and as steps."""
-    question = answer.question
-    filtered = float(question.timing.filter_steps * question.h)
-    return cells(HELD.fields, answer, {"drive": DRIVE_METHODS[answer.method.name], "filter": filtered})
+    filtered = float(answer.question.timing.filter_steps * answer.question.h)
+    return HELD.row(answer, drive=DRIVE_METHODS[answer.method.name], filter=filtered)
 
 
 def timing_words(timing: Timing, h: float) -> str:

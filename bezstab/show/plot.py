@@ -8,6 +8,7 @@ Further keyword arguments are matplotlib's, for the line that is drawn.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, SupportsFloat
 
@@ -44,7 +45,7 @@ from bezstab.stability import spectral_radius as spectral_radius_at
 
 if TYPE_CHECKING:  # so that a picture of the plane does not load what runs mechanisms
     from bezstab.evidence import Cost, MovingRegion, Run, VerdictMap
-    from bezstab.mechanism import Body, Scene, Simulation
+    from bezstab.mechanism import Scene, Simulation
 
 Range = tuple[SupportsFloat, SupportsFloat]
 Quantity = Literal["area", "least |z_p|", "error constant", "order of accuracy"]
@@ -78,7 +79,7 @@ def __dir__() -> list[str]:
 ALONG_AN_EDGE, ARROWS = 121, 5
 """Points along an edge of the axes, and how many of them are arrows."""
 PARABOLA = 400  # points of a smooth curve: more than its pixels tell apart
-NAME_OFF = 4.0  # points between a body and its name
+NAME_OFF = 4.0  # points from a body up to its name
 MARK_SHAPES = "Ds^vP"
 
 
@@ -361,78 +362,29 @@ def mechanism(scene: Scene, q: FloatArray, axes: Axes | None = None) -> list[Lin
         axes = _new_axes(scene.name, "x (m)", "y (m)")
         axes.set_aspect("equal")
     for body in scene.bodies:
-        if _turns_on_a_pivot(body):
+        if body.turns_in_place:
             x, y = body.locked.get("x", 0.0), body.locked.get("y", 0.0)
             axes.plot(x, y, marker=6, color="0.6", markersize=9, zorder=1.5)  # a triangle whose tip is the pivot
     sliding = {body.name for body in scene.bodies if {"x", "y"} & set(body.free)}
-    joints = _joints(scene, q)
-    lengths = {name: abs(_vector(points)) for name, points in joints.items()}
+    places = scene.joint_places(q.tolist())
+    colours = {name: line_at(place)["color"] for place, name in enumerate(places)}
+    lengths = {name: math.dist(points[0], points[-1]) for name, points in places.items()}
     lines: dict[str, Line2D] = {}
-    for name in sorted(joints, key=lengths.__getitem__, reverse=True):  # so that a longer body hides no shorter one
-        x, y = np.transpose(joints[name])
-        colour = line_at(list(joints).index(name))["color"]
-        (lines[name],) = axes.plot(x, y, color=colour, linestyle="-", linewidth=3, solid_capstyle="round", label=name)
-        if len(joints[name]) == 1 and name in sliding:
+    for name in sorted(places, key=lengths.__getitem__, reverse=True):  # so that a longer body hides no shorter one
+        x, y = np.transpose(places[name])
+        (lines[name],) = axes.plot(x, y, color=colours[name], linewidth=3, solid_capstyle="round", label=name)
+        if len(x) == 1 and name in sliding:
             axes.plot(x, y, "s", color="0.8", markeredgecolor="black", markersize=12, zorder=1.5)
         axes.plot(x, y, "o", color="white", markeredgecolor="black", markersize=4)
-        _name_beside(axes, name, joints)
-    return [lines[name] for name in joints]
-
-
-def _vector(points: Sequence[Point]) -> complex:
-    """Return how a body's last joint lies from its first, as x + iy in m."""
-    return complex(*points[-1]) - complex(*points[0])
-
-
-def _name_beside(axes: Axes, name: str, joints: Mapping[str, Sequence[Point]]) -> None:
-    """Write a body's name beside the middle of the line between its outermost joints, where other bodies are further.
-
-          name
-    o------+------o      `off`: across the line, upwards or downwards
-    """
-    middles = {each: complex(*points[0]) + _vector(points) / 2 for each, points in joints.items()}
-    vector = _vector(joints[name])
-    others = [middle for each, middle in middles.items() if each != name]
-    upwards = 1j if not vector else vector / abs(vector) * (1j if vector.real >= 0 else -1j)
-
-    def room(off: complex) -> float:
-        beside = middles[name] + abs(vector) / 4 * off
-        return min((abs(other - beside) for other in others), default=0.0)
-
-    off = max((upwards, -upwards), key=room) if vector else upwards
-    place = off * (NAME_OFF if vector else 2 * NAME_OFF)
-    axes.annotate(
-        name,
-        (middles[name].real, middles[name].imag),
-        xytext=(place.real, place.imag),
-        textcoords="offset points",
-        ha="center" if abs(off.real) < 0.3 else "left" if off.real > 0 else "right",
-        va="center" if abs(off.imag) < 0.3 else "bottom" if off.imag > 0 else "top",
-        path_effects=[withStroke(linewidth=1.6, foreground="white")],  # a line of another body may run below
-    )
-
-
-def _turns_on_a_pivot(body: Body) -> bool:
-    """Return whether a body's frame stays in its place and turns there."""
-    return "theta" in body.free and not {"x", "y"} & set(body.free)
-
-
-def _joints(scene: Scene, q: FloatArray) -> dict[str, list[Point]]:
-    """Return where each body's joints and its pivot are in a state q, in m, ascending; the ground's joints too."""
-    from bezstab.mechanism import COORDINATES
-
-    free = dict(zip(scene.coordinates, q.tolist(), strict=True))
-    frames: dict[str, list[float]] = {}
-    joints: dict[str, set[Point]] = {}
-    for body in scene.bodies:
-        x, y, theta = (free.get(f"{body.name}.{axis}", body.locked.get(axis, 0.0)) for axis in COORDINATES)
-        frames[body.name] = [x, y, theta]
-        joints[body.name] = {(x, y)} if _turns_on_a_pivot(body) else set()
-    for name, local in scene.attachments:
-        x, y, theta = frames.get(name, (0.0, 0.0, 0.0))
-        place = complex(x, y) + complex(*local) * np.exp(1j * theta)
-        joints.setdefault(name, set()).add((place.real, place.imag))
-    return {name: sorted(places) for name, places in joints.items() if places}
+        axes.annotate(
+            name,
+            ((x[0] + x[-1]) / 2, (y[0] + y[-1]) / 2),
+            xytext=(0, NAME_OFF if lengths[name] else 2 * NAME_OFF),
+            textcoords="offset points",
+            ha="center",
+            path_effects=[withStroke(linewidth=1.6, foreground="white")],  # lines run below
+        )
+    return [lines[name] for name in places]
 
 
 def work_precision(

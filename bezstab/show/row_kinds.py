@@ -95,6 +95,7 @@ Z_ANGLE_DEG = number(
     unit="degrees",
     path="pole.angle_deg",
 )
+POLE = (Z_REAL, Z_IMAG, Z_ABS, Z_ANGLE_DEG)
 VERDICT = text("verdict", "What errors do, proven on the numbers as typed", "verdict", values_of=("methods.Verdict",))
 SAFE = truth("safe", "Whether every error is proven to shrink; with --scene, on the moving mechanism as well")
 KAPPA = number(
@@ -893,12 +894,12 @@ SIMULATIONS = RowKind(
         ALPHA_HAT.shown("α̂", ".6g"),
         BETA_HAT.shown("β̂", ".6g"),
         H.shown("h (s)", "g"),
-        number("time", "When the run ended", "until (s)", ".6g", unit="s"),
-        C_MAX,
-        CDOT_MAX,
-        ENERGY_DRIFT,
-        number("driver_work", "Work of the drivers", "work of drivers (J)", ".3e", unit="J"),
-        number("force_work", "Work of the applied forces", "work of forces (J)", ".3e", unit="J"),
+        number("time", "When the run ended", "until (s)", ".6g", unit="s", path="t.-1"),
+        C_MAX.of("observation.c_max"),
+        CDOT_MAX.of("observation.cdot_max"),
+        ENERGY_DRIFT.of("energy_drift.-1"),
+        number("driver_work", "Work of the drivers", "work of drivers (J)", ".3e", unit="J", path="driver_work.-1"),
+        number("force_work", "Work of the applied forces", "work of forces (J)", ".3e", unit="J", path="force_work.-1"),
         RUN_EVALUATIONS.of("trajectory.evaluations"),
         FACTORIZATIONS.of("trajectory.factorizations"),
         number(
@@ -929,6 +930,7 @@ SIMULATIONS = RowKind(
             "Number of singular configurations that the run went through",
             "singular passages",
             "d",
+            path="singular_times.size",
         ),
         FAILURE.of("trajectory.failure"),
     ),
@@ -1002,6 +1004,7 @@ MEASUREMENTS = RowKind(
             "difference of |z|",
             "+.1e",
             null=NOT_MEASURED,
+            path="difference_abs",
         ),
         PREDICTED_Z_ANGLE_DEG.shown("predicted ∠z (deg)", ".3f"),
         number(
@@ -1020,11 +1023,19 @@ MEASUREMENTS = RowKind(
             "+.0e",
             unit="degrees",
             null=NOT_MEASURED,
+            path="difference_angle_deg",
         ),
         PREDICTED_VERDICT,
         MEASURED_VERDICT,
-        number("difference_z_real", "Real part measured less that predicted", null=NOT_MEASURED),
-        number("difference_z_imag", "Imaginary part measured less that predicted", null=NOT_MEASURED),
+        number(
+            "difference_z_real", "Real part measured less that predicted", null=NOT_MEASURED, path="difference.real"
+        ),
+        number(
+            "difference_z_imag",
+            "Imaginary part measured less that predicted",
+            null=NOT_MEASURED,
+            path="difference.imag",
+        ),
         truth(
             "verdicts_agree",
             "Whether predicted and measured verdict agree",
@@ -1071,7 +1082,7 @@ VERDICT_MAPS = RowKind(
         METHOD,
         H,
         integer("runs", "Number of runs", "runs", "d", path="undecided.size"),
-        integer("undecided", "Runs that gave no verdict"),
+        integer("undecided", "Runs that gave no verdict", path="unjudged"),
         RUN_STEPS.of("run"),
         integer("judged_runs", "Runs that gave a verdict", "gave a verdict", "d", path="judged"),
         integer("agreeing", "Runs whose verdict is the predicted one", "as predicted", "d"),
@@ -1094,6 +1105,7 @@ VERDICT_MAPS = RowKind(
             "Runs so close to one, or closer than the motion moves the predicted pole",
             "too close, or moved by so much",
             "d",
+            path="close_runs",
         ),
         number(
             "farthest",
@@ -1122,8 +1134,8 @@ FORCED = RowKind(
         ALPHA_HAT.shown("α̂", ".4g"),
         BETA_HAT.shown("β̂", ".4g"),
         H.shown("h (s)", "g"),
-        PREDICTED_ERROR,
-        MEASURED_ERROR,
+        PREDICTED_ERROR.of("predicted"),
+        MEASURED_ERROR.of("measured"),
         number(
             "quotient",
             "Measured over predicted error, 1 if they agree",

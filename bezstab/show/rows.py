@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
+from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 from bezstab.engines import witness_of
@@ -11,24 +12,18 @@ from bezstab.errors import InputError
 from bezstab.methods import Method, evaluations, implicit, steps
 from bezstab.show.cells import LIMITS
 from bezstab.show.columns import Row, Value
-from bezstab.show.fields import cells, parts_of
+from bezstab.show.fields import cells
 from bezstab.show.row_kinds import (
     ACCURACY,
     ENGINES_LISTED,
     FORCED,
     FRONTS,
     LIKE_POINT,
-    LIKENESS,
-    LINTED,
     LISTED_METHODS,
-    MEASUREMENTS,
     MEMBERS,
+    POLE,
     POLES,
-    PROBED,
     REGIONS,
-    SIMULATIONS,
-    SWEPT,
-    VERDICT_MAPS,
 )
 from bezstab.units import alpha_and_beta
 
@@ -37,29 +32,20 @@ NOT_KNOWN = "not known"
 
 if TYPE_CHECKING:  # so that a small row does not load what makes the large ones
     from bezstab.engines import Engine
-    from bezstab.evidence import (
-        HalvedStep,
-        Likeness,
-        LikePoint,
-        Linted,
-        Measurement,
-        ProbedPole,
-        Run,
-        VerdictMap,
-    )
-    from bezstab.mechanism import Mechanism, Simulation
+    from bezstab.evidence import HalvedStep, LikePoint, Measurement
+    from bezstab.mechanism import Mechanism
     from bezstab.questions import Answer, ChainMap, ForcedErrors, RegionAnswer
-    from bezstab.stability import FrontPoint, Limit, Member, Region
+    from bezstab.stability import FrontPoint, Limit, Region
 
 
 def pole_rows(answer: Answer, poles: Iterable[complex]) -> list[Row]:
     """Return a row for each pole of a method at the point of an answer (dimensionless), angles in degrees."""
-    return [cells(POLES.fields, answer, _of_pole(complex(z))) for z in poles]
+    return [POLES.row(answer, **pole_cells(z)) for z in poles]
 
 
-def _of_pole(z: complex) -> dict[str, Value]:
-    """Return what the row of a choice says of a pole."""
-    return {f"z_{name}": part for name, part in parts_of(z).items()}
+def pole_cells(z: complex) -> dict[str, Value]:
+    """Return the cells that show a pole: its real and imaginary part, its modulus, its angle in degrees."""
+    return cells(POLE, SimpleNamespace(pole=complex(z)))
 
 
 def method_row(method: Method, name: str = "", group: str | None = None) -> Row:
@@ -137,12 +123,8 @@ def region_row(answer: RegionAnswer) -> Row:
 
     region, inside = answer.region, answer.inside
     reason = None if inside else f"{NOT_KNOWN}: {answer.trouble}" if answer.trouble else _nowhere(answer)
-    found = {
-        "approached": _approached(region),
-        "best_where": best_point_words(inside) if inside else reason,
-        "best_reason": reason,
-    }
-    return cells(REGIONS.fields, answer, found)
+    where = best_point_words(inside) if inside else reason
+    return REGIONS.row(answer, approached=_approached(region), best_where=where, best_reason=reason)
 
 
 def accuracy_cells(forced: ForcedErrors) -> dict[str, Value]:
@@ -170,48 +152,10 @@ def _nowhere(answer: RegionAnswer) -> str | None:
     return f"stable nowhere: a pole stays at {pole_place(answer.region.fixed_poles[0])} whatever α̂ and β̂"
 
 
-def family_row(member: Member) -> Row:
-    """Return what has become of a family at its number of steps; None where its region is empty."""
-    return cells(MEMBERS.fields, member)
-
-
 def limit_row(limit: Limit) -> Row:
     """Return the row of the Bezier family's limit, of order two, which has no number of steps."""
-    found = {"steps": None, "method": "B∞", "best_z_abs": limit.z_abs, "order": 2}
-    own = {key: getattr(limit, key) for key in ("area", "alpha_hat_max", "beta_hat_max")}
-    return cells(MEMBERS.fields, limit, found | own)
-
-
-def simulation_row(simulation: Simulation) -> Row:
-    """Return the summary of one run: largest |c| and |cdot| (SI), energy drift (J), cost, when and why it ended.
-
-    `time` is where it ended (s); h in s. The drift is what of the change of energy is not the work (J) of drivers and
-    of applied forces, which are there as well. `singular_passages` counts the singular configurations met.
-    """
-    found = {
-        "time": float(simulation.t[-1]),
-        "c_max": float(abs(simulation.c).max()),
-        "cdot_max": float(abs(simulation.cdot).max()),
-        "energy_drift": float(simulation.energy_drift[-1]),
-        "driver_work": float(simulation.driver_work[-1]),
-        "force_work": float(simulation.force_work[-1]),
-        "singular_passages": len(simulation.singular_times),
-    }
-    return cells(SIMULATIONS.fields, simulation, found)
-
-
-def measurement_row(scene: str, measurement: Measurement) -> Row:
-    """Return predicted and measured dominant pole at one point, their difference, angles in degrees.
-
-    None where nothing was measured; verdicts agree if both or neither diverge.
-    """
-    difference: dict[str, float | None] = dict.fromkeys(parts_of(measurement.predicted))
-    if measurement.measured is not None:
-        predicted = parts_of(measurement.predicted)
-        difference = {name: part - predicted[name] for name, part in parts_of(measurement.measured).items()}
-    found: dict[str, Value] = {f"difference_z_{name}": part for name, part in difference.items()}
-    found |= {"scene": scene, "measurable": measurement.measured is not None}
-    return cells(MEASUREMENTS.fields, measurement, found)
+    found = {key: getattr(limit, key) for key in ("area", "alpha_hat_max", "beta_hat_max")}
+    return MEMBERS.row(limit, steps=None, method="B∞", order=2, **found)
 
 
 def forced_rows(scene: str, pair: HalvedStep) -> list[Row]:
@@ -219,20 +163,15 @@ def forced_rows(scene: str, pair: HalvedStep) -> list[Row]:
 
     None where there is nothing to compare; orders are between the two, and stand in the row of the smaller step.
     """
+    observed_order = None if pair.holds is None else pair.observed_order
     return [
-        cells(
-            FORCED.fields,
+        FORCED.row(
             run,
-            {
-                "scene": scene,
-                "gain_share": pair.share,
-                "predicted_error": run.predicted,
-                "measured_error": None if run.failure else run.measured,
-                "quotient": None if run.reason else run.quotient,
-                "predicted_order": pair.predicted_order if run is pair.half else None,
-                "observed_order": None if run is pair.whole or pair.holds is None else pair.observed_order,
-                "reason": run.reason or "",
-            },
+            scene=scene,
+            gain_share=pair.share,
+            quotient=None if run.reason else run.quotient,
+            predicted_order=pair.predicted_order if run is pair.half else None,
+            observed_order=observed_order if run is pair.half else None,
         )
         for run in (pair.whole, pair.half)
     ]
@@ -272,48 +211,20 @@ def exact_rate_words(mechanism: Mechanism, measurements: Sequence[Measurement]) 
     return f"No rate of {name} is exact: the motion does not begin anew{why}. {shown}"
 
 
-def probed_pole_row(column: str, found: ProbedPole) -> Row:
-    """Return the dominant pole in a column of a log, per row of it, angle in degrees; None where none is claimed."""
-    return cells(PROBED.fields, found, {"column": column})
-
-
-def likeness_row(column: str, likeness: Likeness) -> Row:
-    """Return how far the pole in a column of a log is from a method's, per row of the log, angle in degrees."""
-    return {"column": column, **cells(LIKENESS, likeness)}
-
-
 def like_point_row(column: str, point: LikePoint, h: float | None) -> Row:
     """Return a point at which a method has the pole in a column of a log, with h (s) in 1/s too."""
-    alpha, beta = (None, None) if h is None else alpha_and_beta(point.alpha_hat, point.beta_hat, h)
-    at_point = cells(LIKE_POINT, point, {"h": h, "alpha": alpha, "beta": beta})
-    return {"column": column, "method": point.method.name, **at_point}
-
-
-def linted_row(linted: Linted) -> Row:
-    """Return what an element of a MuJoCo model means, and whether it is safe: None where that was not judged.
-
-    None, too, for advice where there is none.
-    """
-    safe = None if linted.verdict is None else not linted.unsafe
-    return cells(LINTED.fields, linted, {"advice": linted.advice or None, "safe": safe})
-
-
-def verdict_map_row(verdicts: VerdictMap) -> Row:
-    """Return how far simulated verdicts agree with |z_p| < 1, and how near to one those lie that do not."""
-    unjudged = verdicts.undecided.size - verdicts.judged
-    found = {"undecided": unjudged, "too_close": int(verdicts.too_close.sum())}
-    return cells(VERDICT_MAPS.fields, verdicts, found)
-
-
-def run_row(run: Run, front: str) -> Row:
-    """Return one run of a sweep: its errors (SI), its cost (s of processor time), the fronts it is on."""
-    return cells(SWEPT.fields, run, {"front": front})
+    return {"column": column, "method": point.method.name, **cells(LIKE_POINT, point, _in_seconds(point, h))}
 
 
 def front_row(point: FrontPoint, h: float | None) -> Row:
     """Return a point of the front of |z_p| against forced error, with h (s) in 1/s too."""
+    return FRONTS.row(point, **_in_seconds(point, h))
+
+
+def _in_seconds(point: FrontPoint | LikePoint, h: float | None) -> dict[str, Value]:
+    """Return a step (s), and alpha and beta (1/s) of a point with it; None without a step."""
     alpha, beta = (None, None) if h is None else alpha_and_beta(point.alpha_hat, point.beta_hat, h)
-    return cells(FRONTS.fields, point, {"h": h, "alpha": alpha, "beta": beta})
+    return {"h": h, "alpha": alpha, "beta": beta}
 
 
 def chain_rows(engine: Engine, found: ChainMap) -> list[Row]:
@@ -340,11 +251,4 @@ def engine_row(engine: Engine, point: tuple[Fraction, Fraction] | None, h: Fract
             setting = engine.setting(point, h)
         except InputError as error:
             setting = str(error)
-    found: dict[str, Value] = {
-        "parameters": ", ".join(engine.parameters),
-        "optional": ", ".join(engine.optional),
-        "units": ", ".join(engine.units),
-        "witness": witness_of(engine.name),
-        "setting": setting,
-    }
-    return cells(ENGINES_LISTED.fields, engine, found)
+    return ENGINES_LISTED.row(engine, witness=witness_of(engine.name), setting=setting)

@@ -267,3 +267,15 @@ def _nothing_fits(nearest: Likeness, at: str) -> str:
 def _listed(names: Sequence[str]) -> str:
     """Return names as 'A', 'A and B' or 'A, B and C'."""
     return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+MOST_LISTED = 20  # times in a message
+
+
+def passages_words(times: Sequence[float]) -> str:
+    """Return where a run has gone through singular configurations, and what that means; times in s."""
+    listed = ", ".join(f"{time:.6g}" for time in times[:MOST_LISTED])
+    more = ", ..." if len(times) > MOST_LISTED else ""
+    what = "a singular configuration" if len(times) == 1 else f"{len(times)} singular configurations"
+    where = f"the run goes through {what}, at t = {listed}{more} s"
+    return f"{where}: there the motion can branch, and which way it goes is left to rounding"

@@ -38,6 +38,7 @@ THIN = 1e-4  # of its distance: around a double mu a curve of that size is known
 STRAIGHT = 1e6  # times as long as the gaps beside it: an edge of two points, which is straight
 ALONG: FloatArray = (1 - np.cos(np.linspace(0, np.pi, 34)[1:-1])) / 2  # of it, the places that are asked about
 STRETCH, CORNER = 1e-3, 3  # of a curve's length, and points: around corners, where poles meet, more may contradict
+NEAR_CUSP, FURTHER_ASIDE = 1 / 25, 100  # of its length, and times as far: where poles nearly meet, edges are less exact
 PROVEN, DOUBTED = 8, 32  # points of each curve, and of a stretch that contradicts: to prove all would take seconds
 SEEN = 1.5  # times what is seen: nearer an end of a curve is where an edge is missing
 TURNED = 0.1  # rad, from one chord to the next: a corner
@@ -128,9 +129,9 @@ def _check_edge(name: str, shape: Shape, curve: FloatArray, inside: Verdicts, pr
         return
     offset = np.maximum(ASIDE * size, BY_ROUNDING * away) * np.stack([-along[:, 1], along[:, 0]], axis=1)
 
-    def parted(verdicts: Verdicts, some: NDArray[np.intp]) -> BoolArray:
+    def parted(verdicts: Verdicts, some: NDArray[np.intp], times: float = 1) -> BoolArray:
         """Return at which points one side is stable alone, or both are, and not what is between."""
-        middle, aside = points[some], offset[some]
+        middle, aside = points[some], times * offset[some]
         left, right = (verdicts(*(middle + sign * aside).T) for sign in (1, -1))
         both = left & right
         both[both] = ~verdicts(*middle[both].T)
@@ -138,9 +139,12 @@ def _check_edge(name: str, shape: Shape, curve: FloatArray, inside: Verdicts, pr
 
     good = parted(inside, np.arange(len(points)))
     way = np.append(0, np.cumsum(np.hypot(*(np.diff(points, axis=0) / size).T)))
-    for first, last in _stretches(~good, way):
+    for first, last in _stretches(~good, way, way[-1]):
         some = np.arange(first, last + 1)[:: 1 + (last - first) // DOUBTED]
-        for k, _ in _stretches(~parted(proven, some), way[some]):
+        there = parted(proven, some)
+        if way[last] - way[first] <= NEAR_CUSP * way[-1]:
+            there |= parted(proven, some, FURTHER_ASIDE)
+        for k, _ in _stretches(~there, way[some], way[-1]):
             _refuse_edge(name, points[some[k]])
     some = np.arange(len(points))[:: 1 + len(points) // PROVEN]
     wrong = some[~parted(proven, some)]
@@ -162,11 +166,14 @@ def _with_points_between(curve: FloatArray, size: FloatArray) -> FloatArray:
     return np.insert(curve, np.repeat(straight + 1, len(ALONG)), between.reshape(-1, 2), axis=0)
 
 
-def _stretches(wrong: BoolArray, way: FloatArray) -> Iterator[tuple[int, int]]:
-    """Yield the first and last number of what is wrong in a row of points, but for corners and what is short."""
+def _stretches(wrong: BoolArray, way: FloatArray, length: float) -> Iterator[tuple[int, int]]:
+    """Yield the first and last number of what is wrong in a row of points, but for corners and what is short.
+
+    way: where each point lies on a curve of this length.
+    """
     turns = np.flatnonzero(np.diff(np.concatenate([[False], wrong, [False]]).astype(int)))
     for first, beyond in zip(turns[::2].tolist(), turns[1::2].tolist(), strict=True):
-        if beyond - first > CORNER and way[beyond - 1] - way[first] > STRETCH * (way[-1] - way[0]):
+        if beyond - first > CORNER and way[beyond - 1] - way[first] > STRETCH * length:
             yield first, beyond - 1
 
 

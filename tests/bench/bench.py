@@ -25,7 +25,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from bezstab.evidence import MapRows, map_rows, model_xml, own_motion_rates, simulated_verdicts
+from bezstab.evidence import MapRows, map_rows, model_xml, simulated_verdicts
 from bezstab.mechanism import (
     Mechanism,
     T,
@@ -56,6 +56,7 @@ from bezstab.stability import FloatArray, Pencil, Region, pencil_of, region, roo
 from bezstab.stability.boundary_locus import bounds_of
 from bezstab.stability.region_checks import check_region
 from bezstab.stability.regions import shape_source
+from tests.evidence.exact_rates import own_motion_rates
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent.parent))  # run as a script, the tests are no package yet

@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
 ROOT = Path(__file__).parent.parent.parent
 PATIENCE = 120
@@ -66,18 +66,9 @@ def started(
         running.communicate()
 
 
-def finished(
-    *arguments: str,
-    cwd: Path,
-    environment: Mapping[str, str | None] | None = None,
-    prepare: Callable[[], object] = lambda: None,
-    stdout: int | IO[bytes] = subprocess.PIPE,
-    stderr: int | IO[bytes] = subprocess.PIPE,
-) -> subprocess.CompletedProcess[bytes]:
+def finished(*arguments: str, **options: Any) -> subprocess.CompletedProcess[bytes]:
     """Return what a command printed, and its exit status; the options are those of `started`."""
-    with started(
-        *arguments, cwd=cwd, environment=environment, prepare=prepare, stdout=stdout, stderr=stderr
-    ) as running:
+    with started(*arguments, **options) as running:
         answer, errors = running.communicate(timeout=PATIENCE)
         return subprocess.CompletedProcess(arguments, running.returncode, answer, errors)
 

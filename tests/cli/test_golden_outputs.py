@@ -106,6 +106,7 @@ def _without_numbers(text: str) -> str:
     return re.sub(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?", "#", text)
 
 
+@pytest.mark.usefixtures("_few_extremes")
 @pytest.mark.parametrize("golden", GOLDEN, ids=[golden["command"] for golden in GOLDEN])
 @pytest.mark.slow_except("poles", "choose --engine", "check", "engines", "region --method B4 --method AB4")
 def test_a_command_prints_what_it_printed_before(golden: dict[str, Any], tmp_path: Path) -> None:

@@ -8,26 +8,11 @@ import numpy as np
 import pytest
 
 from bezstab.errors import InputError
-from bezstab.methods import GROUPS, lookup
-from bezstab.stability import RATES, combined_error, error_front, spectral_radius
-from bezstab.units import from_dimensionless
+from bezstab.methods import lookup
+from bezstab.stability import combined_error
 from tests.cli.running import arrays, rows, run
 
-NOTHING = ("--figure", "none", "--table", "none")
 ACCURACY = ("region", "--method", "RK4", "--accuracy", "--quality", "fast")
-
-
-def test_the_list_of_methods_has_a_line_for_each_below_the_heading_of_its_group() -> None:
-    lines = run("methods").stdout.splitlines()
-    for group in GROUPS:
-        first = lines.index(group.heading) + 1 + bool(group.note)
-        assert [line.split()[0] for line in lines[first : first + len(group.methods)]] == list(group.methods)
-    listed = rows("methods")
-    assert [(row["group"], row["method"]) for row in listed] == [
-        (group.heading, name) for group in GROUPS for name in group.methods
-    ]
-    assert all(row["source"] for row in listed)
-    assert r"\hat{\alpha}" in run("methods", "B4", "--latex").stdout
 
 
 @pytest.mark.slow
@@ -57,13 +42,6 @@ def test_the_tables_of_a_map_and_of_compared_boundaries(tmp_path: Path) -> None:
     assert {row["method"] for row in boundaries} == {"B4", "RK4@5"}
 
 
-def test_region_prints_the_area_of_each_level_asked_for() -> None:
-    whole, faster, none = rows("region", "--method", "B4", "--level", "0.9", "--level", "0.5", *NOTHING)
-    assert [row["z_abs_below"] for row in (whole, faster, none)] == [1, 0.9, 0.5]
-    assert 0 < faster["area"] < whole["area"]  # type: ignore[operator]
-    assert (none["area"], none["best_z_abs"], none["best_reason"]) == (0, None, "none: |z_p| is 0.625884 at least")
-
-
 @pytest.mark.slow
 def test_a_users_method_has_maps_and_steps_of_several_h(tmp_path: Path) -> None:
     Path("mine.toml").write_text('name = "a/b"\nrho = ["1", "-1"]\nsigma = ["0", "1"]', encoding="utf-8")
@@ -81,23 +59,21 @@ def test_a_map_of_each_way_of_applying_a_drive_is_written_and_the_rows_are_those
 
 
 @pytest.mark.slow
-def test_the_map_of_errors_is_written_as_figure_and_table_and_the_same_again(tmp_path: Path) -> None:
-    options = "--alpha-range 0.001 6 --beta-range 1e-5 9 --grid 20 --level 0.9 --table npz"
-    for _ in range(2):
-        region, level = rows(*ACCURACY, *options.split(), "-o", "out")
-        written = {path.name: path.read_bytes() for path in (tmp_path / "out").iterdir()}
-    assert {path.name: path.read_bytes() for path in (tmp_path / "out").iterdir()} == written
-    assert set(written) == {"region_RK4_accuracy.png", "region_RK4_accuracy.npz"}
+def test_the_map_of_errors_is_written_as_figure_and_table(tmp_path: Path) -> None:
+    options = "--alpha-range 0.001 6 --beta-range 1e-5 9 --grid 20 --level 0.9 --table npz -o out"
+    region, level = rows(*ACCURACY, *options.split())
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {
+        "region_RK4_accuracy.png",
+        "region_RK4_accuracy.npz",
+    }
     assert (region["z_abs_below"], level["z_abs_below"]) == (1, 0.9)
     assert region["accurate_error"] == level["accurate_error"]
     table = arrays(tmp_path / "out" / "region_RK4_accuracy.npz")
-    assert table["alpha_hat"][:20] == pytest.approx(np.geomspace(1e-3, 6, 20))
-    assert table["beta_hat"][::20] == pytest.approx(np.geomspace(1e-5, 9, 20))
-    decaying = table["z_abs"] < 1
+    alpha_hat, beta_hat, decaying = table["alpha_hat"], table["beta_hat"], table["z_abs"] < 1
+    assert alpha_hat[:20] == pytest.approx(np.geomspace(1e-3, 6, 20))
+    assert beta_hat[::20] == pytest.approx(np.geomspace(1e-5, 9, 20))
     assert np.isnan(table["combined_error"][~decaying]).all()
-    expected = combined_error(
-        lookup("RK4"), table["alpha_hat"][decaying], table["beta_hat"][decaying], Fraction(1, 100)
-    )
+    expected = combined_error(lookup("RK4"), alpha_hat[decaying], beta_hat[decaying], Fraction(1, 100))
     assert table["combined_error"][decaying] == pytest.approx(expected)
 
 
@@ -111,19 +87,3 @@ def test_a_method_without_an_accurate_point_has_its_map_nevertheless(monkeypatch
     assert result.exit_code == 0
     assert "no most accurate point: RK4: no feedback decays so fast" in result.stderr
     assert "wrote region_RK4_accuracy.png" in result.stderr
-
-
-@pytest.mark.slow
-def test_the_predicted_trade_is_the_front(tmp_path: Path) -> None:
-    trade = ("tradeoff", "--predicted", "--method", "RK4", "--method", "B4")
-    found = rows(*trade, "--level", "0.99", "--level", "0.7", "--h", "0.001", "--omega", "10")
-    fronts = [point for name in ("RK4", "B4") for point in error_front(lookup(name), [0.99, 0.7])]
-    assert {path.name for path in tmp_path.iterdir()} == {"tradeoff_predicted.csv", "tradeoff_predicted.png"}
-    for row, point in zip(found, fronts, strict=True):
-        assert (row["method"], row["z_abs_below"]) == (point.method.name, point.z_abs_below)
-        assert (row["alpha_hat"], row["combined_error"]) == (point.alpha_hat, point.combined_error)
-        assert (row["alpha"], row["beta"]) == pytest.approx(from_dimensionless(point.alpha_hat, point.beta_hat, 0.001))
-        assert spectral_radius(point.method, point.alpha_hat, point.beta_hat) <= point.z_abs_below + 1e-6
-    usual = rows(*trade[:4], *NOTHING)  # without a step nothing is in seconds
-    assert [row["z_abs_below"] for row in usual[:-1]] == list(RATES)
-    assert {(row["h"], row["alpha"], row["beta"]) for row in usual} == {(None, None, None)}

@@ -60,18 +60,6 @@ def test_a_row_for_each_fit_and_for_each_method_in_order() -> None:
         assert [row["method"] for row in methods if row["fits"]] == ([true] if true else [])
 
 
-def test_a_sentence_says_what_it_behaves_like_and_what_is_excluded() -> None:
-    write("log.csv", c=response("SYM", 0.5, 0.25))
-    write("zero.csv", c=np.zeros(300))
-    command = "probe log.csv --minus zero.csv --alpha 0.5 --beta 0.25 --method SYM --method RK4 --method B4"
-    said = run(*command.split()).stdout.splitlines()[-1]
-    expected = r"c: this behaves like SYM at \(0\.5, 0\.25\) to \de-\d+; (RK4 and B4|B4 and RK4) are excluded\."
-    assert re.fullmatch(expected, said)
-    table = run(*shlex.split("probe log.csv --alpha 0.5 --beta 0.25 --turning 0 --h 1/100")).stdout
-    assert len(re.findall(r"yes$", table, re.MULTILINE)) == 2  # verlet-half has the same poles
-    assert len(re.findall(r"NO$", table, re.MULTILINE)) == 5
-
-
 def test_sentences_in_full() -> None:
     def like(name: str, distance: float, same_as: str = "", dominant: bool = True) -> Likeness:
         return Likeness(lookup(name), 0.5 + 0j, distance, 1e-6, 1e-3, dominant, same_as)
@@ -92,26 +80,6 @@ def test_sentences_in_full() -> None:
         "fit if the mechanism turned up to 3 times as fast as is allowed for (--turning)."
     )
     assert likeness_sentence([like("B4", 2e-2)], point).startswith("nothing fits at (1, 0.25): the nearest is B4, 0.02")
-
-
-def test_a_point_in_another_unit_is_noticed() -> None:
-    write("my log.csv", c=response("SYM", 2 / 3, 1 / 4))
-    command = ["probe", "my log.csv", "--alpha", "40", "--beta", "60", "--h", "1/120"]
-    said = " ".join(run(*command).stderr.split())
-    assert "add --physical: bezstab probe 'my log.csv' --alpha 40 --beta 60 --h 1/120 --physical" in said
-    right = run(*command, "--physical")
-    assert (right.exit_code, right.stderr) == (0, "")
-    assert "this behaves like SYM at (0.666667, 0.25)" in right.stdout
-
-
-def test_without_a_point_the_point_is_found_in_both_units() -> None:
-    write("log.csv", time=np.arange(300) / 100, c=response("B4", 0.5, 0.1))
-    write("zero.csv", time=np.arange(300) / 100, c=np.zeros(300))
-    (_, row) = rows(*shlex.split("probe log.csv --minus zero.csv --method B4 --h 0.01"))
-    assert (row["alpha_hat"], row["beta_hat"]) == pytest.approx((0.5, 0.1), abs=1e-6)
-    assert (row["alpha"], row["beta"]) == pytest.approx((25, np.sqrt(0.1) / 0.01), abs=1e-4)
-    write("log.csv", c=0.9 ** np.arange(300.0))
-    assert "curve of points" in run(*shlex.split("probe log.csv --minus zero.csv --method SYM --column c")).stdout
 
 
 def test_standard_input_is_read_for_a_dash_and_columns_are_fitted_jointly_if_asked_for() -> None:

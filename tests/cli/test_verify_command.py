@@ -1,19 +1,6 @@
-import shlex
-from pathlib import Path
-
 import pytest
 
-from tests.cli.running import arrays, rows, run
-
-
-@pytest.mark.slow
-def test_verify_map_writes_verdicts_and_figure(tmp_path: Path) -> None:
-    (row,) = rows(*shlex.split("verify --map 5 --scene pendulum --method SYM --table npz --workers 1"))
-    assert (row["runs"], row["judged_runs"], row["agreeing"], row["disagreeing"]) == (25, 25, 25, 0)
-    assert (row["agreeing_share"], row["band"]) == (1, 0.005)
-    assert sorted(path.suffix for path in tmp_path.iterdir()) == [".npz", ".png"]
-    columns = arrays(tmp_path / "verify_pendulum_SYM.npz")
-    assert (columns["diverges"] == (columns["z_abs"] >= 1)).all()
+from tests.cli.running import rows, run
 
 
 def test_what_is_thrown_apart_at_once_diverges_and_seconds_are_understood() -> None:
@@ -49,18 +36,6 @@ def test_verify_tells_what_the_motion_does_to_a_prediction() -> None:
 def test_exact_rates_are_said_to_be_along_which_motion(scene: str, method: str, said: str) -> None:
     point = ("--alpha", "0.5", "--beta", "0.1", "--h", "0.01")
     assert said in run("verify", "--scene", scene, "--method", method, *point, "--floquet").stdout.replace("\n", " ")
-
-
-@pytest.mark.slow
-def test_predicted_and_measured_errors_are_compared_at_shares_of_the_gains() -> None:
-    command = ("verify", "--accuracy", "--scene", "driven_four_bar", "--h", "0.004", "--method", "SYM")
-    found = rows(*command)
-    assert [(row["gain_share"], row["h"]) for row in found] == [
-        (share, h) for share in (0.2, 0.3, 0.5, 0.7, 1) for h in (0.004, 0.002)
-    ]
-    for row in found:
-        assert row["quotient"] == pytest.approx(1, abs=0.05)
-        assert row["predicted_order"] == (None if row["h"] == 0.004 else pytest.approx(2, abs=0.05))  # at strong gains
 
 
 @pytest.mark.parametrize(

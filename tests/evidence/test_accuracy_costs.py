@@ -6,7 +6,6 @@ import pytest
 from bezstab.errors import NumericalError
 from bezstab.evidence import (
     METHODS,
-    STEPS,
     Cost,
     accuracy_costs,
     measured_runs,
@@ -177,11 +176,6 @@ def test_a_sweep_knows_its_fronts(against: Cost) -> None:
         assert ("T" in label) == (index in whole.trajectory_front)
         assert ("c" in label) == (index in whole.constraint_front)
         assert not (label and index in failed)
-
-
-def test_the_default_steps_are_ten_from_a_tenth_of_a_millisecond_to_twenty() -> None:
-    assert len(set(STEPS)) == 10
-    assert (min(map(float, STEPS)), max(map(float, STEPS))) == (1e-4, 0.02)
 
 
 def test_all_runs_of_a_sweep_are_compiled_or_none(monkeypatch: pytest.MonkeyPatch) -> None:

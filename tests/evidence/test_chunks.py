@@ -140,28 +140,12 @@ def test_a_cluster_does_the_same_work(cluster: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_resumed_sweep_writes_the_same_bytes(tmp_path: Path) -> None:
-    swept = "tradeoff --h 0.01 --time 0.2 --alpha 50 --beta 50 --physical --method SYM --method RK4 --workers 1"
-    command = [sys.executable, "-m", "bezstab", *swept.split()]
-    chunks = tmp_path / "tradeoff_slider_crank_light.chunks"
-    with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as running:
-        while not list(chunks.glob("0.npz")) and running.poll() is None:
-            time.sleep(0.001)
-        running.kill()
-    subprocess.run([*command, "--resume"], cwd=tmp_path, check=True, capture_output=True, timeout=120)
-    resumed = {path.name: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()}
-    subprocess.run(command, cwd=tmp_path, check=True, capture_output=True, timeout=120)
-    assert {path.name: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()} == resumed
-    assert len(resumed) == 3
-
-
-@pytest.mark.slow
 def test_a_killed_map_resumes_to_the_same_bytes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parent.parent.parent))
     whole, killed = tmp_path / "whole", tmp_path / "killed"
     for folder in (whole, killed):
         folder.mkdir()
-    mapped = "verify --map 80 --method SYM --scene pendulum --workers 1"
+    mapped = "verify --map 50 --method SYM --scene pendulum --workers 1"
     command = [sys.executable, "-m", "bezstab", *mapped.split()]
     subprocess.run(command, cwd=whole, check=True, capture_output=True, timeout=120)
     chunks = killed / "verify_pendulum_SYM.chunks"

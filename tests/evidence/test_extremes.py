@@ -5,12 +5,10 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-import numpy as np
 import pytest
 
 from bezstab.evidence import Check, extreme_checks, extremes
 from bezstab.mechanism import Observation, observe
-from bezstab.methods import LinearMultistep, steps
 from bezstab.stability import Choice, describe_point
 from tests.evidence.samples import of_campaign
 
@@ -69,7 +67,7 @@ def test_poles_are_looked_at_as_far_out_as_is_promised() -> None:
 @pytest.mark.slow
 def test_a_part_of_all_of_it_holds() -> None:
     """`make extremes` looks at all, which takes two minutes: twenty methods and more are told apart by few checks."""
-    some = list(extreme_checks(full=True))[:: of_campaign(1, 20)]
+    some = list(extreme_checks(full=True))[:: of_campaign(1, 40)]
     assert [found for check in some if not (found := check()).held] == []
 
 
@@ -104,19 +102,3 @@ def test_steps_are_tried_within_a_hundredth_of_the_largest_stable_one_on_both_si
     assert max(below) == pytest.approx(0.99)
     assert min(above) == pytest.approx(1.01)
     assert max(above) == 10
-
-
-def test_a_triple_root_of_less_than_four_and_a_half_digits_does_not_hold(monkeypatch: pytest.MonkeyPatch) -> None:
-    for digits, held in ((4.4, False), (4.6, True)):
-        moved = np.array([0.5 * (1 + 10**-digits)])
-        monkeypatch.setattr(extremes, "poles", lambda *_, moved=moved: moved)
-        assert extremes._triple_root().held == held
-
-
-@pytest.mark.parametrize(("full", "count"), [(False, 4), (True, 18)])
-def test_every_method_of_two_steps_and_more_is_looked_at_where_two_roots_meet(full: bool, count: int) -> None:
-    checks = [check for check in extreme_checks(full) if isinstance(check, partial)]
-    looked_at = [check.args[0] for check in checks if check.func is extremes._double_root]
-    assert {type(method.scheme) for method in looked_at} == {LinearMultistep}
-    assert min(steps(method) for method in looked_at) == 2
-    assert len(looked_at) == count  # B2 to B12 and AB2 to AB8

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from bezstab.evidence import floquet_rates
 from bezstab.mechanism import compiled_mechanism, load_scene
 from bezstab.methods import Method, lookup, second_order_form
 from bezstab.stability import spectral_radius
 from tests.evidence.driven_four_bar import four_bar, swinging_four_bar
+from tests.evidence.exact_rates import floquet_rates
 from tests.reference.perturbed_revolutions import runner_multipliers
 
 STABLE = {
@@ -65,13 +65,6 @@ def test_a_method_and_its_second_order_form_have_the_same_rate(name: str) -> Non
     point = np.array([0.4]), np.array([0.12])
     rates = [floquet_rates(four_bar(), each, 0.01, *point, 1.0) for each in (method, written_out)]
     assert rates[0] == pytest.approx(rates[1], rel=1e-12)
-
-
-def test_a_batch_gives_what_single_points_give() -> None:
-    alpha_hat, beta_hat = np.array([0.3, 0.5, 0.7]), np.array([0.1, 0.2, 0.15])
-    together = floquet_rates(four_bar(), lookup("RK2"), 0.02, alpha_hat, beta_hat, 1.0)
-    alone = [floquet_rates(four_bar(), lookup("RK2"), 0.02, alpha_hat[[i]], beta_hat[[i]], 1.0)[0] for i in range(3)]
-    assert together == pytest.approx(alone, rel=1e-12)
 
 
 def test_a_run_without_a_driver_has_the_rate_of_its_constraint_errors() -> None:

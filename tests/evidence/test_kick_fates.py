@@ -5,12 +5,13 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from bezstab.evidence import floquet_rates, map_rows, simulated_verdicts, verdict_map
+from bezstab.evidence import map_rows, simulated_verdicts, verdict_map
 from bezstab.evidence.kick_fates import fates, follow
 from bezstab.mechanism import load_scene
 from bezstab.methods import lookup
 from bezstab.stability import FloatArray
 from tests.evidence.driven_four_bar import four_bar
+from tests.evidence.exact_rates import floquet_rates
 from tests.evidence.samples import of_campaign
 
 KICK, RUN = 1e-8, 2000
@@ -80,7 +81,7 @@ def test_a_mechanism_that_breaks_down_gives_no_verdict_unless_feedback_throws_it
 
 
 @pytest.mark.promise("Maps of simulated verdicts")
-@pytest.mark.parametrize("name", ["AB4", pytest.param("B4", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("name", of_campaign(["AB4", "B4"], ["AB4"]))
 @pytest.mark.slow
 def test_where_the_motion_turns_a_verdict_it_is_that_of_the_exact_rate(name: str) -> None:
     h = 1e-2
@@ -99,10 +100,9 @@ def test_where_the_motion_turns_a_verdict_it_is_that_of_the_exact_rate(name: str
     ("scene", "name", "h", "judged"),
     [
         ("four_bar", "B4", 5e-3, 0.8),
-        ("four_bar", "RK4", 5e-3, 0.9),
-        pytest.param("four_bar", "rk45", 5e-3, 0.9, marks=pytest.mark.slow),
-        *of_campaign([pytest.param("slider_crank_light", "RK4", 1e-3, 0.99, marks=pytest.mark.slow)], []),
-        pytest.param("slider_crank_300rpm", "RK4", 5e-3, 0.6, marks=pytest.mark.slow),  # forced by millimetres at once
+        *of_campaign([("four_bar", "RK4", 5e-3, 0.9), ("four_bar", "rk45", 5e-3, 0.9)], []),
+        *of_campaign([("slider_crank_light", "RK4", 1e-3, 0.99)], []),
+        ("slider_crank_300rpm", "RK4", 5e-3, 0.6),  # forced by millimetres at once
     ],
 )
 @pytest.mark.slow

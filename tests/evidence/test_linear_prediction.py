@@ -1,20 +1,16 @@
 """Linear prediction against responses whose poles are known because they were put in."""
 
-from typing import Any
-
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bezstab.evidence import LINEAR, SPREAD, Fit, Refusal, fit_dominant_pole, linear_prediction
+from bezstab.evidence import LINEAR, SPREAD, Fit, Refusal, fit_dominant_pole
 from bezstab.evidence.linear_prediction import (
     SAMPLES,
-    _poles_with_amplitude,
     fit_window,
     response_windows,
 )
-from bezstab.stability import FloatArray
 from tests.reference.sampled_responses import for_every_kick, geometric, two_poles
 
 root = st.tuples(st.floats(0.4, 0.999), st.floats(0, np.pi))
@@ -43,18 +39,8 @@ def test_one_response_alone_gives_its_pole_and_how_well_it_is_known(modulus: flo
     fit = fit_dominant_pole(response, order=4)
     assert isinstance(fit, Fit)
     assert fit.pole == pytest.approx(modulus * np.exp(1j * angle), abs=1e-6)
-    assert fit.order >= 2  # a complex pair
-    assert 2 * fit.order + 2 <= fit.samples <= SAMPLES
-    assert max(fit.spread_abs, fit.spread_angle) < SPREAD
-
-
-def test_the_pole_does_not_depend_on_the_unit_of_the_samples() -> None:
-    response = two_poles(300, 0.97, 0.4, 1.0, 0.5)[:, np.newaxis]
-    metres = fit_dominant_pole(response, order=4)
-    powers_of_two = fit_dominant_pole(1024 * response, order=4)
-    assert isinstance(metres, Fit)
-    assert isinstance(powers_of_two, Fit)
-    assert powers_of_two.pole == metres.pole  # a power of two rounds nothing
+    assert fit.samples <= SAMPLES
+    assert fit.uncertainty < SPREAD
 
 
 @pytest.mark.promise("A response's pole")
@@ -86,42 +72,6 @@ def test_windows_end_where_the_range_is_left_and_before_what_is_forced() -> None
     for window in response_windows(decaying, decaying, (np.inf,)):
         assert decaying[window].min() > 90 * forced
         assert window.stop - window.start <= SAMPLES
-
-
-def test_a_window_ends_with_the_last_sample_that_is_well_above_what_remains() -> None:
-    decaying = geometric(1001, 0.97) + 1e-9
-    remaining = decaying[500:].max()
-    ends = {window.stop for window in response_windows(decaying, decaying, (np.inf,)) if window.start == 0}
-    exact = {1 + int(np.flatnonzero(decaying > factor * remaining)[-1]) for factor in (1e2, 1e3, 1e4, 1e5, 1e6)}
-    assert ends == {min(end, SAMPLES) for end in exact}
-
-
-@pytest.mark.parametrize(("amplitude", "dominant"), [(1e-5, 0.9), (1e-2, 0.99)])
-def test_a_root_with_less_than_a_thousandth_of_the_amplitude_is_noise(amplitude: float, dominant: float) -> None:
-    samples = geometric(60, 0.9) + amplitude * geometric(60, 0.99)
-    assert _poles_with_amplitude(samples, np.array([0.9, 0.99]))[0] == pytest.approx(dominant)
-
-
-def test_the_pole_is_the_median_of_the_better_half_of_the_fits(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Noise far above rounding, so that no two fits agree to the last bit."""
-    fits: list[Any] = []
-
-    def noted(samples: FloatArray, order: int, start: int) -> Any:
-        fit = fit_window(samples, order, start)
-        if fit is not None:
-            fits.append(fit)
-        return fit
-
-    monkeypatch.setattr(linear_prediction, "fit_window", noted)
-    clean = two_poles(900, 0.995, 0.4, 1.0, 0.5)
-    noise = 1e-6 * np.random.default_rng(4).normal(0, 1, (clean.size, 5))
-    found = fit_dominant_pole(clean[:, np.newaxis] + noise, order=4)
-    assert isinstance(found, Fit)
-    better = sorted(fits, key=lambda fit: fit.residual)[: (len(fits) + 1) // 2]
-    moduli = np.array([abs(fit.pole) for fit in better])
-    assert len(set(moduli)) == len(moduli) >= 4
-    below, above = (moduli < abs(found.pole)).sum(), (moduli > abs(found.pole)).sum()
-    assert int(below) - int(above) in (0, 1)
 
 
 def test_the_last_sample_of_a_window_counts() -> None:

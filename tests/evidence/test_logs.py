@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 
 from bezstab.errors import InputError
 from bezstab.evidence import Log, error_columns, log_from, parse_log, read_log, row_step, time_column
-from bezstab.evidence.logs import decimal_place
 
 ROWS = [[0.0, 1.0], [0.5, -0.25], [1.0, 0.0625]]
 
@@ -140,19 +139,3 @@ def test_the_name_of_the_times_may_say_their_unit(name: str, seconds: float) -> 
 def test_times_that_are_uneven_are_refused(t: object, said: str) -> None:
     with pytest.raises(InputError, match=said):
         row_step(timed(t), 0)
-
-
-@pytest.mark.parametrize(
-    ("values", "place"),
-    [
-        ([1.5, 0.25], 0.01),
-        ([3.0, 10.0], 1.0),
-        ([1e-7, 1.0], 1e-7),
-        ([1.25e-7], 1e-9),
-        ([np.nan, 0.0], 0.0),
-        ([0.0, 0.5], 0.1),
-        ([1e22], 1e22),
-    ],
-)
-def test_the_last_decimal_that_is_shown(values: list[float], place: float) -> None:
-    assert decimal_place(np.array(values)) == pytest.approx(place, rel=1e-12)

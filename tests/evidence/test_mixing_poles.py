@@ -7,12 +7,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bezstab.evidence import floquet_rates
 from bezstab.evidence.mixing_poles import nearest_poles
 from bezstab.evidence.moving_mechanisms import moving_poles
 from bezstab.methods import lookup
 from bezstab.stability import FloatArray, region
 from tests.evidence.driven_four_bar import four_bar, turning
+from tests.evidence.exact_rates import floquet_rates
 from tests.methods.kinds import sampled
 
 

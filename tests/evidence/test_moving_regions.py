@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from bezstab.evidence import floquet_rates, moving_growth, moving_modulus, moving_poles, moving_region
+from bezstab.evidence import moving_growth, moving_modulus, moving_poles, moving_region
 from bezstab.methods import lookup
 from bezstab.stability import region, spectral_radius
 from tests.evidence.driven_four_bar import four_bar, turning
+from tests.evidence.exact_rates import floquet_rates
 
 OMEGA = 2 * np.pi
 

@@ -4,6 +4,7 @@ import re
 import sys
 from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,12 +15,12 @@ from bezstab.errors import InputError
 from bezstab.evidence import TIMES, model_xml, mujoco_witnesses, witness_count
 from bezstab.mechanism import Force, Revolute, compiled_mechanism, load_scene, parse_scene, perturbed_state
 from bezstab.stability import spectral_radius
+from tests.evidence.samples import of_campaign
 from tests.mechanism.test_scenes import pendulum, small
 from tests.reference.newton import newtons_accelerations
 
 H = 1e-3
-MORE = ("slider_crank_light", "four_bar", "n_four_bar")
-SCENES = ["slider_crank", *(pytest.param(scene, marks=pytest.mark.slow) for scene in MORE)]
+SCENES = of_campaign(["slider_crank", "slider_crank_light", "four_bar", "n_four_bar"], ["slider_crank", "four_bar"])
 mujoco: Any = pytest.importorskip("mujoco")
 
 
@@ -35,7 +36,11 @@ def model(scene: str, alpha_hat: float = 0.5, beta_hat: float = 0.1) -> Any:
 )
 @pytest.mark.parametrize("scene", SCENES)
 @pytest.mark.slow
-def test_mujoco_settles_and_diverges_where_the_map_says(scene: str) -> None:
+def test_mujoco_settles_and_diverges_where_the_map_says(
+    scene: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """And leaves no file of warnings where it diverges."""
+    monkeypatch.chdir(tmp_path)
     witnessed = list(mujoco_witnesses(compiled_mechanism(small(scene)), H))
     assert len(witnessed) == witness_count()
     assert {one.integrator for one in witnessed} == {"Euler", "RK4"}
@@ -44,13 +49,6 @@ def test_mujoco_settles_and_diverges_where_the_map_says(scene: str) -> None:
         boundary = np.array([one.alpha_hat, one.beta_hat]) / one.times_boundary
         assert spectral_radius(one.method, *boundary) == pytest.approx(1, abs=1e-9)
         assert (one.predicted_z_abs < 1) == (one.times_boundary == TIMES[0])
-
-
-@pytest.mark.slow
-def test_no_file_is_left_where_a_run_diverges(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    witnessed = list(mujoco_witnesses(compiled_mechanism(load_scene("four_bar")), H))
-    assert any(one.measured_verdict == "diverges" for one in witnessed)
     assert not list(tmp_path.iterdir())
 
 
@@ -99,7 +97,7 @@ def test_without_mujoco_the_message_says_how_to_get_it(monkeypatch: pytest.Monke
         next(mujoco_witnesses(compiled_mechanism(load_scene("slider_crank")), H))
 
 
-@pytest.mark.parametrize("solref", ["0.02 1", "0.004 0.5", "0.1 3", "-3000 -40", "-1e5 -700"])
+@pytest.mark.parametrize("solref", ["0.02 1", "0.1 3", "-3000 -40"])
 def test_solref_means_what_the_conversion_says(solref: str) -> None:
     values = tuple(map(Fraction, solref.split()))
     alpha_hat, beta_hat = map(float, ENGINES["mujoco"].point(values, Fraction(1, 1000)))

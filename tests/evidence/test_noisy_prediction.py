@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bezstab.evidence import probed_pole
-from bezstab.evidence.noisy_prediction import LARGEST_ERROR, fit_in_noise
+from bezstab.evidence.noisy_prediction import RESOLVED, fit_in_noise
 from bezstab.methods import REGISTRY, lookup
 from bezstab.stability import FloatArray, poles, region, window
 from tests.evidence.samples import of_campaign
@@ -146,5 +146,5 @@ def test_a_pole_that_noise_hides_is_said_to_be_hidden() -> None:
             reasons.append(found.reason)
         else:
             assert found.uncertainty is not None
-            assert found.uncertainty <= LARGEST_ERROR
+            assert found.uncertainty <= RESOLVED
     assert any("hides the pole" in reason for reason in reasons)

@@ -8,43 +8,19 @@ from bezstab.evidence import NO_FEEDBACK, Run, measured_runs, projection_sentenc
 from bezstab.evidence.projection_costs import Comparison, comparisons
 from bezstab.mechanism import Projection, Stabilise
 from bezstab.methods import lookup
-from tests.evidence.small_sweeps import OMEGA, small_sweep
+from tests.evidence.small_sweeps import OMEGA, SOFT, small_sweep, swept
 
 REFERENCE = 1e-12
-
-
-def run_of(evaluations: int) -> Run:
-    """Return a run that took so many evaluations."""
-    return Run(
-        method=lookup("SYM"),
-        h=0.01,
-        alpha_hat=0.3,
-        beta_hat=0.1,
-        z_abs=0.9,
-        trajectory_error=1e-3,
-        c_max=1e-5,
-        measured_error=1e-5,
-        predicted_error=1e-5,
-        c_rms=1e-5,
-        cdot_max=1e-5,
-        cdot_rms=1e-5,
-        energy_drift=0.0,
-        evaluations=evaluations,
-        factorizations=evaluations,
-        seconds=1.0,
-        seconds_min=1.0,
-        seconds_max=1.0,
-        failure=None,
-        order=None,
-    )
 
 
 def power_law(stabilise: Stabilise, advised: bool, constant: float, evaluations: int, order: int = 2) -> list[Run]:
     """Return runs of 100, 200 and 400 steps with errors constant * steps**-order, the largest step first."""
     return [
         replace(
-            run_of(count * evaluations),
+            swept("SYM", (0.0125,), SOFT)[0],
             h=1 / count,
+            evaluations=count * evaluations,
+            factorizations=count * evaluations,
             trajectory_error=constant * count**-order,
             seconds=1e-3 * count * evaluations**2,
             c_max=1e-13 if stabilise == "projection" else 1e-5,

@@ -4,7 +4,6 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from bezstab.errors import NumericalError
 from bezstab.evidence import extremes, root_digits
 from bezstab.methods import lookup
 from bezstab.stability import ComplexArray, poles
@@ -25,15 +24,6 @@ def test_a_pole_that_is_missing_does_not_hold(monkeypatch: pytest.MonkeyPatch) -
     found = extremes._sizes(lookup("B4"), (1.0,))
     assert not found.held
     assert "roots were found" in found.seen
-
-
-def test_the_references_are_the_roots() -> None:
-    with mp.workdps(60):
-        polynomial = [mp.mpf(c) for c in (1, -6, 11, -6)]  # 1, 2, 3
-        found = root_digits.all_roots(polynomial, [mp.mpc(1.1), mp.mpc(2.2), mp.mpc(2.9), mp.mpc(3.2)])
-        assert sorted(float(z.real) for z in found.values()) == [1, 2, 3]
-        with pytest.raises(NumericalError, match="only 1 of 3"):
-            root_digits.all_roots(polynomial, [mp.mpc(1.01)])
 
 
 def test_two_roots_that_nearly_coincide_have_a_start_each() -> None:

@@ -5,9 +5,9 @@ from dataclasses import replace
 import pytest
 
 from bezstab.evidence import Held, summary, sweep_sentences
-from bezstab.evidence.sweep_summaries import _comparison_sentence, _largest_stable_alpha_step
+from bezstab.evidence.sweep_summaries import _comparison_sentence
 from bezstab.methods import lookup
-from bezstab.stability import critical_damping_limit, spectral_radius
+from bezstab.stability import spectral_radius
 from tests.evidence.small_sweeps import SOFT, swept
 from tests.reference.region_areas import region_area
 
@@ -71,16 +71,9 @@ def test_the_largest_stable_alpha_step_is_where_critical_damping_leaves_the_regi
     per_evaluation = summary(swept(name, (8e-4, 1.6e-3), SOFT)).alpha_step
     assert per_evaluation is not None
     alpha_step = per_evaluation * (4 if name == "RK4" else 1)
-    assert spectral_radius(lookup(name), 2 * alpha_step, alpha_step**2) < 1
-    beyond = alpha_step + 2e-3  # the line is looked at in steps of a thousandth
+    within, beyond = alpha_step * (1 - 1e-6), alpha_step * (1 + 1e-6)
+    assert spectral_radius(lookup(name), 2 * within, within**2) < 1
     assert spectral_radius(lookup(name), 2 * beyond, beyond**2) >= 1
-
-
-@pytest.mark.parametrize("name", ["B2", "B3", "B4", "AB2", "AB3", "AB4", "RK1", "RK2", "RK4", "SYM"])
-def test_it_is_found_to_a_thousandth(name: str) -> None:
-    limit = critical_damping_limit(lookup(name))
-    assert limit
-    assert 0 <= limit - _largest_stable_alpha_step(lookup(name)) < 1.001e-3
 
 
 @pytest.mark.slow

@@ -1,13 +1,12 @@
 """Everyday names, advice where one means several methods, and no suggestion of another kind."""
 
 import re
-from math import factorial
 
 import pytest
 
 from bezstab.engines import ENGINES
 from bezstab.errors import InputError
-from bezstab.methods import RungeKutta, accuracy, lookup
+from bezstab.methods import lookup
 from bezstab.methods.aliases import ADVICE, ALIASES, folded, near_names
 from bezstab.methods.registry import FOLDED_NAMES, REGISTRY
 from bezstab.methods.second_order_methods import PARAMETRIC
@@ -93,21 +92,6 @@ def test_ode23s_has_the_pole_of_sdirk2(mu: complex) -> None:
     )
 
 
-@pytest.mark.parametrize(("alike", "stages"), [("RK4", 4), ("RK3", 3), ("ssprk3", 3), ("bs3", 3), ("heun", 2)])
-def test_explicit_methods_of_as_many_stages_as_their_order_have_the_poles_of_its_exponential(
-    alike: str, stages: int
-) -> None:
-    """Order p fixes the p coefficients of R that p stages have: 1/k!. So what advice says of RK3 and RK4 holds."""
-    method = lookup(alike)
-    assert isinstance(method.scheme, RungeKutta)
-    assert accuracy(method)[0] == stages == len(method.scheme.weights)
-    mu = -0.7 + 0.9j
-    expected = sum(mu**k / factorial(k) for k in range(stages + 1))
-    assert dominant_pole(method, -2 * mu.real, abs(mu) ** 2) == pytest.approx(
-        complex(expected.real, abs(expected.imag)), abs=1e-14
-    )
-
-
 @pytest.mark.parametrize("name", sorted(ADVICE))
 def test_every_name_in_a_piece_of_advice_can_be_typed(name: str) -> None:
     advice = ADVICE[name]
@@ -178,8 +162,3 @@ def test_a_letter_missing_does_not_turn_an_implicit_method_into_an_explicit_one(
     for place in range(len(implicit)):
         typed = implicit[:place] + implicit[place + 1 :]
         assert expected in answer(typed)
-
-
-def test_sie_says_that_it_is_not_symplectic_euler() -> None:
-    assert "not symplectic Euler, which is SYM" in lookup("SIE").source
-    assert "semi-implicit" in ADVICE["semi-implicit"]

@@ -13,7 +13,6 @@ from bezstab.methods import (
     BETA_HAT,
     MU,
     H,
-    Method,
     PredictorCorrector,
     RungeKutta,
     S,
@@ -21,7 +20,6 @@ from bezstab.methods import (
     characteristic_polynomial,
     closed_loop_at,
     closed_loop_polynomial,
-    coefficient_table,
     lookup,
     mapping_equations,
     steps,
@@ -29,7 +27,7 @@ from bezstab.methods import (
 from tests.methods import kinds
 from tests.methods.kinds import EXPLICIT, FEW, SAMPLE, SOLVED, sampled
 from tests.reference.closed_loops import polynomial_in_z, sympy_rational
-from tests.reference.steppers import State, one_step, trajectory
+from tests.reference.steppers import State, trajectory
 
 NAMES = [*EXPLICIT, "B4@1/2", "RK4@5", "ABM3@2"]
 
@@ -68,31 +66,6 @@ def test_the_mapping_is_the_characteristic_polynomial_solved(name: str) -> None:
     numerator = sp.Poly(sp.numer(sp.together(sp.expand(difference))), Z, MU, domain="QQ")
     pi = characteristic_polynomial(method)
     assert numerator * pi.LC() == pi * numerator.LC()
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_characteristic_polynomial_is_one_step_on_powers_of_z(name: str) -> None:
-    """On y' = lambda y the stepper takes z^0, ..., z^(n-1) to z^n - pi(z, mu)."""
-    method, z, mu = lookup(name), Fraction(5, 7), Fraction(-2, 3)
-    n = steps(method)
-    past = [np.array([Fraction(0), z**k]) for k in range(n)]  # a partitioned method: the velocity of v' = lambda v
-    new = one_step(method, lambda y: mu * y, past, Fraction(1), Fraction)[-1]
-    residual = characteristic_polynomial(method).eval({Z: sympy_rational(z), MU: sympy_rational(mu)})
-    assert residual == sympy_rational(z**n - new)
-
-
-def test_a_method_of_sixteen_dense_stages_has_its_stability_function_at_once() -> None:
-    """R = 1 + sum mu^(k+1) b A^k 1 of an explicit method; ten seconds by determinants and resultants."""
-    stages = range(16)
-    A = [[Fraction(3 * i + j - 20, 7 + i + 2 * j) if j < i else Fraction(0) for j in stages] for i in stages]
-    method = Method("dense", RungeKutta(tuple(map(tuple, A)), (Fraction(1, 16),) * 16), "")
-    moments, vector = [Fraction(1)], [Fraction(1)] * 16
-    for _ in stages:
-        moments.append(sum(vector, Fraction(0)) / 16)
-        vector = [sum((a * x for a, x in zip(row, vector, strict=True)), Fraction(0)) for row in A]
-    growth, unit = coefficient_table(method)
-    assert growth == tuple(-moment for moment in moments)
-    assert unit == (Fraction(1), *[Fraction(0)] * 16)
 
 
 @pytest.mark.promise(

@@ -58,12 +58,6 @@ def test_a_second_order_scheme_has_no_mapping_and_its_powers_of_h() -> None:
     )
 
 
-@pytest.mark.parametrize("name", ROUNDED)
-def test_irrational_coefficients_are_shown_as_decimals(name: str) -> None:
-    for write in (recursion_text, mapping_text, characteristic_text):
-        assert not re.search(r"\d{17}", write(lookup(name)))
-
-
 def test_decimals_of_irrational_coefficients_are_those_of_the_method() -> None:
     gamma = 1 - math.sqrt(0.5)
     assert f"K_1 = f(y_k + h ({gamma:.10g} K_1))" in recursion_text(lookup("sdirk2"))

@@ -14,8 +14,6 @@ from bezstab.methods import (
     Method,
     RungeKutta,
     accuracy,
-    adams_bashforth,
-    bezier,
     implicit,
     lookup,
     read_method,
@@ -80,10 +78,6 @@ def test_a_file_has_the_scheme_of_its_coefficients_and_its_family_whatever_it_is
     assert (method.name, method.source) == ("AB4", "me")
 
 
-def test_where_two_families_share_a_member_they_share_those_of_fewer_steps() -> None:
-    assert [bezier(n).scheme == adams_bashforth(n).scheme for n in range(1, 13)] == [True, True] + 10 * [False]
-
-
 def test_a_file_of_many_steps_is_read_at_once(tmp_path: Path) -> None:
     """Explicit Euler, its weight followed by 99 zeros: no family's weights are derived for so many steps."""
     zeros = [Fraction(0)] * 99
@@ -94,62 +88,37 @@ def test_a_file_of_many_steps_is_read_at_once(tmp_path: Path) -> None:
 DIGITS = "1" * 5000
 REFUSED: dict[str, tuple[str | bytes, str]] = {
     "inconsistent": ('rho = ["1", "-1/2"]\nsigma = ["0", "1/2"]', "rho(1) = 1/2"),
-    "inconsistent: b": ('A = [["0"]]\nb = ["2"]', "sum to 2"),
     "lengths of rho and sigma": ('rho = ["1", "-1"]\nsigma = ["0", "1", "0"]', "same number"),
     "ragged A": ('A = [["0"], ["1", "0"]]\nb = ["1/2", "1/2"]', "square"),
-    "empty rho": ("rho = []\nsigma = []", ""),
     "empty A": ("A = []\nb = []", ""),
     "floats": ("rho = [1.0, -1.0]\nsigma = [0.0, 1.0]", "rational strings"),
-    "TOML nan": ("rho = [nan, -1.0]\nsigma = [0.0, inf]", "rational strings"),
-    "float in A": ('A = [["0", "0"], [0.5, "0"]]\nb = ["0", "1"]', "rational strings"),
-    "string for a list": ('rho = "1 -1"\nsigma = "0 1"', "rho"),
     "flat A": ('A = ["0"]\nb = ["1"]', "A = "),
-    "number for A": ('A = 0\nb = ["1"]', "A = "),
-    "table for rho": ('[rho]\nz = "1"\n[sigma]\nz = "1"', "rho"),
-    "inf": ('rho = ["1", "-1"]\nsigma = ["0", "inf"]', "sigma: 'inf'"),
     "1/0": ('rho = ["1", "-1"]\nsigma = ["0", "1/0"]', "sigma: '1/0'"),
     "code": ('rho = ["__import__(\'os\')", "-1"]\nsigma = ["0", "1"]', "rho"),
-    "newline in a number": ('rho = ["1\\n2", "-1"]\nsigma = ["0", "1"]', "rho"),
     "huge digits": (f'rho = ["{DIGITS}", "-{DIGITS}"]\nsigma = ["0", "{DIGITS}"]', "rho"),
-    "huge exponent": ('rho = ["1e999999999", "-1"]\nsigma = ["0", "1"]', "rho"),
     "huge TOML integer": (f"rho = [{DIGITS}]\nsigma = [1]", ""),
     "squares beyond float64": ('A = [["0", "0"], ["1e200", "0"]]\nb = ["1/2", "1/2"]', "numbers up to 1e100 in size"),
-    "beyond it in sigma": ('rho = ["1", "-1", "0"]\nsigma = ["1e200", "-1e200", "1"]', "numbers up to 1e100 in size"),
     "deep nesting": ("rho = " + "[" * 20000 + "]" * 20000 + "\nsigma = []", "brackets nested too deeply"),
     "stages": (f"A = {[['0'] * 41] * 41}\nb = {['1', *['0'] * 40]}", "41 stages: expected at most 40"),
     "steps": (f"rho = {['1', '-1', *['0'] * 100]}\nsigma = {['0', '1', *['0'] * 100]}", "expected at most 100"),
     "unknown key": (EBDF2 + 'order = "2"', "order"),
-    "unknown key with a line break": (EBDF2 + '"a\\nb" = "2"', ""),
     "both kinds": (EBDF2 + HEUN, "found A, b, rho, sigma"),
-    "half a kind": ('rho = ["1", "-1"]', "found rho"),
     "no keys": ("", "found none"),
     "name is no text": ("name = 4\n" + EBDF2, "name"),
-    "name is empty": ('name = ""\n' + EBDF2, "name"),
     "name of two lines": ('name = "a\\nb"\n' + EBDF2, "name"),
     "source of two lines": ('source = "a\\u2028b"\n' + EBDF2, "source"),
     "not TOML": ("rho: [1, -1]\nsigma: [0, 1]", ""),
-    "duplicate key": (EBDF2 + EBDF2, ""),
-    "unclosed": ('rho = ["1", "-1"\n\n', ""),
     "impossible date": ("rho = 2023-02-30", ""),
     "binary": (bytes(range(256)), ""),
-    "NUL": (b"\0" * 64, ""),
     "UTF-16": (EBDF2.encode("utf-16"), ""),
     "update: number": ("[update]\nx1 = 3", "update: 'x1' = 3: expected a text like 'x0"),
-    "update: table": (f'{UPDATE}\n[update.x2]\ny = "1"', "update"),
-    "update: list": ('update = ["x1 = x0"]', "update"),
     "update with rho": (f"{EBDF2}{UPDATE}", "update"),
-    "update with another key": (f'order = "2"\n{UPDATE}', "order"),
     "update: empty": ("[update]", "no equation"),
     "update: code": ("[update]\nx1 = \"__import__('os').system('true')\"", 'x1 = ...: found "\'"'),
     "update: line breaks in a key": ('[update]\n"a\\nb\\u2028" = "x0"', ""),
-    "update: reversed text in a key": ('[update]\n"\\u202ex1" = "x0"', ""),
-    "update: long key": (f'[update]\n"{"a" * 100_000}" = "x0"', ""),
-    "update: long name": (f'[update]\nx1 = "{"a" * 1000}"', ""),
     "update: long equation": (f'[update]\nx1 = "{"x0 + " * 50_000}x0"', ""),
-    "update: long number": (f'[update]\nx1 = "{"9" * 1500} x0"', ""),
     "update: deep": (f'[update]\nx1 = "{"(" * 900}x0{")" * 900}"', ""),
     "update: 20000 equations": ("[update]\n" + "\n".join(f'w{i} = "x0"' for i in range(20_000)), "20000 equations"),
-    "update: far ahead": (UPDATE + '"w[99]" = "x0"', ""),
     "update: all at once": (
         "[update]\n"
         + "".join(

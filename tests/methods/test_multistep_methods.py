@@ -2,11 +2,10 @@
 
 from fractions import Fraction
 
-import mpmath as mp
 import pytest
 
-from bezstab.methods import LinearMultistep, PredictorCorrector, bezier, lookup
-from tests.reference.bezier_curves import de_casteljau_weights, limit_weight
+from bezstab.methods import LinearMultistep, PredictorCorrector, lookup
+from tests.reference.bezier_curves import de_casteljau_weights
 
 
 def multistep(name: str) -> LinearMultistep:
@@ -24,22 +23,6 @@ def test_bezier_step_integrates_the_curve_of_de_casteljau(n: int) -> None:
     scheme = multistep(f"B{n}")
     assert scheme.rho == (1, -1, *[0] * (n - 1))
     assert list(scheme.sigma) == [0, *de_casteljau_weights(n)]
-
-
-def test_bezier_weights_converge_to_their_limit_like_one_over_m() -> None:
-    schemes = {m: bezier(m + 1).scheme for m in (64, 128)}
-    for j in range(6):
-        limit, slope = limit_weight(j)
-
-        def slope_error(m: int, j: int = j, limit: mp.mpf = limit, slope: mp.mpf = slope) -> mp.mpf:
-            scheme = schemes[m]
-            assert isinstance(scheme, LinearMultistep)
-            b = scheme.sigma[1 + j]
-            return m * (mp.mpf(b.numerator) / b.denominator - limit) - slope
-
-        assert abs(slope_error(128)) < abs(slope) / 8
-        # what is left is of order 1/m again: doubling m halves it, up to O(1/m)
-        assert abs(slope_error(64) / slope_error(128) - 2) < 0.2
 
 
 FAMILIES = [*(("AB", n) for n in range(1, 9)), *(("am", n) for n in range(2, 7)), *(("bdf", n) for n in range(1, 7))]

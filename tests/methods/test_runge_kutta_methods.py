@@ -80,12 +80,6 @@ def test_tsitouras_decimals_are_the_published_ones_and_satisfy_his_order_conditi
         assert abs(quadrature - F(1, power + 1)) < F(1, 10**14)
 
 
-def test_what_is_first_same_as_last_is_said() -> None:
-    for name in ("bs3", "dopri5", "tsit5"):
-        assert "FSAL" in lookup(name).source
-    assert "not FSAL" in lookup("cash-karp").source
-
-
 def growth(method: Method) -> tuple[list[Fraction], list[Fraction]]:
     """Return numerator and denominator of R(mu), ascending: pi = denominator z - numerator."""
     constant, linear = coefficient_table(method)
@@ -107,14 +101,6 @@ def test_stiffly_accurate_methods_end_with_their_last_stage_and_forget_what_is_i
     numerator, denominator = growth(lookup(name))
     highest = max(j for j, c in enumerate(numerator) if c)
     assert highest < max(j for j, c in enumerate(denominator) if c)
-
-
-@pytest.mark.parametrize(("name", "gamma"), [("sdirk2", 0.2928932188), ("dirk3", 0.4358665215)])
-def test_singly_diagonal_methods_have_one_gamma_on_the_diagonal_and_none_above(name: str, gamma: float) -> None:
-    """Alexander's are roots of 2 g^2 - 4 g + 1 and of his cubic: of the two or three the one that is A-stable."""
-    tableau = runge_kutta(name).tableau
-    assert {round(float(row[i]), 10) for i, row in enumerate(tableau)} == {gamma}
-    assert not any(any(row[i + 1 :]) for i, row in enumerate(tableau))
 
 
 def test_radau5_is_a_stable_as_rounded() -> None:

@@ -6,13 +6,10 @@ from math import factorial
 import pytest
 
 from bezstab.methods import (
-    REGISTRY,
-    STEADY,
     RungeKutta,
     accuracy,
     evaluation_errors,
     evaluation_times,
-    exact_motions,
     lookup,
     second_order_form,
 )
@@ -28,13 +25,6 @@ def test_stages_are_evaluated_at_the_sums_of_their_rows(name: str) -> None:
     assert isinstance(scheme, RungeKutta)
     times = evaluation_times(second_order_form(scheme))
     assert list(times.values()) == [sum(row, Fraction(0)) for row in scheme.tableau]
-
-
-@pytest.mark.parametrize("name", REGISTRY)
-def test_a_steady_motion_has_its_own_position_and_velocity(name: str) -> None:
-    motions = exact_motions(second_order_form(lookup(name).scheme))
-    assert [of_power[STEADY] for of_power in motions["x"]] == [0, 1, 0]
-    assert [of_power[STEADY] for of_power in motions["v"]] == [1, 0, 0]
 
 
 @pytest.mark.parametrize("name", sampled(RUNGE_KUTTA, quick=("RK4", "bs3", "radau3", "gauss4")))

@@ -1,5 +1,6 @@
 """Methods as frozen, exact data, and what cannot be built."""
 
+import re
 from dataclasses import FrozenInstanceError, replace
 from fractions import Fraction
 
@@ -32,26 +33,15 @@ def test_a_method_is_frozen_exact_data(name: str) -> None:
     with pytest.raises(FrozenInstanceError):
         setattr(method.scheme, next(iter(method.scheme.__dataclass_fields__)), None)
 
-    def leaves(value: object) -> list[object]:
-        if isinstance(value, tuple):
-            return [leaf for entry in value for leaf in leaves(entry)]
-        if hasattr(value, "__dataclass_fields__"):
-            return [leaf for field in value.__dataclass_fields__ for leaf in leaves(getattr(value, field))]
-        return [value]
-
-    coefficients = [leaf for leaf in leaves(method.scheme) if not isinstance(leaf, str | int)]
-    assert coefficients
-    assert all(type(c) is Fraction for c in coefficients)
+    assert "." not in re.sub(r"'[^']*'", "", repr(method.scheme))  # no float among its coefficients
 
 
 @pytest.mark.parametrize(
     ("name", "points", "calls"),
     [
         *((f"{family}{n}", n, 1) for family in ("B", "AB") for n in range(1, 9)),
-        *(("ABM4", 4, 2), ("RK1", 1, 1), ("RK4", 1, 4), ("SIE", 1, 2), ("SYM", 1, 1)),
-        *(("heun", 1, 2), ("bs3", 1, 3), ("dopri5", 1, 6), ("tsit5", 1, 6), ("cash-karp", 1, 6)),
-        *(("verlet-half", 1, 1), ("verlet-kdk", 1, 2), ("ruth3", 1, 3), ("forest-ruth", 1, 3), ("yoshida4", 1, 4)),
-        *(("rkn4", 1, 4), ("hht", 1, 1), ("bdf4", 4, 1), ("am4", 3, 1), ("sdirk2", 1, 2)),
+        *(("ABM4", 4, 2), ("SYM", 1, 1), ("verlet-half", 1, 1), ("verlet-kdk", 1, 2), ("forest-ruth", 1, 3)),
+        *(("yoshida4", 1, 4), ("rkn4", 1, 4), ("hht", 1, 1), ("bdf4", 4, 1), ("am4", 3, 1), ("sdirk2", 1, 2)),
     ],
 )
 def test_steps_and_evaluations_count_what_one_step_needs(name: str, points: int, calls: int) -> None:
@@ -101,22 +91,6 @@ def test_a_multistep_method_is_consistent_and_zero_stable(rho: str, sigma: str, 
 def test_a_runge_kutta_method_is_square_and_consistent(tableau: list[str], b: str, why: str) -> None:
     with pytest.raises(InputError, match=why):
         RungeKutta(tuple(map(fractions, tableau)), fractions(b))
-
-
-@pytest.mark.parametrize(
-    ("tableau", "b", "is_implicit"),
-    [
-        (["0 0", "1 0"], "0 1", False),
-        (["0 0", "1/2 1/2"], "0 1", True),
-        (["0 1", "0 0"], "0 1", True),
-        (["1"], "1", True),
-    ],
-)
-def test_a_tableau_with_an_entry_on_or_above_the_diagonal_is_implicit(
-    tableau: list[str], b: str, is_implicit: bool
-) -> None:
-    scheme = RungeKutta(tuple(map(fractions, tableau)), fractions(b))
-    assert implicit(Method("M", scheme, "source")) == is_implicit
 
 
 IMPLICIT_SECOND_ORDER = {

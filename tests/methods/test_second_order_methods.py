@@ -85,30 +85,12 @@ def test_the_polynomial_of_hilber_hughes_and_taylor_is_that_of_theory(alpha: str
     assert same_up_to_a_number(f"hht({alpha})", alpha_determinant(sp.Integer(0), -r, half - r, (1 - r) ** 2 / 4))
 
 
-@pytest.mark.parametrize("radius", ["0", "1/2", "9/10", "1"])
-def test_rho_infinity_is_the_modulus_where_the_feedback_is_infinitely_strong(radius: str) -> None:
-    """P / beta_hat for beta_hat -> infinity: its roots have the modulus rho_inf, all three."""
-    table = lookup(f"generalized-alpha({radius})").scheme.table
-    stiff = [in_plane[0][1] for in_plane in reversed(table)]
-    roots = sp.Poly([sp.Rational(c.numerator, c.denominator) for c in stiff], z)
-    r = sp.Rational(radius)
-    assert roots.monic() == sp.Poly((z + r) ** 3, z, domain="QQ")  # all three at -rho_inf: Chung & Hulbert's design
-
-
 @pytest.mark.parametrize("name", ["ruth3", "forest-ruth", "yoshida4", "SYM", "verlet-half", "verlet-kdk"])
 def test_a_composition_keeps_volume_without_feedback_of_velocity(name: str) -> None:
     """The product of the two roots is one for alpha_hat = 0, exactly, irrational coefficients or not."""
     for beta_hat in (F(1, 3), F(7, 2)):
         last, _, first = closed_loop_at(lookup(name), F(0), beta_hat)
         assert first == last
-
-
-def test_forest_ruth_and_yoshida_differ_only_by_what_their_kicks_see() -> None:
-    """The same three lengths of kicks and drifts, in the other order: equal traces without feedback of velocity."""
-    first, second = lookup("forest-ruth"), lookup("yoshida4")
-    for beta_hat in (F(1, 3), F(7, 2)):
-        assert closed_loop_at(first, F(0), beta_hat) == closed_loop_at(second, F(0), beta_hat)
-    assert closed_loop_at(first, F(1), F(1)) != closed_loop_at(second, F(1), F(1))
 
 
 def test_theta_of_the_triple_jump_is_good_to_forty_digits() -> None:

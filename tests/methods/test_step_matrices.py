@@ -1,19 +1,16 @@
 from fractions import Fraction
 
 import pytest
-from hypothesis import given
 
 from bezstab.errors import InputError
 from bezstab.methods import characteristic, closed_loop_at, lookup, step_matrix
 from bezstab.methods.step_matrices import matrix_product
-from tests.reference.rationals import rationals
 
 ONE_STEP = (
     *("B1", "RK2", "RK4", "RK4@5", "SIE", "tsit5", "gauss4", "radau3", "implicit-euler", "trapezoid"),
     *("SYM", "imex-euler", "stable-pd", "ruth3", "yoshida4", "rkn4", "verlet-half", "verlet-predicted", "verlet-old"),
     *("verlet-implicit", "verlet-kdk", "average-acceleration", "hht", "generalized-alpha"),
 )
-fractions = rationals(Fraction(1, 20), 2, max_denominator=40)
 
 
 def without_zero_roots(polynomial: list[Fraction]) -> list[Fraction]:
@@ -36,16 +33,6 @@ def test_its_characteristic_polynomial_is_the_closed_loop_of_that_step(name: str
     point = (alpha_hat, beta_hat) if hold else (alpha_hat * step, beta_hat * step**2)
     closed_loop = closed_loop_at(lookup(name), *point)
     assert without_zero_roots(characteristic(matrix.at(step))) == without_zero_roots(list(closed_loop))
-
-
-@given(alpha_hat=fractions, beta_hat=fractions, s=fractions)
-def test_symplectic_euler_as_it_is_written(alpha_hat: Fraction, beta_hat: Fraction, s: Fraction) -> None:
-    # v1 = v - s (alpha_hat v + beta_hat x), x1 = x + s v1, in the unit of time in which alpha_hat, beta_hat are meant
-    matrix = step_matrix(lookup("SYM"), alpha_hat, beta_hat).at(s)
-    assert matrix == [
-        [1 - s * s * beta_hat, s * (1 - s * alpha_hat)],
-        [-s * beta_hat, 1 - s * alpha_hat],
-    ]
 
 
 @pytest.mark.parametrize(("name", "commutes"), [("RK4", True), ("gauss4", True), ("trapezoid", True), ("SYM", False)])

@@ -1,10 +1,8 @@
-"""The weights of a Bezier method from the curve itself, and what they tend to; no Bernstein integral is used."""
+"""The weights of a Bezier method from the curve itself; no Bernstein integral is used."""
 
-from collections.abc import Callable
 from fractions import Fraction
 from itertools import pairwise
 
-import mpmath as mp
 import sympy as sp
 
 
@@ -24,17 +22,3 @@ def de_casteljau_weights(n: int) -> list[Fraction]:
         integral = points[0].integrate().eval(1)
         weights.append(Fraction(int(integral.p), int(integral.q)))
     return weights
-
-
-def limit_weight(j: int) -> tuple[mp.mpf, mp.mpf]:
-    """Return what b_j tends to as m = n - 1 grows, and m times what is missing at large m.
-
-    b_j -> int_0^1 e^x (-x)^j / j! dx, and the second is what (1 + x/m)^(m-j) m!/(m-j)!/m^j leaves of order 1/m.
-    """
-
-    def integral(factor: Callable[[mp.mpf], mp.mpf]) -> mp.mpf:
-        return mp.quad(lambda x: mp.exp(x) * (-x) ** j / mp.factorial(j) * factor(x), [0, 1])
-
-    limit = integral(lambda x: 1)
-    slope = integral(lambda x: -x * x / 2 - j * x - j * (j - 1) / 2)
-    return limit, slope

@@ -40,26 +40,3 @@ def test_a_fast_oscillation_is_its_envelope(cycles: int) -> None:
     assert np.abs(np.abs(y) / np.exp(-x) - 1).max() < 0.06
     assert (y > 0).any()
     assert (y < 0).any()
-
-
-def test_only_the_fast_part_is_a_band() -> None:
-    t = np.linspace(0, 1, 10_001)
-    values = np.where(t < 0.5, np.sin(2 * np.pi * 800 * t), 2 * t - 1)
-    line = history_line(axes := panel(), t, values)
-    (band,) = bands(axes)
-    x = corners(band)[:, 0]
-    column = 2.4 / (axes.bbox.width / axes.figure.dpi * 72)
-    assert x.min() == pytest.approx(0, abs=1.5 * column)
-    assert x.max() == pytest.approx(0.5, abs=1.5 * column)
-    drawn = np.array(line.get_ydata(), dtype=float)
-    late = t > 0.5 + 1.5 * column
-    assert drawn[late].tolist() == values[late].tolist()
-    assert np.isnan(drawn[t < 0.5 - 1.5 * column]).mean() > 0.9
-
-
-def test_a_spike_at_the_start_is_a_line() -> None:
-    t = np.linspace(0, 10, 10_001)
-    values = np.exp(-50 * t) * np.cos(500 * t) + 0.1 * t
-    line = history_line(axes := panel(), t, values)
-    assert not bands(axes)
-    assert np.array(line.get_ydata()).tolist() == values.tolist()

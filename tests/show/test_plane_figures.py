@@ -83,10 +83,8 @@ def test_the_family_figure_has_a_point_per_method_and_the_limit() -> None:
     assert np.array(constant.lines[0].get_xydata()).tolist() == errors
     assert [np.array(axes.lines[-1].get_ydata())[0] for axes in (area, fastest)] == [limit.area, limit.z_abs]
     assert np.array(regions.lines[-1].get_xydata()) == pytest.approx(limit.boundary)
-    _, _, orders, regions = family_figure(families, "adams-bashforth", None).axes
-    assert orders.get_ylabel() == "order of accuracy"
+    _, _, orders, _ = family_figure(families, "adams-bashforth", None).axes
     assert np.array(orders.lines[0].get_xydata()).tolist() == [[2, 2], [3, 3]]
-    assert [line.get_label() for line in regions.lines] == ["AB2", "AB3"]
 
 
 def test_a_comparison_draws_each_boundary_in_a_given_window_or_in_alpha_and_beta() -> None:
@@ -102,9 +100,6 @@ def test_a_comparison_draws_each_boundary_in_a_given_window_or_in_alpha_and_beta
     ):
         assert len(ticks) > 2
         assert ticks == pytest.approx([scale * float(label.get_text()) ** power for label in labels])
-    (line,) = comparison_figure([region(lookup("B4"), 0.5)]).axes[0].lines  # no point is so fast
-    assert line.get_label() == "B4"
-    assert np.isnan(line.get_xydata()).all()
 
 
 @pytest.mark.parametrize("h", [None, 0.01])
@@ -127,6 +122,8 @@ def test_arrows_along_the_edges_are_where_an_unbounded_region_goes_on(h: float |
     places = [(str(line.get_marker()), round(float(np.nanmax(line.get_xydata())), 6)) for line in arrows]
     assert len(set(places)) == len(places)
     assert {">", "^"} <= {marker for marker, _ in places}
+    upright = comparison_figure([region(lookup("linear-acceleration"))], (0.0, 1.0), (0.0, 1.0)).axes[0].lines
+    assert "^" not in {line.get_marker() for line in upright}  # it ends at beta_hat = 12, above these axes
 
 
 @pytest.mark.slow

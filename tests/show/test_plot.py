@@ -37,28 +37,16 @@ def test_a_body_on_a_pivot_is_drawn_from_it_and_only_what_slides_is_a_square(
     scene = load_scene(scene_name)
     start = initial_state(compiled_mechanism(scene))[0]
     lines = {str(line.get_label()): line for line in plot.mechanism(scene, start)}
-    lengths = {}
     for name, pivot in pivots.items():
         points = np.array(lines[name].get_xydata())
         assert len(points) == 2
         assert np.abs(points - pivot).sum(axis=1).min() == pytest.approx(0, abs=1e-15)
-        lengths[name] = np.hypot(*(points[1] - points[0]))
     axes = next(iter(lines.values())).axes
     assert isinstance(axes, Axes)
     squares = [line for line in axes.lines if line.get_marker() == "s"]
     assert len(squares) == (scene_name == "slider_crank")
     supports = {tuple(np.array(line.get_xydata())[0].tolist()) for line in axes.lines if line.get_marker() == 6}
     assert supports == set(pivots.values())
-    lengths_in_files = {"crank": {"slider_crank": 0.2, "four_bar": 0.1}.get(scene_name), "rocker": 0.25}
-    lengths_in_files |= {"K1": 0.007, "K3": 0.035, "K5": 0.04, "K7": 0.04}
-    assert lengths == pytest.approx({name: lengths_in_files[name] for name in pivots})
-
-
-def test_an_unbounded_region_points_to_where_it_goes_on() -> None:
-    axes = Figure().add_subplot()
-    assert {">", "^"} <= {arrow.get_marker() for arrow in plot.open_edges(region(lookup("bdf6")), axes)}
-    for shape in (region(lookup("B4")), region(lookup("AB4"), 0.1)):
-        assert plot.open_edges(shape, axes) == []
 
 
 @pytest.mark.parametrize(("h", "names"), [(None, ("alpha", "beta")), (0.001, ("1/s", "1/s"))])

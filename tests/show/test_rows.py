@@ -5,8 +5,9 @@ import io
 import json
 import math
 import re
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
+from types import SimpleNamespace
 from typing import Literal
 
 import numpy as np
@@ -14,9 +15,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bezstab.engines import ENGINES
-from bezstab.errors import InputError
-from bezstab.methods import Method, lookup
+from bezstab.methods import lookup
 from bezstab.questions import Question, answers, region_answer
 from bezstab.show import (
     FIELDS,
@@ -24,25 +23,18 @@ from bezstab.show import (
     REGIONS,
     ROW_KINDS,
     Field,
-    Row,
-    RowKind,
-    block,
     cells,
-    column,
     fits,
     formatted,
-    json_schema,
     render,
     row_kinds,
-    transposed,
     wrapped,
 )
-from bezstab.show.arrays import boundary_arrays, map_arrays, untimed_arrays, write_arrays
+from bezstab.show.arrays import map_arrays, untimed_arrays, write_arrays
 from bezstab.show.cells import LIMITS, pole_text, range_text, safe_step_text, stable_steps_text, with_unbounded
 from bezstab.show.columns import shown_width
-from bezstab.show.rows import engine_row, pole_rows, region_row
+from bezstab.show.rows import pole_rows, region_row
 from bezstab.show.schemas import _row_schema
-from bezstab.stability import region
 
 KINDS = [kind for kinds in ROW_KINDS.values() for kind in kinds]
 
@@ -66,60 +58,16 @@ def test_a_key_is_the_same_in_every_kind_of_row_and_means_one_thing() -> None:
         assert field.description.isascii(), name
 
 
-@dataclass(frozen=True)
-class Sample:
-    method: Method
-    share: Fraction
-    missing: str | None
-    values: object
-
-
-SAMPLE = Sample(lookup("B4"), Fraction(1, 4), None, np.zeros(2))
 METHOD = Field("method", "Name of the method", "method", kind="text")
-SHARE = Field("share", "What is taken", "taken", ".0%", unit="s", null="never")
-MISSING = Field("missing", "What is missing", "missing", kind="text", null="always")
-
-
-def test_a_row_has_names_and_numbers_of_a_result_unless_they_were_found() -> None:
-    assert cells((METHOD, SHARE, MISSING), SAMPLE) == {"method": "B4", "share": 0.25, "missing": None}
-    assert cells((METHOD, SHARE), SAMPLE, {"share": 0.5, "other": 1}) == {"method": "B4", "share": 0.5}
-    with pytest.raises(TypeError, match=r"Sample\.values is a ndarray"):
-        cells((Field("values", "Values"),), SAMPLE)
-    result = replace(SAMPLE, values=(3 + 4j, float("inf")))
-    for path, value in (("values.0.abs", 5), ("values.0.imag", 4), ("values.1", None), ("missing.any", None)):
-        assert cells((SHARE.of(path),), result) == {"share": value}
-
-
-def test_a_table_shows_what_has_a_heading_and_something_to_show() -> None:
-    kind = RowKind("a sample", (METHOD, SHARE.hidden), (MISSING,))
-    rows = [cells((*kind.fields, *kind.added), SAMPLE)]
-    assert [column.heading for column in kind.columns(rows)] == ["method"]
-    shown = RowKind("a sample", (METHOD, SHARE.shown("share", ".1f")))
-    assert render(rows, shown.columns(rows), "text").split() == ["method", "share", "B4", "0.2"]
-    assert [column.heading for column in shown.columns(rows, without=("method",))] == ["share"]
 
 
 def test_one_line_makes_a_column_a_key_and_its_documentation() -> None:
     new = Field("settles", "Whether errors settle", "settles", kind="truth", path="method.scheme.has_mu")
     kind = replace(row_kinds.EXTREMES, fields=(METHOD, new))
-    rows = [cells(kind.fields, SAMPLE)]
+    rows = [cells(kind.fields, SimpleNamespace(method=lookup("B4")))]
     assert render(rows, kind.columns(rows), "text").split() == ["method", "settles", "B4", "yes"]
     assert render(rows, [], "csv").splitlines() == ["method,settles", "B4,True"]
     assert _row_schema(kind)["properties"]["settles"] == {"description": "Whether errors settle.", "type": "boolean"}
-
-
-def test_a_schema_describes_every_key_and_allows_no_other() -> None:
-    row = json_schema("check")["items"]["anyOf"][0]
-    assert row["additionalProperties"] is False
-    assert row["properties"]["h_limit"]["type"] == ["number", "null"]
-    assert row["properties"]["h_limit"]["description"].startswith(
-        "Largest step that is stable at this alpha and beta, in s; null "
-    )
-    assert row["properties"]["verdict"]["enum"] == ["converges", "marginal", "diverges"]
-    assert "kappa" in row["properties"]  # with --scene only
-    assert "kappa" not in row["required"]
-    with pytest.raises(InputError, match="'explore' prints no rows: expected one of poles"):
-        json_schema("explore")
 
 
 ANSWER = next(answers(Question(methods=(lookup("B4"),), point=(Fraction(1, 2), Fraction(1, 10)))))
@@ -153,30 +101,6 @@ def test_columns_line_up_under_hats() -> None:
         assert [line[column : column + 10] for line in lines if "---" not in line] == ["0.62588350", "0.80700735"]
 
 
-def test_a_cell_has_nothing_that_would_command_a_terminal() -> None:
-    texts = {"a\nb": "a\\nb", "\x1b[2J": "\\x1b[2J", "\u2028": "\\u2028", "a  é中": "a  é中", "\x7f\x9b": "\\x7f\\x9b"}
-    for text, shown in texts.items():
-        assert column("method", "method").cell({"method": text}) == shown
-
-
-def test_a_block_has_a_line_for_each_value_that_is_there_below_the_sentence() -> None:
-    columns = [column("method", "method"), column("α̂", "alpha_hat", ".3f"), column("why", "reason")]
-    row: Row = {"method": "B4", "alpha_hat": 0.5, "reason": "one two three four five six seven eight nine ten"}
-    assert block(row, columns, 40, "It is so.").split("\n") == [
-        "It is so.",
-        "",
-        "method  B4",
-        "α̂       0.500",
-        "why     one two three four five six",
-        "        seven eight nine ten",
-    ]
-    assert block({**row, "alpha_hat": math.inf, "reason": ""}, columns, 80) == "method  B4"
-    assert transposed({"h_max": 0.5, "reason": None}) == [
-        {"property": "h max", "value": "0.5"},
-        {"property": "reason", "value": "-"},
-    ]
-
-
 @given(st.text("abc -/\N{COMBINING CIRCUMFLEX ACCENT}", max_size=300), st.integers(20, 120))
 def test_text_is_wrapped_to_a_width_without_losing_a_word(text: str, width: int) -> None:
     lines = wrapped(text, width).split("\n")
@@ -203,12 +127,6 @@ def test_limits_are_rounded_to_the_safe_side_or_said_in_words() -> None:
     ):
         assert stable_steps_text(region_row(region_answer(lookup(name)))) == steps
     assert stable_steps_text({**row, "unconditional_damping_ratio": 0.0}) == "all (no unstable α, β found)"
-
-
-def test_an_engine_without_a_setting_says_why() -> None:
-    point = (Fraction(1), Fraction(1, 5))
-    assert engine_row(ENGINES["ode"], point, Fraction(1, 500))["setting"] == "ERP = 0.2"
-    assert "box2d is" in str(engine_row(ENGINES["box2d"], (Fraction(1, 2), point[1]), Fraction(1, 500))["setting"])
 
 
 @pytest.mark.parametrize("h", [None, 0.001])
@@ -240,12 +158,3 @@ def test_texts_come_back_from_csv_as_they_are() -> None:
     arrays = untimed_arrays([{"seconds": 1.0, "order": None, "failure": None}])
     assert list(arrays) == ["order", "failure"]
     assert np.isnan(arrays["order"].astype(float)).all()
-
-
-def test_boundaries_as_arrays() -> None:
-    shapes = [region(lookup("B4")), region(lookup("B4"), 0.5), region(lookup("RK4"), 0.25)]
-    arrays = boundary_arrays(shapes, 0.5)
-    assert set(arrays["method"]) == {"B4", "RK4"}
-    assert set(arrays["curve"][arrays["method"] == "RK4"]) == {0, 1}
-    assert arrays["two_alpha"].tolist() == [2 * a for a in arrays["alpha_hat"].tolist()]
-    assert [len(array) for array in boundary_arrays(shapes[1:2], None).values()] == [0, 0, 0, 0]  # none is stable

@@ -60,7 +60,6 @@ def long_figures() -> Iterator[tuple[Figure, list[BboxBase]]]:
         run = simulated(crank, lookup(name), h=0.001, duration=0.2, alpha_hat=alpha_hat, beta_hat=0.8)
         figure = history_figure(run)
         figure.savefig(io.BytesIO())
-        assert (run.failure or "3 times as fast") in figure.texts[0].get_text().replace("\n", " ")
         yield figure, [figure.texts[0].get_window_extent()]
     scene = load_scene("andrews")
     figure = scene_figure(scene, initial_state(compiled_mechanism(scene))[0])

@@ -214,13 +214,3 @@ def test_a_choice_may_be_worse_than_a_sample_by_a_millionth_of_itself(better: fl
     samples = np.array([0.5, 1.5]), np.array([0.1, 0.1])
     with pytest.raises(NumericalError, match="the point chosen") if told else nullcontext():
         _compare(lookup("B4"), objective, 1.5, 0.1, *samples)
-
-
-def test_a_choice_of_zero_is_worse_than_none() -> None:
-    """Every pole is zero, so no sample is better: a search ends as near to zero as its rounding lets it."""
-
-    def objective(alpha_hat: Any, beta_hat: Any, reached: float) -> Any:
-        return np.where(alpha_hat < 1, 0.0, 1e-10)
-
-    for chosen in (0.5, 1.5):
-        _compare(lookup("B4"), objective, chosen, 0.1, np.array([0.5, 1.5]), np.array([0.1, 0.1]))

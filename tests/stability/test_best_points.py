@@ -1,32 +1,25 @@
 from collections.abc import Callable
-from dataclasses import replace
 from fractions import Fraction
 
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import given, settings
 
-from bezstab.errors import NumericalError
 from bezstab.methods import LinearMultistep, Method, RungeKutta, lookup, recipe
 from bezstab.stability import (
     BestPoint,
     FarLimit,
     best_point,
-    best_points,
     choose,
     falls_towards,
     region,
     spectral_radius,
     window,
 )
-from bezstab.stability.charts import Chart
-from bezstab.stability.least_modulus import Least
 from tests.methods.kinds import EXPLICIT, sampled
 from tests.reference.companion_poles import radius
 from tests.reference.least_by_descent import least_within, modulus_of, random_implicit_runge_kutta
 from tests.reference.random_methods import other_random_method
-from tests.reference.rationals import rationals
 from tests.reference.second_order_methods import as_second_order, newmark, second_order
 
 F = Fraction
@@ -82,13 +75,6 @@ def test_nothing_in_the_plane_is_faster(name: str) -> None:
     # the square root of eps: at a double mu a rounding of the point moves the poles by 1e-8, at ABM2's double z more
     here = float(spectral_radius(method, found.alpha_hat, found.beta_hat))
     assert here == pytest.approx(found.z_abs, abs=1e-3 if name == "ABM2" else 1e-6)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["predicted", "old", "kdk", "implicit", "half"])
-def test_no_point_of_a_fine_grid_is_better(name: str) -> None:
-    alpha_hat, beta_hat = np.meshgrid(np.linspace(1e-3, 5, 500), np.linspace(1e-3, 5, 500))
-    assert radius(second_order(name), alpha_hat, beta_hat).min() >= best(second_order(name)).z_abs
 
 
 @pytest.mark.parametrize(
@@ -273,17 +259,6 @@ def test_a_pole_that_nothing_moves_stays_and_hides_nothing() -> None:
     assert choose(method, "fastest").alpha_hat == pytest.approx(1)
 
 
-@given(rationals(-F(9, 10), F(9, 10), max_denominator=20), rationals(-1, 2, max_denominator=20))
-@settings(max_examples=8, deadline=None)
-@pytest.mark.slow
-def test_random_two_step_methods(root: Fraction, b: Fraction) -> None:
-    method = two_steps(root, b)
-    found = best_point(method)
-    if found is not None:
-        a, c = np.meshgrid(*(np.linspace(low, high, 200) for low, high in window(region(method))))
-        assert spectral_radius(method, a, c).min() >= found.z_abs - 1e-9
-
-
 DRAWN = [
     *(pytest.param(random_implicit_runge_kutta, k, marks=[] if k < 2 else pytest.mark.slow) for k in range(24)),
     *(pytest.param(other_random_method, k, marks=pytest.mark.slow) for k in range(1, 48, 4)),
@@ -308,23 +283,6 @@ def test_the_least_value_of_random_methods(draw: Callable[[int], Method], number
         assert abs(on_the_way[1] - limit.z_abs) < abs(on_the_way[0] - limit.z_abs)
     else:
         assert min(near, far) > 1 - 1e-6
-
-
-def test_a_solution_above_a_sampled_modulus_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What is returned is never worse than what was sampled: 1 % above, it is no answer."""
-    least_on = best_points.least_on
-
-    def worse(chart: Chart) -> tuple[float, Least | None]:
-        sampled, least = least_on(chart)
-        assert least
-        return sampled, replace(least, z_abs=1.01 * least.z_abs)
-
-    method = two_steps(F(0), F(-3, 5))  # of no other test: nothing is remembered
-    monkeypatch.setattr(best_points, "least_on", worse)
-    with pytest.raises(NumericalError, match="no kink as low"):
-        best_point(method)
-    monkeypatch.undo()
-    assert best_point(method)
 
 
 def test_the_repr_of_a_best_point_is_one_line() -> None:

@@ -3,33 +3,16 @@
 from dataclasses import replace
 from math import inf
 
-import numpy as np
 import pytest
 
 from bezstab.methods import lookup
 from bezstab.stability import best_point, region
 from tests.reference.extents import Extent
-from tests.reference.extents import contradictions as extent_contradictions
 from tests.reference.lower_points import contradictions as best_point_contradictions
 from tests.reference.one_evaluation_schemes import one_evaluation_schemes
-from tests.reference.random_methods import other_random_method, random_method
+from tests.reference.random_methods import random_method
 from tests.stability import campaign
-from tests.stability.campaign import DIFFERENT, cases_of, compared, other_cases_of, other_compared
-
-SAMPLE = range(0, 6000, 404)  # 15 methods: 404 goes round the fifteen kinds
-OTHER_SAMPLE = range(0, 5000, 719)  # 7 methods: 719 goes round the six kinds
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("number", SAMPLE)
-def test_no_random_method_has_a_silent_wrong_area(number: int) -> None:
-    assert [case for case in cases_of(number) if case.verdict == "silent"] == []
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("number", OTHER_SAMPLE)
-def test_no_random_implicit_or_second_order_method_has_a_silent_wrong_area(number: int) -> None:
-    assert [case for case in other_cases_of(number) if case.verdict == "silent"] == []
+from tests.stability.campaign import LEVELS, cases_of, compared, other_cases_of, other_compared
 
 
 @pytest.mark.promise(
@@ -49,32 +32,21 @@ def test_no_random_implicit_or_second_order_method_has_a_silent_wrong_area(numbe
     ),
 )
 @pytest.mark.slow
-def test_the_first_of_each_kind_agree() -> None:
-    for number in (1, 6, 11):
-        assert [case.verdict for case in cases_of(number)] == ["agrees"] * 4
-    assert other_compared(other_random_method(1), 1.0).verdict == "agrees"
+@pytest.mark.parametrize("number", range(15))
+def test_the_first_of_each_of_fifteen_kinds_agree(number: int) -> None:
+    assert [case.verdict for case in cases_of(number)] == ["agrees"] * len(LEVELS)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", range(6))
+def test_the_first_of_each_of_six_implicit_or_second_order_kinds_agree_or_are_unbounded(number: int) -> None:
+    assert {case.verdict for case in other_cases_of(number)} <= {"agrees", "unbounded"}
 
 
 def test_a_region_of_fifteen_parts_passes_its_own_check() -> None:
     """Five real intervals have as many: each is sliced for itself, or their sum is not the area."""
     case = compared(random_method(1448), 0.5)
     assert case.verdict == "agrees"
-
-
-SLIVER = 4786  # of area 1.2e-7: float64 puts its edge 1e-6 of its width aside, for poles nearly meet at z = 1
-
-
-@pytest.mark.slow
-def test_a_sliver_where_poles_nearly_meet_agrees_and_a_wrong_area_of_it_is_told(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(campaign, "OTHER_PANELS", 40)  # a twenty-fifth of the time: they are where the region was found
-    case = other_compared(other_random_method(SLIVER), 1.0)
-    assert case.area
-    assert case.verdict == "agrees"
-    assert case.admitted < DIFFERENT * case.integral / 10
-    for wrong_by in (-3e-6, 3e-6):
-        assert replace(case, area=case.area * (1 + wrong_by)).verdict == "silent"
 
 
 ENDLESS = next(
@@ -97,42 +69,9 @@ def test_a_wrong_extent_of_a_region_without_end_is_told(name: str, monkeypatch: 
     assert other_compared(ENDLESS, 1.0).verdict == verdict
 
 
-WIDER = 1e-5  # of an end: the lines on which a contradiction is looked for are a tenth of that from it
-
-
-@pytest.mark.parametrize("axis", [0, 1])
-@pytest.mark.parametrize(("wrong_by", "contradicted"), [(0.0, False), (WIDER, True), (-WIDER, True)])
-@pytest.mark.slow_except("0.0-False-1")
-def test_a_wrong_extent_of_a_sliver_is_told(axis: int, wrong_by: float, contradicted: bool) -> None:
-    """It ends in a tip so thin that float64 sees nothing stable there."""
-    method = other_random_method(SLIVER)
-    extent = region(method).extent
-    assert extent
-    ends = np.array(extent)
-    ends[axis, 1] *= 1 + wrong_by
-    assert bool(extent_contradictions(method, 1.0, (tuple(ends[0]), tuple(ends[1])))) == contradicted
-
-
 @pytest.mark.parametrize("times", [1.0, 1.01])
 def test_a_best_point_that_is_none_is_told(times: float) -> None:
     best = best_point(lookup("B2"))
     assert best
     wrong = best_point_contradictions(lookup("B2"), replace(best, z_abs=best.z_abs * times), None)
     assert bool(wrong) == (times > 1)
-
-
-def test_a_best_point_far_out_along_a_limit_is_told() -> None:
-    """|z_p| of implicit Euler falls towards 0 as both parameters grow."""
-    euler, best = lookup("implicit-euler"), best_point(lookup("trapezoid"))
-    assert best
-    assert best.z_abs == 0
-    assert best_point_contradictions(best.method, best, None) == []
-    far_out = replace(best, method=euler, alpha_hat=2e6, beta_hat=1e12)
-    assert best_point_contradictions(euler, far_out, None)
-    assert best_point_contradictions(euler, None, 0.0) == []
-
-
-@pytest.mark.parametrize(("name", "limit", "right"), [("bdf2", 0.0, True), ("bdf2", 0.5, False), ("B2", 0.0, False)])
-def test_a_limit_that_is_none_is_told(name: str, limit: float, right: bool) -> None:
-    """B2 has a best point, and nothing to fall towards."""
-    assert (best_point_contradictions(lookup(name), None, limit) == []) == right

@@ -11,8 +11,6 @@ from bezstab.stability import (
     choose,
     choose_at_step,
     describe_point,
-    pencil_of,
-    roots_in_z,
     spectral_radius,
 )
 from tests.methods.kinds import sampled
@@ -37,19 +35,10 @@ def test_no_point_is_more_robust(name: str) -> None:
     best = worst_decay(lookup(name), chosen.alpha_hat, chosen.beta_hat, shares, 0.1)
     random = np.random.default_rng(5)
     for size in (0.3, 0.1, 0.03, 0.01, 1e-3, 1e-4):
-        for a, b in random.normal(1, size, (60, 2)) * (chosen.alpha_hat, chosen.beta_hat):
+        for a, b in random.normal(1, size, (20, 2)) * (chosen.alpha_hat, chosen.beta_hat):
             if a > 0 and b > 0:
                 # six digits; that small steps end at a millionth here costs as much again
                 assert worst_decay(lookup(name), a, b, shares, 0.1) > best * (1 - 2e-6)
-
-
-@pytest.mark.parametrize("name", sampled(["B2", "B4", "AB4", "RK4"], quick=["B2", "RK4"]))
-def test_the_robust_choice_bears_the_spread_better_than_the_fastest(name: str) -> None:
-    robust, fastest = choose(lookup(name), "robust", 0.1), choose(lookup(name), "fastest", 0.1)
-    assert abs(fastest.pole) <= abs(robust.pole)
-    assert robust.worst < fastest.worst
-    assert robust.margins
-    assert robust.margins.h > 1.1
 
 
 @pytest.mark.parametrize("name", ["B3", "B8", "AB4"])
@@ -68,31 +57,6 @@ def test_the_critical_choice_of_rk4_is_the_minimum_of_its_stability_function() -
     chosen = choose(lookup("RK4"), "critical")
     assert abs(chosen.pole) == pytest.approx(1 + real + real**2 / 2 + real**3 / 6 + real**4 / 24, abs=1e-7)
     assert chosen.alpha_hat == pytest.approx(-2 * real, rel=1e-3)  # flat there
-
-
-@pytest.mark.parametrize("name", ["B4", "AB4", "RK4", "SIE"])
-@pytest.mark.parametrize("rate", [0.999, 0.95, 0.85])
-@pytest.mark.slow_except("0.95")
-def test_the_gentle_choice_solves_for_mu(name: str, rate: float) -> None:
-    chosen = choose(lookup(name), "gentle", rate=rate)
-    pencil = pencil_of(lookup(name))
-    in_mu = np.vander([rate], pencil.steps + 1, increasing=True) @ pencil.table  # pi(rate, mu), ascending
-    mu = np.roots(in_mu[0][::-1])
-    nearest = max(mu[(np.abs(mu.imag) < 1e-9) & (mu.real < 0)].real)
-    assert chosen.alpha_hat == pytest.approx(-2 * nearest, rel=1e-7)  # a double mu: half the digits
-    assert chosen.beta_hat == pytest.approx(nearest**2, rel=1e-7)
-    z = roots_in_z(pencil, np.array([nearest], complex))
-    assert np.abs(z).max() == pytest.approx(rate)
-
-
-@pytest.mark.parametrize("goal", ["robust", "fastest", "critical"])
-def test_a_step_of_five_h_scales_the_choice(goal: Goal) -> None:
-    plain, fivefold = (choose(lookup(name), goal) for name in ("RK2", "RK2@5"))
-    # the objective is flat to rounding within the square root of it
-    assert (5 * fivefold.alpha_hat, 25 * fivefold.beta_hat) == pytest.approx(
-        (plain.alpha_hat, plain.beta_hat), rel=1e-4
-    )
-    assert abs(fivefold.pole) == pytest.approx(abs(plain.pole), abs=1e-6)
 
 
 @pytest.mark.slow
@@ -121,11 +85,6 @@ def test_a_choice_is_proven_and_described() -> None:
     unsafe = describe_point(lookup("SYM"), "as given", Fraction(2), Fraction(2))
     assert (unsafe.verdict, unsafe.margins, unsafe.settle_steps) == ("diverges", None, None)
     assert describe_point(lookup("SYM"), "as given", Fraction(1), Fraction(2)).verdict == "marginal"
-
-
-def test_the_repr_of_a_choice_is_one_line() -> None:
-    described = describe_point(lookup("SYM"), "as given", Fraction(1), Fraction(1))
-    assert repr(described) == "Choice(SYM, as given: alpha_hat = 1, beta_hat = 1, |z_p| = 0, converges)"
 
 
 @pytest.mark.parametrize(("name", "point"), [("B4", ("1/5", "1/50")), ("RK4", ("1/5", "1/50"))])

@@ -67,16 +67,6 @@ def test_shapes_broadcast_with_the_root_axis_last() -> None:
     assert spectral_radius(method, np.empty((0, 3)), 0.1).shape == (0, 3)
 
 
-@pytest.mark.parametrize("name", [*FEW, "AB8", "dopri5"])
-@given(st.floats(-1, 4), st.floats(-1, 4))
-@settings(max_examples=15, deadline=None)
-def test_the_dominant_pole_is_the_largest_and_in_the_upper_half(name: str, alpha_hat: float, beta_hat: float) -> None:
-    z = complex(dominant_pole(lookup(name), alpha_hat, beta_hat))
-    assert z.imag >= 0
-    # 1e-3: two paths to the same roots, which near multiple ones agree to the fourth root of eps only
-    assert abs(z) == pytest.approx(np.abs(poles(lookup(name), alpha_hat, beta_hat)).max(), abs=1e-3)
-
-
 @pytest.mark.promise("A verdict", proven="is right on the boundary itself, and 1e-20 to either side")
 @pytest.mark.parametrize(
     ("name", "alpha_hat", "beta_hat"), [("SYM", F(1), F(2)), ("AB2", F(3, 2), F(1, 2)), ("RK1", F(2), F(2))]

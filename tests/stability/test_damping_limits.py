@@ -2,13 +2,11 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-import sympy as sp
 
 from bezstab.methods import Method, closed_loop_at, lookup, recursion_verdict
 from bezstab.stability import (
     critical_damping_limit,
     exact_critical_damping_limit,
-    region,
     unconditional_damping_ratio,
 )
 from tests.reference.companion_poles import radius
@@ -72,20 +70,6 @@ def test_a_limit_at_which_a_root_only_touches_the_circle_is_exact(stages: str, l
     weights = "0 0 1" if ";" in stages else "0 1"
     chebyshev = runge_kutta("chebyshev", stages, weights)
     assert critical_damping_limit(chebyshev) == limit
-
-
-@pytest.mark.slow
-def test_ten_stages_of_runge_kutta_chebyshev_have_one_region_up_to_their_exact_limit() -> None:
-    """R = T_10(w + u mu) / T_10(w), w a little above 1: |R| < 1 from mu = 0 down to w + u mu = -w, without a touch."""
-    stages, w = 10, 1 + sp.Rational(1, 2000)
-    chebyshev = sp.chebyshevt_poly(stages, polys=True)
-    u = chebyshev.eval(w) / chebyshev.diff().eval(w)
-    of_mu = chebyshev.compose(sp.Poly([u, w], sp.Symbol("mu"), domain="QQ")).all_coeffs()
-    ratios = [str(of_mu[k] / of_mu[k + 1]) for k in range(stages - 1)]
-    rows = ";".join(" ".join(["0"] * k + [ratio]) for k, ratio in enumerate(ratios))
-    method = runge_kutta("damped Chebyshev", rows, "0 " * (stages - 1) + "1")
-    assert exact_critical_damping_limit(method) == Fraction(str(2 * w / u))
-    assert len(region(method).boundary) == 1
 
 
 def converges(method: Method, damping_ratio: Fraction, beta_step: Fraction) -> bool:

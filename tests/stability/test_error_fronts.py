@@ -15,7 +15,7 @@ from tests.methods.kinds import sampled
 
 OMEGA_H = Fraction(1, 100)
 QUICK = ("RK4", "B4", "SYM")
-TRADED = ("B2", "B3", "AB2", "AB4", "ABM4", "SIE", "dopri5", "bs3", "gauss4", "verlet-half", "bdf2", "hht")
+TRADED = ("B2", "AB4", "ABM4", "SIE", "dopri5", "gauss4", "verlet-half", "bdf2", "hht")
 """One of each kind besides, in make test-slow."""
 
 POINTS = 300
@@ -27,7 +27,7 @@ PROMISED = 1e-3
 
 @pytest.mark.promise(
     "The least error at each |z_p| (`tradeoff --predicted`)",
-    computed=("1e-3: no point of a grid over five decades is better, fifteen methods at two ωh; |z_p| at most as said"),
+    computed=("1e-3: no point of a grid over five decades is better, twelve methods at two ωh; |z_p| at most as said"),
 )
 @pytest.mark.parametrize("name", [*QUICK, *TRADED])
 @pytest.mark.parametrize("omega_h", [OMEGA_H, Fraction(1, 3)], ids=str)
@@ -78,15 +78,6 @@ def test_where_modulus_falls_on_without_end_rates_beyond_what_is_looked_at_have_
     assert best_point(lookup("bdf3")) is None
     assert 0.1 not in {point.z_abs_below for point in front}
     assert front[0].z_abs_below == 0.999
-
-
-def test_stronger_feedback_costs_methods_with_stages_a_hundred_thousandfold_and_multistep_methods_nothing() -> None:
-    of_rk4, of_b4 = (
-        {point.z_abs_below: point.combined_error for point in error_front(lookup(name), [0.999, 0.7])}
-        for name in ("RK4", "B4")
-    )
-    assert of_rk4[0.7] > 1e5 * of_rk4[0.999]
-    assert of_b4[0.7] == pytest.approx(of_b4[0.999], rel=0.01)
 
 
 @pytest.mark.promise(

@@ -5,11 +5,10 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from bezstab.methods import Method, PlaneStrips, Strip, lookup, recipe
+from bezstab.methods import Method, lookup, recipe
 from bezstab.questions import RegionAnswer
 from bezstab.show import region_row, with_unbounded
-from bezstab.stability import region, verdict
-from bezstab.stability.plane_cells import shape_of_strips
+from bezstab.stability import region
 from tests.methods.kinds import sampled
 from tests.reference.extents import contradictions
 from tests.reference.one_evaluation_schemes import one_evaluation_schemes, polygon_extent
@@ -41,14 +40,6 @@ def test_a_scheme_with_one_evaluation_has_the_extent_of_its_polygons(name: str, 
         assert not np.array(found.approached).any()  # polygons have their corners
 
 
-def test_an_implicit_spring_with_an_explicit_damper_has_no_largest_alpha_hat() -> None:
-    """alpha_hat < 2 + beta_hat / 2, which is 2 at beta_hat = 0 and 12 at 20; -alpha_hat < beta_hat."""
-    method = SCHEMES[QUICK[0]]
-    assert region(method).extent == ((-np.inf, np.inf), (-np.inf, np.inf))
-    assert verdict(method, Fraction(8), Fraction(20)) == "converges"
-    assert verdict(method, Fraction(13), Fraction(20)) == "diverges"
-
-
 @pytest.mark.promise("Extent of a region without end")
 @pytest.mark.parametrize("name", sampled(["hht", "generalized-alpha", "verlet-kdk", "stable-pd"], quick=["stable-pd"]))
 @pytest.mark.parametrize("level", [1.0, 0.9])
@@ -56,24 +47,6 @@ def test_proven_verdicts_near_and_far_out_agree(name: str, level: float) -> None
     found = region(lookup(name), level)
     assert found.extent
     assert contradictions(found.method, level, found.extent) == []
-
-
-def test_a_limit_that_edges_come_near_is_told_from_an_end_that_they_attain() -> None:
-    """Between alpha_hat = 0 and alpha_hat = 2 - 1 / beta_hat, for beta_hat > 1."""
-    # alpha_hat, and (alpha_hat - 2) beta_hat + 1
-    left, right = ((Fraction(0),), (Fraction(1),)), ((Fraction(1), Fraction(-2)), (Fraction(0), Fraction(1)))
-    strip = Strip(
-        low=Fraction(1),
-        high=None,
-        crossings=((0, 0), (1, 0)),
-        stable=(False, True, False),
-        limits={(0, 0): (None, 0.0), (1, 0): (None, 2.0)},
-    )
-    strips = PlaneStrips((left, right), (strip,), lost=({}, {}))
-    shape = shape_of_strips(strips, "made")
-    assert shape
-    assert shape.extent == ((0.0, 2.0), (1.0, np.inf))
-    assert shape.approached == ((False, True), (False, False))
 
 
 @pytest.mark.promise("Extent of a region without end")

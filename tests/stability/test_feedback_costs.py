@@ -5,7 +5,6 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from bezstab.errors import InputError
 from bezstab.methods import lookup
 from bezstab.stability import choose, feedback_cost
 
@@ -46,12 +45,6 @@ def test_symplectic_euler_leaves_velocities_half_a_step_off() -> None:
     cost = feedback_cost(lookup("SYM"), 0.5, 0.1, Fraction(1, 1000))
     assert cost.velocity_error == pytest.approx(0.0005, rel=0.01)
     assert cost.times_least_velocity == pytest.approx(1, rel=0.01)
-
-
-def test_a_motion_too_fast_for_its_steps_is_refused() -> None:
-    for point in ((0.5, 0.1), (10.0, 10.0)):
-        with pytest.raises(InputError, match="omega h = 1 rad a step"):
-            feedback_cost(lookup("SYM"), *point, Fraction(1))
 
 
 def test_what_leaves_the_range_of_float64_is_not_told() -> None:

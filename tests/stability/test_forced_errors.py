@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from bezstab.errors import InputError
-from bezstab.methods import forced_errors, leading_error, lookup
-from bezstab.stability import forced_error, forced_response, turning_response
+from bezstab.methods import forced_errors, lookup
+from bezstab.stability import forced_error, turning_response
 from tests.reference.forced_runs import exact_value
 
 METHODS = ("B4", "AB4", "AB8", "RK4", "dopri5", "SYM", "verlet-half", "hht", "gauss4")
@@ -42,17 +42,6 @@ def test_points_of_a_map_have_the_errors_that_they_have_alone() -> None:
         alone = forced_error(lookup("B4"), alpha_hat[j], beta_hat[i, 0], any_frequency=True)
         assert float(of_map.total[i, j]) == pytest.approx(float(alone.total), rel=1e-12)
     assert forced_error(lookup("B4"), [], []).total.shape == (0,)
-
-
-@pytest.mark.parametrize("name", METHODS)
-@pytest.mark.slow_except("SYM", "verlet", "AB4", "hht", "B4", "RK4")
-def test_a_response_is_the_error_over_the_power_of_theta_that_it_begins_with(name: str) -> None:
-    omega = Fraction(1, 10)
-    response = forced_response(lookup(name), 0.02, 3e-4, np.array([0.1, -0.1, 0.7]))
-    error = float(forced_error(lookup(name), 0.02, 3e-4, omega).position)
-    assert abs(response[0]) * 0.1 ** leading_error(lookup(name)).power == pytest.approx(error, rel=1e-9)
-    assert response[1] == pytest.approx(np.conj(response[0]))
-    assert response[2] == 0  # no step follows that
 
 
 @pytest.mark.parametrize("omega", [Fraction(0), Fraction(1), Fraction(1, 10**7)])

@@ -1,5 +1,4 @@
 from fractions import Fraction
-from itertools import islice
 
 import numpy as np
 import pytest
@@ -8,19 +7,6 @@ from bezstab.methods import lookup, step_matrix
 from bezstab.stability.growing_sequences import growing_words, grows, growth_of
 
 ONE, HALF = Fraction(1), Fraction(1, 2)
-
-
-def test_the_first_word_is_short_and_grows() -> None:
-    # theory: alpha = 2, beta = 100 at 1/60 s
-    matrix = step_matrix(lookup("SYM"), Fraction(4, 60), Fraction(100, 60) ** 2)
-    word = next(growing_words(matrix, HALF))
-    assert len(word) == 2
-    assert grows(matrix, word)
-    assert not any(grows(matrix, [length]) for length in word)
-
-
-def test_there_is_none_where_steps_commute_and_decay() -> None:
-    assert not list(islice(growing_words(step_matrix(lookup("RK4"), HALF, ONE), HALF), 1))
 
 
 @pytest.mark.promise("Steps that vary, refuted")

@@ -9,7 +9,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bezstab.engines import DRIVE_METHODS
-from bezstab.errors import InputError
 from bezstab.methods import closed_loop_at, lookup
 from bezstab.stability.held_drives import (
     SEEN,
@@ -70,37 +69,9 @@ def test_a_fresh_drive_converges_where_its_law_says(way: str, a: Fraction, b: Fr
     assert converges_by_law(way, a, b, Timing()) == (held_verdict(way, a, b, Timing()) == "converges")
 
 
-@pytest.mark.parametrize(
-    ("way", "timing"),
-    [
-        ("SYM", Timing(every=2, late=Fraction(1))),
-        ("SYM", Timing(late=Fraction(1, 2))),
-        ("SYM", Timing(filter_steps=Fraction(1))),
-        ("stable-pd", Timing(every=2)),
-        ("implicit-euler", Timing()),
-    ],
-)
-def test_where_no_closed_form_is_known_there_is_no_law(way: str, timing: Timing) -> None:
-    assert law_bounds(way, Fraction(1), timing) == ()
-
-
-DAMPING_RATIOS = (0.05, 0.1, 0.3, 0.7, 1, 2)
-LIMITS = {
-    Timing(late=Fraction(2)): (0.050, 0.098, 0.243, 0.289, 0.2485, 0.146),
-    Timing(every=10): (0.022, 0.044, 0.133, 0.136, 0.098, 0.050),
-    Timing(every=4, late=Fraction(4)): (0.018, 0.036, 0.095, 0.123, 0.105, 0.060),
-}
-"""Largest stable omega h by damping ratio, in three digits: found in trials with another program."""
-
-
-@pytest.mark.parametrize("timing", LIMITS)
-def test_limits_by_damping_ratio_lie_between_two_proven_verdicts(timing: Timing) -> None:
-    for ratio, limit in zip(DAMPING_RATIOS, LIMITS[timing], strict=True):
-        below, above = (
-            held_verdict("SYM", Fraction(2 * ratio * omega), Fraction(omega**2), timing)
-            for omega in (limit - 0.0011, limit + 0.0011)
-        )
-        assert (below, above) == ("converges", "diverges"), ratio
+def test_where_no_closed_form_is_known_there_is_no_law() -> None:
+    for timing in (Timing(every=2, late=Fraction(1)), Timing(late=Fraction(1, 2)), Timing(filter_steps=Fraction(1))):
+        assert law_bounds("SYM", Fraction(1), timing) == ()
 
 
 def grown(way: str, a: float, b: float, timing: Timing, steps: int) -> float:
@@ -236,29 +207,3 @@ def test_a_map_shows_all_that_is_stable_and_its_cells_are_where_the_verdict_is_p
     for edge, axis in ((stable.any(axis=0), found.alpha_hat), (stable.any(axis=1), found.beta_hat)):
         reach = axis[edge].max() / axis[-1]
         assert (0.7 < reach < 1) or axis[-1] == STRONGEST
-
-
-def test_a_map_holds_the_drives_own_gains_and_the_law() -> None:
-    found = held_map("SYM", Timing(every=4), 10, (3.0, 0.5))
-    assert found.alpha_hat[-1] > 3
-    assert found.beta_hat[-1] > 0.5
-    assert found.law == pytest.approx(
-        [min((4 - 8 * a) / 4, 2 * a / 3) for a in found.alpha_hat],
-        rel=1e-12,  # rounding
-    )
-    assert held_map("SYM", Timing(every=4, late=Fraction(1)), 10, (0.1, 0.1)).law is None
-
-
-@pytest.mark.parametrize(
-    ("values", "words"),
-    [
-        ({"every": 0}, "--every 0: expected a whole number of steps from 1 to 100"),
-        ({"every": 101}, "--every 101: expected"),
-        ({"late": Fraction(201, 2)}, "--late 100.5: expected from 0 to 100 steps"),
-        ({"late": Fraction(-1)}, "--late -1: expected from 0 to 100 steps"),
-        ({"filter_steps": Fraction(-1)}, "--filter -1 steps: expected 0 or more"),
-    ],
-)
-def test_what_is_out_of_range_is_refused(values: dict[str, Fraction], words: str) -> None:
-    with pytest.raises(InputError, match=words.replace(".", r"\.")):
-        Timing(**values)  # type: ignore[arg-type]

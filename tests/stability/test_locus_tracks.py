@@ -2,11 +2,10 @@
 
 import numpy as np
 import pytest
-from numpy.polynomial.polynomial import polyroots, polysub, polyval2d
+from numpy.polynomial.polynomial import polyroots, polysub
 
-from bezstab.methods import Method, lookup
+from bezstab.methods import Method
 from bezstab.stability import pencil_of, region
-from bezstab.stability.locus_tracks import tracks
 from tests.reference.slice_integral import slice_area
 from tests.stability.made_methods import CLOSE_BRANCHES, FAR_INTERVAL
 
@@ -33,14 +32,3 @@ def test_a_far_interval_reaches_furthest(level: float) -> None:
     assert found
     assert found[0][1] == pytest.approx(-2 * furthest, rel=1e-12)
     assert found[1][1] == pytest.approx(furthest**2, rel=1e-12)
-
-
-@pytest.mark.parametrize("name", ["B4", "RK4", "ABM3", "ABM4"])
-def test_every_branch_solves_pi_between_its_samples(name: str) -> None:
-    pencil = pencil_of(lookup(name))
-    for track in tracks(pencil, 0.9, finer=1):
-        shares = np.array([[0.25], [0.5], [0.75]])  # of the way: nearest is the left sample, or the right
-        theta = (track.theta[:-1] + shares * np.diff(track.theta)).ravel()
-        mu = track.at(theta)
-        size = polyval2d(np.full(theta.shape, 0.9), np.abs(mu), np.abs(pencil.table))
-        assert (np.abs(polyval2d(0.9 * np.exp(1j * theta), mu, pencil.table)) < 1e-12 * size).all()

@@ -44,9 +44,3 @@ def test_a_polygon_is_found_where_one_exists() -> None:
     found = invariant_polygon(matrix, np.array([float(s) for s in lengths]), matrices, None, np.eye(2), HALF)
     assert found
     assert proves_decay(found, matrix, HALF)
-
-
-def test_none_is_found_where_a_step_grows() -> None:
-    matrix = step_matrix(lookup("SYM"), Fraction(1, 10), Fraction(5))
-    matrices = np.array([[[float(entry) for entry in row] for row in matrix.at(s)] for s in (HALF, ONE)])
-    assert invariant_polygon(matrix, np.array([0.5, 1.0]), matrices, None, np.eye(2), HALF) is None

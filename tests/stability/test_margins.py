@@ -14,7 +14,6 @@ from bezstab.stability import (
     Margins,
     largest_stable_step,
     region,
-    spectral_radius,
     stability_margins,
     stable_up_to,
     verdict,
@@ -91,18 +90,6 @@ def test_margins_of_weak_feedback_are_right_however_far(name: str, exponent: int
     assert_each_end_is_proven(name, alpha_hat, beta_hat)
 
 
-@pytest.mark.parametrize("name", ["B4", "RK4"])
-def test_at_critical_damping_both_mu_cross_together(name: str) -> None:
-    """On alpha = beta the double mu leaves S_1 where it meets the end of its real interval."""
-    t = Fraction(1, 10)
-    found = stability_margins(lookup(name), 2 * t, t**2)
-    assert verdict(lookup(name), 2 * t * Fraction(found.h) * (1 - PART), (t * Fraction(found.h) * (1 - PART)) ** 2) == (
-        "converges"
-    )
-    end = {"B4": 27 / 34, "RK4": 2.785293563405282}[name]  # -mu(-1), and that of R(mu) = 1
-    assert found.h * float(t) == pytest.approx(end, rel=1e-12)
-
-
 @pytest.mark.parametrize("name", ["ABM3", "ABM4"])
 @pytest.mark.slow
 def test_next_to_critical_damping_the_first_of_both_mu_that_crosses_is_the_end(name: str) -> None:
@@ -112,17 +99,6 @@ def test_next_to_critical_damping_the_first_of_both_mu_that_crosses_is_the_end(n
     """
     for alpha_h in np.random.default_rng(1).uniform(0.5, 0.95, size=12).tolist():
         assert_each_end_is_proven(name, Fraction(2 * alpha_h), Fraction(alpha_h**2))
-
-
-@pytest.mark.parametrize("name", ["B4", "AB4", "ABM3", "RK4", "hht", "verlet-kdk"])
-def test_between_the_ends_of_a_margin_every_sampled_pole_is_inside(name: str) -> None:
-    (_, alpha_hat_max), (_, beta_hat_max) = window(region(lookup(name)))
-    alpha_hat, beta_hat = 0.2 * alpha_hat_max, 0.05 * beta_hat_max
-    for end, of_alpha_hat, of_beta_hat, _ in outer_ends(stability_margins(lookup(name), alpha_hat, beta_hat)):
-        furthest = end if 0 < end < math.inf else (1e3 if end else 1e-3)
-        factors = np.geomspace(1, furthest, 500)[:-1]
-        z_abs = spectral_radius(lookup(name), alpha_hat * factors**of_alpha_hat, beta_hat * factors**of_beta_hat)
-        assert z_abs.max() < 1
 
 
 def test_the_largest_step_of_fixed_gains_is_the_margin() -> None:

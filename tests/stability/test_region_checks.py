@@ -114,13 +114,6 @@ def test_a_branch_followed_twice_in_place_of_another_is_no_answer(monkeypatch: p
         region(CLOSE_BRANCHES, 0.93)
 
 
-@pytest.mark.parametrize("name", ["implicit-euler", "trapezoid", "bdf3", "radau3"])
-def test_an_unbounded_region_without_an_arc_is_no_answer(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    with_bounds(monkeypatch, lambda bounds: replace(bounds, arcs=()), finest=100)
-    with pytest.raises(NumericalError):
-        region(lookup(name))
-
-
 SHAPES = [
     *(("B4", 1.0), ("AB4", 1.0), ("RK4", 0.93), ("ABM2", 1.0)),
     *(("predicted", 0.9), ("kdk", 0.9), ("half", 0.9), ("ruth3", 0.25), ("bdf3", 1.0), ("imex", 1.0)),

@@ -2,47 +2,10 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from bezstab.stability.root_finding import (
-    STRIDE,
-    horner,
-    horner_with_slope,
-    newton_polygon_starts,
     roots_of_table,
 )
-
-
-@given(st.lists(st.integers(-9, 9), min_size=2, max_size=6))
-def test_horner_is_the_polynomial(coefficients: list[int]) -> None:
-    x = np.array([0.5 + 1j, -2.0, 0.0])
-    expected = pytest.approx(np.polyval(coefficients[::-1], x))
-    as_arrays = [np.full(x.shape, float(c)) for c in coefficients]
-    assert horner(np.array(coefficients, float), x) == expected
-    assert horner([float(coefficients[0]), *as_arrays[1:]], x) == expected
-    value, slope = horner_with_slope(as_arrays, x)
-    assert value == expected
-    assert slope == pytest.approx(np.polyval(np.polyder(coefficients[::-1]), x))
-    assert all((c == c[0]).all() for c in as_arrays)  # what is given stays
-
-
-@given(st.sets(st.integers(-20, 20), min_size=2, max_size=5))
-def test_each_start_has_the_size_of_its_root(exponents: set[int]) -> None:
-    sizes = 1000.0 ** np.sort(list(exponents))  # far apart: of each coefficient one term is all but the whole
-    starts = newton_polygon_starts(np.poly(sizes)[::-1].astype(complex)[:, np.newaxis])
-    assert np.abs(starts[:, 0]) == pytest.approx(sizes, rel=0.01)
-
-
-@given(st.lists(st.floats(-4, 4), min_size=10, max_size=10), st.integers(1, 3 * STRIDE))
-@settings(deadline=None)
-def test_the_roots_have_their_sum_and_their_product(numbers: list[float], count: int) -> None:
-    table = np.array([numbers[:3], numbers[3:6], numbers[6:9], [1.0, 0.0, 0.0]])  # cubic in y, monic
-    x = np.linspace(-1 + 0.3j, 1 + 0.3j, count, dtype=np.complex128)
-    y = roots_of_table(table, x)
-    size = 1 + np.abs(table).sum()
-    assert np.abs(y.sum(axis=0) + horner(table[2], x)).max() < 1e-7 * size  # a triple root keeps a third of the digits
-    assert np.abs(y.prod(axis=0) + horner(table[0], x)).max() < 1e-7 * size**3
 
 
 def test_roots_of_very_different_size_keep_their_digits() -> None:

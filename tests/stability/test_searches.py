@@ -3,7 +3,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bezstab.stability import FloatArray
 from bezstab.stability.searches import first_where, zoom_on_minimum
 
 
@@ -29,19 +28,3 @@ def test_a_zoom_finds_a_kink_to_the_last_grid(least: float) -> None:
     )
     assert found[0] == pytest.approx(least, abs=2 * 16.0**-10)
     assert value == abs(found[0] - least)
-
-
-@pytest.mark.parametrize("angle", [0.2, 0.5, 1.0])
-def test_a_narrow_diagonal_valley_with_a_kink_is_followed_by_turning(angle: float) -> None:
-    along, across = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
-    bottom = 0.6 * along
-
-    def valley(points: FloatArray) -> FloatArray:
-        offset = points - bottom
-        # so steep that at the latter two angles grids that are not turned stop halfway
-        return np.asarray(100 * np.abs(offset @ across) + np.abs(offset @ along))
-
-    found, _ = zoom_on_minimum(
-        valley, np.zeros(2), np.ones(2), points=13, shrink=0.75, rounds=120, turned=True, patient=True
-    )
-    assert found == pytest.approx(bottom, abs=1e-6)

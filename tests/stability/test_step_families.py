@@ -1,12 +1,10 @@
 from fractions import Fraction
 
 import mpmath as mp
-import numpy as np
 import pytest
 
 from bezstab.methods import REGISTRY, STEP_FAMILIES, accuracy, lookup
 from bezstab.stability import bezier_limit, family_members
-from tests.reference.region_areas import region_area
 
 
 def test_members_are_the_registered_methods_with_their_known_areas() -> None:
@@ -17,26 +15,6 @@ def test_members_are_the_registered_methods_with_their_known_areas() -> None:
     assert [(member.order, member.error_constant) for member in found] == [accuracy(member.method) for member in found]
     prefixes = {"bezier": "B", "adams-bashforth": "AB"}
     assert all(f"{prefixes[name]}{family.largest}" in REGISTRY for name, family in STEP_FAMILIES.items())
-
-
-def extrapolated(values: list[float], n: list[int]) -> float:
-    """Return the limit of a sequence that is a series in 1/n, by a polynomial through all of it."""
-    return float(np.polynomial.Polynomial.fit(1 / np.array(n), values, len(n) - 1)(0))
-
-
-@pytest.mark.slow
-def test_the_limit_is_where_the_family_tends() -> None:
-    """Second route: the exact areas and optima of B5 to B12, extrapolated in 1/n."""
-    found, limit = family_members("bezier", 5, 12), bezier_limit()
-    n = [member.n for member in found]
-    # eight terms of the series: 12^-8 is 2e-9, times what the polynomial amplifies
-    assert extrapolated([region_area(member.method) for member in found], n) == pytest.approx(limit.area, abs=1e-6)
-    assert extrapolated([member.z_abs or 0 for member in found], n) == pytest.approx(limit.z_abs, abs=1e-6)
-    ends = [member.region.extent for member in found]
-    assert extrapolated([end[0][1] for end in ends if end], n) == pytest.approx(limit.alpha_hat_max, abs=1e-6)
-    assert extrapolated([end[1][1] for end in ends if end], n) == pytest.approx(limit.beta_hat_max, abs=1e-5)
-    constants = [float(member.error_constant) for member in found]
-    assert extrapolated(constants, n) == pytest.approx(float(limit.error_constant), abs=1e-6)
 
 
 @pytest.mark.promise(
@@ -62,11 +40,3 @@ def test_the_limits_numbers_to_thirty_digits() -> None:
         r = mp.findroot(lambda r: mu(mp.mpc(r)).real - mu(mp.mpc(-r)).real, 0.687)
         assert limit.z_abs == pytest.approx(float(r), abs=1e-14)
     assert limit.error_constant == Fraction(1, 4)
-
-
-def test_the_limits_boundary_is_closed_and_encloses_its_area() -> None:
-    limit = bezier_limit()
-    (a, b), (next_a, next_b) = limit.boundary[:-1].T, limit.boundary[1:].T
-    assert (limit.boundary[0] == limit.boundary[-1]).all()
-    assert abs(np.sum(a * next_b - next_a * b)) / 2 == pytest.approx(limit.area, rel=1e-4)  # a thousand chords
-    assert limit.boundary.max(axis=0) == pytest.approx([limit.alpha_hat_max, limit.beta_hat_max], rel=1e-4)

@@ -1,0 +1,128 @@
+"""The command that tells whether a choice is safe: check."""
+
+from collections.abc import Iterable, Iterator
+from itertools import groupby
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from bezstab.cli.asking import (
+    TypedPoint,
+    asked_of_feedback,
+    chain_options,
+    given_point_options,
+    h_min_option,
+    hold_option,
+    left_out,
+    moving_scene_options,
+    omega_option,
+    say_varying,
+    show_below,
+)
+from bezstab.cli.held_drives import held_asked, refuse_others, show_held, timing_options
+from bezstab.cli.options import SECONDS, format_option, methods_option
+from bezstab.cli.output import for_reading, say, show_rows, show_text
+from bezstab.errors import InputError, NumericalError
+from bezstab.methods import Method
+from bezstab.show import CHECKED, LARGEST_STEPS, Format, answer_row, costs_words, largest_step_row
+
+if TYPE_CHECKING:
+    from bezstab.questions import Answer
+
+NEEDING_A_STEP = ("h", "h_min", "scene", "engine", "drive", "as_typed", "hold", "omega")
+"""Without any of these, α and β in 1/s are asked about for every step."""
+
+
+@click.command()
+@methods_option()
+@given_point_options
+@chain_options
+@timing_options
+@omega_option
+@h_min_option
+@click.option("--h-max", type=SECONDS, help="With --h-min: the longest step in s [--h].")
+@hold_option
+@moving_scene_options("Is it safe for this mechanism as it moves? Needs --h.")
+@format_option
+@click.pass_context
+def check(context: click.Context, /, point: TypedPoint, form: Format, **typed: Any) -> None:
+    """Tell whether a choice is safe: exit status 0 if so, 1 if not.
+
+    Safe means that errors are proven to shrink, with every method named. Prints the verdict, the margins, the largest
+    stable step, and what `choose` gives instead. With α and β in 1/s (--physical) but no --h, prints the step up to
+    which every step is safe.
+
+    Without --h-min all steps are equally long. Steps that are each stable alone may still let errors grow when they
+    alternate. With --h-min and --h-max, safe means proven for every sequence of steps in that range.
+
+    What is safe may still be inaccurate. On a mechanism that moves, feedback makes errors of its own if it is strong,
+    or if it is weak. A sentence says so if they are at least ten times the least.
+
+    --engine judges an engine's own values, with its own method unless you name another. What the engine does to its
+    values, such as clamps, is applied first. What the conversion leaves out is printed. The largest step is for the
+    engine's values as they are. What `choose` gives instead is a line to paste. Many engines solve their constraints
+    one after another, in sweeps. The answer is then about one constraint alone: a chain of them may diverge all the
+    same. With --chain, safe means stable for so many bodies in a straight chain. Its last body is --mass-ratio times
+    as heavy, and a step makes --iterations sweeps. With --scene, safe means so for the constraints of that mechanism at
+    its start, in the order of its file.
+
+    --pd kp,kd,inertia judges a joint's drive, applied in four ways: explicit (SYM), implicit in velocity (imex-euler,
+    as MuJoCo's implicitfast), as stable PD (stable-pd), fully implicit (implicit-euler, as PhysX). All four must be
+    safe unless --method names yours. Gains that are stable in an implicit engine may explode in an explicit one.
+    "used up" names the gain that is at its limit, or nearest to it. "to" says how far each may go alone. An explicit
+    drive needs 2 kd h + kp h² < 4 inertia: mostly it is kd that is too large. An implicit velocity takes any kd.
+
+    --every, --late and --filter are for a controller that is slower than the physics. Its torque is held for several
+    steps, comes late, or uses a filtered velocity. "used up" then names gains, rate or delay. A contact of stiffness k
+    and damping c between bodies of reduced mass m is --pd k,c,m while it is closed.
+
+    Example: bezstab check --method RK2 --h 0.002 --alpha 50 --beta 50 --physical
+    """
+    from bezstab.questions import answers, check_speed
+
+    drive = typed["drive"]
+    if held := held_asked(typed):
+        refuse_others("--every, --late and --filter")
+        context.exit(0 if all(answer.safe for answer in show_held(held, form)) else 1)
+    if point.physical and not any(typed[name] for name in NEEDING_A_STEP):
+        check_speed(None, typed["speed"])
+        context.exit(0 if _check_without_step(typed["methods"], point, form) else 1)
+    question = asked_of_feedback(point=point, **typed)
+    found = list(_with_instead(answers(question)))
+    given = [answer for answer in found if answer.role == "given"]
+    if for_reading(form):
+        without = left_out(question)
+        show_rows(CHECKED, [answer_row(answer) for answer in given], form, without)
+        say_varying(given)
+        for sentence in map(costs_words, given if not drive else ()):
+            if sentence:
+                show_text(f"\n{sentence}")
+        if instead := [answer_row(answer) for answer in found if answer.role == "instead"]:
+            show_text("\nWhat `choose` gives instead:\n")
+            show_rows(CHECKED, instead, form, without)
+    else:
+        show_rows(CHECKED, [answer_row(answer) for answer in found], form)
+    show_below(question, found, form)
+    context.exit(0 if all(answer.safe for answer in given) else 1)
+
+
+def _with_instead(given: "Iterable[Answer]") -> "Iterator[Answer]":
+    """Yield the answers that were given, and for each method what to take instead; where there is nothing, say why."""
+    for _, of_method in groupby(given, lambda answer: answer.method):
+        answers_of_method = list(of_method)
+        yield from answers_of_method
+        try:
+            yield answers_of_method[0].instead
+        except (InputError, NumericalError) as error:  # the verdict stands without it
+            say(f"bezstab: nothing instead: {error}")
+
+
+def _check_without_step(methods: tuple[Method, ...], point: TypedPoint, form: Format) -> bool:
+    """Print up to which step alpha and beta (1/s) are safe with each method; return whether each has such a step."""
+    from bezstab.questions import largest_step, methods_for
+
+    if point.numbers is None:
+        raise click.UsageError("a point is needed: --alpha with --beta, --engine, or --pd")
+    found = [largest_step(method, *point.numbers) for method in methods_for(methods, None, None)]
+    show_rows(LARGEST_STEPS, [largest_step_row(each) for each in found], form)
+    return all(each.safe for each in found)

@@ -1,0 +1,169 @@
+"""The command that recommends α and β: choose."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from bezstab.cli.asking import (
+    asked_of_feedback,
+    chain_options,
+    h_min_option,
+    hold_option,
+    inertia_or_drive_of,
+    left_out,
+    moving_scene_options,
+    omega_option,
+    say_varying,
+    show_below,
+)
+from bezstab.cli.held_drives import held_asked, refuse_others, show_held, timing_options
+from bezstab.cli.options import (
+    ENGINE,
+    NUMBER,
+    SECONDS,
+    SHARE,
+    ParsedType,
+    Rule,
+    format_option,
+    left_at_default,
+    methods_option,
+    ruled,
+)
+from bezstab.cli.output import for_reading, progress, show_rows, show_text
+from bezstab.goals import GOALS, Goal
+from bezstab.methods import lookup
+from bezstab.rationals import typed_number
+from bezstab.show import CHOICES, Format, alone_words, answer_row, trade_words
+
+if TYPE_CHECKING:
+    from bezstab.questions import Answer, HeldQuestion
+
+
+@click.command()
+@methods_option()
+@click.option("--h", type=SECONDS, required=True, help="Step size in s.")
+@click.option(
+    "--goal",
+    type=click.Choice(list(GOALS)),
+    help="; ".join(f"{goal}: {meaning}" for goal, meaning in GOALS.items())
+    + " [accurate; robust with --pd, and with an --engine whose α and β depend on each other].",
+)
+@omega_option
+@click.option(
+    "--h-max",
+    type=SECONDS,
+    help="The largest step in s that may occur: for the goals accurate and robust, and with --h-min [--h].",
+)
+@h_min_option
+@hold_option
+@click.option("--spread", type=SHARE, default="0.1", help="α and β may be off by this share.")
+@click.option(
+    "--settle",
+    type=SECONDS,
+    help="The time in s in which errors fall a thousandfold: for the goals gentle and accurate, and with --pd.",
+)
+@click.option("--keep", "equal", type=click.Choice(["alpha=beta"]), help="Only points with α = β.")
+@click.option(
+    "--engine",
+    metavar="NAME",
+    type=ENGINE,
+    help="Choose only what this engine can express, and print the line to paste.",
+)
+@chain_options
+@click.option(
+    "--pd",
+    "drive",
+    type=ParsedType("inertia", inertia_or_drive_of),
+    help="Choose gains for a joint drive on this inertia (SI units); of KP,KD,INERTIA only the inertia counts.",
+)
+@click.option(
+    "--bandwidth", type=NUMBER, help="With --pd: choose critically damped gains with this natural frequency in Hz."
+)
+@timing_options
+@moving_scene_options("Choose for this mechanism as it moves.")
+@format_option
+@ruled(Rule("--bandwidth", "it is that of a drive", needs=("--pd",)))
+@click.pass_context
+def choose(
+    context: click.Context,
+    /,
+    goal: Goal | None,
+    equal: str | None,
+    bandwidth: Fraction | None,
+    form: Format,
+    **typed: Any,
+) -> None:
+    """Recommend α and β for an integrator and its step size.
+
+    The answer is proven stable, and its margins are printed. You may ask for more: that it is safe as a mechanism
+    moves (--scene), for steps that vary (--h-min), or in a chain of bodies (--chain). Exit status 1 if that is not
+    proven.
+
+    On a mechanism that moves, feedback makes errors of its own. The default goal, accurate, makes them as small as it
+    can. It allows only points that settle within --settle, or while the motion turns by 14 rad. --omega or --scene say
+    how fast the motion is. Two lines below the answer say what faster decay would cost and what slower decay would
+    gain.
+
+    "within the spread" is the largest |z_p| if α and β are off by --spread. At the goal fastest |z_p| rises steeply as
+    soon as α grows; the goal robust keeps away from such points. Some methods are stable however strong the feedback
+    is. For these only αh and βh up to 4 are searched, and "searched" says so.
+
+    --engine searches only what that engine can express. Its own method is used unless you name another. Of several
+    points that are equally good the one with the least α̂ and β̂ is taken. --pd shows each way of applying a joint
+    drive, with the kp and kd to set. With --bandwidth or --settle the gains are critically damped and leave a margin.
+    They also allow for a controller that is slower than the physics (--every, --late, --filter).
+
+    With --h-min, "varying steps" says whether errors decay for every sequence of steps up to --h-max. Many engines
+    solve their constraints one after another, in sweeps. With --chain or --scene their answer is at most the strongest
+    feedback that these constraints allow with --spread to spare, at --iterations sweeps. Below it is what one
+    constraint alone would get, and how many sweeps that takes.
+
+    Example: bezstab choose --method B4 --h 0.001
+    """
+    from bezstab.questions import answers, usual_goal
+
+    drive, settle = typed["drive"], typed["settle"]
+    gains_asked = bandwidth is not None or (drive is not None and settle is not None and goal is None)
+    if held := held_asked(typed, always=gains_asked):
+        context.exit(0 if _choose_held(held, bandwidth, settle, form) else 1)
+    goal = goal or usual_goal(typed["engine"], drive)
+    question = asked_of_feedback(goal=goal, equal=equal is not None, **typed)
+    chosen = list(progress(answers(question), goal, len(question.methods)))
+    show_rows(CHOICES, [answer_row(answer) for answer in chosen], form, left_out(question))
+    if for_reading(form):
+        say_varying(chosen)
+        if not (drive or question.swept):
+            _say_trades(chosen)
+    show_below(question, chosen, form)
+    for line in map(alone_words, chosen):
+        if line and for_reading(form):
+            show_text(f"\n{line}")
+    context.exit(0 if all(answer.safe for answer in chosen) else 1)
+
+
+def _say_trades(chosen: "Sequence[Answer]") -> None:
+    """Print what faster decay than that of each choice would cost, and what slower decay would gain."""
+    for answer in chosen:
+        if lines := trade_words(answer):
+            name = f"{answer.method.name}: " if len(chosen) > 1 else ""
+            show_text("\n" + "\n".join(f"{name}{line}" for line in lines))
+
+
+def _choose_held(question: "HeldQuestion", bandwidth: Fraction | None, settle: Fraction | None, form: Format) -> bool:
+    """Print gains for a bandwidth (Hz) or a time to settle (s) as `check` would; return whether every way is safe.
+
+    Of the question's drive only the inertia counts.
+    """
+    from bezstab.questions import held_gains
+
+    refuse_others("--bandwidth, --settle, --every, --late and --filter", "--bandwidth", "--settle")
+    methods = (lookup("SYM"),) if left_at_default("methods") else question.methods
+    drive = held_gains(
+        question.drive.inertia, question.h, question.timing, bandwidth=bandwidth, settle=settle, methods=methods
+    )
+    if for_reading(form):
+        show_text(f"kp = {typed_number(drive.kp)}, kd = {typed_number(drive.kd)}\n")
+    return all(answer.safe for answer in show_held(replace(question, drive=drive, methods=methods), form))

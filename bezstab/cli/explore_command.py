@@ -1,0 +1,24 @@
+"""The command that opens a window on the plane: explore."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+import click
+
+from bezstab.cli.options import USUAL_METHODS, methods_option, step_option
+from bezstab.methods import Method
+
+
+@click.command()
+@methods_option(*USUAL_METHODS)
+@step_option
+def explore(methods: Sequence[Method], h: Fraction) -> None:
+    """Open a window: point at the region, see poles and decay.
+
+    A click proves the verdict; n shows the next method; p prints the point as options for the other commands.
+
+    Example: bezstab explore --method B4 --method AB4
+    """
+    from bezstab.show import open_explorer
+
+    open_explorer(methods, float(h), click.echo)

@@ -1,0 +1,54 @@
+"""The command that shows how methods change with their number of steps: family."""
+
+from typing import TYPE_CHECKING
+
+import click
+
+from bezstab.cli.options import format_option
+from bezstab.cli.output import Files, picture_options, show_rows
+from bezstab.errors import InputError
+from bezstab.methods import STEP_FAMILIES
+from bezstab.show import MEMBERS, Format, Row
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@click.command()
+@click.argument("name", metavar="|".join(STEP_FAMILIES), type=click.Choice(list(STEP_FAMILIES)))
+@click.option("--from", "first", type=click.IntRange(min=1), default=2, help="Smallest n.")
+@click.option("--to", "last", type=click.IntRange(min=1), help="Largest n [12 for bezier, 8 for adams-bashforth].")
+@picture_options
+@format_option
+def family(name: str, first: int, last: int | None, files: Files, form: Format) -> None:
+    """Show how a family of methods changes with its number of steps n.
+
+    Prints the area of each region, the least |z_p| and the error constant. The Bézier methods tend to a limit, which
+    has a region of its own. The regions of the Adams-Bashforth methods shrink to nothing, but each step more gains an
+    order. The figure shows both.
+
+    Example: bezstab family bezier --from 2 --to 5
+    """
+    from bezstab import show
+    from bezstab.stability import bezier_limit, family_members
+
+    largest = STEP_FAMILIES[name].largest
+    last = largest if last is None else last
+    if not first <= last <= largest:
+        raise InputError(f"--from {first} --to {last}: expected 1 <= from <= to <= {largest} for {name}")
+    files.check_output()
+    members = family_members(name, first, last)
+    limit = bezier_limit() if name == "bezier" else None
+    rows: list[Row] = [MEMBERS.row(member) for member in members]
+    if limit:
+        rows.append(show.limit_row(limit))
+    show_rows(MEMBERS, rows, form)
+
+    def draw() -> "Figure":
+        families = {
+            each: members if each == name else family_members(each, 2, family.largest)
+            for each, family in STEP_FAMILIES.items()
+        }
+        return show.family_figure(families, name, limit)
+
+    files.write(files.path("family", name), draw)

@@ -1,0 +1,79 @@
+"""The command that says what there is to know of methods: methods."""
+
+from collections.abc import Sequence
+
+import click
+
+from bezstab.cli.options import METHOD, format_option
+from bezstab.cli.output import show_blocks, show_groups, show_rows, show_text
+from bezstab.methods import GROUPS, Method, lookup
+from bezstab.show import (
+    LISTED_METHODS,
+    NAMED_METHODS,
+    PROPERTIES,
+    Column,
+    Format,
+    Row,
+    column,
+    method_row,
+    render,
+    transposed,
+    whole_row,
+    with_unbounded,
+)
+
+
+@click.command()
+@click.argument("methods", metavar="[NAME]...", type=METHOD, nargs=-1)
+@click.option("--latex", is_flag=True, help="Formulas as LaTeX.")
+@format_option
+def methods(methods: Sequence[Method], latex: bool, form: Format) -> None:
+    """List the methods, or show all about those you name.
+
+    Prints the number of steps, the evaluations of f in a step (of an implicit method in an iteration), the order of
+    accuracy and the error constant. They are computed from the coefficients. In parentheses is the order if forces
+    depend on positions alone.
+
+    For a method that you name it also prints the recursion, s→z mapping, characteristic polynomial and stability region
+    (the paper's Tables 1 and 2), the source, and the error that the method makes on a constraint that moves, as a share
+    of that motion.
+
+    SIE is the paper's "Euler semi-implicit". It is not what engines call semi-implicit Euler: that is SYM.
+
+    Example: bezstab methods B4
+    """
+    from bezstab.questions import region_answer
+
+    if not methods:
+        listed = [
+            (group, [method_row(lookup(name), name, group.heading) for name in group.methods]) for group in GROUPS
+        ]
+        if form == "text":
+            show_groups(
+                [("\n".join(filter(None, (group.heading, group.note))), rows) for group, rows in listed],
+                LISTED_METHODS.columns([row for _, rows in listed for row in rows], ("source",)),
+                LISTED_METHODS.sentence,
+            )
+        else:
+            rows = [row for _, of_group in listed for row in of_group]
+            show_rows(LISTED_METHODS, rows, form)
+        return
+    rows = [whole_row(region_answer(method), latex=latex) for method in methods]
+    if form in ("json", "csv"):
+        show_rows(NAMED_METHODS, rows, form)
+        return
+    for number, row in enumerate(rows):
+        if form == "markdown":
+            click.echo(render(transposed(with_unbounded(row)), PROPERTIES, form))
+            continue
+        if number:
+            click.echo()
+        shown = with_unbounded(row)
+        show_blocks([shown], [property_column(key, shown) for key in shown], NAMED_METHODS.sentence)
+    if form == "text":
+        show_text("\nSteady errors are shares of a motion of ω rad/s, to leading order in θ = iωh.")
+
+
+def property_column(key: str, row: Row) -> Column:
+    """Return the column of a key as a row is read from top to bottom: numbers to ten digits."""
+    return column(key.replace("_", " "), key, ".10g" if isinstance(row[key], float) else "")

@@ -1,0 +1,50 @@
+"""The command that prints poles at a point: poles."""
+
+from dataclasses import replace
+from typing import Any
+
+import click
+
+from bezstab.cli.asking import asked_of_feedback, given_point_options, moving_scene_options, omega_option, show_below
+from bezstab.cli.options import USUAL_METHODS, Rule, format_option, methods_option, ruled
+from bezstab.cli.output import show_rows
+from bezstab.show import POLES, Format, Row, added_cells, engine_cells, one_pole_sentence, pole_rows
+
+
+@click.command()
+@methods_option(*USUAL_METHODS)
+@given_point_options
+@click.option("--all-poles", is_flag=True, help="Print every pole, not only the dominant one.")
+@omega_option
+@moving_scene_options("Also say what the motion of this mechanism does to the poles; needs --h.")
+@format_option
+@ruled(Rule("--h", "α̂ and β̂ have no unit", needs=("--physical", "--engine", "--pd", "--scene", "--omega")))
+def poles(all_poles: bool, form: Format, **typed: Any) -> None:
+    """Print each method's dominant pole at one point, and the verdict.
+
+    converges: every |z| < 1, so errors shrink. marginal: errors stay bounded but do not shrink. diverges: errors
+    grow. The verdict is proven in exact arithmetic on the numbers as typed (Schur-Cohn test).
+
+    Feedback also makes errors of its own on a mechanism that moves. "error" is that error as a share of the
+    motion's amplitude. "× least" is how many times as large it is as with `choose --goal accurate`.
+
+    Example: bezstab poles --alpha 0.5 --beta 0.1
+    """
+    from bezstab import stability
+    from bezstab.questions import answers
+
+    question = asked_of_feedback(**typed)
+    poles_of = stability.poles if all_poles else stability.dominant_pole
+    margins = question.drive is not None
+    at_point = [each for each in answers(question, margins=margins) if each.goal == "as given"]
+    rows: list[Row] = []
+    for each in at_point:
+        z = poles_of(each.method, each.alpha_hat, each.beta_hat).reshape(-1)
+        added = {**engine_cells(each), **added_cells(each)}
+        rows += [{**row, **added} for row in pole_rows(each, z)]
+    costs_shown = not (all_poles or question.drive)
+    kind = replace(POLES, sentence=one_pole_sentence) if all_poles else POLES
+    alpha_hat, beta_hat = map(float, question.given.point)
+    without = () if costs_shown else ("total_error", "times_least")
+    show_rows(kind, rows, form, without, f"α̂ = {alpha_hat:.10g}, β̂ = {beta_hat:.10g}")
+    show_below(question, at_point, form, motion=costs_shown)

@@ -1,0 +1,186 @@
+"""The command that measures what accuracy costs: tradeoff."""
+
+from collections.abc import Sequence
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from bezstab.cli.asking import TypedPoint, omega_option, point_options, say_if_units_were_mistaken
+from bezstab.cli.options import (
+    POSITIVE,
+    SECONDS,
+    Rule,
+    compiled_option,
+    format_option,
+    left_at_default,
+    methods_option,
+    refuse_beside,
+    refuse_feedback,
+    ruled,
+    scene_option,
+    speed_option,
+    stabilise_options,
+    typed_options,
+)
+from bezstab.cli.output import (
+    Files,
+    Work,
+    file_options,
+    for_reading,
+    progress,
+    results_of_chunks,
+    show_rows,
+    show_text,
+    work_options,
+)
+from bezstab.show import FRONTS, SWEPT, Format, combined_words, front_row
+
+if TYPE_CHECKING:
+    from bezstab.evidence import SweptRuns
+    from bezstab.questions import FrontQuestion, TradeQuestion
+
+PREDICTED = {
+    *("--predicted", "--scene", "--speed", "--method", "--h", "--omega", "--level"),
+    *("--output", "--figure", "--table", "--format"),
+}
+"""Options of tradeoff that go with --predicted."""
+
+
+@click.command()
+@scene_option("slider_crank_light")
+@speed_option
+@methods_option("B2", "B3", "B4", "AB2", "AB4", "ABM4", "RK4", "SIE", "SYM")
+@click.option("--h", "steps", type=SECONDS, multiple=True, help="Step size in s. Repeatable [ten from 0.0001 to 0.02].")
+@click.option("--time", "duration", type=SECONDS, default="2", help="Duration in s.")
+@point_options(
+    "α̂ of every run; α in 1/s with --physical [the goal accurate for the scene's motion, at each step].",
+    "β̂ of every run; β in 1/s with --physical.",
+)
+@omega_option
+@stabilise_options
+@click.option(
+    "--predicted",
+    is_flag=True,
+    help="Simulate nothing; print the least error that each method's feedback makes, for each speed of decay.",
+)
+@click.option(
+    "--level",
+    "levels",
+    type=POSITIVE,
+    multiple=True,
+    help="With --predicted: decay with |z_p| of at most LEVEL, below 1. Repeatable [fifteen from 0.1 to 0.999].",
+)
+@click.option("--tolerance", type=POSITIVE, default="1e-6", help="The error that is good enough, in m and rad.")
+@click.option("--repeats", type=click.IntRange(1, 100), default=3, help="How often each run is timed.")
+@click.option(
+    "--against",
+    type=click.Choice(["evaluations", "time", "projection"]),
+    default="evaluations",
+    help="What errors are compared with: evaluations of f, or processor time on this machine. With "
+    "projection each run is made with feedback and with projection, and errors are compared with factorizations.",
+)
+@compiled_option
+@work_options
+@file_options
+@format_option
+@ruled(
+    Rule("--level", "it says how fast errors must decay", needs=("--predicted",)),
+    Rule("--physical", "it says that they are in 1/s", needs=("--alpha",)),
+)
+def tradeoff(
+    point: TypedPoint,
+    predicted: bool,
+    levels: Sequence[Fraction],
+    tolerance: Fraction,
+    work: Work,
+    files: Files,
+    form: Format,
+    **typed: Any,
+) -> None:
+    """Measure what accuracy costs, by method and step.
+
+    Each run is compared with a reference of known accuracy. Prints errors, evaluations, processor time (median and
+    range) and the order observed. Sentences below name the cheapest run within --tolerance, and say where the Bézier
+    methods win and lose. Writes the table, without times, and two figures of errors against evaluations or time. A
+    run that fails is marked as diverged.
+
+    Without --alpha and --beta each step size has its own point: that of the goal accurate, for the scene's motion or
+    for --omega. If α̂ and β̂ stay the same while h shrinks, methods with stages lose order. A multistep method that
+    starts with RK4 loses order too. That error has died away "in the later half" of a run. What remains is the error
+    that the feedback makes; compare "predicted".
+
+    --stabilise projection replaces feedback by projection onto the constraints after each step. --against projection
+    makes both, feedback at the advised points and, with --alpha and --beta, at that one too. It draws the errors of
+    trajectory, constraints and energy at equal cost, in factorizations of C_q M⁻¹ C_qᵀ; below, a sentence for each
+    method says what projection costs for the same trajectory error.
+
+    --predicted simulates nothing. It prints the least error that a method's feedback makes on a motion, for each
+    |z_p|. The motion is --omega, or a --scene with one --h; else it turns by ωh = 0.01. Writes tradeoff_predicted.
+
+    Example: bezstab tradeoff --method B4 --method AB4 --h 0.002 --h 0.004 --time 2
+    """
+    from bezstab import evidence, show
+    from bezstab.questions import FrontQuestion, TradeQuestion
+
+    if predicted:
+        refuse_beside("--predicted", typed_options() - PREDICTED, "it simulates nothing")
+        scene = None if left_at_default("scene") else typed["scene"]
+        of_fronts = {name: typed[name] for name in ("methods", "omega", "speed", "steps")}
+        _show_fronts(FrontQuestion(**of_fronts, scene=scene, levels=levels), files, form)
+        return
+    refuse_feedback(typed["stabilise"])
+    if typed["against"] == "projection":
+        refuse_beside("--against projection", ["--stabilise"], "it has runs with and without feedback")
+    question = TradeQuestion(numbers=point.numbers, physical=point.physical, **typed)
+    if question.numbers and question.steps and not question.physical:
+        say_if_units_were_mistaken(question.methods, *question.numbers, max(question.steps))
+    path = files.path("tradeoff", Path(typed["scene"]).stem)
+    job = f"{question.methods} {question}"
+    with results_of_chunks(evidence.measured_runs, question.sweeps, path, job, work) as results:
+        swept = question.swept(results)
+        rows = [SWEPT.row(run, front=front) for run, front in zip(swept.runs, swept.front_labels, strict=True)]
+        files.write(path, None, lambda: show.untimed_arrays(rows))
+        _write_figures(question, swept, path, files)
+    show_rows(SWEPT, rows, form)
+    if for_reading(form):
+        show_text(f"\nThe reference is known to {question.reference.error:.0e} (m, rad).")
+        if question.rate is not None:
+            rate = f"ω = {float(question.rate):.3g} 1/s"
+            show_text(f"Each point is the choice of the goal accurate for a motion with {rate}.")
+        for sentence in question.sentences(swept, float(tolerance)):
+            show_text(sentence)
+
+
+def _write_figures(question: "TradeQuestion", swept: "SweptRuns", path: Path, files: Files) -> None:
+    """Write the figure of feedback against projection, or those of both errors against their cost."""
+    from bezstab import show
+
+    name, known = question.moving.name, question.reference.error
+    figures = {
+        "trajectory": lambda: show.work_precision_figure(swept, name, False, known),
+        "constraint": lambda: show.work_precision_figure(swept, name, True),
+    }
+    if question.against == "projection":
+        figures = {"projection": lambda: show.projection_figure(swept, name, known)}
+    for of_what, draw in figures.items():
+        files.write(path.with_name(f"{path.name}_{of_what}"), draw)
+
+
+def _show_fronts(question: "FrontQuestion", files: Files, form: Format) -> None:
+    """Print the least error that each method forces, by speed of decay; write it as table and figure."""
+    from bezstab import show
+
+    files.check_output()
+    fronts = list(progress(question.fronts(), "fronts", len(question.methods)))
+    h = None if question.h is None else float(question.h)
+    rows = [front_row(point, h) for front in fronts for point in front]
+    files.write(
+        files.path("tradeoff", "predicted"),
+        lambda: show.error_front_figure([front for front in fronts if front]),
+        lambda: show.untimed_arrays(rows),
+    )
+    show_rows(FRONTS, rows, form)
+    if for_reading(form):
+        show_text(combined_words(question.motion))

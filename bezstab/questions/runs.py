@@ -1,0 +1,96 @@
+"""A run of a mechanism that somebody asks for: with which method and steps, and with what to hold its constraints.
+
+scene, method, steps, feedback or projection   →   RunQuestion   →   run_answer   →   Simulation
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, get_args
+
+from bezstab.engines import Point
+from bezstab.errors import InputError
+from bezstab.mechanism import (
+    Projection,
+    Scene,
+    Simulation,
+    Stabilise,
+    Start,
+    check_projected,
+    compiled_mechanism,
+    simulated,
+    simulated_with_steps,
+)
+from bezstab.methods import Method, check_one_step
+from bezstab.questions.motions import scene_at_speed
+
+
+def projection_for(stabilise: Stabilise, iterations: int | None) -> Projection | None:
+    """Return the projection that holds the constraints, of so many iterations at most; None where it does not.
+
+    InputError for another word than those of `Stabilise`, and for iterations without a projection.
+    """
+    if stabilise not in get_args(Stabilise):
+        raise InputError(f"--stabilise {stabilise!r}: expected {', '.join(get_args(Stabilise))}")
+    if stabilise == "projection":
+        return Projection(iterations)
+    if iterations is not None:
+        raise InputError("--iterations needs --stabilise projection: they are its iterations")
+    return None
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunQuestion:
+    """What does a mechanism do over a `duration` (s) with a method and a feedback?
+
+    The scene moves `speed` times as fast as given there. The feedback is at the `point` (alpha_hat, beta_hat);
+    `stabilise` may put a projection in its place, of so many `iterations` at most, or nothing. Steps are `h` (s), or
+    the `sequence` (s), over and over: then alpha and beta stay as steps vary, with `hold` alpha_hat and beta_hat do.
+    `perturb` is the error of the first constraint at the start, in its own unit; a multistep method begins by `start`.
+    InputError for what does not go together, and for a method whose states cannot be projected or whose steps cannot
+    vary.
+    """
+
+    scene: str | Scene
+    method: Method
+    duration: float | Fraction
+    h: float | Fraction
+    point: Point | None = None
+    speed: Fraction = Fraction(1)
+    stabilise: Stabilise = "baumgarte"
+    iterations: int | None = None
+    sequence: Sequence[Fraction] = ()
+    hold: bool = False
+    perturb: float | Fraction = 0
+    start: Start = "rk4"
+
+    def __post_init__(self) -> None:
+        if self.projection:
+            check_projected(self.method)
+        if self.sequence:
+            check_one_step(self.method)
+        if (self.point is None) == (self.stabilise == "baumgarte"):
+            raise InputError("--alpha and --beta are those of feedback: they go with --stabilise baumgarte")
+
+    @property
+    def projection(self) -> Projection | None:
+        """The projection; None without one."""
+        return projection_for(self.stabilise, self.iterations)
+
+
+def run_answer(question: RunQuestion) -> Simulation:
+    """Return the run; what goes wrong on the way is its `failure`. Errors as `simulated` and `scene_at_speed`."""
+    mechanism = compiled_mechanism(scene_at_speed(question.scene, question.speed))
+    alpha_hat, beta_hat = map(float, question.point or (0, 0))
+    of_both: dict[str, Any] = {
+        "h": float(question.h),
+        "duration": float(question.duration),
+        "alpha_hat": alpha_hat,
+        "beta_hat": beta_hat,
+        "perturb": float(question.perturb),
+        "projection": question.projection,
+    }
+    if not question.sequence:
+        return simulated(mechanism, question.method, start=question.start, **of_both)
+    lengths = [float(step) for step in question.sequence]
+    return simulated_with_steps(mechanism, question.method, sequence=lengths, hold=question.hold, **of_both)

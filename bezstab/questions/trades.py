@@ -1,0 +1,185 @@
+"""What accuracy costs: runs of many methods and steps, compared with one reference; and the least errors, predicted.
+
+scene, methods, steps, what holds the constraints   →   TradeQuestion   →   sweeps to run   →   SweptRuns
+methods, speeds of decay, a motion                  →   FrontQuestion   →   a front of least errors for each method
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from itertools import chain
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bezstab.engines import Point
+from bezstab.errors import InputError
+from bezstab.evidence import (
+    NO_FEEDBACK,
+    STEPS,
+    Cost,
+    Held,
+    ReferenceMotion,
+    Sweep,
+    SweptRuns,
+    projection_sentences,
+    reference_motion,
+    sweep_compiled,
+    sweep_sentences,
+    swept_runs,
+    with_fronts,
+)
+from bezstab.mechanism import Projection, Scene, Stabilise, check_projected
+from bezstab.methods import Method
+from bezstab.questions import motions
+from bezstab.questions.runs import projection_for
+from bezstab.rationals import exact
+from bezstab.stability import RATES, FrontPoint, error_front
+
+MOST_SWEPT = 10**6
+"""Steps of a run: the reference takes up to 32 times as many."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class TradeQuestion:
+    """What errors do methods make over a `duration` (s) at each of some `steps` (s), and what does that cost?
+
+    The scene moves `speed` times as fast as given there. The feedback is at `numbers` at every step, alpha_hat and
+    beta_hat, or alpha and beta in 1/s with `physical`. Without numbers each step has its own point: that of the goal
+    accurate, for a motion of rate `omega` (1/s), else for the scene's own. A projection of so many `iterations` at most
+    may `stabilise` runs in place of feedback. Costs are counted `against` evaluations or time; against projection each
+    run is made with feedback and with projection. Each is timed `repeats` times. InputError for what does not go
+    together, and for a method whose states cannot be projected.
+    """
+
+    scene: str | Scene
+    methods: Sequence[Method]
+    steps: Sequence[Fraction] = ()
+    duration: Fraction
+    speed: Fraction = Fraction(1)
+    numbers: Point | None = None
+    physical: bool = False
+    omega: Fraction | None = None
+    stabilise: Stabilise = "baumgarte"
+    iterations: int | None = None
+    against: Cost = "evaluations"
+    repeats: int = 3
+
+    def __post_init__(self) -> None:
+        if self.omega is not None and self.numbers and self.against != "projection":
+            raise InputError("--omega does not go with --alpha and --beta: points are chosen for that motion")
+        if any(projection for _, projection in self.treatments):
+            for method in self.methods:
+                check_projected(method)
+        longest = self.step_sizes[-1] * float(max(method.step_multiple for method in self.methods))
+        most = MOST_SWEPT * self.step_sizes[0]
+        if not longest <= self.duration <= most:
+            expected = f"one step ({longest:g} s) to {MOST_SWEPT:g} ({most:g} s)"
+            raise InputError(f"--time {float(self.duration):g}: expected {expected}")
+
+    @cached_property
+    def step_sizes(self) -> tuple[float, ...]:
+        """The steps (s), the shortest first."""
+        return tuple(sorted({float(step) for step in self.steps or STEPS}))
+
+    @cached_property
+    def treatments(self) -> list[tuple[tuple[float, float] | None, Projection | None]]:
+        """What holds the constraints: points of feedback, None for the advised one, and projections."""
+        point = None if self.numbers is None else (float(self.numbers[0]), float(self.numbers[1]))
+        if self.against == "projection":
+            given = [(point, None)] if point else []
+            return [(None, None), *given, (NO_FEEDBACK, projection_for("projection", self.iterations))]
+        projection = projection_for(self.stabilise, self.iterations)
+        return [(point, None) if self.stabilise == "baumgarte" else (NO_FEEDBACK, projection)]
+
+    @cached_property
+    def rate(self) -> Fraction | None:
+        """The rate (1/s) of the motion for which points are advised; None where none is. Errors as `motion_of`."""
+        if all(point is not None for point, _ in self.treatments):
+            return None
+        shortest, longest = exact(self.step_sizes[0]), exact(self.step_sizes[-1])
+        motion = motions.motion_of(self.omega, self.scene, self.speed, shortest, longest, duration=self.duration)
+        return motion.omega_h / shortest
+
+    @cached_property
+    def moving(self) -> Scene:
+        """The scene, as fast as it is asked about."""
+        return motions.scene_at_speed(self.scene, self.speed)
+
+    @cached_property
+    def reference(self) -> ReferenceMotion:
+        """The motion that runs are compared with."""
+        return reference_motion(self.moving, self.step_sizes[0], float(self.duration))
+
+    @cached_property
+    def sweeps(self) -> list[Sweep]:
+        """The runs to make: of each method with each treatment."""
+        rate, of_all = self.rate, (self.moving, self.step_sizes, float(self.duration))
+        reference = self.reference
+        compiled = all(
+            sweep_compiled(self.moving, self.methods, *of_all[1:], self.repeats, projection is not None)
+            for _, projection in self.treatments
+        )
+        return [
+            Sweep(method, *of_all, point, self.physical, self.repeats, reference, rate, compiled, projection)
+            for method in dict.fromkeys(self.methods)
+            for point, projection in self.treatments
+        ]
+
+    def swept(self, measured: Sequence[Mapping[str, NDArray[np.generic]]]) -> SweptRuns:
+        """Return what the runs of all sweeps have measured, as `measured_runs` returns it for each, and the fronts."""
+        runs = chain.from_iterable(swept_runs(*each) for each in zip(self.sweeps, measured, strict=True))
+        return with_fronts(list(runs), self.reference.error, self.against)
+
+    def sentences(self, swept: SweptRuns, tolerance: float) -> list[str]:
+        """Return in words what runs within a tolerance (m, rad) cost, and which methods win."""
+        if self.against == "projection":
+            return projection_sentences(swept.runs, swept.reference_error)
+        held: Held = "alpha and beta" if self.physical else "alpha_hat and beta_hat"
+        if self.numbers is None:
+            held = "own choice" if swept.runs[0].advised else "no feedback"
+        return sweep_sentences(swept.runs, tolerance, held)
+
+
+@dataclass(frozen=True, kw_only=True)
+class FrontQuestion:
+    """What is the least error that the feedback of some methods makes on a motion, for each speed of decay?
+
+    The motion has a rate `omega` (1/s), or is that of a `scene`, `speed` times as fast as given there: both with the
+    one of the `steps` (s); without either it is the usual one. `levels` are the values of |z_p|. InputError for what
+    does not go together, and as `motion_of`.
+    """
+
+    methods: Sequence[Method]
+    levels: Sequence[Fraction] = ()
+    omega: Fraction | None = None
+    scene: str | Scene | None = None
+    speed: Fraction = Fraction(1)
+    steps: Sequence[Fraction] = ()
+
+    def __post_init__(self) -> None:
+        if len(self.steps) > 1:
+            raise InputError(f"--predicted takes one --h, but {len(self.steps)} were given")
+        if wrong := [float(level) for level in self.levels if float(level) >= 1]:
+            raise InputError(f"--level {wrong[0]:g}: expected a |z_p| below 1, where errors decay")
+        if self.h and self.scene is None and self.omega is None:
+            needed = "they say how far the motion goes in a step"
+            raise InputError(f"--predicted with --h needs --omega or --scene: {needed}")
+        _ = self.motion
+
+    @property
+    def h(self) -> Fraction | None:
+        """The step (s), if there is one."""
+        return next(iter(self.steps), None)
+
+    @cached_property
+    def motion(self) -> motions.ReferenceMotion:
+        """The motion on which errors are told."""
+        return motions.motion_of(self.omega, self.scene, self.speed, self.h)
+
+    def fronts(self) -> Iterator[list[FrontPoint]]:
+        """Yield the front of each method: a point for each level that it can reach."""
+        rates = [float(level) for level in self.levels] or RATES
+        for method in dict.fromkeys(self.methods):
+            yield error_front(method, rates, self.motion.omega_h)

@@ -1,0 +1,85 @@
+"""What `region` shows of a method: its map as a figure and as a table, and its rows."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from bezstab.show.columns import Row
+from bezstab.show.rows import accuracy_cells, region_row
+from bezstab.stability import ComplexArray, region
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from bezstab.evidence import Arrays
+    from bezstab.questions import MapAnswer
+
+
+def map_figure(answer: MapAnswer, z: ComplexArray, *, alpha_and_beta: bool) -> Figure:
+    """Return the map of |z_p|, below the errors that feedback forces where they are asked about.
+
+    z are the dominant poles over the axes of the answer, of shape (beta_hat.size, alpha_hat.size). With a step the axes
+    are 2 alpha and beta^2, with `alpha_and_beta` they are marked in alpha and beta.
+    """
+    from bezstab.show.accuracy_figures import accuracy_map_figure
+    from bezstab.show.plane_figures import region_figure
+
+    question, (alpha_hat, beta_hat), z_abs = answer.question, answer.axes, np.abs(z)
+    h = None if question.h is None else float(question.h)
+    if question.motion:
+        return accuracy_map_figure(
+            answer.stable.region,
+            float(question.motion.omega_h),
+            alpha_hat,
+            beta_hat,
+            z_abs,
+            answer.errors(z),
+            levels=answer.drawn_levels,
+            best=answer.stable.best,
+            chosen=answer.chosen,
+            h=h,
+            marks=question.marks,
+        )
+    return region_figure(
+        answer.stable.region,
+        [region(answer.method, level) for level in answer.drawn_levels],
+        answer.stable.best,
+        alpha_hat,
+        beta_hat,
+        z_abs,
+        h,
+        question.marks,
+        answer.moving,
+        chosen=answer.chosen,
+        alpha_and_beta=alpha_and_beta,
+        scene=question.scene_name,
+    )
+
+
+def map_table(answer: MapAnswer, z: ComplexArray) -> Arrays:
+    """Return the same map as arrays of shape (points,), as `map_arrays`; with the errors where they are asked about."""
+    from bezstab.show.arrays import map_arrays
+
+    question = answer.question
+    arrays = map_arrays(*answer.axes, z, None if question.h is None else float(question.h))
+    return {**arrays, "combined_error": answer.errors(z).ravel()} if question.motion else arrays
+
+
+def map_rows(answer: MapAnswer) -> list[Row]:
+    """Return a row for the stable region, or for it at each speed of the scene, and one for each level below 1."""
+    stable, *faster = [region_row(each) for each in answer.regions]
+    if answer.forced:
+        forced = accuracy_cells(answer.forced)
+        return [{**row, **forced} for row in (stable, *faster)]
+    if not answer.moving:
+        return [stable, *faster]
+    kappas = {float(speed): turning.kappa for speed, turning in answer.question.turnings.items()}
+    return [
+        *(
+            {**stable, "speed": speed, "kappa": kappas[speed], "area_moving": moving.area}
+            for speed, moving in answer.moving.items()
+        ),
+        *({**row, "speed": None, "kappa": None, "area_moving": None} for row in faster),
+    ]

@@ -1,0 +1,23 @@
+"""Exact rates of moving mechanisms as tests ask for them: by method, step and points."""
+
+from bezstab.evidence.floquet import gains_on, rates_on_the_motion
+from bezstab.evidence.linearized_steps import course_of_steps
+from bezstab.evidence.own_motions import find_own_motions
+from bezstab.mechanism import Mechanism
+from bezstab.methods import Method
+from bezstab.stability import FloatArray
+
+
+def floquet_rates(
+    mechanism: Mechanism, method: Method, h: float, alpha_hat: FloatArray, beta_hat: FloatArray, duration: float
+) -> FloatArray:
+    """Return |z| per step over the motion of the mechanism, shape (points,); h and the duration of a run in s."""
+    course = course_of_steps(mechanism, method, h, duration)
+    return rates_on_the_motion(course, gains_on(course, method, alpha_hat, beta_hat))
+
+
+def own_motion_rates(
+    mechanism: Mechanism, method: Method, h: float, alpha_hat: FloatArray, beta_hat: FloatArray, duration: float
+) -> FloatArray:
+    """Return the same over the motion of the method."""
+    return find_own_motions(mechanism, method, h, alpha_hat, beta_hat, duration).rates

@@ -1,0 +1,53 @@
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+from bezstab.errors import InputError
+from bezstab.evidence import NO_FEEDBACK, measured_runs
+from bezstab.methods import lookup
+from bezstab.questions import FrontQuestion, TradeQuestion
+from bezstab.stability import spectral_radius
+
+SYM = lookup("SYM")
+QUESTION = TradeQuestion(
+    scene="pendulum",
+    methods=(SYM,),
+    steps=(Fraction("0.02"), Fraction("0.01")),
+    duration=Fraction("0.1"),
+    numbers=(Fraction(1), Fraction("0.5")),
+    repeats=1,
+)
+
+
+def test_against_projection_each_method_runs_with_feedback_and_with_projection() -> None:
+    assert QUESTION.treatments == [((1, 0.5), None)]
+    (advised, given, projected) = replace(QUESTION, against="projection").treatments
+    assert (advised, given) == ((None, None), ((1, 0.5), None))
+    assert projected[0] == NO_FEEDBACK
+    assert projected[1]
+    assert QUESTION.rate is None  # no point is advised
+
+
+def test_smaller_steps_cost_more_and_err_less() -> None:
+    swept = QUESTION.swept([measured_runs(sweep) for sweep in QUESTION.sweeps])
+    larger, smaller = swept.runs
+    assert (larger.h, smaller.h) == (0.02, 0.01)
+    assert larger.evaluations < smaller.evaluations
+    assert larger.trajectory_error
+    assert smaller.trajectory_error
+    assert smaller.trajectory_error < larger.trajectory_error
+    assert any("SYM" in sentence for sentence in QUESTION.sentences(swept, 1.0))
+
+
+def test_a_time_is_at_least_the_longest_step() -> None:
+    with pytest.raises(InputError, match=r"--time 0.01: expected one step \(0.02 s\)"):
+        replace(QUESTION, duration=Fraction("0.01"))
+
+
+def test_a_front_has_the_speeds_that_were_asked_for() -> None:
+    (front,) = FrontQuestion(methods=(SYM,), levels=(Fraction("0.9"),)).fronts()
+    found = [float(spectral_radius(SYM, point.alpha_hat, point.beta_hat)) for point in front]
+    assert found[0] == pytest.approx(0.9, abs=1e-6)
+    with pytest.raises(InputError, match="one --h"):
+        FrontQuestion(methods=(SYM,), omega=Fraction(1), steps=QUESTION.steps)
