@@ -12,36 +12,37 @@ from itertools import groupby
 import numpy as np
 
 from bezstab.methods import StepMatrix, characteristic, matrix_product, recursion_verdict
-from bezstab.stability.arrays import SETTLED, FloatArray
+from bezstab.rationals import exact
+from bezstab.stability.arrays import FloatArray
 
-SAMPLES = 40  # of a range of lengths, evenly spaced; the proofs are of all of it
-SAMPLED_SHARE = 64  # the shortest of them, as a share of the longest: the limit of small steps to 2 %
-COUNTS = (*range(1, 13), 14, 16, 18, 20, 24, 28, 32, 40, 48, 64, 80, 96, 128, 160, 192, 256)
-"""Steps of one length, and at most in a word: with little damping many turn the state before two stretch it."""
+LENGTHS = 40  # tried for either kind of step, evenly spaced
+SHORT_LENGTHS = 20  # besides, in equal ratios
+SMALLEST_SHARE = 200  # of the longest step: shorter ones are but a finer division of the same time
+COUNTS = (*range(1, 13), 14, 16, 18, 20, 24, 28, 32, 40, 48, 64, 80, 96, 128, 160, 192, 256)  # of steps of one length
+MOST_STEPS = 260  # in a word: with little damping many short ones turn the state before two long ones stretch it
+CLEARLY = 1e-6  # by which |z| of the product exceeds one, far above rounding
 
 
-def sampled_lengths(shortest: Fraction, down: bool) -> list[Fraction]:
-    """Return lengths of steps from the shortest, or a sixty-fourth, to 1; with `down` shorter ones by halving, too."""
-    low = max(shortest, Fraction(1, SAMPLED_SHARE))
-    lengths = {low + (1 - low) * Fraction(k, SAMPLES - 1) for k in range(SAMPLES)}
-    while down and low > shortest:
-        low = max(low / 2, shortest)
-        lengths.add(low)
-    return sorted(lengths)
+def lengths_tried(shortest: Fraction) -> list[Fraction]:
+    """Return lengths from the shortest to 1, evenly spaced and in equal ratios."""
+    low = max(shortest, Fraction(1, SMALLEST_SHARE))
+    spread = [low + (1 - low) * Fraction(k, LENGTHS - 1) for k in range(LENGTHS)]
+    short = [exact(float(low) ** (1 - k / SHORT_LENGTHS)) for k in range(1, SHORT_LENGTHS)]
+    return sorted({shortest, *spread, *short})
 
 
 def growing_words(matrix: StepMatrix, shortest: Fraction) -> Iterator[list[Fraction]]:
     """Yield sequences of lengths, shortest sequences first, whose product seems to grow in float64."""
-    lengths = sampled_lengths(shortest, down=True)
+    lengths = lengths_tried(shortest)
     matrices = np.array([[[float(entry) for entry in row] for row in matrix.at(s)] for s in lengths])
     powers = {1: matrices}
-    for count in range(2, COUNTS[-1] + 1):
+    for count in range(2, max(COUNTS) + 1):
         powers[count] = powers[count - 1] @ matrices
-    words = [(few, many) for few in COUNTS for many in COUNTS if few <= many and few + many <= COUNTS[-1]]
+    words = [(few, many) for few in COUNTS for many in COUNTS if few <= many and few + many <= MOST_STEPS]
     for few, many in sorted(words, key=sum):
         radii = _radii(powers[many][:, np.newaxis] @ powers[few][np.newaxis])
         first, second = np.unravel_index(radii.argmax(), radii.shape)
-        if radii[first, second] > 1 + SETTLED:
+        if radii[first, second] > 1 + CLEARLY:
             yield [lengths[second]] * few + [lengths[first]] * many
 
 

@@ -30,7 +30,7 @@ from bezstab.methods import (
     step_matrix,
 )
 from bezstab.stability.arrays import FloatArray
-from bezstab.stability.growing_sequences import growing_words, grows, growth_of, sampled_lengths
+from bezstab.stability.growing_sequences import growing_words, grows, growth_of
 from bezstab.stability.lyapunov_polygons import invariant_polygon
 from bezstab.stability.lyapunov_quadratics import centred_form, proves_decay, rational_form
 from bezstab.stability.positive_polynomials import positivity, whole_rows
@@ -40,6 +40,8 @@ Certificate = Literal["commuting", "quadratic", "polygon"]
 
 FIGURES = 4  # significant digits of the steps in a sequence, where it grows with as few
 LEAST_FRAME = 0.3  # of beta: as far as a frame for overdamped feedback is still stretched
+SAMPLES = 40  # of the range, evenly spaced; the proofs are of all of it
+SAMPLED_SHARE = 64  # the shortest step sampled, as a share of the longest: the limit of small steps to 2 %
 SHORT = Fraction(1, 10**6)  # a step from which the flow of shorter ones is told: to 1e-6
 LONGEST_RANGE = Fraction(10**12)  # h_max / h_min: beyond, steps so short are as good as zero
 
@@ -107,7 +109,7 @@ def varying_steps(
         return result("refuted", word=(alone,))
     if matrix.commuting:
         return result("proven", "commuting") if alone else result("not known")
-    samples = sampled_lengths(shortest, down=hold or matrix.size == 3)
+    samples = _samples(shortest, down=hold or matrix.size == 3)
     matrices = np.array([[[float(entry) for entry in row] for row in matrix.at(s)] for s in samples])
     lengths = np.array([float(s) for s in samples])
     form: FloatArray | None = None
@@ -141,7 +143,7 @@ def _single_step(matrix: StepMatrix, shortest: Fraction) -> Fraction | bool:
     if without_solution is not None:
         return without_solution
     if matrix.size != 2:
-        for length in sampled_lengths(shortest, down=True):
+        for length in _samples(shortest, down=True):
             if recursion_verdict(characteristic(matrix.at(length))) != "converges":
                 return length
         return True
@@ -162,6 +164,16 @@ def _combined(factor: int, first: StepPolynomial, other_factor: int, second: Ste
     length = max(len(first), len(second))
     filled = [(*each, *[Fraction(0)] * (length - len(each))) for each in (first, second)]
     return tuple(factor * a + other_factor * b for a, b in zip(*filled, strict=True))
+
+
+def _samples(shortest: Fraction, down: bool) -> list[Fraction]:
+    """Return lengths of steps from the shortest, or a sixty-fourth, to 1; with `down` shorter ones by halving, too."""
+    low = max(shortest, Fraction(1, SAMPLED_SHARE))
+    lengths = {low + (1 - low) * Fraction(k, SAMPLES - 1) for k in range(SAMPLES)}
+    while down and low > shortest:
+        low = max(low / 2, shortest)
+        lengths.add(low)
+    return sorted(lengths)
 
 
 def _flow(matrix: StepMatrix) -> FloatArray:
