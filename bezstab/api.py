@@ -1,4 +1,4 @@
-"""What `import bezstab` offers: the rooms behind one door, with names for methods and scenes, and units said aloud.
+"""What `import bezstab` offers: functions that take names of methods and scenes, with units stated.
 
 A point is given in one of two ways: `alpha_hat=` and `beta_hat=` (dimensionless, alpha_hat = 2 alpha h and
 beta_hat = beta^2 h^2, paper Eq. 16), or `alpha=` and `beta=` in 1/s with the step `h=` in s. A method is a name as on
@@ -210,7 +210,7 @@ def choose(
 ) -> questions.Answer:
     """Return the alpha and beta to use: the point that a goal asks for, proven stable, with its margins.
 
-    method: what you integrate with. Without one it is the engine's own. With `pd` name one, such as
+    method: your integration method. Without one it is the engine's own. With `pd` name one, such as
         "SYM".
 
     goal: what the point is for.
@@ -298,7 +298,7 @@ def check(
     mass_ratio: Number | None = None,
     iterations: int | None = None,
 ) -> questions.Answer:
-    """Return what there is to say of a point of your own: is it safe, how fast is it, how far may it go.
+    """Return whether a point of your own is safe, how fast errors decay there, and how far the point may move.
 
     The point is one of these:
       `alpha_hat` and `beta_hat`, dimensionless;
@@ -307,8 +307,8 @@ def check(
           engine's clamps;
       `pd`, (kp, kd, inertia) of a joint's drive in SI units, with `h`.
 
-    method: what you integrate with. Without one it is the engine's own, and of a drive all four ways of
-        applying it.
+    method: your integration method. Without one it is the engine's own; for a drive all four ways of
+        applying it are asked about.
     h_min, h_max: steps vary from h_min to h_max (s). `hold`: alpha_hat and beta_hat stay the same,
         instead of alpha, beta.
     spread: the share by which alpha and beta may be off, for `worst`.
@@ -423,13 +423,13 @@ def feedback_cost(
     omega: Number | None = None,
     omega_h: Number | None = None,
 ) -> stability.FeedbackCost:
-    """Return what accuracy a feedback costs: on a mechanism that moves it makes errors of its own.
+    """Return the errors that a feedback makes on a mechanism that moves.
 
     The point is `alpha_hat` and `beta_hat`, or `alpha` and `beta` in 1/s with the step `h` in s. The
     motion turns by `omega_h` rad a step (0.01 unless given), or by `omega` in 1/s at the step `h`.
 
     Returns a FeedbackCost. Errors are shares of the motion's amplitude: `forced_error` is that of the
-    constraint in the steady state, `total_error` what is left in a run, `velocity_error` that of the
+    constraint in the steady state, `total_error` the error that stays in a run, `velocity_error` that of the
     velocity. `times_least` is the total error over the least that can be had, by the goal accurate of
     `choose`. `order_left` is the order in h that remains of the method's own `order` while alpha_hat
     and beta_hat stay the same. What is not known, as where errors grow, is None.

@@ -1,4 +1,4 @@
-"""What poles, check and choose share: the options of a question, and what is said below its answers."""
+"""The options of a question, the question that was typed, and the sentences below its answers."""
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
@@ -40,7 +40,7 @@ GAINS = ("kp", "kd", "inertia")
 
 
 def drive_of(text: str) -> Drive:
-    """Return the drive that a text such as 100,2,0.01 says."""
+    """Return the drive of a text such as 100,2,0.01."""
     try:
         numbers = [rational(number) for number in text.split(",")]
     except InputError as error:
@@ -51,7 +51,7 @@ def drive_of(text: str) -> Drive:
 
 
 def inertia_or_drive_of(text: str) -> Drive:
-    """Return the drive that 100,2,0.01 says, or the inertia alone, with gains that are to be chosen."""
+    """Return the drive of a text such as 100,2,0.01, or of an inertia alone: its gains are to be chosen."""
     return Drive(Fraction(0), Fraction(0), rational(text)) if "," not in text else drive_of(text)
 
 
@@ -60,7 +60,7 @@ DRIVE = ParsedType(",".join(GAINS), drive_of)
 
 @dataclass(frozen=True)
 class TypedPoint:
-    """A point as it was typed, if it was: without unit, or with `physical` alpha and beta in 1/s."""
+    """The options --alpha, --beta and --physical as typed: alpha_hat and beta_hat, or with `physical` both in 1/s."""
 
     alpha: Fraction | None
     beta: Fraction | None
@@ -78,8 +78,8 @@ class TypedPoint:
     def at(self, methods: Sequence[Method], h: Fraction | None, of_what: str = "") -> tuple[Fraction, Fraction] | None:
         """Return (alpha_hat, beta_hat) for a step of h (s), None if none was typed.
 
-        Where they look like numbers in 1/s that is said, as below. UsageError for half a point, and for 1/s without a
-        point or a step.
+        If they look like numbers in 1/s, a note says so. UsageError if one of the two numbers is missing, and for
+        numbers in 1/s without a step.
         """
         numbers = self.numbers
         if not self.physical:
@@ -107,8 +107,8 @@ def point_options(alpha_help: str, beta_help: str, *default: str) -> Decorator:
 
 given_point_options = together(
     point_options(
-        "α̂, a decimal or fraction, read exactly; α in 1/s with --physical.",
-        "β̂, a decimal or fraction, read exactly; β in 1/s with --physical.",
+        "α̂ as a decimal or a fraction, read exactly. With --physical: α in 1/s.",
+        "β̂ as a decimal or a fraction, read exactly. With --physical: β in 1/s.",
     ),
     click.option("--h", type=SECONDS, help="Step size in s, for --physical, --engine, --pd, --scene and --omega."),
     click.option(
@@ -119,7 +119,7 @@ given_point_options = together(
     click.option(
         "--as-typed",
         is_flag=True,
-        help="With --engine: leave out what the engine does to its values first, such as clamps.",
+        help="With --engine: take the values as typed, without what the engine does to them, such as clamps.",
     ),
     click.option(
         "--pd",
@@ -135,29 +135,31 @@ given_point_options = together(
 """How a point is given: in the plane, by an engine's own values, or by a drive's gains."""
 
 chain_options = together(
-    click.option("--chain", type=int, help="With --engine: is it safe for so many bodies in a straight chain?"),
+    click.option("--chain", type=int, help="With --engine: ask about a straight chain of so many bodies."),
     click.option(
         "--mass-ratio", type=NUMBER, help="With --chain: the last body is so many times as heavy as each other one [1]."
     ),
     click.option(
         "--iterations",
         type=int,
-        help="With --chain or --scene: how often a step goes through all constraints [the engine's own number].",
+        help="With --chain or --scene: the number of sweeps over all constraints in a step [the engine's own number].",
     ),
 )
 omega_option = click.option(
     "--omega",
     type=POSITIVE,
-    help="How fast the mechanism moves, in 1/s: the errors that the feedback makes depend on it. Needs --h [that of "
-    "--scene, else ωh = 0.01].",
+    help="The rate of the mechanism's motion in 1/s. The errors that the feedback makes depend on it. Needs --h [the "
+    "rate of --scene, else ωh = 0.01].",
 )
 h_min_option = click.option(
-    "--h-min", type=SECONDS, help="Steps vary from this one (s) up to --h-max: is every sequence of them safe?"
+    "--h-min",
+    type=SECONDS,
+    help="Steps vary from this one (s) up to --h-max: ask whether every sequence of them is safe.",
 )
 hold_option = click.option(
     "--hold",
     is_flag=True,
-    help="With --h-min: α̂ and β̂ stay the same as steps vary, as in engines with an ERP; else α and β do.",
+    help="With --h-min: α̂ and β̂ stay the same while steps vary, as in engines with an ERP. Without it α and β do.",
 )
 
 
@@ -167,16 +169,16 @@ def moving_scene_options(help_text: str) -> Decorator:
         "--speed",
         type=SPEED,
         default="1",
-        help="With --scene: its drivers and initial velocities are so many times as fast.",
+        help="With --scene: multiply the speed of its drivers and its initial velocities by this.",
     )
     return together(scene_option(None, help_text), speed)
 
 
 def asked(kind: Callable[..., Asked], **typed: Any) -> Asked:
-    """Return the question that was typed: one of a kind of `bezstab.questions`, whose fields options are called like.
+    """Return the question that was typed; `kind` is its class in `bezstab.questions`. Options have its fields' names.
 
-    Methods are left out where an engine or a drive has its own and none was typed. What looks mistaken in a point is
-    said. InputError as the question.
+    Without --method an engine or a drive has its own methods. If a point looks mistaken, a note says so. Errors as the
+    class raises them.
     """
     from bezstab.questions import typed_chain
 
@@ -194,7 +196,7 @@ def asked(kind: Callable[..., Asked], **typed: Any) -> Asked:
 
 
 def asked_of_feedback(**typed: Any) -> "Question":
-    """Return the question about feedback that was typed; find how its scene moves."""
+    """Return the question about feedback that was typed, once it is known how its scene moves."""
     from bezstab.questions import Question
 
     question = asked(Question, **typed)
@@ -216,7 +218,7 @@ def find_turning(scene: str | None, speed: Fraction, h: Fraction | None) -> None
 
 
 def say_if_it_turns_too_far(scene: str | None, speed: Fraction, h: Fraction | None) -> None:
-    """Say on standard error, if so, that a scene's constraints turn too far in a step (s) for the first-order law."""
+    """Warn on standard error if a scene's constraints turn too far in a step (s) for the first-order law."""
     from bezstab.questions import turns_too_far
 
     if warning := turns_too_far(scene, speed, h):
@@ -224,9 +226,9 @@ def say_if_it_turns_too_far(scene: str | None, speed: Fraction, h: Fraction | No
 
 
 def show_below(question: "Question", found: "Sequence[Answer]", form: Format, *, motion: bool = True) -> None:
-    """Print below answers what their errors are shares of, and on standard error why they are not known.
+    """Print below the answers on which motion errors are told; say on standard error why they are not known.
 
-    Of an engine also, where people read, what it made of its values and what that leaves out.
+    For people to read, it is also said what an engine did to its values, and what the conversion leaves out.
     """
     for reason in dict.fromkeys(answer.cost_reason for answer in found):
         if reason:
@@ -242,7 +244,7 @@ def show_below(question: "Question", found: "Sequence[Answer]", form: Format, *,
 
 
 def say_what_is_left_out(engine: Engine, *, many: bool = False) -> None:
-    """Say on standard error what the conversion of an engine's values leaves out; of many constraints, its sweeps."""
+    """Say on standard error what the conversion of an engine's values leaves out, for one constraint or for many."""
     swept = "; it solves each constraint by itself, in sweeps: chains of them may diverge all the same"
     ask = ": ask with --chain" if engine.sweeping else ""
     say(f"{engine.name}: left out: {engine.excludes}{swept + ask if engine.sweeps and not many else ''}")
@@ -251,13 +253,13 @@ def say_what_is_left_out(engine: Engine, *, many: bool = False) -> None:
 
 
 WITHOUT_ACCURACY = ("total_error", "order_left", "times_least_velocity")
-"""What tables of a drive leave out: nothing feeds its target's acceleration forward."""
+"""Columns that tables of a drive omit: nothing feeds the acceleration of its target forward."""
 
 OF_ONE_ALONE = (
     *("worst", "settle_steps", "settle_seconds", "h_limit"),
     *("alpha_factor_min", "alpha_factor_max", "beta_factor_min", "beta_factor_max"),
 )
-"""What tables of constraints that an engine sweeps over leave out: it is told of one of them alone."""
+"""Columns that tables omit for constraints that an engine sweeps over: they are about one constraint alone."""
 
 
 def left_out(question: "Question") -> tuple[str, ...]:
@@ -266,7 +268,7 @@ def left_out(question: "Question") -> tuple[str, ...]:
 
 
 def say_varying(answers: "Iterable[Answer]") -> None:
-    """Print a sentence on steps that vary below the table, and the line that shows that errors grow."""
+    """Print a sentence about steps that vary, and the command of a run in which errors grow."""
     from bezstab.show import growing_run, varying_words
 
     for answer in answers:
@@ -278,16 +280,17 @@ def say_varying(answers: "Iterable[Answer]") -> None:
 
 
 LARGE = 10
-"""alpha_hat or beta_hat: a feedback that leaves e^-5 of an error after a step is seldom meant, and 10/s is weak."""
+"""From this alpha_hat or beta_hat on, 1/s was probably meant: as alpha_hat it leaves e^-5 of an error after a step."""
 
 
 def say_if_units_were_mistaken(
     methods: Sequence[Method], alpha: Fraction, beta: Fraction, h: Fraction | None, of_what: str = ""
 ) -> None:
-    """Say on standard error, if so, that alpha_hat and beta_hat as typed look like alpha and beta in 1/s.
+    """Say on standard error if alpha_hat and beta_hat as typed look like alpha and beta in 1/s.
 
-    So it is where as typed none of the methods is stable, and all are at alpha and beta in 1/s for the step h (s): then
-    the line to type is said; or where a number is LARGE. `of_what` are the command's arguments, if it has any.
+    They do if no method is stable there, and all methods are stable at alpha and beta in 1/s for the step h (s): the
+    note then gives the line to type. They also do if no method is stable and one of the numbers is LARGE. `of_what` are
+    the arguments of the command, if it has any.
     """
     from bezstab.stability import verdict
 

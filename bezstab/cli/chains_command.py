@@ -22,7 +22,7 @@ SWEEPS_DRAWN = 50
     type=NUMBER,
     multiple=True,
     default=("1", "10"),
-    help="The last body is so many times as heavy as each other one. Repeatable.",
+    help="The mass of the last body over that of each other one. Repeatable.",
 )
 @click.option("--to", "bodies", type=int, default=20, help="Bodies in the longest chain.")
 @picture_options
@@ -39,8 +39,8 @@ def chains(
 
     Game engines solve one constraint after another. Each pass over all of them is a sweep. Many engines begin a step
     with the impulses of the last one. With few sweeps a chain of bodies may diverge although each constraint alone is
-    stable. Printed are, for each chain, the fewest sweeps that are stable, and the factor by which a step multiplies
-    the error with the engine's own number of sweeps. The figure shows all numbers of sweeps.
+    stable. For each chain this prints the fewest sweeps that are stable, and the factor by which a step
+    multiplies the error with the engine's own number of sweeps. The figure shows all numbers of sweeps.
 
     Example: bezstab chains --engine bullet=0.2 --h 1/60 --to 5 --figure none
     """

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from bezstab.questions import Answer
 
 NEEDING_A_STEP = ("h", "h_min", "scene", "engine", "drive", "as_typed", "hold", "omega")
-"""Without any of these, α and β in 1/s are asked about for every step."""
+"""Without any of these, a question about α and β in 1/s is about every step."""
 
 
 @click.command()
@@ -107,7 +107,7 @@ def check(context: click.Context, /, point: TypedPoint, form: Format, **typed: A
 
 
 def _with_instead(given: "Iterable[Answer]") -> "Iterator[Answer]":
-    """Yield the answers that were given, and for each method what to take instead; where there is nothing, say why."""
+    """Yield the given answers, and for each method the choice instead; say on standard error why there is none."""
     for _, of_method in groupby(given, lambda answer: answer.method):
         answers_of_method = list(of_method)
         yield from answers_of_method
@@ -118,7 +118,7 @@ def _with_instead(given: "Iterable[Answer]") -> "Iterator[Answer]":
 
 
 def _check_without_step(methods: tuple[Method, ...], point: TypedPoint, form: Format) -> bool:
-    """Print up to which step alpha and beta (1/s) are safe with each method; return whether each has such a step."""
+    """Print the step up to which alpha and beta (1/s) are safe with each method; return whether each method has one."""
     from bezstab.questions import largest_step, methods_for
 
     if point.numbers is None:

@@ -55,15 +55,15 @@ if TYPE_CHECKING:
 @click.option(
     "--h-max",
     type=SECONDS,
-    help="The largest step in s that may occur: for the goals accurate and robust, and with --h-min [--h].",
+    help="The longest step in s that may occur. For the goals accurate and robust, and with --h-min [--h].",
 )
 @h_min_option
 @hold_option
-@click.option("--spread", type=SHARE, default="0.1", help="α and β may be off by this share.")
+@click.option("--spread", type=SHARE, default="0.1", help="The share by which α and β may be off.")
 @click.option(
     "--settle",
     type=SECONDS,
-    help="The time in s in which errors fall a thousandfold: for the goals gentle and accurate, and with --pd.",
+    help="The time in s in which errors fall to a thousandth. For the goals gentle and accurate, and with --pd.",
 )
 @click.option("--keep", "equal", type=click.Choice(["alpha=beta"]), help="Only points with α = β.")
 @click.option(
@@ -145,7 +145,7 @@ def choose(
 
 
 def _say_trades(chosen: "Sequence[Answer]") -> None:
-    """Print what faster decay than that of each choice would cost, and what slower decay would gain."""
+    """Print for each choice what faster decay would cost, and what slower decay would gain."""
     for answer in chosen:
         if lines := trade_words(answer):
             name = f"{answer.method.name}: " if len(chosen) > 1 else ""

@@ -30,14 +30,14 @@ COMPLETE = "_BEZSTAB_COMPLETE"
 """Environment variable in which a shell says that it wants to complete a command."""
 
 NUMERICAL_TROUBLE = 3
-"""Exit status where an answer, or a part of it, could not be found, or runs break down; a message says why."""
+"""Exit status if a part of an answer could not be found, or a run broke down; a message says why."""
 
 READER_GONE = 128 + 13
-"""Exit status where nobody reads the answer any more: as a shell has it for SIGPIPE, and unlike 1, "fault is found"."""
+"""Exit status if nobody reads the answer any more: the shell's for SIGPIPE, and not 1, which means "unsafe"."""
 
 
 DEFECT = 70
-"""Exit status of a defect of this program: EX_SOFTWARE of BSD's sysexits.h, and unlike 1, "fault is found"."""
+"""Exit status of a defect of this program: EX_SOFTWARE of BSD's sysexits.h, and not 1, which means "unsafe"."""
 
 
 class BezstabGroup(click.Group):
@@ -68,7 +68,7 @@ class BezstabGroup(click.Group):
                 formatter.write_dl([(name.ljust(longest), _sentence(name)) for name in names])
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run the command that was typed, and let it alone speak: matplotlib has words where it finds no home."""
+        """Run the command that was typed; matplotlib, which warns if it finds no home, is silent."""
         import logging
 
         logging.getLogger("matplotlib").setLevel(logging.ERROR)
@@ -129,7 +129,7 @@ def _complain(message: str) -> None:
 
 
 def _give_up_output() -> None:
-    """Let what cannot be written on standard output vanish: Python would complain at exit, with a traceback."""
+    """Drop what cannot be written on standard output: else Python would complain at exit, with a traceback."""
     try:
         sys.stdout.flush()
     except OSError:

@@ -1,4 +1,4 @@
-"""What the shell offers after a press of the tab key: names of methods, scenes and engines."""
+"""Completion in the shell: names of methods, scenes and engines."""
 
 import shlex
 from collections.abc import Iterable

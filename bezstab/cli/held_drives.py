@@ -1,4 +1,4 @@
-"""Drives whose controller is slower than the physics: the options of check, choose and region, what is printed."""
+"""Drives whose controller is slower than the physics: the options of check, choose and region, and their answer."""
 
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -15,26 +15,26 @@ if TYPE_CHECKING:
 
 timing_options = together(
     click.option(
-        "--every", type=int, help="With --pd: the torque is computed every so many steps, and held in between [1]."
+        "--every", type=int, help="With --pd: the torque is computed every so many steps and held in between [1]."
     ),
     click.option(
-        "--late", type=NUMBER, help="With --pd: the torque is applied so many steps late, or a fraction of them [0]."
+        "--late", type=NUMBER, help="With --pd: the torque is applied so many steps late. Fractions are allowed [0]."
     ),
     click.option(
         "--filter",
         "filter_seconds",
         type=NUMBER,
-        help="With --pd: the measured velocity goes through a first-order filter with this time constant in s [0].",
+        help="With --pd: the time constant in s of a first-order filter of the measured velocity [0].",
     ),
 )
-"""When a drive's torque is computed and applied; None where an option was not given."""
+"""When a drive's torque is computed and applied; None without the option."""
 
 
 def held_asked(typed: dict[str, Any], *, always: bool = False) -> "HeldQuestion | None":
-    """Take the timing out of what was typed; return the question about such a drive, None where no option has one.
+    """Take the timing options out of `typed`. Return the question about such a drive, None if none of them was typed.
 
-    With `always` there is a question without them, too: each step then computes its torque and applies it. Without
-    typed methods it is about all four ways of applying a drive. InputError without a drive or a step.
+    With `always` there is a question without these options, too: every step then computes its torque and applies it.
+    Without --method it is about all four ways of applying a drive. InputError without a drive or a step.
     """
     from bezstab.questions import HeldQuestion
     from bezstab.stability import Timing
@@ -54,16 +54,16 @@ def held_asked(typed: dict[str, Any], *, always: bool = False) -> "HeldQuestion 
 
 
 ABOUT_DRIVES = {"--pd", "--h", "--every", "--late", "--filter", "--method", "--format"}
-"""Options of commands that a question about a held or late drive has."""
+"""Options that go with a question about a held or late drive."""
 
 
 def refuse_others(asked: str, *allowed: str) -> None:
-    """Raise UsageError for an option of the running command that says nothing of a held or late drive."""
+    """Raise UsageError if an option was typed that does not go with a question about a held or late drive."""
     refuse_beside(asked, typed_options() - {*ABOUT_DRIVES, *allowed}, "this answer is about the drive alone")
 
 
 def show_held(question: "HeldQuestion", form: Format) -> "list[HeldAnswer]":
-    """Print what each way of applying a held or late drive does, and what is not judged; return these answers."""
+    """Print and return the answer for each way of applying a held or late drive; print what is not judged."""
     from bezstab.questions import held_answers
 
     found = list(held_answers(question))

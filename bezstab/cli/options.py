@@ -1,4 +1,4 @@
-"""What the commands share of their options: the types of what is typed, and the options that several have."""
+"""Options that several commands share, the types of their values, and rules for options that are typed together."""
 
 import os
 import re
@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 from fractions import Fraction
 from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar, get_args
+from typing import TYPE_CHECKING, Any, get_args
 
 import click
 
@@ -23,40 +23,34 @@ if TYPE_CHECKING:
     from bezstab.mechanism import Stabilise
 
 EngineValues = tuple[Engine, tuple[Fraction, ...]]
-Function = TypeVar("Function", bound=Callable[..., Any])
-
-
-class Decorator(Protocol):
-    """What adds an option to a command's function and returns it."""
-
-    def __call__(self, function: Function, /) -> Function:
-        """Return the function, with the option."""
-
+Function = Callable[..., Any]
+Decorator = Callable[[Any], Any]
+"""It takes a command's function and returns it with one more option."""
 
 MOST_IN_SEQUENCE = 10**6  # steps: a run of minutes
 SHORTEST = Fraction("1e-100")  # s, and the longest time's inverse: their squares are within float64
 USUAL_METHODS = ("B2", "B3", "B4", "AB2", "AB3", "AB4", "RK4@5", "SIE")
-"""What poles and explore show unless told otherwise: the Bezier methods and what one would take instead."""
+"""The methods that poles and explore show without --method: the Bezier methods and their usual alternatives."""
 
 
 OF_FEEDBACK = ("--alpha", "--beta", "--physical", "--hold", "--omega")
-"""What says something of a feedback alone."""
+"""Options that are about feedback alone."""
 
 WITH_PARAMETERS = ("newmark(1/4,1/2)", "hht(-1/20)", "generalized-alpha(4/5)")
-"""Names that the shell offers of methods whose name has parameters, with their usual values."""
+"""Methods whose names have parameters, with usual values: the shell offers them, too."""
 
 
 class ParsedType(click.ParamType):  # type: ignore[type-arg]  # generic since click 8.3
-    """What a function makes of the text that was typed; its InputError names the option, too.
+    """A type whose values `parse` makes of the typed text. Its InputError becomes a message that names the option.
 
-    `names` are what the shell may offer to complete it.
+    The shell offers the `names` when it completes a value.
     """
 
     def __init__(self, name: str, parse: Callable[[str], object], names: Iterable[str] = ()) -> None:
         self.name, self.parse, self.names = name, parse, names
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Return what was parsed; fails, naming the option, where nothing can be."""
+        """Return the parsed value; fail with a message that names the option if there is none."""
         try:
             return self.parse(value) if isinstance(value, str) else value
         except InputError as error:
@@ -65,7 +59,7 @@ class ParsedType(click.ParamType):  # type: ignore[type-arg]  # generic since cl
     def shell_complete(
         self, ctx: click.Context, param: click.Parameter, incomplete: str
     ) -> "list[CompletionItem[Any]]":
-        """Return what begins as typed, for the shell to offer."""
+        """Return the names that begin with the typed text."""
         if not self.names:
             return []
         from bezstab.cli.completion import offered
@@ -74,7 +68,7 @@ class ParsedType(click.ParamType):  # type: ignore[type-arg]  # generic since cl
 
 
 def _offered_scenes(ctx: click.Context, param: click.Parameter, incomplete: str) -> "list[CompletionItem[Any]]":
-    """Return the shipped scenes that begin as typed, for the shell to offer."""
+    """Return the shipped scenes whose names begin with the typed text."""
     from bezstab.cli.completion import offered
     from bezstab.mechanism import shipped_scenes
 
@@ -89,7 +83,7 @@ def _positive(text: str) -> Fraction:
 
 
 def _within_squares(unit: str) -> Callable[[str], Fraction]:
-    """Return what reads a positive number of a unit whose square is within float64."""
+    """Return a function that reads a positive number whose square is within float64; messages name the unit."""
 
     def read(text: str) -> Fraction:
         number = _positive(text)
@@ -101,7 +95,7 @@ def _within_squares(unit: str) -> Callable[[str], Fraction]:
 
 
 def _sequence(text: str) -> list[Fraction]:
-    """Return steps in s from text such as 3*0.01,0.02 (three of the first, then the other), or from a file of such."""
+    """Return the steps (s) of a text such as 3*0.01,0.02 (0.01 three times, then 0.02), or of a file of such texts."""
     path = Path(text)
     try:
         if path.is_file():
@@ -147,7 +141,10 @@ def scene_option(default: str | None, help_text: str = "A shipped scene's name, 
 
 
 speed_option = click.option(
-    "--speed", type=SPEED, default="1", help="The scene's drivers and initial velocities are so many times as fast."
+    "--speed",
+    type=SPEED,
+    default="1",
+    help="Multiply the speed of the scene's drivers and initial velocities by this.",
 )
 step_option = click.option("--h", type=SECONDS, default="0.001", help="Step size in s.")
 physical_option = click.option("--physical", is_flag=True, help="--alpha and --beta are α and β in 1/s; needs --h.")
@@ -161,9 +158,9 @@ format_option = click.option(
 
 
 def _choose_compiled(context: click.Context, parameter: click.Parameter, choice: str) -> None:
-    """Let the environment variable say what the option says: worker processes inherit it.
+    """Set the environment variable to the value of the option: worker processes inherit it.
 
-    InputError where numba is asked for and missing.
+    InputError if numba is asked for and missing.
     """
     if left_at_default(str(parameter.name)):
         return
@@ -188,14 +185,14 @@ compiled_option = click.option(
     default="auto",
     expose_value=False,
     callback=_choose_compiled,
-    help="Whether numba compiles runs; auto: where it is installed and saves time.",
+    help="Compile runs with numba. auto: if numba is installed and compiling saves time.",
 )
 
 
 def together(*options: Decorator) -> Decorator:
     """Return one decorator that adds several options, in this order."""
 
-    def with_options(function: Function, /) -> Function:
+    def with_options(function: Function) -> Function:
         for option in reversed(options):
             function = option(function)
         return function
@@ -204,15 +201,16 @@ def together(*options: Decorator) -> Decorator:
 
 
 def gathered(kind: type, parameter: str, *options: Decorator) -> Decorator:
-    """Return one decorator that adds options and hands the command one value of a dataclass, whose fields they are."""
+    """Return a decorator that adds options. The command gets one value of a dataclass, whose fields they are."""
 
-    def with_options(function: Function, /) -> Function:
+    def with_options(function: Function) -> Function:
         @wraps(function)
         def with_one_value(*arguments: Any, **typed: Any) -> Any:
             own = {field.name: typed.pop(field.name) for field in fields(kind) if field.name in typed}
             return function(*arguments, **{parameter: kind(**own)}, **typed)
 
-        return together(*options)(with_one_value)  # type: ignore[return-value]  # as wraps has it
+        with_option: Function = together(*options)(with_one_value)
+        return with_option
 
     return with_options
 
@@ -222,20 +220,20 @@ stabilise_options = together(
         "--stabilise",
         type=click.Choice(["baumgarte", "projection", "none"]),
         default="baumgarte",
-        help="What holds the constraints: feedback with α and β; projection of each new state onto them, in the metric "
-        "of the masses; or nothing, α = β = 0.",
+        help="How the constraints are held. baumgarte: by feedback with α and β. projection: each new state is moved "
+        "onto the constraints, by the least change in the metric of the masses. none: not at all (α = β = 0).",
     ),
     click.option(
         "--iterations",
         type=click.IntRange(min=1),
-        help="With projection: Newton's iterations for the position in each step, at most [as many as reach 1e-12].",
+        help="With projection: at most so many Newton iterations for the position in a step [as many as reach 1e-12].",
     ),
 )
 
 
 @dataclass(frozen=True)
 class Rule:
-    """What an option needs (one of several) and what it does not go with; `why` ends the message that says so."""
+    """An option needs one of some others, and excludes others. `why` is the reason that the message gives."""
 
     option: str
     why: str
@@ -243,7 +241,7 @@ class Rule:
     excludes: tuple[str, ...] = ()
 
     def check(self) -> None:
-        """Raise UsageError where what was typed in the running command breaks this rule."""
+        """Raise UsageError if the options of the running command break this rule."""
         typed = typed_options()
         if self.option not in typed:
             return
@@ -254,16 +252,16 @@ class Rule:
 
 
 def ruled(*rules: Rule) -> Decorator:
-    """Return a decorator that checks, before a command begins, which of its options were typed together."""
+    """Return a decorator that checks these rules before the command runs."""
 
-    def with_rules(function: Function, /) -> Function:
+    def with_rules(function: Function) -> Function:
         @wraps(function)
         def checked(*arguments: Any, **typed: Any) -> Any:
             for rule in rules:
                 rule.check()
             return function(*arguments, **typed)
 
-        return checked  # type: ignore[return-value]  # as wraps has it
+        return checked
 
     return with_rules
 
@@ -275,7 +273,7 @@ def typed_options() -> set[str]:
 
 
 def refuse_beside(option: str, others: Collection[str], why: str) -> None:
-    """Raise UsageError where one of the others was typed in the running command, which has that option."""
+    """Raise UsageError if one of the others was typed together with that option in the running command."""
     for other in sorted(typed_options() & set(others)):
         raise click.UsageError(f"{other} does not go with {option}: {why}")
 
@@ -286,6 +284,6 @@ def left_at_default(parameter: str) -> bool:
 
 
 def refuse_feedback(stabilise: "Stabilise") -> None:
-    """Raise UsageError where something was typed about a feedback, and something else is to hold the constraints."""
+    """Raise UsageError if an option about feedback was typed, and there is to be no feedback."""
     if stabilise != "baumgarte":
         refuse_beside(f"--stabilise {stabilise}", OF_FEEDBACK, "it has no feedback")

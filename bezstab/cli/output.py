@@ -1,4 +1,4 @@
-"""How commands answer: rows on standard output, files, messages and progress on standard error."""
+"""How commands answer: rows on standard output; files; messages and progress on standard error."""
 
 import re
 import sys
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 Item = TypeVar("Item")
 INDENT = " " * 4
-"""Of a command line that is shown to be copied, and once more of its continued lines."""
+"""Before a command line that is to be copied; lines that continue it have it twice."""
 
 CONTINUED = " \\"
 """Ends a line of a command that goes on in the next."""
@@ -106,24 +106,24 @@ def show_command(command: str) -> None:
 
 
 def say(message: str) -> None:
-    """Print a message on standard error, in one line; where that cannot be written, nobody wants to read it."""
+    """Print a message on standard error, in one line; if that cannot be written, go on."""
     with suppress(OSError):
         click.echo(visible(message), err=True)
 
 
 def for_reading(form: Format) -> bool:
-    """Return whether people read that format, not programs: then there is room for words."""
+    """Return whether the format is for people to read: then sentences are printed, too."""
     return form in ("text", "markdown")
 
 
 def file_name(name: str) -> str:
-    """Return a method's or a scene's name with nothing that a file's name cannot have, whatever the system's names."""
+    """Return the name of a method or a scene without characters that a file's name cannot have."""
     encoding = sys.getfilesystemencoding()
     return re.sub(r"[^\w@.+-]", "_", name.encode(encoding, "replace").decode(encoding))
 
 
 def write_file(path: Path, write: Callable[[BinaryIO], object]) -> None:
-    """Write a file whole, or not at all, and say so on standard error; InputError where the system refuses."""
+    """Write a whole file and say so on standard error; InputError, and no file, if the system refuses."""
     write_whole(path, write)
     say(f"wrote {path}")
 
@@ -142,20 +142,20 @@ class Files:
         return self.figure != "none" or self.table != "none"
 
     def check_output(self) -> None:
-        """Make the directory if something is to be written; InputError where that cannot be, before anything runs."""
+        """Make the directory before anything runs, if something is to be written; InputError if that fails."""
         if self.wanted:
             output_directory(self.output)
 
     def path(self, *names: str) -> Path:
-        """Return the path, without an ending, of what is called like names of methods and scenes."""
+        """Return the path, without an ending, of a file that is named after methods and scenes."""
         return self.output / "_".join(file_name(name) for name in names)
 
     def write(
         self, path: Path, figure: "Callable[[], Figure] | None", table: "Callable[[], Arrays] | None" = None
     ) -> None:
-        """Write what these make, a table of equally long arrays and a figure, into `path` + .csv, .png, ...
+        """Call these functions and write what they return: a table of equally long arrays, and a figure.
 
-        What is not asked for is neither made nor loaded.
+        The files are `path` + .csv, .png, ... What is not asked for is neither made nor loaded.
         """
         if table and self.table != "none":
             columns = table()
@@ -176,7 +176,7 @@ _where_and_figure = (
 _table_forms = click.Choice([*TABLE_FORMS, "none"])
 
 picture_options = gathered(Files, "files", *_where_and_figure)
-"""Of a command that has no table beside what it prints."""
+"""For a command that writes a figure and no table."""
 
 figure_options, file_options = (
     gathered(
@@ -187,12 +187,12 @@ figure_options, file_options = (
     )
     for usual in ("none", "csv")
 )
-"""Of commands that also write a table: one that is long and seldom wanted when it is asked for, and any other."""
+"""For commands that also write a table: only if it is asked for, or by default."""
 
 
 @dataclass(frozen=True)
 class Work:
-    """Who computes what takes long: so many processes, or a cluster's; `resume` goes on with what is left."""
+    """Who computes what takes long: a number of processes, or a cluster. `resume` continues a run that was stopped."""
 
     workers: int | None
     scheduler: str | None
@@ -229,10 +229,10 @@ def progress(
 def results_of_chunks(
     compute: "Callable[[Any], Arrays]", chunks: Sequence[Any], path: Path, job: str, work: Work
 ) -> "Iterator[list[Arrays]]":
-    """Give the results of independent chunks, in their order, from processes or a cluster's workers.
+    """Give the results of independent chunks, in their order; processes or a cluster's workers compute them.
 
-    What is finished is kept in `path` + .chunks for a run of the same `job` that resumes, and goes once it was used.
-    What is damaged there is computed again, and said so. InputError while another run is at work there.
+    Finished chunks are kept in `path` + .chunks, so that a run of the same `job` can resume; once the results are used
+    they are deleted. A damaged chunk is computed again, and a message says so. InputError while another run uses them.
     """
     from bezstab.evidence import chunk_store, completed_chunks, worker_pool
 

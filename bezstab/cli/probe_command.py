@@ -2,11 +2,10 @@
 
 import shlex
 import sys
-from collections import Counter
 from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -19,9 +18,9 @@ from bezstab.cli.options import (
 )
 from bezstab.cli.output import for_reading, show_rows, show_text
 from bezstab.errors import InputError, NumericalError
-from bezstab.methods import Method, lookup
+from bezstab.methods import lookup
 from bezstab.rationals import rational
-from bezstab.show import PROBED, Format, Row
+from bezstab.show import PROBED, Format
 
 if TYPE_CHECKING:
     from bezstab.evidence import Log
@@ -29,9 +28,6 @@ if TYPE_CHECKING:
 
 USUAL = "SYM"
 """Of simulators, the method by which it is judged whether alpha and beta were typed in another unit."""
-
-EXCLUDED_SHOWN = 5
-"""Methods that do not fit and are shown where people read, the nearest; rows for programs have all."""
 
 
 def _turning(text: str) -> Fraction:
@@ -44,7 +40,7 @@ def _turning(text: str) -> Fraction:
 @click.command()
 @click.argument("log", type=click.Path(path_type=Path, allow_dash=True))
 @click.option("--column", "columns", multiple=True, help="A column by name or number, from 1 [all]. Repeatable.")
-@click.option("--time", "time_name", help="The column of times in s, by name or number [t or time, if there is one].")
+@click.option("--time", help="The column of times in s, by name or number [t or time, if there is one].")
 @click.option(
     "--minus",
     type=click.Path(path_type=Path, allow_dash=True),
@@ -71,19 +67,7 @@ def _turning(text: str) -> Fraction:
     help="How fast the directions of the constraints turn, in 1/s: about the angular speed; 0 at rest.",
 )
 @format_option
-def probe(
-    log: Path,
-    columns: Sequence[str],
-    time_name: str | None,
-    minus: Path | None,
-    jointly: bool,
-    every: int | None,
-    h: Fraction | None,
-    point: TypedPoint,
-    methods: Sequence[Method],
-    turning: Fraction | None,
-    form: Format,
-) -> None:
+def probe(log: Path, minus: Path | None, point: TypedPoint, h: Fraction | None, form: Format, **typed: Any) -> None:
     """Tell from a simulator's log which integrator made it.
 
     LOG is a CSV file, or - for standard input, with a row for each step from the kick on. Prints the pole with
@@ -99,18 +83,13 @@ def probe(
     from bezstab.questions import LogQuestion, log_answers
 
     files = " ".join(shlex.quote(str(file)) for file in (log, *([] if minus is None else ["--minus", minus])))
-    at = point.at(methods or [lookup(USUAL)], h, files)
+    at = point.at(typed["methods"] or [lookup(USUAL)], h, files)
     question = LogQuestion(
         log=_read(log),
-        columns=columns,
-        time=time_name,
         minus=None if minus is None else _read(minus),
-        jointly=jointly,
-        every=every,
-        h=None if h is None else float(h),
         point=at,
-        methods=methods,
-        turning=turning,
+        h=None if h is None else float(h),
+        **typed,
     )
     found = list(log_answers(question))
     _show(found, form)
@@ -124,7 +103,7 @@ def probe(
 
 def _show(found: "Sequence[ColumnAnswer]", form: Format) -> None:
     """Print all rows; for reading in a table of each kind, with the sentences below."""
-    from bezstab.show import LIKENESS, cells, like_point_row, likeness_sentence
+    from bezstab.show import LIKENESS, cells, like_point_row, likeness_sentence, nearest_rows
 
     fits = [PROBED.row(answer.found, column=answer.column) for answer in found]
     likenesses = [{"column": answer.column, **cells(LIKENESS, one)} for answer in found for one in answer.likenesses]
@@ -133,7 +112,7 @@ def _show(found: "Sequence[ColumnAnswer]", form: Format) -> None:
         show_rows(PROBED, [*fits, *likenesses, *points], form)
         return
     show_rows(PROBED, fits, form)
-    for rows in (_nearest(likenesses), points):
+    for rows in (nearest_rows(likenesses), points):
         if rows:
             click.echo()
             show_rows(PROBED, rows, form, ("reason",))
@@ -142,17 +121,6 @@ def _show(found: "Sequence[ColumnAnswer]", form: Format) -> None:
         said = [likeness_sentence(answer.likenesses, point)] if answer.likenesses and point else answer.remarks
         for sentence in said:
             show_text(f"\n{answer.column}: {sentence}")
-
-
-def _nearest(likenesses: Sequence[Row]) -> list[Row]:
-    """Return of each column's methods, the nearest first, those that fit and a few that do not."""
-    shown: list[Row] = []
-    excluded: Counter[object] = Counter()
-    for row in likenesses:
-        excluded[row["column"]] += not row["fits"]
-        if row["fits"] or excluded[row["column"]] <= EXCLUDED_SHOWN:
-            shown.append(row)
-    return shown
 
 
 def _read(path: Path) -> "Log":

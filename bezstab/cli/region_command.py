@@ -55,8 +55,8 @@ if TYPE_CHECKING:
     "levels",
     type=POSITIVE,
     multiple=True,
-    help="Also draw where |z_p| < LEVEL, below 1, and print the area. Repeatable [one level is drawn, a quarter of the "
-    "way from the least |z_p| to 1].",
+    help="Also draw where |z_p| < LEVEL, and print that area. LEVEL is below 1. Repeatable [one level is drawn: a "
+    "quarter of the way from the least |z_p| to 1].",
 )
 @click.option("--compare", is_flag=True, help="Draw the boundaries of all methods in one figure, at --level [1].")
 @click.option(
@@ -76,7 +76,7 @@ if TYPE_CHECKING:
     "--engine",
     metavar="NAME",
     type=ENGINE,
-    help="Mark what this engine's default values and rules of thumb are; needs --h.",
+    help="Mark this engine's default values and rules of thumb; needs --h.",
 )
 @scene_option(
     None, "Also draw the region of this mechanism as it moves; with --accuracy the motion is its own. Needs --h."
@@ -86,7 +86,7 @@ if TYPE_CHECKING:
     "speeds",
     type=SPEED,
     multiple=True,
-    help="With --scene: so many times as fast as given there. Repeatable [1].",
+    help="With --scene: multiply the speed of the mechanism by this. Repeatable [1].",
 )
 @format_option
 @ruled(

@@ -44,19 +44,19 @@ from bezstab.show import SIMULATIONS, Format, passages_words
     "--steps",
     "sequence",
     type=SEQUENCE,
-    help="Step sizes in s that are taken in turn, over and over, such as 1/60,0.00917 or 3*0.01,0.02, or a file of "
-    "them. α̂ and β̂ then belong to --h.",
+    help="Step sizes in s, taken in turn, over and over: such as 1/60,0.00917 or 3*0.01,0.02, or a file with such a "
+    "list. α̂ and β̂ are then those at the step --h.",
 )
-@click.option("--hold", is_flag=True, help="With --steps: α̂ and β̂ stay the same as steps vary; else α and β do.")
+@click.option("--hold", is_flag=True, help="With --steps: α̂ and β̂ stay the same while steps vary; else α and β do.")
 @click.option("--time", "duration", type=SECONDS, default="10", help="Duration in s.")
 @click.option("--perturb", type=NUMBER, default="0", help="Initial error of the first constraint, in its own unit.")
 @click.option(
     "--start",
     type=click.Choice(["rk4", "ramp", "euler"]),
     default="rk4",
-    help="Where a multistep method takes its first values from: RK4, members of its family with fewer steps, or "
-    "explicit Euler. For an implicit method: Gauss's method of order four, BDF methods with fewer steps, or implicit "
-    "Euler.",
+    help="How a multistep method gets its first values: by RK4, by members of its family with fewer steps, or by "
+    "explicit Euler. An implicit method: by Gauss's method of order four, by BDF methods with fewer steps, or by "
+    "implicit Euler.",
 )
 @compiled_option
 @figure_options
@@ -72,9 +72,9 @@ def simulate(point: TypedPoint, files: Files, form: Format, **typed: Any) -> Non
     --steps gives a sequence of step lengths, for any one-step method. Work and energy drift are then integrated by
     the trapezoidal rule, which is less exact.
 
-    --stabilise projection replaces the feedback: after each step positions, then velocities go back onto the
-    constraints, by the least change in the metric of the masses. S = C_q M⁻¹ C_qᵀ is factored once for each evaluation,
-    and once or more for each projection: "factorizations".
+    --stabilise projection replaces the feedback. After each step it moves the positions, then the velocities, back onto
+    the constraints, by the least change in the metric of the masses. "factorizations" counts how often S = C_q M⁻¹ C_qᵀ
+    is factored: once for each evaluation, and once or more for each projection.
 
     Example: bezstab simulate --method AB4 --alpha 0.5 --beta 0.101 --time 2
     """

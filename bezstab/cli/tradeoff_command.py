@@ -38,8 +38,7 @@ from bezstab.cli.output import (
 from bezstab.show import FRONTS, SWEPT, Format, combined_words, front_row
 
 if TYPE_CHECKING:
-    from bezstab.evidence import SweptRuns
-    from bezstab.questions import FrontQuestion, TradeQuestion
+    from bezstab.questions import FrontQuestion
 
 PREDICTED = {
     *("--predicted", "--scene", "--speed", "--method", "--h", "--omega", "--level"),
@@ -142,7 +141,8 @@ def tradeoff(
         swept = question.swept(results)
         rows = [SWEPT.row(run, front=front) for run, front in zip(swept.runs, swept.front_labels, strict=True)]
         files.write(path, None, lambda: show.untimed_arrays(rows))
-        _write_figures(question, swept, path, files)
+        for name, draw in show.trade_figures(swept, question.moving.name).items():
+            files.write(path.with_name(f"{path.name}_{name}"), draw)
     show_rows(SWEPT, rows, form)
     if for_reading(form):
         show_text(f"\nThe reference is known to {question.reference.error:.0e} (m, rad).")
@@ -151,21 +151,6 @@ def tradeoff(
             show_text(f"Each point is the choice of the goal accurate for a motion with {rate}.")
         for sentence in question.sentences(swept, float(tolerance)):
             show_text(sentence)
-
-
-def _write_figures(question: "TradeQuestion", swept: "SweptRuns", path: Path, files: Files) -> None:
-    """Write the figure of feedback against projection, or those of both errors against their cost."""
-    from bezstab import show
-
-    name, known = question.moving.name, question.reference.error
-    figures = {
-        "trajectory": lambda: show.work_precision_figure(swept, name, False, known),
-        "constraint": lambda: show.work_precision_figure(swept, name, True),
-    }
-    if question.against == "projection":
-        figures = {"projection": lambda: show.projection_figure(swept, name, known)}
-    for of_what, draw in figures.items():
-        files.write(path.with_name(f"{path.name}_{of_what}"), draw)
 
 
 def _show_fronts(question: "FrontQuestion", files: Files, form: Format) -> None:

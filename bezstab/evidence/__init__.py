@@ -8,6 +8,7 @@ from bezstab.evidence.accuracy_costs import (
     NO_FEEDBACK,
     STEPS,
     Cost,
+    ErrorOf,
     Run,
     Sweep,
     SweptRuns,

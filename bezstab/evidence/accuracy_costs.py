@@ -42,6 +42,8 @@ ABOVE_REFERENCE = 30.0
 Cost = Literal["evaluations", "time", "projection"]
 """What errors are held against: evaluations, processor time, or, of feedback against projection, factorizations."""
 
+ErrorOf = Literal["trajectory", "constraint", "energy"]
+
 NO_FEEDBACK = (0.0, 0.0)
 """The point of runs with projection, or with nothing that holds the constraints."""
 
@@ -113,6 +115,12 @@ class Run:
     def cost(self, against: Cost) -> float:
         """Return its evaluations, its processor time (s), or its factorizations."""
         return {"evaluations": self.evaluations, "time": self.seconds, "projection": self.factorizations}[against]
+
+    def error(self, of: ErrorOf) -> float | None:
+        """Return the trajectory's error, the largest |c|, or the energy's drift, unsigned (SI); None if it failed."""
+        if self.failure:
+            return None
+        return {"trajectory": self.trajectory_error, "constraint": self.c_max, "energy": abs(self.energy_drift)}[of]
 
 
 @dataclass(frozen=True)
@@ -272,8 +280,8 @@ def with_fronts(runs: Sequence[Run], reference_error: float, against: Cost = "ev
 
     The reference's error in SI; the others as in `SweptRuns`.
     """
-    trajectory = [(run.cost(against), run.trajectory_error) for run in runs]
-    constraint = [(run.cost(against), None if run.failure else run.c_max) for run in runs]
+    trajectory = [(run.cost(against), run.error("trajectory")) for run in runs]
+    constraint = [(run.cost(against), run.error("constraint")) for run in runs]
     return SweptRuns(
         runs=tuple(runs),
         trajectory_front=tuple(pareto_front(trajectory)),

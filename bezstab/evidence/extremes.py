@@ -21,7 +21,7 @@ from bezstab.mechanism import (
     initial_state,
     load_scene,
     march,
-    multipliers_function,
+    observation_function,
     observe,
     perturbed_state,
     runs_compiled,
@@ -307,13 +307,12 @@ def _masses(ratio: float) -> Check:
     two_alpha, beta_squared = feedback_gains(*POINT, H)
     q, v = initial_state(mechanism)
     state = np.concatenate((q, v)).tolist()
-    elimination = multipliers_function(mechanism, mp.mp)
+    elimination, m = observation_function(mechanism, mp.mp), mechanism.constraints
 
     def precise_multipliers(entries: Sequence[mp.mpf]) -> Sequence[mp.mpf]:
         precise = [mp.mpf(entry) for entry in entries]
-        return elimination(
-            mp.mpf(0), mp.mpf(two_alpha), mp.mpf(beta_squared), precise[: mechanism.size], precise[mechanism.size :]
-        )
+        q, v = precise[: mechanism.size], precise[mechanism.size :]
+        return elimination(mp.mpf(0), mp.mpf(two_alpha), mp.mpf(beta_squared), q, v)[2 * m : 3 * m]
 
     def shown_digits(relative_error: mp.mpf) -> float:
         return float(-mp.log10(max(relative_error, mp.mpf(10) ** -17)))

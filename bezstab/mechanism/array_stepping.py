@@ -101,37 +101,32 @@ def _written(of_arrays: StateFunction, judged_arrays: StateFunction, judged_floa
     return accelerate
 
 
-def change_step(rows: Rows, ratio: float, registers: FloatArray, room: Room) -> None:
+def change_step(rows: Rows, ratio: float, room: Room) -> None:
     """Turn registers into units of another step."""
     for register, power in enumerate(rows.powers):
-        registers[register] *= ratio**power
+        room.registers[register] *= ratio**power
 
 
-def arguments(row: FloatArray, h: float, registers: FloatArray, state: FloatArray) -> None:
-    """Write position and velocity of an evaluation."""
-    np.dot(row, registers[: row.shape[1]], out=state)
-    state[1] /= h
+def arguments(rows: Rows, number: int, room: Room) -> None:
+    """Write position and h times velocity of an evaluation."""
+    row = rows.arguments[number]
+    np.dot(row, room.registers[: row.shape[1]], out=room.state)
 
 
 def evaluate(
-    accelerate: Accelerate,
-    rows: Rows,
-    number: int,
-    time: float,
-    h: float,
-    gains: FloatArray,
-    registers: FloatArray,
-    room: Room,
+    accelerate: Accelerate, rows: Rows, number: int, time: float, h: float, gains: FloatArray, room: Room
 ) -> float:
     """Take an explicit evaluation."""
-    arguments(rows.arguments[number], h, registers, room.state)
+    arguments(rows, number, room)
+    room.state[1] /= h
     pivot = accelerate(time + rows.moments[number] * h, gains, room.state, room.found)
-    np.multiply(room.found, h * h, out=registers[len(rows.powers) + number])
+    np.multiply(room.found, h * h, out=room.registers[len(rows.powers) + number])
     return pivot
 
 
-def finish(rows: Rows, h: float, registers: FloatArray, room: Room, into: FloatArray) -> float:
+def finish(rows: Rows, h: float, room: Room, into: FloatArray) -> float:
     """Combine, write the new state, and move on."""
+    registers = room.registers
     columns = rows.combined.shape[1]
     np.dot(rows.combined, registers[:columns], out=registers[columns:])
     position, velocity = rows.state
@@ -147,16 +142,16 @@ def by_lane(array: FloatArray, room: Room) -> FloatArray:
     return array.reshape(*array.shape[:-1], -1, len(room.moved))
 
 
-def unknowns(rows: Rows, group: IntArray, registers: FloatArray) -> FloatArray:
+def unknowns(rows: Rows, group: IntArray, room: Room) -> FloatArray:
     """Return what a group seeks, a view of shape (evaluations, width)."""
     carried = len(rows.powers)
-    return registers[carried + group[0] : carried + group[1]]
+    return room.registers[carried + group[0] : carried + group[1]]
 
 
-def begin(rows: Rows, group: IntArray, registers: FloatArray, room: Room) -> None:
+def begin(rows: Rows, group: IntArray, room: Room) -> None:
     """Begin a group with its guesses."""
-    sought = unknowns(rows, group, registers)
-    sought[:] = registers[rows.guesses[group[0] : group[1]]]
+    sought = unknowns(rows, group, room)
+    sought[:] = room.registers[rows.guesses[group[0] : group[1]]]
     room.guess[: len(sought)] = sought
     room.running[:] = room.inherited[:] = True
     room.settled[:] = room.solved[:] = False
@@ -164,22 +159,14 @@ def begin(rows: Rows, group: IntArray, registers: FloatArray, room: Room) -> Non
 
 
 def residual(
-    accelerate: Accelerate,
-    rows: Rows,
-    group: IntArray,
-    time: float,
-    h: float,
-    gains: FloatArray,
-    registers: FloatArray,
-    room: Room,
+    accelerate: Accelerate, rows: Rows, group: IntArray, time: float, h: float, gains: FloatArray, room: Room
 ) -> float:
     """Write the residuals of a group, and the sizes of what they are computed from."""
     least = 1.0
-    unknown = unknowns(rows, group, registers)
+    unknown = unknowns(rows, group, room)
     sizes = np.abs(by_lane(unknown, room)).sum(axis=(0, 1))
     for place, number in enumerate(range(group[0], group[1])):
-        row = rows.arguments[number]
-        np.dot(row, registers[: row.shape[1]], out=room.state)
+        arguments(rows, number, room)
         sizes += np.abs(by_lane(room.state, room)).sum(axis=(0, 1))
         room.state[1] /= h
         pivot = accelerate(time + rows.moments[number] * h, gains, room.state, room.found)
@@ -216,12 +203,11 @@ def renew(
     time: float,
     h: float,
     gains: FloatArray,
-    registers: FloatArray,
     inverse: FloatArray,
     room: Room,
 ) -> int:
     """Compute those lanes' inverse Jacobians anew; lanes that inherited theirs start again."""
-    sought = unknowns(rows, group, registers)
+    sought = unknowns(rows, group, room)
     count, lanes = len(sought), room.renewed
     again = lanes & room.inherited
     by_lane(sought, room)[..., again] = by_lane(room.guess[:count], room)[..., again]
@@ -232,7 +218,8 @@ def renew(
     jacobian = np.zeros((size, size, np.count_nonzero(lanes)))
     for place in range(count):
         number = group[0] + place
-        arguments(rows.arguments[number], h, registers, room.state)
+        arguments(rows, number, room)
+        room.state[1] /= h
         state = by_lane(room.state, room)[..., lanes]
         moment = time + rows.moments[number] * h
         for column in range(size):
@@ -246,9 +233,9 @@ def renew(
     return count * size
 
 
-def advance(rows: Rows, group: IntArray, registers: FloatArray, room: Room) -> bool:
+def advance(rows: Rows, group: IntArray, room: Room) -> bool:
     """Apply the corrections."""
-    sought = unknowns(rows, group, registers)
+    sought = unknowns(rows, group, room)
     running, settled = room.running, room.settled
     np.logical_and(running, np.isfinite(room.moved), out=running)
     corrections = room.corrections[: len(sought)]
@@ -263,12 +250,12 @@ def advance(rows: Rows, group: IntArray, registers: FloatArray, room: Room) -> b
     return bool(running.any())
 
 
-def end(rows: Rows, group: IntArray, registers: FloatArray, room: Room) -> float:
+def end(rows: Rows, group: IntArray, room: Room) -> float:
     """Write nan where nothing is solved."""
     failed = ~room.solved
     if not failed.any():
         return 0.0
-    by_lane(unknowns(rows, group, registers), room)[..., failed] = np.nan
+    by_lane(unknowns(rows, group, room), room)[..., failed] = np.nan
     return float(np.where(np.isfinite(room.moved), room.moved, np.inf)[failed].max())
 
 
@@ -285,9 +272,9 @@ def distance(state: FloatArray, room: Room) -> float:
     return float(corrections[unsettled].max(initial=0.0))
 
 
-def shift(rows: Rows, half: int, h: float, registers: FloatArray, state: FloatArray, room: Room) -> float:
+def shift(rows: Rows, half: int, h: float, state: FloatArray, room: Room) -> float:
     """Correct the position (half 0) or the velocity (1) of a new state, and what is carried of it."""
     correction = room.off.reshape(2, -1)[half]
     state[half] += correction
-    registers[: len(rows.powers)] += np.outer(rows.corrected[:, half] * h**half, correction)
+    room.registers[: len(rows.powers)] += np.outer(rows.corrected[:, half] * h**half, correction)
     return float(np.abs(state).sum())

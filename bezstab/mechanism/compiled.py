@@ -1,29 +1,26 @@
 """A mechanism: a scene with its equations of motion, and the functions that are generated and compiled from them."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
-import numpy as np
-
-from bezstab.mechanism.equations import Equations, equations_of_motion
+from bezstab.mechanism.equations import Equations, equations_of_motion, variable_names
 from bezstab.mechanism.generated_code import (
     AccelerationCode,
     acceleration_code,
-    acceleration_source,
     compiled_source,
     correction_code,
-    judged_source,
-    multipliers_source,
-    observation_source,
-    slope_source,
-    slopes_source,
+    slope_lines,
+    state_source,
 )
 from bezstab.mechanism.scenes import Scene
 
-StateFunction = Callable[[Any, Any, Any, Any, Any], tuple[Any, ...]]
-"""A function of t, 2 alpha, beta^2, q and v."""
+StateFunction = Callable[..., tuple[Any, ...]]
+"""A function of t (s), the gains 2 alpha (1/s) and beta^2 (1/s^2), and q and v, n of each; all in SI units.
+
+The library of its sines says on what numbers it works: floats (math), arrays (numpy) or those of mpmath.
+"""
 
 SINGULAR = 1e-12  # of a row's own size: a pivot of S = C_q M^-1 C_q^T this small has lost all digits to cancellation
 
@@ -59,20 +56,15 @@ def compiled_mechanism(scene: Scene) -> Mechanism:
 
 @cache
 def acceleration_function(mechanism: Mechanism, library: Any) -> StateFunction:
-    """Return the function of (t, two_alpha, beta_squared, q, v) that gives all of qddot: paper Eq. 9.
-
-    Arguments as for multipliers_function; the n accelerations are in SI units.
-    """
-    source = acceleration_source(mechanism.acceleration_code)
-    acceleration: StateFunction = compiled_source(source, library)["acceleration"]
-    return acceleration
+    """Return the function that gives all of qddot, paper Eq. 9."""
+    return _state_function(mechanism.acceleration_code, mechanism.acceleration_code.results, library)
 
 
 @cache
 def judged_acceleration_function(mechanism: Mechanism, library: Any) -> StateFunction:
     """Return the same function with one result more: the least relative pivot of S = C_q M^-1 C_q^T."""
-    acceleration: StateFunction = compiled_source(judged_source(mechanism.acceleration_code), library)["judged"]
-    return acceleration
+    code = mechanism.acceleration_code
+    return _state_function(code, [*code.results, code.least_pivot], library)
 
 
 @cache
@@ -83,49 +75,33 @@ def corrections_of(mechanism: Mechanism) -> AccelerationCode:
 
 @cache
 def correction_function(mechanism: Mechanism, library: Any) -> StateFunction:
-    """Return the function of (t, two_alpha, beta_squared, q, v) that gives all dq, all dv and the least relative pivot.
+    """Return the function that gives all dq, all dv and the least relative pivot.
 
-    They are M^-1 C_q^T S^-1 times -c and -cdot, SI units, whatever the gains are. Arguments as for
-    multipliers_function.
+    They are M^-1 C_q^T S^-1 times -c and -cdot, whatever the gains are.
     """
-    correction: StateFunction = compiled_source(judged_source(corrections_of(mechanism)), library)["judged"]
-    return correction
+    code = corrections_of(mechanism)
+    return _state_function(code, [*code.results, code.least_pivot], library)
 
 
 @cache
-def slope_function(mechanism: Mechanism, library: Any) -> Callable[..., tuple[Any, ...]]:
-    """Return the function of (t, two_alpha, beta_squared, q, v, dq, dv) that gives how qddot changes along (dq, dv)."""
-    source = slope_source(mechanism.acceleration_code, mechanism.equations)
-    slope: Callable[..., tuple[Any, ...]] = compiled_source(source, library)["slope"]
-    return slope
-
-
-@cache
-def slopes_function(mechanism: Mechanism) -> Callable[..., tuple[tuple[Any, ...], tuple[Any, ...]]]:
-    """Return the function of (t, two_alpha, beta_squared, q, v), arrays of one shape, that gives qddot and its slopes.
-
-    n accelerations, then 2n derivatives, each with a first axis of n entries; SI units.
-    """
-    source = slopes_source(mechanism.acceleration_code, mechanism.equations)
-    slopes: Callable[..., tuple[tuple[Any, ...], tuple[Any, ...]]] = compiled_source(source, np)["slopes"]
-    return slopes
+def slope_function(mechanism: Mechanism, library: Any) -> StateFunction:
+    """Return the function, of dq and dv, too, that gives how qddot changes along (dq, dv)."""
+    changes, lines = variable_names("da", mechanism.size), slope_lines(mechanism.equations)
+    return _state_function(mechanism.acceleration_code, changes, library, ("q", "v", "dq", "dv"), lines)
 
 
 @cache
 def observation_function(mechanism: Mechanism, library: Any) -> StateFunction:
-    """Return the function of (t, two_alpha, beta_squared, q, v) that gives all c, cdot, lambda, and the pivot."""
-    source = observation_source(mechanism.acceleration_code)
-    observation: StateFunction = compiled_source(source, library)["observation"]
-    return observation
+    """Return the function that gives all c, all cdot, all multipliers lambda, and the least relative pivot.
 
-
-@cache
-def multipliers_function(mechanism: Mechanism, library: Any) -> StateFunction:
-    """Return the multipliers lambda as a function of (t, two_alpha, beta_squared, q, v): paper Eq. 9.
-
-    `library` (math, numpy or mpmath) says on what numbers it works; q and v hold n of them, what is returned m (N along
-    a constraint whose c is in m). t is in s, the gains 2 alpha and beta^2 in 1/s and 1/s^2, q and v in SI units.
+    The multipliers are those of paper Eq. 9, in N along a constraint whose c is in m.
     """
-    source = multipliers_source(mechanism.acceleration_code)
-    multipliers: StateFunction = compiled_source(source, library)["multipliers"]
-    return multipliers
+    code = mechanism.acceleration_code
+    names = [name for prefix in ("c", "cdot", "l") for name in variable_names(prefix, code.constraints)]
+    return _state_function(code, [*names, code.least_pivot], library)
+
+
+def _state_function(code: AccelerationCode, results: Iterable[str], library: Any, *others: Any) -> StateFunction:
+    """Return the function that gives some of what the code assigns; others as `state_source`."""
+    found: StateFunction = compiled_source(state_source(code, results, *others), library)["found"]
+    return found

@@ -80,50 +80,48 @@ Machine code is compiled for its own numbers, so that it knows how long its loop
 """
 
 
-def combine(rows: Rows, row: int, factor: float, registers: FloatArray, room: Room, into: FloatArray) -> None:
+def combine(rows: Rows, row: int, factor: float, room: Room, into: FloatArray) -> None:
     """Write the sum that a row of a program stands for, times a factor."""
     for place in range(WIDTH):
         into[place] = 0.0
     for term in range(rows.starts[row], rows.starts[row + 1]):
-        share, source = factor * rows.shares[term], registers[room.where[rows.sources[term]]]
+        share, source = factor * rows.shares[term], room.registers[rows.sources[term]]
         for place in range(WIDTH):
             into[place] += share * source[place]
 
 
-def arguments(rows: Rows, number: int, h: float, registers: FloatArray, room: Room) -> None:
+def arguments(rows: Rows, number: int, h: float, room: Room) -> None:
     """Write position and velocity of an evaluation."""
-    combine(rows, 2 * number, 1.0, registers, room, room.state[0])
-    combine(rows, 2 * number + 1, 1 / h, registers, room, room.state[1])
+    combine(rows, 2 * number, 1.0, room, room.state[0])
+    combine(rows, 2 * number + 1, 1 / h, room, room.state[1])
 
 
-def change_step(rows: Rows, ratio: float, registers: FloatArray, room: Room) -> None:
+def change_step(rows: Rows, ratio: float, room: Room) -> None:
     """Turn registers into units of another step."""
     for number in range(len(rows.powers)):
-        register = registers[room.where[number]]
+        register = room.registers[number]
         for _ in range(rows.powers[number]):
             for place in range(WIDTH):
                 register[place] *= ratio
 
 
-def evaluate(
-    rows: Rows, number: int, time: float, h: float, gains: FloatArray, registers: FloatArray, room: Room
-) -> float:
+def evaluate(rows: Rows, number: int, time: float, h: float, gains: FloatArray, room: Room) -> float:
     """Take an explicit evaluation."""
-    arguments(rows, number, h, registers, room)
+    arguments(rows, number, h, room)
     pivot = accelerations(time + rows.moments[number] * h, gains, room.state, room.found, room.variables)
-    register = registers[place_of(rows, number, room)]
+    register = room.registers[len(rows.powers) + number]
     for place in range(WIDTH):
         register[place] = h * h * room.found[place]
     return pivot
 
 
-def finish(rows: Rows, h: float, registers: FloatArray, room: Room, into: FloatArray) -> float:
+def finish(rows: Rows, h: float, room: Room, into: FloatArray) -> float:
     """Combine, write the new state, and move on."""
     count, columns = rows.combined.shape
     for number in range(count):
         row = 2 * len(rows.moments) + number
-        combine(rows, row, 1.0, registers, room, registers[room.where[columns + number]])
-    position, velocity = registers[room.where[rows.state[0]]], registers[room.where[rows.state[1]]]
+        combine(rows, row, 1.0, room, room.registers[columns + number])
+    position, velocity = room.registers[rows.state[0]], room.registers[rows.state[1]]
     per_step = 1 / h
     for place in range(WIDTH):
         into[0, place] = position[place]
@@ -132,16 +130,17 @@ def finish(rows: Rows, h: float, registers: FloatArray, room: Room, into: FloatA
     if STRIDE == 1:
         for place in range(WIDTH):
             size += abs(into[0, place]) + abs(into[1, place])
-    for move in range(len(rows.moved_to)):  # the new where the old was, and the old to be written over
-        start, end = rows.moved_from[move], rows.moved_to[move]
-        room.where[start], room.where[end] = room.where[end], room.where[start]
+    for move in range(len(rows.moved_to)):
+        start, end = room.registers[rows.moved_from[move]], room.registers[rows.moved_to[move]]
+        for place in range(WIDTH):
+            end[place] = start[place]
     return size
 
 
-def begin(rows: Rows, group: IntArray, registers: FloatArray, room: Room) -> None:
+def begin(rows: Rows, group: IntArray, room: Room) -> None:
     """Begin a group with its guesses."""
     for number in range(group[0], group[1]):
-        guess, register = registers[room.where[rows.guesses[number]]], registers[place_of(rows, number, room)]
+        guess, register = room.registers[rows.guesses[number]], room.registers[len(rows.powers) + number]
         for place in range(WIDTH):
             register[place] = guess[place]
             room.guess[number - group[0], place] = guess[place]
@@ -151,23 +150,15 @@ def begin(rows: Rows, group: IntArray, registers: FloatArray, room: Room) -> Non
         room.moved_before[lane] = math.inf
 
 
-def place_of(rows: Rows, number: int, room: Room) -> int:
-    """Return where the register stands of what an evaluation finds."""
-    place: int = room.where[len(rows.powers) + number]
-    return place
-
-
-def residual(
-    rows: Rows, group: IntArray, time: float, h: float, gains: FloatArray, registers: FloatArray, room: Room
-) -> float:
+def residual(rows: Rows, group: IntArray, time: float, h: float, gains: FloatArray, room: Room) -> float:
     """Write the residuals of a group, and the sizes of what they are computed from."""
     lanes = len(room.running)
     least = 1.0
     for lane in range(lanes):
         room.sizes[lane] = 0.0
     for number in range(group[0], group[1]):
-        arguments(rows, number, h, registers, room)
-        register = registers[place_of(rows, number, room)]
+        arguments(rows, number, h, room)
+        register = room.registers[len(rows.powers) + number]
         for first in range(0, WIDTH, STRIDE):
             for lane in range(lanes):
                 q, v = room.state[0, first + lane], room.state[1, first + lane]
@@ -216,7 +207,6 @@ def renew(
     time: float,
     h: float,
     gains: FloatArray,
-    registers: FloatArray,
     inverse: FloatArray,
     room: Room,
 ) -> int:
@@ -228,14 +218,14 @@ def renew(
         if room.renewed[lane] and room.inherited[lane]:
             room.inherited[lane] = False
             for place in range(count):
-                register = registers[place_of(rows, group[0] + place, room)]
+                register = room.registers[len(rows.powers) + group[0] + place]
                 for entry in range(lane, WIDTH, STRIDE):
                     register[entry] = room.guess[place, entry]
                     room.residuals[place, entry] = room.at_guess[place, entry]
     room.direction[:] = 0.0
     for place in range(count):
         number = group[0] + place
-        arguments(rows, number, h, registers, room)
+        arguments(rows, number, h, room)
         moment = time + rows.moments[number] * h
         for column in range(size):
             by_position, by_velocity = rows.arguments[number, :, carried + group[0] + column // N]
@@ -278,14 +268,14 @@ def invert(matrices: FloatArray, size: int, lane: int, found: FloatArray) -> Non
                         table[i, j, lane] -= factor * table[column, j, lane]
 
 
-def advance(rows: Rows, group: IntArray, registers: FloatArray, room: Room) -> bool:
+def advance(rows: Rows, group: IntArray, room: Room) -> bool:
     """Apply the corrections."""
     lanes = len(room.moved)
     some = False
     for lane in range(lanes):
         room.running[lane] = room.running[lane] and room.moved[lane] < math.inf
     for number in range(group[0], group[1]):
-        register = registers[place_of(rows, number, room)]
+        register = room.registers[len(rows.powers) + number]
         for first in range(0, WIDTH, STRIDE):
             for lane in range(lanes):
                 if room.running[lane]:
@@ -299,14 +289,14 @@ def advance(rows: Rows, group: IntArray, registers: FloatArray, room: Room) -> b
     return some
 
 
-def end(rows: Rows, group: IntArray, registers: FloatArray, room: Room) -> float:
+def end(rows: Rows, group: IntArray, room: Room) -> float:
     """Write nan where nothing is solved."""
     left = 0.0
     for lane in range(len(room.solved)):
         if not room.solved[lane]:
             left = max(left, room.moved[lane] if room.moved[lane] < math.inf else math.inf)
             for number in range(group[0], group[1]):
-                registers[place_of(rows, number, room)][lane:WIDTH:STRIDE] = math.nan
+                room.registers[len(rows.powers) + number][lane:WIDTH:STRIDE] = math.nan
     return left
 
 
@@ -329,7 +319,7 @@ def distance(state: FloatArray, room: Room) -> float:
     return largest
 
 
-def shift(rows: Rows, half: int, h: float, registers: FloatArray, state: FloatArray, room: Room) -> float:
+def shift(rows: Rows, half: int, h: float, state: FloatArray, room: Room) -> float:
     """Correct the position (half 0) or the velocity (1) of a new state, and what is carried of it."""
     size = 0.0
     for place in range(WIDTH):
@@ -338,7 +328,7 @@ def shift(rows: Rows, half: int, h: float, registers: FloatArray, state: FloatAr
     for number in range(len(rows.powers)):
         share = rows.corrected[number, half] if half == 0 else rows.corrected[number, half] * h
         if share != 0:
-            register = registers[room.where[number]]
+            register = room.registers[number]
             for place in range(WIDTH):
                 register[place] += share * room.off[half * WIDTH + place]
     return size
@@ -411,7 +401,7 @@ def machine_steps(mechanism: Mechanism, solving: bool, projecting: bool, stride:
     for name in ("take_lines", "given", "accelerations", "corrections", "slope"):
         if name in generated:
             namespace[name] = generated[name] = made(generated[name])
-    for function in (combine, arguments, place_of, invert):
+    for function in (combine, arguments, invert):
         namespace[function.__name__] = made(own(function))
     operations = [made(own(each)) if each in CALLED_TWICE else made_a_part(own(each)) for each in OPERATIONS]
     # numba keeps what is called from a text with a file, if it has nothing but that text from around it

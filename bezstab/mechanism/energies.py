@@ -7,11 +7,11 @@ known at the run's times; their integrals are the work.
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
+from bezstab.linear_equations import solution
 from bezstab.mechanism.observation import Observation
 from bezstab.read_only import ReadOnlyArrays
 
@@ -42,24 +42,25 @@ class EnergyBalance(ReadOnlyArrays):
         return f"EnergyBalance({len(self.energy)} times, drift {self.drift[-1]:.3g} J)"
 
 
-def energy_balance(observation: Observation, h: float) -> EnergyBalance:
-    """Return the energy balance of a run from what was observed at its times, evenly spaced by h (s).
+def energy_balance(observation: Observation, steps: float | FloatArray, nodes: int = NODES) -> EnergyBalance:
+    """Return the energy balance of a run from what was observed at its times, so many `steps` (s) apart.
 
-    In J, shape (times,) each; powers are integrated by polynomials through neighbouring times.
+    In J, shape (times,) each; powers are integrated as by `running_integral`.
     """
     with np.errstate(all="ignore"):  # of a broken-down run's last multipliers
-        driver_work = running_integral(observation.driver_power, h)
-        force_work = running_integral(observation.applied_power, h)
+        driver_work = running_integral(observation.driver_power, steps, nodes)
+        force_work = running_integral(observation.applied_power, steps, nodes)
     return EnergyBalance(energy=observation.energy, driver_work=driver_work, force_work=force_work)
 
 
-def running_integral(rates: FloatArray, h: float) -> FloatArray:
-    """Return the integral from the first time to each, shape (times,), of rates given at times h apart.
+def running_integral(rates: FloatArray, steps: float | FloatArray, nodes: int = NODES) -> FloatArray:
+    """Return the integral from the first time to each, shape (times,), of rates given so many steps apart.
 
-    Over each interval the polynomial through the NODES nearest times is integrated exactly, those at either end sharing
-    one; fewer times than NODES share one through all of them.
+    Over each interval the polynomial through the nearest times, so many as there are nodes, is integrated exactly,
+    those at either end sharing one; fewer times share one through all of them. With two nodes, the trapezoidal rule,
+    steps may differ: shape (times - 1,).
     """
-    nodes = min(NODES, len(rates))
+    nodes = min(nodes, len(rates))
     weights = _interval_weights(nodes)
     middle = (nodes - 1) // 2  # the interval in the middle of the nodes; those before and after it are at the ends
     parts = [
@@ -67,34 +68,18 @@ def running_integral(rates: FloatArray, h: float) -> FloatArray:
         np.correlate(rates, weights[middle]) if nodes > 1 else np.zeros(0),
         weights[middle + 1 :] @ rates[-nodes:],
     ]
-    return h * np.concatenate([[0.0], np.cumsum(np.concatenate(parts))])
+    return np.concatenate([[0.0], np.cumsum(steps * np.concatenate(parts))])
 
 
 @cache
 def _interval_weights(nodes: int) -> FloatArray:
     """Return the weights (shape (nodes - 1, nodes)) that integrate, over each interval, the polynomial through all.
 
-    The nodes are 0, 1, 2, ...; exact rationals up to the last step.
+    The nodes are 0, 1, 2, ...; weights that integrate each power of x do so. Exact rationals up to the last step.
     """
-    rows = []
-    bases = [_lagrange_basis(node, nodes) for node in range(nodes)]
-    for left, right in pairwise(range(nodes)):
-        rows.append([float(_integral(basis, right) - _integral(basis, left)) for basis in bases])
-    return np.array(rows, dtype=np.float64).reshape(nodes - 1, nodes)
-
-
-def _lagrange_basis(node: int, nodes: int) -> list[Fraction]:
-    """Return the coefficients, constant first, of the polynomial that is 1 at one node and 0 at the others."""
-    coefficients = [Fraction(1)]
-    for other in range(nodes):
-        if other != node:
-            # times (x - other) / (node - other)
-            shifted = [Fraction(0), *coefficients]
-            scaled = [other * coefficient for coefficient in coefficients] + [Fraction(0)]
-            coefficients = [(a - b) / (node - other) for a, b in zip(shifted, scaled, strict=True)]
-    return coefficients
-
-
-def _integral(coefficients: list[Fraction], x: int) -> Fraction:
-    """Return the integral of a polynomial from 0 to x."""
-    return sum((c * Fraction(x) ** (power + 1) / (power + 1) for power, c in enumerate(coefficients)), Fraction(0))
+    powers = [[Fraction(node) ** power for node in range(nodes)] for power in range(nodes)]
+    integrals = [
+        [Fraction((left + 1) ** (power + 1) - left ** (power + 1), power + 1) for left in range(nodes - 1)]
+        for power in range(nodes)
+    ]
+    return np.array(solution(powers, integrals), dtype=np.float64).T.reshape(nodes - 1, nodes)

@@ -6,12 +6,12 @@ does with them is no text: `programs` and `stepping` have it. From its top to it
     compiled_source                        text becomes functions
     accelerations and multipliers          the assignments that solve paper Eq. 9
     corrections                            what brings a state back to its constraints, by the same factors
-    functions of a state                   acceleration, multipliers, observation
-    slopes of the acceleration             its derivatives by position and velocity, or along one direction
+    functions of a state                   what is assigned on the way, of one state or of many
+    slopes of the acceleration             its derivatives along a direction of positions and velocities
     machine code                           the same for lanes side by side, and by shapes where they are long
 
 All of it is plain arithmetic on numbered variables, one assignment a line, with `sin`, `cos`, `sqrt` and `least` as the
-only functions, and `row` where there are slopes. What they are is decided when the text is compiled, so one source
+only functions. What they are is decided when the text is compiled, so one source
 serves three kinds of numbers:
 
 - floats with `math`: a single run, without the overhead of arrays of four or five entries;
@@ -26,7 +26,7 @@ and these names; least of all the names that a user gave to bodies.
 import math
 import re
 from collections.abc import Container, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from itertools import groupby
 from typing import Any
 
@@ -38,10 +38,9 @@ from sympy.printing.pycode import PythonCodePrinter
 
 from bezstab.mechanism.equations import Equations, variable_names
 
-GIVEN = "rows, steps, registers, inverses, before, room, judged, states, pivots, counts"
-TAKE = f"""
-def take({GIVEN}):
- return take_steps({GIVEN})
+TAKE = """
+def take(rows, steps, room, judged, states, pivots):
+ return take_steps(rows, steps, room, judged, states, pivots)
 """
 """A function of the scene's own name in front of the loop that takes steps: what numba keeps on disk goes by it."""
 
@@ -54,7 +53,7 @@ def compiled_source(
     `others` are functions that it calls, by their names; `file` is where it is said to come from.
     """
     least = min if library is math else _least_of_arrays
-    namespace = {"sin": library.sin, "cos": library.cos, "sqrt": library.sqrt, "least": least, "row": _row_of_arrays}
+    namespace = {"sin": library.sin, "cos": library.cos, "sqrt": library.sqrt, "least": least}
     namespace |= {"__name__": __name__} | dict(others or {})
     exec(compile(source, file, "exec"), namespace)
     return namespace
@@ -63,14 +62,6 @@ def compiled_source(
 def _least_of_arrays(*values: Any) -> Any:
     """Return the least value entry by entry, of arrays and numbers of any broadcastable shapes."""
     return np.minimum.reduce(np.broadcast_arrays(*values))
-
-
-def _row_of_arrays(like: Any, *entries: Any) -> Any:
-    """Return an array of entries, some of them numbers, along a first axis; each has the shape of an array like it."""
-    row = np.empty((len(entries), *np.shape(like)))
-    for place, entry in enumerate(entries):
-        row[place] = entry
-    return row
 
 
 # Accelerations and multipliers
@@ -99,16 +90,24 @@ def _row_of_arrays(like: Any, *entries: Any) -> Any:
 class AccelerationCode:
     """Assignments that compute a_i = qddot_i and l_j = lambda_j from t, q_i, v_i, two_alpha and beta_squared.
 
-    On the way c_j and cdot_j get their values. `pivots` are the texts of 1 and of the pivots D_j relative to S_jj;
-    where the least of these is small, S is nearly singular. `results` are the names of the a_i, or of what else it is
-    that is computed so: the corrections of a state.
+    On the way c_j and cdot_j get their values. `results` are the names of the a_i, or of what else it is that is
+    computed so: the corrections of a state.
     """
 
     coordinates: int
     constraints: int
     lines: tuple[str, ...]
-    pivots: tuple[str, ...]
     results: tuple[str, ...]
+
+    @property
+    def pivots(self) -> list[str]:
+        """The texts of the pivots D_j relative to S_jj; where the least of these is small, S is nearly singular."""
+        return [f"D{j} / S{j}" for j in range(self.constraints)]
+
+    @property
+    def least_pivot(self) -> str:
+        """The text of the least relative pivot, or 1 without any."""
+        return f"least(1.0, {', '.join(self.pivots)})" if self.constraints else "1.0"
 
 
 def acceleration_code(equations: Equations) -> AccelerationCode:
@@ -127,12 +126,7 @@ def acceleration_code(equations: Equations) -> AccelerationCode:
         *_acceleration_lines(columns_of_row, inverse_masses, entries),
     ]
     results = tuple(variable_names("a", coordinates))
-    return AccelerationCode(coordinates, constraints, tuple(lines), _pivots(constraints), results)
-
-
-def _pivots(constraints: int) -> tuple[str, ...]:
-    """Return the texts of 1 and of the relative pivots."""
-    return "1.0", *(f"D{j} / S{j}" for j in range(constraints))
+    return AccelerationCode(coordinates, constraints, tuple(lines), results)
 
 
 def _columns_of_row(equations: Equations) -> list[list[int]]:
@@ -291,62 +285,27 @@ def correction_code(equations: Equations) -> AccelerationCode:
         lines += _acceleration_lines(columns_of_row, inverse_masses, ())  # without forces, what l alone accelerates
         lines += [f"{correction}{k} = a{k}" for k in range(coordinates)]
     results = (*variable_names("dq", coordinates), *variable_names("dv", coordinates))
-    return AccelerationCode(coordinates, constraints, tuple(lines), _pivots(constraints), results)
+    return AccelerationCode(coordinates, constraints, tuple(lines), results)
 
 
 # Functions of a state
 
 
-def observation_source(acceleration: AccelerationCode) -> str:
-    """Return the source of observation(t, two_alpha, beta_squared, q, v): all c, all cdot, all l, the least pivot."""
-    constraints = acceleration.constraints
-    results = [name for prefix in ("c", "cdot", "l") for name in variable_names(prefix, constraints)]
-    return _function_source("observation", acceleration, [*results, _least_text(acceleration.pivots)])
+def state_source(
+    code: AccelerationCode, results: Iterable[str], given: Sequence[str] = ("q", "v"), more: Iterable[str] = ()
+) -> str:
+    """Return the source of found(t, two_alpha, beta_squared, q, v): some of the variables that the code assigns.
 
-
-def multipliers_source(acceleration: AccelerationCode) -> str:
-    """Return the source of multipliers(t, two_alpha, beta_squared, q, v): all l."""
-    return _function_source("multipliers", acceleration, variable_names("l", acceleration.constraints))
-
-
-def acceleration_source(acceleration: AccelerationCode) -> str:
-    """Return the source of acceleration(t, two_alpha, beta_squared, q, v): all a."""
-    return _function_source("acceleration", acceleration, acceleration.results)
-
-
-def judged_source(code: AccelerationCode) -> str:
-    """Return the source of judged(t, two_alpha, beta_squared, q, v): all results of the code, then the least pivot."""
-    return _function_source("judged", code, [*code.results, _least_text(code.pivots)])
-
-
-def slope_source(acceleration: AccelerationCode, equations: Equations) -> str:
-    """Return the source of slope(t, two_alpha, beta_squared, q, v, dq, dv): all da, how a changes along a direction."""
-    coordinates = acceleration.coordinates
-    lines = [f"{_tuple_text(variable_names(name, coordinates))} = {name}" for name in ("q", "v", "dq", "dv")]
-    lines += [*acceleration.lines, *slope_lines(equations), f"return {_tuple_text(variable_names('da', coordinates))}"]
-    return "\n".join(["def slope(t, two_alpha, beta_squared, q, v, dq, dv):", *_indented(lines, 1)])
-
-
-def _function_source(name: str, acceleration: AccelerationCode, results: Sequence[str]) -> str:
-    """Return the source of a function that returns some of the variables that the acceleration code assigns."""
-    coordinates = acceleration.coordinates
-    lines = [
-        f"{_tuple_text(variable_names('q', coordinates))} = q",
-        f"{_tuple_text(variable_names('v', coordinates))} = v",
-        *acceleration.lines,
-        f"return {_tuple_text(results)}",
-    ]
-    return "\n".join([f"def {name}(t, two_alpha, beta_squared, q, v):", *_indented(lines, 1)])
+    `given` names what else is handed over, a number for each coordinate, and `more` are lines after those of the code.
+    """
+    lines = [f"{_tuple_text(variable_names(name, code.coordinates))} = {name}" for name in given]
+    lines += [*code.lines, *more, f"return {_tuple_text(results)}"]
+    return "\n".join([f"def found(t, two_alpha, beta_squared, {', '.join(given)}):", *_indented(lines, 1)])
 
 
 def _tuple_text(entries: Iterable[str]) -> str:
     """Return the text of a tuple."""
     return f"({', '.join(entries)},)"
-
-
-def _least_text(values: Sequence[str]) -> str:
-    """Return the text of the least of some values; of one value, itself."""
-    return values[0] if len(values) == 1 else f"least({', '.join(values)})"
 
 
 def _indented(lines: Iterable[str], depth: int) -> list[str]:
@@ -356,101 +315,13 @@ def _indented(lines: Iterable[str], depth: int) -> list[str]:
 
 # Slopes of the acceleration
 #
-# The derivatives of M qddot + C_q^T lambda = g and C_q qddot = gamma - 2 alpha cdot - beta^2 c by any one of the 2n
-# numbers q, v are
-#
-#     M qddot' + C_q^T lambda' = G,      G = g' - C_q'^T lambda
-#           C_q qddot'         = F,      F = gamma' - 2 alpha (C_q v + c_t)' - beta^2 c' - C_q' qddot
-#
-# which is Eq. 9 once more, solved by
-#
-#     qddot' = M^-1 G + X^T (F - C_q M^-1 G),      S X = C_q M^-1
-#
-# S is factored already, and what is unrolled above solves for X: its n columns are entries of a first axis that r and l
-# then have. Of the entries of C_q, gamma, c_t and g most derivatives are structural zeros again; that of C0_1 by number
-# 3 is called C0_1_3, and so are G0_3 and F0_3.
-
-
-def slopes_source(acceleration: AccelerationCode, equations: Equations) -> str:
-    """Return the source of slopes(t, two_alpha, beta_squared, q, v): all a, then their derivatives by each of q and v.
-
-    For arrays of one shape only. Each of the 2n derivatives has a first axis of n entries.
-    """
-    coordinates, directions = range(acceleration.coordinates), range(2 * acceleration.coordinates)
-    columns_of_row, inverse_masses = _columns_of_row(equations), _inverse_masses(equations)
-    entries = _nonzero_slopes(equations)
-    sides = _right_sides_of_slopes(columns_of_row, entries, acceleration.coordinates)
-    lines = [
-        f"accelerations = {_tuple_text(variable_names('a', acceleration.coordinates))}",
-        *_entry_lines(entries),
-        *(f"{name} = {text}" for name, text in sides.items()),
-    ]
-    for i, columns in enumerate(columns_of_row):
-        column_of_x = (f"C{i}_{k} * {inverse_masses[k]}" if k in columns else "0.0" for k in coordinates)
-        lines.append(f"r{i} = row(q0, {', '.join(column_of_x)})")
-    lines += _substitution_lines(acceleration.constraints, _nonzero_factors(columns_of_row))
-    for d in directions:
-        by_forces = [f"G{k}_{d} * {inverse_masses[k]}" if f"G{k}_{d}" in sides else "0.0" for k in coordinates]
-        without_reactions = f"row(q0, {', '.join(by_forces)})"
-        parts = [without_reactions] if set(by_forces) != {"0.0"} else []
-        for i, columns in enumerate(columns_of_row):
-            taken = [f"C{i}_{k} * {by_forces[k]}" for k in columns if f"G{k}_{d}" in sides]
-            if taken or f"F{i}_{d}" in sides:
-                parts.append(f"l{i} * ({_difference_text(f'F{i}_{d}', sides, taken)})")
-        lines.append(f"slope{d} = {' + '.join(parts) or without_reactions}")
-    results = ["accelerations", _tuple_text(variable_names("slope", len(directions)))]
-    return _function_source("slopes", replace(acceleration, lines=(*acceleration.lines, *lines)), results)
-
-
-def _nonzero_slopes(equations: Equations) -> dict[str, sp.Expr]:
-    """Return the derivatives of the entries of C_q, gamma, c_t and g that are not identically zero, by their names."""
-    number_of = {symbol: number for number, symbol in enumerate((*equations.q, *equations.v))}
-    found = {
-        f"{name}_{number_of[symbol]}": entry.diff(symbol)
-        for name, entry in _nonzero_entries(equations).items()
-        if name.startswith(("C", "gamma", "ct", "g"))
-        for symbol in sorted(entry.free_symbols & number_of.keys(), key=number_of.__getitem__)
-    }
-    return {name: slope for name, slope in found.items() if slope != 0}
-
-
-def _right_sides_of_slopes(
-    columns_of_row: Sequence[Sequence[int]], slopes: Container[str], coordinates: int
-) -> dict[str, str]:
-    """Return the texts of the entries of G and F that are not zero, by their names."""
-    texts: dict[str, str] = {}
-    for d in range(2 * coordinates):
-        by_multipliers: dict[int, list[str]] = {k: [] for k in range(coordinates)}
-        for i, columns in enumerate(columns_of_row):
-            turning = [k for k in columns if f"C{i}_{k}_{d}" in slopes]
-            rates = [f"C{i}_{k}_{d} * v{k}" for k in turning]
-            rates += [f"ct{i}_{d}"] if f"ct{i}_{d}" in slopes else []
-            rates += [f"C{i}_{d - coordinates}"] if d - coordinates in columns else []
-            taken = [f"two_alpha * ({' + '.join(rates)})"] if rates else []
-            taken += [f"beta_squared * C{i}_{d}"] if d in columns else []
-            taken += [f"C{i}_{k}_{d} * a{k}" for k in turning]
-            if taken or f"gamma{i}_{d}" in slopes:
-                texts[f"F{i}_{d}"] = _difference_text(f"gamma{i}_{d}", slopes, taken)
-            for k in turning:
-                by_multipliers[k].append(f"C{i}_{k}_{d} * l{i}")
-        for k, taken in by_multipliers.items():
-            if taken or f"g{k}_{d}" in slopes:
-                texts[f"G{k}_{d}"] = _difference_text(f"g{k}_{d}", slopes, taken)
-    return texts
-
-
-def _difference_text(name: str, there: Container[str], taken: Iterable[str]) -> str:
-    """Return the text of a variable, or zero where it is not there, less some terms."""
-    return (name if name in there else "0.0") + "".join(f" - {term}" for term in taken)
-
-
-# Along one direction (dq, dv) of positions and velocities they are
+# Along a direction (dq, dv) of positions and velocities the differentials of Eq. 9 are
 #
 #     M dqddot + C_q^T dlambda = G,      G = dg - dC_q^T lambda
 #           C_q dqddot         = F,      F = dgamma - 2 alpha d(cdot) - beta^2 C_q dq - dC_q qddot
 #
 # hence S dlambda = C_q M^-1 G - F, dqddot = M^-1 (G - C_q^T dlambda): what takes r to l above takes this right side to
-# dlambda. Newton's method takes its Jacobians so, one unknown after the other.
+# dlambda. A Jacobian is taken so, along one unknown after the other, or along all at once where directions are arrays.
 
 
 def slope_lines(equations: Equations) -> list[str]:
@@ -477,6 +348,11 @@ def slope_lines(equations: Equations) -> list[str]:
         reactions = "".join(f" - C{i}_{k} * l{i}" for i, columns in enumerate(columns_of_row) if k in columns)
         lines.append(f"da{k} = (G{k}{reactions}) * {inverse_masses[k]}")
     return lines
+
+
+def _difference_text(name: str, there: Container[str], taken: Iterable[str]) -> str:
+    """Return the text of a variable, or zero where it is not there, less some terms."""
+    return (name if name in there else "0.0") + "".join(f" - {term}" for term in taken)
 
 
 def _nonzero_differentials(equations: Equations) -> dict[str, sp.Expr]:
@@ -538,8 +414,7 @@ def machine_code(codes: Mapping[str, AccelerationCode], slopes: Sequence[str], s
     for name, code in codes.items():
         lines = [*given, *code.lines]
         lines += [f"found[{place * stride} + lane] = {result}" for place, result in enumerate(code.results)]
-        first, *others = code.pivots
-        least = [f"pivot = {first}", *(f"pivot = min(pivot, {other})" for other in others), "return pivot"]
+        least = ["pivot = 1.0", *(f"pivot = min(pivot, {each})" for each in code.pivots), "return pivot"]
         alone = ["lane = 0", *lines, *least]
         together = ["for lane in range(gains.shape[1]):", *_indented(lines, 1), "return 1.0"]
         source += [f"def {name}(t, gains, state, found, room):", *_indented(alone if stride == 1 else together, 1)]

@@ -3,13 +3,12 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bezstab.mechanism.compiled import Mechanism, slopes_function
+from bezstab.mechanism.compiled import Mechanism, acceleration_function, slope_function
 
 FloatArray = NDArray[np.float64]
 
-# states: what is computed of them, some hundred numbers each, stays in a core's cache; no power of two, for then
-# the numbers of a state, each in an array of its own, would lie in the same lines of the cache
-AT_A_TIME = 2000
+AT_A_TIME = 200
+"""States: what is computed of them along all directions, some hundred arrays, stays in a core's cache."""
 
 
 def linearized_acceleration(
@@ -20,7 +19,9 @@ def linearized_acceleration(
     q and v have shape (..., n); t (s) and the gains 2 alpha (1/s) and beta^2 (1/s^2; paper Eqs 6 and 9) broadcast
     against (...).
     """
-    size, slopes = mechanism.size, slopes_function(mechanism)
+    size = mechanism.size
+    acceleration, slope = acceleration_function(mechanism, np), slope_function(mechanism, np)
+    directions = np.split(np.eye(2 * size)[:, :, np.newaxis], 2)
     shape = np.broadcast_shapes(q.shape[:-1], *map(np.shape, (t, two_alpha, beta_squared)))
     scalars = [np.broadcast_to(each, shape).ravel() for each in (t, two_alpha, beta_squared)]
     q, v = (np.broadcast_to(each, (*shape, size)).reshape(-1, size) for each in (q, v))
@@ -28,9 +29,8 @@ def linearized_acceleration(
     jacobians = np.empty((*q.shape, 2 * size))
     for first in range(0, len(q), AT_A_TIME):
         some = slice(first, first + AT_A_TIME)
-        on_last = (np.ascontiguousarray(each[some].T) for each in (q, v))
-        found, changes = slopes(*(each[some] for each in scalars), *on_last)
-        for k in range(size):
-            accelerations[some, k] = found[k]
-        jacobians[some] = np.moveaxis(np.stack(changes, axis=1), -1, 0)
+        state = [*(each[some] for each in scalars), *(np.ascontiguousarray(each[some].T) for each in (q, v))]
+        for k, (found, changes) in enumerate(zip(acceleration(*state), slope(*state, *directions), strict=True)):
+            accelerations[some, k] = found
+            jacobians[some, k] = np.transpose(changes)
     return accelerations.reshape(*shape, size), jacobians.reshape(*shape, size, 2 * size)

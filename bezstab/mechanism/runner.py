@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cache
 from typing import Any, Literal
 
@@ -56,29 +56,13 @@ NUMBERS_OF_A_BLOCK = 2**16
 MOST_STEPS_OF_A_BLOCK = 4096
 
 
-@dataclass
-class Work:
-    """What implicit steps have taken: iterations, and evaluations of the acceleration, a slope counted as one.
+def no_counts() -> IntArray:
+    """Return what implicit steps and projections have taken before any: each a number, at a place of its own.
 
-    And how often projections have computed how a state has to be corrected.
+    ITERATIONS; EVALUATIONS of the acceleration, a slope counted as one; and PROJECTIONS, how often these have computed
+    how a state has to be corrected.
     """
-
-    counts: IntArray = field(default_factory=lambda: np.zeros(3, np.int64))
-
-    @property
-    def iterations(self) -> int:
-        """The number of iterations."""
-        return int(self.counts[ITERATIONS])
-
-    @property
-    def evaluations(self) -> int:
-        """The number of evaluations."""
-        return int(self.counts[EVALUATIONS])
-
-    @property
-    def projections(self) -> int:
-        """The number of corrections that projections have computed."""
-        return int(self.counts[PROJECTIONS])
+    return np.zeros(3, np.int64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,7 +141,7 @@ def simulate(
     first = checked_start(initial_state(mechanism) if state is None else state)
     if compiled is None:
         compiled = runs_compiled(mechanism, method, count * evaluations(method), projection is not None)
-    work = Work()
+    counts = no_counts()
     blocks = march(
         mechanism,
         method,
@@ -167,12 +151,12 @@ def simulate(
         start,
         count,
         compiled=compiled,
-        work=work,
+        counts=counts,
         judged=True,
         projection=projection,
     )
     times = np.arange(count + 1, dtype=np.float64) * whole_step
-    return recorded(mechanism, method, first, times, blocks, start, work, projection)
+    return recorded(mechanism, method, first, times, blocks, start, counts, projection)
 
 
 def checked_start(state: tuple[FloatArray, FloatArray]) -> FloatArray:
@@ -191,7 +175,7 @@ def recorded(
     times: FloatArray,
     blocks: Iterable[Block],
     start: Start,
-    work: Work,
+    counts: IntArray,
     projection: Projection | None = None,
 ) -> Trajectory:
     """Return a run from its blocks, the times (s) of whose states are given, the first state's included."""
@@ -213,12 +197,12 @@ def recorded(
         t=times[: len(states)],
         q=states[:, : mechanism.size],
         v=states[:, mechanism.size :],
-        evaluations=evaluation_count(method, start, steps_taken) + work.evaluations,
+        evaluations=evaluation_count(method, start, steps_taken) + int(counts[EVALUATIONS]),
         failure=failure,
         least_pivot=1.0 if lowest is None else float(least[lowest]),
         pivot_time=0.0 if lowest is None else float(times[lowest]),
-        iterations=work.iterations if implicit(method) else None,
-        projections=work.projections if projection else None,
+        iterations=int(counts[ITERATIONS]) if implicit(method) else None,
+        projections=int(counts[PROJECTIONS]) if projection else None,
     )
 
 
@@ -232,7 +216,7 @@ def march(
     count: int,
     *,
     compiled: bool = False,
-    work: Work | None = None,
+    counts: IntArray | None = None,
     judged: bool = False,
     projection: Projection | None = None,
 ) -> Iterator[Block]:
@@ -240,10 +224,10 @@ def march(
 
     h (s) is the whole step of the method, `gains` are 2 alpha and beta^2 (1/s, 1/s^2), which broadcast against the
     batch; the first values of a multistep method come from `start`. A run that is `judged`, without a batch, ends where
-    it breaks down; else what goes wrong shows in the numbers. `work` counts what implicit steps and projections take.
+    it breaks down; else what goes wrong shows in the numbers. `counts` grow by what is taken.
     InputError where steps are to be `compiled` without numba.
     """
-    options: dict[str, Any] = {"work": work, "judged": judged, "projection": projection}
+    options: dict[str, Any] = {"counts": counts, "judged": judged, "projection": projection}
     history = [np.asarray(state)]
     for starter, step_count in _starters(method, start):
         some = min(step_count, count - len(history) + 1)
@@ -266,7 +250,7 @@ def resume(
     *,
     undisturbed: ArrayLike | None = None,
     compiled: bool = False,
-    work: Work | None = None,
+    counts: IntArray | None = None,
     judged: bool = False,
     projection: Projection | None = None,
 ) -> Iterator[Block]:
@@ -277,12 +261,12 @@ def resume(
     """
     if count <= 0:
         return
-    work = work or Work()
+    counts = no_counts() if counts is None else counts
     given = [np.asarray(state) for state in (*history, history[-1] if undisturbed is None else undisturbed)]
     batch = np.broadcast_shapes(*(state.shape[1:] for state in given), *map(np.shape, gains))
     *states, calm = (_for_batch(state, batch) for state in given)
     scheme = second_order_form(method.scheme)
-    carried, start, repeated = carried_quantities(mechanism, method, h, gains, states, calm, work)
+    carried, start, repeated = carried_quantities(mechanism, method, h, gains, states, calm, counts)
 
     def steps_between(first: int, last: int) -> Steps:
         numbers = np.arange(first, last, dtype=np.float64)
@@ -299,7 +283,7 @@ def resume(
         count + repeated,
         compiled,
         judged,
-        work,
+        counts,
         projection=projection,
     )
     # of turns whose states are in the history already only what they give beyond them matters: the next needs it
@@ -361,7 +345,7 @@ def steps_in_blocks(
     count: int,
     compiled: bool,
     judged: bool,
-    work: Work,
+    counts: IntArray,
     kinds: int = 1,
     projection: Projection | None = None,
 ) -> Iterator[Block]:
@@ -378,20 +362,14 @@ def steps_in_blocks(
         take_steps, variables = machine_steps(mechanism, program.implicit, projection is not None, stride)
     else:
         take_steps = array_steps(mechanism)
-    room = room_of(rows, n, lanes, stride, variables, carried.dtype)
-    registers = np.zeros((len(room.where), n * stride), carried.dtype)
-    registers.reshape(-1, n, stride)[: len(carried), :, :lanes] = carried.reshape(-1, n, lanes)
-    inverses = np.full((kinds, len(program.groups), *room.jacobian.shape), np.nan)
-    before = np.array([h])
+    room = room_of(rows, carried.reshape(-1, n, lanes), h, kinds, counts, stride, variables)
     at_once = max(1, min(MOST_STEPS_OF_A_BLOCK, NUMBERS_OF_A_BLOCK // (2 * n * stride)))
     for first in range(0, count, at_once):
         last = min(first + at_once, count)
         states, pivots = np.empty((last - first, 2, n * stride), carried.dtype), np.empty(last - first)
         steps = steps_between(first, last)
         with np.errstate(all="ignore"):  # what runs into infinity is judged by its numbers
-            taken, *unsolved = take_steps(
-                rows, steps, registers, inverses, before, room, judged, states, pivots, work.counts
-            )
+            taken, *unsolved = take_steps(rows, steps, room, judged, states, pivots)
         states = states.reshape(last - first, 2 * n, stride)[..., :lanes].reshape(last - first, 2 * n, *batch)
         cause = breakdown(states[taken - 1], pivots[taken - 1], *unsolved) if judged else None
         if cause:
@@ -408,7 +386,7 @@ def carried_quantities(
     gains: Gains,
     history: Sequence[FloatArray],
     undisturbed: FloatArray,
-    work: Work,
+    counts: IntArray,
 ) -> tuple[FloatArray, float, int]:
     """Return what a method carries into its first turn after `history`, when that begins, and what it repeats.
 
@@ -427,7 +405,7 @@ def carried_quantities(
     @cache
     def accelerations(place: int) -> FloatArray:
         """Return qddot at a place of the history."""
-        work.counts[EVALUATIONS] += counted
+        counts[EVALUATIONS] += counted
         state = undisturbed if place == len(history) - 1 else history[place]
         return np.stack(np.broadcast_arrays(*acceleration(place * h, *gains, state[:n], state[n:])))
 
@@ -463,7 +441,7 @@ def breakdown(state: FloatArray, pivot: float = 1.0, unsolved: float = 0.0, unse
 def evaluation_count(method: Method, start: Start, steps_taken: int) -> int:
     """Return the number of right-hand sides of the first so many steps, the starting ones included.
 
-    But for those that a second-order scheme starts with, and those of Newton's method: `Work` has them.
+    But for those that a second-order scheme starts with, and those of Newton's method, which are counted as taken.
     """
     count = 0
     remaining = steps_taken
@@ -486,29 +464,16 @@ def states_needed(method: Method) -> int:
 
 
 def _starters(method: Method, start: Start) -> list[tuple[Method, int]]:
-    """Return the methods, each with its number of steps, that provide a multistep method's first values."""
+    """Return the methods, each with its number of steps, that provide a multistep method's first values.
+
+    Those of an implicit method are implicit: where it bears feedback that is strong, so must they.
+    """
     needed = states_needed(method) - 1
     if needed == 0:
         return []
-    if implicit(method):
-        return _implicit_starters(start, needed)
-    match start:
-        case "rk4":
-            return [(lookup("RK4"), needed)]
-        case "euler":
-            return [(lookup("RK1"), needed)]
-        case "ramp":
-            named = {family.name: family.make for family in STEP_FAMILIES.values()}
-            make = named.get(method.family.name if method.family else "", adams_bashforth)
-            return [(make(n), 1) for n in range(1, needed + 1)]
-
-
-def _implicit_starters(start: Start, needed: int) -> list[tuple[Method, int]]:
-    """Return the same for an implicit method: where it bears feedback that is strong, so must they."""
-    match start:
-        case "rk4":
-            return [(lookup("gauss4"), needed)]
-        case "euler":
-            return [(lookup("implicit-euler"), needed)]
-        case "ramp":
-            return [(lookup(f"bdf{n}"), 1) for n in range(1, needed + 1)]
+    if start == "ramp":
+        named = {family.name: family.make for family in STEP_FAMILIES.values()}
+        make = named.get(method.family.name if method.family else "", adams_bashforth)
+        return [(lookup(f"bdf{n}") if implicit(method) else make(n), 1) for n in range(1, needed + 1)]
+    explicit_one, implicit_one = {"rk4": ("RK4", "gauss4"), "euler": ("RK1", "implicit-euler")}[start]
+    return [(lookup(implicit_one if implicit(method) else explicit_one), needed)]

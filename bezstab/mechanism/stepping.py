@@ -67,27 +67,31 @@ class Rows(NamedTuple):
 
 
 class Room(NamedTuple):
-    """Arrays to compute in, made once: of an evaluation, then what Newton's method knows of each lane.
+    """Arrays to compute in, made once: of all steps, of an evaluation, then what Newton's method knows of each lane.
 
-    state and direction (2, width), found (width,), and off, by which a projection corrects position and velocity,
-    (2 width,); variables, of machine code that needs them; where each register stands, which machine code moves instead
-    of what is in them; residuals, those at the guess, corrections and guess (evaluations of a group, width); Jacobians
-    like the inverses; of each lane the sizes of what it computes with, how far this correction moves it and the one
-    before did, and whether it is running, settled, solved, and to be renewed, and has its inverse Jacobian from an
-    earlier step.
+    registers (registers, width), in units of the step before[0] (s), the last one's; counts of what implicit steps and
+    projections take; state and direction (2, width), found (width,), and off, by which a projection corrects position
+    and velocity, (2 width,); variables, of machine code that needs them; residuals, those at the guess, corrections and
+    guess (evaluations of a group, width); Jacobians, and the inverses of the last of each kind of step, nan at first,
+    (kinds, groups, unknowns, unknowns, lanes); of each lane the sizes of what it computes with, how far this correction
+    moves it and the one before did, and whether it is running, settled, solved, and to be renewed, and has its inverse
+    Jacobian from an earlier step.
     """
 
+    registers: FloatArray
+    before: FloatArray
+    counts: IntArray
     state: FloatArray
     direction: FloatArray
     found: FloatArray
     off: FloatArray
     variables: FloatArray
-    where: IntArray
     residuals: FloatArray
     at_guess: FloatArray
     corrections: FloatArray
     guess: FloatArray
     jacobian: FloatArray
+    inverses: FloatArray
     sizes: FloatArray
     moved: FloatArray
     moved_before: FloatArray
@@ -101,19 +105,19 @@ class Room(NamedTuple):
 class Operations(NamedTuple):
     """What numpy and machine code do in ways of their own, on registers and in a room.
 
-    change_step(rows, ratio, registers, room)       turns registers into units of a step longer by a ratio
-    evaluate(rows, number, time, h, gains, registers, room)         an explicit evaluation; the least relative pivot
-    finish(rows, h, registers, room, into)          combines, writes the new state and moves on; the size of the state
-    begin(rows, group, registers, room)             writes the guesses of a group
-    residual(rows, group, time, h, gains, registers, room)          writes residuals; the least relative pivot
+    change_step(rows, ratio, room)                  turns registers into units of a step longer by a ratio
+    evaluate(rows, number, time, h, gains, room)    an explicit evaluation; the least relative pivot
+    finish(rows, h, room, into)                     combines, writes the new state and moves on; the size of the state
+    begin(rows, group, room)                        writes the guesses of a group
+    residual(rows, group, time, h, gains, room)     writes residuals; the least relative pivot
     remember(room)                                  keeps the residuals as those at the guess
     correct(group, inverse, room)                   computes corrections; whether some lane's inverse does not serve
-    renew(rows, group, time, h, gains, registers, inverse, room)    computes those lanes' inverses anew; how many slopes
-    advance(rows, group, registers, room)           applies corrections; whether lanes are running still
-    end(rows, group, registers, room)               writes nan where nothing is solved; how far that was from it
+    renew(rows, group, time, h, gains, inverse, room)       computes those lanes' inverses anew; how many slopes
+    advance(rows, group, room)                      applies corrections; whether lanes are running still
+    end(rows, group, room)                          writes nan where nothing is solved; how far that was from it
     measure(time, gains, state, room)               writes corrections of a state; the least relative pivot
     distance(state, room)                           the largest correction of a position, 0 where all are settled
-    shift(rows, half, h, registers, state, room)    corrects position or velocity, and what is carried; the state's size
+    shift(rows, half, h, state, room)               corrects position or velocity, and what is carried; the state's size
 
     Pivots and sizes are of use for one lane, and may be any with more.
     """
@@ -146,16 +150,12 @@ class Steps(NamedTuple):
 
 
 TakeSteps = Callable[..., tuple[int, float, float]]
-"""take_steps(rows, steps, registers, inverses, before, room, judged, states, pivots, counts).
+"""take_steps(rows, steps, room, judged, states, pivots).
 
 It takes steps until they are at their end or, if they are `judged`, a run breaks down, and returns how many, the size
 of the last correction of equations that were not solved, and of a position that did not settle in its projection, 0
-where all did.
-
-`registers` are in units of the step before[0] (s), the last one's; `inverses` (kinds of steps, groups, unknowns,
-unknowns, lanes) are the inverse Jacobians of the last of each kind, nan at first. `states` (steps, 2, width) get q and
-v after each step, `pivots` (steps,) the least relative pivots on the way, `counts` what implicit steps and projections
-take.
+where all did. `states` (steps, 2, width) get q and v after each step, `pivots` (steps,) the least relative pivots on
+the way.
 """
 
 
@@ -185,24 +185,36 @@ def rows_of(program: Program, projection: Projection | None = None) -> Rows:
     )
 
 
-def room_of(rows: Rows, n: int, lanes: int, stride: int, variables: int = 0, kind: Any = np.float64) -> Room:
-    """Return the room for a program's steps; for each coordinate there is a stride, at least as wide as the lanes."""
+def room_of(
+    rows: Rows, carried: FloatArray, h: float, kinds: int, counts: IntArray, stride: int, variables: int = 0
+) -> Room:
+    """Return the room for a program's steps, of so many kinds, from what is carried (quantities, n, lanes).
+
+    That is in units of h (s). For each coordinate there is a stride, at least as wide as the lanes.
+    """
+    quantities, n, lanes = carried.shape
+    kind = carried.dtype
     most = int((rows.groups[:, 1] - rows.groups[:, 0]).max(initial=0))
     unknowns = most * n if rows.groups[:, 2].any() else 0
     width = n * stride
-    of_state, of_group = (2, width), (most, width)
+    of_state, of_group, of_jacobian = (2, width), (most, width), (unknowns, unknowns, lanes)
+    registers = np.zeros((sum(rows.combined.shape), width), kind)
+    registers.reshape(-1, n, stride)[:quantities, :, :lanes] = carried
     return Room(
+        registers=registers,
+        before=np.array([h]),
+        counts=counts,
         state=np.zeros(of_state, kind),
         direction=np.zeros(of_state),
         found=np.zeros(width, kind),
         off=np.zeros(2 * width),
         variables=np.zeros(variables),
-        where=np.arange(rows.combined.shape[1] + len(rows.combined)),
         residuals=np.zeros(of_group),
         at_guess=np.zeros(of_group),
         corrections=np.zeros(of_group),
         guess=np.zeros(of_group),
-        jacobian=np.zeros((unknowns, unknowns, lanes)),
+        jacobian=np.zeros(of_jacobian),
+        inverses=np.full((kinds, len(rows.groups), *of_jacobian), np.nan),
         sizes=np.zeros(lanes),
         moved=np.zeros(lanes),
         moved_before=np.zeros(lanes),
@@ -219,75 +231,20 @@ def unchanged(function: Any) -> Any:
     return function
 
 
-def projector(operations: Operations, made: Callable[[Any], Any], projecting: bool) -> Callable[..., Any]:
-    """Return the action that brings a new state back to the constraints, first its position, then its velocity.
-
-    It returns the least pivot, the size of the last correction where it should have settled and did not, and the size
-    of the state. Without `projecting` it is one that nobody calls.
-    """
-    measure, distance, shift = operations.measure, operations.distance, operations.shift
-
-    @made
-    def project_state(
-        rows: Rows,
-        time: float,
-        h: float,
-        gains: FloatArray,
-        registers: FloatArray,
-        room: Room,
-        state: FloatArray,
-        counts: IntArray,
-    ) -> tuple[float, float, float]:
-        pivot, left = 1.0, 0.0
-        for iteration in range(rows.projected + 1):
-            pivot = min(pivot, measure(time, gains, state, room))
-            counts[PROJECTIONS] += 1
-            left = distance(state, room)
-            # the velocity takes what was found last: at a position that needs no correction, or gets none any more
-            if iteration == rows.projected or left == 0 or pivot <= SINGULAR:
-                break
-            shift(rows, 0, h, registers, state, room)
-        size = shift(rows, 1, h, registers, state, room)
-        return pivot, left if rows.settles and pivot > SINGULAR else 0.0, size
-
-    @made
-    def nothing_projected(
-        rows: Rows,
-        time: float,
-        h: float,
-        gains: FloatArray,
-        registers: FloatArray,
-        room: Room,
-        state: FloatArray,
-        counts: IntArray,
-    ) -> tuple[float, float, float]:
-        return 1.0, 0.0, 0.0
-
-    project: Callable[..., Any] = project_state if projecting else nothing_projected
-    return project
-
-
 def stepper(
     operations: Operations, made: Callable[[Any], Any] = unchanged, solving: bool = True, projecting: bool = True
 ) -> TakeSteps:
     """Return the function that takes steps by these operations; `made` makes machine code of it, or leaves it.
 
     `solving`: whether programs have equations to solve, which is most of what there is to compile; `projecting`:
-    whether states are projected.
+    whether states are projected. What is not is left out of machine code.
     """
-    change_step, evaluate, finish, begin, residual, remember, correct, renew, advance, end, *_ = operations
+    change_step, evaluate, finish, begin, residual, remember, correct, renew, advance, end, *others = operations
+    measure, distance, shift = others
 
     @made
-    def solve_group(
-        rows: Rows,
-        group: IntArray,
-        time: float,
-        h: float,
-        gains: FloatArray,
-        registers: FloatArray,
-        inverse: FloatArray,
-        room: Room,
-        counts: IntArray,
+    def solve(
+        rows: Rows, group: IntArray, time: float, h: float, gains: FloatArray, inverse: FloatArray, room: Room
     ) -> tuple[float, float]:
         """Find what makes the residuals of a group of evaluations zero, from its guesses on; nan where that fails.
 
@@ -295,72 +252,64 @@ def stepper(
         """
         evaluations = group[1] - group[0]
         pivot = 1.0
-        begin(rows, group, registers, room)
+        begin(rows, group, room)
         for iteration in range(MOST_ITERATIONS):
-            pivot = residual(rows, group, time, h, gains, registers, room)
-            counts[ITERATIONS] += 1
-            counts[EVALUATIONS] += evaluations
+            pivot = residual(rows, group, time, h, gains, room)
+            room.counts[ITERATIONS] += 1
+            room.counts[EVALUATIONS] += evaluations
             if iteration == 0:
                 remember(room)
             if correct(group, inverse, room):
-                counts[EVALUATIONS] += renew(rows, group, time, h, gains, registers, inverse, room)
+                room.counts[EVALUATIONS] += renew(rows, group, time, h, gains, inverse, room)
                 correct(group, inverse, room)
-            if not advance(rows, group, registers, room):
+            if not advance(rows, group, room):
                 break
-        return pivot, end(rows, group, registers, room)
+        return pivot, end(rows, group, room)
 
     @made
-    def nothing_solved(
-        rows: Rows,
-        group: IntArray,
-        time: float,
-        h: float,
-        gains: FloatArray,
-        registers: FloatArray,
-        inverse: FloatArray,
-        room: Room,
-        counts: IntArray,
-    ) -> tuple[float, float]:
-        """Stand for it where all is explicit."""
-        return 1.0, 0.0
+    def project(
+        rows: Rows, time: float, h: float, gains: FloatArray, room: Room, state: FloatArray
+    ) -> tuple[float, float, float]:
+        """Bring a new state back to the constraints, first its position, then its velocity.
 
-    solve = solve_group if solving else nothing_solved
-
-    project = projector(operations, made, projecting)
+        Return the least pivot, the size of the last correction where it should have settled and did not, and the size
+        of the state.
+        """
+        pivot, left = 1.0, 0.0
+        for iteration in range(rows.projected + 1):
+            pivot = min(pivot, measure(time, gains, state, room))
+            room.counts[PROJECTIONS] += 1
+            left = distance(state, room)
+            # the velocity takes what was found last: at a position that needs no correction, or gets none any more
+            if iteration == rows.projected or left == 0 or pivot <= SINGULAR:
+                break
+            shift(rows, 0, h, state, room)
+        size = shift(rows, 1, h, state, room)
+        return pivot, left if rows.settles and pivot > SINGULAR else 0.0, size
 
     @made
     def take_steps(
-        rows: Rows,
-        steps: Steps,
-        registers: FloatArray,
-        inverses: FloatArray,
-        before: FloatArray,
-        room: Room,
-        judged: bool,
-        states: FloatArray,
-        pivots: FloatArray,
-        counts: IntArray,
+        rows: Rows, steps: Steps, room: Room, judged: bool, states: FloatArray, pivots: FloatArray
     ) -> tuple[int, float, float]:
         for k in range(len(steps.times)):
             time, h = steps.times[k], steps.lengths[k]
             gains = steps.gains[min(k, len(steps.gains) - 1)]
-            if h != before[0]:
-                change_step(rows, h / before[0], registers, room)
-                before[0] = h
+            if h != room.before[0]:
+                change_step(rows, h / room.before[0], room)
+                room.before[0] = h
             pivot, unsolved, unsettled = 1.0, 0.0, 0.0
             for number in range(len(rows.groups)):
                 group = rows.groups[number]
-                if group[2]:
-                    worst, left = solve(
-                        rows, group, time, h, gains, registers, inverses[steps.kinds[k], number], room, counts
-                    )
+                if solving and group[2]:
+                    inverse = room.inverses[steps.kinds[k], number]
+                    worst, left = solve(rows, group, time, h, gains, inverse, room)
                     unsolved = max(unsolved, left)
                 else:
-                    worst = evaluate(rows, group[0], time, h, gains, registers, room)
+                    worst = evaluate(rows, group[0], time, h, gains, room)
                 pivot = min(pivot, worst)
-            size = finish(rows, h, registers, room, states[k])
-            if rows.projected > 0 and size < BLOWN_UP:
-                worst, unsettled, size = project(rows, time + h, h, gains, registers, room, states[k], counts)
+            size = finish(rows, h, room, states[k])
+            if projecting and rows.projected > 0 and size < BLOWN_UP:
+                worst, unsettled, size = project(rows, time + h, h, gains, room, states[k])
                 pivot = min(pivot, worst)
             pivots[k] = pivot
             if judged and (unsolved > 0 or unsettled > 0 or not (pivot > SINGULAR and size < BLOWN_UP)):

@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 
 from bezstab.mechanism.compiled import Mechanism
 from bezstab.mechanism.compiled_stepping import runs_compiled
-from bezstab.mechanism.energies import EnergyBalance
+from bezstab.mechanism.energies import energy_balance
 from bezstab.mechanism.observation import observe
 from bezstab.mechanism.projection import Projection
-from bezstab.mechanism.runner import Work, carried_quantities, checked_start, recorded, steps_in_blocks
+from bezstab.mechanism.runner import carried_quantities, checked_start, no_counts, recorded, steps_in_blocks
 from bezstab.mechanism.simulation import Simulation, check_duration
 from bezstab.mechanism.start import perturbed_state
 from bezstab.mechanism.stepping import Steps
@@ -53,9 +53,9 @@ def simulated_with_steps(
     check_duration(duration, min(sequence) * float(method.step_multiple))
     first = checked_start(perturbed_state(mechanism, perturb))
     steps = _steps(method, sequence, duration, lambda step: feedback_gains(alpha_hat, beta_hat, step if hold else h))
-    work = Work()
+    counts = no_counts()
     length, gains = float(steps.lengths[0]), (float(steps.gains[0, 0]), float(steps.gains[0, 1]))
-    carried, _, _ = carried_quantities(mechanism, method, length, gains, [first], first, work)
+    carried, _, _ = carried_quantities(mechanism, method, length, gains, [first], first, counts)
 
     lengths, kinds = np.unique(steps.lengths, return_inverse=True)
 
@@ -75,21 +75,17 @@ def simulated_with_steps(
         count=len(steps.lengths),
         compiled=runs_compiled(mechanism, method, len(steps.lengths) * evaluations(method), projection is not None),
         judged=True,
-        work=work,
+        counts=counts,
         kinds=len(lengths),
         projection=projection,
     )
-    trajectory = recorded(mechanism, method, first, steps.times, blocks, "rk4", work, projection)
+    trajectory = recorded(mechanism, method, first, steps.times, blocks, "rk4", counts, projection)
     times = trajectory.t
     # at each time the gains of the step that begins there; at the last, those of the step that led to it
     at_times = np.minimum(np.arange(len(times)), len(steps.lengths) - 1)
     two_alpha, beta_squared = steps.gains[at_times].T
     observation = observe(mechanism, times, trajectory.q, trajectory.v, two_alpha, beta_squared)
-    balance = EnergyBalance(
-        energy=observation.energy,
-        driver_work=_integral(observation.driver_power, times),
-        force_work=_integral(observation.applied_power, times),
-    )
+    balance = energy_balance(observation, steps.lengths[: len(times) - 1], nodes=2)
     return Simulation(
         trajectory=trajectory, observation=observation, balance=balance, h=h, alpha_hat=alpha_hat, beta_hat=beta_hat
     )
@@ -129,10 +125,3 @@ def _steps(
         left -= step
     gains_of = {length: gains(length / multiple) for length in set(taken)}
     return VaryingSteps(lengths=np.array(taken), gains=np.array([gains_of[length] for length in taken]))
-
-
-def _integral(rates: FloatArray, times: FloatArray) -> FloatArray:
-    """Return the integral from the first time to each, by the trapezoidal rule."""
-    with np.errstate(all="ignore"):  # of a broken-down run's last multipliers
-        parts = (rates[1:] + rates[:-1]) / 2 * np.diff(times)
-    return np.concatenate([[0.0], np.cumsum(parts)])

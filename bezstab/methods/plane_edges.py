@@ -34,7 +34,7 @@ from sympy.polys.matrices import DomainMatrix
 from sympy.polys.rings import PolyElement
 
 from bezstab.errors import NumericalError
-from bezstab.methods.root_isolation import WholePolynomial, real_roots, size_in_bits, whole_coefficients
+from bezstab.methods.root_isolation import BITS, WholePolynomial, real_roots, size_in_bits, whole_coefficients
 from bezstab.methods.schemes import Method
 from bezstab.methods.schur import is_schur
 from bezstab.methods.shared_factors import reduced_table
@@ -43,7 +43,7 @@ from bezstab.rationals import ONE, ZERO
 A, B = sp.symbols("alpha_hat beta_hat")
 RING = sp.QQ[A, B]
 
-LONG = 700  # bits of a coefficient: factors are looked for modulo primes of a multiple of that
+LONG = 10 * BITS  # of a coefficient: factors are looked for modulo primes of a multiple of that
 HIGH = 8  # degree in alpha_hat: with coefficients so long, discriminants of such curves take minutes
 
 CurveTable = tuple[tuple[Fraction, ...], ...]

@@ -17,7 +17,7 @@ from fractions import Fraction
 from functools import cache
 from math import prod
 
-from bezstab.errors import InputError
+from bezstab.errors import InputError, shown
 from bezstab.methods.algebraic_numbers import decimal_root
 from bezstab.rationals import DECIMAL, LONGEST, rational, within_float64
 
@@ -31,7 +31,6 @@ SQUARE_ROOT = "sqrt"
 LARGEST_ROOT = 10**8  # numerator times denominator of what a root is taken of: so that its primes are found at once
 MOST_ROOTS = 16  # in one number: four independent ones in all their products
 DEEPEST = 20  # parentheses within each other
-SHOWN = 50  # characters of what was given
 
 WORD = re.compile(rf"\s*(?:(?P<number>{DECIMAL.removeprefix('[-+]?')})|(?P<sign>{SQUARE_ROOT}\b|[-+*/()]))", re.ASCII)
 EXPECTED = "a number such as -0.5, 175/108 or (16 - sqrt(6))/36"
@@ -93,8 +92,8 @@ def root_sum(text: str) -> RootSum:
     try:
         value = _Reader(text).whole()
     except ZeroDivisionError:
-        raise InputError(f"{text[:SHOWN]!r} divides by zero") from None
-    within_float64(value.in_decimals(), repr(text[:SHOWN]))
+        raise InputError(f"{shown(text)} divides by zero") from None
+    within_float64(value.in_decimals(), shown(text))
     return value
 
 
@@ -117,7 +116,7 @@ class _Reader:
 
     def mistake(self) -> InputError:
         """Return the error of a text that says no number."""
-        return InputError(f"{self.text[:SHOWN]!r}: expected {EXPECTED}")
+        return InputError(f"{shown(self.text)}: expected {EXPECTED}")
 
     def take(self, *words: str) -> str:
         """Return the next word if it is one of these, and go past it; else ''."""
@@ -152,7 +151,7 @@ class _Reader:
         if self.take("("):
             self.depth += 1
             if self.depth > DEEPEST:
-                raise InputError(f"{self.text[:SHOWN]!r}: expected at most {DEEPEST} parentheses within each other")
+                raise InputError(f"{shown(self.text)}: expected at most {DEEPEST} parentheses within each other")
             inner = self.sum()
             if not self.take(")"):
                 raise self.mistake()
@@ -167,7 +166,7 @@ class _Reader:
         number = of.terms.get(RATIONAL, Fraction(0))
         if of.irrational or number < 0 or number.numerator * number.denominator > LARGEST_ROOT:
             what = f"a fraction p/q from 0, p q at most {LARGEST_ROOT:g}"
-            raise InputError(f"{self.text[:SHOWN]!r}: a root is taken of {what}")
+            raise InputError(f"{shown(self.text)}: a root is taken of {what}")
         whole, primes = _square_part(number.numerator * number.denominator)
         return _summed([(primes, Fraction(whole, number.denominator))])
 

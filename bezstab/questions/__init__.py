@@ -1,4 +1,4 @@
-"""What somebody has, and what there is to answer: the one door of the command line and of `import bezstab`.
+"""Questions and their answers: the one door of the command line and of `import bezstab`.
 
     methods, a point or a goal, steps, an engine or a drive, a scene   →   Question   →   answers   →   row, table, text
 

@@ -1,7 +1,7 @@
-"""What there is to answer: for each method and point the verdict, and whatever else somebody asks of it.
+"""The answers to a question: a verdict for each method and point, and more when it is asked for.
 
-An answer is a point with its proven verdict, pole and margins; what takes time beyond that is found when first asked
-for, and kept:
+An answer is a point with its proven verdict, pole and margins. What takes longer is computed when it is first asked
+for, and then kept:
 
     answers(question)  →  Answer (given, or chosen)  ·  cost  ·  moving  ·  varying  ·  setting  ·  gains
                             ├── instead              what `choose` gives in its place
@@ -43,10 +43,10 @@ if TYPE_CHECKING:
 
 CheckedRole = Literal["given", "instead"]
 Role = Literal[CheckedRole, "chosen"]
-"""Whether a point was given, is what to take instead of one that was, or is what a goal asks for."""
+"""A point was given, or is to be taken instead of a given one, or was chosen by a goal."""
 
 SLOWER = 2
-"""Times as long to settle, of what slower decay would gain."""
+"""Slower decay takes this many times as long to settle."""
 
 
 Gain = Literal["kp", "kd"]
@@ -69,10 +69,10 @@ class Gains:
 
 @dataclass(frozen=True, repr=False, kw_only=True)
 class Answer(Choice):
-    """A point, what `Choice` says of it, and what it means for the question; `point` is the point exactly.
+    """A point, all that `Choice` says of it, and what it means for the question; `point` is exact.
 
-    What is None was not asked about: `moving` without a scene, `varying` without h_min, `setting` without an engine,
-    `gains` without a drive, `swept` without a chain or a scene in an engine that sweeps.
+    These are None if the question is not about them: `moving` without a scene, `varying` without h_min, `setting`
+    without an engine, `gains` without a drive, `swept` without a chain or a scene in an engine that sweeps.
     """
 
     question: Question = field(compare=False)
@@ -88,10 +88,10 @@ class Answer(Choice):
 
     @property
     def safe(self) -> bool:
-        """Whether every error is proven to shrink; of a scene as it moves, and for steps that vary, where asked.
+        """Whether every error is proven to shrink: also while the scene moves and while steps vary, if that is asked.
 
-        Of constraints that an engine sweeps over it is computed: more than its accuracy below one. Where nothing was
-        asked of an engine that sweeps but one point, it is safe for one constraint alone.
+        For constraints that an engine sweeps over this is computed and not proven: |z| is below one by more than its
+        accuracy. Without a chain or a scene, safe means: safe for one constraint alone.
         """
         if self.swept and not self.swept.growth.decays:
             return False
@@ -127,7 +127,7 @@ class Answer(Choice):
 
     @cached_property
     def moving(self) -> "MovingPole | None":
-        """What the motion of the scene does to the poles."""
+        """How the motion of the scene changes the poles."""
         if self.question.turning is None or self.question.h is None:
             return None
         from bezstab.evidence import moving_pole
@@ -136,7 +136,7 @@ class Answer(Choice):
 
     @cached_property
     def varying(self) -> VaryingSteps | None:
-        """What sequences of steps do that vary from h_min to h_max."""
+        """Whether errors decay for every sequence of steps from h_min to h_max."""
         steps = self.question.steps
         if steps is None:
             return None
@@ -144,7 +144,7 @@ class Answer(Choice):
 
     @property
     def cost(self) -> FeedbackCost | None:
-        """What accuracy the feedback costs on the motion of the question; None where `cost_reason` says why."""
+        """What accuracy the feedback costs on the motion of the question; if None, `cost_reason` says why."""
         return self._cost_or_reason[0]
 
     @property
@@ -162,15 +162,15 @@ class Answer(Choice):
 
     @property
     def setting(self) -> str | None:
-        """What to write in the engine's words for a point that it was not given; InputError where it has no words."""
+        """The line to write in the engine for a point that was chosen; InputError if the engine cannot express it."""
         engine, h = self.question.engine, self.question.h
         return engine.setting(self.point, h) if engine and h is not None and self.role != "given" else None
 
     @cached_property
     def engine_h_limit(self) -> float | None:
-        """Up to which step (s) the engine's values are stable, as it reads them at each step.
+        """The largest step (s) at which the engine's values are stable, as the engine reads them at each step.
 
-        None where they are not stable, or at any step, and without an engine.
+        None if they are not stable, if every step is stable, and without an engine.
         """
         engine, h = self.question.engine, self.question.h
         if engine is None or h is None or self.verdict != "converges":
@@ -181,14 +181,14 @@ class Answer(Choice):
         )
 
     def _engine_values(self, engine: Engine, h: Fraction) -> tuple[Fraction, ...]:
-        """Return the engine's values at this point: those that were given, else what is pasted for it."""
+        """Return the engine's values at this point: those that were given, else those of `setting`."""
         if self.role == "given" and self.question.values is not None:
             return self.question.values
         return tuple(rational(value) for value in engine.values(self.point, h))
 
     @cached_property
     def swept(self) -> SweptAnswer | None:
-        """What the engine's sweeps make of the errors of a chain or of the scene's constraints."""
+        """What the engine's sweeps do to the errors of a chain, or of the scene's constraints."""
         engine, h, constraints = self.question.engine, self.question.h, self.question.swept
         if engine is None or h is None or constraints is None:
             return None
@@ -196,14 +196,14 @@ class Answer(Choice):
 
     @property
     def swept_over(self) -> str | None:
-        """For which constraints an answer holds of an engine that sweeps; None where all are solved together."""
+        """The constraints that the answer is about, if the engine sweeps; None if it solves all of them together."""
         if self.question.engine is None or not self.question.engine.sweeps:
             return None
         return (self.question.swept or ALONE).words
 
     @cached_property
     def alone(self) -> "Answer | None":
-        """What the goal of this choice asks for with one constraint alone; None where it is this choice."""
+        """What the same goal chooses for one constraint alone; None if that is this choice."""
         if self.question.swept is None or self.role == "given":
             return None
         found = _choice_alone(self.question, self.method, cast(Goal, self.goal), self.question.settle, margins=False)
@@ -212,7 +212,7 @@ class Answer(Choice):
 
     @cached_property
     def sweeps_to_spare(self) -> int | None:
-        """From how many sweeps a choice along the engine's curve is stable even if it were stronger by the spread."""
+        """The number of sweeps from which the choice is stable, even if it were stronger by the spread."""
         engine, h, constraints = self.question.engine, self.question.h, self.question.swept
         if engine is None or engine.curve is None or h is None or constraints is None:
             return None
@@ -250,7 +250,7 @@ class Answer(Choice):
 
     @cached_property
     def faster(self) -> "Answer | None":
-        """The choice of the first goal of robust and fastest that decays faster than this; None if neither does."""
+        """The choice of robust, else of fastest, that decays faster than this one; None if neither does."""
         goals: tuple[Goal, ...] = ("robust", "fastest")
         for goal in goals:
             found = self._alternative(goal)
@@ -260,7 +260,7 @@ class Answer(Choice):
 
     @property
     def slower_settle(self) -> Fraction | None:
-        """SLOWER times as long (s, to two digits) as this choice takes to settle at worst; None where it does not."""
+        """SLOWER times the time (s, to two digits) in which this choice settles at worst; None if it does not."""
         steps, h = self.settle_steps_at_worst, self.question.h
         if steps is None or h is None:
             return None
@@ -268,7 +268,7 @@ class Answer(Choice):
 
     @cached_property
     def slower(self) -> "Answer | None":
-        """The choice of the goal accurate that may take `slower_settle` to settle; None where there is none."""
+        """The choice of the goal accurate with `slower_settle` to settle; None if there is none."""
         return None if self.slower_settle is None else self._alternative("accurate", self.slower_settle)
 
     def times_the_errors(self, other: "Answer") -> tuple[float, float] | None:
@@ -281,7 +281,7 @@ class Answer(Choice):
         return there.total_error / here.total_error, there.velocity_error / here.velocity_error
 
     def _alternative(self, goal: Goal, settle: Fraction | None = None) -> "Answer | None":
-        """Return another choice; None where there is none, or it cannot be found: this one stands without it."""
+        """Return another choice; None if there is none or it cannot be found: this answer does not need it."""
         try:
             found = _choice(self.question, self.method, goal, settle, margins=False)
         except (InputError, NumericalError):
@@ -307,7 +307,7 @@ def answers(question: Question, *, margins: bool = True) -> Iterator[Answer]:
 
 
 def _answer(question: Question, role: Role, choice: Choice, point: Point | None = None) -> Answer:
-    """Return a choice as an answer; its point is exactly that of its floats unless given."""
+    """Return a choice as an answer; without an exact `point` it is that of the floats."""
     exactly = point or (Fraction(choice.alpha_hat), Fraction(choice.beta_hat))
     own = {each.name: getattr(choice, each.name) for each in fields(Choice)}
     return Answer(question=question, role=role, point=exactly, **own)
@@ -316,7 +316,7 @@ def _answer(question: Question, role: Role, choice: Choice, point: Point | None 
 def _choice(
     question: Question, method: Method, goal: Goal, settle: Fraction | None = None, *, margins: bool = True
 ) -> Choice:
-    """Return what a goal asks for; where an engine sweeps over constraints, at most the strongest that they allow."""
+    """Return the choice of a goal; if an engine sweeps over constraints, at most the strongest that they allow."""
     found = _choice_alone(question, method, goal, settle, margins=margins)
     engine, h, constraints = question.engine, question.h, question.swept
     if engine is None or h is None or constraints is None or not (engine.parameters and _curve(question, goal)):
@@ -332,7 +332,7 @@ def _choice(
 def _choice_alone(
     question: Question, method: Method, goal: Goal, settle: Fraction | None = None, *, margins: bool = True
 ) -> Choice:
-    """Return what a goal asks for: of a question that has a goal, for all steps up to h_max where this goal has one."""
+    """Return the choice of a goal for one constraint; if the question has a goal, for all steps up to h_max."""
     motion = question.motion
     along = _curve(question, goal)
     longest = question.h_max if question.goal else None
@@ -364,12 +364,12 @@ def _choice_alone(
 
 
 def _curve(question: Question, goal: Goal) -> Curve | None:
-    """Return the engine's curve of points where a goal is sought along it."""
+    """Return the curve of points that the engine can express; None if the goal does not search along it."""
     return question.engine.curve if question.engine and goal != "critical" and not question.equal else None
 
 
 def _modulus_as_it_moves(question: Question, method: Method, h: Fraction | None) -> Modulus | None:
-    """Return |z_p| over the motion at steps of h (s), to be taken in place of that at rest; None without a scene."""
+    """Return |z_p| of the moving scene at steps of h (s), in place of that at rest; None without a scene."""
     if question.turning is None or h is None:
         return None
     from bezstab.evidence import moving_modulus
@@ -378,7 +378,7 @@ def _modulus_as_it_moves(question: Question, method: Method, h: Fraction | None)
 
 
 def _check_expressible(chosen: Answer) -> None:
-    """Raise InputError, saying what to ask instead, where the engine has no words for a choice."""
+    """Raise InputError, with a question to ask instead, if the engine cannot express a choice."""
     engine = chosen.question.engine
     try:
         _ = chosen.setting
@@ -390,7 +390,7 @@ def _check_expressible(chosen: Answer) -> None:
 
 @dataclass(frozen=True)
 class LargestStep:
-    """Up to which step (s) every one is stable with alpha and beta (1/s): infinite without an end, zero for none."""
+    """The step (s) up to which every step is stable with alpha and beta (1/s): infinite if all are, zero if none is."""
 
     method: Method
     alpha: Fraction
@@ -404,5 +404,5 @@ class LargestStep:
 
 
 def largest_step(method: Method, alpha: Fraction, beta: Fraction) -> LargestStep:
-    """Return up to which step every one is stable with alpha and beta (1/s); errors as `stable_up_to`."""
+    """Return the step up to which every step is stable with alpha and beta (1/s); errors as `stable_up_to`."""
     return LargestStep(method, alpha, beta, stable_up_to(method, alpha, beta))

@@ -1,4 +1,4 @@
-"""Many constraints, of a chain of bodies or a scene, in an engine that sweeps: stable, and from how many sweeps?"""
+"""Chains of bodies and scenes in an engine that sweeps over constraints: are they stable, and with how many sweeps?"""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -24,15 +24,15 @@ from bezstab.stability import (
 )
 
 SHARES = np.geomspace(1e-6, 1 - 1e-9, 50)
-"""Of the strongest feedback: the largest that constraints allow is sought between two of these neighbours. The
-strongest itself may not be expressible."""
+"""Shares of the strongest feedback. The largest share that constraints allow is searched for between two neighbours.
+The last is below 1, because the engine may not be able to express the strongest feedback itself."""
 
 
 @dataclass(frozen=True, eq=False)
 class Constraints:
-    """Constraints in the order in which an engine sweeps over them, and the bodies that they tie.
+    """Constraints in the order in which an engine sweeps over them.
 
-    `words` say where: in ... `inverse_masses` is J M^-1 J', shape (m, m); `joints` the number of each constraint's
+    `words` name the mechanism. `inverse_masses` is J M^-1 J', shape (m, m); `joints` the number of each constraint's
     joint, rising.
     """
 
@@ -46,7 +46,7 @@ class Constraints:
         return len(self.joints)
 
     def growth(self, engine: Engine, step: SweptStep) -> Growth:
-        """Return by what factor a step of an engine multiplies their errors."""
+        """Return the factor by which a step of an engine multiplies their errors."""
         together = engine.sweeping is not None and engine.sweeping.together
         return swept_growth(self.inverse_masses, step, self.joints if together else None)
 
@@ -66,14 +66,14 @@ class Chain:
 
     @cached_property
     def constraints(self) -> Constraints:
-        """Its links, from the world on."""
+        """Its links, beginning at the world."""
         last = "" if self.mass_ratio == 1 else f" with the last body {float(self.mass_ratio):g} times as heavy"
         masses = chain(self.bodies, float(self.mass_ratio))
         return Constraints(f"a chain of {self.bodies}{last}", masses, tuple(range(self.bodies)))
 
 
 def typed_chain(bodies: int | None, mass_ratio: Fraction | None) -> Chain | None:
-    """Return the chain that was typed, None without one; InputError for a last body without a chain."""
+    """Return the chain of so many bodies, None without a number; InputError for a mass ratio without a chain."""
     if bodies is not None:
         return Chain(bodies, Fraction(1) if mass_ratio is None else mass_ratio)
     if mass_ratio is not None:
@@ -121,9 +121,9 @@ def check_sweeps(
     scene: str | Scene | None = None,
     speed: Fraction = Fraction(1),
 ) -> None:
-    """Raise InputError where a chain or a number of sweeps is asked about without an engine that is known to sweep.
+    """Raise InputError if a question has a chain or a number of sweeps, and no engine that is known to sweep.
 
-    Also where there is nothing to sweep over. Errors as `load_scene`.
+    InputError, too, if there is nothing to sweep over. Errors as `load_scene`.
     """
     if iterations is not None:
         check_iterations(iterations)
@@ -149,9 +149,9 @@ def check_sweeps(
 def swept_answer(
     engine: Engine, values: tuple[Fraction, ...], h: Fraction, constraints: Constraints, iterations: int | None
 ) -> SweptAnswer:
-    """Return what becomes of constraints with an engine's values at a step of h (s); the engine says how it sweeps.
+    """Return what the sweeps of an engine do to the errors of constraints, with its values at a step of h (s).
 
-    `iterations` None: the engine's own. NumericalError where rounding leaves open whether errors decay.
+    `iterations` None: the engine's own number. NumericalError if rounding leaves open whether errors decay.
     """
     assert engine.sweeping
     step = _steps(engine, values, h)

@@ -1,4 +1,4 @@
-"""What to answer about a drive whose torque is held for several steps of the physics, or applied late.
+"""Drives whose torque is held for several steps of the physics, or applied late: are they safe, and with what margin?
 
 gains and inertia, h, timing   →   HeldQuestion   →   held_answers   →   what is used up, and what each may become
 inertia, bandwidth, timing     →   held_gains     →   gains to write
@@ -32,16 +32,16 @@ from bezstab.stability import (
 from bezstab.units import check_step
 
 UsedUp = Literal["gains", "rate", "delay", "rate and delay", "kp", "kd", "too little kd"]
-"""What makes an unstable drive so, or which of its numbers is nearest to its end."""
+"""Why a drive is unstable; for a stable one, which of its numbers is nearest to its limit."""
 
 DIGITS = 3
-"""Of gains to write: nobody sets more."""
+"""Of recommended gains."""
 
 MARGIN = 1.25
-"""Each gain alone may grow so many times: gains that are recommended leave a quarter for what is not modelled."""
+"""Each recommended gain alone may grow by this factor: a quarter is left for what is not modelled."""
 
 OMEGA_H = np.geomspace(1, 3e-6, 260)
-"""Radians a step, where the largest bandwidth is looked for: from one downwards, 5 % apart."""
+"""Radians a step at which the largest bandwidth is looked for: from 1 downwards, 5 % apart."""
 
 SETTLED = 9.2334
 """omega t at which a critically damped error is a thousandth: (1 + omega t) e^(-omega t) = 1/1000."""
@@ -70,7 +70,7 @@ class HeldQuestion:
 
 @dataclass(frozen=True, repr=False)
 class HeldAnswer:
-    """What one way of applying a held or late drive does; `z_abs` is what a step of the physics multiplies errors by.
+    """The answer for one way of applying a held or late drive: a step of the physics multiplies errors by `z_abs`.
 
     `verdict` is proven. `fresh_z_abs` is |z_p| of the same gains if each step computed its torque and applied it.
     `limits` and `used_up` are found when first asked for.
@@ -104,7 +104,7 @@ class HeldAnswer:
 
     @cached_property
     def used_up(self) -> UsedUp | None:
-        """What makes it unstable; of a stable drive the number that is nearest to its end. None where none has one."""
+        """Why the drive is unstable; for a stable one the number nearest to its limit. None if none has one."""
         return self._nearest_end() if self.safe else self._cause()
 
     def map(self, points: int) -> HeldMap:
@@ -113,7 +113,7 @@ class HeldAnswer:
         return held_map(self.method.name, self.question.timing, points, (float(alpha_hat), float(beta_hat)))
 
     def _cause(self) -> UsedUp:
-        """Return what an unstable drive would be stable without."""
+        """Return the cause of instability: the drive would be stable without it."""
         point, timing = self.question.drive.point(self.question.h), self.question.timing
 
         def stable(**changed: int | Fraction) -> bool:
@@ -127,7 +127,7 @@ class HeldAnswer:
         return "rate" if stable(every=1) else "rate and delay"
 
     def _nearest_end(self) -> UsedUp | None:
-        """Return which number of a stable drive has the least factor left up to its end; None where none has one."""
+        """Return the number of a stable drive with the least factor left to its limit; None if none has a limit."""
         limits, timing = self.limits, self.question.timing
         kp, kd = float(self.question.drive.kp), float(self.question.drive.kd)
         ratios: dict[UsedUp, float] = {}

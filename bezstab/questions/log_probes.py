@@ -1,4 +1,4 @@
-"""What a log of somebody else's simulator says: the pole in each column, and which method or feedback has it.
+"""The log of another simulator: the pole in each column, and which method or feedback has that pole.
 
 log, columns, steps, a point or methods   →   LogQuestion   →   log_answers   →   likenesses, or points, by column
 """
@@ -27,17 +27,18 @@ from bezstab.methods import REGISTRY, Method, lookup
 from bezstab.stability import FloatArray
 
 SAME_STEP = 1e-3
-"""Of the time between rows: by as much that of two runs may differ, as times are rounded."""
+"""The times between rows of two runs may differ by this share, as times in logs are rounded."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class LogQuestion:
-    """Which poles do columns of a log have, and which of some methods (without any: of all) have them at a point?
+    """Which pole does each column of a log have, and which of the `methods` (none: all) have it at a point?
 
-    Without a `point` it is asked at which points the methods have them. `columns` and `time` are names or numbers of
-    columns of the log, else all but that of times. `minus` is the log of another run, to subtract. The integrator takes
-    `every` steps of `h` (s) from row to row. Constraints turn at the rate `turning` (1/s). With `jointly` one pole is
-    fitted to all columns. InputError for a column that is not there, and for times that do not fit h.
+    Without a `point` the question is at which points the methods have it. `columns` and `time` are names or numbers of
+    columns of the log; without `columns` all but that of times are taken. `minus` is the log of another run, to
+    subtract. The integrator takes `every` steps of `h` (s) from row to row. Constraints turn at the rate `turning`
+    (1/s). With `jointly` one pole is fitted to all columns. InputError for a column that is not there, and for times
+    that do not fit h.
     """
 
     log: Log
@@ -143,12 +144,12 @@ class ColumnAnswer:
 
     @property
     def told(self) -> bool:
-        """Whether a pole could be told, of which something can be said."""
+        """Whether a pole could be told, and be compared."""
         return bool(self.likenesses) if self.question.point else self.found.pole is not None
 
     @property
     def fits(self) -> bool:
-        """Whether a method fits, or has the pole somewhere; so, too, where none is asked about."""
+        """Whether a method fits, or has the pole somewhere; true, too, if no method is asked about."""
         if self.question.point:
             return any(one.fits for one in self.likenesses)
         return bool(self.points) or not self.question.own_steps

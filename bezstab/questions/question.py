@@ -1,4 +1,4 @@
-"""What somebody asks: about which methods and which point, or for a point that a goal asks for; checked at birth.
+"""A question about feedback: is a point safe, or which point does a goal give? It is checked when it is made.
 
 Messages name options as the command line has them (--h-max); `bezstab.api` turns them into keywords (h_max).
 """
@@ -35,18 +35,18 @@ class StepRange:
 
 @dataclass(frozen=True, kw_only=True)
 class Question:
-    """A question about feedback: is a point safe (no `goal`), or which point does a `goal` ask for?
+    """A question about feedback: is a point safe (no `goal`), or which point does a `goal` give?
 
-    The point is `point` (alpha_hat, beta_hat), or what an `engine` makes of its `values`, or a `drive`. Without
-    `methods` they are the engine's own, or all ways of applying the drive. Steps are `h` (s). With `h_max` (s) a choice
-    is for all steps up to it; with `h_min` (s) the question is also whether every sequence of steps from h_min to h_max
-    decays: alpha and beta stay as steps vary, with `hold` alpha_hat and beta_hat do. Errors are told on a motion of
-    rate `omega` (1/s) or `omega_h` (rad a step), or on that of a `scene`, `speed` times as fast as given there; with a
-    scene safe is what is safe as it moves. `spread` is the share by which alpha and beta may be off, `settle` (s) the
-    time in which errors fall a thousandfold, `equal` keeps alpha = beta, `as_typed` leaves out an engine's clamps.
-    With a `chain`, or a scene of several constraints, safe is what is also stable there as an engine sweeps over them,
-    `iterations` times in a step (None: the engine's own number).
-    InputError for what does not go together.
+    The point is `point` (alpha_hat, beta_hat), or an `engine` gives it for its `values`, or a `drive` gives it. Without
+    `methods` the engine's own method is asked about, or all ways of applying the drive. `h` is the step (s). With
+    `h_max` (s) a choice is for all steps up to it. With `h_min` (s) errors must also decay for every sequence of steps
+    from h_min to h_max: alpha and beta stay the same while steps vary; with `hold` alpha_hat and beta_hat do.
+    The motion has a rate `omega` (1/s) or `omega_h` (rad a step), or is that of a `scene`, `speed` times as fast as
+    given there. Safe then means: safe while the scene moves. `spread` is the share by which alpha and beta may be off.
+    `settle` (s) is the time in which errors fall to a thousandth. `equal` keeps alpha = beta. `as_typed` leaves out an
+    engine's clamps. With a `chain`, or a scene of several constraints, safe also means: stable while the engine sweeps
+    over them, `iterations` times in a step (None: the engine's own number).
+    InputError for arguments that do not go together.
     """
 
     methods: tuple[Method, ...] = ()
@@ -86,7 +86,7 @@ class Question:
                 check_one_step(method)
 
     def _check_given(self) -> None:
-        """Raise InputError unless a point is given in one of its ways, with the step that this way needs."""
+        """Raise InputError unless a point is given in one way, with the step that this way needs."""
         ways = [self.point is not None, self.values is not None, self.drive is not None]
         if self.h_max is not None and self.h_min is None:
             raise InputError("--h-max needs --h-min: together they are the range of steps")
@@ -105,7 +105,7 @@ class Question:
             object.__setattr__(self, "h", self.h_max)
 
     def _check_goal(self, goal: Goal) -> None:
-        """Raise InputError for what does not go with a goal, and for a spread that is no share."""
+        """Raise InputError for arguments that do not go with the goal, and for a spread that is no share."""
         if goal not in GOALS:
             raise InputError(f"goal {goal!r}: expected {', '.join(GOALS)}")
         if not 0 <= self.spread < 1:
@@ -175,7 +175,7 @@ class Question:
 
     @cached_property
     def swept(self) -> Constraints | None:
-        """The constraints that the engine sweeps over; None for one alone, and where it is not known how it sweeps."""
+        """The constraints that the engine sweeps over; None for one alone, and if it is not known how it sweeps."""
         if self.engine is None or self.engine.sweeping is None:
             return None
         if self.chain:
@@ -213,9 +213,9 @@ def methods_for(methods: tuple[Method, ...], engine: Engine | None, drive: Drive
 
 
 def usual_goal(engine: Engine | None, drive: Drive | None) -> Goal:
-    """Return the goal that is taken unless told otherwise.
+    """Return the goal for a question that names none: robust with a drive or an engine's curve, else accurate.
 
-    Along an engine's curve of points there is no gentle feedback of another ratio to find; and nothing feeds the
-    acceleration of a drive's target forward, so that the error of a weak one is not what the method forces.
+    On an engine's curve alpha and beta depend on each other, so that no gentle feedback can be found there. Nothing
+    feeds the acceleration of a drive's target forward, so that the error of a weak drive is not forced by the method.
     """
     return "robust" if drive or (engine and engine.curve) else "accurate"

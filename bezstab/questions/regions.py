@@ -1,4 +1,4 @@
-"""What there is to say of a region: how large it is, where errors shrink fastest, what part of the plane shows it.
+"""Regions: how large they are, where errors shrink fastest, and the part of the plane that shows them.
 
 methods, levels, a window, an engine, a scene or a motion   →   MapQuestion   →   map_answer   →   MapAnswer, by method
 """
@@ -40,24 +40,24 @@ from bezstab.stability import (
 )
 
 MOST_DRAWN = 1e100
-"""Of a window's ends: their squares are drawn as well."""
+"""The largest end of a window: its square is drawn as well."""
 
 BEYOND = 1.25
-"""Times the parameters of a point: so far is shown beyond one that lies outside the window."""
+"""A window reaches up to this multiple of a point that would lie outside it."""
 
 SLOWER = 10
-"""Times: so much weaker than the motion's own rate the feedback is where a map of errors begins, ..."""
+"""A map of errors begins where the feedback is this many times slower than the motion, ..."""
 
 DECADES = 100
-"""... and times weaker at least than the strongest that is shown."""
+"""... and this many times weaker, at least, than where the map ends."""
 
 
 @dataclass(frozen=True)
 class RegionAnswer:
     """The region |z_p| < level of a method, and its best point.
 
-    `best` is the method's, at whatever level, None where there is none; `trouble` says why it is not known, where it is
-    not. The last four are about stability, at any level, and found when asked for.
+    `best` is the best point of the method, whatever the level; None if there is none. If it could not be found,
+    `trouble` says why. The last four are about the stable region, whatever the level; they are computed when asked for.
     """
 
     region: Region
@@ -71,7 +71,7 @@ class RegionAnswer:
 
     @cached_property
     def falls_towards(self) -> FarLimit | None:
-        """What |z_p| falls towards, far out, where no point has the least."""
+        """The limit of |z_p| far out, if no point has the least."""
         return falls_towards(self.region.method)
 
     @cached_property
@@ -91,12 +91,12 @@ class RegionAnswer:
 
     @cached_property
     def critical_damping_limit_exact(self) -> Fraction | None:
-        """The same as a rational number, where it is known to be one."""
+        """The same limit as a rational number, if it is known to be one."""
         return exact_critical_damping_limit(self.region.method)
 
     @property
     def window(self) -> Extent:
-        """Ranges of alpha_hat and beta_hat that show the region; of an unbounded one the best point, too."""
+        """Ranges of alpha_hat and beta_hat that show the region, and for an unbounded one the best point."""
         shown = useful_window(self.region)
         return shown if self.region.bounded else _holding(shown, self.best)
 
@@ -107,18 +107,18 @@ class RegionAnswer:
 
 
 def region_answer(method: Method, level: float = 1.0) -> RegionAnswer:
-    """Return what there is to say of the region |z_p| < level; errors as `region`."""
+    """Return the answer about the region |z_p| < level; errors as `region`."""
     return RegionAnswer(region(method, level), *best_point_or_reason(method))
 
 
 def region_answers(method: Method, levels: Sequence[float]) -> list[RegionAnswer]:
-    """Return the same of the stable region, and of each level below 1; errors as `region`."""
+    """Return the answer about the stable region, and about that of each level below 1; errors as `region`."""
     return [region_answer(method, level) for level in (1.0, *(level for level in levels if level < 1))]
 
 
 @dataclass(frozen=True)
 class ForcedErrors:
-    """What the best points of a method force on a motion: the fastest, and the most accurate that decays in time."""
+    """The errors of the fastest point of a method, and of the most accurate point that settles in time, on a motion."""
 
     method: Method
     motion: ReferenceMotion
@@ -155,7 +155,7 @@ class ForcedErrors:
 
 
 def forced_errors_of(method: Method, motion: ReferenceMotion) -> ForcedErrors:
-    """Return what a method forces on a motion; where there is no most accurate point `reason` says why."""
+    """Return the errors of a method on a motion; if there is no most accurate point, `reason` says why."""
     best, _ = best_point_or_reason(method)
     try:
         chosen = choose(method, "accurate", margins=False, omega_h=motion.omega_h)

@@ -75,6 +75,7 @@ from bezstab.show.rows import (
     like_point_row,
     limit_row,
     method_row,
+    nearest_rows,
     pole_cells,
     pole_rows,
     region_row,
@@ -100,7 +101,7 @@ if TYPE_CHECKING:
     from bezstab.show.histories import history_line
     from bezstab.show.plane_figures import comparison_figure, family_figure, region_figure, verdict_figure
     from bezstab.show.region_maps import map_figure, map_rows, map_table
-    from bezstab.show.run_figures import history_figure, projection_figure, scene_figure, work_precision_figure
+    from bezstab.show.run_figures import history_figure, scene_figure, trade_figures, work_precision_figure
     from bezstab.show.style import DASHES, column_figure, legend_below, line_at, save, styled
 
 __getattr__ = lazy_names(__name__)

@@ -30,20 +30,17 @@ from bezstab.show.style import (
 )
 from bezstab.stability import BestPoint, Choice, FloatArray, FrontPoint, Region
 
-TICKS = (0.1, 0.5, 0.8, 0.9, 0.95, 0.98, 0.99, 0.995, 0.998, 0.999, 0.9999)
-"""Of |z_p|, where it is drawn evenly in how often errors fall."""
-
-UP, ACROSS = 0.07, 0.13
-"""Of an axis: labels nearer than that would overlap, one above or one beside the other."""
+TICKS = (0.1, 0.5, 0.9, 0.99, 0.999, 0.9999)
+"""Of |z_p|, where it is drawn evenly in how fast errors fall."""
 
 FASTEST_DRAWN, SLOWEST_DRAWN = 0.1, 0.9999
 """|z_p|: beyond, three steps are enough, or tens of thousands are not, and colours no longer change."""
 
-MOST_CONTOURS = 12
-"""Powers of ten of a map, up to one: of more only every second is drawn, or third, ..."""
-
 LABEL_ROOM = 0.06
 """Of the axes: a label nearer to their edges, to another or to a marker is left out."""
+
+MOST_CONTOURS = 12
+"""Powers of ten of a map, up to one: of more only every second is drawn, or third, ..."""
 
 HALO: list[AbstractPathEffect] = [withStroke(linewidth=1.5, foreground="black")]
 """So that a white line shows on any colour, in grey too."""
@@ -87,8 +84,7 @@ def accuracy_map_figure(
         norm = FuncNorm((decay_scale, from_decay_scale), vmin=shown.min(), vmax=shown.max())
         # as an image in files of lines, too: a mesh of so many cells has no place there
         mesh = axes.pcolormesh(x, y, stable, cmap="cividis", norm=norm, shading="nearest", rasterized=True)
-        bar = figure.colorbar(mesh, label="$|z_p|$", extend="both", format=lambda value, _: f"{value:g}")
-        bar.set_ticks(_ticks(shown.min(), shown.max(), UP))
+        bar = figure.colorbar(mesh, label="$|z_p|$", extend="both", format="{x:g}", ticks=TICKS)
         bar.ax.minorticks_off()
         contours = _error_contours(axes, x, y, np.ma.masked_where(z_abs >= 1, error))
         boundary = plane_coordinates(*_for_logarithmic_axes(region.boundary), h)
@@ -163,23 +159,9 @@ def _label(axes: Axes, contours: QuadContourSet, points: Sequence[Line2D]) -> No
         if room[widest] > LABEL_ROOM:
             taken.append(along[widest])
             places.append((vertices[widest, 0], vertices[widest, 1]))
-    labels = axes.clabel(
-        contours, fmt=lambda power: f"$10^{{{power:.0f}}}$", fontsize=6, colors="black", inline=False, manual=places
-    )
+    labels = axes.clabel(contours, fmt="$10^{%d}$", fontsize=6, colors="black", inline=False, manual=places)
     for label in labels:
         label.set(rotation=0, bbox={"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none"})
-
-
-def _ticks(low: float, high: float, apart: float) -> list[float]:
-    """Return those of TICKS between two |z_p| that are so far apart on their axis, in shares of it."""
-    places = decay_scale(np.array(TICKS))
-    first, last = decay_scale(np.array([low, high]))
-    shown: list[int] = []
-    for number in reversed(range(len(TICKS))):
-        far = not shown or places[shown[-1]] - places[number] >= apart * (last - first)
-        if low <= TICKS[number] <= high and far:
-            shown.append(number)
-    return [TICKS[number] for number in reversed(shown)]
 
 
 def error_front_figure(fronts: Sequence[Sequence[FrontPoint]]) -> Figure:
@@ -199,7 +181,8 @@ def error_front_figure(fronts: Sequence[Sequence[FrontPoint]]) -> Figure:
             axes.plot(x, y, label=front[0].method.name, **style)
         axes.set(xlabel="$|z_p|$ at most", ylabel="least forced error / motion")
         axes.set_title(rf"equal steps, $\omega h$ = {fronts[0][0].omega_h:.3g}")
-        low, high = axes.get_xlim()
-        axes.set_xticks(ticks := _ticks(low, high, ACROSS), [f"{tick:g}" for tick in ticks])
+        limits = axes.get_xlim()
+        axes.set_xticks(TICKS, [f"{tick:g}" for tick in TICKS])
+        axes.set_xlim(limits)  # which ticks beyond them would widen
         legend_below(figure)
         return figure

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import csv
 import math
 from collections.abc import Mapping, Sequence
-from itertools import chain
+from io import TextIOWrapper
 from typing import TYPE_CHECKING, BinaryIO
 
 import numpy as np
@@ -123,20 +124,8 @@ def write_arrays(arrays: Mapping[str, NDArray[np.generic]], form: str, file: Bin
     if form == "npz":
         np.savez(file, **arrays)  # type: ignore[arg-type]  # its options have other names
         return
-    header = ",".join(map(_csv_text, arrays))
-    rows = map(",".join, zip(*map(_csv_cells, arrays.values()), strict=True))
-    file.write("".join(f"{line}\n" for line in chain([header], rows)).encode("utf-8"))
-
-
-def _csv_cells(array: NDArray[np.generic]) -> list[str]:
-    """Return an array's values as CSV has them: of numbers every digit, as Python writes them."""
-    if array.dtype == np.float64:  # each number once, however often a grid repeats it; by its bits, for 0.0 == -0.0
-        bits, places = np.unique(array.view(np.int64), return_inverse=True)
-        different = list(map(repr, bits.view(np.float64).tolist()))
-        return [different[place] for place in places.tolist()]
-    return list(map(_csv_text if array.dtype.kind == "U" else repr, array.tolist()))
-
-
-def _csv_text(text: str) -> str:
-    """Return a text as CSV has it: in quotes where it holds a character that means something there."""
-    return '"' + text.replace('"', '""') + '"' if any(each in text for each in ',"\r\n') else text
+    text = TextIOWrapper(file, "utf-8", newline="")
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(arrays)
+    writer.writerows(zip(*(array.tolist() for array in arrays.values()), strict=True))
+    text.detach()  # which writes what is left, and leaves the file open

@@ -44,7 +44,7 @@ from bezstab.stability import BestPoint, BoolArray, Choice, FloatArray, Member, 
 from bezstab.stability import spectral_radius as spectral_radius_at
 
 if TYPE_CHECKING:  # so that a picture of the plane does not load what runs mechanisms
-    from bezstab.evidence import Cost, MovingRegion, Run, VerdictMap
+    from bezstab.evidence import Cost, ErrorOf, MovingRegion, Run, VerdictMap
     from bezstab.mechanism import Scene, Simulation
 
 Range = tuple[SupportsFloat, SupportsFloat]
@@ -81,6 +81,17 @@ ALONG_AN_EDGE, ARROWS = 121, 5
 PARABOLA = 400  # points of a smooth curve: more than its pixels tell apart
 NAME_OFF = 4.0  # points from a body up to its name
 MARK_SHAPES = "Ds^vP"
+ERROR_LABELS: Mapping[ErrorOf, str] = {
+    "trajectory": "trajectory error (m, rad)",
+    "constraint": "largest $|c|$ (SI)",
+    "energy": "energy drift (J)",
+}
+COST_LABELS: Mapping[Cost, str] = {
+    "evaluations": "evaluations of f",
+    "time": "processor time (s)",
+    "projection": r"factorizations of $C_q M^{-1} C_q^T$",
+}
+"""Of a run's errors and costs, for axes."""
 
 
 def region(region: Region, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
@@ -389,73 +400,45 @@ def mechanism(scene: Scene, q: FloatArray, axes: Axes | None = None) -> list[Lin
 
 def work_precision(
     runs: Sequence[Run],
-    constraint: bool = False,
+    error: ErrorOf = "trajectory",
     floor: float = 0.0,
     axes: Axes | None = None,
     against: Cost = "evaluations",
     **line: Any,
 ) -> Line2D:
-    """Draw the errors of one method's runs (at least one) against their evaluations, or time, and return the line.
+    """Draw an error (SI) of one method's runs (at least one) against their cost, and return the line.
 
-    The trajectory's error (SI), or with `constraint` the largest |c|; left out are runs that failed and errors up to
-    `floor`, that of the reference. Both axes are logarithmic.
+    Left out are runs that failed and errors up to `floor`, that of the reference. Both axes are logarithmic.
     """
-    axes = _work_precision_axes(constraint, against) if axes is None else axes
+    axes = _work_precision_axes(error, against) if axes is None else axes
     method = runs[0].method
     marker = {"marker": method_marker(method), "markersize": 3}
     style = {**next_line(axes), **marker, "linewidth": 0.8, "label": method.name, **line}
-    x, y = _work_and_error(runs, constraint, floor, against)
-    (drawn,) = axes.plot(x, y, **style)
+    (drawn,) = axes.plot(*_costs_and_errors(runs, error, floor, against), **style)
     return drawn
 
 
 def pareto_front(
     runs: Iterable[Run],
-    constraint: bool = False,
+    error: ErrorOf = "trajectory",
     floor: float = 0.0,
     axes: Axes | None = None,
     against: Cost = "evaluations",
 ) -> Line2D:
     """Draw discs behind the runs of a Pareto front of work and error, as pareto_front finds them; return their line."""
-    axes = _work_precision_axes(constraint, against) if axes is None else axes
-    x, y = _work_and_error(sorted(runs, key=lambda run: run.cost(against)), constraint, floor, against)
+    axes = _work_precision_axes(error, against) if axes is None else axes
+    x, y = _costs_and_errors(sorted(runs, key=lambda run: run.cost(against)), error, floor, against)
     (drawn,) = axes.plot(x, y, "o", color="0.8", markersize=10, zorder=1.5, label="front")
     return drawn
 
 
-def run_error(run: Run, constraint: bool) -> float | None:
-    """Return a run's largest |c| with `constraint`, else its trajectory's error (SI); None if it failed."""
-    if run.failure:
-        return None
-    return run.c_max if constraint else run.trajectory_error
+def _costs_and_errors(runs: Iterable[Run], of: ErrorOf, floor: float, against: Cost) -> tuple[list[float], list[float]]:
+    shown = [(run.cost(against), error) for run in runs if (error := run.error(of)) is not None and error > floor]
+    return [cost for cost, _ in shown], [error for _, error in shown]
 
 
-def error_label(constraint: bool) -> str:
-    """Return what run_error is, for an axis."""
-    return "largest $|c|$ (SI)" if constraint else "trajectory error (m, rad)"
-
-
-def cost_label(against: Cost) -> str:
-    """Return what the cost of a run is, for an axis."""
-    labels = {"evaluations": "evaluations of f", "time": "processor time (s)"}
-    return labels.get(against, r"factorizations of $C_q M^{-1} C_q^T$")
-
-
-def _work_and_error(
-    runs: Iterable[Run], constraint: bool, floor: float, against: Cost
-) -> tuple[list[float], list[float]]:
-    costs: list[float] = []
-    errors: list[float] = []
-    for run in runs:
-        error = run_error(run, constraint)
-        if error is not None and error > floor:
-            costs.append(run.cost(against))
-            errors.append(error)
-    return costs, errors
-
-
-def _work_precision_axes(constraint: bool, against: Cost) -> Axes:
-    axes = _new_axes("", cost_label(against), error_label(constraint))
+def _work_precision_axes(error: ErrorOf, against: Cost) -> Axes:
+    axes = _new_axes("", COST_LABELS[against], ERROR_LABELS[error])
     axes.set(xscale="log", yscale="log")
     return axes
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from types import SimpleNamespace
@@ -26,6 +27,9 @@ from bezstab.show.row_kinds import (
     REGIONS,
 )
 from bezstab.units import alpha_and_beta
+
+EXCLUDED_SHOWN = 5
+"""Methods that do not fit and are shown where people read, the nearest; rows for programs have all."""
 
 NOT_KNOWN = "not known"
 """How the reason begins where the search for a best point failed."""
@@ -209,6 +213,17 @@ def exact_rate_words(mechanism: Mechanism, measurements: Sequence[Measurement]) 
         why = ", as its drivers have no common period"
     shown = "What is shown is how errors grow over the run."
     return f"No rate of {name} is exact: the motion does not begin anew{why}. {shown}"
+
+
+def nearest_rows(likenesses: Sequence[Row]) -> list[Row]:
+    """Return of each column's methods, the nearest first, those that fit and a few that do not."""
+    shown: list[Row] = []
+    excluded: Counter[object] = Counter()
+    for row in likenesses:
+        excluded[row["column"]] += not row["fits"]
+        if row["fits"] or excluded[row["column"]] <= EXCLUDED_SHOWN:
+            shown.append(row)
+    return shown
 
 
 def like_point_row(column: str, point: LikePoint, h: float | None) -> Row:

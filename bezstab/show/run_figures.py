@@ -1,5 +1,7 @@
 """Figures of simulations: a scene, the history of a run, and what accuracy costs."""
 
+from collections.abc import Callable
+from itertools import product
 from textwrap import fill
 from typing import Any
 
@@ -8,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from bezstab.evidence import Run, SweptRuns
+from bezstab.evidence import ErrorOf, SweptRuns
 from bezstab.mechanism import Scene, Simulation
 from bezstab.show import plot
 from bezstab.show.style import (
@@ -29,6 +31,8 @@ TREATMENTS: dict[tuple[str, bool], tuple[str, dict[str, Any]]] = {
     ("projection", False): ("projection", {"marker": "o"}),
 }
 """What holds the constraints, and whether the point is advised: its name and its markers."""
+
+MARKER = {"markersize": 3.5, "markeredgewidth": 0.7}
 
 TIMES = 5  # intervals between the times that are written below a history: times of milliseconds have six digits
 
@@ -78,28 +82,28 @@ def history_figure(simulation: Simulation) -> Figure:
         return figure
 
 
-def work_precision_figure(swept: SweptRuns, scene: str, constraint: bool, floor: float = 0.0) -> Figure:
-    """Return the error of each run against its cost, discs behind the Pareto front, failed runs on top.
+def work_precision_figure(swept: SweptRuns, scene: str, error: ErrorOf, floor: float = 0.0) -> Figure:
+    """Return an error of each run (SI) against its cost, discs behind the Pareto front, failed runs on top.
 
-    The trajectory's error (SI), not drawn below `floor`, that of the reference; or with `constraint` the largest |c|.
+    Errors up to `floor`, that of the reference, are not drawn. The energy's drift has no front.
     """
     runs = swept.runs
     with styled():
         figure = column_figure(1.15)
         axes = figure.add_subplot()
-        known_errors = [error for run in runs if (error := plot.run_error(run, constraint)) is not None]
+        known_errors = [known for run in runs if (known := run.error(error)) is not None]
         top = 10 * max(known_errors, default=1.0)
         for place, method in enumerate(dict.fromkeys(run.method for run in runs)):
             own = [run for run in runs if run.method == method]
-            plot.work_precision(own, constraint, floor, axes, swept.against, **hollow_line_at(place))
+            plot.work_precision(own, error, floor, axes, swept.against, **hollow_line_at(place))
             failed = [run.cost(swept.against) for run in own if run.failure]
             axes.plot(failed, [top] * len(failed), "x", color=line_at(place)["color"], markersize=4)
-        front = swept.constraint_front if constraint else swept.trajectory_front
-        plot.pareto_front([runs[number] for number in front], constraint, floor, axes, swept.against)
+        front = swept.constraint_front if error == "constraint" else swept.trajectory_front
+        plot.pareto_front([runs[number] for number in front], error, floor, axes, swept.against)
         if any(run.failure for run in runs):
             axes.plot([], [], "x", color="0.4", label="diverged")
-        axes.set(xscale="log", yscale="log", title=title_lines(scene), xlabel=plot.cost_label(swept.against))
-        axes.set_ylabel(plot.error_label(constraint))
+        axes.set(xscale="log", yscale="log", title=title_lines(scene))
+        axes.set(xlabel=plot.COST_LABELS[swept.against], ylabel=plot.ERROR_LABELS[error])
         for axis in (axes.xaxis, axes.yaxis):
             mark_powers(axis)
         legend_below(figure)
@@ -118,40 +122,33 @@ def projection_figure(swept: SweptRuns, scene: str, floor: float) -> Figure:
     with styled():
         figure = column_figure(1.9)
         panels = figure.subplots(3, 1, sharex=True)
-        labels = (plot.error_label(constraint=False), plot.error_label(constraint=True), "energy drift (J)")
-        for axes, label, least, error in zip(panels, labels, (floor, 0.0, 0.0), _ERRORS, strict=True):
-            for place, method in enumerate(methods):
-                for key in used:
-                    own = [run for run in swept.runs if (run.method, run.stabilise, run.advised) == (method, *key)]
-                    shown = [(run.cost("projection"), value) for run in own if (value := error(run)) and value > least]
-                    x, y = [cost for cost, _ in shown], [value for _, value in shown]
-                    _, marker = TREATMENTS[key]
-                    axes.plot(x, y, linewidth=0.8, markersize=3.5, markeredgewidth=0.7, **line_at(place), **marker)
+        for axes, (error, label) in zip(panels, plot.ERROR_LABELS.items(), strict=True):
+            least = floor if error == "trajectory" else 0.0
+            for (place, method), key in product(enumerate(methods), used):
+                own = [run for run in swept.runs if (run.method, run.stabilise, run.advised) == (method, *key)]
+                if own:
+                    line = {**MARKER, **line_at(place), **TREATMENTS[key][1]}
+                    plot.work_precision(own, error, least, axes, "projection", **line)
             axes.set(xscale="log", yscale="log", ylabel=label)
             mark_powers(axes.yaxis)
-        panels[-1].set_xlabel(plot.cost_label("projection"))
+        panels[-1].set_xlabel(plot.COST_LABELS["projection"])
         mark_powers(panels[-1].xaxis)
         figure.suptitle(title_lines(scene))
         of_methods = [Line2D([], [], label=method.name, **line_at(place)) for place, method in enumerate(methods)]
         of_treatments = [
-            Line2D([], [], color="0.3", linestyle="none", markersize=3.5, label=name, **marker)
+            Line2D([], [], color="0.3", linestyle="none", label=name, **{**MARKER, **marker})
             for name, marker in map(TREATMENTS.__getitem__, used)
         ]
         legend_below(figure, [*of_methods, *of_treatments])
         return figure
 
 
-def _trajectory_error(run: Run) -> float | None:
-    return plot.run_error(run, constraint=False)
-
-
-def _constraint_error(run: Run) -> float | None:
-    return plot.run_error(run, constraint=True)
-
-
-def _energy_error(run: Run) -> float | None:
-    return None if run.failure else abs(run.energy_drift)
-
-
-_ERRORS = (_trajectory_error, _constraint_error, _energy_error)
-"""In the order of the axes; None of a run that failed."""
+def trade_figures(swept: SweptRuns, scene: str) -> dict[str, Callable[[], Figure]]:
+    """Return what draws the figures of a sweep, by name: feedback against projection, else both errors by cost."""
+    known = swept.reference_error
+    if swept.against == "projection":
+        return {"projection": lambda: projection_figure(swept, scene, known)}
+    return {
+        "trajectory": lambda: work_precision_figure(swept, scene, "trajectory", known),
+        "constraint": lambda: work_precision_figure(swept, scene, "constraint"),
+    }

@@ -7,7 +7,19 @@ import numpy as np
 
 from bezstab.errors import NumericalError
 from bezstab.methods import Method
-from bezstab.stability.arrays import EPS, BoolArray, ComplexArray, Extent, FloatArray, even_points
+from bezstab.rationals import exact
+from bezstab.stability.arrays import (
+    DOUBLE,
+    EPS,
+    MULTIPLE,
+    ROUNDING,
+    SAME,
+    BoolArray,
+    ComplexArray,
+    Extent,
+    FloatArray,
+    even_points,
+)
 from bezstab.stability.closed_loop import AnyPencil, any_pencil_of, converges, largest_modulus, largest_pole
 from bezstab.stability.path_crossings import Path
 from bezstab.stability.pencils import Pencil
@@ -22,16 +34,9 @@ SAMPLES = 400  # over the region's box: a few thousandths of what the search its
 NEIGHBOURS = 32  # on each ring
 RINGS: FloatArray = np.array([1e-1, 1e-2, 1e-3, 1e-4, 1e-5])  # radii, as shares of the region's box
 CLOSE_RINGS: FloatArray = RINGS[1:]  # as shares of a point's own coordinates
-BETTER = 1e-6  # relative: a search ends where its objective is flat to this, along a kink's bed
-KINK = 1e-3  # a pole of multiplicity m, however small, is good to eps^(1/m) of what it is a difference of, which is
-# near one; m = 4 among the best points
-ROUNDINGS = 8  # of a point's coordinates, either way: what they do to |z_p| is how well it is known there
-PARTED = 4.0  # times that: the point itself is found from poles of the same rounding
-NO_LESS = 1e-9  # of one: the search for a least value of zero ends so far from it
-NEAR = (8.0, 64.0)  # alpha_hat, beta_hat: corners of a region may lie a thousandfold further out, least values do not
+PARTED = 4.0  # times what rounding of a point does to |z_p|: it is found from poles of the same rounding
 ROOT_OF_ROUNDING = 1e-7  # a double pole at zero, as far as float64 tells it
-EITHER_SIDE = Fraction(1, 10**9)  # relative: from a margin's end, which is good to rounding
-BETWEEN = 80  # factors on the way to an end, at which |z_p| must be below one
+NEAR = (8.0, 64.0)  # alpha_hat, beta_hat: corners of a region may lie a thousandfold further out, least values do not
 FURTHEST = (1e-8, 1e8)  # factors on the way to which |z_p| is looked at where there is no end
 ONE = Fraction(1)
 
@@ -70,14 +75,14 @@ def check_best_point(
     """
     name = pencil.method.name
     here = float(largest_modulus(pencil, alpha_hat, beta_hat))
-    if abs(here - z_abs) > KINK:
+    if abs(here - z_abs) > MULTIPLE:
         raise NumericalError(f"{name}: |z_p| is {here:.9g} at the best point, not {z_abs:.9g}")
     near = [(0.0, min(high, strongest)) for (_, high), strongest in zip(view, NEAR, strict=True)]
     samples = [sampled_points(extent, alpha_hat, beta_hat) for extent in (view, (near[0], near[1]))]
     alpha_hats, beta_hats = (np.concatenate([each[axis] for each in samples]) for axis in (0, 1))
     sampled = anywhere | ((alpha_hats >= 0) & (beta_hats >= 0))
     values = largest_modulus(pencil, alpha_hats[sampled], beta_hats[sampled])
-    if values.min(initial=np.inf) < z_abs * (1 - BETTER) - ROOT_OF_ROUNDING:
+    if values.min(initial=np.inf) < z_abs * (1 - DOUBLE) - ROOT_OF_ROUNDING:
         raise NumericalError(f"{name}: |z_p| = {values.min():.9g} was sampled below the best point's {z_abs:.9g}")
 
 
@@ -117,11 +122,11 @@ def check_critical(pencil: AnyPencil, alpha_hat: float, beta_hat: float, extent:
     """
     name = pencil.method.name
     here = complex(largest_pole(pencil, alpha_hat, beta_hat))
-    if abs(here) < KINK:
+    if abs(here) < MULTIPLE:
         return  # every pole is zero to its rounding: none is faster
     # where a rival is as large as the double pole, on one side of the point it is smaller
-    beside = np.array([1 - BETTER, 1, 1 + BETTER])
-    if not _real_and_positive(largest_pole(pencil, alpha_hat * beside, beta_hat * beside**2), KINK).any():
+    beside = np.array([1 - DOUBLE, 1, 1 + DOUBLE])
+    if not _real_and_positive(largest_pole(pencil, alpha_hat * beside, beta_hat * beside**2), MULTIPLE).any():
         raise NumericalError(f"{name}: the dominant pole {here:.6g} of the critical point is not real and positive")
 
     def places(radius: FloatArray, angle: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -142,13 +147,13 @@ def check_critical(pencil: AnyPencil, alpha_hat: float, beta_hat: float, extent:
     alpha_hats, beta_hats = places(radius, real_end)
     poles = largest_pole(pencil, alpha_hats, beta_hats)
     # else it is another pole that becomes the larger one there
-    double = np.abs(poles - largest_pole(pencil, *places(radius, pair_end))) <= KINK * np.abs(poles)
+    double = np.abs(poles - largest_pole(pencil, *places(radius, pair_end))) <= MULTIPLE * np.abs(poles)
     if cut:
         double &= (alpha_hats <= extent[0][1]) & (beta_hats <= extent[1][1])
     smallest = np.abs(poles[double]).min(initial=np.inf)
-    near = 1 + EPS * np.arange(-ROUNDINGS, ROUNDINGS + 1)
+    near = 1 + ROUNDING * np.linspace(-1, 1, NEIGHBOURS + 1)
     parted = float(np.ptp(largest_modulus(pencil, alpha_hat * near, beta_hat * near[:, np.newaxis])))
-    if smallest < abs(here) * (1 - BETTER) - PARTED * parted:
+    if smallest < abs(here) * (1 - DOUBLE) - PARTED * parted:
         raise NumericalError(f"{name}: the critical point has {abs(here):.9g}, but a neighbour has {smallest:.9g}")
 
 
@@ -197,7 +202,7 @@ def _compare(
     values = objective(alpha_hats[positive], beta_hats[positive], np.inf)
     here = float(objective(np.array([alpha_hat]), np.array([beta_hat]), np.inf)[0])
     least = int(np.argmin(values))
-    if values[least] < here * (1 - BETTER) - NO_LESS:
+    if values[least] < here * (1 - DOUBLE) - SAME:
         place = f"({alpha_hats[positive][least]:.6g}, {beta_hats[positive][least]:.6g})"
         raise NumericalError(f"{method.name}: the point chosen has {here:.9g}, but {place} has {values[least]:.9g}")
 
@@ -205,14 +210,15 @@ def _compare(
 def check_margin(path: Path, ends: tuple[float, float]) -> None:
     """Raise NumericalError unless the proven verdict turns at both ends of a margin, and |z_p| < 1 between them.
 
-    ends: factors below and above one; 0 and infinity for none. The verdict is asked EITHER_SIDE of an end, |z_p| at
-    factors on the way, up to FURTHEST where there is no end; where rounding has it one or more, the verdict again.
+    ends: factors below and above one; 0 and infinity for none. The verdict is asked a part in 1e9 to either side of an
+    end, |z_p| at factors on the way, up to FURTHEST where there is no end; where that has it one or more, the verdict
+    again.
     """
     name = path.method.name
     pencil = any_pencil_of(path.method)
     for outwards, end, furthest in zip((-1, 1), ends, FURTHEST, strict=True):
         finite = 0 < end < np.inf
-        factors = np.geomspace(1, end if finite else furthest, BETWEEN + 2)[1:-1]
+        factors = np.geomspace(1, end if finite else furthest, SAMPLES // 4)[1:-1]
         alpha_hats, beta_hats = (float(x) * factors**k for x, k in zip(path.at(ONE), path.powers, strict=True))
         suspicious = factors[largest_modulus(pencil, alpha_hats, beta_hats) >= 1]
         if not all(converges(path.method, *path.at(Fraction(factor))) for factor in suspicious.tolist()):
@@ -220,7 +226,7 @@ def check_margin(path: Path, ends: tuple[float, float]) -> None:
         if not finite:
             continue
         for side, stable in ((-1, True), (1, False)):
-            factor = Fraction(end) * (1 + side * outwards * EITHER_SIDE)
+            factor = Fraction(end) * (1 + side * outwards * exact(SAME))
             if (factor - 1) * outwards <= 0:
                 continue  # the margin is one to rounding
             if converges(path.method, *path.at(factor)) != stable:

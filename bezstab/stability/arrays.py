@@ -1,4 +1,4 @@
-"""Names for the arrays of this room, the spacing of their numbers, even points, and how arrays of others are read."""
+"""Names for the arrays of this room, how exact their numbers are, even points, and how arrays of others are read."""
 
 from typing import SupportsFloat
 
@@ -17,19 +17,26 @@ Extent = tuple[tuple[float, float], tuple[float, float]]
 EPS = float(np.finfo(float).eps)
 """The spacing of float64 at one, 2^-52."""
 
-DOUBLE = 64 * EPS**0.5
-"""Relative: by less does rounding part a double pole, or move it from zero."""
+ROUNDING = 1e-13
+"""Relative: numbers that differ by less are the same but for the rounding of a few operations, a hundredfold."""
 
-TRIPLE = 16 * EPS ** (1 / 3)
-"""The same of a triple pole."""
+SAME = 1e-9
+"""Relative: the same but for what a longer computation loses. Of Newton's method: after a last step of this size, what
+is left is its square, which is rounding."""
+
+DOUBLE = 1e-6
+"""Relative: what is known to the root of rounding: where two roots meet, and the place of a flat extreme."""
+
+MULTIPLE = 1e-3
+"""Relative: a root of multiplicity m is known to eps^(1/m), and so is all that is near one; m is four at most."""
+
+TRIPLE = 1e-4
+"""The same of a triple root: where poles pass for one, beside a kink of other kinds."""
 
 SLOW = 4096 * EPS
-"""1 - |z_p| of which rounding leaves three digits: such a decay takes 1e12 steps, and counts as none."""
+"""1 - |z_p| of which rounding leaves three digits: such a decay takes 1e13 steps, and counts as none."""
 
-SETTLED = 1e-9
-"""Relative: an iteration whose last step is no larger has come to what rounding leaves, or to its square."""
-
-PLASTIC = 1.32471795724474602596
+PLASTIC = float(np.cbrt((9 + np.sqrt(69)) / 18) + np.cbrt((9 - np.sqrt(69)) / 18))
 """The number with x^3 = x + 1: multiples of 1/x and 1/x^2 fill a square evenly (M. Roberts, 2018)."""
 
 

@@ -18,7 +18,7 @@ from numpy.polynomial.polynomial import polyroots
 from bezstab.errors import NumericalError
 from bezstab.methods import Method, fixed_poles, implicit
 from bezstab.stability.answer_checks import check_best_point, check_deadbeat
-from bezstab.stability.arrays import DOUBLE, EPS, SETTLED, ComplexArray, FloatArray
+from bezstab.stability.arrays import DOUBLE, EPS, SAME, ComplexArray, FloatArray
 from bezstab.stability.charts import chart_of
 from bezstab.stability.closed_loop import AnyPencil, free_pencil_of, largest_modulus
 from bezstab.stability.far_limits import FarLimit, least_far_limit
@@ -30,7 +30,7 @@ from bezstab.stability.searches import checked, zoom_on_minimum
 REACH = np.finfo(float).max ** 0.5  # of mu, whose square is beta_hat; one zero of R is within its degree
 ARC_SAMPLES = 513  # of theta, where a curve of equal |z_p| is looked for, a tenth of them at least
 ARC_SHARE = 1 / 10  # of the samples lie on such a curve, if there is one; a kink shows at isolated theta only
-ARC_ZOOMS = 5  # each of as many samples, over two spacings of the last: the curve's end, to rounding
+ARC_ZOOM_POINTS, ARC_ZOOMS = 65, 7  # each by 1/32: the curve's end, to rounding
 
 
 @dataclass(frozen=True, repr=False)
@@ -108,9 +108,9 @@ def _deadbeat(pencil: Pencil) -> BestPoint | None:
     """Return the zeros of R, as z = R(mu), the most damped first; of an implicit method those where Re mu <= 0."""
     zeros: list[complex] = []
     for root in np.sort_complex(deadbeat_mu(pencil)):
-        mu = complex(root.real, abs(root.imag) if abs(root.imag) > SETTLED * abs(root) else 0)
+        mu = complex(root.real, abs(root.imag) if abs(root.imag) > SAME * abs(root) else 0)
         if implicit(pencil.method):
-            if mu.real > SETTLED * abs(mu):
+            if mu.real > SAME * abs(mu):
                 continue
             mu = complex(min(mu.real, 0.0), mu.imag)
         if abs(mu) < REACH and all(abs(mu - other) > DOUBLE * abs(mu) for other in zeros):
@@ -155,7 +155,7 @@ def _from_grid(pencil: AnyPencil, stable: Region, limit: FarLimit, finer: int) -
     sampled, least = least_on(chart)
     if limit.z_abs < min(sampled, least.z_abs if least else math.inf) * (1 - DOUBLE):
         return limit
-    if least is None or least.z_abs > sampled * (1 + SETTLED) + EPS**0.5 * (sampled < EPS**0.25):
+    if least is None or least.z_abs > sampled * (1 + SAME) + EPS**0.5 * (sampled < EPS**0.25):
         raise NumericalError(f"{chart.name}: |z_p| = {sampled:.6g} was sampled, but no kink as low could be solved for")
     alpha_hat, beta_hat = chart.user_point(least.place)
     has_mu = isinstance(pencil, Pencil)
@@ -214,7 +214,7 @@ def _other_end(pencil: Pencil, z_abs: float, mu: complex) -> complex | None:
         """Return the locus at the level, and its distances from mu; -1 where f is larger."""
         locus = roots_in_mu(pencil, z_abs * np.exp(1j * theta))
         equal = np.isfinite(locus) & (locus.imag >= 0)
-        equal[equal] = all_inside(pencil, locus[equal], z_abs * (1 + SETTLED))
+        equal[equal] = all_inside(pencil, locus[equal], z_abs * (1 + SAME))
         return locus, np.where(equal, np.abs(locus - mu), -1)
 
     theta = np.linspace(-np.pi, np.pi, ARC_SAMPLES)
@@ -226,8 +226,8 @@ def _other_end(pencil: Pencil, z_abs: float, mu: complex) -> complex | None:
         lambda points: -distances(points[:, 0])[1].max(axis=0),
         np.array([furthest]),
         np.array([theta[1] - theta[0]]),
-        points=ARC_SAMPLES,
-        shrink=2 / (ARC_SAMPLES - 1),
+        points=ARC_ZOOM_POINTS,
+        shrink=2 / (ARC_ZOOM_POINTS - 1),
         rounds=ARC_ZOOMS,
     )
     locus, distance = distances(end)

@@ -34,34 +34,20 @@ from itertools import pairwise
 from math import inf, isfinite, pi
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
 from numpy.polynomial.polynomial import polyval2d
 from numpy.typing import NDArray
 
-from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
+from bezstab.stability.arrays import DOUBLE, ROUNDING, SAME, BoolArray, ComplexArray, FloatArray
 from bezstab.stability.locus_tracks import Track, sampled_angles, tracks
 from bezstab.stability.pencils import Pencil, moduli_in_z, roots_in_mu
+from bezstab.stability.quadratures import integrals
 from bezstab.stability.root_finding import roots_of_table
-from bezstab.stability.searches import bisected, zoom_on_minimum
+from bezstab.stability.searches import AT_ONCE, bisected, least_between
 
 ARC_POINTS = 400  # drawn per arc: chords stay within 1e-5 of the curve
-NODES = 16  # of Gauss and Legendre on a panel
-QUADRATURE = 1e-14  # of |mu|^3: a panel is split until its halves agree to this, a hundredfold above rounding
 PANEL_SAMPLES = 50  # of an arc to each of the first panels, where it may turn so fast that halves miss it alike
-CUT_POINTS = 15  # of each bracket at a time: to solve for the roots at one takes as long as at a dozen
-SPLITS = 40  # halvings of a panel at most: towards a corner of the locus they end at rounding
-FINER = 33  # samples of a bracket: from one zoom to the next by the spacing of the last, 1/16
-TURN_ZOOMS = 8  # each by 1/16: from a sample's spacing to where a smooth extreme is flat to rounding
-REMEMBERED = 256  # turns of so many arcs and directions: a region asks for the same ones four times
-DIP_ZOOMS = 5  # each by 1/16: an arc or a gap of 1e-8 rad is seen, and no shorter one would be drawn
-MARGIN = 1e-13  # of the level: rounding of a simple root's modulus, a hundredfold
-AXIS = 1e-7  # of |mu|: an arc that runs into the real axis ends this far from it, its conjugate root within MARGIN
-REAL = 1e-9  # an imaginary part below this times |mu| is rounding where a branch is known to cross the real axis
-ON_THE_RIM = 1e-9  # of its radius: an arc that was cut there ends on it to rounding
 RIM = 64.0  # times everything finite: far enough out to tell how the region goes on, near enough to be checked
-AT_INFINITY = 1e10  # a larger |mu| is the rounding of an infinite one
-FAR = 1e300  # a finite stand-in for the modulus of an infinite root
-SAME_MU = 1e-13  # of |mu|: simple roots of pi(+-level, .) closer than this are one, a hundredfold above rounding
+AT_INFINITY = 1 / SAME  # a larger |mu| is the rounding of an infinite one
 
 Interval = tuple[float, float]
 
@@ -99,19 +85,21 @@ class Arc(Track):
 
         (p, q) = (-2x, x^2 + y^2) has the Jacobian 4y, and by Green int int 4y dx dy = -closed int 2 y^2 dx.
         """
-        stride = PANEL_SAMPLES if self.pencil.implicit else len(self.theta)  # far out it turns within few samples
-        edges = np.unique(np.append(self.theta[::stride], self.theta[-1]))
-        return _integral(self._area_density, edges, tolerance=QUADRATURE * float(np.abs(self.mu).max()) ** 3)
+        edges = np.unique(np.append(self.theta[::PANEL_SAMPLES], self.theta[-1]))
+        (area,), _ = integrals(self._area_density, np.stack([edges[:-1], edges[1:]], axis=1))
+        return float(area)
 
     def _area_density(self, theta: FloatArray) -> FloatArray:
-        """Return -2 y^2 dx/dtheta, with dmu/dz = -(d pi/dz) / (d pi/dmu)."""
-        z = self.level * np.exp(1j * theta)
-        mu = self.at(theta)
-        slope = -1j * z * polyval2d(z, mu, self.pencil.table_by_z) / polyval2d(z, mu, self.pencil.table_by_mu)
-        return np.asarray(-2 * mu.imag**2 * slope.real)
+        """Return -2 y^2 dx/dtheta, shape (1, *that of theta), with dmu/dz = -(d pi/dz) / (d pi/dmu)."""
+        z = self.level * np.exp(1j * theta.ravel())
+        mu = self.at(theta.ravel())
+        with np.errstate(all="ignore"):  # at an end, of no weight, two branches may meet
+            slope = -1j * z * polyval2d(z, mu, self.pencil.table_by_z) / polyval2d(z, mu, self.pencil.table_by_mu)
+            density = -2 * mu.imag**2 * slope.real
+        return np.where(np.isfinite(density), density, 0).reshape(1, *theta.shape)
 
 
-@lru_cache(maxsize=REMEMBERED)
+@lru_cache  # a region asks for the same ones four times
 def _turns(arc: Arc, towards: tuple[float, float]) -> FloatArray:
     """Return every theta where an arc's coordinate turns, by narrowing in on the samples where it does."""
     direction = np.array(towards)
@@ -124,17 +112,10 @@ def _turns(arc: Arc, towards: tuple[float, float]) -> FloatArray:
     high = arc.theta[np.minimum(turning + 1, len(arc.theta) - 1)]
 
     def below_the_turn(theta: FloatArray) -> FloatArray:
-        return -upwards * arc.coordinate(theta.ravel(), direction).reshape(upwards.size, -1)
+        return -upwards * arc.coordinate(theta.ravel(), direction).reshape(theta.shape)
 
-    theta, _ = zoom_on_minimum(
-        below_the_turn,
-        (low + high)[:, np.newaxis] / 2,
-        (high - low)[:, np.newaxis] / 2,
-        points=FINER,
-        shrink=2 / (FINER - 1),
-        rounds=TURN_ZOOMS,
-    )
-    return theta[:, 0]
+    theta, _ = least_between(below_the_turn, low, high)
+    return theta
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,7 +169,7 @@ def _rim_inside(pencil: Pencil, level: float, arcs: list[Arc], radius: float) ->
     if not isfinite(radius):
         return 0.0
     ends = np.array([mu for arc in arcs for mu in (arc.mu[0], arc.mu[-1])], complex)
-    met = np.angle(ends[np.abs(ends) > radius * (1 - ON_THE_RIM)])
+    met = np.angle(ends[np.abs(ends) > radius * (1 - SAME)])
     places = np.concatenate([[0.0], np.sort(met), [pi]])
     middles = radius * np.exp(0.5j * (places[1:] + places[:-1]))
     return float(np.diff(places)[_all_within(pencil, middles, level)].sum())
@@ -198,43 +179,6 @@ def _all_within(pencil: Pencil, mu: ComplexArray, level: float) -> BoolArray:
     """Return whether all roots at each of a row of mu have |z| < level; False where one is infinite."""
     within: BoolArray = moduli_in_z(pencil, mu).max(axis=0) < level
     return within
-
-
-# Adaptive panels. An arc's density is analytic but at its ends, where it may behave like a root of the distance to a
-# corner. Each panel is compared with its two halves; halves that disagree become panels themselves:
-#
-#     |---------------|---------------|      agree: counted     disagree: halved
-#     |---------------|-------|-------|
-#     |---------------|-------|---|---|      towards a corner the panels shrink geometrically, and so do their errors
-
-
-def _integral(density: Callable[[FloatArray], FloatArray], edges: FloatArray, tolerance: float) -> float:
-    """Return the integral of a density over panels of Gauss and Legendre, halved until they agree.
-
-    `edges` are those of the first panels, ascending.
-    """
-    nodes, weights = leggauss(NODES)
-
-    def panel_integrals(panels: FloatArray) -> FloatArray:
-        half = np.diff(panels) / 2
-        theta = panels[:, :1] + half + half * nodes
-        return np.asarray(half[:, 0] * (density(theta.ravel()).reshape(theta.shape) @ weights))
-
-    panels = np.stack([edges[:-1], edges[1:]], axis=1)
-    whole = panel_integrals(panels)
-    total = 0.0
-    for _ in range(SPLITS):
-        middle = panels.mean(axis=1)
-        halves = np.stack([panels[:, 0], middle, middle, panels[:, 1]], axis=1).reshape(-1, 2)
-        parts = panel_integrals(halves)
-        both = parts[::2] + parts[1::2]
-        rough = np.abs(both - whole) > tolerance
-        total += float(np.sum(both[~rough]))
-        if not rough.any():
-            return total
-        panels = halves[np.repeat(rough, 2)]
-        whole = parts[np.repeat(rough, 2)]
-    return total + float(whole.sum())
 
 
 # Cutting. Along a branch two functions change sign where an arc may begin or end: Im mu, and by how much the largest
@@ -255,7 +199,7 @@ def _bounding_arcs(track: Track, radius: float) -> Iterator[Arc]:
         return np.asarray(track.at(theta).imag)
 
     def outside(theta: FloatArray) -> FloatArray:
-        return _largest_other(track, theta) + MARGIN
+        return _largest_other(track, theta) + ROUNDING
 
     inner = track.theta[1:-1]
     cuts = [track.theta[[0, -1]], sign_changes(height, inner)]
@@ -270,11 +214,11 @@ def _bounding_arcs(track: Track, radius: float) -> Iterator[Arc]:
         theta = _drawn_angles(track, start, end)
         mu = track.at(theta)
         mu_middle = complex(track.at(middle)[0])
-        if abs(mu_middle.imag) <= REAL * abs(mu_middle):
+        if abs(mu_middle.imag) <= SAME * abs(mu_middle):
             continue  # along the real axis
         if abs(mu_middle) > radius:
             continue
-        if np.abs(mu - mu_middle).max() <= REAL * abs(mu_middle):
+        if np.abs(mu - mu_middle).max() <= SAME * abs(mu_middle):
             continue  # rounding, where several roots meet on the circle
         if mu_middle.imag > 0:
             yield Arc(track.pencil, track.level, theta, mu)
@@ -287,8 +231,8 @@ def _largest_other(track: Track, theta: FloatArray) -> FloatArray:
     z = track.level * np.exp(1j * theta)
     roots = roots_of_table(track.pencil.table, track.at(theta))
     off = np.abs(roots - z)
-    modulus = np.where(np.isfinite(off), np.abs(roots), FAR)
-    own = np.argmin(np.where(np.isfinite(off), off, FAR), axis=0)
+    modulus = np.where(np.isfinite(off), np.abs(roots), np.inf)
+    own = np.argmin(np.where(np.isfinite(off), off, np.inf), axis=0)
     np.put_along_axis(modulus, own[np.newaxis], 0, axis=0)
     return np.asarray(modulus.max(axis=0) / track.level - 1)
 
@@ -317,7 +261,7 @@ def sign_changes(values_at: Callable[[FloatArray], FloatArray], samples: FloatAr
     def has_changed(inside: FloatArray) -> BoolArray:
         return np.asarray((values_at(inside.ravel()).reshape(inside.shape) >= 0) == after)
 
-    low, high = bisected(has_changed, theta[change], theta[change + 1], at_once=CUT_POINTS)
+    low, high = bisected(has_changed, theta[change], theta[change + 1], at_once=AT_ONCE)
     return (low + high) / 2
 
 
@@ -334,17 +278,10 @@ def _with_dips(values_at: Callable[[FloatArray], FloatArray], theta: FloatArray)
     low, high = theta[dip - 1], theta[dip + 1]
 
     def towards_zero(points: FloatArray) -> FloatArray:
-        return sign[:, np.newaxis] * values_at(points.ravel()).reshape(points.shape[:-1])
+        return sign[:, np.newaxis] * values_at(points.ravel()).reshape(points.shape)
 
-    found, least = zoom_on_minimum(
-        towards_zero,
-        (low + high)[:, np.newaxis] / 2,
-        (high - low)[:, np.newaxis] / 2,
-        points=FINER,
-        shrink=2 / (FINER - 1),
-        rounds=DIP_ZOOMS,
-    )
-    found_dips = found[least < 0, 0]
+    found, least = least_between(towards_zero, low, high)
+    found_dips = found[least < 0]
     if not found_dips.size:
         return theta, values
     theta = np.sort(np.append(theta, found_dips))
@@ -361,8 +298,8 @@ def _real_intervals(pencil: Pencil, level: float, arcs: list[Arc], radius: float
     if isfinite(radius):
         points = np.array([-radius, *points[np.abs(points) < radius], radius])
     middle = (points[1:] + points[:-1]) / 2
-    inside = _all_within(pencil, middle.astype(complex), level * (1 - MARGIN))
-    through = _all_within(pencil, points.astype(complex), level * (1 - REAL))  # no end after all
+    inside = _all_within(pencil, middle.astype(complex), level * (1 - ROUNDING))
+    through = _all_within(pencil, points.astype(complex), level * (1 - SAME))  # no end after all
     merged: list[Interval] = []
     for k in np.flatnonzero(inside).tolist():
         start, end = float(points[k]), float(points[k + 1])
@@ -377,20 +314,20 @@ def _ends_on_the_axis(pencil: Pencil, level: float, arcs: list[Arc]) -> FloatArr
     """Return all mu where an interval of the axis may end, ascending, of those that coincide one.
 
     A mu with a root at +-level is solved for, good to rounding: far out, at a zero of R, S_r may be as narrow as 1e-10
-    of mu and yet hold the furthest alpha_hat. Where an arc with a pair on the circle meets the axis it is good to REAL.
+    of mu and yet hold the furthest alpha_hat. Where an arc with a pair on the circle meets the axis it is good to SAME.
     """
     at_real_z = roots_in_mu(pencil, np.array([level, -level], complex)).ravel()
     at_real_z = at_real_z[np.isfinite(at_real_z)]
-    real = np.abs(at_real_z.imag) <= AXIS * np.abs(at_real_z)
-    solved = _distinct(at_real_z[real].real, SAME_MU)
+    real = np.abs(at_real_z.imag) <= DOUBLE * np.abs(at_real_z)
+    solved = _distinct(at_real_z[real].real, ROUNDING)
     arrived: list[float] = []
     for arc in arcs:
         for theta, mu in ((arc.theta[0], arc.mu[0]), (arc.theta[-1], arc.mu[-1])):
-            if abs(mu.imag) <= AXIS * abs(mu) and 0 < abs(theta) < pi:
+            if abs(mu.imag) <= DOUBLE * abs(mu) and 0 < abs(theta) < pi:
                 arrived.append(float(mu.real))
-    ends = _distinct(np.array(arrived), REAL)
+    ends = _distinct(np.array(arrived), SAME)
     if solved.size:
-        apart = np.abs(ends[:, np.newaxis] - solved).min(axis=1) > REAL * np.abs(ends)
+        apart = np.abs(ends[:, np.newaxis] - solved).min(axis=1) > SAME * np.abs(ends)
         ends = ends[apart]
     return np.sort(np.append(solved, ends))
 

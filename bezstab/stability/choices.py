@@ -35,10 +35,11 @@ from bezstab.stability.closed_loop import (
     verdict,
 )
 from bezstab.stability.critical_points import critical_place
-from bezstab.stability.curve_choices import AS_SMALL, Curve, least_along, mildest_along
+from bezstab.stability.curve_choices import Curve, least_along, mildest_along
 from bezstab.stability.forced_errors import OMEGA_H
 from bezstab.stability.margins import Margins, stability_margins
 from bezstab.stability.regions import Region, pole_place, region
+from bezstab.stability.root_finding import TOLD
 from bezstab.stability.searches import checked, first_where, zoom_on_minimum
 from bezstab.units import check_step
 
@@ -406,7 +407,7 @@ def _slowest(method: Method, modulus: Modulus, within: Within, spread: float) ->
         if np.isfinite(reached):
             kept = left
             for shares in (largest_step, smaller_steps):  # in this order: most points fail at the largest
-                kept = kept[below(reached * (1 + AS_SMALL), shares, alpha_hat[kept], beta_hat[kept])]
+                kept = kept[below(reached * (1 + TOLD), shares, alpha_hat[kept], beta_hat[kept])]
             if kept.size:  # next to a double pole even the point that was reached may seem larger
                 worst[np.setdiff1d(left, kept)] = np.inf
                 left = kept

@@ -12,18 +12,15 @@ from typing import Any
 import numpy as np
 
 from bezstab.errors import NumericalError
-from bezstab.stability.answer_checks import BETTER, NO_LESS, Modulus, Objective
-from bezstab.stability.arrays import BoolArray, FloatArray, even_points
-from bezstab.stability.searches import first_where, zoom_on_minimum
+from bezstab.stability.answer_checks import Modulus, Objective
+from bezstab.stability.arrays import DOUBLE, ROUNDING, SAME, BoolArray, FloatArray, even_points
+from bezstab.stability.root_finding import TOLD
+from bezstab.stability.searches import first_where, least_between
 
 Curve = Callable[[Any], tuple[Any, Any]]
 """alpha_hat and beta_hat over arrays of shares of the way."""
 
-AS_SMALL = 1e-10  # relative: a value by so much above the least so far is looked at; Schur's recursion rounds by less
 SAMPLES = 1000  # |z_p| has no features as narrow as that, and what is narrower the zoom finds
-GRID, ZOOM, ROUNDS = 21, 0.2, 15  # 0.2^15 = 3e-11 of the curve, where the objective is flat to rounding
-ROUNDING = 1e-14  # of a share: so near to a sample it is the sample, which may be an exact point, as beta_hat = 1 is
-CHECKED = 400  # shares, between the samples
 
 
 def least_along(curve: Curve, objective: Objective) -> tuple[float, float]:
@@ -38,24 +35,18 @@ def least_along(curve: Curve, objective: Objective) -> tuple[float, float]:
     samples = np.linspace(0, 1, SAMPLES + 1)[1:]
     sampled = values(samples)
     nearest = samples[np.argmin(sampled)]
-    (zoomed,), least = zoom_on_minimum(
-        lambda points: values(points[:, 0]),
-        np.array([nearest]),
-        reach=np.array([2 / SAMPLES]),
-        points=GRID,
-        shrink=ZOOM,
-        rounds=ROUNDS,
-        fold=lambda points: np.clip(points, samples[0], 1),
+    zoomed, least = least_between(
+        values, np.maximum(nearest - 2 / SAMPLES, samples[0]), np.minimum(nearest + 2 / SAMPLES, 1)
     )
-    as_small = min(float(least), float(sampled.min())) * (1 + AS_SMALL)
+    as_small = min(float(least), float(sampled.min())) * (1 + TOLD)
     shares = np.sort(np.append(samples, zoomed))
     found = first_where(lambda some: values(some, as_small) <= as_small, shares)
     best = float(zoomed) if found is None else found[1]
-    if abs(best - nearest) < ROUNDING:
+    if abs(best - nearest) < ROUNDING:  # the sample may be an exact point, as beta_hat = 1 is
         best = float(nearest)
     here = float(values(np.array([best]))[0])
-    between, _ = even_points(CHECKED)
-    if values(between).min() < here * (1 - BETTER) - NO_LESS:
+    between, _ = even_points(SAMPLES)
+    if values(between).min() < here * (1 - DOUBLE) - SAME:
         raise NumericalError(f"the point chosen along the curve has {here:.9g}, but another has less")
     return _point(curve, best)
 

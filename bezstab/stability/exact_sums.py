@@ -15,8 +15,8 @@ from bezstab.stability.arrays import ComplexArray, FloatArray
 
 ExactMatrix = Sequence[Sequence[Fraction]]
 
-HUGE = 1e280  # beyond, exact products would overflow on the way to a result that fits
 SHIFT = 64  # binary places by which what is huge is scaled down, and what comes of it up again
+HUGE = float(np.finfo(float).max) / 2.0 ** (2 * SHIFT)  # beyond, products may overflow on the way to what fits
 SPLITTER = 2.0**27 + 1  # multiplying by it parts the 53 bits of a float64 into two halves (Dekker)
 
 

@@ -25,18 +25,15 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 
-from bezstab.stability.arrays import FloatArray
+from bezstab.stability.arrays import DOUBLE, SAME, FloatArray
 from bezstab.stability.plane_pencils import PlanePencil
-from bezstab.stability.searches import zoom_on_minimum
+from bezstab.stability.searches import least_between
 
 Direction = tuple[int, int]
 """(p, q) of alpha_hat = x t^p, beta_hat = y t^q, without a common factor."""
 
 PREFERRED: tuple[Direction, ...] = ((0, 1), (1, 0), (1, 1), (1, 2))  # of the directions of a corner, the first it has
 RATIO, RATIOS = 1e6, 2001  # of alpha_hat^q to beta_hat^p, either way: beyond, the corners decide
-ZOOM_POINTS, ZOOM, ZOOMS = 13, 0.6, 48  # 0.6^47 = 4e-11 of the samples' spacing
-NO_LOWER = 1e-6  # relative: what is lower by less is rounding, of poles that are double
-VANISHES = 1e-9  # of the sum of its terms' sizes: a coefficient below it is zero, at a ratio that is known so well
 
 
 @dataclass(frozen=True)
@@ -68,7 +65,7 @@ def least_far_limit(pencil: PlanePencil) -> FarLimit:
     fan = pairwise([(0, -1), *sides, (-1, 0)])
     on_corner = min((_on_corner(pencil, exponents, *between) for between in fan), key=lambda limit: limit.z_abs)
     on_side = min((_on_side(pencil, side) for side in sides), key=lambda limit: limit.z_abs, default=on_corner)
-    return on_side if on_side.z_abs < on_corner.z_abs * (1 - NO_LOWER) else on_corner
+    return on_side if on_side.z_abs < on_corner.z_abs * (1 - DOUBLE) else on_corner  # of poles that may be double
 
 
 def _angle(direction: Direction) -> float:
@@ -125,17 +122,11 @@ def _on_side(pencil: PlanePencil, direction: Direction) -> FarLimit:
         return _largest_moduli(np.asarray(polyval(np.exp(log_ratios), table.T)))
 
     samples = np.linspace(-np.log(RATIO), np.log(RATIO), RATIOS)
-    place, value = zoom_on_minimum(
-        lambda points: modulus(points[:, 0]),
-        np.array([samples[np.argmin(modulus(samples))]]),
-        np.array([samples[1] - samples[0]]),
-        points=ZOOM_POINTS,
-        shrink=ZOOM,
-        rounds=ZOOMS,
-    )
-    ratio = float(np.exp(place[0]))
+    least, spacing = samples[np.argmin(modulus(samples))], samples[1] - samples[0]
+    place, value = least_between(modulus, np.asarray(least - spacing), np.asarray(least + spacing))
+    ratio = float(np.exp(place))
     sizes = polyval(ratio, np.abs(table[:-1]).T)
-    deadbeat = (np.abs(polyval(ratio, table[:-1].T)) <= VANISHES * sizes).all()
+    deadbeat = (np.abs(polyval(ratio, table[:-1].T)) <= SAME * sizes).all()
     return FarLimit(0.0 if deadbeat else float(value), direction, ratio)
 
 

@@ -7,8 +7,9 @@ import numpy as np
 from bezstab.methods import Method
 from bezstab.stability.arrays import ComplexArray, FloatArray
 from bezstab.stability.closed_loop import any_pencil_of, largest_pole
+from bezstab.stability.root_finding import CHUNK
 
-BLOCK = 65536  # points between two looks at the progress bar
+BLOCK = 4 * CHUNK  # points between two looks at the progress bar
 
 QUALITY = {"fast": 50, "balanced": 200, "fine": 1000}
 """Points per axis of a map (tests/bench/map_costs.py): B4's boundary is read off to 1e-4, 4e-6, 2e-7."""

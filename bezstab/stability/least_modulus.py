@@ -26,7 +26,7 @@ from itertools import combinations
 import numpy as np
 from numpy.polynomial.polynomial import polydiv, polyfromroots, polyroots
 
-from bezstab.stability.arrays import DOUBLE, EPS, SETTLED, TRIPLE, ComplexArray, FloatArray
+from bezstab.stability.arrays import DOUBLE, EPS, SAME, TRIPLE, ComplexArray, FloatArray
 from bezstab.stability.charts import Chart, Place
 from bezstab.stability.searches import zoom_on_minimum
 
@@ -75,8 +75,8 @@ def solved(chart: Chart, start: Place, active: Sequence[Active], held: Mapping[i
         sizes = np.linalg.norm(slopes * scale, axis=1)
         sizes[sizes == 0] = 1.0
         weights = scale / sizes[:, np.newaxis]
-        free = np.linalg.matrix_rank(slopes * weights, tol=SETTLED) < len(x)
-        multipliers = np.linalg.lstsq((slopes * weights).T, -slope * scale, rcond=SETTLED)[0]
+        free = np.linalg.matrix_rank(slopes * weights, tol=SAME) < len(x)
+        multipliers = np.linalg.lstsq((slopes * weights).T, -slope * scale, rcond=SAME)[0]
 
         def lagrange(x: FloatArray) -> FloatArray:
             """Return Lagrange's conditions beside the equations."""
@@ -97,13 +97,13 @@ def solved(chart: Chart, start: Place, active: Sequence[Active], held: Mapping[i
             if settled:
                 left = float(np.abs(rows / sizes).max())
                 return Solved((float(x[0]), float(x[1])), _poles(x, active), left)
-            step = np.linalg.lstsq(matrix, residual, rcond=SETTLED)[0]
+            step = np.linalg.lstsq(matrix, residual, rcond=SAME)[0]
             x = x - step[: len(x)] * scale
             if free:
                 multipliers = multipliers - step[len(x) :]
             if free and np.any(np.abs(x - first) > allowed):
                 return None
-            settled = bool(np.abs(step[: len(x)]).max() <= SETTLED)
+            settled = bool(np.abs(step[: len(x)]).max() <= SAME)
     return None
 
 
@@ -173,7 +173,7 @@ def _best(chart: Chart, solutions: list[Least]) -> Least | None:
 
     def alike(each: Least) -> bool:
         nearby = np.allclose(each.place, least.place, rtol=TRIPLE, atol=TRIPLE * SMALL)
-        return each.z_abs <= least.z_abs + (TRIPLE if nearby else SETTLED) * (least.z_abs or 1.0)
+        return each.z_abs <= least.z_abs + (TRIPLE if nearby else SAME) * (least.z_abs or 1.0)
 
     def preferred(each: Least) -> tuple[bool, int, float]:
         return all(each.place[edge] for edge in chart.edges), -each.multiplicity, each.place[1]
@@ -248,7 +248,7 @@ def _solutions(chart: Chart, start: FloatArray) -> Iterator[Least]:
         return
     for active, held in _active_sets(chart, first, z):
         found = solved(chart, first, active, held)
-        if found is None or found.residual > SETTLED:
+        if found is None or found.residual > SAME:
             continue
         place = _folded(chart, found.parameters)
         z = found.z if found.parameters[1] >= 0 else found.z.conj()
@@ -264,7 +264,7 @@ def _solutions(chart: Chart, start: FloatArray) -> Iterator[Least]:
 def _folded(chart: Chart, parameters: Place) -> Place | None:
     """Return where a solution lies on the chart, on an edge if it is there to rounding; None if beyond one."""
     size = max(*np.abs(parameters), SMALL)
-    x, y = (0.0 if abs(each) <= SETTLED * size else each for each in parameters)
+    x, y = (0.0 if abs(each) <= SAME * size else each for each in parameters)
     folded = chart.fold(np.array([x, y])).tolist()
     return (folded[0], folded[1]) if folded[0] == x and (folded[1] == y or not chart.real) else None
 
@@ -309,9 +309,9 @@ def _all_zero(chart: Chart, start: Place) -> Iterator[Least]:
                 value = equations(x)
                 if not np.isfinite([*sides, value]).all():
                     break
-                step = np.linalg.lstsq(np.array(sides).T / 2, value, rcond=SETTLED)[0] * beside
+                step = np.linalg.lstsq(np.array(sides).T / 2, value, rcond=SAME)[0] * beside
                 x = x - step
-                if np.all(np.abs(step) <= SETTLED * np.maximum(np.abs(x), SMALL)):
+                if np.all(np.abs(step) <= SAME * np.maximum(np.abs(x), SMALL)):
                     place = _folded(chart, (float(x[0]), float(x[1])))
                     if place and _vanish(chart, place):
                         degree = chart.coefficients(*place).shape[1] - 1
@@ -326,4 +326,4 @@ def _vanish(chart: Chart, place: Place) -> bool:
     That they are small beside the leading one does not say it: so they may be wherever a parameter is large.
     """
     here, farther, origin = (np.abs(chart.coefficients(t * place[0], t * place[1])[0, :-1]) for t in (1, 2, 0))
-    return bool((here <= SETTLED * (farther + origin)).all())
+    return bool((here <= SAME * (farther + origin)).all())

@@ -28,10 +28,9 @@ import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval
 
 from bezstab.errors import NumericalError
-from bezstab.stability.arrays import EPS, Extent, FloatArray
+from bezstab.stability.arrays import DOUBLE, EPS, ROUNDING, SAME, Extent, FloatArray
 from bezstab.stability.boundary_locus import (
     AT_INFINITY,
-    ON_THE_RIM,
     RIM,
     Bounds,
     bounds_of,
@@ -39,16 +38,12 @@ from bezstab.stability.boundary_locus import (
     rim_radius,
 )
 from bezstab.stability.pencils import Pencil, deadbeat_mu, roots_in_mu
-from bezstab.stability.shapes import ROUNDING, USUAL_SIZE, Shape, joined
+from bezstab.stability.shapes import USUAL_SIZE, Shape, joined
 
 MEETING = 1e-4  # of the curves' size: where branches meet on the circle an arc ends the root of SHORTEST from it
-FURTHER = 100.0  # times the radius of the rim, to see which ranges grow
-GROWN = 2.5  # times the range: as the fourth root of the radius it would have grown 3.2 times
-ROUNDING_FAR_OUT = 1e-6  # of everything finite: so far out an arc along the imaginary axis is good to less
-FLAT = 1e-6  # of |mu|: a coordinate that varies less along an arc is constant, and turns by rounding alone
+GROWN = RIM ** (1 / 5)  # times the range, from a rim to one RIM further out: with the fourth root it would grow by more
 NO_DIGITS = 0.05  # of mu, lost on the locus: nothing else would find that out, or after minutes
 NOISE_ANGLES: FloatArray = np.linspace(0.1, 3.1, 16)  # at which the rounding of crossings is estimated
-REAL_ZERO = 1e-9  # of |mu|: an imaginary part below it is rounding of a simple real zero
 WELL_WIDE = 1e-11  # of |mu|: about a zero of R that narrow a part of S_r is a hundredfold above rounding of its ends
 
 
@@ -67,8 +62,12 @@ def locus_shape(pencil: Pencil, level: float, finer: int) -> Shape | None:
     edges += straight_edges(pencil, bounds)
     extent = _extent(pencil, bounds)
     area = _area(pencil, bounds) if bounds.bounded else None
-    if extent is None or (area is not None and not 0 < area <= np.prod(np.diff(extent))):
-        return None  # noise, where two roots on the circle meet
+    if extent is None:
+        return None
+    mu_abs = max((float(np.abs(arc.mu).max()) for arc in bounds.arcs), default=0.0)
+    noise = ROUNDING * np.abs(pencil.to_user) @ np.array([mu_abs, mu_abs**2])
+    if area is not None and (area <= 0 or (np.ptp(extent, axis=1) <= noise).any()):
+        return None  # where two roots on the circle meet
     curves = joined(edges, most=MEETING * np.abs(np.concatenate(edges)).max(axis=0))
     if not bounds.bounded:
         extent = _unbounded_extent(pencil, level, bounds, finer)
@@ -150,7 +149,7 @@ def _known(pencil: Pencil, level: float, bounds: Bounds) -> FloatArray:
     with np.errstate(all="ignore"):
         size = level * np.abs(polyval(zeros, pencil.table[-1]) / polyval(zeros, polyder(pencil.table[0])))
     wide = size > WELL_WIDE * np.abs(zeros)
-    real = np.abs(zeros.imag) <= REAL_ZERO * np.abs(zeros)
+    real = np.abs(zeros.imag) <= SAME * np.abs(zeros)
     for zero in zeros[wide & real].real.tolist():
         if not any(start < zero < end for start, end in bounds.intervals):
             raise NumericalError(f"{pencil.method.name}: |z_p| < {level:g} around mu = {zero:.6g} was not found")
@@ -162,14 +161,13 @@ def _unbounded_extent(pencil: Pencil, level: float, bounds: Bounds, finer: int) 
     """Return the ranges of an unbounded region: infinite where they grow with the radius of the rim.
 
     Where all of the rim is stable they all do. Else a range without limit grows at least as a root of the radius: from
-    a rim to one FURTHER out more than GROWN times, while one with a limit has come near it (an arc's asymptote to
-    about 1e-7).
+    a rim to one RIM times further out more than GROWN times, while one with a limit has come near it.
     """
     everywhere = ((-math.inf, math.inf), (-math.inf, math.inf))
     if bounds.rim >= math.pi * (1 - ROUNDING):
         return everywhere
     ranges = []
-    for radius in (bounds.radius, FURTHER * bounds.radius):
+    for radius in (bounds.radius, RIM * bounds.radius):
         ranges.append(_extent(pencil, bounds_of(pencil, level, finer, radius)))
     near, far = ranges
     assert near
@@ -182,7 +180,8 @@ def _unbounded_extent(pencil: Pencil, level: float, bounds: Bounds, finer: int) 
         sign = -1 if end == 0 else 1
         if sign * further > GROWN * max(sign * nearer, scales[axis]):
             return sign * math.inf
-        return nearer if abs(further - nearer) <= ROUNDING_FAR_OUT * scales[axis] else further
+        # so far out an arc along the imaginary axis is good to no more
+        return nearer if abs(further - nearer) <= DOUBLE * scales[axis] else further
 
     return (limit(0, 0), limit(0, 1)), (limit(1, 0), limit(1, 1))
 
@@ -194,7 +193,7 @@ def _view(pencil: Pencil, bounds: Bounds) -> Extent:
     ends and turns, and where every pole of a one-step method is zero. What lies at negative parameters, which nobody
     asks for, may be far larger.
     """
-    off_rim = bounds.radius * (1 - ON_THE_RIM)
+    off_rim = bounds.radius * (1 - SAME)
     ends = np.array([end for interval in bounds.intervals for end in interval if abs(end) < off_rim])
     shapely = [feedback_coefficients(np.full(len(ends), end), ends) for end in ends]
     deadbeat = deadbeat_mu(pencil)
@@ -202,7 +201,8 @@ def _view(pencil: Pencil, bounds: Bounds) -> Extent:
     for arc in bounds.arcs:
         mu = arc.mu
         if np.abs(mu[[0, -1]]).max() >= off_rim:
-            steep = [each for each in pencil.to_user if np.ptp(arc.plane() @ each) > FLAT * np.abs(mu).max()]
+            # a coordinate that hardly varies is constant, and turns by rounding alone
+            steep = [each for each in pencil.to_user if np.ptp(arc.plane() @ each) > DOUBLE * np.abs(mu).max()]
             turns = [arc.turns(direction) for direction in steep]
             mu = arc.at(np.concatenate([arc.theta[[0, -1]], *turns]))
             mu = mu[np.abs(mu) < off_rim]

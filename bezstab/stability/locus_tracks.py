@@ -26,16 +26,13 @@ from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
 from bezstab.errors import NumericalError
-from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
+from bezstab.stability.arrays import SAME, BoolArray, ComplexArray, FloatArray
 from bezstab.stability.pencils import Pencil, roots_in_mu
-from bezstab.stability.root_finding import horner_with_slope
+from bezstab.stability.root_finding import MORE_STEPS, horner_with_slope
 
 SAMPLES = 1024  # of theta over half the circle: what is shorter is looked for by itself
 STEP_SHARE = 0.12  # of the distance to the nearest branch point; the proof above allows 0.17
 SHORTEST = 1e-11  # rad; a branch point this close to the circle lies on it, as far as float64 can tell
-NEWTON_STEPS = 8  # from a neighbouring sample within STEP_SHARE three or four suffice
-SETTLED = 1e-12  # relative step after which Newton's method has converged to rounding
-WITHIN = 2  # samples' spacings that Newton's method may move: further away lies another branch
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -50,7 +47,8 @@ class Track:
     def at(self, theta: FloatArray) -> ComplexArray:
         """Return mu(theta) for a row of theta (rad) between the samples: Newton's method from the nearest of them.
 
-        Where it does not settle (next to a branch point on the circle): the nearest of all roots.
+        Where it does not settle, or goes further than the samples lie apart (next to a branch point on the circle):
+        the nearest of all roots.
         """
         z = self.level * np.exp(1j * theta)
         table = self.pencil.table
@@ -65,14 +63,14 @@ class Track:
         settled: BoolArray = np.zeros(mu.shape, bool)
         in_mu = polyval(z, table)  # coefficients of pi(z, .), ascending; shape (powers, theta.size)
         with np.errstate(all="ignore"):  # what is not finite has not settled
-            for _ in range(NEWTON_STEPS):
+            for _ in range(MORE_STEPS):
                 value, slope = horner_with_slope(in_mu, mu)
                 step = value / slope
                 mu = mu - step
-                settled = np.abs(step) <= SETTLED * np.abs(mu)
+                settled = np.abs(step) <= SAME * np.abs(mu)
                 if settled.all():
                     break
-            near = np.abs(mu - start) <= WITHIN * np.maximum(spacing, SETTLED * np.abs(start))
+            near = np.abs(mu - start) <= np.maximum(spacing, SAME * np.abs(start))  # further lies another branch
         lost = ~(settled & near)
         if lost.any():
             mu[lost] = nearest(roots_in_mu(self.pencil, z[lost]), start[lost])

@@ -14,8 +14,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from bezstab.stability.arrays import ComplexArray, FloatArray
+from bezstab.stability.root_finding import STEPS
 
-NEWTON_STEPS = 2  # from a formula that is good to a few eps of the largest root: the second settles a small one
 THIRD = 1 / 3
 
 
@@ -73,7 +73,7 @@ def cubic_parts(b: FloatArray, c: FloatArray, d: FloatArray) -> tuple[FloatArray
             angle = np.arccos(np.minimum(size[three] / (radius * q[three]), 1))
             apart[three] = 2 * radius * np.cos(angle * THIRD)
         z = -np.copysign(apart, r) - shift
-        for _ in range(NEWTON_STEPS):
+        for _ in range(STEPS):
             by_one = z + b
             by_two = by_one * z + c
             value = by_two * z + d

@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.methods import StepMatrix
-from bezstab.stability.arrays import SETTLED, FloatArray
+from bezstab.stability.arrays import SAME, FloatArray
 from bezstab.stability.lyapunov_quadratics import DIGITS
 from bezstab.stability.positive_polynomials import ExactArray, positivity
 
@@ -140,7 +140,7 @@ def _growth_to_come(matrices: FloatArray, flow: FloatArray | None, circle: Float
         larger: FloatArray = np.maximum(growth, to_come.max(axis=0))
         change = (larger - growth).max()
         growth = larger
-        if change < SETTLED:
+        if change < SAME:
             return growth
         if growth.max() > MOST_GROWTH:
             return None

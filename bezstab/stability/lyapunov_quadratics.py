@@ -11,7 +11,7 @@ from fractions import Fraction
 import numpy as np
 
 from bezstab.methods import StepMatrix, StepPolynomial, polynomial_determinant, polynomial_product
-from bezstab.stability.arrays import SETTLED, SLOW, FloatArray
+from bezstab.stability.arrays import SAME, SLOW, FloatArray
 from bezstab.stability.positive_polynomials import positivity, whole_rows
 
 Form = list[list[Fraction]]
@@ -56,7 +56,7 @@ def centred_form(matrices: FloatArray, decays: FloatArray) -> FloatArray:
             change = -np.linalg.solve(hessian, gradient)
             decrement = -float(gradient @ change)
             values = values + _share_of_step(decrement) * change
-            if decrement < SETTLED:
+            if decrement < SAME:
                 break
         weight *= 2
     form: FloatArray = unit + np.tensordot(values[:-1], basis, axes=1)

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 SIDE = 8  # points along a square: more are further from the middle, fewer leave more middles to solve for
-LINE = 16  # points of a stretch
+LINE = 2 * SIDE  # points of a stretch
 FEWEST = LINE**2  # points for which following is worth its preparations
-GROUP = 4  # squares along a group: neighbours in the list of blocks are neighbours in the grid
+GROUP = SIDE // 2  # squares along a group: neighbours in the list of blocks are neighbours in the grid
 
 
 def blocks_of_neighbours(rows: int, columns: int) -> NDArray[np.intp]:

@@ -22,7 +22,6 @@ from itertools import pairwise
 from bezstab.methods import Method, turning_factors
 from bezstab.stability.closed_loop import converges
 
-REMEMBERED = 16  # paths: a margin looks both ways along one
 ONE, ZERO = Fraction(1), Fraction(0)
 
 
@@ -44,7 +43,7 @@ class Path:
         return converges(self.method, *self.at(factor))
 
 
-@lru_cache(maxsize=REMEMBERED)
+@lru_cache  # a margin looks both ways along one
 def crossing_factors(path: Path) -> tuple[Fraction, ...]:
     """Return, ascending, every factor s > 0 at which a root z may pass the circle |z| = 1 along the path.
 

@@ -16,6 +16,7 @@ tanh-sinh quadrature does not mind.
 import math
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -23,27 +24,16 @@ import numpy as np
 from bezstab.errors import NumericalError
 from bezstab.methods import Crossing, CurveTable, Limit, Method, PlaneStrips, Strip, plane_strips
 from bezstab.rationals import exact
-from bezstab.stability.arrays import ComplexArray, Extent, FloatArray
+from bezstab.stability.arrays import DOUBLE, ROUNDING, SAME, ComplexArray, Extent, FloatArray
 from bezstab.stability.exact_sums import double_polynomial, split
-from bezstab.stability.quadratures import tanh_sinh
-from bezstab.stability.root_finding import horner_with_slope
-from bezstab.stability.searches import zoom_on_minimum
-from bezstab.stability.shapes import ROUNDING, USUAL_SIZE, Approached, Shape, joined
+from bezstab.stability.quadratures import integrals
+from bezstab.stability.root_finding import STEPS, horner_with_slope
+from bezstab.stability.searches import least_between
+from bezstab.stability.shapes import USUAL_SIZE, Approached, Shape, joined
 
-POLISH = 3  # steps of Newton's method on a root that companion eigenvalues have to a few eps of the largest
-SETTLED = 1e-4  # of a root: a larger step does not polish but leads away
-EIGENVALUE_ERROR = 1e-13  # of the largest root: beyond what eigenvalues leave of a small one
-REFINED = 1e-6  # of a root: what float64 may be off by, unless two roots meet
-AGREEING = 1e-9  # of an integral: half the nodes so near to all say that all are good to rounding
-NEGLIGIBLE = 1e-14  # of the area: a part that is off by less need not be halved
-MOST_HALVINGS = 12  # of a strip in which a singularity lies close
 DRAWN = 160  # points of an edge along its strip
 FAR_APART = 100.0  # ends of a strip, one so many times the other: what an edge does near the lower one needs its share
-JOINED = 1e-6  # of what is seen: two roots that meet are known to the root of rounding
-TURN_ROUNDS = 12  # of zooming on an edge's furthest point: its place to 1e-8 leaves its value at rounding
-BESIDE_LEVEL = 1e-13  # of a strip: nearer to a level, a crossing that is lost there may show at the wrong infinity
 FAR_OUT = 1e8  # of a level, or USUAL_SIZE: from so near to a strip's end up to so far from it turns are looked for
-FLAT = 1e-12  # of alpha_hat: an edge that comes near a limit turns by no more, but for rounding
 OUT_OF_VIEW = 3.0  # times what is to be seen: curves that go on are drawn so far
 
 
@@ -83,7 +73,8 @@ class Edges:
             for number, lost in enumerate(strips.lost):
                 self._counts[low, number] = sum(crossing[0] == number for crossing in strip.crossings)
                 width = high - low if np.isfinite(high - low) else 1.0
-                off = [BESIDE_LEVEL * max(width, abs(end)) if np.isfinite(end) else 0.0 for end in (low, high)]
+                # nearer to a level a crossing that is lost there may show at the wrong infinity
+                off = [ROUNDING * max(width, abs(end)) if np.isfinite(end) else 0.0 for end in (low, high)]
                 self._spans[low, number] = (
                     low + (off[0] if strip.low in lost else 0.0),
                     high - (off[1] if strip.high in lost else 0.0),
@@ -111,7 +102,7 @@ class Edges:
         slope = np.polynomial.polynomial.polyval2d(place, beta_hat, self._slopes[number])
         with np.errstate(all="ignore"):
             step = (high + rest) / slope
-        return place - np.where(np.abs(step) < REFINED * np.abs(place), step, 0)
+        return place - np.where(np.abs(step) < DOUBLE * np.abs(place), step, 0)  # unless two roots meet
 
 
 def _split(curve: CurveTable) -> list[list[tuple[float, float]]]:
@@ -139,8 +130,9 @@ def _real_roots(coefficients: FloatArray, count: int) -> FloatArray:
         companion[:, :, -1] = -np.where(lost, 0, monic).T
         roots = np.linalg.eigvals(companion).astype(complex)
         x = np.sort(_most_real(roots, count), axis=1).T
-        allowed = np.maximum(SETTLED * np.abs(x), EIGENVALUE_ERROR * np.abs(roots).max(axis=1))
-        for _ in range(POLISH):
+        # a larger step than what eigenvalues may be off by does not polish but leads away
+        allowed = np.maximum(DOUBLE * np.abs(x), ROUNDING * np.abs(roots).max(axis=1))
+        for _ in range(STEPS):
             value, slope = horner_with_slope(coefficients, x)
             step = value / slope
             x = x - np.where(np.abs(step) < allowed, step, 0)
@@ -243,7 +235,7 @@ def _turns(edges: Edges, cells: tuple[Cell, ...]) -> FloatArray:
             points.append([(place[end], levels[end]) for end in (0, -1) if limits[end] is None])
             if edges.is_vertical(crossing):
                 points.append([(place[0], levels[0])])
-            rounding = 0 if finite_ends.all() else FLAT * np.abs(place[1:-1])
+            rounding = 0 if finite_ends.all() else SAME * np.abs(place[1:-1])  # near a limit it turns by no more
             for sign in (1, -1):
                 within = sign * place[1:-1] - rounding
                 turning = 1 + np.flatnonzero((within > sign * place[:-2]) & (within > sign * place[2:]))
@@ -258,16 +250,10 @@ def _furthest(
     edges: Edges, crossing: Crossing, strip_low: float, low: float, high: float, sign: int
 ) -> tuple[float, float]:
     """Return the point of an edge between two levels that lies furthest to the right (sign 1) or left (-1)."""
-    found, _ = zoom_on_minimum(
-        lambda points: -sign * edges.places(crossing, strip_low, np.clip(points[:, 0], low, high)),
-        np.array([(low + high) / 2]),
-        np.array([(high - low) / 2]),
-        points=13,
-        shrink=0.25,
-        rounds=TURN_ROUNDS,
+    level, _ = least_between(
+        lambda levels: -sign * edges.places(crossing, strip_low, levels), np.asarray(low), np.asarray(high)
     )
-    place = edges.exact_places(crossing, strip_low, np.clip(found, low, high))
-    return float(place[0]), float(found[0])
+    return float(edges.exact_places(crossing, strip_low, level[np.newaxis])[0]), float(level)
 
 
 def _extent(cells: tuple[Cell, ...], corners: FloatArray) -> tuple[Extent, Approached]:
@@ -313,28 +299,21 @@ def _view(extent: Extent, corners: FloatArray) -> Extent:
 def _area(edges: Edges, cells: tuple[Cell, ...], name: str) -> float:
     """Return the sum over cells of the integral of their width."""
 
-    def width(cell: Cell, beta_hat: FloatArray) -> FloatArray:
-        assert cell.left is not None
-        assert cell.right is not None
-        left, right = (edges.exact_places(wall, cell.low, beta_hat) for wall in (cell.left, cell.right))
-        return right - left
+    area = off = 0.0
+    for cell in cells:
+        (found,), may_be_off = integrals(partial(_widths, edges, cell), np.array([[cell.low, cell.high]]))
+        area, off = area + float(found), off + may_be_off
+    if off > SAME * area:
+        raise NumericalError(f"{name}: the area cannot be integrated")
+    return area
 
-    def terms(cell: Cell, low: float, high: float) -> FloatArray:
-        beta_hat, weights = tanh_sinh(low, high)
-        return weights * width(cell, beta_hat)
 
-    def integral(cell: Cell, low: float, high: float, halvings: int) -> float:
-        of_nodes = terms(cell, low, high)
-        total, from_half = float(of_nodes.sum()), 2 * float(of_nodes[::2].sum())
-        if abs(total - from_half) <= max(AGREEING * float(np.abs(of_nodes).sum()), NEGLIGIBLE * whole):
-            return total
-        if halvings == 0:
-            raise NumericalError(f"{name}: the area between beta_hat = {low:.6g} and {high:.6g} cannot be integrated")
-        middle = math.sqrt(low * high) if _far_apart(low, high) else (low + high) / 2
-        return sum(integral(cell, *half, halvings - 1) for half in ((low, middle), (middle, high)))
-
-    whole = sum(float(terms(cell, cell.low, cell.high).sum()) for cell in cells)
-    return sum(integral(cell, cell.low, cell.high, MOST_HALVINGS) for cell in cells)
+def _widths(edges: Edges, cell: Cell, beta_hat: FloatArray) -> FloatArray:
+    """Return a cell's widths at some beta_hat; shape (1, *that of beta_hat)."""
+    assert cell.left is not None
+    assert cell.right is not None
+    left, right = (edges.exact_places(wall, cell.low, beta_hat.ravel()) for wall in (cell.left, cell.right))
+    return (right - left).reshape(1, *beta_hat.shape)
 
 
 # The boundary: each wall of a cell, and along a level what is stable on one side only.
@@ -349,7 +328,7 @@ def _curves(edges: Edges, cells: tuple[Cell, ...], view: Extent) -> list[FloatAr
     box = _box(view)
     pieces = _walls(edges, cells, box) + _level_pieces(edges, cells, box)
     size = np.ptp(np.array(box), axis=1)
-    return joined(pieces, most=JOINED * size)
+    return joined(pieces, most=DOUBLE * size)
 
 
 def _box(view: Extent) -> Extent:
@@ -385,7 +364,7 @@ def _walls(edges: Edges, cells: tuple[Cell, ...], box: Extent) -> list[FloatArra
 def _level_pieces(edges: Edges, cells: tuple[Cell, ...], box: Extent) -> list[FloatArray]:
     """Return the pieces of levels that are stable on one side only, within the box."""
     (left, right), (bottom, top) = box
-    gap = JOINED * (right - left)
+    gap = DOUBLE * (right - left)
     pieces = []
     for level in sorted({cell.low for cell in cells} | {cell.high for cell in cells}):
         if not bottom <= level <= top:

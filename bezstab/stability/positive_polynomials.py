@@ -15,11 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.rationals import whole_multiples
+from bezstab.stability.searches import BISECTIONS
 
 ExactArray = NDArray[np.object_]
 """An array of whole numbers of any size."""
-
-MOST_HALVINGS = 60  # a polynomial that is still undecided touches zero within 1e-18 of the interval
 
 
 @dataclass(frozen=True)
@@ -35,7 +34,8 @@ def positivity(polynomials: ExactArray, low: Fraction, high: Fraction) -> Positi
 
     Shape (polynomials, degree + 1), whole numbers; low <= high.
     """
-    pending = [(low, high, np.arange(len(polynomials)), MOST_HALVINGS)]
+    # what is still undecided after all halvings touches zero within 1e-18 of the interval
+    pending = [(low, high, np.arange(len(polynomials)), BISECTIONS)]
     undecided = False
     while pending:
         left, right, rows, halvings = pending.pop()

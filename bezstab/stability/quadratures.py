@@ -1,11 +1,21 @@
-"""Nodes and weights of tanh-sinh quadrature, for integrands that are analytic but at the ends of an interval.
+"""Integrals of functions that are analytic but at a few places, by tanh-sinh quadrature on panels.
 
-At an end they may begin like any root of the distance to it (H. Takahasi & M. Mori, Publ. RIMS 9, 1974).
+At an end of its panel an integrand may begin like any root of the distance to it (H. Takahasi & M. Mori, Publ. RIMS 9,
+1974). Where half the nodes give another value, something lies within the panel, and it is halved:
+
+    |---------------|---------------|      agree: counted     disagree: halved
+    |---------------|-------|-------|
+    |---------------|-------|---|---|      towards a corner panels shrink geometrically, and so do their errors
 """
+
+from collections.abc import Callable
 
 import numpy as np
 
-from bezstab.stability.arrays import FloatArray
+from bezstab.stability.arrays import ROUNDING, SAME, FloatArray
+
+HALVINGS = 30  # of a panel towards a corner, to 1e-9 of it
+MOST_PANELS = 96  # at once: towards a corner two are left after each halving; more are noise
 
 FINE_STEP = 1 / 16
 """In the plane of t, where integrands with roots at their ends are analytic: half as fine is good to rounding."""
@@ -26,3 +36,38 @@ def tanh_sinh(
     nodes = np.where(share < other, low + width * share, high - width * other)
     weights = step * width * np.pi * np.cosh(t) * share * other
     return nodes, weights
+
+
+def good_to_rounding(own: FloatArray, total: float) -> FloatArray:
+    """Return by how much half the nodes may be off for all of them to be good to rounding.
+
+    own: of each panel the sum of its terms' sizes.
+    """
+    return np.asarray(SAME * own + ROUNDING * abs(total))
+
+
+def integrals(
+    values_at: Callable[[FloatArray], FloatArray],
+    panels: FloatArray,
+    allowed: Callable[[FloatArray, float], FloatArray] = good_to_rounding,
+    step: float = FINE_STEP,
+) -> tuple[FloatArray, float]:
+    """Return the integrals of several functions over panels together, and by how much the first may still be off.
+
+    values_at: takes places of shape (panels, nodes), returns values of shape (functions, panels, nodes). panels: their
+    ends, shape (panels, 2). allowed: by how much half the nodes of the first function may be off.
+    """
+    total: FloatArray | float = 0.0
+    for halving in range(HALVINGS + 1):
+        nodes, weights = tanh_sinh(panels[:, :1], panels[:, 1:], step)
+        terms = weights * values_at(nodes)
+        sums = terms.sum(axis=-1)
+        off = np.abs(sums[0] - 2 * terms[0, :, ::2].sum(axis=-1))
+        known = total + sums.sum(axis=-1)
+        rough = off > allowed(np.abs(terms[0]).sum(axis=-1), float(known[0]))
+        if not rough.any() or halving == HALVINGS or 2 * rough.sum() > MOST_PANELS:
+            break
+        total = total + sums[:, ~rough].sum(axis=-1)
+        low, high = panels[rough].T
+        panels = np.stack([low, (low + high) / 2, (low + high) / 2, high], axis=1).reshape(-1, 2)
+    return known, float(off[rough].sum())

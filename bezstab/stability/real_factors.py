@@ -8,7 +8,7 @@
                       before it finds them settled, and leaves what is left beside the factor
 
 That no other root is larger is not taken on trust: what is left, divided by the factor, has all its roots within the
-larger of the factor's, which Schur's recursion tells in few operations. From one middle in GROUP, where all roots are
+larger of the factor's, which Schur's recursion tells in few operations. From one middle in STRIDE, where all roots are
 solved for, the others get their factors the same way.
 
 Where the largest root is not found so, the largest real root at c is followed alone, by Newton's method: it may have no
@@ -20,17 +20,11 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
+from bezstab.stability.arrays import SAME, BoolArray, ComplexArray, FloatArray
 from bezstab.stability.low_degrees import largest_quadratic_root
-from bezstab.stability.root_finding import CONVERGED, roots_of_rows
+from bezstab.stability.root_finding import CHUNK, MORE_STEPS, STEPS, STRIDE, roots_of_rows
 
-GROUP = 16  # blocks whose middles are near each other
-POINTS = 16384  # at a time: the work arrays of so many stay in a core's cache
-STEPS = 2  # of Bairstow's method that most factors settle in: starts are off by the square of a map's spacing
-MORE_STEPS = 6  # for the others, and of Newton's method from a block's middle
-STEPS_BESIDE = 3  # to where a block's planes lead: their starts are off by as much as a map's spacing
-LARGER = 1e-9  # relative: by so much a root must outdo the others to be the largest without doubt
-STILL = 1e-11  # relative: a last change of p and q so small leaves but rounding, and what is left is far within LARGER
+STILL = 1e-11  # relative: a last change of p and q so small leaves but rounding, and what is left is far within SAME
 
 Coefficients = Callable[[FloatArray, FloatArray], list[FloatArray]]
 """Of real polynomials in z, ascending, from alpha_hat and beta_hat; each of their shape."""
@@ -47,7 +41,7 @@ def largest_of_blocks(coefficients_at: Coefficients, alpha_hat: FloatArray, beta
     found = np.empty(alpha_hat.shape, complex)
     p, q = _factors_of_middles(_rows(coefficients_at, alpha_hat[:, 0], beta_hat[:, 0]))
     planes = _touching_planes(coefficients_at, alpha_hat, beta_hat, p, q)
-    blocks_at_a_time = max(1, POINTS // alpha_hat.shape[1])
+    blocks_at_a_time = max(1, CHUNK // alpha_hat.shape[1])
     for start in range(0, len(found), blocks_at_a_time):
         some = slice(start, start + blocks_at_a_time)
         found[some] = _followed(coefficients_at, alpha_hat[some], beta_hat[some], planes[..., some, np.newaxis])
@@ -82,8 +76,8 @@ def _roots(rows: Rows) -> ComplexArray:
 
 def _factors_of_middles(rows: Rows) -> tuple[FloatArray, FloatArray]:
     """Return p and q of the factors with the largest root, of blocks' middles."""
-    solved = _first_factors(_roots([row[::GROUP] for row in rows]))
-    starts = (np.repeat(each, GROUP)[: rows[0].size] for each in solved)
+    solved = _first_factors(_roots([row[::STRIDE] for row in rows]))
+    starts = (np.repeat(each, STRIDE)[: rows[0].size] for each in solved)
     p, q, z = _followed_factors(rows, *starts)
     left = np.flatnonzero(np.isnan(z))
     p[left], q[left] = _first_factors(_roots([row[left] for row in rows]))
@@ -97,7 +91,7 @@ def _first_factors(z: ComplexArray) -> tuple[FloatArray, FloatArray]:
     """
     lead = np.argmax(np.abs(z), axis=0)[np.newaxis]
     largest = np.take_along_axis(z, lead, axis=0)
-    real = np.abs(z.imag) <= CONVERGED * np.abs(z)
+    real = np.abs(z.imag) <= SAME * np.abs(z)
     lead_is_real = np.take_along_axis(real, lead, axis=0)
     partner = np.where(lead_is_real, largest, largest.conj())
     distance = np.where(lead_is_real & ~real, np.inf, np.abs(z - partner))
@@ -120,7 +114,7 @@ def _touching_planes(
         reach = each[:, -1] - each[:, 0]
         beside = middles.copy()
         beside[k] += reach
-        changed = _changed(_rows(coefficients_at, *beside), p, q, STEPS_BESIDE)
+        changed = _changed(_rows(coefficients_at, *beside), p, q, MORE_STEPS)
         slopes = (np.stack(changed) - [p, q]) / reach
         planes[:, 1 + k] = np.where(np.isfinite(slopes), slopes, 0)
     planes[:, 0] = [p, q] - planes[:, 1] * middles[0] - planes[:, 2] * middles[1]
@@ -141,7 +135,7 @@ def _followed(
 
 def _real_leads(z: ComplexArray) -> FloatArray:
     """Return the largest of the real ones of all roots z, shape (roots, points), of each point; nan if none is real."""
-    real = np.where(np.abs(z.imag) <= CONVERGED * np.abs(z), z.real, 0)
+    real = np.where(np.abs(z.imag) <= SAME * np.abs(z), z.real, 0)
     largest = np.take_along_axis(real, np.argmax(np.abs(real), axis=0)[np.newaxis], axis=0)[0]
     return np.where(largest != 0, largest, np.nan)
 
@@ -156,7 +150,7 @@ def _followed_alone(rows: Rows, z: FloatArray) -> ComplexArray:
             step = value / slope
             z = z - step
         *quotient, _ = _divided_by_root(descending, z)
-        proven = (np.abs(step) <= CONVERGED * np.abs(z)) & _all_within(quotient, np.abs(z))
+        proven = (np.abs(step) <= SAME * np.abs(z)) & _all_within(quotient, np.abs(z))
     return np.where(proven, z, np.nan).astype(complex)
 
 
@@ -257,7 +251,7 @@ def _divided(ascending: Rows, p: FloatArray, q: FloatArray) -> list[FloatArray]:
 def _all_within(descending: Rows, size: FloatArray) -> BoolArray:
     """Return whether all roots of polynomials have a smaller modulus than a size, by a margin."""
     rest = list(descending)  # of (size z), divided by size^degree
-    scale = 1 / (size * (1 - LARGER))
+    scale = 1 / (size * (1 - SAME))
     power = scale
     for k in range(1, len(rest)):
         rest[k] *= power

@@ -26,36 +26,27 @@ from numpy.typing import NDArray
 from bezstab.errors import NumericalError
 from bezstab.methods import Method
 from bezstab.rationals import exact
-from bezstab.stability.arrays import BoolArray, FloatArray, even_points
+from bezstab.stability.arrays import DOUBLE, MULTIPLE, ROUNDING, SAME, BoolArray, FloatArray, even_points
 from bezstab.stability.closed_loop import AnyPencil, decays_faster, free_pencil_of, largest_modulus
-from bezstab.stability.quadratures import tanh_sinh
-from bezstab.stability.searches import bisected, zoom_on_minimum
-from bezstab.stability.shapes import Shape
+from bezstab.stability.quadratures import integrals
+from bezstab.stability.root_finding import TOLD
+from bezstab.stability.searches import AT_ONCE, bisected, least_between
+from bezstab.stability.shapes import GOES_ON, Shape
 
-ASIDE = 1e-10  # of a curve's size: so far to either side of its points verdicts are asked for
-BY_ROUNDING = 1e-12  # of a point's coordinates: at least so far, as drawn ones may be known no better
 THIN = 1e-4  # of its distance: around a double mu a curve of that size is known to less, as rounding parts the two
-STRAIGHT = 1e6  # times as long as the gaps beside it: an edge of two points, which is straight
+CORNER = 3  # points: around corners, where poles meet, more may contradict
+PROVEN = 16  # points of each curve, and of a stretch that contradicts: to prove all would take seconds
 ALONG: FloatArray = (1 - np.cos(np.linspace(0, np.pi, 34)[1:-1])) / 2  # of it, the places that are asked about
-STRETCH, CORNER = 1e-3, 3  # of a curve's length, and points: around corners, where poles meet, more may contradict
-NEAR_CUSP, FURTHER_ASIDE = 1 / 25, 100  # of its length, and times as far: where poles nearly meet, edges are less exact
-PROVEN, DOUBTED = 8, 32  # points of each curve, and of a stretch that contradicts: to prove all would take seconds
-SEEN = 1.5  # times what is seen: nearer an end of a curve is where an edge is missing
+NEAR_CUSP = 1 / 25  # of a curve's length: where poles nearly meet, edges are less exact
+FURTHER_ASIDE = 100  # times as far, there
 TURNED = 0.1  # rad, from one chord to the next: a corner
-MERGED = 1e-9  # of what is seen: ends of panels that lie closer are one
 PANEL_STEP = 1 / 4  # of tanh-sinh: 25 nodes, good to 1e-9 where every other one is good to 1e-5
-AREA_ERROR = 1e-6  # of the area: all but slivers agree to 1e-8, and those to what float64 knows of their edges
 CURVE_ERROR = 2e-2  # of the area: chords enclose less by 1e-5, and of a region of 1e10, drawn by few, by a hundredth
 EFFORTS = ((1e-5, 128), (1e-6, 256), (1e-7, 256))  # of the area, half the nodes off by it: halve; points on a line
 PROVEN_EFFORT = (1e-4, 8)  # the same, of verdicts in rationals: next to one float64 may tell no edge well enough
-HALVINGS, MOST_PANELS = 30, 96  # towards a kink or a spike, of 1e-8 next to one, two panels are left after each
-AT_ONCE = 15  # of a bracket's places: to ask about one takes as long as about a dozen
 CROSSING_HALVINGS = 36  # of a bracket of a hundredth of a line: its end is good to 1e-12 of the line
-AT_END = 1e-9  # of what is seen: a drawn point that is so near to an end has it, perhaps as the tip of a cusp
-BESIDE_END = 1e-6  # of what is seen: so far within and beyond an end of the extent lines are looked at
 TOWARDS = np.geomspace(1e-9, 1e18, 217)  # times what is seen: where a line is looked at, from what is known there
 FAR_OUT = (1e4, 1e6)  # times what is seen: something is stable there where there is no end
-LEAST, ZOOM_POINTS, ZOOMS = 16, 33, 9  # lowest of the samples there, and grids, each by 1/16, towards a thin strip
 SIZES = 4.0 * 10.0 ** np.arange(-3, 4)  # alpha_hat and sqrt(beta_hat) of boxes in which an empty region has no point
 POINTS = 600  # in each of them
 
@@ -110,7 +101,7 @@ def _check_closed(name: str, shape: Shape, curve: FloatArray) -> None:
 
 def _seen(shape: Shape, points: FloatArray) -> BoolArray:
     """Return which points lie where a region that goes on is looked at."""
-    return np.asarray((np.abs(points) <= SEEN * np.abs(shape.view).max(axis=1)).all(axis=1))
+    return np.asarray((np.abs(points) <= (1 + GOES_ON) * np.abs(shape.view).max(axis=1)).all(axis=1))
 
 
 def _check_edge(name: str, shape: Shape, curve: FloatArray, inside: Verdicts, proven: Verdicts) -> None:
@@ -123,11 +114,12 @@ def _check_edge(name: str, shape: Shape, curve: FloatArray, inside: Verdicts, pr
     points = _with_points_between(curve, size)
     along = (points[2:] - points[:-2]) / size
     length = np.hypot(*along.T)
-    kept = (length > MERGED) & (_seen(shape, points[1:-1]) | (shape.area is not None))
+    kept = (length > SAME) & (_seen(shape, points[1:-1]) | (shape.area is not None))
     points, along = points[1:-1][kept], along[kept] / length[kept, np.newaxis]
     if len(points) <= CORNER:
         return
-    offset = np.maximum(ASIDE * size, BY_ROUNDING * away) * np.stack([-along[:, 1], along[:, 0]], axis=1)
+    # just to either side, as far as verdicts tell; of a small curve that is far away points are known to less
+    offset = np.maximum(TOLD * size, ROUNDING * away) * np.stack([-along[:, 1], along[:, 0]], axis=1)
 
     def parted(verdicts: Verdicts, some: NDArray[np.intp], times: float = 1) -> BoolArray:
         """Return at which points one side is stable alone, or both are, and not what is between."""
@@ -140,7 +132,7 @@ def _check_edge(name: str, shape: Shape, curve: FloatArray, inside: Verdicts, pr
     good = parted(inside, np.arange(len(points)))
     way = np.append(0, np.cumsum(np.hypot(*(np.diff(points, axis=0) / size).T)))
     for first, last in _stretches(~good, way, way[-1]):
-        some = np.arange(first, last + 1)[:: 1 + (last - first) // DOUBTED]
+        some = np.arange(first, last + 1)[:: 1 + (last - first) // PROVEN]
         there = parted(proven, some)
         if way[last] - way[first] <= NEAR_CUSP * way[-1]:
             there |= parted(proven, some, FURTHER_ASIDE)
@@ -161,7 +153,7 @@ def _with_points_between(curve: FloatArray, size: FloatArray) -> FloatArray:
     chords = np.diff(curve, axis=0)
     length = np.hypot(*(chords / size).T)
     beside = np.concatenate([[0.0], length, [0.0]])
-    straight = np.flatnonzero(length > STRAIGHT * np.maximum(beside[:-2], beside[2:]))
+    straight = np.flatnonzero(DOUBLE * length > np.maximum(beside[:-2], beside[2:]))  # far longer than the gaps beside
     between = curve[straight][:, np.newaxis] + np.multiply.outer(ALONG, chords[straight]).swapaxes(0, 1)
     return np.insert(curve, np.repeat(straight + 1, len(ALONG)), between.reshape(-1, 2), axis=0)
 
@@ -173,7 +165,7 @@ def _stretches(wrong: BoolArray, way: FloatArray, length: float) -> Iterator[tup
     """
     turns = np.flatnonzero(np.diff(np.concatenate([[False], wrong, [False]]).astype(int)))
     for first, beyond in zip(turns[::2].tolist(), turns[1::2].tolist(), strict=True):
-        if beyond - first > CORNER and way[beyond - 1] - way[first] > STRETCH * length:
+        if beyond - first > CORNER and way[beyond - 1] - way[first] > MULTIPLE * length:
             yield first, beyond - 1
 
 
@@ -195,8 +187,9 @@ def _check_ends(name: str, shape: Shape, pencil: AnyPencil, inside: Verdicts, pr
             if math.isinf(end):
                 right = all(stable_at(outwards * far * sizes[axis], thin=True) for far in FAR_OUT)
             else:
-                beside = outwards * BESIDE_END * sizes[axis]
-                attained = bool((np.abs(drawn[:, axis] - end) <= AT_END * sizes[axis]).any())
+                beside = outwards * DOUBLE * sizes[axis]
+                # perhaps as the tip of a cusp
+                attained = bool((np.abs(drawn[:, axis] - end) <= SAME * sizes[axis]).any())
                 right = attained or stable_at(end - beside, thin=goes_on)
                 right = right and not stable_at(end + beside, thin=False)
             if not right:
@@ -253,16 +246,11 @@ def _least_along(modulus: Callable[[FloatArray], FloatArray], along: FloatArray)
     samples = np.unique(along)
     values = modulus(samples)
     least = 1 + np.flatnonzero((values[1:-1] <= values[:-2]) & (values[1:-1] <= values[2:]))
-    lowest = least[np.argsort(values[least], kind="stable")[:LEAST]]
-    found, _ = zoom_on_minimum(
-        lambda points: modulus(points[..., 0].ravel()).reshape(points.shape[:-1]),
-        samples[lowest, np.newaxis],
-        np.maximum(samples[lowest] - samples[lowest - 1], samples[lowest + 1] - samples[lowest])[:, np.newaxis],
-        points=ZOOM_POINTS,
-        shrink=2 / (ZOOM_POINTS - 1),
-        rounds=ZOOMS,
+    lowest = least[np.argsort(values[least], kind="stable")[:PROVEN]]
+    found, _ = least_between(
+        lambda points: modulus(points.ravel()).reshape(points.shape), samples[lowest - 1], samples[lowest + 1]
     )
-    return found[:, 0]
+    return found
 
 
 # The area once more, by the lengths of lines, with nothing in it but verdicts:
@@ -279,7 +267,7 @@ def _check_lines(name: str, shape: Shape, inside: Verdicts, proven: Verdicts) ->
     for verdicts, at_once, rough, points in efforts:
         area, between = _area_by_lines(shape, verdicts, at_once, rough, points)
         size = area if shape.area is None else shape.area
-        if abs(area - size) <= AREA_ERROR * size and between <= CURVE_ERROR * size:
+        if abs(area - size) <= DOUBLE * size and between <= CURVE_ERROR * size:
             return
     if between > CURVE_ERROR * size:
         raise NumericalError(f"{name}: the curves contradict the poles, on {between / size:.1%} of the area")
@@ -292,22 +280,16 @@ def _area_by_lines(shape: Shape, verdicts: Verdicts, at_once: int, rough: float,
     Panels are halved where half the nodes give another integral, by the share `rough` of the area. `points`: on a line;
     at_once: of a bracket.
     """
-    panels = _panels(shape)
-    area = between = 0.0
-    for halving in range(HALVINGS + 1):
-        lines, weights = tanh_sinh(panels[:, :1], panels[:, 1:], PANEL_STEP)
-        lengths = _lengths(shape, lines.ravel(), verdicts, at_once, points)
-        by_poles, by_curves = (each.reshape(lines.shape) for each in lengths)
-        terms, off = weights * by_poles, (weights * np.abs(by_poles - by_curves)).sum(axis=1)
-        whole, from_half = terms.sum(axis=1), 2 * terms[:, ::2].sum(axis=1)
-        size = area + whole.sum() if shape.area is None else shape.area
-        halved = (np.abs(whole - from_half) > rough * size) & (halving < HALVINGS) & (len(panels) < MOST_PANELS)
-        area, between = area + float(whole[~halved].sum()), between + float(off[~halved].sum())
-        if not halved.any():
-            break
-        low, high = panels[halved].T
-        panels = np.stack([low, (low + high) / 2, (low + high) / 2, high], axis=1).reshape(-1, 2)
-    return area, between
+
+    def lengths(lines: FloatArray) -> FloatArray:
+        by_poles, by_curves = _lengths(shape, lines.ravel(), verdicts, at_once, points)
+        return np.stack([by_poles, np.abs(by_poles - by_curves)]).reshape(2, *lines.shape)
+
+    def allowed(own: FloatArray, total: float) -> FloatArray:
+        return np.full_like(own, rough * (total if shape.area is None else shape.area))
+
+    (area, between), _ = integrals(lengths, _panels(shape), allowed, PANEL_STEP)
+    return float(area), float(between)
 
 
 def _panels(shape: Shape) -> FloatArray:
@@ -316,7 +298,7 @@ def _panels(shape: Shape) -> FloatArray:
     ends = [np.array([first, last])]
     for curve in shape.curves:
         size = np.ptp(curve, axis=0)
-        apart = np.append(True, (np.abs(np.diff(curve, axis=0)) > MERGED * size).any(axis=1))
+        apart = np.append(True, (np.abs(np.diff(curve, axis=0)) > SAME * size).any(axis=1))
         points = curve[apart]
         if (curve[0] == curve[-1]).all():
             points = np.concatenate([points, points[1:2]])
@@ -335,7 +317,7 @@ def _panels(shape: Shape) -> FloatArray:
         ends += [points[[0, -1], 0], middle[turned, 0], np.where(within, summit, middle[:, 0])[turning]]
     places = np.unique(np.concatenate(ends))
     places = places[(places >= first) & (places <= last)]
-    places = places[np.append(True, np.diff(places) > MERGED * (last - first))]
+    places = places[np.append(True, np.diff(places) > SAME * (last - first))]
     return np.stack([places[:-1], places[1:]], axis=1)
 
 

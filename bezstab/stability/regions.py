@@ -10,17 +10,16 @@ from numpy.typing import ArrayLike
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method, fixed_poles, without_shared_factor
 from bezstab.read_only import ReadOnlyArrays
-from bezstab.stability.arrays import BoolArray, Extent, FloatArray
+from bezstab.stability.arrays import ROUNDING, BoolArray, Extent, FloatArray
 from bezstab.stability.closed_loop import spectral_radius
 from bezstab.stability.locus_shapes import locus_shape
 from bezstab.stability.pencils import pencil_of
 from bezstab.stability.plane_cells import strips_shape
 from bezstab.stability.region_checks import check_region
-from bezstab.stability.shapes import ATTAINED, ROUNDING, Approached, Shape
+from bezstab.stability.shapes import ATTAINED, GOES_ON, Approached, Shape
 
 FINER = 4  # times as many samples of the locus, where the first sampling failed the check
 MARGIN = 0.05  # of what is to be seen of a bounded region
-GOES_ON = 0.5  # of what is to be seen of an unbounded one: enough to see that it goes on
 
 
 @dataclass(frozen=True, repr=False)

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from bezstab.stability.arrays import BoolArray, ComplexArray, FloatArray
+from bezstab.stability.arrays import SAME, BoolArray, ComplexArray, FloatArray
 
 Number = TypeVar("Number", FloatArray, ComplexArray)
 Coefficients = Sequence[Any] | NDArray[np.inexact]
@@ -18,14 +18,13 @@ Coefficients = Sequence[Any] | NDArray[np.inexact]
 CHUNK = 16384  # points at a time: all the work arrays of one chunk stay in a core's cache
 STRIDE = 16  # of a row of points one in so many has all its roots solved for, the others start from them
 FEW = 2 * STRIDE  # polynomials: to solve them in two turns would take longer than all at once
-EIGENVALUES = 64  # roots, of all polynomials together: up to there LAPACK is faster than Aberth's first steps
-TOGETHER = 2**14  # pairs of roots, 256 kB: up to there one call for all of them is faster than one for each
+STEPS = 2  # of Newton's method from a start that is nearly exact: the second settles a root smaller than others
+MORE_STEPS = 8  # at most, from a neighbour's root
 ITERATIONS = 200  # Aberth's iteration needs about ten; a multiple root, where it is linear, about sixty
 FAR = 1e15  # |z| whose 16th power still fits float64
 NEAR = 0.2  # relative distance of x within which the roots of a neighbour are better starts than the polygon's
+TOLD = 1e-10  # relative: Schur's recursion tells apart what differs by more
 NUDGE = 1e-3  # about a step of a map's grid, so it costs no iteration
-CONVERGED = 1e-9  # relative correction after which a quadratically convergent iterate is exact to rounding
-LOG_OF_ZERO = -1e300  # a finite stand-in for log 0, below every logarithm of a float64
 
 
 def roots_of_table(table: FloatArray, x: ComplexArray) -> ComplexArray:
@@ -152,7 +151,7 @@ def newton_polygon_starts(coefficients: ComplexArray) -> ComplexArray:
     root, however small or large, has a start of its size.
     """
     n = len(coefficients) - 1
-    size = np.maximum(np.log(np.abs(coefficients)), LOG_OF_ZERO)
+    size = np.maximum(np.log(np.abs(coefficients)), -FAR)  # finite, but below every logarithm of a float64
     log_radii = np.full((n, coefficients.shape[1]), -np.inf)
     for lower in range(n):
         chords = (size[lower] - size[lower + 1 :]) / np.arange(1, n - lower + 1)[:, np.newaxis]
@@ -163,14 +162,14 @@ def newton_polygon_starts(coefficients: ComplexArray) -> ComplexArray:
 
 
 def _starts_of_few(coefficients: ComplexArray) -> ComplexArray:
-    """Return starting points: of very few polynomials eigenvalues of companion matrices, roots but for their rounding.
+    """Return starting points: of few polynomials eigenvalues of companion matrices, roots but for their rounding.
 
     Those spare Aberth's iteration ten steps, of which each takes as long for one polynomial as for a dozen. Where a
     leading coefficient vanishes, or eigenvalues coincide or vanish, starts might never part: there, and of more
     polynomials, they are those of the Newton polygon.
     """
     n, points = len(coefficients) - 1, coefficients.shape[1]
-    if n * points > EIGENVALUES:
+    if points > FEW:
         return newton_polygon_starts(coefficients)
     companion = np.zeros((points, n, n), complex)
     companion[:, range(1, n), range(n - 1)] = 1
@@ -200,7 +199,7 @@ def _aberth(coefficients: ComplexArray, starts: ComplexArray) -> ComplexArray:
     step_from = _far_aberth_step if np.abs(z).max(initial=0.0) > FAR else _aberth_step
     for _ in range(ITERATIONS):
         step = step_from(coefficients, z)
-        settled = np.all(np.abs(step) <= CONVERGED * np.abs(z), axis=0)
+        settled = np.all(np.abs(step) <= SAME * np.abs(z), axis=0)
         z = z - step
         solution[:, active[settled]] = z[:, settled]
         if settled.all():
@@ -245,7 +244,7 @@ def _quotient(numerator: ComplexArray, denominator: ComplexArray) -> ComplexArra
 
 def _repulsion(z: ComplexArray) -> ComplexArray:
     """Return the sums of 1 / (z_i - z_j) over the other roots j, coinciding ones left out."""
-    if z.size * len(z) <= TOGETHER:
+    if z.size * len(z) <= CHUNK:  # one call for all pairs is faster than one for each
         differences = z[:, np.newaxis] - z
         own = np.arange(len(z))
         differences[own, own] = np.inf

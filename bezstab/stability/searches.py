@@ -21,6 +21,9 @@ SHRINK = 0.5  # from one of them to the next
 ROUNDS = 18  # of them, to 8e-6 of the first: a smooth valley is flat to rounding there, and Newton's method starts
 FINER = 3  # times the points of a search whose first answer failed its check
 WELL_INSIDE = 0.8  # of the reach: a best point further out says that the valley may lead on
+AT_ONCE = 15  # places of a bracket: to ask about one takes as long as about a dozen
+GRID = 33  # points of a bracket in which a least value is looked for, and then of its best two gaps
+ZOOMS = 8  # such grids, each narrower by 1/16: to where a smooth least value is flat to rounding
 GOLDEN_ANGLE = 2.4  # rad, about pi (3 - sqrt 5): grids turned by it from one to the next never line up again
 
 Found = TypeVar("Found")
@@ -131,6 +134,26 @@ def zoom_on_minimum(
             reach = shrink * reach
         centre = best
     return centre, np.asarray(value)
+
+
+def least_between(
+    values_at: Callable[[FloatArray], FloatArray], low: FloatArray, high: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return where functions of one number are least between two ends, and the values there; shape of the ends.
+
+    values_at: takes places of shape (*that of the ends, places) and returns their values.
+    """
+    ends = low[..., np.newaxis, np.newaxis], high[..., np.newaxis, np.newaxis]
+    found, least = zoom_on_minimum(
+        lambda points: values_at(points[..., 0]),
+        ((low + high) / 2)[..., np.newaxis],
+        ((high - low) / 2)[..., np.newaxis],
+        points=GRID,
+        shrink=2 / (GRID - 1),
+        rounds=ZOOMS,
+        fold=lambda points: np.clip(points, *ends),
+    )
+    return found[..., 0], least
 
 
 def _grid(dimensions: int, count: int) -> FloatArray:

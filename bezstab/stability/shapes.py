@@ -13,11 +13,11 @@ import numpy as np
 
 from bezstab.stability.arrays import Extent, FloatArray
 
-ROUNDING = 1e-13
-"""Of a range: an end this close to an axis lies on it."""
-
 USUAL_SIZE = 4.0
 """alpha_hat and beta_hat up to which a region without end is shown at least: alpha h and beta h up to 2."""
+
+GOES_ON = 0.5
+"""Of what there is to see of a region without end: so much more is looked at, to see that it goes on."""
 
 Approached = tuple[tuple[bool, bool], tuple[bool, bool]]
 

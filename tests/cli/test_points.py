@@ -46,18 +46,6 @@ def test_omega_times_h_is_taken_exactly_as_typed_and_h_alone_makes_no_unit() -> 
     assert (at_rest["omega_h"], at_rest["kappa"]) == (0.02, 0)
 
 
-def test_an_engine_is_asked_with_its_own_integrator_unless_another_is_named() -> None:
-    for words, options, method in (
-        ("mujoco=0.02,1", (), "SYM"),
-        ("rigidbodydynamics.jl=100,30", (), "RK4"),
-        ("physx-drive=1000,10", (), "implicit-euler"),
-        ("drake-sap", (), "SYM"),
-        ("mujoco=0.02,1", ("--method", "RK4"), "RK4"),
-        ("pinocchio=100,20", ("--method", "SIE"), "SIE"),
-    ):
-        assert first_row("poles", "--engine", words, "--h", "0.002", *options)["method"] == method
-
-
 def test_an_engines_clamps_are_applied_unless_told_not_to() -> None:
     words = ("check", "--engine", "mujoco=0.0001,1", "--h", "0.002")
     applied, as_typed = run(*words), run(*words, "--as-typed", "--format", "json")
@@ -114,17 +102,6 @@ def test_a_drive_is_shown_in_all_ways_of_applying_it() -> None:
     assert (velocity["used_up"], velocity["kd_max"]) == ("kp", None)
     assert velocity["kp_max"] == pytest.approx((4 + 2 * 80 / 0.1 / 240) * 0.1 * 240**2)
     assert given["implicit-euler"]["used_up"] is None
-
-
-def test_a_held_and_late_drive_is_judged_as_its_gains_are_chosen() -> None:
-    timing = ("--h", "0.002", "--every", "4", "--late", "1", "--method", "SYM")
-    (row,) = rows("choose", "--pd", "0.1", "--bandwidth", "5", *timing[:6])
-    assert (row["kp"], row["kd"], row["every"], row["late"], row["safe"]) == (98.7, 6.28, 4, 1, True)
-    assert rows("check", "--pd", "98.7,6.28,0.1", *timing) == [row]
-    (fresh,) = rows("check", "--pd", "200,5,0.1", "--h", "0.002", "--every", "1", "--method", "SYM")
-    plain = first_row("check", "--pd", "200,5,0.1", "--h", "0.002", "--method", "SYM")
-    for key in ("kp_max", "kd_max", "z_abs"):
-        assert fresh[key] == pytest.approx(plain[key], rel=1e-9)
 
 
 def test_numbers_that_look_like_one_over_seconds_are_said_to() -> None:

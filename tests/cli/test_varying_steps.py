@@ -86,10 +86,3 @@ def test_anyone_can_verify_the_certificate_that_is_printed() -> None:
     assert (given["varying"], given["certificate_kind"]) == ("proven", "quadratic")
     form = sp.Matrix([[sp.Rational(number) for number in row] for row in given["certificate"]])
     assert form_decreases(form, symplectic_euler(Fraction(1), Fraction(1, 4)), Fraction(1, 10), Fraction(1))
-
-
-def test_a_choice_is_proven_for_steps_that_vary_if_it_is_asked_to_be() -> None:
-    asked = ("choose", "--method", "SYM", "--h", "0.001")
-    (chosen,) = rows_of(*asked, "--h-min", "0.0001", "--h-max", "0.0012")
-    assert (chosen["varying"], chosen["varying_h_max"]) == ("proven", 0.0012)
-    assert "varying" not in rows_of(*asked)[0]

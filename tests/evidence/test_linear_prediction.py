@@ -72,10 +72,3 @@ def test_windows_end_where_the_range_is_left_and_before_what_is_forced() -> None
     for window in response_windows(decaying, decaying, (np.inf,)):
         assert decaying[window].min() > 90 * forced
         assert window.stop - window.start <= SAMPLES
-
-
-def test_the_last_sample_of_a_window_counts() -> None:
-    samples = geometric(10, 0.9)
-    assert fit_window(samples, order=1) is not None
-    samples[-1] *= 2
-    assert fit_window(samples, order=1) is None

@@ -203,14 +203,12 @@ def test_all_methods_that_solve_equations_have_the_predicted_pole(name: str, sce
         "within 1e-4 of the circle, nor where the motion can turn it"
     ),
 )
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "scene",
-    [
-        pytest.param("slider_crank_300rpm", marks=pytest.mark.slow),
-        pytest.param("four_bar", marks=pytest.mark.slow),
-        pytest.param("slider_crank_light", marks=pytest.mark.slow),
-        pytest.param("n_four_bar", marks=pytest.mark.slow),
-    ],
+    of_campaign(
+        ["slider_crank_300rpm", "four_bar", "slider_crank_light", "n_four_bar"], ["slider_crank_300rpm", "four_bar"]
+    ),
 )
 def test_no_verdict_is_wrong_where_the_mechanism_moves_fast(scene: str) -> None:
     for name in ("B4", "RK4", "SYM", "ABM4"):

@@ -418,7 +418,7 @@ def random_arm(rng: np.random.Generator) -> Case:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("integrator", ["Euler", "RK4", "implicit", "implicitfast"])
+@pytest.mark.parametrize("integrator", of_campaign(INTEGRATORS, ("RK4", "implicitfast")))
 def test_all_together_is_mujocos_own_step_on_random_arms(integrator: str) -> None:
     """Verdicts agree, and |z| to 1e-4: differences are as exact as that where steps are ill-conditioned."""
     rng = np.random.default_rng(16)

@@ -1,7 +1,6 @@
 """MuJoCo as a witness: it settles and diverges where the map says, and its model is the scene."""
 
 import re
-import sys
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -89,12 +88,6 @@ def test_what_the_model_cannot_hold_is_refused() -> None:
     for scene in (parse_scene(pendulum()), pushed):
         with pytest.raises(InputError, match="revolute"):
             model_xml(scene, "Euler", H, 0.5, 0.1)
-
-
-def test_without_mujoco_the_message_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "mujoco", None)
-    with pytest.raises(InputError, match=r"bezstab\[mujoco\]"):
-        next(mujoco_witnesses(compiled_mechanism(load_scene("slider_crank")), H))
 
 
 @pytest.mark.parametrize("solref", ["0.02 1", "0.1 3", "-3000 -40"])

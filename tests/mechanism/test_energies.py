@@ -32,24 +32,6 @@ def test_polynomials_are_integrated_exactly_up_to_the_number_of_nodes(count: int
     assert running_integral(polynomial(t), h) == pytest.approx(antiderivative(t) - antiderivative(0), rel=1e-12)
 
 
-@pytest.mark.parametrize("even", [True, False])
-def test_the_integral_converges_with_the_order_of_its_polynomials(even: bool) -> None:
-    errors = []
-    for count in (20, 40):
-        t = np.linspace(0, 4, count + 1 + (not even))
-        errors.append(np.abs(running_integral(np.cos(t), t[1]) - np.sin(t)).max())
-    assert shown_order(errors) > NODES - 0.5
-
-
-@pytest.mark.parametrize("count", [NODES + 1, 3 * NODES])
-def test_backwards_in_time_the_integral_is_the_same(count: int) -> None:
-    """Of any rates, however rough: the nodes of an interval lie around its middle, as seen from either end."""
-    rates, h = np.random.default_rng(2).normal(0, 1, count), 0.1
-    there, back = running_integral(rates, h), running_integral(rates[::-1], h)
-    # sums of 30 products of order one, of weights below 3
-    assert there[-1] - there[::-1] == pytest.approx(back, abs=1e-13)
-
-
 @pytest.mark.promise("Energy drift")
 def test_a_drivers_work_is_the_energy_that_the_motion_has_in_closed_form() -> None:
     run = run_of("driven_slider_crank", h=2e-3, duration=6.0)  # a revolution
@@ -109,18 +91,8 @@ def test_a_damper_takes_what_the_oscillation_loses() -> None:
     assert run.energy_drift == pytest.approx(np.zeros(len(run.t)), abs=1e-10)
 
 
-def test_without_drivers_and_forces_the_drift_is_the_change_of_energy() -> None:
-    run = run_of("four_bar", "AB2")
-    assert np.array_equal(run.energy_drift, run.energy - run.energy[0])
-
-
 def test_the_balance_of_a_run_that_broke_down_ends_with_it() -> None:
     mechanism = compiled_mechanism(load_scene("driven_four_bar"))
     run = simulated(mechanism, lookup("B4"), h=H, duration=5.0, alpha_hat=1.7, beta_hat=0.8, perturb=1e-4)
     assert run.failure
     assert run.driver_work.shape == run.t.shape
-
-
-def test_a_balance_prints_in_one_line() -> None:
-    run = run_of("pendulum", duration=0.01)
-    assert repr(run.balance).startswith("EnergyBalance(11 times, drift ")

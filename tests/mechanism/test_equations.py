@@ -74,10 +74,6 @@ def test_a_point_on_a_line_keeps_to_it() -> None:
     assert v == pytest.approx([3, 4])
 
 
-def test_equations_print_in_one_line() -> None:
-    assert repr(equations_of_motion(load_scene("slider_crank"))) == "Equations(5 coordinates, 4 constraints)"
-
-
 def test_a_distance_joint_holds_two_points_a_length_apart() -> None:
     """c = (d^2 - l^2) / (2 l), d the distance of the points, neither of which lies at a frame's origin."""
     first, second = (0.3, -0.4), (0.2, 0.7)

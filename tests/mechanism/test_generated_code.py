@@ -25,7 +25,7 @@ from bezstab.mechanism.compiled import (
     judged_acceleration_function,
     slope_function,
 )
-from bezstab.mechanism.generated_code import compiled_source, judged_source, machine_code, slope_lines
+from bezstab.mechanism.generated_code import compiled_source, machine_code, slope_lines, state_source
 from bezstab.methods import accuracy, lookup, steps
 from tests.evidence.samples import of_campaign
 from tests.mechanism.test_scenes import pendulum
@@ -51,21 +51,6 @@ def test_each_step_is_the_formula_applied_to_equation_9(scene: str, name: str) -
         expected = timed_step(method, slope, run.t[: last + 1], states[: last + 1], H)
         # the rounding of accelerations near 100 SI units, times h and what the condition of Eq. 9 makes of it
         assert states[last + 1] == pytest.approx(expected, abs=1e-12)
-
-
-def test_a_stepper_knows_the_time_within_its_step() -> None:
-    """Of a driven coordinate, whose acceleration depends on the time of each stage alone."""
-    driver = {"type": "driver", "coordinate": "bob.x", "rate": 2.0, "amplitude": 0.5, "frequency": 3.0}
-    initial = {"position": {"bob.y": 0.0}, "velocity": {"bob.y": 0.0}}
-    mechanism = compiled_mechanism(parse_scene({**pendulum(), "joint": [driver], "initial": initial}))
-    for name in ("RK2", "RK4", "ABM3", "AB3"):
-        method = lookup(name)
-        run = simulate(mechanism, method, 0.1, 1.0, (0.0, 0.0))
-        states = list(np.concatenate([run.q, run.v], axis=1))
-        slope = literal_slope(mechanism.equations, 0.0, 0.0)
-        for last in range(steps(method) - 1, len(states) - 1):
-            expected = timed_step(method, slope, run.t[: last + 1], states[: last + 1], 0.1)
-            assert states[last + 1] == pytest.approx(expected, abs=1e-14)
 
 
 @cache
@@ -130,8 +115,8 @@ def test_entries_that_are_zero_are_not_computed() -> None:
 
 def test_generated_source_is_plain_assignments() -> None:
     """Arithmetic on named variables only: no calls but sin, cos and least, no containers but those handed out."""
-    source = judged_source(compiled_mechanism(load_scene("slider_crank")).acceleration_code)
-    called = set(CALL.findall(source)) - {"judged"}
+    code = compiled_mechanism(load_scene("slider_crank")).acceleration_code
+    called = set(CALL.findall(state_source(code, [*code.results, code.least_pivot]))) - {"found"}
     assert called <= {"sin", "cos", "least"}
 
 

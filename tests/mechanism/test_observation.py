@@ -52,21 +52,6 @@ def test_multipliers_are_the_joint_forces_of_newton_and_euler() -> None:
     assert seen.multipliers == pytest.approx(expected, abs=1e-9)
 
 
-def test_the_pendulums_multiplier_is_its_tension() -> None:
-    mechanism, gains = compiled_mechanism(load_scene("pendulum")), (20.0, 100.0)
-    run = simulate(mechanism, lookup("RK4"), 2e-4, 2.0, gains)
-    tension = (run.v**2).sum(axis=1) - 9.81 * run.q[:, 1]  # m (v^2 / l + g cos), m = l = 1
-    # 2 alpha times the run's cdot, 1e-12 m/s
-    assert observe(mechanism, run.t, run.q, run.v, *gains).multipliers[:, 0] == pytest.approx(tension, abs=1e-10)
-
-
-def test_an_observation_prints_in_one_line() -> None:
-    mechanism = compiled_mechanism(load_scene("slider_crank"))
-    q, v = initial_state(mechanism)
-    seen = observe(mechanism, np.zeros(1), q[np.newaxis], v[np.newaxis], 0.0, 0.0)
-    assert repr(seen) == "Observation(1 times, 4 constraints)"
-
-
 @pytest.mark.promise(
     "Singular configurations gone through",
     measured="each is counted, whatever the step, and none on mechanisms that have none",

@@ -17,7 +17,6 @@ from bezstab.mechanism import (
     initial_state,
     load_scene,
     observe,
-    perturbed_state,
     simulate,
     simulated,
     simulated_with_steps,
@@ -53,16 +52,6 @@ def test_after_each_step_the_constraints_hold(name: str, method: str) -> None:
     assert run.failure is None
     assert abs(seen.c).max() <= WITHIN
     assert abs(seen.cdot).max() <= WITHIN * max(1, abs(run.v).max())
-
-
-def test_an_error_of_the_start_is_gone_after_a_step() -> None:
-    mechanism = scene("slider_crank")
-    state = perturbed_state(mechanism, 1e-3)
-    for method in ("AB4", "SYM", "hht"):
-        run = simulate(mechanism, lookup(method), H, 20 * H, (0.0, 0.0), state, projection=Projection())
-        seen = observe(mechanism, run.t, run.q, run.v, 0.0, 0.0)
-        assert abs(seen.c[0]).max() > 9e-4
-        assert abs(seen.c[1:]).max() <= WITHIN
 
 
 @pytest.mark.promise(
@@ -139,7 +128,7 @@ def test_steps_are_the_plain_ones(name: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "methods"),
-    of_campaign([("slider_crank", KINDS), ("driven_four_bar", KINDS)], [("slider_crank", KINDS)]),
+    of_campaign([("slider_crank", KINDS), ("driven_four_bar", KINDS)], [("pendulum", KINDS)]),
 )
 def test_compiled_projection_is_that_of_numpy(name: str, methods: Sequence[str]) -> None:
     mechanism, h = scene(name), step_for(name)

@@ -5,8 +5,7 @@ from fractions import Fraction
 import pytest
 
 from bezstab.mechanism.second_order_memory import memory
-from bezstab.methods import Quantity, RungeKutta, SecondOrder, lookup, recipe, second_order_form
-from tests.methods.kinds import EXPLICIT, IMPLICIT, RUNGE_KUTTA
+from bezstab.methods import Quantity, SecondOrder, lookup, recipe, second_order_form
 
 HALF, ONE, ZERO = Fraction(1, 2), Fraction(1), Fraction(0)
 
@@ -32,20 +31,8 @@ def test_a_scheme_carries_what_the_next_turn_needs() -> None:
     assert carried_names(form("bdf3")) == {"x0", "x[-1]", "x[-2]", "v0", "v[-1]", "v[-2]", "a0"}
 
 
-@pytest.mark.parametrize(("name", "past"), [("verlet-half", 0), ("stable-pd", 0), ("bdf1", 0), ("bdf6", 5), ("am4", 2)])
-def test_the_past_is_what_is_looked_back_at(name: str, past: int) -> None:
-    assert (memory(form(name)).newest, memory(form(name)).past) == (0, past)
-
-
 def test_a_position_that_is_a_step_ahead_needs_a_state_more() -> None:
     assert (memory(STOERMER).newest, memory(STOERMER).past) == (1, 1)
-
-
-@pytest.mark.parametrize("name", RUNGE_KUTTA)
-def test_stages_are_evaluated_at_the_sums_of_their_rows(name: str) -> None:
-    scheme = lookup(name).scheme
-    assert isinstance(scheme, RungeKutta)
-    assert list(memory(form(name)).moments.values()) == [sum(row, Fraction(0)) for row in scheme.tableau]
 
 
 @pytest.mark.parametrize(
@@ -77,11 +64,3 @@ def test_a_helper_starts_with_what_belongs_to_the_state() -> None:
     ahead = recipe({"y": "y[0] + v1", "x1": "y - 1/2 v1", "v1": "v0 + a0", "a1": "acceleration(x1, v1)"})
     starts = dict(zip(memory(ahead).carried, memory(ahead).shares, strict=True))
     assert starts[Quantity("y", 0)][:2] == (ONE, HALF)  # a position half a step ahead
-
-
-@pytest.mark.parametrize("name", [*EXPLICIT[::4], *IMPLICIT[::3], "rkn4", "hht"])
-def test_what_starts_as_the_state_is_the_state(name: str) -> None:
-    remembered = memory(form(name))
-    for quantity, shares in zip(remembered.carried, remembered.shares, strict=True):
-        if quantity.name in ("x", "v"):
-            assert shares == ((ONE, ZERO, ZERO) if quantity.name == "x" else (ZERO, ONE, ZERO))

@@ -8,7 +8,6 @@ import pytest
 from bezstab.errors import InputError, NumericalError
 from bezstab.mechanism import (
     compiled_mechanism,
-    constraint_errors,
     initial_state,
     load_scene,
     observe,
@@ -142,21 +141,3 @@ def test_a_spring_without_a_direction_is_refused(changes: dict[str, float], star
     else:
         with pytest.raises(InputError, match="spring 1: its ends meet"):
             initial_state(mechanism)
-
-
-def test_constraint_errors_are_those_of_each_state_of_a_batch() -> None:
-    mechanism = compiled_mechanism(load_scene("slider_crank"))
-    states = [perturbed_state(mechanism, error)[0] for error in (0.0, 1e-3, 2e-3)]
-    together = constraint_errors(mechanism, 0.0, list(np.transpose(states)))
-    alone = [constraint_errors(mechanism, 0.0, list(state)) for state in states]
-    assert together.shape == (4, 3)
-    assert together == pytest.approx(np.transpose(alone), abs=1e-15)
-
-
-def test_of_many_dependences_the_first_are_named_and_the_rest_counted() -> None:
-    """Six strings of one kind: five depend on the first."""
-    with pytest.raises(InputError) as caught:
-        initial_state(compiled_mechanism(parse_scene({**pendulum(), "joint": [STRING] * 6})))
-    message = str(caught.value)
-    assert message.endswith("; and 2 more")
-    assert message.count("follows from joint 1 (distance, ground and bob)") == 3

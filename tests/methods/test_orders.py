@@ -179,11 +179,8 @@ def test_the_second_order_form_has_the_order_of_the_scheme(name: str) -> None:
 BY_FORCE = {  # of position, of velocity
     "verlet-half": ((2, Fraction(1, 24)), (1, Fraction(1, 2))),
     "verlet-predicted": ((2, Fraction(1, 24)), (2, Fraction(5, 12))),  # damping: AB2
-    "verlet-old": ((2, Fraction(1, 24)), (1, Fraction(1))),
     "verlet-implicit": ((2, Fraction(1, 24)), (2, Fraction(-1, 12))),  # damping: the trapezoidal rule
-    "verlet-kdk": ((2, Fraction(1, 24)), (1, Fraction(1, 4))),
     "average-acceleration": ((2, Fraction(-1, 12)), (2, Fraction(-1, 12))),
-    "imex-euler": ((1, Fraction(-1, 2)), (1, Fraction(-1, 2))),
     "ruth3": ((3, Fraction(-1, 36)), (1, Fraction(187, 576))),
     "rkn4": ((4, Fraction(1, 320)), (4, Fraction(1, 120))),  # damping: RK4
 }

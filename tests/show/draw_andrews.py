@@ -7,7 +7,7 @@ import json
 import sys
 from pathlib import Path
 
-from bezstab.evidence import Run, with_fronts
+from bezstab.evidence import ErrorOf, Run, with_fronts
 from bezstab.mechanism import load_scene
 from bezstab.methods import lookup
 from bezstab.show import save, work_precision_figure
@@ -27,8 +27,9 @@ def main(folder: Path) -> None:
         for row in rows
     ]
     swept = with_fronts(runs, 0.0, "time")
-    for name in ("trajectory", "constraint"):
-        figure = work_precision_figure(swept, load_scene("andrews").name, constraint=name == "constraint")
+    errors: tuple[ErrorOf, ...] = ("trajectory", "constraint")
+    for name in errors:
+        figure = work_precision_figure(swept, load_scene("andrews").name, name)
         figure.axes[0].set_xlabel("processor time of a recorded run (s)")
         with (folder / f"tradeoff_andrews_{name}.png").open("wb") as file:
             save(figure, "png", file)

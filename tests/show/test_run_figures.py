@@ -6,6 +6,7 @@ import pytest
 from bezstab.evidence import (
     NO_FEEDBACK,
     Cost,
+    ErrorOf,
     Run,
     Sweep,
     measured_runs,
@@ -28,22 +29,22 @@ def test_the_work_precision_figure_has_every_run_and_rings_the_front() -> None:
     failed, ended = ([run for run in swept if bool(run.failure) == wanted] for wanted in (True, False))
     assert failed  # AB4 at the largest step
 
-    def drawn(run: Run, constraint: bool, against: Cost) -> tuple[float, float | None]:
+    def drawn(run: Run, error: ErrorOf, against: Cost) -> tuple[float, float | None]:
         cost = run.evaluations if against == "evaluations" else run.seconds
-        return cost, run.c_max if constraint else run.trajectory_error
+        return cost, run.c_max if error == "constraint" else run.trajectory_error
 
-    kinds: list[tuple[bool, Cost]] = [(True, "evaluations"), (False, "time")]
-    for constraint, against in kinds:
-        (axes,) = work_precision_figure(with_fronts(swept, 0.0, against), scene.name, constraint).axes
+    kinds: list[tuple[ErrorOf, Cost]] = [("constraint", "evaluations"), ("trajectory", "time")]
+    for error, against in kinds:
+        (axes,) = work_precision_figure(with_fronts(swept, 0.0, against), scene.name, error).axes
         lines = {str(line.get_label()): np.array(line.get_xydata()).tolist() for line in axes.lines}
-        places = [drawn(run, constraint, against) for run in ended]
+        places = [drawn(run, error, against) for run in ended]
         for name in ("B2", "AB4"):
             own = [list(place) for run, place in zip(ended, places, strict=True) if run.method.name == name]
             assert lines[name] == own
         assert lines["front"] == [list(places[k]) for k in pareto_front(places)]
         crosses = [np.array(line.get_xydata()) for line in axes.lines if line.get_marker() == "x"]
         across = sorted(x for cross in crosses for x, _ in cross)
-        assert across == sorted(drawn(run, constraint, against)[0] for run in failed)
+        assert across == sorted(drawn(run, error, against)[0] for run in failed)
 
 
 @pytest.mark.slow
