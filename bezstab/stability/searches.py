@@ -16,7 +16,7 @@ from bezstab.errors import NumericalError
 from bezstab.stability.arrays import BoolArray, FloatArray
 
 BISECTIONS = np.finfo(float).nmant + 8  # halves a bracket to neighbours, but for one that begins at zero
-GRID = 13  # points of a zoom's grids along each axis
+ZOOM_POINTS = 13  # points of a zoom's grids along each axis
 SHRINK = 0.5  # from one of them to the next
 ROUNDS = 18  # of them, to 8e-6 of the first: a smooth valley is flat to rounding there, and Newton's method starts
 FINER = 3  # times the points of a search whose first answer failed its check
@@ -97,7 +97,7 @@ def zoom_on_minimum(
     centre: FloatArray,
     reach: FloatArray,
     *,
-    points: int = GRID,
+    points: int = ZOOM_POINTS,
     shrink: float = SHRINK,
     rounds: int = ROUNDS,
     first_points: int | None = None,
