@@ -166,7 +166,7 @@ def least_on(chart: Chart) -> tuple[float, Least | None]:
 
 
 def _best(chart: Chart, solutions: list[Least]) -> Least | None:
-    """Return the least solution; of those alike one on an edge, and of those in one place that of most conditions."""
+    """Return the least solution; of those alike one on an edge, then one exactly zero, then that of most conditions."""
     if not solutions:
         return None
     least = min(solutions, key=lambda each: each.z_abs)
@@ -175,8 +175,8 @@ def _best(chart: Chart, solutions: list[Least]) -> Least | None:
         nearby = np.allclose(each.place, least.place, rtol=TRIPLE, atol=TRIPLE * SMALL)
         return each.z_abs <= least.z_abs + (TRIPLE if nearby else SAME) * (least.z_abs or 1.0)
 
-    def preferred(each: Least) -> tuple[bool, int, float]:
-        return all(each.place[edge] for edge in chart.edges), -each.multiplicity, each.place[1]
+    def preferred(each: Least) -> tuple[bool, bool, int, float]:
+        return all(each.place[edge] for edge in chart.edges), each.z_abs > 0, -each.multiplicity, each.place[1]
 
     return min(filter(alike, solutions), key=preferred)
 
