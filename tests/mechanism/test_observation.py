@@ -1,7 +1,10 @@
+import math
+
 import numpy as np
 import pytest
 
 from bezstab.mechanism import (
+    acceleration_function,
     compiled_mechanism,
     initial_state,
     load_scene,
@@ -22,6 +25,7 @@ from tests.reference.one_coordinate_motion import slider_crank_joint_forces
         "those of the paper's Eq. 9 solved as it stands, to rounding times its condition; of Newton and Euler to 1e-9 N"
     ),
 )
+@pytest.mark.promise("A step of a run")
 @pytest.mark.parametrize("name", shipped_scenes())
 def test_the_generated_code_solves_the_literal_equation_9(name: str) -> None:
     mechanism, random = compiled_mechanism(small(name)), np.random.default_rng(2)
@@ -29,13 +33,16 @@ def test_the_generated_code_solves_the_literal_equation_9(name: str) -> None:
     t, two_alpha, beta_squared = random.uniform(0, 1, 20), 30.0, 500.0
     seen = observe(mechanism, t, q, v, two_alpha, beta_squared)
     literal = literal_equation_9(mechanism.equations, two_alpha, beta_squared)
+    acceleration = acceleration_function(mechanism, math)
     for k in range(20):
         expected = literal(t[k], q[k], v[k])
         scale = max(np.abs(expected.accelerations).max(), np.abs(expected.multipliers).max())
         assert seen.c[k] == pytest.approx(expected.c, abs=1e-13)
         assert seen.cdot[k] == pytest.approx(expected.cdot, abs=1e-12)
-        # rounding times the condition of the matrix
-        assert seen.multipliers[k] == pytest.approx(expected.multipliers, abs=1e-14 * expected.condition * scale)
+        rounding = 1e-14 * expected.condition * scale
+        assert seen.multipliers[k] == pytest.approx(expected.multipliers, abs=rounding)
+        found = acceleration(t[k], two_alpha, beta_squared, q[k].tolist(), v[k].tolist())
+        assert found == pytest.approx(expected.accelerations.tolist(), abs=rounding)
 
 
 @pytest.mark.promise("Accelerations and multipliers")

@@ -44,16 +44,3 @@ def literal_equation_9(
         return Solution(c, cdot, unknown[:n], unknown[n:], float(np.linalg.cond(matrix)))
 
     return solution
-
-
-def literal_slope(
-    equations: Equations, two_alpha: float, beta_squared: float
-) -> Callable[[float, FloatArray], FloatArray]:
-    """Return the function of t and y = (q, qdot) that gives y' = (qdot, qddot)."""
-    solution = literal_equation_9(equations, two_alpha, beta_squared)
-
-    def slope(t: float, y: FloatArray) -> FloatArray:
-        q, v = np.split(y, 2)
-        return np.concatenate([v, solution(t, q, v).accelerations])
-
-    return slope

@@ -45,14 +45,6 @@ def one_step(method: Method, f: Slope, past: Sequence[State], h: Any, number: Nu
             raise TypeError("a second-order scheme has a stepper of its own: second_order_steps.py")
 
 
-def timed_step(
-    method: Method, slope: Callable[[float, State], State], times: State, states: Sequence[State], h: float
-) -> State:
-    """Return the state after the given ones, oldest first, of y' = slope(t, y): time is one more coordinate."""
-    past = [np.append(state, time) for time, state in zip(times, states, strict=True)][-steps(method) :]
-    return one_step(method, lambda y: np.append(slope(y[-1], y[:-1]), 1.0), past, h, float)[:-1]
-
-
 def trajectory(method: Method, f: Slope, start: Sequence[State], h: Any, count: int, number: Number) -> list[State]:
     """Return `count` points of y' = f(y), the first of which are those of `start`."""
     points = list(start)
