@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy.typing import ArrayLike
 
 from bezstab.errors import InputError
 from bezstab.evidence import Log, error_columns, log_from, parse_log, read_log, row_step, time_column
@@ -75,7 +76,7 @@ def test_files_that_cannot_be_read_are_refused(tmp_path: Path, monkeypatch: pyte
         log_from(io.BytesIO(b"0,1\n" * 10), "endless")
 
 
-def log_of(**columns: object) -> Log:
+def log_of(**columns: ArrayLike) -> Log:
     """Return a log with these columns."""
     values = np.stack(np.broadcast_arrays(*columns.values()), axis=-1)
     return Log("log", tuple(columns), np.atleast_2d(values).astype(float))
@@ -122,6 +123,6 @@ def test_the_name_of_the_times_may_say_their_unit(name: str, seconds: float) -> 
         ([0.0], "one row only"),
     ],
 )
-def test_times_that_are_uneven_are_refused(t: object, said: str) -> None:
+def test_times_that_are_uneven_are_refused(t: ArrayLike, said: str) -> None:
     with pytest.raises(InputError, match=said):
         row_step(log_of(t=t), 0)

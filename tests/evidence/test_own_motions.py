@@ -113,16 +113,17 @@ def test_no_point_and_no_step_is_too_extreme_for_a_number(name: str, count: int)
 def test_kicked_runs_show_the_rate_and_are_on_its_side_of_one(name: str, count: int, revolutions: int) -> None:
     """The driven four-bar at omega h = 0.031 and 0.105, runs kicked from the method's own motion, |z| near one."""
     method = lookup(name)
-    points = np.random.default_rng(4).uniform(*np.transpose(window(region(method))), (6000, 2)).T
-    points = points[:, np.abs(spectral_radius(method, *points) - 0.985) < 0.03][:, :300]
-    rates = floquet_rates(four_bar(), method, 1 / count, *points, 1.0)
+    low, high = np.transpose(window(region(method)))
+    points = np.random.default_rng(4).uniform(low, high, (6000, 2)).T
+    points = points[:, np.abs(spectral_radius(method, points[0], points[1]) - 0.985) < 0.03][:, :300]
+    rates = floquet_rates(four_bar(), method, 1 / count, points[0], points[1], 1.0)
     points = points[:, np.abs(rates - 1) < (0.003 if count > 100 else 0.006)][:, : of_campaign(12, 9)]
     motions = [runner_motion(four_bar(), method, count, *point) for point in points.T]
-    points = points[:, [motion is not None for motion in motions]]
+    alpha_hat, beta_hat = points[:, [motion is not None for motion in motions]]
     starts = np.array([motion[0] for motion in motions if motion is not None])
-    own = own_motion_rates(four_bar(), method, 1 / count, *points, 1.0)
+    own = own_motion_rates(four_bar(), method, 1 / count, alpha_hat, beta_hat, 1.0)
     kicks = np.where(own > 1, 1e-10, 1e-6)
-    shown = rates_after_kicks(four_bar(), method, count, *points, starts, kicks, revolutions)
+    shown = rates_after_kicks(four_bar(), method, count, alpha_hat, beta_hat, starts, kicks, revolutions)
     told = np.isfinite(shown)
     assert told.sum() >= of_campaign(8, 6)
     assert ((own > 1) == (shown > 1))[told].all()

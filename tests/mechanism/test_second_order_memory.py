@@ -29,4 +29,4 @@ def test_an_acceleration_is_taken_where_a_steady_motion_is_then(name: str, momen
 def test_a_helper_starts_with_what_belongs_to_the_state() -> None:
     ahead = recipe({"y": "y[0] + v1", "x1": "y - 1/2 v1", "v1": "v0 + a0", "a1": "acceleration(x1, v1)"})
     starts = dict(zip(memory(ahead).carried, memory(ahead).shares, strict=True))
-    assert starts[Quantity("y", 0)][:2] == (1, Fraction(1, 2))
+    assert starts[Quantity("y", 0)][:2] == (Fraction(1), Fraction(1, 2))

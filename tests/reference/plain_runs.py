@@ -1,7 +1,6 @@
 """Runs that are nothing but a method's formula and the accelerations, projected by numpy if asked for."""
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +19,7 @@ def plain_run(
     method: Method,
     h: float,
     gains: tuple[float, float],
-    states: Sequence[FloatArray],
+    states: FloatArray,
     count: int,
     iterations: int = 0,
 ) -> FloatArray:
@@ -38,7 +37,7 @@ def plain_run(
 
     of_second_order = implicit(method) or isinstance(method.scheme, SecondOrder)
     if of_second_order and not iterations:
-        return np.array(plain_second_order_run(second_order_form(method.scheme), accelerations, h, states, count))
+        return np.array(plain_second_order_run(second_order_form(method.scheme), accelerations, h, list(states), count))
     history = list(states)
     for _ in range(count):
         if of_second_order:
