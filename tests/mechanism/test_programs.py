@@ -5,6 +5,7 @@ from fractions import Fraction
 import pytest
 
 from bezstab.mechanism.programs import Evaluation, Program, program_of
+from bezstab.mechanism.second_order_memory import memory
 from bezstab.methods import REGISTRY, lookup, second_order_form
 
 HALF, ONE, NONE = Fraction(1, 2), Fraction(1), Fraction(0)
@@ -26,6 +27,13 @@ def test_velocity_verlet_is_the_program_of_the_books() -> None:
         state=(4, 5),
         corrected=((ONE, NONE), (NONE, ONE), (NONE, NONE)),
     )
+
+
+def test_a_projection_changes_what_is_carried_of_the_newest_state_and_nothing_older() -> None:
+    names = [str(quantity) for quantity in memory(second_order_form(lookup("bdf2").scheme)).carried]
+    shares = dict(zip(names, program("bdf2").corrected, strict=True))
+    assert {name for name, of_it in shares.items() if any(of_it)} == {"x0", "v0"}
+    assert {"x[-1]", "v[-1]"} <= set(shares)
 
 
 @pytest.mark.parametrize("name", REGISTRY)
