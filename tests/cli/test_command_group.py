@@ -65,7 +65,7 @@ def test_whatever_is_typed_ends_in_an_answer_or_one_line(data: st.DataObject) ->
     result = run(*words, "--format", data.draw(st.sampled_from(["text", "json"])))
     assert isinstance(result.exception, SystemExit | None)
     assert result.exit_code in (0, 1, 2, 3)
-    assert result.stderr.count("\n") == (result.exit_code > 1)
+    assert result.exit_code < 2 or result.stderr.count("\n") == 1  # beside an answer there may be notes
 
 
 def test_numerical_trouble_is_status_three_and_no_file(tmp_path: Path) -> None:
