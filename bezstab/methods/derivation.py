@@ -97,14 +97,6 @@ def _whole_powers(number: Fraction, most: int) -> list[int]:
     return [number.numerator**k * number.denominator ** (most - k) for k in range(most + 1)]
 
 
-def feedback_matrix(method: Method) -> tuple[tuple[Fraction, Fraction], tuple[Fraction, Fraction]]:
-    """Return the 2x2 matrix that takes (alpha_hat, beta_hat) to the coefficients of mu^1 and mu^0 in the feedback.
-
-    mu^2 + alpha_hat mu + beta_hat = 0 for a step of h, so that the parameters of the method's own step stand in it.
-    """
-    return (method.step_multiple, Fraction(0)), (Fraction(0), method.step_multiple**2)
-
-
 def branch_polynomial(method: Method) -> tuple[Fraction, ...]:
     """Return the polynomial in z, ascending, that is zero wherever two roots of pi(., mu) meet: Res_mu(pi, d pi/dz).
 

@@ -59,7 +59,7 @@ def sampled_points(extent: Extent, alpha_hat: float, beta_hat: float) -> tuple[F
 
 def check_deadbeat(pencil: Pencil, alpha_hat: float, beta_hat: float) -> None:
     """Raise NumericalError unless every pole of a one-step method is zero, to rounding, at its best point."""
-    mu_abs = np.sqrt(abs(pencil.to_feedback[1] @ (alpha_hat, beta_hat)))
+    mu_abs = pencil.multiple * np.sqrt(abs(beta_hat))
     size = float(np.abs(pencil.table[0]) @ mu_abs ** np.arange(pencil.table.shape[1]))
     z_abs = float(largest_modulus(pencil, alpha_hat, beta_hat))
     if z_abs > 100 * np.sqrt(EPS) * size:  # a double mu splits by the root of rounding

@@ -25,7 +25,6 @@ from numpy.typing import ArrayLike
 
 from bezstab.methods import Method, closed_loop_table
 from bezstab.stability.arrays import ComplexArray, FloatArray
-from bezstab.stability.exact_sums import feedback_roots
 from bezstab.stability.pencils import pencil_of
 
 
@@ -62,7 +61,7 @@ def own_feedback_root(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike,
     if not method.has_mu:
         return np.zeros(z.shape, complex)
     pencil = pencil_of(method)
-    mu = np.stack(feedback_roots(pencil.feedback, alpha_hat.ravel(), beta_hat.ravel())).reshape(2, *z.shape)
+    mu = np.stack(pencil.feedback_roots(alpha_hat.ravel(), beta_hat.ravel())).reshape(2, *z.shape)
     left_over = np.abs(polyval2d(np.broadcast_to(z, mu.shape), mu, pencil.table))
     return np.asarray(np.take_along_axis(mu, np.argmin(left_over, axis=0)[np.newaxis], axis=0)[0])
 
