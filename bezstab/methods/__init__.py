@@ -71,7 +71,6 @@ if TYPE_CHECKING:
     from bezstab.methods.step_matrices import (
         StepMatrix,
         StepPolynomial,
-        matrix_product,
         polynomial_determinant,
         polynomial_product,
         step_matrix,

@@ -93,8 +93,8 @@ def _plane_chart(pencil: PlanePencil, stable: Region, points: int) -> Chart:
     high = np.array([max(stable.view[0][1], 0.0), np.sqrt(max(stable.view[1][1], 0.0))])
     if not stable.bounded:
         high = np.maximum(high, FAR)
-    table = np.array(pencil.split)[..., 0]
-    tables = [np.moveaxis(each, 0, -1) for each in (table, polyder(table, axis=1), polyder(table, axis=2))]
+    slopes = (polyder(pencil.table, axis=axis) for axis in (1, 2))
+    tables = [np.moveaxis(each, 0, -1) for each in (pencil.table, *slopes)]
 
     def coefficients(x: float, y: float) -> ComplexArray:
         return np.array([polyval2d(x, y, each) for each in tables], complex)

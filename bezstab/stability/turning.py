@@ -23,9 +23,10 @@ import numpy as np
 from numpy.polynomial.polynomial import polyval2d
 from numpy.typing import ArrayLike
 
-from bezstab.methods import Method, closed_loop_table
+from bezstab.methods import Method
 from bezstab.stability.arrays import ComplexArray, FloatArray
 from bezstab.stability.pencils import pencil_of
+from bezstab.stability.plane_pencils import plane_pencil_of
 
 
 def turning_sensitivity(method: Method, alpha_hat: ArrayLike, beta_hat: ArrayLike, z: ArrayLike) -> ComplexArray:
@@ -84,7 +85,7 @@ def _by_closed_loop(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray,
 @cache
 def _closed_loop_slopes(method: Method) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the tables of P's derivatives by z, alpha_hat and beta_hat, indexed by powers in this order."""
-    table = np.array(closed_loop_table(method), float)
+    table = plane_pencil_of(method).table
     by_z, by_alpha, by_beta = (np.polynomial.polynomial.polyder(table, axis=axis) for axis in range(3))
     return by_z, by_alpha, by_beta
 
