@@ -13,7 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, floor
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,7 +29,7 @@ MOST_STEPS = 100
 Number = TypeVar("Number", Fraction, FloatArray)
 """Exact, or in float64: as many as there are points."""
 
-Numbers = NDArray[np.float64] | NDArray[np.object_]
+Numbers = NDArray[Any]
 """The same at so many points: in float64 for |z_p|, or Fractions."""
 
 
@@ -148,7 +148,7 @@ def _steps_matrix(seen: _Seen, alpha_hat: Numbers, beta_hat: Numbers, timing: Ti
     filtered velocity if there is a filter, then the torques computed before, latest first, as many as are still to be
     applied. h = 1, and torques are over the inertia. Each is linear in the state at the first step: its coefficients.
     """
-    number = Fraction if alpha_hat.dtype == object else float
+    number: Callable[[Fraction | int], Any] = Fraction if alpha_hat.dtype == object else float
     whole = floor(timing.late)
     left = timing.late - whole  # of a step, which the torque before keeps
     gain = number(1 / (1 + timing.filter_steps / timing.every))

@@ -20,7 +20,7 @@ For an exact integrator z = e^mu: chi = 0, as it must be.
 from functools import cache
 
 import numpy as np
-from numpy.polynomial.polynomial import polyval2d
+from numpy.polynomial.polynomial import polyder, polyval2d, polyval3d
 from numpy.typing import ArrayLike
 
 from bezstab.methods import Method
@@ -86,9 +86,9 @@ def _by_closed_loop(method: Method, alpha_hat: FloatArray, beta_hat: FloatArray,
 def _closed_loop_slopes(method: Method) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the tables of P's derivatives by z, alpha_hat and beta_hat, indexed by powers in this order."""
     table = plane_pencil_of(method).table
-    by_z, by_alpha, by_beta = (np.polynomial.polynomial.polyder(table, axis=axis) for axis in range(3))
+    by_z, by_alpha, by_beta = (np.asarray(polyder(table, axis=axis), float) for axis in range(3))
     return by_z, by_alpha, by_beta
 
 
 def _value(table: FloatArray, z: ComplexArray, alpha_hat: FloatArray, beta_hat: FloatArray) -> ComplexArray:
-    return np.asarray(np.polynomial.polynomial.polyval3d(z, alpha_hat, beta_hat, table))
+    return np.asarray(polyval3d(z, alpha_hat, beta_hat, table))
