@@ -41,17 +41,12 @@ def closed_loop_polynomial(method: Method) -> sp.Poly:
     Paper Eq. 17 for B2; for a multistep method it is rho^2 + alpha_hat rho sigma + beta_hat sigma^2. Monic in z for an
     explicit method; else its leading coefficient is one at alpha_hat = beta_hat = 0.
     """
-    return plane_polynomial(closed_loop_table(method))
-
-
-def plane_polynomial(table: PlaneTable) -> sp.Poly:
-    """Return a table as a polynomial in z over QQ[alpha_hat, beta_hat]."""
     plane = sp.QQ[ALPHA_HAT, BETA_HAT]
     by_power = {
         (k,): plane.ring.from_dict({
             (i, j): in_field(c) for i, row in enumerate(in_plane) for j, c in enumerate(row) if c
         })
-        for k, in_plane in enumerate(table)
+        for k, in_plane in enumerate(closed_loop_table(method))
     }  # fmt: skip
     return sp.Poly.from_dict({power: c for power, c in by_power.items() if c}, Z, domain=plane)
 

@@ -158,7 +158,7 @@ def _steps_matrix(seen: _Seen, alpha_hat: Numbers, beta_hat: Numbers, timing: Ti
     state = np.zeros((size, size, alpha_hat.size), alpha_hat.dtype)
     state[range(size), range(size)] = 1
     x, v, filtered = state[0], state[1], state[1 + filters]
-    torques = [np.zeros_like(x), *state[2 + filters :]]  # latest first; the new one's place is kept
+    torques: list[Numbers] = [np.zeros_like(x), *state[2 + filters :]]  # latest first; the new one's place is kept
 
     def applied(step: int) -> Numbers:
         """Return the torque applied in a step after the latest computation.
@@ -168,7 +168,7 @@ def _steps_matrix(seen: _Seen, alpha_hat: Numbers, beta_hat: Numbers, timing: Ti
         """
         begun = max(0, ceil(Fraction(whole - step, timing.every)))
         if left and step == whole - begun * timing.every:
-            return number(1 - left) * torques[begun] + number(left) * torques[begun + 1]
+            return np.asarray(number(1 - left) * torques[begun] + number(left) * torques[begun + 1])
         return torques[begun]
 
     # u = -b (x + x_by_velocity v + x_by_torque p) - a w,   w = filtered + gain (v + v_by_torque p - filtered),
