@@ -8,6 +8,7 @@ from functools import partial
 from typing import assert_never, get_args
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bezstab.errors import InputError, NumericalError
 from bezstab.goals import SETTLING, UP_TO_LONGEST, Goal
@@ -390,6 +391,10 @@ def _slowest(method: Method, modulus: Modulus, within: Within, spread: float) ->
         share = shares[:, np.newaxis, np.newaxis]
         return np.broadcast_arrays(share, share * of_alpha * alpha_hat, share**2 * (of_beta**2 * beta_hat))
 
+    def at_shares(shares: FloatArray, alpha_hat: FloatArray, beta_hat: FloatArray) -> FloatArray:
+        share, scaled_alpha, scaled_beta = scaled(shares, alpha_hat, beta_hat)
+        return np.asarray((modulus(scaled_alpha, scaled_beta) ** (1 / share)).max(axis=(0, 1)))
+
     def below(bound: float | FloatArray, shares: FloatArray, alpha_hat: FloatArray, beta_hat: FloatArray) -> BoolArray:
         share, scaled_alpha, scaled_beta = scaled(shares, alpha_hat, beta_hat)
         return np.asarray(within(scaled_alpha, scaled_beta, bound**share).all(axis=(0, 1)))
@@ -406,10 +411,23 @@ def _slowest(method: Method, modulus: Modulus, within: Within, spread: float) ->
             if kept.size:  # next to a double pole even the point that was reached may seem larger
                 worst[np.setdiff1d(left, kept)] = np.inf
                 left = kept
-        if left.size:
-            share, scaled_alpha, scaled_beta = scaled(all_shares, alpha_hat[left], beta_hat[left])
-            decays = (modulus(scaled_alpha, scaled_beta) ** (1 / share)).max(axis=(0, 1))
-            worst[left] = np.maximum(worst[left], decays)
+        if not left.size:
+            return worst
+
+        def complete(some: NDArray[np.intp]) -> None:
+            """Let the smaller steps count as well, where one of them is the worst."""
+            share, scaled_alpha, scaled_beta = scaled(smaller_steps, alpha_hat[some], beta_hat[some])
+            counts = ~within(scaled_alpha, scaled_beta, worst[some] ** share)
+            if counts.any():
+                values = np.zeros(share.shape)
+                values[counts] = modulus(scaled_alpha[counts], scaled_beta[counts]) ** (1 / share[counts])
+                worst[some] = np.maximum(worst[some], values.max(axis=(0, 1)))
+
+        worst[left] = np.maximum(worst[left], at_shares(largest_step, alpha_hat[left], beta_hat[left]))
+        best = left[np.argmin(worst[left])]
+        complete(np.array([best]))
+        reached = min(reached, float(worst[best]))
+        complete(left[(worst[left] <= reached) & (left != best)])
         return worst
 
     return objective
