@@ -119,7 +119,8 @@ def test_the_curves_are_closed_touch_the_extent_and_enclose_the_area_and_what_is
         assert places.max() <= 1 + 1e-11
         for attained in (places.min(axis=0), 1 - places.max(axis=0)):
             assert (attained < 1e-4).all()  # a chord's sagitta
-    points = np.random.default_rng(3).uniform(*np.transpose(window(region(method))), (4000, 2))
+    low, high = np.transpose(window(region(method)))
+    points = np.random.default_rng(3).uniform(low, high, (4000, 2))
     modulus = radius(method, *points.T)
     clear = np.abs(modulus - level) > 1e-3  # chords leave the curve by less
     assert (enclosed(shape.boundary, points) == (modulus < level))[clear].all()
