@@ -89,7 +89,8 @@ def off_by(factor: float, search: Callable[..., tuple[float, float]]) -> Callabl
 
 
 BESIDE: list[tuple[str, str, Goal, float, str]] = [
-    *(("_least", name, goal, 0.99, "the point chosen") for name, goal in [("RK4", "robust"), ("RK4", "fastest")]),
+    ("_least", "RK4", "robust", 0.99, "the point chosen"),
+    ("_least", "RK4", "fastest", 0.99, "the point chosen"),
     ("_least", "B4", "robust", 0.99, "the point chosen"),
     *(("_critical_point", "RK4", "critical", off, "critical point") for off in (0.99, 1.01)),
     *(("_critical_point", "B4", "critical", off, "critical point") for off in (0.99, 1.01)),
