@@ -1,20 +1,18 @@
 from fractions import Fraction
-from itertools import product
+from itertools import combinations, product
 
 import numpy as np
 import pytest
 import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from sympy import RR
 
-from bezstab.methods import ALPHA_HAT, BETA_HAT, LinearMultistep, Method, lookup, recipe
+from bezstab.methods import ALPHA_HAT, BETA_HAT, crossing_polynomials, lookup
 from bezstab.stability import stable_for_all
-from bezstab.stability.quadrant_proofs import (
-    RING,
-    _positive,
-    stability_conditions,
-)
+from bezstab.stability.quadrant_proofs import _positive
 from tests.reference.rationals import rationals
+from tests.stability.made_methods import multistep
 
 PROVEN = [
     *("implicit-euler", "bdf1", "bdf2", "trapezoid", "am2", "implicit-midpoint"),
@@ -41,45 +39,28 @@ def test_what_is_known_to_have_limits_is_refuted(name: str) -> None:
     assert stable_for_all(lookup(name)) == "no"
 
 
-def theta_method(theta: Fraction) -> Method:
-    return Method("theta", LinearMultistep((Fraction(1), Fraction(-1)), (theta, 1 - theta)), "")
-
-
 @pytest.mark.parametrize("theta", [Fraction(2, 5), Fraction(49, 100), Fraction(1, 2), Fraction(3, 5)])
 def test_a_theta_method_is_stable_for_all_from_one_half_on(theta: Fraction) -> None:
-    assert stable_for_all(theta_method(theta)) == ("proven" if theta >= Fraction(1, 2) else "no")
+    assert stable_for_all(multistep("theta", "1 -1", f"{theta} {1 - theta}")) == (
+        "proven" if theta >= Fraction(1, 2) else "no"
+    )
 
 
 @settings(max_examples=10, deadline=None)
 @given(rationals(Fraction(2, 5), 1, max_denominator=20), rationals(Fraction(1, 20), 1, max_denominator=20))
 def test_newmark_is_stable_for_all_where_hughes_says_so(velocity: Fraction, position: Fraction) -> None:
     # T. J. R. Hughes, The Finite Element Method, section 9.1.2: gamma >= 1/2 and 2 beta >= gamma
-    def signed(coefficient: Fraction) -> str:
-        return f"{'-' if coefficient < 0 else '+'} {abs(coefficient)}"
-
-    half = Fraction(1, 2)
-    scheme = recipe(
-        {
-            "x1": f"x0 + v0 {signed(half - position)} a0 {signed(position)} a1",
-            "v1": f"v0 {signed(1 - velocity)} a0 {signed(velocity)} a1",
-            "a1": "acceleration(x1, v1)",
-        }
-    )
-    expected = "proven" if velocity >= half and 2 * position >= velocity else "no"
-    assert stable_for_all(Method("newmark", scheme, "")) == expected
+    expected = "proven" if velocity >= Fraction(1, 2) and 2 * position >= velocity else "no"
+    assert stable_for_all(lookup(f"newmark({position},{velocity})")) == expected
 
 
 @settings(max_examples=50, deadline=None)
-@given(st.lists(st.complex_numbers(max_magnitude=1.5, allow_nan=False), min_size=1, max_size=3))
-def test_the_conditions_say_what_the_roots_say(roots: list[complex]) -> None:
-    real = np.poly([*roots, *np.conj(roots)]).real
-    exact = [Fraction(c).limit_denominator(10**6) for c in real[::-1]]
-    moduli = np.abs(np.roots([float(c) for c in exact[::-1]]))
-    if (np.abs(moduli - 1) < 1e-3).any():
-        return  # too near for float64, of which roots may be triple
-    ring = sp.QQ[sp.Symbol("step")]
-    conditions = stability_conditions([ring.convert(sp.Rational(c.numerator, c.denominator)) for c in exact], ring)
-    assert all(ring.to_sympy(condition) > 0 for condition in conditions) == (moduli < 1).all()
+@given(st.lists(st.complex_numbers(max_magnitude=1.5, allow_nan=False), min_size=1, max_size=3), st.floats(0.5, 2))
+def test_the_edge_of_pairs_is_the_product_of_what_pairs_of_roots_lack_to_one(roots: list[complex], last: float) -> None:
+    *_, found = crossing_polynomials((last * np.poly([*roots, *np.conj(roots)]).real[::-1]).tolist(), RR)
+    pairs = combinations([*roots, *np.conj(roots)], 2)
+    expected = last ** (2 * len(roots) - 1) * np.prod([1 - first * second for first, second in pairs])
+    assert float(found) == pytest.approx(expected.real, rel=1e-9, abs=1e-9 * last**5 * 4**15)
 
 
 def test_only_what_is_positive_on_the_whole_quadrant_passes() -> None:
@@ -87,4 +68,4 @@ def test_only_what_is_positive_on_the_whole_quadrant_passes() -> None:
     positive = [1 + a * b, a, (1 - b / 12) ** 2 + a**2 / 3, (a - 1) ** 2 + b, 5 + a * (b - 1) ** 2]
     not_proven = [sp.Integer(0), b - 1, (a - 1) ** 2, a * (b - 1) ** 3 + 1, -1 - a, (a - b) ** 2]
     for expression, expected in [*product(positive, [True]), *product(not_proven, [False])]:
-        assert _positive(RING.from_sympy(sp.expand(expression))) is expected
+        assert _positive(sp.expand(expression)) is expected
