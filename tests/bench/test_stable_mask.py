@@ -5,7 +5,7 @@ from bezstab.methods import lookup
 from bezstab.stability import region, spectral_radius, window
 from tests.bench.stable_mask import stable_mask
 from tests.methods.kinds import EXPLICIT, FEW, sampled
-from tests.stability.made_methods import multistep
+from tests.reference.made_methods import multistep
 
 
 def test_the_first_row_of_a_mask_touches_the_region_and_is_outside() -> None:

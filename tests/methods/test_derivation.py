@@ -1,6 +1,5 @@
 """Mapping and closed loop: the paper's equations, and a stepper that never sees the derivation."""
 
-from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -24,8 +23,8 @@ from bezstab.methods import (
     mapping_equations,
     steps,
 )
-from tests.methods.kinds import EXPLICIT, FEW, sampled
-from tests.reference.closed_loops import polynomial_in_z, sympy_rational
+from tests.methods.kinds import EXPLICIT, sampled
+from tests.reference.closed_loops import sympy_rational
 from tests.reference.steppers import State, trajectory
 
 NAMES = [*EXPLICIT, "B4@1/2", "RK4@5", "ABM3@2"]
@@ -90,13 +89,3 @@ def test_closed_loop_is_the_minimal_recursion_of_the_stabilised_constraint(name:
     # the stepper's two unknowns at its n points obey no shorter recursion: the Hankel matrix is regular
     hankel = [[sympy_rational(c[n + i + j]) for j in range(n)] for i in range(n)]
     assert DomainMatrix.from_Matrix(sp.Matrix(hankel)).to_field().rank() == n
-
-
-@pytest.mark.parametrize("name", [*FEW, "bdf2", "sdirk2", "verlet-kdk", "newmark(1/6,1/2)"])
-@pytest.mark.parametrize("m", [Fraction(5), Fraction(1, 3)], ids=str)
-def test_a_step_of_m_h_is_p_at_m_alpha_hat_and_m_squared_beta_hat(name: str, m: Fraction) -> None:
-    method, a, b = lookup(name), Fraction(3, 7), Fraction(-2, 11)
-    multiple = replace(method, step_multiple=m)
-    assert closed_loop_at(multiple, a, b) == closed_loop_at(method, m * a, m * m * b)
-    there = closed_loop_polynomial(multiple).as_expr().subs({ALPHA_HAT: sympy_rational(a), BETA_HAT: sympy_rational(b)})
-    assert same(polynomial_in_z(closed_loop_at(multiple, a, b)), there)

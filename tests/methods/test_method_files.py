@@ -167,13 +167,6 @@ def test_coefficients_with_roots_are_those_of_the_book(content: str, name: str, 
     assert accuracy(own)[0] == accuracy(built_in)[0]
 
 
-def test_a_multistep_file_with_roots_has_the_order_of_the_exact_method(tmp_path: Path) -> None:
-    """Of order two for every c: rho = (z - 1)(z - c) with the explicit sigma that belongs to it."""
-    c, of_newest, of_oldest = "1/(1 + sqrt(5))", "(3 - 1/(1 + sqrt(5)))/2", "-(1 + 1/(1 + sqrt(5)))/2"
-    content = f'rho = ["1", "-1 - {c}", "{c}"]\nsigma = ["0", "{of_newest}", "{of_oldest}"]\n'
-    assert accuracy(read_method(written(tmp_path, content)))[0] == 2
-
-
 def test_equations_with_roots_are_reckoned_exactly(tmp_path: Path) -> None:
     update = "[update]\na0 = 'acceleration(x0, v0)'\nv1 = 'v0 + sqrt(2)/2 a0 + (a0 - a0/sqrt(2))'\nx1 = 'x0 + v1'\n"
     own = read_method(written(tmp_path, update))

@@ -12,9 +12,7 @@ import numpy as np
 import pytest
 
 from bezstab.methods import (
-    LinearMultistep,
     Method,
-    RungeKutta,
     SecondOrder,
     accuracy,
     accuracy_by_force,
@@ -25,7 +23,8 @@ from bezstab.methods import (
 from bezstab.methods.orders import _trees
 from tests.methods import kinds
 from tests.methods.kinds import EXPLICIT, FEW, sampled
-from tests.reference.orders import JAMESON, adams_constant, tableau_method
+from tests.reference.made_methods import multistep, runge_kutta
+from tests.reference.orders import JAMESON, adams_constant
 from tests.reference.second_order_steps import final_state
 from tests.reference.steppers import State, trajectory
 
@@ -66,8 +65,8 @@ def test_orders_and_error_constants_are_those_of_the_literature(name: str) -> No
 @pytest.mark.parametrize(
     ("method", "order"),
     [
-        (tableau_method(["", "1/3", "-1/3 1", "1 -1 1"], "1/8 3/8 3/8 1/8"), 4),  # Kutta's 3/8 rule
-        (tableau_method(["", "1/2", "0 1/2", "0 0 1"], "1/4 1/4 1/4 1/4"), 2),  # sum b c^2 = 3/8, not 1/3
+        (runge_kutta("3/8", "1/3;-1/3 1;1 -1 1", "1/8 3/8 3/8 1/8"), 4),  # Kutta's 3/8 rule
+        (runge_kutta("equal", "1/2;0 1/2;0 0 1", "1/4 1/4 1/4 1/4"), 2),  # sum b c^2 = 3/8, not 1/3
         (JAMESON, 2),  # on linear problems four
     ],
 )
@@ -148,10 +147,8 @@ def test_measured_orders_of_second_order_and_implicit_methods(name: str) -> None
 
 def test_the_order_of_a_method_of_many_steps_or_stages_is_found() -> None:
     """Explicit Euler a hundred steps back, and forty stages of equal Euler steps: no second-order form is so long."""
-    zeros, one, part = (Fraction(0),) * 99, Fraction(1), Fraction(1, 40)
-    long = Method("long", LinearMultistep((one, -one, *zeros), (Fraction(0), one, *zeros)), "")
-    rows = tuple(tuple(part if j < i else Fraction(0) for j in range(40)) for i in range(40))
-    many = Method("many", RungeKutta(rows, (part,) * 40), "")
+    long = multistep("long", "1 -1" + 99 * " 0", "0 1" + 99 * " 0")
+    many = runge_kutta("many", ";".join("1/40 " * stage for stage in range(1, 40)), "1/40 " * 40)
     assert accuracy_by_force(long).velocity[0] == accuracy_by_force(many).position[0] == 1
 
 

@@ -93,12 +93,6 @@ def test_an_implicit_or_mismatched_pair_cannot_be_built(predictor: LinearMultist
         PredictorCorrector(predictor, corrector)
 
 
-@pytest.mark.parametrize("multiple", [Fraction(0), Fraction(-1)])
-def test_a_step_multiple_is_positive(multiple: Fraction) -> None:
-    with pytest.raises(InputError):
-        Method("M", EULER, "source", multiple)
-
-
 # The same step as equations for x, v and a
 
 

@@ -88,12 +88,6 @@ def test_a_motion_that_is_not_followed_or_an_acceleration_that_does_not_act_in_f
         recipe(equations | {"x1": f"{equations['x1']} + 1/9 {quantity}"})
 
 
-@settings(deadline=None, max_examples=10)
-@given(RECIPES)
-def test_the_order_in_which_equations_are_listed_does_not_matter(equations: dict[str, str]) -> None:
-    assert recipe(equations).table == recipe(dict(reversed(equations.items()))).table
-
-
 @pytest.mark.parametrize(
     ("more", "number", "evaluations"),
     [

@@ -15,7 +15,6 @@ Between two neighbours the verdict is constant, and Schur's recursion, which com
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache, partial
 from math import comb
 
 import numpy as np
@@ -27,12 +26,8 @@ from bezstab.stability.pencils import Pencil, all_inside, deadbeat_mu
 COSINE_SLACK = 1e-6  # a double zero splits by sqrt(eps) = 1e-8 into the complex plane; more candidates do no harm
 TRUE_DEGREE = 1e-12  # relative: Chebyshev coefficients of a polynomial of lower degree are rounding, 1e-16 or so
 SHARED = 1e-4  # of |mu|: a shared root is good to the root of rounding; more candidates do no harm
-QUADRATIC_SAMPLES = 2600  # of theta for PECE, besides the graded ends: another grid than the arcs'
-QUADRATIC_ZOOMS = 8  # each by 1/8: a turn to 1e-10 rad, where the modulus is flat to rounding
-ILLINOIS = 14  # false positions from one sample to the next: the seventh is exact but next to a turn
 REFINEMENTS = 5  # of Newton's method, from eight digits or more
 TO_ANOTHER = 0.2  # of theta: a longer step could reach another zero
-FAR = 1e300  # a finite stand-in for an infinite mu
 LEADING = 1e-14  # of the largest coefficient: a leading coefficient below it is rounding of a zero
 
 
@@ -107,21 +102,14 @@ def real_events(pencil: Pencil, level: float) -> FloatArray:
 def _with_a_pair_on_the_circle(pencil: Pencil, level: float) -> list[float]:
     """Return every real mu with a conjugate pair of roots z on the circle: there pi and its conjugate share a root mu.
 
-    With pi = c_0 + c_1 mu (+ c_2 mu^2) and I_jk = Im(c_j conj(c_k)) that is I_01 = 0, or I_20^2 = I_21 I_10.
+    With pi = c_0 + c_1 mu that is Im(c_0 conj(c_1)) = 0.
     """
-    powers_of_mu = pencil.table.shape[1] - 1
 
     def eliminated(cosine: FloatArray) -> FloatArray:
         c = _coefficients_on_the_circle(pencil, level, cosine)
-        sine = np.sqrt(1 - cosine**2)
-        if powers_of_mu == 1:
-            return np.asarray((c[0] * c[1].conj()).imag / sine)[np.newaxis]
-        i20 = (c[2] * c[0].conj()).imag / sine
-        i21 = (c[2] * c[1].conj()).imag / sine
-        i10 = (c[1] * c[0].conj()).imag / sine
-        return np.asarray(i20**2 - i21 * i10)[np.newaxis]
+        return np.asarray((c[0] * c[1].conj()).imag / np.sqrt(1 - cosine**2))[np.newaxis]
 
-    cosine = _cosine_zeros(eliminated, (pencil.steps - 1) * powers_of_mu, 1)[0]
+    cosine = _cosine_zeros(eliminated, pencil.steps - 1, 1)[0]
     found: list[float] = []
     for in_mu in _coefficients_on_the_circle(pencil, level, cosine[np.isfinite(cosine)]).T:
         mu = np.roots(np.trim_zeros(in_mu, "b")[::-1])
@@ -157,7 +145,7 @@ def turning_radii(pencil: Pencil, level: float) -> FloatArray:
     cos(theta).  A slice length has a square root there, and a part of S_r too thin to be met begins or ends there.
     """
     table = pencil.table
-    if pencil.steps == 1 or table.shape[1] != 2:
+    if pencil.steps == 1:
         return np.zeros(0)
     slope = polyder(table)
 
@@ -181,9 +169,7 @@ def paired_crossings(pencil: Pencil, level: float, radius: FloatArray) -> FloatA
     """
     if pencil.steps == 1:
         return _one_step_crossings(pencil, level, radius)
-    if pencil.table.shape[1] == 2:
-        return _multistep_crossings(pencil, level, radius)
-    return _quadratic_locus(pencil, level).crossings(radius)
+    return _multistep_crossings(pencil, level, radius)
 
 
 def _one_step_crossings(pencil: Pencil, level: float, radius: FloatArray) -> FloatArray:
@@ -240,93 +226,6 @@ def _refined(cosine: FloatArray, step_at: Callable[[FloatArray], FloatArray]) ->
 
 
 @dataclass(frozen=True)
-class _QuadraticLocus:
-    """The moduli of both mu at |z| = level for PECE, sorted: two continuous functions of theta, no branch is followed.
-
-    theta: shape (samples,), ascending from 0 to pi, with every turn of either function and every angle at which both
-    are equal, and have a kink; moduli: shape (2, samples).
-    (The resultant in the cosine, of degree 4 steps and a square near z = 1, keeps too few digits in float64.)
-    """
-
-    table: FloatArray
-    level: float
-    theta: FloatArray
-    moduli: FloatArray
-
-    def both(self, theta: FloatArray) -> ComplexArray:
-        """Return both mu, the smaller first; shape (2, *theta.shape)."""
-        with np.errstate(all="ignore"):
-            c = polyval(self.level * np.exp(1j * theta), self.table)
-            root = np.sqrt(c[1] ** 2 - 4 * c[0] * c[2])
-            far = -(c[1] + np.where((c[1].conj() * root).real >= 0, root, -root)) / 2
-            mu = np.stack([c[0] / far, far / c[2]])
-        return np.where(np.isfinite(mu), mu, FAR)
-
-    def _excess(self, which: int, target: FloatArray, theta: FloatArray) -> FloatArray:
-        """Return by how much the smaller or larger mu (`which`) exceeds a radius in modulus; shapes of one kind."""
-        excess: FloatArray = np.abs(self.both(theta)[which]) - target
-        return excess
-
-    def crossings(self, radius: FloatArray) -> FloatArray:
-        """Return Re mu wherever either modulus equals a radius, nan padded; shape (rows, candidates)."""
-        order = np.argsort(radius)
-        levels = radius[order]
-        rows, real_parts = [], []
-        for which in range(2):
-            values = self.moduli[which]
-            first = np.searchsorted(levels, np.minimum(values[1:], values[:-1]), "right")
-            count = np.searchsorted(levels, np.maximum(values[1:], values[:-1]), "right") - first
-            cell = np.repeat(np.arange(len(count)), count)
-            row = np.arange(count.sum()) + np.repeat(first - np.cumsum(count) + count, count)
-            angle = false_position(
-                partial(self._excess, which, levels[row]),
-                (self.theta[cell], values[cell] - levels[row]),
-                (self.theta[cell + 1], values[cell + 1] - levels[row]),
-                rounds=ILLINOIS,
-            )
-            real_parts.append(self.both(angle)[which].real)
-            rows.append(row)
-        row, real = np.concatenate(rows), np.concatenate(real_parts)
-        by_row = np.argsort(row, kind="stable")
-        row, real = row[by_row], real[by_row]
-        place = np.arange(len(row)) - np.searchsorted(row, row)
-        found = np.full((len(radius), int(place.max(initial=0)) + 1), np.nan)
-        found[order[row], place] = np.clip(real, -radius[order[row]], radius[order[row]])
-        return found
-
-
-@cache
-def _quadratic_locus(pencil: Pencil, level: float) -> _QuadraticLocus:
-    """Return the locus of a PECE method, sampled more finely towards 0 and pi, with every turn and kink of its moduli.
-
-    Where the moduli are equal the gap between them turns, at zero.
-    """
-    near = np.geomspace(1e-8, 2e-2, 160)  # towards z = 1 and -1, where mu may vanish
-    even = np.linspace(2e-2, np.pi - 2e-2, QUADRATIC_SAMPLES)
-    theta = np.concatenate([[0], near, even, np.pi - near[::-1], [np.pi]])
-    unsampled = _QuadraticLocus(pencil.table, level, theta, np.zeros((2, 0)))
-
-    def turning(theta: FloatArray) -> FloatArray:
-        """Return both moduli and the gap between them; shape (3, *theta.shape)."""
-        smaller, larger = np.abs(unsampled.both(theta))
-        return np.stack([smaller, larger, larger - smaller])
-
-    turns = []
-    for which, values in enumerate(turning(theta)):
-        turn = 1 + np.flatnonzero(np.diff(np.sign(np.diff(values))))
-        sign = np.where(values[turn] >= np.maximum(values[turn - 1], values[turn + 1]), 1, -1)
-        low, high = theta[turn - 1], theta[turn + 1]
-        for _ in range(QUADRATIC_ZOOMS):
-            fine = np.linspace(low, high, 17)
-            best = np.argmax(sign * turning(fine.ravel())[which].reshape(fine.shape), axis=0)
-            columns = np.arange(len(turn))
-            low, high = fine[np.maximum(best - 1, 0), columns], fine[np.minimum(best + 1, 16), columns]
-        turns.append((low + high) / 2)
-    theta = np.unique(np.concatenate([theta, *turns]))
-    return _QuadraticLocus(pencil.table, level, theta, np.abs(unsampled.both(theta)))
-
-
-@dataclass(frozen=True)
 class Slices:
     """Stable intervals of p = -(mu_1 + mu_2) on lines of constant q: ends of shape (lines, candidates), nan padded."""
 
@@ -369,29 +268,3 @@ def slices(pencil: Pencil, level: float, q: FloatArray, events: FloatArray, boun
     real = np.isfinite(p) & ~is_pair & stable
     stable[real] = all_inside(pencil, second[real].astype(complex), level)
     return Slices(ends, stable & np.isfinite(p))
-
-
-def false_position(
-    values_at: Callable[[FloatArray], FloatArray],
-    first: tuple[FloatArray, FloatArray],
-    last: tuple[FloatArray, FloatArray],
-    rounds: int,
-) -> FloatArray:
-    """Return where smooth functions are zero between two places, each given with the values there, of unlike signs.
-
-    Arrays of one shape, one search for each entry; values_at takes and returns such arrays. Each round draws a chord
-    through the ends; an end that stays twice has its value halved (Illinois algorithm: Dowell & Jarratt, BIT 11, 1971).
-    It takes a handful of rounds where bisection takes fifty.
-    """
-    low, below = first
-    high, above = last
-    middle = high
-    for _ in range(rounds):
-        with np.errstate(divide="ignore", invalid="ignore"):  # a chord between equal values leads nowhere
-            middle = low - below * (high - low) / (above - below)
-        middle = np.where(np.isfinite(middle), middle, (low + high) / 2)
-        off = values_at(middle)
-        same = np.sign(off) == np.sign(above)
-        low, below = np.where(same, low, high), np.where(same, below / 2, above)
-        high, above = middle, off
-    return middle

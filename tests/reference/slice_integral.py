@@ -5,32 +5,22 @@ sqrt|q|, halved until they agree. Corners and islands, where the length has a sq
 computed and made ends of panels.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
 from bezstab.methods import Method
 from bezstab.stability import FloatArray, pencil_of
 from tests.reference.line_slices import island_radii, mu_bound, real_events, slices, turning_radii
+from tests.reference.sliced_areas import Integral
 
 PANEL_NODES = 8  # of a Gauss-Legendre panel
 MAX_DEPTH = 30  # halvings: a square root at a panel's end then errs by 2^-45 of the first panel
 INITIAL_PANELS = 96  # over the whole range of sqrt(q): the thinnest feature found is about 1/800 of it
 
 
-@dataclass(frozen=True)
-class SliceArea:
-    """An area in the user's plane (dimensionless), the error it admits (same unit), and the slices it took."""
-
-    area: float
-    error: float
-    slices: int
-
-
 def slice_area(
     method: Method, level: float, relative: float = 1e-8, cap: int = 200_000, panels_at_first: int = INITIAL_PANELS
-) -> SliceArea:
+) -> Integral:
     """Return the area of |z_p| < level in the user's plane by adaptive Gauss-Legendre panels over sqrt|q|.
 
     relative: share of the area that the summed differences of panels and their halves may reach.
@@ -94,4 +84,4 @@ def slice_area(
         total += float(whole.sum())
         error += float(differences.sum())
     scale = pencil.multiple**-3
-    return SliceArea(total * scale, error * scale, taken)
+    return Integral(total * scale, error * scale)

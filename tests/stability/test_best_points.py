@@ -5,7 +5,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from bezstab.methods import LinearMultistep, Method, RungeKutta, lookup, recipe
+from bezstab.methods import LinearMultistep, Method, lookup, recipe
 from bezstab.stability import (
     BestPoint,
     FarLimit,
@@ -19,6 +19,7 @@ from bezstab.stability import (
 from tests.methods.kinds import EXPLICIT, sampled
 from tests.reference.companion_poles import radius
 from tests.reference.least_by_descent import least_within, modulus_of, random_implicit_runge_kutta
+from tests.reference.made_methods import multistep, runge_kutta
 from tests.reference.random_methods import other_random_method
 from tests.reference.second_order_methods import as_second_order, newmark, second_order
 
@@ -151,35 +152,26 @@ def test_where_poles_meet_in_other_ways_nothing_nearby_is_lower(method: Method, 
     assert len(found.meeting) == meeting
 
 
-def runge_kutta_of(*zeros: Fraction) -> Method:
-    """Return a three-stage method with R = 1 + mu + s mu^2 + p mu^3, zero at minus these three."""
-    p = 1 / (zeros[0] * zeros[1] * zeros[2])
-    s = sum(zeros, F(0)) * p
-    return Method(
-        "of its zeros", RungeKutta(((F(0),) * 3, (p / s, F(0), F(0)), (F(0), s, F(0))), (F(0), F(0), F(1))), ""
-    )
-
-
 def test_zeros_of_r_a_third_of_a_percent_apart_are_two_deadbeat_points() -> None:
     first, second = F(3), F("3.01")
     zeros = [first, second, 1 / (1 - 1 / first - 1 / second)]  # so that R'(0) = 1
-    alpha_hats = sorted(alpha_hat for alpha_hat, _ in places(best(runge_kutta_of(*zeros))))
+    p = 1 / (zeros[0] * zeros[1] * zeros[2])
+    s = sum(zeros) * p
+    method = runge_kutta("of its zeros", f"{p / s};0 {s}", "0 0 1")  # R = 1 + mu + s mu^2 + p mu^3
+    alpha_hats = sorted(alpha_hat for alpha_hat, _ in places(best(method)))
     assert alpha_hats == pytest.approx(sorted(float(2 * zero) for zero in zeros), rel=1e-10)
 
 
 NO_ZERO = {
-    "bounded": RungeKutta(
-        ((F(1, 2), F(0), F(0)), (F(1, 3), F(1, 2), F(0)), (F(1), F(1, 3), F(1, 2))), (F(-2, 5), F(-11, 12), F(139, 60))
-    ),
-    "unbounded": RungeKutta(((F(0), F(-2)), (F(1), F(121, 101))), (F(203, 424), F(221, 424))),
+    "bounded": runge_kutta("bounded", "1/2 0 0;1/3 1/2 0;1 1/3 1/2", "-2/5 -11/12 139/60"),
+    "unbounded": runge_kutta("unbounded", "0 -2;1 121/101", "203/424 221/424"),
 }
 
 
 @pytest.mark.parametrize(("name", "z_abs"), [("bounded", 0.0540368), ("unbounded", 0.125147)])
 def test_without_a_zero_of_r_where_mu_is_damped_the_least_value_is_on_the_edge(name: str, z_abs: float) -> None:
     """log|R| is harmonic there: it has no minimum inside. Both have |R| < 1 on a piece of the imaginary axis."""
-    method = Method(name, NO_ZERO[name], "")
-    found, modulus = best(method), modulus_of(method)
+    found, modulus = best(NO_ZERO[name]), modulus_of(NO_ZERO[name])
     assert found.alpha_hat == 0
     assert float(modulus(np.zeros(1), np.array([found.beta_hat]))[0]) == pytest.approx(found.z_abs, rel=1e-9)
     on_edge = modulus(np.zeros(20001), np.linspace(1e-3, 20, 20001))
@@ -215,7 +207,7 @@ def test_what_has_a_best_point_falls_towards_nothing_less(method: Method) -> Non
 
 
 def test_without_a_stable_region_there_is_no_best_point() -> None:
-    leapfrog = Method("leapfrog", LinearMultistep((F(1), F(0), F(-1)), (F(0), F(2), F(0))), "")
+    leapfrog = multistep("leapfrog", "1 0 -1", "0 2 0")
     assert (best_point(leapfrog), falls_towards(leapfrog)) == (None, None)
 
 

@@ -4,7 +4,7 @@ import pytest
 from bezstab.errors import NumericalError
 from bezstab.stability import Region, region
 from tests.reference.companion_poles import radius
-from tests.stability.made_methods import multistep, runge_kutta
+from tests.reference.made_methods import multistep, runge_kutta
 
 
 @pytest.mark.promise(

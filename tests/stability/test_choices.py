@@ -14,8 +14,8 @@ from bezstab.stability import (
     spectral_radius,
 )
 from tests.methods.kinds import sampled
+from tests.reference.made_methods import multistep
 from tests.reference.robust_decay import worst_decay
-from tests.stability.made_methods import multistep
 
 METHODS = ["B2", "B4", "AB4", "ABM3", "RK1", "RK4", "SIE", "SYM"]
 

@@ -11,7 +11,7 @@ from bezstab.stability import (
     verdict,
 )
 from tests.reference.companion_poles import radius
-from tests.stability.made_methods import multistep, runge_kutta
+from tests.reference.made_methods import multistep, runge_kutta
 
 F = Fraction
 Limits = dict[str, float | Fraction]

@@ -1,12 +1,11 @@
-from fractions import Fraction
-
 import numpy as np
 import pytest
 
-from bezstab.methods import LinearMultistep, Method, lookup
+from bezstab.methods import lookup
 from bezstab.stability import dominant_pole, pole_map, poles, spectral_radius
 from tests.methods.kinds import EXPLICIT, IMPLICIT, sampled
 from tests.reference.companion_poles import radius
+from tests.reference.made_methods import multistep
 
 
 @pytest.mark.parametrize(("name", "columns", "rows"), [("AB3", 57, 1201), ("RK4", 1, 5), ("SYM", 70000, 2)])
@@ -37,8 +36,7 @@ def test_a_map_follows_the_pole_that_is_largest_everywhere(name: str) -> None:
 
 def test_a_map_whose_rows_leap_over_branch_points_follows_no_pole_across_them() -> None:
     """From the end of one row, mu = -85, to the start of the next, mu = -5, the slopes at the former mean nothing."""
-    weights = (tuple(map(Fraction, text.split())) for text in ("1 -1 0 1/3 -1/3", "0 4/5 1 2/5 -13/15"))
-    method = Method("leap", LinearMultistep(*weights), "")
+    method = multistep("leap", "1 -1 0 1/3 -1/3", "0 4/5 1 2/5 -13/15")
     grid = (np.linspace(8.673741, 86.61854885, 211), np.linspace(-28.26979122, 65.9313013, 197)[:, np.newaxis])
     every = np.abs(poles(method, *grid)).max(axis=-1)
     assert np.allclose(spectral_radius(method, *grid), every, rtol=1e-12, atol=0)

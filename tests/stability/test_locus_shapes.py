@@ -2,7 +2,7 @@ import pytest
 
 from bezstab.errors import NumericalError
 from bezstab.stability import region
-from tests.stability.made_methods import composed
+from tests.reference.made_methods import composed
 
 
 def test_of_too_many_stages_there_is_no_region() -> None:

@@ -6,8 +6,8 @@ from numpy.polynomial.polynomial import polyroots, polysub
 
 from bezstab.methods import Method
 from bezstab.stability import pencil_of, region
+from tests.reference.made_methods import CLOSE_BRANCHES, FAR_INTERVAL
 from tests.reference.slice_integral import slice_area
-from tests.stability.made_methods import CLOSE_BRANCHES, FAR_INTERVAL
 
 LEVELS = [1.0, 0.93, 0.75, 0.5]
 
@@ -17,7 +17,7 @@ LEVELS = [1.0, 0.93, 0.75, 0.5]
 @pytest.mark.slow_except("far-0.93")
 def test_the_area_is_that_of_the_slices(method: Method, level: float) -> None:
     area = region(method, level).area
-    assert area == pytest.approx(slice_area(method, level).area, rel=1e-8)
+    assert area == pytest.approx(slice_area(method, level).value, rel=1e-8)
     if (method, level) == (CLOSE_BRANCHES, 0.93):
         assert area == pytest.approx(27.904641404469, rel=1e-12)
 

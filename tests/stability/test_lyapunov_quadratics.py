@@ -1,10 +1,9 @@
 from fractions import Fraction
 
-import numpy as np
 import pytest
 
 from bezstab.methods import lookup, step_matrix
-from bezstab.stability.lyapunov_quadratics import proves_decay, rational_form
+from bezstab.stability.lyapunov_quadratics import proves_decay
 
 HALF, ONE = Fraction(1, 2), Fraction(1)
 IDENTITY = [[ONE, Fraction(0)], [Fraction(0), ONE]]
@@ -23,7 +22,3 @@ def test_a_form_that_is_not_positive_proves_nothing() -> None:
     # explicit Euler without damping: M^T M = 1 + s^2, so that -|x|^2 falls with each step
     negative = [[-entry for entry in row] for row in IDENTITY]
     assert not proves_decay(negative, step_matrix(lookup("RK1"), Fraction(0), ONE), HALF)
-
-
-def test_rounding_keeps_small_entries_exact_in_units_of_the_last() -> None:
-    assert rational_form(np.array([[8.0, 1.0], [1.0, 2.0]])) == [[Fraction(4), HALF], [HALF, ONE]]

@@ -7,7 +7,7 @@ from bezstab.errors import NumericalError
 from bezstab.methods import Method, RungeKutta
 from bezstab.stability import pencil_of, poles
 from bezstab.stability.pencils import has_infinite_root
-from tests.stability.made_methods import multistep
+from tests.reference.made_methods import multistep
 
 
 def test_coefficients_beyond_float64_are_reported() -> None:

@@ -11,8 +11,8 @@ from sympy import RR
 from bezstab.methods import ALPHA_HAT, BETA_HAT, crossing_polynomials, lookup
 from bezstab.stability import stable_for_all
 from bezstab.stability.quadrant_proofs import _positive
+from tests.reference.made_methods import multistep
 from tests.reference.rationals import rationals
-from tests.stability.made_methods import multistep
 
 PROVEN = [
     *("implicit-euler", "bdf1", "bdf2", "trapezoid", "am2", "implicit-midpoint"),

@@ -15,8 +15,8 @@ from bezstab.stability.pencils import Pencil
 from bezstab.stability.region_checks import check_region
 from bezstab.stability.regions import shape_of
 from bezstab.stability.shapes import Shape
+from tests.reference.made_methods import CLOSE_BRANCHES, FAR_INTERVAL
 from tests.reference.second_order_methods import RECIPES, second_order
-from tests.stability.made_methods import CLOSE_BRANCHES, FAR_INTERVAL
 
 REGIONS = [
     *((lookup(name), level) for name, level in [("B4", 1.0), ("AB4", 0.93), ("RK4", 0.93), ("ABM2", 1.0)]),

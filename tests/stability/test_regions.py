@@ -11,8 +11,8 @@ from tests.methods.kinds import EXPLICIT, SAMPLE, sampled
 from tests.reference.companion_poles import radius
 from tests.reference.enclosed_points import enclosed
 from tests.reference.fifty_digit_poles import modulus_from_p
+from tests.reference.made_methods import multistep, runge_kutta
 from tests.reference.sliced_areas import proven_sliced_integral, sliced_area, stable
-from tests.stability.made_methods import multistep, runge_kutta
 
 NAMES = [*EXPLICIT, "RK4@5"]
 

@@ -150,11 +150,6 @@ def test_a_state_of_three_is_proven_by_a_form(name: str) -> None:
     assert len(found.certificate) == 3
 
 
-def test_feedback_without_stiffness_does_not_decay() -> None:
-    found = varying_steps(lookup("SYM"), Fraction(1), Fraction(0), h=Fraction(1), h_min=TINY, h_max=Fraction(1))
-    assert found.varying == "refuted"
-
-
 @pytest.mark.promise(
     "Steps that vary, of methods of several steps",
     unknown=(
