@@ -97,13 +97,6 @@ def test_what_was_typed_is_shown_as_typed() -> None:
         assert tuple(given[key] for key in keys) == typed
 
 
-def test_a_method_without_region_is_not_safe() -> None:
-    """The explicit leapfrog, y1 = y[-1] + 2 h f0: its root -1 grows with every damping."""
-    result = run("check", "--method", str(DATA / "leapfrog.toml"), "--alpha", "0.1", "--beta", "0.01")
-    assert (result.exit_code, result.stdout[:9]) == (1, "Not safe.")
-    assert "nothing instead: leapfrog is not stable with any α and β" in result.stderr
-
-
 @pytest.mark.promise("Poles that no feedback moves, where ρ and σ share a factor")
 def test_a_root_on_the_circle_that_no_feedback_moves_leaves_nothing() -> None:
     (row,) = rows("region", "--method", str(DATA / "shared_i.toml"), "--figure", "none", "--table", "none")
