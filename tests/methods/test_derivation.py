@@ -23,7 +23,7 @@ from bezstab.methods import (
     mapping_equations,
     steps,
 )
-from tests.methods.kinds import EXPLICIT, sampled
+from tests.methods.kinds import EXPLICIT, SAMPLE, sampled
 from tests.reference.closed_loops import sympy_rational
 from tests.reference.steppers import State, trajectory
 
@@ -70,7 +70,7 @@ def test_the_mapping_is_the_characteristic_polynomial_solved(name: str) -> None:
     "P(z; α̂, β̂)",
     proven="annihilates every exact trajectory of the stabilised constraint; nothing of lower degree does",
 )
-@pytest.mark.parametrize("name", sampled(NAMES))
+@pytest.mark.parametrize("name", sampled(NAMES, quick=[*SAMPLE, "RK4@5", "ABM3@2"]))
 def test_closed_loop_is_the_minimal_recursion_of_the_stabilised_constraint(name: str) -> None:
     """P annihilates every exact trajectory of c' = v, v' = -alpha_hat v - beta_hat c; nothing of lower degree does."""
     method, a, b = lookup(name), Fraction(3, 7), Fraction(2, 11)

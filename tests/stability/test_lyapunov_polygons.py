@@ -1,10 +1,9 @@
 from fractions import Fraction
 
-import numpy as np
 import pytest
 
 from bezstab.methods import lookup, step_matrix
-from bezstab.stability.lyapunov_polygons import invariant_polygon, proves_decay
+from bezstab.stability.lyapunov_polygons import proves_decay
 
 ONE, HALF, NONE = Fraction(1), Fraction(1, 2), Fraction(0)
 SQUARE = [(ONE, NONE), (NONE, ONE)]
@@ -35,12 +34,3 @@ def test_a_polygon_is_proven_exactly_as_far_as_it_holds() -> None:
 def test_what_is_no_convex_polygon_proves_nothing(corners: list[tuple[Fraction, Fraction]]) -> None:
     # deadbeat: every corner goes to where it is inside whatever polygon there is
     assert not proves_decay(corners, step_matrix(lookup("implicit-euler"), NONE, Fraction(10**6)), HALF)
-
-
-def test_a_polygon_is_found_where_one_exists() -> None:
-    matrix = step_matrix(lookup("SYM"), HALF, ONE)
-    lengths = [HALF + Fraction(k, 20) for k in range(11)]
-    matrices = np.array([[[float(entry) for entry in row] for row in matrix.at(s)] for s in lengths])
-    found = invariant_polygon(matrix, np.array([float(s) for s in lengths]), matrices, None, np.eye(2), HALF)
-    assert found
-    assert proves_decay(found, matrix, HALF)

@@ -66,7 +66,9 @@ def test_sympy_confirms_a_growing_sequence(ratio: str, share: str) -> None:
     assert found.sequence
     assert all(found.h_min <= step <= found.h_max for step in found.sequence)
     lengths = [step / found.h_max for step in found.sequence]
-    assert spectral_radius(symplectic_euler(*point), lengths) >= 1
+    radius = spectral_radius(symplectic_euler(*point), lengths)
+    assert radius >= 1
+    assert found.growth == pytest.approx(float(radius), rel=1e-9)  # float64, of a product of few steps
 
 
 @pytest.mark.promise("Steps that vary, refuted")

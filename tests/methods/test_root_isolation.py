@@ -1,0 +1,18 @@
+from fractions import Fraction
+
+import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bezstab.methods.root_isolation import positive_roots, real_roots, whole_coefficients
+from tests.reference.rationals import rationals
+
+
+@settings(deadline=None, max_examples=20)  # exact arithmetic has no bounded time
+@given(st.sets(rationals(-20, 20, max_denominator=9), min_size=1, max_size=5))
+def test_rational_roots_are_found_exactly(roots: set[Fraction]) -> None:
+    x = sp.Symbol("x")
+    polynomial = sp.Poly(sp.prod(root.denominator * x - root.numerator for root in roots) * (x**2 + 1), x)
+    whole = whole_coefficients(polynomial)
+    assert real_roots(whole) == tuple(sorted(roots))
+    assert positive_roots(whole) == tuple(sorted(root for root in roots if root > 0))
