@@ -35,6 +35,7 @@ def test_columns_without_names_are_numbered() -> None:
     log = parse_log("0 1\n0.5 -0.25\n1 0.0625\n", "log")
     assert log.columns == ("1", "2")
     assert (time_column(log), error_columns(log, (), 0)) == (0, [1])
+    assert parse_log("t,2\n0,1\n", "log").columns == ("t", "2")
 
 
 @given(st.lists(st.lists(st.floats(allow_nan=False), min_size=3, max_size=3), min_size=1, max_size=5))

@@ -132,6 +132,7 @@ def random_point(name: str) -> tuple[float, float]:
     ("name", "point"),
     [
         *((name, (0.3, 0.09)) for name in ("SYM", "B2", "RK2", "verlet-kdk", "hht")),
+        ("ABM3", (0.3, 0.09)),  # elsewhere this is one of its lesser poles
         *(("bdf2", (2.3, 3.1)), ("B2", (1.3, 0.8)), ("implicit-euler", (1.7, 4.3))),  # far out
         *(pytest.param(name, None, marks=pytest.mark.slow) for name in list(REGISTRY)[:: of_campaign(1, 8)]),
     ],

@@ -51,19 +51,6 @@ def test_the_slider_crank_has_the_papers_equations_18_to_23() -> None:
     assert [float(g) for g in derived.forces] == pytest.approx([0, 0, -3.5 * 9.81, 0, 0])
 
 
-def test_a_driver_makes_the_constraint_depend_on_time() -> None:
-    driver = {"type": "driver", "coordinate": "bob.x", "rate": 2.0, "amplitude": 0.5, "frequency": 3.0}
-    scene = parse_scene(
-        {**pendulum(), "joint": [driver], "initial": {"position": {"bob.y": 0.0}, "velocity": {"bob.y": 0.0}}}
-    )
-    mechanism = compiled_mechanism(scene)
-    _, v = initial_state(mechanism)
-    assert v == pytest.approx([3.5, 0])  # d/dt (2 t + sin(3 t)/2) at 0
-    on_course = np.array([[1.4 + np.sin(2.1) / 2, 0]])  # at t = 0.7 s
-    seen = observe(mechanism, np.array([0.7]), on_course, v[np.newaxis], 0.0, 0.0)
-    assert seen.c == pytest.approx(np.zeros((1, 1)), abs=1e-15)
-
-
 def test_a_point_on_a_line_keeps_to_it() -> None:
     joint = {"type": "point-on-line", "bodies": ["ground", "bob"], "points": [[0, 1], [0, 0]], "direction": [3, 4]}
     scene = parse_scene(
