@@ -65,8 +65,6 @@ def test_what_is_no_log_is_refused_with_its_line(text: str, said: str) -> None:
 
 
 def test_files_that_cannot_be_read_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    with pytest.raises(InputError, match=r"missing\.csv: No such file"):
-        read_log(tmp_path / "missing.csv")
     with pytest.raises(InputError, match="directory"):
         read_log(tmp_path)
     (tmp_path / "picture.png").write_bytes(b"\x89PNG\xff")
