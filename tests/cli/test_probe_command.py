@@ -13,6 +13,8 @@ from click.testing import CliRunner
 from numpy.typing import NDArray
 
 from bezstab.cli import main
+from bezstab.evidence import model_xml
+from bezstab.mechanism import compiled_mechanism, constraint_errors, load_scene, perturbed_state
 from bezstab.methods import REGISTRY, lookup
 from bezstab.stability import FloatArray, poles
 from tests.cli.running import rows, run
@@ -82,3 +84,23 @@ def test_what_tells_no_pole_or_fits_nothing_is_status_three_with_its_reason() ->
     assert (wrong.exit_code, wrong.stderr) == (3, "bezstab: nothing fits clean\n")
     assert "nothing fits at (0.3, 0.1)" in wrong.stdout
     assert run("probe", "log.csv", *point).exit_code == 0
+
+
+def test_a_log_that_mujoco_made_behaves_like_symplectic_euler() -> None:
+    """The slider-crank in MuJoCo's Euler integrator, kicked and not, as a user would log it."""
+    mujoco: Any = pytest.importorskip("mujoco")
+    h, alpha_hat, beta_hat = 1e-3, 0.6, 0.25
+    mechanism = compiled_mechanism(load_scene("slider_crank"))
+    model = mujoco.MjModel.from_xml_string(model_xml(mechanism.scene, "Euler", h, alpha_hat, beta_hat))
+    for name, kick in (("kicked.csv", 1e-4), ("unkicked.csv", 0.0)):
+        data = mujoco.MjData(model)
+        data.qpos[:], data.qvel[:] = perturbed_state(mechanism, kick)
+        c = []
+        for _ in range(200):
+            c.append(float(constraint_errors(mechanism, 0.0, list(data.qpos))[0]))
+            mujoco.mj_step(model, data)
+        write(name, time=h * np.arange(200.0), c=np.array(c))
+    answer = rows(*shlex.split("probe kicked.csv --minus unkicked.csv --h 0.001 --alpha 0.6 --beta 0.25"))
+    assert (answer[1]["fits"], {answer[1]["method"], answer[1]["same_as"]}) == (True, {"SYM", "verlet-half"})
+    fitting = {row["method"] for row in answer[1:] if row["fits"]}
+    assert not fitting & {"RK4", "B4", "AB2", "AB4", "SIE", "implicit-euler"}
