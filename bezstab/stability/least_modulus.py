@@ -31,6 +31,7 @@ from bezstab.stability.charts import Chart, Place
 from bezstab.stability.searches import zoom_on_minimum
 
 STARTS = 8  # of a grid's local minima, the lowest
+HOPEFUL = 1.01  # times the least solution: the zoom on a minimum above it has not stopped so far short
 AS_LARGE = 0.9  # of the largest |z|: what else may be as large at the least value near a start
 NEWTON_STEPS = 16  # from a narrowed minimum three to ten lead to its kink; most sets have none there
 NEARBY = 0.5  # of the parameters' size, and of the largest |z|: what is flat leads further, to no minimum nearby, and
@@ -160,9 +161,12 @@ def least_on(chart: Chart) -> tuple[float, Least | None]:
 
     NumericalError if a root leaves the range of float64.
     """
-    minima = _local_minima(chart)
-    solutions = [solution for _, place in minima for solution in _solutions(chart, place)]
-    return min(value for value, _ in minima), _best(chart, solutions)
+    solutions: list[Least] = []
+    minima = sorted(_local_minima(chart), key=lambda minimum: minimum[0])
+    for value, place in minima:
+        if all(value < HOPEFUL * each.z_abs for each in solutions):
+            solutions += _solutions(chart, place)
+    return minima[0][0], _best(chart, solutions)
 
 
 def _best(chart: Chart, solutions: list[Least]) -> Least | None:
