@@ -122,7 +122,8 @@ def left_out(question: "Question") -> tuple[str, ...]:
 
 def say_varying(answers: "Iterable[Answer]") -> None:
     """Print a sentence about steps that vary, and the command of a run in which errors grow."""
-    from bezstab.show import growing_run, varying_words
+    from bezstab.questions import growing_run
+    from bezstab.show import varying_words
 
     for answer in answers:
         if answer.varying:

@@ -13,7 +13,7 @@ from bezstab.paper.findings import Finding, finding
 from bezstab.paper.printed import COMPARED, FASTER_LEVEL, LEAST_Z_ABS
 from bezstab.paper.reports import Progress, Report
 from bezstab.rationals import exact
-from bezstab.show import comparison_figure, region_figure
+from bezstab.show import PlaneMap, comparison_figure, region_figure
 from bezstab.stability import QUALITY, best_point, region, spectral_radius, verdict, window
 
 GRID = 200  # points per axis, where one counterexample is looked for
@@ -41,7 +41,8 @@ def faster_region_figure(name: str) -> Figure:
     alpha_hat, beta_hat = (np.linspace(low, high, QUALITY["balanced"]) for low, high in window(stable))
     z_abs = spectral_radius(stable.method, alpha_hat, beta_hat[:, np.newaxis])
     faster = region(stable.method, FASTER_LEVEL[name])
-    return region_figure(stable, [faster], best, alpha_hat, beta_hat, z_abs)
+    shown = PlaneMap(region=stable, alpha_hat=alpha_hat, beta_hat=beta_hat, z_abs=z_abs, best=best)
+    return region_figure(shown, [faster])
 
 
 def compared_regions_figure(names: Sequence[str], h: float | None = None) -> Figure:

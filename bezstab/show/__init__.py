@@ -13,7 +13,6 @@ from bezstab.show.answer_rows import (
     combined_words,
     costs_words,
     engine_cells,
-    growing_run,
     largest_step_row,
     motion_words,
     trade_words,
@@ -99,7 +98,7 @@ if TYPE_CHECKING:
     from bezstab.show.explorer import open_explorer
     from bezstab.show.held_figures import held_figure
     from bezstab.show.histories import history_line
-    from bezstab.show.plane_figures import comparison_figure, family_figure, region_figure, verdict_figure
+    from bezstab.show.plane_figures import PlaneMap, comparison_figure, family_figure, region_figure, verdict_figure
     from bezstab.show.region_maps import map_figure, map_rows, map_table
     from bezstab.show.run_figures import history_figure, scene_figure, trade_figures, work_precision_figure
     from bezstab.show.style import DASHES, column_figure, legend_below, line_at, save, styled

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 from math import ceil, floor
 from typing import Any
@@ -12,23 +12,20 @@ from matplotlib.axes import Axes
 from matplotlib.colors import FuncNorm
 from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.patheffects import AbstractPathEffect, withStroke
 
-from bezstab.show import plot
-from bezstab.show.plot import Point
+from bezstab.show.plane_figures import PlaneMap
 from bezstab.show.style import (
     DASHES,
     column_figure,
     hollow_line_at,
-    keep_markers_whole,
     legend_below,
     method_marker,
     plane_axes,
     plane_coordinates,
     styled,
 )
-from bezstab.stability import BestPoint, Choice, FloatArray, FrontPoint, Region
+from bezstab.stability import FloatArray, FrontPoint
 
 TICKS = (0.1, 0.5, 0.9, 0.99, 0.999, 0.9999)
 """Of |z_p|, where it is drawn evenly in how fast errors fall."""
@@ -36,11 +33,11 @@ TICKS = (0.1, 0.5, 0.9, 0.99, 0.999, 0.9999)
 FASTEST_DRAWN, SLOWEST_DRAWN = 0.1, 0.9999
 """|z_p|: beyond, three steps are enough, or tens of thousands are not, and colours no longer change."""
 
-LABEL_ROOM = 0.06
-"""Of the axes: a label nearer to their edges, to another or to a marker is left out."""
-
 MOST_CONTOURS = 12
 """Powers of ten of a map, up to one: of more only every second is drawn, or third, ..."""
+
+BELOW_MARKERS = 2.9
+"""Of labels: no point is hidden."""
 
 HALO: list[AbstractPathEffect] = [withStroke(linewidth=1.5, foreground="black")]
 """So that a white line shows on any colour, in grey too."""
@@ -56,51 +53,37 @@ def from_decay_scale(values: FloatArray) -> FloatArray:
     return np.exp(-np.exp(-np.asarray(values)))
 
 
-def accuracy_map_figure(
-    region: Region,
-    omega_h: float,
-    alpha_hat: FloatArray,
-    beta_hat: FloatArray,
-    z_abs: FloatArray,
-    error: FloatArray,
-    levels: Sequence[float] = (),
-    best: BestPoint | None = None,
-    chosen: Choice | None = None,
-    h: float | None = None,
-    marks: Mapping[str, Point] | None = None,
-) -> Figure:
+def accuracy_map_figure(shown: PlaneMap, omega_h: float, error: FloatArray, levels: Sequence[float] = ()) -> Figure:
     """Return contours of the forced error over the map of |z_p|, on logarithmic axes, with both best points.
 
-    z_abs and error (a share of the motion of omega_h rad a step) have shape (beta_hat.size, alpha_hat.size), on two
-    ascending axes > 0. Dashed are further `levels` of |z_p|. Axes and `marks` are as for region_figure.
+    The error, a share of the motion of omega_h rad a step, has the shape of the map, whose axes are > 0. Dashed are
+    further `levels` of |z_p|.
     """
+    region, z_abs = shown.region, shown.z_abs
     with styled():
-        figure, axes = plane_axes(rf"{region.method.name}, forced errors at $\omega h$ = {omega_h:.3g}", h)
-        axes.set(xscale="log", yscale="log", facecolor="0.93")
+        figure, axes = plane_axes(rf"{region.method.name}, forced errors at $\omega h$ = {omega_h:.3g}", shown.h)
+        axes.set(xscale="log", yscale="log")
         axes.grid(visible=False)
-        x, y = plane_coordinates(alpha_hat, beta_hat, h)
+        x, y = plane_coordinates(shown.alpha_hat, shown.beta_hat, shown.h)
         stable = np.ma.masked_greater_equal(z_abs, 1.0)
-        shown = np.clip(stable.compressed(), FASTEST_DRAWN, SLOWEST_DRAWN)
-        norm = FuncNorm((decay_scale, from_decay_scale), vmin=shown.min(), vmax=shown.max())
+        drawn = np.clip(stable.compressed(), FASTEST_DRAWN, SLOWEST_DRAWN)
+        norm = FuncNorm((decay_scale, from_decay_scale), vmin=drawn.min(), vmax=drawn.max())
         # as an image in files of lines, too: a mesh of so many cells has no place there
         mesh = axes.pcolormesh(x, y, stable, cmap="cividis", norm=norm, shading="nearest", rasterized=True)
         bar = figure.colorbar(mesh, label="$|z_p|$", extend="both", format="{x:g}", ticks=TICKS)
         bar.ax.minorticks_off()
         contours = _error_contours(axes, x, y, np.ma.masked_where(z_abs >= 1, error))
-        boundary = plane_coordinates(*_for_logarithmic_axes(region.boundary), h)
+        boundary = plane_coordinates(*_for_logarithmic_axes(region.boundary), shown.h)
         axes.plot(*boundary, color="black", linestyle="-", label=f"$|z_p| = {region.level:g}$")
         for number, level in enumerate(levels, start=1):
             dashes = DASHES[number % 4]
             axes.contour(x, y, z_abs, levels=[level], colors="black", linewidths=0.8, linestyles=[dashes])
             label = f"$|z_p| = {level:.4g}$"  # the key of what has none
             axes.plot([], [], color="black", linewidth=0.8, linestyle=dashes, label=label)
-        plot.critical_damping((alpha_hat[0], alpha_hat[-1]), axes, h)
-        points = [plot.best_point(best, axes, h)] if best else []
-        points += [plot.choice(chosen, axes, h)] if chosen else []
-        points += plot.marks(marks or {}, axes, h)
-        axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
-        keep_markers_whole(axes)
-        _label(axes, contours, points)
+        shown.draw_points(axes)
+        for text in axes.clabel(contours, fmt="$10^{%d}$", fontsize=6, colors="black", inline=False):
+            box = {"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none"}
+            text.set(rotation=0, bbox=box, zorder=BELOW_MARKERS)
         legend_below(figure, facecolor="0.75")
         return figure
 
@@ -132,36 +115,6 @@ def _for_logarithmic_axes(curves: Sequence[FloatArray]) -> tuple[FloatArray, Flo
         pieces += [curve[-1:], np.full((1, 2), np.nan)]
     points = np.concatenate(pieces)
     return points[:, 0], points[:, 1]
-
-
-def _label(axes: Axes, contours: QuadContourSet, points: Sequence[Line2D]) -> None:
-    """Write its power of ten on each contour, where that is farthest from the axes' edges, other labels and markers.
-
-    On logarithmic axes, whose limits are final.
-    """
-    low, high = np.log(np.transpose([axes.get_xlim(), axes.get_ylim()]))
-
-    def shares(points: FloatArray) -> FloatArray:
-        """Return where points lie, in shares of the axes."""
-        return np.asarray((np.log(points) - low) / (high - low))
-
-    taken = [shares(np.asarray(point.get_xydata()))[0] for point in points]
-    places = []
-    for path in contours.get_paths():
-        vertices = np.asarray(path.vertices)
-        if not vertices.size:
-            continue
-        along = shares(vertices)
-        room = np.minimum(along, 1 - along).min(axis=1)
-        for other in taken:
-            room = np.minimum(room, np.hypot(*(along - other).T))
-        widest = int(room.argmax())
-        if room[widest] > LABEL_ROOM:
-            taken.append(along[widest])
-            places.append((vertices[widest, 0], vertices[widest, 1]))
-    labels = axes.clabel(contours, fmt="$10^{%d}$", fontsize=6, colors="black", inline=False, manual=places)
-    for label in labels:
-        label.set(rotation=0, bbox={"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none"})
 
 
 def error_front_figure(fronts: Sequence[Sequence[FrontPoint]]) -> Figure:

@@ -2,14 +2,9 @@
 
 from __future__ import annotations
 
-import math
-import shlex
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from bezstab.engines import DRIVE_METHODS
-from bezstab.errors import InputError
-from bezstab.methods import lookup
 from bezstab.rationals import typed_number
 from bezstab.show.columns import Row, Value
 from bezstab.show.fields import cells
@@ -27,7 +22,6 @@ from bezstab.show.row_kinds import (
     SWEPT_OVER,
     VARYING,
 )
-from bezstab.show.varying_rows import repeated
 from bezstab.show.words import sweeps_words, times_words
 from bezstab.units import from_dimensionless
 
@@ -42,13 +36,6 @@ COSTLY = 10.0
 
 GAIN = 0.95
 """Of an error: what is not below is called no gain."""
-
-AT_REST = "--scene driven_slider_crank --speed 1e-9"
-"""A mechanism without degrees of freedom, all but at rest: what changes in it is the error alone, at any step."""
-
-PERTURBED = 1e-6  # m, the error at first: small enough to grow visibly before it is no longer small
-GROWN = 1e4  # times that
-MOST_STEPS = 10**5  # of a run: some seconds
 
 
 def answer_row(answer: Answer) -> Row:
@@ -65,6 +52,8 @@ def added_cells(answer: Answer) -> dict[str, Value]:
     if answer.moving:
         added |= cells(MOVING, answer.moving)
     if answer.varying:
+        from bezstab.questions import growing_run
+
         added |= cells(VARYING, answer.varying, {"shown_by": growing_run(answer)})
     return added
 
@@ -200,45 +189,4 @@ def combined_words(motion: ReferenceMotion) -> str:
     return (
         "\nErrors of position and velocity are shares of the amplitudes of a motion's own position and velocity, here "
         f"{motion.words}."
-    )
-
-
-def growing_run(answer: Answer) -> str | None:
-    """Return the line with which simulate shows an error of PERTURBED grow about GROWN times.
-
-    None unless a sequence of steps was found that lets errors grow, and where no run shows it: of a method or a scene
-    without a name to type, and where errors grow too slowly.
-    """
-    varying, steps, question = answer.varying, answer.question.steps, answer.question
-    if varying is None or steps is None or varying.sequence is None or not (varying.growth and varying.growth > 1):
-        return None
-    scene = question.scene
-    if not _can_be_typed(answer) or not (scene is None or isinstance(scene, str)):
-        return None
-    rounds = max(1, math.floor(math.log(GROWN) / math.log(varying.growth)))
-    if rounds * len(varying.sequence) > MOST_STEPS:
-        return None
-    mechanism = AT_REST if scene is None else f"--scene {shlex.quote(scene)}"
-    if scene and question.speed != 1:
-        mechanism += f" --speed {typed_number(question.speed)}"
-    alpha_hat, beta_hat = answer.point
-    time = sum(varying.sequence) * answer.method.step_multiple * rounds
-    return (
-        f"bezstab simulate {mechanism} --method {shlex.quote(answer.method.name)} --alpha {typed_number(alpha_hat)} "
-        f"--beta {typed_number(beta_hat)} --h {typed_number(steps.h)} --steps {_typed_sequence(varying.sequence)}"
-        f"{' --hold' if steps.hold else ''} --perturb {PERTURBED:g} --time {float(time):.6g}"
-    )
-
-
-def _can_be_typed(answer: Answer) -> bool:
-    """Return whether the method has a name to type: not so a user's own, from a file."""
-    try:
-        return lookup(answer.method.name) == answer.method
-    except InputError:
-        return False
-
-
-def _typed_sequence(sequence: Sequence[Fraction]) -> str:
-    return ",".join(
-        typed_number(step) if count == 1 else f"{count}*{typed_number(step)}" for step, count in repeated(sequence)
     )

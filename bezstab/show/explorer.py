@@ -12,16 +12,7 @@ from bezstab.methods import Method
 from bezstab.rationals import exact
 from bezstab.show import plot
 from bezstab.show.style import styled
-from bezstab.stability import (
-    FloatArray,
-    dominant_pole,
-    kick_response,
-    poles,
-    region,
-    spectral_radius,
-    useful_window,
-    verdict,
-)
+from bezstab.stability import dominant_pole, kick_response, poles, region, useful_window, verdict
 from bezstab.units import alpha_and_beta
 
 POINTS = 150  # per axis of the map: it appears at once
@@ -66,15 +57,11 @@ class Explorer:
     def _draw_map(self) -> None:
         """Draw the map of the current method anew."""
         axes, stable = self.map, region(self.method)
-        axes.clear()
         alpha_range, beta_range = useful_window(stable)
-        alpha_hat = _cell_centres(alpha_range)
-        beta_hat = _cell_centres(beta_range)
-        z_abs = spectral_radius(self.method, alpha_hat, beta_hat[:, np.newaxis])
-        plot.modulus_map(alpha_hat, beta_hat, z_abs, axes=axes)
+        axes.clear()
+        plot.spectral_radius(self.method, alpha_range, beta_range, POINTS, axes)
         plot.region(stable, axes, color="black", linestyle="-", label="")
         axes.set(xlim=alpha_range, ylim=beta_range, facecolor="0.93", title=self.method.name)
-        axes.set(xlabel=r"$\hat\alpha = 2\alpha h$", ylabel=r"$\hat\beta = \beta^2 h^2$")
         (self.cross,) = axes.plot([], [], "+", color="white", markeredgecolor="red", markersize=10, animated=True)
         self.look(*self.point)
         self.figure.canvas.draw_idle()
@@ -136,13 +123,6 @@ class Explorer:
             alpha_hat, beta_hat = self.point
             name = quote(self.method.name)  # newmark(1/4,1/2) means something else to a shell
             self.print_line(f"--method {name} --alpha {alpha_hat!r} --beta {beta_hat!r}")
-
-
-def _cell_centres(interval: tuple[float, float]) -> FloatArray:
-    """Return the centres of POINTS equal cells of an interval."""
-    low, high = interval
-    centres: FloatArray = low + (high - low) * (np.arange(POINTS) + 0.5) / POINTS
-    return centres
 
 
 def open_explorer(methods: Sequence[Method], h: float, print_line: Callable[[str], None]) -> None:

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from bezstab.engines import DRIVE_METHODS
-from bezstab.show.style import ACCENT, cells, column_figure, keep_markers_whole, legend_below, styled, title_lines
+from bezstab.show.style import ABOVE_THE_AXES, ACCENT, cells, column_figure, legend_below, styled, title_lines
 
 if TYPE_CHECKING:
     from bezstab.questions import HeldAnswer
@@ -40,8 +40,10 @@ def held_figure(answer: HeldAnswer, found: HeldMap) -> Figure:
             law: dict[str, Any] = {"color": "white", "linestyle": (0, (4, 4)), "linewidth": 1.0}
             handles += axes.plot(kd, kp_of_one * found.law, label="closed form", **law)
         own = float(question.drive.kd), float(question.drive.kp)
-        star: dict[str, Any] = {"color": ACCENT, "markeredgecolor": "black", "markersize": 11, "linestyle": ""}
-        handles += axes.plot(*own, marker="*", label=f"kp = {own[1]:g}, kd = {own[0]:g}", **star)
+        # no edge of the axes cuts through the marker
+        star: dict[str, Any] = {"marker": "*", "markersize": 11, "linestyle": "", "clip_on": False}
+        star |= {"color": ACCENT, "markeredgecolor": "black", "zorder": ABOVE_THE_AXES}
+        handles += axes.plot(*own, label=f"kp = {own[1]:g}, kd = {own[0]:g}", **star)
         axes.set(xlabel="kd (N m s/rad)", ylabel="kp (N m/rad)", facecolor="0.93")
         axes.set(xlim=(min(0.0, kd[0]), kd[-1]), ylim=(min(0.0, kp[0]), kp[-1]))
         across = axes.secondary_xaxis("top", functions=_in_units_of(kd_of_one))
@@ -50,7 +52,6 @@ def held_figure(answer: HeldAnswer, found: HeldMap) -> Figure:
         up.set_ylabel(r"$\hat\beta = $ kp $h^2$ / inertia")
         for axis in (axes.xaxis, axes.yaxis, across.xaxis, up.yaxis):
             axis.set_major_formatter("{x:g}")  # a common factor would stand beside it, on the axis opposite
-        keep_markers_whole(axes)
         legend_below(figure, handles, facecolor="0.75")
         return figure
 

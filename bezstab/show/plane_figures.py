@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from matplotlib.axes import Axes
@@ -13,10 +14,10 @@ from bezstab.methods import STEP_FAMILIES
 from bezstab.show import plot
 from bezstab.show.plot import Point, Range
 from bezstab.show.style import (
+    ABOVE_THE_AXES,
     ACCENT,
     DASHES,
     column_figure,
-    keep_markers_whole,
     legend_below,
     line_at,
     mark_in_alpha_and_beta,
@@ -36,34 +37,60 @@ if TYPE_CHECKING:  # so that a picture of the plane does not load what runs mech
     from bezstab.evidence import MovingRegion, VerdictMap
 
 
+@dataclass(frozen=True, kw_only=True)
+class PlaneMap:
+    """|z_p| of a method over part of the plane, with the points that are drawn where they lie in it.
+
+    z_abs has shape (beta_hat.size, alpha_hat.size), on two ascending axes. With h (s) the axes of its figures are
+    2 alpha (1/s) and beta^2 (1/s^2), else alpha_hat and beta_hat; `marks` are points (alpha_hat, beta_hat) by label.
+    """
+
+    region: Region
+    alpha_hat: FloatArray
+    beta_hat: FloatArray
+    z_abs: FloatArray
+    best: BestPoint | None = None
+    chosen: Choice | None = None
+    h: float | None = None
+    marks: Mapping[str, Point] = field(default_factory=dict)
+
+    def draw_points(self, axes: Axes) -> None:
+        """Draw critical damping and the points that lie in the map, and end the axes where it ends."""
+        x, y = plane_coordinates(self.alpha_hat, self.beta_hat, self.h)
+        plot.critical_damping((self.alpha_hat[0], self.alpha_hat[-1]), axes, self.h)
+        whole = {"clip_on": False, "zorder": ABOVE_THE_AXES}  # no edge of the axes cuts through a marker
+        if self.best and self._holds((self.best.alpha_hat, self.best.beta_hat)):
+            plot.best_point(self.best, axes, self.h, **whole)
+        if self.chosen and self._holds((self.chosen.alpha_hat, self.chosen.beta_hat)):
+            plot.choice(self.chosen, axes, self.h, **whole)
+        shown = {label: point for label, point in self.marks.items() if self._holds(point)}
+        plot.marks(shown, axes, self.h, **whole)
+        axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), facecolor="0.93")
+
+    def _holds(self, point: Point) -> bool:
+        return all(
+            axis[0] <= value <= axis[-1] for axis, value in zip((self.alpha_hat, self.beta_hat), point, strict=True)
+        )
+
+
 def region_figure(
-    region: Region,
+    shown: PlaneMap,
     faster: Iterable[Region],
-    best: BestPoint | None,
-    alpha_hat: FloatArray,
-    beta_hat: FloatArray,
-    z_abs: FloatArray,
-    h: float | None = None,
-    marks: Mapping[str, Point] | None = None,
     moving: Mapping[float, MovingRegion] | None = None,
-    chosen: Choice | None = None,
     alpha_and_beta: bool = False,
     scene: str = "",
 ) -> Figure:
     """Return the |z_p| map with exact boundary, faster regions, best point and critical damping (paper Fig. 1).
 
-    With the best point and that of a choice, where given and inside the map. The label of an unbounded
-    region says so, and arrows along the edges of the axes point to where it goes on.
-
-    z_abs has shape (beta_hat.size, alpha_hat.size). With h (s) the axes are 2 alpha (1/s) and beta^2 (1/s^2), else
-    alpha_hat and beta_hat; `marks` are points (alpha_hat, beta_hat) by their labels. Of a `scene`, by name, that moves
-    its own boundaries are drawn as well, by times its own speed, and where the law behind the first of them does not
-    hold. With `alpha_and_beta` the axes 2 alpha and beta^2 are marked in alpha and beta.
+    The label of an unbounded region says so, and arrows along the edges of the axes point to where it goes on. Of a
+    `scene`, by name, that moves its own boundaries are drawn as well, by times its own speed, and where the law behind
+    the first of them does not hold. With `alpha_and_beta` the axes 2 alpha and beta^2 are marked in alpha and beta.
     """
+    region, h = shown.region, shown.h
     with styled():
         title = title_lines(region.method.name, f"at rest and on the {scene}") if moving else region.method.name
         figure, axes = plane_axes(title, h)
-        image = plot.modulus_map(alpha_hat, beta_hat, z_abs, region.level, axes, h)
+        image = plot.modulus_map(shown.alpha_hat, shown.beta_hat, shown.z_abs, region.level, axes, h)
         figure.colorbar(image, label="$|z_p|$")
         at_rest = " at rest" if moving else ""
         unbounded = "" if region.bounded else " (unbounded)"
@@ -75,25 +102,12 @@ def region_figure(
         for number, (speed, of_speed) in enumerate((moving or {}).items()):
             label = "its own speed" if speed == 1 else f"{speed:g} times its own speed"
             plot.moving_region(of_speed, axes, h, label=label, dashes=DASHES[(number + 1) % 4], hatched=number == 0)
-        plot.critical_damping((alpha_hat[0], alpha_hat[-1]), axes, h)
-        if best and _inside(best.alpha_hat, alpha_hat) and _inside(best.beta_hat, beta_hat):
-            plot.best_point(best, axes, h)
-        if chosen and _inside(chosen.alpha_hat, alpha_hat) and _inside(chosen.beta_hat, beta_hat):
-            plot.choice(chosen, axes, h)
-        plot.marks(marks or {}, axes, h)
-        left, bottom = plane_coordinates(alpha_hat[0], beta_hat[0], h)
-        right, top = plane_coordinates(alpha_hat[-1], beta_hat[-1], h)
-        axes.set(xlim=(left, right), ylim=(bottom, top), facecolor="0.93")
+        shown.draw_points(axes)
         plot.open_edges(region, axes, h, color="white", markeredgecolor="black")
-        keep_markers_whole(axes)
         if alpha_and_beta:
             mark_in_alpha_and_beta(axes)
         legend_below(figure, facecolor="0.75")
         return figure
-
-
-def _inside(value: float, axis: FloatArray) -> bool:
-    return bool(axis[0] <= value <= axis[-1])
 
 
 def comparison_figure(

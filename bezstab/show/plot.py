@@ -9,7 +9,8 @@ Further keyword arguments are matplotlib's, for the line that is drawn.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any, Literal, SupportsFloat
 
 import numpy as np
@@ -40,7 +41,7 @@ from bezstab.show.style import (
     plane_coordinates,
     styled,
 )
-from bezstab.stability import BestPoint, BoolArray, Choice, FloatArray, Member, Region
+from bezstab.stability import BestPoint, Choice, FloatArray, Member, Region
 from bezstab.stability import spectral_radius as spectral_radius_at
 
 if TYPE_CHECKING:  # so that a picture of the plane does not load what runs mechanisms
@@ -64,7 +65,6 @@ __all__ = [
     "modulus_map",
     "moving_region",
     "open_edges",
-    "pareto_front",
     "region",
     "spectral_radius",
     "verdicts",
@@ -92,6 +92,14 @@ COST_LABELS: Mapping[Cost, str] = {
     "projection": r"factorizations of $C_q M^{-1} C_q^T$",
 }
 """Of a run's errors and costs, for axes."""
+
+QUANTITIES: Mapping[Quantity, str] = {
+    "area": "region.area",
+    "least |z_p|": "z_abs",
+    "error constant": "error_constant",
+    "order of accuracy": "order",
+}
+"""Where a member of a family has them."""
 
 
 def region(region: Region, axes: Axes | None = None, h: float | None = None, **line: Any) -> Line2D:
@@ -213,14 +221,6 @@ def _one_point(point: Point, axes: Axes, h: float | None, **line: Any) -> Line2D
     return drawn
 
 
-def _inside(region: Region, axes: Axes, h: float | None, across: FloatArray, up: FloatArray) -> BoolArray:
-    """Return which places, in shares of the axes, lie inside a region."""
-    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
-    x_of_one, y_of_one = plane_coordinates(1.0, 1.0, h)
-    alpha_hat, beta_hat = (left + (right - left) * across) / x_of_one, (low + (high - low) * up) / y_of_one
-    return region.contains(alpha_hat, beta_hat)
-
-
 def open_edges(region: Region, axes: Axes, h: float | None = None, inset: float = 0.015, **line: Any) -> list[Line2D]:
     """Draw arrows along those edges of the axes, whose limits are final, beyond which a region goes on without end.
 
@@ -230,25 +230,23 @@ def open_edges(region: Region, axes: Axes, h: float | None = None, inset: float 
     if region.bounded or region.extent is None:
         return []
     along = np.linspace(inset, 1 - inset, ALONG_AN_EDGE)
-    (leftwards, rightwards), (downwards, upwards) = np.isinf(region.extent)
-    edges = [
-        # goes on there, its arrow, across and up: where the edge is
-        (leftwards, "<", np.zeros_like(along), along),
-        (rightwards, ">", np.ones_like(along), along),
-        (downwards, "v", along, np.zeros_like(along)),
-        (upwards, "^", along, np.ones_like(along)),
-    ]
     drawn: list[Line2D] = []
-    for goes_on, arrow, across, up in edges:
-        inside = _inside(region, axes, h, across, up)
-        if goes_on and inside.any():
-            shown = [np.where(inside, np.clip(share, inset, 1 - inset), np.nan) for share in (across, up)]
-            arrows = {"marker": arrow, "markersize": 3, "markevery": ALONG_AN_EDGE // ARROWS, "linewidth": 0.6}
-            drawn += axes.plot(*shown, transform=axes.transAxes, label="_nolegend_", **{**arrows, **line})
+    for axis, arrows in enumerate(("<>", "v^")):
+        for end, arrow in enumerate(arrows):
+            if np.isfinite(region.extent[axis][end]):
+                continue
+            edge = np.full((ALONG_AN_EDGE, 2), float(end))  # in shares of the axes
+            edge[:, 1 - axis] = along
+            points = axes.transLimits.inverted().transform(edge) / plane_coordinates(1.0, 1.0, h)
+            inside = region.contains(*points.T)
+            if inside.any():
+                shown = np.where(inside, np.clip(edge, inset, 1 - inset).T, np.nan)
+                style = {"marker": arrow, "markersize": 3, "markevery": ALONG_AN_EDGE // ARROWS, "linewidth": 0.6}
+                drawn += axes.plot(*shown, transform=axes.transAxes, label="_nolegend_", **{**style, **line})
     return drawn
 
 
-def marks(points: Mapping[str, Point], axes: Axes | None = None, h: float | None = None) -> list[Line2D]:
+def marks(points: Mapping[str, Point], axes: Axes | None = None, h: float | None = None, **line: Any) -> list[Line2D]:
     """Draw points (alpha_hat, beta_hat) by their labels, each with a shape of its own, and return a line for each.
 
     There are five shapes; further points begin again.
@@ -256,8 +254,8 @@ def marks(points: Mapping[str, Point], axes: Axes | None = None, h: float | None
     axes = _plane(axes, r"$(\hat\alpha, \hat\beta)$", h)
     drawn: list[Line2D] = []
     for number, (label, point) in enumerate(points.items()):
-        shape = MARK_SHAPES[number % len(MARK_SHAPES)]
-        drawn.append(_one_point(point, axes, h, marker=shape, markersize=5, label=label))
+        style = {"marker": MARK_SHAPES[number % len(MARK_SHAPES)], "markersize": 5, "label": label, **line}
+        drawn.append(_one_point(point, axes, h, **style))
     return drawn
 
 
@@ -303,21 +301,12 @@ def family(members: Sequence[Member], quantity: Quantity = "area", axes: Axes | 
     Area of the region (dimensionless; a gap where it is unbounded), least |z_p| (a gap where the region is empty),
     order of accuracy or error constant, which says something between members of one order alone.
     """
-    values = [_quantity(member, quantity) for member in members]
     axes = _new_axes("", "n", quantity) if axes is None else axes
+    values = [attrgetter(QUANTITIES[quantity])(member) for member in members]
     style = {**next_line(axes), "marker": ".", **line}
-    (drawn,) = axes.plot([member.n for member in members], values, **style)
+    known = [np.nan if value is None else float(value) for value in values]
+    (drawn,) = axes.plot([member.n for member in members], known, **style)
     return drawn
-
-
-def _quantity(member: Member, quantity: Quantity) -> float:
-    if quantity == "area":
-        return np.nan if member.region.area is None else member.region.area
-    if quantity == "error constant":
-        return float(member.error_constant)
-    if quantity == "order of accuracy":
-        return float(member.order)
-    return np.nan if member.z_abs is None else member.z_abs
 
 
 def history(
@@ -335,12 +324,10 @@ def history(
     from bezstab.mechanism import Simulation
 
     check_kind(simulation, Simulation, "bezstab.simulate")
-    trajectory = simulation.trajectory
-    errors = simulation.cdot if derivative else simulation.c
+    errors = (simulation.cdot if derivative else simulation.c)[:, constraint - 1]
     name = rf"$\dot c_{constraint}$ (SI)" if derivative else rf"$c_{constraint}$ (SI)"
-    if axes is None:
-        axes = _new_axes(f"{trajectory.mechanism.scene.name}, {trajectory.method.name}", "t (s)", name)
-    return history_line(axes, simulation.t, errors[:, constraint - 1], **{**next_line(axes), **line})
+    axes = _run_axes(simulation, name) if axes is None else axes
+    return history_line(axes, simulation.t, errors, **{**next_line(axes), **line})
 
 
 def largest_error(simulation: Simulation, axes: Axes | None = None, **line: Any) -> Line2D:
@@ -351,13 +338,16 @@ def largest_error(simulation: Simulation, axes: Axes | None = None, **line: Any)
     from bezstab.mechanism import Simulation
 
     check_kind(simulation, Simulation, "bezstab.simulate")
-    trajectory = simulation.trajectory
-    if axes is None:
-        axes = _new_axes(f"{trajectory.mechanism.scene.name}, {trajectory.method.name}", "t (s)", "largest $|c|$ (SI)")
-    largest = np.abs(simulation.c).max(axis=1)
+    axes = _run_axes(simulation, "largest $|c|$ (SI)") if axes is None else axes
     axes.set_yscale("log")
+    largest = np.abs(simulation.c).max(axis=1)
     above_rounding = np.where(largest > 0, largest, np.nan)
     return history_line(axes, simulation.t, above_rounding, **{**next_line(axes), **line})
+
+
+def _run_axes(simulation: Simulation, name: str) -> Axes:
+    trajectory = simulation.trajectory
+    return _new_axes(f"{trajectory.mechanism.scene.name}, {trajectory.method.name}", "t (s)", name)
 
 
 def mechanism(scene: Scene, q: FloatArray, axes: Axes | None = None) -> list[Line2D]:
@@ -408,39 +398,17 @@ def work_precision(
 ) -> Line2D:
     """Draw an error (SI) of one method's runs (at least one) against their cost, and return the line.
 
-    Left out are runs that failed and errors up to `floor`, that of the reference. Both axes are logarithmic.
+    Left out are runs that failed and errors up to `floor`, that of the reference.
     """
-    axes = _work_precision_axes(error, against) if axes is None else axes
+    if axes is None:
+        axes = _new_axes("", COST_LABELS[against], ERROR_LABELS[error])
+        axes.set(xscale="log", yscale="log")
     method = runs[0].method
+    shown = [(run.cost(against), known) for run in runs if (known := run.error(error)) is not None and known > floor]
     marker = {"marker": method_marker(method), "markersize": 3}
     style = {**next_line(axes), **marker, "linewidth": 0.8, "label": method.name, **line}
-    (drawn,) = axes.plot(*_costs_and_errors(runs, error, floor, against), **style)
+    (drawn,) = axes.plot([cost for cost, _ in shown], [known for _, known in shown], **style)
     return drawn
-
-
-def pareto_front(
-    runs: Iterable[Run],
-    error: ErrorOf = "trajectory",
-    floor: float = 0.0,
-    axes: Axes | None = None,
-    against: Cost = "evaluations",
-) -> Line2D:
-    """Draw discs behind the runs of a Pareto front of work and error, as pareto_front finds them; return their line."""
-    axes = _work_precision_axes(error, against) if axes is None else axes
-    x, y = _costs_and_errors(sorted(runs, key=lambda run: run.cost(against)), error, floor, against)
-    (drawn,) = axes.plot(x, y, "o", color="0.8", markersize=10, zorder=1.5, label="front")
-    return drawn
-
-
-def _costs_and_errors(runs: Iterable[Run], of: ErrorOf, floor: float, against: Cost) -> tuple[list[float], list[float]]:
-    shown = [(run.cost(against), error) for run in runs if (error := run.error(of)) is not None and error > floor]
-    return [cost for cost, _ in shown], [error for _, error in shown]
-
-
-def _work_precision_axes(error: ErrorOf, against: Cost) -> Axes:
-    axes = _new_axes("", COST_LABELS[against], ERROR_LABELS[error])
-    axes.set(xscale="log", yscale="log")
-    return axes
 
 
 def _plane(axes: Axes | None, title: str, h: float | None) -> Axes:

@@ -24,38 +24,23 @@ def map_figure(answer: MapAnswer, z: ComplexArray, *, alpha_and_beta: bool) -> F
     are 2 alpha and beta^2, with `alpha_and_beta` they are marked in alpha and beta.
     """
     from bezstab.show.accuracy_figures import accuracy_map_figure
-    from bezstab.show.plane_figures import region_figure
+    from bezstab.show.plane_figures import PlaneMap, region_figure
 
-    question, (alpha_hat, beta_hat), z_abs = answer.question, answer.axes, np.abs(z)
-    h = None if question.h is None else float(question.h)
-    if question.motion:
-        return accuracy_map_figure(
-            answer.stable.region,
-            float(question.motion.omega_h),
-            alpha_hat,
-            beta_hat,
-            z_abs,
-            answer.errors(z),
-            levels=answer.drawn_levels,
-            best=answer.stable.best,
-            chosen=answer.chosen,
-            h=h,
-            marks=question.marks,
-        )
-    return region_figure(
-        answer.stable.region,
-        [region(answer.method, level) for level in answer.drawn_levels],
-        answer.stable.best,
-        alpha_hat,
-        beta_hat,
-        z_abs,
-        h,
-        question.marks,
-        answer.moving,
+    question, stable, (alpha_hat, beta_hat) = answer.question, answer.stable, answer.axes
+    shown = PlaneMap(
+        region=stable.region,
+        alpha_hat=alpha_hat,
+        beta_hat=beta_hat,
+        z_abs=np.abs(z),
+        best=stable.best,
         chosen=answer.chosen,
-        alpha_and_beta=alpha_and_beta,
-        scene=question.scene_name,
+        h=None if question.h is None else float(question.h),
+        marks=question.marks,
     )
+    if question.motion:
+        return accuracy_map_figure(shown, float(question.motion.omega_h), answer.errors(z), answer.drawn_levels)
+    faster = [region(answer.method, level) for level in answer.drawn_levels]
+    return region_figure(shown, faster, answer.moving, alpha_and_beta, question.scene_name)
 
 
 def map_table(answer: MapAnswer, z: ComplexArray) -> Arrays:

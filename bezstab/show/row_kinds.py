@@ -5,6 +5,7 @@ documentation of keys (`bezstab schema`) take it from there.
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from bezstab.show.cells import (
     both_errors_text,
@@ -96,6 +97,28 @@ Z_ANGLE_DEG = number(
     path="pole.angle_deg",
 )
 POLE = (Z_REAL, Z_IMAG, Z_ABS, Z_ANGLE_DEG)
+
+
+def pole_fields(name: str, which: str, null: str = "") -> Sequence[Field]:
+    """Return the fields of one pole of several, by its name: those of POLE, which tell the pole by what it is."""
+    return [
+        replace(
+            field,
+            key=f"{name}_{field.key}",
+            meaning=field.meaning.replace("the pole", f"the pole {which}"),
+            path=field.path.replace("pole", name),
+            null=null,
+        ).hidden
+        for field in POLE
+    ]
+
+
+PREDICTED_Z_REAL, PREDICTED_Z_IMAG, PREDICTED_Z_ABS, PREDICTED_Z_ANGLE_DEG = pole_fields(
+    "predicted", "predicted for the mechanism at rest"
+)
+MEASURED_Z_REAL, MEASURED_Z_IMAG, MEASURED_Z_ABS, MEASURED_Z_ANGLE_DEG = pole_fields(
+    "measured", "measured in the simulation", null=NOT_MEASURED
+)
 VERDICT = text("verdict", "What errors do, proven on the numbers as typed", "verdict", values_of=("methods.Verdict",))
 SAFE = truth("safe", "Whether every error is proven to shrink; with --scene, on the moving mechanism as well")
 KAPPA = number(
@@ -121,14 +144,6 @@ AREA = number(
     null="where it is infinite or empty",
     path="region.area",
 )
-ALPHA_HAT_MIN = number(
-    "alpha_hat_min",
-    "Smallest alpha_hat of the region",
-    "α̂ from",
-    text=unbounded_text("alpha_hat_min", ".6g"),
-    null=UNBOUNDED,
-    path="region.extent.0.0",
-)
 ALPHA_HAT_MAX = number(
     "alpha_hat_max",
     "Largest alpha_hat of the region",
@@ -136,14 +151,6 @@ ALPHA_HAT_MAX = number(
     text=unbounded_text("alpha_hat_max", ".8g"),
     null=UNBOUNDED,
     path="region.extent.0.1",
-)
-BETA_HAT_MIN = number(
-    "beta_hat_min",
-    "Smallest beta_hat of the region",
-    "β̂ from",
-    text=unbounded_text("beta_hat_min", ".6g"),
-    null=UNBOUNDED,
-    path="region.extent.1.0",
 )
 BETA_HAT_MAX = number(
     "beta_hat_max",
@@ -153,11 +160,6 @@ BETA_HAT_MAX = number(
     null=UNBOUNDED,
     path="region.extent.1.1",
 )
-APPROACHED = text(
-    "approached",
-    "Those of the four limits that no edge attains: the region comes near them far out",
-    null="where edges attain all that there are",
-)
 BEST_Z_ABS = number(
     "best_z_abs",
     "Smallest modulus of the dominant pole over the region",
@@ -166,74 +168,10 @@ BEST_Z_ABS = number(
     null=NO_BEST,
     path="inside.z_abs",
 )
-BEST_ALPHA_HAT = number(
-    "best_alpha_hat",
-    "Where that modulus is smallest, in alpha_hat",
-    "best α̂",
-    ".8f",
-    null=NO_BEST,
-    path="inside.alpha_hat",
-)
-BEST_BETA_HAT = number(
-    "best_beta_hat",
-    "Where that modulus is smallest, in beta_hat",
-    "best β̂",
-    ".8f",
-    null=NO_BEST,
-    path="inside.beta_hat",
-)
-BEST_WHERE = text(
-    "best_where",
-    "Which poles meet where the modulus is smallest, in words",
-    "poles there",
-    null="where nothing is",
-)
-BEST_REASON = text("best_reason", "Why there is no best point", null="where there is one")
-BOUNDED = truth("bounded", "Whether the region is bounded", path="region.bounded")
-STABLE_FOR_ALL = text(
-    "stable_for_all",
-    "Whether all alpha_hat, beta_hat > 0 are stable",
-    values_of=("stability.StableForAll",),
-)
-UNCONDITIONAL_DAMPING_RATIO = number(
-    "unconditional_damping_ratio",
-    "Damping ratio alpha / beta above which every step is stable",
-    null="if none is",
-)
-CRITICAL_DAMPING_LIMIT = number(
-    "critical_damping_limit",
-    "Largest beta h on alpha = beta up to which all are stable",
-    "βh to (α = β)",
-    text=stable_steps_text,
-    null="if all",
-)
-CRITICAL_DAMPING_LIMIT_EXACT = text(
-    "critical_damping_limit_exact",
-    "The same as a rational number",
-    null="if all are stable, or where it is not known to be rational",
-)
-STEPS = integer("steps", "Number of steps of the method", "steps", "d", null="for the limit of a family")
-EVALUATIONS = integer(
-    "evaluations",
-    "Evaluations of the right-hand side in a step, of an implicit method in an iteration",
-    "evaluations",
-    "d",
-)
+STEPS = integer("steps", "Number of steps of the method", "steps", null="for the limit of a family")
 ORDER = integer("order", "Order of accuracy, computed from the coefficients", "order", text=order_text)
-ORDER_POSITION_FORCES = integer("order_position_forces", "Order of accuracy where forces depend on positions alone")
-ORDER_VELOCITY_FORCES = integer("order_velocity_forces", "Order of accuracy where forces depend on velocities alone")
 ERROR_CONSTANT = number("error_constant", "Error constant of the method", "error constant", text=constant_text)
-ERROR_CONSTANT_EXACT = text(
-    "error_constant_exact", "The error constant as a rational", null="where the coefficients are irrational"
-)
 SOURCE = text("source", "Where a method or a conversion is from", "source")
-IMPLICIT = truth(
-    "implicit",
-    "Whether a step solves equations",
-    "implicit",
-    text=lambda row: "yes" if row["implicit"] else "",
-)
-DIGITS = integer("digits", "Digits to which rationals stand for irrational coefficients", null="where none do")
 GROUP = text("group", "Heading under which the row is listed", "group")
 OMEGA_H = number(
     "omega_h",
@@ -278,36 +216,6 @@ TIMES_LEAST_VELOCITY = number(
     path="cost.times_least_velocity",
 )
 ROLE = text("role", "Whether the point was given, or is what to take instead", values_of=("questions.CheckedRole",))
-GOAL = text("goal", "What the point was chosen for, or that it is as given", "goal")
-WORST = number(
-    "worst",
-    "Largest modulus of the dominant pole with alpha and beta off by the spread",
-    "|z_p| within the spread",
-    ".4f",
-)
-MARGINS_REASON = text(
-    "margins_reason",
-    "Why h_factor and the factors on alpha and beta are not known",
-    null="where they are, or it is unstable",
-)
-SEARCHED = number(
-    "searched",
-    "Largest alpha h and beta h that were searched",
-    "searched",
-    text=searched_text,
-    null="where all of the region was, or none of it",
-)
-SETTLE_STEPS = integer(
-    "settle_steps", "Steps in which the error falls a thousandfold", "steps to 1/1000", "d", null=UNSTABLE
-)
-SETTLE_SECONDS = number(
-    "settle_seconds",
-    "Time in which the error falls a thousandfold",
-    "seconds to 1/1000",
-    ".3g",
-    unit="s",
-    null="where the point is not stable or known",
-)
 H_FACTOR = number(
     "h_factor",
     "Factor on h up to which this alpha and beta are stable",
@@ -324,34 +232,6 @@ H_LIMIT = number(
     unit="s",
     null="where the point is not stable, any step is, or h is unknown",
 )
-ALPHA_FACTOR_MIN = number(
-    "alpha_factor_min",
-    "Least factor by which alpha alone may be scaled",
-    "α times",
-    text=range_text("alpha"),
-    null=UNSTABLE,
-    path="margins.alpha.0",
-)
-ALPHA_FACTOR_MAX = number(
-    "alpha_factor_max",
-    "Largest factor by which alpha alone may be scaled",
-    null="where the point is not stable, or any",
-    path="margins.alpha.1",
-)
-BETA_FACTOR_MIN = number(
-    "beta_factor_min",
-    "Least factor by which beta alone may be scaled",
-    "β times",
-    text=range_text("beta"),
-    null=UNSTABLE,
-    path="margins.beta.0",
-)
-BETA_FACTOR_MAX = number(
-    "beta_factor_max",
-    "Largest factor by which beta alone may be scaled",
-    null="where the point is not stable, or any",
-    path="margins.beta.1",
-)
 SETTING = text(
     "setting", "What to write in the engine's words", null="where no point is given, or the engine's values are"
 )
@@ -363,13 +243,12 @@ SWEEPS = truth(
 )
 EXCLUDES = text("excludes", "What the conversion leaves out", "left out", path="question.engine.excludes")
 SCENE = text("scene", "Name of the scene", "scene")
-RUN_STEPS = integer("run_steps", "Steps of the whole run", "steps of each", "d")
-RUN_EVALUATIONS = integer("run_evaluations", "Evaluations of the right-hand side in the whole run", "evaluations", "d")
+RUN_STEPS = integer("run_steps", "Steps of the whole run", "steps of each")
+RUN_EVALUATIONS = integer("run_evaluations", "Evaluations of the right-hand side in the whole run", "evaluations")
 FACTORIZATIONS = integer(
     "factorizations",
     "Factorizations of C_q M^-1 C_q^T in the whole run: one for each evaluation, and those of projections",
     "factorizations",
-    "d",
 )
 STABILISE = text("stabilise", "What holds the constraints", "held by", values_of=("mechanism.Stabilise",))
 C_MAX = number("c_max", "Largest constraint error", "largest |c| (m, rad)", ".3e", unit="m or rad")
@@ -390,21 +269,6 @@ OBSERVED_ORDER = number(
     "order seen",
     ".2f",
     null="where none can be told",
-)
-PREDICTED_Z_ABS = number(
-    "predicted_z_abs",
-    "Modulus of the pole predicted for the mechanism at rest: each step multiplies errors by it",
-    "|z| there",
-    ".7f",
-    path="predicted.abs",
-)
-PREDICTED_Z_ANGLE_DEG = number(
-    "predicted_z_angle_deg",
-    "Angle of the pole predicted for the mechanism at rest: errors turn by it in each step",
-    "∠z (deg)",
-    ".4f",
-    unit="degrees",
-    path="predicted.angle_deg",
 )
 PREDICTED_VERDICT = text(
     "predicted_verdict",
@@ -523,12 +387,8 @@ ACCURACY = (
     ),
 )
 APPLIED = text("applied", "What the engine does to its values before it uses them", null="where nothing is known of it")
-CHAIN_BODIES = integer("chain_bodies", "Bodies of the chain, the first held by the world", "bodies", "d")
-CHAIN_MASS_RATIO = number(
-    "chain_mass_ratio", "Mass of the last body of the chain over that of each other", "last mass", "g"
-)
 SWEPT_ITERATIONS = integer(
-    "swept_iterations", "Sweeps that the engine makes in a step", "sweeps", "d", null=NO_SWEEPS, path="swept.iterations"
+    "swept_iterations", "Sweeps that the engine makes in a step", "sweeps", null=NO_SWEEPS, path="swept.iterations"
 )
 SWEPT_Z_ABS = number(
     "swept_z_abs",
@@ -541,7 +401,6 @@ STABLE_ITERATIONS = integer(
     "stable_iterations",
     "From how many sweeps the constraints are stable",
     "stable from sweeps",
-    "d",
     null="where none tried is",
     path="swept.stable_iterations",
 )
@@ -625,8 +484,8 @@ VARYING = (
 )
 LIKENESS = (
     METHOD,
-    PREDICTED_Z_ABS,
-    PREDICTED_Z_ANGLE_DEG,
+    PREDICTED_Z_ABS.shown("|z| there", ".7f"),
+    PREDICTED_Z_ANGLE_DEG.shown("∠z (deg)", ".4f"),
     number("distance", "Distance of the fitted pole from that of the method", "distance", ".1e"),
     number("allowed", "Largest distance that still fits", "allowed", ".1e"),
     truth("dominant", "Whether the method's nearest pole is its dominant one"),
@@ -700,21 +559,76 @@ REGIONS = RowKind(
         METHOD.of("region.method"),
         Z_ABS_BELOW.shown("|z_p| below", "g"),
         AREA,
-        ALPHA_HAT_MIN,
+        number(
+            "alpha_hat_min",
+            "Smallest alpha_hat of the region",
+            "α̂ from",
+            text=unbounded_text("alpha_hat_min", ".6g"),
+            null=UNBOUNDED,
+            path="region.extent.0.0",
+        ),
         ALPHA_HAT_MAX,
-        BETA_HAT_MIN,
+        number(
+            "beta_hat_min",
+            "Smallest beta_hat of the region",
+            "β̂ from",
+            text=unbounded_text("beta_hat_min", ".6g"),
+            null=UNBOUNDED,
+            path="region.extent.1.0",
+        ),
         BETA_HAT_MAX,
-        APPROACHED,
-        CRITICAL_DAMPING_LIMIT,
-        CRITICAL_DAMPING_LIMIT_EXACT,
+        text(
+            "approached",
+            "Those of the four limits that no edge attains: the region comes near them far out",
+            null="where edges attain all that there are",
+        ),
+        number(
+            "critical_damping_limit",
+            "Largest beta h on alpha = beta up to which all are stable",
+            "βh to (α = β)",
+            text=stable_steps_text,
+            null="if all",
+        ),
+        text(
+            "critical_damping_limit_exact",
+            "The same as a rational number",
+            null="if all are stable, or where it is not known to be rational",
+        ),
         BEST_Z_ABS,
-        BEST_ALPHA_HAT,
-        BEST_BETA_HAT,
-        BEST_WHERE,
-        BEST_REASON,
-        BOUNDED,
-        STABLE_FOR_ALL,
-        UNCONDITIONAL_DAMPING_RATIO,
+        number(
+            "best_alpha_hat",
+            "Where that modulus is smallest, in alpha_hat",
+            "best α̂",
+            ".8f",
+            null=NO_BEST,
+            path="inside.alpha_hat",
+        ),
+        number(
+            "best_beta_hat",
+            "Where that modulus is smallest, in beta_hat",
+            "best β̂",
+            ".8f",
+            null=NO_BEST,
+            path="inside.beta_hat",
+        ),
+        text(
+            "best_where",
+            "Which poles meet where the modulus is smallest, in words",
+            "poles there",
+            null="where nothing is",
+        ),
+        text("best_reason", "Why there is no best point", null="where there is one"),
+        truth("bounded", "Whether the region is bounded", path="region.bounded"),
+        text(
+            "stable_for_all",
+            "Whether all alpha_hat, beta_hat > 0 are stable",
+            values_of=("stability.StableForAll",),
+        ),
+        number(
+            "unconditional_damping_ratio",
+            "Damping ratio alpha / beta above which every step is stable",
+            null="if none is",
+        ),
     ),
     added=(
         *ACCURACY,
@@ -727,15 +641,24 @@ LISTED_METHODS = RowKind(
     fields=(
         METHOD,
         STEPS,
-        EVALUATIONS,
+        integer(
+            "evaluations",
+            "Evaluations of the right-hand side in a step, of an implicit method in an iteration",
+            "evaluations",
+        ),
         ORDER,
-        ORDER_POSITION_FORCES,
-        ORDER_VELOCITY_FORCES,
+        integer("order_position_forces", "Order of accuracy where forces depend on positions alone"),
+        integer("order_velocity_forces", "Order of accuracy where forces depend on velocities alone"),
         ERROR_CONSTANT,
-        ERROR_CONSTANT_EXACT,
+        text("error_constant_exact", "The error constant as a rational", null="where the coefficients are irrational"),
         SOURCE.hidden,
-        IMPLICIT,
-        DIGITS,
+        truth(
+            "implicit",
+            "Whether a step solves equations",
+            "implicit",
+            text=lambda row: "yes" if row["implicit"] else "",
+        ),
+        integer("digits", "Digits to which rationals stand for irrational coefficients", null="where none do"),
         GROUP.hidden,
     ),
     sentence=method_sentence,
@@ -767,21 +690,27 @@ MEMBERS = RowKind(
         ALPHA_HAT_MAX.shown("α̂ to", ".8g"),
         BETA_HAT_MAX.shown("β̂ to", ".8g"),
         BEST_Z_ABS.of("z_abs"),
-        ORDER.shown("order of accuracy", "d"),
+        ORDER.shown("order of accuracy"),
         ERROR_CONSTANT.shown("error constant", ".6f"),
     ),
     sentence=member_sentence,
 )
 CHAINS = RowKind(
     "a chain of bodies in an engine that sweeps",
-    fields=(CHAIN_MASS_RATIO, CHAIN_BODIES, SWEPT_ITERATIONS, SWEPT_Z_ABS, STABLE_ITERATIONS),
+    fields=(
+        number("chain_mass_ratio", "Mass of the last body of the chain over that of each other", "last mass", "g"),
+        integer("chain_bodies", "Bodies of the chain, the first held by the world", "bodies"),
+        SWEPT_ITERATIONS,
+        SWEPT_Z_ABS,
+        STABLE_ITERATIONS,
+    ),
     sentence=chain_sentence,
 )
 CHOICES = RowKind(
     "a choice",
     fields=(
         METHOD,
-        GOAL,
+        text("goal", "What the point was chosen for, or that it is as given", "goal"),
         ALPHA_HAT,
         BETA_HAT,
         ALPHA,
@@ -792,23 +721,69 @@ CHOICES = RowKind(
         Z_IMAG,
         Z_ABS,
         Z_ANGLE_DEG.shown("∠z_p (deg)", ".1f"),
-        WORST,
-        SEARCHED,
+        number(
+            "worst",
+            "Largest modulus of the dominant pole with alpha and beta off by the spread",
+            "|z_p| within the spread",
+            ".4f",
+        ),
+        number(
+            "searched",
+            "Largest alpha h and beta h that were searched",
+            "searched",
+            text=searched_text,
+            null="where all of the region was, or none of it",
+        ),
         H.hidden,
-        SETTLE_STEPS,
-        SETTLE_SECONDS,
-        MARGINS_REASON,
+        integer("settle_steps", "Steps in which the error falls a thousandfold", "steps to 1/1000", null=UNSTABLE),
+        number(
+            "settle_seconds",
+            "Time in which the error falls a thousandfold",
+            "seconds to 1/1000",
+            ".3g",
+            unit="s",
+            null="where the point is not stable or known",
+        ),
+        text(
+            "margins_reason",
+            "Why h_factor and the factors on alpha and beta are not known",
+            null="where they are, or it is unstable",
+        ),
         H_FACTOR.hidden,
         H_LIMIT,
-        ALPHA_FACTOR_MIN,
-        ALPHA_FACTOR_MAX,
-        BETA_FACTOR_MIN,
-        BETA_FACTOR_MAX,
+        number(
+            "alpha_factor_min",
+            "Least factor by which alpha alone may be scaled",
+            "α times",
+            text=range_text("alpha"),
+            null=UNSTABLE,
+            path="margins.alpha.0",
+        ),
+        number(
+            "alpha_factor_max",
+            "Largest factor by which alpha alone may be scaled",
+            null="where the point is not stable, or any",
+            path="margins.alpha.1",
+        ),
+        number(
+            "beta_factor_min",
+            "Least factor by which beta alone may be scaled",
+            "β times",
+            text=range_text("beta"),
+            null=UNSTABLE,
+            path="margins.beta.0",
+        ),
+        number(
+            "beta_factor_max",
+            "Largest factor by which beta alone may be scaled",
+            null="where the point is not stable, or any",
+            path="margins.beta.1",
+        ),
         OMEGA_H,
         FORCED_ERROR,
         TOTAL_ERROR.shown("error forced", text=both_errors_text),
         VELOCITY_ERROR,
-        ORDER_LEFT.shown("order left", "d"),
+        ORDER_LEFT.shown("order left"),
         TIMES_LEAST,
         TIMES_LEAST_VELOCITY.shown("times the least error", text=both_times_text),
     ),
@@ -921,7 +896,6 @@ SIMULATIONS = RowKind(
             "iterations",
             "Newton's iterations of the whole run",
             "Newton's iterations",
-            "d",
             null="for an explicit method",
             path="trajectory.iterations",
         ),
@@ -929,7 +903,6 @@ SIMULATIONS = RowKind(
             "singular_passages",
             "Number of singular configurations that the run went through",
             "singular passages",
-            "d",
             path="singular_times.size",
         ),
         FAILURE.of("trajectory.failure"),
@@ -943,12 +916,8 @@ MEASUREMENTS = RowKind(
         METHOD,
         ALPHA_HAT,
         BETA_HAT,
-        number("predicted_z_real", "Real part of the pole predicted for the mechanism at rest", path="predicted.real"),
-        number(
-            "predicted_z_imag",
-            "Imaginary part of the pole predicted for the mechanism at rest, that of the upper one of a pair",
-            path="predicted.imag",
-        ),
+        PREDICTED_Z_REAL,
+        PREDICTED_Z_IMAG,
         PREDICTED_Z_ABS.shown("predicted |z|", ".6f"),
         number(
             "law_z_abs",
@@ -971,26 +940,9 @@ MEASUREMENTS = RowKind(
             null="without --floquet",
             path="floquet_abs",
         ),
-        number(
-            "measured_z_real",
-            "Real part of the pole measured in the simulation",
-            null=NOT_MEASURED,
-            path="measured.real",
-        ),
-        number(
-            "measured_z_imag",
-            "Imaginary part of the pole measured in the simulation, that of the upper one of a pair",
-            null=NOT_MEASURED,
-            path="measured.imag",
-        ),
-        number(
-            "measured_z_abs",
-            "Modulus of the pole measured in the simulation: each step multiplies errors by it",
-            "measured |z|",
-            ".6f",
-            null=NOT_MEASURED,
-            path="measured.abs",
-        ),
+        MEASURED_Z_REAL,
+        MEASURED_Z_IMAG,
+        MEASURED_Z_ABS.shown("measured |z|", ".6f"),
         number(
             "measured_rate",
             "Growth per step measured over a whole revolution beside the motion the method makes, the first left out",
@@ -1007,15 +959,7 @@ MEASUREMENTS = RowKind(
             path="difference_abs",
         ),
         PREDICTED_Z_ANGLE_DEG.shown("predicted ∠z (deg)", ".3f"),
-        number(
-            "measured_z_angle_deg",
-            "Angle of the pole measured in the simulation: errors turn by it in each step",
-            "measured ∠z (deg)",
-            ".3f",
-            unit="degrees",
-            null=NOT_MEASURED,
-            path="measured.angle_deg",
-        ),
+        MEASURED_Z_ANGLE_DEG.shown("measured ∠z (deg)", ".3f"),
         number(
             "difference_z_angle_deg",
             "Angle measured less that predicted",
@@ -1057,13 +1001,13 @@ SUMMARIES = RowKind(
     "how well the measured poles of a method agree with the predicted ones",
     fields=(
         METHOD,
-        integer("points", "Points that were tried", "points", "d"),
-        integer("measured", "Points at which a pole could be measured", "measured points", "d"),
+        integer("points", "Points that were tried", "points"),
+        integer("measured", "Points at which a pole could be measured", "measured points"),
         number("median_error", "Median difference of the moduli", "median error of |z|", ".1e"),
         number("largest_error", "Largest difference of the moduli", "largest error of |z|", ".1e"),
-        integer("called", "Points at which both verdicts are settled", "verdicts called", "d"),
-        integer("wrong", "Points of these whose verdicts disagree", "wrong verdicts", "d"),
-        integer("followed", "Points followed over a revolution", "followed over a revolution", "d"),
+        integer("called", "Points at which both verdicts are settled", "verdicts called"),
+        integer("wrong", "Points of these whose verdicts disagree", "wrong verdicts"),
+        integer("followed", "Points followed over a revolution", "followed over a revolution"),
         number("map_error", "Median error of the rate at rest", "median error at rest", ".1e"),
         number("law_error", "Median error of the law's rate", "median error of the law", ".1e"),
         number("floquet_error", "Median error of the exact rate", "median error of the exact rate", ".1e"),
@@ -1081,11 +1025,11 @@ VERDICT_MAPS = RowKind(
         SCENE,
         METHOD,
         H,
-        integer("runs", "Number of runs", "runs", "d", path="undecided.size"),
+        integer("runs", "Number of runs", "runs", path="undecided.size"),
         integer("undecided", "Runs that gave no verdict", path="unjudged"),
         RUN_STEPS.of("run"),
-        integer("judged_runs", "Runs that gave a verdict", "gave a verdict", "d", path="judged"),
-        integer("agreeing", "Runs whose verdict is the predicted one", "as predicted", "d"),
+        integer("judged_runs", "Runs that gave a verdict", "gave a verdict", path="judged"),
+        integer("agreeing", "Runs whose verdict is the predicted one", "as predicted"),
         number(
             "agreeing_share",
             "Share of the runs with a verdict whose verdict is the predicted one",
@@ -1104,7 +1048,6 @@ VERDICT_MAPS = RowKind(
             "too_close",
             "Runs so close to one, or closer than the motion moves the predicted pole",
             "too close, or moved by so much",
-            "d",
             path="close_runs",
         ),
         number(
@@ -1119,7 +1062,6 @@ VERDICT_MAPS = RowKind(
             "disagreeing",
             "Runs not too close to call that disagree",
             "disagreeing, not too close",
-            "d",
             path="disagreements_beyond_band",
         ),
     ),
@@ -1179,7 +1121,7 @@ WITNESSED = RowKind(
             ".1e",
             unit="m",
         ),
-        RUN_STEPS.shown("after steps", "d"),
+        RUN_STEPS.shown("after steps"),
     ),
     sentence=witness_sentence,
 )
@@ -1307,12 +1249,12 @@ CLAIMS = RowKind(
     ),
     sentence=finding_sentence,
 )
-_BY_KEY = {field.key: field for field in DRIVE}
+_APPLIED, KP, KP_MAX, KD, INERTIA, KD_MAX, _ = DRIVE
 HELD = RowKind(
     "a drive that is held or late",
     fields=(
         METHOD,
-        _BY_KEY["drive"],
+        _APPLIED,
         VERDICT,
         SAFE,
         Z_ABS.shown("|z|", ".4f").of("z_abs"),
@@ -1328,10 +1270,10 @@ HELD = RowKind(
         ),
         number("late", "Steps of the physics until a torque is applied", path="question.timing.late"),
         number("filter", "Time constant of the filter through which the velocity is seen", unit="s"),
-        _BY_KEY["inertia"],
-        _BY_KEY["kp"].of("question.drive.kp"),
-        _BY_KEY["kp_max"].of("limits.kp.1"),
-        _BY_KEY["kd"].of("question.drive.kd"),
+        INERTIA,
+        KP.of("question.drive.kp"),
+        KP_MAX.of("limits.kp.1"),
+        KD.of("question.drive.kd"),
         number(
             "kd_min",
             "Least stable damping with this stiffness",
@@ -1341,12 +1283,11 @@ HELD = RowKind(
             null="where none helps",
             path="limits.kd.0",
         ),
-        _BY_KEY["kd_max"].of("limits.kd.1"),
+        KD_MAX.of("limits.kd.1"),
         integer(
             "every_max",
             "Steps up to which the torque may be held, the rest as it is",
             "every to",
-            "d",
             null="where even one is unstable",
             path="limits.every",
         ),
@@ -1354,7 +1295,6 @@ HELD = RowKind(
             "late_max",
             "Whole steps up to which the torque may be late, the rest as it is",
             "late to",
-            "d",
             null="where even none is unstable",
             path="limits.late",
         ),

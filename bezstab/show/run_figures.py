@@ -99,7 +99,10 @@ def work_precision_figure(swept: SweptRuns, scene: str, error: ErrorOf, floor: f
             failed = [run.cost(swept.against) for run in own if run.failure]
             axes.plot(failed, [top] * len(failed), "x", color=line_at(place)["color"], markersize=4)
         front = swept.constraint_front if error == "constraint" else swept.trajectory_front
-        plot.pareto_front([runs[number] for number in front], error, floor, axes, swept.against)
+        if front:
+            discs = {"marker": "o", "linestyle": "none", "color": "0.8", "markersize": 10, "zorder": 1.5}
+            of_front = [runs[number] for number in front]
+            plot.work_precision(of_front, error, floor, axes, swept.against, label="front", **discs)
         if any(run.failure for run in runs):
             axes.plot([], [], "x", color="0.4", label="diverged")
         axes.set(xscale="log", yscale="log", title=title_lines(scene))

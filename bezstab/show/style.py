@@ -139,17 +139,6 @@ def mark_in_alpha_and_beta(axes: Axes) -> None:
     axes.set(xlabel=r"$\alpha$ (1/s)", ylabel=r"$\beta$ (1/s), even in $\beta^2$")
 
 
-def keep_markers_whole(axes: Axes) -> None:
-    """Let no edge of the axes, whose limits are final, cut through the marker of a point that lies inside or on it."""
-    (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
-    for line in axes.lines:
-        x, y = np.asarray(line.get_xdata(), dtype=float), np.asarray(line.get_ydata(), dtype=float)
-        if line.get_linestyle() != "None" or not x.size:
-            continue
-        if ((left <= x) & (x <= right) & (bottom <= y) & (y <= top)).all():
-            line.set(clip_on=False, zorder=ABOVE_THE_AXES)
-
-
 def curves(axes: Axes, region: Region, h: float | None, label: str, **line: Any) -> Line2D:
     """Draw a region's boundary, all its curves as one line, and return it; of an empty one only the label shows.
 

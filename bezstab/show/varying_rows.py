@@ -31,14 +31,8 @@ def varying_words(name: str, varying: VaryingSteps) -> str:
 
 def sequence_text(sequence: Sequence[Fraction]) -> str:
     """Return steps in s as text, with how often each is taken: 3 of 0.01 s, then 0.02 s."""
-    return ", then ".join(
-        _seconds(step) if count == 1 else f"{count} of {_seconds(step)}" for step, count in repeated(sequence)
-    )
-
-
-def repeated(sequence: Sequence[Fraction]) -> list[tuple[Fraction, int]]:
-    """Return steps with how often each is taken in turn: (0.01, 3), (0.02, 1)."""
-    return [(step, len(list(same))) for step, same in groupby(sequence)]
+    repeated = [(_seconds(step), len(list(same))) for step, same in groupby(sequence)]
+    return ", then ".join(step if count == 1 else f"{count} of {step}" for step, count in repeated)
 
 
 def _growth(varying: VaryingSteps) -> str:

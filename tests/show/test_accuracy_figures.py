@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from bezstab.methods import lookup
 from bezstab.show.accuracy_figures import accuracy_map_figure, error_front_figure
+from bezstab.show.plane_figures import PlaneMap
 from bezstab.stability import (
     FloatArray,
     best_point,
@@ -30,19 +31,17 @@ def drawn_map(name: str = "RK4", h: float | None = None) -> tuple[Figure, FloatA
     alpha_hat, beta_hat = np.geomspace(2e-3, 6, 61), np.geomspace(1e-6, 9, 61)
     z_abs = spectral_radius(method, alpha_hat, beta_hat[:, np.newaxis])
     error = combined_error(method, alpha_hat, beta_hat[:, np.newaxis], OMEGA_H)
-    figure = accuracy_map_figure(
-        region(method),
-        float(OMEGA_H),
-        alpha_hat,
-        beta_hat,
-        z_abs,
-        np.where(z_abs < 1, error, np.nan),
-        levels=[0.99],
+    shown = PlaneMap(
+        region=region(method),
+        alpha_hat=alpha_hat,
+        beta_hat=beta_hat,
+        z_abs=z_abs,
         best=best_point(method),
         chosen=choose(method, "accurate", margins=False),
         h=h,
         marks={"a rule": (0.1, 0.01)},
     )
+    figure = accuracy_map_figure(shown, float(OMEGA_H), np.where(z_abs < 1, error, np.nan), [0.99])
     return figure, z_abs, alpha_hat, beta_hat
 
 

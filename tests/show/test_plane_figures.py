@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from bezstab.evidence import map_rows, simulated_verdicts, verdict_map
 from bezstab.mechanism import load_scene
 from bezstab.methods import lookup
-from bezstab.show.plane_figures import comparison_figure, family_figure, region_figure, verdict_figure
+from bezstab.show.plane_figures import PlaneMap, comparison_figure, family_figure, region_figure, verdict_figure
 from bezstab.stability import best_point, bezier_limit, choose, family_members, region, spectral_radius, window
 
 
@@ -27,7 +27,8 @@ def test_the_figure_draws_what_it_is_given(h: float | None) -> None:
     best, chosen = best_point(method), choose(method, "robust")
     faster = [region(method, 0.75), region(method, 0.9)]
     marks = {"a rule": (0.1, 0.2)}
-    figure = region_figure(region(method), faster, best, alpha_hat, beta_hat, z_abs, h, marks=marks, chosen=chosen)
+    given: dict[str, Any] = {"alpha_hat": alpha_hat, "beta_hat": beta_hat, "z_abs": z_abs, "chosen": chosen}
+    figure = region_figure(PlaneMap(region=region(method), best=best, **given, h=h, marks=marks), faster)
     axes, scale = figure.axes[0], np.array([1 / (h or 1), 1 / (h or 1) ** 2])
     (image,) = axes.images
     shown = np.ma.masked_array(image.get_array())
