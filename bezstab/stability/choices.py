@@ -21,7 +21,6 @@ from bezstab.stability.answer_checks import (
     check_critical,
     check_gentle,
     check_least,
-    check_least_equal,
 )
 from bezstab.stability.arrays import DOUBLE, SLOW, BoolArray, Extent, FloatArray
 from bezstab.stability.best_points import best_point
@@ -139,29 +138,30 @@ def choose(
     pencil = free_pencil_of(method)  # a pole that no parameters move must not hide the others
     at_rest = modulus is None
     modulus = modulus or partial(largest_modulus, pencil)
-    within = pencil.all_within if at_rest and not along else partial(_below, modulus)
-    cut = cut and not along
-
-    def least(objective: Objective) -> tuple[float, float]:
-        return least_along(along, objective) if along else _checked_least(pencil, box, objective, equal, cut)
-
-    if goal == "accurate" and along:
-        rate = default_rate(method, omega_h) if rate is None else rate
-        point = _accurate_along(method, along, _decays(within, rate), omega_h, spread, rate)
+    within = pencil.all_within if at_rest else partial(_below, modulus)
+    if along:
+        point, cut = _along_curve(method, along, goal, modulus, spread, rate, omega_h), False
     elif goal == "accurate":
         point = _accurate(method, box, modulus, within, omega_h=omega_h, rate=rate, spread=spread, equal=equal)
     elif goal == "gentle":
         of_all = partial(largest_modulus, any_pencil_of(method)) if at_rest else modulus
-        point, cut = _gentle(method, of_all, box, rate or 0.0, along), False
+        rate = 0.0 if rate is None else rate
+        point, cut = _gentle(method, of_all, box, rate), False
+        check_gentle(method, of_all, point[0], rate)
     elif goal == "critical":
-        point = _critical_point(method, box, cut, equal, along)
+        point = _critical_point(method, box)
+        check_critical(pencil, point[0], point[1], box, cut)
+        if equal and not math.isclose(point[1], point[0] ** 2 / 4):
+            raise InputError(
+                f"--goal critical --keep alpha=beta: the double pole of {method.name} is not at alpha = beta"
+            )
     elif goal == "robust":
-        point = least(_slowest(method, modulus, within, spread))
+        point = _checked_least(pencil, box, _slowest(method, modulus, within, spread), equal, cut)
     elif goal == "fastest":
-        if not (along or equal) and at_rest and (best := best_point(method)):
+        if not equal and at_rest and (best := best_point(method)):
             point, cut = (best.alpha_hat, best.beta_hat), False
         else:  # on a line, or where |z_p| falls on as the feedback grows, or for a mechanism that moves
-            point = least(lambda alpha_hat, beta_hat, _: modulus(alpha_hat, beta_hat))
+            point = _checked_least(pencil, box, _throughout(modulus), equal, cut)
     else:
         assert_never(goal)
     choice = describe_point(method, goal, exact(point[0]), exact(point[1]), spread, margins)
@@ -205,21 +205,48 @@ def _decays(within: Within, rate: float) -> Decays:
     return lambda alpha_hat, beta_hat: within(alpha_hat, beta_hat, np.full(alpha_hat.shape, rate))
 
 
-def _accurate_along(
-    method: Method, curve: Curve, decays: Decays, omega_h: Fraction, spread: float, rate: float
+def _along_curve(
+    method: Method,
+    curve: Curve,
+    goal: Goal,
+    modulus: Modulus,
+    spread: float,
+    rate: float | None,
+    omega_h: Fraction,
 ) -> tuple[float, float]:
-    """Return the point of a curve that the goal accurate asks for; InputError where nothing decays as fast as rate."""
+    """Return the point of a curve that a goal asks for; InputError where none meets it."""
+    if goal == "accurate":
+        rate = default_rate(method, omega_h) if rate is None else rate
+        objective = _accuracy(method, _decays(partial(_below, modulus), rate), omega_h, spread)
+        point = least_along(curve, objective)
+        if np.isinf(objective(np.array([point[0]]), np.array([point[1]]), np.inf)).any():
+            raise InputError(
+                f"{method.name}: no setting of the engine has |z_p| <= {rate:.6g} if α and β are off by a share of "
+                f"{spread:g}"
+            )
+        return point
+    rate = 0.0 if rate is None else rate
+    if goal == "critical":
+        raise InputError("the goal critical needs a double pole, and this engine can express only a curve of points")
+    if goal == "gentle":
+        found = mildest_along(curve, modulus, rate)
+        if found is None:
+            raise InputError(f"--settle: no setting of the engine has |z_p| <= {rate:.6g} with {method.name}")
+        return found
+    if goal == "robust":
+        return least_along(curve, _slowest(method, modulus, partial(_below, modulus), spread))
+    if goal == "fastest":
+        return least_along(curve, _throughout(modulus))
+    assert_never(goal)
+
+
+def _accuracy(method: Method, decays: Decays, omega_h: Fraction, spread: float) -> Objective:
+    """Return the objective of `accurate`, as `accurate_point` has it."""
 
     def objective(alpha_hat: FloatArray, beta_hat: FloatArray, reached: float) -> FloatArray:
         return worst_error(method, alpha_hat, beta_hat, decays, omega_h=omega_h, spread=spread)
 
-    point = least_along(curve, objective)
-    if np.isinf(objective(np.array([point[0]]), np.array([point[1]]), np.inf)).any():
-        raise InputError(
-            f"{method.name}: no setting of the engine has |z_p| <= {rate:.6g} if α and β are off by a share of "
-            f"{spread:g}"
-        )
-    return point
+    return objective
 
 
 def _check_spread(spread: float) -> None:
@@ -405,6 +432,11 @@ def _slowest(method: Method, modulus: Modulus, within: Within, spread: float) ->
     return objective
 
 
+def _throughout(modulus: Modulus) -> Objective:
+    """Return |z_p| as an objective: exact at every point, whatever has been reached."""
+    return lambda alpha_hat, beta_hat, _: modulus(alpha_hat, beta_hat)
+
+
 def _checked_least(
     pencil: AnyPencil, extent: Extent, objective: Objective, equal: bool, cut: bool
 ) -> tuple[float, float]:
@@ -412,10 +444,7 @@ def _checked_least(
 
     def found(finer: int) -> tuple[float, float]:
         alpha_hat, beta_hat = _least(extent, objective, equal, cut, finer)
-        if equal:
-            check_least_equal(pencil.method, objective, alpha_hat, extent, cut)
-        else:
-            check_least(pencil.method, objective, alpha_hat, beta_hat, extent, cut)
+        check_least(pencil.method, objective, alpha_hat, beta_hat, extent, equal=equal, cut=cut)
         return alpha_hat, beta_hat
 
     return checked(found)
@@ -459,36 +488,24 @@ def _least(extent: Extent, objective: Objective, equal: bool, cut: bool, finer: 
     return 2 * float(best[0]), float(best[-1]) ** 2
 
 
-def _critical_point(method: Method, box: Extent, cut: bool, equal: bool, along: Curve | None) -> tuple[float, float]:
+def _critical_point(method: Method, box: Extent) -> tuple[float, float]:
     """Return the fastest point whose dominant pole is double, real and positive; InputError if there is none."""
-    pencil = free_pencil_of(method)
-    if along:
-        raise InputError("the goal critical needs a double pole: this engine can express only a curve of points")
-    chart = chart_of(pencil, region(method))
+    chart = chart_of(free_pencil_of(method), region(method))
     place = critical_place(chart, box)
     if place is None:
         raise InputError(f"{method.name}: no double pole is dominant: --goal critical has no answer")
-    point = chart.user_point(place)
+    found = chart.user_point(place)
     best = best_point(method)
-    if best and not best.z_abs and math.dist(point, (best.alpha_hat, best.beta_hat)) < AT_DEADBEAT:
-        point = best.alpha_hat, best.beta_hat
-    check_critical(pencil, point[0], point[1], box, cut)
-    if equal and not math.isclose(point[1], point[0] ** 2 / 4):
-        raise InputError(f"--goal critical --keep alpha=beta: the double pole of {method.name} is not at alpha = beta")
-    return point
+    if best and not best.z_abs and math.dist(found, (best.alpha_hat, best.beta_hat)) < AT_DEADBEAT:
+        return best.alpha_hat, best.beta_hat
+    return found
 
 
-def _gentle(method: Method, modulus: Modulus, extent: Extent, rate: float, along: Curve | None) -> tuple[float, float]:
-    """Return the mildest point with |z_p| <= rate: of alpha = beta, or of a curve; InputError if there is none."""
-    if along:
-        point = mildest_along(along, modulus, rate)
-        if point is None:
-            raise InputError(f"--settle: no setting of the engine has |z_p| <= {rate:.6g} with {method.name}")
-        return point
+def _gentle(method: Method, modulus: Modulus, extent: Extent, rate: float) -> tuple[float, float]:
+    """Return the smallest alpha = beta with |z_p| <= rate."""
     alpha = np.linspace(0, extent[0][1] / 2, SAMPLES)  # times h, as beta
     found = first_where(lambda alpha: modulus(2 * alpha, alpha**2) <= rate, alpha)
     if found is None:
         name, best = method.name, modulus(2 * alpha, alpha**2).min()
         raise InputError(f"--settle: with alpha = beta {name} has at best |z_p| = {best:.6g}, needed {rate:.6g}")
-    check_gentle(method, modulus, 2 * found[1], rate)
     return 2 * found[1], found[1] ** 2

@@ -24,7 +24,7 @@ from bezstab.stability import (
     stability_margins,
     verdict,
 )
-from bezstab.stability.answer_checks import _compare, check_best_point, check_margin
+from bezstab.stability.answer_checks import check_best_point, check_least, check_margin
 from bezstab.stability.charts import SPACINGS, Chart
 from bezstab.stability.least_modulus import Least, least_on
 from bezstab.stability.path_crossings import Path
@@ -211,6 +211,5 @@ def test_a_choice_may_be_worse_than_a_sample_by_a_millionth_of_itself(better: fl
     def objective(alpha_hat: Any, beta_hat: Any, reached: float) -> Any:
         return np.where(alpha_hat < 1, 0.5 - better, 0.5)
 
-    samples = np.array([0.5, 1.5]), np.array([0.1, 0.1])
     with pytest.raises(NumericalError, match="the point chosen") if told else nullcontext():
-        _compare(lookup("B4"), objective, 1.5, 0.1, *samples)
+        check_least(lookup("B4"), objective, 1.5, 0.1, ((0, 2), (0, 1)))
