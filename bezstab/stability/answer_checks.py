@@ -87,26 +87,33 @@ def check_best_point(
 
 
 def check_least(
-    method: Method, objective: Objective, alpha_hat: float, beta_hat: float, extent: Extent, cut: bool = False
+    method: Method,
+    objective: Objective,
+    alpha_hat: float,
+    beta_hat: float,
+    extent: Extent,
+    *,
+    equal: bool = False,
+    cut: bool = False,
 ) -> None:
     """Raise NumericalError if an objective is smaller at a sampled point with alpha, beta > 0 than at the answer.
 
-    cut: only points within the extent are an answer.
+    equal: only alpha = beta is an answer; cut: only points within the extent are.
     """
     alpha_hats, beta_hats = sampled_points(extent, alpha_hat, beta_hat)
-    kept = np.logical_not(cut) | ((alpha_hats <= extent[0][1]) & (beta_hats <= extent[1][1]))
-    _compare(method, objective, alpha_hat, beta_hat, alpha_hats[kept], beta_hats[kept])
-
-
-def check_least_equal(
-    method: Method, objective: Objective, alpha_hat: float, extent: Extent, cut: bool = False
-) -> None:
-    """Raise NumericalError if an objective is smaller at a sampled alpha = beta than at the answer; as check_least."""
-    near = alpha_hat * np.concatenate([1 + RINGS, 1 - RINGS])
-    alpha_hats = np.concatenate([near, np.linspace(0, extent[0][1], SAMPLES + 1)[1:]])
+    if equal:
+        near = alpha_hat * np.concatenate([1 + RINGS, 1 - RINGS])
+        alpha_hats = np.concatenate([near, np.linspace(0, extent[0][1], SAMPLES + 1)[1:]])
+        beta_hats = alpha_hats**2 / 4
+    kept = (alpha_hats > 0) & (beta_hats > 0)
     if cut:
-        alpha_hats = alpha_hats[alpha_hats <= min(extent[0][1], 2 * np.sqrt(extent[1][1]))]
-    _compare(method, objective, alpha_hat, alpha_hat**2 / 4, alpha_hats, alpha_hats**2 / 4)
+        kept &= (alpha_hats <= extent[0][1]) & (beta_hats <= extent[1][1])
+    values = objective(alpha_hats[kept], beta_hats[kept], np.inf)
+    here = float(objective(np.array([alpha_hat]), np.array([beta_hat]), np.inf)[0])
+    least = int(np.argmin(values))
+    if values[least] < here * (1 - DOUBLE) - SAME:
+        place = f"({alpha_hats[kept][least]:.6g}, {beta_hats[kept][least]:.6g})"
+        raise NumericalError(f"{method.name}: the point chosen has {here:.9g}, but {place} has {values[least]:.9g}")
 
 
 def check_critical(pencil: AnyPencil, alpha_hat: float, beta_hat: float, extent: Extent, cut: bool = False) -> None:
@@ -178,23 +185,6 @@ def check_gentle(method: Method, modulus: Modulus, alpha_hat: float, rate: float
         raise NumericalError(
             f"{method.name}: alpha_hat = {first:.9g} with alpha = beta is gentler than {alpha_hat:.9g}"
         )
-
-
-def _compare(
-    method: Method,
-    objective: Objective,
-    alpha_hat: float,
-    beta_hat: float,
-    alpha_hats: FloatArray,
-    beta_hats: FloatArray,
-) -> None:
-    positive = (alpha_hats > 0) & (beta_hats > 0)
-    values = objective(alpha_hats[positive], beta_hats[positive], np.inf)
-    here = float(objective(np.array([alpha_hat]), np.array([beta_hat]), np.inf)[0])
-    least = int(np.argmin(values))
-    if values[least] < here * (1 - DOUBLE) - SAME:
-        place = f"({alpha_hats[positive][least]:.6g}, {beta_hats[positive][least]:.6g})"
-        raise NumericalError(f"{method.name}: the point chosen has {here:.9g}, but {place} has {values[least]:.9g}")
 
 
 def check_margin(path: Path, ends: tuple[float, float]) -> None:

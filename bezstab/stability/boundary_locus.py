@@ -29,7 +29,7 @@ everything that has a shape: what lies within is bounded like any other, by arcs
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import cache
 from itertools import pairwise
 from math import inf, isfinite, pi
 
@@ -65,8 +65,20 @@ class Arc(Track):
         return self.pencil.user_points(mu, mu.conj())[:, axis]
 
     def turns(self, axis: int) -> FloatArray:
-        """Return every theta where that coordinate turns."""
-        return _turns(self, axis)
+        """Return every theta where that coordinate turns, by narrowing in on the samples where it does."""
+        values = self.plane()[:, axis]
+        turning = np.flatnonzero(np.diff(np.sign(np.diff(values)))) + 1
+        if not turning.size:
+            return np.empty(0)
+        upwards = np.where(values[turning] > values[turning - 1], 1.0, -1.0)[:, np.newaxis]
+        low = self.theta[turning - 1]
+        high = self.theta[np.minimum(turning + 1, len(self.theta) - 1)]
+
+        def below_the_turn(theta: FloatArray) -> FloatArray:
+            return -upwards * self.coordinate(theta.ravel(), axis).reshape(theta.shape)
+
+        theta, _ = least_between(below_the_turn, low, high)
+        return theta
 
     def ends_and_turns(self, axis: int) -> FloatArray:
         """Return the values of that coordinate among which are its least and its largest."""
@@ -90,24 +102,6 @@ class Arc(Track):
             slope = -1j * z * polyval2d(z, mu, self.pencil.table_by_z) / polyval2d(z, mu, self.pencil.table_by_mu)
             density = -2 * mu.imag**2 * slope.real
         return np.where(np.isfinite(density), density, 0).reshape(1, *theta.shape)
-
-
-@lru_cache  # a region asks for the same ones four times
-def _turns(arc: Arc, axis: int) -> FloatArray:
-    """Return every theta where an arc's coordinate turns, by narrowing in on the samples where it does."""
-    values = arc.plane()[:, axis]
-    turning = np.flatnonzero(np.diff(np.sign(np.diff(values)))) + 1
-    if not turning.size:
-        return np.empty(0)
-    upwards = np.where(values[turning] > values[turning - 1], 1.0, -1.0)[:, np.newaxis]
-    low = arc.theta[turning - 1]
-    high = arc.theta[np.minimum(turning + 1, len(arc.theta) - 1)]
-
-    def below_the_turn(theta: FloatArray) -> FloatArray:
-        return -upwards * arc.coordinate(theta.ravel(), axis).reshape(theta.shape)
-
-    theta, _ = least_between(below_the_turn, low, high)
-    return theta
 
 
 @dataclass(frozen=True, eq=False)

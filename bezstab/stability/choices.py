@@ -21,7 +21,6 @@ from bezstab.stability.answer_checks import (
     check_critical,
     check_gentle,
     check_least,
-    check_least_equal,
 )
 from bezstab.stability.arrays import DOUBLE, SLOW, BoolArray, Extent, FloatArray
 from bezstab.stability.best_points import best_point
@@ -445,10 +444,7 @@ def _checked_least(
 
     def found(finer: int) -> tuple[float, float]:
         alpha_hat, beta_hat = _least(extent, objective, equal, cut, finer)
-        if equal:
-            check_least_equal(pencil.method, objective, alpha_hat, extent, cut)
-        else:
-            check_least(pencil.method, objective, alpha_hat, beta_hat, extent, cut)
+        check_least(pencil.method, objective, alpha_hat, beta_hat, extent, equal=equal, cut=cut)
         return alpha_hat, beta_hat
 
     return checked(found)

@@ -134,32 +134,18 @@ def error_tables(method: Method, omega_h: Fraction) -> ErrorTables:
 
 def _at(terms: ExponentialSum, omega_h: Fraction) -> ComplexArray:
     """Return a sum at theta = i omega_h as a table by powers of alpha_hat and beta_hat, each entry to all digits."""
+    import mpmath  # which sympy has loaded where there is something to sum
+
     table = np.zeros(_shape(terms), dtype=complex)
-    cosines_and_sines = {k: _cosine_and_sine(k * omega_h) for of_powers in terms.values() for k, _ in of_powers}
-    for powers, of_powers in terms.items():
-        real, imaginary = Fraction(0), Fraction(0)
-        for (k, m), c in of_powers.items():
-            size = c * omega_h**m
-            cosine, sine = cosines_and_sines[k]
-            for _ in range(m % 4):  # theta^m = i^m omega_h^m: a quarter turn for each i
-                cosine, sine = -sine, cosine
-            real, imaginary = real + size * cosine, imaginary + size * sine
-        table[powers] = complex(float(real / 10**DIGITS), float(imaginary / 10**DIGITS))
+    with mpmath.workdps(DIGITS):
+        theta = mpmath.mpc(0, mpmath.mpmathify(omega_h))
+        for powers, of_powers in terms.items():
+            total = mpmath.fsum(
+                mpmath.mpmathify(c) * theta**m * mpmath.exp(mpmath.mpmathify(k) * theta)
+                for (k, m), c in of_powers.items()
+            )
+            table[powers] = complex(total)
     return table
-
-
-def _cosine_and_sine(angle: Fraction) -> tuple[int, int]:
-    """Return both in units of 10^-DIGITS, by Taylor's series; the angle in rad."""
-    parts = [0, 0]
-    term = 10**DIGITS
-    power = 0
-    while term:
-        parts[power % 2] += -term if power % 4 >= 2 else term
-        power += 1
-        term = term * angle.numerator // (angle.denominator * power)
-        if term == -1:  # whole numbers are rounded down: a negative one would never come to zero
-            term = 0
-    return parts[0], parts[1]
 
 
 def _around_one(terms: ExponentialSum) -> FloatArray:

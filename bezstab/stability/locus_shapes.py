@@ -69,7 +69,7 @@ def locus_shape(pencil: Pencil, level: float, finer: int) -> Shape | None:
         return None  # where two roots on the circle meet
     curves = joined(edges, most=MEETING * np.abs(np.concatenate(edges)).max(axis=0))
     if not bounds.bounded:
-        extent = _unbounded_extent(pencil, level, bounds, finer)
+        extent = _unbounded_extent(pencil, level, bounds, extent, finer)
     view = extent if bounds.bounded else _view(pencil, bounds)
     return Shape(area, extent, view, tuple(curves), known=_known(pencil, level, bounds))
 
@@ -151,8 +151,8 @@ def _known(pencil: Pencil, level: float, bounds: Bounds) -> FloatArray:
     return pencil.user_points(pairs, pairs.conj())
 
 
-def _unbounded_extent(pencil: Pencil, level: float, bounds: Bounds, finer: int) -> Extent:
-    """Return the ranges of an unbounded region: infinite where they grow with the radius of the rim.
+def _unbounded_extent(pencil: Pencil, level: float, bounds: Bounds, near: Extent, finer: int) -> Extent:
+    """Return the ranges of an unbounded region, from those within the rim: infinite where they grow with its radius.
 
     Where all of the rim is stable they all do. Else a range without limit grows at least as a root of the radius: from
     a rim to one RIM times further out more than GROWN times, while one with a limit has come near it.
@@ -160,11 +160,7 @@ def _unbounded_extent(pencil: Pencil, level: float, bounds: Bounds, finer: int) 
     everywhere = ((-math.inf, math.inf), (-math.inf, math.inf))
     if bounds.rim >= math.pi * (1 - ROUNDING):
         return everywhere
-    ranges = []
-    for radius in (bounds.radius, RIM * bounds.radius):
-        ranges.append(_extent(pencil, bounds_of(pencil, level, finer, radius)))
-    near, far = ranges
-    assert near
+    far = _extent(pencil, bounds_of(pencil, level, finer, RIM * bounds.radius))
     assert far
     size = bounds.radius / RIM / pencil.multiple
     scales = size, size**2

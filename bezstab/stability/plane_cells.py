@@ -15,7 +15,6 @@ tanh-sinh quadrature does not mind.
 
 import math
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import partial
 from itertools import pairwise
 
@@ -39,65 +38,67 @@ OUT_OF_VIEW = 3.0  # times what is to be seen: curves that go on are drawn so fa
 
 @dataclass(frozen=True)
 class Cell:
-    """A stable cell: its strip, and the crossings that bound it on the left and on the right (None: unbounded).
+    """A stable cell: its strip, and the crossings that bound it on the left and on the right (None: unbounded)."""
 
-    `low` and `high` are the ends of the strip; `left_limits` and `right_limits` what the crossings' alpha_hat comes to
-    at each of them: infinite, a number where the end is infinite, None where it is a number on a level.
-    """
-
-    low: float
-    high: float
+    strip: Strip
     left: Crossing | None
     right: Crossing | None
-    left_limits: tuple[Limit, Limit]
-    right_limits: tuple[Limit, Limit]
 
     @property
-    def limits(self) -> tuple[Limit, ...]:
-        """What alpha_hat comes to at the ends of the strip, along either crossing."""
-        return *self.left_limits, *self.right_limits
+    def low(self) -> float:
+        """The lower end of the strip."""
+        return -math.inf if self.strip.low is None else float(self.strip.low)
+
+    @property
+    def high(self) -> float:
+        """The upper end of the strip."""
+        return math.inf if self.strip.high is None else float(self.strip.high)
+
+    @property
+    def limits(self) -> tuple[tuple[Limit, Limit], tuple[Limit, Limit]]:
+        """What alpha_hat comes to at the lower and the upper end of the strip, along the left wall and the right."""
+        left = (-math.inf, -math.inf) if self.left is None else self.strip.limits[self.left]
+        right = (math.inf, math.inf) if self.right is None else self.strip.limits[self.right]
+        return left, right
 
 
 class Edges:
-    """The edges of all strips as functions of beta_hat, in float64; a strip is known by its lower end."""
+    """The edges of all strips as functions of beta_hat, in float64."""
 
     def __init__(self, strips: PlaneStrips) -> None:
-        self.strips = strips
+        self._lost = strips.lost
         self._split = [_split(curve) for curve in strips.curves]
         self.tables = [np.array(curve)[:, :, 0] for curve in self._split]
         self._slopes = [np.polynomial.polynomial.polyder(table, axis=0) for table in self.tables]
-        self._counts: dict[tuple[float, int], int] = {}
-        self._spans: dict[tuple[float, int], tuple[float, float]] = {}
-        for strip in strips.strips:
-            low, high = _end(strip.low, -1), _end(strip.high, 1)
-            for number, lost in enumerate(strips.lost):
-                self._counts[low, number] = sum(crossing[0] == number for crossing in strip.crossings)
-                width = high - low if np.isfinite(high - low) else 1.0
-                # nearer to a level a crossing that is lost there may show at the wrong infinity
-                off = [ROUNDING * max(width, abs(end)) if np.isfinite(end) else 0.0 for end in (low, high)]
-                self._spans[low, number] = (
-                    low + (off[0] if strip.low in lost else 0.0),
-                    high - (off[1] if strip.high in lost else 0.0),
-                )
 
-    def places(self, crossing: Crossing, low: float, beta_hat: FloatArray) -> FloatArray:
-        """Return alpha_hat of one crossing with lines in the strip that begins at low; the shape of beta_hat.
+    def places(self, crossing: Crossing, cell: Cell, beta_hat: FloatArray) -> FloatArray:
+        """Return alpha_hat of one crossing with lines in a cell's strip; the shape of beta_hat.
 
         On a level at which a crossing of the same curve is lost, it is taken just beside, in the strip.
         """
         number, k = crossing
-        levels = np.clip(beta_hat, *self._spans[low, number])
+        levels = np.clip(beta_hat, *self._known_span(cell, number))
         coefficients = np.stack([np.polynomial.polynomial.polyval(levels, row) for row in self.tables[number]])
-        return np.asarray(_real_roots(coefficients, self._counts[low, number])[k])
+        return np.asarray(_real_roots(coefficients, sum(curve == number for curve, _ in cell.strip.crossings))[k])
+
+    def _known_span(self, cell: Cell, number: int) -> tuple[float, float]:
+        """Return the strip's ends, less what is so near to a lost crossing that it may show at the wrong infinity."""
+        low, high = cell.low, cell.high
+        width = high - low if math.isfinite(high - low) else 1.0
+        if cell.strip.low in self._lost[number]:
+            low += ROUNDING * max(width, abs(low))
+        if cell.strip.high in self._lost[number]:
+            high -= ROUNDING * max(width, abs(cell.high))
+        return low, high
 
     def is_vertical(self, crossing: Crossing) -> bool:
         """Return whether a crossing has one alpha_hat on all lines."""
         return len(self.tables[crossing[0]][0]) == 1
 
-    def exact_places(self, crossing: Crossing, low: float, beta_hat: FloatArray) -> FloatArray:
+    def exact_places(self, crossing: Crossing, cell: Cell, beta_hat: FloatArray) -> FloatArray:
         """Return what `places` does, to rounding: one more step of Newton's method with the curve's exact value."""
         number, _ = crossing
-        place = self.places(crossing, low, beta_hat)
+        place = self.places(crossing, cell, beta_hat)
         high, rest = double_polynomial(self._split[number], place, beta_hat)
         slope = np.polynomial.polynomial.polyval2d(place, beta_hat, self._slopes[number])
         with np.errstate(all="ignore"):
@@ -109,10 +110,6 @@ def _split(curve: CurveTable) -> list[list[tuple[float, float]]]:
     """Return a curve's coefficients as sums of two float64, the largest one: they may have hundreds of digits."""
     largest = max(abs(c) for row in curve for c in row)
     return [[split(c / largest) for c in row] for row in curve]
-
-
-def _end(level: Fraction | None, sign: int) -> float:
-    return sign * np.inf if level is None else float(level)
 
 
 def _real_roots(coefficients: FloatArray, count: int) -> FloatArray:
@@ -182,16 +179,8 @@ def shape_of_strips(strips: PlaneStrips, name: str) -> Shape | None:
 
 
 def _stable_cells(strip: Strip) -> list[Cell]:
-    low, high = _end(strip.low, -1), _end(strip.high, 1)
-    walls = [None, *strip.crossings, None]
-    cells = []
-    for k, stable in enumerate(strip.stable):
-        if stable:
-            left, right = walls[k], walls[k + 1]
-            left_limits = (-math.inf, -math.inf) if left is None else strip.limits[left]
-            right_limits = (math.inf, math.inf) if right is None else strip.limits[right]
-            cells.append(Cell(low, high, left, right, left_limits, right_limits))
-    return cells
+    walls = pairwise([None, *strip.crossings, None])
+    return [Cell(strip, left, right) for (left, right), stable in zip(walls, strip.stable, strict=True) if stable]
 
 
 def _drawn_levels(low: float, high: float) -> FloatArray:
@@ -223,10 +212,10 @@ def _turns(edges: Edges, cells: tuple[Cell, ...]) -> FloatArray:
     for cell in cells:
         finite_ends = np.isfinite([cell.low, cell.high])
         levels = _drawn_levels(cell.low, cell.high) if finite_ends.all() else _levels_to_infinity(cell)
-        for crossing, limits in ((cell.left, cell.left_limits), (cell.right, cell.right_limits)):
+        for crossing, limits in zip((cell.left, cell.right), cell.limits, strict=True):
             if crossing is None:
                 continue
-            place = edges.places(crossing, cell.low, levels)
+            place = edges.places(crossing, cell, levels)
             points.append([(place[end], levels[end]) for end in (0, -1) if limits[end] is None])
             if edges.is_vertical(crossing):
                 points.append([(place[0], levels[0])])
@@ -235,25 +224,23 @@ def _turns(edges: Edges, cells: tuple[Cell, ...]) -> FloatArray:
                 within = sign * place[1:-1] - rounding
                 turning = 1 + np.flatnonzero((within > sign * place[:-2]) & (within > sign * place[2:]))
                 for k in turning:
-                    points.append([_furthest(edges, crossing, cell.low, levels[k - 1], levels[k + 1], sign)])
+                    points.append([_furthest(edges, crossing, cell, levels[k - 1], levels[k + 1], sign)])
     flat = np.array([point for group in points for point in group]).reshape(-1, 2)
     finite: FloatArray = flat[np.isfinite(flat).all(axis=1)]
     return finite
 
 
-def _furthest(
-    edges: Edges, crossing: Crossing, strip_low: float, low: float, high: float, sign: int
-) -> tuple[float, float]:
+def _furthest(edges: Edges, crossing: Crossing, cell: Cell, low: float, high: float, sign: int) -> tuple[float, float]:
     """Return the point of an edge between two levels that lies furthest to the right (sign 1) or left (-1)."""
     level, _ = least_between(
-        lambda levels: -sign * edges.places(crossing, strip_low, levels), np.asarray(low), np.asarray(high)
+        lambda levels: -sign * edges.places(crossing, cell, levels), np.asarray(low), np.asarray(high)
     )
-    return float(edges.exact_places(crossing, strip_low, level[np.newaxis])[0]), float(level)
+    return float(edges.exact_places(crossing, cell, level[np.newaxis])[0]), float(level)
 
 
 def _extent(cells: tuple[Cell, ...], corners: FloatArray) -> tuple[Extent, Approached]:
     """Return the ranges of alpha_hat and beta_hat, infinite where there is no limit, and which ends no edge attains."""
-    towards = [limit for cell in cells for limit in cell.limits if limit is not None]
+    towards = [limit for cell in cells for wall in cell.limits for limit in wall if limit is not None]
     first, last = float(corners[:, 0].min(initial=math.inf)), float(corners[:, 0].max(initial=-math.inf))
     left, right = min([first, *towards]), max([last, *towards])
     rounding = ROUNDING * float(np.abs(corners[:, 0]).max(initial=0.0))
@@ -268,11 +255,12 @@ def _extent(cells: tuple[Cell, ...], corners: FloatArray) -> tuple[Extent, Appro
 
 def _only_far_out(cells: tuple[Cell, ...], level: float) -> bool:
     """Return whether each cell that comes to a finite level does so at an infinite alpha_hat."""
-    at_the_level = []
-    for cell in cells:
-        for end, at in ((0, cell.low), (1, cell.high)):
-            if at == level:
-                at_the_level.append((cell.left_limits[end], cell.right_limits[end]))
+    at_the_level = [
+        walls
+        for cell in cells
+        for at, walls in zip((cell.low, cell.high), zip(*cell.limits, strict=True), strict=True)
+        if at == level
+    ]
     return math.isfinite(level) and all(
         left is not None and math.isinf(left) and left == right for left, right in at_the_level
     )
@@ -307,7 +295,7 @@ def _widths(edges: Edges, cell: Cell, beta_hat: FloatArray) -> FloatArray:
     """Return a cell's widths at some beta_hat; shape (1, *that of beta_hat)."""
     assert cell.left is not None
     assert cell.right is not None
-    left, right = (edges.exact_places(wall, cell.low, beta_hat.ravel()) for wall in (cell.left, cell.right))
+    left, right = (edges.exact_places(wall, cell, beta_hat.ravel()) for wall in (cell.left, cell.right))
     return (right - left).reshape(1, *beta_hat.shape)
 
 
@@ -343,12 +331,12 @@ def _walls(edges: Edges, cells: tuple[Cell, ...], box: Extent) -> list[FloatArra
             if crossing is not None:
                 walls[cell.low, crossing] = cell
     pieces = []
-    for (strip_low, crossing), cell in walls.items():
+    for (_, crossing), cell in walls.items():
         low, high = max(cell.low, bottom), min(cell.high, top)
         if low >= high:
             continue
         levels = _drawn_levels(low, high)
-        place = edges.places(crossing, strip_low, levels)
+        place = edges.places(crossing, cell, levels)
         seen = np.isfinite(place) & (place >= left) & (place <= right)
         for run in np.split(np.arange(len(levels)), np.flatnonzero(np.diff(seen)) + 1):
             if seen[run[0]] and len(run) > 1:
@@ -369,7 +357,7 @@ def _level_pieces(edges: Edges, cells: tuple[Cell, ...], box: Extent) -> list[Fl
             intervals = []
             for cell in beside:
                 ends = [
-                    limit if crossing is None else float(edges.places(crossing, cell.low, np.array([level]))[0])
+                    limit if crossing is None else float(edges.places(crossing, cell, np.array([level]))[0])
                     for crossing, limit in ((cell.left, left), (cell.right, right))
                 ]
                 ends = [limit if not np.isfinite(end) else end for end, limit in zip(ends, (left, right), strict=True)]
