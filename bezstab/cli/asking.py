@@ -190,6 +190,8 @@ def asked(kind: Callable[..., Asked], **typed: Any) -> Asked:
         typed["chain"] = typed_chain(typed["chain"], typed.pop("mass_ratio"))
     if "point" in typed:
         methods = typed["methods"] if "methods" in typed else [typed["method"]]
+        if typed.get("sequence"):  # its point is where errors shall grow: the line that a refutation prints
+            methods = []
         longest = typed["h"] or (typed.get("h_max") if typed.get("h_min") else None)
         typed["point"] = typed["point"].at(methods, longest)
     return kind(**typed)

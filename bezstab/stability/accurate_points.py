@@ -23,9 +23,6 @@ RATIOS = (0.5, 4.0)
 FIRST_GRID = 49
 """Points per axis of the first grid, over two to seven decades: errors change some twofold from one to the next."""
 
-GRID, SHRINK, ROUNDS = 13, 0.5, 18
-"""Points per axis of a zoom, and its factor: 0.5^17 = 8e-6 of the first grid, where the error is flat to rounding."""
-
 SAMPLES = 64
 """Per axis of another grid, which no point may have a lesser error on: by more than BETTER."""
 
@@ -71,9 +68,6 @@ def accurate_point(
         (low + high) / 2,
         (high - low) / 2,
         first_points=FIRST_GRID,
-        points=GRID,
-        shrink=SHRINK,
-        rounds=ROUNDS,
         turned=not equal,
         fold=lambda points: np.clip(points, low, high),
     )

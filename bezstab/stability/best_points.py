@@ -8,9 +8,9 @@ and then no point has the least value; and a pole that no parameters move may be
 """
 
 import math
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cache
+from itertools import count
 
 import numpy as np
 from numpy.polynomial.polynomial import polyroots
@@ -18,18 +18,16 @@ from numpy.polynomial.polynomial import polyroots
 from bezstab.errors import NumericalError
 from bezstab.methods import Method, fixed_poles, implicit
 from bezstab.stability.answer_checks import check_best_point, check_deadbeat
-from bezstab.stability.arrays import EPS, ComplexArray, FloatArray
+from bezstab.stability.arrays import DOUBLE, EPS, SAME, ComplexArray, FloatArray
 from bezstab.stability.charts import chart_of
 from bezstab.stability.closed_loop import AnyPencil, free_pencil_of, largest_modulus
 from bezstab.stability.far_limits import FarLimit, least_far_limit
-from bezstab.stability.least_modulus import ROUNDING, SAME, least_on
+from bezstab.stability.least_modulus import least_on
 from bezstab.stability.pencils import Pencil, all_inside, deadbeat_mu, roots_in_mu
 from bezstab.stability.regions import Region, region
-from bezstab.stability.searches import zoom_on_minimum
+from bezstab.stability.searches import checked, zoom_on_minimum
 
-FINER = (1, 4)  # times the points of the grid along either axis: the second where the first search fails its check
-REACH = 1e150  # of mu, whose square is beta_hat; one zero of R is always within its degree, as R(0) = R'(0) = 1
-FURTHEST = 200  # doublings of a parameter, on the way to a limit
+REACH = np.finfo(float).max ** 0.5  # of mu, whose square is beta_hat; one zero of R is within its degree
 ARC_SAMPLES = 513  # of theta, where a curve of equal |z_p| is looked for, a tenth of them at least
 ARC_SHARE = 1 / 10  # of the samples lie on such a curve, if there is one; a kink shows at isolated theta only
 ARC_ZOOM_POINTS, ARC_ZOOMS = 65, 7  # each by 1/32: the curve's end, to rounding
@@ -110,12 +108,12 @@ def _deadbeat(pencil: Pencil) -> BestPoint | None:
     """Return the zeros of R, as z = R(mu), the most damped first; of an implicit method those where Re mu <= 0."""
     zeros: list[complex] = []
     for root in np.sort_complex(deadbeat_mu(pencil)):
-        mu = complex(root.real, abs(root.imag) if abs(root.imag) > ROUNDING * abs(root) else 0)
+        mu = complex(root.real, abs(root.imag) if abs(root.imag) > SAME * abs(root) else 0)
         if implicit(pencil.method):
-            if mu.real > ROUNDING * abs(mu):
+            if mu.real > SAME * abs(mu):
                 continue
             mu = complex(min(mu.real, 0.0), mu.imag)
-        if abs(mu) < REACH and all(abs(mu - other) > SAME * abs(mu) for other in zeros):
+        if abs(mu) < REACH and all(abs(mu - other) > DOUBLE * abs(mu) for other in zeros):
             zeros.append(mu)
     if not zeros:
         return None
@@ -135,10 +133,7 @@ def _searched(pencil: AnyPencil, stable: Region) -> BestPoint | FarLimit:
     limit = _far_limit(pencil)
     if limit.z_abs == 0:
         return limit
-    for finer in FINER[:-1]:
-        with suppress(NumericalError):
-            return _checked(pencil, stable, limit, finer)
-    return _checked(pencil, stable, limit, FINER[-1])
+    return checked(lambda finer: _from_grid(pencil, stable, limit, finer))
 
 
 def _far_limit(pencil: AnyPencil) -> FarLimit:
@@ -154,13 +149,13 @@ def _far_limit(pencil: AnyPencil) -> FarLimit:
     return FarLimit(z_abs, direction=(0, 1))
 
 
-def _checked(pencil: AnyPencil, stable: Region, limit: FarLimit, finer: int) -> BestPoint | FarLimit:
+def _from_grid(pencil: AnyPencil, stable: Region, limit: FarLimit, finer: int) -> BestPoint | FarLimit:
     """Return the same from one search; NumericalError if it fails its check."""
     chart = chart_of(pencil, stable, finer)
     sampled, least = least_on(chart)
-    if limit.z_abs < min(sampled, least.z_abs if least else math.inf) * (1 - SAME):
+    if limit.z_abs < min(sampled, least.z_abs if least else math.inf) * (1 - DOUBLE):
         return limit
-    if least is None or least.z_abs > sampled * (1 + ROUNDING) + EPS**0.5 * (sampled < EPS**0.25):
+    if least is None or least.z_abs > sampled * (1 + SAME) + EPS**0.5 * (sampled < EPS**0.25):
         raise NumericalError(f"{chart.name}: |z_p| = {sampled:.6g} was sampled, but no kink as low could be solved for")
     alpha_hat, beta_hat = chart.user_point(least.place)
     has_mu = isinstance(pencil, Pencil)
@@ -184,9 +179,9 @@ def _checked(pencil: AnyPencil, stable: Region, limit: FarLimit, finer: int) -> 
 def _different(z: ComplexArray, z_abs: float) -> tuple[complex, ...]:
     """Return the different ones of some poles, taken to the upper half, the rightmost first."""
     different: list[complex] = []
-    upper = np.where(np.abs(z.imag) < SAME * z_abs, z.real, z.real + 1j * np.abs(z.imag))
+    upper = np.where(np.abs(z.imag) < DOUBLE * z_abs, z.real, z.real + 1j * np.abs(z.imag))
     for pole in sorted(upper.tolist(), key=lambda pole: (-pole.real, pole.imag)):
-        if all(abs(pole - other) > SAME * z_abs for other in different):
+        if all(abs(pole - other) > DOUBLE * z_abs for other in different):
             different.append(complex(pole))
     return tuple(different)
 
@@ -201,8 +196,8 @@ def _beside_a_fixed_pole(method: Method, fixed: complex, others: BestPoint | Far
     if isinstance(others, BestPoint):
         return replace(others, method=method, fixed=fixed, z_abs=abs(fixed), meeting=(fixed,), elsewhere=(), arc=False)
     pencil = free_pencil_of(method)
-    t = next(t for t in 2.0 ** np.arange(FURTHEST) if largest_modulus(pencil, *others.point(t)) < abs(fixed))
-    alpha_hat, beta_hat = others.point(float(t))
+    t = next(t for t in (2.0**k for k in count()) if largest_modulus(pencil, *others.point(t)) < abs(fixed))
+    alpha_hat, beta_hat = others.point(t)
     return BestPoint(method, abs(fixed), alpha_hat, beta_hat, (fixed,), False, (), arc=False, fixed=fixed)
 
 
@@ -219,7 +214,7 @@ def _other_end(pencil: Pencil, z_abs: float, mu: complex) -> complex | None:
         """Return the locus at the level, and its distances from mu; -1 where f is larger."""
         locus = roots_in_mu(pencil, z_abs * np.exp(1j * theta))
         equal = np.isfinite(locus) & (locus.imag >= 0)
-        equal[equal] = all_inside(pencil, locus[equal], z_abs * (1 + ROUNDING))
+        equal[equal] = all_inside(pencil, locus[equal], z_abs * (1 + SAME))
         return locus, np.where(equal, np.abs(locus - mu), -1)
 
     theta = np.linspace(-np.pi, np.pi, ARC_SAMPLES)

@@ -17,6 +17,7 @@ from itertools import product
 import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval2d
 
+from bezstab.stability.answer_checks import NEAR
 from bezstab.stability.arrays import ComplexArray, FloatArray
 from bezstab.stability.closed_loop import AnyPencil, largest_modulus
 from bezstab.stability.pencils import Pencil, largest_root_in_z
@@ -27,8 +28,7 @@ Place = tuple[float, float]
 """Both parameters of a chart."""
 
 SPACINGS = 120  # of a grid along either axis: every valley is seen
-NEAR = 8.0  # of alpha_hat and sqrt(beta_hat): where least values lie, whatever corners are further out
-FAR = (1e4, 1e2)  # likewise, where a region goes on: a damping of infinity by less than 1e-4 moves them further
+FAR = (1e4, 1e2)  # alpha_hat, sqrt(beta_hat) where a region goes on: a damping of infinity by 1e-4 moves least values
 
 
 @dataclass(frozen=True)
@@ -102,13 +102,13 @@ def _plane_chart(pencil: PlanePencil, stable: Region, points: int) -> Chart:
     def modulus(points: FloatArray) -> FloatArray:
         return largest_modulus(pencil, *points.reshape(-1, 2).T).reshape(points.shape[:-1])
 
-    axes = _axis(high[0], points), _axis(high[1], points) ** 2
+    axes = _axis(high[0], NEAR[0], points), _axis(high[1], NEAR[1] ** 0.5, points) ** 2
     return Chart(pencil.method.name, coefficients, modulus, np.abs, lambda place: place, axes, (0,), real=True)
 
 
-def _axis(end: float, count: int) -> FloatArray:
-    """Return a grid's points on one axis: evenly up to NEAR, and in even ratios from there."""
-    if end <= NEAR:
+def _axis(end: float, near: float, count: int) -> FloatArray:
+    """Return a grid's points on one axis: evenly up to where least values lie, and in even ratios from there."""
+    if end <= near:
         return np.linspace(0, end, count)
     beyond = count // 3
-    return np.concatenate([np.linspace(0, NEAR, count - beyond), np.geomspace(NEAR, end, beyond + 1)[1:]])
+    return np.concatenate([np.linspace(0, near, count - beyond), np.geomspace(near, end, beyond + 1)[1:]])

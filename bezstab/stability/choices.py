@@ -23,7 +23,7 @@ from bezstab.stability.answer_checks import (
     check_least,
     check_least_equal,
 )
-from bezstab.stability.arrays import BoolArray, Extent, FloatArray
+from bezstab.stability.arrays import DOUBLE, SLOW, BoolArray, Extent, FloatArray
 from bezstab.stability.best_points import best_point
 from bezstab.stability.charts import chart_of
 from bezstab.stability.closed_loop import (
@@ -40,7 +40,7 @@ from bezstab.stability.forced_errors import OMEGA_H
 from bezstab.stability.margins import Margins, stability_margins
 from bezstab.stability.regions import Region, pole_place, region
 from bezstab.stability.root_finding import TOLD
-from bezstab.stability.searches import first_where, zoom_on_minimum
+from bezstab.stability.searches import checked, first_where, zoom_on_minimum
 from bezstab.units import check_step
 
 Within = Callable[[FloatArray, FloatArray, FloatArray], BoolArray]
@@ -52,13 +52,9 @@ FIRST_GRID = 52  # points per axis of the first grid over the region's box: ever
 GRID = 49  # points per axis of a zoom: few fine grids take less time than many coarse ones, and lose no valley
 ZOOM = 0.32  # from one grid to the next: eight spacings to either side of its best point
 ZOOMS = 23  # 0.32^22 = 1e-11 of the region at least, where the objective is flat to rounding
-FINER = 3  # times as many of all these, where the first search failed its check
-SPREAD_POINTS = 9  # per axis, of the points among which the worst is looked for
 SCOUTS = 16  # of a row one point in so many is looked at first, for a value that the others must be below
-SHARES = 8  # of the largest step, besides the limit of small ones: in practice either end is the slowest
+SHARES = 8  # of the largest step, and of the spread, among which the worst is looked for: in practice it is an end
 AT_DEADBEAT = 0.01  # of alpha_hat, beta_hat: a double pole that is so near to zero may be followed no further
-DEADBEAT = 1e-6  # a double pole at zero, as far as float64 tells it
-SLOW = 1e-12  # 1 - |z_p| of which rounding leaves three digits: the decay takes 1e13 steps
 SEARCHED = 4.0  # alpha h and beta h: there e^-4, a fiftieth, is left after a step, and nobody asks for faster decay
 
 
@@ -103,7 +99,7 @@ class Choice:
     def _steps_to_settle(self, z_abs: float) -> int | None:
         if self.verdict != "converges":
             return None
-        if z_abs < DEADBEAT:
+        if z_abs < DOUBLE:
             return 2 * steps(self.method)
         if 1 - z_abs < SLOW:
             return None
@@ -340,7 +336,7 @@ def describe_point(
     pencil = any_pencil_of(method)
     a, b = float(alpha_hat), float(beta_hat)
     proven = verdict(method, alpha_hat, beta_hat)
-    offsets = 1 + spread * np.linspace(-1, 1, SPREAD_POINTS)
+    offsets = 1 + spread * np.linspace(-1, 1, SHARES + 1)
     near_a, near_b = np.meshgrid(a * offsets, b * offsets**2)
     found, trouble = None, None
     if margins and proven == "converges":
@@ -455,10 +451,7 @@ def _checked_least(
             check_least(pencil.method, objective, alpha_hat, beta_hat, extent, cut)
         return alpha_hat, beta_hat
 
-    try:
-        return found(finer=1)
-    except NumericalError:
-        return found(finer=FINER)
+    return checked(found)
 
 
 def _least(extent: Extent, objective: Objective, equal: bool, cut: bool, finer: int) -> tuple[float, float]:

@@ -28,19 +28,12 @@ from bezstab.stability.exact_sums import feedback_discriminant, feedback_roots
 from bezstab.stability.low_degrees import largest_quadratic_root, polynomial_of_pair
 from bezstab.stability.neighbourhoods import FEWEST, SIDE
 from bezstab.stability.pencils import Pencil, largest_root_in_z, pencil_of
-from bezstab.stability.plane_pencils import (
-    PlanePencil,
-    largest_plane_root,
-    plane_pencil_of,
-)
+from bezstab.stability.plane_pencils import CANCELS, PlanePencil, largest_plane_root, plane_pencil_of
 from bezstab.stability.root_finding import CHUNK
 
 BLOCK = 16 * CHUNK  # points whose poles are followed in one go: enough to outweigh the calls for their middles,
 POLES = 7  # each of so many poles; of more poles as many fewer points, so that work arrays stay below 50 MB
 MOST_FOLLOWED = 18  # poles: of more, whose factors lie close together, most points need all roots, and mu halves them
-NEARLY_DOUBLE = 1e-5  # of (mu_1 + mu_2)^2 / 4: with less between the mu P's roots would keep less than 12 digits
-
-PROVEN = 64  # verdicts that are remembered: a margin's end is asked for when it is found, and when it is checked
 ORDINARY = 1e12  # of alpha_hat and beta_hat: their products, of degree 12 at most, are within float64
 
 AnyPencil = Pencil | PlanePencil
@@ -56,7 +49,7 @@ def verdict(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> Verdict:
     return recursion_verdict(polynomial) if polynomial[-1] else "diverges"
 
 
-@lru_cache(maxsize=PROVEN)
+@lru_cache  # a margin's end is asked for when it is found, and when it is checked
 def converges(method: Method, alpha_hat: Fraction, beta_hat: Fraction) -> bool:
     """Return whether the verdict is 'converges': proven as `verdict`, without asking what else it might be."""
     return decays_faster(method, Fraction(1), alpha_hat, beta_hat)
@@ -160,7 +153,7 @@ def _write_largest_poles(
         largest_plane_root(plane_pencil_of(pencil.method), alpha_hat, beta_hat, shape, into=poles)
         p, q = (of_alpha * alpha_hat + of_beta * beta_hat for of_alpha, of_beta in pencil.to_feedback)
         square = p * p / 4
-        close = np.flatnonzero(np.abs(square - q) <= NEARLY_DOUBLE * square)
+        close = np.flatnonzero(np.abs(square - q) <= CANCELS * square)  # P's roots would keep less than 12 digits
         poles[close] = _largest_by_mu(pencil, alpha_hat[close], beta_hat[close])
     else:
         for i in range(0, poles.size, CHUNK):

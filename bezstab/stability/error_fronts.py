@@ -17,13 +17,14 @@ import numpy as np
 
 from bezstab.errors import InputError, NumericalError
 from bezstab.methods import Method
+from bezstab.stability.accurate_points import BETTER
 from bezstab.stability.arrays import FloatArray
 from bezstab.stability.best_points import BestPoint, best_point_or_reason
 from bezstab.stability.choices import search_box
 from bezstab.stability.closed_loop import free_pencil_of, largest_modulus
 from bezstab.stability.forced_errors import OMEGA_H, combined_error, forced_error
 from bezstab.stability.regions import region
-from bezstab.stability.searches import zoom_on_minimum
+from bezstab.stability.searches import ROUNDS, SHRINK, checked, zoom_on_minimum
 
 RATES = (0.999, 0.998, 0.995, 0.99, 0.98, 0.95, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1)
 """|z_p|: what was there has fallen a thousandfold after 6900 steps, ..., 3."""
@@ -41,18 +42,14 @@ STARTS = 6
 SPACINGS = 2.0
 """Of the first grid: so far around a minimum the search goes on."""
 
-GRID, SHRINK, FIRST_ROUNDS, ROUNDS = 21, 0.5, 4, 20
-"""Points per axis of a zoom, its factor, how often all starts are zoomed in on, and how often the best of them is, to
-0.5^22 of those spacings: there the error is flat to rounding. Thirteen points would stall in narrow corners."""
+GRID = 21
+"""Points per axis of a zoom: thirteen would stall in narrow corners."""
+
+FIRST_ROUNDS = 4
+"""So often all starts are zoomed in on, before the best of them is."""
 
 CHECKED = 230
 """Points per axis of another grid, which no point may have a lesser error on, by more than BETTER."""
-
-BETTER = 1e-3
-"""Relative: corners of what decays fast enough are met so closely."""
-
-FINER = 2
-"""Times as many points of the first grid, and starts, where the first search failed its check."""
 
 TOO_SLOW, SLOWEST = 1e3, 1e3
 """Where errors decay too slowly, TOO_SLOW + |z_p| stands in for the error's logarithm, which is never so large: the
@@ -99,10 +96,7 @@ def error_front(method: Method, rates: Sequence[float] = RATES, omega_h: Fractio
         high = np.log([alpha_hat_max / 2, np.sqrt(beta_hat_max)])
         low = np.minimum(np.log(-WEAKEST * np.log(reached[0])), high - 1)
         front = partial(_front, method, _logarithms(method, omega_h), low, high, np.array(reached), best)
-        try:
-            found = front(finer=1)
-        except NumericalError:
-            found = front(finer=FINER)
+        found = checked(front)
         alpha_hat, beta_hat = _plane(found)
         points = list(zip(reached, alpha_hat.tolist(), beta_hat.tolist(), strict=False))
     if best:
@@ -167,13 +161,12 @@ def _front(
         """Return what is to be least, at points of shape (rates, ..., 2)."""
         return _within(*looked_at(points), rates.reshape(-1, *[1] * (points.ndim - 2)))
 
-    def zoomed(starts: FloatArray, reach: FloatArray, rounds: int) -> tuple[FloatArray, FloatArray]:
+    def zoomed(starts: FloatArray, reach: FloatArray, rounds: int = ROUNDS) -> tuple[FloatArray, FloatArray]:
         return zoom_on_minimum(
             objective,
             starts,
             np.broadcast_to(reach, starts.shape),
             points=GRID,
-            shrink=SHRINK,
             rounds=rounds,
             turned=True,
             patient=True,
@@ -187,12 +180,12 @@ def _front(
     reach = SPACINGS * (high - low) / (finer * FIRST_GRID)
     points, values = zoomed(starts, reach, FIRST_ROUNDS)
     best = values.argmin(axis=1)[:, np.newaxis, np.newaxis]
-    points, values = zoomed(np.take_along_axis(points, best, axis=1)[:, 0], reach * SHRINK**FIRST_ROUNDS, ROUNDS)
+    points, values = zoomed(np.take_along_axis(points, best, axis=1)[:, 0], reach * SHRINK**FIRST_ROUNDS)
     for place in reversed(range(len(rates) - 1)):  # what decays faster competes, too
         if values[place + 1] < values[place]:
             points[place], values[place] = points[place + 1], values[place + 1]
-    checked = _within(*looked_at(_grid(low, high, CHECKED).reshape(-1, 2)), rates[:, np.newaxis]).min(axis=1)
-    if better := np.flatnonzero(checked < values + np.log1p(-BETTER)).tolist():
+    sampled = _within(*looked_at(_grid(low, high, CHECKED).reshape(-1, 2)), rates[:, np.newaxis]).min(axis=1)
+    if better := np.flatnonzero(sampled < values + np.log1p(-BETTER)).tolist():
         raise NumericalError(
             f"{method.name}: on the front with |z_p| of {rates[better[0]]:g} at most another point is better"
         )

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from bezstab.errors import InputError
 from bezstab.methods import Verdict, recursion_verdict
-from bezstab.stability.arrays import BoolArray, FloatArray
+from bezstab.stability.arrays import SLOW, BoolArray, FloatArray
 from bezstab.stability.searches import first_where
 
 MOST_STEPS = 100
@@ -242,9 +242,6 @@ FACTORS = np.geomspace(1, FURTHEST, 185)
 SMALL_GAINS = 1e-8 * np.geomspace(1, 1e9, 425)
 """alpha_hat or beta_hat: where a drive without a gain of its own is looked for first, 5 % apart."""
 
-DECAYS = 1 - 1e-12
-"""|z_p| below which an error decays: float64 leaves a pole of modulus one up to a thousand of its spacings off."""
-
 
 def held_limits(way: str, alpha_hat: Fraction, beta_hat: Fraction, timing: Timing) -> HeldLimits:
     """Return how far gains, rate and delay may go each: gains by |z_p| in float64, whole steps by proven verdicts."""
@@ -255,8 +252,8 @@ def held_limits(way: str, alpha_hat: Fraction, beta_hat: Fraction, timing: Timin
 
     a, b = float(alpha_hat), float(beta_hat)
     return HeldLimits(
-        kp=_stable_stretch(b, lambda gains: held_moduli(way, a + 0 * gains, gains, timing) < DECAYS),
-        kd=_stable_stretch(a, lambda gains: held_moduli(way, gains, b + 0 * gains, timing) < DECAYS),
+        kp=_stable_stretch(b, lambda gains: held_moduli(way, a + 0 * gains, gains, timing) < 1 - SLOW),
+        kd=_stable_stretch(a, lambda gains: held_moduli(way, gains, b + 0 * gains, timing) < 1 - SLOW),
         every=_last_stable(lambda every: stable(every, timing.late), least=1),
         late=_last_stable(lambda late: stable(timing.every, Fraction(late)), least=0),
     )

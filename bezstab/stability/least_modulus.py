@@ -26,23 +26,17 @@ from itertools import combinations
 import numpy as np
 from numpy.polynomial.polynomial import polydiv, polyfromroots, polyroots
 
-from bezstab.stability.arrays import EPS, ComplexArray, FloatArray
+from bezstab.stability.arrays import DOUBLE, EPS, SAME, TRIPLE, ComplexArray, FloatArray
 from bezstab.stability.charts import Chart, Place
 from bezstab.stability.searches import zoom_on_minimum
 
 STARTS = 8  # of a grid's local minima, the lowest
-ZOOM_POINTS, ZOOM, ZOOMS = 13, 0.5, 16  # 0.5^15 = 3e-5 of the grid's spacing: a start, from which Newton takes over
-HOPEFUL = 1.01  # times the least solution: the zoom on a minimum above it has not stopped so far short
-ON_EDGE = 1e-2  # of the parameters: where the first is smaller the least value may lie where it is zero
 AS_LARGE = 0.9  # of the largest |z|: what else may be as large at the least value near a start
-CLOSE = 0.3  # of the largest |z|: poles that may be one multiple pole, which float64 parts, and the zoom's end
 NEWTON_STEPS = 16  # from a narrowed minimum three to ten lead to its kink; most sets have none there
-NEARBY = 0.5  # of the parameters' size, and of one for a pole: what is flat leads further, to no minimum nearby
-DIFFERENCE = 1e-6  # of the unknowns' sizes: central differences' truncation is 1e-12 of a slope, and the slope's alone
-ROUNDING = 1e-9  # relative: what float64 leaves of equations and equal moduli; a last step of Newton's
+NEARBY = 0.5  # of the parameters' size, and of the largest |z|: what is flat leads further, to no minimum nearby, and
+# poles so near may be one multiple pole, which float64 and the zoom's end part
+DIFFERENCE = EPS ** (1 / 3)  # of the unknowns' sizes: where truncation and rounding of central differences are alike
 SMALL = 1e-3  # a parameter below it is as if of that size
-SAME = 1e-6  # relative: float64 parts a double pole by 1e-8, and it is no larger
-ALIKE = 1e-4  # relative: a triple pole is known to 1e-5, and passes for a kink of other kinds beside it
 
 
 @dataclass(frozen=True)
@@ -81,8 +75,8 @@ def solved(chart: Chart, start: Place, active: Sequence[Active], held: Mapping[i
         sizes = np.linalg.norm(slopes * scale, axis=1)
         sizes[sizes == 0] = 1.0
         weights = scale / sizes[:, np.newaxis]
-        free = np.linalg.matrix_rank(slopes * weights, tol=ROUNDING) < len(x)
-        multipliers = np.linalg.lstsq((slopes * weights).T, -slope * scale, rcond=ROUNDING)[0]
+        free = np.linalg.matrix_rank(slopes * weights, tol=SAME) < len(x)
+        multipliers = np.linalg.lstsq((slopes * weights).T, -slope * scale, rcond=SAME)[0]
 
         def lagrange(x: FloatArray) -> FloatArray:
             """Return Lagrange's conditions beside the equations."""
@@ -103,13 +97,13 @@ def solved(chart: Chart, start: Place, active: Sequence[Active], held: Mapping[i
             if settled:
                 left = float(np.abs(rows / sizes).max())
                 return Solved((float(x[0]), float(x[1])), _poles(x, active), left)
-            step = np.linalg.lstsq(matrix, residual, rcond=ROUNDING)[0]
+            step = np.linalg.lstsq(matrix, residual, rcond=SAME)[0]
             x = x - step[: len(x)] * scale
             if free:
                 multipliers = multipliers - step[len(x) :]
             if free and np.any(np.abs(x - first) > allowed):
                 return None
-            settled = bool(np.abs(step[: len(x)]).max() <= ROUNDING)
+            settled = bool(np.abs(step[: len(x)]).max() <= SAME)
     return None
 
 
@@ -166,26 +160,23 @@ def least_on(chart: Chart) -> tuple[float, Least | None]:
 
     NumericalError if a root leaves the range of float64.
     """
-    solutions: list[Least] = []
-    minima = sorted(_local_minima(chart), key=lambda minimum: minimum[0])
-    for value, place in minima:
-        if all(value < HOPEFUL * each.z_abs for each in solutions):
-            solutions += _solutions(chart, place)
-    return minima[0][0], _best(chart, solutions)
+    minima = _local_minima(chart)
+    solutions = [solution for _, place in minima for solution in _solutions(chart, place)]
+    return min(value for value, _ in minima), _best(chart, solutions)
 
 
 def _best(chart: Chart, solutions: list[Least]) -> Least | None:
-    """Return the least solution; of those alike one on an edge, and of those in one place that of most conditions."""
+    """Return the least solution; of those alike one on an edge, then one exactly zero, then that of most conditions."""
     if not solutions:
         return None
     least = min(solutions, key=lambda each: each.z_abs)
 
     def alike(each: Least) -> bool:
-        nearby = np.allclose(each.place, least.place, rtol=ALIKE, atol=ALIKE * SMALL)
-        return each.z_abs <= least.z_abs + (ALIKE if nearby else ROUNDING) * (least.z_abs or 1.0)
+        nearby = np.allclose(each.place, least.place, rtol=TRIPLE, atol=TRIPLE * SMALL)
+        return each.z_abs <= least.z_abs + (TRIPLE if nearby else SAME) * (least.z_abs or 1.0)
 
-    def preferred(each: Least) -> tuple[bool, int, float]:
-        return all(each.place[edge] for edge in chart.edges), -each.multiplicity, each.place[1]
+    def preferred(each: Least) -> tuple[bool, bool, int, float]:
+        return all(each.place[edge] for edge in chart.edges), each.z_abs > 0, -each.multiplicity, each.place[1]
 
     return min(filter(alike, solutions), key=preferred)
 
@@ -204,9 +195,6 @@ def _local_minima(chart: Chart) -> list[tuple[float, FloatArray]]:
         chart.modulus,
         grid[rows, columns],
         np.stack([_spacings(x)[columns], _spacings(y)[rows]], axis=-1),
-        points=ZOOM_POINTS,
-        shrink=ZOOM,
-        rounds=ZOOMS,
         turned=True,
         patient=True,
         fold=chart.fold,
@@ -232,12 +220,11 @@ def _active_sets(chart: Chart, start: Place, z: ComplexArray) -> Iterator[tuple[
         for some in combinations(range(len(near)), multiplicity):
             poles = np.array([near[k] for k in some])
             mean = complex(poles.mean())
-            on_axis = chart.real and abs(mean.imag) <= SAME * abs(mean)
+            on_axis = chart.real and abs(mean.imag) <= DOUBLE * abs(mean)
             of_upper_half = not chart.real or on_axis or mean.imag > 0
-            if of_upper_half and np.abs(poles - mean).max() <= CLOSE * np.abs(z).max():
+            if of_upper_half and np.abs(poles - mean).max() <= NEARBY * np.abs(z).max():
                 parts.append((set(some), Active(mean, multiplicity, on_axis)))
-    on_edge = abs(start[0]) < ON_EDGE * max(*np.abs(start), SMALL)
-    for held in ({}, *({edge: 0.0} for edge in chart.edges if edge or on_edge)):
+    for held in ({}, *({edge: 0.0} for edge in chart.edges)):
         alone = chart.real or 0 in held  # over mu the modulus of a single pole is least on the edge Re mu = 0 alone
         for count in (1, 2, 3):
             for chosen in combinations(parts, count):
@@ -261,7 +248,7 @@ def _solutions(chart: Chart, start: FloatArray) -> Iterator[Least]:
         return
     for active, held in _active_sets(chart, first, z):
         found = solved(chart, first, active, held)
-        if found is None or found.residual > ROUNDING:
+        if found is None or found.residual > SAME:
             continue
         place = _folded(chart, found.parameters)
         z = found.z if found.parameters[1] >= 0 else found.z.conj()
@@ -269,15 +256,15 @@ def _solutions(chart: Chart, start: FloatArray) -> Iterator[Least]:
         if place is None or others is None:
             continue
         z_abs = float(np.abs(z).max())
-        if np.abs(others).max(initial=0.0) <= z_abs * (1 + SAME):
-            largest = np.append(z, others[np.abs(others) >= z_abs * (1 - SAME)])
+        if np.abs(others).max(initial=0.0) <= z_abs * (1 + DOUBLE):
+            largest = np.append(z, others[np.abs(others) >= z_abs * (1 - DOUBLE)])
             yield Least(z_abs, place, largest, max(each.multiplicity for each in active))
 
 
 def _folded(chart: Chart, parameters: Place) -> Place | None:
     """Return where a solution lies on the chart, on an edge if it is there to rounding; None if beyond one."""
     size = max(*np.abs(parameters), SMALL)
-    x, y = (0.0 if abs(each) <= ROUNDING * size else each for each in parameters)
+    x, y = (0.0 if abs(each) <= SAME * size else each for each in parameters)
     folded = chart.fold(np.array([x, y])).tolist()
     return (folded[0], folded[1]) if folded[0] == x and (folded[1] == y or not chart.real) else None
 
@@ -293,7 +280,7 @@ def other_poles(chart: Chart, place: Place, z: ComplexArray, active: Sequence[Ac
         return None
     others, rest = polydiv(polynomial, polyfromroots(known))
     size = np.abs(polynomial).max()
-    return np.asarray(polyroots(others), complex) if np.abs(rest).max() <= SAME * size else None
+    return np.asarray(polyroots(others), complex) if np.abs(rest).max() <= DOUBLE * size else None
 
 
 def _all_zero(chart: Chart, start: Place) -> Iterator[Least]:
@@ -322,9 +309,9 @@ def _all_zero(chart: Chart, start: Place) -> Iterator[Least]:
                 value = equations(x)
                 if not np.isfinite([*sides, value]).all():
                     break
-                step = np.linalg.lstsq(np.array(sides).T / 2, value, rcond=ROUNDING)[0] * beside
+                step = np.linalg.lstsq(np.array(sides).T / 2, value, rcond=SAME)[0] * beside
                 x = x - step
-                if np.all(np.abs(step) <= ROUNDING * np.maximum(np.abs(x), SMALL)):
+                if np.all(np.abs(step) <= SAME * np.maximum(np.abs(x), SMALL)):
                     place = _folded(chart, (float(x[0]), float(x[1])))
                     if place and _vanish(chart, place):
                         degree = chart.coefficients(*place).shape[1] - 1
@@ -339,4 +326,4 @@ def _vanish(chart: Chart, place: Place) -> bool:
     That they are small beside the leading one does not say it: so they may be wherever a parameter is large.
     """
     here, farther, origin = (np.abs(chart.coefficients(t * place[0], t * place[1])[0, :-1]) for t in (1, 2, 0))
-    return bool((here <= ROUNDING * (farther + origin)).all())
+    return bool((here <= SAME * (farther + origin)).all())

@@ -27,7 +27,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bezstab.methods import StepMatrix
-from bezstab.stability.arrays import FloatArray
+from bezstab.stability.arrays import SAME, FloatArray
+from bezstab.stability.lyapunov_quadratics import DIGITS
 from bezstab.stability.positive_polynomials import ExactArray, positivity
 
 Corner = tuple[Fraction, Fraction]
@@ -37,11 +38,7 @@ RAYS = 720  # directions in the half plane: linear interpolation of V errs by 1e
 RESERVES = (0.5, 0.2, 0.1, 0.05, 0.025)  # shares of each step's decay; the first that leaves V finite is taken
 SWEEPS = 3000  # V grows by a fixed amount each turn if it grows for ever: some hundred turns
 MOST_GROWTH = 3.0  # of V: in the frame of the best ellipse the polygons that were found stay below one
-LEAST_TURNING = 1e-3  # of growth: near a direction that the flow keeps, it takes for ever to the next ray
-SETTLED = 1e-9  # change of V in a sweep, far below any reserve
 CORNERS = (9, 18, 36, 72, 144, 360, 720)  # in the half plane, on rays: the fewest that do are the certificate
-DIGITS = 10**9  # denominator of the corners, in units in which their largest coordinates are about one
-CHUNK = 64  # edges whose polynomials are made at a time: memory
 
 
 def invariant_polygon(
@@ -93,7 +90,7 @@ def proves_decay(corners: list[Corner], matrix: StepMatrix, shortest: Fraction) 
 
 
 def _polynomials(ring: list[Corner], matrix: StepMatrix) -> Iterator[ExactArray]:
-    """Yield the denominator, then (e x f) d +- (f - e) x N p for all edges and corners, as rows of whole numbers."""
+    """Yield the denominator, then edge by edge (e x f) d +- (f - e) x N p for all corners, as rows of whole numbers."""
     parts = [*(entry for row in matrix.entries for entry in row), matrix.denominator]
     length = max(len(part) for part in parts)
     scale = lcm(*(coefficient.denominator for part in parts for coefficient in part))
@@ -105,16 +102,10 @@ def _polynomials(ring: list[Corner], matrix: StepMatrix) -> Iterator[ExactArray]
     points = whole[:-1]
     image_x = points[:, :1] * upper_left + points[:, 1:] * upper_right  # (corners, powers of s)
     image_y = points[:, :1] * lower_left + points[:, 1:] * lower_right
-    for first in range(0, len(points), CHUNK):
-        start, end = whole[:-1][first : first + CHUNK], whole[1:][first : first + CHUNK]
-        edge = end - start
-        span = start[:, 0] * end[:, 1] - start[:, 1] * end[:, 0]
-        beside = (
-            edge[:, 0, np.newaxis, np.newaxis] * image_y[np.newaxis]
-            - edge[:, 1, np.newaxis, np.newaxis] * image_x[np.newaxis]
-        )
-        room = span[:, np.newaxis, np.newaxis] * denominator[np.newaxis, np.newaxis]
-        yield np.concatenate([room + beside, room - beside]).reshape(-1, length)
+    for start, end in pairwise(whole):
+        beside = (end[0] - start[0]) * image_y - (end[1] - start[1]) * image_x
+        room = (start[0] * end[1] - start[1] * end[0]) * denominator
+        yield np.concatenate([room + beside, room - beside])
 
 
 def _cross(a: Corner, b: Corner) -> Fraction:
@@ -149,7 +140,7 @@ def _growth_to_come(matrices: FloatArray, flow: FloatArray | None, circle: Float
         larger: FloatArray = np.maximum(growth, to_come.max(axis=0))
         change = (larger - growth).max()
         growth = larger
-        if change < SETTLED:
+        if change < SAME:
             return growth
         if growth.max() > MOST_GROWTH:
             return None
@@ -170,7 +161,7 @@ def _flow_to_next_ray(flow: FloatArray) -> tuple[FloatArray, IntArray, IntArray]
         moved = flow @ unit
         radial = (unit * moved).sum(axis=0)
         turning = unit[0] * moved[1] - unit[1] * moved[0]
-        ways = direction * turning > LEAST_TURNING * np.abs(radial)
+        ways = direction * turning > 0
         rate = np.divide(radial, np.abs(turning), out=np.full(RAYS, -np.inf), where=ways)
         gains.append(rate * np.pi / RAYS)
         targets.append((numbers + direction) % RAYS)

@@ -11,16 +11,14 @@ from fractions import Fraction
 import numpy as np
 
 from bezstab.methods import StepMatrix, StepPolynomial, polynomial_determinant, polynomial_product
-from bezstab.stability.arrays import FloatArray
+from bezstab.stability.arrays import SAME, SLOW, FloatArray
 from bezstab.stability.positive_polynomials import positivity, whole_rows
 
 Form = list[list[Fraction]]
 
-DIGITS = 10**9  # denominator of the entries, in units of the state in which those on the diagonal are about one
+DIGITS = 10**9  # denominator of what proves, in units of the state in which its largest numbers are about one
 NEWTON_STEPS = 40  # in each stage; some ten are taken
 STAGES = 24  # each halves what the barrier keeps away from the optimum
-DECREMENT = 1e-8  # Newton's decrement of a centre, which need not be accurate
-LEAST_DECAY = 1e-12  # of 1 - |z|^2, by which a step's condition is measured
 
 
 def centred_form(matrices: FloatArray, decays: FloatArray) -> FloatArray:
@@ -33,7 +31,7 @@ def centred_form(matrices: FloatArray, decays: FloatArray) -> FloatArray:
     size = matrices.shape[1]
     basis = _symmetric_basis(size)
     lost = basis[:, np.newaxis] - np.swapaxes(matrices, 1, 2) @ basis[:, np.newaxis] @ matrices
-    least = np.maximum(decays, LEAST_DECAY)[:, np.newaxis, np.newaxis]
+    least = np.maximum(decays, SLOW)[:, np.newaxis, np.newaxis]
     lost /= least
     unit = np.eye(size)
     slopes = np.concatenate([lost, np.broadcast_to(unit, (1, *lost.shape[1:]))])  # (variables, steps, n, n)
@@ -58,7 +56,7 @@ def centred_form(matrices: FloatArray, decays: FloatArray) -> FloatArray:
             change = -np.linalg.solve(hessian, gradient)
             decrement = -float(gradient @ change)
             values = values + _share_of_step(decrement) * change
-            if decrement < DECREMENT:
+            if decrement < SAME:
                 break
         weight *= 2
     form: FloatArray = unit + np.tensordot(values[:-1], basis, axes=1)

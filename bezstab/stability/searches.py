@@ -8,17 +8,36 @@ package for a few short functions. Bisecting until the ends are neighbours keeps
 
 import math
 from collections.abc import Callable
+from typing import TypeVar
 
 import numpy as np
 
+from bezstab.errors import NumericalError
 from bezstab.stability.arrays import BoolArray, FloatArray
 
-BISECTIONS = 60  # halves a bracket of 1e-3 below float64's spacing at one
+BISECTIONS = np.finfo(float).nmant + 8  # halves a bracket to neighbours, but for one that begins at zero
+ZOOM_POINTS = 13  # points of a zoom's grids along each axis
+SHRINK = 0.5  # from one of them to the next
+ROUNDS = 18  # of them, to 8e-6 of the first: a smooth valley is flat to rounding there, and Newton's method starts
+FINER = 3  # times the points of a search whose first answer failed its check
 WELL_INSIDE = 0.8  # of the reach: a best point further out says that the valley may lead on
 AT_ONCE = 15  # places of a bracket: to ask about one takes as long as about a dozen
 GRID = 33  # points of a bracket in which a least value is looked for, and then of its best two gaps
 ZOOMS = 8  # such grids, each narrower by 1/16: to where a smooth least value is flat to rounding
 GOLDEN_ANGLE = 2.4  # rad, about pi (3 - sqrt 5): grids turned by it from one to the next never line up again
+
+Found = TypeVar("Found")
+
+
+def checked(search: Callable[[int], Found]) -> Found:
+    """Return what a search finds, which takes a factor on its points; with more where its check refuses the first.
+
+    NumericalError where the second fails, too.
+    """
+    try:
+        return search(1)
+    except NumericalError:
+        return search(FINER)
 
 
 def bisected(
@@ -78,9 +97,9 @@ def zoom_on_minimum(
     centre: FloatArray,
     reach: FloatArray,
     *,
-    points: int,
-    shrink: float,
-    rounds: int,
+    points: int = ZOOM_POINTS,
+    shrink: float = SHRINK,
+    rounds: int = ROUNDS,
     first_points: int | None = None,
     turned: bool = False,
     patient: bool = False,
