@@ -14,7 +14,7 @@ out beyond the stretch that is compared.
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -64,7 +64,7 @@ class ForcedMotion:
     `measured` is nan where the run broke down: `failure` says when and why.
     """
 
-    method: Method = field(repr=False)
+    method: Method
     h: float
     alpha_hat: float
     beta_hat: float

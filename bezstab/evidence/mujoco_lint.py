@@ -46,8 +46,8 @@ FRESH = Timing()
 Point = tuple[Fraction, Fraction]
 """alpha_hat and beta_hat."""
 
-Points = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
-"""Of factors on the step, shape (factors,): alpha_hat and beta_hat of each point, shape (factors, points)."""
+Points = Callable[[FloatArray], FloatArray]
+"""Of factors on the step, shape (factors,): alpha_hat and beta_hat of each point, shape (2, factors, points)."""
 
 Shares = Callable[[float, FloatArray], FloatArray]
 """Of impedance and steps (s): the least and the largest share of its reference that a constraint gets, (steps, 2)."""
@@ -308,10 +308,10 @@ class _Pull:
         reached = min(Fraction(1), self.held_from)
         return self.alpha_hat * reached, self.beta_hat * reached**2
 
-    def at(self, factors: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the point at factors on the step, in float64."""
+    def at(self, factors: FloatArray) -> FloatArray:
+        """Return the point at factors on the step, in float64; shape (2, factors)."""
         reached = np.minimum(factors, float(self.held_from))
-        return float(self.alpha_hat) * reached, float(self.beta_hat) * reached**2
+        return np.array([float(self.alpha_hat) * reached, float(self.beta_hat) * reached**2])
 
 
 def _pulls(plant: _Plant, constraint: Constraint, solref: tuple[float, float]) -> list[_Pull]:
@@ -337,12 +337,9 @@ def _linted_constraint(plant: _Plant, constraint: Constraint) -> Linted:
     points = _constraint_points(plant, constraint, shares, constraint.solref)
     point, verdict, z_abs = _worst(method, points)
 
-    def points_at(factors: FloatArray) -> tuple[FloatArray, FloatArray]:
-        taken = [shares(pull.impedance, plant.model.h * factors) for pull in pulls]
-        whole = [pull.at(factors[:, np.newaxis]) for pull in pulls]
-        alpha_hats = [alpha_hat * share for (alpha_hat, _), share in zip(whole, taken, strict=True)]
-        beta_hats = [beta_hat * share for (_, beta_hat), share in zip(whole, taken, strict=True)]
-        return np.hstack(alpha_hats), np.hstack(beta_hats)
+    def points_at(factors: FloatArray) -> FloatArray:
+        h = plant.model.h * factors
+        return np.dstack([pull.at(factors)[:, :, np.newaxis] * shares(pull.impedance, h) for pull in pulls])
 
     return Linted(
         element=constraint.element,

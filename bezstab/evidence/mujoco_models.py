@@ -8,7 +8,7 @@ has them registered already. Everything is read at the model's own configuration
 import types
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations_with_replacement, islice
 from pathlib import Path
 from typing import Any, Literal
@@ -276,50 +276,42 @@ def _equalities(loaded: _Loaded) -> Iterator[Constraint]:
 def _limits(loaded: _Loaded) -> Iterator[Constraint]:
     model = loaded.model
     for joint in np.flatnonzero(model.jnt_limited).tolist():
-        dof = model.jnt_dofadr[joint]
-        kind = loaded.mujoco.mjtJoint(model.jnt_type[joint])
-        ball = kind == loaded.mujoco.mjtJoint.mjJNT_BALL  # whose axis depends on the configuration
-        yield Constraint(
-            element=loaded.named("joint", joint),
-            kind="joint limit",
-            solref=_solref(model.jnt_solref[joint]),
-            solimp=_solimp(model.jnt_solimp[joint]),
-            jacobian=None if ball else loaded.joints[[dof]],
-            diagonal=None if ball else model.dof_invweight0[[dof]].copy(),
-        )
+        solref, solimp = model.jnt_solref[joint], model.jnt_solimp[joint]
+        limit = _along_one(loaded, "joint", "limit", joint, model.jnt_dofadr[joint], solref, solimp)
+        ball = model.jnt_type[joint] == loaded.mujoco.mjtJoint.mjJNT_BALL  # whose axis depends on the configuration
+        yield replace(limit, jacobian=None, diagonal=None) if ball else limit
     for tendon in np.flatnonzero(model.tendon_limited).tolist():
-        yield Constraint(
-            element=loaded.named("tendon", tendon),
-            kind="tendon limit",
-            solref=_solref(model.tendon_solref_lim[tendon]),
-            solimp=_solimp(model.tendon_solimp_lim[tendon]),
-            jacobian=loaded.tendons[[tendon]],
-            diagonal=model.tendon_invweight0[[tendon]].copy(),
-        )
+        solref, solimp = model.tendon_solref_lim[tendon], model.tendon_solimp_lim[tendon]
+        yield _along_one(loaded, "tendon", "limit", tendon, tendon, solref, solimp)
 
 
 def _friction_losses(loaded: _Loaded) -> Iterator[Constraint]:
     model = loaded.model
     for dof in np.flatnonzero(model.dof_frictionloss > 0).tolist():
-        yield Constraint(
-            element=loaded.named("joint", model.dof_jntid[dof]),
-            kind="joint friction",
-            solref=_solref(model.dof_solref[dof]),
-            solimp=_solimp(model.dof_solimp[dof]),
-            jacobian=loaded.joints[[dof]],
-            diagonal=model.dof_invweight0[[dof]].copy(),
-            positional=False,
-        )
+        joint, solref, solimp = model.dof_jntid[dof], model.dof_solref[dof], model.dof_solimp[dof]
+        yield _along_one(loaded, "joint", "friction", joint, dof, solref, solimp)
     for tendon in np.flatnonzero(model.tendon_frictionloss > 0).tolist():
-        yield Constraint(
-            element=loaded.named("tendon", tendon),
-            kind="tendon friction",
-            solref=_solref(model.tendon_solref_fri[tendon]),
-            solimp=_solimp(model.tendon_solimp_fri[tendon]),
-            jacobian=loaded.tendons[[tendon]],
-            diagonal=model.tendon_invweight0[[tendon]].copy(),
-            positional=False,
-        )
+        solref, solimp = model.tendon_solref_fri[tendon], model.tendon_solimp_fri[tendon]
+        yield _along_one(loaded, "tendon", "friction", tendon, tendon, solref, solimp)
+
+
+def _along_one(
+    loaded: _Loaded, kind: str, what: str, number: int, place: int, solref: FloatArray, solimp: FloatArray
+) -> Constraint:
+    """Return the limit or the friction of a joint or tendon; `place` is that of its direction among all."""
+    model = loaded.model
+    directions, weights = loaded.joints, model.dof_invweight0
+    if kind == "tendon":
+        directions, weights = loaded.tendons, model.tendon_invweight0
+    return Constraint(
+        element=loaded.named(kind, number),
+        kind=f"{kind} {what}",
+        solref=_solref(solref),
+        solimp=_solimp(solimp),
+        jacobian=directions[[place]],
+        diagonal=weights[[place]].copy(),
+        positional=what == "limit",
+    )
 
 
 def _contacts(loaded: _Loaded) -> Iterator[Constraint]:
@@ -403,20 +395,14 @@ def _passive(loaded: _Loaded) -> Iterator[Feedback]:
     """Yield the springs and dampers of joints and tendons."""
     model = loaded.model
     springs, dampers = loaded.has("SPRING"), loaded.has("DAMPER")
-    for dof in range(model.nv):
-        joint = model.dof_jntid[dof]
-        stiffness, damping = springs * float(model.jnt_stiffness[joint]), dampers * float(model.dof_damping[dof])
-        if stiffness or damping:
-            element = loaded.named("joint", joint)
-            yield Feedback(element, "joint", loaded.joints[dof], stiffness, damping, euler_implicit=True)
-    for tendon, direction in enumerate(loaded.tendons):
-        stiffness, damping = (
-            springs * float(model.tendon_stiffness[tendon]),
-            dampers * float(model.tendon_damping[tendon]),
-        )
-        if stiffness or damping:
-            element = loaded.named("tendon", tendon)
-            yield Feedback(element, "tendon", direction, stiffness, damping, euler_implicit=False)
+    joints = zip(model.dof_jntid, loaded.joints, model.jnt_stiffness[model.dof_jntid], model.dof_damping, strict=True)
+    tendons = zip(range(len(loaded.tendons)), loaded.tendons, model.tendon_stiffness, model.tendon_damping, strict=True)
+    for kind, elements in (("joint", joints), ("tendon", tendons)):
+        for number, direction, *constants in elements:
+            stiffness, damping = springs * float(constants[0]), dampers * float(constants[1])
+            if stiffness or damping:
+                element = loaded.named(kind, number)
+                yield Feedback(element, kind, direction, stiffness, damping, euler_implicit=kind == "joint")
 
 
 def _actuators(loaded: _Loaded) -> Iterator[Feedback | Motor | Unjudged]:

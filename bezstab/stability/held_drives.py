@@ -54,6 +54,19 @@ class Timing:
         if self.filter_steps < 0:
             raise InputError(f"--filter {float(self.filter_steps):g} steps: expected 0 or more")
 
+    def applied(self, step: int) -> list[tuple[int, Fraction]]:
+        """Return what acts in a step after the latest computation: how far back it was computed, and its share.
+
+        What was computed i times `every` steps ago is applied from the step whole - i every on; in that very step the
+        one before it keeps the share of `late` beyond whole steps.
+        """
+        whole = floor(self.late)
+        left = self.late - whole
+        begun = max(0, ceil(Fraction(whole - step, self.every)))
+        if left and step == whole - begun * self.every:
+            return [(begun, 1 - left), (begun + 1, left)]
+        return [(begun, Fraction(1))]
+
 
 @dataclass(frozen=True)
 class _Seen:
@@ -186,18 +199,8 @@ def _steps_matrix(seen: _Seen, alpha_hat: Number, beta_hat: Number, timing: Timi
 
 
 def _applied(step: int, timing: Timing, torques: list[list[Number]]) -> list[Number]:
-    """Return the torque applied in a step after the latest computation: `torques` begins with that one's, then back.
-
-    The torque computed i times `every` steps ago is applied from the step whole - i every on; in that very step the
-    one before it keeps the share of `late` beyond whole steps.
-    """
-    whole = floor(timing.late)
-    left = timing.late - whole
-    begun = max(0, ceil(Fraction(whole - step, timing.every)))
-    if left and step == whole - begun * timing.every:
-        like = torques[0][0]
-        return _sum((_as(1 - left, like), torques[begun]), (_as(left, like), torques[begun + 1]))
-    return torques[begun]
+    """Return the torque applied in a step after the latest computation: `torques` begins with that one's, then back."""
+    return _sum(*((_as(share, torques[0][0]), torques[back]) for back, share in timing.applied(step)))
 
 
 def _as(value: Fraction | int, like: Number) -> Number:
