@@ -92,10 +92,6 @@ def _critical_damping(strongest: float) -> Curve:
 FASTEST_ASKED_FOR = 4.0  # of alpha h: there e^-4, a fiftieth of an error, is left after a step
 
 
-def _write_rbdl(point: Point, h: Fraction) -> tuple[str, ...]:
-    return (in_words(_time_constant("rbdl", point, h)),)
-
-
 RBDL = Engine(
     name="rbdl",
     level="acceleration",
@@ -103,7 +99,7 @@ RBDL = Engine(
     parameters=("T_stab",),
     units=("s",),
     read=_read_rbdl,
-    write=_write_rbdl,
+    write=lambda point, h: (in_words(_time_constant("rbdl", point, h)),),
     marks=(("RBDL: T_stab = 0.1", lambda h: _read_rbdl(h, Fraction("0.1"))),),
     curve=_critical_damping(FASTEST_ASKED_FOR),
     source="RBDL source, Constraint.h (setBaumgarteTimeConstant, default 0.1 s, off unless enabled)",

@@ -1,6 +1,6 @@
 """What an engine is: its own words for the feedback, what it makes of them, and the method it steps with."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Literal
@@ -190,12 +190,15 @@ def in_words(value: float) -> str:
 def refuse_below_zero(option: str, **values: Fraction) -> None:
     """Raise InputError, naming the engine and the values, unless none is below zero."""
     if min(values.values()) < 0:
-        typed = ", ".join(f"{name} = {float(value):g}" for name, value in values.items())
-        raise InputError(f"--engine {option}: {typed}: expected 0 or more")
+        raise _refusal(option, values, "0 or more")
 
 
 def refuse_unless_positive(option: str, **values: Fraction) -> None:
     """Raise InputError, naming the engine and the values, unless all are above zero."""
     if min(values.values()) <= 0:
-        typed = ", ".join(f"{name} = {float(value):g}" for name, value in values.items())
-        raise InputError(f"--engine {option}: {typed}: expected above 0")
+        raise _refusal(option, values, "above 0")
+
+
+def _refusal(option: str, values: Mapping[str, Fraction], expected: str) -> InputError:
+    typed = ", ".join(f"{name} = {float(value):g}" for name, value in values.items())
+    return InputError(f"--engine {option}: {typed}: expected {expected}")

@@ -35,10 +35,6 @@ def _read_pbd(h: Fraction, share: Fraction, iterations: Fraction = ONE) -> Point
     return share_of_all, share_of_all
 
 
-def _pbd_step(iterations: int, h: Fraction, share: Fraction, typed: Fraction = ONE) -> SweptStep:
-    return SweptStep(0.0, (Move(), Pass("position", iterations, 1.0, relaxation=float(share)), VelocityOfMove()))
-
-
 PBD = Engine(
     name="pbd",
     level="position",
@@ -54,7 +50,9 @@ PBD = Engine(
     source="Mueller et al., Position based dynamics, J. Vis. Commun. Image R. 18, 2007; derived",
     excludes="other constraints in between; above 1 it is over-relaxation; velocity damping",
     sweeping=Sweeping(
-        _pbd_step,
+        lambda iterations, h, share, typed=ONE: SweptStep(
+            0.0, (Move(), Pass("position", iterations, 1.0, relaxation=float(share)), VelocityOfMove())
+        ),
         iterations=1,
         word="iterations",
         source="Mueller et al., Position based dynamics, 2007, Section 3.3 (Gauss-Seidel); derived",
@@ -126,10 +124,6 @@ JOLT = Engine(
 BOX2D_V2_POSITION_SWEEPS = 3
 
 
-def _box2d_v2_step(iterations: int, h: Fraction) -> SweptStep:
-    return SweptStep(1.0, (Pass("velocity", iterations), Move(), Pass("position", BOX2D_V2_POSITION_SWEEPS, 1.0)))
-
-
 BOX2D_V2 = engine_without_parameters(
     "box2d-v2",
     "position",
@@ -138,7 +132,9 @@ BOX2D_V2 = engine_without_parameters(
     source="Box2D 2.4 source, b2_revolute_joint.cpp (SolvePositionConstraints), b2_island.cpp",
     excludes="joints; contacts take back a fifth; errors within the slop of 5 mm, which end the sweeps; joint springs",
     sweeping=Sweeping(
-        _box2d_v2_step,
+        lambda iterations, h: SweptStep(
+            1.0, (Pass("velocity", iterations), Move(), Pass("position", BOX2D_V2_POSITION_SWEEPS, 1.0))
+        ),
         iterations=8,
         word="velocityIterations",
         source="Box2D 2.4 source, b2_island.cpp, b2_revolute_joint.cpp; its testbed's 8 velocity and 3 position sweeps",

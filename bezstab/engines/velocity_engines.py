@@ -127,10 +127,6 @@ GODOT = _engine_with_erp(
 )
 
 
-def _godot_2d_step(iterations: int, h: Fraction, bias: Fraction) -> SweptStep:
-    return SweptStep(1.0, (Pass("velocity", iterations), Pass("position", iterations, float(bias)), Move()))
-
-
 GODOT_2D = _engine_with_erp(
     "godot-2d",
     "0.2",
@@ -139,7 +135,9 @@ GODOT_2D = _engine_with_erp(
     word="bias",
     sweeps=True,
     sweeping=Sweeping(
-        _godot_2d_step,
+        lambda iterations, h, bias: SweptStep(
+            1.0, (Pass("velocity", iterations), Pass("position", iterations, float(bias)), Move())
+        ),
         iterations=16,
         word="physics/2d/solver/solver_iterations",
         source="Godot source, godot_joints_2d.cpp (pre_solve applies P, solve has its own bias impulse), "
@@ -240,10 +238,6 @@ def _write_chipmunk(point: Point, h: Fraction) -> tuple[str, ...]:
     return (f"{error_bias:.17g}",)  # all digits: for a small beta_hat it is next to one
 
 
-def _chipmunk_step(iterations: int, h: Fraction, error_bias: Fraction) -> SweptStep:
-    return hard_velocity_step(_read_chipmunk(h, error_bias)[1], iterations, kept=1.0)  # its order of moves is the same
-
-
 CHIPMUNK = Engine(
     name="chipmunk",
     level="velocity",
@@ -258,7 +252,9 @@ CHIPMUNK = Engine(
     source="Chipmunk source, cpConstraint.c, cpPivotJoint.c, cpSpaceStep.c (pymunk: error_bias)",
     excludes="maxBias and maxForce (infinite unless set); warm starts and the error of iterations; damped springs",
     sweeping=Sweeping(
-        _chipmunk_step,
+        lambda iterations, h, error_bias: hard_velocity_step(  # its order of moves is the same
+            _read_chipmunk(h, error_bias)[1], iterations, kept=1.0
+        ),
         iterations=10,
         word="iterations",
         source="Chipmunk source, cpSpaceStep.c (cached impulses, then sweeps), cpSpace.c, cpPivotJoint.c",
@@ -487,10 +483,6 @@ DRAKE_SAP = Engine(
 TGS_ITERATIONS = 4
 
 
-def _physx_step(iterations: int, h: Fraction) -> SweptStep:
-    return SweptStep(0.0, (Pass("velocity", iterations, 1.0), Move(), Pass("velocity", 1)))
-
-
 def _physx_tgs_step(iterations: int, h: Fraction) -> SweptStep:
     substep = (Pass("velocity", 1, math.sqrt(iterations)), Move(1 / iterations))  # of the whole step's velocity
     return SweptStep(0.0, (*substep * iterations, Pass("velocity", 1)))
@@ -505,7 +497,7 @@ PHYSX = engine_without_parameters(
     excludes=f"TGS, which is physx-tgs; {PHYSX_JOINTS}",
     sweeps=True,
     sweeping=Sweeping(
-        _physx_step,
+        lambda iterations, h: SweptStep(0.0, (Pass("velocity", iterations, 1.0), Move(), Pass("velocity", 1))),
         iterations=4,
         word="minPositionIters",
         source="PhysX source, DySolverControl.cpp, DySolverConstraint1D.h (appliedForce = 0), PxvDynamics.h (4 and 1)",

@@ -395,14 +395,20 @@ def _passive(loaded: _Loaded) -> Iterator[Feedback]:
     """Yield the springs and dampers of joints and tendons."""
     model = loaded.model
     springs, dampers = loaded.has("SPRING"), loaded.has("DAMPER")
-    joints = zip(model.dof_jntid, loaded.joints, model.jnt_stiffness[model.dof_jntid], model.dof_damping, strict=True)
-    tendons = zip(range(len(loaded.tendons)), loaded.tendons, model.tendon_stiffness, model.tendon_damping, strict=True)
-    for kind, elements in (("joint", joints), ("tendon", tendons)):
-        for number, direction, *constants in elements:
-            stiffness, damping = springs * float(constants[0]), dampers * float(constants[1])
-            if stiffness or damping:
-                element = loaded.named(kind, number)
-                yield Feedback(element, kind, direction, stiffness, damping, euler_implicit=kind == "joint")
+    for dof in range(model.nv):
+        joint = model.dof_jntid[dof]
+        stiffness, damping = springs * float(model.jnt_stiffness[joint]), dampers * float(model.dof_damping[dof])
+        if stiffness or damping:
+            element = loaded.named("joint", joint)
+            yield Feedback(element, "joint", loaded.joints[dof], stiffness, damping, euler_implicit=True)
+    for tendon, direction in enumerate(loaded.tendons):
+        stiffness, damping = (
+            springs * float(model.tendon_stiffness[tendon]),
+            dampers * float(model.tendon_damping[tendon]),
+        )
+        if stiffness or damping:
+            element = loaded.named("tendon", tendon)
+            yield Feedback(element, "tendon", direction, stiffness, damping, euler_implicit=False)
 
 
 def _actuators(loaded: _Loaded) -> Iterator[Feedback | Motor | Unjudged]:
