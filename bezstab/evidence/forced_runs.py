@@ -150,17 +150,7 @@ def forced_motions(
     found = []
     for point, predicted in zip(points, predicted_errors(mechanism, method, h, points, duration), strict=True):
         measured, failure = _measured(mechanism, method, h, point, duration)
-        found.append(
-            ForcedMotion(
-                method=method,
-                h=h,
-                alpha_hat=point[0],
-                beta_hat=point[1],
-                predicted=predicted,
-                measured=measured,
-                failure=failure,
-            )
-        )
+        found.append(ForcedMotion(method, h, *point, predicted, measured, failure))
     return found
 
 
