@@ -8,7 +8,7 @@ marks the test that holds a promise, with its kind and its words. A further test
 """
 
 import ast
-from dataclasses import dataclass, field
+from collections.abc import Iterator
 from pathlib import Path
 
 FOLDER = Path(__file__).parent
@@ -29,71 +29,41 @@ is not on this page is not promised. The page is made from the marks of the test
 """
 
 
-@dataclass
-class Promise:
-    """A promise: its name, its kind and words (empty until the test that has them is read), the tests that hold it."""
-
-    name: str
-    kind: str = ""
-    words: str = ""
-    tests: list[str] = field(default_factory=list)
-
-
-def marks(file: Path) -> list[tuple[str, ast.Call]]:
-    """Return the name of each marked test of a file, with its mark as a syntax tree."""
-    found = []
-    text = file.read_text(encoding="utf-8")
-    if "mark.promise(" not in text:
-        return []  # a second saved
-    tests = [node for node in ast.parse(text).body if isinstance(node, ast.FunctionDef)]
-    for test in tests:
-        for mark in test.decorator_list:
-            if isinstance(mark, ast.Call) and ast.unparse(mark.func) == "pytest.mark.promise":
-                found.append((test.name, mark))
-    return found
-
-
-def promises() -> list[Promise]:
-    """Return the promises of all tests, in the order of their files.
-
-    ValueError if a mark is none of ours, if a promise has no words, or has them twice.
-    """
-    found: dict[str, Promise] = {}
+def marks() -> Iterator[tuple[str, ast.Call]]:
+    """Yield the place of each marked test, in the order of the files, with its mark as a syntax tree."""
     for file in sorted(FOLDER.rglob("test_*.py")):
-        for test, mark in marks(file):
-            place = f"{file.relative_to(FOLDER.parent).as_posix()}::{test}"
-            name = ast.literal_eval(mark.args[0])
-            promise = found.setdefault(name, Promise(name))
-            promise.tests.append(place)
-            for keyword in mark.keywords:
-                if keyword.arg not in KINDS or promise.kind:
-                    raise ValueError(f"{place}: {keyword.arg} of {name!r} is no kind of promise, or its second words")
-                promise.kind, promise.words = keyword.arg, ast.literal_eval(keyword.value)
-    for promise in found.values():
-        if not promise.kind:
-            raise ValueError(f"{promise.tests[0]}: {promise.name!r} has no words in any test")
-    return list(found.values())
+        text = file.read_text(encoding="utf-8")
+        marked = ast.parse(text).body if "mark.promise(" in text else []  # a second saved
+        for test in (node for node in marked if isinstance(node, ast.FunctionDef)):
+            for mark in test.decorator_list:
+                if isinstance(mark, ast.Call) and ast.unparse(mark.func) == "pytest.mark.promise":
+                    yield f"{file.relative_to(FOLDER.parent).as_posix()}::{test.name}", mark
 
 
 def page() -> str:
-    """Return the text of the page."""
+    """Return the text of the page; ValueError if a promise has no words, words twice, or a kind that is none."""
+    tests: dict[str, list[str]] = {}
+    words: dict[str, tuple[str, str]] = {}
+    for place, mark in marks():
+        name = ast.literal_eval(mark.args[0])
+        tests.setdefault(name, []).append(f"`{place}`")
+        for keyword in mark.keywords:
+            if keyword.arg not in KINDS or name in words:
+                raise ValueError(f"{place}: {keyword.arg} of {name!r} is no kind of promise, or its second words")
+            words[name] = keyword.arg, ast.literal_eval(keyword.value)
+    if missing := tests.keys() - words:
+        raise ValueError(f"no test has the words of {', '.join(sorted(missing))}")
     lines = [OPENING]
-    everything = promises()
     for kind, heading in KINDS.items():
         lines += [f"## {heading}", "", "| what | how far | held by |", "|---|---|---|"]
-        for promise in everything:
-            if promise.kind == kind:
-                tests = ", ".join(f"`{test}`" for test in promise.tests)
-                what, how_far = (text.replace("|", r"\|") for text in (promise.name, promise.words))
-                lines.append(f"| {what} | {how_far} | {tests} |")
+        for name, held_by in tests.items():
+            of_kind, how_far = words[name]
+            if of_kind == kind:
+                cells = (name.replace("|", r"\|"), how_far.replace("|", r"\|"), ", ".join(held_by))
+                lines.append(f"| {' | '.join(cells)} |")
         lines.append("")
     return "\n".join(lines)
 
 
-def main() -> None:
-    """Write the page anew."""
-    PAGE.write_text(page(), encoding="utf-8")
-
-
 if __name__ == "__main__":
-    main()
+    PAGE.write_text(page(), encoding="utf-8")

@@ -34,25 +34,20 @@ from pathlib import Path
 
 from tests.pages import PACKAGE, ROOMS, tree_of
 
-TESTS = PACKAGE.parent / "tests"
 FOUNDATIONS = (
     *("lazy", "stopping", "errors", "rationals", "files", "toml_tables", "units", "compiling", "read_only", "goals"),
     "linear_equations",
 )
 """Beside the rooms, each importing only from those before it."""
 
-BELOW = {
-    "engines": {*FOUNDATIONS},
-    "methods": {*FOUNDATIONS},
-    "stability": {*FOUNDATIONS, "engines", "methods"},
-    "mechanism": {*FOUNDATIONS, "methods"},
-    "evidence": {*FOUNDATIONS, "engines", "methods", "stability", "mechanism"},
-    "questions": {*FOUNDATIONS, "engines", "methods", "stability", "mechanism", "evidence"},
-    "show": {*FOUNDATIONS, "engines", "methods", "stability", "mechanism", "evidence", "questions"},
-    "cli": {*FOUNDATIONS, "engines", "methods", "stability", "mechanism", "evidence", "questions", "show"},
-    "paper": {*FOUNDATIONS, "methods", "stability", "mechanism", "evidence", "show", "cli"},
-    "api": {*FOUNDATIONS, "engines", "methods", "stability", "mechanism", "evidence", "questions"},
+STRANGERS = {
+    "methods": {"engines"},
+    "mechanism": {"engines", "stability"},
+    "paper": {"engines", "questions"},
+    "api": {"show", "cli", "paper"},
 }
+"""The rooms before a room that it does not import from all the same."""
+
 SHARED_WITH_EXTENSIONS = {"cli.options", "cli.output"}
 """What a command outside the room `cli`, such as the paper's, is written with."""
 
@@ -118,10 +113,11 @@ def behind_the_door(room: str) -> set[str]:
 
 
 def test_a_room_imports_only_from_rooms_below() -> None:
+    order = [*FOUNDATIONS, *ROOMS, "api"]
     for path in [*IN_ROOMS, Path("api.py")]:
         room = path.parts[0].removesuffix(".py")
         others = {module.split(".")[0] for module, _ in own_imports(path)} - {room, "__version__"}
-        assert others <= BELOW[room], path
+        assert others <= set(order[: order.index(room)]) - STRANGERS.get(room, set()), path
 
 
 def test_the_foundations_stand_on_one_another_in_order() -> None:
@@ -170,22 +166,6 @@ def test_computation_neither_prints_nor_exits_nor_filters_warnings_and_one_file_
         if path.as_posix() != "show/explorer.py":  # pyplot is what opens a window
             assert "matplotlib.pyplot" not in modules, path
             assert ("matplotlib", ("pyplot",)) not in set(imports(path)), path
-
-
-WITHOUT_TESTS_OF_THEIR_OWN = {
-    *("paper/lost.py", "paper/reports.py"),  # no logic
-    *(f"methods/{name}.py" for name in ("step_equations", "determinants", "polynomials")),
-    *(f"stability/{name}.py" for name in ("neighbourhoods", "low_degrees", "quadratures", "shapes")),
-    *(f"stability/{name}.py" for name in ("charts", "critical_points", "least_modulus", "real_factors")),
-}
-"""Arithmetic whose errors the tests of what uses it show: of schemes, verdicts, maps, areas and best points."""
-
-
-def test_the_tests_mirror_the_tree() -> None:
-    """Tables, figures and commands are tested by what is seen, and not by the files that make it."""
-    for path in [path for path in IN_ROOMS if path.parts[0] not in ("show", "cli")]:
-        if path.as_posix() not in WITHOUT_TESTS_OF_THEIR_OWN:
-            assert (TESTS / path.parent / f"test_{path.name}").exists(), path
 
 
 def test_import_and_help_are_light() -> None:

@@ -23,9 +23,6 @@ def small_map() -> VerdictMap:
 RESULTS: dict[str, Callable[[], Any]] = {
     "region": lambda: bezstab.region("B4"),
     "region without end": lambda: bezstab.region("trapezoid"),
-    "region of a second-order scheme": lambda: bezstab.region("verlet-half"),
-    "best_point": lambda: bezstab.best_point("B4"),
-    "choose": lambda: bezstab.choose("B4"),
     "check": lambda: bezstab.check("B4", alpha_hat=1, beta_hat=1),
     "simulate": lambda: bezstab.simulate("slider_crank", "B4", alpha_hat=0.5, beta_hat=0.1, h=0.001, duration=0.01),
     "verify": lambda: bezstab.verify("slider_crank", "B4", alpha_hat=0.5, beta_hat=0.1, h=0.001),
@@ -34,7 +31,7 @@ RESULTS: dict[str, Callable[[], Any]] = {
     "a family's limit": bezier_limit,
     "a reference motion": lambda: reference_motion(bezstab.scene("slider_crank"), h=0.001, duration=0.01),
 }
-WITHOUT_ARRAYS = {"best_point", "choose", "check", "verify", "probe"}
+WITHOUT_ARRAYS = {"check", "verify", "probe"}
 
 
 def arrays_in(value: object) -> Iterator[np.ndarray[Any, Any]]:

@@ -15,7 +15,6 @@ from tests.evidence.samples import of_campaign
 from tests.reference.sampled_responses import of_poles
 
 ROOT = Path(__file__).parent.parent
-README = (ROOT / "README.md").read_text(encoding="utf-8")
 DATA = ROOT / "tests" / "cli" / "data"
 PAGES = (
     "README.md",
@@ -102,12 +101,6 @@ def test_a_command_in_the_text_runs(command: str) -> None:
 def own_file(command: str) -> Path:
     """Return a shipped file of the kind that a command names own.toml: a scene, or a method."""
     return ROOT / "configs" / ("scenes/pendulum.toml" if "--scene own.toml" in command else "methods/ebdf2.toml")
-
-
-def test_the_readme_is_short() -> None:
-    lines = README.splitlines()
-    assert len(lines) <= 170
-    assert max(map(len, lines)) <= 101  # of a sentence that `choose` prints
 
 
 @pytest.mark.parametrize("page", [*PAGES, "configs/logs/README.md"])

@@ -46,19 +46,11 @@ def test_an_unknown_key_of_a_table_within_is_found_from_outside() -> None:
 
 def test_what_is_of_another_kind_is_refused_with_what_is_expected() -> None:
     refused: list[tuple[Callable[[TomlTable], object], str, list[Any]]] = [
-        (
-            lambda table: table.number("x"),
-            "expected a number, 0 or of size 1e-100 to 1e100",
-            [True, "1", None, math.nan, math.inf, 1e101, 1e-101, 10**400, [1.0], {}],
-        ),
-        (lambda table: table.text("x"), "expected one line of text", ["", " ", "a\nb", "a\u2028b", 4, ["a"]]),
-        (
-            lambda table: table.exact_numbers("x", rational),
-            "expected a list of rational strings",
-            [[1.0], ["1", 2], "1"],
-        ),
-        (lambda table: table.exact_rows("x", rational), "rational strings", [[[1.0]], [["1", 2]], ["1"]]),
-        (lambda table: table.point("x"), "expected two numbers", [[1.0], [1.0, 2.0, 3.0], [1.0, "2"], 1.0, "ab"]),
+        (lambda table: table.number("x"), "expected a number", [True, "1", None, math.nan, 1e101, 1e-101, 10**400]),
+        (lambda table: table.text("x"), "expected one line of text", ["", " ", "a\nb", "a\u2028b", 4]),
+        (lambda table: table.exact_numbers("x", rational), "expected a list of rational strings", [[1.0], "1"]),
+        (lambda table: table.exact_rows("x", rational), "rational strings", [[["1", 2]], ["1"]]),
+        (lambda table: table.point("x"), "expected two numbers", [[1.0], [1.0, "2"], 1.0, "ab"]),
         (lambda table: table.tables("x"), "expected a", [[3], {}]),
         (lambda table: table.table("x"), "expected a table", [3]),
     ]

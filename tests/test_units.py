@@ -1,7 +1,6 @@
 """alpha, beta and h against alpha_hat and beta_hat: paper Eqs 6 and 16, both ways."""
 
 import math
-import re
 from fractions import Fraction
 
 import numpy as np
@@ -29,13 +28,6 @@ def test_what_leaves_float64_is_refused_by_name() -> None:
         to_dimensionless(huge**2, Fraction(0), Fraction(1))
 
 
-@pytest.mark.parametrize("h", [0, -1e-3, 1e101, math.nan])
-def test_a_step_that_is_none_is_refused_both_ways(h: float) -> None:
-    for convert in (to_dimensionless, from_dimensionless):
-        with pytest.raises(InputError, match=re.escape(f"h = {h:g} s: expected 1e-100 to 1e+100 s")):
-            convert(1.0, 1.0, h)
-
-
 @given(anything, anything, positive)
 def test_exact_gains_come_back_exactly(alpha_hat: Fraction, beta_hat: Fraction, h: Fraction) -> None:
     assert from_feedback_gains(*feedback_gains(alpha_hat, beta_hat, h), h) == (alpha_hat, beta_hat)
@@ -55,14 +47,6 @@ def test_a_negative_beta_hat_has_gains_but_no_beta(beta_hat: float) -> None:
     with pytest.raises(InputError, match="expected 0 or more"):
         from_dimensionless(np.array([0.5, 0.5]), np.array([0.1, beta_hat]), 0.01)
     assert feedback_gains(0.5, -0.25, 0.5) == (1.0, -1.0)
-
-
-@pytest.mark.parametrize("point", [(1e300, 0.0), (0.0, 1e300), (math.nan, 0.0)])
-def test_no_result_is_infinite_or_not_a_number(point: tuple[float, float]) -> None:
-    with pytest.raises(InputError, match="outside the range of float64"):
-        from_dimensionless(*point, 1e-100)
-    with pytest.raises(InputError, match="outside the range of float64"):
-        from_dimensionless(np.array([point[0]]), np.array([point[1]]), 1e-100)
 
 
 def test_alpha_and_beta_of_one_point_are_what_was_typed() -> None:

@@ -58,17 +58,13 @@ def test_the_map_draws_what_it_is_given(h: float | None) -> None:
     shown = np.ma.masked_array(mesh.get_array())
     assert (np.ma.getmaskarray(shown) == (z_abs >= 1)).all()
     assert shown.compressed().tolist() == z_abs[z_abs < 1].tolist()
-    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
-    assert axes.get_xlim() == pytest.approx(tuple(alpha_hat[[0, -1]] * scale[0]))
-    assert axes.get_ylim() == pytest.approx(tuple(beta_hat[[0, -1]] * scale[1]))
+    low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
+    assert [low, high] == pytest.approx(np.transpose([alpha_hat, beta_hat])[[0, -1]] * scale)
     lines = {str(line.get_label()): np.array(line.get_xydata()) for line in axes.lines}
     chosen = choose(lookup("RK4"), "accurate", margins=False)
     there = lines[f"choose accurate: {abs(chosen.pole):.4f}"][0]
     assert there == pytest.approx(np.array([chosen.alpha_hat, chosen.beta_hat]) * scale)
     assert lines["a rule"][0] == pytest.approx(np.array([0.1, 0.01]) * scale)
-    assert {"$|z_p| = 1$", "$|z_p| = 0.99$", "deadbeat: $|z_p| = 0$", "forced error / motion"} <= set(lines)
-    assert r"\omega h$ = 0.01" in axes.get_title()
-    assert ("1/s" in axes.get_xlabel()) == (h is not None)
 
 
 @pytest.mark.promise(
@@ -111,8 +107,4 @@ def test_the_front_figure_has_every_point_of_every_front() -> None:
         assert line.get_label() == front[0].method.name
         drawn = [[point.z_abs_below, point.combined_error] for point in front if point.z_abs_below >= 0.1]
         assert np.array(line.get_xydata()).tolist() == drawn
-    assert (
-        len(fronts[0]) == len(np.array(axes.lines[0].get_xydata())) + 1
-    )  # deadbeat: its |z_p| = 0 is infinitely far away
-    assert axes.get_yscale() == "log"
-    assert r"\omega h$ = 0.01" in axes.get_title()
+    assert len(np.array(axes.lines[0].get_xydata())) == len(fronts[0]) - 1  # deadbeat is infinitely far away

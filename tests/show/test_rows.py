@@ -12,27 +12,21 @@ from typing import Literal
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from bezstab.methods import lookup
 from bezstab.questions import Question, answers, region_answer
 from bezstab.show import (
     FIELDS,
     POLES,
-    REGIONS,
     ROW_KINDS,
     Field,
     cells,
-    fits,
     formatted,
     render,
     row_kinds,
-    wrapped,
 )
 from bezstab.show.arrays import map_arrays, untimed_arrays, write_arrays
-from bezstab.show.cells import LIMITS, pole_text, range_text, safe_step_text, stable_steps_text, with_unbounded
-from bezstab.show.columns import shown_width
+from bezstab.show.cells import LIMITS, pole_text, safe_step_text, stable_steps_text, with_unbounded
 from bezstab.show.rows import pole_rows, region_row
 from bezstab.show.schemas import _row_schema
 
@@ -83,50 +77,20 @@ def test_json_and_csv_keep_every_digit_and_text_rounds() -> None:
     assert "0.750000 ± 0.125000i" in render(ROWS, COLUMNS, "text")
     assert pole_text({"z_real": 0.5, "z_imag": 1e-9}) == "0.500000"
     assert [formatted(None, ".3f"), formatted(""), formatted(-0.0, "g")] == ["-", "-", "0"]
-
-
-@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
-def test_what_is_not_finite_is_missing(value: float) -> None:
-    rows = [{**ROWS[0], "z_abs": value}]
-    assert json.loads(render(rows, COLUMNS, "json")) == [{**ROWS[0], "z_abs": None}]
-    assert next(csv.DictReader(io.StringIO(render(rows, COLUMNS, "csv"))))["z_abs"] == ""
-    assert " -  " in render(rows, COLUMNS, "text")
-
-
-def test_columns_line_up_under_hats() -> None:
-    rows = [region_row(region_answer(lookup(name))) for name in ("B4", "AB4")]
-    for form in ("text", "markdown"):
-        header, *lines = render(rows, REGIONS.columns(rows), form).replace("\u0302", "").splitlines()
-        column = header.index("least")
-        assert [line[column : column + 10] for line in lines if "---" not in line] == ["0.62588350", "0.80700735"]
-
-
-@given(st.text("abc -/\N{COMBINING CIRCUMFLEX ACCENT}", max_size=300), st.integers(20, 120))
-def test_text_is_wrapped_to_a_width_without_losing_a_word(text: str, width: int) -> None:
-    lines = wrapped(text, width).split("\n")
-    assert all(shown_width(line) <= width or " " not in line.strip() for line in lines)
-    assert " ".join(lines).split() == text.split()
-    assert fits("\n".join(lines), width) == all(shown_width(line) <= width for line in lines)
+    infinite = [{**ROWS[0], "z_abs": math.inf}]
+    assert json.loads(render(infinite, COLUMNS, "json")) == [{**ROWS[0], "z_abs": None}]
+    assert " -  " in render(infinite, COLUMNS, "text")
 
 
 @pytest.mark.slow
 def test_limits_are_rounded_to_the_safe_side_or_said_in_words() -> None:
     assert safe_step_text({"safe": True, "h_limit": 0.0123456}) == "0.01234"
-    assert safe_step_text({"safe": True, "h_limit": None}) == "unlimited"
-    assert safe_step_text({"safe": False, "h_limit": None}) == "none"
-    assert range_text("alpha")({"alpha_factor_min": 0.5, "alpha_factor_max": None}) == "0.5 to any"
     row = region_row(region_answer(lookup("bdf3")))
     assert [row[key] for key in ("bounded", "area", *LIMITS)] == [False, *[None] * 5]
     words = with_unbounded(row)
     assert [words[key] for key in ("area", *LIMITS)] == ["unbounded"] * 5
     assert words["critical_damping_limit"] == "unlimited"
-    for name, steps in (
-        ("trapezoid", "all (proven for any α, β)"),
-        ("bdf3", "all, as from α/β = 0.0691929"),
-        ("am3", "6"),
-    ):
-        assert stable_steps_text(region_row(region_answer(lookup(name)))) == steps
-    assert stable_steps_text({**row, "unconditional_damping_ratio": 0.0}) == "all (no unstable α, β found)"
+    assert stable_steps_text(row) == "all, as from α/β = 0.0691929"
 
 
 @pytest.mark.parametrize("h", [None, 0.001])
